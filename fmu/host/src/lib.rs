@@ -1,0 +1,1 @@
+//! C types of FMI and a small host.

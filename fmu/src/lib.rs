@@ -1,0 +1,1 @@
+//! FMI entry points.
