@@ -1,1 +1,4 @@
-//! moorline.
+//! Mooring-line dynamics.
+#![forbid(unsafe_code)]
+
+pub mod scene;

@@ -1,0 +1,359 @@
+//! What the user wrote: plain data, SI units, nothing computed. What is absent is `None`.
+//!
+//! A scene comes from TOML text ([`Scene::from_toml`]); every mistake names its key, line and column.
+//! [`crate::model::Model::new`] is the one gate from here to the solver.
+
+mod check;
+mod error;
+mod read;
+mod time_function;
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+pub use error::SceneError;
+pub use time_function::{HarmonicMotion, MotionFile, MotionPath, TimeFunction};
+
+/// Standard gravity [m/s²], the default of [`Scene::gravity`].
+pub const STANDARD_GRAVITY: f64 = 9.80665;
+
+/// One mooring scene as the user described it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Scene {
+    /// What the scene is, in a line.
+    #[serde(default)]
+    pub title: String,
+    /// Gravitational acceleration [m/s²].
+    #[serde(default = "standard_gravity")]
+    pub gravity: f64,
+    /// The water; without it there is no buoyancy, drag or added mass.
+    pub water: Option<Water>,
+    /// The seabed; without it there is no contact.
+    pub seabed: Option<Seabed>,
+    /// Line types by name.
+    #[serde(default)]
+    pub line_types: BTreeMap<String, LineType>,
+    /// Points that lines end at.
+    #[serde(default)]
+    pub points: Vec<Point>,
+    /// Lines between points.
+    #[serde(default)]
+    pub lines: Vec<Line>,
+    /// How to solve.
+    #[serde(default)]
+    pub solver: Solver,
+    /// What moves the coupled points in `moorline run`, by point name.
+    #[serde(default)]
+    pub motion: BTreeMap<String, MotionPath>,
+    /// What `moorline run` and the FMU write.
+    #[serde(default)]
+    pub output: Output,
+}
+
+/// Still water that fills all space below and above z = 0: lines are fully submerged.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Water {
+    /// Density [kg/m³].
+    pub density: f64,
+}
+
+/// A horizontal seabed at z = −depth.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Seabed {
+    /// Depth below z = 0 [m].
+    pub depth: f64,
+    /// Normal stiffness kbot [Pa/m], per metre of line and metre of diameter.
+    #[serde(default = "seabed_stiffness")]
+    pub stiffness: f64,
+    /// Normal damping cbot [Pa s/m], per metre of line and metre of diameter.
+    #[serde(default = "seabed_damping")]
+    pub damping: f64,
+    /// Coulomb friction coefficient of the bed in the static catenary [-].
+    #[serde(default)]
+    pub friction: f64,
+    /// How stiffness and damping are used.
+    #[serde(default)]
+    pub contact: ContactLaw,
+}
+
+/// How seabed stiffness and damping reach the nodes.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ContactLaw {
+    /// Softened together so that a resting line sinks in by a small part of its segment length.
+    #[default]
+    Regularised,
+    /// Exactly the given coefficients.
+    AsGiven,
+}
+
+/// Properties of a line per unstretched length. Give `mass` or `weight`, and `diameter` where there is water.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LineType {
+    /// Mass in air [kg/m].
+    pub mass: Option<f64>,
+    /// Weight in the scene's surroundings [N/m]; where given, buoyancy is not subtracted again.
+    pub weight: Option<f64>,
+    /// Volume-equivalent diameter [m].
+    pub diameter: Option<f64>,
+    /// Axial stiffness EA [N].
+    pub axial_stiffness: f64,
+    /// Axial damping BA [N s].
+    pub axial_damping: Option<f64>,
+    /// Axial damping as a ratio of the critical damping of each segment [-]; instead of `axial_damping`.
+    pub damping_ratio: Option<f64>,
+    /// Rayleigh damping, in addition to the axial damping.
+    pub rayleigh: Option<Rayleigh>,
+    /// Strain measure that EA multiplies.
+    #[serde(default)]
+    pub strain: Strain,
+    /// Normal drag coefficient [-], on the frontal area d·l.
+    pub drag_normal: Option<f64>,
+    /// Tangential drag coefficient [-], on the skin area π·d·l.
+    pub drag_tangential: Option<f64>,
+    /// Normal added-mass coefficient [-], on the displaced volume.
+    pub added_mass_normal: Option<f64>,
+    /// Tangential added-mass coefficient [-], on the displaced volume.
+    pub added_mass_tangential: Option<f64>,
+}
+
+/// Damping ratios at two circular frequencies; they fix C = α·M + β·K.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Rayleigh {
+    /// Damping ratios at the two frequencies [-].
+    pub ratios: [f64; 2],
+    /// Circular frequencies [rad/s].
+    pub frequencies: [f64; 2],
+}
+
+/// Strain measure.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Strain {
+    /// ε = λ − 1.
+    #[default]
+    Engineering,
+    /// Green-Lagrange, ε = (λ² − 1)/2.
+    Green,
+    /// Hencky, ε = ln λ on the current area A·λ^(−2ν); the value is Poisson's ratio ν [-], 0 to ½.
+    Logarithmic(f64),
+}
+
+/// A point that lines end at.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Point {
+    /// Name, the stem of its variables.
+    pub name: String,
+    /// Reference position [m].
+    pub position: [f64; 3],
+    /// Who moves it.
+    pub kind: PointKind,
+    /// Axes along which a free point may move; all where absent.
+    pub free: Option<Vec<Axis>>,
+    /// Own mass [kg], free points only.
+    pub mass: Option<f64>,
+    /// Own displaced volume [m³], free points only.
+    pub volume: Option<f64>,
+    /// Point load in time.
+    pub force: Option<PointForce>,
+    /// Its prescribed displacement in time, `kind = "prescribed"` only.
+    pub motion: Option<MotionPath>,
+}
+
+/// Who moves a point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum PointKind {
+    /// Never moves.
+    Fixed,
+    /// The host moves it: a fairlead.
+    Coupled,
+    /// Its own path in time moves it, in every host.
+    Prescribed,
+    /// The forces on it move it.
+    Free,
+}
+
+/// A global axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Axis {
+    /// Global x.
+    X,
+    /// Global y.
+    Y,
+    /// Global z, up.
+    Z,
+}
+
+/// A point load [N] along the global axes.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PointForce {
+    /// Along x [N].
+    pub x: Option<TimeFunction>,
+    /// Along y [N].
+    pub y: Option<TimeFunction>,
+    /// Along z [N].
+    pub z: Option<TimeFunction>,
+}
+
+/// A line from end A (anchor) to end B (fairlead).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Line {
+    /// Name, the stem of its variables.
+    pub name: String,
+    /// Point of end A.
+    pub from: String,
+    /// Point of end B.
+    pub to: String,
+    /// Sections from A to B.
+    pub sections: Vec<Section>,
+    /// Shape at the start.
+    #[serde(default)]
+    pub initial: InitialShape,
+}
+
+/// A part of a line with one line type.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Section {
+    /// Line type.
+    #[serde(rename = "type")]
+    pub line_type: String,
+    /// Unstretched length [m].
+    pub length: f64,
+    /// Number of elements; chosen from the tolerance where absent.
+    pub elements: Option<usize>,
+}
+
+/// Shape of a line at t = 0, at rest.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum InitialShape {
+    /// Static equilibrium.
+    #[default]
+    Static,
+    /// Straight between its ends.
+    Straight,
+    /// A parabola that hangs this far [m] below the middle of the chord.
+    Parabola(f64),
+    /// Given node positions [m], one more than the line has elements.
+    Nodes(Vec<[f64; 3]>),
+}
+
+/// How to solve.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Solver {
+    /// Target error of fairlead tension [-].
+    pub tolerance: f64,
+    /// Time integrator.
+    pub integrator: Integrator,
+    /// The peers' law: axial damping acts in compression too.
+    pub negative_tension: bool,
+    /// Upper limit of the internal time step [s].
+    pub time_step_max: f64,
+    /// Spectral radius at infinite frequency [-] of `generalised_alpha` (default 0.5) or `axial_implicit` (default 0.9).
+    pub spectral_radius: Option<f64>,
+    /// Parameters of `bossak`.
+    pub bossak: Option<Bossak>,
+    /// How the path of a coupled point between communication points is built.
+    pub input_reconstruction: Reconstruction,
+}
+
+/// Time integrator.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Integrator {
+    /// Chosen from the step limits.
+    #[default]
+    Auto,
+    /// Explicit leapfrog.
+    Leapfrog,
+    /// Leapfrog with the axial tension implicit.
+    AxialImplicit,
+    /// Chung and Hulbert's generalised-α, fully implicit.
+    GeneralisedAlpha,
+    /// Wood, Bossak and Zienkiewicz, fully implicit.
+    Bossak,
+    /// Static equilibrium at every communication point.
+    QuasiStatic,
+}
+
+/// Parameters of the Bossak scheme [-]; β = (1 − α)²/4.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Bossak {
+    /// Weight of the old acceleration, −1/3 to 0.
+    pub alpha: f64,
+    /// Newmark's γ; second order needs ½ − α, the default.
+    pub gamma: Option<f64>,
+}
+
+/// How the path of a coupled point between communication points is built.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Reconstruction {
+    /// C1 cubic towards the predicted position: second order or better.
+    #[default]
+    Smooth,
+    /// Constant velocity from where the host says the point is, as the peers do: jumps at communication points.
+    Jump,
+}
+
+/// What `moorline run` and the FMU write.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Output {
+    /// Duration of `moorline run` [s].
+    pub duration: f64,
+    /// Interval of output and communication [s].
+    pub interval: f64,
+    /// Node positions and tensions as variables too.
+    pub profile: bool,
+}
+
+fn standard_gravity() -> f64 {
+    STANDARD_GRAVITY
+}
+
+fn seabed_stiffness() -> f64 {
+    3.0e6
+}
+
+fn seabed_damping() -> f64 {
+    3.0e5
+}
+
+impl Default for Solver {
+    fn default() -> Self {
+        Solver {
+            tolerance: 0.02,
+            integrator: Integrator::Auto,
+            negative_tension: false,
+            time_step_max: 0.05,
+            spectral_radius: None,
+            bossak: None,
+            input_reconstruction: Reconstruction::Smooth,
+        }
+    }
+}
+
+impl Default for Output {
+    fn default() -> Self {
+        Output {
+            duration: 60.0,
+            interval: 0.05,
+            profile: false,
+        }
+    }
+}
