@@ -1,4 +1,7 @@
 //! Mooring-line dynamics.
 #![forbid(unsafe_code)]
 
+pub mod math;
+pub mod model;
+pub mod physics;
 pub mod scene;

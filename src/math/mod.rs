@@ -1,0 +1,2 @@
+//! No physics: small fixed-size algebra, block-tridiagonal solve, interpolation.
+pub mod hermite;

@@ -1,0 +1,349 @@
+//! Scene -> Model.
+
+use nalgebra::Vector3;
+
+use super::{
+    Contact, Drag, End, FreePoint, Line, Model, Motion, Network, Nodes, Point, Role, Section,
+    Segments, mesh,
+};
+use crate::physics::morison::{DragCoefficients, drag_per_length};
+use crate::physics::rayleigh;
+use crate::physics::seabed::{ContactCoefficients, regularised};
+use crate::physics::stretch::StretchLaw;
+use crate::physics::weight::{cross_section, submerged_weight};
+use crate::scene::{self, Axis, ContactLaw, LineType, PointKind, Scene, SceneError, Strain};
+
+impl Model {
+    /// Makes a scene discrete.
+    ///
+    /// # Errors
+    /// The mistakes that [`Scene::check`] finds, and names that do not exist.
+    pub fn new(scene: &Scene) -> Result<Model, SceneError> {
+        scene.check()?;
+        let mut points: Vec<Point> = scene
+            .points
+            .iter()
+            .map(|point| build_point(scene, point))
+            .collect();
+        let mut lines = Vec::with_capacity(scene.lines.len());
+        for (index, line) in scene.lines.iter().enumerate() {
+            let built = build_line(scene, index, line)?;
+            points[built.ends[0]].attached.push((index, End::A));
+            points[built.ends[1]].attached.push((index, End::B));
+            lines.push(built);
+        }
+        Ok(Model {
+            gravity: scene.gravity,
+            bed: scene.seabed.as_ref().map(|bed| -bed.depth),
+            bed_friction: scene.seabed.as_ref().map_or(0.0, |bed| bed.friction),
+            networks: networks(&points, &lines),
+            points,
+            lines,
+            solver: scene.solver.clone(),
+        })
+    }
+}
+
+fn build_point(scene: &Scene, point: &scene::Point) -> Point {
+    let role = match point.kind {
+        PointKind::Fixed => Role::Fixed,
+        PointKind::Coupled => Role::Coupled {
+            motion: scene.motion.get(&point.name).map(Motion::new),
+        },
+        PointKind::Prescribed => point
+            .motion
+            .as_ref()
+            .map_or(Role::Fixed, |m| Role::Prescribed(Motion::new(m))),
+        PointKind::Free => Role::Free(free_point(scene, point)),
+    };
+    Point {
+        name: point.name.clone(),
+        reference: Vector3::from(point.position),
+        role,
+        load: point.force.clone(),
+        attached: Vec::new(),
+    }
+}
+
+fn free_point(scene: &Scene, point: &scene::Point) -> FreePoint {
+    let axes = match &point.free {
+        None => [true; 3],
+        Some(free) => [Axis::X, Axis::Y, Axis::Z].map(|axis| free.contains(&axis)),
+    };
+    let mass = point.mass.unwrap_or(0.0);
+    let displaced =
+        scene.water.as_ref().map_or(0.0, |water| water.density) * point.volume.unwrap_or(0.0);
+    FreePoint {
+        axes,
+        mass,
+        weight: submerged_weight(mass, displaced, scene.gravity),
+    }
+}
+
+/// Properties of a line type in the scene's surroundings, per unstretched length.
+struct LineLaw {
+    law: StretchLaw,
+    axial_stiffness: f64,                 // EA [N]
+    axial_damping: f64,                   // BA [N s], without the damping ratio's part
+    damping_ratio: Option<f64>,           // ζ [-]
+    mass: f64,                            // m [kg/m]
+    added_normal: f64,                    // ρA·C_an [kg/m]
+    added_tangent: f64,                   // ρA·C_at [kg/m]
+    weight: f64,                          // w [N/m]
+    mass_damping: f64,                    // α [1/s]
+    drag: Option<DragCoefficients>,       // [N s²/m³]
+    contact: Option<ContactCoefficients>, // [N/m², N s/m²]
+}
+
+fn line_law(scene: &Scene, line_type: &LineType) -> LineLaw {
+    let density = scene.water.as_ref().map_or(0.0, |water| water.density);
+    let displaced = line_type
+        .diameter
+        .map_or(0.0, |d| density * cross_section(d));
+    let mass = line_type
+        .mass
+        .unwrap_or_else(|| line_type.weight.unwrap_or(0.0) / scene.gravity);
+    let weight = line_type
+        .weight
+        .unwrap_or_else(|| submerged_weight(mass, displaced, scene.gravity));
+    let rayleigh = line_type
+        .rayleigh
+        .map(|r| rayleigh::coefficients(r.ratios, r.frequencies));
+    let ea = line_type.axial_stiffness;
+    let drag = line_type.diameter.and_then(|diameter| {
+        let (normal, tangent) = (
+            line_type.drag_normal.unwrap_or(0.0),
+            line_type.drag_tangential.unwrap_or(0.0),
+        );
+        (density > 0.0 && normal + tangent > 0.0)
+            .then(|| drag_per_length(density, diameter, normal, tangent))
+    });
+    let contact = scene
+        .seabed
+        .as_ref()
+        .zip(line_type.diameter)
+        .and_then(|(bed, diameter)| {
+            (bed.stiffness > 0.0).then(|| ContactCoefficients {
+                stiffness: bed.stiffness * diameter,
+                damping: bed.damping * diameter,
+            })
+        });
+    LineLaw {
+        law: match line_type.strain {
+            Strain::Engineering => StretchLaw::Engineering,
+            Strain::Green => StretchLaw::Green,
+            Strain::Logarithmic(poisson) => StretchLaw::Logarithmic { poisson },
+        },
+        axial_stiffness: ea,
+        axial_damping: line_type.axial_damping.unwrap_or(0.0)
+            + rayleigh.map_or(0.0, |r| r.stiffness * ea),
+        damping_ratio: line_type.damping_ratio,
+        mass,
+        added_normal: displaced * line_type.added_mass_normal.unwrap_or(0.0),
+        added_tangent: displaced * line_type.added_mass_tangential.unwrap_or(0.0),
+        weight,
+        mass_damping: rayleigh.map_or(0.0, |r| r.mass),
+        drag,
+        contact,
+    }
+}
+
+fn build_line(scene: &Scene, index: usize, line: &scene::Line) -> Result<Line, SceneError> {
+    let point = |key: &str, name: &str| {
+        scene
+            .points
+            .iter()
+            .position(|p| p.name == *name)
+            .ok_or_else(|| {
+                SceneError::new(
+                    format!("lines[{index}].{key}"),
+                    format!("there is no point \"{name}\""),
+                )
+            })
+    };
+    let ends = [point("from", &line.from)?, point("to", &line.to)?];
+    let mut laws = Vec::with_capacity(line.sections.len());
+    for (number, section) in line.sections.iter().enumerate() {
+        let line_type = scene.line_types.get(&section.line_type).ok_or_else(|| {
+            SceneError::new(
+                format!("lines[{index}].sections[{number}].type"),
+                format!("there is no line type \"{}\"", section.line_type),
+            )
+        })?;
+        laws.push(line_law(scene, line_type));
+    }
+    let elements = mesh::section_elements(line, scene.solver.tolerance);
+    let parts: Vec<SegmentPart> = line
+        .sections
+        .iter()
+        .zip(&laws)
+        .zip(&elements)
+        .flat_map(|((section, law), &count)| {
+            let length = section.length / count as f64;
+            std::iter::repeat_n(SegmentPart { length, law }, count)
+        })
+        .collect();
+    let sections = line
+        .sections
+        .iter()
+        .zip(&laws)
+        .map(|(section, law)| Section {
+            length: section.length,
+            weight: law.weight,
+            axial_stiffness: law.axial_stiffness,
+            law: law.law,
+        });
+    Ok(Line {
+        name: line.name.clone(),
+        ends,
+        segments: segments(&parts),
+        nodes: nodes(scene, &parts, contact_in_reach(scene, ends, line)),
+        sections: sections.collect(),
+        initial: line.initial.clone(),
+    })
+}
+
+/// One segment and the law of its section.
+#[derive(Clone, Copy)]
+struct SegmentPart<'a> {
+    length: f64,
+    law: &'a LineLaw,
+}
+
+fn segments(parts: &[SegmentPart]) -> Segments {
+    let damping = |part: &SegmentPart| {
+        let LineLaw {
+            axial_stiffness: ea,
+            axial_damping,
+            damping_ratio,
+            mass,
+            ..
+        } = part.law;
+        axial_damping + damping_ratio.map_or(0.0, |zeta| zeta * part.length * (ea * mass).sqrt())
+    };
+    Segments {
+        length: parts.iter().map(|part| part.length).collect(),
+        axial_stiffness: parts.iter().map(|part| part.law.axial_stiffness).collect(),
+        axial_damping: parts.iter().map(damping).collect(),
+        law: parts.iter().map(|part| part.law.law).collect(),
+    }
+}
+
+fn nodes(scene: &Scene, parts: &[SegmentPart], contact_in_reach: bool) -> Nodes {
+    let lump = |density: &dyn Fn(&LineLaw) -> f64| lumped(parts, density);
+    let length = lump(&|_| 1.0);
+    let weight = lump(&|law| law.weight);
+    let any = |has: &dyn Fn(&LineLaw) -> bool| parts.iter().any(|part| has(part.law));
+    let drag = any(&|law| law.drag.is_some()).then(|| Drag {
+        normal: lump(&|law| law.drag.map_or(0.0, |drag| drag.normal)),
+        tangent: lump(&|law| law.drag.map_or(0.0, |drag| drag.tangent)),
+    });
+    let contact = (contact_in_reach && any(&|law| law.contact.is_some())).then(|| {
+        let stiffness = lump(&|law| law.contact.map_or(0.0, |contact| contact.stiffness));
+        let damping = lump(&|law| law.contact.map_or(0.0, |contact| contact.damping));
+        contact(scene, &length, &weight, stiffness, damping)
+    });
+    let mut arc = vec![0.0];
+    arc.extend(parts.iter().scan(0.0, |arc, part| {
+        *arc += part.length;
+        Some(*arc)
+    }));
+    Nodes {
+        arc,
+        mass: lump(&|law| law.mass),
+        mass_normal: lump(&|law| law.mass + law.added_normal),
+        mass_tangent: lump(&|law| law.mass + law.added_tangent),
+        mass_damping: any(&|law| law.mass_damping != 0.0)
+            .then(|| lump(&|law| law.mass_damping * law.mass)),
+        length,
+        weight,
+        drag,
+        contact,
+    }
+}
+
+/// Half of each neighbouring segment's share at every node.
+fn lumped(parts: &[SegmentPart], density: &dyn Fn(&LineLaw) -> f64) -> Vec<f64> {
+    let mut nodes = vec![0.0; parts.len() + 1];
+    for (i, part) in parts.iter().enumerate() {
+        let half = 0.5 * part.length * density(part.law);
+        nodes[i] += half;
+        nodes[i + 1] += half;
+    }
+    nodes
+}
+
+fn contact(
+    scene: &Scene,
+    length: &[f64],
+    weight: &[f64],
+    mut stiffness: Vec<f64>,
+    mut damping: Vec<f64>,
+) -> Contact {
+    let bed = scene
+        .seabed
+        .as_ref()
+        .expect("contact is built only over a seabed");
+    if bed.contact == ContactLaw::Regularised {
+        for i in 0..length.len() {
+            let given = ContactCoefficients {
+                stiffness: stiffness[i],
+                damping: damping[i],
+            };
+            let soft = regularised(given, weight[i], length[i]);
+            (stiffness[i], damping[i]) = (soft.stiffness, soft.damping);
+        }
+    }
+    Contact {
+        bed: -bed.depth,
+        stiffness,
+        damping,
+    }
+}
+
+/// Whether a line could ever touch the bed: its lowest possible point, stretched by half, hangs from its lower end.
+fn contact_in_reach(scene: &Scene, ends: [usize; 2], line: &scene::Line) -> bool {
+    let Some(bed) = &scene.seabed else {
+        return false;
+    };
+    let length: f64 = line.sections.iter().map(|section| section.length).sum();
+    let lowest_end = ends.map(|end| scene.points[end].position[2]);
+    lowest_end[0].min(lowest_end[1]) - 1.5 * length <= -bed.depth
+}
+
+/// Lines grouped by shared free points.
+fn networks(points: &[Point], lines: &[Line]) -> Vec<Network> {
+    let mut of_line: Vec<usize> = (0..lines.len()).collect();
+    for point in points.iter().filter(|point| point.free().is_some()) {
+        let joined: Vec<usize> = point
+            .attached
+            .iter()
+            .map(|(line, _)| of_line[*line])
+            .collect();
+        let Some(first) = joined.iter().copied().min() else {
+            continue;
+        };
+        for network in &mut of_line {
+            if joined.contains(network) {
+                *network = first;
+            }
+        }
+    }
+    (0..lines.len())
+        .filter(|&id| of_line.contains(&id))
+        .map(|id| Network {
+            lines: (0..lines.len())
+                .filter(|&line| of_line[line] == id)
+                .collect(),
+            free_points: (0..points.len())
+                .filter(|&p| points[p].free().is_some())
+                .filter(|&p| {
+                    points[p]
+                        .attached
+                        .iter()
+                        .any(|(line, _)| of_line[*line] == id)
+                })
+                .collect(),
+        })
+        .collect()
+}

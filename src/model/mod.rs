@@ -1,0 +1,244 @@
+//! The immutable discrete model: every line a chain of two-node segments with lumped nodes, every end at a point.
+//!
+//! [`Model::new`] is the one gate from the user's [`Scene`]: below it nothing asks what the user wrote. Physics that the
+//! scene does not contain is `None` here, not zero.
+
+mod build;
+mod initial;
+mod mesh;
+mod motion;
+mod state;
+
+use nalgebra::Vector3;
+
+use crate::physics::stretch::StretchLaw;
+use crate::scene::{InitialShape, PointForce, Solver};
+
+pub use motion::{Kinematics, Motion};
+pub use state::{LineState, PointState, State};
+
+/// A scene made discrete. Immutable; shared by reference.
+#[derive(Debug, Clone)]
+pub struct Model {
+    /// Gravitational acceleration [m/s²].
+    pub gravity: f64,
+    /// z of the seabed [m].
+    pub bed: Option<f64>,
+    /// Coulomb friction of the seabed in the static catenary [-].
+    pub bed_friction: f64,
+    /// Points in the order of the scene.
+    pub points: Vec<Point>,
+    /// Lines in the order of the scene.
+    pub lines: Vec<Line>,
+    /// Sets of lines that share free points and so must be solved together.
+    pub networks: Vec<Network>,
+    /// How to solve, as the user asked.
+    pub solver: Solver,
+}
+
+/// A point that lines end at.
+#[derive(Debug, Clone)]
+pub struct Point {
+    /// Name.
+    pub name: String,
+    /// Reference position [m].
+    pub reference: Vector3<f64>,
+    /// Who moves it.
+    pub role: Role,
+    /// Load in time.
+    pub load: Option<PointForce>,
+    /// (line, end) pairs that meet here.
+    pub attached: Vec<(usize, End)>,
+}
+
+/// Who moves a point.
+#[derive(Debug, Clone)]
+pub enum Role {
+    /// Never moves.
+    Fixed,
+    /// The host moves it; [`Model::motion`] of the scene drives it in `moorline run`.
+    Coupled {
+        /// The scene's motion for it.
+        motion: Option<Motion>,
+    },
+    /// Its own path moves it.
+    Prescribed(Motion),
+    /// Forces move it.
+    Free(FreePoint),
+}
+
+/// A point that forces move.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FreePoint {
+    /// Axes along which it moves.
+    pub axes: [bool; 3],
+    /// Own mass [kg].
+    pub mass: f64,
+    /// Own weight less buoyancy [N].
+    pub weight: f64,
+}
+
+/// An end of a line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum End {
+    /// End A, the anchor's.
+    A,
+    /// End B, the fairlead's.
+    B,
+}
+
+/// A line of n segments and n + 1 nodes; nodes 0 and n lie at its points.
+#[derive(Debug, Clone)]
+pub struct Line {
+    /// Name.
+    pub name: String,
+    /// Indices of the points of ends A and B.
+    pub ends: [usize; 2],
+    /// n segments.
+    pub segments: Segments,
+    /// n + 1 lumped nodes.
+    pub nodes: Nodes,
+    /// Sections as the closed-form catenary takes them.
+    pub sections: Vec<Section>,
+    /// Shape at the start.
+    pub initial: InitialShape,
+}
+
+/// A section as the closed-form catenary takes it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Section {
+    /// Unstretched length [m].
+    pub length: f64,
+    /// Weight in the surroundings [N/m].
+    pub weight: f64,
+    /// Axial stiffness EA [N].
+    pub axial_stiffness: f64,
+    /// Strain measure.
+    pub law: StretchLaw,
+}
+
+/// Properties of the segments, one entry each.
+#[derive(Debug, Clone)]
+pub struct Segments {
+    /// Unstretched length [m].
+    pub length: Vec<f64>,
+    /// Axial stiffness EA [N].
+    pub axial_stiffness: Vec<f64>,
+    /// Axial damping BA [N s].
+    pub axial_damping: Vec<f64>,
+    /// Strain measure.
+    pub law: Vec<StretchLaw>,
+}
+
+/// Lumped properties of the nodes: per-length properties times half of each neighbouring segment.
+#[derive(Debug, Clone)]
+pub struct Nodes {
+    /// Unstretched arc length from end A [m].
+    pub arc: Vec<f64>,
+    /// Tributary unstretched length [m].
+    pub length: Vec<f64>,
+    /// Mass in air [kg].
+    pub mass: Vec<f64>,
+    /// Mass with the added mass across the line [kg].
+    pub mass_normal: Vec<f64>,
+    /// Mass with the added mass along the line [kg].
+    pub mass_tangent: Vec<f64>,
+    /// Weight less buoyancy [N].
+    pub weight: Vec<f64>,
+    /// Drag, where there is water and a coefficient.
+    pub drag: Option<Drag>,
+    /// Contact, where there is a seabed in reach.
+    pub contact: Option<Contact>,
+    /// Mass-proportional damping α·m [N s/m], where a line type has it.
+    pub mass_damping: Option<Vec<f64>>,
+}
+
+/// Lumped drag coefficients of the nodes.
+#[derive(Debug, Clone)]
+pub struct Drag {
+    /// Across the line [N s²/m²].
+    pub normal: Vec<f64>,
+    /// Along the line [N s²/m²].
+    pub tangent: Vec<f64>,
+}
+
+/// Lumped contact coefficients of the nodes.
+#[derive(Debug, Clone)]
+pub struct Contact {
+    /// z of the bed [m].
+    pub bed: f64,
+    /// Stiffness [N/m].
+    pub stiffness: Vec<f64>,
+    /// Damping [N s/m].
+    pub damping: Vec<f64>,
+}
+
+/// Lines that share free points.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Network {
+    /// Its lines.
+    pub lines: Vec<usize>,
+    /// Its free points.
+    pub free_points: Vec<usize>,
+}
+
+impl Line {
+    /// Number of segments n.
+    pub fn segment_count(&self) -> usize {
+        self.segments.length.len()
+    }
+
+    /// Unstretched length [m].
+    pub fn unstretched_length(&self) -> f64 {
+        self.sections.iter().map(|section| section.length).sum()
+    }
+
+    /// Index of the node at an end.
+    pub fn end_node(&self, end: End) -> usize {
+        match end {
+            End::A => 0,
+            End::B => self.segment_count(),
+        }
+    }
+
+    /// The strain measure, where all segments share one.
+    pub fn uniform_law(&self) -> Option<StretchLaw> {
+        let first = self.segments.law[0];
+        self.segments
+            .law
+            .iter()
+            .all(|law| *law == first)
+            .then_some(first)
+    }
+}
+
+impl Point {
+    /// The free point's properties, if it is free.
+    pub fn free(&self) -> Option<&FreePoint> {
+        match &self.role {
+            Role::Free(free) => Some(free),
+            _ => None,
+        }
+    }
+
+    /// Point load at time `t` [s], in [N].
+    pub fn load_at(&self, t: f64) -> Vector3<f64> {
+        let Some(load) = &self.load else {
+            return Vector3::zeros();
+        };
+        let along = |f: &Option<crate::scene::TimeFunction>| f.as_ref().map_or(0.0, |f| f.at(t));
+        Vector3::new(along(&load.x), along(&load.y), along(&load.z))
+    }
+}
+
+impl Model {
+    /// Index of the line called `name`.
+    pub fn line_index(&self, name: &str) -> Option<usize> {
+        self.lines.iter().position(|line| line.name == name)
+    }
+
+    /// Index of the point called `name`.
+    pub fn point_index(&self, name: &str) -> Option<usize> {
+        self.points.iter().position(|point| point.name == name)
+    }
+}

@@ -1,0 +1,80 @@
+//! All that changes: positions, velocities and the memory of the integrators. Cloning it saves a simulation.
+
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
+
+/// State of a whole model at one time.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct State {
+    /// Time [s].
+    pub time: f64,
+    /// Points, in the order of the model.
+    pub points: Vec<PointState>,
+    /// Lines, in the order of the model.
+    pub lines: Vec<LineState>,
+}
+
+/// State of a point.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct PointState {
+    /// Position [m].
+    pub position: Vector3<f64>,
+    /// Velocity [m/s].
+    pub velocity: Vector3<f64>,
+    /// Acceleration [m/s²].
+    pub acceleration: Vector3<f64>,
+    /// Velocities half a step and one and a half steps before the time of the position [m/s], for the leapfrog.
+    pub half_step: [Vector3<f64>; 2],
+}
+
+/// State of a line: its nodes from end A to end B, ends included.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct LineState {
+    /// Positions [m].
+    pub position: Vec<Vector3<f64>>,
+    /// Velocities [m/s] at the time of the positions.
+    pub velocity: Vec<Vector3<f64>>,
+    /// Accelerations [m/s²]; kept by the implicit integrators only.
+    pub acceleration: Vec<Vector3<f64>>,
+    /// What the leapfrogs remember of the steps before.
+    pub half_step: HalfStep,
+}
+
+/// Memory of the leapfrogs. Empty where another integrator runs.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct HalfStep {
+    /// Velocities at t − Δt/2 [m/s].
+    pub velocity: Vec<Vector3<f64>>,
+    /// Velocities one step before those [m/s].
+    pub velocity_before: Vec<Vector3<f64>>,
+    /// The last step and the one before [s]; 0 before the first step, where `velocity` is that of t itself.
+    pub steps: [f64; 2],
+    /// Segment tensions at t, t − Δt and t − 2Δt [N]; kept by the axial-implicit leapfrog only.
+    pub tension: [Vec<f64>; 3],
+}
+
+impl PointState {
+    /// At rest at a position [m].
+    pub fn at_rest(position: Vector3<f64>) -> PointState {
+        let zero = Vector3::zeros();
+        PointState {
+            position,
+            velocity: zero,
+            acceleration: zero,
+            half_step: [zero; 2],
+        }
+    }
+}
+
+impl LineState {
+    /// At rest at the given node positions [m].
+    pub fn at_rest(position: Vec<Vector3<f64>>) -> LineState {
+        let zeros = vec![Vector3::zeros(); position.len()];
+        LineState {
+            velocity: zeros.clone(),
+            acceleration: zeros,
+            position,
+            half_step: HalfStep::default(),
+        }
+    }
+}

@@ -1,0 +1,7 @@
+//! One law per file, pointwise: value, exact slopes and energy. No scene, no index, no loop over nodes.
+
+pub mod morison;
+pub mod rayleigh;
+pub mod seabed;
+pub mod stretch;
+pub mod weight;

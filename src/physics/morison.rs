@@ -1,0 +1,106 @@
+//! Morison drag and added mass on a slender cylinder.
+//!
+//! f = −K_n |u_n| u_n − K_t |u_t| u_t,  K_n = ½ρ d C_dn,  K_t = ½ρ π d C_dt,
+//!
+//! with u the line's velocity relative to the water, split along the tangent t: u_t = (u·t) t, u_n = u − u_t.
+//! The added mass is ρA·C_an across and ρA·C_at along the line, so that a node's mass is M_n I + (M_t − M_n) t tᵀ.
+//!
+//! Source: Morison, O'Brien, Johnson & Schaaf (1950), J. Petroleum Technology 2(5), 149-154, in the vector form of
+//! Hall & Goupee (2015), Ocean Engineering 104, 590-603, section 2. Valid for d ≪ wavelength. The slope of |u|u at u = 0
+//! is 0 and continuous.
+
+use nalgebra::{Matrix3, Vector3};
+
+/// Lumped coefficients of a node: K times the node's length.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DragCoefficients {
+    /// ½ρ d C_dn times length [N s²/m²].
+    pub normal: f64,
+    /// ½ρ π d C_dt times length [N s²/m²].
+    pub tangent: f64,
+}
+
+/// Drag coefficients K_n, K_t per unstretched length [N s²/m³] of a line of diameter d [m] in water of density ρ [kg/m³].
+pub fn drag_per_length(
+    density: f64,
+    diameter: f64,
+    drag_normal: f64,
+    drag_tangential: f64,
+) -> DragCoefficients {
+    let half_rho_d = 0.5 * density * diameter;
+    DragCoefficients {
+        normal: half_rho_d * drag_normal,
+        tangent: half_rho_d * std::f64::consts::PI * drag_tangential,
+    }
+}
+
+/// Drag force [N] on a node that moves with `velocity` [m/s] relative to the water, for the unit `tangent`.
+#[inline]
+pub fn drag(k: DragCoefficients, velocity: Vector3<f64>, tangent: Vector3<f64>) -> Vector3<f64> {
+    let along = velocity.dot(&tangent);
+    let across = velocity - along * tangent;
+    -k.normal * across.norm() * across - k.tangent * along.abs() * along * tangent
+}
+
+/// Slope −∂f/∂u of [`drag`] [N s/m]: symmetric, positive semi-definite.
+pub fn drag_slope(
+    k: DragCoefficients,
+    velocity: Vector3<f64>,
+    tangent: Vector3<f64>,
+) -> Matrix3<f64> {
+    let along = velocity.dot(&tangent);
+    let across = velocity - along * tangent;
+    let speed = across.norm();
+    let tt = tangent * tangent.transpose();
+    let mut slope = 2.0 * k.tangent * along.abs() * tt;
+    if speed > 0.0 {
+        slope +=
+            k.normal * (speed * (Matrix3::identity() - tt) + across * across.transpose() / speed);
+    }
+    slope
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    const K: DragCoefficients = DragCoefficients {
+        normal: 3.0,
+        tangent: 0.7,
+    };
+
+    #[test]
+    fn slope_equals_central_differences() {
+        let tangent = Vector3::new(0.6, 0.0, 0.8);
+        let velocity = Vector3::new(0.3, -1.2, 0.5);
+        let slope = drag_slope(K, velocity, tangent);
+        for axis in 0..3 {
+            let mut step = Vector3::zeros();
+            step[axis] = 1e-6;
+            let difference =
+                (drag(K, velocity - step, tangent) - drag(K, velocity + step, tangent)) / 2e-6;
+            assert_relative_eq!(difference, slope.column(axis).into_owned(), epsilon = 1e-8);
+        }
+    }
+
+    #[test]
+    fn drag_takes_energy_and_vanishes_at_rest() {
+        let tangent = Vector3::new(0.0, 1.0, 0.0);
+        let velocity = Vector3::new(1.0, 2.0, -3.0);
+        assert!(drag(K, velocity, tangent).dot(&velocity) < 0.0);
+        assert_eq!(drag(K, Vector3::zeros(), tangent), Vector3::zeros());
+        assert_eq!(drag_slope(K, Vector3::zeros(), tangent), Matrix3::zeros());
+    }
+
+    #[test]
+    fn a_cylinder_across_the_flow_feels_half_rho_d_c_u_squared() {
+        let k = drag_per_length(1025.0, 0.1, 1.2, 0.0);
+        let force = drag(k, Vector3::new(2.0, 0.0, 0.0), Vector3::z());
+        assert_relative_eq!(
+            force.x,
+            -0.5 * 1025.0 * 0.1 * 1.2 * 4.0,
+            max_relative = 1e-15
+        );
+    }
+}
