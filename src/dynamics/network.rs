@@ -1,0 +1,162 @@
+//! A network of lines advanced by the explicit leapfrog: its lines, and the free points that join them.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::leapfrog::{EndLoad, LineWork, Step};
+use crate::model::{End, Kinematics, Model, Network, PointState, State};
+
+/// Scratch of a network: its lines laid out for the kernels, and its free points.
+#[derive(Debug, Clone)]
+pub struct NetworkWork {
+    /// Lines, in the order of the network.
+    pub lines: Vec<LineWork>,
+    points: Vec<PointState>,
+}
+
+impl NetworkWork {
+    /// Scratch for a network; `None` where a line mixes strain measures.
+    pub fn new(model: &Model, network: &Network) -> Option<NetworkWork> {
+        let lines = network
+            .lines
+            .iter()
+            .map(|&line| LineWork::new(&model.lines[line], model.solver.negative_tension))
+            .collect::<Option<Vec<LineWork>>>()?;
+        let points = vec![PointState::at_rest(Vector3::zeros()); network.free_points.len()];
+        Some(NetworkWork { lines, points })
+    }
+
+    /// Takes over the state.
+    pub fn load(&mut self, network: &Network, state: &State) {
+        for (work, &line) in self.lines.iter_mut().zip(&network.lines) {
+            work.load(&state.lines[line]);
+        }
+        for (point, &index) in self.points.iter_mut().zip(&network.free_points) {
+            *point = state.points[index];
+            if self.lines.is_empty() || state.lines[network.lines[0]].half_step.velocity.is_empty()
+            {
+                point.half_step = [point.velocity; 2];
+            }
+        }
+    }
+
+    /// Hands the state back after a step of size `steps[0]` [s], the one before being `steps[1]`.
+    pub fn store(&self, network: &Network, state: &mut State, steps: [f64; 2]) {
+        for (work, &line) in self.lines.iter().zip(&network.lines) {
+            work.store(&mut state.lines[line], steps);
+        }
+        let extrapolation = Step::after(steps, steps[0]).extrapolation;
+        for (point, &index) in self.points.iter().zip(&network.free_points) {
+            let [last, before] = point.half_step;
+            state.points[index] = PointState {
+                velocity: last + extrapolation * (last - before),
+                ..*point
+            };
+        }
+    }
+
+    /// One step from `t` [s]. `held` tells where held points are.
+    pub fn step(
+        &mut self,
+        model: &Model,
+        network: &Network,
+        t: f64,
+        step: Step,
+        held: &impl Fn(usize, f64) -> Kinematics,
+    ) {
+        self.lines.iter_mut().for_each(LineWork::pull_segments);
+        self.step_points(model, network, t, step);
+        for line in &mut self.lines {
+            line.kick_nodes(step);
+            line.drift_nodes(step);
+        }
+        self.put_ends(model, network, t + step.drift, step.drift, held);
+    }
+
+    /// Puts every line's ends where their points are at `t` [s], with velocities half of `drift` [s] earlier.
+    pub fn put_ends(
+        &mut self,
+        model: &Model,
+        network: &Network,
+        t: f64,
+        drift: f64,
+        held: &impl Fn(usize, f64) -> Kinematics,
+    ) {
+        for (work, &line) in self.lines.iter_mut().zip(&network.lines) {
+            for (end, &point) in [End::A, End::B].into_iter().zip(&model.lines[line].ends) {
+                match network.free_points.iter().position(|&free| free == point) {
+                    Some(free) => {
+                        let point = &self.points[free];
+                        work.put_end(end, point.position, point.half_step[0]);
+                    }
+                    None => {
+                        let k = held(point, t);
+                        work.put_end(end, k.position, k.velocity - 0.5 * drift * k.acceleration);
+                    }
+                }
+            }
+        }
+    }
+
+    fn step_points(&mut self, model: &Model, network: &Network, t: f64, step: Step) {
+        for (free, &index) in network.free_points.iter().enumerate() {
+            let [last, before] = self.points[free].half_step;
+            let now = last + step.extrapolation * (last - before);
+            let point = &model.points[index];
+            let Some(law) = point.free() else { continue };
+            let mut load = EndLoad {
+                force: point.load_at(t) - law.weight * Vector3::z(),
+                mass: law.mass * Matrix3::identity(),
+                contact: [0.0; 2],
+            };
+            for &(line, end) in &point.attached {
+                let Some(at) = network.lines.iter().position(|&l| l == line) else {
+                    continue;
+                };
+                load.add(&self.lines[at].end_load(end, now));
+            }
+            let bed = model.bed.unwrap_or(f64::NEG_INFINITY);
+            let penetration = bed - self.points[free].position.z;
+            let velocity = load.kicked(last, law.axes, penetration, step);
+            let state = &mut self.points[free];
+            state.half_step = [velocity, last];
+            state.acceleration = (velocity - last) / step.kick;
+            state.position += step.drift * velocity;
+        }
+    }
+}
+
+impl EndLoad {
+    fn add(&mut self, other: &EndLoad) {
+        self.force += other.force;
+        self.mass += other.mass;
+        self.contact[0] += other.contact[0];
+        self.contact[1] += other.contact[1];
+    }
+
+    /// v_{n+½} of a point that moves along `axes` only, the bed implicit.
+    fn kicked(
+        &self,
+        last: Vector3<f64>,
+        axes: [bool; 3],
+        penetration: f64,
+        step: Step,
+    ) -> Vector3<f64> {
+        let free = Vector3::from(axes.map(|free| f64::from(u8::from(free))));
+        let mut mass = self.mass.component_mul(&(free * free.transpose()));
+        for axis in (0..3).filter(|&axis| !axes[axis]) {
+            mass[(axis, axis)] = 1.0;
+        }
+        let Some(inverse) = mass.try_inverse() else {
+            return last;
+        };
+        let velocity = last + step.kick * inverse * self.force.component_mul(&free);
+        let [stiffness, damping] = self.contact;
+        let response = inverse * Vector3::z() * free.z;
+        let resistance = stiffness * step.drift + damping;
+        if penetration - step.drift * velocity.z <= 0.0 || !penetration.is_finite() {
+            return velocity;
+        }
+        let push = (stiffness * penetration - resistance * velocity.z).max(0.0);
+        velocity + response * (step.kick * push / (1.0 + response.z * step.kick * resistance))
+    }
+}

@@ -1,0 +1,208 @@
+//! Four numbers side by side, so that the compiler emits vector instructions for the kernels.
+//!
+//! A plain array with inlined element-wise operations: portable, without intrinsics, and compiled for whatever vector
+//! unit the surrounding function may use.
+
+use std::array::from_fn;
+use std::ops::{Add, Mul, Sub};
+
+/// Number of lanes [-].
+pub const LANES: usize = 4;
+
+/// Four f64 side by side.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[repr(align(32))]
+pub struct Lanes([f64; LANES]);
+
+impl Lanes {
+    /// The same number in every lane.
+    #[inline(always)]
+    pub fn splat(value: f64) -> Lanes {
+        Lanes([value; LANES])
+    }
+
+    /// `values[at..at + 4]`.
+    #[inline(always)]
+    pub fn load(values: &[f64], at: usize) -> Lanes {
+        let chunk: &[f64; LANES] = values[at..at + LANES].try_into().expect("four lanes");
+        Lanes(*chunk)
+    }
+
+    /// Writes `values[at..at + 4]`.
+    #[inline(always)]
+    pub fn store(self, values: &mut [f64], at: usize) {
+        values[at..at + LANES].copy_from_slice(&self.0);
+    }
+
+    /// Square root.
+    #[inline(always)]
+    pub fn sqrt(self) -> Lanes {
+        Lanes(from_fn(|i| self.0[i].sqrt()))
+    }
+
+    /// 1/x.
+    #[inline(always)]
+    pub fn recip(self) -> Lanes {
+        Lanes(from_fn(|i| 1.0 / self.0[i]))
+    }
+
+    /// |x|.
+    #[inline(always)]
+    pub fn abs(self) -> Lanes {
+        Lanes(from_fn(|i| self.0[i].abs()))
+    }
+
+    /// max(x, 0), and 0 where x is not a number.
+    #[inline(always)]
+    pub fn positive(self) -> Lanes {
+        Lanes(from_fn(|i| if self.0[i] > 0.0 { self.0[i] } else { 0.0 }))
+    }
+
+    /// x where `gate` > 0, else 0.
+    #[inline(always)]
+    pub fn where_positive(self, gate: Lanes) -> Lanes {
+        Lanes(from_fn(|i| if gate.0[i] > 0.0 { self.0[i] } else { 0.0 }))
+    }
+
+    /// Applies a scalar function to every lane.
+    #[inline(always)]
+    pub fn map(self, f: impl Fn(f64) -> f64) -> Lanes {
+        Lanes(self.0.map(f))
+    }
+
+    /// Sum of the lanes.
+    #[inline(always)]
+    pub fn sum(self) -> f64 {
+        (self.0[0] + self.0[1]) + (self.0[2] + self.0[3])
+    }
+}
+
+impl Add for Lanes {
+    type Output = Lanes;
+    #[inline(always)]
+    fn add(self, other: Lanes) -> Lanes {
+        Lanes(from_fn(|i| self.0[i] + other.0[i]))
+    }
+}
+
+impl Sub for Lanes {
+    type Output = Lanes;
+    #[inline(always)]
+    fn sub(self, other: Lanes) -> Lanes {
+        Lanes(from_fn(|i| self.0[i] - other.0[i]))
+    }
+}
+
+impl Mul for Lanes {
+    type Output = Lanes;
+    #[inline(always)]
+    fn mul(self, other: Lanes) -> Lanes {
+        Lanes(from_fn(|i| self.0[i] * other.0[i]))
+    }
+}
+
+/// Three [`Lanes`]: four vectors side by side.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Vectors {
+    /// x components.
+    pub x: Lanes,
+    /// y components.
+    pub y: Lanes,
+    /// z components.
+    pub z: Lanes,
+}
+
+impl Vectors {
+    /// Scalar products.
+    #[inline(always)]
+    pub fn dot(self, other: Vectors) -> Lanes {
+        self.x * other.x + self.y * other.y + self.z * other.z
+    }
+
+    /// Every vector times its factor.
+    #[inline(always)]
+    pub fn scale(self, factor: Lanes) -> Vectors {
+        Vectors {
+            x: self.x * factor,
+            y: self.y * factor,
+            z: self.z * factor,
+        }
+    }
+}
+
+impl Add for Vectors {
+    type Output = Vectors;
+    #[inline(always)]
+    fn add(self, other: Vectors) -> Vectors {
+        Vectors {
+            x: self.x + other.x,
+            y: self.y + other.y,
+            z: self.z + other.z,
+        }
+    }
+}
+
+impl Sub for Vectors {
+    type Output = Vectors;
+    #[inline(always)]
+    fn sub(self, other: Vectors) -> Vectors {
+        Vectors {
+            x: self.x - other.x,
+            y: self.y - other.y,
+            z: self.z - other.z,
+        }
+    }
+}
+
+/// Vectors stored component by component.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Components {
+    /// x components.
+    pub x: Vec<f64>,
+    /// y components.
+    pub y: Vec<f64>,
+    /// z components.
+    pub z: Vec<f64>,
+}
+
+impl Components {
+    /// `count` zero vectors.
+    pub fn zeros(count: usize) -> Components {
+        let zeros = vec![0.0; count];
+        Components {
+            x: zeros.clone(),
+            y: zeros.clone(),
+            z: zeros,
+        }
+    }
+
+    /// Four vectors from `at` on.
+    #[inline(always)]
+    pub fn load(&self, at: usize) -> Vectors {
+        Vectors {
+            x: Lanes::load(&self.x, at),
+            y: Lanes::load(&self.y, at),
+            z: Lanes::load(&self.z, at),
+        }
+    }
+
+    /// Writes four vectors from `at` on.
+    #[inline(always)]
+    pub fn store(&mut self, vectors: Vectors, at: usize) {
+        vectors.x.store(&mut self.x, at);
+        vectors.y.store(&mut self.y, at);
+        vectors.z.store(&mut self.z, at);
+    }
+
+    /// The vector at `at`.
+    #[inline(always)]
+    pub fn get(&self, at: usize) -> nalgebra::Vector3<f64> {
+        nalgebra::Vector3::new(self.x[at], self.y[at], self.z[at])
+    }
+
+    /// Writes the vector at `at`.
+    #[inline(always)]
+    pub fn set(&mut self, at: usize, vector: nalgebra::Vector3<f64>) {
+        (self.x[at], self.y[at], self.z[at]) = (vector.x, vector.y, vector.z);
+    }
+}
