@@ -6,6 +6,7 @@ pub mod leapfrog;
 pub mod limit;
 pub mod motion;
 pub mod network;
+pub mod reaction;
 
 /// A step that could not be taken. The state is as it was before.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

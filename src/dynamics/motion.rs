@@ -1,4 +1,4 @@
-//! The path of a coupled point between communication points.
+//! The path of a coupled point, axis by axis, between communication points.
 //!
 //! A host sets the displacement x_k (perhaps the velocity v_k) at t_k and asks for t_k + h. Stepping to x_k there and then
 //! would jump, which is the commonest noise of coupled simulations. Instead the point follows one C1 curve: on every
@@ -9,13 +9,13 @@
 //! With velocities the polynomial is fitted to them and integrated from x_k.
 //!
 //! Source: divided differences, e.g. Hairer, Nørsett & Wanner (1993), Solving Ordinary Differential Equations I, eq. III.1.7;
-//! the choice of degree is made here. Valid for any sequence of step sizes; samples are dropped when the host steps back
-//! or changes h by more than a factor of 2.
+//! the choice of degree is made here. Valid for any sequence of step sizes: samples closer
+//! together than half the coming step are passed over, and all are dropped when the host steps back.
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-use crate::math::hermite::Hermite;
+use crate::math::hermite::{self, Hermite};
 use crate::model::Kinematics;
 use crate::scene::Reconstruction;
 
@@ -23,42 +23,42 @@ use crate::scene::Reconstruction;
 const DEGREE_MAX: usize = 3;
 /// Samples kept: one more than the polynomial needs, to judge its degree.
 const SAMPLES_MAX: usize = DEGREE_MAX + 2;
-/// A change of the communication step by more than this factor drops the samples [-].
+/// Samples closer together than the coming step over this are passed over [-].
 const STEP_RATIO_MAX: f64 = 2.0;
 
-/// What the host said about a point at one time.
+/// What the host said about one axis of a point at one time.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Sample {
     /// Time [s].
     pub time: f64,
     /// Position [m].
-    pub position: Vector3<f64>,
+    pub position: f64,
     /// Velocity [m/s], where the host gives it.
-    pub velocity: Option<Vector3<f64>>,
+    pub velocity: Option<f64>,
 }
 
-/// The C1 path of a coupled point, and the samples it is predicted from.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct HostPath {
-    /// Newest last.
-    samples: Vec<Sample>,
+/// The C1 path of a coupled point along one axis, and the samples it is predicted from.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct AxisPath {
+    /// Newest last; the first `count` are in use.
+    samples: [Sample; SAMPLES_MAX],
+    count: usize,
     /// Start and end of the present segment.
     from: Sample,
     to: Sample,
 }
 
-impl HostPath {
+impl AxisPath {
     /// At rest at a position [m] at time [s].
-    pub fn at_rest(time: f64, position: Vector3<f64>) -> HostPath {
+    pub fn at_rest(time: f64, position: f64) -> AxisPath {
         let sample = Sample {
             time,
             position,
             velocity: None,
         };
-        let mut samples = Vec::with_capacity(SAMPLES_MAX);
-        samples.push(sample);
-        HostPath {
-            samples,
+        AxisPath {
+            samples: [sample; SAMPLES_MAX],
+            count: 1,
             from: sample,
             to: sample,
         }
@@ -66,9 +66,9 @@ impl HostPath {
 
     /// Continues the path from the time of `sample` to that time + `step` [s].
     pub fn extend(&mut self, sample: Sample, step: f64, reconstruction: Reconstruction) {
-        self.remember(sample, step);
+        self.remember(sample);
         let end = sample.time + step;
-        let velocity = sample.velocity.unwrap_or_else(Vector3::zeros);
+        let velocity = sample.velocity.unwrap_or(0.0);
         if reconstruction == Reconstruction::Jump {
             self.from = Sample {
                 velocity: Some(velocity),
@@ -82,7 +82,7 @@ impl HostPath {
             };
             return;
         }
-        let (position, velocity) = predict(&self.samples, end);
+        let (position, velocity) = predict(self.spaced(step / STEP_RATIO_MAX).as_slice(), end);
         self.from = Sample {
             time: sample.time,
             ..self.to
@@ -95,44 +95,76 @@ impl HostPath {
     }
 
     /// Position, velocity and acceleration at time `t` [s] of the present segment.
-    pub fn at(&self, t: f64) -> Kinematics {
-        let knot = |s: &Sample| {
-            (
-                s.time,
-                s.position,
-                s.velocity.unwrap_or_else(Vector3::zeros),
-            )
-        };
+    pub fn at(&self, t: f64) -> hermite::Sample {
+        let knot = |s: &Sample| (s.time, s.position, s.velocity.unwrap_or(0.0));
         if self.to.time <= self.from.time {
-            return Kinematics {
-                position: self.to.position,
-                velocity: knot(&self.to).2,
-                acceleration: Vector3::zeros(),
+            let (_, value, slope) = knot(&self.to);
+            return hermite::Sample {
+                value,
+                slope,
+                curvature: 0.0,
             };
         }
-        Hermite::new(knot(&self.from), knot(&self.to)).at(t).into()
+        Hermite::new(knot(&self.from), knot(&self.to)).at(t)
     }
 
-    fn remember(&mut self, sample: Sample, step: f64) {
-        if let Some(newest) = self.samples.last() {
-            let last_step = sample.time - newest.time;
-            let ratio = step / last_step;
-            let irregular = ratio > STEP_RATIO_MAX || ratio * STEP_RATIO_MAX < 1.0;
-            if last_step == 0.0 {
-                self.samples.pop(); // the same instant again: the newer word counts
-            } else if last_step < 0.0 || (irregular && self.samples.len() > 1) {
-                self.samples.clear();
+    /// The samples at least `spacing` [s] apart, newest last: what lies closer says more about noise than about a long step.
+    fn spaced(&self, spacing: f64) -> Spaced {
+        let mut spaced = Spaced {
+            samples: self.samples,
+            count: 0,
+        };
+        let mut last = f64::INFINITY;
+        for sample in self.samples[..self.count].iter().rev() {
+            if last - sample.time >= spacing * (1.0 - 1e-9) {
+                spaced.samples[spaced.count] = *sample;
+                spaced.count += 1;
+                last = sample.time;
             }
         }
-        if self.samples.len() == SAMPLES_MAX {
-            self.samples.remove(0);
+        spaced.samples[..spaced.count].reverse();
+        spaced
+    }
+
+    fn remember(&mut self, sample: Sample) {
+        let last_step = sample.time - self.samples[self.count - 1].time;
+        if last_step == 0.0 {
+            self.count -= 1; // the same instant again: the newer word counts
+        } else if last_step < 0.0 {
+            self.count = 0;
         }
-        self.samples.push(sample);
+        if self.count == SAMPLES_MAX {
+            self.samples.rotate_left(1);
+            self.count -= 1;
+        }
+        self.samples[self.count] = sample;
+        self.count += 1;
+    }
+}
+
+/// The paths of a coupled point along x, y and z.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct HostPath(pub [AxisPath; 3]);
+
+impl HostPath {
+    /// At rest at a position [m] at a time [s].
+    pub fn at_rest(time: f64, position: Vector3<f64>) -> HostPath {
+        HostPath([0, 1, 2].map(|axis| AxisPath::at_rest(time, position[axis])))
+    }
+
+    /// Position, velocity and acceleration at time `t` [s].
+    pub fn at(&self, t: f64) -> Kinematics {
+        let [x, y, z] = self.0.map(|axis| axis.at(t));
+        Kinematics {
+            position: Vector3::new(x.value, y.value, z.value),
+            velocity: Vector3::new(x.slope, y.slope, z.slope),
+            acceleration: Vector3::new(x.curvature, y.curvature, z.curvature),
+        }
     }
 }
 
 /// Position [m] and velocity [m/s] predicted at time `t` [s]; `samples` newest last, not empty.
-fn predict(samples: &[Sample], t: f64) -> (Vector3<f64>, Vector3<f64>) {
+fn predict(samples: &[Sample], t: f64) -> (f64, f64) {
     let newest = samples[samples.len() - 1];
     let with_velocity = samples
         .iter()
@@ -141,7 +173,7 @@ fn predict(samples: &[Sample], t: f64) -> (Vector3<f64>, Vector3<f64>) {
         .count();
     if with_velocity > 0 {
         let rates = Polynomial::best(&samples[samples.len() - with_velocity..], |sample| {
-            sample.velocity.unwrap_or_else(Vector3::zeros)
+            sample.velocity.unwrap_or(0.0)
         });
         return (
             newest.position + rates.integral(newest.time, t),
@@ -152,18 +184,30 @@ fn predict(samples: &[Sample], t: f64) -> (Vector3<f64>, Vector3<f64>) {
     (positions.at(t), positions.slope(t))
 }
 
+/// Samples picked for a prediction.
+struct Spaced {
+    samples: [Sample; SAMPLES_MAX],
+    count: usize,
+}
+
+impl Spaced {
+    fn as_slice(&self) -> &[Sample] {
+        &self.samples[..self.count]
+    }
+}
+
 /// Newton's interpolation polynomial through the newest samples.
 struct Polynomial {
     degree: usize,
     /// Times, newest first.
     times: [f64; DEGREE_MAX + 1],
     /// Divided differences.
-    differences: [Vector3<f64>; DEGREE_MAX + 1],
+    differences: [f64; DEGREE_MAX + 1],
 }
 
 impl Polynomial {
     /// Of the degree that would have predicted the newest sample best from the older ones.
-    fn best(samples: &[Sample], value: impl Fn(&Sample) -> Vector3<f64>) -> Polynomial {
+    fn best(samples: &[Sample], value: impl Fn(&Sample) -> f64) -> Polynomial {
         let (newest, older) = samples.split_last().expect("at least one sample");
         let mut best = (0, f64::INFINITY);
         for degree in 0..=DEGREE_MAX.min(older.len().saturating_sub(1)) {
@@ -171,7 +215,7 @@ impl Polynomial {
                 break;
             }
             let guess = Polynomial::through(older, degree, &value).at(newest.time);
-            let error = (guess - value(newest)).norm();
+            let error = (guess - value(newest)).abs();
             if error < best.1 {
                 best = (degree, error);
             }
@@ -181,13 +225,9 @@ impl Polynomial {
         Polynomial::through(samples, degree, &value)
     }
 
-    fn through(
-        samples: &[Sample],
-        degree: usize,
-        value: &impl Fn(&Sample) -> Vector3<f64>,
-    ) -> Polynomial {
+    fn through(samples: &[Sample], degree: usize, value: &impl Fn(&Sample) -> f64) -> Polynomial {
         let mut times = [0.0; DEGREE_MAX + 1];
-        let mut differences = [Vector3::zeros(); DEGREE_MAX + 1];
+        let mut differences = [0.0; DEGREE_MAX + 1];
         for (i, sample) in samples.iter().rev().take(degree + 1).enumerate() {
             (times[i], differences[i]) = (sample.time, value(sample));
         }
@@ -204,16 +244,16 @@ impl Polynomial {
         }
     }
 
-    fn at(&self, t: f64) -> Vector3<f64> {
+    fn at(&self, t: f64) -> f64 {
         self.value_and_slope(t).0
     }
 
-    fn slope(&self, t: f64) -> Vector3<f64> {
+    fn slope(&self, t: f64) -> f64 {
         self.value_and_slope(t).1
     }
 
-    fn value_and_slope(&self, t: f64) -> (Vector3<f64>, Vector3<f64>) {
-        let (mut value, mut slope) = (self.differences[self.degree], Vector3::zeros());
+    fn value_and_slope(&self, t: f64) -> (f64, f64) {
+        let (mut value, mut slope) = (self.differences[self.degree], 0.0);
         for i in (0..self.degree).rev() {
             slope = value + (t - self.times[i]) * slope;
             value = self.differences[i] + (t - self.times[i]) * value;
@@ -222,7 +262,7 @@ impl Polynomial {
     }
 
     /// ∫ from `t0` to `t1`, exact to the third degree by Gauss's two points.
-    fn integral(&self, t0: f64, t1: f64) -> Vector3<f64> {
+    fn integral(&self, t0: f64, t1: f64) -> f64 {
         let (middle, half) = (0.5 * (t0 + t1), 0.5 * (t1 - t0));
         let offset = half / 3.0_f64.sqrt();
         half * (self.at(middle - offset) + self.at(middle + offset))
@@ -234,33 +274,40 @@ mod tests {
     use super::*;
     use approx::assert_relative_eq;
 
-    fn position(t: f64) -> Vector3<f64> {
-        Vector3::new(5.0 * (0.5 * t).sin(), 0.3 * t, 2.0 * (0.7 * t).cos())
+    fn position(t: f64) -> f64 {
+        5.0 * (0.5 * t).sin() + 2.0 * (0.7 * t).cos()
     }
 
-    fn velocity(t: f64) -> Vector3<f64> {
-        Vector3::new(2.5 * (0.5 * t).cos(), 0.3, -1.4 * (0.7 * t).sin())
+    fn velocity(t: f64) -> f64 {
+        2.5 * (0.5 * t).cos() - 1.4 * (0.7 * t).sin()
+    }
+
+    fn sample(time: f64, position: f64) -> Sample {
+        Sample {
+            time,
+            position,
+            velocity: None,
+        }
     }
 
     /// Greatest distance between path and truth after a start-up, at a communication step h.
     fn path_error(h: f64, with_velocity: bool) -> f64 {
-        let mut path = HostPath::at_rest(0.0, position(0.0));
+        let mut path = AxisPath::at_rest(0.0, position(0.0));
         let mut worst: f64 = 0.0;
         for k in 0..(20.0 / h) as usize {
             let time = k as f64 * h;
             let velocity = with_velocity.then(|| velocity(time));
             path.extend(
                 Sample {
-                    time,
-                    position: position(time),
                     velocity,
+                    ..sample(time, position(time))
                 },
                 h,
                 Reconstruction::Smooth,
             );
             if time > 5.0 {
                 let middle = time + 0.5 * h;
-                worst = worst.max((path.at(middle).position - position(middle)).norm());
+                worst = worst.max((path.at(middle).value - position(middle)).abs());
             }
         }
         worst
@@ -269,9 +316,7 @@ mod tests {
     #[test]
     fn the_path_converges_at_third_order_or_better() {
         for with_velocity in [false, true] {
-            let errors: Vec<f64> = [0.4, 0.2, 0.1, 0.05]
-                .map(|h| path_error(h, with_velocity))
-                .into();
+            let errors = [0.4, 0.2, 0.1, 0.05].map(|h| path_error(h, with_velocity));
             for pair in errors.windows(2) {
                 assert!((pair[0] / pair[1]).log2() > 2.9, "{errors:?}");
             }
@@ -280,58 +325,55 @@ mod tests {
 
     #[test]
     fn position_and_velocity_are_continuous_at_communication_points() {
-        let mut path = HostPath::at_rest(0.0, Vector3::zeros());
+        let mut path = AxisPath::at_rest(0.0, 0.0);
         let mut before = path.at(0.0);
         for (k, x) in [0.0, 0.0, 1.0, 1.0, 1.0, -0.3, 0.2].into_iter().enumerate() {
             let time = 0.1 * k as f64;
-            let sample = Sample {
-                time,
-                position: Vector3::new(x, 0.0, 0.0),
-                velocity: None,
-            };
-            path.extend(sample, 0.1, Reconstruction::Smooth);
-            assert_relative_eq!(path.at(time).position, before.position, epsilon = 1e-12);
-            assert_relative_eq!(path.at(time).velocity, before.velocity, epsilon = 1e-11);
+            path.extend(sample(time, x), 0.1, Reconstruction::Smooth);
+            assert_relative_eq!(path.at(time).value, before.value, epsilon = 1e-12);
+            assert_relative_eq!(path.at(time).slope, before.slope, epsilon = 1e-11);
             before = path.at(time + 0.1);
         }
     }
 
     #[test]
     fn a_jump_is_not_overshot() {
-        let mut path = HostPath::at_rest(0.0, Vector3::zeros());
+        let mut path = AxisPath::at_rest(0.0, 0.0);
         for k in 0..20 {
-            let x = if k < 6 { 0.0 } else { 1.0 };
-            let sample = Sample {
-                time: 0.1 * k as f64,
-                position: Vector3::new(x, 0.0, 0.0),
-                velocity: None,
-            };
-            path.extend(sample, 0.1, Reconstruction::Smooth);
-            assert!(path.at(sample.time + 0.1).position.x <= 1.0 + 1e-12);
+            let time = 0.1 * k as f64;
+            path.extend(
+                sample(time, if k < 6 { 0.0 } else { 1.0 }),
+                0.1,
+                Reconstruction::Smooth,
+            );
+            assert!(path.at(time + 0.1).value <= 1.0 + 1e-12);
         }
-        assert_relative_eq!(path.at(2.0).position.x, 1.0, epsilon = 1e-12);
+        assert_relative_eq!(path.at(2.0).value, 1.0, epsilon = 1e-12);
     }
 
     #[test]
     fn irregular_steps_stay_close_to_the_motion() {
-        let mut path = HostPath::at_rest(0.0, position(0.0));
+        let mut path = AxisPath::at_rest(0.0, position(0.0));
         let mut time = 0.0;
         for k in 0..400 {
             let step = [0.05, 0.08, 0.06, 0.3, 0.01][k % 5];
-            path.extend(
-                Sample {
-                    time,
-                    position: position(time),
-                    velocity: None,
-                },
-                step,
-                Reconstruction::Smooth,
-            );
+            path.extend(sample(time, position(time)), step, Reconstruction::Smooth);
             time += step;
-            assert!(
-                (path.at(time).position - position(time)).norm() < 0.9,
-                "{time}"
-            );
+            assert!((path.at(time).value - position(time)).abs() < 0.9, "{time}");
         }
+    }
+
+    #[test]
+    fn the_jump_option_restarts_where_the_host_says() {
+        let mut path = AxisPath::at_rest(0.0, 0.0);
+        path.extend(
+            Sample {
+                velocity: Some(2.0),
+                ..sample(0.0, 1.0)
+            },
+            0.5,
+            Reconstruction::Jump,
+        );
+        assert_eq!((path.at(0.0).value, path.at(0.5).value), (1.0, 2.0));
     }
 }

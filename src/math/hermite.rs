@@ -1,28 +1,26 @@
 //! Cubic Hermite segment between two points with given slopes, and its derivatives.
 
-use nalgebra::Vector3;
-
 /// p(t) on [t0, t0 + h] from values and slopes at both ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hermite {
     start: f64,
     span: f64,
     /// Coefficients of powers of u = (t − t0)/h.
-    powers: [Vector3<f64>; 4],
+    powers: [f64; 4],
 }
 
 /// Value and derivatives of a curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sample {
     /// Value.
-    pub value: Vector3<f64>,
+    pub value: f64,
     /// First derivative.
-    pub slope: Vector3<f64>,
+    pub slope: f64,
     /// Second derivative.
-    pub curvature: Vector3<f64>,
+    pub curvature: f64,
 }
 
-type Knot = (f64, Vector3<f64>, Vector3<f64>);
+type Knot = (f64, f64, f64);
 
 impl Hermite {
     /// Through (time, value, slope) at both ends; the second time must be the later one.
@@ -56,16 +54,12 @@ mod tests {
 
     #[test]
     fn a_cubic_is_reproduced_with_its_derivatives() {
-        let p = |t: f64| Vector3::new(1.0 + t - 2.0 * t * t * t, t * t, 3.0);
-        let dp = |t: f64| Vector3::new(1.0 - 6.0 * t * t, 2.0 * t, 0.0);
+        let p = |t: f64| 1.0 + t - 2.0 * t * t * t;
+        let dp = |t: f64| 1.0 - 6.0 * t * t;
         let curve = Hermite::new((0.5, p(0.5), dp(0.5)), (2.0, p(2.0), dp(2.0)));
         let sample = curve.at(1.3);
         assert_relative_eq!(sample.value, p(1.3), epsilon = 1e-13);
         assert_relative_eq!(sample.slope, dp(1.3), epsilon = 1e-13);
-        assert_relative_eq!(
-            sample.curvature,
-            Vector3::new(-12.0 * 1.3, 2.0, 0.0),
-            epsilon = 1e-12
-        );
+        assert_relative_eq!(sample.curvature, -12.0 * 1.3, epsilon = 1e-12);
     }
 }

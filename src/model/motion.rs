@@ -4,6 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use nalgebra::Vector3;
 
+use crate::math::hermite::Hermite;
 use crate::scene::{HarmonicMotion, MotionPath};
 
 /// Where a driven point is, and how it moves.
@@ -154,22 +155,15 @@ fn interpolate(rows: &[TableRow], t: f64) -> Kinematics {
         };
     }
     let (low, high) = (rows[after - 1], rows[after]);
-    crate::math::hermite::Hermite::new(
-        (low.time, low.displacement, low.slope),
-        (high.time, high.displacement, high.slope),
-    )
-    .at(t)
-    .into()
-}
-
-impl From<crate::math::hermite::Sample> for Kinematics {
-    fn from(sample: crate::math::hermite::Sample) -> Self {
-        Kinematics {
-            position: sample.value,
-            velocity: sample.slope,
-            acceleration: sample.curvature,
-        }
+    let mut kinematics = Kinematics::default();
+    for axis in 0..3 {
+        let knot = |row: &TableRow| (row.time, row.displacement[axis], row.slope[axis]);
+        let sample = Hermite::new(knot(&low), knot(&high)).at(t);
+        kinematics.position[axis] = sample.value;
+        kinematics.velocity[axis] = sample.slope;
+        kinematics.acceleration[axis] = sample.curvature;
     }
+    kinematics
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 /// State of a whole model at one time.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, PartialEq, Serialize, Deserialize)]
 pub struct State {
     /// Time [s].
     pub time: f64,
@@ -28,7 +28,7 @@ pub struct PointState {
 }
 
 /// State of a line: its nodes from end A to end B, ends included.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, PartialEq, Serialize, Deserialize)]
 pub struct LineState {
     /// Positions [m].
     pub position: Vec<Vector3<f64>>,
@@ -41,7 +41,7 @@ pub struct LineState {
 }
 
 /// Memory of the leapfrogs. Empty where another integrator runs.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct HalfStep {
     /// Velocities at t − Δt/2 [m/s].
     pub velocity: Vec<Vector3<f64>>,
@@ -78,3 +78,36 @@ impl LineState {
         }
     }
 }
+
+/// `Clone` whose `clone_from` keeps the buffers of the target, so that a step allocates nothing.
+macro_rules! clone_in_place {
+    ($type:ident { $($field:ident),+ }) => {
+        impl Clone for $type {
+            fn clone(&self) -> Self {
+                $type { $($field: self.$field.clone()),+ }
+            }
+
+            fn clone_from(&mut self, source: &Self) {
+                $(self.$field.clone_from(&source.$field);)+
+            }
+        }
+    };
+}
+
+clone_in_place!(State {
+    time,
+    points,
+    lines
+});
+clone_in_place!(LineState {
+    position,
+    velocity,
+    acceleration,
+    half_step
+});
+clone_in_place!(HalfStep {
+    velocity,
+    velocity_before,
+    steps,
+    tension
+});

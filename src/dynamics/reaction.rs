@@ -1,0 +1,72 @@
+//! Forces that a line applies to the points at its ends, and tensions along it.
+//!
+//! The end's half node belongs to the line, so that what the vessel feels is
+//!
+//! F = T q − [M(t) a + w ẑ − f_drag − f_bed],
+//!
+//! T q pointing into the line, v and a those of the point. Leaving the half node out would make the end force first order in
+//! the segment length.
+//!
+//! Source: the node's own equation of motion, as for the interior nodes.
+
+use nalgebra::Vector3;
+
+use super::leapfrog::segment_tension;
+use crate::model::{End, Line, LineState, PointState};
+use crate::physics::morison::{self, DragCoefficients};
+use crate::physics::seabed::{self, ContactCoefficients};
+
+/// Tension of segment `i` [N].
+pub fn tension(line: &Line, state: &LineState, i: usize, negative_tension: bool) -> f64 {
+    let pair = |values: &[Vector3<f64>]| [values[i], values[i + 1]];
+    segment_tension(
+        line,
+        i,
+        pair(&state.position),
+        pair(&state.velocity),
+        negative_tension,
+    )
+}
+
+/// Force [N] of the line on the point at one of its ends.
+pub fn end_force(
+    line: &Line,
+    state: &LineState,
+    end: End,
+    point: &PointState,
+    negative_tension: bool,
+) -> Vector3<f64> {
+    let node = line.end_node(end);
+    let (segment, other) = match end {
+        End::A => (0, 1),
+        End::B => (node - 1, node - 1),
+    };
+    let chord = state.position[other] - state.position[node];
+    let inward = chord.try_normalize(0.0).unwrap_or_else(Vector3::zeros);
+    let nodes = &line.nodes;
+    let (velocity, acceleration) = (point.velocity, point.acceleration);
+    let along = acceleration.dot(&inward) * inward;
+    let inertia =
+        nodes.mass_normal[node] * (acceleration - along) + nodes.mass_tangent[node] * along;
+    let mut force = tension(line, state, segment, negative_tension) * inward - inertia;
+    force.z -= nodes.weight[node];
+    if let Some(drag) = &nodes.drag {
+        let coefficients = DragCoefficients {
+            normal: drag.normal[node],
+            tangent: drag.tangent[node],
+        };
+        force += morison::drag(coefficients, velocity, inward);
+    }
+    if let Some(damping) = &nodes.mass_damping {
+        force -= damping[node] * velocity;
+    }
+    if let Some(contact) = &nodes.contact {
+        let coefficients = ContactCoefficients {
+            stiffness: contact.stiffness[node],
+            damping: contact.damping[node],
+        };
+        let penetration = contact.bed - state.position[node].z;
+        force.z += seabed::normal_force(coefficients, penetration, velocity.z);
+    }
+    force
+}
