@@ -1,18 +1,28 @@
 //! What the user wrote: plain data, SI units, nothing computed. What is absent is `None`.
 //!
-//! A scene comes from TOML text ([`Scene::from_toml`]); every mistake names its key, line and column.
+//! A scene comes from a file ([`load`]) or from TOML text ([`Scene::from_toml`]); every mistake names its key, line
+//! and column. [`Scene::notes`] says what is no mistake but may surprise, [`Scene::in_words`] what is modelled.
 //! [`crate::model::Model::new`] is the one gate from here to the solver.
 
 mod check;
+mod document;
 mod error;
+mod motion_file;
+mod nearest;
+mod notes;
+mod path;
 mod read;
 mod time_function;
+mod units;
+mod words;
 
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-pub use error::SceneError;
+pub use error::{LoadError, SceneError};
+pub use notes::Note;
+pub use read::{LoadedScene, load};
 pub use time_function::{HarmonicMotion, MotionFile, MotionPath, TimeFunction};
 
 /// Standard gravity [m/s²], the default of [`Scene::gravity`].
@@ -293,9 +303,9 @@ pub enum Integrator {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Bossak {
-    /// Weight of the old acceleration, −1/3 to 0.
+    /// Weight of the old acceleration [-], −1/3 to 0.
     pub alpha: f64,
-    /// Newmark's γ; second order needs ½ − α, the default.
+    /// Newmark's γ [-]; second order needs ½ − α, the default.
     pub gamma: Option<f64>,
 }
 

@@ -1,11 +1,13 @@
 //! Functions of time that a scene can write down: loads and motions.
 
-use serde::{Deserialize, Serialize};
+use std::fmt;
+
+use serde::de::{self, Deserialize, Deserializer, MapAccess, Visitor};
+use serde::{Serialize, Serializer};
 
 /// A scalar function of time: `20.0`, `{ step = [t0, f0, t1, f1] }`, `{ ramp = [t0, f0, t1, f1] }` or
 /// `{ table = [[t, f], …] }`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(from = "TimeFunctionText", into = "TimeFunctionText")]
+#[derive(Debug, Clone, PartialEq)]
 pub enum TimeFunction {
     /// The same value always.
     Constant(f64),
@@ -17,50 +19,76 @@ pub enum TimeFunction {
     Table(Vec<[f64; 2]>),
 }
 
-/// The shapes in which TOML may hold a [`TimeFunction`].
-#[derive(Clone, Serialize, Deserialize)]
-#[serde(untagged)]
-enum TimeFunctionText {
-    Constant(f64),
-    Named(NamedTimeFunction),
-}
+/// Names of the functions in a scene.
+const FUNCTIONS: &[&str] = &["constant", "step", "ramp", "table"];
 
-#[derive(Clone, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-enum NamedTimeFunction {
-    Constant(f64),
-    Step([f64; 4]),
-    Ramp([f64; 4]),
-    Table(Vec<[f64; 2]>),
-}
-
-impl From<TimeFunctionText> for TimeFunction {
-    fn from(text: TimeFunctionText) -> Self {
-        match text {
-            TimeFunctionText::Constant(value)
-            | TimeFunctionText::Named(NamedTimeFunction::Constant(value)) => {
-                TimeFunction::Constant(value)
-            }
-            TimeFunctionText::Named(NamedTimeFunction::Step(v)) => TimeFunction::Step(v),
-            TimeFunctionText::Named(NamedTimeFunction::Ramp(v)) => TimeFunction::Ramp(v),
-            TimeFunctionText::Named(NamedTimeFunction::Table(v)) => TimeFunction::Table(v),
+impl Serialize for TimeFunction {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let name = "TimeFunction";
+        match self {
+            TimeFunction::Constant(value) => serializer.serialize_f64(*value),
+            TimeFunction::Step(v) => serializer.serialize_newtype_variant(name, 1, "step", v),
+            TimeFunction::Ramp(v) => serializer.serialize_newtype_variant(name, 2, "ramp", v),
+            TimeFunction::Table(v) => serializer.serialize_newtype_variant(name, 3, "table", v),
         }
     }
 }
 
-impl From<TimeFunction> for TimeFunctionText {
-    fn from(function: TimeFunction) -> Self {
-        match function {
-            TimeFunction::Constant(value) => TimeFunctionText::Constant(value),
-            TimeFunction::Step(v) => TimeFunctionText::Named(NamedTimeFunction::Step(v)),
-            TimeFunction::Ramp(v) => TimeFunctionText::Named(NamedTimeFunction::Ramp(v)),
-            TimeFunction::Table(v) => TimeFunctionText::Named(NamedTimeFunction::Table(v)),
+impl<'de> Deserialize<'de> for TimeFunction {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(TimeFunctionVisitor)
+    }
+}
+
+struct TimeFunctionVisitor;
+
+impl<'de> Visitor<'de> for TimeFunctionVisitor {
+    type Value = TimeFunction;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(
+            "a number, { step = [t0, f0, t1, f1] }, { ramp = [t0, f0, t1, f1] } or { table = [[t, f], …] }",
+        )
+    }
+
+    fn visit_f64<E: de::Error>(self, value: f64) -> Result<TimeFunction, E> {
+        Ok(TimeFunction::Constant(value))
+    }
+
+    // TOML's and JSON's whole numbers arrive here.
+    fn visit_i64<E: de::Error>(self, value: i64) -> Result<TimeFunction, E> {
+        Ok(TimeFunction::Constant(value as f64))
+    }
+
+    fn visit_u64<E: de::Error>(self, value: u64) -> Result<TimeFunction, E> {
+        Ok(TimeFunction::Constant(value as f64))
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<TimeFunction, A::Error> {
+        let Some(name) = map.next_key::<String>()? else {
+            return Err(de::Error::invalid_type(
+                de::Unexpected::Other("an empty table"),
+                &self,
+            ));
+        };
+        let function = match name.as_str() {
+            "constant" => TimeFunction::Constant(map.next_value()?),
+            "step" => TimeFunction::Step(map.next_value()?),
+            "ramp" => TimeFunction::Ramp(map.next_value()?),
+            "table" => TimeFunction::Table(map.next_value()?),
+            unknown => return Err(de::Error::unknown_field(unknown, FUNCTIONS)),
+        };
+        match map.next_key::<String>()? {
+            None => Ok(function),
+            Some(second) => Err(de::Error::custom(format!(
+                "`{name}` and `{second}` cannot both be given: a load has one function of time"
+            ))),
         }
     }
 }
 
 impl TimeFunction {
-    /// Value at time `t` [s].
+    /// Value at time `t` [s], in the unit of its numbers.
     pub fn at(&self, t: f64) -> f64 {
         match self {
             TimeFunction::Constant(value) => *value,
@@ -89,39 +117,137 @@ fn interpolate(pairs: &[[f64; 2]], t: f64) -> f64 {
 }
 
 /// A prescribed displacement from the reference position.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(untagged)]
+#[derive(Debug, Clone, PartialEq, serde::Deserialize)]
+#[serde(try_from = "MotionText")]
 pub enum MotionPath {
     /// Read from a table in a CSV file.
     File(MotionFile),
+    /// A table in the scene: rows of time [s], then displacement x, y, z [m].
+    Table(Vec<[f64; 4]>),
     /// A sum of sines per axis.
     Harmonic(HarmonicMotion),
 }
 
 /// `file = "motion.csv"`: columns time, x, y, z [s, m], a header row, relative to the scene's folder.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct MotionFile {
     /// Path of the file.
     pub file: String,
     /// Its rows, filled in by the reader: time [s], then displacement x, y, z [m].
-    #[serde(skip)]
     pub rows: Vec<[f64; 4]>,
 }
 
 /// x(t) = ramp(t)·Σ amplitude·sin(2π t/period + phase), per axis.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct HarmonicMotion {
     /// Components along x: [amplitude [m], period [s]] or [amplitude, period, phase [rad]].
-    #[serde(default)]
     pub x: Vec<Vec<f64>>,
-    /// Components along y.
-    #[serde(default)]
+    /// Components along y: [amplitude [m], period [s]] or [amplitude, period, phase [rad]].
     pub y: Vec<Vec<f64>>,
-    /// Components along z.
-    #[serde(default)]
+    /// Components along z: [amplitude [m], period [s]] or [amplitude, period, phase [rad]].
     pub z: Vec<Vec<f64>>,
     /// Duration of the cosine ramp ½(1 − cos(πt/ramp)) [s]; none where absent.
     pub ramp: Option<f64>,
+}
+
+impl MotionPath {
+    /// Rows of time [s] and displacement x, y, z [m] where the motion is a table or was read from a file.
+    pub fn rows(&self) -> Option<&[[f64; 4]]> {
+        match self {
+            MotionPath::File(file) => Some(&file.rows),
+            MotionPath::Table(rows) => Some(rows),
+            MotionPath::Harmonic(_) => None,
+        }
+    }
+}
+
+/// The keys that TOML may give a [`MotionPath`].
+#[derive(serde::Serialize, serde::Deserialize)]
+#[serde(
+    deny_unknown_fields,
+    expecting = "{ x = [[amplitude, period], …], z = …, ramp = … }, { table = [[t, x, y, z], …] } or { file = \"motion.csv\" }"
+)]
+struct MotionText {
+    file: Option<String>,
+    table: Option<Vec<[f64; 4]>>,
+    x: Option<Vec<Vec<f64>>>,
+    y: Option<Vec<Vec<f64>>>,
+    z: Option<Vec<Vec<f64>>>,
+    ramp: Option<f64>,
+}
+
+impl TryFrom<MotionText> for MotionPath {
+    type Error = &'static str;
+
+    fn try_from(text: MotionText) -> Result<Self, Self::Error> {
+        let axes = text.x.is_some() || text.y.is_some() || text.z.is_some();
+        match (text.file, text.table) {
+            (Some(_), Some(_)) => Err("`file` and `table` cannot both be given"),
+            (Some(_), _) | (_, Some(_)) if axes || text.ramp.is_some() => {
+                Err("`x`, `y`, `z` and `ramp` cannot be given beside `file` or `table`")
+            }
+            (Some(file), None) => Ok(MotionPath::File(MotionFile {
+                file,
+                rows: Vec::new(),
+            })),
+            (None, Some(rows)) => Ok(MotionPath::Table(rows)),
+            (None, None) if !axes => Err("a motion needs `x`, `y` or `z`, or `table`, or `file`"),
+            (None, None) => Ok(MotionPath::Harmonic(HarmonicMotion {
+                x: text.x.unwrap_or_default(),
+                y: text.y.unwrap_or_default(),
+                z: text.z.unwrap_or_default(),
+                ramp: text.ramp,
+            })),
+        }
+    }
+}
+
+impl Serialize for MotionPath {
+    /// Rows that were read from a file are written in its place, so that the scene needs no other file.
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut text = MotionText {
+            file: None,
+            table: None,
+            x: None,
+            y: None,
+            z: None,
+            ramp: None,
+        };
+        match self {
+            MotionPath::File(file) if file.rows.is_empty() => text.file = Some(file.file.clone()),
+            MotionPath::File(file) => text.table = Some(file.rows.clone()),
+            MotionPath::Table(rows) => text.table = Some(rows.clone()),
+            MotionPath::Harmonic(harmonic) => {
+                text.x = Some(harmonic.x.clone());
+                text.y = Some(harmonic.y.clone());
+                text.z = Some(harmonic.z.clone());
+                text.ramp = harmonic.ramp;
+            }
+        }
+        text.serialize(serializer)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_step_is_flat_at_both_ends_and_half_way_in_the_middle() {
+        let step = TimeFunction::Step([1.0, 2.0, 3.0, 6.0]);
+        assert_eq!(step.at(0.0), 2.0);
+        assert_eq!(step.at(2.0), 4.0);
+        assert_eq!(step.at(9.0), 6.0);
+        let slope = (step.at(1.0 + 1e-6) - step.at(1.0)) / 1e-6;
+        assert!(slope.abs() < 1e-5);
+    }
+
+    #[test]
+    fn a_table_is_straight_between_its_rows_and_constant_outside() {
+        let table = TimeFunction::Table(vec![[0.0, 1.0], [2.0, 5.0]]);
+        assert_eq!(table.at(-1.0), 1.0);
+        assert_eq!(table.at(0.5), 2.0);
+        assert_eq!(table.at(2.0), 5.0);
+        assert_eq!(table.at(3.0), 5.0);
+    }
 }

@@ -1,0 +1,188 @@
+//! Properties per length.
+
+use super::{Bounds, Findings, check_name, quantity};
+use crate::scene::path::quoted;
+use crate::scene::{LineType, Rayleigh, Scene, Strain};
+
+pub(super) fn check(scene: &Scene, findings: &mut Findings) {
+    for (name, line_type) in &scene.line_types {
+        let at = format!("line_types.{}", quoted(name));
+        check_name(findings, &at, name);
+        check_numbers(findings, &at, line_type);
+        check_mass(findings, &at, line_type, scene);
+        check_diameter(findings, &at, name, line_type, scene);
+        check_stretch(findings, &at, line_type);
+    }
+}
+
+fn check_numbers(findings: &mut Findings, at: &str, line_type: &LineType) {
+    let coefficient = Bounds::NotNegative(1e3);
+    let rows = [
+        ("mass", line_type.mass, Bounds::Positive(1e6), "kg/m"),
+        ("weight", line_type.weight, Bounds::Magnitude(1e8), "N/m"),
+        ("diameter", line_type.diameter, Bounds::Positive(100.0), "m"),
+        (
+            "axial_stiffness",
+            Some(line_type.axial_stiffness),
+            Bounds::Positive(1e15),
+            "N",
+        ),
+        (
+            "axial_damping",
+            line_type.axial_damping,
+            Bounds::NotNegative(1e15),
+            "N s",
+        ),
+        (
+            "damping_ratio",
+            line_type.damping_ratio,
+            Bounds::NotNegative(100.0),
+            "-",
+        ),
+        ("drag_normal", line_type.drag_normal, coefficient, "-"),
+        (
+            "drag_tangential",
+            line_type.drag_tangential,
+            coefficient,
+            "-",
+        ),
+        (
+            "added_mass_normal",
+            line_type.added_mass_normal,
+            coefficient,
+            "-",
+        ),
+        (
+            "added_mass_tangential",
+            line_type.added_mass_tangential,
+            coefficient,
+            "-",
+        ),
+    ];
+    for (key, value, bounds, unit) in rows {
+        findings.number_if(format!("{at}.{key}"), value, bounds, unit);
+    }
+}
+
+fn check_mass(findings: &mut Findings, at: &str, line_type: &LineType, scene: &Scene) {
+    match (line_type.mass, line_type.weight) {
+        (None, None) => findings.say(
+            at,
+            "no mass: give `mass` [kg/m], or `weight` [N/m] (the mass is then weight/gravity)",
+        ),
+        (None, Some(_)) if scene.gravity == 0.0 => findings.say(
+            format!("{at}.weight"),
+            "the mass would be weight/gravity, but gravity is 0: give `mass` [kg/m] too",
+        ),
+        (None, Some(weight)) if weight <= 0.0 => findings.say(
+            format!("{at}.weight"),
+            format!(
+                "the mass would be weight/gravity, and {} is not positive: give `mass` [kg/m] too",
+                quantity(weight, "N/m")
+            ),
+        ),
+        _ => {}
+    }
+}
+
+/// Water and seabed act on a line by its diameter.
+fn check_diameter(
+    findings: &mut Findings,
+    at: &str,
+    name: &str,
+    line_type: &LineType,
+    scene: &Scene,
+) {
+    if line_type.diameter.is_some() {
+        return;
+    }
+    if scene.water.is_some() {
+        if line_type.weight.is_none() && line_type.mass.is_some() {
+            let problem = "no diameter: the buoyancy in the water needs `diameter` [m], \
+                           or give the `weight` in water [N/m]";
+            findings.say(at, problem);
+        }
+        for (key, value) in coefficients(line_type) {
+            if value.is_some() {
+                let problem = "the water acts on the diameter: give `diameter` [m] too";
+                findings.say(format!("{at}.{key}"), problem);
+            }
+        }
+    }
+    let on_seabed = scene.lines.iter().any(|line| {
+        let mut sections = line.sections.iter();
+        sections.any(|section| section.line_type == name)
+    });
+    if scene.seabed.is_some() && on_seabed {
+        let problem = "no diameter: the seabed's stiffness and damping are per metre of diameter; \
+                       give `diameter` [m], or leave out `[seabed]` where no line touches it";
+        findings.say(at, problem);
+    }
+}
+
+/// The coefficients of drag and added mass, by key.
+pub(in crate::scene) fn coefficients(line_type: &LineType) -> [(&'static str, Option<f64>); 4] {
+    [
+        ("drag_normal", line_type.drag_normal),
+        ("drag_tangential", line_type.drag_tangential),
+        ("added_mass_normal", line_type.added_mass_normal),
+        ("added_mass_tangential", line_type.added_mass_tangential),
+    ]
+}
+
+fn check_stretch(findings: &mut Findings, at: &str, line_type: &LineType) {
+    if line_type.axial_damping.is_some() && line_type.damping_ratio.is_some() {
+        findings.say(
+            format!("{at}.damping_ratio"),
+            "`axial_damping` is given too: give one of them",
+        );
+    }
+    if let Strain::Logarithmic(poisson_ratio) = line_type.strain {
+        let at = format!("{at}.strain.logarithmic");
+        findings.number(at, poisson_ratio, Bounds::Within(0.0, 0.5), "-");
+    }
+    if let Some(rayleigh) = &line_type.rayleigh {
+        check_rayleigh(findings, &format!("{at}.rayleigh"), rayleigh);
+    }
+}
+
+fn check_rayleigh(findings: &mut Findings, at: &str, rayleigh: &Rayleigh) {
+    let mut right = true;
+    for i in 0..2 {
+        let ratio = Bounds::NotNegative(100.0);
+        right &= findings.number(format!("{at}.ratios[{i}]"), rayleigh.ratios[i], ratio, "-");
+        let frequency = Bounds::Positive(1e9);
+        let value = rayleigh.frequencies[i];
+        right &= findings.number(format!("{at}.frequencies[{i}]"), value, frequency, "rad/s");
+    }
+    if !right {
+        return;
+    }
+    let ([ratio_1, ratio_2], [frequency_1, frequency_2]) = (rayleigh.ratios, rayleigh.frequencies);
+    if frequency_1 == frequency_2 {
+        findings.say(
+            format!("{at}.frequencies"),
+            "the two circular frequencies are equal: the ratios hold at two different ones",
+        );
+        return;
+    }
+    let ((slow, slow_ratio), (fast, fast_ratio)) = if frequency_1 < frequency_2 {
+        ((frequency_1, ratio_1), (frequency_2, ratio_2))
+    } else {
+        ((frequency_2, ratio_2), (frequency_1, ratio_1))
+    };
+    // α = 2ω₁ω₂(ζ₁ω₂ − ζ₂ω₁)/(ω₂² − ω₁²) and β = 2(ζ₂ω₂ − ζ₁ω₁)/(ω₂² − ω₁²), both at least 0.
+    if slow_ratio * fast < fast_ratio * slow || fast_ratio * fast < slow_ratio * slow {
+        let problem = format!(
+            "the ratios ask for negative damping of mass or stiffness: their quotient must lie between {} and {}, \
+             that of the frequencies and its inverse",
+            number_short(slow / fast),
+            number_short(fast / slow)
+        );
+        findings.say(format!("{at}.ratios"), problem);
+    }
+}
+
+fn number_short(value: f64) -> String {
+    format!("{value:.4}")
+}

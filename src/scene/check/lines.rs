@@ -1,0 +1,182 @@
+//! Lines, their sections, their start, and whether anything holds them.
+
+use super::{Bounds, Findings, quantity, unknown};
+use crate::scene::{InitialShape, Line, PointKind, Scene};
+
+/// Most elements of a section.
+const ELEMENTS_MAX: usize = 100_000;
+
+pub(super) fn check(scene: &Scene, findings: &mut Findings) {
+    if scene.lines.is_empty() {
+        findings.say("lines", "no line: a scene needs at least one `[[lines]]`");
+    }
+    for (i, line) in scene.lines.iter().enumerate() {
+        let at = format!("lines[{i}]");
+        check_ends(findings, &at, line, scene);
+        check_sections(findings, &at, line, scene);
+        check_start(findings, &format!("{at}.initial"), line, scene);
+    }
+    check_held(scene, findings);
+}
+
+fn check_ends(findings: &mut Findings, at: &str, line: &Line, scene: &Scene) {
+    let points = scene.points.iter().map(|point| point.name.as_str());
+    for (key, name) in [("from", &line.from), ("to", &line.to)] {
+        if points.clone().all(|point| point != name) {
+            let problem = unknown("point", "points", name, points.clone());
+            findings.say(format!("{at}.{key}"), problem);
+        }
+    }
+    if line.from == line.to {
+        let problem = format!(
+            "both ends are at `{}`: a line joins two points (which may have the same position)",
+            line.to
+        );
+        findings.say(format!("{at}.to"), problem);
+    }
+}
+
+fn check_sections(findings: &mut Findings, at: &str, line: &Line, scene: &Scene) {
+    if line.sections.is_empty() {
+        let problem = "no sections: write sections = [{ type = …, length = … }]";
+        findings.say(format!("{at}.sections"), problem);
+    }
+    for (i, section) in line.sections.iter().enumerate() {
+        let at = format!("{at}.sections[{i}]");
+        if !scene.line_types.contains_key(&section.line_type) {
+            let types = scene.line_types.keys().map(String::as_str);
+            let problem = unknown("line type", "line types", &section.line_type, types);
+            findings.say(format!("{at}.type"), problem);
+        }
+        let length = Bounds::Positive(1e6);
+        findings.number(format!("{at}.length"), section.length, length, "m");
+        match section.elements {
+            Some(0) => findings.say(
+                format!("{at}.elements"),
+                "0 elements: give 1 or more, or leave it out to have it chosen",
+            ),
+            Some(n) if n > ELEMENTS_MAX => findings.say(
+                format!("{at}.elements"),
+                format!("{n} elements are more than {ELEMENTS_MAX}"),
+            ),
+            _ => {}
+        }
+    }
+}
+
+fn check_start(findings: &mut Findings, at: &str, line: &Line, scene: &Scene) {
+    let ends = [&line.from, &line.to].map(|name| {
+        let point = scene.points.iter().find(|point| point.name == *name);
+        point.map(|point| point.position)
+    });
+    match &line.initial {
+        InitialShape::Static => {}
+        InitialShape::Straight => {
+            if line.from != line.to && ends[0].is_some() && ends[0] == ends[1] {
+                let problem = "the two ends have the same position, so no straight line joins them: \
+                               write \"static\"";
+                findings.say(at, problem);
+            }
+        }
+        InitialShape::Parabola(sag) => {
+            if *sag < 0.0 {
+                let problem = format!(
+                    "{} is negative: a positive sag hangs below the chord",
+                    quantity(*sag, "m")
+                );
+                findings.say(format!("{at}.parabola"), problem);
+            } else {
+                let bounds = Bounds::Positive(1e6);
+                findings.number(format!("{at}.parabola"), *sag, bounds, "m");
+            }
+        }
+        InitialShape::Nodes(nodes) => {
+            check_nodes(findings, &format!("{at}.nodes"), nodes, line, ends)
+        }
+    }
+}
+
+fn check_nodes(
+    findings: &mut Findings,
+    at: &str,
+    nodes: &[[f64; 3]],
+    line: &Line,
+    ends: [Option<[f64; 3]>; 2],
+) {
+    for (i, node) in nodes.iter().enumerate() {
+        for (axis, value) in node.iter().enumerate() {
+            let place = format!("{at}[{i}][{axis}]");
+            if !findings.number(place, *value, Bounds::Magnitude(1e7), "m") {
+                return;
+            }
+        }
+    }
+    let elements: Option<usize> = line
+        .sections
+        .iter()
+        .map(|section| section.elements)
+        .try_fold(0_usize, |sum, n| sum.checked_add(n?));
+    let Some(elements) = elements else {
+        let problem = "given nodes need `elements` in every section of the line";
+        return findings.say(at, problem);
+    };
+    if nodes.len() != elements + 1 {
+        let problem = format!(
+            "{} nodes, but a line of {elements} elements has {}",
+            nodes.len(),
+            elements + 1
+        );
+        return findings.say(at, problem);
+    }
+    let length: f64 = line.sections.iter().map(|section| section.length).sum();
+    let last = nodes.len() - 1;
+    for (i, end) in [(0, ends[0]), (last, ends[1])] {
+        let Some(end) = end else { continue };
+        let far = (0..3).any(|axis| (nodes[i][axis] - end[axis]).abs() > 1e-6 * length);
+        if far {
+            let problem = format!(
+                "the node is not at the line's end, [{}, {}, {}] m",
+                end[0], end[1], end[2]
+            );
+            findings.say(format!("{at}[{i}]"), problem);
+        }
+    }
+}
+
+/// Every line must hang, over other lines, on something that does not just fall.
+fn check_held(scene: &Scene, findings: &mut Findings) {
+    let place = |name: &str| scene.points.iter().position(|point| point.name == name);
+    let mut held: Vec<bool> = scene
+        .points
+        .iter()
+        .map(|point| point.kind != PointKind::Free)
+        .collect();
+    let joins: Vec<Option<(usize, usize)>> = scene
+        .lines
+        .iter()
+        .map(|line| place(&line.from).zip(place(&line.to)))
+        .collect();
+    // Each pass but the last reaches at least one more point.
+    for _ in 0..scene.points.len() {
+        let mut changed = false;
+        for (a, b) in joins.iter().flatten() {
+            changed |= held[*a] != held[*b];
+            let either = held[*a] || held[*b];
+            held[*a] = either;
+            held[*b] = either;
+        }
+        if !changed {
+            break;
+        }
+    }
+    for (i, join) in joins.iter().enumerate() {
+        if let Some((a, b)) = join
+            && a != b
+            && !held[*a]
+        {
+            let problem = "nothing holds this line: neither it nor the lines joined to it end at a \
+                           fixed, coupled or prescribed point";
+            findings.say(format!("lines[{i}]"), problem);
+        }
+    }
+}

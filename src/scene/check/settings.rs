@@ -1,0 +1,85 @@
+//! Solver and output.
+
+use super::{Bounds, Findings, quantity};
+use crate::scene::{Integrator, Scene};
+
+/// Most output steps of a run.
+const STEPS_MAX: f64 = 1e7;
+
+pub(super) fn check(scene: &Scene, findings: &mut Findings) {
+    check_solver(scene, findings);
+    check_output(scene, findings);
+}
+
+fn check_solver(scene: &Scene, findings: &mut Findings) {
+    let solver = &scene.solver;
+    let tolerance = Bounds::Within(1e-12, 0.5);
+    findings.number("solver.tolerance", solver.tolerance, tolerance, "-");
+    let step = Bounds::Positive(1e4);
+    findings.number("solver.time_step_max", solver.time_step_max, step, "s");
+    if let Some(radius) = solver.spectral_radius {
+        let at = "solver.spectral_radius";
+        findings.number(at, radius, Bounds::Within(0.0, 1.0), "-");
+        if !matches!(
+            solver.integrator,
+            Integrator::Auto | Integrator::AxialImplicit | Integrator::GeneralisedAlpha
+        ) {
+            let problem = format!(
+                "the integrator is \"{}\", and a spectral radius belongs to \"generalised_alpha\" and \"axial_implicit\"",
+                integrator_name(solver.integrator)
+            );
+            findings.say(at, problem);
+        }
+    }
+    if let Some(bossak) = &solver.bossak {
+        if solver.integrator != Integrator::Bossak {
+            let problem = format!(
+                "the integrator is \"{}\": write integrator = \"bossak\" or leave these parameters out",
+                integrator_name(solver.integrator)
+            );
+            findings.say("solver.bossak", problem);
+        }
+        // -1/3 as a decimal may be rounded either way.
+        let alpha = Bounds::Within(-0.333_333_34, 0.0);
+        findings.number("solver.bossak.alpha", bossak.alpha, alpha, "-");
+        let gamma = Bounds::Within(0.5, 1.5);
+        findings.number_if("solver.bossak.gamma".into(), bossak.gamma, gamma, "-");
+    }
+}
+
+/// The name of an integrator in a scene.
+pub(in crate::scene) fn integrator_name(integrator: Integrator) -> &'static str {
+    match integrator {
+        Integrator::Auto => "auto",
+        Integrator::Leapfrog => "leapfrog",
+        Integrator::AxialImplicit => "axial_implicit",
+        Integrator::GeneralisedAlpha => "generalised_alpha",
+        Integrator::Bossak => "bossak",
+        Integrator::QuasiStatic => "quasi_static",
+    }
+}
+
+fn check_output(scene: &Scene, findings: &mut Findings) {
+    let output = &scene.output;
+    let time = Bounds::Positive(1e9);
+    let mut right = findings.number("output.duration", output.duration, time, "s");
+    right &= findings.number("output.interval", output.interval, time, "s");
+    if !right {
+        return;
+    }
+    if output.interval > output.duration {
+        let problem = format!(
+            "{} is longer than the duration of {}",
+            quantity(output.interval, "s"),
+            quantity(output.duration, "s")
+        );
+        findings.say("output.interval", problem);
+    } else if output.duration / output.interval > STEPS_MAX {
+        let problem = format!(
+            "{} in steps of {} is more than 1e7 steps: give a longer interval or a shorter duration",
+            quantity(output.duration, "s"),
+            quantity(output.interval, "s")
+        );
+        findings.say("output.interval", problem);
+    }
+}

@@ -1,0 +1,92 @@
+//! The nearest known name to one that is not known.
+
+/// What other tools and papers call our keys.
+const ALIASES: &[(&str, &str)] = &[
+    ("ea", "axial_stiffness"),
+    ("ba", "axial_damping"),
+    ("d", "diameter"),
+    ("diam", "diameter"),
+    ("m", "mass"),
+    ("w", "weight"),
+    ("cdn", "drag_normal"),
+    ("cdt", "drag_tangential"),
+    ("cdax", "drag_tangential"),
+    ("can", "added_mass_normal"),
+    ("cat", "added_mass_tangential"),
+    ("caax", "added_mass_tangential"),
+    ("kbot", "stiffness"),
+    ("cbot", "damping"),
+    ("rho", "density"),
+    ("g", "gravity"),
+    ("segments", "elements"),
+    ("unstretched_length", "length"),
+    ("line_type", "type"),
+    ("nodes", "points"),
+    ("rope", "line_types"),
+    ("dt", "interval"),
+];
+
+/// The known name that the user may have meant.
+pub(super) fn nearest<'a>(
+    name: &str,
+    known: impl IntoIterator<Item = &'a str> + Clone,
+) -> Option<&'a str> {
+    let lower = name.to_lowercase();
+    let alias = ALIASES.iter().find(|(alias, _)| *alias == lower);
+    if let Some((_, meant)) = alias
+        && let Some(found) = known.clone().into_iter().find(|k| k == meant)
+    {
+        return Some(found);
+    }
+    known
+        .into_iter()
+        .map(|candidate| (closeness(&lower, &candidate.to_lowercase()), candidate))
+        .filter(|(closeness, _)| *closeness >= 0.6)
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|(_, candidate)| candidate)
+}
+
+/// 1 where equal; the beginning of a name counts as close.
+fn closeness(name: &str, candidate: &str) -> f64 {
+    let (short, long) = if name.len() < candidate.len() {
+        (name, candidate)
+    } else {
+        (candidate, name)
+    };
+    if short.len() >= 3 && long.starts_with(short) {
+        return 0.9;
+    }
+    strsim::normalized_damerau_levenshtein(name, candidate)
+}
+
+/// ", did you mean `x`?" or nothing, then the known names in brackets.
+pub(super) fn suggestion<'a>(
+    name: &str,
+    what: &str,
+    known: impl IntoIterator<Item = &'a str> + Clone,
+) -> String {
+    let meant = nearest(name, known.clone())
+        .map(|name| format!(", did you mean `{name}`?"))
+        .unwrap_or_default();
+    let list: Vec<&str> = known.into_iter().collect();
+    if list.is_empty() {
+        return format!("{meant} (there are no {what})");
+    }
+    let shown = list[..list.len().min(20)].join(", ");
+    let more = if list.len() > 20 { ", …" } else { "" };
+    format!("{meant} ({what}: {shown}{more})")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_slip_of_the_finger_finds_the_key() {
+        let known = ["diameter", "mass", "axial_stiffness"];
+        assert_eq!(nearest("diamter", known), Some("diameter"));
+        assert_eq!(nearest("EA", known), Some("axial_stiffness"));
+        assert_eq!(nearest("Mass", known), Some("mass"));
+        assert_eq!(nearest("colour", known), None);
+    }
+}

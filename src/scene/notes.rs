@@ -1,0 +1,156 @@
+//! What is no mistake but may surprise.
+
+use std::fmt;
+
+use super::check::{coefficients, number};
+use super::path::quoted;
+use super::{Line, LineType, PointKind, Scene};
+
+/// A remark on a scene that can be used as it is.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Note {
+    /// Key path of what it is about.
+    pub at: String,
+    /// The remark.
+    pub text: String,
+}
+
+impl fmt::Display for Note {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.at, self.text)
+    }
+}
+
+/// Chord over unstretched length from which a line is suspiciously tight [-].
+const CHORD_RATIO: f64 = 1.5;
+
+impl Scene {
+    /// Says what is no mistake but may surprise.
+    pub fn notes(&self) -> Vec<Note> {
+        let mut notes = Vec::new();
+        for (name, line_type) in &self.line_types {
+            note_line_type(self, name, line_type, &mut notes);
+        }
+        for (i, line) in self.lines.iter().enumerate() {
+            note_chord(self, line, &format!("lines[{i}]"), &mut notes);
+        }
+        note_points(self, &mut notes);
+        note_whole(self, &mut notes);
+        notes
+    }
+}
+
+fn say(notes: &mut Vec<Note>, at: impl Into<String>, text: impl Into<String>) {
+    notes.push(Note {
+        at: at.into(),
+        text: text.into(),
+    });
+}
+
+fn note_line_type(scene: &Scene, name: &str, line_type: &LineType, notes: &mut Vec<Note>) {
+    let at = format!("line_types.{}", quoted(name));
+    let mut sections = scene.lines.iter().flat_map(|line| &line.sections);
+    if sections.all(|section| section.line_type != name) {
+        return say(notes, at, "no line uses this line type");
+    }
+    let given: Vec<&str> = coefficients(line_type)
+        .iter()
+        .filter(|(_, value)| value.is_some())
+        .map(|(key, _)| *key)
+        .collect();
+    if scene.water.is_none() && !given.is_empty() {
+        let text = format!("without [water], {} change nothing", given.join(", "));
+        say(notes, at.clone(), text);
+    }
+    if scene.water.is_some() && line_type.drag_normal.is_none() {
+        say(
+            notes,
+            at.clone(),
+            "no `drag_normal`: the water does not damp the line's motion across itself",
+        );
+    }
+    if scene.seabed.is_some() && scene.weight(line_type) < 0.0 {
+        let text = "lighter than the water: it floats up from the seabed";
+        say(notes, at.clone(), text);
+    }
+    if line_type.axial_damping.is_none()
+        && line_type.damping_ratio.is_none()
+        && line_type.rayleigh.is_none()
+    {
+        let text = "no damping within the line: axial waves die out by drag and the seabed alone";
+        say(notes, at, text);
+    }
+}
+
+/// Distance between the ends of a line [m], where both are known.
+pub(super) fn chord(scene: &Scene, line: &Line) -> Option<f64> {
+    let position = |name: &str| {
+        let point = scene.points.iter().find(|point| point.name == name)?;
+        Some(point.position)
+    };
+    let (a, b) = (position(&line.from)?, position(&line.to)?);
+    Some((0..3).map(|i| (b[i] - a[i]).powi(2)).sum::<f64>().sqrt())
+}
+
+/// Unstretched length of a line [m].
+pub(super) fn length(line: &Line) -> f64 {
+    line.sections.iter().map(|section| section.length).sum()
+}
+
+fn note_chord(scene: &Scene, line: &Line, at: &str, notes: &mut Vec<Note>) {
+    let length = length(line);
+    if let Some(chord) = chord(scene, line)
+        && chord > CHORD_RATIO * length
+    {
+        let text = format!(
+            "its ends are {} m apart, and it is {} m long unstretched: it is strained by at least {:.0} %",
+            number(chord),
+            number(length),
+            100.0 * (chord / length - 1.0)
+        );
+        say(notes, at, text);
+    }
+}
+
+fn note_points(scene: &Scene, notes: &mut Vec<Note>) {
+    for (i, point) in scene.points.iter().enumerate() {
+        let at = format!("points[{i}]");
+        let mut lines = scene.lines.iter();
+        if lines.all(|line| line.from != point.name && line.to != point.name) {
+            say(notes, at.clone(), "no line ends at this point");
+        }
+        if scene.water.is_some() && point.position[2] > 0.0 {
+            let text = "above z = 0: the water is taken to fill all space, so lines there are submerged too";
+            say(notes, format!("{at}.position"), text);
+        }
+        if point.force.is_some() && point.kind != PointKind::Free {
+            let text = "a force on a point that the forces do not move only changes what holds it";
+            say(notes, format!("{at}.force"), text);
+        }
+        if point.volume.is_some() && scene.water.is_none() {
+            let text = "without [water], a volume changes nothing";
+            say(notes, format!("{at}.volume"), text);
+        }
+    }
+}
+
+fn note_whole(scene: &Scene, notes: &mut Vec<Note>) {
+    if scene.gravity == 0.0 {
+        say(notes, "gravity", "0: lines and points are weightless");
+    }
+    if let Some(seabed) = &scene.seabed
+        && seabed.friction > 0.0
+    {
+        let text = "the static catenary has friction, the dynamics have none";
+        say(notes, "seabed.friction", text);
+    }
+    let output = &scene.output;
+    let steps = output.duration / output.interval;
+    if (steps - steps.round()).abs() > 1e-6 * steps {
+        let text = format!(
+            "the duration of {} s is not a whole number of intervals: the last one is shorter",
+            number(output.duration)
+        );
+        say(notes, "output.interval", text);
+    }
+}

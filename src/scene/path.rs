@@ -1,0 +1,152 @@
+//! Key paths such as `lines[0].sections[1].length`, and the bytes of the text that they stand for.
+
+use std::fmt::Write;
+use std::ops::Range;
+
+use toml::Spanned;
+use toml::de::DeValue;
+
+/// One step from a table or array to what it holds.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Step {
+    /// A key of a table.
+    Key(String),
+    /// A place in an array, from 0.
+    Index(usize),
+}
+
+fn is_bare(key: &str) -> bool {
+    !key.is_empty()
+        && key
+            .chars()
+            .all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-')
+}
+
+/// A key as TOML would have it written: quoted where it must be.
+pub(super) fn quoted(key: &str) -> String {
+    if is_bare(key) {
+        key.to_string()
+    } else {
+        format!("{key:?}")
+    }
+}
+
+/// Writes a path.
+pub(super) fn render<'a>(steps: impl Iterator<Item = &'a Step>) -> String {
+    let mut path = String::new();
+    for step in steps {
+        match step {
+            Step::Key(key) if path.is_empty() => path.push_str(&quoted(key)),
+            Step::Key(key) => {
+                path.push('.');
+                path.push_str(&quoted(key));
+            }
+            Step::Index(index) => write!(path, "[{index}]").expect("a String takes all"),
+        }
+    }
+    path
+}
+
+/// Bytes of what the path leads to; where it leads nowhere, of the last thing on the way that exists.
+pub(super) fn locate(root: &Spanned<DeValue<'_>>, path: &str) -> Option<Range<usize>> {
+    let mut span = None;
+    let mut table = root.get_ref().as_table();
+    let mut array = None;
+    let mut rest = path;
+    while let Some((step, after)) = next_step(rest) {
+        rest = after;
+        let found: Option<&Spanned<DeValue<'_>>> = match step {
+            Step::Key(key) => table.and_then(|table| table.get(key.as_str())),
+            Step::Index(index) => array.and_then(|array: &toml::de::DeArray<'_>| array.get(index)),
+        };
+        let Some(value) = found else { break };
+        span = Some(value.span());
+        table = value.get_ref().as_table();
+        array = value.get_ref().as_array();
+    }
+    span
+}
+
+/// Splits the first step off a path that [`render`] wrote.
+fn next_step(path: &str) -> Option<(Step, &str)> {
+    let path = path.strip_prefix('.').unwrap_or(path);
+    if let Some(inside) = path.strip_prefix('[') {
+        let (index, rest) = inside.split_once(']')?;
+        return Some((Step::Index(index.parse().ok()?), rest));
+    }
+    if path.starts_with('"') {
+        let (key, rest) = split_quoted(path)?;
+        return Some((Step::Key(key), rest));
+    }
+    let end = path.find(['.', '[']).unwrap_or(path.len());
+    (end > 0).then(|| (Step::Key(path[..end].to_string()), &path[end..]))
+}
+
+/// Undoes the quoting of [`quoted`]: TOML reads the same escapes.
+fn split_quoted(path: &str) -> Option<(String, &str)> {
+    let mut escaped = false;
+    let end = path.char_indices().skip(1).find_map(|(at, c)| {
+        let closes = c == '"' && !escaped;
+        escaped = c == '\\' && !escaped;
+        closes.then_some(at + 1)
+    })?;
+    let value = DeValue::parse(&path[..end]).ok()?;
+    Some((value.get_ref().as_str()?.to_string(), &path[end..]))
+}
+
+/// Line and column of a byte of the text, both from 1; columns count characters.
+pub(super) fn line_column(text: &str, byte: usize) -> (usize, usize) {
+    let mut byte = byte.min(text.len());
+    while !text.is_char_boundary(byte) {
+        byte -= 1;
+    }
+    let before = &text[..byte];
+    let line = before.matches('\n').count() + 1;
+    let column = before
+        .rsplit('\n')
+        .next()
+        .map_or(0, |line| line.chars().count());
+    (line, column + 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_path_finds_the_value_it_names() {
+        let text = "[a]\nb = [1, { c = 2.5 }]\n\"x.y\" = 7\n";
+        let table = toml::de::DeTable::parse(text).unwrap();
+        let root = Spanned::new(table.span(), DeValue::Table(table.into_inner()));
+        let at = |path: &str| locate(&root, path).map(|span| &text[span]);
+        assert_eq!(at("a.b[1].c"), Some("2.5"));
+        assert_eq!(at("a.\"x.y\""), Some("7"));
+        assert_eq!(at("a.b[0]"), Some("1"));
+        assert_eq!(at("a.b[1].missing"), Some("{ c = 2.5 }"));
+        assert_eq!(at("nowhere"), None);
+    }
+
+    #[test]
+    fn a_rendered_path_is_read_back() {
+        let steps = [
+            Step::Key("a b".into()),
+            Step::Index(3),
+            Step::Key("q\"\\".into()),
+            Step::Key("plain".into()),
+        ];
+        let path = render(steps.iter());
+        let mut rest = path.as_str();
+        for step in steps {
+            let (read, after) = next_step(rest).unwrap();
+            assert_eq!(read, step);
+            rest = after;
+        }
+        assert!(next_step(rest).is_none());
+    }
+
+    #[test]
+    fn columns_count_characters() {
+        assert_eq!(line_column("a\nü x", 4), (2, 2));
+        assert_eq!(line_column("", 5), (1, 1));
+    }
+}

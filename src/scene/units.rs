@@ -1,0 +1,82 @@
+//! Units of the scene's numbers, so that a message can say "expected a number [m]".
+
+/// (struct, key, unit) of every number and list of numbers in a scene.
+const UNITS: &[(&str, &str, &str)] = &[
+    ("Scene", "gravity", "m/s²"),
+    ("Water", "density", "kg/m³"),
+    ("Seabed", "depth", "m"),
+    ("Seabed", "stiffness", "Pa/m"),
+    ("Seabed", "damping", "Pa s/m"),
+    ("Seabed", "friction", "-"),
+    ("LineType", "mass", "kg/m"),
+    ("LineType", "weight", "N/m"),
+    ("LineType", "diameter", "m"),
+    ("LineType", "axial_stiffness", "N"),
+    ("LineType", "axial_damping", "N s"),
+    ("LineType", "damping_ratio", "-"),
+    ("LineType", "drag_normal", "-"),
+    ("LineType", "drag_tangential", "-"),
+    ("LineType", "added_mass_normal", "-"),
+    ("LineType", "added_mass_tangential", "-"),
+    ("Rayleigh", "ratios", "-"),
+    ("Rayleigh", "frequencies", "rad/s"),
+    ("Point", "position", "m"),
+    ("Point", "mass", "kg"),
+    ("Point", "volume", "m³"),
+    ("PointForce", "x", "N"),
+    ("PointForce", "y", "N"),
+    ("PointForce", "z", "N"),
+    ("Line", "initial", "m"),
+    ("Section", "length", "m"),
+    ("Solver", "tolerance", "-"),
+    ("Solver", "time_step_max", "s"),
+    ("Solver", "spectral_radius", "-"),
+    ("Bossak", "alpha", "-"),
+    ("Bossak", "gamma", "-"),
+    ("MotionText", "ramp", "s"),
+    ("Output", "duration", "s"),
+    ("Output", "interval", "s"),
+];
+
+/// Unit of a key of a struct, where it is a number.
+pub(super) fn unit(owner: &str, key: &str) -> Option<&'static str> {
+    UNITS
+        .iter()
+        .find(|(o, k, _)| *o == owner && *k == key)
+        .map(|(_, _, unit)| *unit)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Lines of the body of `pub struct name` in the source.
+    fn body(source: &'static str, name: &str) -> Option<&'static str> {
+        let start = source.find(&format!("pub struct {name} {{"))?;
+        source[start..].split("\n}").next()
+    }
+
+    #[test]
+    fn every_unit_said_in_a_message_stands_in_the_docs_of_its_key() {
+        let source = include_str!("mod.rs");
+        for (owner, key, unit) in UNITS {
+            let Some(body) = body(source, owner) else {
+                assert_eq!(*owner, "MotionText", "{owner} is not in mod.rs");
+                continue;
+            };
+            let declaration = format!("pub {key}: ");
+            let before = body
+                .find(&declaration)
+                .unwrap_or_else(|| panic!("{owner} has no key {key}"));
+            let doc = body[..before].rsplit("pub ").next().unwrap();
+            let kind = body[before + declaration.len()..].lines().next().unwrap();
+            if kind.contains("f64") {
+                let inherited = *owner == "Bossak";
+                assert!(
+                    inherited || doc.contains(&format!("[{unit}]")),
+                    "{owner}.{key}: the docs do not say [{unit}]"
+                );
+            }
+        }
+    }
+}

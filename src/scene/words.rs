@@ -1,0 +1,461 @@
+//! A scene in words: what it models, and what it does not.
+
+use std::f64::consts::PI;
+use std::fmt::Write;
+
+use super::check::{integrator_name, number, quantity};
+use super::notes::{chord, length};
+use super::{
+    Axis, ContactLaw, HarmonicMotion, InitialShape, Integrator, Line, LineType, MotionPath, Point,
+    PointForce, PointKind, Scene, Strain, TimeFunction,
+};
+
+/// Widest line of the text, in characters.
+const WIDTH: usize = 110;
+
+impl Scene {
+    /// What the scene models and what it does not, in sentences; one line per line type, point and line.
+    pub fn in_words(&self) -> String {
+        let mut text = String::new();
+        if !self.title.is_empty() {
+            paragraph(&mut text, "", &self.title);
+        }
+        section(&mut text, "surroundings", &self.surroundings_in_words());
+        let types = self.line_types.iter();
+        let types: Vec<_> = types
+            .map(|(name, kind)| self.line_type_in_words(name, kind))
+            .collect();
+        section(&mut text, "line types", &types);
+        let points: Vec<_> = self
+            .points
+            .iter()
+            .map(|point| self.point_in_words(point))
+            .collect();
+        section(&mut text, "points", &points);
+        let lines: Vec<_> = self
+            .lines
+            .iter()
+            .map(|line| self.line_in_words(line))
+            .collect();
+        section(&mut text, "lines", &lines);
+        section(&mut text, "solution", &self.solution_in_words());
+        section(&mut text, "not modelled", &self.absences_in_words());
+        text
+    }
+
+    /// Mass per unstretched length [kg/m]: the given one, else weight/gravity.
+    fn mass(&self, line_type: &LineType) -> f64 {
+        let of_weight = || line_type.weight.map(|weight| weight / self.gravity);
+        line_type.mass.or_else(of_weight).unwrap_or(0.0)
+    }
+
+    /// Displaced mass of water per unstretched length [kg/m].
+    fn displaced(&self, line_type: &LineType) -> f64 {
+        match (&self.water, line_type.diameter) {
+            (Some(water), Some(diameter)) => water.density * 0.25 * PI * diameter * diameter,
+            _ => 0.0,
+        }
+    }
+
+    /// Weight per unstretched length in the scene's surroundings [N/m].
+    pub(super) fn weight(&self, line_type: &LineType) -> f64 {
+        let wet = || (self.mass(line_type) - self.displaced(line_type)) * self.gravity;
+        line_type.weight.unwrap_or_else(wet)
+    }
+
+    fn surroundings_in_words(&self) -> Vec<String> {
+        let gravity = if self.gravity == 0.0 {
+            "no gravity: nothing has a weight".to_string()
+        } else {
+            format!(
+                "gravity {}, downwards along z",
+                quantity(self.gravity, "m/s²")
+            )
+        };
+        let water = match &self.water {
+            Some(water) => format!(
+                "still water of {} that fills all space",
+                quantity(water.density, "kg/m³")
+            ),
+            None => "no water".to_string(),
+        };
+        vec![gravity, water, self.seabed_in_words()]
+    }
+
+    fn seabed_in_words(&self) -> String {
+        let Some(seabed) = &self.seabed else {
+            return "no seabed".to_string();
+        };
+        let law = match seabed.contact {
+            ContactLaw::Regularised => {
+                "softened together so that a resting line sinks in by a small part of its segment length"
+            }
+            ContactLaw::AsGiven => "exactly as given",
+        };
+        let friction = if seabed.friction > 0.0 {
+            format!(
+                "friction coefficient {} in the static catenary only",
+                number(seabed.friction)
+            )
+        } else {
+            "no friction".to_string()
+        };
+        format!(
+            "flat seabed at z = {}: normal spring of {} and damper of {} per metre of line and of diameter, {law}; {friction}",
+            quantity(-seabed.depth, "m"),
+            quantity(seabed.stiffness, "Pa/m"),
+            quantity(seabed.damping, "Pa s/m"),
+        )
+    }
+
+    fn line_type_in_words(&self, name: &str, line_type: &LineType) -> String {
+        let mass = self.mass(line_type);
+        let weight = significant(self.weight(line_type));
+        let origin = match (line_type.weight, &self.water) {
+            (Some(_), _) => "as given",
+            (None, Some(_)) => "in water",
+            (None, None) => "in air",
+        };
+        let mut parts = vec![
+            format!("mass {} kg/m", significant(mass)),
+            format!("weight {weight} N/m {origin}"),
+        ];
+        if let Some(diameter) = line_type.diameter {
+            parts.push(format!("diameter {}", quantity(diameter, "m")));
+        }
+        let ea = line_type.axial_stiffness; // EA [N]
+        parts.push(format!(
+            "EA {} on the {} strain",
+            quantity(ea, "N"),
+            strain_in_words(line_type.strain)
+        ));
+        parts.push(format!(
+            "axial waves at {} m/s",
+            significant((ea / mass).sqrt())
+        ));
+        parts.push(damping_in_words(line_type));
+        if self.water.is_some() {
+            parts.push(water_forces_in_words(line_type));
+        }
+        format!("{name}: {}", parts.join(", "))
+    }
+
+    fn point_in_words(&self, point: &Point) -> String {
+        let [x, y, z] = point.position.map(number);
+        let mut said = format!("{}: {}, at ({x}, {y}, {z}) m", point.name, role(point));
+        if let Some(mass) = point.mass {
+            write!(said, ", mass {}", quantity(mass, "kg")).expect("a String takes all");
+        }
+        if let Some(volume) = point.volume {
+            write!(said, ", volume {}", quantity(volume, "m³")).expect("a String takes all");
+        }
+        if let Some(force) = &point.force {
+            write!(said, ", {}", force_in_words(force)).expect("a String takes all");
+        }
+        if let Some(motion) = &point.motion {
+            write!(said, ", {}", motion_in_words(motion)).expect("a String takes all");
+        }
+        if point.kind == PointKind::Coupled {
+            let motion = self.motion.get(&point.name).map(motion_in_words);
+            let motion = motion.unwrap_or_else(|| "stays where it is".to_string());
+            write!(said, "; in `run` it {motion}").expect("a String takes all");
+        }
+        said
+    }
+
+    fn line_in_words(&self, line: &Line) -> String {
+        let sections: Vec<String> = line
+            .sections
+            .iter()
+            .map(|section| {
+                let elements = match section.elements {
+                    Some(1) => " in 1 element".to_string(),
+                    Some(n) => format!(" in {n} elements"),
+                    None => String::new(),
+                };
+                format!(
+                    "{} of {}{elements}",
+                    quantity(section.length, "m"),
+                    section.line_type
+                )
+            })
+            .collect();
+        let length = length(line);
+        let chord = chord(self, line).unwrap_or(0.0);
+        let slack = length - chord;
+        let fit = if slack >= 0.0 {
+            format!(
+                "{} m longer than the distance between its ends, {} m",
+                significant(slack),
+                significant(chord)
+            )
+        } else {
+            format!(
+                "{} m shorter than the distance between its ends, {} m",
+                significant(-slack),
+                significant(chord)
+            )
+        };
+        let start = match &line.initial {
+            InitialShape::Static => "starts in static equilibrium".to_string(),
+            InitialShape::Straight => "starts straight, at rest".to_string(),
+            InitialShape::Parabola(sag) => {
+                format!(
+                    "starts as a parabola with a sag of {}, at rest",
+                    quantity(*sag, "m")
+                )
+            }
+            InitialShape::Nodes(_) => "starts at the given nodes, at rest".to_string(),
+        };
+        format!(
+            "{}: from {} to {}, {}; {fit}; {start}",
+            line.name,
+            line.from,
+            line.to,
+            sections.join(", ")
+        )
+    }
+
+    fn solution_in_words(&self) -> Vec<String> {
+        let solver = &self.solver;
+        let integrator = match solver.integrator {
+            Integrator::Auto => "integrator chosen from the step limits".to_string(),
+            Integrator::QuasiStatic => {
+                "quasi-static: an equilibrium at every output, no inertia, no drag".to_string()
+            }
+            other => format!("integrator {}", integrator_name(other)),
+        };
+        let tension = if solver.negative_tension {
+            "axial damping acts in compression too, so tension can be negative (the peers' law)"
+        } else {
+            "tension is never negative: a slack line carries nothing"
+        };
+        let output = &self.output;
+        vec![
+            format!(
+                "{integrator}, steps of at most {}, target error of fairlead tension {} %",
+                quantity(solver.time_step_max, "s"),
+                significant(100.0 * solver.tolerance)
+            ),
+            tension.to_string(),
+            format!(
+                "`run` covers {} and writes every {}{}",
+                quantity(output.duration, "s"),
+                quantity(output.interval, "s"),
+                if output.profile {
+                    ", with all nodes"
+                } else {
+                    ""
+                }
+            ),
+        ]
+    }
+
+    fn absences_in_words(&self) -> Vec<String> {
+        let mut absent = vec![
+            "bending, torsion and shear of lines",
+            "vessels with rotation",
+        ];
+        if self.water.is_some() {
+            absent.push("current, waves and the water's surface");
+        } else {
+            absent.push("buoyancy, drag and added mass");
+        }
+        match &self.seabed {
+            Some(_) => absent.push("friction of the seabed in the dynamics"),
+            None => absent.push("contact with a seabed"),
+        }
+        absent.push("contact of lines with each other");
+        if self.solver.integrator == Integrator::QuasiStatic {
+            absent.push("inertia and damping");
+        }
+        vec![absent.join("; ")]
+    }
+}
+
+/// Appends a heading and its entries; nothing where there are none.
+fn section(text: &mut String, heading: &str, entries: &[String]) {
+    if entries.is_empty() {
+        return;
+    }
+    text.push_str(heading);
+    text.push('\n');
+    for entry in entries {
+        paragraph(text, "  ", entry);
+    }
+}
+
+/// Appends a sentence, broken into lines at spaces.
+fn paragraph(text: &mut String, indent: &str, sentence: &str) {
+    let mut width = 0;
+    for word in sentence.split(' ') {
+        let length = word.chars().count();
+        if width == 0 {
+            text.push_str(indent);
+            width = indent.len();
+        } else if width + 1 + length > WIDTH {
+            text.push('\n');
+            text.push_str(indent);
+            text.push_str("    ");
+            width = indent.len() + 4;
+        } else {
+            text.push(' ');
+            width += 1;
+        }
+        text.push_str(word);
+        width += length;
+    }
+    text.push('\n');
+}
+
+/// Five significant digits: enough to recognise a number.
+fn significant(value: f64) -> String {
+    let rounded: f64 = format!("{value:.4e}").parse().unwrap_or(value);
+    number(rounded)
+}
+
+fn strain_in_words(strain: Strain) -> String {
+    match strain {
+        Strain::Engineering => "engineering".to_string(),
+        Strain::Green => "Green-Lagrange".to_string(),
+        Strain::Logarithmic(poisson_ratio) => {
+            format!("logarithmic (Poisson's ratio {})", number(poisson_ratio))
+        }
+    }
+}
+
+fn damping_in_words(line_type: &LineType) -> String {
+    let mut parts = Vec::new();
+    if let Some(damping) = line_type.axial_damping {
+        parts.push(format!("axial damping {}", quantity(damping, "N s")));
+    }
+    if let Some(ratio) = line_type.damping_ratio {
+        parts.push(format!(
+            "axial damping {} of critical in each segment",
+            number(ratio)
+        ));
+    }
+    if let Some(rayleigh) = &line_type.rayleigh {
+        let [ratio_1, ratio_2] = rayleigh.ratios.map(number);
+        let [frequency_1, frequency_2] = rayleigh.frequencies.map(number);
+        parts.push(format!(
+            "Rayleigh damping ratios {ratio_1} at {frequency_1} rad/s and {ratio_2} at {frequency_2} rad/s"
+        ));
+    }
+    if parts.is_empty() {
+        "no damping of its own".to_string()
+    } else {
+        parts.join(" and ")
+    }
+}
+
+/// "in the water buoyancy, drag (normal 2, tangential 0.4), added mass (normal 0.8); no tangential added mass".
+fn water_forces_in_words(line_type: &LineType) -> String {
+    let pair = |what: &str, normal: Option<f64>, tangential: Option<f64>| {
+        let said = |direction: &str, value: Option<f64>| match value {
+            Some(value) => format!("{direction} {}", number(value)),
+            None => format!("{direction} none"),
+        };
+        if normal.is_none() && tangential.is_none() {
+            format!("no {what}")
+        } else {
+            format!(
+                "{what} ({}, {})",
+                said("normal", normal),
+                said("tangential", tangential)
+            )
+        }
+    };
+    let buoyancy = if line_type.weight.is_some() {
+        "buoyancy within the weight"
+    } else {
+        "buoyancy"
+    };
+    let drag = pair("drag", line_type.drag_normal, line_type.drag_tangential);
+    let added_mass = pair(
+        "added mass",
+        line_type.added_mass_normal,
+        line_type.added_mass_tangential,
+    );
+    format!("{buoyancy}, {drag}, {added_mass}")
+}
+
+fn role(point: &Point) -> String {
+    match (point.kind, &point.free) {
+        (PointKind::Fixed, _) => "fixed".to_string(),
+        (PointKind::Coupled, _) => "coupled to the host".to_string(),
+        (PointKind::Prescribed, _) => "moved along its own path".to_string(),
+        (PointKind::Free, None) => "free".to_string(),
+        (PointKind::Free, Some(axes)) => {
+            let names: Vec<&str> = axes
+                .iter()
+                .map(|axis| match axis {
+                    Axis::X => "x",
+                    Axis::Y => "y",
+                    Axis::Z => "z",
+                })
+                .collect();
+            format!("free along {} only", names.join(" and "))
+        }
+    }
+}
+
+fn force_in_words(force: &PointForce) -> String {
+    let axes = [("x", &force.x), ("y", &force.y), ("z", &force.z)];
+    let said: Vec<String> = axes
+        .iter()
+        .filter_map(|(axis, function)| {
+            let function = function.as_ref()?;
+            Some(format!("{} along {axis}", load_in_words(function)))
+        })
+        .collect();
+    format!("force {}", said.join(" and "))
+}
+
+fn load_in_words(function: &TimeFunction) -> String {
+    let rise = |how: &str, [t0, f0, t1, f1]: [f64; 4]| {
+        let [t0, f0, t1, f1] = [t0, f0, t1, f1].map(number);
+        format!("{how} from {f0} N at {t0} s to {f1} N at {t1} s")
+    };
+    match function {
+        TimeFunction::Constant(value) => quantity(*value, "N"),
+        TimeFunction::Step(numbers) => rise("rising smoothly", *numbers),
+        TimeFunction::Ramp(numbers) => rise("rising straight", *numbers),
+        TimeFunction::Table(rows) => format!("from a table of {} rows", rows.len()),
+    }
+}
+
+fn motion_in_words(motion: &MotionPath) -> String {
+    match motion {
+        MotionPath::File(file) => format!("follows the {} rows of {}", file.rows.len(), file.file),
+        MotionPath::Table(rows) => format!("follows a table of {} rows", rows.len()),
+        MotionPath::Harmonic(harmonic) => harmonic_in_words(harmonic),
+    }
+}
+
+fn harmonic_in_words(harmonic: &HarmonicMotion) -> String {
+    let axes = [("x", &harmonic.x), ("y", &harmonic.y), ("z", &harmonic.z)];
+    let waves: Vec<String> = axes
+        .iter()
+        .flat_map(|(axis, components)| components.iter().map(move |component| (axis, component)))
+        .filter_map(|(axis, component)| {
+            let (amplitude, period) = (component.first()?, component.get(1)?);
+            Some(format!(
+                "{} every {} along {axis}",
+                quantity(amplitude.abs(), "m"),
+                quantity(*period, "s")
+            ))
+        })
+        .collect();
+    if waves.is_empty() {
+        return "stays where it is".to_string();
+    }
+    let ramp = harmonic
+        .ramp
+        .map(|ramp| format!(", growing over {}", quantity(ramp, "s")));
+    format!(
+        "swings by {}{}",
+        waves.join(" and "),
+        ramp.unwrap_or_default()
+    )
+}
