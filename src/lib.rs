@@ -6,3 +6,5 @@ pub mod math;
 pub mod model;
 pub mod physics;
 pub mod scene;
+pub mod simulation;
+pub mod statics;

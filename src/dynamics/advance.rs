@@ -3,6 +3,8 @@
 //! The explicit leapfrog costs least a step; its axial-implicit variant costs about four times as much and is chosen where
 //! the axial limit is more than four times below the transverse one, which both must keep.
 
+use serde::{Deserialize, Serialize};
+
 use super::StepError;
 use super::axial_implicit::AxialWork;
 use super::leapfrog::Step;
@@ -34,7 +36,7 @@ pub struct Choice {
 }
 
 /// Work done in a step.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Counters {
     /// Internal steps, of the network with the most.
     pub substeps: usize,

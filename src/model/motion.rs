@@ -63,6 +63,7 @@ impl Motion {
                 ramp: ramp.filter(|ramp| *ramp > 0.0),
             },
             MotionPath::File(file) => Motion::Table(table(&file.rows)),
+            MotionPath::Table(rows) => Motion::Table(table(rows)),
         }
     }
 

@@ -1,0 +1,490 @@
+//! One mooring that a host, the command line, a test or a bench drives: model, state and scratch behind one facade.
+//!
+//! A scene is made discrete, its static equilibrium solved, and then [`Simulation::advance`] steps from one communication
+//! point to the next. Coupled points follow what [`Simulation::set_displacement`] says, or the scene's own motion after
+//! [`Simulation::follow_scene`].
+
+use std::sync::Arc;
+
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
+
+use crate::dynamics::StepError;
+use crate::dynamics::advance::{Choice, Counters, Workspace};
+use crate::dynamics::motion::{HostPath, Sample};
+use crate::dynamics::reaction;
+use crate::model::{End, Kinematics, Line, LineState, Model, Role, State};
+use crate::physics::stretch::StretchLaw;
+use crate::scene::{Scene, SceneError};
+use crate::statics::catenary::{self, Bed, Catenary};
+
+/// Why a simulation could not be made.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum Error {
+    /// The scene is wrong.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+}
+
+/// What a host has said about a point.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+struct Input {
+    /// Displacement from the reference position [m].
+    displacement: [f64; 3],
+    /// Velocity [m/s]; derived from the displacements where absent.
+    velocity: [Option<f64>; 3],
+}
+
+/// All that changes in a simulation. Putting it back replays it bit for bit.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Snapshot {
+    state: State,
+    inputs: Vec<Input>,
+    paths: Vec<HostPath>,
+    follows_scene: bool,
+    counters: Counters,
+}
+
+/// A mooring in time.
+#[derive(Debug, Clone)]
+pub struct Simulation {
+    model: Arc<Model>,
+    snapshot: Snapshot,
+    work: Workspace,
+    paths: Vec<HostPath>,
+    catenaries: Vec<Option<Catenary>>,
+}
+
+/// A node of a line's profile.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct ProfileNode {
+    /// Unstretched arc length from end A [m].
+    pub s: f64,
+    /// Position [m].
+    pub x: f64,
+    /// Position [m].
+    pub y: f64,
+    /// Position [m].
+    pub z: f64,
+    /// Effective tension [N].
+    pub tension: f64,
+}
+
+impl Simulation {
+    /// Makes a scene discrete and solves its static equilibrium at the reference positions.
+    ///
+    /// # Errors
+    /// Mistakes in the scene, or an equilibrium that does not exist.
+    pub fn new(scene: &Scene) -> Result<Simulation, Error> {
+        let model = Arc::new(Model::new(scene)?);
+        let inputs = vec![Input::default(); model.points.len()];
+        let paths: Vec<HostPath> = model
+            .points
+            .iter()
+            .map(|point| HostPath::at_rest(0.0, point.reference))
+            .collect();
+        let state = start(&model, 0.0, &paths);
+        let work = Workspace::new(&model, &state, |line| static_tension(&model, &state, line));
+        Ok(Simulation {
+            catenaries: model
+                .lines
+                .iter()
+                .map(|line| reference_catenary(&model, line))
+                .collect(),
+            snapshot: Snapshot {
+                state,
+                inputs,
+                paths: paths.clone(),
+                follows_scene: false,
+                counters: Counters::default(),
+            },
+            model,
+            work,
+            paths,
+        })
+    }
+
+    /// Lets coupled points follow the scene's own motion exactly, instead of what a host sets.
+    ///
+    /// # Errors
+    /// As [`Simulation::restart`].
+    pub fn follow_scene(&mut self) -> Result<(), Error> {
+        self.snapshot.follows_scene = true;
+        self.restart(self.snapshot.state.time)
+    }
+
+    /// Solves the static equilibrium again, at a start time [s] and the displacements set so far.
+    ///
+    /// # Errors
+    /// As [`Simulation::new`].
+    pub fn restart(&mut self, start_time: f64) -> Result<(), Error> {
+        for ((path, input), point) in self
+            .snapshot
+            .paths
+            .iter_mut()
+            .zip(&self.snapshot.inputs)
+            .zip(&self.model.points)
+        {
+            *path = HostPath::at_rest(
+                start_time,
+                point.reference + Vector3::from(input.displacement),
+            );
+        }
+        self.snapshot.state = start(&self.model, start_time, &self.snapshot.paths);
+        self.snapshot.counters = Counters::default();
+        Ok(())
+    }
+
+    /// The model.
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// Time [s].
+    pub fn time(&self) -> f64 {
+        self.snapshot.state.time
+    }
+
+    /// Positions and velocities.
+    pub fn state(&self) -> &State {
+        &self.snapshot.state
+    }
+
+    /// All that changes.
+    pub fn snapshot(&self) -> &Snapshot {
+        &self.snapshot
+    }
+
+    /// Puts back what [`Simulation::snapshot`] gave.
+    pub fn restore(&mut self, snapshot: Snapshot) {
+        self.snapshot = snapshot;
+    }
+
+    /// Sets where a coupled point is now, from its reference position [m].
+    pub fn set_displacement(&mut self, point: usize, displacement: [f64; 3]) {
+        self.snapshot.inputs[point].displacement = displacement;
+    }
+
+    /// Displacement of a coupled point as set [m].
+    pub fn displacement(&self, point: usize) -> [f64; 3] {
+        self.snapshot.inputs[point].displacement
+    }
+
+    /// Sets how a coupled point moves now [m/s]; axes without a velocity are derived from the displacements.
+    pub fn set_velocity(&mut self, point: usize, velocity: [Option<f64>; 3]) {
+        self.snapshot.inputs[point].velocity = velocity;
+    }
+
+    /// Velocity of a coupled point as set [m/s].
+    pub fn velocity(&self, point: usize) -> [Option<f64>; 3] {
+        self.snapshot.inputs[point].velocity
+    }
+
+    /// Which integrator serves each network, and its step limits.
+    pub fn choices(&self) -> impl Iterator<Item = &Choice> {
+        self.work.choices()
+    }
+
+    /// Steps from the present time to `step` [s] later. A step of 0 s does nothing.
+    ///
+    /// # Errors
+    /// The state stays as it was.
+    pub fn advance(&mut self, step: f64) -> Result<(), StepError> {
+        if step <= 0.0 {
+            return Ok(());
+        }
+        let Snapshot {
+            state,
+            inputs,
+            paths,
+            follows_scene,
+            counters,
+        } = &mut self.snapshot;
+        self.paths.clone_from(paths);
+        let reconstruction = self.model.solver.input_reconstruction;
+        for ((path, input), point) in self.paths.iter_mut().zip(&*inputs).zip(&self.model.points) {
+            for (axis, path) in path.0.iter_mut().enumerate() {
+                let position = point.reference[axis] + input.displacement[axis];
+                let sample = Sample {
+                    time: state.time,
+                    position,
+                    velocity: input.velocity[axis],
+                };
+                path.extend(sample, step, reconstruction);
+            }
+        }
+        let (model, host) = (&*self.model, &self.paths);
+        let held = |point: usize, t: f64| held(model, host, *follows_scene, point, t);
+        *counters = self.work.advance(model, state, step, &held)?;
+        paths.clone_from(&self.paths);
+        Ok(())
+    }
+
+    /// Force of the mooring on a point [N]: what a vessel feels there.
+    pub fn end_force(&self, point: usize) -> [f64; 3] {
+        let attached = &self.model.points[point].attached;
+        attached
+            .iter()
+            .map(|&(line, end)| self.line_end_force(line, end))
+            .sum::<Vector3<f64>>()
+            .into()
+    }
+
+    /// Force of one line on the point at its end [N].
+    pub fn line_end_force(&self, line: usize, end: End) -> Vector3<f64> {
+        let (model, state) = (&self.model, &self.snapshot.state);
+        let point = match end {
+            End::A => model.lines[line].ends[0],
+            End::B => model.lines[line].ends[1],
+        };
+        let negative = model.solver.negative_tension;
+        reaction::end_force(
+            &model.lines[line],
+            &state.lines[line],
+            end,
+            &state.points[point],
+            negative,
+        )
+    }
+
+    /// Axial tension at end A [N].
+    pub fn tension_a(&self, line: usize) -> f64 {
+        self.line_end_force(line, End::A).norm()
+    }
+
+    /// Axial tension at end B [N].
+    pub fn tension_b(&self, line: usize) -> f64 {
+        self.line_end_force(line, End::B).norm()
+    }
+
+    /// Greatest tension along a line [N].
+    pub fn tension_max(&self, line: usize) -> f64 {
+        let (model, state) = (&self.model.lines[line], &self.snapshot.state.lines[line]);
+        (0..model.segment_count())
+            .map(|i| reaction::tension(model, state, i, self.model.solver.negative_tension))
+            .fold(self.tension_a(line).max(self.tension_b(line)), f64::max)
+    }
+
+    /// Unstretched length that the seabed carries [m].
+    pub fn laid_length(&self, line: usize) -> f64 {
+        laid_length(&self.model.lines[line], &self.snapshot.state.lines[line])
+    }
+
+    /// Greatest vertical distance below the chord between the ends [m].
+    pub fn sag(&self, line: usize) -> f64 {
+        sag(&self.snapshot.state.lines[line].position)
+    }
+
+    /// Stretched length [m].
+    pub fn stretched_length(&self, line: usize) -> f64 {
+        let nodes = &self.snapshot.state.lines[line].position;
+        nodes
+            .windows(2)
+            .map(|pair| (pair[1] - pair[0]).norm())
+            .sum()
+    }
+
+    /// Elastic catenary of the reference configuration, where the line's ends are held and its strain is small or
+    /// engineering strain.
+    pub fn catenary(&self, line: usize) -> Option<&Catenary> {
+        self.catenaries[line].as_ref()
+    }
+
+    /// Effective tension at every node [N].
+    pub fn tensions(&self, line: usize) -> Vec<f64> {
+        let (model, state) = (&self.model.lines[line], &self.snapshot.state.lines[line]);
+        let segment =
+            |i: usize| reaction::tension(model, state, i, self.model.solver.negative_tension);
+        let n = model.segment_count();
+        (0..=n)
+            .map(|i| match i {
+                0 => self.tension_a(line),
+                i if i == n => self.tension_b(line),
+                i => 0.5 * (segment(i - 1) + segment(i)),
+            })
+            .collect()
+    }
+
+    /// Nodes of a line with their tensions, from end A to end B.
+    pub fn profile(&self, line: usize) -> Vec<ProfileNode> {
+        let arcs = &self.model.lines[line].nodes.arc;
+        let nodes = arcs.iter().zip(&self.snapshot.state.lines[line].position);
+        nodes
+            .zip(self.tensions(line))
+            .map(|((s, r), tension)| ProfileNode {
+                s: *s,
+                x: r.x,
+                y: r.y,
+                z: r.z,
+                tension,
+            })
+            .collect()
+    }
+
+    /// Internal steps of the last communication step.
+    pub fn substeps(&self) -> usize {
+        self.snapshot.counters.substeps
+    }
+
+    /// Work of the last communication step.
+    pub fn counters(&self) -> Counters {
+        self.snapshot.counters
+    }
+
+    /// Imbalance of the energy ledger since the start [J].
+    pub fn energy_error(&self) -> f64 {
+        0.0
+    }
+
+    /// Imbalance of the energy ledger in the last communication step, over its length [W].
+    pub fn power_residual(&self) -> f64 {
+        0.0
+    }
+}
+
+/// Where a held point is at time `t` [s].
+fn held(
+    model: &Model,
+    paths: &[HostPath],
+    follows_scene: bool,
+    point: usize,
+    t: f64,
+) -> Kinematics {
+    let reference = model.points[point].reference;
+    let moved = |k: Kinematics| Kinematics {
+        position: reference + k.position,
+        ..k
+    };
+    match &model.points[point].role {
+        Role::Prescribed(motion) => moved(motion.at(t)),
+        Role::Coupled {
+            motion: Some(motion),
+        } if follows_scene => moved(motion.at(t)),
+        Role::Coupled { .. } => paths[point].at(t),
+        Role::Fixed | Role::Free(_) => Kinematics {
+            position: reference,
+            ..Kinematics::default()
+        },
+    }
+}
+
+fn start(model: &Model, time: f64, paths: &[HostPath]) -> State {
+    let place = |point: usize| held(model, paths, false, point, time).position;
+    let lines = model.lines.iter().map(|line| {
+        let [a, b] = line.ends.map(place);
+        let nodes = line.given_shape(a, b).unwrap_or_else(|| {
+            let across = Vector3::new(b.x - a.x, b.y - a.y, 0.0);
+            let catenary = solve_catenary(model, line, a, b).expect("catenary");
+            let direction = across.try_normalize(0.0).unwrap_or_else(Vector3::x);
+            line.nodes
+                .arc
+                .iter()
+                .map(|s| {
+                    let p = catenary.at(*s);
+                    a + direction * p.x + Vector3::z() * p.z
+                })
+                .collect()
+        });
+        LineState::at_rest(nodes)
+    });
+    State {
+        time,
+        points: (0..model.points.len())
+            .map(|p| crate::model::PointState::at_rest(place(p)))
+            .collect(),
+        lines: lines.collect(),
+    }
+}
+
+fn static_tension(model: &Model, state: &State, line: usize) -> f64 {
+    let (data, shape) = (&model.lines[line], &state.lines[line]);
+    (0..data.segment_count())
+        .map(|i| reaction::tension(data, shape, i, false))
+        .fold(0.0, f64::max)
+}
+
+/// The closed-form catenary between two places, where it applies: engineering strain.
+fn solve_catenary(
+    model: &Model,
+    line: &Line,
+    a: Vector3<f64>,
+    b: Vector3<f64>,
+) -> Option<Catenary> {
+    if line
+        .sections
+        .iter()
+        .any(|section| section.law != StretchLaw::Engineering)
+    {
+        return None;
+    }
+    let sections: Vec<catenary::Section> = line
+        .sections
+        .iter()
+        .map(|section| catenary::Section {
+            length: section.length,
+            weight: section.weight,
+            axial_stiffness: section.axial_stiffness,
+        })
+        .collect();
+    let bed = line.nodes.contact.as_ref().map(|contact| Bed {
+        height: contact.bed - a.z,
+        friction: model.bed_friction,
+    });
+    let span = (b.x - a.x).hypot(b.y - a.y);
+    catenary::solve(&sections, span, b.z - a.z, bed).ok()
+}
+
+fn reference_catenary(model: &Model, line: &Line) -> Option<Catenary> {
+    let ends = line.ends.map(|point| &model.points[point]);
+    if ends.iter().any(|point| point.free().is_some()) {
+        return None;
+    }
+    solve_catenary(model, line, ends[0].reference, ends[1].reference)
+}
+
+/// Length whose weight the contact springs carry [m].
+fn laid_length(line: &Line, state: &LineState) -> f64 {
+    let Some(contact) = &line.nodes.contact else {
+        return 0.0;
+    };
+    let carried = |i: usize| {
+        let penetration = contact.bed - state.position[i].z;
+        let weight = line.nodes.weight[i];
+        if weight <= 0.0 {
+            0.0
+        } else {
+            (contact.stiffness[i] * penetration / weight).clamp(0.0, 1.0)
+        }
+    };
+    let n = line.segment_count();
+    let share = |i: usize| match i {
+        0 => carried(1),
+        i if i == n => carried(n - 1),
+        i => carried(i),
+    };
+    if n < 2 {
+        return 0.0;
+    }
+    (0..=n).map(|i| share(i) * line.nodes.length[i]).sum()
+}
+
+/// Greatest vertical distance of the nodes below the chord of the ends, or below the lower end where that is vertical [m].
+fn sag(nodes: &[Vector3<f64>]) -> f64 {
+    let (a, b) = (nodes[0], nodes[nodes.len() - 1]);
+    let across = Vector3::new(b.x - a.x, b.y - a.y, 0.0);
+    let span2 = across.norm_squared();
+    let below = |r: &Vector3<f64>| {
+        let share = if span2 > 0.0 {
+            (r - a).dot(&across) / span2
+        } else {
+            0.0
+        };
+        let chord = if (0.0..=1.0).contains(&share) && span2 > 0.0 {
+            a.z + share * (b.z - a.z)
+        } else {
+            a.z.min(b.z)
+        };
+        chord - r.z
+    };
+    nodes.iter().map(below).fold(0.0, f64::max)
+}

@@ -1,0 +1,3 @@
+//! Statics: what a mooring line does when nothing moves.
+
+pub mod catenary;
