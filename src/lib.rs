@@ -5,3 +5,4 @@ pub mod math;
 pub mod model;
 pub mod physics;
 pub mod scene;
+pub mod statics;

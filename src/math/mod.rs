@@ -1,2 +1,3 @@
 //! No physics: small fixed-size algebra, block-tridiagonal solve, interpolation.
+pub mod block_tridiagonal;
 pub mod hermite;
