@@ -1,3 +1,4 @@
 //! No physics: small fixed-size algebra, block-tridiagonal solve, interpolation.
+pub mod block_tridiagonal;
 pub mod hermite;
 pub mod lanes;

@@ -1,3 +1,53 @@
-//! Statics: what a mooring line does when nothing moves.
+//! Statics: what a mooring does when nothing moves.
 
+pub mod assembly;
 pub mod catenary;
+pub mod equilibrium;
+mod guess;
+
+/// Why no equilibrium was found.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum StaticsError {
+    /// A softening strain measure carries no more.
+    #[error(
+        "line \"{line}\", segment {segment}: no stable equilibrium above {percent:.4} % of the loads: the stretch reaches \
+         strain {strain:.4}, and this logarithmic measure carries less and less beyond strain {limit_strain:.4}; lower the load, \
+         or raise axial_stiffness, or use a strain measure without a limit",
+        percent = 100.0 * load_fraction
+    )]
+    LimitLoad {
+        /// Name of the line.
+        line: String,
+        /// Its most stretched segment, from 0 at end A.
+        segment: usize,
+        /// Strain of that segment at the greatest load that has an equilibrium [-].
+        strain: f64,
+        /// Strain at which the measure's force is greatest [-].
+        limit_strain: f64,
+        /// The greatest load that has an equilibrium, over the full load [-].
+        load_fraction: f64,
+    },
+    /// The iteration ended without an equilibrium.
+    #[error(
+        "{place}: no equilibrium found in {iterations} solves: {residual:.3e} N are out of balance, {tolerance:.3e} N would be \
+         allowed; bring the free points' reference positions closer to where they will rest, or use more elements"
+    )]
+    NotConverged {
+        /// Where the imbalance is greatest: line and node, or point.
+        place: String,
+        /// Force out of balance there [N].
+        residual: f64,
+        /// What would have been accepted [N].
+        tolerance: f64,
+        /// Linear solves spent [-].
+        iterations: usize,
+    },
+    /// An input is not a finite number.
+    #[error("{place}: {value} m is not a finite position")]
+    NotFinite {
+        /// Which input.
+        place: String,
+        /// Its value [m].
+        value: f64,
+    },
+}

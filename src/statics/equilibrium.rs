@@ -1,0 +1,492 @@
+//! Static equilibrium of the assembled lines.
+//!
+//! Newton's method on the residual of [`super::assembly`], with two changes that make it indifferent to how stiff a line is
+//! and to how bad the guess is:
+//!
+//! * The geometric stiffness T/l is taken from a tension that the previous linear solve predicted, T ← N + EA/l₀ q·(δ_{i+1} − δ_i),
+//!   not from the elastic force N of the present shape. That is Newton's method on positions and tensions together with
+//!   the tensions eliminated; a stiff line then converges like an inextensible one. A segment whose predicted tension is
+//!   negative is slack.
+//! * Pseudo-transient relaxation: anchoring springs on every node and a least tension, both of which fade as the
+//!   iteration proceeds. A straight unstressed line has no transverse stiffness without them.
+//!
+//! Where this does not converge, the potential energy, which is convex for all measures that do not soften, is minimised
+//! with axial stiffness limited to a multiple of the loads, by damped Newton steps whose length a directional derivative
+//! checks, and the true stiffness is approached from there. Softening measures are loaded little by little instead, and the
+//! result must have a positive definite tangent.
+//!
+//! Accepted is a residual of at most 1e-11 of the greatest force in the network (tension, nodal weight or load) plus what
+//! rounding of the positions makes of the stiffest segment.
+//!
+//! Source: Kelley & Keyes (1998), SIAM J. Numer. Anal. 35(2), 508-523 (pseudo-transient continuation); the elimination of
+//! predicted tensions is derived here.
+
+use nalgebra::Vector3;
+
+use super::StaticsError;
+use super::assembly::{
+    StaticCase, Workspace, copy_network, for_free_points, place_ends,
+};
+use super::guess;
+use crate::model::{LineState, Model, Network, PointState, State};
+
+/// Accepted force out of balance, over the greatest force [-].
+const FORCE_TOLERANCE: f64 = 1e-11;
+/// Accepted last correction, over the longest line [-].
+const STEP_TOLERANCE: f64 = 1e-10;
+/// Longest correction, over the longest line or, if that is more, the reach of the network [-].
+const STEP_MAX: f64 = 0.2;
+/// Solves of one Newton iteration with predicted tensions.
+const NEWTON_SOLVES_MAX: usize = 60;
+/// Solves of one minimisation.
+const DESCENT_SOLVES_MAX: usize = 200;
+/// Cuts of one step of a minimisation.
+const CUTS_MAX: usize = 12;
+/// EA over the sum of the loads in the soft problem [-].
+const SOFT_STIFFNESS: f64 = 50.0;
+/// Smallest increment of the loads on a softening line [-].
+const LOAD_INCREMENT_MIN: f64 = 1e-5;
+
+/// Finds the equilibrium of all lines at time `t` [s], for the positions of all points [m]: held ones as they are, free ones as a
+/// guess. Lines start on the shape the scene gives them, else on their catenary.
+///
+/// # Errors
+/// No equilibrium was found, or there is none.
+pub fn solve(
+    model: &Model,
+    points: &[Vector3<f64>],
+    t: f64,
+    work: &mut Workspace,
+) -> Result<State, StaticsError> {
+    check_finite(model, points)?;
+    let mut state = State {
+        time: t,
+        points: points.iter().copied().map(PointState::at_rest).collect(),
+        lines: Vec::with_capacity(model.lines.len()),
+    };
+    for (line, work) in model.lines.iter().zip(&mut work.lines) {
+        let [a, b] = line.ends.map(|point| points[point]);
+        let mut position = vec![a; line.segment_count() + 1];
+        guess::hang(line, a, b, &mut position, work);
+        state.lines.push(LineState::at_rest(line.given_shape(a, b).unwrap_or(position)));
+    }
+    for number in 0..model.networks.len() {
+        Problem::new(model, number, t).solve(&mut state, work)?;
+    }
+    Ok(state)
+}
+
+/// Moves the held points of every network to `points` [m] and finds the equilibrium at time `t` [s] closest to `state`.
+///
+/// # Errors
+/// No equilibrium was found, or there is none; the state is then as it was.
+pub fn continue_from(
+    model: &Model,
+    state: &mut State,
+    points: &[Vector3<f64>],
+    t: f64,
+    work: &mut Workspace,
+) -> Result<(), StaticsError> {
+    check_finite(model, points)?;
+    let before = state.clone();
+    for number in 0..model.networks.len() {
+        if let Err(error) = continue_network(model, number, state, |point| points[point], t, work) {
+            *state = before;
+            return Err(error);
+        }
+    }
+    state.time = t;
+    Ok(())
+}
+
+/// [`continue_from`] for one network, without allocating; velocities and accelerations become zero.
+///
+/// # Errors
+/// As there.
+pub fn continue_network(
+    model: &Model,
+    number: usize,
+    state: &mut State,
+    held: impl Fn(usize) -> Vector3<f64>,
+    t: f64,
+    work: &mut Workspace,
+) -> Result<(), StaticsError> {
+    let problem = Problem::new(model, number, t);
+    let network = &model.networks[number];
+    let mut before = std::mem::take(&mut work.before);
+    copy_network(model, network, state, &mut before);
+    work.assemble_static(model, network, state, &problem.case(f64::INFINITY));
+    for &index in &network.lines {
+        let line = &mut work.lines[index];
+        line.tension.copy_from_slice(&line.elastic);
+        for point in model.lines[index].ends {
+            if model.points[point].free().is_none() {
+                state.points[point] = PointState::at_rest(held(point));
+            }
+        }
+        shift(state, &before, model, index);
+    }
+    for_free_points(model, network, |index, _| {
+        state.points[index] = PointState::at_rest(state.points[index].position);
+    });
+    place_ends(model, network, state);
+    let result = problem.solve(state, work);
+    if result.is_err() {
+        copy_network(model, network, &before, state);
+    }
+    work.before = before;
+    result
+}
+
+/// Carries the nodes of a line along with its ends.
+fn shift(state: &mut State, before: &State, model: &Model, index: usize) {
+    let line = &model.lines[index];
+    let [a, b] = line.ends.map(|point| state.points[point].position - before.points[point].position);
+    let nodes = &mut state.lines[index];
+    for (r, arc) in nodes.position.iter_mut().zip(&line.nodes.arc) {
+        *r += a + (arc / line.unstretched_length()) * (b - a);
+    }
+    nodes.velocity.fill(Vector3::zeros());
+    nodes.acceleration.fill(Vector3::zeros());
+}
+
+fn check_finite(model: &Model, points: &[Vector3<f64>]) -> Result<(), StaticsError> {
+    assert_eq!(points.len(), model.points.len(), "one position per point");
+    for (point, position) in model.points.iter().zip(points) {
+        for (axis, value) in ["x", "y", "z"].into_iter().zip(position.iter()) {
+            if !value.is_finite() {
+                let place = format!("point \"{}\", {axis}", point.name);
+                return Err(StaticsError::NotFinite { place, value: *value });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// One network, one time.
+struct Problem<'a> {
+    model: &'a Model,
+    network: &'a Network,
+    number: usize,
+    time: f64,
+    /// Sum of the external forces [N], or 1 N without any.
+    force: f64,
+    /// Length of the longest line [m].
+    length: f64,
+}
+
+impl<'a> Problem<'a> {
+    fn new(model: &'a Model, number: usize, time: f64) -> Problem<'a> {
+        let network = &model.networks[number];
+        let lines = network.lines.iter().map(|&line| &model.lines[line]);
+        let mut force: f64 = lines.clone().flat_map(|line| &line.nodes.weight).map(|w| w.abs()).sum();
+        for_free_points(model, network, |index, free| {
+            force += free.weight.abs() + model.points[index].load_at(time).norm();
+        });
+        Problem {
+            model,
+            network,
+            number,
+            time,
+            force: if force > 0.0 { force } else { 1.0 },
+            length: lines.map(|line| line.unstretched_length()).fold(0.0, f64::max),
+        }
+    }
+
+    /// The full problem with at most this EA [N].
+    fn case(&self, stiffness_max: f64) -> StaticCase {
+        StaticCase {
+            time: self.time,
+            load: 1.0,
+            stiffness_max,
+            tension_min: 0.0,
+            anchoring: 0.0,
+            predicted: false,
+        }
+    }
+
+    fn solve(&self, state: &mut State, work: &mut Workspace) -> Result<(), StaticsError> {
+        place_ends(self.model, self.network, state);
+        let mut guess = std::mem::take(&mut work.saved);
+        copy_network(self.model, self.network, state, &mut guess);
+        let start = work.counters.solves;
+        let full = self.case(f64::INFINITY);
+        let mut found = self.newton(state, work, full) && self.stable(state, work, full);
+        let mut result = Ok(());
+        if !found && self.softens() {
+            copy_network(self.model, self.network, &guess, state);
+            result = self.load_gradually(state, work);
+            found = true;
+        }
+        if !found {
+            copy_network(self.model, self.network, &guess, state);
+            found = self.stiffen_gradually(state, work);
+        }
+        work.saved = guess;
+        if !found {
+            result = Err(self.not_converged(state, work, start));
+        }
+        result
+    }
+
+    fn not_converged(&self, state: &State, work: &mut Workspace, start: usize) -> StaticsError {
+        work.assemble_static(self.model, self.network, state, &self.case(f64::INFINITY));
+        let (residual, place) = work.greatest_residual(self.network);
+        StaticsError::NotConverged {
+            place: place.name(self.model),
+            residual,
+            tolerance: self.tolerance(state, work, f64::INFINITY),
+            iterations: work.counters.solves - start,
+        }
+    }
+
+    /// Newton's method with predicted tensions; whether it converged.
+    fn newton(&self, state: &mut State, work: &mut Workspace, mut case: StaticCase) -> bool {
+        case.predicted = true;
+        let mut relaxation: f64 = 1.0;
+        let mut step = f64::INFINITY;
+        let mut balanced = 0;
+        for _ in 0..NEWTON_SOLVES_MAX {
+            case.tension_min = relaxation * self.force;
+            case.anchoring = relaxation * self.force / self.length + self.rounding_stiffness(&case);
+            work.assemble_static(self.model, self.network, state, &case);
+            let (residual, _) = work.greatest_residual(self.network);
+            let tolerance = self.tolerance(state, work, case.stiffness_max);
+            balanced = if residual <= tolerance && self.no_push(work, tolerance) { balanced + 1 } else { 0 };
+            if balanced >= 3 || (balanced > 0 && step <= STEP_TOLERANCE * self.length) {
+                return true;
+            }
+            if !work.solve(self.model, self.network, self.number) {
+                relaxation = (10.0 * relaxation).min(1.0);
+                continue;
+            }
+            step = work.greatest_solution(self.network);
+            if !step.is_finite() {
+                return false;
+            }
+            let part = (STEP_MAX * self.reach(state) / step).min(1.0);
+            self.predict_tensions(work, part);
+            self.advance(state, work, part);
+            if part == 1.0 {
+                relaxation = (0.1 * relaxation).max(1e-12);
+            }
+        }
+        false
+    }
+
+    /// Farthest that a node is from end A of its line, at least the length of the longest line [m].
+    fn reach(&self, state: &State) -> f64 {
+        let lines = self.network.lines.iter().map(|&line| &state.lines[line].position);
+        let distances = lines.flat_map(|nodes| nodes.iter().map(|r| (r - nodes[0]).amax()));
+        distances.fold(self.length, f64::max)
+    }
+
+    /// Anchoring that lifts pivots above the rounding of the stiffest segment [N/m].
+    fn rounding_stiffness(&self, case: &StaticCase) -> f64 {
+        let lines = self.network.lines.iter().map(|&line| &self.model.lines[line].segments);
+        let stiffest = lines.flat_map(|segments| segments.axial_stiffness.iter().zip(&segments.length));
+        8.0 * f64::EPSILON * stiffest.map(|(ea, l)| ea.min(case.stiffness_max) / l).fold(0.0, f64::max)
+    }
+
+    /// Accepted force out of balance [N] at the last assembly.
+    fn tolerance(&self, state: &State, work: &Workspace, stiffness_max: f64) -> f64 {
+        let (mut force, mut rounding) = (0.0_f64, 0.0_f64);
+        for &index in &self.network.lines {
+            let (line, segments) = (&self.model.lines[index], &self.model.lines[index].segments);
+            let far = state.lines[index].position.iter().map(|r| r.amax()).fold(0.0, f64::max);
+            for i in 0..line.segment_count() {
+                force = force.max(work.lines[index].elastic[i]).max(line.nodes.weight[i].abs());
+                let stiffness = segments.axial_stiffness[i].min(stiffness_max) / segments.length[i];
+                rounding = rounding.max(stiffness * far);
+            }
+        }
+        for_free_points(self.model, self.network, |index, free| {
+            let load = self.model.points[index].load_at(self.time).norm();
+            force = force.max(load).max(free.weight.abs());
+        });
+        FORCE_TOLERANCE * force + 4.0 * f64::EPSILON * rounding
+    }
+
+    /// Whether no segment that the last assembly took as taut pushes.
+    fn no_push(&self, work: &Workspace, tolerance: f64) -> bool {
+        self.network.lines.iter().all(|&line| {
+            let line = &work.lines[line];
+            let mut segments = line.elastic.iter().zip(&line.tension);
+            segments.all(|(&elastic, &tension)| tension <= 0.0 || elastic >= -tolerance)
+        })
+    }
+
+    /// Tensions after a `part` of the correction, by the linear system [N].
+    fn predict_tensions(&self, work: &mut Workspace, part: f64) {
+        for &index in &self.network.lines {
+            let line = &mut work.lines[index];
+            let x = line.chain.solution();
+            for i in 0..line.tension.len() {
+                let stretched = -line.direction[i].dot(&(x[i + 1] - x[i])); // growth of the segment [m]
+                let predicted = line.elastic[i] + line.slope[i] * stretched;
+                line.tension[i] += part * (predicted - line.tension[i]);
+            }
+        }
+    }
+
+    /// Adds a `part` of the correction, the negative of the solution, to the positions.
+    fn advance(&self, state: &mut State, work: &Workspace, part: f64) {
+        for &index in &self.network.lines {
+            let nodes = state.lines[index].position.iter_mut();
+            for (r, x) in nodes.zip(work.lines[index].chain.solution()) {
+                *r -= part * x;
+            }
+        }
+        for &index in &self.network.free_points {
+            state.points[index].position -= part * work.points[index].solution;
+        }
+        place_ends(self.model, self.network, state);
+    }
+
+    /// From a soft network, whose energy is minimised, to the true one.
+    fn stiffen_gradually(&self, state: &mut State, work: &mut Workspace) -> bool {
+        let mut stiffness = SOFT_STIFFNESS * self.force;
+        let lines = self.network.lines.iter().map(|&line| &self.model.lines[line].segments);
+        let stiffest = lines.flat_map(|segments| &segments.axial_stiffness).copied().fold(0.0, f64::max);
+        loop {
+            let case = self.case(stiffness);
+            self.descend(state, work, case);
+            self.remember_tensions(work);
+            let mut trial = std::mem::take(&mut work.trial);
+            copy_network(self.model, self.network, state, &mut trial);
+            let found = self.newton(state, work, self.case(f64::INFINITY));
+            if !found {
+                copy_network(self.model, self.network, &trial, state);
+            }
+            work.trial = trial;
+            if found || stiffness >= stiffest {
+                return found;
+            }
+            stiffness *= 10.0;
+        }
+    }
+
+    fn remember_tensions(&self, work: &mut Workspace) {
+        for &index in &self.network.lines {
+            let line = &mut work.lines[index];
+            line.tension.copy_from_slice(&line.elastic);
+        }
+    }
+
+    /// Minimises the potential energy by damped Newton steps, roughly; `case` keeps its stiffness.
+    fn descend(&self, state: &mut State, work: &mut Workspace, mut case: StaticCase) {
+        let mut relaxation: f64 = 1.0;
+        for _ in 0..DESCENT_SOLVES_MAX {
+            case.anchoring = relaxation * self.force / self.length + self.rounding_stiffness(&case);
+            work.assemble_static(self.model, self.network, state, &case);
+            if work.greatest_residual(self.network).0 <= 1e-6 * self.force {
+                return;
+            }
+            if !work.solve(self.model, self.network, self.number) {
+                relaxation *= 10.0;
+                continue;
+            }
+            let step = work.greatest_solution(self.network);
+            let longest = (STEP_MAX * self.reach(state) / step).min(1.0);
+            let part = self.cut(state, work, &case, longest);
+            relaxation *= if part >= 1.0 { 0.1 } else if part < 0.1 { 4.0 } else { 1.0 };
+            relaxation = relaxation.clamp(1e-9, 1e6);
+        }
+    }
+
+    /// Moves along the correction for as long as the energy falls; the part of it that was taken.
+    fn cut(&self, state: &mut State, work: &mut Workspace, case: &StaticCase, longest: f64) -> f64 {
+        let case = StaticCase { anchoring: 0.0, ..*case };
+        let before = self.power(work);
+        let (mut part, mut taken) = (longest, 0.0);
+        for _ in 0..CUTS_MAX {
+            self.advance(state, work, part - taken);
+            taken = part;
+            work.assemble_static(self.model, self.network, state, &case);
+            let after = self.power(work);
+            if after <= 0.5 * before.abs() {
+                break;
+            }
+            part *= (before / (before - after)).clamp(0.1, 0.7);
+        }
+        taken
+    }
+
+    /// Slope of the energy along the correction [J].
+    fn power(&self, work: &Workspace) -> f64 {
+        let mut sum = 0.0;
+        for &index in &self.network.lines {
+            let (x, r) = (work.lines[index].chain.solution(), &work.lines[index].residual);
+            let last = r.len() - 1;
+            sum -= (1..last).map(|i| x[i].dot(&r[i])).sum::<f64>();
+        }
+        for &index in &self.network.free_points {
+            sum -= work.points[index].solution.dot(&work.points[index].total);
+        }
+        sum
+    }
+
+    fn softens(&self) -> bool {
+        let laws = self.network.lines.iter().flat_map(|&line| &self.model.lines[line].segments.law);
+        laws.copied().any(|law| law.limit_strain().is_some())
+    }
+
+    /// Whether the tangent of a converged state is positive definite, where it could be otherwise.
+    fn stable(&self, state: &State, work: &mut Workspace, case: StaticCase) -> bool {
+        if !self.softens() {
+            return true;
+        }
+        let anchoring = self.rounding_stiffness(&case) + 1e-12 * self.force / self.length;
+        let case = StaticCase { anchoring, predicted: false, ..case };
+        work.assemble_static(self.model, self.network, state, &case);
+        work.solve(self.model, self.network, self.number)
+    }
+
+    /// Loads a softening network little by little, from nothing.
+    fn load_gradually(&self, state: &mut State, work: &mut Workspace) -> Result<(), StaticsError> {
+        let mut increment: f64 = 0.25;
+        let mut case = StaticCase { load: 0.0, ..self.case(f64::INFINITY) };
+        let mut reached = std::mem::take(&mut work.trial);
+        copy_network(self.model, self.network, state, &mut reached);
+        let mut done: f64 = 0.0;
+        while done < 1.0 && increment >= LOAD_INCREMENT_MIN {
+            case.load = (done + increment).min(1.0);
+            if self.newton(state, work, case) && self.stable(state, work, case) {
+                done = case.load;
+                increment = (2.0 * increment).min(0.25);
+                copy_network(self.model, self.network, state, &mut reached);
+            } else {
+                increment *= 0.5;
+                copy_network(self.model, self.network, &reached, state);
+            }
+            work.assemble_static(self.model, self.network, state, &case);
+            self.remember_tensions(work);
+        }
+        work.trial = reached;
+        if done < 1.0 { Err(self.limit_load(state, done)) } else { Ok(()) }
+    }
+
+    fn limit_load(&self, state: &State, load_fraction: f64) -> StaticsError {
+        let mut worst = (f64::NEG_INFINITY, 0, 0, 0.0);
+        for &index in &self.network.lines {
+            let line = &self.model.lines[index];
+            let position = &state.lines[index].position;
+            for i in 0..line.segment_count() {
+                let strain = (position[i + 1] - position[i]).norm() / line.segments.length[i] - 1.0;
+                let limit = line.segments.law[i].limit_strain().unwrap_or(f64::INFINITY);
+                if strain / limit > worst.0 {
+                    worst = (strain / limit, index, i, strain);
+                }
+            }
+        }
+        let (_, line, segment, strain) = worst;
+        let line = &self.model.lines[line];
+        StaticsError::LimitLoad {
+            line: line.name.clone(),
+            segment,
+            strain,
+            limit_strain: line.segments.law[segment].limit_strain().unwrap_or(f64::INFINITY),
+            load_fraction,
+        }
+    }
+}
