@@ -121,7 +121,7 @@ impl Bounds {
 /// Shortest digits; powers of ten where plain digits would be long.
 pub(super) fn number(value: f64) -> String {
     let size = value.abs();
-    if size == 0.0 || (1e-4..1e7).contains(&size) || !value.is_finite() {
+    if size == 0.0 || (1e-4..1e6).contains(&size) || !value.is_finite() {
         format!("{value}")
     } else {
         format!("{value:e}")

@@ -86,7 +86,10 @@ impl ReadError {
             (Problem::Missing { key, unit }, None) => {
                 *unit = unit.or_else(|| units::unit(owner, key));
             }
-            (Problem::Type { unit, .. }, Some(key)) => {
+            // Below a further key the numbers are other ones, such as the times of a load's step.
+            (Problem::Type { unit, .. }, Some(key))
+                if self.steps.iter().all(|step| matches!(step, Step::Index(_))) =>
+            {
                 *unit = unit.or_else(|| units::unit(owner, key));
             }
             _ => {}
@@ -101,7 +104,11 @@ impl ReadError {
                 found,
                 unit: Some(unit),
             } if expected.contains("number") && !expected.contains("whole") => {
-                format!("expected {expected} [{unit}], found {found}")
+                let (upto, rest) = match expected.find("a number") {
+                    Some(start) => expected.split_at(start + "a number".len()),
+                    None => (expected.as_str(), ""),
+                };
+                format!("expected {upto} [{unit}]{rest}, found {found}")
             }
             Problem::Type {
                 expected, found, ..
@@ -196,8 +203,12 @@ fn found_in_words(unexpected: Unexpected<'_>) -> String {
 fn unexpected<'v>(value: &'v DeValue<'_>) -> Unexpected<'v> {
     match value {
         DeValue::String(text) => Unexpected::Str(text),
-        DeValue::Integer(_) => Unexpected::Other("a whole number"),
-        DeValue::Float(_) => Unexpected::Other("a number"),
+        DeValue::Integer(integer) => i64::from_str_radix(integer.as_str(), integer.radix())
+            .map_or(Unexpected::Other("a whole number"), Unexpected::Signed),
+        DeValue::Float(float) => float
+            .as_str()
+            .parse()
+            .map_or(Unexpected::Other("a number"), Unexpected::Float),
         DeValue::Boolean(value) => Unexpected::Bool(*value),
         DeValue::Datetime(_) => Unexpected::Other("a date"),
         DeValue::Array(_) => Unexpected::Seq,
@@ -308,12 +319,13 @@ impl<'de> Deserializer<'de> for Node<'de> {
 
     fn deserialize_enum<V: Visitor<'de>>(
         self,
-        _name: &'static str,
+        name: &'static str,
         variants: &'static [&'static str],
         visitor: V,
     ) -> Result<V::Value, ReadError> {
         let result = match self.value.get_ref() {
             DeValue::String(text) => visitor.visit_enum(Choice {
+                owner: name,
                 name: text,
                 name_span: self.value.span(),
                 content: None,
@@ -321,6 +333,7 @@ impl<'de> Deserializer<'de> for Node<'de> {
             DeValue::Table(table) if table.len() == 1 => {
                 let (key, value) = table.iter().next().expect("it has one entry");
                 visitor.visit_enum(Choice {
+                    owner: name,
                     name: key.get_ref(),
                     name_span: key.span(),
                     content: Some(Node { value }),
@@ -439,6 +452,7 @@ impl<'de> MapAccess<'de> for Entries<'de> {
 
 /// One of several: `"name"`, or `{ name = content }`.
 struct Choice<'de> {
+    owner: &'static str,
     name: &'de str,
     name_span: Range<usize>,
     content: Option<Node<'de>>,
@@ -479,6 +493,7 @@ impl<'de> VariantAccess<'de> for Choice<'de> {
         };
         seed.deserialize(content).map_err(|error| {
             error
+                .or_unit(self.owner, Some(self.name))
                 .or_span(content.value.span())
                 .inside(Step::Key(self.name.to_string()))
         })

@@ -4,7 +4,7 @@ use std::fmt;
 
 use super::check::{coefficients, number};
 use super::path::quoted;
-use super::{Line, LineType, PointKind, Scene};
+use super::{Integrator, Line, LineType, PointKind, Scene};
 
 /// A remark on a scene that can be used as it is.
 #[derive(Debug, Clone, PartialEq)]
@@ -73,12 +73,15 @@ fn note_line_type(scene: &Scene, name: &str, line_type: &LineType, notes: &mut V
         let text = "lighter than the water: it floats up from the seabed";
         say(notes, at.clone(), text);
     }
-    if line_type.axial_damping.is_none()
-        && line_type.damping_ratio.is_none()
-        && line_type.rayleigh.is_none()
-    {
-        let text = "no damping within the line: axial waves die out by drag and the seabed alone";
-        say(notes, at, text);
+    let damped = line_type.axial_damping.is_some()
+        || line_type.damping_ratio.is_some()
+        || line_type.rayleigh.is_some();
+    if !damped && scene.solver.integrator != Integrator::QuasiStatic {
+        say(
+            notes,
+            at,
+            "no damping within the line: waves along it ring on",
+        );
     }
 }
 

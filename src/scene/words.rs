@@ -182,20 +182,7 @@ impl Scene {
             .collect();
         let length = length(line);
         let chord = chord(self, line).unwrap_or(0.0);
-        let slack = length - chord;
-        let fit = if slack >= 0.0 {
-            format!(
-                "{} m longer than the distance between its ends, {} m",
-                significant(slack),
-                significant(chord)
-            )
-        } else {
-            format!(
-                "{} m shorter than the distance between its ends, {} m",
-                significant(-slack),
-                significant(chord)
-            )
-        };
+        let fit = fit_in_words(length, chord);
         let start = match &line.initial {
             InitialShape::Static => "starts in static equilibrium".to_string(),
             InitialShape::Straight => "starts straight, at rest".to_string(),
@@ -225,6 +212,12 @@ impl Scene {
             }
             other => format!("integrator {}", integrator_name(other)),
         };
+        let integrator = if solver.integrator == Integrator::QuasiStatic {
+            integrator
+        } else {
+            let step = quantity(solver.time_step_max, "s");
+            format!("{integrator}, steps of at most {step}")
+        };
         let tension = if solver.negative_tension {
             "axial damping acts in compression too, so tension can be negative (the peers' law)"
         } else {
@@ -232,9 +225,9 @@ impl Scene {
         };
         let output = &self.output;
         vec![
+            integrator,
             format!(
-                "{integrator}, steps of at most {}, target error of fairlead tension {} %",
-                quantity(solver.time_step_max, "s"),
+                "target error of fairlead tension {} %",
                 significant(100.0 * solver.tolerance)
             ),
             tension.to_string(),
@@ -262,7 +255,10 @@ impl Scene {
             absent.push("buoyancy, drag and added mass");
         }
         match &self.seabed {
-            Some(_) => absent.push("friction of the seabed in the dynamics"),
+            Some(seabed) if seabed.friction > 0.0 => {
+                absent.push("friction on the seabed in motion")
+            }
+            Some(_) => absent.push("friction on the seabed"),
             None => absent.push("contact with a seabed"),
         }
         absent.push("contact of lines with each other");
@@ -312,6 +308,24 @@ fn paragraph(text: &mut String, indent: &str, sentence: &str) {
 fn significant(value: f64) -> String {
     let rounded: f64 = format!("{value:.4e}").parse().unwrap_or(value);
     number(rounded)
+}
+
+/// How much longer a line is than the distance between its ends, both in metres.
+fn fit_in_words(length: f64, chord: f64) -> String {
+    let chord_said = significant(chord);
+    let slack = length - chord;
+    if slack.abs() < 1e-9 * length {
+        return format!("as long as its ends are apart, {chord_said} m");
+    }
+    let (difference, how) = if slack > 0.0 {
+        (slack, "longer")
+    } else {
+        (-slack, "shorter")
+    };
+    format!(
+        "{} m {how} than the distance between its ends, {chord_said} m",
+        significant(difference)
+    )
 }
 
 fn strain_in_words(strain: Strain) -> String {

@@ -1,6 +1,6 @@
 //! Title, gravity, water, seabed.
 
-use super::{Bounds, Findings};
+use super::{Bounds, Findings, quantity};
 use crate::scene::Scene;
 
 pub(super) fn check(scene: &Scene, findings: &mut Findings) {
@@ -10,12 +10,16 @@ pub(super) fn check(scene: &Scene, findings: &mut Findings) {
             "the title holds a line break or another control character: write one line",
         );
     }
-    findings.number(
-        "gravity",
-        scene.gravity,
-        Bounds::NotNegative(1e3),
-        "m/s² (downwards is positive)",
-    );
+    if scene.gravity < 0.0 {
+        let problem = format!(
+            "{} is negative: gravity is a magnitude, downwards along z",
+            quantity(scene.gravity, "m/s²")
+        );
+        findings.say("gravity", problem);
+    } else {
+        let gravity = Bounds::NotNegative(1e3);
+        findings.number("gravity", scene.gravity, gravity, "m/s²");
+    }
     if let Some(water) = &scene.water {
         findings.number(
             "water.density",
@@ -27,8 +31,8 @@ pub(super) fn check(scene: &Scene, findings: &mut Findings) {
     if let Some(seabed) = &scene.seabed {
         if seabed.depth < 0.0 {
             let problem = format!(
-                "{} m is negative: the depth counts downwards from z = 0",
-                seabed.depth
+                "{} is negative: the depth counts downwards from z = 0",
+                quantity(seabed.depth, "m")
             );
             findings.say("seabed.depth", problem);
         } else {
