@@ -116,7 +116,7 @@ pub fn solve(sections: &[Section], span: f64, rise: f64, bed: Option<Bed>) -> Re
         None => solve_sections(sections, span, rise, bed),
     };
     let forces = held.horizontal_a + held.horizontal_b + held.vertical_a + held.vertical_b;
-    assert!(forces.is_finite(), "a valid line has finite end forces");
+    assert!(forces.is_finite(), "a valid line has finite end forces: {sections:?}, span {span}, rise {rise}, {bed:?}, {held:?}");
     Ok(Catenary { shape, held, span, rise })
 }
 
@@ -144,7 +144,7 @@ fn solve_uniform(section: &Section, span: f64, rise: f64, bed: Option<Bed>) -> (
             let height_b = rise - bed.height;
             let at = Touchdown { span, height_a: -bed.height, height_b, friction: bed.friction };
             let held = line.touch_down(&at);
-            (touchdown_shape(section, &held, bed, span, rise), held)
+            (touchdown_shape(section, &held, bed, span), held)
         }
         _ => (suspended_shape(section, &held, span, rise), held),
     }
@@ -162,15 +162,15 @@ fn lowest(section: &Section, held: &Held) -> f64 {
 fn suspended_shape(section: &Section, held: &Held, span: f64, rise: f64) -> Shape {
     let mut shape = Shape::default();
     if held.horizontal_a == 0.0 && held.vertical_a == 0.0 && held.vertical_b == 0.0 {
-        shape.push(section.length, Kind::Slack { x: 0.0, z: 0.0, on_bed: false });
-        shape.close(span, rise);
+        let (x, z) = (span / section.length, rise / section.length);
+        shape.push(section.length, Kind::Slack { x, z, on_bed: false });
     } else {
         shape.fly(section, section.length, held.horizontal_a, held.vertical_a);
     }
     shape
 }
 
-fn touchdown_shape(section: &Section, held: &Held, bed: Bed, span: f64, rise: f64) -> Shape {
+fn touchdown_shape(section: &Section, held: &Held, bed: Bed, span: f64) -> Shape {
     let mut shape = Shape::default();
     let (a, b) = (-held.vertical_a / section.weight, held.vertical_b / section.weight);
     let growth = bed.friction * section.weight;
@@ -186,7 +186,7 @@ fn touchdown_shape(section: &Section, held: &Held, bed: Bed, span: f64, rise: f6
     shape.lay(section, tight, held.horizontal_a, growth);
     shape.fly(section, b, held.horizontal_b, 0.0);
     if slack {
-        shape.close(span, rise);
+        shape.close(span);
     }
     shape
 }
@@ -221,12 +221,11 @@ fn suspend_weightless(sections: &[Section], span: f64, rise: f64, shape: &mut Sh
     let held = alike.suspend(span, rise);
     for section in sections {
         if held.horizontal_a == 0.0 && held.vertical_a == 0.0 {
-            shape.push(section.length, Kind::Slack { x: 0.0, z: 0.0, on_bed: false });
+            shape.push(section.length, Kind::Slack { x: span / length, z: rise / length, on_bed: false });
         } else {
             shape.fly(section, section.length, held.horizontal_a, held.vertical_a);
         }
     }
-    shape.close(span, rise);
     held
 }
 

@@ -14,14 +14,16 @@ pub(super) struct Root {
 
 /// Root of `function` (value, slope), increasing over (lower, upper), which may be infinite: Newton within the bracket.
 ///
-/// `reach` is the longest step from a point that is believed; `tolerance` the value that counts as zero.
+/// The function bends on the scale `bend` about 0, so brackets are halved on asinh(x/bend); `reach` is the longest step from a
+/// point that is believed; `tolerance` the value that counts as zero.
 pub(super) fn increasing(
     mut function: impl FnMut(f64) -> (f64, f64),
     start: f64,
     (mut lower, mut upper): (f64, f64),
-    reach: impl Fn(f64) -> f64,
+    (bend, reach): (f64, impl Fn(f64) -> f64),
     tolerance: f64,
 ) -> Root {
+    let halfway = |a: f64, b: f64| bend * (0.5 * ((a / bend).asinh() + (b / bend).asinh())).sinh();
     let mut at = start.clamp(lower, upper);
     let mut width_before = f64::INFINITY;
     for steps in 1..=STEPS_MAX {
@@ -34,6 +36,9 @@ pub(super) fn increasing(
         let newton = -value / slope;
         let step = if newton.is_finite() { newton.clamp(-reach, reach) } else { -reach.copysign(value) };
         let mut next = at + step;
+        if next == at {
+            return Root { at, steps };
+        }
         // a bracket that hardly shrinks is halved: Newton may creep along a kink
         let width = upper - lower;
         let creeps = steps % 4 == 0 && width > 0.5 * width_before;
@@ -41,10 +46,10 @@ pub(super) fn increasing(
             width_before = width;
         }
         if !(next > lower && next < upper) || (creeps && width.is_finite()) {
-            next = 0.5 * (lower + upper);
+            next = halfway(lower, upper);
         }
         let close = 2.0 * f64::EPSILON * at.abs();
-        if next == at || (next - at).abs() <= close || width <= close {
+        if (next - at).abs() <= close || width <= close {
             return Root { at: next, steps };
         }
         at = next;
@@ -76,7 +81,7 @@ pub(super) fn increasing_by_ratio(
         }
         // where the secant points, stretched a little so that it passes the root
         let secant = 1.5 * (b - a) * fb / (fa - fb);
-        stride = if secant.is_finite() { secant.abs().clamp(1e-9, 8.0 * stride) } else { 8.0 * stride };
+        stride = if secant.is_finite() { secant.abs().clamp(1e-9, 8.0 * stride).min(5.0) } else { 5.0 };
         (a, fa) = (b, fb);
     }
     let inner = between(|t| function(t.exp()), (a, fa), (b, fb), tolerance);
@@ -166,7 +171,7 @@ mod tests {
         let slope = |x: f64| 1e-6 / (1e-6 + (x - 3.7).abs()).powi(2) + 1e-9;
         for start in [1e-9, 1.0, 3.6, 5e5] {
             let everywhere = (f64::NEG_INFINITY, f64::INFINITY);
-            let newton = increasing(|x| (sigmoid(x), slope(x)), start, everywhere, |x| 1.0 + x.abs(), 0.0);
+            let newton = increasing(|x| (sigmoid(x), slope(x)), start, everywhere, (1.0, |x: f64| 1.0 + x.abs()), 0.0);
             assert!((newton.at - 3.7).abs() < 1e-14, "{newton:?}");
             let ratio = increasing_by_ratio(sigmoid, start, 1e-30, 0.0);
             assert!((ratio.at - 3.7).abs() < 1e-13, "{ratio:?}");

@@ -103,23 +103,45 @@ impl Shape {
         }
     }
 
-    /// Lets the pieces without tension close the gap to (x, z), shared by length: in free flight if there are any, else on the bed.
-    pub fn close(&mut self, x: f64, z: f64) {
-        let slack = |on_bed: bool, pieces: &[Piece]| -> f64 {
-            let mine = |p: &&Piece| matches!(p.kind, Kind::Slack { on_bed: b, .. } if b == on_bed);
-            pieces.iter().filter(mine).map(|p| p.length).sum()
+    /// Turns pieces whose tension nowhere exceeds `nothing` [N] into slack ones where they are, and horizontal tension up to it into none.
+    pub fn relax(&mut self, nothing: f64) {
+        for piece in &mut self.pieces {
+            let (x, z) = piece.advance(piece.length);
+            let (x, z) = (x / piece.length, z / piece.length);
+            match &mut piece.kind {
+                Kind::Flight(flight) if flight.horizontal <= nothing => {
+                    flight.horizontal = 0.0;
+                    if flight.vertical.abs() <= nothing && flight.vertical_end().abs() <= nothing {
+                        piece.kind = Kind::Slack { x, z, on_bed: false };
+                    }
+                }
+                Kind::Laid { tension, growth, .. } if *tension <= nothing => {
+                    *tension = 0.0;
+                    if *growth == 0.0 {
+                        piece.kind = Kind::Slack { x, z, on_bed: true };
+                    }
+                }
+                _ => {}
+            }
+        }
+    }
+
+    /// Draws the slack pieces together so that the line ends at `x` [m].
+    pub fn close(&mut self, x: f64) {
+        let advance = |piece: &Piece| match piece.kind {
+            Kind::Slack { x, .. } => x * piece.length,
+            _ => 0.0,
         };
-        let on_bed = slack(false, &self.pieces) == 0.0;
-        let length = slack(on_bed, &self.pieces);
-        if length == 0.0 {
+        let slack: f64 = self.pieces.iter().map(advance).sum();
+        if slack <= 0.0 {
             return;
         }
-        let gap = ((x - self.end.1) / length, if on_bed { 0.0 } else { (z - self.end.2) / length });
+        let factor = ((x - self.end.1 + slack) / slack).clamp(0.0, 1.0);
         let pieces = std::mem::take(&mut self.pieces);
         self.end = (0.0, 0.0, 0.0);
         for piece in pieces {
             let kind = match piece.kind {
-                Kind::Slack { x, z, on_bed: b } if b == on_bed => Kind::Slack { x: x + gap.0, z: z + gap.1, on_bed },
+                Kind::Slack { x, z, on_bed } => Kind::Slack { x: x * factor, z, on_bed },
                 kind => kind,
             };
             self.push(piece.length, kind);
