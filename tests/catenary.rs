@@ -817,3 +817,10 @@ fn every_row_of_the_external_bank_is_met_to_nine_digits() {
     );
     assert_eq!(rows, 182);
 }
+#[test]
+fn dbg_one() {
+    let l = Line { sections: vec![Section { length: 11.275958165724662, weight: 12.515468836402091, axial_stiffness: 1946247.6298212782 }, Section { length: 4.659330932736964, weight: 0.0, axial_stiffness: 3874647.0240052394 }, Section { length: 0.5807330679774666, weight: 3.197313769233736, axial_stiffness: 6229531.33475109 }], span: 4.353635655741525, rise: 3.9877578961280196, bed: Some(Bed { height: -0.25986692263013533, friction: 0.0 }) };
+    let c = l.solve();
+    println!("{c:#?}");
+    println!("{}", judge(&l, &c));
+}
