@@ -13,10 +13,11 @@ use crate::dynamics::StepError;
 use crate::dynamics::advance::{Choice, Counters, Workspace};
 use crate::dynamics::motion::{HostPath, Sample};
 use crate::dynamics::reaction;
-use crate::model::{End, Kinematics, Line, LineState, Model, Role, State};
+use crate::model::{End, Kinematics, Line, LineState, Model, PointState, Role, State};
 use crate::physics::stretch::StretchLaw;
 use crate::scene::{Scene, SceneError};
 use crate::statics::catenary::{self, Bed, Catenary};
+use crate::statics::{StaticsError, assembly, equilibrium};
 
 /// Why a simulation could not be made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -24,6 +25,9 @@ pub enum Error {
     /// The scene is wrong.
     #[error(transparent)]
     Scene(#[from] SceneError),
+    /// No static equilibrium was found.
+    #[error(transparent)]
+    Statics(#[from] StaticsError),
 }
 
 /// What a host has said about a point.
@@ -51,6 +55,7 @@ pub struct Simulation {
     model: Arc<Model>,
     snapshot: Snapshot,
     work: Workspace,
+    statics: assembly::Workspace,
     paths: Vec<HostPath>,
     catenaries: Vec<Option<Catenary>>,
 }
@@ -83,7 +88,8 @@ impl Simulation {
             .iter()
             .map(|point| HostPath::at_rest(0.0, point.reference))
             .collect();
-        let state = start(&model, 0.0, &paths);
+        let mut statics = assembly::Workspace::new(&model);
+        let state = start(&model, 0.0, &paths, &mut statics)?;
         let work = Workspace::new(&model, &state, |line| static_tension(&model, &state, line));
         Ok(Simulation {
             catenaries: model
@@ -100,6 +106,7 @@ impl Simulation {
             },
             model,
             work,
+            statics,
             paths,
         })
     }
@@ -130,7 +137,7 @@ impl Simulation {
                 point.reference + Vector3::from(input.displacement),
             );
         }
-        self.snapshot.state = start(&self.model, start_time, &self.snapshot.paths);
+        self.snapshot.state = start(&self.model, start_time, &self.snapshot.paths, &mut self.statics)?;
         self.snapshot.counters = Counters::default();
         Ok(())
     }
@@ -368,32 +375,30 @@ fn held(
     }
 }
 
-fn start(model: &Model, time: f64, paths: &[HostPath]) -> State {
-    let place = |point: usize| held(model, paths, false, point, time).position;
-    let lines = model.lines.iter().map(|line| {
-        let [a, b] = line.ends.map(place);
-        let nodes = line.given_shape(a, b).unwrap_or_else(|| {
-            let across = Vector3::new(b.x - a.x, b.y - a.y, 0.0);
-            let catenary = solve_catenary(model, line, a, b).expect("catenary");
-            let direction = across.try_normalize(0.0).unwrap_or_else(Vector3::x);
-            line.nodes
-                .arc
-                .iter()
-                .map(|s| {
-                    let p = catenary.at(*s);
-                    a + direction * p.x + Vector3::z() * p.z
-                })
-                .collect()
-        });
-        LineState::at_rest(nodes)
-    });
-    State {
-        time,
-        points: (0..model.points.len())
-            .map(|p| crate::model::PointState::at_rest(place(p)))
-            .collect(),
-        lines: lines.collect(),
+/// At rest: in static equilibrium, or on the shapes the scene gives.
+fn start(
+    model: &Model,
+    time: f64,
+    paths: &[HostPath],
+    work: &mut assembly::Workspace,
+) -> Result<State, StaticsError> {
+    let places: Vec<Vector3<f64>> =
+        (0..model.points.len()).map(|point| held(model, paths, false, point, time).position).collect();
+    let given = |line: &Line| {
+        let [a, b] = line.ends.map(|point| places[point]);
+        line.given_shape(a, b)
+    };
+    if let Some(shapes) = model.lines.iter().map(given).collect::<Option<Vec<_>>>() {
+        let points = places.into_iter().map(PointState::at_rest).collect();
+        return Ok(State { time, points, lines: shapes.into_iter().map(LineState::at_rest).collect() });
     }
+    let mut state = equilibrium::solve(model, &places, time, work)?;
+    for (line, shape) in model.lines.iter().zip(&mut state.lines) {
+        if let Some(nodes) = given(line) {
+            *shape = LineState::at_rest(nodes);
+        }
+    }
+    Ok(state)
 }
 
 fn static_tension(model: &Model, state: &State, line: usize) -> f64 {
