@@ -1205,6 +1205,31 @@ fn a_text_cut_off_anywhere_is_read_or_refused_with_a_place() {
 }
 
 #[test]
+fn a_mistake_at_the_very_end_of_a_file_can_be_shown() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.toml");
+    for text in [
+        "",
+        "gravity =",
+        "gravity =\n",
+        "title = \"",
+        "[",
+        "\u{feff}\u{fc} = ",
+    ] {
+        fs::write(&path, text).unwrap();
+        let error = load(&path).unwrap_err();
+        let mut shown = String::new();
+        miette::GraphicalReportHandler::new_themed(miette::GraphicalTheme::none())
+            .render_report(&mut shown, &error)
+            .unwrap();
+        assert!(
+            shown.contains("scene.toml:") && !shown.contains("Failed"),
+            "{shown}"
+        );
+    }
+}
+
+#[test]
 fn a_text_without_any_one_line_is_read_or_refused_with_a_place() {
     let text = rich_text();
     let lines: Vec<&str> = text.lines().collect();
