@@ -167,7 +167,7 @@ fn build(model: &Model, network: &Network, choice: &Choice) -> Solver {
                 .spectral_radius
                 .unwrap_or(AXIAL_SPECTRAL_RADIUS);
             let line = &model.lines[network.lines[0]];
-            Solver::AxialImplicit(AxialWork::new(line, rho, model.solver.negative_tension))
+            Solver::AxialImplicit(AxialWork::new(line, rho, model.solver.negative_tension).expect("one strain measure a line"))
         }
         _ => Solver::Leapfrog(NetworkWork::new(model, network).expect("one strain measure a line")),
     }
@@ -191,11 +191,7 @@ fn leapfrog(
     let t0 = state.time;
     for retry in 0..=RETRIES_MAX {
         work.load(network, state);
-        let drag_rate = work
-            .lines
-            .iter()
-            .map(|line| line.drag_rate())
-            .fold(0.0, f64::max);
+        let drag_rate = work.drag_rate(model, network);
         let count = substeps(span, choice.step_max.min(1.0 / drag_rate), retry);
         let drift = span / count as f64;
         let mut steps = state.lines[network.lines[0]].half_step.steps;
@@ -240,7 +236,7 @@ fn axial_implicit(
     let line = &model.lines[index];
     let t0 = state.time;
     for retry in 0..=RETRIES_MAX {
-        work.load(line, &state.lines[index]);
+        work.load(&state.lines[index]);
         let count = substeps(span, choice.step_max, retry);
         let drift = span / count as f64;
         let mut steps = state.lines[index].half_step.steps;
@@ -252,7 +248,7 @@ fn axial_implicit(
         for k in 0..count {
             let t = t0 + (k + 1) as f64 * drift;
             let ends = line.ends.map(|point| held(point, t).position);
-            passes += work.step(line, Step::after(steps, drift), ends);
+            passes += work.step(Step::after(steps, drift), ends);
             steps = [drift, steps[0]];
         }
         if work.broken_node().is_none() {

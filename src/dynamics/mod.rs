@@ -2,6 +2,7 @@
 
 pub mod advance;
 pub mod axial_implicit;
+mod layout;
 pub mod leapfrog;
 pub mod limit;
 pub mod motion;

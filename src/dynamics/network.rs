@@ -54,6 +54,12 @@ impl NetworkWork {
         }
     }
 
+    /// Greatest ratio K |v| / M of all nodes [1/s].
+    pub fn drag_rate(&self, model: &Model, network: &Network) -> f64 {
+        let lines = self.lines.iter().zip(&network.lines);
+        lines.map(|(work, &line)| work.drag_rate(&model.lines[line])).fold(0.0, f64::max)
+    }
+
     /// One step from `t` [s]. `held` tells where held points are.
     pub fn step(
         &mut self,
