@@ -250,14 +250,24 @@ impl LineWork {
     }
 
     #[inline(always)]
-    fn add_static_segment(&mut self, line: &Line, position: &[Vector3<f64>], case: &StaticCase, i: usize) {
+    fn add_static_segment(
+        &mut self,
+        line: &Line,
+        position: &[Vector3<f64>],
+        case: &StaticCase,
+        i: usize,
+    ) {
         let unstretched = line.segments.length[i];
         let g = Geometry::new(position[i], position[i + 1], unstretched);
         let stretch = line.segments.law[i].at(g.strain);
         let ea = line.segments.axial_stiffness[i].min(case.stiffness_max);
         let (elastic, slope) = (ea * stretch.force, ea * stretch.slope / unstretched);
         (self.elastic[i], self.slope[i], self.direction[i]) = (elastic, slope, g.direction);
-        let predicted = if case.predicted { self.tension[i] } else { elastic };
+        let predicted = if case.predicted {
+            self.tension[i]
+        } else {
+            elastic
+        };
         let (tension, slope) = if predicted > 0.0 || elastic > 0.0 {
             (elastic, slope)
         } else {
@@ -308,16 +318,26 @@ impl LineWork {
         i: usize,
     ) {
         let unstretched = line.segments.length[i];
-        let (ea, ba) = (line.segments.axial_stiffness[i], line.segments.axial_damping[i]);
+        let (ea, ba) = (
+            line.segments.axial_stiffness[i],
+            line.segments.axial_damping[i],
+        );
         let g = Geometry::new(state.position[i], state.position[i + 1], unstretched);
         let rate = state.velocity[i + 1] - state.velocity[i]; // ġ [m/s]
         let stretch = line.segments.law[i].at(g.strain);
-        let (elastic, damping) = (ea * stretch.force, ba * g.direction.dot(&rate) / unstretched);
+        let (elastic, damping) = (
+            ea * stretch.force,
+            ba * g.direction.dot(&rate) / unstretched,
+        );
         let tension = total_tension(elastic, damping, negative_tension);
         let force = weights.force * tension * g.direction;
         let mut stiffness = Matrix3::zeros();
         if TANGENT && g.length > 0.0 {
-            let springs = if negative_tension { elastic > 0.0 } else { tension > 0.0 };
+            let springs = if negative_tension {
+                elastic > 0.0
+            } else {
+                tension > 0.0
+            };
             let damps = springs || negative_tension;
             let mut along = 0.0;
             if springs {
@@ -338,7 +358,12 @@ impl LineWork {
     }
 
     #[inline(always)]
-    fn add_weight_and_inertia<const TANGENT: bool>(&mut self, line: &Line, state: &LineState, weights: &Weights) {
+    fn add_weight_and_inertia<const TANGENT: bool>(
+        &mut self,
+        line: &Line,
+        state: &LineState,
+        weights: &Weights,
+    ) {
         let nodes = &line.nodes;
         for i in 0..nodes.weight.len() {
             self.residual[i].z += weights.force * nodes.weight[i];
@@ -352,7 +377,8 @@ impl LineWork {
                 let t = node_tangent(&state.position, i);
                 inertia += (tangent - normal) * t.dot(&a) * t;
                 if TANGENT {
-                    self.diagonal[i] += weights.acceleration * (tangent - normal) * t * t.transpose();
+                    self.diagonal[i] +=
+                        weights.acceleration * (tangent - normal) * t * t.transpose();
                 }
             }
             self.residual[i] += weights.inertia * inertia;
@@ -360,7 +386,9 @@ impl LineWork {
     }
 
     fn add_drag<const TANGENT: bool>(&mut self, line: &Line, state: &LineState, weights: &Weights) {
-        let Some(coefficients) = &line.nodes.drag else { return };
+        let Some(coefficients) = &line.nodes.drag else {
+            return;
+        };
         for i in 0..coefficients.normal.len() {
             let k = DragCoefficients {
                 normal: coefficients.normal[i],
@@ -374,8 +402,15 @@ impl LineWork {
         }
     }
 
-    fn add_contact<const TANGENT: bool>(&mut self, line: &Line, state: &LineState, weights: &Weights) {
-        let Some(contact) = &line.nodes.contact else { return };
+    fn add_contact<const TANGENT: bool>(
+        &mut self,
+        line: &Line,
+        state: &LineState,
+        weights: &Weights,
+    ) {
+        let Some(contact) = &line.nodes.contact else {
+            return;
+        };
         for i in 0..contact.stiffness.len() {
             let k = ContactCoefficients {
                 stiffness: contact.stiffness[i],
@@ -383,10 +418,13 @@ impl LineWork {
             };
             let penetration = contact.bed - state.position[i].z;
             let reach = damper_reach(k, line.nodes.weight[i]);
-            let Some(bed) = SmoothContact::new(k, penetration, state.velocity[i].z, reach) else { continue };
+            let Some(bed) = SmoothContact::new(k, penetration, state.velocity[i].z, reach) else {
+                continue;
+            };
             self.residual[i].z -= weights.force * bed.force;
             if TANGENT {
-                self.diagonal[i][(2, 2)] += weights.position * bed.stiffness + weights.velocity * bed.damping;
+                self.diagonal[i][(2, 2)] +=
+                    weights.position * bed.stiffness + weights.velocity * bed.damping;
             }
         }
     }
@@ -398,7 +436,11 @@ const DAMPER_FADE: f64 = 2.0;
 /// Half the range of penetrations over which the damper fades in [m].
 #[inline(always)]
 fn damper_reach(contact: ContactCoefficients, weight: f64) -> f64 {
-    if contact.stiffness > 0.0 { DAMPER_FADE * weight.abs() / contact.stiffness } else { 0.0 }
+    if contact.stiffness > 0.0 {
+        DAMPER_FADE * weight.abs() / contact.stiffness
+    } else {
+        0.0
+    }
 }
 
 /// The contact of `physics::seabed` with a damper that fades in over ± `reach` of penetration instead of switching on at
@@ -416,12 +458,24 @@ struct SmoothContact {
 impl SmoothContact {
     /// `None` where the bed does not act.
     #[inline(always)]
-    fn new(k: ContactCoefficients, penetration: f64, velocity: f64, reach: f64) -> Option<SmoothContact> {
+    fn new(
+        k: ContactCoefficients,
+        penetration: f64,
+        velocity: f64,
+        reach: f64,
+    ) -> Option<SmoothContact> {
         if penetration <= -reach {
             return None;
         }
-        let u = if reach > 0.0 { (0.5 * (penetration / reach + 1.0)).min(1.0) } else { 1.0 };
-        let (fade, slope) = (u * u * (3.0 - 2.0 * u), 6.0 * u * (1.0 - u) / (2.0 * reach.max(f64::MIN_POSITIVE)));
+        let u = if reach > 0.0 {
+            (0.5 * (penetration / reach + 1.0)).min(1.0)
+        } else {
+            1.0
+        };
+        let (fade, slope) = (
+            u * u * (3.0 - 2.0 * u),
+            6.0 * u * (1.0 - u) / (2.0 * reach.max(f64::MIN_POSITIVE)),
+        );
         let spring = if penetration > 0.0 { k.stiffness } else { 0.0 };
         let force = spring * penetration - k.damping * fade * velocity;
         (force > 0.0).then(|| SmoothContact {
@@ -443,7 +497,13 @@ fn node_tangent(position: &[Vector3<f64>], i: usize) -> Vector3<f64> {
 
 impl Workspace {
     /// Residual and tangent of a network at rest.
-    pub(crate) fn assemble_static(&mut self, model: &Model, network: &Network, state: &State, case: &StaticCase) {
+    pub(crate) fn assemble_static(
+        &mut self,
+        model: &Model,
+        network: &Network,
+        state: &State,
+        case: &StaticCase,
+    ) {
         for &index in &network.lines {
             let position = &state.lines[index].position;
             self.lines[index].assemble_static(&model.lines[index], position, case);
@@ -469,12 +529,18 @@ impl Workspace {
         let negative_tension = model.solver.negative_tension;
         for &index in &network.lines {
             let (line, line_state) = (&model.lines[index], &state.lines[index]);
-            self.lines[index].assemble_dynamic::<TANGENT>(line, line_state, weights, negative_tension);
+            self.lines[index].assemble_dynamic::<TANGENT>(
+                line,
+                line_state,
+                weights,
+                negative_tension,
+            );
         }
         for_free_points(model, network, |index, free| {
             let point = &mut self.points[index];
             let force = model.points[index].load_at(t) - free.weight * Vector3::z();
-            point.residual = weights.inertia * free.mass * state.points[index].acceleration - weights.force * force;
+            point.residual = weights.inertia * free.mass * state.points[index].acceleration
+                - weights.force * force;
             point.diagonal = Matrix3::from_diagonal_element(weights.acceleration * free.mass);
         });
         self.gather(model, network);
@@ -506,7 +572,8 @@ impl Workspace {
             let work = &mut self.lines[index];
             let [a, b] = model.lines[index].ends.map(|point| self.points[point].slot);
             let Some(ends) =
-                work.chain.eliminate(&work.diagonal, &work.coupling, &work.residual, a.is_some())
+                work.chain
+                    .eliminate(&work.diagonal, &work.coupling, &work.residual, a.is_some())
             else {
                 return false;
             };
@@ -552,13 +619,22 @@ impl Workspace {
 
     /// Greatest entry of the last solution [m].
     pub(crate) fn greatest_solution(&self, network: &Network) -> f64 {
-        let lines = network.lines.iter().flat_map(|&line| self.lines[line].chain.solution());
+        let lines = network
+            .lines
+            .iter()
+            .flat_map(|&line| self.lines[line].chain.solution());
         lines.map(|x| x.amax()).fold(0.0, f64::max)
     }
 
     /// Greatest force out of balance [N] and where it is.
     pub(crate) fn greatest_residual(&self, network: &Network) -> (f64, Place) {
-        let mut greatest = (0.0, Place::Node { line: network.lines[0], node: 0 });
+        let mut greatest = (
+            0.0,
+            Place::Node {
+                line: network.lines[0],
+                node: 0,
+            },
+        );
         let mut compare = |residual: &Vector3<f64>, place| {
             let norm = residual.norm();
             if !(norm <= greatest.0) {
@@ -596,14 +672,20 @@ impl Place {
     /// In words.
     pub(crate) fn name(self, model: &Model) -> String {
         match self {
-            Place::Node { line, node } => format!("line \"{}\", node {node}", model.lines[line].name),
+            Place::Node { line, node } => {
+                format!("line \"{}\", node {node}", model.lines[line].name)
+            }
             Place::Point(point) => format!("point \"{}\"", model.points[point].name),
         }
     }
 }
 
 /// Visits the free points of a network.
-pub(crate) fn for_free_points(model: &Model, network: &Network, mut visit: impl FnMut(usize, &FreePoint)) {
+pub(crate) fn for_free_points(
+    model: &Model,
+    network: &Network,
+    mut visit: impl FnMut(usize, &FreePoint),
+) {
     for &index in &network.free_points {
         if let Some(free) = model.points[index].free() {
             visit(index, free);
@@ -630,7 +712,9 @@ pub(crate) fn copy_network(model: &Model, network: &Network, from: &State, to: &
         let (from_line, to_line) = (&from.lines[index], &mut to.lines[index]);
         to_line.position.copy_from_slice(&from_line.position);
         to_line.velocity.copy_from_slice(&from_line.velocity);
-        to_line.acceleration.copy_from_slice(&from_line.acceleration);
+        to_line
+            .acceleration
+            .copy_from_slice(&from_line.acceleration);
         for point in model.lines[index].ends {
             to.points[point] = from.points[point];
         }
@@ -642,16 +726,36 @@ fn blank_state(model: &Model) -> State {
     let line = |line: &Line| LineState::at_rest(vec![Vector3::zeros(); line.segment_count() + 1]);
     State {
         time: 0.0,
-        points: model.points.iter().map(|point| PointState::at_rest(point.reference)).collect(),
+        points: model
+            .points
+            .iter()
+            .map(|point| PointState::at_rest(point.reference))
+            .collect(),
         lines: model.lines.iter().map(line).collect(),
     }
 }
 
 /// Force [N] that a line applies to the point at one of its ends, inertia and drag of its end node included.
-pub fn end_force(model: &Model, state: &State, line: usize, end: End, work: &mut Workspace) -> Vector3<f64> {
-    let weights = Weights { force: 1.0, inertia: 1.0, position: 0.0, velocity: 0.0, acceleration: 0.0 };
+pub fn end_force(
+    model: &Model,
+    state: &State,
+    line: usize,
+    end: End,
+    work: &mut Workspace,
+) -> Vector3<f64> {
+    let weights = Weights {
+        force: 1.0,
+        inertia: 1.0,
+        position: 0.0,
+        velocity: 0.0,
+        acceleration: 0.0,
+    };
     let negative_tension = model.solver.negative_tension;
-    let (line_model, line_state, line_work) = (&model.lines[line], &state.lines[line], &mut work.lines[line]);
+    let (line_model, line_state, line_work) = (
+        &model.lines[line],
+        &state.lines[line],
+        &mut work.lines[line],
+    );
     line_work.assemble_dynamic::<false>(line_model, line_state, &weights, negative_tension);
     -line_work.residual[line_model.end_node(end)]
 }

@@ -1,6 +1,7 @@
 //! Statics: what a mooring does when nothing moves.
 
 pub mod assembly;
+pub mod catenary;
 pub mod equilibrium;
 mod guess;
 
