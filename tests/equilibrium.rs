@@ -222,3 +222,97 @@ sections = [{{ type = "cable", length = {length:e}, elements = {n} }}]
         t0.elapsed()
     );
 }
+
+#[test]
+fn random_networks() {
+    let mut seed = 5;
+    let (mut worst, mut total, mut fails) = (0, 0, 0);
+    let t0 = std::time::Instant::now();
+    let mut hist = [0usize; 12];
+    for case in 0..1000 {
+        let mut u = || noise(&mut seed);
+        let scale = 10f64.powf(1.0 + 1.5 * u());
+        let ea = 10f64.powf(4.0 + 8.0 * u());
+        let w = 10f64.powf(0.0 + 3.0 * u());
+        let count = 2 + case % 3;
+        let bed = u() < 0.5;
+        let mut text = format!(
+            "{}[line_types.cable]\nweight = {w:e}\nmass = 1.0\ndiameter = 0.1\naxial_stiffness = {ea:e}\n",
+            if bed {
+                format!("[seabed]\ndepth = {:e}\n", 1.2 * scale)
+            } else {
+                String::new()
+            }
+        );
+        let mut points = vec![];
+        for i in 0..count {
+            let p = Vector3::new(
+                scale * (2.0 * u() - 1.0),
+                scale * (2.0 * u() - 1.0),
+                scale * (2.0 * u() - 1.0),
+            );
+            points.push(p);
+            text += &format!(
+                "[[points]]\nname = \"p{i}\"\nposition = [{:e},{:e},{:e}]\nkind = \"fixed\"\n",
+                p.x, p.y, p.z
+            );
+        }
+        let mean: Vector3<f64> = points.iter().sum::<Vector3<f64>>() / count as f64;
+        let guess = mean + 0.3 * scale * Vector3::new(u() - 0.5, u() - 0.5, u() - 0.5);
+        let slide = case % 7 == 0;
+        text += &format!(
+            "[[points]]\nname = \"f\"\nposition = [{:e},{:e},{:e}]\nkind = \"free\"\nmass = {:e}\nforce = {{ x = {:e} }}\n{}",
+            guess.x,
+            guess.y,
+            guess.z,
+            if u() < 0.5 {
+                0.0
+            } else {
+                w * scale * u() / 10.0
+            },
+            if u() < 0.5 { 0.0 } else { w * scale * u() },
+            if slide { "free = [\"x\", \"y\"]\n" } else { "" }
+        );
+        for i in 0..count {
+            let chord = (guess - points[i]).norm();
+            let length = chord * (0.8 + 0.8 * u());
+            let n = (1.0 + 30.0 * u()) as usize;
+            text += &format!(
+                "[[lines]]\nname = \"l{i}\"\nfrom = \"{}\"\nto = \"{}\"\nsections = [{{ type = \"cable\", length = {length:e}, elements = {n} }}]\n",
+                if i % 2 == 0 {
+                    format!("p{i}")
+                } else {
+                    "f".into()
+                },
+                if i % 2 == 0 {
+                    "f".into()
+                } else {
+                    format!("p{i}")
+                }
+            );
+        }
+        let m = model(&text);
+        let mut work = Workspace::new(&m);
+        let r = solve(&m, &at_reference(&m), 0.0, &mut work);
+        let c = work.take_counters().solves;
+        total += c;
+        worst = worst.max(c);
+        hist[(c / 10).min(11)] += 1;
+        if let Err(e) = r {
+            fails += 1;
+            if fails < 10 {
+                println!(
+                    "{case} scale {scale:.3} ea {ea:.2e} w {w:.3e} bed {bed} slide {slide} {e}"
+                );
+                if fails < 3 {
+                    println!("{text}");
+                }
+            }
+        }
+    }
+    println!(
+        "fails {fails} worst {worst} mean {} time {:?} hist {hist:?}",
+        total as f64 / 1000.0,
+        t0.elapsed()
+    );
+}

@@ -32,6 +32,8 @@ pub struct Workspace {
     pub(crate) points: Vec<PointWork>,
     /// Per network of the model.
     pub(crate) systems: Vec<DenseSystem>,
+    /// The state before a step of the caller's.
+    pub(crate) start: State,
     /// The state before a step.
     pub(crate) before: State,
     /// The first guess of an equilibrium.
@@ -137,6 +139,7 @@ impl Workspace {
             lines: model.lines.iter().map(line).collect(),
             points,
             systems: model.networks.iter().map(system).collect(),
+            start: blank_state(model),
             before: blank_state(model),
             saved: blank_state(model),
             trial: blank_state(model),
@@ -612,18 +615,42 @@ impl Workspace {
         true
     }
 
+    /// Keeps the residual of the last assembly for the next step.
+    pub(crate) fn remember(&mut self, network: &Network) {
+        for &index in &network.lines {
+            let line = &mut self.lines[index];
+            line.history.copy_from_slice(&line.residual);
+        }
+        for &index in &network.free_points {
+            self.points[index].history = self.points[index].residual;
+        }
+    }
+
+    /// Adds what was remembered to the residual.
+    pub(crate) fn add_remembered(&mut self, model: &Model, network: &Network) {
+        for &index in &network.lines {
+            let line = &mut self.lines[index];
+            for (residual, history) in line.residual.iter_mut().zip(&line.history) {
+                *residual += history;
+            }
+        }
+        for &index in &network.free_points {
+            let point = &mut self.points[index];
+            point.residual += point.history;
+        }
+        self.gather(model, network);
+    }
+
     fn solution_at(&self, point: usize) -> Vector3<f64> {
         let point = &self.points[point];
         point.slot.map_or(Vector3::zeros(), |_| point.solution)
     }
 
-    /// Greatest entry of the last solution [m].
+    /// Longest entry of the last solution [m]; not a number if one of them is not.
     pub(crate) fn greatest_solution(&self, network: &Network) -> f64 {
-        let lines = network
-            .lines
-            .iter()
-            .flat_map(|&line| self.lines[line].chain.solution());
-        lines.map(|x| x.amax()).fold(0.0, f64::max)
+        let longer = |a: f64, b: f64| if a.is_nan() || a >= b { a } else { b };
+        let lines = network.lines.iter().flat_map(|&line| self.lines[line].chain.solution());
+        lines.map(|x| x.norm_squared()).fold(0.0, longer).sqrt()
     }
 
     /// Greatest force out of balance [N] and where it is.
@@ -669,6 +696,17 @@ pub(crate) enum Place {
 }
 
 impl Place {
+    /// A line and a node there.
+    pub(crate) fn node(self, model: &Model) -> (usize, usize) {
+        match self {
+            Place::Node { line, node } => (line, node),
+            Place::Point(point) => {
+                let (line, end) = model.points[point].attached[0];
+                (line, model.lines[line].end_node(end))
+            }
+        }
+    }
+
     /// In words.
     pub(crate) fn name(self, model: &Model) -> String {
         match self {
@@ -759,3 +797,6 @@ pub fn end_force(
     line_work.assemble_dynamic::<false>(line_model, line_state, &weights, negative_tension);
     -line_work.residual[line_model.end_node(end)]
 }
+
+#[cfg(test)]
+mod tests;
