@@ -100,7 +100,9 @@ pub fn start<K: Fn(usize, f64) -> Kinematics>(
         position: 0.0,
         velocity: 0.0,
         acceleration: 1.0,
+        predicted: false,
     };
+    work.fade_dampers(model, network, state, 0.0);
     work.assemble_dynamic::<true>(model, network, state, t, &weights);
     for &index in &network.lines {
         let (line, nodes) = (&work.lines[index], &mut state.lines[index]);
@@ -277,7 +279,9 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
             position: 0.0,
             velocity: 0.0,
             acceleration: 0.0,
+            predicted: false,
         };
+        work.fade_dampers(self.model, self.network, state, dt);
         work.assemble_dynamic::<false>(self.model, self.network, state, t0, &old);
         work.remember(self.network);
         self.predict(state, dt);
@@ -289,6 +293,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
             position: 1.0 - alpha_f,
             velocity: (1.0 - alpha_f) * per_velocity,
             acceleration: (1.0 - alpha_m) * per_acceleration,
+            predicted: true,
         };
         let tolerance = NEWTON_TOLERANCE * self.shortest_segment();
         for _ in 0..ITERATIONS_MAX {
@@ -302,7 +307,8 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
                 return false;
             }
             self.correct(state, work, per_velocity, per_acceleration);
-            if correction <= tolerance {
+            let consistent = work.predict_tensions(self.model, self.network, 1.0);
+            if correction <= tolerance && consistent {
                 return true;
             }
         }

@@ -74,7 +74,7 @@ pub(crate) struct LineWork {
     pub coupling: Vec<Matrix3<f64>>,
     /// Tension that the geometric stiffness is taken from, per segment [N]; statics predicts it.
     pub tension: Vec<f64>,
-    /// Elastic force of the segment at the last assembly [N], unclipped.
+    /// Elastic and damping force of the segment at the last assembly [N], unclipped.
     pub elastic: Vec<f64>,
     /// Its slope dN/dl [N/m].
     pub slope: Vec<f64>,
@@ -82,6 +82,8 @@ pub(crate) struct LineWork {
     pub direction: Vec<Vector3<f64>>,
     /// What the time integrator carries over from the last step, per node [N].
     pub history: Vec<Vector3<f64>>,
+    /// Half the range of penetrations over which the seabed damper fades in, per node [m].
+    pub reach: Vec<f64>,
     /// Elimination.
     pub chain: Chain,
 }
@@ -117,6 +119,7 @@ impl Workspace {
                 slope: vec![0.0; n],
                 direction: vec![Vector3::zeros(); n],
                 history: vec![Vector3::zeros(); n + 1],
+                reach: vec![0.0; n + 1],
                 chain: Chain::new(n + 1),
             }
         };
@@ -172,7 +175,7 @@ pub(crate) struct StaticCase {
 
 /// Weights of the parts of residual and tangent in a time step.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Weights {
+pub(crate) struct Weights {
     /// Of all forces but inertia in R [-].
     pub force: f64,
     /// Of inertia in R [-].
@@ -183,7 +186,12 @@ pub struct Weights {
     pub velocity: f64,
     /// c_m: of ∂R/∂a [1/s²].
     pub acceleration: f64,
+    /// Whether a segment is taut, and its geometric stiffness, come from the tension that was predicted.
+    pub predicted: bool,
 }
+
+/// Compression that is taken for rounding [-], as a strain.
+const PUSH_STRAIN: f64 = 1e-12;
 
 /// A segment as it lies.
 struct Geometry {
@@ -328,35 +336,43 @@ impl LineWork {
         let g = Geometry::new(state.position[i], state.position[i + 1], unstretched);
         let rate = state.velocity[i + 1] - state.velocity[i]; // ġ [m/s]
         let stretch = line.segments.law[i].at(g.strain);
-        let (elastic, damping) = (
-            ea * stretch.force,
-            ba * g.direction.dot(&rate) / unstretched,
-        );
-        let tension = total_tension(elastic, damping, negative_tension);
-        let force = weights.force * tension * g.direction;
+        let elastic = ea * stretch.force;
+        let total = elastic + ba * g.direction.dot(&rate) / unstretched;
+        let predicted = weights.predicted && !negative_tension;
+        let taut = match (negative_tension, predicted) {
+            (true, _) => elastic > 0.0,
+            (_, true) => total > 0.0 || self.tension[i] > 0.0,
+            _ => total > 0.0,
+        };
+        let tension = match negative_tension {
+            true => total_tension(elastic, total - elastic, true),
+            false if taut => total,
+            false => 0.0,
+        };
         let mut stiffness = Matrix3::zeros();
         if TANGENT && g.length > 0.0 {
-            let springs = if negative_tension {
-                elastic > 0.0
+            let damps = taut || negative_tension;
+            let spring = if taut {
+                ea * stretch.slope / unstretched
             } else {
-                tension > 0.0
+                0.0
             };
-            let damps = springs || negative_tension;
-            let mut along = 0.0;
-            if springs {
-                along += weights.position * ea * stretch.slope / unstretched;
-            }
-            if damps {
-                along += weights.velocity * ba / unstretched;
-            }
-            let across = weights.position * tension.max(0.0) / g.length;
+            let damper = if damps { ba / unstretched } else { 0.0 };
+            let along = weights.position * spring + weights.velocity * damper;
+            let pull = if predicted { self.tension[i] } else { tension };
+            let across = weights.position * pull.max(0.0) / g.length;
             stiffness = Matrix3::from_diagonal_element(across) + (along - across) * g.along();
             if damps && ba > 0.0 {
                 let turning = rate - rate.dot(&g.direction) * g.direction; // P ġ
-                let coefficient = weights.position * ba / (g.length * unstretched);
+                let coefficient = weights.position * damper / g.length;
                 stiffness += g.direction * (coefficient * turning).transpose();
             }
+            self.slope[i] = along / weights.position;
+        } else {
+            self.tension[i] = tension;
         }
+        (self.elastic[i], self.direction[i]) = (total, g.direction);
+        let force = weights.force * tension * g.direction;
         self.add_segment(i, force, stiffness);
     }
 
@@ -405,6 +421,17 @@ impl LineWork {
         }
     }
 
+    /// Dampers fade over what a node moves in a step of `dt` [s], at least over the range of a resting node.
+    fn fade_dampers(&mut self, line: &Line, state: &LineState, dt: f64) {
+        let Some(contact) = &line.nodes.contact else {
+            return;
+        };
+        for (i, reach) in self.reach.iter_mut().enumerate() {
+            let resting = damper_reach(contact.stiffness[i], line.nodes.weight[i]);
+            *reach = resting.max(state.velocity[i].z.abs() * dt);
+        }
+    }
+
     fn add_contact<const TANGENT: bool>(
         &mut self,
         line: &Line,
@@ -420,8 +447,8 @@ impl LineWork {
                 damping: contact.damping[i],
             };
             let penetration = contact.bed - state.position[i].z;
-            let reach = damper_reach(k, line.nodes.weight[i]);
-            let Some(bed) = SmoothContact::new(k, penetration, state.velocity[i].z, reach) else {
+            let velocity = state.velocity[i].z;
+            let Some(bed) = SmoothContact::new(k, penetration, velocity, self.reach[i]) else {
                 continue;
             };
             self.residual[i].z -= weights.force * bed.force;
@@ -436,11 +463,10 @@ impl LineWork {
 /// Half the range of penetrations over which the seabed damper fades in, in static penetrations of the node [-].
 const DAMPER_FADE: f64 = 2.0;
 
-/// Half the range of penetrations over which the damper fades in [m].
-#[inline(always)]
-fn damper_reach(contact: ContactCoefficients, weight: f64) -> f64 {
-    if contact.stiffness > 0.0 {
-        DAMPER_FADE * weight.abs() / contact.stiffness
+/// Half the range of penetrations over which the damper of a resting node fades in [m].
+fn damper_reach(stiffness: f64, weight: f64) -> f64 {
+    if stiffness > 0.0 {
+        DAMPER_FADE * weight.abs() / stiffness
     } else {
         0.0
     }
@@ -615,6 +641,40 @@ impl Workspace {
         true
     }
 
+    /// Tensions after a `part` of the correction, by the linear system. False if a segment that was taken as taut pushes by more
+    /// than rounding.
+    pub(crate) fn predict_tensions(&mut self, model: &Model, network: &Network, part: f64) -> bool {
+        let mut consistent = true;
+        for &index in &network.lines {
+            let (line, stiffness) = (
+                &mut self.lines[index],
+                &model.lines[index].segments.axial_stiffness,
+            );
+            let x = line.chain.solution();
+            for i in 0..line.tension.len() {
+                let growth = -line.direction[i].dot(&(x[i + 1] - x[i])); // of the segment's length [m]
+                let predicted = line.elastic[i] + line.slope[i] * growth;
+                consistent &=
+                    line.tension[i] <= 0.0 || line.elastic[i] >= -PUSH_STRAIN * stiffness[i];
+                line.tension[i] += part * (predicted - line.tension[i]);
+            }
+        }
+        consistent
+    }
+
+    /// Sets how far the seabed dampers of a network fade for a step of `dt` [s] from `state`.
+    pub(crate) fn fade_dampers(
+        &mut self,
+        model: &Model,
+        network: &Network,
+        state: &State,
+        dt: f64,
+    ) {
+        for &index in &network.lines {
+            self.lines[index].fade_dampers(&model.lines[index], &state.lines[index], dt);
+        }
+    }
+
     /// Keeps the residual of the last assembly for the next step.
     pub(crate) fn remember(&mut self, network: &Network) {
         for &index in &network.lines {
@@ -649,7 +709,10 @@ impl Workspace {
     /// Longest entry of the last solution [m]; not a number if one of them is not.
     pub(crate) fn greatest_solution(&self, network: &Network) -> f64 {
         let longer = |a: f64, b: f64| if a.is_nan() || a >= b { a } else { b };
-        let lines = network.lines.iter().flat_map(|&line| self.lines[line].chain.solution());
+        let lines = network
+            .lines
+            .iter()
+            .flat_map(|&line| self.lines[line].chain.solution());
         lines.map(|x| x.norm_squared()).fold(0.0, longer).sqrt()
     }
 
@@ -787,6 +850,7 @@ pub fn end_force(
         position: 0.0,
         velocity: 0.0,
         acceleration: 0.0,
+        predicted: false,
     };
     let negative_tension = model.solver.negative_tension;
     let (line_model, line_state, line_work) = (
@@ -794,6 +858,7 @@ pub fn end_force(
         &state.lines[line],
         &mut work.lines[line],
     );
+    line_work.fade_dampers(line_model, line_state, 0.0);
     line_work.assemble_dynamic::<false>(line_model, line_state, &weights, negative_tension);
     -line_work.residual[line_model.end_node(end)]
 }

@@ -297,7 +297,7 @@ impl<'a> Problem<'a> {
                 return false;
             }
             let part = (STEP_MAX * self.reach(state) / step).min(1.0);
-            self.predict_tensions(work, part);
+            work.predict_tensions(self.model, self.network, part);
             self.advance(state, work, part);
             if part == 1.0 {
                 relaxation = (0.1 * relaxation).max(1e-12);
@@ -361,19 +361,6 @@ impl<'a> Problem<'a> {
             let mut segments = line.elastic.iter().zip(&line.tension);
             segments.all(|(&elastic, &tension)| tension <= 0.0 || elastic >= -tolerance)
         })
-    }
-
-    /// Tensions after a `part` of the correction, by the linear system [N].
-    fn predict_tensions(&self, work: &mut Workspace, part: f64) {
-        for &index in &self.network.lines {
-            let line = &mut work.lines[index];
-            let x = line.chain.solution();
-            for i in 0..line.tension.len() {
-                let stretched = -line.direction[i].dot(&(x[i + 1] - x[i])); // growth of the segment [m]
-                let predicted = line.elastic[i] + line.slope[i] * stretched;
-                line.tension[i] += part * (predicted - line.tension[i]);
-            }
-        }
     }
 
     /// Adds a `part` of the correction, the negative of the solution, to the positions.

@@ -6,11 +6,20 @@ use nalgebra::{Rotation3, Unit};
 use super::*;
 use crate::scene::Scene;
 
-const FORCES: Weights = Weights { force: 1.0, inertia: 1.0, position: 0.0, velocity: 0.0, acceleration: 0.0 };
+const FORCES: Weights = Weights {
+    force: 1.0,
+    inertia: 1.0,
+    position: 0.0,
+    velocity: 0.0,
+    acceleration: 0.0,
+    predicted: false,
+};
 
 /// A repeatable number in −1 … 1.
 fn noise(seed: &mut u64) -> f64 {
-    *seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+    *seed = seed
+        .wrapping_mul(6364136223846793005)
+        .wrapping_add(1442695040888963407);
     (*seed >> 11) as f64 / (1u64 << 52) as f64 - 1.0
 }
 
@@ -70,7 +79,8 @@ fn random_state(model: &Model, size: f64) -> State {
         }
         let last = nodes.position.len() - 1;
         let joint = &mut state.points[1];
-        (joint.position, joint.velocity) = (Vector3::new(3.6, 0.1, -0.2), Vector3::new(0.2, -0.3, 0.4));
+        (joint.position, joint.velocity) =
+            (Vector3::new(3.6, 0.1, -0.2), Vector3::new(0.2, -0.3, 0.4));
         (nodes.position[last], nodes.velocity[last]) = (joint.position, joint.velocity);
     }
     place_joint(model, &mut state);
@@ -90,7 +100,10 @@ fn residual(model: &Model, state: &State, work: &mut Workspace) -> Vec<Vector3<f
 }
 
 fn collect(work: &Workspace) -> Vec<Vector3<f64>> {
-    let nodes = work.lines.iter().flat_map(|line| line.residual.iter().copied());
+    let nodes = work
+        .lines
+        .iter()
+        .flat_map(|line| line.residual.iter().copied());
     nodes.chain([work.points[1].total]).collect()
 }
 
@@ -120,9 +133,14 @@ fn assert_tangent(model: &Model, state: &State, varied: Varied) {
         ..FORCES
     };
     let mut work = Workspace::new(model);
+    work.fade_dampers(model, &model.networks[0], state, 0.0);
     work.assemble_dynamic::<true>(model, &model.networks[0], state, 0.0, &weights);
     let tangent = work.lines.clone();
-    let greatest = tangent.iter().flat_map(|line| &line.residual).map(|r| r.amax()).fold(0.0, f64::max);
+    let greatest = tangent
+        .iter()
+        .flat_map(|line| &line.residual)
+        .map(|r| r.amax())
+        .fold(0.0, f64::max);
     let h = 1e-6;
     for (index, line) in tangent.iter().enumerate() {
         for node in 0..line.diagonal.len() {
@@ -137,9 +155,17 @@ fn assert_tangent(model: &Model, state: &State, varied: Varied) {
                 let slope = |i: usize| (high[i] - low[i]) / (2.0 * h);
                 // truncation, and the rounding of the residual over the step
                 let scale = 1e-8 * line.diagonal[node].amax() + 8.0 * f64::EPSILON * greatest / h;
-                assert_relative_eq!(slope(node), line.diagonal[node].column(axis).into_owned(), epsilon = scale);
+                assert_relative_eq!(
+                    slope(node),
+                    line.diagonal[node].column(axis).into_owned(),
+                    epsilon = scale
+                );
                 if node > 0 {
-                    assert_relative_eq!(slope(node - 1), line.coupling[node - 1].column(axis).into_owned(), epsilon = scale);
+                    assert_relative_eq!(
+                        slope(node - 1),
+                        line.coupling[node - 1].column(axis).into_owned(),
+                        epsilon = scale
+                    );
                 }
             }
         }
@@ -147,7 +173,8 @@ fn assert_tangent(model: &Model, state: &State, varied: Varied) {
 }
 
 const WATER: &str = "[water]\ndensity = 1025.0";
-const BED: &str = "[seabed]\ndepth = 0.05\nstiffness = 2.0e4\ndamping = 900.0\ncontact = \"as_given\"";
+const BED: &str =
+    "[seabed]\ndepth = 0.05\nstiffness = 2.0e4\ndamping = 900.0\ncontact = \"as_given\"";
 
 #[test]
 fn the_stiffness_is_the_slope_of_the_residual_stretched_and_on_the_bed() {
@@ -169,7 +196,8 @@ fn the_damping_is_the_slope_of_the_residual_in_water_and_on_the_bed() {
 
 #[test]
 fn the_mass_is_the_slope_of_the_residual_with_unequal_added_mass() {
-    let line_type = "mass = 2.0\ndiameter = 0.05\nadded_mass_normal = 1.0\nadded_mass_tangential = 0.1";
+    let line_type =
+        "mass = 2.0\ndiameter = 0.05\nadded_mass_normal = 1.0\nadded_mass_tangential = 0.1";
     let model = network(WATER, line_type);
     assert_tangent(&model, &random_state(&model, 1.0), Varied::Acceleration);
 }
@@ -218,8 +246,11 @@ fn rotating_the_world_rotates_the_forces() {
 
 #[test]
 fn the_seabed_damper_fades_in_and_never_pulls() {
-    let k = ContactCoefficients { stiffness: 1e4, damping: 2e3 };
-    let reach = damper_reach(k, 50.0);
+    let k = ContactCoefficients {
+        stiffness: 1e4,
+        damping: 2e3,
+    };
+    let reach = damper_reach(k.stiffness, 50.0);
     assert_relative_eq!(reach, 0.01);
     assert!(SmoothContact::new(k, -reach, -1.0, reach).is_none());
     assert!(SmoothContact::new(k, 0.5 * reach, 1.0, reach).is_none());
@@ -240,7 +271,12 @@ fn the_linear_solution_satisfies_the_system_of_both_lines_and_the_point() {
     let model = network(BED, "mass = 2.0\ndiameter = 0.05");
     let state = random_state(&model, 1.0);
     let mut work = Workspace::new(&model);
-    let weights = Weights { position: 1.0, velocity: 40.0, acceleration: 900.0, ..FORCES };
+    let weights = Weights {
+        position: 1.0,
+        velocity: 40.0,
+        acceleration: 900.0,
+        ..FORCES
+    };
     let network = &model.networks[0];
     work.assemble_dynamic::<true>(&model, network, &state, 0.0, &weights);
     assert!(work.solve(&model, network, 0));
