@@ -9,10 +9,9 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-use crate::dynamics::StepError;
-use crate::dynamics::advance::{Choice, Counters, Workspace};
+use crate::dynamics::advance::{Counters, Workspace};
 use crate::dynamics::motion::{HostPath, Sample};
-use crate::dynamics::reaction;
+use crate::dynamics::{Choice, StepError, reaction};
 use crate::model::{End, Kinematics, Line, LineState, Model, PointState, Role, State};
 use crate::physics::stretch::StretchLaw;
 use crate::scene::{Scene, SceneError};

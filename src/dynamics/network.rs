@@ -60,6 +60,11 @@ impl NetworkWork {
         lines.map(|(work, &line)| work.drag_rate(&model.lines[line])).fold(0.0, f64::max)
     }
 
+    /// The first line, by its place in the network, and node whose position or velocity is not finite.
+    pub fn broken_node(&self) -> Option<(usize, usize)> {
+        self.lines.iter().enumerate().find_map(|(line, work)| Some((line, work.broken_node()?)))
+    }
+
     /// One step from `t` [s]. `held` tells where held points are.
     pub fn step(
         &mut self,
