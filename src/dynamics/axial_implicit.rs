@@ -18,6 +18,7 @@
 //! [`super::limit::transverse_step`].
 
 use nalgebra::Vector3;
+use pulp::NullaryFnOnce;
 
 use super::layout::{FIRST, Layout, pad};
 use super::leapfrog::Step;
@@ -183,6 +184,12 @@ impl AxialWork {
 
     /// One step; `ends` are the positions [m] of both ends after it. Returns the passes it took.
     pub fn step(&mut self, step: Step, ends: [Vector3<f64>; 2]) -> usize {
+        let unit = self.layout.vector_unit;
+        unit.dispatch(AxialStep(self, step, ends))
+    }
+
+    #[inline(always)]
+    fn step_vectors(&mut self, step: Step, ends: [Vector3<f64>; 2]) -> usize {
         self.prepare_segments(step);
         self.prepare_nodes(step);
         self.prepare_ends(step, ends);
@@ -215,6 +222,7 @@ impl AxialWork {
         }
     }
 
+    #[inline(always)]
     fn prepare_segments(&mut self, step: Step) {
         let [b1, h0, h1, h2] = self.weights.0.map(Lanes::splat);
         let drift = Lanes::splat(step.drift);
@@ -251,6 +259,7 @@ impl AxialWork {
         }
     }
 
+    #[inline(always)]
     fn prepare_nodes(&mut self, step: Step) {
         let kick = Lanes::splat(step.kick);
         let half = Lanes::splat(0.5) * kick;
@@ -300,6 +309,7 @@ impl AxialWork {
     }
 
     /// Held ends move by the secant of their path and yield to no force.
+    #[inline(always)]
     fn prepare_ends(&mut self, step: Step, ends: [Vector3<f64>; 2]) {
         for (end, position) in [End::A, End::B].into_iter().zip(ends) {
             let at = self.layout.end_index(end);
@@ -349,6 +359,7 @@ impl AxialWork {
         self.nodes.loose.store(loose, at);
     }
 
+    #[inline(always)]
     fn assemble_rows(&mut self, step: Step) {
         let kick = Lanes::splat(step.kick);
         let (zero, one) = (Lanes::splat(0.0), Lanes::splat(1.0));
@@ -377,6 +388,7 @@ impl AxialWork {
     }
 
     /// New velocities from T̄, into `velocity_before`; false if the bed pushes other nodes than assumed.
+    #[inline(always)]
     fn find_velocities(&mut self, step: Step) -> bool {
         let kick = Lanes::splat(step.kick);
         let mut holds = true;
@@ -403,6 +415,7 @@ impl AxialWork {
     }
 
     /// Ends are held: no bed acts on their motion.
+    #[inline(always)]
     fn release_ends(&mut self) {
         for at in [FIRST, FIRST + self.layout.segment_count] {
             self.nodes.held[at] = 0.0;
@@ -412,6 +425,7 @@ impl AxialWork {
     }
 
     /// Updates slack flags and the true stretch; false if either asks for another pass.
+    #[inline(always)]
     fn check_segments(&mut self, step: Step, greatest: f64) -> bool {
         let drift = Lanes::splat(step.drift);
         let one = Lanes::splat(1.0);
@@ -458,6 +472,18 @@ impl AxialWork {
     /// Index of the first node whose position or velocity is not finite.
     pub fn broken_node(&self) -> Option<usize> {
         self.layout.broken_node()
+    }
+}
+
+/// [`AxialWork::step`] for the vector unit of the machine.
+struct AxialStep<'a>(&'a mut AxialWork, Step, [Vector3<f64>; 2]);
+
+impl NullaryFnOnce for AxialStep<'_> {
+    type Output = usize;
+
+    #[inline(always)]
+    fn call(self) -> usize {
+        self.0.step_vectors(self.1, self.2)
     }
 }
 

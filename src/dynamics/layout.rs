@@ -4,6 +4,7 @@
 //! weight and no drag, so that it stays at rest and no loop has a remainder.
 
 use nalgebra::Vector3;
+use pulp::{Arch, NullaryFnOnce};
 
 use super::leapfrog::Step;
 use crate::math::lanes::{Components, LANES, Lanes, Vectors};
@@ -19,6 +20,8 @@ const LENGTH2_MIN: f64 = 1e-200;
 #[derive(Debug, Clone)]
 pub(super) struct Layout {
     pub segment_count: usize,
+    /// The widest vectors of this machine; results do not depend on it.
+    pub vector_unit: Arch,
     pub law: StretchLaw,
     pub negative_tension: bool,
     /// Node positions at t_n [m].
@@ -61,6 +64,7 @@ impl Layout {
         let lengths = pad(n, &line.segments.length, 1.0);
         Some(Layout {
             segment_count: n,
+            vector_unit: Arch::new(),
             law: line.uniform_law()?,
             negative_tension,
             position: padded_positions(size),
@@ -131,11 +135,13 @@ impl Layout {
         }
     }
 
+    #[inline(always)]
     /// Starts of the vectors that cover all segments.
     pub fn segment_blocks(&self) -> impl Iterator<Item = usize> + use<> {
         (FIRST..FIRST + self.segment_count).step_by(LANES)
     }
 
+    #[inline(always)]
     /// Starts of the vectors that cover all nodes.
     pub fn node_blocks(&self) -> impl Iterator<Item = usize> + use<> {
         (FIRST..=FIRST + self.segment_count).step_by(LANES)
@@ -164,6 +170,12 @@ impl Layout {
 
     /// Moves the nodes from t_n to t_{n+1}.
     pub fn drift(&mut self, drift: f64) {
+        let unit = self.vector_unit;
+        unit.dispatch(Drift(self, drift));
+    }
+
+    #[inline(always)]
+    fn drift_nodes(&mut self, drift: f64) {
         let drift = Lanes::splat(drift);
         for at in self.node_blocks() {
             let position = self.position.load(at) + self.velocity.load(at).scale(drift);
@@ -189,6 +201,18 @@ impl Layout {
             let sum = self.position.get(FIRST + i) + self.velocity.get(FIRST + i);
             !sum.iter().all(|value| value.is_finite())
         })
+    }
+}
+
+/// [`Layout::drift`] for the vector unit of the machine.
+struct Drift<'a>(&'a mut Layout, f64);
+
+impl NullaryFnOnce for Drift<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        self.0.drift_nodes(self.1);
     }
 }
 

@@ -13,6 +13,7 @@
 //! M_n I + (M_t − M_n) t tᵀ by Sherman & Morrison (1950); contact: backward Euler on the penetrating spring and damper.
 //!
 use nalgebra::{Matrix3, Vector3};
+use pulp::NullaryFnOnce;
 
 use super::layout::{Layout, pad};
 use crate::math::lanes::{Components, Lanes, Vectors};
@@ -63,6 +64,30 @@ impl WaterWork {
         let normal = Lanes::load(&self.drag_normal, at) * across.dot(across).sqrt();
         let tangential = Lanes::load(&self.drag_tangent, at) * along.abs() * along;
         across.scale(normal) + tangent.scale(tangential)
+    }
+}
+
+/// [`LineWork::pull_segments`] for the vector unit of the machine.
+struct PullSegments<'a>(&'a mut LineWork);
+
+impl NullaryFnOnce for PullSegments<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        self.0.choose_segment_pass();
+    }
+}
+
+/// [`LineWork::kick_nodes`] for the vector unit of the machine.
+struct KickNodes<'a>(&'a mut LineWork, Step);
+
+impl NullaryFnOnce for KickNodes<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        self.0.choose_node_pass(self.1);
     }
 }
 
@@ -130,6 +155,11 @@ impl LineWork {
 
     /// Step 1: tensions from positions at t_n and velocities at t_{n−½}.
     pub fn pull_segments(&mut self) {
+        self.layout.vector_unit.dispatch(PullSegments(self));
+    }
+
+    #[inline(always)]
+    fn choose_segment_pass(&mut self) {
         match (self.layout.law, self.damped) {
             (StretchLaw::Engineering, false) => self.segment_pass::<false>(|strain| strain),
             (StretchLaw::Engineering, true) => self.segment_pass::<true>(|strain| strain),
@@ -164,6 +194,11 @@ impl LineWork {
 
     /// Step 2: velocities from t_{n−½} to t_{n+½}.
     pub fn kick_nodes(&mut self, step: Step) {
+        self.layout.vector_unit.dispatch(KickNodes(self, step));
+    }
+
+    #[inline(always)]
+    fn choose_node_pass(&mut self, step: Step) {
         match (
             self.water.is_some(),
             self.layout.contact.is_some(),
@@ -180,6 +215,7 @@ impl LineWork {
         }
     }
 
+    #[inline(always)]
     fn node_pass<const WATER: bool, const BED: bool, const MASS_DAMPING: bool>(
         &mut self,
         step: Step,
