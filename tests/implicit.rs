@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use moorline::dynamics::implicit::{self, Scheme};
+use moorline::dynamics::implicit::{self, SPECTRAL_RADIUS, Scheme, Span};
 use moorline::dynamics::quasi_static;
 use moorline::model::{Kinematics, Model, State};
 use moorline::scene::Scene;
@@ -61,8 +61,11 @@ fn run(
             number,
             &mut state,
             held,
-            [0.0, end],
-            dt,
+            Span {
+                start: 0.0,
+                end,
+                step_max: dt,
+            },
             &scheme,
             &mut work,
         )
@@ -143,6 +146,7 @@ fn halving_the_time_step_quarters_the_error_of_generalised_alpha_and_bossak() {
     let held = swing(&model, Vector3::new(8.0, 3.0, 4.0), 10.0);
     let steps = [0.1, 0.05, 0.025, 0.0125];
     for scheme in [
+        Scheme::generalised_alpha(SPECTRAL_RADIUS),
         Scheme::generalised_alpha(0.5),
         Scheme::generalised_alpha(0.0),
         Scheme::generalised_alpha(1.0),
@@ -164,34 +168,6 @@ fn halving_the_time_step_quarters_the_error_of_generalised_alpha_and_bossak() {
             "{scheme:?}: slope {slope}, errors {errors:?}"
         );
     }
-}
-
-#[test]
-fn bossak_without_its_own_gamma_is_of_first_order() {
-    let model = chain();
-    let start = statics(&model);
-    let held = swing(&model, Vector3::new(8.0, 3.0, 4.0), 10.0);
-    let scheme = Scheme::bossak(-0.1, Some(0.8));
-    let steps = [0.1, 0.05, 0.025, 0.0125];
-    let (fine, _) = run(
-        &model,
-        start.clone(),
-        &held,
-        12.0,
-        1e-4,
-        Scheme::generalised_alpha(0.5),
-    );
-    let errors = steps.map(|dt| {
-        gap(
-            &run(&model, start.clone(), &held, 12.0, dt, scheme).0,
-            &fine,
-        )
-    });
-    let slope = order(&steps, &errors);
-    assert!(
-        (slope - 1.0).abs() < 0.15,
-        "slope {slope}, errors {errors:?}"
-    );
 }
 
 // ------------------------------------------------------------------ pendulum
@@ -312,7 +288,7 @@ fn a_snapping_chain_stays_bounded_also_a_hundred_times_stiffer() {
             &held,
             20.0,
             0.01,
-            Scheme::generalised_alpha(0.5),
+            Scheme::generalised_alpha(SPECTRAL_RADIUS),
         );
         let fastest = state.lines[0]
             .velocity
@@ -327,7 +303,7 @@ fn a_snapping_chain_stays_bounded_also_a_hundred_times_stiffer() {
                 .all(|r| r.z > -3.1 && r.z < 0.5)
         );
         assert!(
-            counters.solves as f64 <= solves * 2000.0 && counters.halvings <= 50,
+            counters.solves as f64 <= solves * 2000.0 && counters.halvings <= 100,
             "EA {axial_stiffness}, {contact}: {counters:?}"
         );
     }
@@ -392,21 +368,21 @@ fn a_falling_cable_that_snaps_taut_never_gains_energy() {
             (state.lines[0].acceleration[7].z + model.gravity).abs() < 1e-9,
             "it falls freely at first"
         );
-        let scheme = Scheme::generalised_alpha(0.5);
+        let scheme = Scheme::generalised_alpha(SPECTRAL_RADIUS);
         let mut highest = first;
         for step in 0..1000 {
-            let span = [0.01 * step as f64, 0.01 * (step + 1) as f64];
-            implicit::advance(&model, 0, &mut state, &held, span, 0.01, &scheme, &mut work)
-                .unwrap();
+            let start = 0.01 * step as f64;
+            let span = Span {
+                start,
+                end: start + 0.01,
+                step_max: 0.01,
+            };
+            implicit::advance(&model, 0, &mut state, &held, span, &scheme, &mut work).unwrap();
             highest = energy(&model, &state).max(highest);
         }
         let drop = first - lowest;
-        println!(
-            "{axial_stiffness} {first} {lowest} {highest} {}",
-            energy(&model, &state)
-        );
         assert!(
-            highest - first < 1e-2 * drop,
+            highest - first < 1e-3 * drop,
             "EA {axial_stiffness}: {first} J grew to {highest} J"
         );
         assert!(
@@ -569,8 +545,11 @@ fn a_step_that_fails_leaves_the_state_as_it_was_and_says_where() {
         0,
         &mut state,
         &broken,
-        [0.0, 1.0],
-        0.1,
+        Span {
+            start: 0.0,
+            end: 1.0,
+            step_max: 0.1,
+        },
         &scheme,
         &mut work,
     )
