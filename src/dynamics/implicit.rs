@@ -31,6 +31,8 @@ use crate::statics::assembly::{
 
 /// Spectral radius at infinite frequency where the scene gives none [-].
 pub const SPECTRAL_RADIUS: f64 = 0.2;
+/// Bossak's α where the scene gives none [-].
+pub const BOSSAK_ALPHA: f64 = -0.3;
 /// Last correction, over the shortest segment [-].
 const NEWTON_TOLERANCE: f64 = 1e-7;
 /// Newton iterations of a step.
@@ -78,7 +80,7 @@ impl Scheme {
     pub fn new(solver: &Solver) -> Scheme {
         match (solver.integrator, solver.bossak) {
             (Integrator::Bossak, Some(bossak)) => Scheme::bossak(bossak.alpha, bossak.gamma),
-            (Integrator::Bossak, None) => Scheme::bossak(-0.1, None),
+            (Integrator::Bossak, None) => Scheme::bossak(BOSSAK_ALPHA, None),
             _ => Scheme::generalised_alpha(solver.spectral_radius.unwrap_or(SPECTRAL_RADIUS)),
         }
     }

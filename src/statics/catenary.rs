@@ -70,9 +70,7 @@ pub enum CatenaryError {
         wanted: &'static str,
     },
     /// An end lies below the bed.
-    #[error(
-        "bed.height: the bed at z = {bed} m is above end {end} at z = {z} m; it must be at or below both ends"
-    )]
+    #[error("bed.height: the bed at z = {bed} m is above end {end} at z = {z} m; it must be at or below both ends")]
     EndBelowBed {
         /// Which end, A or B.
         end: char,
@@ -111,70 +109,42 @@ pub struct Catenary {
 ///
 /// Every line that is one has a solution, so the only errors are inputs that are not finite, not positive where they must be,
 /// or an end below the bed.
-pub fn solve(
-    sections: &[Section],
-    span: f64,
-    rise: f64,
-    bed: Option<Bed>,
-) -> Result<Catenary, CatenaryError> {
+pub fn solve(sections: &[Section], span: f64, rise: f64, bed: Option<Bed>) -> Result<Catenary, CatenaryError> {
     let bed = check(sections, span, rise, bed)?;
     let (shape, held) = match uniform(sections) {
         Some(section) => solve_uniform(&section, span, rise, bed),
         None => solve_sections(sections, span, rise, bed),
     };
     let forces = held.horizontal_a + held.horizontal_b + held.vertical_a + held.vertical_b;
-    assert!(forces.is_finite(), "a valid line has finite end forces");
-    Ok(Catenary {
-        shape,
-        held,
-        span,
-        rise,
-    })
+    assert!(forces.is_finite(), "a valid line has finite end forces: {sections:?}, span {span}, rise {rise}, {bed:?}, {held:?}");
+    Ok(Catenary { shape, held, span, rise })
 }
 
 /// The one section that `sections` are, if they are all of one kind.
 fn uniform(sections: &[Section]) -> Option<Section> {
     let first = sections[0];
-    let alike =
-        |s: &Section| s.weight == first.weight && s.axial_stiffness == first.axial_stiffness;
+    let alike = |s: &Section| s.weight == first.weight && s.axial_stiffness == first.axial_stiffness;
     let length = sections.iter().map(|section| section.length).sum();
-    sections
-        .iter()
-        .all(alike)
-        .then_some(Section { length, ..first })
+    sections.iter().all(alike).then_some(Section { length, ..first })
 }
 
 fn solve_uniform(section: &Section, span: f64, rise: f64, bed: Option<Bed>) -> (Shape, Held) {
-    let line = Uniform {
-        length: section.length,
-        weight: section.weight,
-        axial_stiffness: section.axial_stiffness,
-    };
+    let line = Uniform { length: section.length, weight: section.weight, axial_stiffness: section.axial_stiffness };
     let held = line.suspend(span, rise);
     match bed {
         Some(bed) if lowest(section, &held) < bed.height => {
             if bed.friction > 0.0 && bed.height < 0.0 {
                 let mut shape = Shape::default();
-                let frictionless = Touchdown {
-                    span,
-                    height_a: -bed.height,
-                    height_b: rise - bed.height,
-                    friction: 0.0,
-                };
+                let frictionless = Touchdown { span, height_a: -bed.height, height_b: rise - bed.height, friction: 0.0 };
                 let guess = line.touch_down(&frictionless);
                 let line = Sections::new(std::slice::from_ref(section), span, rise, Some(bed));
                 let held = line.solve((guess.horizontal_a, guess.vertical_a), &mut shape);
                 return (shape, held);
             }
             let height_b = rise - bed.height;
-            let at = Touchdown {
-                span,
-                height_a: -bed.height,
-                height_b,
-                friction: bed.friction,
-            };
+            let at = Touchdown { span, height_a: -bed.height, height_b, friction: bed.friction };
             let held = line.touch_down(&at);
-            (touchdown_shape(section, &held, bed, span, rise), held)
+            (touchdown_shape(section, &held, bed, span), held)
         }
         _ => (suspended_shape(section, &held, span, rise), held),
     }
@@ -192,27 +162,17 @@ fn lowest(section: &Section, held: &Held) -> f64 {
 fn suspended_shape(section: &Section, held: &Held, span: f64, rise: f64) -> Shape {
     let mut shape = Shape::default();
     if held.horizontal_a == 0.0 && held.vertical_a == 0.0 && held.vertical_b == 0.0 {
-        shape.push(
-            section.length,
-            Kind::Slack {
-                x: 0.0,
-                z: 0.0,
-                on_bed: false,
-            },
-        );
-        shape.close(span, rise);
+        let (x, z) = (span / section.length, rise / section.length);
+        shape.push(section.length, Kind::Slack { x, z, on_bed: false });
     } else {
         shape.fly(section, section.length, held.horizontal_a, held.vertical_a);
     }
     shape
 }
 
-fn touchdown_shape(section: &Section, held: &Held, bed: Bed, span: f64, rise: f64) -> Shape {
+fn touchdown_shape(section: &Section, held: &Held, bed: Bed, span: f64) -> Shape {
     let mut shape = Shape::default();
-    let (a, b) = (
-        -held.vertical_a / section.weight,
-        held.vertical_b / section.weight,
-    );
+    let (a, b) = (-held.vertical_a / section.weight, held.vertical_b / section.weight);
     let growth = bed.friction * section.weight;
     shape.fly(section, a, held.horizontal_a, held.vertical_a);
     let laid = (section.length - a - b).max(0.0);
@@ -226,7 +186,7 @@ fn touchdown_shape(section: &Section, held: &Held, bed: Bed, span: f64, rise: f6
     shape.lay(section, tight, held.horizontal_a, growth);
     shape.fly(section, b, held.horizontal_b, 0.0);
     if slack {
-        shape.close(span, rise);
+        shape.close(span);
     }
     shape
 }
@@ -240,21 +200,12 @@ fn solve_sections(sections: &[Section], span: f64, rise: f64, bed: Option<Bed>) 
         return (shape, held);
     }
     let weight: f64 = sections.iter().map(|s| s.weight * s.length).sum();
-    let alike = Uniform {
-        length,
-        weight: weight / length,
-        axial_stiffness: length / flexibility,
-    };
+    let alike = Uniform { length, weight: weight / length, axial_stiffness: length / flexibility };
     let suspended = alike.suspend(span, rise);
     let guess = match bed {
         Some(bed) if alike.weight > 0.0 && suspended.vertical_a < 0.0 => {
             let height_b = rise - bed.height;
-            alike.touch_down(&Touchdown {
-                span,
-                height_a: -bed.height,
-                height_b,
-                friction: 0.0,
-            })
+            alike.touch_down(&Touchdown { span, height_a: -bed.height, height_b, friction: 0.0 })
         }
         _ => suspended,
     };
@@ -266,74 +217,37 @@ fn solve_sections(sections: &[Section], span: f64, rise: f64, bed: Option<Bed>) 
 fn suspend_weightless(sections: &[Section], span: f64, rise: f64, shape: &mut Shape) -> Held {
     let length: f64 = sections.iter().map(|s| s.length).sum();
     let flexibility: f64 = sections.iter().map(|s| s.length / s.axial_stiffness).sum();
-    let alike = Uniform {
-        length,
-        weight: 0.0,
-        axial_stiffness: length / flexibility,
-    };
+    let alike = Uniform { length, weight: 0.0, axial_stiffness: length / flexibility };
     let held = alike.suspend(span, rise);
     for section in sections {
         if held.horizontal_a == 0.0 && held.vertical_a == 0.0 {
-            shape.push(
-                section.length,
-                Kind::Slack {
-                    x: 0.0,
-                    z: 0.0,
-                    on_bed: false,
-                },
-            );
+            shape.push(section.length, Kind::Slack { x: span / length, z: rise / length, on_bed: false });
         } else {
             shape.fly(section, section.length, held.horizontal_a, held.vertical_a);
         }
     }
-    shape.close(span, rise);
     held
 }
 
 /// Refuses what is not a line; returns the bed with ends that are below it by rounding put on it.
-fn check(
-    sections: &[Section],
-    span: f64,
-    rise: f64,
-    bed: Option<Bed>,
-) -> Result<Option<Bed>, CatenaryError> {
+fn check(sections: &[Section], span: f64, rise: f64, bed: Option<Bed>) -> Result<Option<Bed>, CatenaryError> {
     if sections.is_empty() {
         return Err(CatenaryError::NoSections);
     }
     for (index, section) in sections.iter().enumerate() {
         let positive = |value: f64| value > 0.0 && value.is_finite();
-        let complain = |key, value, unit, wanted| {
-            Err(CatenaryError::Section {
-                index,
-                key,
-                value,
-                unit,
-                wanted,
-            })
-        };
+        let complain = |key, value, unit, wanted| Err(CatenaryError::Section { index, key, value, unit, wanted });
         if !positive(section.length) {
             return complain("length", section.length, "m", "positive and finite");
         }
         if !positive(section.axial_stiffness) {
-            return complain(
-                "axial_stiffness",
-                section.axial_stiffness,
-                "N",
-                "positive and finite",
-            );
+            return complain("axial_stiffness", section.axial_stiffness, "N", "positive and finite");
         }
         if !section.weight.is_finite() {
             return complain("weight", section.weight, "N/m", "finite");
         }
     }
-    let complain = |key, value, unit, wanted| {
-        Err(CatenaryError::Input {
-            key,
-            value,
-            unit,
-            wanted,
-        })
-    };
+    let complain = |key, value, unit, wanted| Err(CatenaryError::Input { key, value, unit, wanted });
     if !(span >= 0.0 && span.is_finite()) {
         return complain("span", span, "m", "at least 0 and finite");
     }
@@ -350,16 +264,9 @@ fn check(
     let (end, z) = if rise < 0.0 { ('B', rise) } else { ('A', 0.0) };
     let length: f64 = sections.iter().map(|section| section.length).sum();
     if bed.height > z + BED_TOLERANCE * length {
-        return Err(CatenaryError::EndBelowBed {
-            end,
-            z,
-            bed: bed.height,
-        });
+        return Err(CatenaryError::EndBelowBed { end, z, bed: bed.height });
     }
-    Ok(Some(Bed {
-        height: bed.height.min(z),
-        ..bed
-    }))
+    Ok(Some(Bed { height: bed.height.min(z), ..bed }))
 }
 
 impl Catenary {
@@ -406,11 +313,7 @@ impl Catenary {
 
     /// Length of the line under its tension [m].
     pub fn stretched_length(&self) -> f64 {
-        self.shape
-            .pieces
-            .iter()
-            .map(|piece| piece.length + piece.elongation())
-            .sum()
+        self.shape.pieces.iter().map(|piece| piece.length + piece.elongation()).sum()
     }
 
     /// Greatest vertical distance below the chord between the ends [m]; below the lower end where the span is 0.

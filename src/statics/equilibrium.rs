@@ -30,8 +30,8 @@ use crate::model::{Line, LineState, Model, Network, PointState, State};
 
 /// Accepted force out of balance, over the greatest force [-].
 const FORCE_TOLERANCE: f64 = 1e-11;
-/// Accepted last correction, over the longest line [-].
-const STEP_TOLERANCE: f64 = 1e-10;
+/// Accepted last correction, over the longest line [-], unless three residuals in a row are accepted.
+const STEP_TOLERANCE: f64 = 1e-12;
 /// Longest correction, over the longest line or, if that is more, the reach of the network [-].
 const STEP_MAX: f64 = 0.2;
 /// Solves of one Newton iteration with predicted tensions.
@@ -42,6 +42,8 @@ const DESCENT_SOLVES_MAX: usize = 200;
 const CUTS_MAX: usize = 12;
 /// EA over the sum of the loads in the soft problem [-].
 const SOFT_STIFFNESS: f64 = 50.0;
+/// Load steps on a softening line.
+const LOAD_STEPS_MAX: usize = 200;
 /// Smallest increment of the loads on a softening line [-].
 const LOAD_INCREMENT_MIN: f64 = 1e-5;
 
@@ -513,7 +515,10 @@ impl<'a> Problem<'a> {
         let mut reached = std::mem::take(&mut work.trial);
         copy_network(self.model, self.network, state, &mut reached);
         let mut done: f64 = 0.0;
-        while done < 1.0 && increment >= LOAD_INCREMENT_MIN {
+        for _ in 0..LOAD_STEPS_MAX {
+            if done >= 1.0 || increment < LOAD_INCREMENT_MIN {
+                break;
+            }
             case.load = (done + increment).min(1.0);
             if self.newton(state, work, case) && self.stable(state, work, case) {
                 done = case.load;

@@ -14,14 +14,16 @@ pub(super) struct Root {
 
 /// Root of `function` (value, slope), increasing over (lower, upper), which may be infinite: Newton within the bracket.
 ///
-/// `reach` is the longest step from a point that is believed; `tolerance` the value that counts as zero.
+/// The function bends on the scale `bend` about 0, so brackets are halved on asinh(x/bend); `reach` is the longest step from a
+/// point that is believed; `tolerance` the value that counts as zero.
 pub(super) fn increasing(
     mut function: impl FnMut(f64) -> (f64, f64),
     start: f64,
     (mut lower, mut upper): (f64, f64),
-    reach: impl Fn(f64) -> f64,
+    (bend, reach): (f64, impl Fn(f64) -> f64),
     tolerance: f64,
 ) -> Root {
+    let halfway = |a: f64, b: f64| bend * (0.5 * ((a / bend).asinh() + (b / bend).asinh())).sinh();
     let mut at = start.clamp(lower, upper);
     let mut width_before = f64::INFINITY;
     for steps in 1..=STEPS_MAX {
@@ -29,19 +31,14 @@ pub(super) fn increasing(
         if value.abs() <= tolerance {
             return Root { at, steps };
         }
-        if value < 0.0 {
-            lower = at
-        } else {
-            upper = at
-        }
+        if value < 0.0 { lower = at } else { upper = at }
         let reach = reach(at);
         let newton = -value / slope;
-        let step = if newton.is_finite() {
-            newton.clamp(-reach, reach)
-        } else {
-            -reach.copysign(value)
-        };
+        let step = if newton.is_finite() { newton.clamp(-reach, reach) } else { -reach.copysign(value) };
         let mut next = at + step;
+        if next == at {
+            return Root { at, steps };
+        }
         // a bracket that hardly shrinks is halved: Newton may creep along a kink
         let width = upper - lower;
         let creeps = steps % 4 == 0 && width > 0.5 * width_before;
@@ -49,18 +46,15 @@ pub(super) fn increasing(
             width_before = width;
         }
         if !(next > lower && next < upper) || (creeps && width.is_finite()) {
-            next = 0.5 * (lower + upper);
+            next = halfway(lower, upper);
         }
         let close = 2.0 * f64::EPSILON * at.abs();
-        if next == at || (next - at).abs() <= close || width <= close {
+        if (next - at).abs() <= close || width <= close {
             return Root { at: next, steps };
         }
         at = next;
     }
-    Root {
-        at,
-        steps: STEPS_MAX,
-    }
+    Root { at, steps: STEPS_MAX }
 }
 
 /// Root of `function` (value only), increasing in x > 0 and searched on ln x from `start` outwards, down to `lowest`.
@@ -80,28 +74,18 @@ pub(super) fn increasing_by_ratio(
         steps += 1;
         if fa.abs() <= tolerance || (b <= floor && fb > 0.0) || steps > STEPS_MAX {
             let at = if fa.abs() <= tolerance { a } else { b };
-            return Root {
-                at: at.exp(),
-                steps,
-            };
+            return Root { at: at.exp(), steps };
         }
         if fa.signum() != fb.signum() {
             break;
         }
         // where the secant points, stretched a little so that it passes the root
         let secant = 1.5 * (b - a) * fb / (fa - fb);
-        stride = if secant.is_finite() {
-            secant.abs().clamp(1e-9, 8.0 * stride)
-        } else {
-            8.0 * stride
-        };
+        stride = if secant.is_finite() { secant.abs().clamp(1e-9, 8.0 * stride).min(5.0) } else { 5.0 };
         (a, fa) = (b, fb);
     }
     let inner = between(|t| function(t.exp()), (a, fa), (b, fb), tolerance);
-    Root {
-        at: inner.at.exp(),
-        steps: steps + inner.steps,
-    }
+    Root { at: inner.at.exp(), steps: steps + inner.steps }
 }
 
 /// Root of `function` between two points whose values differ in sign: inverse quadratic interpolation where it is safe,
@@ -124,11 +108,7 @@ pub(super) fn between(
             (b, fb) = (a, fa);
         }
         (a, fa) = (at, value);
-        let (best, residual) = if fa.abs() < fb.abs() {
-            (a, fa)
-        } else {
-            (b, fb)
-        };
+        let (best, residual) = if fa.abs() < fb.abs() { (a, fa) } else { (b, fb) };
         let close = f64::EPSILON * best.abs() + f64::MIN_POSITIVE;
         if residual.abs() <= tolerance || (b - a).abs() <= 2.0 * close {
             return Root { at: best, steps };
@@ -142,10 +122,7 @@ pub(super) fn between(
         let margin = close / (b - a).abs();
         fraction = fraction.clamp(margin, 1.0 - margin);
     }
-    Root {
-        at: if fa.abs() < fb.abs() { a } else { b },
-        steps: STEPS_MAX,
-    }
+    Root { at: if fa.abs() < fb.abs() { a } else { b }, steps: STEPS_MAX }
 }
 
 /// Root of `function` (value, slope in ln x), increasing in x over (0, `upper`): Newton on x where `linear`, else on ln x.
@@ -162,17 +139,9 @@ pub(super) fn increasing_positive(
         if value == 0.0 || (at <= lowest && value > 0.0) || (at >= upper && value < 0.0) {
             return Root { at, steps };
         }
-        if value < 0.0 {
-            lower = at
-        } else {
-            upper = at
-        }
+        if value < 0.0 { lower = at } else { upper = at }
         let relative = -value / slope;
-        let mut next = if linear(at) {
-            at + at * relative
-        } else {
-            at * relative.exp()
-        };
+        let mut next = if linear(at) { at + at * relative } else { at * relative.exp() };
         if !(next > lower && next < upper) {
             next = match (lower > 0.0, upper.is_finite()) {
                 (true, true) => (lower * upper).sqrt(),
@@ -189,10 +158,7 @@ pub(super) fn increasing_positive(
         }
         at = next;
     }
-    Root {
-        at,
-        steps: STEPS_MAX,
-    }
+    Root { at, steps: STEPS_MAX }
 }
 
 #[cfg(test)]
@@ -205,22 +171,11 @@ mod tests {
         let slope = |x: f64| 1e-6 / (1e-6 + (x - 3.7).abs()).powi(2) + 1e-9;
         for start in [1e-9, 1.0, 3.6, 5e5] {
             let everywhere = (f64::NEG_INFINITY, f64::INFINITY);
-            let newton = increasing(
-                |x| (sigmoid(x), slope(x)),
-                start,
-                everywhere,
-                |x| 1.0 + x.abs(),
-                0.0,
-            );
+            let newton = increasing(|x| (sigmoid(x), slope(x)), start, everywhere, (1.0, |x: f64| 1.0 + x.abs()), 0.0);
             assert!((newton.at - 3.7).abs() < 1e-14, "{newton:?}");
             let ratio = increasing_by_ratio(sigmoid, start, 1e-30, 0.0);
             assert!((ratio.at - 3.7).abs() < 1e-13, "{ratio:?}");
-            let positive = increasing_positive(
-                |x| (sigmoid(x), x * slope(x)),
-                start,
-                (1e-30, f64::INFINITY),
-                |_| false,
-            );
+            let positive = increasing_positive(|x| (sigmoid(x), x * slope(x)), start, (1e-30, f64::INFINITY), |_| false);
             assert!((positive.at - 3.7).abs() < 1e-13, "{positive:?}");
         }
         let halved = between(sigmoid, (-9.0, sigmoid(-9.0)), (1e4, sigmoid(1e4)), 0.0);
@@ -229,10 +184,7 @@ mod tests {
 
     #[test]
     fn a_search_that_meets_no_root_stops_at_the_lowest_value() {
-        assert_eq!(
-            increasing_positive(|x| (1.0 + x, x), 2.0, (1e-30, f64::INFINITY), |_| false).at,
-            1e-30
-        );
+        assert_eq!(increasing_positive(|x| (1.0 + x, x), 2.0, (1e-30, f64::INFINITY), |_| false).at, 1e-30);
         assert!(increasing_by_ratio(|x| 1.0 + x, 2.0, 1e-30, 0.0).at < 1.1e-30);
     }
 }

@@ -9,11 +9,7 @@ pub(super) enum Kind {
     /// Its ends only.
     Flight(Flight),
     /// The bed, straight, with a tension that grows from `tension` [N] at its start by `growth` per metre [N/m].
-    Laid {
-        tension: f64,
-        growth: f64,
-        axial_stiffness: f64,
-    },
+    Laid { tension: f64, growth: f64, axial_stiffness: f64 },
     /// Nothing: no tension, so the shape is one of many; drawn straight, advancing (x, z) per metre [-].
     Slack { x: f64, z: f64, on_bed: bool },
 }
@@ -36,23 +32,15 @@ impl Piece {
     fn advance(&self, length: f64) -> (f64, f64) {
         match self.kind {
             Kind::Flight(flight) => flight.first(length).advance(),
-            Kind::Laid {
-                tension,
-                growth,
-                axial_stiffness,
-            } => (
-                length * (1.0 + (tension + 0.5 * growth * length) / axial_stiffness),
-                0.0,
-            ),
+            Kind::Laid { tension, growth, axial_stiffness } => {
+                (length * (1.0 + (tension + 0.5 * growth * length) / axial_stiffness), 0.0)
+            }
             Kind::Slack { x, z, .. } => (x * length, z * length),
         }
     }
 
     pub fn on_bed(&self) -> bool {
-        matches!(
-            self.kind,
-            Kind::Laid { .. } | Kind::Slack { on_bed: true, .. }
-        )
+        matches!(self.kind, Kind::Laid { .. } | Kind::Slack { on_bed: true, .. })
     }
 
     pub fn elongation(&self) -> f64 {
@@ -67,18 +55,10 @@ impl Piece {
         let (dx, dz) = self.advance(length);
         let (horizontal, vertical) = match self.kind {
             Kind::Flight(flight) => (flight.horizontal, flight.first(length).vertical_end()),
-            Kind::Laid {
-                tension, growth, ..
-            } => (tension + growth * length, 0.0),
+            Kind::Laid { tension, growth, .. } => (tension + growth * length, 0.0),
             Kind::Slack { .. } => (0.0, 0.0),
         };
-        Point {
-            x: self.x + dx,
-            z: self.z + dz,
-            horizontal,
-            vertical,
-            tension: horizontal.hypot(vertical),
-        }
+        Point { x: self.x + dx, z: self.z + dz, horizontal, vertical, tension: horizontal.hypot(vertical) }
     }
 }
 
@@ -103,13 +83,7 @@ impl Shape {
             return;
         }
         let (s, x, z) = self.end;
-        let piece = Piece {
-            s,
-            length,
-            x,
-            z,
-            kind,
-        };
+        let piece = Piece { s, length, x, z, kind };
         let (dx, dz) = piece.advance(length);
         self.end = (s + length, x + dx, z + dz);
         self.pieces.push(piece);
@@ -117,63 +91,57 @@ impl Shape {
 
     /// Appends a flight over `length` metres of `section` that starts under H and V.
     pub fn fly(&mut self, section: &Section, length: f64, horizontal: f64, vertical: f64) {
-        self.push(
-            length,
-            Kind::Flight(Flight::of(section, length, horizontal, vertical)),
-        );
+        self.push(length, Kind::Flight(Flight::of(section, length, horizontal, vertical)));
     }
 
     /// Appends `length` metres of `section` on the bed.
     pub fn lay(&mut self, section: &Section, length: f64, tension: f64, growth: f64) {
         if tension == 0.0 && growth == 0.0 {
-            self.push(
-                length,
-                Kind::Slack {
-                    x: 1.0,
-                    z: 0.0,
-                    on_bed: true,
-                },
-            );
+            self.push(length, Kind::Slack { x: 1.0, z: 0.0, on_bed: true });
         } else {
-            self.push(
-                length,
-                Kind::Laid {
-                    tension,
-                    growth,
-                    axial_stiffness: section.axial_stiffness,
-                },
-            );
+            self.push(length, Kind::Laid { tension, growth, axial_stiffness: section.axial_stiffness });
         }
     }
 
-    /// Lets the pieces without tension close the gap to (x, z), shared by length: in free flight if there are any, else on the bed.
-    pub fn close(&mut self, x: f64, z: f64) {
-        let slack = |on_bed: bool, pieces: &[Piece]| -> f64 {
-            let mine = |p: &&Piece| matches!(p.kind, Kind::Slack { on_bed: b, .. } if b == on_bed);
-            pieces.iter().filter(mine).map(|p| p.length).sum()
+    /// Turns pieces whose tension nowhere exceeds `nothing` [N] into slack ones where they are, and horizontal tension up to it into none.
+    pub fn relax(&mut self, nothing: f64) {
+        for piece in &mut self.pieces {
+            let (x, z) = piece.advance(piece.length);
+            let (x, z) = (x / piece.length, z / piece.length);
+            match &mut piece.kind {
+                Kind::Flight(flight) if flight.horizontal <= nothing => {
+                    flight.horizontal = 0.0;
+                    if flight.vertical.abs() <= nothing && flight.vertical_end().abs() <= nothing {
+                        piece.kind = Kind::Slack { x, z, on_bed: false };
+                    }
+                }
+                Kind::Laid { tension, growth, .. } if *tension <= nothing => {
+                    *tension = 0.0;
+                    if *growth == 0.0 {
+                        piece.kind = Kind::Slack { x, z, on_bed: true };
+                    }
+                }
+                _ => {}
+            }
+        }
+    }
+
+    /// Draws the slack pieces together so that the line ends at `x` [m].
+    pub fn close(&mut self, x: f64) {
+        let advance = |piece: &Piece| match piece.kind {
+            Kind::Slack { x, .. } => x * piece.length,
+            _ => 0.0,
         };
-        let on_bed = slack(false, &self.pieces) == 0.0;
-        let length = slack(on_bed, &self.pieces);
-        if length == 0.0 {
+        let slack: f64 = self.pieces.iter().map(advance).sum();
+        if slack <= 0.0 {
             return;
         }
-        let gap = (
-            (x - self.end.1) / length,
-            if on_bed {
-                0.0
-            } else {
-                (z - self.end.2) / length
-            },
-        );
+        let factor = ((x - self.end.1 + slack) / slack).clamp(0.0, 1.0);
         let pieces = std::mem::take(&mut self.pieces);
         self.end = (0.0, 0.0, 0.0);
         for piece in pieces {
             let kind = match piece.kind {
-                Kind::Slack { x, z, on_bed: b } if b == on_bed => Kind::Slack {
-                    x: x + gap.0,
-                    z: z + gap.1,
-                    on_bed,
-                },
+                Kind::Slack { x, z, on_bed } => Kind::Slack { x: x * factor, z, on_bed },
                 kind => kind,
             };
             self.push(piece.length, kind);
@@ -190,11 +158,7 @@ impl Shape {
     /// Greatest vertical distance below the chord from (0, 0) to (`span`, `rise`) [m]; below the lower end where the span is 0.
     pub fn sag(&self, span: f64, rise: f64) -> f64 {
         let below = |point: Point| {
-            let chord = if span > 0.0 {
-                rise * (point.x / span)
-            } else {
-                rise.min(0.0)
-            };
+            let chord = if span > 0.0 { rise * (point.x / span) } else { rise.min(0.0) };
             chord - point.z
         };
         let mut sag = 0.0_f64;
@@ -202,11 +166,7 @@ impl Shape {
             sag = sag.max(below(piece.point(0.0)));
             if let Kind::Flight(flight) = piece.kind {
                 // lowest where the tension is parallel to the chord
-                let vertical = if span > 0.0 {
-                    flight.horizontal * (rise / span)
-                } else {
-                    0.0
-                };
+                let vertical = if span > 0.0 { flight.horizontal * (rise / span) } else { 0.0 };
                 if let Some(length) = flight.where_vertical_is(vertical) {
                     sag = sag.max(below(piece.point(length)));
                 }
