@@ -210,7 +210,8 @@ fn the_sag_tends_to_the_catenary_at_second_order() {
 
 // ------------------------------------------------------------------ sliding collar
 
-/// MotionSolve's wire: 20 m, 0.2 kg/m, one end fixed, the other on a collar that slides along x under a load that rises to 20 N in 5 s.
+/// MotionSolve's wire: 20 m, 0.2 kg/m, one end fixed, the other on a collar that slides along x under a load that rises to 20 N
+/// in 5 s.
 fn collar(elements: usize, axial_stiffness: f64) -> Model {
     let slider =
         "kind = \"free\"\nfree = [\"x\"]\nforce = { x = { step = [0.0, 0.0, 5.0, 20.0] } }";
@@ -278,7 +279,9 @@ fn the_collar_tends_to_the_inextensible_catenary_at_second_order_and_extrapolate
 /// A line of 12 elements with a bed below, in one piece or in two that meet in a free point.
 fn piece_or_pieces(split: bool, reversed: bool) -> Model {
     let ends = |a: &'static str, b: &'static str| if reversed { [b, a] } else { [a, b] };
-    let mut text = "[seabed]\ndepth = 3.0\nstiffness = 2.0e5\ncontact = \"as_given\"\n[line_types.cable]\nmass = 30.0\ndiameter = 0.05\naxial_stiffness = 1.0e6\n".to_string()
+    let mut text = "[seabed]\ndepth = 3.0\nstiffness = 2.0e5\ncontact = \"as_given\"\n\
+                    [line_types.cable]\nmass = 30.0\ndiameter = 0.05\naxial_stiffness = 1.0e6\n"
+        .to_string()
         + &point("a", [0.0, 0.0, -3.0], FIXED)
         + &point("b", [10.0, 0.0, 0.0], FIXED);
     if split {

@@ -12,8 +12,9 @@
 //!   β = ¼ (1 − α_m + α_f)².
 //! * Bossak(α, γ): α_m = α ≤ 0, α_f = 0, β = ¼ (1 − α)²; second order for γ = ½ − α.
 //!
-//! The tangent is that of [`crate::statics::assembly`]. The seabed's damper fades in over two static penetrations above and below the
-//! bed instead of switching on at touch, which Newton's method would not survive; what rests on the bed is not affected.
+//! The tangent is that of [`crate::statics::assembly`], with predicted tensions as in [`crate::statics::equilibrium`]. The seabed's
+//! damper fades in over two static penetrations above and below the bed, or over what the node moves in a step if that is
+//! more, instead of switching on at touch, which Newton's method would not survive; what rests on the bed is not affected.
 //!
 //! Source: Chung & Hulbert (1993), J. Appl. Mech. 60, 371-375; Wood, Bossak & Zienkiewicz (1980), Int. J. Numer. Meth. Eng. 15,
 //! 1562-1566. Valid for ρ from 0 to 1. Where slack cables snap taut without damping, the old forces that α_f carries over feed
@@ -174,8 +175,8 @@ pub struct Span {
     pub step_max: f64,
 }
 
-/// Advances one network through a span of time, not at all where its end is not after its start; `held` gives position, velocity and acceleration of the points that forces do
-/// not move. `state.time` is left to the caller.
+/// Advances one network through a span of time, not at all where its end is not after its start; `held` gives position,
+/// velocity and acceleration of the points that forces do not move. `state.time` is left to the caller.
 ///
 /// # Errors
 /// Newton's method failed even in steps 1024 times smaller; the state is then as it was.
@@ -275,8 +276,8 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
             line: self.model.lines[line].name.clone(),
             node,
             reason: format!(
-                "Newton's method did not converge in {ITERATIONS_MAX} iterations with a step of {:.3e} s, {residual:.3e} N are out of \
-                 balance",
+                "Newton's method did not converge in {ITERATIONS_MAX} iterations with a step of {:.3e} s, \
+                 {residual:.3e} N are out of balance",
                 t1 - t0
             ),
             advice: "look for jumps in the motion of the driven points, give every line a mass, or lower solver.time_step_max",

@@ -3,8 +3,8 @@
 //! Newton's method on the residual of [`super::assembly`], with two changes that make it indifferent to how stiff a line is
 //! and to how bad the guess is:
 //!
-//! * The geometric stiffness T/l is taken from a tension that the previous linear solve predicted, T ← N + EA/l₀ q·(δ_{i+1} − δ_i),
-//!   not from the elastic force N of the present shape. That is Newton's method on positions and tensions together with
+//! * The geometric stiffness T/l is taken from a tension that the previous linear solve predicted,
+//!   T ← N + dN/dl q·(δ_{i+1} − δ_i), not from the elastic force N of the present shape. That is Newton's method on positions and tensions together with
 //!   the tensions eliminated; a stiff line then converges like an inextensible one. A segment whose predicted tension is
 //!   negative is slack.
 //! * Pseudo-transient relaxation: anchoring springs on every node and a least tension, both of which fade as the
