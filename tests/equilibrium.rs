@@ -169,6 +169,25 @@ fn just_below_the_limit_load_there_is_an_equilibrium_and_above_it_a_clear_error(
     }
 }
 
+#[test]
+fn a_line_pulled_by_more_than_its_greatest_force_is_refused_instead_of_breaking_in_one_segment() {
+    let pulled = |load: f64| {
+        let text = "[line_types.cable]\nmass = 0.0\naxial_stiffness = 5000.0\nstrain = { logarithmic = 0.5 }\n".to_string()
+            + &point("a", [0.0; 3], FIXED)
+            + &point("b", [1.0, 0.0, 0.0], &format!("kind = \"free\"\nforce = {{ x = {load:e} }}"))
+            + &line("cable", ["a", "b"], 1.0, 10);
+        equilibrium(&model(&text))
+    };
+    let greatest = 5000.0 / std::f64::consts::E; // EA ln λ/λ at λ = e [N]
+    let (state, _) = pulled(0.999 * greatest).unwrap();
+    assert!(state.points[1].position.x < std::f64::consts::E);
+    let error = pulled(1.001 * greatest).unwrap_err();
+    let StaticsError::LimitLoad { load_fraction, .. } = error else {
+        panic!("{error}")
+    };
+    assert!((load_fraction * 1.001 - 1.0).abs() < 1e-3, "{error}");
+}
+
 // ------------------------------------------------------------------ cable under its own weight
 
 /// SeaFEM validation case 11: length = span = 14.1421 m, EA 2505 N, w 0.49 N/m.
