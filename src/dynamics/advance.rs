@@ -224,11 +224,12 @@ impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
         next: &mut State,
     ) -> Result<Done, StepError> {
         copy_network(self.model, &self.model.networks[number], self.state, next);
-        let times = [self.start, self.start + self.length];
-        let done = implicit::advance(self.model, number, next, self.held, times, step_max, scheme, work)?;
+        let end = self.start + self.length;
+        let span = implicit::Span { start: self.start, end, step_max };
+        let done = implicit::advance(self.model, number, next, self.held, span, scheme, work)?;
         let network = &self.model.networks[number];
-        let mut flow = ledger::power(self.model, network, self.state, times[0]);
-        flow.add(ledger::power(self.model, network, next, times[1]));
+        let mut flow = ledger::power(self.model, network, self.state, self.start);
+        flow.add(ledger::power(self.model, network, next, end));
         let counters = Counters { substeps: done.steps, solves: done.solves };
         Ok(Done { counters, flow: flow.times(0.5 * self.length) })
     }
