@@ -13,7 +13,8 @@ mod profile;
 
 use std::collections::BTreeSet;
 
-use crate::model::Model;
+use crate::model::{Line, Model};
+use crate::physics::stretch::StretchLaw;
 use crate::scene::{Axis, PointKind, Scene, SceneError};
 use crate::simulation::Simulation;
 
@@ -267,8 +268,10 @@ impl Interface {
             push_line(&mut variables, index, &line.name);
         }
         push_solver(&mut variables);
-        for (index, line) in scene.lines.iter().enumerate() {
-            push_catenary(&mut variables, index, &line.name);
+        for (index, line) in model.lines.iter().enumerate() {
+            if has_closed_form(model, line) {
+                push_catenary(&mut variables, index, &line.name);
+            }
         }
         for name in scene.line_types.keys() {
             check_name(name, &format!("line_types.{name}"))?;
@@ -306,11 +309,25 @@ impl Interface {
     }
 
     /// Writes the values of an output or calculated parameter; `values` has the variable's size.
-    pub fn read(variable: &Variable, simulation: &Simulation, values: &mut [f64]) {
+    ///
+    /// # Errors
+    /// A line whose closed-form catenary does not exist.
+    pub fn read(
+        variable: &Variable,
+        simulation: &Simulation,
+        values: &mut [f64],
+    ) -> Result<(), String> {
         assert_eq!(values.len(), variable.size(), "one place for each value");
         match variable.binding {
             Binding::EndForce { point, axis } => values[0] = simulation.end_force(point)[axis],
-            Binding::Line { line, result } => values[0] = line_result(simulation, line, result),
+            Binding::Line { line, result } => {
+                values[0] = line_result(simulation, line, result).ok_or_else(|| {
+                    format!(
+                        "{}: the reference configuration has no closed-form catenary",
+                        variable.name
+                    )
+                })?;
+            }
             Binding::Solver(result) => {
                 values[0] = match result {
                     SolverResult::Substeps => simulation.substeps() as f64,
@@ -327,21 +344,33 @@ impl Interface {
                 unreachable!("inputs and parameters are kept by the caller")
             }
         }
+        Ok(())
     }
 }
 
-fn line_result(simulation: &Simulation, line: usize, result: LineResult) -> f64 {
+fn line_result(simulation: &Simulation, line: usize, result: LineResult) -> Option<f64> {
     let catenary = || simulation.catenary(line);
     match result {
-        LineResult::TensionB => simulation.tension_b(line),
-        LineResult::TensionA => simulation.tension_a(line),
-        LineResult::TensionMax => simulation.tension_max(line),
-        LineResult::LaidLength => simulation.laid_length(line),
-        LineResult::Sag => simulation.sag(line),
-        LineResult::CatenarySag => catenary().map_or(0.0, |c| c.sag),
-        LineResult::CatenaryHorizontal => catenary().map_or(0.0, |c| c.horizontal),
-        LineResult::CatenaryTensionB => catenary().map_or(0.0, |c| c.tension_b),
+        LineResult::TensionB => Some(simulation.tension_b(line)),
+        LineResult::TensionA => Some(simulation.tension_a(line)),
+        LineResult::TensionMax => Some(simulation.tension_max(line)),
+        LineResult::LaidLength => Some(simulation.laid_length(line)),
+        LineResult::Sag => Some(simulation.sag(line)),
+        LineResult::CatenarySag => catenary().map(|c| c.sag()),
+        LineResult::CatenaryHorizontal => catenary().map(|c| c.horizontal()),
+        LineResult::CatenaryTensionB => catenary().map(|c| c.tension_b()),
     }
+}
+
+/// Whether a line has a closed-form catenary: held ends and engineering strain.
+fn has_closed_form(model: &Model, line: &Line) -> bool {
+    line.ends
+        .iter()
+        .all(|&end| model.points[end].free().is_none())
+        && line
+            .sections
+            .iter()
+            .all(|section| section.law == StretchLaw::Engineering)
 }
 
 fn row(

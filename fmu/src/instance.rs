@@ -156,7 +156,33 @@ impl Instance {
         self.expect_phase(&[Phase::Initialization])?;
         self.solve_statics()?;
         self.phase = Phase::Step;
+        self.log_choices();
         Ok(())
+    }
+
+    /// Says which integrator was chosen.
+    fn log_choices(&mut self) {
+        let Some(simulation) = &self.simulation else {
+            return;
+        };
+        for (network, choice) in simulation.model().networks.iter().zip(simulation.choices()) {
+            self.log.push(Topic::Event, || {
+                let lines: Vec<&str> = network
+                    .lines
+                    .iter()
+                    .map(|&line| simulation.model().lines[line].name.as_str())
+                    .collect();
+                format!(
+                    "{}: integrator {:?}, internal steps of at most {:.3e} s \
+                     (explicit limit {:.3e} s, transverse limit {:.3e} s)",
+                    lines.join(", "),
+                    choice.integrator,
+                    choice.step_max,
+                    choice.explicit_limit,
+                    choice.transverse_limit
+                )
+            });
+        }
     }
 
     pub(crate) fn terminate(&mut self) -> Outcome {
@@ -239,7 +265,7 @@ impl Instance {
                             variable.name
                         ))
                     })?;
-                    Interface::read(variable, simulation, own);
+                    Interface::read(variable, simulation, own)?;
                 }
             }
         }
@@ -506,7 +532,7 @@ impl Instance {
             time: self.time,
             parameters: self.parameters(&self.scene),
             inputs: self.inputs.clone(),
-            solver: self.simulation.as_ref().map(|s| s.state().clone()),
+            solver: self.simulation.as_ref().map(|s| s.snapshot().clone()),
         }
     }
 
@@ -546,8 +572,7 @@ impl Instance {
                     Some(simulation) if same => simulation,
                     _ => Simulation::new(&scene).map_err(|e| e.to_string())?,
                 };
-                hand_over(&snapshot.inputs, &mut simulation);
-                simulation.set_state(state.clone());
+                simulation.restore(state.clone());
                 Some(simulation)
             }
         };

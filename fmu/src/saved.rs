@@ -3,7 +3,7 @@
 //! Bytes: mark, token of the FMU, length and SHA-256 of what follows, then the state in postcard. Bytes of another FMU
 //! or version, cut short or changed are refused before anything of them is used.
 
-use moorline::model::State;
+use moorline::simulation;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
@@ -46,7 +46,7 @@ pub(crate) struct Snapshot {
     /// Inputs of every point of the scene.
     pub(crate) inputs: Vec<PointInput>,
     /// The solver's state, once there is one.
-    pub(crate) solver: Option<State>,
+    pub(crate) solver: Option<simulation::Snapshot>,
 }
 
 const MARK: &[u8; 16] = b"moorline state 1";

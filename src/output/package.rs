@@ -12,7 +12,7 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
 use super::description::{Description, MODEL_IDENTIFIER};
-use crate::scene::{Scene, SceneError};
+use crate::scene::{LoadedScene, Scene, SceneError};
 
 /// Name of the scene below `resources/`.
 pub const SCENE_FILE: &str = "scene.toml";
@@ -76,25 +76,35 @@ pub fn find_library() -> Result<PathBuf, PackageError> {
         })
 }
 
-/// Packages a scene, given as TOML text, with the FMU library into `target`.
+/// Packages a scene with the FMU library into `target`.
 ///
 /// # Errors
-/// A scene with mistakes, a library that cannot be read, a target that cannot be written.
+/// A scene that cannot be described, a library that cannot be read, a target that cannot be written.
 pub fn write_fmu(
-    text: &str,
+    loaded: &LoadedScene,
     version: FmiVersion,
     library: &Path,
     target: &Path,
 ) -> Result<(), PackageError> {
-    let scene = Scene::from_toml(text)?;
-    let description = Description::new(text, &scene, version)?;
     let fail = |path: &Path| {
         let path = path.to_path_buf();
         move |problem| PackageError::File { path, problem }
     };
+    let text = packaged_text(loaded);
+    let description = Description::new(&text, &loaded.scene, version)?;
     let binary = fs::read(library).map_err(fail(library))?;
-    let bytes = container(&description.xml, text, version, &binary)?;
+    let bytes = container(&description.xml, &text, version, &binary)?;
     fs::write(target, bytes).map_err(fail(target))
+}
+
+/// The user's own text where it alone says the whole scene; else, with motion files or in another format, the scene
+/// written out.
+fn packaged_text(loaded: &LoadedScene) -> String {
+    if Scene::from_toml(&loaded.text).is_ok_and(|scene| scene == loaded.scene) {
+        loaded.text.clone()
+    } else {
+        loaded.scene.to_toml()
+    }
 }
 
 fn container(
