@@ -448,7 +448,7 @@ fn laid_length(line: &Line, state: &LineState) -> f64 {
         return 0.0;
     };
     let carried = |i: usize| {
-        let penetration = contact.bed - state.position[i].z;
+        let penetration = contact.level[i] - state.position[i].z;
         let weight = line.nodes.weight[i];
         if weight <= 0.0 {
             0.0

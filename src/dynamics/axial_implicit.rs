@@ -345,7 +345,7 @@ impl AxialWork {
     fn touches(&self, at: usize, rise: Lanes, step: Step) -> Lanes {
         let contact = self.layout.contact.as_ref().expect("asked over a bed only");
         let drift = Lanes::splat(step.drift);
-        let penetration = Lanes::splat(contact.bed) - Lanes::load(&self.layout.position.z, at);
+        let penetration = Lanes::load(&contact.level, at) - Lanes::load(&self.layout.position.z, at);
         let next = penetration - drift * rise;
         let push = Lanes::load(&contact.stiffness, at) * next * drift
             + Lanes::load(&contact.damping, at) * (next - penetration.positive());
@@ -362,7 +362,7 @@ impl AxialWork {
         let touches = Lanes::load(&self.nodes.touches, at);
         let stiffness = Lanes::load(&contact.stiffness, at);
         let damping = Lanes::load(&contact.damping, at);
-        let penetration = Lanes::splat(contact.bed) - Lanes::load(&self.layout.position.z, at);
+        let penetration = Lanes::load(&contact.level, at) - Lanes::load(&self.layout.position.z, at);
         let above = penetration - penetration.positive(); // the damper acts below the bed only
         let landing = damping * above * Lanes::splat(1.0 / step.drift);
         let resistance = kick * (stiffness * drift + damping);

@@ -46,10 +46,10 @@ pub(super) struct DragArrays {
     pub tangent: Vec<f64>,
 }
 
-/// Lumped contact coefficients [N/m, N s/m] and the bed's z [m].
+/// Lumped contact coefficients [N/m, N s/m] and the z [m] below which they push.
 #[derive(Debug, Clone)]
 pub(super) struct ContactArrays {
-    pub bed: f64,
+    pub level: Vec<f64>,
     pub stiffness: Vec<f64>,
     pub damping: Vec<f64>,
 }
@@ -80,7 +80,7 @@ impl Layout {
                 .map(|drag| DragArrays { normal: keep(&drag.normal), tangent: keep(&drag.tangent) }),
             mass_damping: nodes.mass_damping.as_ref().map(|damping| keep(damping)),
             contact: nodes.contact.as_ref().map(|contact| ContactArrays {
-                bed: contact.bed,
+                level: keep(&contact.level),
                 stiffness: keep(&contact.stiffness),
                 damping: keep(&contact.damping),
             }),

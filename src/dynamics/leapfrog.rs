@@ -135,8 +135,8 @@ pub struct EndLoad {
     pub resistance: Vector3<f64>,
     /// Mass matrix of the half node [kg].
     pub mass: Matrix3<f64>,
-    /// Contact stiffness [N/m] and damping [N s/m] of the half node.
-    pub contact: [f64; 2],
+    /// Contact stiffness [N/m] and damping [N s/m] of the half node, and its force at z = 0 [N].
+    pub contact: [f64; 3],
 }
 
 impl LineWork {
@@ -342,8 +342,9 @@ impl LineWork {
         let mass_tangent = 1.0 / (self.inverse_mass[at] + excess);
         let mass = mass_normal * Matrix3::identity()
             + (mass_tangent - mass_normal) * tangent * tangent.transpose();
-        let contact = line.contact.as_ref()
-            .map_or([0.0; 2], |c| [c.stiffness[at], c.damping[at]]);
+        let contact = line.contact.as_ref().map_or([0.0; 3], |c| {
+            [c.stiffness[at], c.damping[at], c.stiffness[at] * c.level[at]]
+        });
         EndLoad {
             force: force + resistance,
             resistance,
@@ -370,7 +371,7 @@ fn contact_impulse(line: &Layout, at: usize, velocity_z: Lanes, response_z: Lane
     let (drift, kick) = (Lanes::splat(step.drift), Lanes::splat(step.kick));
     let stiffness = Lanes::load(&contact.stiffness, at);
     let resistance = stiffness * drift + Lanes::load(&contact.damping, at); // b = kΔt + c
-    let penetration = Lanes::splat(contact.bed) - Lanes::load(&line.position.z, at);
+    let penetration = Lanes::load(&contact.level, at) - Lanes::load(&line.position.z, at);
     let push = stiffness * penetration - resistance * velocity_z;
     let yielding = Lanes::splat(1.0) + response_z * kick * resistance;
     let lands = penetration - drift * velocity_z;

@@ -190,7 +190,7 @@ fn node_loss(line: &Line, shape: &LineState, i: usize) -> f64 {
     }
     if let Some(contact) = &nodes.contact {
         let k = ContactCoefficients { stiffness: contact.stiffness[i], damping: contact.damping[i] };
-        lost -= normal_force(k, contact.bed - shape.position[i].z, velocity.z) * velocity.z;
+        lost -= normal_force(k, contact.level[i] - shape.position[i].z, velocity.z) * velocity.z;
     }
     lost
 }

@@ -5,7 +5,7 @@
 //! communication step a cubic Hermite segment from where the path is to where the point is predicted to be.
 //!
 //! The prediction extrapolates the polynomial through the newest samples, of the degree 0 … 3 that would have predicted the
-//! present sample best from the older ones: smooth motion gets the third degree (error O(h⁴)), noise and jumps a low one.
+//! last two samples best from the older ones: smooth motion gets the third degree (error O(h⁴)), noise and jumps a low one.
 //! With velocities the polynomial is fitted to them and integrated from x_k.
 //!
 //! Source: divided differences, e.g. Hairer, Nørsett & Wanner (1993), Solving Ordinary Differential Equations I, eq. III.1.7;
@@ -21,8 +21,10 @@ use crate::scene::Reconstruction;
 
 /// Highest degree of the extrapolated polynomial [-].
 const DEGREE_MAX: usize = 3;
-/// Samples kept: one more than the polynomial needs, to judge its degree.
-const SAMPLES_MAX: usize = DEGREE_MAX + 2;
+/// Samples that a degree is judged by: one alone can be met by chance, where the motion inflects.
+const JUDGED: usize = 2;
+/// Samples kept.
+const SAMPLES_MAX: usize = DEGREE_MAX + 1 + JUDGED;
 /// Samples closer together than the coming step over this are passed over [-].
 const STEP_RATIO_MAX: f64 = 2.0;
 
@@ -206,23 +208,26 @@ struct Polynomial {
 }
 
 impl Polynomial {
-    /// Of the degree that would have predicted the newest sample best from the older ones.
+    /// Of the degree that would have predicted the newest samples best from the ones older than each.
     fn best(samples: &[Sample], value: impl Fn(&Sample) -> f64) -> Polynomial {
-        let (newest, older) = samples.split_last().expect("at least one sample");
+        let known = samples.len();
+        if known <= 2 {
+            // two samples can judge no line, but a host that moves a point goes on moving it
+            return Polynomial::through(samples, known - 1, &value);
+        }
+        let judged = JUDGED.min(known - 2);
+        let miss = |degree: usize, newest: usize| {
+            let guess = Polynomial::through(&samples[..newest], degree, &value);
+            (guess.at(samples[newest].time) - value(&samples[newest])).abs()
+        };
         let mut best = (0, f64::INFINITY);
-        for degree in 0..=DEGREE_MAX.min(older.len().saturating_sub(1)) {
-            if older.is_empty() {
-                break;
-            }
-            let guess = Polynomial::through(older, degree, &value).at(newest.time);
-            let error = (guess - value(newest)).abs();
+        for degree in 0..=DEGREE_MAX.min(known - 1 - judged) {
+            let error: f64 = (known - judged..known).map(|newest| miss(degree, newest)).sum();
             if error < best.1 {
                 best = (degree, error);
             }
         }
-        // two samples can judge no line, but a host that moves a point goes on moving it
-        let degree = if samples.len() == 2 { 1 } else { best.0 };
-        Polynomial::through(samples, degree, &value)
+        Polynomial::through(samples, best.0, &value)
     }
 
     fn through(samples: &[Sample], degree: usize, value: &impl Fn(&Sample) -> f64) -> Polynomial {

@@ -133,7 +133,7 @@ impl NetworkWork {
                 force: point.load_at(t) - law.weight * Vector3::z(),
                 resistance: Vector3::zeros(),
                 mass: law.mass * Matrix3::identity(),
-                contact: [0.0; 2],
+                contact: [0.0; 3],
             };
             for &(line, end) in &point.attached {
                 let Some(at) = network.lines.iter().position(|&l| l == line) else {
@@ -141,9 +141,8 @@ impl NetworkWork {
                 };
                 load.add(&self.lines[at].end_load(end, now));
             }
-            let bed = model.bed.unwrap_or(f64::NEG_INFINITY);
-            let penetration = bed - self.points[free].position.z;
-            let (velocity, impulse) = load.kicked(last, law.axes, penetration, step);
+            let height = self.points[free].position.z;
+            let (velocity, impulse) = load.kicked(last, law.axes, height, step);
             let mean = 0.5 * (last + velocity);
             self.point_flow.given += step.kick * point.load_at(t).dot(&mean);
             self.point_flow.lost -= step.kick * load.resistance.dot(&mean) + impulse * mean.z;
@@ -160,8 +159,7 @@ impl EndLoad {
         self.force += other.force;
         self.resistance += other.resistance;
         self.mass += other.mass;
-        self.contact[0] += other.contact[0];
-        self.contact[1] += other.contact[1];
+        self.contact.iter_mut().zip(other.contact).for_each(|(own, other)| *own += other);
     }
 
     /// v_{n+½} of a point that moves along `axes` only, and the impulse of the bed [N s], which is implicit.
@@ -169,7 +167,7 @@ impl EndLoad {
         &self,
         last: Vector3<f64>,
         axes: [bool; 3],
-        penetration: f64,
+        height: f64,
         step: Step,
     ) -> (Vector3<f64>, f64) {
         let free = Vector3::from(axes.map(|free| f64::from(u8::from(free))));
@@ -181,10 +179,14 @@ impl EndLoad {
             return (last, 0.0);
         };
         let velocity = last + step.kick * inverse * self.force.component_mul(&free);
-        let [stiffness, damping] = self.contact;
+        let [stiffness, damping, force_at_zero] = self.contact;
+        if stiffness == 0.0 {
+            return (velocity, 0.0);
+        }
+        let penetration = force_at_zero / stiffness - height;
         let response = inverse * Vector3::z() * free.z;
         let resistance = stiffness * step.drift + damping;
-        if penetration - step.drift * velocity.z <= 0.0 || !penetration.is_finite() {
+        if penetration - step.drift * velocity.z <= 0.0 {
             return (velocity, 0.0);
         }
         let push = (stiffness * penetration - resistance * velocity.z).max(0.0);

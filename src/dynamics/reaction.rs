@@ -65,7 +65,7 @@ pub fn end_force(
             stiffness: contact.stiffness[node],
             damping: contact.damping[node],
         };
-        let penetration = contact.bed - state.position[node].z;
+        let penetration = contact.level[node] - state.position[node].z;
         force.z += seabed::normal_force(coefficients, penetration, velocity.z);
     }
     force

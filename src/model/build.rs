@@ -284,6 +284,7 @@ fn contact(
         .seabed
         .as_ref()
         .expect("contact is built only over a seabed");
+    let mut level = vec![-bed.depth; length.len()];
     if bed.contact == ContactLaw::Regularised {
         let last = length.len() - 1; // an end is half a node: it sinks in like its neighbours
         for i in 0..=last {
@@ -293,11 +294,15 @@ fn contact(
             };
             let spacing = if i == 0 || i == last { 2.0 * length[i] } else { length[i] };
             let soft = regularised(given, weight[i], spacing);
+            if soft.stiffness < given.stiffness {
+                level[i] += weight[i] / soft.stiffness; // so that a resting node lies on the bed, not in it
+            }
             (stiffness[i], damping[i]) = (soft.stiffness, soft.damping);
         }
     }
     Contact {
         bed: -bed.depth,
+        level,
         stiffness,
         damping,
     }

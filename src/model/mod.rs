@@ -167,6 +167,8 @@ pub struct Drag {
 pub struct Contact {
     /// z of the bed [m].
     pub bed: f64,
+    /// z below which the springs push [m]: the bed, or where regularised contact begins so that a node at rest lies on it.
+    pub level: Vec<f64>,
     /// Stiffness [N/m].
     pub stiffness: Vec<f64>,
     /// Damping [N s/m].

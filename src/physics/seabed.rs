@@ -3,7 +3,7 @@
 //! f = max(0, k·p − c·ż) for a penetration p = z_bed − z > 0, else 0.
 //!
 //! k = kbot·d and c = cbot·d per unstretched length. Regularised contact softens both together,
-//! k_eff = min(k, w/(δ d h)·d), c_eff = c·k_eff/k, so that a node at rest sinks in by δ times the segment length h: with the usual
+//! k_eff = min(k, w/(δ d h)·d), c_eff = c·k_eff/k, so that a node at rest is pressed in by δ times the segment length h: with the usual
 //! kbot of 3 MPa/m the static penetration would be micrometres and every node that lands would ring.
 //!
 //! Source: the spring and damper of Hall & Goupee (2015), Ocean Engineering 104, eq. 13, made unilateral (their damper

@@ -251,7 +251,7 @@ impl LineWork {
                 self.diagonal[i][(axis, axis)] += case.anchoring;
             }
             if let Some(contact) = &line.nodes.contact {
-                let penetration = contact.bed - r.z;
+                let penetration = contact.level[i] - r.z;
                 if penetration > 0.0 {
                     self.residual[i].z -= contact.stiffness[i] * penetration;
                     self.diagonal[i][(2, 2)] += contact.stiffness[i];
@@ -446,7 +446,7 @@ impl LineWork {
                 stiffness: contact.stiffness[i],
                 damping: contact.damping[i],
             };
-            let penetration = contact.bed - state.position[i].z;
+            let penetration = contact.level[i] - state.position[i].z;
             let velocity = state.velocity[i].z;
             let Some(bed) = SmoothContact::new(k, penetration, velocity, self.reach[i]) else {
                 continue;
