@@ -458,16 +458,24 @@ fn an_fmu_that_cannot_be_placed_is_refused() {
     assert_eq!(names(folder.path()), ["scene.toml"]);
 }
 
-/// Builds the FMU library beside the program under test, once. It is there already where the whole workspace is tested.
+/// Builds the FMU library beside the program under test, once: `cargo test` leaves it elsewhere, or does not build it.
 fn build_library() {
     static BUILT: std::sync::Once = std::sync::Once::new();
     BUILT.call_once(|| {
-        let mut cargo = Command::new(env!("CARGO"));
-        cargo.args(["test", "--quiet", "--no-run"]);
-        if !cfg!(debug_assertions) {
-            cargo.arg("--release");
-        }
-        let output = cargo
+        let profile = if cfg!(debug_assertions) {
+            "test"
+        } else {
+            "release"
+        };
+        let output = Command::new(env!("CARGO"))
+            .args([
+                "build",
+                "--quiet",
+                "--package",
+                "moorline-fmu",
+                "--profile",
+                profile,
+            ])
             .current_dir(env!("CARGO_MANIFEST_DIR"))
             .output()
             .unwrap();

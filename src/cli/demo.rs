@@ -156,7 +156,12 @@ impl<'a> Host<'a> {
 
     /// Puts what the FMU says of the equilibrium, and of the closed form, in place of what the reference says.
     fn record_statics(&mut self, record: &mut Record) -> Result<(), HostError> {
-        for line in &mut record.lines {
+        let model = self.reference.model();
+        for (line, built) in record.lines.iter_mut().zip(&model.lines) {
+            // The built-in scene has one line at each fairlead: the point's force is the line's.
+            let fairlead = &model.points[built.ends[1]].name;
+            let mut force = |axis: &str| self.slave.real(&format!("{fairlead}.{axis}"));
+            line.equilibrium.horizontal = force("fx")?.hypot(force("fy")?);
             let mut read = |quantity: &str| self.slave.real(&format!("{}.{quantity}", line.name));
             line.equilibrium.tension_b = read("tension_b")?;
             line.equilibrium.sag = read("sag")?;

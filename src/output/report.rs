@@ -212,7 +212,7 @@ mod tests {
 
     #[test]
     fn a_rounded_number_keeps_its_digits_and_no_idle_ones() {
-        assert_eq!(rounded(911_089.4612, 6), "911089");
+        assert_eq!(rounded(911_089.46, 6), "911089");
         assert_eq!(rounded(0.717_777_465_4, 6), "0.717777");
         assert_eq!(rounded(60.0, 6), "60");
         assert_eq!(rounded(1e-7, 3), "1.00e-7");
