@@ -396,7 +396,7 @@ fn a_line_sinks_by_the_hyperbolic_tangent() {
     let weight = (m - displaced) * g;
     let terminal = (2.0 * weight / (rho * d * drag)).sqrt();
     let tau = (m + displaced) * terminal / weight;
-    let steps = [0.01, 0.005, 0.0025, 0.00125];
+    let steps = [5e-3, 2.5e-3, 1.25e-3, 6.25e-4];
     let errors = steps.map(|step| {
         let scene = scene(&format!(
             r#"
@@ -417,13 +417,13 @@ fn a_line_sinks_by_the_hyperbolic_tangent() {
             "#
         ));
         let mut simulation = Simulation::new(&scene).unwrap();
-        simulation.advance(0.4).unwrap();
+        simulation.advance(0.8).unwrap();
         let state = simulation.state();
         let depth = -1.0 - state.lines[0].position[3].z;
         for node in &state.lines[0].position {
             assert_relative_eq!(node.z, state.lines[0].position[3].z, epsilon = 1e-12);
         }
-        let error = depth - terminal * tau * (0.4_f64 / tau).cosh().ln();
+        let error = depth - terminal * tau * (0.8_f64 / tau).cosh().ln();
         simulation.advance(10.0).unwrap();
         assert_relative_eq!(-simulation.state().lines[0].velocity[2].z, terminal, max_relative = 1e-9);
         error
