@@ -27,7 +27,7 @@ fn main() {
     while sim.time() < scene.output.duration - 1e-9 {
         sim.advance(scene.output.interval).unwrap();
         steps += sim.counters().substeps;
-        passes += sim.counters().passes;
+        passes += sim.counters().solves;
         let mid = &sim.state().lines[0].position[n / 2];
         rows.push((sim.time(), sim.tension_b(0), mid.x, mid.z));
     }

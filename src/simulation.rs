@@ -9,10 +9,9 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-use crate::dynamics::StepError;
-use crate::dynamics::advance::{Choice, Counters, Workspace};
+use crate::dynamics::advance::{Counters, Workspace};
 use crate::dynamics::motion::{HostPath, Sample};
-use crate::dynamics::reaction;
+use crate::dynamics::{Choice, StepError, reaction};
 use crate::model::{End, Kinematics, Line, LineState, Model, PointState, Role, State};
 use crate::physics::stretch::StretchLaw;
 use crate::scene::{Scene, SceneError};
@@ -55,7 +54,6 @@ pub struct Simulation {
     model: Arc<Model>,
     snapshot: Snapshot,
     work: Workspace,
-    statics: assembly::Workspace,
     paths: Vec<HostPath>,
     catenaries: Vec<Option<Catenary>>,
 }
@@ -83,62 +81,35 @@ impl Simulation {
     pub fn new(scene: &Scene) -> Result<Simulation, Error> {
         let model = Arc::new(Model::new(scene)?);
         let inputs = vec![Input::default(); model.points.len()];
-        let paths: Vec<HostPath> = model
-            .points
-            .iter()
-            .map(|point| HostPath::at_rest(0.0, point.reference))
-            .collect();
-        let mut statics = assembly::Workspace::new(&model);
-        let state = start(&model, 0.0, &paths, &mut statics)?;
-        let work = Workspace::new(&model, &state, |line| static_tension(&model, &state, line));
+        let (snapshot, work) = begin(&model, 0.0, inputs, false)?;
         Ok(Simulation {
-            catenaries: model
-                .lines
-                .iter()
-                .map(|line| reference_catenary(&model, line))
-                .collect(),
-            snapshot: Snapshot {
-                state,
-                inputs,
-                paths: paths.clone(),
-                follows_scene: false,
-                counters: Counters::default(),
-            },
-            model,
+            catenaries: model.lines.iter().map(|line| reference_catenary(&model, line)).collect(),
+            paths: snapshot.paths.clone(),
+            snapshot,
             work,
-            statics,
-            paths,
+            model,
         })
     }
 
-    /// Lets coupled points follow the scene's own motion exactly, instead of what a host sets.
+    /// Starts again at rest, with coupled points that follow the scene's own motion exactly instead of what a host sets.
     ///
     /// # Errors
-    /// As [`Simulation::restart`].
+    /// As [`Simulation::new`]; the simulation is then as it was.
     pub fn follow_scene(&mut self) -> Result<(), Error> {
-        self.snapshot.follows_scene = true;
-        self.restart(self.snapshot.state.time)
+        self.begin(self.time(), true)
     }
 
-    /// Solves the static equilibrium again, at a start time [s] and the displacements set so far.
+    /// Starts again at rest, at a start time [s] and the displacements set so far.
     ///
     /// # Errors
-    /// As [`Simulation::new`].
+    /// As [`Simulation::new`]; the simulation is then as it was.
     pub fn restart(&mut self, start_time: f64) -> Result<(), Error> {
-        for ((path, input), point) in self
-            .snapshot
-            .paths
-            .iter_mut()
-            .zip(&self.snapshot.inputs)
-            .zip(&self.model.points)
-        {
-            *path = HostPath::at_rest(
-                start_time,
-                point.reference + Vector3::from(input.displacement),
-            );
-        }
-        self.snapshot.state = start(&self.model, start_time, &self.snapshot.paths, &mut self.statics)?;
-        self.snapshot.counters = Counters::default();
+        self.begin(start_time, self.snapshot.follows_scene)
+    }
+
+    fn begin(&mut self, time: f64, follows_scene: bool) -> Result<(), Error> {
+        let inputs = self.snapshot.inputs.clone();
+        (self.snapshot, self.work) = begin(&self.model, time, inputs, follows_scene)?;
         Ok(())
     }
 
@@ -200,31 +171,31 @@ impl Simulation {
         if step <= 0.0 {
             return Ok(());
         }
-        let Snapshot {
-            state,
-            inputs,
-            paths,
-            follows_scene,
-            counters,
-        } = &mut self.snapshot;
-        self.paths.clone_from(paths);
-        let reconstruction = self.model.solver.input_reconstruction;
-        for ((path, input), point) in self.paths.iter_mut().zip(&*inputs).zip(&self.model.points) {
+        self.paths.clone_from(&self.snapshot.paths);
+        if !self.snapshot.follows_scene {
+            self.extend_paths(step);
+        }
+        let (model, paths, follows) = (&*self.model, &self.paths, self.snapshot.follows_scene);
+        let held = |point: usize, t: f64| held(model, paths, follows, point, t);
+        let done = self.work.advance(model, &mut self.snapshot.state, step, &held)?;
+        self.snapshot.counters = done;
+        self.snapshot.paths.clone_from(&self.paths);
+        Ok(())
+    }
+
+    /// Continues the paths of the coupled points by a communication step [s].
+    fn extend_paths(&mut self, step: f64) {
+        let (time, reconstruction) = (self.time(), self.model.solver.input_reconstruction);
+        let points = self.model.points.iter().zip(&self.snapshot.inputs);
+        for (path, (point, input)) in self.paths.iter_mut().zip(points) {
+            if !matches!(point.role, Role::Coupled { .. }) {
+                continue;
+            }
             for (axis, path) in path.0.iter_mut().enumerate() {
                 let position = point.reference[axis] + input.displacement[axis];
-                let sample = Sample {
-                    time: state.time,
-                    position,
-                    velocity: input.velocity[axis],
-                };
-                path.extend(sample, step, reconstruction);
+                path.extend(Sample { time, position, velocity: input.velocity[axis] }, step, reconstruction);
             }
         }
-        let (model, host) = (&*self.model, &self.paths);
-        let held = |point: usize, t: f64| held(model, host, *follows_scene, point, t);
-        *counters = self.work.advance(model, state, step, &held)?;
-        paths.clone_from(&self.paths);
-        Ok(())
     }
 
     /// Force of the mooring on a point [N]: what a vessel feels there.
@@ -375,24 +346,38 @@ fn held(
     }
 }
 
-/// At rest: in static equilibrium, or on the shapes the scene gives.
-fn start(
+/// A simulation at rest at a time [s], with its scratch.
+fn begin(
     model: &Model,
     time: f64,
-    paths: &[HostPath],
-    work: &mut assembly::Workspace,
-) -> Result<State, StaticsError> {
+    inputs: Vec<Input>,
+    follows_scene: bool,
+) -> Result<(Snapshot, Workspace), Error> {
+    let placed = model.points.iter().zip(&inputs);
+    let paths: Vec<HostPath> = placed
+        .map(|(point, input)| HostPath::at_rest(time, point.reference + Vector3::from(input.displacement)))
+        .collect();
+    let held = |point: usize, t: f64| held(model, &paths, follows_scene, point, t);
     let places: Vec<Vector3<f64>> =
-        (0..model.points.len()).map(|point| held(model, paths, false, point, time).position).collect();
+        (0..model.points.len()).map(|point| held(point, time).position).collect();
+    let mut state = at_rest(model, time, &places)?;
+    let mut work = Workspace::new(model, &state, |line| static_tension(model, &state, line));
+    work.start(model, &mut state, &held);
+    let counters = Counters::default();
+    Ok((Snapshot { state, inputs, paths, follows_scene, counters }, work))
+}
+
+/// In static equilibrium, or on the shapes the scene gives.
+fn at_rest(model: &Model, time: f64, places: &[Vector3<f64>]) -> Result<State, StaticsError> {
     let given = |line: &Line| {
         let [a, b] = line.ends.map(|point| places[point]);
         line.given_shape(a, b)
     };
     if let Some(shapes) = model.lines.iter().map(given).collect::<Option<Vec<_>>>() {
-        let points = places.into_iter().map(PointState::at_rest).collect();
+        let points = places.iter().copied().map(PointState::at_rest).collect();
         return Ok(State { time, points, lines: shapes.into_iter().map(LineState::at_rest).collect() });
     }
-    let mut state = equilibrium::solve(model, &places, time, work)?;
+    let mut state = equilibrium::solve(model, places, time, &mut assembly::Workspace::new(model))?;
     for (line, shape) in model.lines.iter().zip(&mut state.lines) {
         if let Some(nodes) = given(line) {
             *shape = LineState::at_rest(nodes);

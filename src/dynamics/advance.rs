@@ -1,53 +1,35 @@
-//! Which integrator serves which network, and how far it steps.
-//!
-//! The explicit leapfrog costs least a step; its axial-implicit variant costs about four times as much and is chosen where
-//! the axial limit is more than four times below the transverse one, which both must keep.
+//! One communication step of a whole model: every network by its integrator, in as many internal steps as it needs.
 
 use serde::{Deserialize, Serialize};
 
-use super::StepError;
 use super::axial_implicit::AxialWork;
+use super::implicit::{self, Scheme};
 use super::leapfrog::Step;
-use super::limit::{explicit_step, transverse_step};
 use super::network::NetworkWork;
+use super::{Choice, StepError, quasi_static};
 use crate::model::{End, Kinematics, Model, Network, State};
 use crate::scene::Integrator;
+use crate::statics::assembly::{self, copy_network};
 
-/// Cost of an axial-implicit step over that of an explicit one [-].
-const AXIAL_IMPLICIT_COST: f64 = 4.0;
 /// Spectral radius of the axial-implicit leapfrog where the scene gives none [-].
 const AXIAL_SPECTRAL_RADIUS: f64 = 0.9;
-/// Margin on the static tension for the transverse limit: snaps exceed it [-].
-const SNAP_MARGIN: f64 = 3.0;
 /// A failed step is tried again with half the internal step, at most so often [-].
 const RETRIES_MAX: u32 = 6;
-
-/// What was decided for a network, for the log and for `check`.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Choice {
-    /// Integrator.
-    pub integrator: Integrator,
-    /// Largest internal step [s].
-    pub step_max: f64,
-    /// Explicit axial limit [s].
-    pub explicit_limit: f64,
-    /// Transverse limit at three times the static tension [s].
-    pub transverse_limit: f64,
-}
 
 /// Work done in a step.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Counters {
     /// Internal steps, of the network with the most.
     pub substeps: usize,
-    /// Passes of implicit solves.
-    pub passes: usize,
+    /// Force evaluations of the explicit leapfrog, linear solves of the other integrators, of all networks.
+    pub solves: usize,
 }
 
 /// Scratch of all networks and the state being built.
 #[derive(Debug, Clone)]
 pub struct Workspace {
     networks: Vec<(Choice, Solver)>,
+    implicit: assembly::Workspace,
     next: State,
 }
 
@@ -55,24 +37,24 @@ pub struct Workspace {
 enum Solver {
     Leapfrog(NetworkWork),
     AxialImplicit(AxialWork),
+    Implicit(Scheme),
+    QuasiStatic,
 }
 
 impl Workspace {
-    /// Chooses integrators and allocates all scratch for a model that starts from `state`.
+    /// Chooses integrators and allocates all scratch for a model that starts from `state`; `tension` tells the static
+    /// tension of a line [N].
     pub fn new(model: &Model, state: &State, tension: impl Fn(usize) -> f64) -> Workspace {
         let networks = model
             .networks
             .iter()
             .map(|network| {
-                let choice = choose(model, network, &tension);
-                let solver = build(model, network, &choice);
+                let choice = Choice::new(model, network, &tension);
+                let solver = Solver::new(model, network, choice.integrator);
                 (choice, solver)
             })
             .collect();
-        Workspace {
-            networks,
-            next: state.clone(),
-        }
+        Workspace { networks, implicit: assembly::Workspace::new(model), next: state.clone() }
     }
 
     /// What was chosen, by network.
@@ -80,7 +62,18 @@ impl Workspace {
         self.networks.iter().map(|(choice, _)| choice)
     }
 
-    /// Advances `state` by `span` [s]; `held` tells the kinematics of held points in that time.
+    /// Gives a state at rest the accelerations that the implicit integrators start from.
+    pub fn start(&mut self, model: &Model, state: &mut State, held: &impl Fn(usize, f64) -> Kinematics) {
+        let time = state.time;
+        for (number, (_, solver)) in self.networks.iter().enumerate() {
+            if matches!(solver, Solver::Implicit(_)) {
+                implicit::start(model, number, state, held, time, &mut self.implicit);
+            }
+        }
+        self.next.clone_from(state);
+    }
+
+    /// Advances `state` by `length` [s]; `held` tells the kinematics of held points in that time.
     ///
     /// # Errors
     /// The state is untouched; the error says where and what to try.
@@ -88,190 +81,176 @@ impl Workspace {
         &mut self,
         model: &Model,
         state: &mut State,
-        span: f64,
+        length: f64,
         held: &impl Fn(usize, f64) -> Kinematics,
     ) -> Result<Counters, StepError> {
-        self.next.clone_from(state);
+        let step = Communication { model, state, start: state.time, length, held };
         let mut counters = Counters::default();
-        for ((choice, solver), network) in self.networks.iter_mut().zip(&model.networks) {
+        for (number, (choice, solver)) in self.networks.iter_mut().enumerate() {
+            let next = &mut self.next;
             let done = match solver {
-                Solver::Leapfrog(work) => {
-                    leapfrog(model, network, work, &mut self.next, span, choice, held)?
+                Solver::Leapfrog(work) => step.leapfrog(number, choice.step_max, work, next)?,
+                Solver::AxialImplicit(work) => step.axial_implicit(number, choice.step_max, work, next)?,
+                Solver::Implicit(scheme) => {
+                    step.implicit(number, choice.step_max, scheme, &mut self.implicit, next)?
                 }
-                Solver::AxialImplicit(work) => {
-                    axial_implicit(model, network, work, &mut self.next, span, choice, held)?
-                }
+                Solver::QuasiStatic => step.quasi_static(number, &mut self.implicit, next)?,
             };
             counters.substeps = counters.substeps.max(done.substeps);
-            counters.passes += done.passes;
+            counters.solves += done.solves;
         }
-        self.next.time = state.time + span;
-        for (index, point) in self.next.points.iter_mut().enumerate() {
-            if model.points[index].free().is_none() {
-                let k = held(index, self.next.time);
-                (point.position, point.velocity, point.acceleration) =
-                    (k.position, k.velocity, k.acceleration);
-            }
-        }
-        for (line, shape) in model.lines.iter().zip(&mut self.next.lines) {
-            let last = line.segment_count();
-            for (node, point) in [0, last].into_iter().zip(line.ends) {
-                shape.velocity[node] = self.next.points[point].velocity;
-            }
-        }
+        step.place_held(&mut self.next);
         std::mem::swap(state, &mut self.next);
         Ok(counters)
     }
 }
 
-fn choose(model: &Model, network: &Network, tension: &impl Fn(usize) -> f64) -> Choice {
-    let least = |limit: &dyn Fn(usize) -> f64| {
-        network
-            .lines
-            .iter()
-            .map(|&line| limit(line))
-            .fold(f64::INFINITY, f64::min)
-    };
-    let explicit_limit = least(&|line| explicit_step(&model.lines[line], 0.0));
-    let transverse_limit =
-        least(&|line| transverse_step(&model.lines[line], SNAP_MARGIN * tension(line)));
-    let held_ends = network.free_points.is_empty();
-    let integrator = match model.solver.integrator {
-        Integrator::Auto
-            if held_ends
-                && AXIAL_IMPLICIT_COST * explicit_limit
-                    < transverse_limit.min(model.solver.time_step_max) =>
-        {
-            Integrator::AxialImplicit
-        }
-        Integrator::Auto => Integrator::Leapfrog,
-        chosen => chosen,
-    };
-    let step_max = match integrator {
-        Integrator::Leapfrog => explicit_limit,
-        _ => transverse_limit,
-    };
-    Choice {
-        integrator,
-        step_max: step_max.min(model.solver.time_step_max),
-        explicit_limit,
-        transverse_limit,
-    }
-}
-
-fn build(model: &Model, network: &Network, choice: &Choice) -> Solver {
-    match choice.integrator {
-        Integrator::AxialImplicit => {
-            let rho = model
-                .solver
-                .spectral_radius
-                .unwrap_or(AXIAL_SPECTRAL_RADIUS);
-            let line = &model.lines[network.lines[0]];
-            Solver::AxialImplicit(AxialWork::new(line, rho, model.solver.negative_tension))
-        }
-        _ => Solver::Leapfrog(NetworkWork::new(model, network).expect("one strain measure a line")),
-    }
-}
-
-/// Equal steps no longer than `step_max` over `span`, halved `retry` times.
-fn substeps(span: f64, step_max: f64, retry: u32) -> usize {
-    // a span of exactly one limit must not become two steps by rounding
-    ((span / step_max * (1.0 - 1e-9)).ceil().max(1.0) as usize) << retry
-}
-
-fn leapfrog(
-    model: &Model,
-    network: &Network,
-    work: &mut NetworkWork,
-    state: &mut State,
-    span: f64,
-    choice: &Choice,
-    held: &impl Fn(usize, f64) -> Kinematics,
-) -> Result<Counters, StepError> {
-    let t0 = state.time;
-    for retry in 0..=RETRIES_MAX {
-        work.load(network, state);
-        let drag_rate = work
-            .lines
-            .iter()
-            .map(|line| line.drag_rate())
-            .fold(0.0, f64::max);
-        let count = substeps(span, choice.step_max.min(1.0 / drag_rate), retry);
-        let drift = span / count as f64;
-        let mut steps = state.lines[network.lines[0]].half_step.steps;
-        work.put_ends(model, network, t0, drift, held);
-        for k in 0..count {
-            work.step(
-                model,
-                network,
-                t0 + k as f64 * drift,
-                Step::after(steps, drift),
-                held,
-            );
-            steps = [drift, steps[0]];
-        }
-        if work.lines.iter().all(|line| line.broken_node().is_none()) {
-            work.store(network, state, steps);
-            return Ok(Counters {
-                substeps: count,
-                passes: count,
-            });
+impl Solver {
+    fn new(model: &Model, network: &Network, integrator: Integrator) -> Solver {
+        let negative = model.solver.negative_tension;
+        let kernel = |solver: Option<Solver>| solver.expect("the integrator was chosen for these lines");
+        match integrator {
+            Integrator::QuasiStatic => Solver::QuasiStatic,
+            Integrator::AxialImplicit => {
+                let rho = model.solver.spectral_radius.unwrap_or(AXIAL_SPECTRAL_RADIUS);
+                let line = &model.lines[network.lines[0]];
+                kernel(AxialWork::new(line, rho, negative).map(Solver::AxialImplicit))
+            }
+            Integrator::Leapfrog => kernel(NetworkWork::new(model, network).map(Solver::Leapfrog)),
+            _ => Solver::Implicit(Scheme::new(&model.solver)),
         }
     }
-    let broken = work
-        .lines
-        .iter()
-        .zip(&network.lines)
-        .find_map(|(work, line)| Some((*line, work.broken_node()?)));
-    let (line, node) = broken.unwrap_or((network.lines[0], 0));
-    Err(diverged(model, line, node, t0))
 }
 
-fn axial_implicit(
-    model: &Model,
-    network: &Network,
-    work: &mut AxialWork,
-    state: &mut State,
-    span: f64,
-    choice: &Choice,
-    held: &impl Fn(usize, f64) -> Kinematics,
-) -> Result<Counters, StepError> {
-    let index = network.lines[0];
-    let line = &model.lines[index];
-    let t0 = state.time;
-    for retry in 0..=RETRIES_MAX {
-        work.load(line, &state.lines[index]);
-        let count = substeps(span, choice.step_max, retry);
-        let drift = span / count as f64;
-        let mut steps = state.lines[index].half_step.steps;
-        let mut passes = 0;
-        for (end, &point) in [End::A, End::B].into_iter().zip(&line.ends) {
-            let k = held(point, t0);
-            work.put_end(end, k.position, k.velocity - 0.5 * drift * k.acceleration);
+/// One communication step: where it starts from, and what moves the held points.
+struct Communication<'a, K> {
+    model: &'a Model,
+    state: &'a State,
+    /// [s]
+    start: f64,
+    /// [s]
+    length: f64,
+    held: &'a K,
+}
+
+impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
+    fn leapfrog(
+        &self,
+        number: usize,
+        step_max: f64,
+        work: &mut NetworkWork,
+        next: &mut State,
+    ) -> Result<Counters, StepError> {
+        let (model, network) = (self.model, &self.model.networks[number]);
+        for retry in 0..=RETRIES_MAX {
+            work.load(network, self.state);
+            let count = self.substeps(step_max.min(1.0 / work.drag_rate(model, network)), retry);
+            let drift = self.length / count as f64;
+            let mut steps = self.state.lines[network.lines[0]].half_step.steps;
+            work.put_ends(model, network, self.start, drift, self.held);
+            for k in 0..count {
+                let t = self.start + k as f64 * drift;
+                work.step(model, network, t, Step::after(steps, drift), self.held);
+                steps = [drift, steps[0]];
+            }
+            if work.broken_node().is_none() {
+                work.store(network, next, steps);
+                return Ok(Counters { substeps: count, solves: count });
+            }
         }
-        for k in 0..count {
-            let t = t0 + (k + 1) as f64 * drift;
-            let ends = line.ends.map(|point| held(point, t).position);
-            passes += work.step(line, Step::after(steps, drift), ends);
-            steps = [drift, steps[0]];
+        let (line, node) = work.broken_node().unwrap_or((0, 0));
+        Err(self.diverged(network.lines[line], node))
+    }
+
+    fn axial_implicit(
+        &self,
+        number: usize,
+        step_max: f64,
+        work: &mut AxialWork,
+        next: &mut State,
+    ) -> Result<Counters, StepError> {
+        let index = self.model.networks[number].lines[0];
+        let line = &self.model.lines[index];
+        for retry in 0..=RETRIES_MAX {
+            work.load(&self.state.lines[index]);
+            let count = self.substeps(step_max, retry);
+            let drift = self.length / count as f64;
+            let mut steps = self.state.lines[index].half_step.steps;
+            let mut solves = 0;
+            for (end, &point) in [End::A, End::B].into_iter().zip(&line.ends) {
+                let k = (self.held)(point, self.start);
+                work.put_end(end, k.position, k.velocity - 0.5 * drift * k.acceleration);
+            }
+            for k in 1..=count {
+                let t = self.start + k as f64 * drift;
+                let ends = line.ends.map(|point| (self.held)(point, t).position);
+                solves += work.step(Step::after(steps, drift), ends);
+                steps = [drift, steps[0]];
+            }
+            if work.broken_node().is_none() {
+                work.store(&mut next.lines[index], steps);
+                return Ok(Counters { substeps: count, solves });
+            }
         }
-        if work.broken_node().is_none() {
-            work.store(&mut state.lines[index], steps);
-            return Ok(Counters {
-                substeps: count,
-                passes,
-            });
+        Err(self.diverged(index, work.broken_node().unwrap_or(0)))
+    }
+
+    fn implicit(
+        &self,
+        number: usize,
+        step_max: f64,
+        scheme: &Scheme,
+        work: &mut assembly::Workspace,
+        next: &mut State,
+    ) -> Result<Counters, StepError> {
+        copy_network(self.model, &self.model.networks[number], self.state, next);
+        let times = [self.start, self.start + self.length];
+        let done = implicit::advance(self.model, number, next, self.held, times, step_max, scheme, work)?;
+        Ok(Counters { substeps: done.steps, solves: done.solves })
+    }
+
+    fn quasi_static(
+        &self,
+        number: usize,
+        work: &mut assembly::Workspace,
+        next: &mut State,
+    ) -> Result<Counters, StepError> {
+        copy_network(self.model, &self.model.networks[number], self.state, next);
+        let times = [self.start, self.start + self.length];
+        let done = quasi_static::advance(self.model, number, next, self.held, times, work)?;
+        Ok(Counters { substeps: done.steps, solves: done.solves })
+    }
+
+    /// Held points, and the velocities of the nodes at their lines' ends, at the end of the step.
+    fn place_held(&self, next: &mut State) {
+        next.time = self.start + self.length;
+        for (index, (point, state)) in self.model.points.iter().zip(&mut next.points).enumerate() {
+            if point.free().is_none() {
+                let k = (self.held)(index, next.time);
+                (state.position, state.velocity, state.acceleration) =
+                    (k.position, k.velocity, k.acceleration);
+            }
+        }
+        for (line, state) in self.model.lines.iter().zip(&mut next.lines) {
+            for (node, point) in [0, line.segment_count()].into_iter().zip(line.ends) {
+                state.velocity[node] = next.points[point].velocity;
+            }
         }
     }
-    Err(diverged(model, index, work.broken_node().unwrap_or(0), t0))
-}
 
-fn diverged(model: &Model, line: usize, node: usize, time: f64) -> StepError {
-    StepError {
-        time,
-        line: model.lines[line].name.clone(),
-        node,
-        reason: "the motion grew without bound".into(),
-        advice: "try a smaller solver.time_step_max or integrator = \"generalised_alpha\"".into(),
+    /// Equal steps no longer than `step_max` [s], halved `retry` times.
+    fn substeps(&self, step_max: f64, retry: u32) -> usize {
+        // a span of exactly one limit must not become two steps by rounding
+        ((self.length / step_max * (1.0 - 1e-9)).ceil().max(1.0) as usize) << retry
+    }
+
+    fn diverged(&self, line: usize, node: usize) -> StepError {
+        StepError {
+            time: self.start,
+            line: self.model.lines[line].name.clone(),
+            node,
+            reason: "the motion grew without bound".into(),
+            advice: "try a smaller solver.time_step_max, or solver.integrator = \"generalised_alpha\"",
+        }
     }
 }

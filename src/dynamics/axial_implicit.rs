@@ -17,9 +17,12 @@
 //! Model. Simul. 7, 1779-1794, with controllable dissipation added. The limit left is transverse:
 //! [`super::limit::transverse_step`].
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
+use pulp::NullaryFnOnce;
 
+use super::layout::{FIRST, Layout, pad};
 use super::leapfrog::Step;
+use crate::math::lanes::{Components, Lanes, Vectors};
 use crate::model::{End, Line, LineState};
 use crate::physics::stretch::StretchLaw;
 
@@ -43,47 +46,56 @@ impl Weights {
     }
 }
 
-/// A line and its scratch for this integrator.
+/// A line and the scratch of its steps.
 #[derive(Debug, Clone)]
 pub struct AxialWork {
+    layout: Layout,
     weights: Weights,
-    negative_tension: bool,
-    position: Vec<Vector3<f64>>,
-    velocity: Vec<Vector3<f64>>,
-    velocity_before: Vec<Vector3<f64>>,
-    /// Elastic tensions at t_n, t_{n−1}, t_{n−2} [N].
-    tension: [Vec<f64>; 3],
-    segments: Vec<SegmentWork>,
-    nodes: Vec<NodeWork>,
+    segments: SegmentArrays,
+    nodes: NodeArrays,
     rows: Rows,
 }
 
-/// What a step knows of a segment before it is solved.
-#[derive(Debug, Clone, Copy)]
-struct SegmentWork {
-    /// Unit vector along the segment.
-    direction: Vector3<f64>,
-    /// EA·b₁·slope and BA, over the unstretched length [N/m, N s/m].
-    stiffness: f64,
-    damping: f64,
-    /// Part of T̄ known beforehand, elastic and total [N].
-    elastic: f64,
-    known: f64,
-    /// Δε of the transverse motion times EA·b₁ [N], replaced by the true one in later passes.
-    curvature: f64,
-    taut: bool,
+/// What a step knows of the segments before it is solved.
+#[derive(Debug, Clone)]
+struct SegmentArrays {
+    /// Unit vectors q along the segments.
+    direction: Components,
+    /// Lengths l at t_n [m].
+    length: Vec<f64>,
+    /// dT̄/d(q·(v_{i+1} − v_i)): elastic and damping part [N s/m].
+    stiffness: Vec<f64>,
+    damping: Vec<f64>,
+    /// Parts of T̄ known beforehand: elastic, and with damping [N].
+    elastic: Vec<f64>,
+    known: Vec<f64>,
+    /// EA·b₁ times the stretch by transverse motion [N].
+    curvature: Vec<f64>,
+    /// 1 where the segment is taut, −1 where it is slack.
+    taut: Vec<f64>,
+    /// Elastic tensions at t_{n−1} and t_{n−2} [N].
+    history: [Vec<f64>; 2],
 }
 
-/// What a step knows of a node.
-#[derive(Debug, Clone, Copy)]
-struct NodeWork {
-    /// Inverse mass with drag folded in, without and with contact [1/kg].
-    dry: Matrix3<f64>,
-    inverse: Matrix3<f64>,
-    /// Velocity without tension, without and with contact [m/s].
-    fall: Vector3<f64>,
-    loose: Vector3<f64>,
-    touches: bool,
+/// What a step knows of the nodes: M⁻¹ x = a x + b (t·x) t − c (s·x) s, with s = (a I + b t tᵀ) ẑ.
+#[derive(Debug, Clone)]
+struct NodeArrays {
+    mass_normal: Vec<f64>,
+    mass_tangent: Vec<f64>,
+    /// a, with drag folded in [1/kg].
+    across: Vec<f64>,
+    /// b [1/kg].
+    excess: Vec<f64>,
+    tangent: Components,
+    /// s [1/kg].
+    response: Components,
+    /// c, 0 off the bed [kg].
+    held: Vec<f64>,
+    /// 1 where the bed pushes, −1 elsewhere.
+    touches: Vec<f64>,
+    /// Velocity without tension, without and with the bed [m/s].
+    fall: Components,
+    loose: Components,
 }
 
 /// The tridiagonal system in T̄.
@@ -96,396 +108,416 @@ struct Rows {
 }
 
 impl AxialWork {
-    /// Scratch for a line.
-    pub fn new(line: &Line, rho: f64, negative_tension: bool) -> AxialWork {
-        let n = line.segment_count();
-        let zero = Vector3::zeros();
-        let segment = SegmentWork {
-            direction: zero,
-            stiffness: 0.0,
-            damping: 0.0,
-            elastic: 0.0,
-            known: 0.0,
-            curvature: 0.0,
-            taut: true,
-        };
-        let still = Matrix3::zeros();
-        let node = NodeWork {
-            dry: still,
-            inverse: still,
-            fall: zero,
-            loose: zero,
-            touches: false,
-        };
-        AxialWork {
+    /// Scratch for a line; `None` where its sections have different strain measures, which the kernel does not mix.
+    pub fn new(line: &Line, rho: f64, negative_tension: bool) -> Option<AxialWork> {
+        let layout = Layout::new(line, negative_tension)?;
+        let n = layout.segment_count;
+        let size = layout.weight.len();
+        let (zeros, vectors) = (vec![0.0; size], Components::zeros(size));
+        Some(AxialWork {
+            layout,
             weights: Weights::new(rho),
-            negative_tension,
-            position: vec![zero; n + 1],
-            velocity: vec![zero; n + 1],
-            velocity_before: vec![zero; n + 1],
-            tension: [vec![0.0; n], vec![0.0; n], vec![0.0; n]],
-            segments: vec![segment; n],
-            nodes: vec![node; n + 1],
-            rows: Rows {
-                lower: vec![0.0; n],
-                diagonal: vec![0.0; n],
-                upper: vec![0.0; n],
-                tension: vec![0.0; n],
+            segments: SegmentArrays {
+                direction: vectors.clone(),
+                length: zeros.clone(),
+                stiffness: zeros.clone(),
+                damping: zeros.clone(),
+                elastic: zeros.clone(),
+                known: zeros.clone(),
+                curvature: zeros.clone(),
+                taut: zeros.clone(),
+                history: [zeros.clone(), zeros.clone()],
             },
-        }
-    }
-
-    /// Takes over the state of a line.
-    pub fn load(&mut self, line: &Line, state: &LineState) {
-        let memory = &state.half_step;
-        self.position.copy_from_slice(&state.position);
-        if memory.velocity.is_empty() {
-            self.velocity.copy_from_slice(&state.velocity);
-            self.velocity_before.copy_from_slice(&state.velocity);
-        } else {
-            self.velocity.copy_from_slice(&memory.velocity);
-            self.velocity_before
-                .copy_from_slice(&memory.velocity_before);
-        }
-        if memory.tension[0].is_empty() {
-            for i in 0..self.segments.len() {
-                let tension = self.elastic_tension(line, i);
-                self.tension
-                    .iter_mut()
-                    .for_each(|history| history[i] = tension);
-            }
-        } else {
-            self.tension
-                .iter_mut()
-                .zip(&memory.tension)
-                .for_each(|(own, kept)| own.copy_from_slice(kept));
-        }
-    }
-
-    /// Hands the state back, with velocities extrapolated to the time of the positions.
-    pub fn store(&self, state: &mut LineState, steps: [f64; 2]) {
-        let extrapolation = Step::after(steps, steps[0]).extrapolation;
-        state.position.copy_from_slice(&self.position);
-        let pairs = self.velocity.iter().zip(&self.velocity_before);
-        for (velocity, (now, before)) in state.velocity.iter_mut().zip(pairs) {
-            *velocity = now + extrapolation * (now - before);
-        }
-        let memory = &mut state.half_step;
-        memory.steps = steps;
-        memory.velocity.clone_from(&self.velocity);
-        memory.velocity_before.clone_from(&self.velocity_before);
-        memory
-            .tension
-            .iter_mut()
-            .zip(&self.tension)
-            .for_each(|(kept, own)| kept.clone_from(own));
-    }
-
-    /// Puts an end where it is at the time of the positions.
-    pub fn put_end(&mut self, end: End, position: Vector3<f64>, velocity: Vector3<f64>) {
-        let node = match end {
-            End::A => 0,
-            End::B => self.segments.len(),
-        };
-        self.position[node] = position;
-        self.velocity[node] = velocity;
-    }
-
-    /// One step; `ends` are the positions [m] of both ends at its end. Returns the passes it took.
-    pub fn step(&mut self, line: &Line, step: Step, ends: [Vector3<f64>; 2]) -> usize {
-        self.prepare_segments(line, step);
-        self.prepare_nodes(line, step, ends);
-        let mut passes = 1;
-        while !self.solve(line, step) && passes < PASSES_MAX {
-            passes += 1;
-        }
-        self.finish(line, step, ends);
-        passes
-    }
-
-    /// EA·N(ε), never negative [N].
-    fn elastic_tension(&self, line: &Line, i: usize) -> f64 {
-        let segments = &line.segments;
-        let strain = (self.position[i + 1] - self.position[i]).norm() / segments.length[i] - 1.0;
-        (segments.axial_stiffness[i] * segments.law[i].at(strain).force).max(0.0)
-    }
-
-    fn prepare_segments(&mut self, line: &Line, step: Step) {
-        let Weights([b1, h0, h1, h2]) = self.weights;
-        let [now, last, before] = &self.tension;
-        let data = &line.segments;
-        for (i, segment) in self.segments.iter_mut().enumerate() {
-            let length = data.length[i];
-            let chord = self.position[i + 1] - self.position[i];
-            let l = chord.norm();
-            let direction = if l > 0.0 { chord / l } else { Vector3::zeros() };
-            let rate = (self.velocity[i + 1] - self.velocity[i]) / length; // G(v⁻) [1/s]
-            let along = direction.dot(&rate);
-            let stretch = l / length;
-            let (force, slope) = match data.law[i] {
-                StretchLaw::Engineering => (stretch - 1.0, 1.0),
-                law => {
-                    let at = law.at(stretch - 1.0);
-                    (at.force, at.slope)
-                }
-            };
-            let ea = b1 * data.axial_stiffness[i];
-            let bend = rate.norm_squared() - along * along;
-            segment.curvature = if l > 0.0 {
-                0.5 * ea * slope * step.drift * step.drift * bend / stretch
-            } else {
-                0.0
-            };
-            let history = h0 * now[i] + h1 * last[i] + h2 * before[i];
-            let damping = 0.5 * data.axial_damping[i];
-            segment.elastic = ea * force + history;
-            segment.known = segment.elastic + damping * (1.0 - DAMPING_SHIFT) * along;
-            segment.stiffness = ea * slope * step.drift / length;
-            segment.damping = damping * (1.0 + DAMPING_SHIFT) / length;
-            segment.direction = direction;
-            segment.taut = segment.known + segment.curvature > 0.0;
-        }
-    }
-
-    fn prepare_nodes(&mut self, line: &Line, step: Step, ends: [Vector3<f64>; 2]) {
-        let n = self.segments.len();
-        for (node, end) in [0, n].into_iter().zip(ends) {
-            let secant = (end - self.position[node]) / step.drift;
-            let zero = Matrix3::zeros();
-            self.nodes[node] = NodeWork {
-                dry: zero,
-                inverse: zero,
-                fall: secant,
-                loose: secant,
-                touches: false,
-            };
-        }
-        for i in 1..n {
-            let (dry, fall) = self.free_node(line, step, i);
-            let touches = self.touches(line, step, i, self.velocity[i].z);
-            self.nodes[i] = NodeWork {
-                dry,
-                inverse: dry,
-                fall,
-                loose: fall,
-                touches,
-            };
-            self.settle_node(line, step, i);
-        }
-    }
-
-    /// Inverse mass with trapezoidal drag, and velocity without tension and contact.
-    fn free_node(&self, line: &Line, step: Step, i: usize) -> (Matrix3<f64>, Vector3<f64>) {
-        let nodes = &line.nodes;
-        let (kick, velocity) = (step.kick, self.velocity[i]);
-        let chord = self.position[i + 1] - self.position[i - 1];
-        let tangent = chord.try_normalize(0.0).unwrap_or_else(Vector3::zeros);
-        let (mut mass_normal, mut mass_tangent) = (nodes.mass_normal[i], nodes.mass_tangent[i]);
-        let mut impulse = -kick * nodes.weight[i] * Vector3::z();
-        if let Some(drag) = &nodes.drag {
-            let now = velocity + step.extrapolation * (velocity - self.velocity_before[i]);
-            let speed_along = now.dot(&tangent);
-            let speed_across = (now - speed_along * tangent).norm();
-            let (normal, along) = (
-                drag.normal[i] * speed_across,
-                drag.tangent[i] * speed_along.abs(),
-            );
-            mass_normal += 0.5 * kick * normal;
-            mass_tangent += 0.5 * kick * along;
-            impulse -=
-                kick * (normal * velocity + (along - normal) * velocity.dot(&tangent) * tangent);
-        }
-        if let Some(damping) = &nodes.mass_damping {
-            mass_normal += 0.5 * kick * damping[i];
-            mass_tangent += 0.5 * kick * damping[i];
-            impulse -= kick * damping[i] * velocity;
-        }
-        let (normal, along) = (1.0 / mass_normal, 1.0 / mass_tangent);
-        let inverse = Matrix3::from_diagonal_element(normal)
-            + (along - normal) * tangent * tangent.transpose();
-        (inverse, velocity + inverse * impulse)
-    }
-
-    /// Whether the bed pushes a node that moves at `rise` [m/s]: it would be below the bed, and not leave it faster
-    /// than the damper lets go.
-    fn touches(&self, line: &Line, step: Step, i: usize, rise: f64) -> bool {
-        line.nodes.contact.as_ref().is_some_and(|contact| {
-            let penetration = contact.bed - self.position[i].z;
-            let next = penetration - step.drift * rise;
-            let damper = (next - penetration.max(0.0)) / step.drift;
-            next > 0.0 && contact.stiffness[i] * next + contact.damping[i] * damper > 0.0
+            nodes: NodeArrays {
+                mass_normal: pad(n, &line.nodes.mass_normal, 1.0),
+                mass_tangent: pad(n, &line.nodes.mass_tangent, 1.0),
+                across: zeros.clone(),
+                excess: zeros.clone(),
+                tangent: vectors.clone(),
+                response: vectors.clone(),
+                held: zeros.clone(),
+                touches: zeros.clone(),
+                fall: vectors.clone(),
+                loose: vectors,
+            },
+            rows: Rows {
+                lower: zeros.clone(),
+                diagonal: vec![1.0; size],
+                upper: zeros.clone(),
+                tension: zeros,
+            },
         })
     }
 
-    /// Adds the bed to a node that touches it: a rank-one update of the inverse mass.
-    fn settle_node(&mut self, line: &Line, step: Step, i: usize) {
-        let node = &mut self.nodes[i];
-        (node.inverse, node.loose) = (node.dry, node.fall);
-        let Some(contact) = line.nodes.contact.as_ref().filter(|_| node.touches) else {
+    /// Takes over the state of a line.
+    pub fn load(&mut self, state: &LineState) {
+        self.layout.load(state);
+        let count = self.layout.segment_count;
+        if state.half_step.tension[0].len() == count {
+            for (own, kept) in self.segments.history.iter_mut().zip(&state.half_step.tension) {
+                own[FIRST..FIRST + count].copy_from_slice(kept);
+            }
             return;
-        };
-        let penetration = contact.bed - self.position[i].z;
-        let (stiffness, damping) = (contact.stiffness[i], contact.damping[i]);
-        let landing = damping / step.drift * penetration.min(0.0); // the damper acts below the bed only
-        let resistance = step.kick * (stiffness * step.drift + damping);
-        let response = node.dry.column(2).into_owned();
-        let share = 1.0 / (1.0 + resistance * response.z);
-        node.inverse -= response * response.transpose() * (resistance * share);
-        let impulse = step.kick * (stiffness * penetration + landing) - resistance * node.fall.z;
-        node.loose += response * (impulse * share);
+        }
+        for at in self.layout.segment_blocks() {
+            let (chord, inverse_l) = self.layout.chord(at);
+            let (force, _) = self.force_and_slope(at, chord.dot(chord) * inverse_l);
+            let tension = Lanes::load(&self.layout.axial_stiffness, at) * force.positive();
+            self.segments.history.iter_mut().for_each(|history| tension.store(history, at));
+        }
     }
 
-    /// Solves for T̄ and the new velocities; false if a flag changed and the step must be solved again.
-    fn solve(&mut self, line: &Line, step: Step) -> bool {
-        self.assemble_rows(step);
-        self.rows.solve();
-        let n = self.segments.len();
-        let mut settled = true;
-        for i in 1..n {
-            let pull = self.rows.tension[i] * self.segments[i].direction
-                - self.rows.tension[i - 1] * self.segments[i - 1].direction;
-            let velocity = self.nodes[i].loose + step.kick * (self.nodes[i].inverse * pull);
-            if line.nodes.contact.is_some() {
-                let touches = self.touches(line, step, i, velocity.z);
-                if touches != self.nodes[i].touches {
-                    self.nodes[i].touches = touches;
-                    self.settle_node(line, step, i);
-                    settled = false;
+    /// Hands the state back after steps of `steps` [s].
+    pub fn store(&self, state: &mut LineState, steps: [f64; 2]) {
+        self.layout.store(state, steps);
+        let own = FIRST..FIRST + self.layout.segment_count;
+        for (kept, history) in state.half_step.tension.iter_mut().zip(&self.segments.history) {
+            kept.clear();
+            kept.extend_from_slice(&history[own.clone()]);
+        }
+    }
+
+    /// Puts an end at a position [m] with the velocity [m/s] that the next step takes as lagged.
+    pub fn put_end(&mut self, end: End, position: Vector3<f64>, velocity: Vector3<f64>) {
+        self.layout.put_end(end, position, velocity);
+    }
+
+    /// One step; `ends` are the positions [m] of both ends after it. Returns the passes it took.
+    pub fn step(&mut self, step: Step, ends: [Vector3<f64>; 2]) -> usize {
+        let unit = self.layout.vector_unit;
+        unit.dispatch(AxialStep(self, step, ends))
+    }
+
+    #[inline(always)]
+    fn step_vectors(&mut self, step: Step, ends: [Vector3<f64>; 2]) -> usize {
+        self.prepare_segments(step);
+        self.prepare_nodes(step);
+        self.prepare_ends(step, ends);
+        let mut passes = 0;
+        loop {
+            passes += 1;
+            self.assemble_rows(step);
+            let greatest = self.rows.solve(self.layout.segment_count);
+            let bed_holds = self.find_velocities(step);
+            let slack_holds = self.check_segments(step, greatest);
+            if bed_holds && slack_holds || passes == PASSES_MAX {
+                break;
+            }
+        }
+        std::mem::swap(&mut self.layout.velocity, &mut self.layout.velocity_before);
+        self.layout.drift(step.drift);
+        self.layout.position.set(FIRST, ends[0]);
+        self.layout.position.set(FIRST + self.layout.segment_count, ends[1]);
+        passes
+    }
+
+    /// N(ε)/EA and its slope for segments of length `l` [m].
+    #[inline(always)]
+    fn force_and_slope(&self, at: usize, l: Lanes) -> (Lanes, Lanes) {
+        let one = Lanes::splat(1.0);
+        let strain = l * Lanes::load(&self.layout.inverse_length, at) - one;
+        match self.layout.law {
+            StretchLaw::Engineering => (strain, one),
+            law => (strain.map(|e| law.at(e).force), strain.map(|e| law.at(e).slope)),
+        }
+    }
+
+    #[inline(always)]
+    fn prepare_segments(&mut self, step: Step) {
+        let [b1, h0, h1, h2] = self.weights.0.map(Lanes::splat);
+        let drift = Lanes::splat(step.drift);
+        for at in self.layout.segment_blocks() {
+            let line = &self.layout;
+            let (chord, inverse_l) = line.chord(at);
+            let direction = chord.scale(inverse_l);
+            let l = chord.dot(chord) * inverse_l;
+            let inverse_length = Lanes::load(&line.inverse_length, at);
+            let relative = line.velocity.load(at + 1) - line.velocity.load(at);
+            let along = direction.dot(relative);
+            let (force, slope) = self.force_and_slope(at, l);
+            let ea = Lanes::load(&line.axial_stiffness, at);
+            let tension = ea * force.positive();
+            let segments = &mut self.segments;
+            let [last, before] = &mut segments.history;
+            let (t1, t2) = (Lanes::load(last, at), Lanes::load(before, at));
+            tension.store(last, at);
+            t1.store(before, at);
+            let elastic = b1 * ea * force + h0 * tension + h1 * t1 + h2 * t2;
+            let damping = Lanes::splat(0.5) * Lanes::load(&line.axial_damping, at) * inverse_length;
+            let stiffness = b1 * ea * slope * drift * inverse_length;
+            let bend = relative.dot(relative) - along * along;
+            let curvature = Lanes::splat(0.5) * stiffness * drift * bend * inverse_l;
+            let known = elastic + damping * Lanes::splat(1.0 - DAMPING_SHIFT) * along;
+            segments.direction.store(direction, at);
+            l.store(&mut segments.length, at);
+            stiffness.store(&mut segments.stiffness, at);
+            (damping * Lanes::splat(1.0 + DAMPING_SHIFT)).store(&mut segments.damping, at);
+            elastic.store(&mut segments.elastic, at);
+            known.store(&mut segments.known, at);
+            curvature.store(&mut segments.curvature, at);
+            (known + curvature).choose(Lanes::splat(1.0), Lanes::splat(-1.0)).store(&mut segments.taut, at);
+        }
+    }
+
+    #[inline(always)]
+    fn prepare_nodes(&mut self, step: Step) {
+        let kick = Lanes::splat(step.kick);
+        let half = Lanes::splat(0.5) * kick;
+        for at in self.layout.node_blocks() {
+            let line = &self.layout;
+            let velocity = line.velocity.load(at);
+            let tangent = line.tangent(at);
+            let mut mass_normal = Lanes::load(&self.nodes.mass_normal, at);
+            let mut mass_tangent = Lanes::load(&self.nodes.mass_tangent, at);
+            let zero = Lanes::splat(0.0);
+            let weight = zero - Lanes::load(&line.weight, at);
+            let mut force = Vectors { x: zero, y: zero, z: weight };
+            if let Some(drag) = &line.drag {
+                let now = line.velocity_now(at, step);
+                let speed = now.dot(tangent);
+                let across = now - tangent.scale(speed);
+                let normal = Lanes::load(&drag.normal, at) * across.dot(across).sqrt();
+                let along = Lanes::load(&drag.tangent, at) * speed.abs();
+                mass_normal = mass_normal + half * normal;
+                mass_tangent = mass_tangent + half * along;
+                force = force
+                    - velocity.scale(normal)
+                    - tangent.scale((along - normal) * velocity.dot(tangent));
+            }
+            if let Some(damping) = &line.mass_damping {
+                let damping = Lanes::load(damping, at);
+                mass_normal = mass_normal + half * damping;
+                mass_tangent = mass_tangent + half * damping;
+                force = force - velocity.scale(damping);
+            }
+            let across = mass_normal.recip();
+            let excess = mass_tangent.recip() - across;
+            let response = tangent.scale(excess * tangent.z);
+            let inverted = force.scale(across) + tangent.scale(excess * force.dot(tangent));
+            let nodes = &mut self.nodes;
+            across.store(&mut nodes.across, at);
+            excess.store(&mut nodes.excess, at);
+            nodes.tangent.store(tangent, at);
+            nodes.response.store(Vectors { z: response.z + across, ..response }, at);
+            nodes.fall.store(velocity + inverted.scale(kick), at);
+            nodes.loose.store(velocity + inverted.scale(kick), at);
+            if self.layout.contact.is_some() {
+                self.touches(at, velocity.z, step).store(&mut self.nodes.touches, at);
+                self.settle(at, step);
+            }
+        }
+    }
+
+    /// Held ends move by the secant of their path and yield to no force.
+    #[inline(always)]
+    fn prepare_ends(&mut self, step: Step, ends: [Vector3<f64>; 2]) {
+        for (end, position) in [End::A, End::B].into_iter().zip(ends) {
+            let at = self.layout.end_index(end);
+            let secant = (position - self.layout.position.get(at)) / step.drift;
+            let nodes = &mut self.nodes;
+            (nodes.across[at], nodes.excess[at], nodes.held[at]) = (0.0, 0.0, 0.0);
+            nodes.touches[at] = -1.0;
+            nodes.response.set(at, Vector3::zeros());
+            nodes.loose.set(at, secant);
+            nodes.fall.set(at, secant);
+        }
+    }
+
+    /// 1 where the bed pushes nodes that rise at `rise` [m/s], else −1: they would be below the bed, and not leave it
+    /// faster than the damper lets go.
+    #[inline(always)]
+    fn touches(&self, at: usize, rise: Lanes, step: Step) -> Lanes {
+        let contact = self.layout.contact.as_ref().expect("asked over a bed only");
+        let drift = Lanes::splat(step.drift);
+        let penetration = Lanes::splat(contact.bed) - Lanes::load(&self.layout.position.z, at);
+        let next = penetration - drift * rise;
+        let push = Lanes::load(&contact.stiffness, at) * next * drift
+            + Lanes::load(&contact.damping, at) * (next - penetration.positive());
+        let (yes, no) = (Lanes::splat(1.0), Lanes::splat(-1.0));
+        next.choose(push.choose(yes, no), no)
+    }
+
+    /// Adds the bed to the nodes it pushes: a rank-one update of the inverse mass, and its impulse.
+    #[inline(always)]
+    fn settle(&mut self, at: usize, step: Step) {
+        let contact = self.layout.contact.as_ref().expect("asked over a bed only");
+        let (kick, drift) = (Lanes::splat(step.kick), Lanes::splat(step.drift));
+        let (zero, one) = (Lanes::splat(0.0), Lanes::splat(1.0));
+        let touches = Lanes::load(&self.nodes.touches, at);
+        let stiffness = Lanes::load(&contact.stiffness, at);
+        let damping = Lanes::load(&contact.damping, at);
+        let penetration = Lanes::splat(contact.bed) - Lanes::load(&self.layout.position.z, at);
+        let above = penetration - penetration.positive(); // the damper acts below the bed only
+        let landing = damping * above * Lanes::splat(1.0 / step.drift);
+        let resistance = kick * (stiffness * drift + damping);
+        let response = self.nodes.response.load(at);
+        let fall = self.nodes.fall.load(at);
+        let share = (one + resistance * response.z).recip();
+        let impulse = (kick * (stiffness * penetration + landing) - resistance * fall.z) * share;
+        touches.choose(resistance * share, zero).store(&mut self.nodes.held, at);
+        let loose = fall + response.scale(touches.choose(impulse, zero));
+        self.nodes.loose.store(loose, at);
+    }
+
+    #[inline(always)]
+    fn assemble_rows(&mut self, step: Step) {
+        let kick = Lanes::splat(step.kick);
+        let (zero, one) = (Lanes::splat(0.0), Lanes::splat(1.0));
+        let (nodes, segments, rows) = (&self.nodes, &self.segments, &mut self.rows);
+        for at in self.layout.segment_blocks() {
+            let direction = segments.direction.load(at);
+            let taut = Lanes::load(&segments.taut, at);
+            let elastic = taut.choose(Lanes::load(&segments.stiffness, at), zero);
+            let damping = Lanes::load(&segments.damping, at);
+            let known = Lanes::load(&segments.known, at);
+            let taut_known = known + Lanes::load(&segments.curvature, at);
+            let (resistance, known) = if self.layout.negative_tension {
+                (elastic + damping, taut.choose(taut_known, known - Lanes::load(&segments.elastic, at)))
+            } else {
+                (taut.choose(elastic + damping, zero), taut.choose(taut_known, zero))
+            };
+            let k = resistance * kick;
+            let low = nodes.inverse_mass(at, direction);
+            let high = nodes.inverse_mass(at + 1, direction);
+            let relative = nodes.loose.load(at + 1) - nodes.loose.load(at);
+            (one + k * direction.dot(low + high)).store(&mut rows.diagonal, at);
+            (zero - k * low.dot(segments.direction.load(at - 1))).store(&mut rows.lower, at);
+            (zero - k * high.dot(segments.direction.load(at + 1))).store(&mut rows.upper, at);
+            (known + resistance * direction.dot(relative)).store(&mut rows.tension, at);
+        }
+    }
+
+    /// New velocities from T̄, into `velocity_before`; false if the bed pushes other nodes than assumed.
+    #[inline(always)]
+    fn find_velocities(&mut self, step: Step) -> bool {
+        let kick = Lanes::splat(step.kick);
+        let mut holds = true;
+        for at in self.layout.node_blocks() {
+            let pull = |at: usize| {
+                self.segments.direction.load(at).scale(Lanes::load(&self.rows.tension, at))
+            };
+            let moved = self.nodes.inverse_mass(at, pull(at) - pull(at - 1)).scale(kick);
+            let velocity = self.nodes.loose.load(at) + moved;
+            self.layout.velocity_before.store(velocity, at);
+            if self.layout.contact.is_some() {
+                let touches = self.touches(at, velocity.z, step);
+                let assumed = Lanes::load(&self.nodes.touches, at);
+                let changed = Lanes::splat(0.0) - touches * assumed;
+                if changed.any_positive() {
+                    touches.store(&mut self.nodes.touches, at);
+                    self.settle(at, step);
+                    self.release_ends();
+                    holds = false;
                 }
             }
-            self.velocity_before[i] = velocity;
         }
-        self.velocity_before[0] = self.nodes[0].loose;
-        self.velocity_before[n] = self.nodes[n].loose;
-        self.check_segments(line, step) && settled
+        holds
     }
 
-    fn assemble_rows(&mut self, step: Step) {
-        let n = self.segments.len();
-        let (nodes, segments, rows) = (&self.nodes, &self.segments, &mut self.rows);
-        for i in 0..n {
-            let segment = &segments[i];
-            let stretches = segment.taut || self.negative_tension;
-            if !stretches {
-                (
-                    rows.lower[i],
-                    rows.diagonal[i],
-                    rows.upper[i],
-                    rows.tension[i],
-                ) = (0.0, 1.0, 0.0, 0.0);
-                continue;
-            }
-            let elastic = if segment.taut { segment.stiffness } else { 0.0 };
-            let k = (elastic + segment.damping) * step.kick;
-            let q = segment.direction;
-            let (low, high) = (nodes[i].inverse * q, nodes[i + 1].inverse * q);
-            rows.diagonal[i] = 1.0 + k * q.dot(&(low + high));
-            rows.lower[i] = if i > 0 {
-                -k * low.dot(&segments[i - 1].direction)
-            } else {
-                0.0
-            };
-            rows.upper[i] = if i + 1 < n {
-                -k * high.dot(&segments[i + 1].direction)
-            } else {
-                0.0
-            };
-            let stretching = q.dot(&(nodes[i + 1].loose - nodes[i].loose));
-            let known = if segment.taut {
-                segment.known + segment.curvature
-            } else {
-                segment.known - segment.elastic
-            };
-            rows.tension[i] = known + (elastic + segment.damping) * stretching;
+    /// Ends are held: no bed acts on their motion.
+    #[inline(always)]
+    fn release_ends(&mut self) {
+        for at in [FIRST, FIRST + self.layout.segment_count] {
+            self.nodes.held[at] = 0.0;
+            self.nodes.touches[at] = -1.0;
+            self.nodes.loose.set(at, self.nodes.fall.get(at));
         }
     }
 
     /// Updates slack flags and the true stretch; false if either asks for another pass.
-    fn check_segments(&mut self, line: &Line, step: Step) -> bool {
-        let mut settled = true;
-        let greatest = self
-            .rows
-            .tension
-            .iter()
-            .fold(0.0_f64, |greatest, tension| greatest.max(*tension));
-        let b1 = self.weights.0[0];
-        for (i, segment) in self.segments.iter_mut().enumerate() {
-            let rate = self.velocity_before[i + 1] - self.velocity_before[i];
-            let along = segment.direction.dot(&rate);
-            let elastic = segment.stiffness * along + segment.curvature;
-            let total = segment.known + elastic + segment.damping * along;
-            let taut = if self.negative_tension {
-                segment.elastic + elastic > 0.0
+    #[inline(always)]
+    fn check_segments(&mut self, step: Step, greatest: f64) -> bool {
+        let drift = Lanes::splat(step.drift);
+        let one = Lanes::splat(1.0);
+        let tolerance = Lanes::splat(STRETCH_TOLERANCE * greatest);
+        let mut changed = false;
+        for at in self.layout.segment_blocks() {
+            let line = &self.layout;
+            let segments = &mut self.segments;
+            let relative = line.velocity_before.load(at + 1) - line.velocity_before.load(at);
+            let direction = segments.direction.load(at);
+            let along = direction.dot(relative);
+            let stiffness = Lanes::load(&segments.stiffness, at);
+            let curvature = Lanes::load(&segments.curvature, at);
+            let stretching = stiffness * along + curvature;
+            let total = if line.negative_tension {
+                Lanes::load(&segments.elastic, at) + stretching
             } else {
-                total > 0.0
+                Lanes::load(&segments.known, at) + stretching + Lanes::load(&segments.damping, at) * along
             };
-            if taut != segment.taut {
-                segment.taut = taut;
-                settled = false;
-            }
-            if !taut {
-                continue;
-            }
-            let chord = self.position[i + 1] - self.position[i];
-            let moved = chord + step.drift * rate;
-            let (l0, l1) = (chord.norm(), moved.norm());
-            let stretching = step.drift * rate.dot(&(chord + moved)) / (l0 + l1); // l1 − l0
-            let transverse = stretching - step.drift * along;
-            let stiffness = b1 * line.segments.axial_stiffness[i] / line.segments.length[i];
-            let curvature = stiffness * transverse;
-            if (curvature - segment.curvature).abs() > STRETCH_TOLERANCE * greatest {
-                segment.curvature = curvature;
-                settled = false;
+            let taut = total.choose(one, Lanes::splat(-1.0));
+            let flips = Lanes::splat(0.0) - taut * Lanes::load(&segments.taut, at);
+            // l1 − l0 less its part along the segment, exact: (2 l0 Δt a + Δt²|Δv|²)/(l0 + l1) − Δt a
+            let l = Lanes::load(&segments.length, at);
+            let square = drift * (l * along + l * along + drift * relative.dot(relative));
+            let longer = (l * l + square).positive().sqrt();
+            let transverse = square * (l + longer + Lanes::splat(f64::MIN_POSITIVE)).recip() - drift * along;
+            let true_curvature = stiffness * transverse * Lanes::splat(1.0 / step.drift);
+            let off = (true_curvature - curvature).abs() - tolerance;
+            let again = flips.max(taut.choose(off, Lanes::splat(-1.0)));
+            if again.any_positive() {
+                true_curvature.store(&mut segments.curvature, at);
+                taut.store(&mut segments.taut, at);
+                changed = true;
             }
         }
-        settled
+        !changed
     }
 
-    /// Moves the nodes and shifts the histories; `velocity_before` holds the new velocities.
-    fn finish(&mut self, line: &Line, step: Step, ends: [Vector3<f64>; 2]) {
-        std::mem::swap(&mut self.velocity, &mut self.velocity_before);
-        for (position, velocity) in self.position.iter_mut().zip(&self.velocity) {
-            *position += step.drift * velocity;
-        }
-        let n = self.segments.len();
-        (self.position[0], self.position[n]) = (ends[0], ends[1]);
-        self.tension.rotate_right(1);
-        for i in 0..n {
-            self.tension[0][i] = self.elastic_tension(line, i);
-        }
-    }
-
-    /// Greatest tension [N] of the last step.
+    /// Greatest T̄ [N] of the last step.
     pub fn tension_max(&self) -> f64 {
-        self.rows
-            .tension
-            .iter()
-            .fold(0.0, |greatest, tension| greatest.max(*tension))
+        self.rows.tension.iter().fold(0.0, |greatest, tension| greatest.max(*tension))
     }
 
     /// Index of the first node whose position or velocity is not finite.
     pub fn broken_node(&self) -> Option<usize> {
-        let nodes = self.position.iter().zip(&self.velocity);
-        nodes
-            .map(|(r, v)| r + v)
-            .position(|sum| !sum.iter().all(|value| value.is_finite()))
+        self.layout.broken_node()
+    }
+}
+
+/// [`AxialWork::step`] for the vector unit of the machine.
+struct AxialStep<'a>(&'a mut AxialWork, Step, [Vector3<f64>; 2]);
+
+impl NullaryFnOnce for AxialStep<'_> {
+    type Output = usize;
+
+    #[inline(always)]
+    fn call(self) -> usize {
+        self.0.step_vectors(self.1, self.2)
+    }
+}
+
+impl NodeArrays {
+    /// M⁻¹ x of the nodes from `at` on.
+    #[inline(always)]
+    fn inverse_mass(&self, at: usize, x: Vectors) -> Vectors {
+        let (tangent, response) = (self.tangent.load(at), self.response.load(at));
+        let excess = Lanes::load(&self.excess, at) * tangent.dot(x);
+        let held = Lanes::load(&self.held, at) * response.dot(x);
+        x.scale(Lanes::load(&self.across, at)) + tangent.scale(excess) - response.scale(held)
     }
 }
 
 impl Rows {
-    /// Thomas's elimination; the matrix is diagonally dominant, so that no pivoting is needed.
-    fn solve(&mut self) {
-        let n = self.diagonal.len();
-        for i in 1..n {
-            let factor = self.lower[i] / self.diagonal[i - 1];
-            self.diagonal[i] -= factor * self.upper[i - 1];
-            self.tension[i] -= factor * self.tension[i - 1];
+    /// Thomas's elimination; the matrix is diagonally dominant, so that no pivoting is needed. Returns the greatest T̄ [N].
+    fn solve(&mut self, count: usize) -> f64 {
+        let rows = FIRST..FIRST + count;
+        let (lower, upper) = (&self.lower[rows.clone()], &self.upper[rows.clone()]);
+        let (diagonal, tension) = (&mut self.diagonal[rows.clone()], &mut self.tension[rows]);
+        // the diagonal is replaced by the pivots' inverses
+        diagonal[0] = 1.0 / diagonal[0];
+        for i in 1..count {
+            let factor = lower[i] * diagonal[i - 1];
+            diagonal[i] = 1.0 / (diagonal[i] - factor * upper[i - 1]);
+            tension[i] -= factor * tension[i - 1];
         }
-        self.tension[n - 1] /= self.diagonal[n - 1];
-        for i in (0..n - 1).rev() {
-            self.tension[i] =
-                (self.tension[i] - self.upper[i] * self.tension[i + 1]) / self.diagonal[i];
+        tension[count - 1] *= diagonal[count - 1];
+        let mut greatest = tension[count - 1];
+        for i in (0..count - 1).rev() {
+            tension[i] = (tension[i] - upper[i] * tension[i + 1]) * diagonal[i];
+            greatest = greatest.max(tension[i]);
         }
+        greatest
     }
 }
 

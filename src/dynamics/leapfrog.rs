@@ -12,49 +12,24 @@
 //! Source: Verlet's scheme as in Hairer, Lubich & Wanner (2003), Acta Numerica 12, 399-450; the inverse of
 //! M_n I + (M_t − M_n) t tᵀ by Sherman & Morrison (1950); contact: backward Euler on the penetrating spring and damper.
 //!
-//! The line lies in a [`LineWork`]: padded arrays, four nodes to a vector. Padding has no inverse mass, no stiffness and
-//! no weight, so that it stays at rest and no loop has a remainder.
-
 use nalgebra::{Matrix3, Vector3};
+use pulp::NullaryFnOnce;
 
-use crate::math::lanes::{Components, LANES, Lanes, Vectors};
+use super::layout::{Layout, pad};
+use crate::math::lanes::{Components, Lanes, Vectors};
 use crate::model::{End, Line, LineState};
 use crate::physics::morison::{self, DragCoefficients};
 use crate::physics::stretch::{StretchLaw, total_tension};
 
-/// Index of node 0, and of segment 0, which lies between nodes 0 and 1.
-const FIRST: usize = LANES;
-/// Keeps coincident nodes from dividing by zero [m²].
-const LENGTH2_MIN: f64 = 1e-200;
-
-/// A line laid out for the kernels.
+/// A line and the scratch of its steps.
 #[derive(Debug, Clone)]
 pub struct LineWork {
-    segment_count: usize,
-    law: StretchLaw,
-    negative_tension: bool,
+    layout: Layout,
     damped: bool,
-
-    /// Node positions at t_n [m].
-    position: Components,
-    /// Velocities at t_{n−½} [m/s].
-    velocity: Components,
-    /// Velocities at t_{n−3/2} [m/s]; after a step, at t_{n−½}.
-    velocity_before: Components,
     /// Force of a segment on its lower node, T q [N].
     pull: Components,
-    /// Tensions T [N].
-    tension: Vec<f64>,
-
-    inverse_length: Vec<f64>,
-    axial_stiffness: Vec<f64>,
-    axial_damping: Vec<f64>,
-
     inverse_mass: Vec<f64>,
-    weight: Vec<f64>,
     water: Option<WaterWork>,
-    mass_damping: Option<Vec<f64>>,
-    contact: Option<ContactWork>,
 }
 
 /// What needs a node's tangent: drag, and a mass that differs along and across the line.
@@ -67,6 +42,20 @@ struct WaterWork {
 }
 
 impl WaterWork {
+    fn new(line: &Line, layout: &Layout) -> Option<WaterWork> {
+        let nodes = &line.nodes;
+        let zeros = vec![0.0; layout.weight.len()];
+        let excess: Vec<f64> =
+            nodes.mass_tangent.iter().zip(&nodes.mass_normal).map(|(t, n)| 1.0 / t - 1.0 / n).collect();
+        let wet = layout.drag.is_some() || excess.iter().any(|excess| *excess != 0.0);
+        let drag = layout.drag.as_ref();
+        wet.then(|| WaterWork {
+            drag_normal: drag.map_or(zeros.clone(), |drag| drag.normal.clone()),
+            drag_tangent: drag.map_or(zeros, |drag| drag.tangent.clone()),
+            inverse_mass_excess: pad(layout.segment_count, &excess, 0.0),
+        })
+    }
+
     /// K_n |u_n| u_n + K_t |u_t| u_t.
     #[inline(always)]
     fn drag(&self, at: usize, velocity: Vectors, tangent: Vectors) -> Vectors {
@@ -78,11 +67,28 @@ impl WaterWork {
     }
 }
 
-#[derive(Debug, Clone)]
-struct ContactWork {
-    bed: f64,
-    stiffness: Vec<f64>,
-    damping: Vec<f64>,
+/// [`LineWork::pull_segments`] for the vector unit of the machine.
+struct PullSegments<'a>(&'a mut LineWork);
+
+impl NullaryFnOnce for PullSegments<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        self.0.choose_segment_pass();
+    }
+}
+
+/// [`LineWork::kick_nodes`] for the vector unit of the machine.
+struct KickNodes<'a>(&'a mut LineWork, Step);
+
+impl NullaryFnOnce for KickNodes<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        self.0.choose_node_pass(self.1);
+    }
 }
 
 /// Sizes of a step.
@@ -124,107 +130,37 @@ pub struct EndLoad {
 }
 
 impl LineWork {
-    /// Arrays for a line; `None` where its sections have different strain measures, which the kernel does not mix.
+    /// Scratch for a line; `None` where its sections have different strain measures, which the kernel does not mix.
     pub fn new(line: &Line, negative_tension: bool) -> Option<LineWork> {
-        let n = line.segment_count();
-        let size = FIRST + (n + 1).div_ceil(LANES) * LANES + LANES;
-        let pad = |values: &[f64], map: &dyn Fn(f64) -> f64| {
-            let mut padded = vec![0.0; size];
-            padded[FIRST..FIRST + values.len()]
-                .iter_mut()
-                .zip(values)
-                .for_each(|(p, v)| *p = map(*v));
-            padded
-        };
-        let keep = |values: &[f64]| pad(values, &|value| value);
-        let nodes = &line.nodes;
-        let inverse_mass = pad(&nodes.mass_normal, &|mass| 1.0 / mass);
-        let inverse_mass_along = pad(&nodes.mass_tangent, &|mass| 1.0 / mass);
-        let excess: Vec<f64> = inverse_mass_along
-            .iter()
-            .zip(&inverse_mass)
-            .map(|(t, n)| t - n)
-            .collect();
-        let wet = nodes.drag.is_some() || excess.iter().any(|excess| *excess != 0.0);
-        let zeros = || vec![0.0; size];
+        let layout = Layout::new(line, negative_tension)?;
+        let inverse_mass: Vec<f64> = line.nodes.mass_normal.iter().map(|mass| 1.0 / mass).collect();
         Some(LineWork {
-            segment_count: n,
-            law: line.uniform_law()?,
-            negative_tension,
-            damped: line
-                .segments
-                .axial_damping
-                .iter()
-                .any(|damping| *damping != 0.0),
-            position: padded_positions(size),
-            velocity: Components::zeros(size),
-            velocity_before: Components::zeros(size),
-            pull: Components::zeros(size),
-            tension: vec![0.0; size],
-            inverse_length: pad(&line.segments.length, &|length| 1.0 / length),
-            axial_stiffness: keep(&line.segments.axial_stiffness),
-            axial_damping: keep(&line.segments.axial_damping),
-            inverse_mass,
-            weight: keep(&nodes.weight),
-            water: wet.then(|| WaterWork {
-                drag_normal: nodes
-                    .drag
-                    .as_ref()
-                    .map_or_else(zeros, |drag| keep(&drag.normal)),
-                drag_tangent: nodes
-                    .drag
-                    .as_ref()
-                    .map_or_else(zeros, |drag| keep(&drag.tangent)),
-                inverse_mass_excess: excess,
-            }),
-            mass_damping: nodes.mass_damping.as_ref().map(|damping| keep(damping)),
-            contact: nodes.contact.as_ref().map(|contact| ContactWork {
-                bed: contact.bed,
-                stiffness: keep(&contact.stiffness),
-                damping: keep(&contact.damping),
-            }),
+            damped: line.segments.axial_damping.iter().any(|damping| *damping != 0.0),
+            pull: Components::zeros(layout.weight.len()),
+            inverse_mass: pad(layout.segment_count, &inverse_mass, 0.0),
+            water: WaterWork::new(line, &layout),
+            layout,
         })
     }
 
     /// Takes over the state of a line.
     pub fn load(&mut self, state: &LineState) {
-        let memory = &state.half_step;
-        let fresh = memory.velocity.is_empty();
-        for (i, position) in state.position.iter().enumerate() {
-            self.position.set(FIRST + i, *position);
-            let (velocity, before) = if fresh {
-                (state.velocity[i], state.velocity[i])
-            } else {
-                (memory.velocity[i], memory.velocity_before[i])
-            };
-            self.velocity.set(FIRST + i, velocity);
-            self.velocity_before.set(FIRST + i, before);
-        }
+        self.layout.load(state);
     }
 
-    /// Hands the state back, with velocities extrapolated to the time of the positions.
+    /// Hands the state back after steps of `steps` [s].
     pub fn store(&self, state: &mut LineState, steps: [f64; 2]) {
-        let memory = &mut state.half_step;
-        let count = state.position.len();
-        memory.velocity.resize(count, Vector3::zeros());
-        memory.velocity_before.resize(count, Vector3::zeros());
-        memory.steps = steps;
-        let extrapolation = Step::after(steps, steps[0]).extrapolation;
-        for i in 0..count {
-            let (velocity, before) = (
-                self.velocity.get(FIRST + i),
-                self.velocity_before.get(FIRST + i),
-            );
-            state.position[i] = self.position.get(FIRST + i);
-            state.velocity[i] = velocity + extrapolation * (velocity - before);
-            memory.velocity[i] = velocity;
-            memory.velocity_before[i] = before;
-        }
+        self.layout.store(state, steps);
     }
 
     /// Step 1: tensions from positions at t_n and velocities at t_{n−½}.
     pub fn pull_segments(&mut self) {
-        match (self.law, self.damped) {
+        self.layout.vector_unit.dispatch(PullSegments(self));
+    }
+
+    #[inline(always)]
+    fn choose_segment_pass(&mut self) {
+        match (self.layout.law, self.damped) {
             (StretchLaw::Engineering, false) => self.segment_pass::<false>(|strain| strain),
             (StretchLaw::Engineering, true) => self.segment_pass::<true>(|strain| strain),
             (law, _) => self.segment_pass::<true>(|strain| strain.map(|e| law.at(e).force)),
@@ -233,18 +169,18 @@ impl LineWork {
 
     #[inline(always)]
     fn segment_pass<const DAMPED: bool>(&mut self, law: impl Fn(Lanes) -> Lanes) {
+        let line = &self.layout;
         let one = Lanes::splat(1.0);
-        for at in (FIRST..FIRST + self.segment_count).step_by(LANES) {
-            let d = self.position.load(at + 1) - self.position.load(at);
-            let inverse_l = (d.dot(d) + Lanes::splat(LENGTH2_MIN)).sqrt().recip();
-            let inverse_length = Lanes::load(&self.inverse_length, at);
-            let strain = d.dot(d) * inverse_l * inverse_length - one;
-            let elastic = Lanes::load(&self.axial_stiffness, at) * law(strain);
+        for at in line.segment_blocks() {
+            let (chord, inverse_l) = line.chord(at);
+            let inverse_length = Lanes::load(&line.inverse_length, at);
+            let strain = chord.dot(chord) * inverse_l * inverse_length - one;
+            let elastic = Lanes::load(&line.axial_stiffness, at) * law(strain);
             let tension = if DAMPED {
-                let rate = self.velocity.load(at + 1) - self.velocity.load(at);
-                let strain_rate = d.dot(rate) * inverse_l * inverse_length;
-                let damping = Lanes::load(&self.axial_damping, at) * strain_rate;
-                if self.negative_tension {
+                let rate = line.velocity.load(at + 1) - line.velocity.load(at);
+                let strain_rate = chord.dot(rate) * inverse_l * inverse_length;
+                let damping = Lanes::load(&line.axial_damping, at) * strain_rate;
+                if line.negative_tension {
                     elastic.positive() + damping
                 } else {
                     (elastic + damping).positive()
@@ -252,17 +188,21 @@ impl LineWork {
             } else {
                 elastic.positive()
             };
-            tension.store(&mut self.tension, at);
-            self.pull.store(d.scale(tension * inverse_l), at);
+            self.pull.store(chord.scale(tension * inverse_l), at);
         }
     }
 
     /// Step 2: velocities from t_{n−½} to t_{n+½}.
     pub fn kick_nodes(&mut self, step: Step) {
+        self.layout.vector_unit.dispatch(KickNodes(self, step));
+    }
+
+    #[inline(always)]
+    fn choose_node_pass(&mut self, step: Step) {
         match (
             self.water.is_some(),
-            self.contact.is_some(),
-            self.mass_damping.is_some(),
+            self.layout.contact.is_some(),
+            self.layout.mass_damping.is_some(),
         ) {
             (false, false, false) => self.node_pass::<false, false, false>(step),
             (false, false, true) => self.node_pass::<false, false, true>(step),
@@ -275,114 +215,68 @@ impl LineWork {
         }
     }
 
+    #[inline(always)]
     fn node_pass<const WATER: bool, const BED: bool, const MASS_DAMPING: bool>(
         &mut self,
         step: Step,
     ) {
+        let line = &mut self.layout;
         let kick = Lanes::splat(step.kick);
-        for at in (FIRST..=FIRST + self.segment_count).step_by(LANES) {
-            let velocity = self.velocity.load(at);
+        for at in line.node_blocks() {
+            let velocity = line.velocity.load(at);
             let inverse_mass = Lanes::load(&self.inverse_mass, at);
             let mut force = self.pull.load(at) - self.pull.load(at - 1);
-            force.z = force.z - Lanes::load(&self.weight, at);
+            force.z = force.z - Lanes::load(&line.weight, at);
             if MASS_DAMPING {
-                let damping = self.mass_damping.as_deref().unwrap_or_default();
+                let damping = line.mass_damping.as_deref().unwrap_or_default();
                 force = force - velocity.scale(Lanes::load(damping, at));
             }
             // M⁻¹f, and M⁻¹ẑ for the bed
             let (inverted, response) = if WATER {
-                let tangent = self.tangent(at);
-                let before = self.velocity_before.load(at);
-                let now = velocity + (velocity - before).scale(Lanes::splat(step.extrapolation));
                 let water = self.water.as_ref().expect("this kernel runs in water");
-                force = force - water.drag(at, now, tangent);
+                let tangent = line.tangent(at);
+                force = force - water.drag(at, line.velocity_now(at, step), tangent);
                 let excess = Lanes::load(&water.inverse_mass_excess, at);
                 let response = tangent.scale(excess * tangent.z);
                 (
                     force.scale(inverse_mass) + tangent.scale(excess * force.dot(tangent)),
-                    Vectors {
-                        z: response.z + inverse_mass,
-                        ..response
-                    },
+                    Vectors { z: response.z + inverse_mass, ..response },
                 )
             } else {
                 let zero = Lanes::splat(0.0);
-                (
-                    force.scale(inverse_mass),
-                    Vectors {
-                        x: zero,
-                        y: zero,
-                        z: inverse_mass,
-                    },
-                )
+                (force.scale(inverse_mass), Vectors { x: zero, y: zero, z: inverse_mass })
             };
             let mut kicked = velocity + inverted.scale(kick);
             if BED {
-                let impulse = self.contact_impulse(at, kicked.z, response.z, step);
+                let impulse = contact_impulse(line, at, kicked.z, response.z, step);
                 kicked = kicked + response.scale(impulse);
             }
-            self.velocity_before.store(kicked, at); // v_{n−3/2} has been read
+            line.velocity_before.store(kicked, at); // v_{n−3/2} has been read
         }
-        std::mem::swap(&mut self.velocity, &mut self.velocity_before);
-    }
-
-    /// Unit vectors along the chord of the neighbouring nodes.
-    #[inline(always)]
-    fn tangent(&self, at: usize) -> Vectors {
-        let chord = self.position.load(at + 1) - self.position.load(at - 1);
-        chord.scale(
-            (chord.dot(chord) + Lanes::splat(LENGTH2_MIN))
-                .sqrt()
-                .recip(),
-        )
-    }
-
-    /// Impulse Δt·F of the bed: F = k(p − Δt u') − c u' ≥ 0 with u' = u + Δt μ F, only if p − Δt u > 0.
-    #[inline(always)]
-    fn contact_impulse(
-        &self,
-        at: usize,
-        velocity_z: Lanes,
-        response_z: Lanes,
-        step: Step,
-    ) -> Lanes {
-        let contact = self.contact.as_ref().expect("this kernel runs over a bed");
-        let (drift, kick) = (Lanes::splat(step.drift), Lanes::splat(step.kick));
-        let stiffness = Lanes::load(&contact.stiffness, at);
-        let resistance = stiffness * drift + Lanes::load(&contact.damping, at); // b = kΔt + c
-        let penetration = Lanes::splat(contact.bed) - Lanes::load(&self.position.z, at);
-        let push = stiffness * penetration - resistance * velocity_z;
-        let yielding = Lanes::splat(1.0) + response_z * kick * resistance;
-        let lands = penetration - drift * velocity_z;
-        (kick * push.positive() * yielding.recip()).where_positive(lands)
+        std::mem::swap(&mut line.velocity, &mut line.velocity_before);
     }
 
     /// Step 3: positions from t_n to t_{n+1}.
     pub fn drift_nodes(&mut self, step: Step) {
-        let drift = Lanes::splat(step.drift);
-        for at in (FIRST..=FIRST + self.segment_count).step_by(LANES) {
-            let position = self.position.load(at) + self.velocity.load(at).scale(drift);
-            self.position.store(position, at);
-        }
+        self.layout.drift(step.drift);
     }
 
     /// Puts an end at a position [m] with the velocity [m/s] that the next step takes as lagged.
     pub fn put_end(&mut self, end: End, position: Vector3<f64>, velocity: Vector3<f64>) {
-        let at = self.end_index(end);
-        self.position.set(at, position);
-        self.velocity.set(at, velocity);
+        self.layout.put_end(end, position, velocity);
     }
 
     /// What the end brings to a free point, after [`Self::pull_segments`]; `velocity` [m/s] is the point's at t_n.
     pub fn end_load(&self, end: End, velocity: Vector3<f64>) -> EndLoad {
-        let at = self.end_index(end);
+        let line = &self.layout;
+        let at = line.end_index(end);
         let (segment, other, sign) = match end {
             End::A => (at, at + 1, 1.0),
             End::B => (at - 1, at - 1, -1.0),
         };
-        let chord = self.position.get(other) - self.position.get(at);
+        let chord = line.position.get(other) - line.position.get(at);
         let tangent = chord.try_normalize(0.0).unwrap_or_else(Vector3::zeros);
-        let mut force = sign * self.pull.get(segment) - self.weight[at] * Vector3::z();
+        let mut force = sign * self.pull.get(segment) - line.weight[at] * Vector3::z();
         let mut excess = 0.0;
         if let Some(water) = &self.water {
             let coefficients = DragCoefficients {
@@ -392,16 +286,14 @@ impl LineWork {
             force += morison::drag(coefficients, velocity, tangent);
             excess = water.inverse_mass_excess[at];
         }
-        if let Some(damping) = &self.mass_damping {
+        if let Some(damping) = &line.mass_damping {
             force -= damping[at] * velocity;
         }
         let mass_normal = 1.0 / self.inverse_mass[at];
         let mass_tangent = 1.0 / (self.inverse_mass[at] + excess);
         let mass = mass_normal * Matrix3::identity()
             + (mass_tangent - mass_normal) * tangent * tangent.transpose();
-        let contact = self
-            .contact
-            .as_ref()
+        let contact = line.contact.as_ref()
             .map_or([0.0; 2], |c| [c.stiffness[at], c.damping[at]]);
         EndLoad {
             force,
@@ -410,45 +302,29 @@ impl LineWork {
         }
     }
 
-    /// Greatest ratio K_n |v| / M_n of the nodes [1/s]: explicit drag wants Δt below its inverse.
-    pub fn drag_rate(&self) -> f64 {
-        let Some(water) = &self.water else {
-            return 0.0;
-        };
-        let rate = |at: usize| {
-            let drag = water.drag_normal[at].max(water.drag_tangent[at]);
-            self.velocity.get(at).norm() * drag * self.inverse_mass[at]
-        };
-        (FIRST..=FIRST + self.segment_count)
-            .map(rate)
-            .fold(0.0, f64::max)
+    /// Greatest ratio K |v| / M of the nodes [1/s]: explicit drag wants Δt below its inverse.
+    pub fn drag_rate(&self, line: &Line) -> f64 {
+        self.layout.drag_rate(line)
     }
 
     /// Index of the first node whose position or velocity is not finite.
     pub fn broken_node(&self) -> Option<usize> {
-        (0..=self.segment_count).find(|i| {
-            let sum = self.position.get(FIRST + i) + self.velocity.get(FIRST + i);
-            !sum.iter().all(|value| value.is_finite())
-        })
-    }
-
-    fn end_index(&self, end: End) -> usize {
-        match end {
-            End::A => FIRST,
-            End::B => FIRST + self.segment_count,
-        }
+        self.layout.broken_node()
     }
 }
 
-/// Padding far away and apart: its chords are never zero.
-fn padded_positions(size: usize) -> Components {
-    let mut position = Components::zeros(size);
-    position
-        .x
-        .iter_mut()
-        .enumerate()
-        .for_each(|(i, x)| *x = i as f64);
-    position
+/// Impulse Δt·F of the bed: F = k(p − Δt u') − c u' ≥ 0 with u' = u + Δt μ F, only if p − Δt u > 0.
+#[inline(always)]
+fn contact_impulse(line: &Layout, at: usize, velocity_z: Lanes, response_z: Lanes, step: Step) -> Lanes {
+    let contact = line.contact.as_ref().expect("this kernel runs over a bed");
+    let (drift, kick) = (Lanes::splat(step.drift), Lanes::splat(step.kick));
+    let stiffness = Lanes::load(&contact.stiffness, at);
+    let resistance = stiffness * drift + Lanes::load(&contact.damping, at); // b = kΔt + c
+    let penetration = Lanes::splat(contact.bed) - Lanes::load(&line.position.z, at);
+    let push = stiffness * penetration - resistance * velocity_z;
+    let yielding = Lanes::splat(1.0) + response_z * kick * resistance;
+    let lands = penetration - drift * velocity_z;
+    (kick * push.positive() * yielding.recip()).where_positive(lands)
 }
 
 /// Tension [N] of one segment from its end positions [m] and velocities [m/s]: the pointwise law of the kernel.

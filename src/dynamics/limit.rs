@@ -16,14 +16,16 @@ use crate::model::Line;
 
 /// Part of the closed-form limit that is used [-].
 const SAFETY: f64 = 0.9;
+/// Strain up to which a stiffening measure is stable [-].
+const STRAIN_EXPECTED: f64 = 0.05;
 /// Transverse Courant number of the axial-implicit leapfrog [-].
 const TRANSVERSE_COURANT: f64 = 0.6;
 
 /// Explicit axial step limit [s] of a line, with safety; infinite for a line without interior nodes.
-pub fn explicit_step(line: &Line, strain: f64) -> f64 {
+pub fn explicit_step(line: &Line) -> f64 {
     let segments = &line.segments;
     let stiffness = |i: usize| {
-        let slope = segments.law[i].at(strain).slope.max(1.0);
+        let slope = segments.law[i].at(STRAIN_EXPECTED).slope.max(1.0);
         segments.axial_stiffness[i] * slope / segments.length[i] // k [N/m]
     };
     let mut limit = f64::INFINITY;

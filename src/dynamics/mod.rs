@@ -2,24 +2,30 @@
 
 pub mod advance;
 pub mod axial_implicit;
+mod choice;
+pub mod implicit;
+mod layout;
 pub mod leapfrog;
 pub mod limit;
 pub mod motion;
 pub mod network;
+pub mod quasi_static;
 pub mod reaction;
 
-/// A step that could not be taken. The state is as it was before.
+pub use choice::Choice;
+
+/// Why a step could not be made. The state is as it was before.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("at t = {time} s, line {line}, node {node}: {reason}; {advice}")]
+#[error("t = {time:.6} s, line \"{line}\", node {node}: {reason}; {advice}")]
 pub struct StepError {
-    /// Time at which it failed [s].
+    /// Time that could not be passed [s].
     pub time: f64,
-    /// Name of the line.
+    /// Line where it went wrong.
     pub line: String,
-    /// Index of the node from end A.
+    /// Its node, from 0 at end A.
     pub node: usize,
-    /// What happened.
+    /// What went wrong.
     pub reason: String,
     /// What to try.
-    pub advice: String,
+    pub advice: &'static str,
 }

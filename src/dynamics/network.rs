@@ -54,6 +54,17 @@ impl NetworkWork {
         }
     }
 
+    /// Greatest ratio K |v| / M of all nodes [1/s].
+    pub fn drag_rate(&self, model: &Model, network: &Network) -> f64 {
+        let lines = self.lines.iter().zip(&network.lines);
+        lines.map(|(work, &line)| work.drag_rate(&model.lines[line])).fold(0.0, f64::max)
+    }
+
+    /// The first line, by its place in the network, and node whose position or velocity is not finite.
+    pub fn broken_node(&self) -> Option<(usize, usize)> {
+        self.lines.iter().enumerate().find_map(|(line, work)| Some((line, work.broken_node()?)))
+    }
+
     /// One step from `t` [s]. `held` tells where held points are.
     pub fn step(
         &mut self,

@@ -251,7 +251,9 @@ mod tests {
 
     /// A repeatable number in −1 … 1.
     fn noise(seed: &mut u64) -> f64 {
-        *seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        *seed = seed
+            .wrapping_mul(6364136223846793005)
+            .wrapping_add(1442695040888963407);
         (*seed >> 11) as f64 / (1u64 << 52) as f64 - 1.0
     }
 
@@ -268,8 +270,14 @@ mod tests {
         let diagonal = (0..nodes)
             .map(|_| matrix() + Matrix3::identity() * 9.0)
             .collect();
-        let right = (0..nodes).map(|_| matrix().column(0).into_owned()).collect();
-        System { diagonal, coupling, right }
+        let right = (0..nodes)
+            .map(|_| matrix().column(0).into_owned())
+            .collect();
+        System {
+            diagonal,
+            coupling,
+            right,
+        }
     }
 
     /// The whole chain as one dense system.
@@ -297,9 +305,12 @@ mod tests {
                 .eliminate(&system.diagonal, &system.coupling, &system.right, true)
                 .unwrap();
             let mut points = DenseSystem::new(2);
-            for (row, column, block) in
-                [(0, 0, ends.aa), (0, 1, ends.ab), (1, 0, ends.ba), (1, 1, ends.bb)]
-            {
+            for (row, column, block) in [
+                (0, 0, ends.aa),
+                (0, 1, ends.ab),
+                (1, 0, ends.ba),
+                (1, 1, ends.bb),
+            ] {
                 points.add_block(row, column, &block);
             }
             points.add_right(0, ends.a);
@@ -316,7 +327,10 @@ mod tests {
     fn elimination_equals_the_dense_solution_with_held_ends() {
         let system = random(6);
         let mut reference = dense(&system);
-        for (point, axis) in [0, 5].into_iter().flat_map(|p| (0..3).map(move |axis| (p, axis))) {
+        for (point, axis) in [0, 5]
+            .into_iter()
+            .flat_map(|p| (0..3).map(move |axis| (p, axis)))
+        {
             reference.hold(point, axis);
         }
         assert!(reference.solve());

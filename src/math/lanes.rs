@@ -64,6 +64,24 @@ impl Lanes {
         Lanes(from_fn(|i| if gate.0[i] > 0.0 { self.0[i] } else { 0.0 }))
     }
 
+    /// `yes` where x > 0, else `no`.
+    #[inline(always)]
+    pub fn choose(self, yes: Lanes, no: Lanes) -> Lanes {
+        Lanes(from_fn(|i| if self.0[i] > 0.0 { yes.0[i] } else { no.0[i] }))
+    }
+
+    /// The greater of two, lane by lane.
+    #[inline(always)]
+    pub fn max(self, other: Lanes) -> Lanes {
+        Lanes(from_fn(|i| if self.0[i] > other.0[i] { self.0[i] } else { other.0[i] }))
+    }
+
+    /// Whether any lane is > 0.
+    #[inline(always)]
+    pub fn any_positive(self) -> bool {
+        self.0.iter().any(|value| *value > 0.0)
+    }
+
     /// Applies a scalar function to every lane.
     #[inline(always)]
     pub fn map(self, f: impl Fn(f64) -> f64) -> Lanes {

@@ -49,8 +49,8 @@ pub struct HalfStep {
     pub velocity_before: Vec<Vector3<f64>>,
     /// The last step and the one before [s]; 0 before the first step, where `velocity` is that of t itself.
     pub steps: [f64; 2],
-    /// Segment tensions at t, t − Δt and t − 2Δt [N]; kept by the axial-implicit leapfrog only.
-    pub tension: [Vec<f64>; 3],
+    /// Elastic segment tensions at t − Δt and t − 2Δt [N]; kept by the axial-implicit leapfrog only.
+    pub tension: [Vec<f64>; 2],
 }
 
 impl PointState {

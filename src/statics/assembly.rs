@@ -32,6 +32,8 @@ pub struct Workspace {
     pub(crate) points: Vec<PointWork>,
     /// Per network of the model.
     pub(crate) systems: Vec<DenseSystem>,
+    /// The state before a step of the caller's.
+    pub(crate) start: State,
     /// The state before a step.
     pub(crate) before: State,
     /// The first guess of an equilibrium.
@@ -72,7 +74,7 @@ pub(crate) struct LineWork {
     pub coupling: Vec<Matrix3<f64>>,
     /// Tension that the geometric stiffness is taken from, per segment [N]; statics predicts it.
     pub tension: Vec<f64>,
-    /// Elastic force of the segment at the last assembly [N], unclipped.
+    /// Elastic and damping force of the segment at the last assembly [N], unclipped.
     pub elastic: Vec<f64>,
     /// Its slope dN/dl [N/m].
     pub slope: Vec<f64>,
@@ -80,6 +82,8 @@ pub(crate) struct LineWork {
     pub direction: Vec<Vector3<f64>>,
     /// What the time integrator carries over from the last step, per node [N].
     pub history: Vec<Vector3<f64>>,
+    /// Half the range of penetrations over which the seabed damper fades in, per node [m].
+    pub reach: Vec<f64>,
     /// Elimination.
     pub chain: Chain,
 }
@@ -115,6 +119,7 @@ impl Workspace {
                 slope: vec![0.0; n],
                 direction: vec![Vector3::zeros(); n],
                 history: vec![Vector3::zeros(); n + 1],
+                reach: vec![0.0; n + 1],
                 chain: Chain::new(n + 1),
             }
         };
@@ -137,6 +142,7 @@ impl Workspace {
             lines: model.lines.iter().map(line).collect(),
             points,
             systems: model.networks.iter().map(system).collect(),
+            start: blank_state(model),
             before: blank_state(model),
             saved: blank_state(model),
             trial: blank_state(model),
@@ -169,7 +175,7 @@ pub(crate) struct StaticCase {
 
 /// Weights of the parts of residual and tangent in a time step.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Weights {
+pub(crate) struct Weights {
     /// Of all forces but inertia in R [-].
     pub force: f64,
     /// Of inertia in R [-].
@@ -180,7 +186,12 @@ pub struct Weights {
     pub velocity: f64,
     /// c_m: of ∂R/∂a [1/s²].
     pub acceleration: f64,
+    /// Whether a segment is taut, and its geometric stiffness, come from the tension that was predicted.
+    pub predicted: bool,
 }
+
+/// Compression that is taken for rounding [-], as a strain.
+const PUSH_STRAIN: f64 = 1e-12;
 
 /// A segment as it lies.
 struct Geometry {
@@ -250,14 +261,24 @@ impl LineWork {
     }
 
     #[inline(always)]
-    fn add_static_segment(&mut self, line: &Line, position: &[Vector3<f64>], case: &StaticCase, i: usize) {
+    fn add_static_segment(
+        &mut self,
+        line: &Line,
+        position: &[Vector3<f64>],
+        case: &StaticCase,
+        i: usize,
+    ) {
         let unstretched = line.segments.length[i];
         let g = Geometry::new(position[i], position[i + 1], unstretched);
         let stretch = line.segments.law[i].at(g.strain);
         let ea = line.segments.axial_stiffness[i].min(case.stiffness_max);
         let (elastic, slope) = (ea * stretch.force, ea * stretch.slope / unstretched);
         (self.elastic[i], self.slope[i], self.direction[i]) = (elastic, slope, g.direction);
-        let predicted = if case.predicted { self.tension[i] } else { elastic };
+        let predicted = if case.predicted {
+            self.tension[i]
+        } else {
+            elastic
+        };
         let (tension, slope) = if predicted > 0.0 || elastic > 0.0 {
             (elastic, slope)
         } else {
@@ -308,37 +329,60 @@ impl LineWork {
         i: usize,
     ) {
         let unstretched = line.segments.length[i];
-        let (ea, ba) = (line.segments.axial_stiffness[i], line.segments.axial_damping[i]);
+        let (ea, ba) = (
+            line.segments.axial_stiffness[i],
+            line.segments.axial_damping[i],
+        );
         let g = Geometry::new(state.position[i], state.position[i + 1], unstretched);
         let rate = state.velocity[i + 1] - state.velocity[i]; // ġ [m/s]
         let stretch = line.segments.law[i].at(g.strain);
-        let (elastic, damping) = (ea * stretch.force, ba * g.direction.dot(&rate) / unstretched);
-        let tension = total_tension(elastic, damping, negative_tension);
-        let force = weights.force * tension * g.direction;
+        let elastic = ea * stretch.force;
+        let total = elastic + ba * g.direction.dot(&rate) / unstretched;
+        let predicted = weights.predicted && !negative_tension;
+        let taut = match (negative_tension, predicted) {
+            (true, _) => elastic > 0.0,
+            (_, true) => total > 0.0 || self.tension[i] > 0.0,
+            _ => total > 0.0,
+        };
+        let tension = match negative_tension {
+            true => total_tension(elastic, total - elastic, true),
+            false if taut => total,
+            false => 0.0,
+        };
         let mut stiffness = Matrix3::zeros();
         if TANGENT && g.length > 0.0 {
-            let springs = if negative_tension { elastic > 0.0 } else { tension > 0.0 };
-            let damps = springs || negative_tension;
-            let mut along = 0.0;
-            if springs {
-                along += weights.position * ea * stretch.slope / unstretched;
-            }
-            if damps {
-                along += weights.velocity * ba / unstretched;
-            }
-            let across = weights.position * tension.max(0.0) / g.length;
+            let damps = taut || negative_tension;
+            let spring = if taut {
+                ea * stretch.slope / unstretched
+            } else {
+                0.0
+            };
+            let damper = if damps { ba / unstretched } else { 0.0 };
+            let along = weights.position * spring + weights.velocity * damper;
+            let pull = if predicted { self.tension[i] } else { tension };
+            let across = weights.position * pull.max(0.0) / g.length;
             stiffness = Matrix3::from_diagonal_element(across) + (along - across) * g.along();
             if damps && ba > 0.0 {
                 let turning = rate - rate.dot(&g.direction) * g.direction; // P ġ
-                let coefficient = weights.position * ba / (g.length * unstretched);
+                let coefficient = weights.position * damper / g.length;
                 stiffness += g.direction * (coefficient * turning).transpose();
             }
+            self.slope[i] = along / weights.position;
+        } else {
+            self.tension[i] = tension;
         }
+        (self.elastic[i], self.direction[i]) = (total, g.direction);
+        let force = weights.force * tension * g.direction;
         self.add_segment(i, force, stiffness);
     }
 
     #[inline(always)]
-    fn add_weight_and_inertia<const TANGENT: bool>(&mut self, line: &Line, state: &LineState, weights: &Weights) {
+    fn add_weight_and_inertia<const TANGENT: bool>(
+        &mut self,
+        line: &Line,
+        state: &LineState,
+        weights: &Weights,
+    ) {
         let nodes = &line.nodes;
         for i in 0..nodes.weight.len() {
             self.residual[i].z += weights.force * nodes.weight[i];
@@ -352,7 +396,8 @@ impl LineWork {
                 let t = node_tangent(&state.position, i);
                 inertia += (tangent - normal) * t.dot(&a) * t;
                 if TANGENT {
-                    self.diagonal[i] += weights.acceleration * (tangent - normal) * t * t.transpose();
+                    self.diagonal[i] +=
+                        weights.acceleration * (tangent - normal) * t * t.transpose();
                 }
             }
             self.residual[i] += weights.inertia * inertia;
@@ -360,7 +405,9 @@ impl LineWork {
     }
 
     fn add_drag<const TANGENT: bool>(&mut self, line: &Line, state: &LineState, weights: &Weights) {
-        let Some(coefficients) = &line.nodes.drag else { return };
+        let Some(coefficients) = &line.nodes.drag else {
+            return;
+        };
         for i in 0..coefficients.normal.len() {
             let k = DragCoefficients {
                 normal: coefficients.normal[i],
@@ -374,19 +421,40 @@ impl LineWork {
         }
     }
 
-    fn add_contact<const TANGENT: bool>(&mut self, line: &Line, state: &LineState, weights: &Weights) {
-        let Some(contact) = &line.nodes.contact else { return };
+    /// Dampers fade over what a node moves in a step of `dt` [s], at least over the range of a resting node.
+    fn fade_dampers(&mut self, line: &Line, state: &LineState, dt: f64) {
+        let Some(contact) = &line.nodes.contact else {
+            return;
+        };
+        for (i, reach) in self.reach.iter_mut().enumerate() {
+            let resting = damper_reach(contact.stiffness[i], line.nodes.weight[i]);
+            *reach = resting.max(state.velocity[i].z.abs() * dt);
+        }
+    }
+
+    fn add_contact<const TANGENT: bool>(
+        &mut self,
+        line: &Line,
+        state: &LineState,
+        weights: &Weights,
+    ) {
+        let Some(contact) = &line.nodes.contact else {
+            return;
+        };
         for i in 0..contact.stiffness.len() {
             let k = ContactCoefficients {
                 stiffness: contact.stiffness[i],
                 damping: contact.damping[i],
             };
             let penetration = contact.bed - state.position[i].z;
-            let reach = damper_reach(k, line.nodes.weight[i]);
-            let Some(bed) = SmoothContact::new(k, penetration, state.velocity[i].z, reach) else { continue };
+            let velocity = state.velocity[i].z;
+            let Some(bed) = SmoothContact::new(k, penetration, velocity, self.reach[i]) else {
+                continue;
+            };
             self.residual[i].z -= weights.force * bed.force;
             if TANGENT {
-                self.diagonal[i][(2, 2)] += weights.position * bed.stiffness + weights.velocity * bed.damping;
+                self.diagonal[i][(2, 2)] +=
+                    weights.position * bed.stiffness + weights.velocity * bed.damping;
             }
         }
     }
@@ -395,10 +463,13 @@ impl LineWork {
 /// Half the range of penetrations over which the seabed damper fades in, in static penetrations of the node [-].
 const DAMPER_FADE: f64 = 2.0;
 
-/// Half the range of penetrations over which the damper fades in [m].
-#[inline(always)]
-fn damper_reach(contact: ContactCoefficients, weight: f64) -> f64 {
-    if contact.stiffness > 0.0 { DAMPER_FADE * weight.abs() / contact.stiffness } else { 0.0 }
+/// Half the range of penetrations over which the damper of a resting node fades in [m].
+fn damper_reach(stiffness: f64, weight: f64) -> f64 {
+    if stiffness > 0.0 {
+        DAMPER_FADE * weight.abs() / stiffness
+    } else {
+        0.0
+    }
 }
 
 /// The contact of `physics::seabed` with a damper that fades in over ± `reach` of penetration instead of switching on at
@@ -416,12 +487,24 @@ struct SmoothContact {
 impl SmoothContact {
     /// `None` where the bed does not act.
     #[inline(always)]
-    fn new(k: ContactCoefficients, penetration: f64, velocity: f64, reach: f64) -> Option<SmoothContact> {
+    fn new(
+        k: ContactCoefficients,
+        penetration: f64,
+        velocity: f64,
+        reach: f64,
+    ) -> Option<SmoothContact> {
         if penetration <= -reach {
             return None;
         }
-        let u = if reach > 0.0 { (0.5 * (penetration / reach + 1.0)).min(1.0) } else { 1.0 };
-        let (fade, slope) = (u * u * (3.0 - 2.0 * u), 6.0 * u * (1.0 - u) / (2.0 * reach.max(f64::MIN_POSITIVE)));
+        let u = if reach > 0.0 {
+            (0.5 * (penetration / reach + 1.0)).min(1.0)
+        } else {
+            1.0
+        };
+        let (fade, slope) = (
+            u * u * (3.0 - 2.0 * u),
+            6.0 * u * (1.0 - u) / (2.0 * reach.max(f64::MIN_POSITIVE)),
+        );
         let spring = if penetration > 0.0 { k.stiffness } else { 0.0 };
         let force = spring * penetration - k.damping * fade * velocity;
         (force > 0.0).then(|| SmoothContact {
@@ -443,7 +526,13 @@ pub(crate) fn node_tangent(position: &[Vector3<f64>], i: usize) -> Vector3<f64> 
 
 impl Workspace {
     /// Residual and tangent of a network at rest.
-    pub(crate) fn assemble_static(&mut self, model: &Model, network: &Network, state: &State, case: &StaticCase) {
+    pub(crate) fn assemble_static(
+        &mut self,
+        model: &Model,
+        network: &Network,
+        state: &State,
+        case: &StaticCase,
+    ) {
         for &index in &network.lines {
             let position = &state.lines[index].position;
             self.lines[index].assemble_static(&model.lines[index], position, case);
@@ -469,12 +558,18 @@ impl Workspace {
         let negative_tension = model.solver.negative_tension;
         for &index in &network.lines {
             let (line, line_state) = (&model.lines[index], &state.lines[index]);
-            self.lines[index].assemble_dynamic::<TANGENT>(line, line_state, weights, negative_tension);
+            self.lines[index].assemble_dynamic::<TANGENT>(
+                line,
+                line_state,
+                weights,
+                negative_tension,
+            );
         }
         for_free_points(model, network, |index, free| {
             let point = &mut self.points[index];
             let force = model.points[index].load_at(t) - free.weight * Vector3::z();
-            point.residual = weights.inertia * free.mass * state.points[index].acceleration - weights.force * force;
+            point.residual = weights.inertia * free.mass * state.points[index].acceleration
+                - weights.force * force;
             point.diagonal = Matrix3::from_diagonal_element(weights.acceleration * free.mass);
         });
         self.gather(model, network);
@@ -506,7 +601,8 @@ impl Workspace {
             let work = &mut self.lines[index];
             let [a, b] = model.lines[index].ends.map(|point| self.points[point].slot);
             let Some(ends) =
-                work.chain.eliminate(&work.diagonal, &work.coupling, &work.residual, a.is_some())
+                work.chain
+                    .eliminate(&work.diagonal, &work.coupling, &work.residual, a.is_some())
             else {
                 return false;
             };
@@ -545,20 +641,90 @@ impl Workspace {
         true
     }
 
+    /// Tensions after a `part` of the correction, by the linear system. False if a segment that was taken as taut pushes by more
+    /// than rounding.
+    pub(crate) fn predict_tensions(&mut self, model: &Model, network: &Network, part: f64) -> bool {
+        let mut consistent = true;
+        for &index in &network.lines {
+            let (line, stiffness) = (
+                &mut self.lines[index],
+                &model.lines[index].segments.axial_stiffness,
+            );
+            let x = line.chain.solution();
+            for i in 0..line.tension.len() {
+                let growth = -line.direction[i].dot(&(x[i + 1] - x[i])); // of the segment's length [m]
+                let predicted = line.elastic[i] + line.slope[i] * growth;
+                consistent &=
+                    line.tension[i] <= 0.0 || line.elastic[i] >= -PUSH_STRAIN * stiffness[i];
+                line.tension[i] += part * (predicted - line.tension[i]);
+            }
+        }
+        consistent
+    }
+
+    /// Sets how far the seabed dampers of a network fade for a step of `dt` [s] from `state`.
+    pub(crate) fn fade_dampers(
+        &mut self,
+        model: &Model,
+        network: &Network,
+        state: &State,
+        dt: f64,
+    ) {
+        for &index in &network.lines {
+            self.lines[index].fade_dampers(&model.lines[index], &state.lines[index], dt);
+        }
+    }
+
+    /// Keeps the residual of the last assembly for the next step.
+    pub(crate) fn remember(&mut self, network: &Network) {
+        for &index in &network.lines {
+            let line = &mut self.lines[index];
+            line.history.copy_from_slice(&line.residual);
+        }
+        for &index in &network.free_points {
+            self.points[index].history = self.points[index].residual;
+        }
+    }
+
+    /// Adds what was remembered to the residual.
+    pub(crate) fn add_remembered(&mut self, model: &Model, network: &Network) {
+        for &index in &network.lines {
+            let line = &mut self.lines[index];
+            for (residual, history) in line.residual.iter_mut().zip(&line.history) {
+                *residual += history;
+            }
+        }
+        for &index in &network.free_points {
+            let point = &mut self.points[index];
+            point.residual += point.history;
+        }
+        self.gather(model, network);
+    }
+
     fn solution_at(&self, point: usize) -> Vector3<f64> {
         let point = &self.points[point];
         point.slot.map_or(Vector3::zeros(), |_| point.solution)
     }
 
-    /// Greatest entry of the last solution [m].
+    /// Longest entry of the last solution [m]; not a number if one of them is not.
     pub(crate) fn greatest_solution(&self, network: &Network) -> f64 {
-        let lines = network.lines.iter().flat_map(|&line| self.lines[line].chain.solution());
-        lines.map(|x| x.amax()).fold(0.0, f64::max)
+        let longer = |a: f64, b: f64| if a.is_nan() || a >= b { a } else { b };
+        let lines = network
+            .lines
+            .iter()
+            .flat_map(|&line| self.lines[line].chain.solution());
+        lines.map(|x| x.norm_squared()).fold(0.0, longer).sqrt()
     }
 
     /// Greatest force out of balance [N] and where it is.
     pub(crate) fn greatest_residual(&self, network: &Network) -> (f64, Place) {
-        let mut greatest = (0.0, Place::Node { line: network.lines[0], node: 0 });
+        let mut greatest = (
+            0.0,
+            Place::Node {
+                line: network.lines[0],
+                node: 0,
+            },
+        );
         let mut compare = |residual: &Vector3<f64>, place| {
             let norm = residual.norm();
             if !(norm <= greatest.0) {
@@ -593,17 +759,34 @@ pub(crate) enum Place {
 }
 
 impl Place {
+    /// A line and a node there.
+    pub(crate) fn node(self, model: &Model) -> (usize, usize) {
+        match self {
+            Place::Node { line, node } => (line, node),
+            Place::Point(point) => {
+                let (line, end) = model.points[point].attached[0];
+                (line, model.lines[line].end_node(end))
+            }
+        }
+    }
+
     /// In words.
     pub(crate) fn name(self, model: &Model) -> String {
         match self {
-            Place::Node { line, node } => format!("line \"{}\", node {node}", model.lines[line].name),
+            Place::Node { line, node } => {
+                format!("line \"{}\", node {node}", model.lines[line].name)
+            }
             Place::Point(point) => format!("point \"{}\"", model.points[point].name),
         }
     }
 }
 
 /// Visits the free points of a network.
-pub(crate) fn for_free_points(model: &Model, network: &Network, mut visit: impl FnMut(usize, &FreePoint)) {
+pub(crate) fn for_free_points(
+    model: &Model,
+    network: &Network,
+    mut visit: impl FnMut(usize, &FreePoint),
+) {
     for &index in &network.free_points {
         if let Some(free) = model.points[index].free() {
             visit(index, free);
@@ -630,7 +813,9 @@ pub(crate) fn copy_network(model: &Model, network: &Network, from: &State, to: &
         let (from_line, to_line) = (&from.lines[index], &mut to.lines[index]);
         to_line.position.copy_from_slice(&from_line.position);
         to_line.velocity.copy_from_slice(&from_line.velocity);
-        to_line.acceleration.copy_from_slice(&from_line.acceleration);
+        to_line
+            .acceleration
+            .copy_from_slice(&from_line.acceleration);
         for point in model.lines[index].ends {
             to.points[point] = from.points[point];
         }
@@ -642,16 +827,41 @@ fn blank_state(model: &Model) -> State {
     let line = |line: &Line| LineState::at_rest(vec![Vector3::zeros(); line.segment_count() + 1]);
     State {
         time: 0.0,
-        points: model.points.iter().map(|point| PointState::at_rest(point.reference)).collect(),
+        points: model
+            .points
+            .iter()
+            .map(|point| PointState::at_rest(point.reference))
+            .collect(),
         lines: model.lines.iter().map(line).collect(),
     }
 }
 
 /// Force [N] that a line applies to the point at one of its ends, inertia and drag of its end node included.
-pub fn end_force(model: &Model, state: &State, line: usize, end: End, work: &mut Workspace) -> Vector3<f64> {
-    let weights = Weights { force: 1.0, inertia: 1.0, position: 0.0, velocity: 0.0, acceleration: 0.0 };
+pub fn end_force(
+    model: &Model,
+    state: &State,
+    line: usize,
+    end: End,
+    work: &mut Workspace,
+) -> Vector3<f64> {
+    let weights = Weights {
+        force: 1.0,
+        inertia: 1.0,
+        position: 0.0,
+        velocity: 0.0,
+        acceleration: 0.0,
+        predicted: false,
+    };
     let negative_tension = model.solver.negative_tension;
-    let (line_model, line_state, line_work) = (&model.lines[line], &state.lines[line], &mut work.lines[line]);
+    let (line_model, line_state, line_work) = (
+        &model.lines[line],
+        &state.lines[line],
+        &mut work.lines[line],
+    );
+    line_work.fade_dampers(line_model, line_state, 0.0);
     line_work.assemble_dynamic::<false>(line_model, line_state, &weights, negative_tension);
     -line_work.residual[line_model.end_node(end)]
 }
+
+#[cfg(test)]
+mod tests;

@@ -24,11 +24,9 @@
 use nalgebra::Vector3;
 
 use super::StaticsError;
-use super::assembly::{
-    StaticCase, Workspace, copy_network, for_free_points, place_ends,
-};
+use super::assembly::{StaticCase, Workspace, copy_network, for_free_points, place_ends};
 use super::guess;
-use crate::model::{LineState, Model, Network, PointState, State};
+use crate::model::{Line, LineState, Model, Network, PointState, State};
 
 /// Accepted force out of balance, over the greatest force [-].
 const FORCE_TOLERANCE: f64 = 1e-11;
@@ -37,7 +35,7 @@ const STEP_TOLERANCE: f64 = 1e-10;
 /// Longest correction, over the longest line or, if that is more, the reach of the network [-].
 const STEP_MAX: f64 = 0.2;
 /// Solves of one Newton iteration with predicted tensions.
-const NEWTON_SOLVES_MAX: usize = 60;
+const NEWTON_SOLVES_MAX: usize = 40;
 /// Solves of one minimisation.
 const DESCENT_SOLVES_MAX: usize = 200;
 /// Cuts of one step of a minimisation.
@@ -67,8 +65,10 @@ pub fn solve(
     for (line, work) in model.lines.iter().zip(&mut work.lines) {
         let [a, b] = line.ends.map(|point| points[point]);
         let mut position = vec![a; line.segment_count() + 1];
-        guess::hang(line, a, b, &mut position, work);
-        state.lines.push(LineState::at_rest(line.given_shape(a, b).unwrap_or(position)));
+        guess::hang(model, line, a, b, &mut position, &mut work.tension);
+        state.lines.push(LineState::at_rest(
+            line.given_shape(a, b).unwrap_or(position),
+        ));
     }
     for number in 0..model.networks.len() {
         Problem::new(model, number, t).solve(&mut state, work)?;
@@ -141,7 +141,9 @@ pub fn continue_network(
 /// Carries the nodes of a line along with its ends.
 fn shift(state: &mut State, before: &State, model: &Model, index: usize) {
     let line = &model.lines[index];
-    let [a, b] = line.ends.map(|point| state.points[point].position - before.points[point].position);
+    let [a, b] = line
+        .ends
+        .map(|point| state.points[point].position - before.points[point].position);
     let nodes = &mut state.lines[index];
     for (r, arc) in nodes.position.iter_mut().zip(&line.nodes.arc) {
         *r += a + (arc / line.unstretched_length()) * (b - a);
@@ -156,11 +158,31 @@ fn check_finite(model: &Model, points: &[Vector3<f64>]) -> Result<(), StaticsErr
         for (axis, value) in ["x", "y", "z"].into_iter().zip(position.iter()) {
             if !value.is_finite() {
                 let place = format!("point \"{}\", {axis}", point.name);
-                return Err(StaticsError::NotFinite { place, value: *value });
+                return Err(StaticsError::NotFinite {
+                    place,
+                    value: *value,
+                });
             }
         }
     }
     Ok(())
+}
+
+/// Greatest stiffness of a segment of at most this EA [N], or of the bed under a node [N/m].
+fn stiffest_spring(line: &Line, stiffness_max: f64) -> f64 {
+    let segments = line
+        .segments
+        .axial_stiffness
+        .iter()
+        .zip(&line.segments.length);
+    let bed = line
+        .nodes
+        .contact
+        .iter()
+        .flat_map(|contact| &contact.stiffness)
+        .copied();
+    bed.chain(segments.map(|(ea, length)| ea.min(stiffness_max) / length))
+        .fold(0.0, f64::max)
 }
 
 /// One network, one time.
@@ -179,7 +201,11 @@ impl<'a> Problem<'a> {
     fn new(model: &'a Model, number: usize, time: f64) -> Problem<'a> {
         let network = &model.networks[number];
         let lines = network.lines.iter().map(|&line| &model.lines[line]);
-        let mut force: f64 = lines.clone().flat_map(|line| &line.nodes.weight).map(|w| w.abs()).sum();
+        let mut force: f64 = lines
+            .clone()
+            .flat_map(|line| &line.nodes.weight)
+            .map(|w| w.abs())
+            .sum();
         for_free_points(model, network, |index, free| {
             force += free.weight.abs() + model.points[index].load_at(time).norm();
         });
@@ -189,7 +215,9 @@ impl<'a> Problem<'a> {
             number,
             time,
             force: if force > 0.0 { force } else { 1.0 },
-            length: lines.map(|line| line.unstretched_length()).fold(0.0, f64::max),
+            length: lines
+                .map(|line| line.unstretched_length())
+                .fold(0.0, f64::max),
         }
     }
 
@@ -252,7 +280,11 @@ impl<'a> Problem<'a> {
             work.assemble_static(self.model, self.network, state, &case);
             let (residual, _) = work.greatest_residual(self.network);
             let tolerance = self.tolerance(state, work, case.stiffness_max);
-            balanced = if residual <= tolerance && self.no_push(work, tolerance) { balanced + 1 } else { 0 };
+            balanced = if residual <= tolerance && self.no_push(work, tolerance) {
+                balanced + 1
+            } else {
+                0
+            };
             if balanced >= 3 || (balanced > 0 && step <= STEP_TOLERANCE * self.length) {
                 return true;
             }
@@ -265,7 +297,7 @@ impl<'a> Problem<'a> {
                 return false;
             }
             let part = (STEP_MAX * self.reach(state) / step).min(1.0);
-            self.predict_tensions(work, part);
+            work.predict_tensions(self.model, self.network, part);
             self.advance(state, work, part);
             if part == 1.0 {
                 relaxation = (0.1 * relaxation).max(1e-12);
@@ -276,29 +308,44 @@ impl<'a> Problem<'a> {
 
     /// Farthest that a node is from end A of its line, at least the length of the longest line [m].
     fn reach(&self, state: &State) -> f64 {
-        let lines = self.network.lines.iter().map(|&line| &state.lines[line].position);
+        let lines = self
+            .network
+            .lines
+            .iter()
+            .map(|&line| &state.lines[line].position);
         let distances = lines.flat_map(|nodes| nodes.iter().map(|r| (r - nodes[0]).amax()));
         distances.fold(self.length, f64::max)
     }
 
-    /// Anchoring that lifts pivots above the rounding of the stiffest segment [N/m].
+    /// Anchoring that lifts pivots above the rounding of the stiffest spring [N/m].
     fn rounding_stiffness(&self, case: &StaticCase) -> f64 {
-        let lines = self.network.lines.iter().map(|&line| &self.model.lines[line].segments);
-        let stiffest = lines.flat_map(|segments| segments.axial_stiffness.iter().zip(&segments.length));
-        8.0 * f64::EPSILON * stiffest.map(|(ea, l)| ea.min(case.stiffness_max) / l).fold(0.0, f64::max)
+        let lines = self
+            .network
+            .lines
+            .iter()
+            .map(|&line| &self.model.lines[line]);
+        8.0 * f64::EPSILON
+            * lines
+                .map(|line| stiffest_spring(line, case.stiffness_max))
+                .fold(0.0, f64::max)
     }
 
     /// Accepted force out of balance [N] at the last assembly.
     fn tolerance(&self, state: &State, work: &Workspace, stiffness_max: f64) -> f64 {
         let (mut force, mut rounding) = (0.0_f64, 0.0_f64);
         for &index in &self.network.lines {
-            let (line, segments) = (&self.model.lines[index], &self.model.lines[index].segments);
-            let far = state.lines[index].position.iter().map(|r| r.amax()).fold(0.0, f64::max);
+            let line = &self.model.lines[index];
+            let far = state.lines[index]
+                .position
+                .iter()
+                .map(|r| r.amax())
+                .fold(0.0, f64::max);
             for i in 0..line.segment_count() {
-                force = force.max(work.lines[index].elastic[i]).max(line.nodes.weight[i].abs());
-                let stiffness = segments.axial_stiffness[i].min(stiffness_max) / segments.length[i];
-                rounding = rounding.max(stiffness * far);
+                force = force
+                    .max(work.lines[index].elastic[i])
+                    .max(line.nodes.weight[i].abs());
             }
+            rounding = rounding.max(far * stiffest_spring(line, stiffness_max));
         }
         for_free_points(self.model, self.network, |index, free| {
             let load = self.model.points[index].load_at(self.time).norm();
@@ -314,19 +361,6 @@ impl<'a> Problem<'a> {
             let mut segments = line.elastic.iter().zip(&line.tension);
             segments.all(|(&elastic, &tension)| tension <= 0.0 || elastic >= -tolerance)
         })
-    }
-
-    /// Tensions after a `part` of the correction, by the linear system [N].
-    fn predict_tensions(&self, work: &mut Workspace, part: f64) {
-        for &index in &self.network.lines {
-            let line = &mut work.lines[index];
-            let x = line.chain.solution();
-            for i in 0..line.tension.len() {
-                let stretched = -line.direction[i].dot(&(x[i + 1] - x[i])); // growth of the segment [m]
-                let predicted = line.elastic[i] + line.slope[i] * stretched;
-                line.tension[i] += part * (predicted - line.tension[i]);
-            }
-        }
     }
 
     /// Adds a `part` of the correction, the negative of the solution, to the positions.
@@ -346,8 +380,15 @@ impl<'a> Problem<'a> {
     /// From a soft network, whose energy is minimised, to the true one.
     fn stiffen_gradually(&self, state: &mut State, work: &mut Workspace) -> bool {
         let mut stiffness = SOFT_STIFFNESS * self.force;
-        let lines = self.network.lines.iter().map(|&line| &self.model.lines[line].segments);
-        let stiffest = lines.flat_map(|segments| &segments.axial_stiffness).copied().fold(0.0, f64::max);
+        let lines = self
+            .network
+            .lines
+            .iter()
+            .map(|&line| &self.model.lines[line].segments);
+        let stiffest = lines
+            .flat_map(|segments| &segments.axial_stiffness)
+            .copied()
+            .fold(0.0, f64::max);
         loop {
             let case = self.case(stiffness);
             self.descend(state, work, case);
@@ -389,14 +430,23 @@ impl<'a> Problem<'a> {
             let step = work.greatest_solution(self.network);
             let longest = (STEP_MAX * self.reach(state) / step).min(1.0);
             let part = self.cut(state, work, &case, longest);
-            relaxation *= if part >= 1.0 { 0.1 } else if part < 0.1 { 4.0 } else { 1.0 };
+            relaxation *= if part >= 1.0 {
+                0.1
+            } else if part < 0.1 {
+                4.0
+            } else {
+                1.0
+            };
             relaxation = relaxation.clamp(1e-9, 1e6);
         }
     }
 
     /// Moves along the correction for as long as the energy falls; the part of it that was taken.
     fn cut(&self, state: &mut State, work: &mut Workspace, case: &StaticCase, longest: f64) -> f64 {
-        let case = StaticCase { anchoring: 0.0, ..*case };
+        let case = StaticCase {
+            anchoring: 0.0,
+            ..*case
+        };
         let before = self.power(work);
         let (mut part, mut taken) = (longest, 0.0);
         for _ in 0..CUTS_MAX {
@@ -416,7 +466,10 @@ impl<'a> Problem<'a> {
     fn power(&self, work: &Workspace) -> f64 {
         let mut sum = 0.0;
         for &index in &self.network.lines {
-            let (x, r) = (work.lines[index].chain.solution(), &work.lines[index].residual);
+            let (x, r) = (
+                work.lines[index].chain.solution(),
+                &work.lines[index].residual,
+            );
             let last = r.len() - 1;
             sum -= (1..last).map(|i| x[i].dot(&r[i])).sum::<f64>();
         }
@@ -427,7 +480,11 @@ impl<'a> Problem<'a> {
     }
 
     fn softens(&self) -> bool {
-        let laws = self.network.lines.iter().flat_map(|&line| &self.model.lines[line].segments.law);
+        let laws = self
+            .network
+            .lines
+            .iter()
+            .flat_map(|&line| &self.model.lines[line].segments.law);
         laws.copied().any(|law| law.limit_strain().is_some())
     }
 
@@ -437,7 +494,11 @@ impl<'a> Problem<'a> {
             return true;
         }
         let anchoring = self.rounding_stiffness(&case) + 1e-12 * self.force / self.length;
-        let case = StaticCase { anchoring, predicted: false, ..case };
+        let case = StaticCase {
+            anchoring,
+            predicted: false,
+            ..case
+        };
         work.assemble_static(self.model, self.network, state, &case);
         work.solve(self.model, self.network, self.number)
     }
@@ -445,7 +506,10 @@ impl<'a> Problem<'a> {
     /// Loads a softening network little by little, from nothing.
     fn load_gradually(&self, state: &mut State, work: &mut Workspace) -> Result<(), StaticsError> {
         let mut increment: f64 = 0.25;
-        let mut case = StaticCase { load: 0.0, ..self.case(f64::INFINITY) };
+        let mut case = StaticCase {
+            load: 0.0,
+            ..self.case(f64::INFINITY)
+        };
         let mut reached = std::mem::take(&mut work.trial);
         copy_network(self.model, self.network, state, &mut reached);
         let mut done: f64 = 0.0;
@@ -463,7 +527,11 @@ impl<'a> Problem<'a> {
             self.remember_tensions(work);
         }
         work.trial = reached;
-        if done < 1.0 { Err(self.limit_load(state, done)) } else { Ok(()) }
+        if done < 1.0 {
+            Err(self.limit_load(state, done))
+        } else {
+            Ok(())
+        }
     }
 
     fn limit_load(&self, state: &State, load_fraction: f64) -> StaticsError {
@@ -485,7 +553,9 @@ impl<'a> Problem<'a> {
             line: line.name.clone(),
             segment,
             strain,
-            limit_strain: line.segments.law[segment].limit_strain().unwrap_or(f64::INFINITY),
+            limit_strain: line.segments.law[segment]
+                .limit_strain()
+                .unwrap_or(f64::INFINITY),
             load_fraction,
         }
     }

@@ -2,21 +2,89 @@
 
 use nalgebra::Vector3;
 
-use super::assembly::LineWork;
-use crate::model::Line;
+use super::catenary::{self, Bed, Catenary, Section};
+use crate::model::{Line, Model};
 
-/// Puts the nodes of a line between its ends at `a` and `b` [m] on a parabola of about the right length.
-pub(crate) fn hang(line: &Line, a: Vector3<f64>, b: Vector3<f64>, position: &mut [Vector3<f64>], work: &mut LineWork) {
+/// Puts the nodes of a line between its ends at `a` and `b` [m] on its closed-form catenary, with the tensions of its segments [N].
+/// Where there is none, because an end lies under the bed, on a parabola of about the right length.
+pub(crate) fn hang(
+    model: &Model,
+    line: &Line,
+    a: Vector3<f64>,
+    b: Vector3<f64>,
+    position: &mut [Vector3<f64>],
+    tension: &mut [f64],
+) {
+    let chord = b - a;
+    let span = chord.xy().norm();
+    match closed_form(model, line, a, span, chord.z) {
+        Some(solved) => {
+            let along = if span > 0.0 {
+                Vector3::new(chord.x, chord.y, 0.0) / span
+            } else {
+                Vector3::x()
+            };
+            let arc = &line.nodes.arc;
+            for (r, &s) in position.iter_mut().zip(arc) {
+                let point = solved.at(s);
+                *r = a + point.x * along + point.z * Vector3::z();
+            }
+            for (i, tension) in tension.iter_mut().enumerate() {
+                *tension = solved.at(0.5 * (arc[i] + arc[i + 1])).tension;
+            }
+        }
+        None => hang_parabola(line, a, b, position, tension),
+    }
+    let last = position.len() - 1;
+    (position[0], position[last]) = (a, b);
+}
+
+/// The catenary of a line, from end A at `a` over a span and a rise [m].
+pub(crate) fn closed_form(
+    model: &Model,
+    line: &Line,
+    a: Vector3<f64>,
+    span: f64,
+    rise: f64,
+) -> Option<Catenary> {
+    let bed = line.nodes.contact.as_ref().map(|contact| Bed {
+        height: contact.bed - a.z,
+        friction: model.bed_friction,
+    });
+    let section = |section: &crate::model::Section| Section {
+        length: section.length,
+        weight: section.weight,
+        axial_stiffness: section.axial_stiffness,
+    };
+    let sections: Vec<Section> = line.sections.iter().map(section).collect();
+    catenary::solve(&sections, span, rise, bed).ok()
+}
+
+fn hang_parabola(
+    line: &Line,
+    a: Vector3<f64>,
+    b: Vector3<f64>,
+    position: &mut [Vector3<f64>],
+    tension: &mut [f64],
+) {
     let length = line.unstretched_length();
     let weight: f64 = line.nodes.weight.iter().sum();
     let chord = (b - a).norm();
-    let sag = (0.375 * chord.max(0.1 * length) * (length - chord).max(0.0)).sqrt() * weight.signum();
-    let bed = line.nodes.contact.as_ref().map_or(f64::NEG_INFINITY, |contact| contact.bed);
+    let sag =
+        (0.375 * chord.max(0.1 * length) * (length - chord).max(0.0)).sqrt() * weight.signum();
+    let bed = line
+        .nodes
+        .contact
+        .as_ref()
+        .map_or(f64::NEG_INFINITY, |contact| contact.bed);
     for (r, arc) in position.iter_mut().zip(&line.nodes.arc) {
         let u = arc / length;
         *r = a + u * (b - a) - 4.0 * sag * u * (1.0 - u) * Vector3::z();
         r.z = r.z.max(bed.min(a.z).min(b.z));
     }
-    let horizontal = if sag.abs() > 0.0 { (weight * chord / (8.0 * sag)).abs() } else { 0.0 };
-    work.tension.fill(horizontal);
+    tension.fill(if sag == 0.0 {
+        0.0
+    } else {
+        (weight * chord / (8.0 * sag)).abs()
+    });
 }

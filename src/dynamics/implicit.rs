@@ -1,0 +1,370 @@
+//! Fully implicit integration: generalised-α and Bossak's scheme, with full Newton iterations.
+//!
+//! Newmark's approximations
+//!
+//!   r' = r + Δt v + Δt² [(½ − β) a + β a'],   v' = v + Δt [(1 − γ) a + γ a']
+//!
+//! close the balance of weighted forces
+//!
+//!   (1 − α_m) M' a' + α_m M a = (1 − α_f) f(r', v', t') + α_f f(r, v, t).
+//!
+//! * Generalised-α of spectral radius ρ at infinite frequency: α_m = (2ρ − 1)/(ρ + 1), α_f = ρ/(ρ + 1), γ = ½ − α_m + α_f,
+//!   β = ¼ (1 − α_m + α_f)².
+//! * Bossak(α, γ): α_m = α ≤ 0, α_f = 0, β = ¼ (1 − α)²; second order for γ = ½ − α.
+//!
+//! The tangent is that of [`crate::statics::assembly`]. The seabed's damper fades in over two static penetrations above and below the
+//! bed instead of switching on at touch, which Newton's method would not survive; what rests on the bed is not affected.
+//!
+//! Source: Chung & Hulbert (1993), J. Appl. Mech. 60, 371-375, eq. 5-9 and 25; Wood, Bossak & Zienkiewicz (1980), Int. J. Numer.
+//! Meth. Eng. 15, 1562-1566. Valid for ρ from 0 to 1; with slack lines that snap, ρ >= 0.8 can grow.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::StepError;
+use crate::model::{Kinematics, Model, Network, PointState, State};
+use crate::scene::{Integrator, Solver};
+use crate::statics::assembly::{
+    Counters, Weights, Workspace, copy_network, for_free_points, place_ends,
+};
+
+/// Spectral radius at infinite frequency where the scene gives none [-].
+pub const SPECTRAL_RADIUS: f64 = 0.5;
+/// Last correction, over the shortest segment [-].
+const NEWTON_TOLERANCE: f64 = 1e-7;
+/// Newton iterations of a step.
+const ITERATIONS_MAX: usize = 15;
+/// Parts that a step may be cut into by halving: ten halvings.
+const PARTS_MAX: usize = 1024;
+
+/// Parameters of the integrator [-].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scheme {
+    /// Weight of the old inertia.
+    pub alpha_m: f64,
+    /// Weight of the old forces.
+    pub alpha_f: f64,
+    /// Newmark's β.
+    pub beta: f64,
+    /// Newmark's γ.
+    pub gamma: f64,
+}
+
+impl Scheme {
+    /// Chung and Hulbert's scheme of spectral radius `rho` at infinite frequency [-], 0 to 1.
+    pub fn generalised_alpha(rho: f64) -> Scheme {
+        let (alpha_m, alpha_f) = ((2.0 * rho - 1.0) / (rho + 1.0), rho / (rho + 1.0));
+        let gamma = 0.5 - alpha_m + alpha_f;
+        Scheme {
+            alpha_m,
+            alpha_f,
+            beta: 0.25 * (0.5 + gamma).powi(2),
+            gamma,
+        }
+    }
+
+    /// Bossak's scheme; γ = ½ − α where none is given.
+    pub fn bossak(alpha: f64, gamma: Option<f64>) -> Scheme {
+        Scheme {
+            alpha_m: alpha,
+            alpha_f: 0.0,
+            beta: 0.25 * (1.0 - alpha).powi(2),
+            gamma: gamma.unwrap_or(0.5 - alpha),
+        }
+    }
+
+    /// What a scene's solver table asks for.
+    pub fn new(solver: &Solver) -> Scheme {
+        match (solver.integrator, solver.bossak) {
+            (Integrator::Bossak, Some(bossak)) => Scheme::bossak(bossak.alpha, bossak.gamma),
+            (Integrator::Bossak, None) => Scheme::bossak(-0.1, None),
+            _ => Scheme::generalised_alpha(solver.spectral_radius.unwrap_or(SPECTRAL_RADIUS)),
+        }
+    }
+}
+
+/// Accelerations of a network that satisfy its equation of motion at time `t` [s], as the integrator needs them where a motion
+/// starts. The held points move as `held` says. Nodes without mass keep zero.
+pub fn start<K: Fn(usize, f64) -> Kinematics>(
+    model: &Model,
+    number: usize,
+    state: &mut State,
+    held: &K,
+    t: f64,
+    work: &mut Workspace,
+) {
+    let network = &model.networks[number];
+    hold(model, network, state, held, t);
+    let weights = Weights {
+        force: 1.0,
+        inertia: 0.0,
+        position: 0.0,
+        velocity: 0.0,
+        acceleration: 1.0,
+        predicted: false,
+    };
+    work.fade_dampers(model, network, state, 0.0);
+    work.assemble_dynamic::<true>(model, network, state, t, &weights);
+    for &index in &network.lines {
+        let (line, nodes) = (&work.lines[index], &mut state.lines[index]);
+        for (i, a) in nodes.acceleration.iter_mut().enumerate() {
+            *a = acceleration(line.diagonal[i], line.residual[i]);
+        }
+    }
+    for_free_points(model, network, |index, free| {
+        let mut mass = work.points[index].diagonal;
+        for &(line, end) in &model.points[index].attached {
+            mass += work.lines[line].diagonal[model.lines[line].end_node(end)];
+        }
+        for axis in (0..3).filter(|&axis| !free.axes[axis]) {
+            mass.row_mut(axis).fill(0.0);
+            mass.column_mut(axis).fill(0.0);
+            mass[(axis, axis)] = 1.0;
+        }
+        state.points[index].acceleration = acceleration(mass, work.points[index].total);
+    });
+    place_ends(model, network, state);
+}
+
+/// −M⁻¹R, zero without mass [m/s²].
+fn acceleration(mass: Matrix3<f64>, residual: Vector3<f64>) -> Vector3<f64> {
+    mass.try_inverse()
+        .map_or(Vector3::zeros(), |inverse| -(inverse * residual))
+}
+
+/// Puts the held points of a network where they are at time `t` [s].
+fn hold<K: Fn(usize, f64) -> Kinematics>(
+    model: &Model,
+    network: &Network,
+    state: &mut State,
+    held: &K,
+    t: f64,
+) {
+    for &index in &network.lines {
+        for point in model.lines[index].ends {
+            if model.points[point].free().is_none() {
+                let Kinematics {
+                    position,
+                    velocity,
+                    acceleration,
+                } = held(point, t);
+                state.points[point] = PointState {
+                    position,
+                    velocity,
+                    acceleration,
+                    ..state.points[point]
+                };
+            }
+        }
+    }
+    place_ends(model, network, state);
+}
+
+/// Advances one network from `t0` to `t1` [s] in equal steps of at most `dt_max` [s]; `held` gives position, velocity and
+/// acceleration of the points that forces do not move. `state.time` is left to the caller.
+///
+/// # Errors
+/// Newton's method failed even in steps 1024 times smaller; the state is then as it was.
+pub fn advance<K: Fn(usize, f64) -> Kinematics>(
+    model: &Model,
+    number: usize,
+    state: &mut State,
+    held: &K,
+    [t0, t1]: [f64; 2],
+    dt_max: f64,
+    scheme: &Scheme,
+    work: &mut Workspace,
+) -> Result<Counters, StepError> {
+    let network = &model.networks[number];
+    let mut start = std::mem::take(&mut work.saved);
+    copy_network(model, network, state, &mut start);
+    work.counters = Counters::default();
+    let steps = steps(t1 - t0, dt_max);
+    let mut result = Ok(());
+    for step in 0..steps {
+        let at = |step: usize| t0 + (t1 - t0) * step as f64 / steps as f64;
+        let integrator = Integration {
+            model,
+            network,
+            number,
+            held,
+            scheme,
+        };
+        result = integrator.pass([at(step), at(step + 1)], state, work);
+        if result.is_err() {
+            copy_network(model, network, &start, state);
+            break;
+        }
+    }
+    work.saved = start;
+    result.map(|()| work.take_counters())
+}
+
+/// Number of equal steps of at most `dt_max` that make up `span`; rounding of the two makes no extra step.
+fn steps(span: f64, dt_max: f64) -> usize {
+    ((span / dt_max - 1e-9).ceil() as usize).max(1)
+}
+
+/// What does not change from step to step.
+struct Integration<'a, K> {
+    model: &'a Model,
+    network: &'a Network,
+    number: usize,
+    held: &'a K,
+    scheme: &'a Scheme,
+}
+
+impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
+    /// Makes the step from `t0` to `t1` [s], in halves where Newton's method fails.
+    fn pass(
+        &self,
+        [t0, t1]: [f64; 2],
+        state: &mut State,
+        work: &mut Workspace,
+    ) -> Result<(), StepError> {
+        let at = |parts: usize| t0 + (t1 - t0) * parts as f64 / PARTS_MAX as f64;
+        let mut before = std::mem::take(&mut work.before);
+        let (mut done, mut parts) = (0, PARTS_MAX);
+        let mut result = Ok(());
+        while done < PARTS_MAX {
+            copy_network(self.model, self.network, state, &mut before);
+            let span = [at(done), at(done + parts)];
+            if self.step(span, state, work) {
+                work.counters.steps += 1;
+                done += parts;
+                if done % (2 * parts) == 0 && parts < PARTS_MAX {
+                    parts *= 2;
+                }
+                continue;
+            }
+            if parts == 1 {
+                result = Err(self.failure(span, work));
+                break;
+            }
+            copy_network(self.model, self.network, &before, state);
+            work.counters.halvings += 1;
+            parts /= 2;
+        }
+        work.before = before;
+        result
+    }
+
+    fn failure(&self, [t0, t1]: [f64; 2], work: &Workspace) -> StepError {
+        let (residual, place) = work.greatest_residual(self.network);
+        let (line, node) = place.node(self.model);
+        StepError {
+            time: t0,
+            line: self.model.lines[line].name.clone(),
+            node,
+            reason: format!(
+                "Newton's method did not converge in {ITERATIONS_MAX} iterations with a step of {:.3e} s, {residual:.3e} N are out of \
+                 balance",
+                t1 - t0
+            ),
+            advice: "look for jumps in the motion of the driven points, give every line a mass, or lower solver.time_step_max",
+        }
+    }
+
+    /// One step; whether Newton's method converged. If not, the state is spoilt.
+    fn step(&self, [t0, t1]: [f64; 2], state: &mut State, work: &mut Workspace) -> bool {
+        let Scheme {
+            alpha_m,
+            alpha_f,
+            beta,
+            gamma,
+        } = *self.scheme;
+        let dt = t1 - t0;
+        let old = Weights {
+            force: alpha_f,
+            inertia: alpha_m,
+            position: 0.0,
+            velocity: 0.0,
+            acceleration: 0.0,
+            predicted: false,
+        };
+        work.fade_dampers(self.model, self.network, state, dt);
+        work.assemble_dynamic::<false>(self.model, self.network, state, t0, &old);
+        work.remember(self.network);
+        self.predict(state, dt);
+        hold(self.model, self.network, state, self.held, t1);
+        let (per_velocity, per_acceleration) = (gamma / (beta * dt), 1.0 / (beta * dt * dt));
+        let new = Weights {
+            force: 1.0 - alpha_f,
+            inertia: 1.0 - alpha_m,
+            position: 1.0 - alpha_f,
+            velocity: (1.0 - alpha_f) * per_velocity,
+            acceleration: (1.0 - alpha_m) * per_acceleration,
+            predicted: true,
+        };
+        let tolerance = NEWTON_TOLERANCE * self.shortest_segment();
+        for _ in 0..ITERATIONS_MAX {
+            work.assemble_dynamic::<true>(self.model, self.network, state, t1, &new);
+            work.add_remembered(self.model, self.network);
+            if !work.solve(self.model, self.network, self.number) {
+                return false;
+            }
+            let correction = work.greatest_solution(self.network);
+            if !correction.is_finite() {
+                return false;
+            }
+            self.correct(state, work, per_velocity, per_acceleration);
+            let consistent = work.predict_tensions(self.model, self.network, 1.0);
+            if correction <= tolerance && consistent {
+                return true;
+            }
+        }
+        false
+    }
+
+    fn shortest_segment(&self) -> f64 {
+        let lines = self
+            .network
+            .lines
+            .iter()
+            .flat_map(|&line| &self.model.lines[line].segments.length);
+        lines.copied().fold(f64::INFINITY, f64::min)
+    }
+
+    /// Moves everything on with constant acceleration.
+    fn predict(&self, state: &mut State, dt: f64) {
+        for &index in &self.network.lines {
+            let nodes = &mut state.lines[index];
+            for ((r, v), a) in nodes
+                .position
+                .iter_mut()
+                .zip(&mut nodes.velocity)
+                .zip(&nodes.acceleration)
+            {
+                *r += dt * (*v + 0.5 * dt * a);
+                *v += dt * a;
+            }
+        }
+        for &index in &self.network.free_points {
+            let point = &mut state.points[index];
+            point.position += dt * (point.velocity + 0.5 * dt * point.acceleration);
+            point.velocity += dt * point.acceleration;
+        }
+    }
+
+    fn correct(
+        &self,
+        state: &mut State,
+        work: &Workspace,
+        per_velocity: f64,
+        per_acceleration: f64,
+    ) {
+        for &index in &self.network.lines {
+            let nodes = &mut state.lines[index];
+            for (i, x) in work.lines[index].chain.solution().iter().enumerate() {
+                nodes.position[i] -= x;
+                nodes.velocity[i] -= per_velocity * x;
+                nodes.acceleration[i] -= per_acceleration * x;
+            }
+        }
+        for &index in &self.network.free_points {
+            let (point, x) = (&mut state.points[index], work.points[index].solution);
+            point.position -= x;
+            point.velocity -= per_velocity * x;
+            point.acceleration -= per_acceleration * x;
+        }
+    }
+}

@@ -1,0 +1,235 @@
+//! A line laid out for the leapfrog kernels: padded arrays, four nodes or segments to a vector.
+//!
+//! Node i and segment i, which lies between nodes i and i + 1, stand at index [`FIRST`] + i. Padding has no stiffness, no
+//! weight and no drag, so that it stays at rest and no loop has a remainder.
+
+use nalgebra::Vector3;
+use pulp::{Arch, NullaryFnOnce};
+
+use super::leapfrog::Step;
+use crate::math::lanes::{Components, LANES, Lanes, Vectors};
+use crate::model::{End, Line, LineState};
+use crate::physics::stretch::StretchLaw;
+
+/// Index of node 0 and of segment 0.
+pub(super) const FIRST: usize = LANES;
+/// Keeps coincident nodes from dividing by zero [m²].
+const LENGTH2_MIN: f64 = 1e-200;
+
+/// Geometry, motion and coefficients of a line.
+#[derive(Debug, Clone)]
+pub(super) struct Layout {
+    pub segment_count: usize,
+    /// The widest vectors of this machine; results do not depend on it.
+    pub vector_unit: Arch,
+    pub law: StretchLaw,
+    pub negative_tension: bool,
+    /// Node positions at t_n [m].
+    pub position: Components,
+    /// Velocities at t_{n−½} [m/s].
+    pub velocity: Components,
+    /// Velocities at t_{n−3/2} [m/s].
+    pub velocity_before: Components,
+    pub inverse_length: Vec<f64>,
+    pub axial_stiffness: Vec<f64>,
+    pub axial_damping: Vec<f64>,
+    pub weight: Vec<f64>,
+    pub drag: Option<DragArrays>,
+    pub mass_damping: Option<Vec<f64>>,
+    pub contact: Option<ContactArrays>,
+}
+
+/// Lumped drag coefficients [N s²/m²].
+#[derive(Debug, Clone)]
+pub(super) struct DragArrays {
+    pub normal: Vec<f64>,
+    pub tangent: Vec<f64>,
+}
+
+/// Lumped contact coefficients [N/m, N s/m] and the bed's z [m].
+#[derive(Debug, Clone)]
+pub(super) struct ContactArrays {
+    pub bed: f64,
+    pub stiffness: Vec<f64>,
+    pub damping: Vec<f64>,
+}
+
+impl Layout {
+    /// Arrays for a line; `None` where its sections have different strain measures, which the kernels do not mix.
+    pub fn new(line: &Line, negative_tension: bool) -> Option<Layout> {
+        let n = line.segment_count();
+        let size = padded_size(n);
+        let keep = |values: &[f64]| pad(n, values, 0.0);
+        let nodes = &line.nodes;
+        let lengths = pad(n, &line.segments.length, 1.0);
+        Some(Layout {
+            segment_count: n,
+            vector_unit: Arch::new(),
+            law: line.uniform_law()?,
+            negative_tension,
+            position: padded_positions(size),
+            velocity: Components::zeros(size),
+            velocity_before: Components::zeros(size),
+            inverse_length: lengths.iter().map(|length| 1.0 / length).collect(),
+            axial_stiffness: keep(&line.segments.axial_stiffness),
+            axial_damping: keep(&line.segments.axial_damping),
+            weight: keep(&nodes.weight),
+            drag: nodes
+                .drag
+                .as_ref()
+                .map(|drag| DragArrays { normal: keep(&drag.normal), tangent: keep(&drag.tangent) }),
+            mass_damping: nodes.mass_damping.as_ref().map(|damping| keep(damping)),
+            contact: nodes.contact.as_ref().map(|contact| ContactArrays {
+                bed: contact.bed,
+                stiffness: keep(&contact.stiffness),
+                damping: keep(&contact.damping),
+            }),
+        })
+    }
+
+    /// Takes over positions and velocities of a line.
+    pub fn load(&mut self, state: &LineState) {
+        let memory = &state.half_step;
+        let fresh = memory.velocity.is_empty();
+        for (i, position) in state.position.iter().enumerate() {
+            self.position.set(FIRST + i, *position);
+            let (velocity, before) = if fresh {
+                (state.velocity[i], state.velocity[i])
+            } else {
+                (memory.velocity[i], memory.velocity_before[i])
+            };
+            self.velocity.set(FIRST + i, velocity);
+            self.velocity_before.set(FIRST + i, before);
+        }
+    }
+
+    /// Hands them back after steps of `steps` [s], with velocities extrapolated to the time of the positions.
+    pub fn store(&self, state: &mut LineState, steps: [f64; 2]) {
+        let memory = &mut state.half_step;
+        let count = state.position.len();
+        memory.velocity.resize(count, Vector3::zeros());
+        memory.velocity_before.resize(count, Vector3::zeros());
+        memory.steps = steps;
+        let extrapolation = Step::after(steps, steps[0]).extrapolation;
+        for i in 0..count {
+            let (velocity, before) = (self.velocity.get(FIRST + i), self.velocity_before.get(FIRST + i));
+            state.position[i] = self.position.get(FIRST + i);
+            state.velocity[i] = velocity + extrapolation * (velocity - before);
+            memory.velocity[i] = velocity;
+            memory.velocity_before[i] = before;
+        }
+    }
+
+    /// Puts an end at a position [m] with the velocity [m/s] that the next step takes as lagged.
+    pub fn put_end(&mut self, end: End, position: Vector3<f64>, velocity: Vector3<f64>) {
+        let at = self.end_index(end);
+        self.position.set(at, position);
+        self.velocity.set(at, velocity);
+    }
+
+    /// Index of the node at an end.
+    pub fn end_index(&self, end: End) -> usize {
+        match end {
+            End::A => FIRST,
+            End::B => FIRST + self.segment_count,
+        }
+    }
+
+    #[inline(always)]
+    /// Starts of the vectors that cover all segments.
+    pub fn segment_blocks(&self) -> impl Iterator<Item = usize> + use<> {
+        (FIRST..FIRST + self.segment_count).step_by(LANES)
+    }
+
+    #[inline(always)]
+    /// Starts of the vectors that cover all nodes.
+    pub fn node_blocks(&self) -> impl Iterator<Item = usize> + use<> {
+        (FIRST..=FIRST + self.segment_count).step_by(LANES)
+    }
+
+    /// Unit vectors along the chord of the neighbouring nodes.
+    #[inline(always)]
+    pub fn tangent(&self, at: usize) -> Vectors {
+        let chord = self.position.load(at + 1) - self.position.load(at - 1);
+        chord.scale((chord.dot(chord) + Lanes::splat(LENGTH2_MIN)).sqrt().recip())
+    }
+
+    /// Vectors along the segments, and the inverse of their lengths.
+    #[inline(always)]
+    pub fn chord(&self, at: usize) -> (Vectors, Lanes) {
+        let chord = self.position.load(at + 1) - self.position.load(at);
+        (chord, (chord.dot(chord) + Lanes::splat(LENGTH2_MIN)).sqrt().recip())
+    }
+
+    /// Velocities extrapolated to t_n [m/s].
+    #[inline(always)]
+    pub fn velocity_now(&self, at: usize, step: Step) -> Vectors {
+        let velocity = self.velocity.load(at);
+        velocity + (velocity - self.velocity_before.load(at)).scale(Lanes::splat(step.extrapolation))
+    }
+
+    /// Moves the nodes from t_n to t_{n+1}.
+    pub fn drift(&mut self, drift: f64) {
+        let unit = self.vector_unit;
+        unit.dispatch(Drift(self, drift));
+    }
+
+    #[inline(always)]
+    fn drift_nodes(&mut self, drift: f64) {
+        let drift = Lanes::splat(drift);
+        for at in self.node_blocks() {
+            let position = self.position.load(at) + self.velocity.load(at).scale(drift);
+            self.position.store(position, at);
+        }
+    }
+
+    /// Greatest ratio K |v| / M of the nodes [1/s]: explicit drag wants Δt below its inverse.
+    pub fn drag_rate(&self, line: &Line) -> f64 {
+        let Some(drag) = &line.nodes.drag else {
+            return 0.0;
+        };
+        let rate = |i: usize| {
+            let coefficient = drag.normal[i].max(drag.tangent[i]);
+            self.velocity.get(FIRST + i).norm() * coefficient / line.nodes.mass_normal[i]
+        };
+        (0..=self.segment_count).map(rate).fold(0.0, f64::max)
+    }
+
+    /// Index of the first node whose position or velocity is not finite.
+    pub fn broken_node(&self) -> Option<usize> {
+        (0..=self.segment_count).find(|i| {
+            let sum = self.position.get(FIRST + i) + self.velocity.get(FIRST + i);
+            !sum.iter().all(|value| value.is_finite())
+        })
+    }
+}
+
+/// [`Layout::drift`] for the vector unit of the machine.
+struct Drift<'a>(&'a mut Layout, f64);
+
+impl NullaryFnOnce for Drift<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        self.0.drift_nodes(self.1);
+    }
+}
+
+fn padded_size(segment_count: usize) -> usize {
+    FIRST + (segment_count + 1).div_ceil(LANES) * LANES + LANES
+}
+
+/// `values` from [`FIRST`] on, with `padding` around, for a line of `segment_count` segments.
+pub(super) fn pad(segment_count: usize, values: &[f64], padding: f64) -> Vec<f64> {
+    let mut padded = vec![padding; padded_size(segment_count)];
+    padded[FIRST..FIRST + values.len()].copy_from_slice(values);
+    padded
+}
+
+/// Padding far away and apart: its chords are never zero.
+fn padded_positions(size: usize) -> Components {
+    let mut position = Components::zeros(size);
+    position.x.iter_mut().enumerate().for_each(|(i, x)| *x = i as f64);
+    position
+}

@@ -1,0 +1,303 @@
+//! The tangent is the slope of the residual, and forces are objective.
+
+use approx::assert_relative_eq;
+use nalgebra::{Rotation3, Unit};
+
+use super::*;
+use crate::scene::Scene;
+
+const FORCES: Weights = Weights {
+    force: 1.0,
+    inertia: 1.0,
+    position: 0.0,
+    velocity: 0.0,
+    acceleration: 0.0,
+    predicted: false,
+};
+
+/// A repeatable number in −1 … 1.
+fn noise(seed: &mut u64) -> f64 {
+    *seed = seed
+        .wrapping_mul(6364136223846793005)
+        .wrapping_add(1442695040888963407);
+    (*seed >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+}
+
+fn random_vector(seed: &mut u64, size: f64) -> Vector3<f64> {
+    Vector3::from_fn(|_, _| size * noise(seed))
+}
+
+/// Two lines that meet in a free point, with the given surroundings and line type.
+fn network(surroundings: &str, line_type: &str) -> Model {
+    let text = format!(
+        r#"
+        {surroundings}
+        [line_types.cable]
+        axial_stiffness = 4.0e4
+        axial_damping = 900.0
+        {line_type}
+        [[points]]
+        name = "a"
+        position = [0.0, 0.0, 0.0]
+        kind = "fixed"
+        [[points]]
+        name = "joint"
+        position = [3.0, 0.0, 0.0]
+        kind = "free"
+        mass = 5.0
+        force = {{ y = 3.0 }}
+        [[points]]
+        name = "b"
+        position = [6.0, 0.0, 0.0]
+        kind = "fixed"
+        [[lines]]
+        name = "one"
+        from = "a"
+        to = "joint"
+        sections = [{{ type = "cable", length = 3.0, elements = 4 }}]
+        [[lines]]
+        name = "two"
+        from = "b"
+        to = "joint"
+        sections = [{{ type = "cable", length = 3.0, elements = 3 }}]
+        "#
+    );
+    Model::new(&Scene::from_toml(&text).unwrap()).unwrap()
+}
+
+/// Both lines bent, stretched by about a tenth, and moving.
+fn random_state(model: &Model, size: f64) -> State {
+    let mut state = blank_state(model);
+    let mut seed = 3;
+    for (line, nodes) in model.lines.iter().zip(&mut state.lines) {
+        let [a, b] = line.ends.map(|point| model.points[point].reference);
+        for i in 0..nodes.position.len() {
+            let along = line.nodes.arc[i] / line.unstretched_length();
+            nodes.position[i] = a + 1.2 * along * (b - a) + random_vector(&mut seed, 0.1 * size);
+            nodes.velocity[i] = random_vector(&mut seed, size);
+            nodes.acceleration[i] = random_vector(&mut seed, size);
+        }
+        let last = nodes.position.len() - 1;
+        let joint = &mut state.points[1];
+        (joint.position, joint.velocity) =
+            (Vector3::new(3.6, 0.1, -0.2), Vector3::new(0.2, -0.3, 0.4));
+        (nodes.position[last], nodes.velocity[last]) = (joint.position, joint.velocity);
+    }
+    place_joint(model, &mut state);
+    state
+}
+
+fn place_joint(model: &Model, state: &mut State) {
+    state.points[0].position = state.lines[0].position[0];
+    state.points[2].position = state.lines[1].position[0];
+    place_ends(model, &model.networks[0], state);
+}
+
+/// R of all nodes and of the free point.
+fn residual(model: &Model, state: &State, work: &mut Workspace) -> Vec<Vector3<f64>> {
+    work.assemble_dynamic::<false>(model, &model.networks[0], state, 0.0, &FORCES);
+    collect(work)
+}
+
+fn collect(work: &Workspace) -> Vec<Vector3<f64>> {
+    let nodes = work
+        .lines
+        .iter()
+        .flat_map(|line| line.residual.iter().copied());
+    nodes.chain([work.points[1].total]).collect()
+}
+
+/// Which of r, v and a is varied.
+#[derive(Clone, Copy)]
+enum Varied {
+    Position,
+    Velocity,
+    Acceleration,
+}
+
+fn vary(nodes: &mut LineState, varied: Varied) -> &mut Vec<Vector3<f64>> {
+    match varied {
+        Varied::Position => &mut nodes.position,
+        Varied::Velocity => &mut nodes.velocity,
+        Varied::Acceleration => &mut nodes.acceleration,
+    }
+}
+
+/// Compares the blocks of J with central differences of R, node by node.
+fn assert_tangent(model: &Model, state: &State, varied: Varied) {
+    let only = |wanted: fn(Varied) -> bool| if wanted(varied) { 1.0 } else { 0.0 };
+    let weights = Weights {
+        position: only(|v| matches!(v, Varied::Position)),
+        velocity: only(|v| matches!(v, Varied::Velocity)),
+        acceleration: only(|v| matches!(v, Varied::Acceleration)),
+        ..FORCES
+    };
+    let mut work = Workspace::new(model);
+    work.fade_dampers(model, &model.networks[0], state, 0.0);
+    work.assemble_dynamic::<true>(model, &model.networks[0], state, 0.0, &weights);
+    let tangent = work.lines.clone();
+    let greatest = tangent
+        .iter()
+        .flat_map(|line| &line.residual)
+        .map(|r| r.amax())
+        .fold(0.0, f64::max);
+    let h = 1e-6;
+    for (index, line) in tangent.iter().enumerate() {
+        for node in 0..line.diagonal.len() {
+            for axis in 0..3 {
+                let mut moved = |step: f64| {
+                    let mut state = state.clone();
+                    vary(&mut state.lines[index], varied)[node][axis] += step;
+                    work.assemble_dynamic::<false>(model, &model.networks[0], &state, 0.0, &FORCES);
+                    work.lines[index].residual.clone()
+                };
+                let (high, low) = (moved(h), moved(-h));
+                let slope = |i: usize| (high[i] - low[i]) / (2.0 * h);
+                // truncation, and the rounding of the residual over the step
+                let scale = 1e-8 * line.diagonal[node].amax() + 8.0 * f64::EPSILON * greatest / h;
+                assert_relative_eq!(
+                    slope(node),
+                    line.diagonal[node].column(axis).into_owned(),
+                    epsilon = scale
+                );
+                if node > 0 {
+                    assert_relative_eq!(
+                        slope(node - 1),
+                        line.coupling[node - 1].column(axis).into_owned(),
+                        epsilon = scale
+                    );
+                }
+            }
+        }
+    }
+}
+
+const WATER: &str = "[water]\ndensity = 1025.0";
+const BED: &str =
+    "[seabed]\ndepth = 0.05\nstiffness = 2.0e4\ndamping = 900.0\ncontact = \"as_given\"";
+
+#[test]
+fn the_stiffness_is_the_slope_of_the_residual_stretched_and_on_the_bed() {
+    for law in ["\"engineering\"", "\"green\"", "{ logarithmic = 0.3 }"] {
+        let line_type = format!("mass = 2.0\ndiameter = 0.05\nstrain = {law}");
+        let model = network(BED, &line_type);
+        assert!(model.lines.iter().all(|line| line.nodes.contact.is_some()));
+        assert_tangent(&model, &random_state(&model, 1.0), Varied::Position);
+    }
+}
+
+#[test]
+fn the_damping_is_the_slope_of_the_residual_in_water_and_on_the_bed() {
+    let line_type = "mass = 2.0\ndiameter = 0.05\ndrag_normal = 1.2\ndrag_tangential = 0.3\n\
+                     rayleigh = { ratios = [0.02, 0.02], frequencies = [1.0, 9.0] }";
+    let model = network(&format!("{WATER}\n{BED}"), line_type);
+    assert_tangent(&model, &random_state(&model, 1.0), Varied::Velocity);
+}
+
+#[test]
+fn the_mass_is_the_slope_of_the_residual_with_unequal_added_mass() {
+    let line_type =
+        "mass = 2.0\ndiameter = 0.05\nadded_mass_normal = 1.0\nadded_mass_tangential = 0.1";
+    let model = network(WATER, line_type);
+    assert_tangent(&model, &random_state(&model, 1.0), Varied::Acceleration);
+}
+
+#[test]
+fn tensions_of_a_line_sum_to_zero() {
+    let model = network("gravity = 0.0", "mass = 0.0");
+    let state = random_state(&model, 1.0);
+    let mut work = Workspace::new(&model);
+    residual(&model, &state, &mut work);
+    for line in &work.lines {
+        let sum: Vector3<f64> = line.residual.iter().sum();
+        let greatest = line.residual.iter().map(|r| r.amax()).fold(0.0, f64::max);
+        assert_relative_eq!(sum, Vector3::zeros(), epsilon = 1e-14 * greatest);
+    }
+}
+
+#[test]
+fn rotating_the_world_rotates_the_forces() {
+    let line_type = "mass = 2.0\nweight = 0.0\ndiameter = 0.05\ndrag_normal = 1.2\ndrag_tangential = 0.3\n\
+                     added_mass_normal = 1.0\nadded_mass_tangential = 0.1";
+    let mut model = network(WATER, line_type);
+    let mut state = random_state(&model, 1.0);
+    let mut work = Workspace::new(&model);
+    if let crate::model::Role::Free(free) = &mut model.points[1].role {
+        free.weight = 0.0;
+    }
+    model.points[1].load = None;
+    let before = residual(&model, &state, &mut work);
+    let axis = Unit::new_normalize(Vector3::new(1.0, -2.0, 0.5));
+    let turn = Rotation3::from_axis_angle(&axis, 0.8);
+    for nodes in &mut state.lines {
+        for varied in [Varied::Position, Varied::Velocity, Varied::Acceleration] {
+            vary(nodes, varied).iter_mut().for_each(|x| *x = turn * *x);
+        }
+    }
+    for point in &mut state.points {
+        point.acceleration = turn * point.acceleration;
+    }
+    let after = residual(&model, &state, &mut work);
+    let greatest = before.iter().map(|r| r.amax()).fold(0.0, f64::max);
+    for (before, after) in before.iter().zip(&after) {
+        assert_relative_eq!(turn * before, *after, epsilon = 1e-13 * greatest);
+    }
+}
+
+#[test]
+fn the_seabed_damper_fades_in_and_never_pulls() {
+    let k = ContactCoefficients {
+        stiffness: 1e4,
+        damping: 2e3,
+    };
+    let reach = damper_reach(k.stiffness, 50.0);
+    assert_relative_eq!(reach, 0.01);
+    assert!(SmoothContact::new(k, -reach, -1.0, reach).is_none());
+    assert!(SmoothContact::new(k, 0.5 * reach, 1.0, reach).is_none());
+    for penetration in [-0.5 * reach, 0.3 * reach, 3.0 * reach] {
+        let force = |p: f64, v: f64| SmoothContact::new(k, p, v, reach).unwrap().force;
+        let at = SmoothContact::new(k, penetration, -0.1, reach).unwrap();
+        let h = 1e-8;
+        let slope = |low: f64, high: f64| (high - low) / (2.0 * h);
+        let stiffness = slope(force(penetration - h, -0.1), force(penetration + h, -0.1));
+        let damping = -slope(force(penetration, -0.1 - h), force(penetration, -0.1 + h));
+        assert_relative_eq!(stiffness, at.stiffness, max_relative = 1e-5);
+        assert_relative_eq!(damping, at.damping, max_relative = 1e-5);
+    }
+}
+
+#[test]
+fn the_linear_solution_satisfies_the_system_of_both_lines_and_the_point() {
+    let model = network(BED, "mass = 2.0\ndiameter = 0.05");
+    let state = random_state(&model, 1.0);
+    let mut work = Workspace::new(&model);
+    let weights = Weights {
+        position: 1.0,
+        velocity: 40.0,
+        acceleration: 900.0,
+        ..FORCES
+    };
+    let network = &model.networks[0];
+    work.assemble_dynamic::<true>(&model, network, &state, 0.0, &weights);
+    assert!(work.solve(&model, network, 0));
+    let mut joint = work.points[1].diagonal * work.points[1].solution - work.points[1].residual;
+    for line in &work.lines {
+        let x = line.chain.solution();
+        let last = x.len() - 1;
+        let row = |i: usize| {
+            let mut sum = line.diagonal[i] * x[i] - line.residual[i];
+            if i > 0 {
+                sum += line.coupling[i - 1] * x[i - 1];
+            }
+            if i < last {
+                sum += line.coupling[i] * x[i + 1];
+            }
+            sum
+        };
+        for i in 1..last {
+            assert_relative_eq!(row(i), Vector3::zeros(), epsilon = 1e-9);
+        }
+        joint += row(last);
+    }
+    assert_relative_eq!(joint, Vector3::zeros(), epsilon = 1e-9);
+}
