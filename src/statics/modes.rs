@@ -26,7 +26,12 @@ pub struct Modes {
 
 impl Modes {
     /// Modes of a network about `state`; `None` where a node that moves has no mass.
-    pub fn new(model: &Model, network: usize, state: &State, work: &mut Workspace) -> Option<Modes> {
+    pub fn new(
+        model: &Model,
+        network: usize,
+        state: &State,
+        work: &mut Workspace,
+    ) -> Option<Modes> {
         let network = &model.networks[network];
         let (unknowns, count) = number_unknowns(model, network);
         let case = StaticCase {
@@ -44,7 +49,12 @@ impl Modes {
             let (line, tangent) = (&model.lines[index], &work.lines[index]);
             for (i, &node) in nodes.iter().enumerate() {
                 add_block(&mut stiffness, node, node, &tangent.diagonal[i]);
-                add_block(&mut mass, node, node, &node_mass(line, &state.lines[index].position, i));
+                add_block(
+                    &mut mass,
+                    node,
+                    node,
+                    &node_mass(line, &state.lines[index].position, i),
+                );
             }
             for (pair, coupling) in nodes.windows(2).zip(&tangent.coupling) {
                 add_block(&mut stiffness, pair[0], pair[1], coupling);
@@ -54,7 +64,12 @@ impl Modes {
         for &index in &network.free_points {
             let own = model.points[index].free().map_or(0.0, |free| free.mass);
             let point = point_unknowns(model, network, &unknowns, index);
-            add_block(&mut mass, point, point, &Matrix3::from_diagonal_element(own));
+            add_block(
+                &mut mass,
+                point,
+                point,
+                &Matrix3::from_diagonal_element(own),
+            );
         }
         let mut modes = solve(stiffness, Cholesky::new(mass)?);
         modes.unknowns = unknowns;
@@ -83,7 +98,9 @@ fn number_unknowns(model: &Model, network: &Network) -> (Vec<Vec<[Option<usize>;
         unknowns.push((0..=last).map(node).collect());
     }
     for &index in &network.free_points {
-        let axes = model.points[index].free().map_or([false; 3], |free| free.axes);
+        let axes = model.points[index]
+            .free()
+            .map_or([false; 3], |free| free.axes);
         let numbers = axes.map(&mut next);
         for (line, nodes) in network.lines.iter().zip(&mut unknowns) {
             let last = nodes.len() - 1;
@@ -104,15 +121,26 @@ fn point_unknowns(
     unknowns: &[Vec<[Option<usize>; 3]>],
     point: usize,
 ) -> [Option<usize>; 3] {
-    let ends = network.lines.iter().zip(unknowns).flat_map(|(&line, nodes)| {
-        let [a, b] = model.lines[line].ends;
-        [(a, nodes[0]), (b, nodes[nodes.len() - 1])]
-    });
-    let mut found = ends.filter(|(end, _)| *end == point).map(|(_, numbers)| numbers);
+    let ends = network
+        .lines
+        .iter()
+        .zip(unknowns)
+        .flat_map(|(&line, nodes)| {
+            let [a, b] = model.lines[line].ends;
+            [(a, nodes[0]), (b, nodes[nodes.len() - 1])]
+        });
+    let mut found = ends
+        .filter(|(end, _)| *end == point)
+        .map(|(_, numbers)| numbers);
     found.next().unwrap_or([None; 3])
 }
 
-fn add_block(matrix: &mut DMatrix<f64>, rows: [Option<usize>; 3], columns: [Option<usize>; 3], block: &Matrix3<f64>) {
+fn add_block(
+    matrix: &mut DMatrix<f64>,
+    rows: [Option<usize>; 3],
+    columns: [Option<usize>; 3],
+    block: &Matrix3<f64>,
+) {
     for (i, row) in rows.into_iter().enumerate() {
         for (j, column) in columns.into_iter().enumerate() {
             if let (Some(row), Some(column)) = (row, column) {
@@ -140,7 +168,10 @@ fn solve(mut stiffness: DMatrix<f64>, mass: Cholesky<f64, Dyn>) -> Modes {
     let mut shapes = eigen.eigenvectors.select_columns(&order);
     factor.tr_solve_lower_triangular_mut(&mut shapes);
     Modes {
-        frequencies: order.iter().map(|&i| eigen.eigenvalues[i].max(0.0).sqrt()).collect(),
+        frequencies: order
+            .iter()
+            .map(|&i| eigen.eigenvalues[i].max(0.0).sqrt())
+            .collect(),
         unknowns: Vec::new(),
         shapes,
     }
@@ -170,14 +201,22 @@ mod tests {
 
     fn modes(text: &str) -> Option<Modes> {
         let model = Model::new(&Scene::from_toml(text).unwrap()).unwrap();
-        let points: Vec<PointState> = model.points.iter().map(|p| PointState::at_rest(p.reference)).collect();
+        let points: Vec<PointState> = model
+            .points
+            .iter()
+            .map(|p| PointState::at_rest(p.reference))
+            .collect();
         let straight = |line: &Line| {
             let [a, b] = line.ends.map(|point| points[point].position);
             let along = |arc: &f64| a + (b - a) * (arc / line.unstretched_length());
             LineState::at_rest(line.nodes.arc.iter().map(along).collect())
         };
         let lines = model.lines.iter().map(straight).collect();
-        let state = State { time: 0.0, points, lines };
+        let state = State {
+            time: 0.0,
+            points,
+            lines,
+        };
         Modes::new(&model, 0, &state, &mut Workspace::new(&model))
     }
 
@@ -187,13 +226,19 @@ mod tests {
         let (k, m) = (500.0 / 1.0 + 500.0 / 2.0, 2.0 + 0.5 * 0.3 * 3.0_f64); // [N/m], [kg]
         assert_eq!(modes.frequencies.len(), 1);
         assert_relative_eq!(modes.frequencies[0], (k / m).sqrt(), max_relative = 1e-14);
-        assert_relative_eq!(modes.shape(0, 0)[1].x.abs(), 1.0 / m.sqrt(), max_relative = 1e-14);
+        assert_relative_eq!(
+            modes.shape(0, 0)[1].x.abs(),
+            1.0 / m.sqrt(),
+            max_relative = 1e-14
+        );
         assert_eq!(modes.shape(0, 1)[0], modes.shape(0, 0)[1]);
     }
 
     #[test]
     fn a_node_without_mass_has_no_modes() {
-        let massless = SPRINGS.replace("mass = 2.0", "mass = 0.0").replace("mass = 0.3", "mass = 0.0");
+        let massless = SPRINGS
+            .replace("mass = 2.0", "mass = 0.0")
+            .replace("mass = 0.3", "mass = 0.0");
         let text = format!("solver = {{ integrator = \"quasi_static\" }}\n{massless}");
         assert!(modes(&text).is_none());
     }

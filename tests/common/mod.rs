@@ -71,8 +71,8 @@ pub struct History {
     pub middle: Vec<Vector3<f64>>,
     /// Internal steps, of all communication steps.
     pub substeps: usize,
-    /// Passes, of all communication steps.
-    pub passes: usize,
+    /// Force evaluations or linear solves, of all communication steps.
+    pub solves: usize,
 }
 
 impl History {
@@ -84,7 +84,7 @@ impl History {
             simulation.advance(step).unwrap();
             history.sample(simulation);
             history.substeps += simulation.counters().substeps;
-            history.passes += simulation.counters().passes;
+            history.solves += simulation.counters().solves;
         }
         history
     }
@@ -99,7 +99,10 @@ impl History {
     /// RMS(T − T_ref)/std(T_ref) over the last `count` samples [-].
     pub fn tension_error(&self, reference: &History, count: usize) -> f64 {
         let vectors = |history: &History| -> Vec<Vector3<f64>> {
-            last(&history.tension, count).iter().map(|t| Vector3::new(*t, 0.0, 0.0)).collect()
+            last(&history.tension, count)
+                .iter()
+                .map(|t| Vector3::new(*t, 0.0, 0.0))
+                .collect()
         };
         relative_rms(&vectors(self), &vectors(reference))
     }
@@ -119,23 +122,38 @@ pub fn last<T>(values: &[T], count: usize) -> &[T] {
 pub fn relative_rms(values: &[Vector3<f64>], reference: &[Vector3<f64>]) -> f64 {
     let mean = reference.iter().sum::<Vector3<f64>>() / reference.len() as f64;
     let spread: f64 = reference.iter().map(|r| (r - mean).norm_squared()).sum();
-    let error: f64 = values.iter().zip(reference).map(|(v, r)| (v - r).norm_squared()).sum();
+    let error: f64 = values
+        .iter()
+        .zip(reference)
+        .map(|(v, r)| (v - r).norm_squared())
+        .sum();
     (error / spread).sqrt()
 }
 
 /// Slope of log(error) over log(size), by least squares [-].
 pub fn order(sizes: &[f64], errors: &[f64]) -> f64 {
     assert!(sizes.len() >= 4 && sizes.len() == errors.len());
-    let logs: Vec<(f64, f64)> = sizes.iter().zip(errors).map(|(h, e)| (h.ln(), e.abs().ln())).collect();
+    let logs: Vec<(f64, f64)> = sizes
+        .iter()
+        .zip(errors)
+        .map(|(h, e)| (h.ln(), e.abs().ln()))
+        .collect();
     let count = logs.len() as f64;
-    let (x, y) = (logs.iter().map(|l| l.0).sum::<f64>() / count, logs.iter().map(|l| l.1).sum::<f64>() / count);
-    logs.iter().map(|l| (l.0 - x) * (l.1 - y)).sum::<f64>() / logs.iter().map(|l| (l.0 - x).powi(2)).sum::<f64>()
+    let (x, y) = (
+        logs.iter().map(|l| l.0).sum::<f64>() / count,
+        logs.iter().map(|l| l.1).sum::<f64>() / count,
+    );
+    logs.iter().map(|l| (l.0 - x) * (l.1 - y)).sum::<f64>()
+        / logs.iter().map(|l| (l.0 - x).powi(2)).sum::<f64>()
 }
 
 /// Claims that errors fall with the resolution at an order ± 0.1.
 pub fn assert_order(claimed: f64, sizes: &[f64], errors: &[f64]) {
     let fitted = order(sizes, errors);
-    assert!((fitted - claimed).abs() <= 0.1, "order {fitted:.3} instead of {claimed}: {errors:?} at {sizes:?}");
+    assert!(
+        (fitted - claimed).abs() <= 0.1,
+        "order {fitted:.3} instead of {claimed}: {errors:?} at {sizes:?}"
+    );
 }
 
 /// Circular frequency [rad/s] of one harmonic sampled every `step` [s]: q_{k+1} + q_{k−1} = 2 cos(ωh) q_k, by least squares.
