@@ -5,7 +5,8 @@
 //! lumped, added mass included, M_n I + (M_t − M_n) t tᵀ at a node. With the Cholesky factor M = L Lᵀ the symmetric problem
 //! L⁻¹ K L⁻ᵀ y = ω² y is solved densely, φ = L⁻ᵀ y. Damping and drag are left out.
 //!
-//! Source: Clough & Penzien (1993), Dynamics of Structures, sections 11-4 and 14-1. Valid for motion small enough that no
+//! Source: the linearised equation of motion of `assembly`, reduced here; `tests/analytic.rs` holds it against closed forms.
+//! Valid for motion small enough that no
 //! segment slackens and no node lands or lifts off. A slack segment has no stiffness and leaves modes of frequency 0.
 
 use nalgebra::{Cholesky, DMatrix, Dyn, Matrix3, SymmetricEigen, Vector3};
