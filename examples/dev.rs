@@ -8,7 +8,7 @@ fn main() {
     scene.lines[0].sections[0].elements = Some(n);
     scene.solver.integrator = match args[3].as_str() {
         "lf" => Integrator::Leapfrog,
-        "ai" => Integrator::AxialImplicit,
+        "ai" => Integrator::AxialImplicit, "ga" => Integrator::GeneralisedAlpha, "qs" => Integrator::QuasiStatic,
         _ => Integrator::Auto,
     };
     scene.solver.negative_tension = args.iter().any(|a| a == "peers");
@@ -37,6 +37,7 @@ fn main() {
         1e9 * s / (steps * n) as f64,
         s / scene.output.duration
     );
+    eprintln!("{:?} error {:.4e} W {:.3e}", sim.ledger(), sim.energy_error(), sim.power_residual());
     for r in rows {
         println!("{} {} {} {}", r.0, r.1, r.2, r.3);
     }

@@ -10,6 +10,7 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use crate::dynamics::advance::{Counters, Workspace};
+use crate::dynamics::ledger::Ledger;
 use crate::dynamics::motion::{HostPath, Sample};
 use crate::dynamics::{Choice, StepError, reaction};
 use crate::model::{End, Kinematics, Line, LineState, Model, PointState, Role, State};
@@ -46,6 +47,7 @@ pub struct Snapshot {
     paths: Vec<HostPath>,
     follows_scene: bool,
     counters: Counters,
+    ledger: Ledger,
 }
 
 /// A mooring in time.
@@ -178,7 +180,9 @@ impl Simulation {
         let (model, paths, follows) = (&*self.model, &self.paths, self.snapshot.follows_scene);
         let held = |point: usize, t: f64| held(model, paths, follows, point, t);
         let done = self.work.advance(model, &mut self.snapshot.state, step, &held)?;
-        self.snapshot.counters = done;
+        let held = self.work.energy(model, &self.snapshot.state);
+        self.snapshot.counters = done.counters;
+        self.snapshot.ledger.book(held, done.flow, step);
         self.snapshot.paths.clone_from(&self.paths);
         Ok(())
     }
@@ -311,12 +315,17 @@ impl Simulation {
 
     /// Imbalance of the energy ledger since the start [J].
     pub fn energy_error(&self) -> f64 {
-        0.0
+        self.snapshot.ledger.error()
+    }
+
+    /// The energy ledger.
+    pub fn ledger(&self) -> &Ledger {
+        &self.snapshot.ledger
     }
 
     /// Imbalance of the energy ledger in the last communication step, over its length [W].
     pub fn power_residual(&self) -> f64 {
-        0.0
+        self.snapshot.ledger.power_residual
     }
 }
 
@@ -364,7 +373,8 @@ fn begin(
     let mut work = Workspace::new(model, &state, |line| static_tension(model, &state, line));
     work.start(model, &mut state, &held);
     let counters = Counters::default();
-    Ok((Snapshot { state, inputs, paths, follows_scene, counters }, work))
+    let ledger = Ledger::new(work.energy(model, &state));
+    Ok((Snapshot { state, inputs, paths, follows_scene, counters, ledger }, work))
 }
 
 /// In static equilibrium, or on the shapes the scene gives.

@@ -21,29 +21,12 @@ struct Line {
 }
 
 impl Line {
-    fn uniform(
-        length: f64,
-        weight: f64,
-        axial_stiffness: f64,
-        span: f64,
-        rise: f64,
-        bed: Option<Bed>,
-    ) -> Self {
-        Line {
-            sections: vec![Section {
-                length,
-                weight,
-                axial_stiffness,
-            }],
-            span,
-            rise,
-            bed,
-        }
+    fn uniform(length: f64, weight: f64, axial_stiffness: f64, span: f64, rise: f64, bed: Option<Bed>) -> Self {
+        Line { sections: vec![Section { length, weight, axial_stiffness }], span, rise, bed }
     }
 
     fn solve(&self) -> Catenary {
-        solve(&self.sections, self.span, self.rise, self.bed)
-            .unwrap_or_else(|e| panic!("{e}: {self:?}"))
+        solve(&self.sections, self.span, self.rise, self.bed).unwrap_or_else(|e| panic!("{e}: {self:?}"))
     }
 
     fn length(&self) -> f64 {
@@ -51,10 +34,7 @@ impl Line {
     }
 
     fn weights(&self) -> f64 {
-        self.sections
-            .iter()
-            .map(|section| section.length * section.weight.abs())
-            .sum()
+        self.sections.iter().map(|section| section.length * section.weight.abs()).sum()
     }
 }
 
@@ -89,11 +69,7 @@ fn integrate(section: &Section, length: f64, h: f64, v: f64) -> [f64; 3] {
         return quadrature(0.0, length, |s| {
             let v = v + w * s;
             let t = h.hypot(v);
-            let rate = if t > 0.0 {
-                1.0 / t + 1.0 / ea
-            } else {
-                1.0 / ea
-            };
+            let rate = if t > 0.0 { 1.0 / t + 1.0 / ea } else { 1.0 / ea };
             [h * rate, v * rate, t / ea]
         });
     }
@@ -133,11 +109,7 @@ struct Walk<'a> {
 impl Walk<'_> {
     fn miss(&mut self, error: f64, scale: f64) {
         let miss = error.abs() / scale;
-        self.worst = if miss.is_nan() {
-            f64::INFINITY
-        } else {
-            self.worst.max(miss)
-        };
+        self.worst = if miss.is_nan() { f64::INFINITY } else { self.worst.max(miss) };
     }
 
     fn length_scale(&self) -> f64 {
@@ -152,11 +124,7 @@ impl Walk<'_> {
     fn fly(&mut self, section: &Section, length: f64) {
         let end = self.v + section.weight * length;
         let passes = self.v * end < 0.0;
-        let first = if passes {
-            (-self.v / section.weight).min(length)
-        } else {
-            length
-        };
+        let first = if passes { (-self.v / section.weight).min(length) } else { length };
         let mut start = self.v;
         for part in [first, length - first] {
             if part <= 0.0 {
@@ -183,11 +151,7 @@ impl Walk<'_> {
     fn lie(&mut self, section: &Section, to: f64) {
         let bed = self.line.bed.expect("only a bed carries");
         let length = to - self.s;
-        assert!(
-            section.weight >= 0.0,
-            "what floats does not lie: {:?}",
-            self.line
-        );
+        assert!(section.weight >= 0.0, "what floats does not lie: {:?}", self.line);
         self.miss(self.v, self.force_scale());
         self.miss(self.z - bed.height, self.length_scale());
         let (before, after) = (self.h, self.solved.at(to).horizontal);
@@ -226,39 +190,20 @@ impl Walk<'_> {
 
     fn compare_point(&mut self) {
         let point = self.solved.at(self.s);
-        self.miss(
-            (point.x - self.x).hypot(point.z - self.z),
-            self.length_scale(),
-        );
-        self.miss(
-            (point.horizontal - self.h).hypot(point.vertical - self.v),
-            self.force_scale(),
-        );
+        self.miss((point.x - self.x).hypot(point.z - self.z), self.length_scale());
+        self.miss((point.horizontal - self.h).hypot(point.vertical - self.v), self.force_scale());
     }
 }
 
 /// Greatest violation of the cable equations by the solved line, over its length or its greatest force [-].
 fn judge(line: &Line, solved: &Catenary) -> f64 {
     let (h, v) = (solved.horizontal_a(), solved.vertical_a());
-    let mut walk = Walk {
-        line,
-        solved,
-        s: 0.0,
-        x: 0.0,
-        z: 0.0,
-        h,
-        v,
-        elongation: 0.0,
-        worst: 0.0,
-    };
+    let mut walk = Walk { line, solved, s: 0.0, x: 0.0, z: 0.0, h, v, elongation: 0.0, worst: 0.0 };
     let laid: Vec<(f64, f64)> = solved.laid().collect();
     let mut section_end = 0.0;
     for section in &line.sections {
         section_end += section.length;
-        let mut cuts: Vec<f64> = laid
-            .iter()
-            .flat_map(|&(from, to)| [from, 0.5 * (from + to), to])
-            .collect();
+        let mut cuts: Vec<f64> = laid.iter().flat_map(|&(from, to)| [from, 0.5 * (from + to), to]).collect();
         cuts.extend([section_end - 0.37 * section.length, section_end]);
         cuts.retain(|&cut| cut > walk.s && cut <= section_end);
         cuts.sort_by(f64::total_cmp);
@@ -278,10 +223,7 @@ fn judge(line: &Line, solved: &Catenary) -> f64 {
     walk.miss(walk.z - line.rise, walk.length_scale());
     walk.miss(walk.h - solved.horizontal(), walk.force_scale());
     walk.miss(walk.v - solved.vertical_b(), walk.force_scale());
-    walk.miss(
-        walk.elongation + line.length() - solved.stretched_length(),
-        walk.length_scale(),
-    );
+    walk.miss(walk.elongation + line.length() - solved.stretched_length(), walk.length_scale());
     for eighth in 0..=8 {
         let point = solved.at(line.length() * f64::from(eighth) / 8.0);
         if line.span > 1e-9 * line.length() {
@@ -322,28 +264,17 @@ impl Dice {
     /// A steel-like section: EA from 10² to 10⁸ times its weight.
     fn section(&mut self) -> Section {
         let (length, weight) = (self.decades(-0.5, 3.5), self.decades(-1.0, 4.0));
-        Section {
-            length,
-            weight,
-            axial_stiffness: length * weight * self.decades(2.0, 8.0),
-        }
+        Section { length, weight, axial_stiffness: length * weight * self.decades(2.0, 8.0) }
     }
 
     /// Up to `most` sections of one order of magnitude; `weight` maps a positive weight to the wanted one.
-    fn sections(
-        &mut self,
-        most: f64,
-        mut weight: impl FnMut(&mut Dice, f64) -> f64,
-    ) -> Vec<Section> {
+    fn sections(&mut self, most: f64, mut weight: impl FnMut(&mut Dice, f64) -> f64) -> Vec<Section> {
         let base = self.section();
         let count = self.between(2.0, most + 1.0) as usize;
         (0..count)
             .map(|_| Section {
                 length: base.length * self.decades(-1.0, 0.5),
-                weight: {
-                    let w = base.weight * self.decades(-1.5, 0.5);
-                    weight(self, w)
-                },
+                weight: { let w = base.weight * self.decades(-1.5, 0.5); weight(self, w) },
                 axial_stiffness: base.axial_stiffness * self.decades(-1.0, 1.0),
             })
             .collect()
@@ -353,12 +284,7 @@ impl Dice {
     fn chord(&mut self, sections: Vec<Section>, share: f64) -> Line {
         let length: f64 = sections.iter().map(|s| s.length).sum();
         let angle = self.between(-1.0, 1.0) * std::f64::consts::FRAC_PI_2;
-        Line {
-            sections,
-            span: share * length * angle.cos(),
-            rise: share * length * angle.sin(),
-            bed: None,
-        }
+        Line { sections, span: share * length * angle.cos(), rise: share * length * angle.sin(), bed: None }
     }
 
     /// A line over a bed through A, of a length between the chord and span + rise.
@@ -368,24 +294,13 @@ impl Dice {
         let (shortest, longest) = (1.0_f64.hypot(slope), 1.0 + slope);
         let share = self.unit();
         let span = length / (shortest + (longest - shortest) * share * share * 1.02);
-        Line {
-            sections,
-            span,
-            rise: slope * span,
-            bed: Some(Bed {
-                height: 0.0,
-                friction,
-            }),
-        }
+        Line { sections, span, rise: slope * span, bed: Some(Bed { height: 0.0, friction }) }
     }
 
     /// Puts the bed a little below the lower end.
     fn lower_bed(&mut self, mut line: Line, lower: f64, upper: f64) -> Line {
         let depth = line.length() * self.decades(lower, upper);
-        line.bed = Some(Bed {
-            height: line.rise.min(0.0) - depth,
-            friction: line.bed.map_or(0.0, |bed| bed.friction),
-        });
+        line.bed = Some(Bed { height: line.rise.min(0.0) - depth, friction: line.bed.map_or(0.0, |bed| bed.friction) });
         line
     }
 }
@@ -393,11 +308,7 @@ impl Dice {
 type Make = fn(&mut Dice) -> Line;
 
 fn friction(dice: &mut Dice) -> f64 {
-    if dice.chance(0.3) {
-        0.0
-    } else {
-        dice.decades(-3.0, 0.2)
-    }
+    if dice.chance(0.3) { 0.0 } else { dice.decades(-3.0, 0.2) }
 }
 
 /// Every class of line with how to make one.
@@ -422,10 +333,7 @@ const CLASSES: [(&str, Make); 24] = [
     ("touching down between two ends with friction", |d| {
         let (section, share) = (d.section(), d.between(0.1, 0.999));
         let mut line = d.chord(vec![section], share);
-        line.bed = Some(Bed {
-            height: 0.0,
-            friction: d.decades(-3.0, 0.3),
-        });
+        line.bed = Some(Bed { height: 0.0, friction: d.decades(-3.0, 0.3) });
         d.lower_bed(line, -3.0, -0.5)
     }),
     ("slack on the bed", |d| {
@@ -433,125 +341,59 @@ const CLASSES: [(&str, Make); 24] = [
         let share = d.between(0.0, 0.99);
         let (span, rise) = (share * section.length * d.unit(), share * section.length);
         let rise = (rise - span) * d.unit();
-        Line {
-            sections: vec![section],
-            span,
-            rise,
-            bed: Some(Bed {
-                height: 0.0,
-                friction,
-            }),
-        }
+        Line { sections: vec![section], span, rise, bed: Some(Bed { height: 0.0, friction }) }
     }),
     ("vertical", |d| {
         let section = d.section();
         let rise = section.length * d.between(-1.05, 1.05);
-        let mut line = Line {
-            sections: vec![section],
-            span: 0.0,
-            rise,
-            bed: None,
-        };
+        let mut line = Line { sections: vec![section], span: 0.0, rise, bed: None };
         if d.chance(0.1) {
             line.rise = 0.0;
         }
-        if d.chance(0.5) {
-            d.lower_bed(line, -3.0, 0.0)
-        } else {
-            line
-        }
+        if d.chance(0.5) { d.lower_bed(line, -3.0, 0.0) } else { line }
     }),
     ("of tiny span", |d| {
         let section = d.section();
-        let (span, rise) = (
-            section.length * d.decades(-300.0, -3.0),
-            section.length * d.between(-1.1, 1.1),
-        );
-        let line = Line {
-            sections: vec![section],
-            span,
-            rise,
-            bed: None,
-        };
-        if d.chance(0.5) {
-            d.lower_bed(line, -3.0, 0.0)
-        } else {
-            line
-        }
+        let (span, rise) = (section.length * d.decades(-300.0, -3.0), section.length * d.between(-1.1, 1.1));
+        let line = Line { sections: vec![section], span, rise, bed: None };
+        if d.chance(0.5) { d.lower_bed(line, -3.0, 0.0) } else { line }
     }),
     ("over-stretched", |d| {
         let (section, share) = (d.section(), 1.0 + d.decades(-8.0, 0.3));
         let line = d.chord(vec![section], share);
-        if d.chance(0.5) {
-            d.lower_bed(line, -5.0, 0.0)
-        } else {
-            line
-        }
+        if d.chance(0.5) { d.lower_bed(line, -5.0, 0.0) } else { line }
     }),
     ("soft", |d| {
         let (mut section, share) = (d.section(), d.between(0.01, 2.0));
         section.axial_stiffness = section.length * section.weight * d.decades(-3.0, 1.5);
         let mut line = d.chord(vec![section], share);
-        line.bed = Some(Bed {
-            height: 0.0,
-            friction: friction(d),
-        });
-        if d.chance(0.5) {
-            d.lower_bed(line, -3.0, 0.0)
-        } else {
-            Line { bed: None, ..line }
-        }
+        line.bed = Some(Bed { height: 0.0, friction: friction(d) });
+        if d.chance(0.5) { d.lower_bed(line, -3.0, 0.0) } else { Line { bed: None, ..line } }
     }),
     ("stiff", |d| {
         let (mut section, share) = (d.section(), 1.0 - d.decades(-9.0, -0.2));
         section.axial_stiffness = d.decades(10.0, 13.0);
         let line = d.chord(vec![section], share);
-        if d.chance(0.3) {
-            d.lower_bed(line, -3.0, 0.0)
-        } else {
-            line
-        }
+        if d.chance(0.3) { d.lower_bed(line, -3.0, 0.0) } else { line }
     }),
     ("light", |d| {
-        let (mut section, share) = (
-            d.section(),
-            1.0 + d.decades(-9.0, -0.2) * if d.chance(0.7) { -1.0 } else { 1.0 },
-        );
+        let (mut section, share) = (d.section(), 1.0 + d.decades(-9.0, -0.2) * if d.chance(0.7) { -1.0 } else { 1.0 });
         section.weight = d.decades(-11.0, -3.0);
         section.axial_stiffness = d.decades(2.0, 13.0);
         let line = d.chord(vec![section], share);
-        if d.chance(0.3) {
-            d.lower_bed(line, -3.0, 0.0)
-        } else {
-            line
-        }
+        if d.chance(0.3) { d.lower_bed(line, -3.0, 0.0) } else { line }
     }),
     ("weightless", |d| {
         let share = d.between(0.2, 1.3);
-        let sections = if d.chance(0.5) {
-            d.sections(4.0, |_, _| 0.0)
-        } else {
-            vec![Section {
-                weight: 0.0,
-                ..d.section()
-            }]
-        };
+        let sections = if d.chance(0.5) { d.sections(4.0, |_, _| 0.0) } else { vec![Section { weight: 0.0, ..d.section() }] };
         let line = d.chord(sections, share);
-        if d.chance(0.3) {
-            d.lower_bed(line, -3.0, 0.0)
-        } else {
-            line
-        }
+        if d.chance(0.3) { d.lower_bed(line, -3.0, 0.0) } else { line }
     }),
     ("buoyant", |d| {
         let (mut section, share) = (d.section(), d.between(0.05, 1.1));
         section.weight = -section.weight;
         let line = d.chord(vec![section], share);
-        if d.chance(0.5) {
-            d.lower_bed(line, -3.0, 0.0)
-        } else {
-            line
-        }
+        if d.chance(0.5) { d.lower_bed(line, -3.0, 0.0) } else { line }
     }),
     ("of several sections, suspended", |d| {
         let (sections, share) = (d.sections(6.0, |_, w| w), d.between(0.05, 0.9999));
@@ -564,10 +406,7 @@ const CLASSES: [(&str, Make); 24] = [
     ("of several sections, between two ends above the bed", |d| {
         let (sections, share) = (d.sections(6.0, |_, w| w), d.between(0.05, 1.05));
         let mut line = d.chord(sections, share);
-        line.bed = Some(Bed {
-            height: 0.0,
-            friction: friction(d),
-        });
+        line.bed = Some(Bed { height: 0.0, friction: friction(d) });
         d.lower_bed(line, -4.0, -0.3)
     }),
     ("of sections that sink and float, suspended", |d| {
@@ -580,14 +419,7 @@ const CLASSES: [(&str, Make); 24] = [
         let share = d.between(0.05, 1.02);
         let line = d.chord(sections, share);
         if d.chance(0.3) {
-            return Line {
-                rise: line.rise.abs(),
-                bed: Some(Bed {
-                    height: 0.0,
-                    friction: 0.0,
-                }),
-                ..line
-            };
+            return Line { rise: line.rise.abs(), bed: Some(Bed { height: 0.0, friction: 0.0 }), ..line };
         }
         d.lower_bed(line, -4.0, -0.5)
     }),
@@ -595,74 +427,36 @@ const CLASSES: [(&str, Make); 24] = [
         let sections = d.sections(5.0, |d, w| if d.chance(0.5) { w } else { 0.0 });
         let share = d.between(0.05, 1.02);
         let line = d.chord(sections, share);
-        if d.chance(0.5) {
-            d.lower_bed(line, -4.0, -0.5)
-        } else {
-            line
-        }
+        if d.chance(0.5) { d.lower_bed(line, -4.0, -0.5) } else { line }
     }),
     ("of several sections, slack or vertical", |d| {
         let (sections, share) = (d.sections(4.0, |_, w| w), d.between(0.0, 1.01));
         let line = d.chord(sections, share);
-        let line = Line {
-            span: if d.chance(0.5) {
-                0.0
-            } else {
-                0.1 * line.span * d.unit()
-            },
-            ..line
-        };
-        if d.chance(0.7) {
-            d.lower_bed(line, -4.0, -0.5)
-        } else {
-            line
-        }
+        let line = Line { span: if d.chance(0.5) { 0.0 } else { 0.1 * line.span * d.unit() }, ..line };
+        if d.chance(0.7) { d.lower_bed(line, -4.0, -0.5) } else { line }
     }),
     ("with both ends on the bed", |d| {
         let section = d.section();
-        let span =
-            section.length * (1.0 + d.decades(-9.0, -0.3) * if d.chance(0.5) { -1.0 } else { 1.0 });
-        let bed = Some(Bed {
-            height: 0.0,
-            friction: friction(d),
-        });
-        Line {
-            sections: vec![section],
-            span,
-            rise: 0.0,
-            bed,
-        }
+        let span = section.length * (1.0 + d.decades(-9.0, -0.3) * if d.chance(0.5) { -1.0 } else { 1.0 });
+        let bed = Some(Bed { height: 0.0, friction: friction(d) });
+        Line { sections: vec![section], span, rise: 0.0, bed }
     }),
     ("with one end on or just above the bed", |d| {
         let section = d.section();
         let share = 1.0 - d.decades(-7.0, -0.2);
         let mut line = d.chord(vec![section], share);
-        line.bed = Some(Bed {
-            height: 0.0,
-            friction: friction(d),
-        });
+        line.bed = Some(Bed { height: 0.0, friction: friction(d) });
         if d.chance(0.5) {
-            line.bed = Some(Bed {
-                height: line.rise.min(0.0),
-                ..line.bed.unwrap()
-            });
+            line.bed = Some(Bed { height: line.rise.min(0.0), ..line.bed.unwrap() });
             return line;
         }
         d.lower_bed(line, -15.0, -5.0)
     }),
     ("whose chord is its length, nearly or exactly", |d| {
         let section = d.section();
-        let off = if d.chance(0.2) {
-            0.0
-        } else {
-            d.decades(-16.0, -6.0) * if d.chance(0.5) { -1.0 } else { 1.0 }
-        };
+        let off = if d.chance(0.2) { 0.0 } else { d.decades(-16.0, -6.0) * if d.chance(0.5) { -1.0 } else { 1.0 } };
         let line = d.chord(vec![section], 1.0 + off);
-        if d.chance(0.5) {
-            d.lower_bed(line, -9.0, 0.0)
-        } else {
-            line
-        }
+        if d.chance(0.5) { d.lower_bed(line, -9.0, 0.0) } else { line }
     }),
 ];
 
@@ -687,14 +481,9 @@ fn judge_classes(count: usize, tolerance: f64) {
             }
         }
         let mean = steps as f64 / count as f64;
-        println!(
-            "{count} lines {name}: worst {worst:.1e}, evaluations {mean:.1} on average, {steps_max} at most"
-        );
+        println!("{count} lines {name}: worst {worst:.1e}, evaluations {mean:.1} on average, {steps_max} at most");
     }
-    assert_eq!(
-        failures, 0,
-        "lines that violate the cable equations by more than {tolerance:e}"
-    );
+    assert_eq!(failures, 0, "lines that violate the cable equations by more than {tolerance:e}");
 }
 
 #[test]
@@ -713,29 +502,16 @@ fn a_hundred_thousand_lines_of_each_class_obey_the_cable_equations() {
 /// Greatest difference of a solved line from a row of reference values: of forces over T at the fairlead (at least the anchor's where
 /// that one is zero), and of positions and lengths over the length [-].
 fn compare_row(row: &std::collections::HashMap<String, String>, bed: Option<Bed>) -> (f64, f64) {
-    let number = |name: &str| -> f64 {
-        row[name]
-            .parse()
-            .unwrap_or_else(|_| panic!("{name} of {row:?}"))
-    };
+    let number = |name: &str| -> f64 { row[name].parse().unwrap_or_else(|_| panic!("{name} of {row:?}")) };
     let section = |i: usize| Section {
         length: number(&format!("L{i}")),
         weight: number(&format!("w{i}")),
         axial_stiffness: number(&format!("EA{i}")),
     };
     let sections = (1..=number("nseg") as usize).map(section).collect();
-    let line = Line {
-        sections,
-        span: number("XF"),
-        rise: number("ZF"),
-        bed,
-    };
+    let line = Line { sections, span: number("XF"), rise: number("ZF"), bed };
     let solved = line.solve();
-    let scale = if number("T_fair") > 0.0 {
-        number("T_fair")
-    } else {
-        number("T_anch").max(f64::MIN_POSITIVE)
-    };
+    let scale = if number("T_fair") > 0.0 { number("T_fair") } else { number("T_anch").max(f64::MIN_POSITIVE) };
     let vertical = (solved.vertical_b() - number("V_fair")).abs() / scale;
     if row["cls"].starts_with("degenerate") {
         return (vertical, 0.0);
@@ -755,39 +531,26 @@ fn compare_row(row: &std::collections::HashMap<String, String>, bed: Option<Bed>
         (solved.stretched_length(), "stretched_length"),
     ];
     let greatest = |pairs: &[(f64, &str)], scale: f64| {
-        pairs
-            .iter()
-            .map(|(value, name)| (value - number(name)).abs() / scale)
-            .fold(0.0, f64::max)
+        pairs.iter().map(|(value, name)| (value - number(name)).abs() / scale).fold(0.0, f64::max)
     };
-    (
-        greatest(&forces, scale).max(vertical),
-        greatest(&lengths, line.length()),
-    )
+    (greatest(&forces, scale).max(vertical), greatest(&lengths, line.length()))
 }
 
 /// Compares every row of a table; prints the greatest difference of every class; returns the number of rows.
 fn compare_table(path: &std::path::Path, tolerance: f64) -> usize {
-    let mut reader =
-        csv::Reader::from_path(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+    let mut reader = csv::Reader::from_path(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
     let mut worst = std::collections::BTreeMap::<String, (usize, f64, f64)>::new();
     let mut rows = 0;
     for row in reader.deserialize() {
         let row: std::collections::HashMap<String, String> = row.expect("a row of the table");
-        let height = row.get("bed_height").map_or(0.0, |height| {
-            height.parse().expect("bed_height is a number")
-        });
+        let height = row.get("bed_height").map_or(0.0, |height| height.parse().expect("bed_height is a number"));
         let friction = row["CB"].parse().expect("CB is a number");
         let bed = (row["seabed"] == "1").then_some(Bed { height, friction });
         let (force, length) = compare_row(&row, bed);
         let entry = worst.entry(row["cls"].clone()).or_default();
         *entry = (entry.0 + 1, entry.1.max(force), entry.2.max(length));
         let met = force <= tolerance && length <= tolerance;
-        assert!(
-            met,
-            "row {} ({}): forces {force:e}, lengths {length:e}",
-            row["id"], row["cls"]
-        );
+        assert!(met, "row {} ({}): forces {force:e}, lengths {length:e}", row["id"], row["cls"]);
         rows += 1;
     }
     for (class, (count, force, length)) in worst {
@@ -798,23 +561,17 @@ fn compare_table(path: &std::path::Path, tolerance: f64) -> usize {
 
 #[test]
 fn every_row_of_the_reference_bank_is_met_to_nine_digits() {
-    let path =
-        std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/reference/catenary.csv");
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/reference/catenary.csv");
     assert!(compare_table(&path, 1e-9) >= 60);
 }
 
 #[test]
 fn every_row_of_the_external_bank_is_met_to_nine_digits() {
     let Some(folder) = std::env::var_os("MOORLINE_REFERENCE") else {
-        println!(
-            "skipped: MOORLINE_REFERENCE does not name the folder that holds catenary_bank.csv"
-        );
+        println!("skipped: MOORLINE_REFERENCE does not name the folder that holds catenary_bank.csv");
         return;
     };
-    let rows = compare_table(
-        &std::path::Path::new(&folder).join("catenary_bank.csv"),
-        1e-9,
-    );
+    let rows = compare_table(&std::path::Path::new(&folder).join("catenary_bank.csv"), 1e-9);
     assert_eq!(rows, 182);
 }
 #[test]

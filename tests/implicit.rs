@@ -1,8 +1,12 @@
-//! Fully implicit dynamics.
-use moorline::dynamics::implicit::{self, Scheme};
+//! Fully implicit dynamics: order, dissipation, references, what happens when a step fails.
+
+use std::f64::consts::{PI, TAU};
+
+use moorline::dynamics::implicit::{self, SPECTRAL_RADIUS, Scheme, Span};
+use moorline::dynamics::quasi_static;
 use moorline::model::{Kinematics, Model, State};
 use moorline::scene::Scene;
-use moorline::statics::assembly::Workspace;
+use moorline::statics::assembly::{Counters, Workspace};
 use moorline::statics::equilibrium::solve;
 use nalgebra::Vector3;
 
@@ -14,171 +18,608 @@ fn at_reference(model: &Model) -> Vec<Vector3<f64>> {
     model.points.iter().map(|point| point.reference).collect()
 }
 
-/// The fairlead of these scenes: point "fairlead" swings, all others stay.
-fn swing(model: &Model, amplitude: [f64; 2], period: f64) -> impl Fn(usize, f64) -> Kinematics {
+/// All held points stay where the scene puts them.
+fn at_rest(model: &Model) -> impl Fn(usize, f64) -> Kinematics {
+    swing(model, Vector3::zeros(), 1.0)
+}
+
+/// Point "fairlead" moves by `amplitude`·sin⁴(πt/period) [m], which starts with no velocity and no acceleration; all others stay.
+fn swing(model: &Model, amplitude: Vector3<f64>, period: f64) -> impl Fn(usize, f64) -> Kinematics {
     let reference = at_reference(model);
     let fairlead = model.point_index("fairlead");
     move |point, t| {
-        let mut k = Kinematics {
-            position: reference[point],
-            ..Kinematics::default()
+        let moved = if Some(point) == fairlead {
+            amplitude
+        } else {
+            Vector3::zeros()
         };
-        if Some(point) == fairlead {
-            let w = std::f64::consts::TAU / period;
-            let a = Vector3::new(amplitude[0], 0.0, amplitude[1]);
-            // 1 − cos − ... starts with zero velocity and acceleration
-            let (s, c) = (w * t).sin_cos();
-            let (r, dr, ddr) = ((1.0 - c) / 2.0, w * s / 2.0, w * w * c / 2.0);
-            let (r2, dr2, ddr2) = (r * r, 2.0 * r * dr, 2.0 * (dr * dr + r * ddr));
-            k.position += a * r2;
-            k.velocity = a * dr2;
-            k.acceleration = a * ddr2;
+        let w = PI / period;
+        let (s, c) = (w * t).sin_cos();
+        Kinematics {
+            position: reference[point] + s.powi(4) * moved,
+            velocity: 4.0 * w * s.powi(3) * c * moved,
+            acceleration: 4.0 * w * w * s * s * (3.0 * c * c - s * s) * moved,
         }
-        k
     }
 }
 
-fn chain(n: usize, ea: f64, extra: &str) -> Model {
+/// Starts at rest in `state` and runs to `end` [s].
+fn run(
+    model: &Model,
+    mut state: State,
+    held: &impl Fn(usize, f64) -> Kinematics,
+    end: f64,
+    dt: f64,
+    scheme: Scheme,
+) -> (State, Counters) {
+    let mut work = Workspace::new(model);
+    let mut total = Counters::default();
+    for number in 0..model.networks.len() {
+        implicit::start(model, number, &mut state, held, 0.0, &mut work);
+        total += implicit::advance(
+            model,
+            number,
+            &mut state,
+            held,
+            Span {
+                start: 0.0,
+                end,
+                step_max: dt,
+            },
+            &scheme,
+            &mut work,
+        )
+        .unwrap();
+    }
+    (state, total)
+}
+
+fn statics(model: &Model) -> State {
+    solve(model, &at_reference(model), 0.0, &mut Workspace::new(model)).unwrap()
+}
+
+fn gap(a: &State, b: &State) -> f64 {
+    let nodes = |state: &State| {
+        state
+            .lines
+            .iter()
+            .flat_map(|line| line.position.clone())
+            .collect::<Vec<_>>()
+    };
+    nodes(a)
+        .iter()
+        .zip(&nodes(b))
+        .map(|(a, b)| (a - b).norm())
+        .fold(0.0, f64::max)
+}
+
+/// Least-squares slope of ln(error) over ln(h).
+fn order(steps: &[f64], errors: &[f64]) -> f64 {
+    let n = steps.len() as f64;
+    let (x, y): (Vec<f64>, Vec<f64>) = (
+        steps.iter().map(|h| h.ln()).collect(),
+        errors.iter().map(|e| e.ln()).collect(),
+    );
+    let (mx, my) = (x.iter().sum::<f64>() / n, y.iter().sum::<f64>() / n);
+    let top: f64 = x.iter().zip(&y).map(|(x, y)| (x - mx) * (y - my)).sum();
+    top / x.iter().map(|x| (x - mx).powi(2)).sum::<f64>()
+}
+
+// ------------------------------------------------------------------ order in time
+
+/// A 902 m chain in water, hanging free of any bed, from an anchor to a fairlead.
+fn chain() -> Model {
+    model(
+        r#"
+        [water]
+        density = 1025.0
+        [line_types.chain]
+        mass = 77.7
+        diameter = 0.09
+        axial_stiffness = 384.243e6
+        axial_damping = 3.8e6
+        drag_normal = 1.6
+        drag_tangential = 0.1
+        added_mass_normal = 1.0
+        added_mass_tangential = 0.2
+        [[points]]
+        name = "anchor"
+        position = [853.87, 0.0, -320.0]
+        kind = "fixed"
+        [[points]]
+        name = "fairlead"
+        position = [5.2, 0.0, -70.0]
+        kind = "coupled"
+        [[lines]]
+        name = "line"
+        from = "anchor"
+        to = "fairlead"
+        sections = [{ type = "chain", length = 902.2, elements = 20 }]
+        "#,
+    )
+}
+
+#[test]
+fn halving_the_time_step_quarters_the_error_of_generalised_alpha_and_bossak() {
+    let model = chain();
+    let start = statics(&model);
+    let held = swing(&model, Vector3::new(8.0, 3.0, 4.0), 10.0);
+    let steps = [0.1, 0.05, 0.025, 0.0125];
+    for scheme in [
+        Scheme::generalised_alpha(SPECTRAL_RADIUS),
+        Scheme::generalised_alpha(0.5),
+        Scheme::generalised_alpha(0.0),
+        Scheme::generalised_alpha(1.0),
+        Scheme::bossak(-0.1, None),
+        Scheme::bossak(-0.3, None),
+    ] {
+        let (fine, _) = run(&model, start.clone(), &held, 12.0, 0.1 / 256.0, scheme);
+        let errors = steps.map(|dt| {
+            let (state, counters) = run(&model, start.clone(), &held, 12.0, dt, scheme);
+            assert!(
+                counters.halvings == 0 && counters.solves <= 5 * counters.steps / 2,
+                "{counters:?}"
+            );
+            gap(&state, &fine)
+        });
+        let slope = order(&steps, &errors);
+        assert!(
+            (slope - 2.0).abs() < 0.1,
+            "{scheme:?}: slope {slope}, errors {errors:?}"
+        );
+    }
+}
+
+// ------------------------------------------------------------------ pendulum
+
+/// A mass of 10 kg on a massless line of 1 m.
+fn pendulum() -> Model {
+    model(
+        r#"
+        gravity = 9.81
+        [line_types.rod]
+        mass = 0.0
+        axial_stiffness = 1.0e9
+        [[points]]
+        name = "pivot"
+        position = [0.0, 0.0, 0.0]
+        kind = "fixed"
+        [[points]]
+        name = "bob"
+        position = [0.0, 0.0, -1.0]
+        kind = "free"
+        mass = 10.0
+        [[lines]]
+        name = "rod"
+        from = "pivot"
+        to = "bob"
+        sections = [{ type = "rod", length = 1.0, elements = 1 }]
+        "#,
+    )
+}
+
+/// T = 2π √(l/g) / agm(1, cos(θ₀/2)).
+fn pendulum_period(length: f64, gravity: f64, angle: f64) -> f64 {
+    let (mut a, mut b) = (1.0, (0.5 * angle).cos());
+    for _ in 0..8 {
+        (a, b) = (0.5 * (a + b), f64::sqrt(a * b));
+    }
+    TAU * (length / gravity).sqrt() / a
+}
+
+#[test]
+fn a_pendulum_of_large_amplitude_has_its_period() {
+    let model = pendulum();
+    let angle: f64 = 1.0;
+    let period = pendulum_period(1.0, 9.81, angle);
+    let held = at_rest(&model);
+    let mut state = statics(&model);
+    state.points[1].position = Vector3::new(angle.sin(), 0.0, -angle.cos());
+    state.lines[0].position[1] = state.points[1].position;
+    let top_speed = (2.0 * 9.81 * (1.0 - angle.cos())).sqrt();
+    let steps = [100.0, 200.0, 400.0, 800.0].map(|n| 0.25 * period / n);
+    let errors = steps.map(|dt| {
+        let (state, _) = run(
+            &model,
+            state.clone(),
+            &held,
+            0.25 * period,
+            dt,
+            Scheme::generalised_alpha(0.5),
+        );
+        (state.points[1].position.x / top_speed).abs() / period // error of the period [-]
+    });
+    let slope = order(&steps, &errors);
+    assert!(
+        (slope - 2.0).abs() < 0.1 && errors[3] < 1e-6,
+        "slope {slope}, errors {errors:?}"
+    );
+}
+
+// ------------------------------------------------------------------ snapping and slack
+
+/// A 33 m model chain over a bed, whose fairlead slackens and snaps it.
+fn snapping(axial_stiffness: f64, contact: &str) -> Model {
     model(&format!(
         r#"
-{extra}
-[water]
-density = 1025.0
-[line_types.chain]
-mass = 77.7
-diameter = 0.09
-axial_stiffness = {ea:e}
-axial_damping = {:e}
-drag_normal = 1.6
-drag_tangential = 0.1
-added_mass_normal = 1.0
-[[points]]
-name = "anchor"
-position = [853.87, 0.0, -320.0]
-kind = "fixed"
-[[points]]
-name = "fairlead"
-position = [5.2, 0.0, -70.0]
-kind = "coupled"
-[[lines]]
-name = "line"
-from = "anchor"
-to = "fairlead"
-sections = [{{ type = "chain", length = 902.2, elements = {n} }}]
-"#,
-        ea * 0.01
+        [water]
+        density = 1000.0
+        [seabed]
+        depth = 3.0
+        stiffness = 3.0e8
+        damping = 1.0e6
+        contact = "{contact}"
+        [line_types.chain]
+        mass = 0.0818
+        diameter = 0.0037
+        axial_stiffness = {axial_stiffness:e}
+        drag_normal = 2.5
+        drag_tangential = 0.5
+        added_mass_normal = 3.8
+        [[points]]
+        name = "anchor"
+        position = [0.0, 0.0, -3.0]
+        kind = "fixed"
+        [[points]]
+        name = "fairlead"
+        position = [32.554, 0.0, -0.02]
+        kind = "coupled"
+        [[lines]]
+        name = "line"
+        from = "anchor"
+        to = "fairlead"
+        sections = [{{ type = "chain", length = 33.0, elements = 40 }}]
+        "#
     ))
 }
 
 #[test]
-fn scratch_order() {
-    for bed in ["", "[seabed]\ndepth = 320.0\nstiffness=3e6\ndamping=3e5\n"] {
-        let m = chain(20, 384.243e6, bed);
-        let mut work = Workspace::new(&m);
-        let start = solve(&m, &at_reference(&m), 0.0, &mut work).unwrap();
-        let held = swing(&m, [8.0, 4.0], 10.0);
-        let run = |scheme: Scheme, dt: f64| -> (State, moorline::statics::assembly::Counters) {
-            let mut work = Workspace::new(&m);
-            let mut s = start.clone();
-            implicit::start(&m, 0, &mut s, &held, 0.0, &mut work);
-            let c = implicit::advance(&m, 0, &mut s, &held, [0.0, 12.0], dt, &scheme, &mut work)
-                .unwrap();
-            (s, c)
-        };
-        for scheme in [
-            Scheme::generalised_alpha(0.5),
-            Scheme::bossak(-0.1, None),
-            Scheme::generalised_alpha(1.0),
-            Scheme::generalised_alpha(0.0),
-        ] {
-            let (fine, _) = run(scheme, 0.1 / 256.0);
-            for k in 0..7 {
-                let dt = 0.4 / 2f64.powi(k);
-                let t0 = std::time::Instant::now();
-                let (s, c) = run(scheme, dt);
-                let e = s.lines[0]
-                    .position
-                    .iter()
-                    .zip(&fine.lines[0].position)
-                    .map(|(a, b)| (a - b).norm())
-                    .fold(0.0, f64::max);
-                println!(
-                    "{dt} err {e:.3e} {c:?} ns/node/solve {}",
-                    t0.elapsed().as_nanos() as f64 / c.solves as f64 / 20.0
-                );
-            }
+fn a_snapping_chain_stays_bounded_also_a_hundred_times_stiffer() {
+    for (axial_stiffness, contact, solves) in [
+        (1e4, "regularised", 2.5),
+        (1e6, "regularised", 5.0),
+        (1e4, "as_given", 5.0),
+    ] {
+        let model = snapping(axial_stiffness, contact);
+        let held = swing(&model, Vector3::new(-0.4, 0.0, 0.4), 1.25);
+        let (state, counters) = run(
+            &model,
+            statics(&model),
+            &held,
+            20.0,
+            0.01,
+            Scheme::generalised_alpha(SPECTRAL_RADIUS),
+        );
+        let fastest = state.lines[0]
+            .velocity
+            .iter()
+            .map(|v| v.norm())
+            .fold(0.0, f64::max);
+        assert!(fastest < 2.0, "EA {axial_stiffness}: {fastest} m/s");
+        assert!(
+            state.lines[0]
+                .position
+                .iter()
+                .all(|r| r.z > -3.1 && r.z < 0.5)
+        );
+        assert!(
+            counters.solves as f64 <= solves * 2000.0 && counters.halvings <= 100,
+            "EA {axial_stiffness}, {contact}: {counters:?}"
+        );
+    }
+}
+
+/// A dry undamped cable, longer than its span, that falls from a straight line through its two ends.
+fn falling(axial_stiffness: f64) -> Model {
+    model(&format!(
+        r#"
+        [line_types.cable]
+        mass = 1.0
+        axial_stiffness = {axial_stiffness:e}
+        [[points]]
+        name = "left"
+        position = [0.0, 0.0, 0.0]
+        kind = "fixed"
+        [[points]]
+        name = "right"
+        position = [9.5, 0.0, 0.0]
+        kind = "fixed"
+        [[lines]]
+        name = "cable"
+        from = "left"
+        to = "right"
+        sections = [{{ type = "cable", length = 10.0, elements = 20 }}]
+        initial = "straight"
+        "#
+    ))
+}
+
+/// Kinetic, elastic and potential energy of the only line [J].
+fn energy(model: &Model, state: &State) -> f64 {
+    let (line, nodes) = (&model.lines[0], &state.lines[0]);
+    let (r, v) = (&nodes.position, &nodes.velocity);
+    let of_nodes: f64 = (0..r.len())
+        .map(|i| 0.5 * line.nodes.mass[i] * v[i].norm_squared() + line.nodes.weight[i] * r[i].z)
+        .sum();
+    let of_segments: f64 = (0..line.segment_count())
+        .map(|i| {
+            let (ea, length) = (line.segments.axial_stiffness[i], line.segments.length[i]);
+            let strain = ((r[i + 1] - r[i]).norm() / length - 1.0).max(0.0);
+            ea * length * line.segments.law[i].at(strain).energy
+        })
+        .sum();
+    of_nodes + of_segments
+}
+
+#[test]
+fn a_falling_cable_that_snaps_taut_never_gains_energy() {
+    for axial_stiffness in [1e4, 1e6, 1e8] {
+        let model = falling(axial_stiffness);
+        let held = at_rest(&model);
+        let mut state = statics(&model);
+        let lowest = energy(&model, &state);
+        state.lines[0].position = model.lines[0]
+            .given_shape(Vector3::zeros(), Vector3::new(9.5, 0.0, 0.0))
+            .unwrap();
+        let first = energy(&model, &state);
+        let mut work = Workspace::new(&model);
+        implicit::start(&model, 0, &mut state, &held, 0.0, &mut work);
+        assert!(
+            (state.lines[0].acceleration[7].z + model.gravity).abs() < 1e-9,
+            "it falls freely at first"
+        );
+        let scheme = Scheme::generalised_alpha(SPECTRAL_RADIUS);
+        let mut highest = first;
+        for step in 0..1000 {
+            let start = 0.01 * step as f64;
+            let span = Span {
+                start,
+                end: start + 0.01,
+                step_max: 0.01,
+            };
+            implicit::advance(&model, 0, &mut state, &held, span, &scheme, &mut work).unwrap();
+            highest = energy(&model, &state).max(highest);
         }
+        let drop = first - lowest;
+        assert!(
+            highest - first < 1e-3 * drop,
+            "EA {axial_stiffness}: {first} J grew to {highest} J"
+        );
+        assert!(
+            energy(&model, &state) - lowest < 0.9 * drop,
+            "EA {axial_stiffness}: nothing was lost"
+        );
     }
 }
 
 #[test]
-fn scratch_snap() {
-    for (ea, rho) in [(1e4, 0.5), (1e6, 0.5), (1e6, 0.8), (1e6, 0.9), (1e8, 0.5)] {
-        for contact in ["regularised", "as_given"] {
-            let m = model(&format!(
-                r#"
-[water]
-density = 1000.0
-[seabed]
-depth = 3.0
-stiffness = 3e8
-damping = 1e6
-contact = "{contact}"
-[line_types.chain]
-mass = 0.0818
-diameter = 0.0037
-axial_stiffness = {ea:e}
-drag_normal = 2.5
-drag_tangential = 0.5
-added_mass_normal = 3.8
-[[points]]
-name = "anchor"
-position = [0.0, 0.0, -3.0]
-kind = "fixed"
-[[points]]
-name = "fairlead"
-position = [32.554, 0.0, -0.02]
-kind = "coupled"
-[[lines]]
-name = "line"
-from = "anchor"
-to = "fairlead"
-sections = [{{ type = "chain", length = 33.0, elements = 40 }}]
-"#
-            ));
-            let mut work = Workspace::new(&m);
-            let mut s = solve(&m, &at_reference(&m), 0.0, &mut work).unwrap();
-            let held = swing(&m, [-0.4, 0.4], 1.25);
-            implicit::start(&m, 0, &mut s, &held, 0.0, &mut work);
-            let scheme = Scheme::generalised_alpha(rho);
-            let mut vmax = 0.0f64;
-            let mut zmax = f64::NEG_INFINITY;
-            let mut total = moorline::statics::assembly::Counters::default();
-            for i in 0..400 {
-                match implicit::advance(
-                    &m,
-                    0,
-                    &mut s,
-                    &held,
-                    [i as f64 * 0.05, (i + 1) as f64 * 0.05],
-                    0.01,
-                    &scheme,
-                    &mut work,
-                ) {
-                    Ok(c) => total += c,
-                    Err(e) => {
-                        println!("{e}");
-                        break;
-                    }
-                }
-                vmax = s.lines[0]
-                    .velocity
-                    .iter()
-                    .map(|v| v.norm())
-                    .fold(vmax, f64::max);
-                zmax = s.lines[0].position.iter().map(|v| v.z).fold(zmax, f64::max);
-            }
-            println!("ea {ea:e} rho {rho} {contact} {total:?} vmax {vmax} zmax {zmax}");
-        }
+fn released_from_a_straight_line_a_damped_cable_tends_to_its_equilibrium() {
+    let text = r#"
+        [line_types.cable]
+        weight = 0.49
+        axial_stiffness = 2505.0
+        rayleigh = { ratios = [0.5, 0.5], frequencies = [3.0, 30.0] }
+        [[points]]
+        name = "a"
+        position = [0.0, 0.0, 0.0]
+        kind = "fixed"
+        [[points]]
+        name = "b"
+        position = [14.1421, 0.0, 0.0]
+        kind = "fixed"
+        [[lines]]
+        name = "cable"
+        from = "a"
+        to = "b"
+        sections = [{ type = "cable", length = 14.1421, elements = 22 }]
+        initial = "straight"
+    "#;
+    let model = model(text);
+    let mut state = statics(&model);
+    state.lines[0].position = model.lines[0]
+        .given_shape(Vector3::zeros(), Vector3::new(14.1421, 0.0, 0.0))
+        .unwrap();
+    let held = at_rest(&model);
+    let (state, counters) = run(
+        &model,
+        state,
+        &held,
+        40.0,
+        0.02,
+        Scheme::generalised_alpha(0.5),
+    );
+    let sag = -state.lines[0].position[11].z;
+    assert!((sag - 0.718_274_162_1).abs() < 1e-6, "{sag}");
+    assert!(
+        counters.halvings == 0 && counters.solves <= 3 * counters.steps,
+        "{counters:?}"
+    );
+}
+
+// ------------------------------------------------------------------ networks
+
+/// A dry line with a bed below, in one piece or in two that meet in a free point.
+fn piece_or_pieces(split: bool) -> Model {
+    let lines = if split {
+        r#"
+        [[points]]
+        name = "joint"
+        position = [5.0, 0.0, -2.0]
+        kind = "free"
+        [[lines]]
+        name = "upper"
+        from = "joint"
+        to = "fairlead"
+        sections = [{ type = "cable", length = 4.0, elements = 4 }]
+        [[lines]]
+        name = "lower"
+        from = "anchor"
+        to = "joint"
+        sections = [{ type = "cable", length = 8.0, elements = 8 }]
+        "#
+    } else {
+        r#"
+        [[lines]]
+        name = "whole"
+        from = "anchor"
+        to = "fairlead"
+        sections = [{ type = "cable", length = 12.0, elements = 12 }]
+        "#
+    };
+    model(&format!(
+        r#"
+        [seabed]
+        depth = 3.0
+        stiffness = 2.0e5
+        damping = 4.0e4
+        contact = "as_given"
+        [line_types.cable]
+        mass = 30.0
+        diameter = 0.05
+        axial_stiffness = 1.0e6
+        axial_damping = 1.0e4
+        [[points]]
+        name = "anchor"
+        position = [0.0, 0.0, -3.0]
+        kind = "fixed"
+        [[points]]
+        name = "fairlead"
+        position = [10.0, 0.0, 0.0]
+        kind = "coupled"
+        {lines}
+        "#
+    ))
+}
+
+#[test]
+fn splitting_a_line_at_a_free_point_changes_nothing() {
+    let (whole, split) = (piece_or_pieces(false), piece_or_pieces(true));
+    let motion = Vector3::new(0.3, 0.2, 0.4);
+    let scheme = Scheme::generalised_alpha(0.5);
+    let (one, _) = run(
+        &whole,
+        statics(&whole),
+        &swing(&whole, motion, 3.0),
+        5.0,
+        0.01,
+        scheme,
+    );
+    let (two, _) = run(
+        &split,
+        statics(&split),
+        &swing(&split, motion, 3.0),
+        5.0,
+        0.01,
+        scheme,
+    );
+    for (i, node) in one.lines[0].position.iter().enumerate() {
+        let same = if i < 8 {
+            two.lines[1].position[i]
+        } else {
+            two.lines[0].position[i - 8]
+        };
+        assert!((node - same).norm() < 1e-6, "node {i}: {node} {same}");
     }
+}
+
+// ------------------------------------------------------------------ failure, bookkeeping, quasi-statics
+
+#[test]
+fn a_step_that_fails_leaves_the_state_as_it_was_and_says_where() {
+    let model = chain();
+    let mut work = Workspace::new(&model);
+    let mut state = statics(&model);
+    let held = swing(&model, Vector3::zeros(), 1.0);
+    let broken = |point: usize, t: f64| {
+        let mut k = held(point, t);
+        if t > 0.55 {
+            k.position.x = f64::NAN;
+        }
+        k
+    };
+    implicit::start(&model, 0, &mut state, &broken, 0.0, &mut work);
+    let before = state.clone();
+    let scheme = Scheme::generalised_alpha(0.5);
+    let error = implicit::advance(
+        &model,
+        0,
+        &mut state,
+        &broken,
+        Span {
+            start: 0.0,
+            end: 1.0,
+            step_max: 0.1,
+        },
+        &scheme,
+        &mut work,
+    )
+    .unwrap_err();
+    assert_eq!(state, before);
+    assert!((error.time - 0.55).abs() < 1e-3, "{error}");
+    assert!(error.to_string().contains("line \"line\""), "{error}");
+}
+
+#[test]
+fn a_span_is_cut_into_equal_steps_of_at_most_the_given_size() {
+    let model = chain();
+    let held = at_rest(&model);
+    for (span, dt, steps) in [(1.0, 0.1, 10), (1.0, 0.3, 4), (0.3, 0.1, 3), (0.05, 1.0, 1)] {
+        let (_, counters) = run(
+            &model,
+            statics(&model),
+            &held,
+            span,
+            dt,
+            Scheme::generalised_alpha(0.5),
+        );
+        assert_eq!(counters.steps, steps);
+    }
+}
+
+#[test]
+fn a_line_in_equilibrium_stays_there_with_one_solve_a_step() {
+    let model = chain();
+    let start = statics(&model);
+    let (state, counters) = run(
+        &model,
+        start.clone(),
+        &at_rest(&model),
+        10.0,
+        0.1,
+        Scheme::generalised_alpha(0.5),
+    );
+    assert!(gap(&state, &start) < 1e-7);
+    assert_eq!(
+        counters,
+        Counters {
+            steps: 100,
+            solves: 100,
+            halvings: 0
+        }
+    );
+}
+
+#[test]
+fn slow_motion_is_quasi_static() {
+    let model = chain();
+    let held = swing(&model, Vector3::new(5.0, 0.0, 2.0), 4000.0);
+    let (moving, _) = run(
+        &model,
+        statics(&model),
+        &held,
+        1000.0,
+        0.5,
+        Scheme::generalised_alpha(0.5),
+    );
+    let mut work = Workspace::new(&model);
+    let mut resting = statics(&model);
+    for step in 0..20 {
+        let span = [50.0 * step as f64, 50.0 * (step + 1) as f64];
+        quasi_static::advance(&model, 0, &mut resting, &held, span, &mut work).unwrap();
+    }
+    assert!(gap(&moving, &resting) < 1e-3, "{}", gap(&moving, &resting));
+    let fairlead = held(1, 1000.0);
+    assert!(
+        (resting.points[1].velocity - fairlead.velocity).norm() < 0.1 * fairlead.velocity.norm()
+    );
 }

@@ -1,1 +1,10 @@
-//! FMI entry points.
+//! moorline as an FMI co-simulation FMU: all functions of FMI 2.0 and of FMI 3.0 in one library, over one safe
+//! instance. The only unsafe code of the solver is here, in [`ffi`], [`fmi2`] and [`fmi3`].
+
+mod ffi;
+mod fmi2;
+mod fmi3;
+mod instance;
+mod log;
+mod resources;
+mod saved;

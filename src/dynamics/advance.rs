@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::axial_implicit::AxialWork;
 use super::implicit::{self, Scheme};
 use super::leapfrog::Step;
+use super::ledger::{self, Flow};
 use super::network::NetworkWork;
 use super::{Choice, StepError, quasi_static};
 use crate::model::{End, Kinematics, Model, Network, State};
@@ -23,6 +24,15 @@ pub struct Counters {
     pub substeps: usize,
     /// Force evaluations of the explicit leapfrog, linear solves of the other integrators, of all networks.
     pub solves: usize,
+}
+
+/// What a communication step did.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Done {
+    /// Work of the integrators.
+    pub counters: Counters,
+    /// Energy given and lost.
+    pub flow: Flow,
 }
 
 /// Scratch of all networks and the state being built.
@@ -62,6 +72,15 @@ impl Workspace {
         self.networks.iter().map(|(choice, _)| choice)
     }
 
+    /// Energy that the networks with a ledger hold [J].
+    pub fn energy(&self, model: &Model, state: &State) -> f64 {
+        let networks = self.networks.iter().zip(&model.networks);
+        networks
+            .filter(|((_, solver), _)| !matches!(solver, Solver::QuasiStatic))
+            .map(|(_, network)| ledger::energy(model, network, state))
+            .sum()
+    }
+
     /// Gives a state at rest the accelerations that the implicit integrators start from.
     pub fn start(&mut self, model: &Model, state: &mut State, held: &impl Fn(usize, f64) -> Kinematics) {
         let time = state.time;
@@ -83,9 +102,9 @@ impl Workspace {
         state: &mut State,
         length: f64,
         held: &impl Fn(usize, f64) -> Kinematics,
-    ) -> Result<Counters, StepError> {
+    ) -> Result<Done, StepError> {
         let step = Communication { model, state, start: state.time, length, held };
-        let mut counters = Counters::default();
+        let mut total = Done::default();
         for (number, (choice, solver)) in self.networks.iter_mut().enumerate() {
             let next = &mut self.next;
             let done = match solver {
@@ -96,12 +115,13 @@ impl Workspace {
                 }
                 Solver::QuasiStatic => step.quasi_static(number, &mut self.implicit, next)?,
             };
-            counters.substeps = counters.substeps.max(done.substeps);
-            counters.solves += done.solves;
+            total.counters.substeps = total.counters.substeps.max(done.counters.substeps);
+            total.counters.solves += done.counters.solves;
+            total.flow.add(done.flow);
         }
         step.place_held(&mut self.next);
         std::mem::swap(state, &mut self.next);
-        Ok(counters)
+        Ok(total)
     }
 }
 
@@ -140,14 +160,14 @@ impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
         step_max: f64,
         work: &mut NetworkWork,
         next: &mut State,
-    ) -> Result<Counters, StepError> {
+    ) -> Result<Done, StepError> {
         let (model, network) = (self.model, &self.model.networks[number]);
         for retry in 0..=RETRIES_MAX {
             work.load(network, self.state);
             let count = self.substeps(step_max.min(1.0 / work.drag_rate(model, network)), retry);
             let drift = self.length / count as f64;
             let mut steps = self.state.lines[network.lines[0]].half_step.steps;
-            work.put_ends(model, network, self.start, drift, self.held);
+            work.put_ends(model, network, self.start, Step::after(steps, drift), self.held);
             for k in 0..count {
                 let t = self.start + k as f64 * drift;
                 work.step(model, network, t, Step::after(steps, drift), self.held);
@@ -155,7 +175,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
             }
             if work.broken_node().is_none() {
                 work.store(network, next, steps);
-                return Ok(Counters { substeps: count, solves: count });
+                return Ok(Done { counters: Counters { substeps: count, solves: count }, flow: work.flow() });
             }
         }
         let (line, node) = work.broken_node().unwrap_or((0, 0));
@@ -168,7 +188,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
         step_max: f64,
         work: &mut AxialWork,
         next: &mut State,
-    ) -> Result<Counters, StepError> {
+    ) -> Result<Done, StepError> {
         let index = self.model.networks[number].lines[0];
         let line = &self.model.lines[index];
         for retry in 0..=RETRIES_MAX {
@@ -189,7 +209,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
             }
             if work.broken_node().is_none() {
                 work.store(&mut next.lines[index], steps);
-                return Ok(Counters { substeps: count, solves });
+                return Ok(Done { counters: Counters { substeps: count, solves }, flow: work.flow() });
             }
         }
         Err(self.diverged(index, work.broken_node().unwrap_or(0)))
@@ -202,11 +222,16 @@ impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
         scheme: &Scheme,
         work: &mut assembly::Workspace,
         next: &mut State,
-    ) -> Result<Counters, StepError> {
+    ) -> Result<Done, StepError> {
         copy_network(self.model, &self.model.networks[number], self.state, next);
-        let times = [self.start, self.start + self.length];
-        let done = implicit::advance(self.model, number, next, self.held, times, step_max, scheme, work)?;
-        Ok(Counters { substeps: done.steps, solves: done.solves })
+        let end = self.start + self.length;
+        let span = implicit::Span { start: self.start, end, step_max };
+        let done = implicit::advance(self.model, number, next, self.held, span, scheme, work)?;
+        let network = &self.model.networks[number];
+        let mut flow = ledger::power(self.model, network, self.state, self.start);
+        flow.add(ledger::power(self.model, network, next, end));
+        let counters = Counters { substeps: done.steps, solves: done.solves };
+        Ok(Done { counters, flow: flow.times(0.5 * self.length) })
     }
 
     fn quasi_static(
@@ -214,11 +239,12 @@ impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
         number: usize,
         work: &mut assembly::Workspace,
         next: &mut State,
-    ) -> Result<Counters, StepError> {
+    ) -> Result<Done, StepError> {
         copy_network(self.model, &self.model.networks[number], self.state, next);
         let times = [self.start, self.start + self.length];
         let done = quasi_static::advance(self.model, number, next, self.held, times, work)?;
-        Ok(Counters { substeps: done.steps, solves: done.solves })
+        let counters = Counters { substeps: done.steps, solves: done.solves };
+        Ok(Done { counters, flow: Flow::default() })
     }
 
     /// Held points, and the velocities of the nodes at their lines' ends, at the end of the step.

@@ -20,8 +20,9 @@
 use nalgebra::Vector3;
 use pulp::NullaryFnOnce;
 
-use super::layout::{FIRST, Layout, pad};
+use super::layout::{FIRST, Layout, interior, pad};
 use super::leapfrog::Step;
+use super::ledger::Flow;
 use crate::math::lanes::{Components, Lanes, Vectors};
 use crate::model::{End, Line, LineState};
 use crate::physics::stretch::StretchLaw;
@@ -54,6 +55,11 @@ pub struct AxialWork {
     segments: SegmentArrays,
     nodes: NodeArrays,
     rows: Rows,
+    /// 1 for nodes between the ends, 0 elsewhere.
+    interior: Vec<f64>,
+    /// Energy lost and given since the state was loaded [J].
+    lost: Lanes,
+    given: f64,
 }
 
 /// What a step knows of the segments before it is solved.
@@ -115,6 +121,9 @@ impl AxialWork {
         let size = layout.weight.len();
         let (zeros, vectors) = (vec![0.0; size], Components::zeros(size));
         Some(AxialWork {
+            interior: interior(n),
+            lost: Lanes::splat(0.0),
+            given: 0.0,
             layout,
             weights: Weights::new(rho),
             segments: SegmentArrays {
@@ -152,6 +161,7 @@ impl AxialWork {
     /// Takes over the state of a line.
     pub fn load(&mut self, state: &LineState) {
         self.layout.load(state);
+        (self.lost, self.given) = (Lanes::splat(0.0), 0.0);
         let count = self.layout.segment_count;
         if state.half_step.tension[0].len() == count {
             for (own, kept) in self.segments.history.iter_mut().zip(&state.half_step.tension) {
@@ -165,6 +175,11 @@ impl AxialWork {
             let tension = Lanes::load(&self.layout.axial_stiffness, at) * force.positive();
             self.segments.history.iter_mut().for_each(|history| tension.store(history, at));
         }
+    }
+
+    /// Energy given by the held ends and lost between them since [`Self::load`].
+    pub fn flow(&self) -> Flow {
+        Flow { given: self.given, lost: self.lost.sum() }
     }
 
     /// Hands the state back after steps of `steps` [s].
@@ -204,6 +219,7 @@ impl AxialWork {
                 break;
             }
         }
+        self.book(step);
         std::mem::swap(&mut self.layout.velocity, &mut self.layout.velocity_before);
         self.layout.drift(step.drift);
         self.layout.position.set(FIRST, ends[0]);
@@ -462,6 +478,50 @@ impl AxialWork {
             }
         }
         !changed
+    }
+
+    /// Books what was given and lost in the step; `velocity_before` holds the new velocities.
+    #[inline(always)]
+    fn book(&mut self, step: Step) {
+        let kick = Lanes::splat(step.kick);
+        let half = Lanes::splat(0.5);
+        let line = &self.layout;
+        for at in line.segment_blocks() {
+            let direction = self.segments.direction.load(at);
+            let relative = |velocity: &Components| {
+                direction.dot(velocity.load(at + 1) - velocity.load(at))
+            };
+            let (old, new) = (relative(&line.velocity), relative(&line.velocity_before));
+            let stiffness = Lanes::load(&self.segments.stiffness, at);
+            let spring = Lanes::load(&self.segments.elastic, at)
+                + Lanes::load(&self.segments.curvature, at)
+                + stiffness * new;
+            let tension = Lanes::load(&self.rows.tension, at);
+            self.lost = self.lost + (tension - spring.positive()) * half * (old + new) * kick;
+        }
+        for at in line.node_blocks() {
+            let (old, new) = (line.velocity.load(at), line.velocity_before.load(at));
+            // what is left of the node's momentum beside tension and weight is what water, damping and bed took
+            let pull = |at: usize| {
+                self.segments.direction.load(at).scale(Lanes::load(&self.rows.tension, at))
+            };
+            let mut impulse = (pull(at) - pull(at - 1)).scale(kick);
+            impulse.z = impulse.z - Lanes::load(&line.weight, at) * kick;
+            let tangent = self.nodes.tangent.load(at);
+            let change = new - old;
+            let mass_normal = Lanes::load(&self.nodes.mass_normal, at);
+            let excess = Lanes::load(&self.nodes.mass_tangent, at) - mass_normal;
+            let momentum = change.scale(mass_normal) + tangent.scale(excess * tangent.dot(change));
+            let taken = (impulse - momentum).dot(old + new) * half;
+            self.lost = self.lost + Lanes::load(&self.interior, at) * taken;
+        }
+        for (end, sign) in [(End::A, -1.0), (End::B, 1.0)] {
+            let node = line.end_index(end);
+            let segment = if sign < 0.0 { node } else { node - 1 };
+            let pull = self.rows.tension[segment] * self.segments.direction.get(segment);
+            let velocities = line.velocity.get(node) + line.velocity_before.get(node);
+            self.given += sign * 0.5 * step.kick * pull.dot(&velocities);
+        }
     }
 
     /// Greatest T̄ [N] of the last step.

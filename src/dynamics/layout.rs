@@ -227,6 +227,13 @@ pub(super) fn pad(segment_count: usize, values: &[f64], padding: f64) -> Vec<f64
     padded
 }
 
+/// 1 for nodes between the ends, 0 elsewhere.
+pub(super) fn interior(segment_count: usize) -> Vec<f64> {
+    let mut interior = vec![1.0; segment_count + 1];
+    (interior[0], interior[segment_count]) = (0.0, 0.0);
+    pad(segment_count, &interior, 0.0)
+}
+
 /// Padding far away and apart: its chords are never zero.
 fn padded_positions(size: usize) -> Components {
     let mut position = Components::zeros(size);

@@ -15,7 +15,8 @@
 use nalgebra::{Matrix3, Vector3};
 use pulp::NullaryFnOnce;
 
-use super::layout::{Layout, pad};
+use super::layout::{Layout, interior, pad};
+use super::ledger::Flow;
 use crate::math::lanes::{Components, Lanes, Vectors};
 use crate::model::{End, Line, LineState};
 use crate::physics::morison::{self, DragCoefficients};
@@ -30,6 +31,13 @@ pub struct LineWork {
     pull: Components,
     inverse_mass: Vec<f64>,
     water: Option<WaterWork>,
+    /// 1 for nodes between the ends, 0 elsewhere.
+    interior: Vec<f64>,
+    /// Whether ends A and B are held.
+    held: [bool; 2],
+    /// Energy lost and given since the state was loaded [J].
+    lost: Lanes,
+    given: f64,
 }
 
 /// What needs a node's tangent: drag, and a mass that differs along and across the line.
@@ -68,14 +76,14 @@ impl WaterWork {
 }
 
 /// [`LineWork::pull_segments`] for the vector unit of the machine.
-struct PullSegments<'a>(&'a mut LineWork);
+struct PullSegments<'a>(&'a mut LineWork, Step);
 
 impl NullaryFnOnce for PullSegments<'_> {
     type Output = ();
 
     #[inline(always)]
     fn call(self) {
-        self.0.choose_segment_pass();
+        self.0.choose_segment_pass(self.1);
     }
 }
 
@@ -123,6 +131,8 @@ impl Step {
 pub struct EndLoad {
     /// Force of the line on the point without contact [N].
     pub force: Vector3<f64>,
+    /// The part of it that water and damping resist with [N].
+    pub resistance: Vector3<f64>,
     /// Mass matrix of the half node [kg].
     pub mass: Matrix3<f64>,
     /// Contact stiffness [N/m] and damping [N s/m] of the half node.
@@ -131,7 +141,7 @@ pub struct EndLoad {
 
 impl LineWork {
     /// Scratch for a line; `None` where its sections have different strain measures, which the kernel does not mix.
-    pub fn new(line: &Line, negative_tension: bool) -> Option<LineWork> {
+    pub fn new(line: &Line, held: [bool; 2], negative_tension: bool) -> Option<LineWork> {
         let layout = Layout::new(line, negative_tension)?;
         let inverse_mass: Vec<f64> = line.nodes.mass_normal.iter().map(|mass| 1.0 / mass).collect();
         Some(LineWork {
@@ -139,6 +149,10 @@ impl LineWork {
             pull: Components::zeros(layout.weight.len()),
             inverse_mass: pad(layout.segment_count, &inverse_mass, 0.0),
             water: WaterWork::new(line, &layout),
+            interior: interior(layout.segment_count),
+            held,
+            lost: Lanes::splat(0.0),
+            given: 0.0,
             layout,
         })
     }
@@ -146,6 +160,12 @@ impl LineWork {
     /// Takes over the state of a line.
     pub fn load(&mut self, state: &LineState) {
         self.layout.load(state);
+        (self.lost, self.given) = (Lanes::splat(0.0), 0.0);
+    }
+
+    /// Energy given by held ends and lost between them since [`Self::load`].
+    pub fn flow(&self) -> Flow {
+        Flow { given: self.given, lost: self.lost.sum() }
     }
 
     /// Hands the state back after steps of `steps` [s].
@@ -154,40 +174,42 @@ impl LineWork {
     }
 
     /// Step 1: tensions from positions at t_n and velocities at t_{n−½}.
-    pub fn pull_segments(&mut self) {
-        self.layout.vector_unit.dispatch(PullSegments(self));
+    pub fn pull_segments(&mut self, step: Step) {
+        self.layout.vector_unit.dispatch(PullSegments(self, step));
     }
 
     #[inline(always)]
-    fn choose_segment_pass(&mut self) {
+    fn choose_segment_pass(&mut self, step: Step) {
         match (self.layout.law, self.damped) {
-            (StretchLaw::Engineering, false) => self.segment_pass::<false>(|strain| strain),
-            (StretchLaw::Engineering, true) => self.segment_pass::<true>(|strain| strain),
-            (law, _) => self.segment_pass::<true>(|strain| strain.map(|e| law.at(e).force)),
+            (StretchLaw::Engineering, false) => self.segment_pass::<false>(step, |strain| strain),
+            (StretchLaw::Engineering, true) => self.segment_pass::<true>(step, |strain| strain),
+            (law, _) => self.segment_pass::<true>(step, |strain| strain.map(|e| law.at(e).force)),
         }
     }
 
     #[inline(always)]
-    fn segment_pass<const DAMPED: bool>(&mut self, law: impl Fn(Lanes) -> Lanes) {
+    fn segment_pass<const DAMPED: bool>(&mut self, step: Step, law: impl Fn(Lanes) -> Lanes) {
         let line = &self.layout;
+        let kick = Lanes::splat(step.kick);
         let one = Lanes::splat(1.0);
         for at in line.segment_blocks() {
             let (chord, inverse_l) = line.chord(at);
             let inverse_length = Lanes::load(&line.inverse_length, at);
             let strain = chord.dot(chord) * inverse_l * inverse_length - one;
             let elastic = Lanes::load(&line.axial_stiffness, at) * law(strain);
-            let tension = if DAMPED {
+            let mut tension = elastic.positive();
+            if DAMPED {
                 let rate = line.velocity.load(at + 1) - line.velocity.load(at);
-                let strain_rate = chord.dot(rate) * inverse_l * inverse_length;
-                let damping = Lanes::load(&line.axial_damping, at) * strain_rate;
-                if line.negative_tension {
-                    elastic.positive() + damping
+                let stretching = chord.dot(rate) * inverse_l;
+                let damping = Lanes::load(&line.axial_damping, at) * stretching * inverse_length;
+                let total = if line.negative_tension {
+                    tension + damping
                 } else {
                     (elastic + damping).positive()
-                }
-            } else {
-                elastic.positive()
-            };
+                };
+                self.lost = self.lost + (total - tension) * stretching * kick;
+                tension = total;
+            }
             self.pull.store(chord.scale(tension * inverse_l), at);
         }
     }
@@ -227,15 +249,18 @@ impl LineWork {
             let inverse_mass = Lanes::load(&self.inverse_mass, at);
             let mut force = self.pull.load(at) - self.pull.load(at - 1);
             force.z = force.z - Lanes::load(&line.weight, at);
+            let zero = Lanes::splat(0.0);
+            let mut resistance = Vectors { x: zero, y: zero, z: zero };
             if MASS_DAMPING {
                 let damping = line.mass_damping.as_deref().unwrap_or_default();
-                force = force - velocity.scale(Lanes::load(damping, at));
+                resistance = velocity.scale(Lanes::load(damping, at));
             }
             // M⁻¹f, and M⁻¹ẑ for the bed
             let (inverted, response) = if WATER {
                 let water = self.water.as_ref().expect("this kernel runs in water");
                 let tangent = line.tangent(at);
-                force = force - water.drag(at, line.velocity_now(at, step), tangent);
+                resistance = resistance + water.drag(at, line.velocity_now(at, step), tangent);
+                force = force - resistance;
                 let excess = Lanes::load(&water.inverse_mass_excess, at);
                 let response = tangent.scale(excess * tangent.z);
                 (
@@ -243,13 +268,22 @@ impl LineWork {
                     Vectors { z: response.z + inverse_mass, ..response },
                 )
             } else {
-                let zero = Lanes::splat(0.0);
+                force = force - resistance;
                 (force.scale(inverse_mass), Vectors { x: zero, y: zero, z: inverse_mass })
             };
             let mut kicked = velocity + inverted.scale(kick);
+            let mut given_away = zero; // twice the energy that leaves the nodes
             if BED {
                 let impulse = contact_impulse(line, at, kicked.z, response.z, step);
                 kicked = kicked + response.scale(impulse);
+                given_away = given_away - impulse * (velocity.z + kicked.z);
+            }
+            if WATER || MASS_DAMPING {
+                given_away = given_away + resistance.dot(velocity + kicked) * kick;
+            }
+            if WATER || MASS_DAMPING || BED {
+                let half = Lanes::splat(0.5) * Lanes::load(&self.interior, at);
+                self.lost = self.lost + half * given_away;
             }
             line.velocity_before.store(kicked, at); // v_{n−3/2} has been read
         }
@@ -259,6 +293,20 @@ impl LineWork {
     /// Step 3: positions from t_n to t_{n+1}.
     pub fn drift_nodes(&mut self, step: Step) {
         self.layout.drift(step.drift);
+    }
+
+    /// Books the work of the ends in a step, after [`Self::put_end`] has told how they move on; ends at free points do no
+    /// work that the line loses.
+    pub fn book_ends(&mut self, step: Step) {
+        for end in [End::A, End::B].into_iter().filter(|&end| self.held[end as usize]) {
+            let at = self.layout.end_index(end);
+            let pull = match end {
+                End::A => self.pull.get(at),
+                End::B => -self.pull.get(at - 1),
+            };
+            let velocities = self.layout.velocity_before.get(at) + self.layout.velocity.get(at);
+            self.given -= 0.5 * step.kick * pull.dot(&velocities);
+        }
     }
 
     /// Puts an end at a position [m] with the velocity [m/s] that the next step takes as lagged.
@@ -276,18 +324,19 @@ impl LineWork {
         };
         let chord = line.position.get(other) - line.position.get(at);
         let tangent = chord.try_normalize(0.0).unwrap_or_else(Vector3::zeros);
-        let mut force = sign * self.pull.get(segment) - line.weight[at] * Vector3::z();
+        let mut resistance = Vector3::zeros();
+        let force = sign * self.pull.get(segment) - line.weight[at] * Vector3::z();
         let mut excess = 0.0;
         if let Some(water) = &self.water {
             let coefficients = DragCoefficients {
                 normal: water.drag_normal[at],
                 tangent: water.drag_tangent[at],
             };
-            force += morison::drag(coefficients, velocity, tangent);
+            resistance += morison::drag(coefficients, velocity, tangent);
             excess = water.inverse_mass_excess[at];
         }
         if let Some(damping) = &line.mass_damping {
-            force -= damping[at] * velocity;
+            resistance -= damping[at] * velocity;
         }
         let mass_normal = 1.0 / self.inverse_mass[at];
         let mass_tangent = 1.0 / (self.inverse_mass[at] + excess);
@@ -296,7 +345,8 @@ impl LineWork {
         let contact = line.contact.as_ref()
             .map_or([0.0; 2], |c| [c.stiffness[at], c.damping[at]]);
         EndLoad {
-            force,
+            force: force + resistance,
+            resistance,
             mass,
             contact,
         }

@@ -6,6 +6,7 @@ mod choice;
 pub mod implicit;
 mod layout;
 pub mod leapfrog;
+pub mod ledger;
 pub mod limit;
 pub mod motion;
 pub mod network;

@@ -3,6 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::leapfrog::{EndLoad, LineWork, Step};
+use super::ledger::Flow;
 use crate::model::{End, Kinematics, Model, Network, PointState, State};
 
 /// Scratch of a network: its lines laid out for the kernels, and its free points.
@@ -11,6 +12,8 @@ pub struct NetworkWork {
     /// Lines, in the order of the network.
     pub lines: Vec<LineWork>,
     points: Vec<PointState>,
+    /// Energy given to and lost by the free points since the state was loaded [J].
+    point_flow: Flow,
 }
 
 impl NetworkWork {
@@ -19,10 +22,13 @@ impl NetworkWork {
         let lines = network
             .lines
             .iter()
-            .map(|&line| LineWork::new(&model.lines[line], model.solver.negative_tension))
+            .map(|&line| {
+                let held = model.lines[line].ends.map(|point| model.points[point].free().is_none());
+                LineWork::new(&model.lines[line], held, model.solver.negative_tension)
+            })
             .collect::<Option<Vec<LineWork>>>()?;
         let points = vec![PointState::at_rest(Vector3::zeros()); network.free_points.len()];
-        Some(NetworkWork { lines, points })
+        Some(NetworkWork { lines, points, point_flow: Flow::default() })
     }
 
     /// Takes over the state.
@@ -30,6 +36,7 @@ impl NetworkWork {
         for (work, &line) in self.lines.iter_mut().zip(&network.lines) {
             work.load(&state.lines[line]);
         }
+        self.point_flow = Flow::default();
         for (point, &index) in self.points.iter_mut().zip(&network.free_points) {
             *point = state.points[index];
             if self.lines.is_empty() || state.lines[network.lines[0]].half_step.velocity.is_empty()
@@ -74,22 +81,30 @@ impl NetworkWork {
         step: Step,
         held: &impl Fn(usize, f64) -> Kinematics,
     ) {
-        self.lines.iter_mut().for_each(LineWork::pull_segments);
+        self.lines.iter_mut().for_each(|line| line.pull_segments(step));
         self.step_points(model, network, t, step);
         for line in &mut self.lines {
             line.kick_nodes(step);
             line.drift_nodes(step);
         }
-        self.put_ends(model, network, t + step.drift, step.drift, held);
+        self.put_ends(model, network, t + step.drift, step, held);
+        self.lines.iter_mut().for_each(|line| line.book_ends(step));
     }
 
-    /// Puts every line's ends where their points are at `t` [s], with velocities half of `drift` [s] earlier.
+    /// Energy given and lost since the state was loaded.
+    pub fn flow(&self) -> Flow {
+        let mut flow = self.point_flow;
+        self.lines.iter().for_each(|line| flow.add(line.flow()));
+        flow
+    }
+
+    /// Puts every line's ends where their points are at `t` [s], with velocities half a step earlier.
     pub fn put_ends(
         &mut self,
         model: &Model,
         network: &Network,
         t: f64,
-        drift: f64,
+        step: Step,
         held: &impl Fn(usize, f64) -> Kinematics,
     ) {
         for (work, &line) in self.lines.iter_mut().zip(&network.lines) {
@@ -101,7 +116,7 @@ impl NetworkWork {
                     }
                     None => {
                         let k = held(point, t);
-                        work.put_end(end, k.position, k.velocity - 0.5 * drift * k.acceleration);
+                        work.put_end(end, k.position, k.velocity - 0.5 * step.drift * k.acceleration);
                     }
                 }
             }
@@ -116,6 +131,7 @@ impl NetworkWork {
             let Some(law) = point.free() else { continue };
             let mut load = EndLoad {
                 force: point.load_at(t) - law.weight * Vector3::z(),
+                resistance: Vector3::zeros(),
                 mass: law.mass * Matrix3::identity(),
                 contact: [0.0; 2],
             };
@@ -127,7 +143,10 @@ impl NetworkWork {
             }
             let bed = model.bed.unwrap_or(f64::NEG_INFINITY);
             let penetration = bed - self.points[free].position.z;
-            let velocity = load.kicked(last, law.axes, penetration, step);
+            let (velocity, impulse) = load.kicked(last, law.axes, penetration, step);
+            let mean = 0.5 * (last + velocity);
+            self.point_flow.given += step.kick * point.load_at(t).dot(&mean);
+            self.point_flow.lost -= step.kick * load.resistance.dot(&mean) + impulse * mean.z;
             let state = &mut self.points[free];
             state.half_step = [velocity, last];
             state.acceleration = (velocity - last) / step.kick;
@@ -139,35 +158,37 @@ impl NetworkWork {
 impl EndLoad {
     fn add(&mut self, other: &EndLoad) {
         self.force += other.force;
+        self.resistance += other.resistance;
         self.mass += other.mass;
         self.contact[0] += other.contact[0];
         self.contact[1] += other.contact[1];
     }
 
-    /// v_{n+½} of a point that moves along `axes` only, the bed implicit.
+    /// v_{n+½} of a point that moves along `axes` only, and the impulse of the bed [N s], which is implicit.
     fn kicked(
         &self,
         last: Vector3<f64>,
         axes: [bool; 3],
         penetration: f64,
         step: Step,
-    ) -> Vector3<f64> {
+    ) -> (Vector3<f64>, f64) {
         let free = Vector3::from(axes.map(|free| f64::from(u8::from(free))));
         let mut mass = self.mass.component_mul(&(free * free.transpose()));
         for axis in (0..3).filter(|&axis| !axes[axis]) {
             mass[(axis, axis)] = 1.0;
         }
         let Some(inverse) = mass.try_inverse() else {
-            return last;
+            return (last, 0.0);
         };
         let velocity = last + step.kick * inverse * self.force.component_mul(&free);
         let [stiffness, damping] = self.contact;
         let response = inverse * Vector3::z() * free.z;
         let resistance = stiffness * step.drift + damping;
         if penetration - step.drift * velocity.z <= 0.0 || !penetration.is_finite() {
-            return velocity;
+            return (velocity, 0.0);
         }
         let push = (stiffness * penetration - resistance * velocity.z).max(0.0);
-        velocity + response * (step.kick * push / (1.0 + response.z * step.kick * resistance))
+        let impulse = step.kick * push / (1.0 + response.z * step.kick * resistance);
+        (velocity + response * impulse, impulse)
     }
 }

@@ -285,12 +285,14 @@ fn contact(
         .as_ref()
         .expect("contact is built only over a seabed");
     if bed.contact == ContactLaw::Regularised {
-        for i in 0..length.len() {
+        let last = length.len() - 1; // an end is half a node: it sinks in like its neighbours
+        for i in 0..=last {
             let given = ContactCoefficients {
                 stiffness: stiffness[i],
                 damping: damping[i],
             };
-            let soft = regularised(given, weight[i], length[i]);
+            let spacing = if i == 0 || i == last { 2.0 * length[i] } else { length[i] };
+            let soft = regularised(given, weight[i], spacing);
             (stiffness[i], damping[i]) = (soft.stiffness, soft.damping);
         }
     }

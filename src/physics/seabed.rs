@@ -3,7 +3,7 @@
 //! f = max(0, k·p − c·ż) for a penetration p = z_bed − z > 0, else 0.
 //!
 //! k = kbot·d and c = cbot·d per unstretched length. Regularised contact softens both together,
-//! k_eff = min(k, w/(δ d h)·d), c_eff = c·k_eff/k, so that a node of length h at rest sinks in by δ·h: with the usual
+//! k_eff = min(k, w/(δ d h)·d), c_eff = c·k_eff/k, so that a node at rest sinks in by δ times the segment length h: with the usual
 //! kbot of 3 MPa/m the static penetration would be micrometres and every node that lands would ring.
 //!
 //! Source: the spring and damper of Hall & Goupee (2015), Ocean Engineering 104, eq. 13, made unilateral (their damper
@@ -22,14 +22,15 @@ pub struct ContactCoefficients {
     pub damping: f64,
 }
 
-/// Softens the contact of a node of `weight` [N] (in water) and length [m]; buoyant nodes are left as they are.
-pub fn regularised(contact: ContactCoefficients, weight: f64, length: f64) -> ContactCoefficients {
+/// Softens the contact of a node of `weight` [N] (in water) whose neighbours are `spacing` [m] away; buoyant nodes are
+/// left as they are.
+pub fn regularised(contact: ContactCoefficients, weight: f64, spacing: f64) -> ContactCoefficients {
     if weight <= 0.0 || contact.stiffness <= 0.0 {
         return contact;
     }
     let stiffness = contact
         .stiffness
-        .min(weight / (REGULARISED_PENETRATION * length));
+        .min(weight / (REGULARISED_PENETRATION * spacing));
     ContactCoefficients {
         stiffness,
         damping: contact.damping * stiffness / contact.stiffness,

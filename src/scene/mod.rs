@@ -272,7 +272,7 @@ pub struct Solver {
     pub negative_tension: bool,
     /// Upper limit of the internal time step [s].
     pub time_step_max: f64,
-    /// Spectral radius at infinite frequency [-] of `generalised_alpha` (default 0.5) or `axial_implicit` (default 0.9).
+    /// Spectral radius at infinite frequency [-] of `generalised_alpha` (default 0.2) or `axial_implicit` (default 0.9).
     pub spectral_radius: Option<f64>,
     /// Parameters of `bossak`.
     pub bossak: Option<Bossak>,

@@ -507,7 +507,7 @@ impl SmoothContact {
         );
         let spring = if penetration > 0.0 { k.stiffness } else { 0.0 };
         let force = spring * penetration - k.damping * fade * velocity;
-        (force > 0.0).then(|| SmoothContact {
+        (force > 0.0).then_some(SmoothContact {
             force,
             stiffness: spring - k.damping * slope * velocity,
             damping: k.damping * fade,
@@ -727,7 +727,7 @@ impl Workspace {
         );
         let mut compare = |residual: &Vector3<f64>, place| {
             let norm = residual.norm();
-            if !(norm <= greatest.0) {
+            if norm > greatest.0 || norm.is_nan() {
                 greatest = (norm, place);
             }
         };

@@ -3,8 +3,8 @@
 //! Newton's method on the residual of [`super::assembly`], with two changes that make it indifferent to how stiff a line is
 //! and to how bad the guess is:
 //!
-//! * The geometric stiffness T/l is taken from a tension that the previous linear solve predicted, T ← N + EA/l₀ q·(δ_{i+1} − δ_i),
-//!   not from the elastic force N of the present shape. That is Newton's method on positions and tensions together with
+//! * The geometric stiffness T/l is taken from a tension that the previous linear solve predicted,
+//!   T ← N + dN/dl q·(δ_{i+1} − δ_i), not from the elastic force N of the present shape. That is Newton's method on positions and tensions together with
 //!   the tensions eliminated; a stiff line then converges like an inextensible one. A segment whose predicted tension is
 //!   negative is slack.
 //! * Pseudo-transient relaxation: anchoring springs on every node and a least tension, both of which fade as the
@@ -12,8 +12,9 @@
 //!
 //! Where this does not converge, the potential energy, which is convex for all measures that do not soften, is minimised
 //! with axial stiffness limited to a multiple of the loads, by damped Newton steps whose length a directional derivative
-//! checks, and the true stiffness is approached from there. Softening measures are loaded little by little instead, and the
-//! result must have a positive definite tangent.
+//! checks, and the true stiffness is approached from there. Where a softening measure would be stretched beyond the strain of
+//! its greatest force, the loads are applied little by little instead, and every step must lie close to the one before and
+//! have a positive definite tangent.
 //!
 //! Accepted is a residual of at most 1e-11 of the greatest force in the network (tension, nodal weight or load) plus what
 //! rounding of the positions makes of the stiffest segment.
@@ -30,8 +31,8 @@ use crate::model::{Line, LineState, Model, Network, PointState, State};
 
 /// Accepted force out of balance, over the greatest force [-].
 const FORCE_TOLERANCE: f64 = 1e-11;
-/// Accepted last correction, over the longest line [-].
-const STEP_TOLERANCE: f64 = 1e-10;
+/// Accepted last correction, over the longest line [-], unless three residuals in a row are accepted.
+const STEP_TOLERANCE: f64 = 1e-12;
 /// Longest correction, over the longest line or, if that is more, the reach of the network [-].
 const STEP_MAX: f64 = 0.2;
 /// Solves of one Newton iteration with predicted tensions.
@@ -42,6 +43,12 @@ const DESCENT_SOLVES_MAX: usize = 200;
 const CUTS_MAX: usize = 12;
 /// EA over the sum of the loads in the soft problem [-].
 const SOFT_STIFFNESS: f64 = 50.0;
+/// Load steps on a softening line.
+const LOAD_STEPS_MAX: usize = 200;
+/// Strain over the limit strain from which a failure is put down to the limit [-].
+const NEAR_LIMIT: f64 = 0.5;
+/// Greatest growth of the strain over the limit strain in one load step beyond the limit [-].
+const JUMP_MAX: f64 = 0.1;
 /// Smallest increment of the loads on a softening line [-].
 const LOAD_INCREMENT_MIN: f64 = 1e-5;
 
@@ -237,24 +244,46 @@ impl<'a> Problem<'a> {
         place_ends(self.model, self.network, state);
         let mut guess = std::mem::take(&mut work.saved);
         copy_network(self.model, self.network, state, &mut guess);
+        let result = self.solve_from(&guess, state, work);
+        work.saved = guess;
+        result
+    }
+
+    /// Newton's method alone; else, where the loads may be too much, little by little; else from a soft network.
+    fn solve_from(
+        &self,
+        guess: &State,
+        state: &mut State,
+        work: &mut Workspace,
+    ) -> Result<(), StaticsError> {
         let start = work.counters.solves;
         let full = self.case(f64::INFINITY);
-        let mut found = self.newton(state, work, full) && self.stable(state, work, full);
-        let mut result = Ok(());
-        if !found && self.softens() {
-            copy_network(self.model, self.network, &guess, state);
-            result = self.load_gradually(state, work);
-            found = true;
+        let softens = self.softens();
+        if self.newton(state, work, full) && (!softens || self.strain_over_limit(state).0 <= 1.0) {
+            return Ok(());
         }
-        if !found {
-            copy_network(self.model, self.network, &guess, state);
-            found = self.stiffen_gradually(state, work);
+        if softens {
+            self.restart(guess, state, work);
+            let reached = self.load_gradually(state, work);
+            if reached >= 1.0 {
+                return Ok(());
+            }
+            if let Some(error) = self.limit_load(state, reached) {
+                return Err(error);
+            }
         }
-        work.saved = guess;
-        if !found {
-            result = Err(self.not_converged(state, work, start));
+        self.restart(guess, state, work);
+        if self.stiffen_gradually(state, work) && self.strain_over_limit(state).0 <= 1.0 {
+            return Ok(());
         }
-        result
+        Err(self.not_converged(state, work, start))
+    }
+
+    /// Goes back to a guess, with the tensions that its shape has.
+    fn restart(&self, guess: &State, state: &mut State, work: &mut Workspace) {
+        copy_network(self.model, self.network, guess, state);
+        work.assemble_static(self.model, self.network, state, &self.case(f64::INFINITY));
+        self.remember_tensions(work);
     }
 
     fn not_converged(&self, state: &State, work: &mut Workspace, start: usize) -> StaticsError {
@@ -488,11 +517,8 @@ impl<'a> Problem<'a> {
         laws.copied().any(|law| law.limit_strain().is_some())
     }
 
-    /// Whether the tangent of a converged state is positive definite, where it could be otherwise.
+    /// Whether the tangent of a converged state is positive definite.
     fn stable(&self, state: &State, work: &mut Workspace, case: StaticCase) -> bool {
-        if !self.softens() {
-            return true;
-        }
         let anchoring = self.rounding_stiffness(&case) + 1e-12 * self.force / self.length;
         let case = StaticCase {
             anchoring,
@@ -503,8 +529,29 @@ impl<'a> Problem<'a> {
         work.solve(self.model, self.network, self.number)
     }
 
-    /// Loads a softening network little by little, from nothing.
-    fn load_gradually(&self, state: &mut State, work: &mut Workspace) -> Result<(), StaticsError> {
+    /// Greatest strain over the limit of its measure [-], with line, segment and strain [-]; below the limits of all measures the
+    /// energy is convex and an equilibrium is the only one.
+    fn strain_over_limit(&self, state: &State) -> (f64, usize, usize, f64) {
+        let mut worst = (0.0, self.network.lines[0], 0, 0.0);
+        for &index in &self.network.lines {
+            let segments = &self.model.lines[index].segments;
+            let position = &state.lines[index].position;
+            for (i, law) in segments.law.iter().enumerate() {
+                let Some(limit) = law.limit_strain() else {
+                    continue;
+                };
+                let strain = (position[i + 1] - position[i]).norm() / segments.length[i] - 1.0;
+                if strain / limit > worst.0 {
+                    worst = (strain / limit, index, i, strain);
+                }
+            }
+        }
+        worst
+    }
+
+    /// Loads a softening network little by little, from nothing; the part of the loads that was reached. Beyond the limit strain
+    /// the shape must change little from step to step: a jump is a segment that breaks.
+    fn load_gradually(&self, state: &mut State, work: &mut Workspace) -> f64 {
         let mut increment: f64 = 0.25;
         let mut case = StaticCase {
             load: 0.0,
@@ -512,51 +559,39 @@ impl<'a> Problem<'a> {
         };
         let mut reached = std::mem::take(&mut work.trial);
         copy_network(self.model, self.network, state, &mut reached);
-        let mut done: f64 = 0.0;
-        while done < 1.0 && increment >= LOAD_INCREMENT_MIN {
+        let (mut done, mut stretched) = (0.0_f64, 1.0_f64);
+        for _ in 0..LOAD_STEPS_MAX {
+            if done >= 1.0 || increment < LOAD_INCREMENT_MIN {
+                break;
+            }
             case.load = (done + increment).min(1.0);
-            if self.newton(state, work, case) && self.stable(state, work, case) {
+            let found = self.newton(state, work, case);
+            let over_limit = self.strain_over_limit(state).0;
+            if found && over_limit <= stretched + JUMP_MAX && self.stable(state, work, case) {
                 done = case.load;
+                stretched = over_limit.max(1.0);
                 increment = (2.0 * increment).min(0.25);
                 copy_network(self.model, self.network, state, &mut reached);
             } else {
                 increment *= 0.5;
-                copy_network(self.model, self.network, &reached, state);
             }
-            work.assemble_static(self.model, self.network, state, &case);
-            self.remember_tensions(work);
+            self.restart(&reached, state, work);
         }
         work.trial = reached;
-        if done < 1.0 {
-            Err(self.limit_load(state, done))
-        } else {
-            Ok(())
-        }
+        done
     }
 
-    fn limit_load(&self, state: &State, load_fraction: f64) -> StaticsError {
-        let mut worst = (f64::NEG_INFINITY, 0, 0, 0.0);
-        for &index in &self.network.lines {
-            let line = &self.model.lines[index];
-            let position = &state.lines[index].position;
-            for i in 0..line.segment_count() {
-                let strain = (position[i + 1] - position[i]).norm() / line.segments.length[i] - 1.0;
-                let limit = line.segments.law[i].limit_strain().unwrap_or(f64::INFINITY);
-                if strain / limit > worst.0 {
-                    worst = (strain / limit, index, i, strain);
-                }
-            }
-        }
-        let (_, line, segment, strain) = worst;
+    /// The error of a network that came this far, if a segment is anywhere near its limit.
+    fn limit_load(&self, state: &State, load_fraction: f64) -> Option<StaticsError> {
+        let (over_limit, line, segment, strain) = self.strain_over_limit(state);
         let line = &self.model.lines[line];
-        StaticsError::LimitLoad {
+        let limit_strain = line.segments.law[segment].limit_strain()?;
+        (over_limit >= NEAR_LIMIT).then(|| StaticsError::LimitLoad {
             line: line.name.clone(),
             segment,
             strain,
-            limit_strain: line.segments.law[segment]
-                .limit_strain()
-                .unwrap_or(f64::INFINITY),
+            limit_strain,
             load_fraction,
-        }
+        })
     }
 }

@@ -49,25 +49,14 @@ struct Lift {
 impl Uniform {
     fn lift(&self, h: f64, height: f64) -> Lift {
         if height <= 0.0 {
-            return Lift {
-                vertical: 0.0,
-                excess: 0.0,
-                vertical_slope: 0.0,
-                excess_slope: 0.0,
-            };
+            return Lift { vertical: 0.0, excess: 0.0, vertical_slope: 0.0, excess_slope: 0.0 };
         }
         let (w, ea) = (self.weight, self.axial_stiffness);
         let wd = w * height;
         let (hs, cs) = (h / ea, (wd + h) / ea);
-        let vertical =
-            (2.0 * wd * (wd + 2.0 * h) / (1.0 + cs + (1.0 + 2.0 * cs + hs * hs).sqrt())).sqrt();
+        let vertical = (2.0 * wd * (wd + 2.0 * h) / (1.0 + cs + (1.0 + 2.0 * cs + hs * hs).sqrt())).sqrt();
         if h == 0.0 {
-            return Lift {
-                vertical,
-                excess: vertical / w,
-                vertical_slope: 0.0,
-                excess_slope: 0.0,
-            };
+            return Lift { vertical, excess: vertical / w, vertical_slope: 0.0, excess_slope: 0.0 };
         }
         let tension = (h * h + vertical * vertical).sqrt();
         let beta = (vertical / h).asinh();
@@ -75,11 +64,7 @@ impl Uniform {
         let rest = sine * vertical / (tension + h); // 1 − H/T
         let vertical_slope = rest / (sine + vertical / ea);
         // tanh β − β, by its series where the difference would lose digits
-        let bend = if beta < 0.05 {
-            -beta * beta * beta / 3.0 * (1.0 - 0.4 * beta * beta)
-        } else {
-            sine - beta
-        };
+        let bend = if beta < 0.05 { -beta * beta * beta / 3.0 * (1.0 - 0.4 * beta * beta) } else { sine - beta };
         Lift {
             vertical,
             excess: h / w * sinh_less(beta),
@@ -91,10 +76,7 @@ impl Uniform {
     /// End forces of the line, which is known to touch the bed.
     pub fn touch_down(&self, at: &Touchdown) -> Held {
         let (l, w, ea) = (self.length, self.weight, self.axial_stiffness);
-        let hanging = (
-            self.lift(0.0, at.height_a).vertical,
-            self.lift(0.0, at.height_b).vertical,
-        );
+        let hanging = (self.lift(0.0, at.height_a).vertical, self.lift(0.0, at.height_b).vertical);
         let longer = at.span - l; // negative: line to spare
         if longer + (hanging.0 + hanging.1) / w <= 0.0 {
             return Held {
@@ -115,17 +97,11 @@ impl Uniform {
         };
         let knee = 0.1 * w * at.height_a.max(at.height_b);
         let lowest = HORIZONTAL_SHARE_MIN * w * l;
-        let root =
-            root::increasing_positive(balance, self.guess(at), (lowest, f64::INFINITY), |h| {
-                h < knee
-            });
+        let root = root::increasing_positive(balance, self.guess(at), (lowest, f64::INFINITY), |h| h < knee);
         let h = root.at;
         let (a, b) = (self.lift(h, at.height_a), self.lift(h, at.height_b));
         let laid = (l - (a.vertical + b.vertical) / w).max(0.0);
-        debug_assert!(
-            ea > 0.0 && h.is_finite(),
-            "touchdown found no horizontal tension"
-        );
+        debug_assert!(ea > 0.0 && h.is_finite(), "touchdown found no horizontal tension");
         Held {
             horizontal_a: (h - at.friction * w * laid).max(0.0),
             horizontal_b: h,
@@ -146,18 +122,12 @@ impl Uniform {
         let laid = l - flown;
         let fall = friction * w; // tension lost per metre
         let (area, area_slope) = if fall * laid < h {
-            (
-                h * laid - 0.5 * fall * laid * laid,
-                laid - (h - fall * laid) * flown_slope,
-            )
+            (h * laid - 0.5 * fall * laid * laid, laid - (h - fall * laid) * flown_slope)
         } else {
             (0.5 * h * h / fall, h / fall)
         };
         debug_assert!(a.vertical == 0.0, "with friction A lies on the bed");
-        (
-            (h * flown + area) / ea,
-            (flown + h * flown_slope + area_slope) / ea,
-        )
+        ((h * flown + area) / ea, (flown + h * flown_slope + area_slope) / ea)
     }
 
     /// Horizontal tension from the leading terms: parabola E = (2D)^1.5 √w/(6√H) against slack or stretch.
@@ -167,13 +137,7 @@ impl Uniform {
         let bow = 8.0_f64.sqrt() * heights * w.sqrt() / 6.0; // E = bow/√H
         let elastic = (bow * ea / l).powf(2.0 / 3.0);
         let longer = at.span - l;
-        let guess = if longer > 0.0 {
-            elastic.max(ea * longer / l)
-        } else {
-            elastic.min((bow / longer).powi(2))
-        };
-        guess
-            .max(1e-3 * w * at.height_a.max(at.height_b))
-            .max(f64::MIN_POSITIVE)
+        let guess = if longer > 0.0 { elastic.max(ea * longer / l) } else { elastic.min((bow / longer).powi(2)) };
+        guess.max(1e-3 * w * at.height_a.max(at.height_b)).max(f64::MIN_POSITIVE)
     }
 }

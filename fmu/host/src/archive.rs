@@ -1,0 +1,86 @@
+//! The .fmu container: unpacked into a folder of its own, the library found by the platform's name.
+
+use std::fs::File;
+use std::path::{Path, PathBuf};
+
+use tempfile::TempDir;
+
+use crate::{FmiVersion, HostError};
+
+/// Folder below `binaries/` for this platform; `None` where the standard names none.
+pub fn platform(version: FmiVersion) -> Option<&'static str> {
+    let folders = if cfg!(all(target_os = "linux", target_arch = "x86_64")) {
+        ["linux64", "x86_64-linux"]
+    } else if cfg!(all(target_os = "linux", target_arch = "aarch64")) {
+        ["aarch64-linux", "aarch64-linux"]
+    } else if cfg!(all(target_os = "macos", target_arch = "x86_64")) {
+        ["darwin64", "x86_64-darwin"]
+    } else if cfg!(all(target_os = "macos", target_arch = "aarch64")) {
+        ["aarch64-darwin", "aarch64-darwin"]
+    } else if cfg!(all(windows, target_arch = "x86_64")) {
+        ["win64", "x86_64-windows"]
+    } else {
+        return None;
+    };
+    Some(match version {
+        FmiVersion::Two => folders[0],
+        FmiVersion::Three => folders[1],
+    })
+}
+
+/// File name of an FMU's library on this platform.
+pub fn library_name(model_identifier: &str) -> String {
+    let extension = if cfg!(windows) {
+        "dll"
+    } else if cfg!(target_os = "macos") {
+        "dylib"
+    } else {
+        "so"
+    };
+    format!("{model_identifier}.{extension}")
+}
+
+/// Unpacks an FMU.
+pub(crate) fn unpack(path: &Path) -> Result<TempDir, HostError> {
+    let fail = |problem: String| HostError::Archive {
+        path: path.to_path_buf(),
+        problem,
+    };
+    let file = File::open(path).map_err(|e| fail(e.to_string()))?;
+    let mut archive = zip::ZipArchive::new(file).map_err(|e| fail(e.to_string()))?;
+    let folder = tempfile::Builder::new()
+        .prefix("fmu-")
+        .tempdir()
+        .map_err(|e| fail(e.to_string()))?;
+    archive
+        .extract(folder.path())
+        .map_err(|e| fail(e.to_string()))?;
+    Ok(folder)
+}
+
+/// Path of the library in an unpacked FMU.
+pub(crate) fn library_path(
+    folder: &Path,
+    version: FmiVersion,
+    model_identifier: &str,
+) -> Result<PathBuf, HostError> {
+    let platform = platform(version).ok_or(HostError::Platform)?;
+    Ok(folder
+        .join("binaries")
+        .join(platform)
+        .join(library_name(model_identifier)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_that_is_no_archive_is_refused_with_its_path() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("no.fmu");
+        std::fs::write(&path, b"not a zip").unwrap();
+        let message = unpack(&path).unwrap_err().to_string();
+        assert!(message.contains("no.fmu"), "{message}");
+    }
+}

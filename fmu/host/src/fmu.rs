@@ -1,0 +1,169 @@
+//! An opened FMU: its unpacked folder, its description, its loaded library.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use tempfile::TempDir;
+
+use crate::{Description, FmiVersion, Slave, Status, archive, fmi2, fmi3};
+
+/// What can go wrong in a host.
+#[derive(Debug, thiserror::Error)]
+pub enum HostError {
+    /// The container cannot be read.
+    #[error("{}: {problem}", path.display())]
+    Archive {
+        /// The .fmu file.
+        path: PathBuf,
+        /// What is wrong with it.
+        problem: String,
+    },
+    /// The description cannot be used.
+    #[error("modelDescription.xml: {0}")]
+    Description(String),
+    /// The standard names no folder for this platform.
+    #[error("FMI names no binaries folder for this platform")]
+    Platform,
+    /// The library cannot be loaded.
+    #[error("{}: {problem}", path.display())]
+    Library {
+        /// The library.
+        path: PathBuf,
+        /// The loader's message.
+        problem: String,
+    },
+    /// The library lacks a function of the standard.
+    #[error("the library has no function {0}")]
+    MissingFunction(&'static str),
+    /// No variable has this name.
+    #[error("the FMU has no variable \"{0}\"")]
+    UnknownVariable(String),
+    /// The FMU refused to be instantiated.
+    #[error("the FMU refused to be instantiated: {0}")]
+    Instantiate(String),
+    /// A text or a length that C cannot take.
+    #[error("{0}")]
+    Argument(String),
+    /// A call did not succeed.
+    #[error("{function} returned {status:?}: {log}")]
+    Call {
+        /// The function of the standard.
+        function: &'static str,
+        /// What it returned.
+        status: Status,
+        /// What the FMU said in its log.
+        log: String,
+    },
+}
+
+/// The functions of the version that the FMU serves.
+#[derive(Debug)]
+pub(crate) enum Api {
+    Two(Box<fmi2::Functions>),
+    Three(Box<fmi3::Functions>),
+}
+
+/// Library before folder: it must be unloaded before its file is removed.
+#[derive(Debug)]
+pub(crate) struct Loaded {
+    pub(crate) api: Api,
+    pub(crate) description: Description,
+    pub(crate) library: libloading::Library,
+    pub(crate) folder: TempDir,
+}
+
+/// An opened FMU. Instances keep it open.
+#[derive(Debug, Clone)]
+pub struct Fmu(pub(crate) Arc<Loaded>);
+
+impl Fmu {
+    /// Unpacks an FMU into a folder of its own and loads its library.
+    ///
+    /// # Errors
+    /// A container, description or library that cannot be used.
+    pub fn open(path: &Path) -> Result<Fmu, HostError> {
+        let folder = archive::unpack(path)?;
+        let text =
+            std::fs::read_to_string(folder.path().join("modelDescription.xml")).map_err(|e| {
+                HostError::Archive {
+                    path: path.to_path_buf(),
+                    problem: format!("modelDescription.xml: {e}"),
+                }
+            })?;
+        let description = Description::from_xml(&text)?;
+        let library_path = archive::library_path(
+            folder.path(),
+            description.version,
+            &description.model_identifier,
+        )?;
+        // SAFETY: loading runs the library's initialisers. That is what opening an FMU means; the user chose the file.
+        let library =
+            unsafe { libloading::Library::new(&library_path) }.map_err(|e| HostError::Library {
+                path: library_path,
+                problem: e.to_string(),
+            })?;
+        // SAFETY: a library in an FMU of this version has the standard's functions with the standard's signatures; the
+        // table is kept beside the library and never used after it.
+        let api = unsafe {
+            match description.version {
+                FmiVersion::Two => Api::Two(Box::new(fmi2::Functions::resolve(&library)?)),
+                FmiVersion::Three => Api::Three(Box::new(fmi3::Functions::resolve(&library)?)),
+            }
+        };
+        Ok(Fmu(Arc::new(Loaded {
+            api,
+            description,
+            library,
+            folder,
+        })))
+    }
+
+    /// The FMU's description.
+    pub fn description(&self) -> &Description {
+        &self.0.description
+    }
+
+    /// Folder the FMU is unpacked in.
+    pub fn folder(&self) -> &Path {
+        self.0.folder.path()
+    }
+
+    /// The loaded library, for functions outside the standard.
+    pub fn library(&self) -> &libloading::Library {
+        &self.0.library
+    }
+
+    /// Value reference of a variable.
+    ///
+    /// # Errors
+    /// No variable has this name.
+    pub fn reference(&self, name: &str) -> Result<u32, HostError> {
+        self.description()
+            .variables
+            .iter()
+            .find(|variable| variable.name == name)
+            .map(|variable| variable.reference)
+            .ok_or_else(|| HostError::UnknownVariable(name.to_string()))
+    }
+
+    /// Makes a co-simulation instance; `logging` turns the FMU's log on.
+    ///
+    /// # Errors
+    /// The FMU refuses; the error holds what it logged.
+    pub fn instantiate(&self, name: &str, logging: bool) -> Result<Slave, HostError> {
+        Slave::new(self, name, &self.description().token, logging)
+    }
+
+    /// As [`Fmu::instantiate`] with another token than the description's: an FMU must refuse it.
+    ///
+    /// # Errors
+    /// The FMU refuses; the error holds what it logged.
+    pub fn instantiate_with_token(
+        &self,
+        name: &str,
+        token: &str,
+        logging: bool,
+    ) -> Result<Slave, HostError> {
+        Slave::new(self, name, token, logging)
+    }
+}

@@ -1,0 +1,50 @@
+//! What both versions of FMI share: version and status.
+
+use std::fmt;
+
+/// Version of the interface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum FmiVersion {
+    /// FMI 2.0.
+    Two,
+    /// FMI 3.0.
+    Three,
+}
+
+impl fmt::Display for FmiVersion {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            FmiVersion::Two => "2.0",
+            FmiVersion::Three => "3.0",
+        })
+    }
+}
+
+/// What a call returns; the same numbers in FMI 2.0 and 3.0.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[repr(u32)]
+pub enum Status {
+    /// Done.
+    Ok = 0,
+    /// Done, with a remark in the log.
+    Warning = 1,
+    /// Not done; another step size may succeed.
+    Discard = 2,
+    /// Refused or failed.
+    Error = 3,
+    /// The instance is lost.
+    Fatal = 4,
+}
+
+impl Status {
+    /// Reads a status as C passes it; an unknown one counts as fatal.
+    pub fn from_c(status: u32) -> Status {
+        match status {
+            0 => Status::Ok,
+            1 => Status::Warning,
+            2 => Status::Discard,
+            3 => Status::Error,
+            _ => Status::Fatal,
+        }
+    }
+}

@@ -1,0 +1,416 @@
+//! Handles, slices, texts, callbacks and the panic guard: all the reasoning about unsafe code.
+//!
+//! What a host promises (FMI 2.0.4 section 2.1, FMI 3.0.2 section 2.2): a handle is what instantiate returned and is
+//! not used after free; no two calls use one handle at once; a pointer with a length points to that many values that
+//! stay valid during the call; a text ends with a zero byte. Everything else is checked here.
+
+use std::any::Any;
+use std::cell::Cell;
+use std::ffi::{CStr, CString, c_char, c_void};
+use std::panic::{self, AssertUnwindSafe};
+use std::sync::{Mutex, Once, PoisonError};
+
+use moorline_host::fmi2::{fmi2CallbackFunctions, fmi2CallbackLogger};
+use moorline_host::fmi3::fmi3LogMessageCallback;
+use moorline_host::{FmiVersion, Status};
+
+use crate::instance::{Instance, Refusal};
+use crate::log::Topic;
+use crate::saved::Snapshot;
+
+/// What a handle points to.
+pub(crate) struct Handle {
+    instance: Instance,
+    version: FmiVersion,
+    sink: Sink,
+    /// A call panicked: nothing but free is served any more.
+    is_poisoned: bool,
+    /// A text that the host was given; it lives until the next one.
+    text: CString,
+}
+
+/// Where messages go.
+pub(crate) enum Sink {
+    /// FMI 2.0: variadic logger, which wants the instance's name.
+    Two {
+        logger: fmi2CallbackLogger,
+        environment: *mut c_void,
+        name: CString,
+    },
+    /// FMI 3.0.
+    Three {
+        logger: fmi3LogMessageCallback,
+        environment: *mut c_void,
+    },
+}
+
+impl Sink {
+    /// Copies what an FMI 2.0 host hands over.
+    ///
+    /// # Safety
+    /// `functions` is null or points to the host's callbacks; `name` is null or ends with a zero byte.
+    pub(crate) unsafe fn two(functions: *const fmi2CallbackFunctions, name: *const c_char) -> Sink {
+        // SAFETY: by the caller's promise.
+        let (functions, name) = unsafe { (functions.as_ref(), text(name)) };
+        Sink::Two {
+            logger: functions.and_then(|f| f.logger),
+            environment: functions.map_or(std::ptr::null_mut(), |f| f.componentEnvironment),
+            name: c_text(name.unwrap_or("moorline")),
+        }
+    }
+
+    fn send(&self, topic: Topic, message: &str) {
+        let category = c_text(topic.category());
+        let message = c_text(message);
+        let status = topic.status() as u32;
+        match self {
+            Sink::Two {
+                logger: Some(logger),
+                environment,
+                name,
+            } => {
+                // SAFETY: the host's own logger and environment; all texts live during the call. The message is an
+                // argument and never the format, whatever characters it holds.
+                unsafe {
+                    logger(
+                        *environment,
+                        name.as_ptr(),
+                        status,
+                        category.as_ptr(),
+                        c"%s".as_ptr(),
+                        message.as_ptr(),
+                    );
+                }
+            }
+            Sink::Three {
+                logger: Some(logger),
+                environment,
+            } => {
+                // SAFETY: the host's own logger and environment; both texts live during the call.
+                unsafe { logger(*environment, status, category.as_ptr(), message.as_ptr()) }
+            }
+            Sink::Two { logger: None, .. } | Sink::Three { logger: None, .. } => {}
+        }
+    }
+}
+
+/// A text for C; zero bytes, which C cannot carry, become spaces.
+fn c_text(text: &str) -> CString {
+    CString::new(text.replace('\0', " ")).unwrap_or_default()
+}
+
+thread_local! {
+    /// Whether this thread is inside the guard. Without a destructor, so that the library can be unloaded.
+    static IS_GUARDED: Cell<bool> = const { Cell::new(false) };
+}
+
+/// Where the last guarded panic happened.
+static PANIC_PLACE: Mutex<Option<String>> = Mutex::new(None);
+
+/// Keeps guarded panics off the console; others go where they went before.
+fn silence_guarded_panics() {
+    static ONCE: Once = Once::new();
+    ONCE.call_once(|| {
+        let before = panic::take_hook();
+        panic::set_hook(Box::new(move |info| {
+            if IS_GUARDED.get() {
+                let place = info.location().map(ToString::to_string);
+                *PANIC_PLACE.lock().unwrap_or_else(PoisonError::into_inner) = place;
+            } else {
+                before(info);
+            }
+        }));
+    });
+}
+
+/// Runs `body`; a panic becomes its message.
+pub(crate) fn guard<T>(body: impl FnOnce() -> T) -> Result<T, String> {
+    silence_guarded_panics();
+    let outer = IS_GUARDED.replace(true);
+    let result = panic::catch_unwind(AssertUnwindSafe(body));
+    IS_GUARDED.set(outer);
+    result.map_err(|payload| {
+        let place = PANIC_PLACE
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .take();
+        let said = panic_text(payload.as_ref());
+        // A payload with a destructor that panics must not do so here.
+        std::mem::forget(payload);
+        format!(
+            "internal fault at {}: {said}; free this instance and please report it",
+            place.as_deref().unwrap_or("an unknown place")
+        )
+    })
+}
+
+fn panic_text(payload: &(dyn Any + Send)) -> String {
+    payload
+        .downcast_ref::<&str>()
+        .map(ToString::to_string)
+        .or_else(|| payload.downcast_ref::<String>().cloned())
+        .unwrap_or_else(|| "no message".to_string())
+}
+
+/// Makes an instance and gives its handle away; null and a message where it is refused. The message is sent even while
+/// logging is off: without an instance there is no other way to say why.
+pub(crate) fn instantiate(
+    version: FmiVersion,
+    sink: Sink,
+    make: impl FnOnce() -> Result<Instance, Refusal>,
+) -> *mut c_void {
+    match guard(make) {
+        Ok(Ok(instance)) => Box::into_raw(Box::new(Handle {
+            instance,
+            version,
+            sink,
+            is_poisoned: false,
+            text: CString::default(),
+        }))
+        .cast(),
+        Ok(Err(Refusal(message))) => {
+            sink.send(Topic::Error, &message);
+            std::ptr::null_mut()
+        }
+        Err(message) => {
+            sink.send(Topic::Fatal, &message);
+            std::ptr::null_mut()
+        }
+    }
+}
+
+/// Frees an instance in whatever state; null is nothing to free.
+///
+/// # Safety
+/// `handle` is null or came from [`instantiate`] and is not used again.
+pub(crate) unsafe fn free(handle: *mut c_void) {
+    if handle.is_null() {
+        return;
+    }
+    // SAFETY: came from `Box::into_raw` and is freed once, by the caller's promise.
+    let handle = unsafe { Box::from_raw(handle.cast::<Handle>()) };
+    // A fault while dropping leaks and is not worth more: the host is done with this instance.
+    let _ = guard(move || drop(handle));
+}
+
+/// Serves one call on an instance: guard, log, status.
+///
+/// # Safety
+/// `handle` is null or a live handle that no other call is using.
+pub(crate) unsafe fn call(
+    handle: *mut c_void,
+    version: FmiVersion,
+    function: &str,
+    body: impl FnOnce(&mut Instance) -> Result<(), Refusal>,
+) -> u32 {
+    // SAFETY: by the caller's promise the pointer is null or valid, and this is the only reference.
+    let Some(handle) = (unsafe { handle.cast::<Handle>().as_mut() }) else {
+        return Status::Error as u32;
+    };
+    handle.call(version, function, body) as u32
+}
+
+impl Handle {
+    fn call(
+        &mut self,
+        version: FmiVersion,
+        function: &str,
+        body: impl FnOnce(&mut Instance) -> Result<(), Refusal>,
+    ) -> Status {
+        if self.is_poisoned {
+            return Status::Fatal;
+        }
+        let own = self.version;
+        let instance = &mut self.instance;
+        let result = guard(|| {
+            if own == version {
+                body(instance)
+            } else {
+                Err(Refusal(format!("this instance speaks FMI {own}")))
+            }
+        });
+        let (topic, message) = match result {
+            Ok(Ok(())) => {
+                self.send_log();
+                return Status::Ok;
+            }
+            Ok(Err(Refusal(message))) => (Topic::Error, message),
+            Err(message) => {
+                self.is_poisoned = true;
+                (Topic::Fatal, message)
+            }
+        };
+        self.instance
+            .log
+            .push(topic, || format!("{function}: {message}"));
+        self.send_log();
+        topic.status()
+    }
+
+    fn send_log(&mut self) {
+        for (topic, message) in self.instance.log.take() {
+            self.sink.send(topic, &message);
+        }
+    }
+}
+
+/// Keeps a text in the handle and returns where it is.
+///
+/// # Safety
+/// As for [`call`].
+pub(crate) unsafe fn keep_text(handle: *mut c_void, text: &str) -> *const c_char {
+    // SAFETY: by the caller's promise.
+    let Some(handle) = (unsafe { handle.cast::<Handle>().as_mut() }) else {
+        return std::ptr::null();
+    };
+    handle.text = c_text(text);
+    handle.text.as_ptr()
+}
+
+/// Whether `count` values of type T can be at `pointer`.
+fn check_pointer<T>(pointer: *const T, count: usize) -> Result<(), Refusal> {
+    if pointer.is_null() {
+        return Err("a pointer is null".into());
+    }
+    if !pointer.is_aligned() {
+        return Err("a pointer is not aligned".into());
+    }
+    let bytes = count.checked_mul(size_of::<T>());
+    if bytes.is_none_or(|bytes| isize::try_from(bytes).is_err()) {
+        return Err(Refusal(format!(
+            "{count} values are more than memory holds"
+        )));
+    }
+    Ok(())
+}
+
+/// The host's values.
+///
+/// # Safety
+/// A pointer that is not null points to `count` values that nothing changes during `'a`.
+pub(crate) unsafe fn slice<'a, T>(pointer: *const T, count: usize) -> Result<&'a [T], Refusal> {
+    if count == 0 {
+        return Ok(&[]);
+    }
+    check_pointer(pointer, count)?;
+    // SAFETY: not null, aligned, of a possible length; the caller promises the rest.
+    Ok(unsafe { std::slice::from_raw_parts(pointer, count) })
+}
+
+/// Room for the host's values.
+///
+/// # Safety
+/// A pointer that is not null points to `count` initialised values that nothing else uses during `'a`.
+pub(crate) unsafe fn slice_mut<'a, T>(
+    pointer: *mut T,
+    count: usize,
+) -> Result<&'a mut [T], Refusal> {
+    if count == 0 {
+        return Ok(&mut []);
+    }
+    check_pointer(pointer, count)?;
+    // SAFETY: not null, aligned, of a possible length; the caller promises the rest.
+    Ok(unsafe { std::slice::from_raw_parts_mut(pointer, count) })
+}
+
+/// Writes one result where the host wants it.
+///
+/// # Safety
+/// A pointer that is not null may be written to.
+pub(crate) unsafe fn write<T>(pointer: *mut T, value: T) -> Result<(), Refusal> {
+    check_pointer(pointer, 1)?;
+    // SAFETY: not null and aligned; the caller promises the rest. No destructor runs on what was there.
+    unsafe { pointer.write(value) };
+    Ok(())
+}
+
+/// A text of the host; `None` if it is null or not UTF-8.
+///
+/// # Safety
+/// A pointer that is not null points to a text that ends with a zero byte and lives during `'a`.
+pub(crate) unsafe fn text<'a>(pointer: *const c_char) -> Option<&'a str> {
+    if pointer.is_null() {
+        return None;
+    }
+    // SAFETY: not null; the caller promises the rest.
+    unsafe { CStr::from_ptr(pointer) }.to_str().ok()
+}
+
+/// The host's list of texts.
+///
+/// # Safety
+/// As for [`slice`] and [`text`].
+pub(crate) unsafe fn texts<'a>(
+    pointer: *const *const c_char,
+    count: usize,
+) -> Result<Vec<&'a str>, Refusal> {
+    // SAFETY: by the caller's promise.
+    let pointers = unsafe { slice(pointer, count) }?;
+    pointers
+        .iter()
+        .map(|&pointer| {
+            // SAFETY: by the caller's promise.
+            unsafe { text(pointer) }.ok_or_else(|| "a text is null or not UTF-8".into())
+        })
+        .collect()
+}
+
+/// Saves the state into `*target`, in place where the host hands back an earlier state.
+///
+/// # Safety
+/// A `target` that is not null points to null or to a state of [`store_state`] that was not freed.
+pub(crate) unsafe fn store_state(
+    target: *mut *mut c_void,
+    snapshot: Snapshot,
+) -> Result<(), Refusal> {
+    check_pointer(target, 1)?;
+    // SAFETY: not null and aligned; the caller promises that it may be read and what it points to.
+    unsafe {
+        match (*target).cast::<Snapshot>().as_mut() {
+            Some(old) => *old = snapshot,
+            None => *target = Box::into_raw(Box::new(snapshot)).cast(),
+        }
+    }
+    Ok(())
+}
+
+/// A saved state.
+///
+/// # Safety
+/// A pointer that is not null came from [`store_state`] and was not freed.
+pub(crate) unsafe fn state<'a>(state: *mut c_void) -> Result<&'a Snapshot, Refusal> {
+    // SAFETY: by the caller's promise.
+    unsafe { state.cast::<Snapshot>().as_ref() }.ok_or_else(|| "the saved state is null".into())
+}
+
+/// Frees a saved state and sets the host's pointer to null; null is nothing to free.
+///
+/// # Safety
+/// As for [`store_state`].
+pub(crate) unsafe fn free_state(target: *mut *mut c_void) -> Result<(), Refusal> {
+    if target.is_null() {
+        return Ok(());
+    }
+    check_pointer(target, 1)?;
+    // SAFETY: not null and aligned; the caller promises where it comes from, and null keeps it from being freed again.
+    unsafe {
+        if !(*target).is_null() {
+            drop(Box::from_raw((*target).cast::<Snapshot>()));
+            *target = std::ptr::null_mut();
+        }
+    }
+    Ok(())
+}
+
+/// Writes a serialised state of exactly the host's length.
+pub(crate) fn copy_state(bytes: &[u8], target: &mut [u8]) -> Result<(), Refusal> {
+    if bytes.len() != target.len() {
+        return Err(Refusal(format!(
+            "the serialised state has {} bytes, but the host gave room for {}",
+            bytes.len(),
+            target.len()
+        )));
+    }
+    target.copy_from_slice(bytes);
+    Ok(())
+}

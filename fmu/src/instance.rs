@@ -1,0 +1,615 @@
+//! The FMI state machine over a simulation, for both versions of FMI. Safe code; knows no pointer.
+//!
+//! Sources: FMI 2.0.4 section 4.2.4 (state machine of co-simulation), FMI 3.0.2 section 4.2. Two choices within them:
+//! a refused call leaves everything as it was, so the instance goes on; and a step that fails is an error, not
+//! `Discard`, since a smaller communication step cannot help a solver that has already substepped.
+
+use moorline::interface::{Binding, Causality, Interface, Kind, Variable};
+use moorline::model::Model;
+use moorline::output::description::{Description, VERSION, time_reference};
+use moorline::scene::Scene;
+use moorline::simulation::Simulation;
+use moorline_host::{FmiVersion, Status};
+
+use crate::log::{Log, Topic};
+use crate::resources;
+use crate::saved::{Phase, PointInput, Snapshot};
+
+/// Why a call was refused or failed, in words for the host's log.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Refusal(pub(crate) String);
+
+impl From<String> for Refusal {
+    fn from(message: String) -> Self {
+        Refusal(message)
+    }
+}
+
+impl From<&str> for Refusal {
+    fn from(message: &str) -> Self {
+        Refusal(message.to_string())
+    }
+}
+
+type Outcome = Result<(), Refusal>;
+
+/// Difference between the host's clock and ours that is rounding, relative to the step [-].
+const TIME_TOLERANCE: f64 = 1e-6;
+
+/// One instance.
+#[derive(Debug)]
+pub(crate) struct Instance {
+    packaged: Scene,
+    scene: Scene,
+    interface: Interface,
+    token: String,
+    /// Value reference of time; FMI 2.0 has no such variable.
+    time_reference: Option<u32>,
+    pub(crate) log: Log,
+    phase: Phase,
+    start_time: f64,
+    stop_time: Option<f64>,
+    time: f64,
+    inputs: Vec<PointInput>,
+    /// Statics with the present parameters and inputs, or where the last step ended; `None` while they are not known.
+    simulation: Option<Simulation>,
+    has_warned_of_time: bool,
+    step_status: Status,
+}
+
+impl Instance {
+    /// Reads the scene from the resources and checks the host's token against it.
+    pub(crate) fn new(
+        version: FmiVersion,
+        token: Option<&str>,
+        resources: Option<&str>,
+        logging: bool,
+    ) -> Result<Instance, Refusal> {
+        let text = resources::read_scene(resources)?;
+        let scene = Scene::from_toml(&text).map_err(|e| e.to_string())?;
+        let description = Description::new(&text, &scene, version).map_err(|e| e.to_string())?;
+        if token != Some(description.token.as_str()) {
+            return Err(Refusal(format!(
+                "the token \"{}\" is not that of this scene with moorline {VERSION}, \"{}\": \
+                 description, scene and library do not belong together; package the scene again",
+                token.unwrap_or_default(),
+                description.token
+            )));
+        }
+        Ok(Instance {
+            inputs: vec![PointInput::default(); scene.points.len()],
+            time_reference: (version == FmiVersion::Three)
+                .then(|| time_reference(&description.interface)),
+            packaged: scene.clone(),
+            scene,
+            interface: description.interface,
+            token: description.token,
+            log: Log::new(logging),
+            phase: Phase::Instantiated,
+            start_time: 0.0,
+            stop_time: None,
+            time: 0.0,
+            simulation: None,
+            has_warned_of_time: false,
+            step_status: Status::Ok,
+        })
+    }
+
+    fn expect_phase(&self, allowed: &[Phase]) -> Outcome {
+        if allowed.contains(&self.phase) {
+            return Ok(());
+        }
+        let now = match self.phase {
+            Phase::Instantiated => "before initialization mode",
+            Phase::Initialization => "in initialization mode",
+            Phase::Step => "after initialization",
+            Phase::Terminated => "after terminate",
+        };
+        Err(Refusal(format!("out of order: not allowed {now}")))
+    }
+
+    /// Turns log categories on or off; no name means all.
+    pub(crate) fn set_debug_logging(&mut self, on: bool, categories: &[&str]) -> Outcome {
+        self.log
+            .select(on, categories)
+            .map_err(|name| Refusal(format!("there is no log category \"{name}\"")))
+    }
+
+    /// Sets start and end [s]. The host's tolerance is not used: it speaks of integration error, and the parameter
+    /// `solver.tolerance` of fairlead tension.
+    pub(crate) fn set_up(
+        &mut self,
+        tolerance: Option<f64>,
+        start: f64,
+        stop: Option<f64>,
+    ) -> Outcome {
+        self.expect_phase(&[Phase::Instantiated])?;
+        if !start.is_finite() {
+            return Err(Refusal(format!("the start time {start} s is not finite")));
+        }
+        if let Some(stop) = stop
+            && (stop.is_nan() || stop < start)
+        {
+            return Err(Refusal(format!(
+                "the stop time {stop} s is not after the start time {start} s"
+            )));
+        }
+        self.start_time = start;
+        self.stop_time = stop;
+        self.time = start;
+        if let Some(tolerance) = tolerance {
+            self.log.push(Topic::Event, || {
+                format!("the host's tolerance {tolerance} is not used: set solver.tolerance")
+            });
+        }
+        Ok(())
+    }
+
+    pub(crate) fn enter_initialization(&mut self) -> Outcome {
+        self.expect_phase(&[Phase::Instantiated])?;
+        self.simulation = None;
+        self.phase = Phase::Initialization;
+        Ok(())
+    }
+
+    pub(crate) fn exit_initialization(&mut self) -> Outcome {
+        self.expect_phase(&[Phase::Initialization])?;
+        self.solve_statics()?;
+        self.phase = Phase::Step;
+        self.log_choices();
+        Ok(())
+    }
+
+    /// Says which integrator was chosen.
+    fn log_choices(&mut self) {
+        let Some(simulation) = &self.simulation else {
+            return;
+        };
+        for (network, choice) in simulation.model().networks.iter().zip(simulation.choices()) {
+            self.log.push(Topic::Event, || {
+                let lines: Vec<&str> = network
+                    .lines
+                    .iter()
+                    .map(|&line| simulation.model().lines[line].name.as_str())
+                    .collect();
+                format!(
+                    "{}: integrator {:?}, internal steps of at most {:.3e} s \
+                     (explicit limit {:.3e} s, transverse limit {:.3e} s)",
+                    lines.join(", "),
+                    choice.integrator,
+                    choice.step_max,
+                    choice.explicit_limit,
+                    choice.transverse_limit
+                )
+            });
+        }
+    }
+
+    pub(crate) fn terminate(&mut self) -> Outcome {
+        self.expect_phase(&[Phase::Step])?;
+        self.phase = Phase::Terminated;
+        Ok(())
+    }
+
+    /// Back to just after instantiation; the log keeps its settings.
+    pub(crate) fn reset(&mut self) -> Outcome {
+        self.scene.clone_from(&self.packaged);
+        self.inputs.fill(PointInput::default());
+        self.phase = Phase::Instantiated;
+        self.start_time = 0.0;
+        self.stop_time = None;
+        self.time = 0.0;
+        self.simulation = None;
+        self.has_warned_of_time = false;
+        self.step_status = Status::Ok;
+        Ok(())
+    }
+
+    /// Static equilibrium with the present parameters and displacements, unless it is known. Always solved from the
+    /// same first guess, so that it does not depend on what was set before.
+    fn solve_statics(&mut self) -> Result<&mut Simulation, Refusal> {
+        if self.simulation.is_none() {
+            let mut simulation = Simulation::new(&self.scene).map_err(|e| e.to_string())?;
+            hand_over(&self.inputs, &mut simulation);
+            simulation
+                .restart(self.start_time)
+                .map_err(|e| e.to_string())?;
+            self.simulation = Some(simulation);
+        }
+        Ok(self
+            .simulation
+            .as_mut()
+            .expect("was there or was just solved"))
+    }
+
+    /// Row of a value reference.
+    fn variable(interface: &Interface, reference: u32) -> Result<&Variable, Refusal> {
+        interface.variable(reference).ok_or_else(|| {
+            Refusal(format!(
+                "no variable has the value reference {reference}: 1 to {} would be right",
+                interface.variables().len()
+            ))
+        })
+    }
+
+    /// Reads variables of one type, arrays with all their values.
+    pub(crate) fn get(&mut self, kind: Kind, references: &[u32], values: &mut [f64]) -> Outcome {
+        self.check_access(kind, references, values.len())?;
+        if self.phase == Phase::Initialization && self.asks_for_results(references) {
+            self.solve_statics()?;
+        }
+        let mut rest = values;
+        for &reference in references {
+            if Some(reference) == self.time_reference {
+                rest[0] = self.time;
+                rest = &mut rest[1..];
+                continue;
+            }
+            let variable = Self::variable(&self.interface, reference)?;
+            let (own, others) = rest.split_at_mut(variable.size());
+            rest = others;
+            match &variable.binding {
+                Binding::Displacement { point, axis } => {
+                    own[0] = self.inputs[*point].displacement[*axis];
+                }
+                Binding::Velocity { point, axis } => own[0] = self.inputs[*point].velocity[*axis],
+                Binding::Parameter(parameter) => {
+                    own[0] = parameter
+                        .value(&self.scene)
+                        .expect("the table has only parameters of the scene");
+                }
+                _ => {
+                    let simulation = self.simulation.as_ref().ok_or_else(|| {
+                        Refusal(format!(
+                            "out of order: {} has a value from initialization mode on",
+                            variable.name
+                        ))
+                    })?;
+                    Interface::read(variable, simulation, own)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Reads integers.
+    pub(crate) fn get_integers(&mut self, references: &[u32], values: &mut [i32]) -> Outcome {
+        let mut numbers = vec![0.0; values.len()];
+        self.get(Kind::Int32, references, &mut numbers)?;
+        for (value, number) in values.iter_mut().zip(numbers) {
+            *value = number as i32;
+        }
+        Ok(())
+    }
+
+    /// Sets integers.
+    pub(crate) fn set_integers(&mut self, references: &[u32], values: &[i32]) -> Outcome {
+        let numbers: Vec<f64> = values.iter().map(|&value| f64::from(value)).collect();
+        self.set(Kind::Int32, references, &numbers)
+    }
+
+    fn asks_for_results(&self, references: &[u32]) -> bool {
+        references.iter().any(|&reference| {
+            self.interface.variable(reference).is_some_and(|variable| {
+                matches!(
+                    variable.causality,
+                    Causality::Output | Causality::CalculatedParameter
+                )
+            })
+        })
+    }
+
+    /// All references exist and have the type, and the values are as many as they need.
+    fn check_access(&self, kind: Kind, references: &[u32], count: usize) -> Outcome {
+        let mut size = 0;
+        for &reference in references {
+            if Some(reference) == self.time_reference && kind == Kind::Float64 {
+                size += 1;
+                continue;
+            }
+            let variable = Self::variable(&self.interface, reference)?;
+            if variable.kind != kind {
+                return Err(wrong_type(variable, &format!("{kind:?}")));
+            }
+            size += variable.size();
+        }
+        if size != count {
+            return Err(Refusal(format!(
+                "{} variables have {size} values, but the host gave room for {count}",
+                references.len()
+            )));
+        }
+        Ok(())
+    }
+
+    /// Refuses access by a type that no variable has.
+    pub(crate) fn refuse_type(&self, kind: &str, references: &[u32]) -> Outcome {
+        match references.first() {
+            None => Ok(()),
+            Some(&reference) => Err(wrong_type(
+                Self::variable(&self.interface, reference)?,
+                kind,
+            )),
+        }
+    }
+
+    /// Sets variables of one type: all of them or, where one is refused, none.
+    pub(crate) fn set(&mut self, kind: Kind, references: &[u32], values: &[f64]) -> Outcome {
+        if references.is_empty() && values.is_empty() {
+            return Ok(());
+        }
+        if self
+            .time_reference
+            .is_some_and(|time| references.contains(&time))
+        {
+            return Err("time is not to be set".into());
+        }
+        self.check_access(kind, references, values.len())?;
+        let mut candidate: Option<Scene> = None;
+        for (&reference, &value) in references.iter().zip(values) {
+            let variable = Self::variable(&self.interface, reference)?;
+            self.check_settable(variable, value)?;
+            if let Binding::Parameter(parameter) = &variable.binding {
+                let scene = candidate.get_or_insert_with(|| self.scene.clone());
+                parameter
+                    .set(scene, value)
+                    .map_err(|problem| format!("{}: {problem}", variable.name))?;
+            }
+        }
+        if let Some(scene) = candidate {
+            self.check_scene(&scene)?;
+            self.scene = scene;
+            self.simulation = None;
+        }
+        for (&reference, &value) in references.iter().zip(values) {
+            let binding = &Self::variable(&self.interface, reference)?.binding;
+            match *binding {
+                Binding::Displacement { point, axis } => {
+                    self.inputs[point].displacement[axis] = value;
+                    if self.phase == Phase::Initialization {
+                        self.simulation = None;
+                    }
+                }
+                Binding::Velocity { point, axis } => {
+                    let input = &mut self.inputs[point];
+                    input.velocity[axis] = value;
+                    // Hosts write the start value 0 of every input: that is not yet a velocity.
+                    input.has_velocity[axis] |= self.phase == Phase::Step || value != 0.0;
+                }
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    fn check_settable(&self, variable: &Variable, value: f64) -> Outcome {
+        let named = |problem: &str| Err(Refusal(format!("{}: {problem}", variable.name)));
+        match variable.causality {
+            Causality::Input => {
+                self.expect_phase(&[Phase::Instantiated, Phase::Initialization, Phase::Step])
+            }
+            Causality::Parameter => {
+                self.expect_phase(&[Phase::Instantiated, Phase::Initialization])
+            }
+            Causality::Output | Causality::CalculatedParameter => {
+                return named("an output or calculated parameter is not to be set");
+            }
+        }
+        .map_err(|refusal| Refusal(format!("{}: {}", variable.name, refusal.0)))?;
+        if !value.is_finite() {
+            return named(&format!("{value} is not a finite number; nothing was set"));
+        }
+        Ok(())
+    }
+
+    /// The parameters are in range and leave the arrays of the interface as long as they are.
+    fn check_scene(&self, scene: &Scene) -> Outcome {
+        let model = Model::new(scene).map_err(|e| e.to_string())?;
+        for variable in self.interface.variables() {
+            if let Binding::Profile { line, node, .. } = variable.binding {
+                let nodes = model.lines[line].nodes.arc.len();
+                if variable.dimension.is_some_and(|length| length != nodes)
+                    || node.is_some_and(|node| node >= nodes)
+                {
+                    return Err(Refusal(format!(
+                        "with these parameters {} would have {nodes} nodes, which the interface cannot follow: \
+                         give the sections of the line their number of elements in the scene",
+                        model.lines[line].name
+                    )));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Time derivatives of inputs (FMI 2.0). The first derivative of a displacement is its velocity; that of a velocity
+    /// is taken note of and not used, since the path through the communication points has its own.
+    pub(crate) fn set_input_derivatives(
+        &mut self,
+        references: &[u32],
+        orders: &[i32],
+        values: &[f64],
+    ) -> Outcome {
+        self.expect_phase(&[Phase::Instantiated, Phase::Initialization, Phase::Step])?;
+        self.check_access(Kind::Float64, references, values.len())?;
+        let mut targets = Vec::with_capacity(references.len());
+        for ((&reference, &order), &value) in references.iter().zip(orders).zip(values) {
+            let variable = Self::variable(&self.interface, reference)?;
+            let named = |problem: String| Refusal(format!("{}: {problem}", variable.name));
+            if variable.causality != Causality::Input {
+                return Err(named("only inputs have derivatives to set".into()));
+            }
+            if order != 1 {
+                return Err(named(format!(
+                    "derivatives of order {order} are not used: order 1 would be right"
+                )));
+            }
+            if !value.is_finite() {
+                return Err(named(format!(
+                    "{value} is not a finite number; nothing was set"
+                )));
+            }
+            if let Binding::Displacement { point, axis } = variable.binding {
+                targets.push((point, axis, value));
+            }
+        }
+        for (point, axis, value) in targets {
+            self.inputs[point].velocity[axis] = value;
+            self.inputs[point].has_velocity[axis] = true;
+        }
+        Ok(())
+    }
+
+    /// Computes from the host's time `at` to `at + step` [s].
+    pub(crate) fn do_step(&mut self, at: f64, step: f64) -> Outcome {
+        let outcome = self.advance(at, step);
+        self.step_status = match outcome {
+            Ok(()) => Status::Ok,
+            Err(_) => Status::Error,
+        };
+        outcome
+    }
+
+    /// What the last step returned.
+    pub(crate) fn step_status(&self) -> Status {
+        self.step_status
+    }
+
+    fn advance(&mut self, at: f64, step: f64) -> Outcome {
+        self.expect_phase(&[Phase::Step])?;
+        if !at.is_finite() || !step.is_finite() || step < 0.0 {
+            return Err(Refusal(format!(
+                "a step of {step} s from {at} s: both must be finite, the step not negative"
+            )));
+        }
+        if step == 0.0 {
+            return Ok(());
+        }
+        let tolerance = TIME_TOLERANCE * step + 64.0 * f64::EPSILON * self.time.abs();
+        let gap = (at - self.time).abs();
+        if gap > tolerance {
+            return Err(Refusal(format!(
+                "the host steps from {at} s, but the last step ended at {} s: restore a state to go back",
+                self.time
+            )));
+        }
+        if let Some(stop) = self.stop_time
+            && at + step > stop + tolerance
+        {
+            return Err(Refusal(format!(
+                "the step to {} s goes beyond the stop time {stop} s",
+                at + step
+            )));
+        }
+        if gap > 0.5 * tolerance && !self.has_warned_of_time {
+            self.has_warned_of_time = true;
+            let time = self.time;
+            self.log.push(Topic::Warning, || {
+                format!("the host's time {at} s differs from {time} s, where the last step ended; said once")
+            });
+        }
+        let simulation = self
+            .simulation
+            .as_mut()
+            .expect("solved at the end of initialization");
+        hand_over(&self.inputs, simulation);
+        simulation.advance(step).map_err(|e| e.to_string())?;
+        self.time = at + step; // the host's clock, so that rounding does not add up
+        Ok(())
+    }
+
+    /// Time that the last successful step reached [s].
+    pub(crate) fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// All that changes.
+    pub(crate) fn snapshot(&self) -> Snapshot {
+        Snapshot {
+            phase: self.phase,
+            start_time: self.start_time,
+            stop_time: self.stop_time,
+            time: self.time,
+            parameters: self.parameters(&self.scene),
+            inputs: self.inputs.clone(),
+            solver: self.simulation.as_ref().map(|s| s.snapshot().clone()),
+        }
+    }
+
+    fn parameters(&self, scene: &Scene) -> Vec<f64> {
+        self.interface
+            .variables()
+            .iter()
+            .filter_map(|variable| match &variable.binding {
+                Binding::Parameter(parameter) => parameter.value(scene),
+                _ => None,
+            })
+            .collect()
+    }
+
+    /// Goes back to a saved state.
+    pub(crate) fn restore(&mut self, snapshot: &Snapshot) -> Outcome {
+        let parameters = self.parameters(&self.scene);
+        let same = parameters
+            .iter()
+            .map(|value| value.to_bits())
+            .eq(snapshot.parameters.iter().map(|value| value.to_bits()));
+        let mut scene = self.scene.clone();
+        if !same {
+            let rows = self.interface.variables().iter();
+            let rows = rows.filter_map(|variable| match &variable.binding {
+                Binding::Parameter(parameter) => Some(parameter),
+                _ => None,
+            });
+            for (parameter, &value) in rows.zip(&snapshot.parameters) {
+                parameter.set(&mut scene, value)?;
+            }
+        }
+        let simulation = match &snapshot.solver {
+            None => None,
+            Some(state) => {
+                let mut simulation = match self.simulation.take() {
+                    Some(simulation) if same => simulation,
+                    _ => Simulation::new(&scene).map_err(|e| e.to_string())?,
+                };
+                simulation.restore(state.clone());
+                Some(simulation)
+            }
+        };
+        self.scene = scene;
+        self.simulation = simulation;
+        self.phase = snapshot.phase;
+        self.start_time = snapshot.start_time;
+        self.stop_time = snapshot.stop_time;
+        self.time = snapshot.time;
+        self.inputs.clone_from(&snapshot.inputs);
+        Ok(())
+    }
+
+    pub(crate) fn serialize(&self, snapshot: &Snapshot) -> Result<Vec<u8>, Refusal> {
+        Ok(snapshot.to_bytes(&self.token)?)
+    }
+
+    pub(crate) fn deserialize(&self, bytes: &[u8]) -> Result<Snapshot, Refusal> {
+        Ok(Snapshot::from_bytes(bytes, &self.token)?)
+    }
+}
+
+/// Gives the simulation what the host last set.
+fn hand_over(inputs: &[PointInput], simulation: &mut Simulation) {
+    for (point, input) in inputs.iter().enumerate() {
+        let mut velocity = [None; 3];
+        for (axis, velocity) in velocity.iter_mut().enumerate() {
+            *velocity = input.has_velocity[axis].then_some(input.velocity[axis]);
+        }
+        simulation.set_displacement(point, input.displacement);
+        simulation.set_velocity(point, velocity);
+    }
+}
+
+fn wrong_type(variable: &Variable, asked: &str) -> Refusal {
+    Refusal(format!(
+        "{} is of type {:?}, not {asked}",
+        variable.name, variable.kind
+    ))
+}

@@ -1,0 +1,217 @@
+"""The FMU in a hostile house: odd folders, many instances, threads, unloading, foreign locale, calls in any order.
+
+What could end the process or leak into it runs in a child process.
+"""
+
+import math
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import textwrap
+import threading
+
+import fmpy
+import pytest
+
+from fmu_calls import Library, Slave, unpack
+
+HERE = pathlib.Path(__file__).resolve().parent
+
+
+def child(code, *arguments, **options):
+    """Runs code in a new Python; it must end well and say nothing but what it prints last."""
+    environment = {**os.environ, **options.pop("environment", {}), "PYTHONPATH": str(HERE),
+                   "PYTHONDONTWRITEBYTECODE": "1"}
+    done = subprocess.run([sys.executable, "-c", textwrap.dedent(code), *map(str, arguments)], capture_output=True,
+                          text=True, env=environment, **options)
+    assert done.returncode == 0, (done.returncode, done.stdout[-2000:], done.stderr[-2000:])
+    return done
+
+
+def swing(time):
+    return {"fairlead.x": 2.0 * math.sin(0.7 * time)}
+
+
+FORMS = {
+    2: ["file://{path}", "file:{path}", "file://localhost{path}", "file:///{path}", "{path}", "{path}/", "{uri}",
+        "{uri}/", "FILE://{path}"],
+    3: ["{path}", "{path}/", "{uri}"],
+}
+
+
+@pytest.mark.parametrize("folder", ["plain", "sp dir ø {x}", "100% sure", "a+b#c&d"])
+def test_every_form_of_the_resource_location_is_understood(package, version, tmp_path, folder):
+    library = Library(unpack(package("CHAIN", version), tmp_path / folder))
+    place = library.folder / "resources"
+    for form in FORMS[version]:
+        location = form.format(path=place, uri=place.as_uri())
+        one = Slave(library, resources=location)
+        assert one.handle, (location, one.messages)
+        one.free()
+
+
+def test_fmpy_simulates_from_an_odd_folder(package, version, tmp_path):
+    folder = tmp_path / "sp dir ø {x}"
+    folder.mkdir()
+    shutil.copy(package("CHAIN", version), folder / "line ø.fmu")
+    unpacked = unpack(folder / "line ø.fmu", folder / "un packed")
+    for source in (folder / "line ø.fmu", unpacked):
+        result = fmpy.simulate_fmu(str(source), stop_time=0.5, output_interval=0.05)
+        assert math.isfinite(result["line1.tension_b"][-1])
+
+
+def test_two_thousand_instances_leave_neither_memory_nor_files(package, version, tmp_path):
+    unpack(package("CHAIN", version), tmp_path)
+    child("""
+        import os, resource, sys
+        from fmu_calls import Library, Slave
+        library = Library(sys.argv[1])
+        def cycle(count):
+            for _ in range(count):
+                one = Slave(library).initialize()
+                one.expect(one.step(0.0, 0.05))
+                state = one.save()
+                one.expect(one.free_state(state))
+                one.free()
+        def resident():
+            with open("/proc/self/statm") as file:
+                return int(file.read().split()[1]) * resource.getpagesize()
+        cycle(200)
+        memory, files = resident(), len(os.listdir("/proc/self/fd"))
+        cycle(2000)
+        grown = resident() - memory
+        assert grown < 2e6, grown
+        assert len(os.listdir("/proc/self/fd")) == files
+        """, tmp_path)
+
+
+def test_eight_threads_with_an_instance_each_get_the_same_bits(library, version):
+    loaded = library("CHAIN", version)
+    rows = [None] * 8
+
+    def simulate(k):
+        one = Slave(loaded).initialize()
+        rows[k] = one.run(60, drive=swing)
+        one.free()
+
+    threads = [threading.Thread(target=simulate, args=(k,)) for k in range(8)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert rows[0] is not None and all(row == rows[0] for row in rows)
+
+
+def test_instances_do_not_disturb_each_other(slave):
+    alone = slave().initialize().run(20, drive=swing)
+    one, other = slave().initialize(), slave().initialize(chain__mass=150.0)
+    rows = []
+    for k in range(20):
+        for instance in (one, other):
+            for name, value in swing(0.05 * k).items():
+                instance.expect(instance.set(name, value))
+            instance.expect(instance.step(0.05 * k, 0.05))
+        rows.append(one.outputs())
+    assert rows == alone
+
+
+def test_the_library_can_be_loaded_and_unloaded_a_hundred_times(package, version, tmp_path):
+    unpack(package("CHAIN", version), tmp_path)
+    child("""
+        import _ctypes, sys, threading
+        from fmu_calls import Library, Slave
+        def use():
+            library = Library(sys.argv[1])
+            one = Slave(library).initialize()
+            one.expect(one.step(0.0, 0.05))
+            assert one.step(9.0, 0.05) == 3
+            one.free()
+            _ctypes.dlclose(library.dll._handle)
+        def mapped():
+            with open("/proc/self/maps") as file:
+                return sys.argv[1] in file.read()
+        for _ in range(100):
+            use()
+        assert not mapped(), "nothing keeps the library loaded"
+        assert threading.active_count() == 1
+        import os
+        assert len(os.listdir("/proc/self/task")) == 1, "no thread of the library lives on"
+        """, tmp_path)
+
+
+def test_no_output_no_file_and_no_dependence_on_locale_or_folder(package, version, tmp_path):
+    unpack(package("CHAIN", version), tmp_path / "fmu")
+    before = sorted(p for p in tmp_path.rglob("*"))
+    closed = tmp_path / "closed"
+    closed.mkdir(mode=0o555)
+    code = """
+        import locale, os, sys
+        from fmu_calls import Library, Slave
+        try:
+            locale.setlocale(locale.LC_ALL, "")
+        except locale.Error:
+            pass  # a machine without German still must not be disturbed by the variable
+        os.chdir(sys.argv[2])
+        one = Slave(Library(sys.argv[1]))
+        one.expect(one.set("line1.length", 836.25))
+        one.initialize()
+        for k in range(20):
+            one.expect(one.step(0.05 * k, 0.05))
+        assert one.step(99.0, 0.05) == 3 and one.set("fairlead.x", float("nan")) == 3
+        assert one.get("line1.length") == 836.25
+        one.free()
+        """
+    for language in ("de_DE.UTF-8", "C"):
+        done = child(code, tmp_path / "fmu", closed, environment={"LC_ALL": language})
+        assert done.stdout == "" and done.stderr == ""
+    closed.rmdir()
+    assert sorted(p for p in tmp_path.rglob("*")) == before
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_calls_in_any_order_never_end_the_process(package, version, tmp_path, seed):
+    unpack(package("TWO_ROPES" if seed % 2 else "CHAIN", version), tmp_path)
+    done = child("""
+        import random, sys
+        from fmu_calls import Library, Slave
+        rng = random.Random(int(sys.argv[2]))
+        library = Library(sys.argv[1])
+        names = list(library.description.variables)
+        references = [v["reference"] for v in library.description.variables.values()]
+        numbers = [0.0, 1.0, -1.0, 1e-300, 1e300, float("nan"), float("inf"), 0.05]
+        statuses = set()
+        for _ in range(12):
+            one = Slave(library, logging=rng.random() < 0.5)
+            states, time = [], 0.0
+            for _ in range(150):
+                action, status = rng.randrange(14), 0
+                if action == 0: status = one.enter(rng.choice(numbers), rng.choice([None, 10.0]))
+                elif action == 1: status = one.exit()
+                elif action == 2: status = one.terminate() if rng.random() < 0.1 else 0
+                elif action == 3: status = one.reset() if rng.random() < 0.2 else 0
+                elif action in (4, 5): status = one.set(rng.choice(names), 0.1 * rng.random())
+                elif action == 6: status = one.set_references([rng.choice(references)], [rng.choice(numbers)])
+                elif action == 7: status = one.get_references(rng.sample(references, 3), 3)[0]
+                elif action == 8: status = one.get_references([rng.randrange(2**32)], 1)[0]
+                elif action in (9, 10):
+                    h = rng.choice([0.05, 0.0, 0.01])
+                    status = one.step(time, h)
+                    time += h if status == 0 else 0.0
+                elif action == 11:
+                    states.append(one.save())
+                    status = 0
+                elif action == 12 and states:
+                    status = one.restore(rng.choice(states))
+                elif action == 13 and states:
+                    status, state = one.deserialize(one.serialize(rng.choice(states)))
+                    states.append(state)
+                assert status in (0, 1, 3), status
+                statuses.add(status)
+            for state in states:
+                one.free_state(state)
+            one.free()
+        assert {0, 3} <= statuses
+        """, tmp_path, seed)
+    assert done.stdout == "" and done.stderr == ""

@@ -1,0 +1,37 @@
+//! `moorline check`: what a scene models, in words.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use moorline::interface::{Causality, Interface, Layout};
+use moorline::model::Model;
+use moorline::scene::load;
+
+use super::failure::Failure;
+use super::print;
+
+/// Reads a scene, makes it discrete, and says what it models, what surprises, and which variables a host finds.
+pub fn check(path: &Path) -> Result<(), Failure> {
+    let loaded = load(path)?;
+    let located = |mistake| Failure::of_scene(mistake, &loaded);
+    let model = Model::new(&loaded.scene).map_err(located)?;
+    let interface = Interface::new(&loaded.scene, &model, Layout::Arrays).map_err(located)?;
+    let mut text = loaded.scene.in_words();
+    text.push_str("\nvariables of the FMU\n");
+    for (role, causality) in [
+        ("in", Causality::Input),
+        ("out", Causality::Output),
+        ("at the start", Causality::CalculatedParameter),
+    ] {
+        let variables = interface.variables().iter();
+        for variable in variables.filter(|variable| variable.causality == causality) {
+            let (name, unit) = (&variable.name, variable.unit.name);
+            writeln!(text, "  {role}: {name} [{unit}], {}", variable.description)
+                .expect("a string takes any text");
+        }
+    }
+    for note in &loaded.notes {
+        writeln!(text, "note: {note}").expect("a string takes any text");
+    }
+    print(&text)
+}

@@ -1,0 +1,118 @@
+//! Why a command ended without its result: what is said, and the exit code.
+
+use std::io::{self, ErrorKind, IsTerminal, Write};
+use std::process::ExitCode;
+
+use miette::{GraphicalReportHandler, GraphicalTheme, NamedSource};
+use moorline::dynamics::StepError;
+use moorline::output::OutputError;
+use moorline::output::package::PackageError;
+use moorline::scene::{LoadError, LoadedScene, SceneError};
+use moorline::simulation;
+
+/// The input is wrong.
+const INPUT: u8 = 2;
+/// The computation failed.
+const COMPUTATION: u8 = 1;
+/// Width of a message that does not go to a terminal [characters].
+const WIDTH: usize = 110;
+
+/// Why a command ended without its result.
+#[derive(Debug)]
+pub enum Failure {
+    /// The scene cannot be read, or is wrong.
+    Scene(LoadError),
+    /// An argument is wrong.
+    Argument(String),
+    /// The computation failed, or its result could not be written.
+    Computation(String),
+    /// Standard output did not take the text.
+    Print(io::Error),
+}
+
+impl Failure {
+    /// A mistake that shows only when the scene is made discrete or brought to equilibrium.
+    pub fn of_simulation(error: simulation::Error, loaded: &LoadedScene) -> Failure {
+        match error {
+            simulation::Error::Scene(mistake) => Failure::of_scene(mistake, loaded),
+            simulation::Error::Statics(error) => Failure::Computation(error.to_string()),
+        }
+    }
+
+    /// A mistake in a scene that has been read.
+    pub fn of_scene(mistake: SceneError, loaded: &LoadedScene) -> Failure {
+        let name = loaded.path.display().to_string();
+        Failure::Scene(LoadError::Scene {
+            source_text: Box::new(NamedSource::new(name, loaded.text.clone())),
+            mistakes: vec![mistake],
+        })
+    }
+
+    /// A package that was not written.
+    pub fn of_package(error: PackageError, loaded: &LoadedScene) -> Failure {
+        match error {
+            PackageError::Scene(mistake) => Failure::of_scene(mistake, loaded),
+            error => Failure::Computation(error.to_string()),
+        }
+    }
+
+    /// Says on standard error what went wrong, and returns the exit code. Who closed the pipe has read enough.
+    pub fn tell(self) -> ExitCode {
+        let (code, text) = match self {
+            Failure::Print(error) if error.kind() == ErrorKind::BrokenPipe => {
+                return ExitCode::SUCCESS;
+            }
+            Failure::Scene(error) => (INPUT, rendered(&error)),
+            Failure::Argument(text) => (INPUT, format!("error: {text}\n")),
+            Failure::Computation(text) => (COMPUTATION, format!("error: {text}\n")),
+            Failure::Print(error) => (
+                COMPUTATION,
+                format!("error: cannot write to standard output: {error}\n"),
+            ),
+        };
+        // Nothing is left to say it to.
+        let _ = io::stderr().write_all(text.as_bytes());
+        ExitCode::from(code)
+    }
+}
+
+/// The message with the lines of the scene it speaks of.
+fn rendered(error: &LoadError) -> String {
+    let plain = !io::stderr().is_terminal() || std::env::var_os("NO_COLOR").is_some();
+    let theme = if plain {
+        GraphicalTheme::unicode_nocolor()
+    } else {
+        GraphicalTheme::unicode()
+    };
+    let mut text = String::new();
+    let handler = GraphicalReportHandler::new_themed(theme)
+        .with_width(WIDTH)
+        .with_links(false);
+    match handler.render_report(&mut text, error) {
+        Ok(()) => text,
+        Err(_) => format!("error: {}\n", error.list()),
+    }
+}
+
+impl From<LoadError> for Failure {
+    fn from(error: LoadError) -> Self {
+        Failure::Scene(error)
+    }
+}
+
+impl From<StepError> for Failure {
+    fn from(error: StepError) -> Self {
+        Failure::Computation(error.to_string())
+    }
+}
+
+impl From<OutputError> for Failure {
+    fn from(error: OutputError) -> Self {
+        match error {
+            OutputError::File { .. } => Failure::Computation(error.to_string()),
+            OutputError::Folder { .. } | OutputError::NotAFolder { .. } => {
+                Failure::Argument(error.to_string())
+            }
+        }
+    }
+}

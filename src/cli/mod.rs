@@ -1,0 +1,57 @@
+//! The commands, and what they share.
+
+pub mod check;
+pub mod demo;
+mod failure;
+pub mod fmu;
+pub mod run;
+pub mod statics;
+mod summary;
+
+use std::io::{self, Write};
+use std::path::Path;
+
+use indicatif::{ProgressBar, ProgressStyle};
+use moorline::scene::{LoadedScene, load};
+use moorline::simulation::Simulation;
+
+use failure::Failure;
+
+/// Reads a scene file; remarks on it go to standard error.
+fn read_scene(path: &Path) -> Result<LoadedScene, Failure> {
+    let loaded = load(path)?;
+    for note in &loaded.notes {
+        // A remark that nobody can read is no reason to stop.
+        let _ = writeln!(io::stderr(), "note: {}: {note}", path.display());
+    }
+    Ok(loaded)
+}
+
+/// The simulation of a scene, in static equilibrium.
+fn simulate(loaded: &LoadedScene) -> Result<Simulation, Failure> {
+    Simulation::new(&loaded.scene).map_err(|error| Failure::of_simulation(error, loaded))
+}
+
+/// Prints text to standard output.
+fn print(text: &str) -> Result<(), Failure> {
+    let mut out = io::stdout().lock();
+    out.write_all(text.as_bytes())
+        .and_then(|()| out.flush())
+        .map_err(Failure::Print)
+}
+
+/// A bar on a terminal, nothing in a pipe.
+fn progress(steps: u64) -> ProgressBar {
+    let style = ProgressStyle::with_template("{bar:40} {percent:>3} %  {eta} left")
+        .expect("the template is a constant that indicatif accepts");
+    ProgressBar::new(steps).with_style(style)
+}
+
+/// Reads a positive, finite number.
+pub fn positive_number(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(number) if number > 0.0 && number.is_finite() => Ok(number),
+        Ok(_) => Err("must be positive and finite".to_string()),
+        Err(_) => Err("is not a number".to_string()),
+    }
+}

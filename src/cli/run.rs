@@ -1,0 +1,272 @@
+//! `moorline run`: a scene in time, without FMI.
+
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use moorline::interface::{Binding, Causality, Interface, Layout, Variable};
+use moorline::model::{Kinematics, Model, Role};
+use moorline::output::record::{Column, Record};
+use moorline::output::{collect, make_folder, write_run};
+use moorline::scene::Scene;
+use moorline::simulation::Simulation;
+
+use super::failure::Failure;
+use super::summary::run_summary;
+use super::{print, progress, read_scene, simulate};
+
+/// Shapes kept of a run whose scene does not ask for all of them [-].
+const FRAMES_MAX: usize = 240;
+
+/// Who moves the coupled points.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Drive {
+    /// The scene's own motion, exactly.
+    Scene,
+    /// The scene's motion as a host gives it, at communication points only.
+    Host {
+        /// Communication step [s].
+        step: f64,
+        /// Whether velocities are set too.
+        velocities: bool,
+    },
+}
+
+/// Runs a scene and writes everything that comes out into a folder.
+pub fn run(path: &Path, folder: &Path, drive: Drive) -> Result<(), Failure> {
+    let loaded = read_scene(path)?;
+    make_folder(folder)?;
+    let mut simulation = simulate(&loaded)?;
+    let start = match drive {
+        Drive::Scene => simulation.follow_scene(),
+        Drive::Host { velocities, .. } => {
+            set_motion(&mut simulation, 0.0, velocities);
+            simulation.restart(0.0)
+        }
+    };
+    start.map_err(|error| Failure::of_simulation(error, &loaded))?;
+    let interface = Interface::new(&loaded.scene, simulation.model(), Layout::Scalars)
+        .map_err(|mistake| Failure::of_scene(mistake, &loaded))?;
+    let record = step_through(&loaded.scene, &mut simulation, &interface, drive)?;
+    write_run(
+        &record,
+        folder,
+        &loaded.scene.in_words(),
+        loaded.scene.output.profile,
+    )?;
+    print(&format!(
+        "{}\nwritten to {}\n",
+        run_summary(&record),
+        folder.display()
+    ))
+}
+
+/// Steps from the start to the scene's duration, a row and where wanted a shape at every step.
+fn step_through(
+    scene: &Scene,
+    simulation: &mut Simulation,
+    interface: &Interface,
+    drive: Drive,
+) -> Result<Record, Failure> {
+    let variables: Vec<&Variable> = recorded(interface).collect();
+    let mut record = collect::record(scene, simulation, columns(&variables));
+    let interval = match drive {
+        Drive::Scene => scene.output.interval,
+        Drive::Host { step, .. } => step,
+    };
+    let times = Times::new(scene.output.duration, interval);
+    let stride = times.frame_stride(scene.output.profile);
+    record.add_row(0.0, variables.iter().map(|v| value(v, simulation, 0.0)));
+    record.frames.push(collect::frame(simulation, 0.0));
+    let bar = progress(times.count as u64);
+    let mut wall = Duration::ZERO;
+    for index in 0..times.count {
+        if let Drive::Host { velocities, .. } = drive {
+            set_motion(simulation, times.at(index), velocities);
+        }
+        let before = Instant::now();
+        simulation.advance(times.step(index))?;
+        wall += before.elapsed();
+        record.counters.substeps += simulation.substeps() as u64;
+        let now = times.at(index + 1);
+        let row: Vec<f64> = variables
+            .iter()
+            .map(|v| value(v, simulation, now))
+            .collect();
+        check_finite(now, &variables, &row)?;
+        record.add_row(now, row);
+        if (index + 1) % stride == 0 || index + 1 == times.count {
+            record.frames.push(collect::frame(simulation, now));
+        }
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    record.counters.wall = wall;
+    record.counters.simulated = times.end;
+    Ok(record)
+}
+
+/// What has blown up is no result.
+fn check_finite(time: f64, variables: &[&Variable], row: &[f64]) -> Result<(), Failure> {
+    let lost = variables
+        .iter()
+        .zip(row)
+        .find(|(_, value)| !value.is_finite());
+    lost.map_or(Ok(()), |(variable, value)| {
+        Err(Failure::Computation(format!(
+            "at t = {time} s, {}: {value} {} is no result; try a smaller solver.time_step_max, and look at the motion",
+            variable.name, variable.unit.name
+        )))
+    })
+}
+
+/// Output times: multiples of an interval, and the end.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Times {
+    interval: f64,
+    /// End [s].
+    pub end: f64,
+    /// Number of steps [-].
+    pub count: usize,
+}
+
+impl Times {
+    /// Times from 0 to `end` [s] every `interval` [s]; the last step is shorter where the interval does not divide the end.
+    pub fn new(end: f64, interval: f64) -> Times {
+        // A remainder of a millionth of a step is rounding of the quotient, not a step.
+        let count = (end / interval - 1e-6).ceil().max(0.0) as usize;
+        Times {
+            interval,
+            end,
+            count,
+        }
+    }
+
+    /// Time at the beginning of a step, or the end [s].
+    pub fn at(&self, index: usize) -> f64 {
+        // Six times 0.05 is 0.30000000000000004, six twentieths are 0.3.
+        let a_second = (1.0 / self.interval).round();
+        if index == self.count {
+            self.end
+        } else if (a_second * self.interval - 1.0).abs() < 1e-12 {
+            index as f64 / a_second
+        } else {
+            index as f64 * self.interval
+        }
+    }
+
+    /// Length of a step [s]: the interval to the last bit, save for a shorter last one.
+    pub fn step(&self, index: usize) -> f64 {
+        let rest = self.end - index as f64 * self.interval;
+        if index + 1 == self.count && rest < self.interval * (1.0 - 1e-6) {
+            rest
+        } else {
+            self.interval
+        }
+    }
+
+    /// Every how many steps a shape is kept [-].
+    pub fn frame_stride(&self, all: bool) -> usize {
+        if all {
+            1
+        } else {
+            self.count.div_ceil(FRAMES_MAX).max(1)
+        }
+    }
+}
+
+/// Inputs and outputs, without profiles: these have a file of their own.
+pub fn recorded(interface: &Interface) -> impl Iterator<Item = &Variable> {
+    interface.variables().iter().filter(|variable| {
+        matches!(variable.causality, Causality::Input | Causality::Output)
+            && !matches!(variable.binding, Binding::Profile { .. })
+    })
+}
+
+/// Columns of these variables.
+pub fn columns(variables: &[&Variable]) -> Vec<Column> {
+    variables
+        .iter()
+        .map(|variable| Column {
+            name: variable.name.clone(),
+            unit: variable.unit.name.to_string(),
+            description: variable.description.clone(),
+        })
+        .collect()
+}
+
+/// A variable's value now, in its unit; inputs as the scene moves the points at `time` [s].
+fn value(variable: &Variable, simulation: &Simulation, time: f64) -> f64 {
+    scene_input(variable, simulation.model(), time).unwrap_or_else(|| {
+        let mut value = [f64::NAN];
+        // An output that cannot be computed is no number; the table marks it so.
+        let _ = Interface::read(variable, simulation, &mut value);
+        value[0]
+    })
+}
+
+/// An input by the scene's motion at `time` [s], in its unit; `None` of an output.
+pub fn scene_input(variable: &Variable, model: &Model, time: f64) -> Option<f64> {
+    let of = |point: usize, part: fn(&Kinematics) -> [f64; 3], axis: usize| {
+        let moving = scene_motion(model, time);
+        let found = moving.iter().find(|(moved, _)| *moved == point);
+        Some(found.map_or(0.0, |(_, k)| part(k)[axis]))
+    };
+    match variable.binding {
+        Binding::Displacement { point, axis } => of(point, |k| k.position.into(), axis),
+        Binding::Velocity { point, axis } => of(point, |k| k.velocity.into(), axis),
+        _ => None,
+    }
+}
+
+/// Displacement and velocity of every moving coupled point at `time` [s], by the scene.
+pub fn scene_motion(model: &Model, time: f64) -> Vec<(usize, Kinematics)> {
+    let moving = model
+        .points
+        .iter()
+        .enumerate()
+        .filter_map(|(index, point)| match &point.role {
+            Role::Coupled {
+                motion: Some(motion),
+            } => Some((index, motion.at(time))),
+            _ => None,
+        });
+    moving.collect()
+}
+
+fn set_motion(simulation: &mut Simulation, time: f64, velocities: bool) {
+    for (point, k) in scene_motion(simulation.model(), time) {
+        simulation.set_displacement(point, k.position.into());
+        if velocities {
+            let velocity: [f64; 3] = k.velocity.into();
+            simulation.set_velocity(point, velocity.map(Some));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_are_the_interval_to_the_last_bit_and_end_at_the_end() {
+        let times = Times::new(60.0, 0.05);
+        assert_eq!(times.count, 1200);
+        assert!((0..1200).all(|i| times.step(i) == 0.05));
+        assert_eq!(times.at(6), 0.3);
+        assert_eq!(times.at(1200), 60.0);
+    }
+
+    #[test]
+    fn a_last_step_is_shorter_where_the_interval_does_not_divide_the_duration() {
+        let times = Times::new(1.0, 0.3);
+        assert_eq!(times.count, 4);
+        assert!((times.step(3) - 0.1).abs() < 1e-12);
+        assert_eq!(times.at(4), 1.0);
+    }
+
+    #[test]
+    fn an_interval_beyond_the_duration_is_one_step() {
+        let times = Times::new(1.0, 5.0);
+        assert_eq!((times.count, times.step(0)), (1, 1.0));
+    }
+}

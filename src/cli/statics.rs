@@ -1,0 +1,32 @@
+//! `moorline statics`: the static equilibrium as a table or as JSON.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use moorline::output::{collect, json};
+
+use super::failure::Failure;
+use super::summary::{Table, static_table};
+use super::{print, read_scene, simulate};
+
+/// Solves the equilibrium and prints it.
+pub fn statics(path: &Path, as_json: bool) -> Result<(), Failure> {
+    let loaded = read_scene(path)?;
+    let simulation = simulate(&loaded)?;
+    let statics = collect::statics(&loaded.scene, &simulation);
+    if as_json {
+        let mut bytes = Vec::new();
+        json::write(&statics, &mut bytes).expect("memory takes any text");
+        return print(&String::from_utf8(bytes).expect("JSON is UTF-8"));
+    }
+    let record = collect::record(&loaded.scene, &simulation, Vec::new());
+    let mut points = Table::new(&["force of the lines [N]", "x", "y", "z"]);
+    for point in &statics.points {
+        points.row(&point.name, &point.force);
+    }
+    let mut text = String::new();
+    if !statics.title.is_empty() {
+        writeln!(text, "{}\n", statics.title).expect("a string takes any text");
+    }
+    print(&format!("{text}{}\n{points}", static_table(&record)))
+}

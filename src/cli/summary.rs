@@ -1,0 +1,109 @@
+//! Short tables for the terminal.
+
+use std::fmt;
+
+use moorline::output::record::{LineRecord, Range, Record, StaticLine};
+use moorline::output::report::{difference, rounded};
+
+/// Digits of a number in a table [-].
+const DIGITS: usize = 7;
+
+/// A table with a name in front of every row of numbers.
+#[derive(Debug)]
+pub struct Table {
+    rows: Vec<Vec<String>>,
+}
+
+impl Table {
+    /// A table with this head.
+    pub fn new(head: &[&str]) -> Table {
+        Table {
+            rows: vec![head.iter().map(|cell| (*cell).to_string()).collect()],
+        }
+    }
+
+    /// Adds a row of numbers.
+    pub fn row(&mut self, name: &str, numbers: &[f64]) {
+        let cells = numbers.iter().map(|&number| rounded(number, DIGITS));
+        self.rows
+            .push(std::iter::once(name.to_string()).chain(cells).collect());
+    }
+
+    /// Adds a row of text.
+    pub fn text_row(&mut self, cells: Vec<String>) {
+        self.rows.push(cells);
+    }
+}
+
+impl fmt::Display for Table {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let columns = self.rows.iter().map(Vec::len).max().unwrap_or(0);
+        let width = |column: usize| {
+            let cells = self.rows.iter().filter_map(|row| row.get(column));
+            cells.map(|cell| cell.chars().count()).max().unwrap_or(0)
+        };
+        let widths: Vec<usize> = (0..columns).map(width).collect();
+        for row in &self.rows {
+            let mut line = String::new();
+            for (column, (cell, width)) in row.iter().zip(&widths).enumerate() {
+                line.push_str(&match column {
+                    0 => format!("{cell:<width$}"),
+                    _ => format!("  {cell:>width$}"),
+                });
+            }
+            writeln!(f, "{}", line.trim_end())?;
+        }
+        Ok(())
+    }
+}
+
+/// The lines in equilibrium beside the closed-form catenary.
+pub fn static_table(record: &Record) -> Table {
+    let mut table = Table::new(&["static equilibrium", "solved", "catenary", "difference"]);
+    for line in &record.lines {
+        let closed = line.catenary.as_ref().map(|catenary| &catenary.figures);
+        let mut add = |name: &str, figure: fn(&StaticLine) -> f64| {
+            let solved = figure(&line.equilibrium);
+            let mut cells = vec![format!("{} {name}", line.name), rounded(solved, DIGITS)];
+            if let Some(closed) = closed {
+                cells.push(rounded(figure(closed), DIGITS));
+                cells.push(difference(solved, figure(closed)));
+            }
+            table.text_row(cells);
+        };
+        add("tension at end B [N]", |line| line.tension_b);
+        add("horizontal force at end B [N]", |line| line.horizontal);
+        add("sag [m]", |line| line.sag);
+        add("length on the seabed [m]", |line| line.laid_length);
+    }
+    table
+}
+
+/// What a run came to: ranges in time, and its cost.
+pub fn run_summary(record: &Record) -> String {
+    let mut table = Table::new(&["in time", "least", "mean", "greatest"]);
+    for LineRecord { name, .. } in &record.lines {
+        for (stem, label) in [("tension_b", "tension at end B [N]"), ("sag", "sag [m]")] {
+            let history = record
+                .history(&format!("{name}.{stem}"))
+                .unwrap_or_default();
+            if let Some(range) = Range::of(&history) {
+                table.row(
+                    &format!("{name} {label}"),
+                    &[range.min, range.mean, range.max],
+                );
+            }
+        }
+    }
+    let counters = &record.counters;
+    let cost = counters.real_time_factor().map_or(String::new(), |factor| {
+        format!(
+            "{} s simulated in {} s, {} internal steps: {} times real time\n",
+            rounded(counters.simulated, 6),
+            rounded(counters.wall.as_secs_f64(), 3),
+            counters.substeps,
+            rounded(factor, 3)
+        )
+    });
+    format!("{}\n{table}\n{cost}", static_table(record))
+}

@@ -1,0 +1,558 @@
+//! The one table of a scene's inputs, outputs and parameters: names, units, roles, and what each one touches.
+//!
+//! modelDescription.xml, the FMU's getters and setters, the CSV header and `moorline check` all read this table, so
+//! that they cannot drift apart. The value reference of a variable is its position in the table, counted from 1.
+//!
+//! The table holds, in this order: inputs and forces of every coupled point, outputs of every line, the solver's
+//! outputs, the calculated parameters, the parameters, and the profiles where the scene asks for them. Vessels, winches
+//! and releases get their rows between points and lines when a scene can describe them.
+
+mod dependencies;
+mod parameters;
+mod profile;
+
+use std::collections::BTreeSet;
+
+use crate::model::{Line, Model};
+use crate::physics::stretch::StretchLaw;
+use crate::scene::{Axis, PointKind, Scene, SceneError};
+use crate::simulation::Simulation;
+
+pub use parameters::Parameter;
+
+/// Role of a variable in FMI's words.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Causality {
+    /// The host sets it before every step.
+    Input,
+    /// The host reads it.
+    Output,
+    /// Follows from the parameters at initialization.
+    CalculatedParameter,
+    /// The host may set it before the simulation starts.
+    Parameter,
+}
+
+/// When a variable may change, in FMI's words.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Variability {
+    /// Not after initialization.
+    Fixed,
+    /// From step to step.
+    Discrete,
+    /// With time.
+    Continuous,
+}
+
+/// Type of a variable.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// Double precision.
+    Float64,
+    /// Integer.
+    Int32,
+    /// Truth value.
+    Boolean,
+}
+
+/// A unit and its exponents in SI base units.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Unit {
+    /// Name as written in the description.
+    pub name: &'static str,
+    /// Exponent of the kilogram.
+    pub kg: i8,
+    /// Exponent of the metre.
+    pub m: i8,
+    /// Exponent of the second.
+    pub s: i8,
+    /// Exponent of the radian.
+    pub rad: i8,
+}
+
+impl Unit {
+    /// Dimensionless.
+    pub const ONE: Unit = Unit::of("1", 0, 0, 0);
+    /// Metre.
+    pub const METRE: Unit = Unit::of("m", 0, 1, 0);
+    /// Second.
+    pub const SECOND: Unit = Unit::of("s", 0, 0, 1);
+    /// Metre per second.
+    pub const METRE_PER_SECOND: Unit = Unit::of("m/s", 0, 1, -1);
+    /// Metre per second squared.
+    pub const METRE_PER_SECOND_SQUARED: Unit = Unit::of("m/s2", 0, 1, -2);
+    /// Newton.
+    pub const NEWTON: Unit = Unit::of("N", 1, 1, -2);
+    /// Newton per metre.
+    pub const NEWTON_PER_METRE: Unit = Unit::of("N/m", 1, 0, -2);
+    /// Newton second.
+    pub const NEWTON_SECOND: Unit = Unit::of("N.s", 1, 1, -1);
+    /// Kilogram per metre.
+    pub const KILOGRAM_PER_METRE: Unit = Unit::of("kg/m", 1, -1, 0);
+    /// Kilogram per cubic metre.
+    pub const KILOGRAM_PER_CUBIC_METRE: Unit = Unit::of("kg/m3", 1, -3, 0);
+    /// Joule.
+    pub const JOULE: Unit = Unit::of("J", 1, 2, -2);
+    /// Watt.
+    pub const WATT: Unit = Unit::of("W", 1, 2, -3);
+    /// Radian; hosts may show it in degrees.
+    pub const RADIAN: Unit = Unit {
+        name: "rad",
+        kg: 0,
+        m: 0,
+        s: 0,
+        rad: 1,
+    };
+
+    const fn of(name: &'static str, kg: i8, m: i8, s: i8) -> Unit {
+        Unit {
+            name,
+            kg,
+            m,
+            s,
+            rad: 0,
+        }
+    }
+}
+
+/// What getting or setting a variable touches. Points and lines are counted in the scene's order.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Binding {
+    /// Displacement of a coupled point from its reference position [m].
+    Displacement {
+        /// The point.
+        point: usize,
+        /// Its axis, 0 to 2.
+        axis: usize,
+    },
+    /// Velocity of a coupled point [m/s].
+    Velocity {
+        /// The point.
+        point: usize,
+        /// Its axis, 0 to 2.
+        axis: usize,
+    },
+    /// Force of all lines on a coupled point [N].
+    EndForce {
+        /// The point.
+        point: usize,
+        /// Its axis, 0 to 2.
+        axis: usize,
+    },
+    /// A result of a line.
+    Line {
+        /// The line.
+        line: usize,
+        /// The result.
+        result: LineResult,
+    },
+    /// A result of the solver.
+    Solver(SolverResult),
+    /// A parameter of the scene.
+    Parameter(Parameter),
+    /// One value of a line's profile for each node from end A to end B.
+    Profile {
+        /// The line.
+        line: usize,
+        /// What is given at each node.
+        quantity: ProfileQuantity,
+        /// The only node, counted from 0; all where absent.
+        node: Option<usize>,
+    },
+}
+
+/// Results of a line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LineResult {
+    /// Axial tension at end B [N].
+    TensionB,
+    /// Axial tension at end A [N].
+    TensionA,
+    /// Greatest axial tension along the line [N].
+    TensionMax,
+    /// Unstretched length that lies on the seabed [m].
+    LaidLength,
+    /// Greatest vertical distance below the chord between the ends [m].
+    Sag,
+    /// Sag of the closed-form catenary in the reference configuration [m].
+    CatenarySag,
+    /// Horizontal tension of that catenary [N].
+    CatenaryHorizontal,
+    /// Tension of that catenary at end B [N].
+    CatenaryTensionB,
+}
+
+/// Results of the solver.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SolverResult {
+    /// Internal steps of the last communication step [-].
+    Substeps,
+    /// Energy that the integrator made or lost [J].
+    EnergyError,
+    /// Power that the energy balance misses in the last step [W].
+    PowerResidual,
+}
+
+/// What a profile gives at each node.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ProfileQuantity {
+    /// Position along a global axis [m].
+    Position(Axis),
+    /// Axial tension [N].
+    Tension,
+}
+
+/// How profiles appear.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Layout {
+    /// As one scalar for each value (FMI 2.0, CSV).
+    Scalars,
+    /// As arrays (FMI 3.0).
+    Arrays,
+}
+
+/// A row of the table.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Variable {
+    /// Name, dots between its parts.
+    pub name: String,
+    /// What it is, in a sentence.
+    pub description: String,
+    /// Role.
+    pub causality: Causality,
+    /// When it may change.
+    pub variability: Variability,
+    /// Type.
+    pub kind: Kind,
+    /// Unit.
+    pub unit: Unit,
+    /// Length of an array [-]; `None` is a scalar.
+    pub dimension: Option<usize>,
+    /// Value before anyone sets it; inputs and parameters have one.
+    pub start: Option<f64>,
+    /// Value references that it depends on during initialization; outputs and calculated parameters only. After
+    /// initialization outputs change with a step only and so depend on nothing that is set between two steps.
+    pub initial_dependencies: Vec<u32>,
+    /// What it touches.
+    pub binding: Binding,
+}
+
+impl Variable {
+    /// Number of values [-].
+    pub fn size(&self) -> usize {
+        self.dimension.unwrap_or(1)
+    }
+}
+
+/// The table.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Interface {
+    variables: Vec<Variable>,
+}
+
+impl Interface {
+    /// Builds the table of a scene.
+    ///
+    /// # Errors
+    /// Two variables of one name, or a name that FMI cannot carry.
+    pub fn new(scene: &Scene, model: &Model, layout: Layout) -> Result<Interface, SceneError> {
+        let mut variables = Vec::new();
+        for (index, point) in scene.points.iter().enumerate() {
+            if point.kind == PointKind::Coupled {
+                check_name(&point.name, &format!("points[{index}].name"))?;
+                push_point(&mut variables, index, &point.name);
+            }
+        }
+        for (index, line) in scene.lines.iter().enumerate() {
+            check_name(&line.name, &format!("lines[{index}].name"))?;
+            push_line(&mut variables, index, &line.name);
+        }
+        push_solver(&mut variables);
+        for (index, line) in model.lines.iter().enumerate() {
+            if has_closed_form(model, line) {
+                push_catenary(&mut variables, index, &line.name);
+            }
+        }
+        for name in scene.line_types.keys() {
+            check_name(name, &format!("line_types.{name}"))?;
+        }
+        variables.extend(parameters::variables(scene));
+        if scene.output.profile {
+            profile::push(&mut variables, model, layout);
+        }
+        check_unique(&variables)?;
+        dependencies::fill(&mut variables, scene, model);
+        Ok(Interface { variables })
+    }
+
+    /// Rows in their order.
+    pub fn variables(&self) -> &[Variable] {
+        &self.variables
+    }
+
+    /// Value reference of the row at `index`.
+    pub fn reference(index: usize) -> u32 {
+        u32::try_from(index + 1).expect("a table of more than 4e9 rows does not fit in memory")
+    }
+
+    /// The row of a value reference.
+    pub fn variable(&self, reference: u32) -> Option<&Variable> {
+        let index = usize::try_from(reference).ok()?.checked_sub(1)?;
+        self.variables.get(index)
+    }
+
+    /// The outputs, in their order.
+    pub fn outputs(&self) -> impl Iterator<Item = &Variable> {
+        self.variables
+            .iter()
+            .filter(|variable| variable.causality == Causality::Output)
+    }
+
+    /// Writes the values of an output or calculated parameter; `values` has the variable's size.
+    ///
+    /// # Errors
+    /// A line whose closed-form catenary does not exist.
+    pub fn read(
+        variable: &Variable,
+        simulation: &Simulation,
+        values: &mut [f64],
+    ) -> Result<(), String> {
+        assert_eq!(values.len(), variable.size(), "one place for each value");
+        match variable.binding {
+            Binding::EndForce { point, axis } => values[0] = simulation.end_force(point)[axis],
+            Binding::Line { line, result } => {
+                values[0] = line_result(simulation, line, result).ok_or_else(|| {
+                    format!(
+                        "{}: the reference configuration has no closed-form catenary",
+                        variable.name
+                    )
+                })?;
+            }
+            Binding::Solver(result) => {
+                values[0] = match result {
+                    SolverResult::Substeps => simulation.substeps() as f64,
+                    SolverResult::EnergyError => simulation.energy_error(),
+                    SolverResult::PowerResidual => simulation.power_residual(),
+                }
+            }
+            Binding::Profile {
+                line,
+                quantity,
+                node,
+            } => profile::read(simulation, line, quantity, node, values),
+            Binding::Displacement { .. } | Binding::Velocity { .. } | Binding::Parameter(_) => {
+                unreachable!("inputs and parameters are kept by the caller")
+            }
+        }
+        Ok(())
+    }
+}
+
+fn line_result(simulation: &Simulation, line: usize, result: LineResult) -> Option<f64> {
+    let catenary = || simulation.catenary(line);
+    match result {
+        LineResult::TensionB => Some(simulation.tension_b(line)),
+        LineResult::TensionA => Some(simulation.tension_a(line)),
+        LineResult::TensionMax => Some(simulation.tension_max(line)),
+        LineResult::LaidLength => Some(simulation.laid_length(line)),
+        LineResult::Sag => Some(simulation.sag(line)),
+        LineResult::CatenarySag => catenary().map(|c| c.sag()),
+        LineResult::CatenaryHorizontal => catenary().map(|c| c.horizontal()),
+        LineResult::CatenaryTensionB => catenary().map(|c| c.tension_b()),
+    }
+}
+
+/// Whether a line has a closed-form catenary: held ends and engineering strain.
+fn has_closed_form(model: &Model, line: &Line) -> bool {
+    line.ends
+        .iter()
+        .all(|&end| model.points[end].free().is_none())
+        && line
+            .sections
+            .iter()
+            .all(|section| section.law == StretchLaw::Engineering)
+}
+
+fn row(
+    name: String,
+    description: String,
+    causality: Causality,
+    unit: Unit,
+    binding: Binding,
+) -> Variable {
+    Variable {
+        name,
+        description,
+        causality,
+        variability: match causality {
+            Causality::Input | Causality::Output => Variability::Continuous,
+            Causality::Parameter | Causality::CalculatedParameter => Variability::Fixed,
+        },
+        kind: Kind::Float64,
+        unit,
+        dimension: None,
+        start: (causality == Causality::Input).then_some(0.0),
+        initial_dependencies: Vec::new(),
+        binding,
+    }
+}
+
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+fn push_point(variables: &mut Vec<Variable>, point: usize, name: &str) {
+    for (axis, label) in AXES.iter().enumerate() {
+        variables.push(row(
+            format!("{name}.{label}"),
+            format!("displacement of {name} from its reference position along global {label}"),
+            Causality::Input,
+            Unit::METRE,
+            Binding::Displacement { point, axis },
+        ));
+    }
+    for (axis, label) in AXES.iter().enumerate() {
+        variables.push(row(
+            format!("{name}.v{label}"),
+            format!("velocity of {name} along global {label}; derived from the displacements if never set"),
+            Causality::Input,
+            Unit::METRE_PER_SECOND,
+            Binding::Velocity { point, axis },
+        ));
+    }
+    for (axis, label) in AXES.iter().enumerate() {
+        variables.push(row(
+            format!("{name}.f{label}"),
+            format!("force of all lines at {name} on what carries it, along global {label}"),
+            Causality::Output,
+            Unit::NEWTON,
+            Binding::EndForce { point, axis },
+        ));
+    }
+}
+
+fn push_line(variables: &mut Vec<Variable>, line: usize, name: &str) {
+    let results = [
+        ("tension_b", "axial tension at end B", LineResult::TensionB),
+        ("tension_a", "axial tension at end A", LineResult::TensionA),
+        (
+            "tension_max",
+            "greatest axial tension along the line",
+            LineResult::TensionMax,
+        ),
+        (
+            "laid_length",
+            "unstretched length that lies on the seabed",
+            LineResult::LaidLength,
+        ),
+        (
+            "sag",
+            "greatest vertical distance below the chord between the ends",
+            LineResult::Sag,
+        ),
+    ];
+    for (label, meaning, result) in results {
+        let unit = match result {
+            LineResult::LaidLength | LineResult::Sag => Unit::METRE,
+            _ => Unit::NEWTON,
+        };
+        variables.push(row(
+            format!("{name}.{label}"),
+            format!("{name}: {meaning}"),
+            Causality::Output,
+            unit,
+            Binding::Line { line, result },
+        ));
+    }
+}
+
+fn push_catenary(variables: &mut Vec<Variable>, line: usize, name: &str) {
+    let results = [
+        ("catenary_sag", "sag", Unit::METRE, LineResult::CatenarySag),
+        (
+            "catenary_horizontal",
+            "horizontal tension",
+            Unit::NEWTON,
+            LineResult::CatenaryHorizontal,
+        ),
+        (
+            "catenary_tension_b",
+            "tension at end B",
+            Unit::NEWTON,
+            LineResult::CatenaryTensionB,
+        ),
+    ];
+    for (label, meaning, unit, result) in results {
+        variables.push(row(
+            format!("{name}.{label}"),
+            format!("{name}: {meaning} of the closed-form elastic catenary in the reference configuration"),
+            Causality::CalculatedParameter,
+            unit,
+            Binding::Line { line, result },
+        ));
+    }
+}
+
+fn push_solver(variables: &mut Vec<Variable>) {
+    let mut substeps = row(
+        "solver.substeps".into(),
+        "internal steps of the last communication step".into(),
+        Causality::Output,
+        Unit::ONE,
+        Binding::Solver(SolverResult::Substeps),
+    );
+    substeps.kind = Kind::Int32;
+    substeps.variability = Variability::Discrete;
+    variables.push(substeps);
+    variables.push(row(
+        "solver.energy_error".into(),
+        "energy that the time integration made (positive) or lost since the start".into(),
+        Causality::Output,
+        Unit::JOULE,
+        Binding::Solver(SolverResult::EnergyError),
+    ));
+    variables.push(row(
+        "solver.power_residual".into(),
+        "power that the energy balance of the last communication step misses".into(),
+        Causality::Output,
+        Unit::WATT,
+        Binding::Solver(SolverResult::PowerResidual),
+    ));
+}
+
+/// Characters that neither XML nor FMI's naming conventions can carry.
+fn check_name(name: &str, at: &str) -> Result<(), SceneError> {
+    if name.is_empty() || name.trim() != name {
+        return Err(SceneError::new(
+            at,
+            format!(
+                "\"{name}\" cannot name a variable: it must not be empty nor begin or end with a space"
+            ),
+        ));
+    }
+    if let Some(bad) = name
+        .chars()
+        .find(|c| c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}'))
+    {
+        return Err(SceneError::new(
+            at,
+            format!(
+                "\"{}\" cannot name a variable: it holds the control character U+{:04X}",
+                name.escape_default(),
+                u32::from(bad)
+            ),
+        ));
+    }
+    Ok(())
+}
+
+fn check_unique(variables: &[Variable]) -> Result<(), SceneError> {
+    let mut seen = BTreeSet::new();
+    for variable in variables {
+        if !seen.insert(variable.name.as_str()) {
+            return Err(SceneError::new(
+                variable.name.clone(),
+                "two variables of the interface would have this name: rename the point, line or line type that it starts with",
+            ));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,178 @@
+//! What the static solution, and so every output during initialization, depends on.
+//!
+//! Lines that share free points are one network; a network depends on the displacements of the coupled points that it
+//! hangs on and on the parameters that enter its equilibrium. Velocities, drag, added mass and damping do not: nothing
+//! moves. The closed-form catenary is that of the reference configuration and so depends on no displacement.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::parameters::Property;
+use super::{Binding, Interface, LineResult, Parameter, Variable};
+use crate::model::Model;
+use crate::scene::Scene;
+
+/// Fills [`Variable::initial_dependencies`] of all outputs and calculated parameters.
+pub(super) fn fill(variables: &mut [Variable], scene: &Scene, model: &Model) {
+    let knowns: Vec<(u32, Binding)> = variables
+        .iter()
+        .enumerate()
+        .filter(|(_, variable)| {
+            matches!(
+                variable.binding,
+                Binding::Displacement { .. } | Binding::Parameter(_)
+            )
+        })
+        .map(|(index, variable)| (Interface::reference(index), variable.binding.clone()))
+        .collect();
+    let mut known_scopes: BTreeMap<(BTreeSet<usize>, bool), Vec<u32>> = BTreeMap::new();
+    for variable in variables {
+        let (lines, closed_form) = match &variable.binding {
+            Binding::EndForce { point, .. } => {
+                let attached = model.points[*point].attached.iter();
+                (networks_of(model, attached.map(|(line, _)| *line)), false)
+            }
+            Binding::Line { line, result } if is_catenary(*result) => {
+                (BTreeSet::from([*line]), true)
+            }
+            Binding::Line { line, .. } | Binding::Profile { line, .. } => {
+                (networks_of(model, [*line]), false)
+            }
+            _ => continue,
+        };
+        variable.initial_dependencies = known_scopes
+            .entry((lines, closed_form))
+            .or_insert_with_key(|(lines, closed_form)| {
+                let scope = Scope {
+                    scene,
+                    model,
+                    lines,
+                    closed_form: *closed_form,
+                };
+                let of_scope = knowns
+                    .iter()
+                    .filter(|(_, binding)| scope.depends_on(binding));
+                of_scope.map(|(reference, _)| *reference).collect()
+            })
+            .clone();
+    }
+}
+
+fn is_catenary(result: LineResult) -> bool {
+    matches!(
+        result,
+        LineResult::CatenarySag | LineResult::CatenaryHorizontal | LineResult::CatenaryTensionB
+    )
+}
+
+/// All lines of the networks that the given lines belong to.
+fn networks_of(model: &Model, lines: impl IntoIterator<Item = usize>) -> BTreeSet<usize> {
+    lines
+        .into_iter()
+        .flat_map(|line| {
+            model
+                .networks
+                .iter()
+                .filter(move |network| network.lines.contains(&line))
+        })
+        .flat_map(|network| network.lines.iter().copied())
+        .collect()
+}
+
+/// The lines whose equilibrium a variable is read from.
+struct Scope<'a> {
+    scene: &'a Scene,
+    model: &'a Model,
+    lines: &'a BTreeSet<usize>,
+    closed_form: bool,
+}
+
+impl Scope<'_> {
+    fn depends_on(&self, known: &Binding) -> bool {
+        match known {
+            Binding::Displacement { point, .. } => {
+                !self.closed_form
+                    && self.model.points[*point]
+                        .attached
+                        .iter()
+                        .any(|(line, _)| self.lines.contains(line))
+            }
+            Binding::Parameter(parameter) => self.depends_on_parameter(parameter),
+            _ => false,
+        }
+    }
+
+    fn depends_on_parameter(&self, parameter: &Parameter) -> bool {
+        let scene = self.scene;
+        match parameter {
+            Parameter::LineType { name, property } => {
+                self.types().any(|used| used == name) && self.depends_on_property(name, *property)
+            }
+            Parameter::SectionLength { line, .. } => self.lines.contains(line),
+            Parameter::WaterDensity => {
+                self.types().any(|name| self.is_buoyant(name))
+                    || self.free_points().any(|point| point.volume.is_some())
+            }
+            Parameter::SeabedDepth => true,
+            Parameter::Gravity => {
+                self.types()
+                    .any(|name| scene.line_types[name].weight.is_none())
+                    || self
+                        .free_points()
+                        .any(|point| point.mass.is_some() || point.volume.is_some())
+            }
+            Parameter::Tolerance => {
+                !self.closed_form
+                    && self.lines.iter().any(|&line| {
+                        let sections = &scene.lines[line].sections;
+                        sections.iter().any(|section| section.elements.is_none())
+                    })
+            }
+            Parameter::InputReconstruction => false,
+        }
+    }
+
+    fn depends_on_property(&self, name: &str, property: Property) -> bool {
+        match property {
+            Property::AxialStiffness | Property::Weight => true,
+            Property::Mass => self.scene.line_types[name].weight.is_none(),
+            Property::Diameter => {
+                self.is_buoyant(name) || (self.scene.seabed.is_some() && !self.closed_form)
+            }
+            Property::AxialDamping
+            | Property::DampingRatio
+            | Property::DragNormal
+            | Property::DragTangential
+            | Property::AddedMassNormal
+            | Property::AddedMassTangential => false,
+        }
+    }
+
+    /// Whether buoyancy is subtracted from the weight of a line type.
+    fn is_buoyant(&self, name: &str) -> bool {
+        let line_type = &self.scene.line_types[name];
+        self.scene.water.is_some() && line_type.weight.is_none() && line_type.diameter.is_some()
+    }
+
+    /// Line types that the lines use.
+    fn types(&self) -> impl Iterator<Item = &str> {
+        self.lines
+            .iter()
+            .flat_map(|&line| &self.scene.lines[line].sections)
+            .map(|section| section.line_type.as_str())
+    }
+
+    /// Free points that the lines share.
+    fn free_points(&self) -> impl Iterator<Item = &crate::scene::Point> {
+        self.model
+            .networks
+            .iter()
+            .filter(|network| {
+                network
+                    .lines
+                    .iter()
+                    .any(|line| !self.closed_form && self.lines.contains(line))
+            })
+            .flat_map(|network| &network.free_points)
+            .map(|&point| &self.scene.points[point])
+    }
+}

@@ -1,0 +1,306 @@
+//! The parameters of a scene: what a host may change before the simulation starts.
+
+use super::{Binding, Causality, Kind, Unit, Variability, Variable, row};
+use crate::scene::{LineType, Reconstruction, Scene};
+
+/// A parameter of the scene.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Parameter {
+    /// A property of a line type.
+    LineType {
+        /// The line type.
+        name: String,
+        /// The property.
+        property: Property,
+    },
+    /// Unstretched length of a section [m].
+    SectionLength {
+        /// The line.
+        line: usize,
+        /// The section of the line.
+        section: usize,
+    },
+    /// Density of the water [kg/m³].
+    WaterDensity,
+    /// Depth of the seabed [m].
+    SeabedDepth,
+    /// Gravitational acceleration [m/s²].
+    Gravity,
+    /// Target error of fairlead tension [-].
+    Tolerance,
+    /// How the path of a coupled point between communication points is built: 0 smooth, 1 jump.
+    InputReconstruction,
+}
+
+/// A property of a line type.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Property {
+    /// Mass in air [kg/m].
+    Mass,
+    /// Weight in the scene's surroundings [N/m].
+    Weight,
+    /// Volume-equivalent diameter [m].
+    Diameter,
+    /// Axial stiffness EA [N].
+    AxialStiffness,
+    /// Axial damping BA [N s].
+    AxialDamping,
+    /// Axial damping as a ratio of the critical [-].
+    DampingRatio,
+    /// Normal drag coefficient [-].
+    DragNormal,
+    /// Tangential drag coefficient [-].
+    DragTangential,
+    /// Normal added-mass coefficient [-].
+    AddedMassNormal,
+    /// Tangential added-mass coefficient [-].
+    AddedMassTangential,
+}
+
+/// Properties with key, unit and meaning.
+const PROPERTIES: [(Property, &str, Unit, &str); 10] = [
+    (
+        Property::AxialStiffness,
+        "axial_stiffness",
+        Unit::NEWTON,
+        "axial stiffness EA",
+    ),
+    (
+        Property::Mass,
+        "mass",
+        Unit::KILOGRAM_PER_METRE,
+        "mass in air per unstretched length",
+    ),
+    (
+        Property::Weight,
+        "weight",
+        Unit::NEWTON_PER_METRE,
+        "weight in the surroundings per unstretched length",
+    ),
+    (
+        Property::Diameter,
+        "diameter",
+        Unit::METRE,
+        "volume-equivalent diameter",
+    ),
+    (
+        Property::AxialDamping,
+        "axial_damping",
+        Unit::NEWTON_SECOND,
+        "axial damping BA",
+    ),
+    (
+        Property::DampingRatio,
+        "damping_ratio",
+        Unit::ONE,
+        "axial damping as a ratio of the critical damping of each segment",
+    ),
+    (
+        Property::DragNormal,
+        "drag_normal",
+        Unit::ONE,
+        "normal drag coefficient on the diameter",
+    ),
+    (
+        Property::DragTangential,
+        "drag_tangential",
+        Unit::ONE,
+        "tangential drag coefficient on pi times the diameter",
+    ),
+    (
+        Property::AddedMassNormal,
+        "added_mass_normal",
+        Unit::ONE,
+        "normal added-mass coefficient on the displaced volume",
+    ),
+    (
+        Property::AddedMassTangential,
+        "added_mass_tangential",
+        Unit::ONE,
+        "tangential added-mass coefficient on the displaced volume",
+    ),
+];
+
+impl Property {
+    fn value(self, line_type: &LineType) -> Option<f64> {
+        match self {
+            Property::Mass => line_type.mass,
+            Property::Weight => line_type.weight,
+            Property::Diameter => line_type.diameter,
+            Property::AxialStiffness => Some(line_type.axial_stiffness),
+            Property::AxialDamping => line_type.axial_damping,
+            Property::DampingRatio => line_type.damping_ratio,
+            Property::DragNormal => line_type.drag_normal,
+            Property::DragTangential => line_type.drag_tangential,
+            Property::AddedMassNormal => line_type.added_mass_normal,
+            Property::AddedMassTangential => line_type.added_mass_tangential,
+        }
+    }
+
+    fn set(self, line_type: &mut LineType, value: f64) {
+        let target = match self {
+            Property::AxialStiffness => {
+                line_type.axial_stiffness = value;
+                return;
+            }
+            Property::Mass => &mut line_type.mass,
+            Property::Weight => &mut line_type.weight,
+            Property::Diameter => &mut line_type.diameter,
+            Property::AxialDamping => &mut line_type.axial_damping,
+            Property::DampingRatio => &mut line_type.damping_ratio,
+            Property::DragNormal => &mut line_type.drag_normal,
+            Property::DragTangential => &mut line_type.drag_tangential,
+            Property::AddedMassNormal => &mut line_type.added_mass_normal,
+            Property::AddedMassTangential => &mut line_type.added_mass_tangential,
+        };
+        *target = Some(value);
+    }
+}
+
+impl Parameter {
+    /// Its value in a scene that has it; `None` in a scene that has not.
+    pub fn value(&self, scene: &Scene) -> Option<f64> {
+        match self {
+            Parameter::LineType { name, property } => property.value(scene.line_types.get(name)?),
+            Parameter::SectionLength { line, section } => {
+                Some(scene.lines.get(*line)?.sections.get(*section)?.length)
+            }
+            Parameter::WaterDensity => Some(scene.water.as_ref()?.density),
+            Parameter::SeabedDepth => Some(scene.seabed.as_ref()?.depth),
+            Parameter::Gravity => Some(scene.gravity),
+            Parameter::Tolerance => Some(scene.solver.tolerance),
+            Parameter::InputReconstruction => Some(match scene.solver.input_reconstruction {
+                Reconstruction::Smooth => 0.0,
+                Reconstruction::Jump => 1.0,
+            }),
+        }
+    }
+
+    /// Sets it in a scene that has it.
+    ///
+    /// # Errors
+    /// What would be right, for a number that stands for no choice. Ranges are left to [`Scene::check`].
+    pub fn set(&self, scene: &mut Scene, value: f64) -> Result<(), String> {
+        match self {
+            Parameter::LineType { name, property } => {
+                if let Some(line_type) = scene.line_types.get_mut(name) {
+                    property.set(line_type, value);
+                }
+            }
+            Parameter::SectionLength { line, section } => {
+                scene.lines[*line].sections[*section].length = value;
+            }
+            Parameter::WaterDensity => {
+                if let Some(water) = &mut scene.water {
+                    water.density = value;
+                }
+            }
+            Parameter::SeabedDepth => {
+                if let Some(seabed) = &mut scene.seabed {
+                    seabed.depth = value;
+                }
+            }
+            Parameter::Gravity => scene.gravity = value,
+            Parameter::Tolerance => scene.solver.tolerance = value,
+            Parameter::InputReconstruction => {
+                scene.solver.input_reconstruction = if value == 0.0 {
+                    Reconstruction::Smooth
+                } else if value == 1.0 {
+                    Reconstruction::Jump
+                } else {
+                    return Err(format!("{value} is neither 0 (smooth) nor 1 (jump)"));
+                };
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Rows of all parameters that the scene gives.
+pub(super) fn variables(scene: &Scene) -> Vec<Variable> {
+    let mut rows = Vec::new();
+    let mut push = |name: String, description: String, unit: Unit, parameter: Parameter| {
+        if let Some(start) = parameter.value(scene) {
+            let mut variable = row(
+                name,
+                description,
+                Causality::Parameter,
+                unit,
+                Binding::Parameter(parameter),
+            );
+            variable.start = Some(start);
+            rows.push(variable);
+        }
+    };
+    for name in scene.line_types.keys() {
+        for (property, key, unit, meaning) in PROPERTIES {
+            let parameter = Parameter::LineType {
+                name: name.clone(),
+                property,
+            };
+            push(
+                format!("{name}.{key}"),
+                format!("{name}: {meaning}"),
+                unit,
+                parameter,
+            );
+        }
+    }
+    for (index, line) in scene.lines.iter().enumerate() {
+        for section in 0..line.sections.len() {
+            let (key, part) = if line.sections.len() == 1 {
+                ("length".to_string(), String::new())
+            } else {
+                let number = section + 1;
+                (
+                    format!("section{number}.length"),
+                    format!(" of section {number}, counted from end A"),
+                )
+            };
+            push(
+                format!("{}.{key}", line.name),
+                format!("{}: unstretched length{part}", line.name),
+                Unit::METRE,
+                Parameter::SectionLength {
+                    line: index,
+                    section,
+                },
+            );
+        }
+    }
+    push(
+        "water.density".into(),
+        "density of the water".into(),
+        Unit::KILOGRAM_PER_CUBIC_METRE,
+        Parameter::WaterDensity,
+    );
+    push(
+        "seabed.depth".into(),
+        "depth of the seabed below z = 0".into(),
+        Unit::METRE,
+        Parameter::SeabedDepth,
+    );
+    push(
+        "gravity".into(),
+        "gravitational acceleration".into(),
+        Unit::METRE_PER_SECOND_SQUARED,
+        Parameter::Gravity,
+    );
+    push(
+        "solver.tolerance".into(),
+        "target error of fairlead tension; sets the number of elements where the scene leaves it open".into(),
+        Unit::ONE,
+        Parameter::Tolerance,
+    );
+    push(
+        "solver.input_reconstruction".into(),
+        "path of a coupled point between communication points: 0 smooth, 1 constant velocity with a jump".into(),
+        Unit::ONE,
+        Parameter::InputReconstruction,
+    );
+    if let Some(last) = rows.last_mut() {
+        last.kind = Kind::Int32;
+        last.variability = Variability::Fixed;
+    }
+    rows
+}

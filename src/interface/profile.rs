@@ -1,0 +1,75 @@
+//! Node positions and tensions of a line as variables.
+
+use super::{AXES, Binding, Causality, Layout, ProfileQuantity, Unit, Variable, row};
+use crate::model::Model;
+use crate::scene::Axis;
+use crate::simulation::Simulation;
+
+/// Rows of the profiles of all lines.
+pub(super) fn push(variables: &mut Vec<Variable>, model: &Model, layout: Layout) {
+    for (line, built) in model.lines.iter().enumerate() {
+        let nodes = built.nodes.arc.len();
+        let mut push = |label: &str, meaning: &str, unit: Unit, quantity: ProfileQuantity| {
+            let name = format!("{}.profile.{label}", built.name);
+            let description = format!("{}: {meaning} at the nodes from end A to end B", built.name);
+            let mut push = |name, description, node, dimension| {
+                let binding = Binding::Profile {
+                    line,
+                    quantity,
+                    node,
+                };
+                let mut variable = row(name, description, Causality::Output, unit, binding);
+                variable.dimension = dimension;
+                variables.push(variable);
+            };
+            match layout {
+                Layout::Arrays => push(name, description, None, Some(nodes)),
+                Layout::Scalars => {
+                    for node in 0..nodes {
+                        let number = node + 1;
+                        let description =
+                            format!("{}: {meaning} at node {number} from end A", built.name);
+                        push(format!("{name}[{number}]"), description, Some(node), None);
+                    }
+                }
+            }
+        };
+        for (axis, label) in [Axis::X, Axis::Y, Axis::Z].into_iter().zip(AXES) {
+            push(
+                label,
+                &format!("global {label}"),
+                Unit::METRE,
+                ProfileQuantity::Position(axis),
+            );
+        }
+        push(
+            "tension",
+            "axial tension",
+            Unit::NEWTON,
+            ProfileQuantity::Tension,
+        );
+    }
+}
+
+/// Writes the values of a profile variable.
+pub(super) fn read(
+    simulation: &Simulation,
+    line: usize,
+    quantity: ProfileQuantity,
+    node: Option<usize>,
+    values: &mut [f64],
+) {
+    let range = node.map_or(0..values.len(), |node| node..node + 1);
+    match quantity {
+        ProfileQuantity::Position(axis) => {
+            let axis = axis as usize;
+            let positions = &simulation.state().lines[line].position[range];
+            for (value, position) in values.iter_mut().zip(positions) {
+                *value = position[axis];
+            }
+        }
+        ProfileQuantity::Tension => {
+            values.copy_from_slice(&simulation.tensions(line)[range]);
+        }
+    }
+}

@@ -1,0 +1,152 @@
+//! Reads a simulation into the plain numbers that the writers take.
+
+use nalgebra::Vector3;
+
+use super::json;
+use super::record::{Catenary, Column, Frame, LineRecord, Node, Record, StaticLine, Surroundings};
+use crate::model::{End, Role};
+use crate::scene::{PointKind, Scene};
+use crate::simulation::Simulation;
+
+/// Points of a catenary's drawn shape [-].
+const CATENARY_POINTS: usize = 201;
+
+/// The lines, points and surroundings of a simulation that stands in static equilibrium, without rows or frames.
+pub fn record(scene: &Scene, simulation: &Simulation, columns: Vec<Column>) -> Record {
+    let model = simulation.model();
+    let mut record = Record::new(&scene.title, columns);
+    record.lines = (0..model.lines.len())
+        .map(|line| line_record(simulation, line))
+        .collect();
+    let coupled = |point: &&crate::model::Point| matches!(point.role, Role::Coupled { .. });
+    record.points = model
+        .points
+        .iter()
+        .filter(coupled)
+        .map(|point| point.name.clone())
+        .collect();
+    record.surroundings = Surroundings {
+        water: scene.water.is_some(),
+        seabed: model.bed,
+    };
+    record
+}
+
+fn line_record(simulation: &Simulation, line: usize) -> LineRecord {
+    let model = simulation.model();
+    let [x, y, _] = simulation.line_end_force(line, End::B).into();
+    LineRecord {
+        name: model.lines[line].name.clone(),
+        equilibrium: StaticLine {
+            tension_b: simulation.tension_b(line),
+            horizontal: x.hypot(y),
+            sag: simulation.sag(line),
+            laid_length: simulation.laid_length(line),
+        },
+        catenary: simulation.catenary(line).map(|catenary| Catenary {
+            figures: StaticLine {
+                tension_b: catenary.tension_b(),
+                horizontal: catenary.horizontal(),
+                sag: catenary.sag(),
+                laid_length: catenary.laid_length(),
+            },
+            profile: catenary_profile(simulation, line),
+        }),
+    }
+}
+
+/// Shape of the closed form between the line's reference ends, in global axes [m].
+fn catenary_profile(simulation: &Simulation, line: usize) -> Vec<[f64; 3]> {
+    let model = simulation.model();
+    let Some(catenary) = simulation.catenary(line) else {
+        return Vec::new();
+    };
+    let [a, b] = model.lines[line]
+        .ends
+        .map(|end| model.points[end].reference);
+    let chord = Vector3::new(b.x - a.x, b.y - a.y, 0.0);
+    let direction = chord.try_normalize(0.0).unwrap_or(Vector3::x());
+    let length = model.lines[line].unstretched_length();
+    (0..CATENARY_POINTS)
+        .map(|i| {
+            let s = length * i as f64 / (CATENARY_POINTS - 1) as f64;
+            let point = catenary.at(s);
+            (a + direction * point.x + Vector3::z() * point.z).into()
+        })
+        .collect()
+}
+
+/// The shapes of all lines now, which is `time` [s].
+pub fn frame(simulation: &Simulation, time: f64) -> Frame {
+    let nodes = |line| {
+        let nodes = simulation.profile(line).into_iter().map(|node| Node {
+            s: node.s,
+            position: [node.x, node.y, node.z],
+            tension: node.tension,
+        });
+        nodes.collect()
+    };
+    Frame {
+        time,
+        lines: (0..simulation.model().lines.len()).map(nodes).collect(),
+    }
+}
+
+/// The equilibrium that a simulation stands in.
+pub fn statics(scene: &Scene, simulation: &Simulation) -> json::Statics {
+    json::Statics {
+        title: scene.title.clone(),
+        lines: (0..simulation.model().lines.len())
+            .map(|line| static_line(simulation, line))
+            .collect(),
+        points: (0..simulation.model().points.len())
+            .map(|point| json::Point {
+                name: scene.points[point].name.clone(),
+                kind: kind_name(scene.points[point].kind),
+                position: simulation.state().points[point].position.into(),
+                force: simulation.end_force(point),
+            })
+            .collect(),
+        vessels: Vec::new(),
+    }
+}
+
+fn static_line(simulation: &Simulation, line: usize) -> json::Line {
+    let [x, y, z] = simulation.line_end_force(line, End::B).into();
+    json::Line {
+        name: simulation.model().lines[line].name.clone(),
+        end_a: json::End {
+            force: simulation.line_end_force(line, End::A).into(),
+            tension: simulation.tension_a(line),
+        },
+        end_b: json::End {
+            force: [x, y, z],
+            tension: simulation.tension_b(line),
+        },
+        horizontal: x.hypot(y),
+        vertical: -z,
+        laid_length: simulation.laid_length(line),
+        stretched_length: simulation.stretched_length(line),
+        sag: simulation.sag(line),
+        profile: simulation
+            .profile(line)
+            .into_iter()
+            .map(|node| json::ProfileNode {
+                s: node.s,
+                x: node.x,
+                y: node.y,
+                z: node.z,
+                tension: node.tension,
+            })
+            .collect(),
+    }
+}
+
+fn kind_name(kind: PointKind) -> &'static str {
+    match kind {
+        PointKind::Fixed => "fixed",
+        PointKind::Coupled => "coupled",
+        PointKind::Prescribed => "prescribed",
+        PointKind::Free => "free",
+    }
+}

@@ -1,0 +1,121 @@
+//! Tables as comma-separated values.
+//!
+//! `results.csv` has one plain header row (`time,fairlead.x,…`) and one row for every output time, as `pandas.read_csv` and
+//! spreadsheets expect; `results.units.csv` beside it has a row `name,unit,description` for every column. `profile.csv` holds
+//! the shape of the lines in long form, a row for every time, line and node. Numbers have the fewest digits that read back to
+//! the same bits.
+
+use std::io::{self, Write};
+
+use super::record::Record;
+
+/// Header of `profile.csv`.
+const PROFILE_HEADER: [&str; 8] = ["time", "line", "node", "s", "x", "y", "z", "tension"];
+
+/// Writes the results: a header row of names, then a row for every output time, each value in its column's unit.
+///
+/// # Errors
+/// Where `out` refuses.
+pub fn write_results(record: &Record, out: impl Write) -> io::Result<()> {
+    let mut table = csv::Writer::from_writer(out);
+    table.write_record(record.columns().iter().map(|column| &column.name))?;
+    for row in record.rows() {
+        table.write_record(row.iter().map(|&value| shortest(value)))?;
+    }
+    table.flush()
+}
+
+/// Writes name, unit and description of every column of the results.
+///
+/// # Errors
+/// Where `out` refuses.
+pub fn write_units(record: &Record, out: impl Write) -> io::Result<()> {
+    let mut table = csv::Writer::from_writer(out);
+    table.write_record(["name", "unit", "description"])?;
+    for column in record.columns() {
+        table.write_record([&column.name, &column.unit, &column.description])?;
+    }
+    table.flush()
+}
+
+/// Writes the shapes of the lines: time [s], line, node, unstretched arc length s [m], x, y, z [m], effective tension [N].
+///
+/// # Errors
+/// Where `out` refuses.
+pub fn write_profile(record: &Record, out: impl Write) -> io::Result<()> {
+    let mut table = csv::Writer::from_writer(out);
+    table.write_record(PROFILE_HEADER)?;
+    for frame in &record.frames {
+        for (line, nodes) in record.lines.iter().zip(&frame.lines) {
+            for (index, node) in nodes.iter().enumerate() {
+                let [x, y, z] = node.position;
+                table.write_field(shortest(frame.time))?;
+                table.write_field(&line.name)?;
+                table.write_field(index.to_string())?;
+                table.write_record([node.s, x, y, z, node.tension].map(shortest))?;
+            }
+        }
+    }
+    table.flush()
+}
+
+/// The fewest digits that read back to the same bits, in scientific notation where it is far from one.
+pub(super) fn shortest(value: f64) -> String {
+    format!("{value:?}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::sample;
+    use super::*;
+
+    #[test]
+    fn every_number_reads_back_to_the_same_bits() {
+        for value in [0.1, 1.0 / 3.0, 5e-324, -0.0, f64::MAX, 17.008898550123456] {
+            let back: f64 = shortest(value).parse().unwrap();
+            assert_eq!(back.to_bits(), value.to_bits());
+            assert!(shortest(value).len() <= 25);
+        }
+    }
+
+    #[test]
+    fn the_results_read_back_row_by_row() {
+        let record = sample::record();
+        let mut bytes = Vec::new();
+        write_results(&record, &mut bytes).unwrap();
+        let mut table = csv::Reader::from_reader(bytes.as_slice());
+        let names: Vec<_> = record.columns().iter().map(|c| c.name.clone()).collect();
+        assert_eq!(table.headers().unwrap(), &csv::StringRecord::from(names));
+        let rows: Vec<Vec<f64>> = table.deserialize().collect::<Result<_, _>>().unwrap();
+        assert!(rows.iter().map(Vec::as_slice).eq(record.rows()));
+    }
+
+    #[test]
+    fn a_comma_in_a_description_is_quoted() {
+        let mut record = sample::record();
+        record.title = String::new();
+        let mut bytes = Vec::new();
+        write_units(&record, &mut bytes).unwrap();
+        let text = String::from_utf8(bytes).unwrap();
+        assert!(text.starts_with("name,unit,description\ntime,s,simulated time\n"));
+        assert!(text.contains("fairlead.fx,N,\"end force, on the vessel\"\n"));
+    }
+
+    #[test]
+    fn the_profile_has_a_row_for_every_time_line_and_node() {
+        let record = sample::record();
+        let mut bytes = Vec::new();
+        write_profile(&record, &mut bytes).unwrap();
+        let mut table = csv::Reader::from_reader(bytes.as_slice());
+        let nodes: usize = record
+            .frames
+            .iter()
+            .flat_map(|f| &f.lines)
+            .map(Vec::len)
+            .sum();
+        let rows: Vec<_> = table.records().collect::<Result<_, _>>().unwrap();
+        assert_eq!(rows.len(), nodes);
+        assert_eq!(&rows[1][1], "line1");
+        assert_eq!(&rows[1][2], "1");
+    }
+}

@@ -1,0 +1,547 @@
+//! modelDescription.xml for FMI 2.0 and 3.0, written from the interface table.
+//!
+//! Sources: FMI 2.0.4 section 2.2 and 4.3.1, FMI 3.0.2 section 2.4 and 4.4.1. Numbers are in the shortest form that reads
+//! back to the same bits; nothing depends on locale, clock or machine. Value references are positions, since
+//! OMSimulator takes the dependency references of FMI 3.0 for positions.
+
+use std::io;
+
+use moorline_host::FmiVersion;
+use quick_xml::Writer;
+use quick_xml::events::{BytesDecl, Event};
+use sha2::{Digest, Sha256};
+
+use crate::interface::{Causality, Interface, Kind, Layout, Unit, Variability, Variable};
+use crate::model::Model;
+use crate::scene::{Scene, SceneError};
+
+/// Name of the library in the FMU, without extension.
+pub const MODEL_IDENTIFIER: &str = "moorline";
+
+/// Version of this program, part of the token.
+pub const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+/// Categories of log messages with their meaning; the FMU uses no other.
+pub const LOG_CATEGORIES: [(&str, &str); 4] = [
+    ("logEvents", "what was chosen and why"),
+    (
+        "logStatusWarning",
+        "a call was carried out with a reservation",
+    ),
+    (
+        "logStatusError",
+        "a call was refused or failed; the state is as before",
+    ),
+    (
+        "logStatusFatal",
+        "an internal fault; the instance can only be freed",
+    ),
+];
+
+/// Everything that an FMU of a scene is made of, besides the library.
+#[derive(Debug, Clone)]
+pub struct Description {
+    /// The table of variables.
+    pub interface: Interface,
+    /// Text of modelDescription.xml.
+    pub xml: String,
+    /// The instantiation token: hash of the description, the scene's text and the program's version.
+    pub token: String,
+}
+
+impl Description {
+    /// Describes a scene, given as the text in the FMU and as read from it.
+    ///
+    /// # Errors
+    /// A scene that makes no model, or names that clash.
+    pub fn new(text: &str, scene: &Scene, version: FmiVersion) -> Result<Description, SceneError> {
+        let layout = match version {
+            FmiVersion::Two => Layout::Scalars,
+            FmiVersion::Three => Layout::Arrays,
+        };
+        let model = Model::new(scene)?;
+        let interface = Interface::new(scene, &model, layout)?;
+        let token = token(&write(scene, &interface, version, ""), text);
+        let xml = write(scene, &interface, version, &token);
+        Ok(Description {
+            interface,
+            xml,
+            token,
+        })
+    }
+}
+
+/// SHA-256 in hexadecimal; every part goes in with its length.
+fn token(xml: &str, scene: &str) -> String {
+    let mut hash = Sha256::new();
+    for part in [VERSION, xml, scene] {
+        hash.update((part.len() as u64).to_le_bytes());
+        hash.update(part);
+    }
+    hash.finalize()
+        .iter()
+        .map(|byte| format!("{byte:02x}"))
+        .collect()
+}
+
+fn write(scene: &Scene, interface: &Interface, version: FmiVersion, token: &str) -> String {
+    let mut writer = Writer::new_with_indent(Vec::new(), b' ', 2);
+    write_document(&mut writer, scene, interface, version, token)
+        .expect("writing to memory does not fail");
+    let mut bytes = writer.into_inner();
+    bytes.push(b'\n');
+    String::from_utf8(bytes).expect("the writer was given UTF-8 only")
+}
+
+type Xml = Writer<Vec<u8>>;
+
+fn write_document(
+    writer: &mut Xml,
+    scene: &Scene,
+    interface: &Interface,
+    version: FmiVersion,
+    token: &str,
+) -> io::Result<()> {
+    writer.write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))?;
+    let name = model_name(scene);
+    let generation_tool = format!("moorline {VERSION}");
+    let naming = if interface.variables().iter().all(|v| is_structured(&v.name)) {
+        "structured"
+    } else {
+        "flat"
+    };
+    let token_key = match version {
+        FmiVersion::Two => "guid",
+        FmiVersion::Three => "instantiationToken",
+    };
+    let root = writer
+        .create_element("fmiModelDescription")
+        .with_attributes([
+            ("fmiVersion", version.to_string().as_str()),
+            ("modelName", name.as_str()),
+            (token_key, token),
+            (
+                "description",
+                "Mooring lines: displacements of the fairleads in, forces of the mooring out. \
+                 SI units, global axes, z up, z = 0 at still water.",
+            ),
+            ("version", VERSION),
+            ("license", "MIT OR Apache-2.0"),
+            ("generationTool", generation_tool.as_str()),
+            ("variableNamingConvention", naming),
+        ]);
+    root.write_inner_content(|writer| {
+        write_co_simulation(writer, version)?;
+        write_units(writer, interface, version)?;
+        write_log_categories(writer)?;
+        writer
+            .create_element("DefaultExperiment")
+            .with_attributes([
+                ("startTime", "0.0"),
+                ("stopTime", number(scene.output.duration).as_str()),
+                ("stepSize", number(scene.output.interval).as_str()),
+            ])
+            .write_empty()?;
+        writer
+            .create_element("ModelVariables")
+            .write_inner_content(|writer| write_variables(writer, interface, version))?;
+        writer
+            .create_element("ModelStructure")
+            .write_inner_content(|writer| write_structure(writer, interface, version))?;
+        Ok(())
+    })?;
+    Ok(())
+}
+
+/// The title, without what XML cannot carry.
+fn model_name(scene: &Scene) -> String {
+    let title: String = scene
+        .title
+        .chars()
+        .map(|c| {
+            if c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}') {
+                ' '
+            } else {
+                c
+            }
+        })
+        .collect();
+    if title.trim().is_empty() {
+        "mooring".to_string()
+    } else {
+        title.trim().to_string()
+    }
+}
+
+/// Shortest decimal form that reads back to the same bits.
+fn number(value: f64) -> String {
+    format!("{value:?}")
+}
+
+/// Whether a name follows the standard's structured naming convention without quotes.
+fn is_structured(name: &str) -> bool {
+    name.split('.').all(|part| {
+        let stem = part
+            .split_once('[')
+            .filter(|(_, index)| {
+                index
+                    .strip_suffix(']')
+                    .is_some_and(|digits| digits.bytes().all(|b| b.is_ascii_digit()))
+            })
+            .map_or(part, |(stem, _)| stem);
+        let mut characters = stem.chars();
+        characters
+            .next()
+            .is_some_and(|c| c == '_' || c.is_ascii_alphabetic())
+            && characters.all(|c| c == '_' || c.is_ascii_alphanumeric())
+    })
+}
+
+fn write_co_simulation(writer: &mut Xml, version: FmiVersion) -> io::Result<()> {
+    let attributes: &[(&str, &str)] = match version {
+        FmiVersion::Two => &[
+            ("modelIdentifier", MODEL_IDENTIFIER),
+            ("needsExecutionTool", "false"),
+            ("canHandleVariableCommunicationStepSize", "true"),
+            ("canInterpolateInputs", "true"),
+            ("maxOutputDerivativeOrder", "0"),
+            ("canRunAsynchronuously", "false"),
+            ("canBeInstantiatedOnlyOncePerProcess", "false"),
+            ("canNotUseMemoryManagementFunctions", "true"),
+            ("canGetAndSetFMUstate", "true"),
+            ("canSerializeFMUstate", "true"),
+            ("providesDirectionalDerivative", "false"),
+        ],
+        FmiVersion::Three => &[
+            ("modelIdentifier", MODEL_IDENTIFIER),
+            ("needsExecutionTool", "false"),
+            ("canBeInstantiatedOnlyOncePerProcess", "false"),
+            ("canGetAndSetFMUState", "true"),
+            ("canSerializeFMUState", "true"),
+            ("providesDirectionalDerivatives", "false"),
+            ("canHandleVariableCommunicationStepSize", "true"),
+            ("maxOutputDerivativeOrder", "0"),
+            ("providesIntermediateUpdate", "false"),
+            ("mightReturnEarlyFromDoStep", "false"),
+            ("canReturnEarlyAfterIntermediateUpdate", "false"),
+            ("hasEventMode", "false"),
+        ],
+    };
+    writer
+        .create_element("CoSimulation")
+        .with_attributes(attributes.iter().copied())
+        .write_empty()?;
+    Ok(())
+}
+
+fn write_units(writer: &mut Xml, interface: &Interface, version: FmiVersion) -> io::Result<()> {
+    let mut units: Vec<Unit> = match version {
+        FmiVersion::Two => Vec::new(),
+        FmiVersion::Three => vec![Unit::SECOND],
+    };
+    for variable in interface.variables().iter().filter(|v| has_unit(v)) {
+        if !units.contains(&variable.unit) {
+            units.push(variable.unit);
+        }
+    }
+    writer
+        .create_element("UnitDefinitions")
+        .write_inner_content(|writer| {
+            for unit in &units {
+                write_unit(writer, unit)?;
+            }
+            Ok(())
+        })?;
+    Ok(())
+}
+
+fn write_unit(writer: &mut Xml, unit: &Unit) -> io::Result<()> {
+    let exponents = [
+        ("kg", unit.kg),
+        ("m", unit.m),
+        ("s", unit.s),
+        ("rad", unit.rad),
+    ];
+    let present: Vec<(&str, String)> = exponents
+        .iter()
+        .filter(|(_, exponent)| *exponent != 0)
+        .map(|(base, exponent)| (*base, exponent.to_string()))
+        .collect();
+    writer
+        .create_element("Unit")
+        .with_attribute(("name", unit.name))
+        .write_inner_content(|writer| {
+            writer
+                .create_element("BaseUnit")
+                .with_attributes(present.iter().map(|(base, text)| (*base, text.as_str())))
+                .write_empty()?;
+            if *unit == Unit::RADIAN {
+                let factor = number(180.0 / std::f64::consts::PI);
+                writer
+                    .create_element("DisplayUnit")
+                    .with_attributes([("name", "deg"), ("factor", factor.as_str())])
+                    .write_empty()?;
+            }
+            Ok(())
+        })?;
+    Ok(())
+}
+
+fn write_log_categories(writer: &mut Xml) -> io::Result<()> {
+    writer
+        .create_element("LogCategories")
+        .write_inner_content(|writer| {
+            for (name, description) in LOG_CATEGORIES {
+                writer
+                    .create_element("Category")
+                    .with_attributes([("name", name), ("description", description)])
+                    .write_empty()?;
+            }
+            Ok(())
+        })?;
+    Ok(())
+}
+
+fn write_variables(writer: &mut Xml, interface: &Interface, version: FmiVersion) -> io::Result<()> {
+    for (index, variable) in interface.variables().iter().enumerate() {
+        match version {
+            FmiVersion::Two => write_variable2(writer, variable, index)?,
+            FmiVersion::Three => write_variable3(writer, variable, index)?,
+        }
+    }
+    if version == FmiVersion::Three {
+        let reference = time_reference(interface).to_string();
+        writer
+            .create_element("Float64")
+            .with_attributes([
+                ("name", "time"),
+                ("valueReference", reference.as_str()),
+                ("description", "time"),
+                ("causality", "independent"),
+                ("variability", "continuous"),
+                ("unit", Unit::SECOND.name),
+            ])
+            .write_empty()?;
+    }
+    Ok(())
+}
+
+/// Value reference of the independent variable of FMI 3.0, after all others.
+pub fn time_reference(interface: &Interface) -> u32 {
+    Interface::reference(interface.variables().len())
+}
+
+/// Attributes that both versions put on the variable itself.
+fn common_attributes(variable: &Variable, index: usize) -> Vec<(&'static str, String)> {
+    let causality = match variable.causality {
+        Causality::Input => "input",
+        Causality::Output => "output",
+        Causality::CalculatedParameter => "calculatedParameter",
+        Causality::Parameter => "parameter",
+    };
+    let variability = match variable.variability {
+        Variability::Fixed => "fixed",
+        Variability::Discrete => "discrete",
+        Variability::Continuous => "continuous",
+    };
+    let initial = match variable.causality {
+        Causality::Input => None,
+        Causality::Output | Causality::CalculatedParameter => Some("calculated"),
+        Causality::Parameter => Some("exact"),
+    };
+    let mut attributes = vec![
+        ("name", variable.name.clone()),
+        ("valueReference", Interface::reference(index).to_string()),
+        ("description", variable.description.clone()),
+        ("causality", causality.to_string()),
+        ("variability", variability.to_string()),
+    ];
+    attributes.extend(initial.map(|initial| ("initial", initial.to_string())));
+    attributes
+}
+
+fn has_unit(variable: &Variable) -> bool {
+    variable.kind == Kind::Float64
+}
+
+fn value_attributes(variable: &Variable) -> Vec<(&'static str, String)> {
+    let mut attributes = Vec::new();
+    if has_unit(variable) {
+        attributes.push(("unit", variable.unit.name.to_string()));
+        if variable.unit == Unit::RADIAN {
+            attributes.push(("displayUnit", "deg".to_string()));
+        }
+    }
+    if let Some(start) = variable.start {
+        let text = match variable.kind {
+            Kind::Float64 => number(start),
+            Kind::Int32 => format!("{start:.0}"),
+            Kind::Boolean => (start != 0.0).to_string(),
+        };
+        attributes.push(("start", text));
+    }
+    attributes
+}
+
+fn texts<'a>(attributes: &'a [(&'static str, String)]) -> impl Iterator<Item = (&'a str, &'a str)> {
+    attributes.iter().map(|(key, text)| (*key, text.as_str()))
+}
+
+fn write_variable2(writer: &mut Xml, variable: &Variable, index: usize) -> io::Result<()> {
+    let common = common_attributes(variable, index);
+    let value = value_attributes(variable);
+    let element = match variable.kind {
+        Kind::Float64 => "Real",
+        Kind::Int32 => "Integer",
+        Kind::Boolean => "Boolean",
+    };
+    writer
+        .create_element("ScalarVariable")
+        .with_attributes(texts(&common))
+        .write_inner_content(|writer| {
+            writer
+                .create_element(element)
+                .with_attributes(texts(&value))
+                .write_empty()?;
+            Ok(())
+        })?;
+    Ok(())
+}
+
+fn write_variable3(writer: &mut Xml, variable: &Variable, index: usize) -> io::Result<()> {
+    let mut attributes = common_attributes(variable, index);
+    attributes.extend(value_attributes(variable));
+    let element = writer
+        .create_element(match variable.kind {
+            Kind::Float64 => "Float64",
+            Kind::Int32 => "Int32",
+            Kind::Boolean => "Boolean",
+        })
+        .with_attributes(texts(&attributes));
+    match variable.dimension {
+        None => element.write_empty()?,
+        Some(length) => element.write_inner_content(|writer| {
+            writer
+                .create_element("Dimension")
+                .with_attribute(("start", length.to_string().as_str()))
+                .write_empty()?;
+            Ok(())
+        })?,
+    };
+    Ok(())
+}
+
+fn write_structure(writer: &mut Xml, interface: &Interface, version: FmiVersion) -> io::Result<()> {
+    let of = |causalities: &'static [Causality]| {
+        interface
+            .variables()
+            .iter()
+            .enumerate()
+            .filter(move |(_, variable)| causalities.contains(&variable.causality))
+    };
+    let outputs = || of(&[Causality::Output]).map(|(index, _)| (index, ""));
+    let initial: Vec<(usize, String)> = of(&[Causality::Output, Causality::CalculatedParameter])
+        .map(|(index, variable)| (index, references(&variable.initial_dependencies)))
+        .collect();
+    match version {
+        FmiVersion::Two => {
+            writer
+                .create_element("Outputs")
+                .write_inner_content(|writer| {
+                    outputs().try_for_each(|(index, depends)| {
+                        write_unknown(writer, ["Unknown", "index"], index, depends)
+                    })
+                })?;
+            writer
+                .create_element("InitialUnknowns")
+                .write_inner_content(|writer| {
+                    initial.iter().try_for_each(|(index, depends)| {
+                        write_unknown(writer, ["Unknown", "index"], *index, depends)
+                    })
+                })?;
+        }
+        FmiVersion::Three => {
+            for (index, depends) in outputs() {
+                write_unknown(writer, ["Output", "valueReference"], index, depends)?;
+            }
+            for (index, depends) in &initial {
+                write_unknown(
+                    writer,
+                    ["InitialUnknown", "valueReference"],
+                    *index,
+                    depends,
+                )?;
+            }
+        }
+    }
+    Ok(())
+}
+
+fn write_unknown(
+    writer: &mut Xml,
+    [element, key]: [&str; 2],
+    index: usize,
+    dependencies: &str,
+) -> io::Result<()> {
+    writer
+        .create_element(element)
+        .with_attributes([
+            (key, Interface::reference(index).to_string().as_str()),
+            ("dependencies", dependencies),
+        ])
+        .write_empty()?;
+    Ok(())
+}
+
+fn references(references: &[u32]) -> String {
+    let texts: Vec<String> = references.iter().map(u32::to_string).collect();
+    texts.join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_read_back_to_the_same_bits() {
+        for value in [0.1, 1.0 / 3.0, 1e300, 5e-324, -0.0, 753.6e6, 9.80665] {
+            let back: f64 = number(value).parse().unwrap();
+            assert_eq!(back.to_bits(), value.to_bits(), "{value}");
+        }
+    }
+
+    #[test]
+    fn a_name_with_other_characters_is_not_structured() {
+        for name in ["line1.tension_b", "_a.b[12]", "gravity"] {
+            assert!(is_structured(name), "{name}");
+        }
+        for name in ["line 1.x", "1.x", "ø.x", "a..b", "a.b[x]", "a-b.x", ""] {
+            assert!(!is_structured(name), "{name}");
+        }
+    }
+
+    #[test]
+    fn a_radian_is_shown_in_degrees() {
+        let mut writer = Writer::new(Vec::new());
+        write_unit(&mut writer, &Unit::RADIAN).unwrap();
+        assert_eq!(
+            String::from_utf8(writer.into_inner()).unwrap(),
+            "<Unit name=\"rad\"><BaseUnit rad=\"1\"/><DisplayUnit name=\"deg\" factor=\"57.29577951308232\"/></Unit>"
+        );
+    }
+
+    #[test]
+    fn a_title_with_control_characters_stays_legal_xml() {
+        let scene = Scene::from_toml("title = \"a\\u0001<b>\"").unwrap();
+        assert_eq!(model_name(&scene), "a <b>");
+    }
+
+    #[test]
+    fn the_token_changes_with_description_and_scene() {
+        let first = token("xml", "scene");
+        assert_eq!(first.len(), 64);
+        assert_ne!(first, token("xml2", "scene"));
+        assert_ne!(first, token("xml", "scene2"));
+        assert_ne!(token("ab", "c"), token("a", "bc"));
+    }
+}

@@ -1,0 +1,364 @@
+//! One chart: title, legend, axes, curves, as SVG.
+
+use std::fmt::Write;
+
+use plotters::coord::Shift;
+use plotters::element::DashedPathElement;
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+
+use super::axis::Axis;
+
+/// Units of the drawing per pixel: the backend rounds to whole units, which would show as steps in a curve.
+const FINE: u32 = 4;
+/// Space between the frame and the right and lower edge [px].
+const MARGIN: u32 = 18;
+/// Space between the left edge and the name of the vertical axis [px].
+const EDGE: u32 = 8;
+/// Width from the left edge to the frame: edge, name and ticks of the vertical axis [px].
+const LABELS_LEFT: u32 = 80;
+/// Height of the labels below the frame [px].
+const LABELS_BELOW: u32 = 48;
+/// Height of the title [px].
+const TITLE: u32 = 34;
+/// Height of a row of the legend [px].
+const LEGEND_ROW: u32 = 20;
+/// Width of a stroke sample in the legend [px].
+const SAMPLE: u32 = 26;
+/// Size of text [px].
+const TEXT: u32 = 13;
+/// Mean width of a letter over the text size, generous [-].
+const LETTER: f64 = 0.58;
+/// Most points drawn of a history; beyond, the least and greatest of every group stand for it.
+const POINTS_MAX: usize = 2400;
+/// Least and greatest height of a chart to scale, without title and legend [px].
+const TO_SCALE_HEIGHTS: [f64; 2] = [150.0, 560.0];
+/// The plotting library rounds layout to the size it was given: its text size is this much more than the SVG's.
+const TEXT_SCALE: f64 = 1.24;
+
+/// How a curve is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stroke {
+    /// A full line.
+    Bold,
+    /// Dashes.
+    Dashed,
+    /// A thin pale line.
+    Faint,
+    /// A straight level: still water, seabed.
+    Level,
+    /// Rings at the points.
+    Nodes,
+}
+
+/// A curve of a chart.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Curve {
+    /// Points, in the units of the axes.
+    pub points: Vec<[f64; 2]>,
+    /// Name in the legend; none where empty.
+    pub name: String,
+    behind: bool,
+    colour: [u8; 3],
+    stroke: Stroke,
+}
+
+impl Curve {
+    /// A curve without a name.
+    pub fn new(points: Vec<[f64; 2]>, colour: [u8; 3], stroke: Stroke) -> Curve {
+        Curve {
+            points,
+            name: String::new(),
+            behind: matches!(stroke, Stroke::Faint | Stroke::Level),
+            colour,
+            stroke,
+        }
+    }
+
+    /// The same with a name for the legend.
+    pub fn named(mut self, name: &str) -> Curve {
+        self.name = name.to_string();
+        self
+    }
+
+    fn style(&self) -> ShapeStyle {
+        let [r, g, b] = self.colour;
+        let (opacity, width) = match self.stroke {
+            Stroke::Bold => (1.0, 1.8),
+            Stroke::Dashed => (0.9, 1.4),
+            Stroke::Faint => (0.22, 1.0),
+            Stroke::Level => (1.0, 1.4),
+            Stroke::Nodes => (0.75, 1.0),
+        };
+        RGBColor(r, g, b).mix(opacity).stroke_width(fine_f(width))
+    }
+}
+
+/// A chart.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Chart {
+    title: String,
+    x: Axis,
+    y: Axis,
+    curves: Vec<Curve>,
+    /// Width [px].
+    width: u32,
+    /// Height of frame and axis labels, without title and legend [px].
+    height: u32,
+}
+
+type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+type DrawResult = Result<(), DrawingAreaErrorKind<std::io::Error>>;
+
+fn fine(pixels: u32) -> i32 {
+    (pixels * FINE) as i32
+}
+
+fn fine_f(pixels: f64) -> u32 {
+    (pixels * f64::from(FINE)).round() as u32
+}
+
+impl Chart {
+    /// A chart `width` [px] wide whose frame with axis labels is `height` [px] high.
+    pub fn new(
+        title: String,
+        x: Axis,
+        y: Axis,
+        curves: Vec<Curve>,
+        width: u32,
+        height: u32,
+    ) -> Chart {
+        Chart {
+            title,
+            x,
+            y,
+            curves: curves.into_iter().map(Curve::thinned).collect(),
+            width,
+            height,
+        }
+    }
+
+    /// A chart with one scale in both directions: the axis that has room to spare is widened.
+    pub fn to_scale(title: String, mut x: Axis, mut y: Axis, curves: Vec<Curve>) -> Chart {
+        let frame_width = f64::from(super::WIDTH - LABELS_LEFT - MARGIN);
+        let [lowest, highest] = TO_SCALE_HEIGHTS;
+        let wanted = (y.max - y.min) / (x.max - x.min) * frame_width;
+        let frame_height = wanted.clamp(lowest, highest).round();
+        x.widen((y.max - y.min) / frame_height * frame_width);
+        y.widen((x.max - x.min) / frame_width * frame_height);
+        let height = frame_height as u32 + LABELS_BELOW;
+        Chart::new(title, x, y, curves, super::WIDTH, height)
+    }
+
+    /// The chart as an SVG document.
+    pub fn svg(&self) -> String {
+        stacked_svg(std::slice::from_ref(self))
+    }
+
+    fn named(&self) -> impl Iterator<Item = &Curve> {
+        self.curves.iter().filter(|curve| !curve.name.is_empty())
+    }
+
+    /// Where every entry of the legend stands: left edge [px] and row.
+    fn legend(&self) -> Vec<(&Curve, u32, u32)> {
+        let (mut left, mut row) = (LABELS_LEFT, 0);
+        let mut places = Vec::new();
+        for curve in self.named() {
+            let letters = curve.name.chars().count() as f64;
+            let width = SAMPLE + 6 + (letters * LETTER * f64::from(TEXT)) as u32 + 14;
+            if left + width > self.width && left > LABELS_LEFT {
+                (left, row) = (LABELS_LEFT, row + 1);
+            }
+            places.push((curve, left, row));
+            left += width;
+        }
+        places
+    }
+
+    fn total_height(&self) -> u32 {
+        let rows = self.legend().last().map_or(0, |&(_, _, row)| row + 1);
+        TITLE + rows * LEGEND_ROW + 8 + self.height
+    }
+
+    fn draw(&self, area: &Area) -> DrawResult {
+        let title = text_style(15.0).color(&RGBColor(20, 20, 20));
+        area.draw_text(&self.short_title(), &title, (fine(LABELS_LEFT), fine(12)))?;
+        for (curve, left, row) in self.legend() {
+            draw_entry(area, curve, left, TITLE + row * LEGEND_ROW + LEGEND_ROW / 2)?;
+        }
+        self.draw_frame(area)
+    }
+
+    /// The title, cut where it would leave the figure.
+    fn short_title(&self) -> String {
+        let room = f64::from(self.width - LABELS_LEFT - MARGIN) / (LETTER * 15.0);
+        if self.title.chars().count() as f64 <= room {
+            return self.title.clone();
+        }
+        let kept: String = self.title.chars().take(room as usize - 1).collect();
+        format!("{}…", kept.trim_end())
+    }
+
+    fn draw_frame(&self, area: &Area) -> DrawResult {
+        let mut chart = ChartBuilder::on(area)
+            .margin_top(fine(self.total_height() - self.height))
+            .margin_right(fine(MARGIN))
+            .margin_left(fine(EDGE))
+            .set_label_area_size(LabelAreaPosition::Left, fine(LABELS_LEFT - EDGE))
+            .set_label_area_size(LabelAreaPosition::Bottom, fine(LABELS_BELOW))
+            .build_cartesian_2d(self.x.clone(), self.y.clone())?;
+        chart
+            .configure_mesh()
+            .disable_x_mesh()
+            .bold_line_style(RGBColor(225, 225, 225).stroke_width(fine_f(0.8)))
+            .axis_style(RGBColor(110, 110, 110).stroke_width(fine_f(1.0)))
+            .light_line_style(TRANSPARENT)
+            .set_all_tick_mark_size(fine(5))
+            .label_style(text_style(12.0).color(&RGBColor(70, 70, 70)))
+            .axis_desc_style(text_style(f64::from(TEXT)).color(&RGBColor(20, 20, 20)))
+            .x_desc(&self.x.label)
+            .y_desc(&self.y.label)
+            .draw()?;
+        let (behind, before): (Vec<&Curve>, _) = self.curves.iter().partition(|c| c.behind);
+        for curve in behind.into_iter().chain(before) {
+            let points = || curve.points.iter().map(|&[x, y]| (x, y));
+            let style = curve.style();
+            match curve.stroke {
+                Stroke::Bold | Stroke::Faint | Stroke::Level => {
+                    chart.draw_series(LineSeries::new(points(), style))?;
+                }
+                Stroke::Dashed => {
+                    chart.draw_series(DashedLineSeries::new(points(), fine(7), fine(4), style))?;
+                }
+                Stroke::Nodes => {
+                    chart.draw_series(points().map(|p| Circle::new(p, fine_f(2.2), style)))?;
+                }
+            };
+        }
+        Ok(())
+    }
+}
+
+impl Curve {
+    /// Without what is not finite, and with so few points that a figure stays small: of every group of neighbours the first,
+    /// the least, the greatest and the last are kept, in their order.
+    fn thinned(mut self) -> Curve {
+        self.points.retain(|[x, y]| x.is_finite() && y.is_finite());
+        if self.points.len() <= POINTS_MAX {
+            return self;
+        }
+        let group = self.points.len().div_ceil(POINTS_MAX / 4);
+        let mut kept = Vec::with_capacity(POINTS_MAX);
+        for points in self.points.chunks(group) {
+            let by_height = |i: &usize, j: &usize| points[*i][1].total_cmp(&points[*j][1]);
+            let least = (0..points.len()).min_by(by_height).unwrap_or(0);
+            let greatest = (0..points.len()).max_by(by_height).unwrap_or(0);
+            let mut indices = vec![0, least, greatest, points.len() - 1];
+            indices.sort_unstable();
+            indices.dedup();
+            kept.extend(indices.into_iter().map(|i| points[i]));
+        }
+        self.points = kept;
+        self
+    }
+}
+
+fn text_style(pixels: f64) -> TextStyle<'static> {
+    let size = pixels * f64::from(FINE) * TEXT_SCALE;
+    TextStyle::from(("sans-serif", size).into_font())
+}
+
+fn draw_entry(area: &Area, curve: &Curve, left: u32, middle: u32) -> DrawResult {
+    let style = curve.style();
+    let (x0, x1, y) = (fine(left), fine(left + SAMPLE), fine(middle));
+    match curve.stroke {
+        Stroke::Bold | Stroke::Faint | Stroke::Level => {
+            area.draw(&PathElement::new([(x0, y), (x1, y)], style))?;
+        }
+        Stroke::Dashed => {
+            let ends = [(x0, y), (x1, y)];
+            area.draw(&DashedPathElement::new(ends, fine(7), fine(4), style))?;
+        }
+        Stroke::Nodes => {
+            area.draw(&Circle::new(((x0 + x1) / 2, y), fine_f(2.6), style))?;
+        }
+    }
+    let text = text_style(f64::from(TEXT))
+        .color(&RGBColor(40, 40, 40))
+        .pos(Pos::new(HPos::Left, VPos::Center));
+    area.draw_text(&curve.name, &text, (fine(left + SAMPLE + 6), y))
+}
+
+/// Charts below one another as one SVG document.
+pub fn stacked_svg(charts: &[Chart]) -> String {
+    let width = charts.iter().map(|chart| chart.width).max().unwrap_or(0);
+    let height: u32 = charts.iter().map(Chart::total_height).sum();
+    let mut svg = String::new();
+    draw_stack(&mut svg, charts, width, height).expect("drawing into a string does not fail");
+    // The drawing is FINE times as large as the figure; round joins keep a sharp peak from growing a spike.
+    let end_of_head = svg.find('>').map_or(0, |end| end + 1);
+    let mut head = String::new();
+    write!(
+        head,
+        r#"<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" viewBox="0 0 {} {}" "#,
+        width * FINE,
+        height * FINE
+    )
+    .expect("writing into a string does not fail");
+    head.push_str(r#"role="img" stroke-linejoin="round" stroke-linecap="round">"#);
+    svg.replace_range(..end_of_head, &head);
+    svg
+}
+
+fn draw_stack(svg: &mut String, charts: &[Chart], width: u32, height: u32) -> DrawResult {
+    let root = SVGBackend::with_string(svg, (width * FINE, height * FINE)).into_drawing_area();
+    root.fill(&WHITE)?;
+    let mut rest = root.clone();
+    for chart in charts {
+        let (top, below) = rest.split_vertically(fine(chart.total_height()));
+        chart.draw(&top)?;
+        rest = below;
+    }
+    root.present()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_thinned_history_keeps_its_peaks() {
+        let mut points: Vec<[f64; 2]> = (0..100_000).map(|i| [f64::from(i), 0.0]).collect();
+        points[54_321][1] = 9.0;
+        points[12_345][1] = -7.0;
+        points[3][1] = f64::NAN;
+        let curve = Curve::new(points, [0; 3], Stroke::Bold).thinned();
+        assert!(curve.points.len() <= POINTS_MAX);
+        assert!(curve.points.contains(&[54_321.0, 9.0]));
+        assert!(curve.points.contains(&[12_345.0, -7.0]));
+        assert!(curve.points.is_sorted_by(|a, b| a[0] < b[0]));
+    }
+
+    #[test]
+    fn a_chart_to_scale_has_one_scale() {
+        let axis = |min, max| Axis {
+            label: String::new(),
+            min,
+            max,
+        };
+        for (x, y) in [(14.14, 0.72), (0.01, 100.0), (800.0, 200.0), (1.0, 1.0)] {
+            let chart = Chart::to_scale(String::new(), axis(0.0, x), axis(-y, 0.0), vec![]);
+            let frame = [
+                f64::from(chart.width - LABELS_LEFT - MARGIN),
+                f64::from(chart.height - LABELS_BELOW),
+            ];
+            let scale_x = frame[0] / (chart.x.max - chart.x.min);
+            let scale_y = frame[1] / (chart.y.max - chart.y.min);
+            assert!(
+                (scale_x / scale_y - 1.0).abs() < 1e-9,
+                "{scale_x} {scale_y}"
+            );
+            assert!(chart.x.max >= x && chart.y.min <= -y);
+        }
+    }
+}

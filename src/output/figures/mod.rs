@@ -1,0 +1,353 @@
+//! Figures of a run as SVG: profile against the static catenary, plan, tension and end force in time.
+//!
+//! Text is left to the viewer's sans-serif font: no font files are needed to draw.
+
+mod axis;
+mod chart;
+
+use axis::{Axis, force_unit};
+use chart::{Chart, Curve, Stroke};
+
+use super::record::{Node, Record};
+
+/// Widest figure [px].
+const WIDTH: u32 = 900;
+/// Height of a chart of one history [px].
+const HISTORY_HEIGHT: u32 = 340;
+/// Most shapes drawn faintly to show how far the lines move.
+const TRACES_MAX: usize = 24;
+/// Most lines that get a dashed level of their static catenary in the tension history: more would hide the histories.
+const LEVELS_MAX: usize = 3;
+/// A system wider than this part of its length across its principal direction gets a plan [-].
+const PLAN_RATIO: f64 = 0.01;
+
+/// Okabe and Ito's palette without its yellow, which is too pale for a line: told apart with every kind of colour vision.
+/// Source: Okabe & Ito 2008, "Color Universal Design".
+const PALETTE: [[u8; 3]; 7] = [
+    [0, 114, 178],
+    [213, 94, 0],
+    [0, 158, 115],
+    [204, 121, 167],
+    [230, 159, 0],
+    [86, 180, 233],
+    [0, 0, 0],
+];
+const DARK: [u8; 3] = [40, 40, 40];
+const SEABED: [u8; 3] = [139, 110, 70];
+const WATER: [u8; 3] = [86, 140, 190];
+
+fn colour(index: usize) -> [u8; 3] {
+    PALETTE[index % PALETTE.len()]
+}
+
+/// Every figure that the record has something for, as file stem and SVG.
+pub fn all(record: &Record) -> Vec<(&'static str, String)> {
+    [
+        ("profile", profile(record)),
+        ("plan", plan(record)),
+        ("tension", tension(record)),
+        ("force", force(record)),
+    ]
+    .into_iter()
+    .filter_map(|(stem, svg)| Some((stem, svg?)))
+    .collect()
+}
+
+/// Lines seen from the side, on one scale in both directions: the closed-form catenary dashed, the equilibrium, the last
+/// shape, and faint traces of the motion between them. `None` without frames.
+pub fn profile(record: &Record) -> Option<String> {
+    let (cos, sin) = principal_direction(record);
+    let view = |[x, y, z]: [f64; 3]| [x * cos + y * sin, z];
+    let mut curves = shapes(record, view)?;
+    let x = Axis::around(&curves, 0, direction_label(cos, sin));
+    for (height, label, colour) in levels(record, &curves) {
+        let ends = [[x.min, height], [x.max, height]];
+        curves.push(Curve::new(ends.to_vec(), colour, Stroke::Level).named(label));
+    }
+    let y = Axis::around(&curves, 1, "z [m]".to_string());
+    let title = with_title("Line profile", record);
+    Some(Chart::to_scale(title, x, y, curves).svg())
+}
+
+/// Lines seen from above. `None` where they lie in one vertical plane, or there are no frames.
+pub fn plan(record: &Record) -> Option<String> {
+    let (cos, sin) = principal_direction(record);
+    let nodes = record.frames.iter().flat_map(|f| f.lines.iter().flatten());
+    let spread = |along: [f64; 2]| {
+        let offsets = nodes
+            .clone()
+            .map(|n| n.position[0] * along[0] + n.position[1] * along[1]);
+        let (min, max) = offsets.fold((f64::INFINITY, f64::NEG_INFINITY), |(min, max), v| {
+            (min.min(v), max.max(v))
+        });
+        max - min
+    };
+    if spread([-sin, cos]) <= PLAN_RATIO * spread([cos, sin]) {
+        return None;
+    }
+    let curves = shapes(record, |[x, y, _]| [x, y])?;
+    let x = Axis::around(&curves, 0, "x [m]".to_string());
+    let y = Axis::around(&curves, 1, "y [m]".to_string());
+    Some(Chart::to_scale(with_title("Plan", record), x, y, curves).svg())
+}
+
+/// Tension at end B of every line in time, with the static catenary's as a dashed level. `None` without a history.
+pub fn tension(record: &Record) -> Option<String> {
+    let mut curves = Vec::new();
+    for (index, line) in record.lines.iter().enumerate() {
+        if let Some(history) = record.history(&format!("{}.tension_b", line.name)) {
+            let stroke = if index < PALETTE.len() {
+                Stroke::Bold
+            } else {
+                Stroke::Dashed
+            };
+            curves.push(Curve::new(history, colour(index), stroke).named(&line.name));
+        }
+    }
+    if record.lines.len() <= LEVELS_MAX {
+        for (index, line) in record.lines.iter().enumerate() {
+            if let (Some(catenary), [[start, ..], .., [end, ..]]) =
+                (&line.catenary, curves.first()?.points.as_slice())
+            {
+                let level = catenary.figures.tension_b;
+                let ends = vec![[*start, level], [*end, level]];
+                let name = format!("{}, static catenary", line.name);
+                curves.push(Curve::new(ends, colour(index), Stroke::Dashed).named(&name));
+            }
+        }
+    }
+    history_chart(with_title("Tension at end B", record), "tension", curves)
+}
+
+/// Components of the end force on the vessel in time, a chart for every fairlead. `None` without a history.
+pub fn force(record: &Record) -> Option<String> {
+    let charts: Vec<Chart> = record
+        .points
+        .iter()
+        .filter_map(|point| {
+            let curves = ["fx", "fy", "fz"]
+                .iter()
+                .enumerate()
+                .filter_map(|(index, component)| {
+                    let history = record.history(&format!("{point}.{component}"))?;
+                    Some(Curve::new(history, colour(index), Stroke::Bold).named(component))
+                });
+            let title = format!("Force of the mooring on the vessel at {point}");
+            history_of(title, "force", curves.collect())
+        })
+        .collect();
+    (!charts.is_empty()).then(|| chart::stacked_svg(&charts))
+}
+
+fn history_chart(title: String, quantity: &str, curves: Vec<Curve>) -> Option<String> {
+    Some(history_of(title, quantity, curves)?.svg())
+}
+
+/// Chart of forces [N] in time [s], in the multiple of the newton that fits.
+fn history_of(title: String, quantity: &str, mut curves: Vec<Curve>) -> Option<Chart> {
+    let values = curves.iter().flat_map(|c| &c.points).map(|p| p[1].abs());
+    let greatest = values.filter(|v| v.is_finite()).fold(f64::NAN, f64::max);
+    if greatest.is_nan() {
+        return None;
+    }
+    let (unit, size) = force_unit(greatest);
+    for point in curves.iter_mut().flat_map(|c| &mut c.points) {
+        point[1] /= size;
+    }
+    let x = Axis::fitting(&curves, 0, "time [s]".to_string());
+    let y = Axis::around(&curves, 1, format!("{quantity} [{unit}]"));
+    Some(Chart::new(title, x, y, curves, WIDTH, HISTORY_HEIGHT))
+}
+
+fn with_title(what: &str, record: &Record) -> String {
+    if record.title.is_empty() {
+        what.to_string()
+    } else {
+        format!("{what}: {}", record.title)
+    }
+}
+
+/// Curves of the lines' shapes through a view of space. `None` without frames.
+fn shapes(record: &Record, view: impl Fn([f64; 3]) -> [f64; 2]) -> Option<Vec<Curve>> {
+    let (first, last) = (record.frames.first()?, record.frames.last()?);
+    let seen = |nodes: &[Node]| nodes.iter().map(|n| view(n.position)).collect::<Vec<_>>();
+    let mut curves = Vec::new();
+    let stride = record.frames.len().div_ceil(TRACES_MAX);
+    for frame in record.frames.iter().step_by(stride) {
+        for (index, nodes) in frame.lines.iter().enumerate() {
+            curves.push(Curve::new(seen(nodes), colour(index), Stroke::Faint));
+        }
+    }
+    for (index, (line, nodes)) in record.lines.iter().zip(&last.lines).enumerate() {
+        let name = format!("{}, t = {} s", line.name, axis::plain(last.time));
+        curves.push(Curve::new(seen(nodes), colour(index), Stroke::Bold).named(&name));
+    }
+    for (index, nodes) in first.lines.iter().enumerate() {
+        let name = if index == 0 { "nodes at t = 0" } else { "" };
+        curves.push(Curve::new(seen(nodes), DARK, Stroke::Nodes).named(name));
+    }
+    for (index, line) in record.lines.iter().enumerate() {
+        let Some(catenary) = &line.catenary else {
+            continue;
+        };
+        let points = catenary.profile.iter().map(|&point| view(point)).collect();
+        let name = if index == 0 { "static catenary" } else { "" };
+        curves.push(Curve::new(points, DARK, Stroke::Dashed).named(name));
+    }
+    Some(curves)
+}
+
+/// Still water and seabed where the lines come near them: height [m], label, colour.
+fn levels(record: &Record, curves: &[Curve]) -> Vec<(f64, &'static str, [u8; 3])> {
+    let y = Axis::around(curves, 1, String::new());
+    let near = |height: f64| {
+        let margin = 0.25 * (y.max - y.min);
+        (y.min - margin..=y.max + margin).contains(&height)
+    };
+    let water = record
+        .surroundings
+        .water
+        .then_some((0.0, "still water", WATER));
+    let seabed = record.surroundings.seabed.map(|z| (z, "seabed", SEABED));
+    water
+        .into_iter()
+        .chain(seabed)
+        .filter(|level| near(level.0))
+        .collect()
+}
+
+/// Direction (cos, sin) in plan along which the lines extend furthest, towards +x: the principal axis of the first frame's
+/// nodes. A system that extends alike in all directions is seen along x.
+fn principal_direction(record: &Record) -> (f64, f64) {
+    let Some(frame) = record.frames.first() else {
+        return (1.0, 0.0);
+    };
+    let nodes = || frame.lines.iter().flatten().map(|n| n.position);
+    let count = nodes().count().max(1) as f64;
+    let mean = |axis: usize| nodes().map(|p| p[axis]).sum::<f64>() / count;
+    let (x0, y0) = (mean(0), mean(1));
+    let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
+    for [x, y, _] in nodes() {
+        xx += (x - x0) * (x - x0);
+        xy += (x - x0) * (y - y0);
+        yy += (y - y0) * (y - y0);
+    }
+    // Half the distance between the two principal moments; small: no direction stands out.
+    if (0.5 * (xx - yy)).hypot(xy) <= 1e-6 * (xx + yy) {
+        return (1.0, 0.0);
+    }
+    let angle = 0.5 * (2.0 * xy).atan2(xx - yy);
+    (angle.cos(), angle.sin())
+}
+
+fn direction_label(cos: f64, sin: f64) -> String {
+    if sin.abs() < 1e-6 {
+        return "x [m]".to_string();
+    }
+    if cos.abs() < 1e-6 {
+        return if sin > 0.0 { "y [m]" } else { "-y [m]" }.to_string();
+    }
+    let degrees = sin.atan2(cos).to_degrees();
+    format!("horizontal distance at {degrees:.1}° from x [m]")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::sample;
+    use super::*;
+    use quick_xml::{Reader, events::Event};
+
+    /// Fails unless the text is well-formed XML; returns its texts.
+    fn texts(svg: &str) -> Vec<String> {
+        let mut reader = Reader::from_str(svg);
+        let mut texts = Vec::new();
+        loop {
+            match reader.read_event().unwrap() {
+                Event::Text(text) => {
+                    let text = text.trim().to_string();
+                    texts.extend((!text.is_empty()).then_some(text));
+                }
+                Event::Eof => return texts,
+                _ => {}
+            }
+        }
+    }
+
+    #[test]
+    fn every_figure_is_well_formed_and_names_its_quantities_and_units() {
+        let record = sample::record();
+        let labels = |svg: Option<String>| texts(&svg.unwrap());
+        let profile = labels(profile(&record));
+        for label in [
+            "x [m]",
+            "z [m]",
+            "seabed",
+            "still water",
+            "static catenary",
+            "line1, t = 60 s",
+        ] {
+            assert!(profile.iter().any(|t| t == label), "{label} in {profile:?}");
+        }
+        let tension = labels(tension(&record));
+        for label in [
+            "time [s]",
+            "tension [kN]",
+            "line1",
+            "line2",
+            "line2, static catenary",
+        ] {
+            assert!(tension.iter().any(|t| t == label), "{label} in {tension:?}");
+        }
+        let force = labels(force(&record));
+        for label in ["force [kN]", "fx", "fy", "fz"] {
+            assert!(force.iter().any(|t| t == label), "{label} in {force:?}");
+        }
+    }
+
+    #[test]
+    fn lines_in_one_vertical_plane_need_no_plan() {
+        let mut record = sample::record();
+        assert_eq!(plan(&record), None);
+        for node in record.frames[0].lines[1].iter_mut() {
+            node.position[1] += 0.5 * node.position[0];
+        }
+        assert!(plan(&record).is_some());
+    }
+
+    #[test]
+    fn a_line_is_seen_across_its_own_plane() {
+        let mut record = sample::record();
+        record.lines.truncate(1);
+        for frame in &mut record.frames {
+            frame.lines.truncate(1);
+            for node in &mut frame.lines[0] {
+                let [x, _, z] = node.position;
+                node.position = [0.6 * x, 0.8 * x, z];
+            }
+        }
+        let (cos, sin) = principal_direction(&record);
+        assert!((cos - 0.6).abs() < 1e-9 && (sin - 0.8).abs() < 1e-9);
+        assert_eq!(
+            direction_label(cos, sin),
+            "horizontal distance at 53.1° from x [m]"
+        );
+    }
+
+    #[test]
+    fn an_empty_record_has_no_figures() {
+        assert!(all(&Record::new("", vec![])).is_empty());
+    }
+
+    #[test]
+    fn a_name_with_markup_stays_text() {
+        let mut record = sample::record();
+        record.title = "<script>&\"".to_string();
+        let svg = profile(&record).unwrap();
+        assert!(!svg.contains("<script>"));
+        assert!(
+            texts(&svg)
+                .iter()
+                .any(|t| t.contains("&lt;script&gt;") || t.contains("script"))
+        );
+    }
+}

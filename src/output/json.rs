@@ -1,0 +1,220 @@
+//! The static equilibrium as JSON: what `moorline statics --json` prints.
+//!
+//! The layout is stable: keys may be added, those below are neither renamed nor removed. SI units, global axes, z up, z = 0
+//! at still water. Numbers have the fewest digits that read back to the same bits; what is not finite is `null`.
+//!
+//! | key | unit | meaning |
+//! |---|---|---|
+//! | `title` | | title of the scene |
+//! | `lines[]` | | lines in the order of the scene |
+//! | `lines[].name` | | name of the line |
+//! | `lines[].end_a`, `end_b` | | end A (`from`, anchor) and end B (`to`, fairlead) |
+//! | `….force` | N | x, y, z of the force that the line applies to what holds this end |
+//! | `….tension` | N | axial tension at this end |
+//! | `lines[].horizontal` | N | horizontal part of the force at end B, not negative |
+//! | `lines[].vertical` | N | pull of the line on end B downwards; negative where it lifts |
+//! | `lines[].laid_length` | m | unstretched length that lies on the seabed |
+//! | `lines[].stretched_length` | m | length of the line under tension |
+//! | `lines[].sag` | m | greatest vertical distance below the chord between the two ends |
+//! | `lines[].profile[]` | | nodes from end A to end B |
+//! | `….s` | m | unstretched arc length from end A |
+//! | `….x`, `y`, `z` | m | position |
+//! | `….tension` | N | effective tension |
+//! | `points[]` | | points in the order of the scene |
+//! | `points[].name` | | name of the point |
+//! | `points[].kind` | | `fixed`, `coupled`, `prescribed` or `free` |
+//! | `points[].position` | m | x, y, z in equilibrium |
+//! | `points[].force` | N | x, y, z of the force that all lines together apply to the point |
+//! | `vessels[]` | | vessels in the order of the scene; empty where the scene has none |
+//! | `vessels[].name` | | name of the vessel |
+//! | `vessels[].force` | N, N m | force and moment that the mooring applies, about the vessel's origin |
+//! | `vessels[].stiffness` | N/m, N, N m | 6×6 rows: minus the change of `force` with each displacement and rotation |
+
+use std::io::{self, Write};
+
+use serde::Serialize;
+
+/// A static equilibrium.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Statics {
+    /// Title of the scene.
+    pub title: String,
+    /// Lines in the order of the scene.
+    pub lines: Vec<Line>,
+    /// Points in the order of the scene.
+    pub points: Vec<Point>,
+    /// Vessels in the order of the scene.
+    pub vessels: Vec<Vessel>,
+}
+
+/// A line in equilibrium.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Line {
+    /// Name of the line.
+    pub name: String,
+    /// End A, the anchor.
+    pub end_a: End,
+    /// End B, the fairlead.
+    pub end_b: End,
+    /// Horizontal part of the force at end B [N].
+    pub horizontal: f64,
+    /// Pull on end B downwards [N].
+    pub vertical: f64,
+    /// Unstretched length on the seabed [m].
+    pub laid_length: f64,
+    /// Length under tension [m].
+    pub stretched_length: f64,
+    /// Greatest vertical distance below the chord [m].
+    pub sag: f64,
+    /// Nodes from end A to end B.
+    pub profile: Vec<ProfileNode>,
+}
+
+/// An end of a line.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct End {
+    /// Force of the line on what holds this end [N].
+    pub force: [f64; 3],
+    /// Axial tension [N].
+    pub tension: f64,
+}
+
+/// A node of a profile.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct ProfileNode {
+    /// Unstretched arc length from end A [m].
+    pub s: f64,
+    /// Position along x [m].
+    pub x: f64,
+    /// Position along y [m].
+    pub y: f64,
+    /// Height above still water [m].
+    pub z: f64,
+    /// Effective tension [N].
+    pub tension: f64,
+}
+
+/// A point in equilibrium.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Point {
+    /// Name of the point.
+    pub name: String,
+    /// Who moves it, by the scene's word.
+    pub kind: &'static str,
+    /// Position [m].
+    pub position: [f64; 3],
+    /// Force of all lines on the point [N].
+    pub force: [f64; 3],
+}
+
+/// A vessel in equilibrium.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Vessel {
+    /// Name of the vessel.
+    pub name: String,
+    /// Force [N] and moment [N m] of the mooring, about the vessel's origin.
+    pub force: [f64; 6],
+    /// Rows of the stiffness: minus the change of force [N/m, N] and moment [N, N m] with displacement and rotation.
+    pub stiffness: [[f64; 6]; 6],
+}
+
+/// Writes the equilibrium as indented JSON with a line end behind it.
+///
+/// # Errors
+/// Where `out` refuses.
+pub fn write(statics: &Statics, mut out: impl Write) -> io::Result<()> {
+    serde_json::to_writer_pretty(&mut out, statics)?;
+    writeln!(out)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn statics() -> Statics {
+        let end = End {
+            force: [1.0, 0.0, -2.0],
+            tension: 5.0_f64.sqrt(),
+        };
+        let node = ProfileNode {
+            s: 0.0,
+            x: 0.1,
+            y: 0.0,
+            z: -1.0 / 3.0,
+            tension: 1.0,
+        };
+        Statics {
+            title: "one".to_string(),
+            lines: vec![Line {
+                name: "line1".to_string(),
+                end_a: end,
+                end_b: end,
+                horizontal: 1.0,
+                vertical: 2.0,
+                laid_length: 0.0,
+                stretched_length: 10.0,
+                sag: 0.5,
+                profile: vec![node],
+            }],
+            points: vec![Point {
+                name: "fairlead".to_string(),
+                kind: "coupled",
+                position: [0.0; 3],
+                force: [1.0, 0.0, -2.0],
+            }],
+            vessels: vec![],
+        }
+    }
+
+    fn keys(value: &serde_json::Value) -> Vec<&str> {
+        value
+            .as_object()
+            .unwrap()
+            .keys()
+            .map(String::as_str)
+            .collect()
+    }
+
+    #[test]
+    fn the_keys_are_the_documented_ones() {
+        let mut bytes = Vec::new();
+        write(&statics(), &mut bytes).unwrap();
+        let json: serde_json::Value = serde_json::from_slice(&bytes).unwrap();
+        assert_eq!(keys(&json), ["lines", "points", "title", "vessels"]);
+        let line = &json["lines"][0];
+        let documented = [
+            "end_a",
+            "end_b",
+            "horizontal",
+            "laid_length",
+            "name",
+            "profile",
+            "sag",
+            "stretched_length",
+            "vertical",
+        ];
+        assert_eq!(keys(line), documented);
+        assert_eq!(keys(&line["end_a"]), ["force", "tension"]);
+        assert_eq!(keys(&line["profile"][0]), ["s", "tension", "x", "y", "z"]);
+        assert_eq!(
+            keys(&json["points"][0]),
+            ["force", "kind", "name", "position"]
+        );
+        assert_eq!(json["vessels"], serde_json::json!([]));
+    }
+
+    #[test]
+    fn every_number_reads_back_to_the_same_bits() {
+        let mut bytes = Vec::new();
+        write(&statics(), &mut bytes).unwrap();
+        let json: serde_json::Value = serde_json::from_slice(&bytes).unwrap();
+        assert_eq!(
+            json["lines"][0]["end_a"]["tension"].as_f64(),
+            Some(5.0_f64.sqrt())
+        );
+        assert_eq!(
+            json["lines"][0]["profile"][0]["z"].as_f64(),
+            Some(-1.0 / 3.0)
+        );
+    }
+}

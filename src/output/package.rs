@@ -1,0 +1,159 @@
+//! The .fmu container: description, scene and library in one zip file.
+//!
+//! Deterministic: the same scene, library and version give the same bytes. Names have forward slashes, the library
+//! its run bit.
+
+use std::fs;
+use std::io::{Cursor, Write};
+use std::path::{Path, PathBuf};
+
+use moorline_host::{FmiVersion, library_name, platform};
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, DateTime, ZipWriter};
+
+use super::description::{Description, MODEL_IDENTIFIER};
+use crate::scene::{LoadedScene, Scene, SceneError};
+
+/// Name of the scene below `resources/`.
+pub const SCENE_FILE: &str = "scene.toml";
+
+/// Why an FMU was not written.
+#[derive(Debug, thiserror::Error)]
+pub enum PackageError {
+    /// The scene cannot be described.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// The FMU library is not where it should be.
+    #[error(
+        "the FMU library {name} is not beside the program in {}: build it with `cargo build --release` in the workspace",
+        folder.display()
+    )]
+    NoLibrary {
+        /// Its file name.
+        name: String,
+        /// Folder of the program.
+        folder: PathBuf,
+    },
+    /// A file cannot be read or written.
+    #[error("{}: {problem}", path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// The system's message.
+        problem: std::io::Error,
+    },
+    /// FMI names no folder for this platform.
+    #[error("FMI names no binaries folder for this platform")]
+    Platform,
+    /// The container cannot be made.
+    #[error("the zip container cannot be made: {0}")]
+    Zip(#[from] zip::result::ZipError),
+}
+
+/// The FMU library beside the running program, or one folder up, where test programs are.
+///
+/// # Errors
+/// Names the library and the folder where it was expected.
+pub fn find_library() -> Result<PathBuf, PackageError> {
+    let name = format!(
+        "{}{}",
+        std::env::consts::DLL_PREFIX,
+        library_name("moorline_fmu")
+    );
+    let program = std::env::current_exe().map_err(|problem| PackageError::File {
+        path: PathBuf::from("the running program"),
+        problem,
+    })?;
+    let folder = program.parent().unwrap_or(Path::new("."));
+    [Some(folder), folder.parent()]
+        .into_iter()
+        .flatten()
+        .map(|folder| folder.join(&name))
+        .find(|path| path.is_file())
+        .ok_or_else(|| PackageError::NoLibrary {
+            name,
+            folder: folder.to_path_buf(),
+        })
+}
+
+/// Packages a scene with the FMU library into `target`.
+///
+/// # Errors
+/// A scene that cannot be described, a library that cannot be read, a target that cannot be written.
+pub fn write_fmu(
+    loaded: &LoadedScene,
+    version: FmiVersion,
+    library: &Path,
+    target: &Path,
+) -> Result<(), PackageError> {
+    let fail = |path: &Path| {
+        let path = path.to_path_buf();
+        move |problem| PackageError::File { path, problem }
+    };
+    let text = packaged_text(loaded);
+    let description = Description::new(&text, &loaded.scene, version)?;
+    let binary = fs::read(library).map_err(fail(library))?;
+    let bytes = container(&description.xml, &text, version, &binary)?;
+    fs::write(target, bytes).map_err(fail(target))
+}
+
+/// The user's own text where it alone says the whole scene; else, with motion files or in another format, the scene
+/// written out.
+fn packaged_text(loaded: &LoadedScene) -> String {
+    if Scene::from_toml(&loaded.text).is_ok_and(|scene| scene == loaded.scene) {
+        loaded.text.clone()
+    } else {
+        loaded.scene.to_toml()
+    }
+}
+
+fn container(
+    description: &str,
+    scene: &str,
+    version: FmiVersion,
+    library: &[u8],
+) -> Result<Vec<u8>, PackageError> {
+    let platform = platform(version).ok_or(PackageError::Platform)?;
+    let library_path = format!("binaries/{platform}/{}", library_name(MODEL_IDENTIFIER));
+    let entries = [
+        ("modelDescription.xml", description.as_bytes(), 0o644),
+        (&library_path, library, 0o755),
+        (&format!("resources/{SCENE_FILE}"), scene.as_bytes(), 0o644),
+    ];
+    let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
+    for (name, bytes, mode) in entries {
+        let options = SimpleFileOptions::default()
+            .compression_method(CompressionMethod::Deflated)
+            .last_modified_time(DateTime::default())
+            .unix_permissions(mode);
+        zip.start_file(name, options)?;
+        zip.write_all(bytes).map_err(|problem| PackageError::File {
+            path: PathBuf::from(name),
+            problem,
+        })?;
+    }
+    Ok(zip.finish()?.into_inner())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_container_is_the_same_each_time_and_its_library_may_run() {
+        let make = || container("<xml/>", "title = \"\"", FmiVersion::Two, b"library").unwrap();
+        let bytes = make();
+        assert_eq!(bytes, make());
+        let mut archive = zip::ZipArchive::new(Cursor::new(bytes)).unwrap();
+        let names: Vec<String> = archive
+            .file_names()
+            .map(|name| name.unwrap().into_owned())
+            .collect();
+        assert!(names.iter().all(|name| !name.contains('\\')), "{names:?}");
+        let library = archive.by_index(1).unwrap();
+        assert!(library.name().unwrap().starts_with("binaries/"));
+        assert_eq!(library.unix_mode().unwrap() & 0o777, 0o755);
+        let time = library.last_modified().unwrap();
+        assert_eq!((time.year(), time.month(), time.day()), (1980, 1, 1));
+    }
+}
