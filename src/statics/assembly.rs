@@ -517,7 +517,7 @@ impl SmoothContact {
 
 /// Unit tangent of a node: along its two neighbours, at an end along the segment.
 #[inline(always)]
-fn node_tangent(position: &[Vector3<f64>], i: usize) -> Vector3<f64> {
+pub(crate) fn node_tangent(position: &[Vector3<f64>], i: usize) -> Vector3<f64> {
     let (before, after) = (i.saturating_sub(1), (i + 1).min(position.len() - 1));
     let chord = position[after] - position[before];
     let length = chord.norm();

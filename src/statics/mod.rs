@@ -4,6 +4,7 @@ pub mod assembly;
 pub mod catenary;
 pub mod equilibrium;
 mod guess;
+pub mod modes;
 
 /// Why no equilibrium was found.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

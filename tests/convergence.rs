@@ -1,0 +1,234 @@
+//! Orders of convergence, agreement of the integrators with each other, and the motion between communication points.
+
+mod common;
+
+use common::*;
+use moorline::model::Motion;
+use moorline::scene::{Integrator, Scene};
+use moorline::simulation::Simulation;
+
+const LEAPFROGS: [Integrator; 2] = [Integrator::Leapfrog, Integrator::AxialImplicit];
+
+/// Interval of samples [s].
+const SAMPLE: f64 = 0.05;
+
+/// Runs a scene for `duration` [s] with its own motion, sampled every [`SAMPLE`].
+fn run(scene: &Scene, duration: f64) -> History {
+    History::record(
+        &mut following(scene),
+        SAMPLE,
+        (duration / SAMPLE).round() as usize,
+    )
+}
+
+/// Samples in a window of `duration` [s].
+fn samples(duration: f64) -> usize {
+    (duration / SAMPLE).round() as usize
+}
+
+/// A taut line without axial damping, which the leapfrogs take lagged.
+fn undamped(integrator: Integrator, n: usize, step: f64) -> Scene {
+    let mut scene = with_integrator(
+        with_elements(shipped("taut_polyester"), n),
+        integrator,
+        step,
+    );
+    for line_type in scene.line_types.values_mut() {
+        line_type.axial_damping = None;
+    }
+    if integrator == Integrator::GeneralisedAlpha {
+        scene.solver.spectral_radius = Some(0.5); // less dissipation than the default: order two from coarser steps on
+    }
+    scene
+}
+
+/// Errors of tension and of the middle's position over the last third of 30 s.
+fn errors(histories: &[History], reference: &History) -> [Vec<f64>; 2] {
+    let window = samples(10.0);
+    [
+        histories
+            .iter()
+            .map(|history| history.tension_error(reference, window))
+            .collect(),
+        histories
+            .iter()
+            .map(|history| history.middle_error(reference, window))
+            .collect(),
+    ]
+}
+
+#[test]
+fn halving_the_time_step_quarters_the_error() {
+    let steps = [0.05, 0.025, 0.0125, 0.00625];
+    for integrator in [
+        Integrator::Leapfrog,
+        Integrator::AxialImplicit,
+        Integrator::GeneralisedAlpha,
+    ] {
+        let scene = |step| undamped(integrator, 10, step);
+        let reference = run(&scene(SAMPLE / 256.0), 30.0);
+        let found = steps.map(|step| run(&scene(step), 30.0));
+        for errors in errors(&found, &reference) {
+            assert_order(2.0, &steps, &errors);
+        }
+    }
+}
+
+#[test]
+fn lagged_axial_damping_costs_less_than_a_ten_thousandth() {
+    // first order in the step, beside the second order of all else
+    let fine = with_elements(shipped("taut_polyester"), 10);
+    for integrator in LEAPFROGS {
+        let reference = run(
+            &with_integrator(fine.clone(), integrator, SAMPLE / 256.0),
+            30.0,
+        );
+        let found = run(&with_integrator(fine.clone(), integrator, 0.025), 30.0);
+        for errors in errors(&[found], &reference) {
+            assert!(errors[0] < 1e-4, "{integrator:?}: {errors:?}");
+        }
+    }
+}
+
+#[test]
+fn halving_the_elements_quarters_the_error() {
+    let resolutions = [40, 80, 160, 320]; // coarser meshes miss the second transverse mode
+    let sizes = resolutions.map(|n| 1.0 / n as f64);
+    let scene = |n| undamped(Integrator::Leapfrog, n, 5e-4);
+    let reference = run(&scene(1280), 30.0);
+    let found = resolutions.map(|n| run(&scene(n), 30.0));
+    for errors in errors(&found, &reference) {
+        assert_order(2.0, &sizes, &errors);
+    }
+}
+
+#[test]
+fn the_public_scenes_run_at_default_settings() {
+    for (name, window) in PUBLIC_SCENES {
+        let scene = shipped(name);
+        let history = run(&scene, scene.output.duration);
+        let fine = run(&with_elements(scene.clone(), 160), scene.output.duration);
+        let greatest = |history: &History| {
+            last(&history.tension, samples(window))
+                .iter()
+                .copied()
+                .fold(0.0, f64::max)
+        };
+        let (found, reference) = (greatest(&history), greatest(&fine));
+        assert!(
+            (found / reference - 1.0).abs() < 0.05,
+            "{name}: peak {found} N, on a fine mesh {reference} N"
+        );
+    }
+}
+
+#[test]
+fn the_implicit_integrator_agrees_with_the_leapfrog_on_a_taut_line() {
+    let scene = with_elements(shipped("taut_polyester"), 20);
+    let [implicit, explicit] = [
+        (Integrator::GeneralisedAlpha, 0.02),
+        (Integrator::Leapfrog, 0.002),
+    ]
+    .map(|(integrator, step)| run(&with_integrator(scene.clone(), integrator, step), 40.0));
+    assert!(implicit.tension_error(&explicit, samples(20.0)) < 1e-3);
+    assert!(implicit.middle_error(&explicit, samples(20.0)) < 1e-3);
+}
+
+#[test]
+fn the_implicit_integrator_agrees_with_the_leapfrog_on_a_chain_that_lands() {
+    let mut scene = with_elements(shipped("oc3_catenary"), 20);
+    scene.solver.negative_tension = true;
+    let [implicit, explicit] = [
+        (Integrator::GeneralisedAlpha, 0.005),
+        (Integrator::Leapfrog, 0.002),
+    ]
+    .map(|(integrator, step)| run(&with_integrator(scene.clone(), integrator, step), 40.0));
+    assert!(implicit.tension_error(&explicit, samples(20.0)) < 1e-2);
+    assert!(implicit.middle_error(&explicit, samples(20.0)) < 5e-3);
+}
+
+/// The peers' law on fine meshes: damping acts in compression too.
+fn integrators_agree(name: &str, window: f64, implicit_step: f64) {
+    let mut scene = with_elements(shipped(name), 160);
+    scene.solver.negative_tension = true;
+    let duration = scene.output.duration;
+    let [explicit, implicit] = [
+        (Integrator::Leapfrog, 0.05),
+        (Integrator::AxialImplicit, implicit_step),
+    ]
+    .map(|(integrator, step)| run(&with_integrator(scene.clone(), integrator, step), duration));
+    let tension = implicit.tension_error(&explicit, samples(window));
+    let middle = implicit.middle_error(&explicit, samples(window));
+    assert!(tension < 0.01, "{name}: RMS tension {tension:.4}");
+    assert!(middle < 0.005, "{name}: middle {middle:.4}");
+}
+
+#[test]
+fn the_leapfrogs_agree_on_full_scale_scenes_under_the_peers_law() {
+    for (name, window) in &PUBLIC_SCENES[..3] {
+        integrators_agree(name, *window, 5e-3);
+    }
+}
+
+#[test]
+fn the_leapfrogs_agree_on_snapping_chains_under_the_peers_law() {
+    for (name, window) in &PUBLIC_SCENES[3..] {
+        integrators_agree(name, *window, 5e-4);
+    }
+}
+
+/// What a host says besides displacements.
+#[derive(Clone, Copy, PartialEq)]
+enum Says {
+    Displacements,
+    VelocitiesToo,
+}
+
+/// RMS error of tension [-] where a host moves the fairlead every `step` [s], against exact motion at the same internal step.
+fn host_error(step: f64, says: Says) -> f64 {
+    let scene = with_integrator(shipped("oc3_catenary"), Integrator::Leapfrog, 0.00625);
+    let sampled = 0.4; // common to all communication steps
+    let (count, every) = (
+        (120.0 / sampled) as usize,
+        (sampled / step).round() as usize,
+    );
+    let motion = Motion::new(&scene.motion["fairlead"]);
+    let mut host = Simulation::new(&scene).unwrap();
+    let fairlead = host.model().point_index("fairlead").unwrap();
+    let exact = History::record(&mut following(&scene), sampled, count);
+    let mut found = History::default();
+    found.sample(&host);
+    for sample in 0..count {
+        for k in 0..every {
+            let place = motion.at((sample * every + k) as f64 * step);
+            host.set_displacement(fairlead, place.position.into());
+            if says == Says::VelocitiesToo {
+                host.set_velocity(fairlead, <[f64; 3]>::from(place.velocity).map(Some));
+            }
+            host.advance(step).unwrap();
+        }
+        found.sample(&host);
+    }
+    found.tension_error(&exact, (60.0 / sampled) as usize)
+}
+
+#[test]
+fn a_host_that_gives_displacements_only_disturbs_tension_by_less_than_two_per_mille() {
+    let error = host_error(0.05, Says::Displacements);
+    assert!(error < 0.002, "{error}");
+}
+
+#[test]
+fn a_host_that_gives_velocities_too_disturbs_tension_by_less_than_half_a_per_mille() {
+    let error = host_error(0.05, Says::VelocitiesToo);
+    assert!(error < 0.0005, "{error}");
+}
+
+#[test]
+fn the_error_of_the_host_motion_falls_at_second_order_or_better() {
+    let steps = [0.4, 0.2, 0.1, 0.05];
+    for says in [Says::Displacements, Says::VelocitiesToo] {
+        let errors = steps.map(|step| host_error(step, says));
+        assert!(order(&steps, &errors) > 1.9, "{errors:?}");
+    }
+}

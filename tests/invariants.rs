@@ -1,0 +1,321 @@
+//! What must not change a result, and what a result must keep.
+
+mod common;
+
+use approx::assert_relative_eq;
+use common::*;
+use moorline::model::{Motion, State};
+use moorline::scene::{Integrator, MotionPath, Scene};
+use moorline::simulation::{Simulation, Snapshot};
+use nalgebra::{Rotation3, Vector3};
+
+const INTEGRATORS: [Integrator; 3] = [
+    Integrator::Leapfrog,
+    Integrator::AxialImplicit,
+    Integrator::GeneralisedAlpha,
+];
+
+/// The OC4 chain moved along all three axes, coarse, by one integrator.
+fn chain(integrator: Integrator) -> Scene {
+    let mut scene = with_integrator(with_elements(shipped("oc4_chain"), 20), integrator, 0.01);
+    if let Some(MotionPath::Harmonic(motion)) = scene.motion.get_mut("fairlead") {
+        motion.y = vec![vec![4.0, 11.0]];
+        motion.ramp = Some(5.0);
+    }
+    scene
+}
+
+/// The state after `duration` [s] in steps of 0.05 s.
+fn after(scene: &Scene, duration: f64) -> State {
+    let mut simulation = following(scene);
+    for _ in 0..(duration / 0.05).round() as usize {
+        simulation.advance(0.05).unwrap();
+    }
+    simulation.state().clone()
+}
+
+/// Greatest distance of the nodes of a line from the images of those of another [m].
+fn distance(
+    found: &[Vector3<f64>],
+    other: &[Vector3<f64>],
+    image: impl Fn(&Vector3<f64>) -> Vector3<f64>,
+) -> f64 {
+    assert_eq!(found.len(), other.len());
+    found
+        .iter()
+        .zip(other)
+        .map(|(a, b)| (a - image(b)).norm())
+        .fold(0.0, f64::max)
+}
+
+/// The scene in another frame: all points and harmonic motions, whose components must be alike in period, mapped linearly.
+fn mapped(mut scene: Scene, map: impl Fn(Vector3<f64>) -> Vector3<f64>) -> Scene {
+    for point in &mut scene.points {
+        point.position = map(Vector3::from(point.position)).into();
+    }
+    for path in scene.motion.values_mut() {
+        let motion = Motion::new(path);
+        let rows = (0..=400).map(|k| {
+            let t = 0.05 * k as f64;
+            let u = map(motion.at(t).position);
+            [t, u.x, u.y, u.z]
+        });
+        *path = MotionPath::Table(rows.collect());
+    }
+    scene
+}
+
+#[test]
+fn the_mirror_image_of_a_scene_moves_as_the_mirror_image() {
+    for integrator in INTEGRATORS {
+        let scene = mapped(chain(integrator), |r| r);
+        let original = after(&scene, 15.0);
+        for flip in [Vector3::new(-1.0, 1.0, 1.0), Vector3::new(1.0, -1.0, 1.0)] {
+            let image = after(&mapped(scene.clone(), |r| r.component_mul(&flip)), 15.0);
+            let apart = distance(&image.lines[0].position, &original.lines[0].position, |r| {
+                r.component_mul(&flip)
+            });
+            assert_eq!(apart, 0.0, "{integrator:?}");
+        }
+    }
+}
+
+#[test]
+fn a_scene_turned_about_the_vertical_moves_alike() {
+    for integrator in INTEGRATORS {
+        let scene = mapped(chain(integrator), |r| r);
+        let original = after(&scene, 10.0);
+        let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), 0.7);
+        let image = after(&mapped(scene.clone(), |r| turn * r), 10.0);
+        let apart = distance(&image.lines[0].position, &original.lines[0].position, |r| {
+            turn * r
+        });
+        assert!(apart < 1e-8, "{integrator:?}: {apart:e} m");
+    }
+}
+
+#[test]
+fn the_order_of_lines_and_points_changes_nothing() {
+    for integrator in INTEGRATORS {
+        let mut scene = chain(integrator);
+        let mut second = scene.lines[0].clone();
+        second.name = "line2".into();
+        second.from = "anchor2".into();
+        let mut anchor = scene.points[0].clone();
+        anchor.name = "anchor2".into();
+        anchor.position = [-760.0, 20.0, -200.0];
+        scene.points.push(anchor);
+        scene.lines.push(second);
+        let forward = after(&scene, 10.0);
+        scene.lines.reverse();
+        scene.points.reverse();
+        let backward = after(&scene, 10.0);
+        assert_eq!(forward.lines[0], backward.lines[1]);
+        assert_eq!(forward.lines[1], backward.lines[0]);
+        assert_eq!(forward.points[0], backward.points[2]);
+    }
+}
+
+#[test]
+fn a_line_of_two_sections_of_one_type_is_that_line() {
+    for integrator in INTEGRATORS {
+        let mut scene = chain(integrator);
+        scene.lines[0].sections[0].length = 835.0;
+        let whole = after(&scene, 10.0);
+        let section = &mut scene.lines[0].sections[0];
+        (section.length, section.elements) = (835.0 / 4.0, Some(5));
+        let mut rest = section.clone();
+        (rest.length, rest.elements) = (835.0 * 0.75, Some(15));
+        scene.lines[0].sections.push(rest);
+        let split = after(&scene, 10.0);
+        let apart = distance(&split.lines[0].position, &whole.lines[0].position, |r| *r);
+        assert!(apart < 1e-9, "{integrator:?}: {apart:e} m");
+    }
+}
+
+#[test]
+fn water_without_density_is_no_water() {
+    for integrator in INTEGRATORS {
+        let mut scene = chain(integrator);
+        scene.water.as_mut().unwrap().density = 1e-12;
+        let wet = after(&scene, 10.0);
+        scene.water = None;
+        let dry = after(&scene, 10.0);
+        let apart = distance(&wet.lines[0].position, &dry.lines[0].position, |r| *r);
+        assert!(apart < 1e-8, "{integrator:?}: {apart:e} m");
+    }
+}
+
+#[test]
+fn what_rests_stays_at_rest() {
+    for (name, _) in PUBLIC_SCENES {
+        for integrator in INTEGRATORS {
+            let mut scene = shipped(name);
+            scene.motion.clear();
+            scene.solver.integrator = integrator;
+            let mut simulation = Simulation::new(&scene).unwrap();
+            let (start, force) = (
+                simulation.state().clone(),
+                Vector3::from(simulation.end_force(1)),
+            );
+            for _ in 0..400 {
+                simulation.advance(0.25).unwrap();
+            }
+            let drift = distance(
+                &simulation.state().lines[0].position,
+                &start.lines[0].position,
+                |r| *r,
+            );
+            assert!(drift < 1e-10, "{name}, {integrator:?}: {drift:e} m");
+            let change = (Vector3::from(simulation.end_force(1)) - force).norm() / force.norm();
+            assert!(change < 1e-10, "{name}, {integrator:?}: {change:e}");
+        }
+    }
+}
+
+#[test]
+fn a_snapshot_put_back_replays_bit_for_bit() {
+    for integrator in INTEGRATORS {
+        let scene = chain(integrator);
+        let motion = Motion::new(&scene.motion["fairlead"]);
+        let mut simulation = Simulation::new(&scene).unwrap();
+        let fairlead = simulation.model().point_index("fairlead").unwrap();
+        let drive = |simulation: &mut Simulation, steps: std::ops::Range<usize>| {
+            for k in steps {
+                let step = [0.05, 0.08, 0.02][k % 3]; // uneven on purpose
+                simulation.set_displacement(fairlead, motion.at(simulation.time()).position.into());
+                simulation.advance(step).unwrap();
+            }
+        };
+        drive(&mut simulation, 0..100);
+        let saved = simulation.snapshot().clone();
+        let bytes = postcard::to_stdvec(&saved).unwrap();
+        drive(&mut simulation, 100..200);
+        let first = simulation.snapshot().clone();
+        simulation.restore(saved);
+        drive(&mut simulation, 100..200);
+        assert_eq!(*simulation.snapshot(), first);
+        let mut other = Simulation::new(&scene).unwrap();
+        let read: Snapshot = postcard::from_bytes(&bytes).unwrap();
+        other.restore(read);
+        drive(&mut other, 100..200);
+        assert_eq!(
+            postcard::to_stdvec(other.snapshot()).unwrap(),
+            postcard::to_stdvec(&first).unwrap()
+        );
+        assert_eq!(other.end_force(fairlead), simulation.end_force(fairlead));
+    }
+}
+
+#[test]
+fn a_step_of_no_length_changes_nothing() {
+    for integrator in INTEGRATORS {
+        let mut simulation = following(&chain(integrator));
+        for _ in 0..50 {
+            simulation.advance(0.05).unwrap();
+        }
+        let before = simulation.snapshot().clone();
+        simulation.advance(0.0).unwrap();
+        assert_eq!(*simulation.snapshot(), before);
+    }
+}
+
+#[test]
+fn one_long_communication_step_is_many_short_ones() {
+    for integrator in INTEGRATORS {
+        let scene = chain(integrator);
+        let (mut long, mut short) = (following(&scene), following(&scene));
+        for _ in 0..15 {
+            long.advance(1.0).unwrap();
+            for _ in 0..20 {
+                short.advance(0.05).unwrap();
+            }
+        }
+        let apart = distance(
+            &long.state().lines[0].position,
+            &short.state().lines[0].position,
+            |r| *r,
+        );
+        assert!(apart < 1e-8, "{integrator:?}: {apart:e} m");
+        assert_relative_eq!(
+            long.end_force(1)[0],
+            short.end_force(1)[0],
+            max_relative = 1e-5
+        );
+    }
+}
+
+/// Energy of the first line [J]: of motion, in the field of gravity, and of stretch.
+fn energy(simulation: &Simulation) -> f64 {
+    let (model, state) = (simulation.model(), &simulation.state().lines[0]);
+    let line = &model.lines[0];
+    let node = |i: usize| {
+        0.5 * line.nodes.mass[i] * state.velocity[i].norm_squared()
+            + line.nodes.weight[i] * state.position[i].z
+    };
+    let segment = |i: usize| {
+        let length = line.segments.length[i];
+        let strain = (state.position[i + 1] - state.position[i]).norm() / length - 1.0;
+        0.5 * line.segments.axial_stiffness[i] * length * strain.max(0.0).powi(2)
+    };
+    let nodes: f64 = (0..state.position.len()).map(node).sum();
+    nodes + (0..line.segment_count()).map(segment).sum::<f64>()
+}
+
+#[test]
+fn an_undamped_swing_keeps_its_energy_for_a_thousand_seconds() {
+    let text = r#"
+        line_types.rope = { mass = 5.0, axial_stiffness = 1e6 }
+        points = [
+          { name = "left", position = [0.0, 0.0, 0.0], kind = "fixed" },
+          { name = "right", position = [90.0, 0.0, 0.0], kind = "fixed" },
+        ]
+        lines = [{ name = "rope", from = "left", to = "right", sections = [{ type = "rope", length = 100.0, elements = 10 }] }]
+    "#;
+    let rest = Simulation::new(&scene(text)).unwrap();
+    let tilt = Rotation3::from_axis_angle(&Vector3::x_axis(), 0.2); // 11° out of its plane
+    let nodes: Vec<Vector3<f64>> = rest.state().lines[0]
+        .position
+        .iter()
+        .map(|r| tilt * r)
+        .collect();
+    for (integrator, radius) in [
+        (Integrator::Leapfrog, None),
+        (Integrator::AxialImplicit, Some(1.0)),
+        (Integrator::GeneralisedAlpha, Some(1.0)),
+    ] {
+        let mut scene = with_integrator(released_from(scene(text), &nodes), integrator, 0.05);
+        scene.solver.spectral_radius = radius;
+        let mut simulation = Simulation::new(&scene).unwrap();
+        let start = energy(&simulation);
+        let mut change: f64 = 0.0;
+        for _ in 0..1000 {
+            simulation.advance(1.0).unwrap();
+            change = change.max((energy(&simulation) - start).abs());
+        }
+        let swing = start - energy(&rest);
+        assert!(
+            change < 5e-3 * swing,
+            "{integrator:?}: {change} J of {swing} J"
+        );
+    }
+}
+
+#[test]
+fn forces_on_all_points_balance_weight_and_bed() {
+    for (name, _) in PUBLIC_SCENES {
+        let simulation = Simulation::new(&shipped(name)).unwrap();
+        let line = &simulation.model().lines[0];
+        let total: Vector3<f64> = (0..2)
+            .map(|point| Vector3::from(simulation.end_force(point)))
+            .sum();
+        let shape = &simulation.state().lines[0].position;
+        let bed: f64 = line.nodes.contact.as_ref().map_or(0.0, |contact| {
+            let push = |i: usize| contact.stiffness[i] * (contact.bed - shape[i].z).max(0.0);
+            (0..shape.len()).map(push).sum()
+        });
+        let weight: f64 = line.nodes.weight.iter().sum();
+        assert_relative_eq!(total.z, bed - weight, max_relative = 1e-9);
+        assert_relative_eq!(total.xy().norm(), 0.0, epsilon = 1e-9 * weight.abs());
+    }
+}
