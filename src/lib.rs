@@ -1,1 +1,3 @@
 //! moorline.
+
+pub mod statics;

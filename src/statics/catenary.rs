@@ -1,0 +1,502 @@
+//! The elastic catenary in closed form: a line held at two ends, with or without a bed under it.
+//!
+//! ```text
+//!  z ↑          ● B (span, rise)        H    horizontal tension, constant in flight
+//!    │        ╱                         V    vertical tension, V' = w; up going from A to B
+//!    ● A    ╱                           T    √(H² + V²)
+//!     ╲___╱        bed, z = height      s    unstretched arc length from A
+//! ```
+//!
+//! dx/ds = H/T + H/EA,   dz/ds = V/T + V/EA,   dV/ds = w in flight;   V = 0, dH/ds = μw (or H = 0) on the bed
+//!
+//! # One stretch
+//! Over a uniform stretch ℓ with V from Vₐ to V_b = Vₐ + W, W = wℓ, tensions Tₐ and T_b, mean Vₘ and mean σ = (Tₐ + T_b)/2:
+//! T_b² − Tₐ² = 2WVₘ, so T_b − Tₐ = WVₘ/σ, and the textbook's z = (T_b − Tₐ)/w + Vₘℓ/EA is
+//!
+//! z = Vₘℓ (1/σ + 1/EA).
+//!
+//! With V = H sinh of μₘ ± λ at the ends, W = 2H cosh μₘ sinh λ and 2σ = 2H cosh μₘ cosh λ, so ε = W/2σ = tanh λ and the
+//! textbook's x = (H/w)(asinh V_b/H − asinh Vₐ/H) + Hℓ/EA = 2Hλ/w + Hℓ/EA is
+//!
+//! x = Hℓ (α/σ + 1/EA),   α = atanh(ε)/ε.
+//!
+//! Differences of large numbers are gone, and w = 0 (α = 1, σ = T) is nothing special.
+//!
+//! # One equation
+//! From the same identities H² = (σ² − Vₘ²)(1 − ε²). A line held at ends X, Z apart has H = X/(L(α/σ + 1/EA)) and
+//! Vₘ = Z/(L(1/σ + 1/EA)), both functions of σ = W/(2 tanh λ) alone; put into that identity they leave one equation in λ,
+//!
+//! X²/(λ/sinh λ + (σ/EA)/cosh λ)² + Z²/(1 + σ/EA)² = L²,
+//!
+//! whose left side increases with λ: one root, always. Without stretch it is the classical X sinh λ/λ = √(L² − Z²).
+//! See `uniform` for how it is balanced so that no digit is lost.
+//!
+//! # The bed
+//! A flight from the bed rises by D where T − H + V²/2EA = wD, a quadratic in V². Two flights and what lies between them
+//! must reach X; what a flight is longer than its span, (H/w)(sinh β − β) with sinh β = V/H, makes this one balance in H
+//! (`touchdown`). Without tension the flights hang and the rest of the line is slack: H = 0, the layout is one of many, and
+//! the one returned spreads the slack evenly. Friction acts towards A, as on a line laid from A and hauled at B.
+//!
+//! # Several sections
+//! The line is laid out from A under a given tension, which is searched (`sections`). What floats rises off the bed without
+//! a ceiling.
+//!
+//! # Source and validity
+//! The elastic catenary: H. M. Irvine, Cable Structures, MIT Press, 1981. Touchdown with friction as a model: J. M. Jonkman,
+//! Dynamics Modeling and Loads Analysis of an Offshore Floating Wind Turbine, NREL/TP-500-41958, 2007. The forms solved
+//! here are derived above. Linear stretch (tension EA times engineering strain), weight per unstretched length, no bending
+//! stiffness, a flat bed that does not yield.
+//!
+//! ```
+//! use moorline::statics::catenary::{Bed, Section, solve};
+//!
+//! let chain = Section { length: 902.2, weight: 698.094, axial_stiffness: 384.243e6 };
+//! let bed = Bed { height: 0.0, friction: 0.0 };
+//! let line = solve(&[chain], 848.67, 250.0, Some(bed))?;
+//! assert!((line.tension_b() - 911_088.36).abs() < 0.01);
+//! assert!((line.laid_length() - 134.7855).abs() < 1e-4);
+//! # Ok::<(), moorline::statics::catenary::CatenaryError>(())
+//! ```
+
+mod flight;
+mod root;
+mod sections;
+mod shape;
+mod touchdown;
+mod uniform;
+
+use sections::Sections;
+use shape::{Kind, Shape};
+use touchdown::Touchdown;
+use uniform::{Held, Uniform};
+
+/// An end this far under the bed, over the length of the line, is taken to lie on it: rounding of positions [-].
+const BED_TOLERANCE: f64 = 1e-12;
+
+/// A stretch of line of one kind.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Section {
+    /// Unstretched length [m].
+    pub length: f64,
+    /// Weight in its fluid per unstretched length [N/m]: negative floats, 0 is weightless.
+    pub weight: f64,
+    /// Axial stiffness EA [N].
+    pub axial_stiffness: f64,
+}
+
+/// A flat bed that the line may lie on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bed {
+    /// z of the bed relative to end A [m]: 0 where A lies on it, negative below.
+    pub height: f64,
+    /// Coulomb friction along the line [-]: tension falls towards A by friction × weight per metre on the bed, not below 0.
+    pub friction: f64,
+}
+
+/// Why a line cannot be solved: the input is not a line.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum CatenaryError {
+    /// The list of sections is empty.
+    #[error("sections: a line needs at least one section, there is none")]
+    NoSections,
+    /// A property of a section is out of range.
+    #[error("sections[{index}].{key}: {value} {unit} is not {wanted}")]
+    Section {
+        /// Position in the list, from 0 [-].
+        index: usize,
+        /// Name of the property.
+        key: &'static str,
+        /// What was given, in `unit`.
+        value: f64,
+        /// Unit of the value.
+        unit: &'static str,
+        /// What would be right.
+        wanted: &'static str,
+    },
+    /// Span, rise, or a property of the bed is out of range.
+    #[error("{key}: {value} {unit} is not {wanted}")]
+    Input {
+        /// Name of the input.
+        key: &'static str,
+        /// What was given, in `unit`.
+        value: f64,
+        /// Unit of the value.
+        unit: &'static str,
+        /// What would be right.
+        wanted: &'static str,
+    },
+    /// An end lies below the bed.
+    #[error(
+        "bed.height: the bed at z = {bed} m is above end {end} at z = {z} m; it must be at or below both ends"
+    )]
+    EndBelowBed {
+        /// Which end, A or B.
+        end: char,
+        /// Height of that end relative to A [m].
+        z: f64,
+        /// Height of the bed relative to A [m].
+        bed: f64,
+    },
+}
+
+/// A material point of a solved line.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Point {
+    /// Horizontal distance from end A [m].
+    pub x: f64,
+    /// Height above end A [m].
+    pub z: f64,
+    /// Horizontal tension [N].
+    pub horizontal: f64,
+    /// Vertical tension [N]: positive where the tension vector points up going from A to B.
+    pub vertical: f64,
+    /// Tension [N].
+    pub tension: f64,
+}
+
+/// A solved line.
+#[derive(Debug, Clone)]
+pub struct Catenary {
+    shape: Shape,
+    held: Held,
+    span: f64,
+    rise: f64,
+}
+
+/// Solves the line of `sections`, from end A to end B, whose ends are `span` apart horizontally and B `rise` above A [m].
+///
+/// Every line that is one has a solution, so the only errors are inputs that are not finite, not positive where they must be,
+/// or an end below the bed.
+pub fn solve(
+    sections: &[Section],
+    span: f64,
+    rise: f64,
+    bed: Option<Bed>,
+) -> Result<Catenary, CatenaryError> {
+    let bed = check(sections, span, rise, bed)?;
+    let (shape, held) = match uniform(sections) {
+        Some(section) => solve_uniform(&section, span, rise, bed),
+        None => solve_sections(sections, span, rise, bed),
+    };
+    let forces = held.horizontal_a + held.horizontal_b + held.vertical_a + held.vertical_b;
+    assert!(
+        forces.is_finite(),
+        "a valid line has finite end forces: {sections:?}, span {span}, rise {rise}, {bed:?}, {held:?}"
+    );
+    Ok(Catenary {
+        shape,
+        held,
+        span,
+        rise,
+    })
+}
+
+/// The one section that `sections` are, if they are all of one kind.
+fn uniform(sections: &[Section]) -> Option<Section> {
+    let first = sections[0];
+    let alike =
+        |s: &Section| s.weight == first.weight && s.axial_stiffness == first.axial_stiffness;
+    let length = sections.iter().map(|section| section.length).sum();
+    sections
+        .iter()
+        .all(alike)
+        .then_some(Section { length, ..first })
+}
+
+fn solve_uniform(section: &Section, span: f64, rise: f64, bed: Option<Bed>) -> (Shape, Held) {
+    let line = Uniform {
+        length: section.length,
+        weight: section.weight,
+        axial_stiffness: section.axial_stiffness,
+    };
+    let held = line.suspend(span, rise);
+    match bed {
+        Some(bed) if lowest(section, &held) < bed.height => {
+            if bed.friction > 0.0 && bed.height < 0.0 {
+                let mut shape = Shape::default();
+                let frictionless = Touchdown {
+                    span,
+                    height_a: -bed.height,
+                    height_b: rise - bed.height,
+                    friction: 0.0,
+                };
+                let guess = line.touch_down(&frictionless);
+                let laid = section.length - (guess.vertical_b - guess.vertical_a) / section.weight;
+                // without friction H is about the mean along the bed
+                let horizontal_a = guess.horizontal_a - 0.5 * bed.friction * section.weight * laid;
+                let mut line = Sections::new(std::slice::from_ref(section), span, rise, Some(bed));
+                let held = line.solve((horizontal_a, guess.vertical_a), &mut shape);
+                return (shape, held);
+            }
+            let height_b = rise - bed.height;
+            let at = Touchdown {
+                span,
+                height_a: -bed.height,
+                height_b,
+                friction: bed.friction,
+            };
+            let held = line.touch_down(&at);
+            (touchdown_shape(section, &held, bed, span), held)
+        }
+        _ => (suspended_shape(section, &held, span, rise), held),
+    }
+}
+
+/// Lowest point between the ends of a suspended uniform line, relative to A [m].
+fn lowest(section: &Section, held: &Held) -> f64 {
+    let (h, v) = (held.horizontal_a, held.vertical_a);
+    if section.weight <= 0.0 || v >= 0.0 || held.vertical_b <= 0.0 {
+        return 0.0;
+    }
+    -v * v / section.weight * (1.0 / (h.hypot(v) + h) + 0.5 / section.axial_stiffness)
+}
+
+fn suspended_shape(section: &Section, held: &Held, span: f64, rise: f64) -> Shape {
+    let mut shape = Shape::default();
+    if held.horizontal_a == 0.0 && held.vertical_a == 0.0 && held.vertical_b == 0.0 {
+        let (x, z) = (span / section.length, rise / section.length);
+        shape.push(
+            section.length,
+            Kind::Slack {
+                x,
+                z,
+                on_bed: false,
+            },
+        );
+    } else {
+        shape.fly(section, section.length, held.horizontal_a, held.vertical_a);
+    }
+    shape
+}
+
+fn touchdown_shape(section: &Section, held: &Held, bed: Bed, span: f64) -> Shape {
+    let mut shape = Shape::default();
+    let (a, b) = (
+        -held.vertical_a / section.weight,
+        held.vertical_b / section.weight,
+    );
+    let growth = bed.friction * section.weight;
+    shape.fly(section, a, held.horizontal_a, held.vertical_a);
+    let laid = (section.length - a - b).max(0.0);
+    let slack = held.horizontal_a == 0.0 && held.horizontal_b == 0.0;
+    let tight = match held.horizontal_a {
+        0.0 if slack => 0.0,
+        0.0 => (held.horizontal_b / growth).min(laid),
+        _ => laid,
+    };
+    shape.lay(section, laid - tight, 0.0, 0.0);
+    shape.lay(section, tight, held.horizontal_a, growth);
+    shape.fly(section, b, held.horizontal_b, 0.0);
+    if slack {
+        shape.close(span);
+    }
+    shape
+}
+
+fn solve_sections(sections: &[Section], span: f64, rise: f64, bed: Option<Bed>) -> (Shape, Held) {
+    let length: f64 = sections.iter().map(|s| s.length).sum();
+    let flexibility: f64 = sections.iter().map(|s| s.length / s.axial_stiffness).sum();
+    let mut shape = Shape::default();
+    if sections.iter().all(|section| section.weight == 0.0) {
+        let held = suspend_weightless(sections, span, rise, &mut shape);
+        return (shape, held);
+    }
+    let weight: f64 = sections.iter().map(|s| s.weight * s.length).sum();
+    let alike = Uniform {
+        length,
+        weight: weight / length,
+        axial_stiffness: length / flexibility,
+    };
+    let suspended = alike.suspend(span, rise);
+    let guess = match bed {
+        Some(bed) if alike.weight > 0.0 && suspended.vertical_a < 0.0 => {
+            let (height_a, height_b) = (-bed.height, rise - bed.height);
+            let friction = if height_a == 0.0 { bed.friction } else { 0.0 };
+            alike.touch_down(&Touchdown {
+                span,
+                height_a,
+                height_b,
+                friction,
+            })
+        }
+        _ => suspended,
+    };
+    let mut line = Sections::new(sections, span, rise, bed);
+    let held = line.solve((guess.horizontal_a, guess.vertical_a), &mut shape);
+    (shape, held)
+}
+
+fn suspend_weightless(sections: &[Section], span: f64, rise: f64, shape: &mut Shape) -> Held {
+    let length: f64 = sections.iter().map(|s| s.length).sum();
+    let flexibility: f64 = sections.iter().map(|s| s.length / s.axial_stiffness).sum();
+    let alike = Uniform {
+        length,
+        weight: 0.0,
+        axial_stiffness: length / flexibility,
+    };
+    let held = alike.suspend(span, rise);
+    for section in sections {
+        if held.horizontal_a == 0.0 && held.vertical_a == 0.0 {
+            shape.push(
+                section.length,
+                Kind::Slack {
+                    x: span / length,
+                    z: rise / length,
+                    on_bed: false,
+                },
+            );
+        } else {
+            shape.fly(section, section.length, held.horizontal_a, held.vertical_a);
+        }
+    }
+    held
+}
+
+/// Refuses what is not a line; returns the bed with ends that are below it by rounding put on it.
+fn check(
+    sections: &[Section],
+    span: f64,
+    rise: f64,
+    bed: Option<Bed>,
+) -> Result<Option<Bed>, CatenaryError> {
+    if sections.is_empty() {
+        return Err(CatenaryError::NoSections);
+    }
+    for (index, section) in sections.iter().enumerate() {
+        let positive = |value: f64| value > 0.0 && value.is_finite();
+        let complain = |key, value, unit, wanted| {
+            Err(CatenaryError::Section {
+                index,
+                key,
+                value,
+                unit,
+                wanted,
+            })
+        };
+        if !positive(section.length) {
+            return complain("length", section.length, "m", "positive and finite");
+        }
+        if !positive(section.axial_stiffness) {
+            return complain(
+                "axial_stiffness",
+                section.axial_stiffness,
+                "N",
+                "positive and finite",
+            );
+        }
+        if !section.weight.is_finite() {
+            return complain("weight", section.weight, "N/m", "finite");
+        }
+    }
+    let complain = |key, value, unit, wanted| {
+        Err(CatenaryError::Input {
+            key,
+            value,
+            unit,
+            wanted,
+        })
+    };
+    if !(span >= 0.0 && span.is_finite()) {
+        return complain("span", span, "m", "at least 0 and finite");
+    }
+    if !rise.is_finite() {
+        return complain("rise", rise, "m", "finite");
+    }
+    let Some(bed) = bed else { return Ok(None) };
+    if !(bed.friction >= 0.0 && bed.friction.is_finite()) {
+        return complain("bed.friction", bed.friction, "[-]", "at least 0 and finite");
+    }
+    if !bed.height.is_finite() {
+        return complain("bed.height", bed.height, "m", "finite");
+    }
+    let (end, z) = if rise < 0.0 { ('B', rise) } else { ('A', 0.0) };
+    let length: f64 = sections.iter().map(|section| section.length).sum();
+    if bed.height > z + BED_TOLERANCE * length {
+        return Err(CatenaryError::EndBelowBed {
+            end,
+            z,
+            bed: bed.height,
+        });
+    }
+    Ok(Some(Bed {
+        height: bed.height.min(z),
+        ..bed
+    }))
+}
+
+impl Catenary {
+    /// Horizontal tension at end B [N].
+    pub fn horizontal(&self) -> f64 {
+        self.held.horizontal_b
+    }
+
+    /// Horizontal tension at end A [N]: that at B less what friction holds.
+    pub fn horizontal_a(&self) -> f64 {
+        self.held.horizontal_a
+    }
+
+    /// Vertical tension at end A [N]: positive where the tension vector points up going from A to B, so negative where the line sags below A.
+    pub fn vertical_a(&self) -> f64 {
+        self.held.vertical_a
+    }
+
+    /// Vertical tension at end B [N]: positive where the tension vector points up going from A to B.
+    pub fn vertical_b(&self) -> f64 {
+        self.held.vertical_b
+    }
+
+    /// Tension at end A [N].
+    pub fn tension_a(&self) -> f64 {
+        self.held.horizontal_a.hypot(self.held.vertical_a)
+    }
+
+    /// Tension at end B [N].
+    pub fn tension_b(&self) -> f64 {
+        self.held.horizontal_b.hypot(self.held.vertical_b)
+    }
+
+    /// Coulomb friction that the bed uses along what lies and is tight [-]: that of the bed; less only where sections float and no
+    /// state uses all of it; 0 where nothing lies.
+    pub fn friction(&self) -> f64 {
+        if self.laid().next().is_some() {
+            self.held.friction
+        } else {
+            0.0
+        }
+    }
+
+    /// Unstretched length on the bed [m].
+    pub fn laid_length(&self) -> f64 {
+        self.laid().map(|(from, to)| to - from).sum()
+    }
+
+    /// The stretches on the bed, as arc lengths (from, to) [m], unstretched from end A.
+    pub fn laid(&self) -> impl Iterator<Item = (f64, f64)> {
+        let on_bed = self.shape.pieces.iter().filter(|piece| piece.on_bed());
+        on_bed.map(|piece| (piece.s, piece.s + piece.length))
+    }
+
+    /// Length of the line under its tension [m].
+    pub fn stretched_length(&self) -> f64 {
+        self.shape
+            .pieces
+            .iter()
+            .map(|piece| piece.length + piece.elongation())
+            .sum()
+    }
+
+    /// Greatest vertical distance below the chord between the ends [m]; below the lower end where the span is 0.
+    pub fn sag(&self) -> f64 {
+        self.shape.sag(self.span, self.rise)
+    }
+
+    /// The material point at `s` metres of unstretched length from end A [m]; beyond an end, that end.
+    pub fn at(&self, s: f64) -> Point {
+        self.shape.at(s)
+    }
+
+    /// Evaluations of the equation that was solved [-].
+    pub fn iterations(&self) -> usize {
+        self.held.steps
+    }
+}

@@ -1,0 +1,251 @@
+//! A stretch of uniform line in free flight: nothing acts on it between its ends but its own weight.
+//!
+//! With H the horizontal tension, V₀ the vertical tension at the start, W = wℓ, Vₘ = V₀ + W/2, σ the mean of the two end
+//! tensions and ε = W/2σ (derived in the module above, section "One stretch"):
+//!
+//! x = Hℓ (α/σ + 1/EA),   z = Vₘℓ (1/σ + 1/EA),   α = atanh(ε)/ε,   ∫T ds = ½ℓ (σ + (Vₘ² + αH²)/σ)
+//!
+//! No term subtracts nearly equal numbers; W = 0 and W < 0 need no case of their own, and H = 0 is the vertical line.
+
+use super::Section;
+
+/// Below this ε the formula tanh λ = ε is used for λ, above it the one for sinh λ, which does not see 1 − ε.
+const STEEP: f64 = 0.75;
+
+/// A stretch of uniform line in free flight.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Flight {
+    /// Horizontal tension [N], at least 0.
+    pub horizontal: f64,
+    /// Vertical tension at the start [N].
+    pub vertical: f64,
+    /// Unstretched length [m].
+    pub length: f64,
+    /// Weight per unstretched length [N/m].
+    pub weight: f64,
+    /// Axial stiffness EA [N].
+    pub axial_stiffness: f64,
+}
+
+/// Rise of a flight with its slopes.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Rise {
+    /// z at the end relative to the start [m].
+    pub z: f64,
+    /// ∂z/∂V at fixed H [m/N].
+    pub by_vertical: f64,
+    /// ∂z/∂H at fixed V [m/N].
+    pub by_horizontal: f64,
+}
+
+impl Flight {
+    /// Flight of `length` metres of `section`.
+    pub fn of(section: &Section, length: f64, horizontal: f64, vertical: f64) -> Self {
+        Flight {
+            horizontal,
+            vertical,
+            length,
+            weight: section.weight,
+            axial_stiffness: section.axial_stiffness,
+        }
+    }
+
+    /// Vertical tension at the end [N].
+    pub fn vertical_end(&self) -> f64 {
+        self.vertical + self.weight * self.length
+    }
+
+    fn vertical_mean(&self) -> f64 {
+        self.vertical + 0.5 * self.weight * self.length
+    }
+
+    fn tensions(&self) -> (f64, f64) {
+        let tension = |v: f64| (self.horizontal * self.horizontal + v * v).sqrt();
+        (tension(self.vertical), tension(self.vertical_end()))
+    }
+
+    /// α = λ/ε: how much longer than Hℓ/σ the geometric span is.
+    fn alpha(&self, tension_a: f64, tension_b: f64, sigma: f64) -> f64 {
+        let epsilon = (0.5 * self.weight * self.length / sigma).abs();
+        if epsilon < 1e-4 {
+            return 1.0 + epsilon * epsilon * (1.0 / 3.0 + epsilon * epsilon / 5.0);
+        }
+        if epsilon < STEEP {
+            return epsilon.atanh() / epsilon;
+        }
+        let (h, va, vb) = (self.horizontal, self.vertical, self.vertical_end());
+        let (tensions, verticals) = (tension_a * tension_b, va * vb);
+        // sinh²λ = ε²(σ² − Vₘ²)/H², and 2(σ² − Vₘ²) = H² + T_a T_b − V_a V_b
+        let sinh = if verticals > 0.0 {
+            epsilon * (0.5 + 0.5 * (h * h + va * va + vb * vb) / (tensions + verticals)).sqrt()
+        } else {
+            epsilon * (0.5 * (h * h + tensions - verticals)).sqrt() / h
+        };
+        sinh.asinh() / epsilon
+    }
+
+    /// Position of the end relative to the start, x and z [m].
+    pub fn advance(&self) -> (f64, f64) {
+        let (ta, tb) = self.tensions();
+        let sigma = 0.5 * (ta + tb);
+        if sigma == 0.0 {
+            return (0.0, 0.0);
+        }
+        let flexibility = 1.0 / self.axial_stiffness;
+        let x = match self.horizontal {
+            0.0 => 0.0,
+            h => h * self.length * (self.alpha(ta, tb, sigma) / sigma + flexibility),
+        };
+        (
+            x,
+            self.vertical_mean() * self.length * (1.0 / sigma + flexibility),
+        )
+    }
+
+    /// Rise of the end above the start, with its slopes in V and H.
+    pub fn rise(&self) -> Rise {
+        let (ta, tb) = self.tensions();
+        let sigma = 0.5 * (ta + tb);
+        let flexibility = 1.0 / self.axial_stiffness;
+        if sigma == 0.0 {
+            return Rise {
+                z: 0.0,
+                by_vertical: self.length * flexibility,
+                by_horizontal: 0.0,
+            };
+        }
+        let v = self.vertical_mean();
+        let ratio = |force: f64, tension: f64| if tension > 0.0 { force / tension } else { 0.0 };
+        let sigma_v = 0.5 * (ratio(self.vertical, ta) + ratio(self.vertical_end(), tb));
+        let sigma_h = 0.5 * (ratio(self.horizontal, ta) + ratio(self.horizontal, tb));
+        Rise {
+            z: v * self.length * (1.0 / sigma + flexibility),
+            by_vertical: self.length * ((1.0 - v / sigma * sigma_v) / sigma + flexibility),
+            by_horizontal: -v / sigma * sigma_h * self.length / sigma,
+        }
+    }
+
+    /// Elongation ∫T/EA ds [m].
+    pub fn elongation(&self) -> f64 {
+        let (ta, tb) = self.tensions();
+        let sigma = 0.5 * (ta + tb);
+        if sigma == 0.0 {
+            return 0.0;
+        }
+        let (h, v) = (self.horizontal, self.vertical_mean());
+        let bow = if h > 0.0 {
+            self.alpha(ta, tb, sigma) * h * h
+        } else {
+            0.0
+        };
+        0.5 * self.length * (sigma + (v * v + bow) / sigma) / self.axial_stiffness
+    }
+
+    /// Distance along the unstretched line at which the vertical tension is `vertical` [m]; None if it is not on this stretch.
+    pub fn where_vertical_is(&self, vertical: f64) -> Option<f64> {
+        let at = (vertical - self.vertical) / self.weight;
+        (at.is_finite() && at > 0.0 && at < self.length).then_some(at)
+    }
+
+    /// The first `length` metres of this flight.
+    pub fn first(&self, length: f64) -> Self {
+        Flight { length, ..*self }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Flight;
+
+    fn textbook(flight: &Flight) -> (f64, f64) {
+        let Flight {
+            horizontal: h,
+            vertical: va,
+            length,
+            weight: w,
+            axial_stiffness: ea,
+        } = *flight;
+        let vb = va + w * length;
+        let x = h / w * ((vb / h).asinh() - (va / h).asinh()) + h * length / ea;
+        let z = (h.hypot(vb) - h.hypot(va)) / w + length * (va + 0.5 * w * length) / ea;
+        (x, z)
+    }
+
+    #[test]
+    fn a_flight_advances_as_the_textbook_formula_says_where_that_one_is_accurate() {
+        for h in [0.03, 1.0, 40.0] {
+            for v in [-9.0, -5.0, -0.1, 0.0, 2.0, 11.0] {
+                for weight in [-2.0, 0.9, 3.0] {
+                    let flight = Flight {
+                        horizontal: h,
+                        vertical: v,
+                        length: 3.0,
+                        weight,
+                        axial_stiffness: 200.0,
+                    };
+                    let (x, z) = flight.advance();
+                    let (x_book, z_book) = textbook(&flight);
+                    assert!(
+                        (x - x_book).abs() < 1e-13 && (z - z_book).abs() < 1e-13,
+                        "{flight:?}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_flight_cut_in_two_ends_at_the_same_place_and_is_as_long() {
+        for h in [1e-9, 0.2, 1e6] {
+            let whole = Flight {
+                horizontal: h,
+                vertical: -4.0,
+                length: 7.0,
+                weight: 1.5,
+                axial_stiffness: 90.0,
+            };
+            let first = whole.first(2.9);
+            let second = Flight {
+                vertical: first.vertical_end(),
+                length: 7.0 - 2.9,
+                ..whole
+            };
+            let ((x, z), (x1, z1), (x2, z2)) = (whole.advance(), first.advance(), second.advance());
+            let scale = 1.0 + x.abs();
+            assert!((x - x1 - x2).abs() < 4e-15 * scale && (z - z1 - z2).abs() < 4e-15 * scale);
+            let parts = first.elongation() + second.elongation();
+            assert!((whole.elongation() - parts).abs() < 1e-14 * parts);
+        }
+    }
+
+    #[test]
+    fn the_slopes_of_the_rise_are_its_central_differences() {
+        let base = Flight {
+            horizontal: 2.0,
+            vertical: -3.0,
+            length: 5.0,
+            weight: 1.1,
+            axial_stiffness: 60.0,
+        };
+        let step = 1e-5;
+        let by = |dv: f64, dh: f64| {
+            let up = Flight {
+                vertical: base.vertical + dv,
+                horizontal: base.horizontal + dh,
+                ..base
+            }
+            .rise()
+            .z;
+            let down = Flight {
+                vertical: base.vertical - dv,
+                horizontal: base.horizontal - dh,
+                ..base
+            }
+            .rise()
+            .z;
+            (up - down) / (2.0 * step)
+        };
+        assert!((by(step, 0.0) - base.rise().by_vertical).abs() < 1e-8);
+        assert!((by(0.0, step) - base.rise().by_horizontal).abs() < 1e-8);
+    }
+}

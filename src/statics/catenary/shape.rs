@@ -1,0 +1,238 @@
+//! A solved line as a chain of pieces, and what can be read from it: a point, the sag, lengths.
+
+use super::flight::Flight;
+use super::{Point, Section};
+
+/// What carries a piece.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Kind {
+    /// Its ends only.
+    Flight(Flight),
+    /// The bed, straight, with a tension that grows from `tension` [N] at its start by `growth` per metre [N/m].
+    Laid {
+        tension: f64,
+        growth: f64,
+        axial_stiffness: f64,
+    },
+    /// Nothing: no tension, so the shape is one of many; drawn straight, advancing (x, z) per metre [-].
+    Slack { x: f64, z: f64, on_bed: bool },
+}
+
+/// A piece of the line with what carries it and where it starts.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Piece {
+    /// Unstretched arc length at the start, from end A [m].
+    pub s: f64,
+    /// Unstretched length [m].
+    pub length: f64,
+    /// Start, relative to end A [m].
+    pub x: f64,
+    /// Start, relative to end A [m].
+    pub z: f64,
+    pub kind: Kind,
+}
+
+impl Piece {
+    fn advance(&self, length: f64) -> (f64, f64) {
+        match self.kind {
+            Kind::Flight(flight) => flight.first(length).advance(),
+            Kind::Laid {
+                tension,
+                growth,
+                axial_stiffness,
+            } => (
+                length * (1.0 + (tension + 0.5 * growth * length) / axial_stiffness),
+                0.0,
+            ),
+            Kind::Slack { x, z, .. } => (x * length, z * length),
+        }
+    }
+
+    pub fn on_bed(&self) -> bool {
+        matches!(
+            self.kind,
+            Kind::Laid { .. } | Kind::Slack { on_bed: true, .. }
+        )
+    }
+
+    pub fn elongation(&self) -> f64 {
+        match self.kind {
+            Kind::Flight(flight) => flight.elongation(),
+            Kind::Laid { .. } => self.advance(self.length).0 - self.length,
+            Kind::Slack { .. } => 0.0,
+        }
+    }
+
+    fn point(&self, length: f64) -> Point {
+        let (dx, dz) = self.advance(length);
+        let (horizontal, vertical) = match self.kind {
+            Kind::Flight(flight) => (flight.horizontal, flight.first(length).vertical_end()),
+            Kind::Laid {
+                tension, growth, ..
+            } => (tension + growth * length, 0.0),
+            Kind::Slack { .. } => (0.0, 0.0),
+        };
+        Point {
+            x: self.x + dx,
+            z: self.z + dz,
+            horizontal,
+            vertical,
+            tension: horizontal.hypot(vertical),
+        }
+    }
+}
+
+/// The pieces of a line from A to B, each starting where the one before ends.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Shape {
+    pub pieces: Vec<Piece>,
+    /// Where the last piece ends: s, x, z [m].
+    pub end: (f64, f64, f64),
+}
+
+impl Shape {
+    /// Forgets the pieces, keeps their memory.
+    pub fn clear(&mut self) {
+        self.pieces.clear();
+        self.end = (0.0, 0.0, 0.0);
+    }
+
+    /// Appends `length` metres carried by `kind`; nothing if there is no length.
+    pub fn push(&mut self, length: f64, kind: Kind) {
+        if length <= 0.0 {
+            return;
+        }
+        let (s, x, z) = self.end;
+        let piece = Piece {
+            s,
+            length,
+            x,
+            z,
+            kind,
+        };
+        let (dx, dz) = piece.advance(length);
+        self.end = (s + length, x + dx, z + dz);
+        self.pieces.push(piece);
+    }
+
+    /// Appends a flight over `length` metres of `section` that starts under H and V.
+    pub fn fly(&mut self, section: &Section, length: f64, horizontal: f64, vertical: f64) {
+        self.push(
+            length,
+            Kind::Flight(Flight::of(section, length, horizontal, vertical)),
+        );
+    }
+
+    /// Appends `length` metres of `section` on the bed.
+    pub fn lay(&mut self, section: &Section, length: f64, tension: f64, growth: f64) {
+        if tension == 0.0 && growth == 0.0 {
+            self.push(
+                length,
+                Kind::Slack {
+                    x: 1.0,
+                    z: 0.0,
+                    on_bed: true,
+                },
+            );
+        } else {
+            self.push(
+                length,
+                Kind::Laid {
+                    tension,
+                    growth,
+                    axial_stiffness: section.axial_stiffness,
+                },
+            );
+        }
+    }
+
+    /// Turns pieces whose tension nowhere exceeds `nothing` [N] into slack ones where they are, and horizontal tension up to it into none.
+    pub fn relax(&mut self, nothing: f64) {
+        for piece in &mut self.pieces {
+            let (x, z) = piece.advance(piece.length);
+            let (x, z) = (x / piece.length, z / piece.length);
+            match &mut piece.kind {
+                Kind::Flight(flight) if flight.horizontal <= nothing => {
+                    flight.horizontal = 0.0;
+                    if flight.vertical.abs() <= nothing && flight.vertical_end().abs() <= nothing {
+                        piece.kind = Kind::Slack {
+                            x,
+                            z,
+                            on_bed: false,
+                        };
+                    }
+                }
+                Kind::Laid {
+                    tension, growth, ..
+                } if *tension <= nothing => {
+                    *tension = 0.0;
+                    if *growth == 0.0 {
+                        piece.kind = Kind::Slack { x, z, on_bed: true };
+                    }
+                }
+                _ => {}
+            }
+        }
+    }
+
+    /// Draws the slack pieces together so that the line ends at `x` [m].
+    pub fn close(&mut self, x: f64) {
+        let advance = |piece: &Piece| match piece.kind {
+            Kind::Slack { x, .. } => x * piece.length,
+            _ => 0.0,
+        };
+        let slack: f64 = self.pieces.iter().map(advance).sum();
+        if slack <= 0.0 {
+            return;
+        }
+        let factor = ((x - self.end.1 + slack) / slack).clamp(0.0, 1.0);
+        let pieces = std::mem::take(&mut self.pieces);
+        self.end = (0.0, 0.0, 0.0);
+        for piece in pieces {
+            let kind = match piece.kind {
+                Kind::Slack { x, z, on_bed } => Kind::Slack {
+                    x: x * factor,
+                    z,
+                    on_bed,
+                },
+                kind => kind,
+            };
+            self.push(piece.length, kind);
+        }
+    }
+
+    /// The material point at `s` metres of unstretched length from A; beyond an end, that end.
+    pub fn at(&self, s: f64) -> Point {
+        let next = self.pieces.partition_point(|piece| piece.s <= s);
+        let piece = &self.pieces[next.saturating_sub(1)];
+        piece.point((s - piece.s).clamp(0.0, piece.length))
+    }
+
+    /// Greatest vertical distance below the chord from (0, 0) to (`span`, `rise`) [m]; below the lower end where the span is 0.
+    pub fn sag(&self, span: f64, rise: f64) -> f64 {
+        let below = |point: Point| {
+            let chord = if span > 0.0 {
+                rise * (point.x / span)
+            } else {
+                rise.min(0.0)
+            };
+            chord - point.z
+        };
+        let mut sag = 0.0_f64;
+        for piece in &self.pieces {
+            sag = sag.max(below(piece.point(0.0)));
+            if let Kind::Flight(flight) = piece.kind {
+                // lowest where the tension is parallel to the chord
+                let vertical = if span > 0.0 {
+                    flight.horizontal * (rise / span)
+                } else {
+                    0.0
+                };
+                if let Some(length) = flight.where_vertical_is(vertical) {
+                    sag = sag.max(below(piece.point(length)));
+                }
+            }
+        }
+        sag
+    }
+}
