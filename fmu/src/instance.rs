@@ -613,3 +613,146 @@ fn wrong_type(variable: &Variable, asked: &str) -> Refusal {
         variable.name, variable.kind
     ))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SCENE: &str = r#"
+        [line_types.rope]
+        mass = 0.2
+        axial_stiffness = 2505.0
+        [[points]]
+        name = "wall"
+        position = [0.0, 0.0, 0.0]
+        kind = "fixed"
+        [[points]]
+        name = "hand"
+        position = [9.0, 0.0, 0.0]
+        kind = "coupled"
+        [[lines]]
+        name = "rope"
+        from = "wall"
+        to = "hand"
+        sections = [{ type = "rope", length = 10.0, elements = 6 }]
+    "#;
+
+    fn instance(version: FmiVersion) -> Instance {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("scene.toml"), SCENE).unwrap();
+        let scene = Scene::from_toml(SCENE).unwrap();
+        let token = Description::new(SCENE, &scene, version).unwrap().token;
+        Instance::new(version, Some(&token), folder.path().to_str(), true).unwrap()
+    }
+
+    fn reference(instance: &Instance, name: &str) -> u32 {
+        let variables = instance.interface.variables();
+        let index = variables.iter().position(|v| v.name == name);
+        Interface::reference(index.unwrap())
+    }
+
+    fn real(instance: &mut Instance, name: &str) -> f64 {
+        let reference = reference(instance, name);
+        let mut value = [0.0];
+        instance
+            .get(Kind::Float64, &[reference], &mut value)
+            .unwrap();
+        value[0]
+    }
+
+    fn set(instance: &mut Instance, name: &str, value: f64) -> Outcome {
+        let reference = reference(instance, name);
+        instance.set(Kind::Float64, &[reference], &[value])
+    }
+
+    fn started() -> Instance {
+        let mut instance = instance(FmiVersion::Two);
+        instance.enter_initialization().unwrap();
+        instance.exit_initialization().unwrap();
+        instance
+    }
+
+    #[test]
+    fn the_host_clock_is_kept_so_that_rounding_does_not_add_up() {
+        let mut instance = started();
+        for k in 0..1000 {
+            instance.do_step(0.1 * f64::from(k), 0.1).unwrap();
+        }
+        assert_eq!(instance.time(), 0.1 * 999.0 + 0.1);
+        assert!(
+            instance
+                .log
+                .take()
+                .iter()
+                .all(|(topic, _)| *topic == Topic::Event)
+        );
+    }
+
+    #[test]
+    fn a_refused_step_leaves_everything_as_it_was() {
+        let mut instance = started();
+        instance.do_step(0.0, 0.1).unwrap();
+        let before = instance.snapshot();
+        for (at, step) in [
+            (0.2, 0.1),
+            (0.1, -0.1),
+            (f64::NAN, 0.1),
+            (0.1, f64::INFINITY),
+        ] {
+            assert!(instance.do_step(at, step).is_err());
+            assert_eq!(instance.snapshot(), before);
+            assert_eq!(instance.step_status(), Status::Error);
+        }
+        instance.do_step(0.1, 0.0).unwrap();
+        assert_eq!(instance.snapshot(), before);
+    }
+
+    #[test]
+    fn values_of_one_call_are_set_together_or_not_at_all() {
+        let mut instance = started();
+        let references = ["hand.x", "hand.y"].map(|name| reference(&instance, name));
+        let refusal = instance.set(Kind::Float64, &references, &[0.1, f64::NAN]);
+        assert!(refusal.unwrap_err().0.contains("hand.y"));
+        assert_eq!(real(&mut instance, "hand.x"), 0.0);
+    }
+
+    #[test]
+    fn a_parameter_set_in_initialization_shows_in_the_outputs() {
+        let mut instance = instance(FmiVersion::Three);
+        instance.enter_initialization().unwrap();
+        let light = real(&mut instance, "rope.tension_b");
+        set(&mut instance, "rope.mass", 0.4).unwrap();
+        let heavy = real(&mut instance, "rope.tension_b");
+        assert!(heavy > 1.5 * light, "{light} {heavy}");
+        instance.reset().unwrap();
+        instance.enter_initialization().unwrap();
+        assert_eq!(real(&mut instance, "rope.tension_b"), light);
+    }
+
+    #[test]
+    fn fmi2_has_no_time_variable() {
+        let mut two = instance(FmiVersion::Two);
+        let time = time_reference(&two.interface);
+        assert!(two.get(Kind::Float64, &[time], &mut [0.0]).is_err());
+        let mut three = instance(FmiVersion::Three);
+        three.set_up(None, 5.0, None).unwrap();
+        let mut value = [0.0];
+        three.get(Kind::Float64, &[time], &mut value).unwrap();
+        assert_eq!(value, [5.0]);
+        assert!(three.set(Kind::Float64, &[time], &[1.0]).is_err());
+    }
+
+    #[test]
+    fn start_and_stop_times_must_make_sense() {
+        let mut instance = instance(FmiVersion::Two);
+        assert!(instance.set_up(None, f64::NAN, None).is_err());
+        assert!(instance.set_up(None, 1.0, Some(0.0)).is_err());
+        instance.set_up(Some(1e-6), 1.0, Some(1.2)).unwrap();
+        instance.enter_initialization().unwrap();
+        instance.exit_initialization().unwrap();
+        instance.do_step(1.0, 0.1).unwrap();
+        instance.do_step(1.1, 0.1).unwrap();
+        let refusal = instance.do_step(1.2, 0.1).unwrap_err();
+        assert!(refusal.0.contains("stop time 1.2 s"), "{}", refusal.0);
+    }
+}
