@@ -51,6 +51,8 @@ pub(crate) struct Instance {
     stop_time: Option<f64>,
     time: f64,
     inputs: Vec<PointInput>,
+    /// Displacements at which the statics were solved last [m].
+    start_displacements: Vec<[f64; 3]>,
     /// Statics with the present parameters and inputs, or where the last step ended; `None` while they are not known.
     simulation: Option<Simulation>,
     has_warned_of_time: bool,
@@ -78,6 +80,7 @@ impl Instance {
         }
         Ok(Instance {
             inputs: vec![PointInput::default(); scene.points.len()],
+            start_displacements: vec![[0.0; 3]; scene.points.len()],
             time_reference: (version == FmiVersion::Three)
                 .then(|| time_reference(&description.interface)),
             packaged: scene.clone(),
@@ -209,12 +212,13 @@ impl Instance {
     /// same first guess, so that it does not depend on what was set before.
     fn solve_statics(&mut self) -> Result<&mut Simulation, Refusal> {
         if self.simulation.is_none() {
-            let mut simulation = Simulation::new(&self.scene).map_err(|e| e.to_string())?;
-            hand_over(&self.inputs, &mut simulation);
-            simulation
-                .restart(self.start_time)
-                .map_err(|e| e.to_string())?;
-            self.simulation = Some(simulation);
+            let places = self.inputs.iter().map(|input| input.displacement);
+            self.start_displacements = places.collect();
+            self.simulation = Some(statics(
+                &self.scene,
+                self.start_time,
+                &self.start_displacements,
+            )?);
         }
         Ok(self
             .simulation
@@ -532,6 +536,7 @@ impl Instance {
             time: self.time,
             parameters: self.parameters(&self.scene),
             inputs: self.inputs.clone(),
+            start_displacements: self.start_displacements.clone(),
             solver: self.simulation.as_ref().map(|s| s.snapshot().clone()),
         }
     }
@@ -549,35 +554,47 @@ impl Instance {
 
     /// Goes back to a saved state.
     pub(crate) fn restore(&mut self, snapshot: &Snapshot) -> Outcome {
-        let parameters = self.parameters(&self.scene);
-        let same = parameters
-            .iter()
-            .map(|value| value.to_bits())
-            .eq(snapshot.parameters.iter().map(|value| value.to_bits()));
+        let (own, new) = (self.parameters(&self.scene), &snapshot.parameters);
+        let same_scene = same_bits(&own, new);
+        let same_start = same_scene
+            && self.start_time.to_bits() == snapshot.start_time.to_bits()
+            && same_bits(
+                self.start_displacements.as_flattened(),
+                snapshot.start_displacements.as_flattened(),
+            );
         let mut scene = self.scene.clone();
-        if !same {
+        if !same_scene {
             let rows = self.interface.variables().iter();
             let rows = rows.filter_map(|variable| match &variable.binding {
                 Binding::Parameter(parameter) => Some(parameter),
                 _ => None,
             });
-            for (parameter, &value) in rows.zip(&snapshot.parameters) {
+            for (parameter, &value) in rows.zip(new) {
                 parameter.set(&mut scene, value)?;
             }
         }
-        let simulation = match &snapshot.solver {
-            None => None,
-            Some(state) => {
-                let mut simulation = match self.simulation.take() {
-                    Some(simulation) if same => simulation,
-                    _ => Simulation::new(&scene).map_err(|e| e.to_string())?,
-                };
-                simulation.restore(state.clone());
-                Some(simulation)
-            }
+        let rebuilt = match &snapshot.solver {
+            Some(_) if !same_start || self.simulation.is_none() => Some(statics(
+                &scene,
+                snapshot.start_time,
+                &snapshot.start_displacements,
+            )?),
+            _ => None,
         };
+        // From here on nothing can fail.
+        let simulation = rebuilt.or_else(|| self.simulation.take());
+        self.simulation =
+            snapshot
+                .solver
+                .as_ref()
+                .zip(simulation)
+                .map(|(state, mut simulation)| {
+                    simulation.restore(state.clone());
+                    simulation
+                });
+        self.start_displacements
+            .clone_from(&snapshot.start_displacements);
         self.scene = scene;
-        self.simulation = simulation;
         self.phase = snapshot.phase;
         self.start_time = snapshot.start_time;
         self.stop_time = snapshot.stop_time;
@@ -593,6 +610,21 @@ impl Instance {
     pub(crate) fn deserialize(&self, bytes: &[u8]) -> Result<Snapshot, Refusal> {
         Ok(Snapshot::from_bytes(bytes, &self.token)?)
     }
+}
+
+/// Static equilibrium at the given displacements of the points [m], always from the same first guess.
+fn statics(scene: &Scene, start: f64, displacements: &[[f64; 3]]) -> Result<Simulation, Refusal> {
+    let mut simulation = Simulation::new(scene).map_err(|e| e.to_string())?;
+    for (point, displacement) in displacements.iter().enumerate() {
+        simulation.set_displacement(point, *displacement);
+    }
+    simulation.restart(start).map_err(|e| e.to_string())?;
+    Ok(simulation)
+}
+
+fn same_bits(these: &[f64], those: &[f64]) -> bool {
+    let bits = |value: &f64| value.to_bits();
+    these.iter().map(bits).eq(those.iter().map(bits))
 }
 
 /// Gives the simulation what the host last set.
