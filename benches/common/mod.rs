@@ -50,7 +50,12 @@ pub fn measure(scene: &Scene) -> Cost {
         }
         best = best.min(clock.elapsed().as_secs_f64());
     }
-    let nodes: usize = simulation.model().lines.iter().map(|line| line.segment_count() + 1).sum();
+    let nodes: usize = simulation
+        .model()
+        .lines
+        .iter()
+        .map(|line| line.segment_count() + 1)
+        .sum();
     Cost {
         node_step: 1e9 * best / (nodes * substeps) as f64,
         second: best / SPAN,
