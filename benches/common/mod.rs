@@ -1,4 +1,5 @@
 //! Timing of fixed steps from a saved state: the least of many repetitions, which noise cannot lower.
+#![allow(dead_code)] // each bench uses a part
 
 use std::time::Instant;
 
