@@ -20,7 +20,7 @@ fn main() {
         cases.push((name, scene));
     };
     without("no seabed", &|scene| scene.seabed = None);
-    without("no axial damping", &|scene| chain(scene, &|line| line.axial_damping = None));
+    without("no axial damping", &|scene| chain(scene, &|line| line.axial_damping = Some(0.0)));
     without("no drag", &|scene| {
         chain(scene, &|line| (line.drag_normal, line.drag_tangential) = (None, None));
     });
@@ -33,7 +33,7 @@ fn main() {
     without("no water, no seabed, no damping", &|scene| {
         dry(scene);
         scene.seabed = None;
-        chain(scene, &|line| line.axial_damping = None);
+        chain(scene, &|line| line.axial_damping = Some(0.0));
     });
     println!("{:<34} {:>14} {:>10}", "oc3_catenary, n = 40, leapfrog", "ns/node/step", "of all");
     let mut all = None;

@@ -556,3 +556,191 @@ fn check_unique(variables: &[Variable]) -> Result<(), SceneError> {
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SCENE: &str = r#"
+        [seabed]
+        depth = 50.0
+        [line_types.rope]
+        mass = 2.0
+        diameter = 0.05
+        axial_stiffness = 1.0e6
+        [line_types.wire]
+        weight = 3.0
+        axial_stiffness = 1.0e7
+        damping_ratio = 0.1
+        [[points]]
+        name = "anchor"
+        position = [0.0, 0.0, 0.0]
+        kind = "fixed"
+        [[points]]
+        name = "knot"
+        position = [8.0, 0.0, -2.0]
+        kind = "free"
+        [[points]]
+        name = "left"
+        position = [16.0, 0.0, 0.0]
+        kind = "coupled"
+        [[points]]
+        name = "right"
+        position = [30.0, 0.0, 0.0]
+        kind = "coupled"
+        [[lines]]
+        name = "lower"
+        from = "anchor"
+        to = "knot"
+        sections = [{ type = "rope", length = 9.0, elements = 4 }]
+        [[lines]]
+        name = "upper"
+        from = "knot"
+        to = "left"
+        sections = [{ type = "wire", length = 5.0 }, { type = "rope", length = 4.0, elements = 4 }]
+        [[lines]]
+        name = "span"
+        from = "left"
+        to = "right"
+        sections = [{ type = "wire", length = 15.0, elements = 4 }]
+        [output]
+        profile = true
+    "#;
+
+    fn interface(text: &str, layout: Layout) -> Interface {
+        let scene = Scene::from_toml(text).unwrap();
+        Interface::new(&scene, &Model::new(&scene).unwrap(), layout).unwrap()
+    }
+
+    fn dependencies(interface: &Interface, name: &str) -> Vec<String> {
+        let variables = interface.variables();
+        let variable = variables.iter().find(|v| v.name == name).unwrap();
+        let references = variable.initial_dependencies.iter();
+        references
+            .map(|reference| interface.variable(*reference).unwrap().name.clone())
+            .collect()
+    }
+
+    #[test]
+    fn a_value_reference_is_a_position_counted_from_one() {
+        let interface = interface(SCENE, Layout::Scalars);
+        for (index, variable) in interface.variables().iter().enumerate() {
+            let reference = Interface::reference(index);
+            assert_eq!(interface.variable(reference), Some(variable));
+        }
+        assert_eq!(interface.variable(0), None);
+        let count = interface.variables().len();
+        assert_eq!(interface.variable(Interface::reference(count)), None);
+    }
+
+    #[test]
+    fn a_line_depends_on_what_its_network_hangs_on_and_on_nothing_beyond_a_driven_point() {
+        let interface = interface(SCENE, Layout::Arrays);
+        let upper = dependencies(&interface, "upper.tension_b");
+        for name in [
+            "left.x",
+            "rope.mass",
+            "wire.weight",
+            "lower.length",
+            "upper.section1.length",
+            "seabed.depth",
+            "gravity",
+            "solver.tolerance",
+        ] {
+            assert!(upper.iter().any(|known| known == name), "{name}");
+        }
+        for name in ["right.x", "left.vx", "span.length", "wire.damping_ratio"] {
+            assert!(upper.iter().all(|known| known != name), "{name}");
+        }
+        assert_eq!(
+            dependencies(&interface, "span.tension_b"),
+            [
+                "left.x",
+                "left.y",
+                "left.z",
+                "right.x",
+                "right.y",
+                "right.z",
+                "wire.axial_stiffness",
+                "wire.weight",
+                "span.length",
+                "seabed.depth"
+            ]
+        );
+        let both = dependencies(&interface, "left.fx");
+        for name in ["lower.length", "span.length", "right.z"] {
+            assert!(both.iter().any(|known| known == name), "{name}");
+        }
+    }
+
+    #[test]
+    fn only_lines_with_held_ends_have_a_closed_form_catenary() {
+        let interface = interface(SCENE, Layout::Scalars);
+        let has = |name: &str| interface.variables().iter().any(|v| v.name == name);
+        assert!(
+            has("span.catenary_sag") && !has("lower.catenary_sag") && !has("upper.catenary_sag")
+        );
+        assert!(!dependencies(&interface, "span.catenary_sag").contains(&"left.x".to_string()));
+    }
+
+    #[test]
+    fn profiles_stand_last_and_move_no_other_variable() {
+        let without = interface(&SCENE.replace("profile = true", ""), Layout::Scalars);
+        for layout in [Layout::Scalars, Layout::Arrays] {
+            let with = interface(SCENE, layout);
+            let count = without.variables().len();
+            assert_eq!(with.variables()[..count], *without.variables());
+            let profiles = &with.variables()[count..];
+            let nodes = |line: &str| -> usize {
+                profiles
+                    .iter()
+                    .filter(|v| v.name.starts_with(&format!("{line}.profile.z")))
+                    .map(Variable::size)
+                    .sum()
+            };
+            assert_eq!((nodes("lower"), nodes("span")), (5, 5));
+        }
+    }
+
+    #[test]
+    fn every_parameter_can_be_set_and_read_back() {
+        let mut scene = Scene::from_toml(SCENE).unwrap();
+        for variable in interface(SCENE, Layout::Scalars).variables() {
+            if let Binding::Parameter(parameter) = &variable.binding {
+                let other = match parameter {
+                    Parameter::InputReconstruction => 1.0,
+                    _ => 1.5 * variable.start.unwrap(),
+                };
+                parameter.set(&mut scene, other).unwrap();
+                assert_eq!(parameter.value(&scene), Some(other), "{}", variable.name);
+            }
+        }
+        let message = Parameter::InputReconstruction.set(&mut scene, 0.5);
+        assert!(message.unwrap_err().contains("neither"));
+    }
+
+    #[test]
+    fn two_variables_of_one_name_are_a_clear_error() {
+        let binding = Binding::Solver(SolverResult::Substeps);
+        let one = row(
+            "a.b".into(),
+            String::new(),
+            Causality::Output,
+            Unit::ONE,
+            binding,
+        );
+        let error = check_unique(&[one.clone(), one]).unwrap_err();
+        assert!(
+            error.to_string().starts_with("a.b: two variables"),
+            "{error}"
+        );
+    }
+
+    #[test]
+    fn a_name_that_xml_cannot_carry_is_refused() {
+        for name in ["", " a", "a\tb", "a\u{1}"] {
+            assert!(check_name(name, "points[0].name").is_err(), "{name:?}");
+        }
+        assert!(check_name("Linie 1 ø", "points[0].name").is_ok());
+    }
+}

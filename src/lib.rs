@@ -1,4 +1,60 @@
-//! Mooring-line dynamics.
+//! Mooring-line dynamics: elastic catenary statics, cable dynamics, and the library behind the moorline FMU.
+//!
+//! A line is a chain of two-node segments with lumped nodes. With unit vectors q along the segments, every node obeys
+//!
+//! ```text
+//! M_i(t) a_i = T_i q_i − T_{i−1} q_{i−1} − w_i ẑ + drag + contact,     T = max(0, EA·N(ε) + BA·ε̇)
+//! M = M_n I + (M_t − M_n) t tᵀ,                                        t along the line
+//! ```
+//!
+//! SI units throughout. z points up, z = 0 is the still water level, the seabed lies at z = −depth. Lines run from end A (the
+//! anchor) to end B (the fairlead), and arc length counts unstretched metres from A. Forces at points are those that the
+//! mooring applies to what holds the point.
+//!
+//! Layers point one way:
+//!
+//! ```text
+//! math -> physics -> scene -> model -> statics -> dynamics -> simulation -> interface -> output -> command line, FMU
+//! ```
+//!
+//! ```
+//! use moorline::scene::Scene;
+//! use moorline::simulation::Simulation;
+//!
+//! let scene = Scene::from_toml(
+//!     r#"
+//!     [line_types.wire]
+//!     mass = 0.2
+//!     axial_stiffness = 5.35e6
+//!
+//!     [[points]]
+//!     name = "anchor"
+//!     position = [0.0, 0.0, 0.0]
+//!     kind = "fixed"
+//!
+//!     [[points]]
+//!     name = "fairlead"
+//!     position = [15.0, 0.0, 0.0]
+//!     kind = "coupled"
+//!
+//!     [[lines]]
+//!     name = "line"
+//!     from = "anchor"
+//!     to = "fairlead"
+//!     sections = [{ type = "wire", length = 20.0, elements = 20 }]
+//!     "#,
+//! )?;
+//! let mut mooring = Simulation::new(&scene)?; // in static equilibrium
+//! let fairlead = mooring.model().point_index("fairlead").unwrap();
+//! for step in 0..100 {
+//!     let time = 0.01 * f64::from(step);
+//!     mooring.set_displacement(fairlead, [0.1 * time.sin(), 0.0, 0.0]);
+//!     mooring.advance(0.01)?;
+//! }
+//! let [x, _, z] = mooring.end_force(fairlead);
+//! assert!(x < 0.0 && z < 0.0); // the line pulls the fairlead back and down
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 #![forbid(unsafe_code)]
 
 pub mod dynamics;

@@ -414,3 +414,52 @@ pub(crate) fn copy_state(bytes: &[u8], target: &mut [u8]) -> Result<(), Refusal>
     target.copy_from_slice(bytes);
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_guarded_panic_becomes_its_message_and_place() {
+        let message = guard(|| -> u32 { panic!("node {} lost", 7) }).unwrap_err();
+        assert!(message.contains("node 7 lost"), "{message}");
+        assert!(message.contains("ffi.rs"), "{message}");
+        assert_eq!(guard(|| 42), Ok(42));
+    }
+
+    #[test]
+    fn a_panic_with_any_payload_is_caught() {
+        let message = guard(|| std::panic::panic_any(42_u8)).unwrap_err();
+        assert!(message.contains("no message"), "{message}");
+    }
+
+    #[test]
+    fn pointers_that_cannot_be_slices_are_refused() {
+        let values = [1.0_f64, 2.0];
+        // SAFETY: null, misaligned and over-long pointers are refused before they are used.
+        unsafe {
+            assert!(slice(std::ptr::null::<f64>(), 1).is_err());
+            assert!(slice(values.as_ptr().byte_add(1), 1).is_err());
+            assert!(slice(values.as_ptr(), usize::MAX / 4).is_err());
+            assert_eq!(slice(std::ptr::null::<f64>(), 0).unwrap().len(), 0);
+            assert_eq!(slice(values.as_ptr(), 2).unwrap(), values);
+        }
+    }
+
+    #[test]
+    fn a_text_with_a_zero_byte_is_carried_with_a_space() {
+        assert_eq!(c_text("a\0b").to_str(), Ok("a b"));
+    }
+
+    #[test]
+    fn null_is_no_text_and_no_handle() {
+        // SAFETY: null is allowed in all of these.
+        unsafe {
+            assert_eq!(text(std::ptr::null()), None);
+            free(std::ptr::null_mut());
+            let status = call(std::ptr::null_mut(), FmiVersion::Two, "x", |_| Ok(()));
+            assert_eq!(status, Status::Error as u32);
+            assert!(free_state(std::ptr::null_mut()).is_ok());
+        }
+    }
+}

@@ -51,6 +51,8 @@ pub(crate) struct Instance {
     stop_time: Option<f64>,
     time: f64,
     inputs: Vec<PointInput>,
+    /// Displacements at which the statics were solved last [m].
+    start_displacements: Vec<[f64; 3]>,
     /// Statics with the present parameters and inputs, or where the last step ended; `None` while they are not known.
     simulation: Option<Simulation>,
     has_warned_of_time: bool,
@@ -78,6 +80,7 @@ impl Instance {
         }
         Ok(Instance {
             inputs: vec![PointInput::default(); scene.points.len()],
+            start_displacements: vec![[0.0; 3]; scene.points.len()],
             time_reference: (version == FmiVersion::Three)
                 .then(|| time_reference(&description.interface)),
             packaged: scene.clone(),
@@ -209,12 +212,13 @@ impl Instance {
     /// same first guess, so that it does not depend on what was set before.
     fn solve_statics(&mut self) -> Result<&mut Simulation, Refusal> {
         if self.simulation.is_none() {
-            let mut simulation = Simulation::new(&self.scene).map_err(|e| e.to_string())?;
-            hand_over(&self.inputs, &mut simulation);
-            simulation
-                .restart(self.start_time)
-                .map_err(|e| e.to_string())?;
-            self.simulation = Some(simulation);
+            let places = self.inputs.iter().map(|input| input.displacement);
+            self.start_displacements = places.collect();
+            self.simulation = Some(statics(
+                &self.scene,
+                self.start_time,
+                &self.start_displacements,
+            )?);
         }
         Ok(self
             .simulation
@@ -532,6 +536,7 @@ impl Instance {
             time: self.time,
             parameters: self.parameters(&self.scene),
             inputs: self.inputs.clone(),
+            start_displacements: self.start_displacements.clone(),
             solver: self.simulation.as_ref().map(|s| s.snapshot().clone()),
         }
     }
@@ -549,35 +554,47 @@ impl Instance {
 
     /// Goes back to a saved state.
     pub(crate) fn restore(&mut self, snapshot: &Snapshot) -> Outcome {
-        let parameters = self.parameters(&self.scene);
-        let same = parameters
-            .iter()
-            .map(|value| value.to_bits())
-            .eq(snapshot.parameters.iter().map(|value| value.to_bits()));
+        let (own, new) = (self.parameters(&self.scene), &snapshot.parameters);
+        let same_scene = same_bits(&own, new);
+        let same_start = same_scene
+            && self.start_time.to_bits() == snapshot.start_time.to_bits()
+            && same_bits(
+                self.start_displacements.as_flattened(),
+                snapshot.start_displacements.as_flattened(),
+            );
         let mut scene = self.scene.clone();
-        if !same {
+        if !same_scene {
             let rows = self.interface.variables().iter();
             let rows = rows.filter_map(|variable| match &variable.binding {
                 Binding::Parameter(parameter) => Some(parameter),
                 _ => None,
             });
-            for (parameter, &value) in rows.zip(&snapshot.parameters) {
+            for (parameter, &value) in rows.zip(new) {
                 parameter.set(&mut scene, value)?;
             }
         }
-        let simulation = match &snapshot.solver {
-            None => None,
-            Some(state) => {
-                let mut simulation = match self.simulation.take() {
-                    Some(simulation) if same => simulation,
-                    _ => Simulation::new(&scene).map_err(|e| e.to_string())?,
-                };
-                simulation.restore(state.clone());
-                Some(simulation)
-            }
+        let rebuilt = match &snapshot.solver {
+            Some(_) if !same_start || self.simulation.is_none() => Some(statics(
+                &scene,
+                snapshot.start_time,
+                &snapshot.start_displacements,
+            )?),
+            _ => None,
         };
+        // From here on nothing can fail.
+        let simulation = rebuilt.or_else(|| self.simulation.take());
+        self.simulation =
+            snapshot
+                .solver
+                .as_ref()
+                .zip(simulation)
+                .map(|(state, mut simulation)| {
+                    simulation.restore(state.clone());
+                    simulation
+                });
+        self.start_displacements
+            .clone_from(&snapshot.start_displacements);
         self.scene = scene;
-        self.simulation = simulation;
         self.phase = snapshot.phase;
         self.start_time = snapshot.start_time;
         self.stop_time = snapshot.stop_time;
@@ -593,6 +610,21 @@ impl Instance {
     pub(crate) fn deserialize(&self, bytes: &[u8]) -> Result<Snapshot, Refusal> {
         Ok(Snapshot::from_bytes(bytes, &self.token)?)
     }
+}
+
+/// Static equilibrium at the given displacements of the points [m], always from the same first guess.
+fn statics(scene: &Scene, start: f64, displacements: &[[f64; 3]]) -> Result<Simulation, Refusal> {
+    let mut simulation = Simulation::new(scene).map_err(|e| e.to_string())?;
+    for (point, displacement) in displacements.iter().enumerate() {
+        simulation.set_displacement(point, *displacement);
+    }
+    simulation.restart(start).map_err(|e| e.to_string())?;
+    Ok(simulation)
+}
+
+fn same_bits(these: &[f64], those: &[f64]) -> bool {
+    let bits = |value: &f64| value.to_bits();
+    these.iter().map(bits).eq(those.iter().map(bits))
 }
 
 /// Gives the simulation what the host last set.
@@ -612,4 +644,147 @@ fn wrong_type(variable: &Variable, asked: &str) -> Refusal {
         "{} is of type {:?}, not {asked}",
         variable.name, variable.kind
     ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SCENE: &str = r#"
+        [line_types.rope]
+        mass = 0.2
+        axial_stiffness = 2505.0
+        [[points]]
+        name = "wall"
+        position = [0.0, 0.0, 0.0]
+        kind = "fixed"
+        [[points]]
+        name = "hand"
+        position = [9.0, 0.0, 0.0]
+        kind = "coupled"
+        [[lines]]
+        name = "rope"
+        from = "wall"
+        to = "hand"
+        sections = [{ type = "rope", length = 10.0, elements = 6 }]
+    "#;
+
+    fn instance(version: FmiVersion) -> Instance {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("scene.toml"), SCENE).unwrap();
+        let scene = Scene::from_toml(SCENE).unwrap();
+        let token = Description::new(SCENE, &scene, version).unwrap().token;
+        Instance::new(version, Some(&token), folder.path().to_str(), true).unwrap()
+    }
+
+    fn reference(instance: &Instance, name: &str) -> u32 {
+        let variables = instance.interface.variables();
+        let index = variables.iter().position(|v| v.name == name);
+        Interface::reference(index.unwrap())
+    }
+
+    fn real(instance: &mut Instance, name: &str) -> f64 {
+        let reference = reference(instance, name);
+        let mut value = [0.0];
+        instance
+            .get(Kind::Float64, &[reference], &mut value)
+            .unwrap();
+        value[0]
+    }
+
+    fn set(instance: &mut Instance, name: &str, value: f64) -> Outcome {
+        let reference = reference(instance, name);
+        instance.set(Kind::Float64, &[reference], &[value])
+    }
+
+    fn started() -> Instance {
+        let mut instance = instance(FmiVersion::Two);
+        instance.enter_initialization().unwrap();
+        instance.exit_initialization().unwrap();
+        instance
+    }
+
+    #[test]
+    fn the_host_clock_is_kept_so_that_rounding_does_not_add_up() {
+        let mut instance = started();
+        for k in 0..1000 {
+            instance.do_step(0.1 * f64::from(k), 0.1).unwrap();
+        }
+        assert_eq!(instance.time(), 0.1 * 999.0 + 0.1);
+        assert!(
+            instance
+                .log
+                .take()
+                .iter()
+                .all(|(topic, _)| *topic == Topic::Event)
+        );
+    }
+
+    #[test]
+    fn a_refused_step_leaves_everything_as_it_was() {
+        let mut instance = started();
+        instance.do_step(0.0, 0.1).unwrap();
+        let before = instance.snapshot();
+        for (at, step) in [
+            (0.2, 0.1),
+            (0.1, -0.1),
+            (f64::NAN, 0.1),
+            (0.1, f64::INFINITY),
+        ] {
+            assert!(instance.do_step(at, step).is_err());
+            assert_eq!(instance.snapshot(), before);
+            assert_eq!(instance.step_status(), Status::Error);
+        }
+        instance.do_step(0.1, 0.0).unwrap();
+        assert_eq!(instance.snapshot(), before);
+    }
+
+    #[test]
+    fn values_of_one_call_are_set_together_or_not_at_all() {
+        let mut instance = started();
+        let references = ["hand.x", "hand.y"].map(|name| reference(&instance, name));
+        let refusal = instance.set(Kind::Float64, &references, &[0.1, f64::NAN]);
+        assert!(refusal.unwrap_err().0.contains("hand.y"));
+        assert_eq!(real(&mut instance, "hand.x"), 0.0);
+    }
+
+    #[test]
+    fn a_parameter_set_in_initialization_shows_in_the_outputs() {
+        let mut instance = instance(FmiVersion::Three);
+        instance.enter_initialization().unwrap();
+        let light = real(&mut instance, "rope.tension_b");
+        set(&mut instance, "rope.mass", 0.4).unwrap();
+        let heavy = real(&mut instance, "rope.tension_b");
+        assert!(heavy > 1.5 * light, "{light} {heavy}");
+        instance.reset().unwrap();
+        instance.enter_initialization().unwrap();
+        assert_eq!(real(&mut instance, "rope.tension_b"), light);
+    }
+
+    #[test]
+    fn fmi2_has_no_time_variable() {
+        let mut two = instance(FmiVersion::Two);
+        let time = time_reference(&two.interface);
+        assert!(two.get(Kind::Float64, &[time], &mut [0.0]).is_err());
+        let mut three = instance(FmiVersion::Three);
+        three.set_up(None, 5.0, None).unwrap();
+        let mut value = [0.0];
+        three.get(Kind::Float64, &[time], &mut value).unwrap();
+        assert_eq!(value, [5.0]);
+        assert!(three.set(Kind::Float64, &[time], &[1.0]).is_err());
+    }
+
+    #[test]
+    fn start_and_stop_times_must_make_sense() {
+        let mut instance = instance(FmiVersion::Two);
+        assert!(instance.set_up(None, f64::NAN, None).is_err());
+        assert!(instance.set_up(None, 1.0, Some(0.0)).is_err());
+        instance.set_up(Some(1e-6), 1.0, Some(1.2)).unwrap();
+        instance.enter_initialization().unwrap();
+        instance.exit_initialization().unwrap();
+        instance.do_step(1.0, 0.1).unwrap();
+        instance.do_step(1.1, 0.1).unwrap();
+        let refusal = instance.do_step(1.2, 0.1).unwrap_err();
+        assert!(refusal.0.contains("stop time 1.2 s"), "{}", refusal.0);
+    }
 }

@@ -45,6 +45,9 @@ pub(crate) struct Snapshot {
     pub(crate) parameters: Vec<f64>,
     /// Inputs of every point of the scene.
     pub(crate) inputs: Vec<PointInput>,
+    /// Displacements of every point at which the statics were solved [m]: what the solver decided there, such as its
+    /// step limits, is not in its state and is decided again from them.
+    pub(crate) start_displacements: Vec<[f64; 3]>,
     /// The solver's state, once there is one.
     pub(crate) solver: Option<simulation::Snapshot>,
 }
@@ -99,6 +102,7 @@ mod tests {
             time: 1.0 / 3.0,
             parameters: vec![9.80665, -0.0],
             inputs: vec![PointInput::default()],
+            start_displacements: vec![[0.0; 3]],
             solver: None,
         }
     }

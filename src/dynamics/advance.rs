@@ -6,6 +6,7 @@ use super::axial_implicit::AxialWork;
 use super::implicit::{self, Scheme};
 use super::leapfrog::Step;
 use super::ledger::{self, Flow};
+use super::limit::transverse_step;
 use super::network::NetworkWork;
 use super::{Choice, StepError, quasi_static};
 use crate::model::{End, Kinematics, Model, Network, State};
@@ -14,6 +15,8 @@ use crate::statics::assembly::{self, copy_network};
 
 /// Spectral radius of the axial-implicit leapfrog where the scene gives none [-].
 const AXIAL_SPECTRAL_RADIUS: f64 = 0.9;
+/// Tension that may arise within a step, over the greatest one before it [-].
+const SNAP_GROWTH: f64 = 1.5;
 /// A failed step is tried again with half the internal step, at most so often [-].
 const RETRIES_MAX: u32 = 6;
 
@@ -84,6 +87,7 @@ impl Workspace {
     /// Gives a state at rest the accelerations that the implicit integrators start from.
     pub fn start(&mut self, model: &Model, state: &mut State, held: &impl Fn(usize, f64) -> Kinematics) {
         let time = state.time;
+        place_held(model, state, held);
         for (number, (_, solver)) in self.networks.iter().enumerate() {
             if matches!(solver, Solver::Implicit(_)) {
                 implicit::start(model, number, state, held, time, &mut self.implicit);
@@ -119,7 +123,8 @@ impl Workspace {
             total.counters.solves += done.counters.solves;
             total.flow.add(done.flow);
         }
-        step.place_held(&mut self.next);
+        self.next.time = state.time + length;
+        place_held(model, &mut self.next, held);
         std::mem::swap(state, &mut self.next);
         Ok(total)
     }
@@ -191,6 +196,9 @@ impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
     ) -> Result<Done, StepError> {
         let index = self.model.networks[number].lines[0];
         let line = &self.model.lines[index];
+        let transverse = transverse_step(line, 1.0); // over √T [s √N]
+        let tension_now = self.state.lines[index].half_step.tension[0].iter().fold(0.0, |a: f64, b| a.max(*b));
+        let step_max = step_max.min(transverse / (SNAP_GROWTH * tension_now).sqrt());
         for retry in 0..=RETRIES_MAX {
             work.load(&self.state.lines[index]);
             let count = self.substeps(step_max, retry);
@@ -207,7 +215,8 @@ impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
                 solves += work.step(Step::after(steps, drift), ends);
                 steps = [drift, steps[0]];
             }
-            if work.broken_node().is_none() {
+            let too_long = drift > transverse / work.tension_peak().sqrt() && retry < RETRIES_MAX;
+            if work.broken_node().is_none() && !too_long {
                 work.store(&mut next.lines[index], steps);
                 return Ok(Done { counters: Counters { substeps: count, solves }, flow: work.flow() });
             }
@@ -247,23 +256,6 @@ impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
         Ok(Done { counters, flow: Flow::default() })
     }
 
-    /// Held points, and the velocities of the nodes at their lines' ends, at the end of the step.
-    fn place_held(&self, next: &mut State) {
-        next.time = self.start + self.length;
-        for (index, (point, state)) in self.model.points.iter().zip(&mut next.points).enumerate() {
-            if point.free().is_none() {
-                let k = (self.held)(index, next.time);
-                (state.position, state.velocity, state.acceleration) =
-                    (k.position, k.velocity, k.acceleration);
-            }
-        }
-        for (line, state) in self.model.lines.iter().zip(&mut next.lines) {
-            for (node, point) in [0, line.segment_count()].into_iter().zip(line.ends) {
-                state.velocity[node] = next.points[point].velocity;
-            }
-        }
-    }
-
     /// Equal steps no longer than `step_max` [s], halved `retry` times.
     fn substeps(&self, step_max: f64, retry: u32) -> usize {
         // a span of exactly one limit must not become two steps by rounding
@@ -277,6 +269,21 @@ impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
             node,
             reason: "the motion grew without bound".into(),
             advice: "try a smaller solver.time_step_max, or solver.integrator = \"generalised_alpha\"",
+        }
+    }
+}
+
+/// Puts held points, and the velocities of the nodes at all lines' ends, where they are at the time of `state`.
+fn place_held(model: &Model, state: &mut State, held: &impl Fn(usize, f64) -> Kinematics) {
+    for (index, point) in state.points.iter_mut().enumerate() {
+        if model.points[index].free().is_none() {
+            let k = held(index, state.time);
+            (point.position, point.velocity, point.acceleration) = (k.position, k.velocity, k.acceleration);
+        }
+    }
+    for (line, shape) in model.lines.iter().zip(&mut state.lines) {
+        for (node, point) in [0, line.segment_count()].into_iter().zip(line.ends) {
+            shape.velocity[node] = state.points[point].velocity;
         }
     }
 }

@@ -60,6 +60,7 @@ pub struct AxialWork {
     /// Energy lost and given since the state was loaded [J].
     lost: Lanes,
     given: f64,
+    tension_peak: f64,
 }
 
 /// What a step knows of the segments before it is solved.
@@ -124,6 +125,7 @@ impl AxialWork {
             interior: interior(n),
             lost: Lanes::splat(0.0),
             given: 0.0,
+            tension_peak: 0.0,
             layout,
             weights: Weights::new(rho),
             segments: SegmentArrays {
@@ -161,7 +163,7 @@ impl AxialWork {
     /// Takes over the state of a line.
     pub fn load(&mut self, state: &LineState) {
         self.layout.load(state);
-        (self.lost, self.given) = (Lanes::splat(0.0), 0.0);
+        (self.lost, self.given, self.tension_peak) = (Lanes::splat(0.0), 0.0, 0.0);
         let count = self.layout.segment_count;
         if state.half_step.tension[0].len() == count {
             for (own, kept) in self.segments.history.iter_mut().zip(&state.half_step.tension) {
@@ -208,17 +210,18 @@ impl AxialWork {
         self.prepare_segments(step);
         self.prepare_nodes(step);
         self.prepare_ends(step, ends);
-        let mut passes = 0;
+        let (mut passes, mut greatest) = (0, 0.0);
         loop {
             passes += 1;
             self.assemble_rows(step);
-            let greatest = self.rows.solve(self.layout.segment_count);
+            greatest = self.rows.solve(self.layout.segment_count);
             let bed_holds = self.find_velocities(step);
             let slack_holds = self.check_segments(step, greatest);
             if bed_holds && slack_holds || passes == PASSES_MAX {
                 break;
             }
         }
+        self.tension_peak = self.tension_peak.max(greatest);
         self.book(step);
         std::mem::swap(&mut self.layout.velocity, &mut self.layout.velocity_before);
         self.layout.drift(step.drift);
@@ -524,12 +527,12 @@ impl AxialWork {
         }
     }
 
-    /// Greatest T̄ [N] of the last step.
-    pub fn tension_max(&self) -> f64 {
-        self.rows.tension.iter().fold(0.0, |greatest, tension| greatest.max(*tension))
+    /// Greatest T̄ [N] since the state was loaded.
+    pub fn tension_peak(&self) -> f64 {
+        self.tension_peak
     }
 
-    /// Index of the first node whose position or velocity is not finite.
+    /// Index of the first node that has no finite position, or a speed that no mooring line reaches.
     pub fn broken_node(&self) -> Option<usize> {
         self.layout.broken_node()
     }

@@ -5,7 +5,7 @@
 //! Networks joined at free points whose axial limit would need more than 25 steps for one of those are integrated fully
 //! implicitly, and so are lines that mix strain measures or have nodes without mass.
 
-use super::limit::{explicit_step, transverse_step};
+use super::limit::{axial_accuracy_step, explicit_step, free_point_step, transverse_step};
 use crate::model::{Line, Model, Network};
 use crate::scene::Integrator;
 
@@ -13,6 +13,9 @@ use crate::scene::Integrator;
 const AXIAL_IMPLICIT_COST: f64 = 4.0;
 /// Explicit steps for one that accuracy allows, above which a network is integrated implicitly [-].
 const EXPLICIT_STEPS_MAX: f64 = 25.0;
+/// Part of the transverse limit that no line needs to go below for accuracy: where axial waves are much faster than that,
+/// the line stretches quasi-statically [-].
+const AXIAL_RESOLUTION_MIN: f64 = 0.125;
 /// Margin on the static tension for the transverse limit: snaps exceed it [-].
 const SNAP_MARGIN: f64 = 3.0;
 
@@ -32,20 +35,31 @@ pub struct Choice {
 impl Choice {
     /// For a network whose lines carry the static tensions that `tension` [N] tells.
     pub fn new(model: &Model, network: &Network, tension: &impl Fn(usize) -> f64) -> Choice {
-        let least = |limit: &dyn Fn(usize) -> f64| {
-            network.lines.iter().map(|&line| limit(line)).fold(f64::INFINITY, f64::min)
+        let least = |limit: &dyn Fn(&Line) -> f64| {
+            let lines = network.lines.iter().map(|&line| limit(&model.lines[line]));
+            lines.fold(f64::INFINITY, f64::min)
         };
-        let explicit_limit = least(&|line| explicit_step(&model.lines[line]));
-        let transverse_limit =
-            least(&|line| transverse_step(&model.lines[line], SNAP_MARGIN * tension(line)));
+        let explicit_limit = network
+            .free_points
+            .iter()
+            .map(|&point| free_point_step(model, point))
+            .fold(least(&explicit_step), f64::min);
+        let transverse_limit = network
+            .lines
+            .iter()
+            .map(|&line| transverse_step(&model.lines[line], SNAP_MARGIN * tension(line)))
+            .fold(f64::INFINITY, f64::min);
+        let accurate = least(&|line| axial_accuracy_step(line, model.solver.tolerance))
+            .max(AXIAL_RESOLUTION_MIN * transverse_limit)
+            .min(transverse_limit);
         let longest = model.solver.time_step_max;
         let integrator = match model.solver.integrator {
-            Integrator::Auto => choose(model, network, explicit_limit, transverse_limit.min(longest)),
+            Integrator::Auto => choose(model, network, explicit_limit, accurate.min(longest)),
             chosen => chosen,
         };
         let step_max = match integrator {
             Integrator::Leapfrog => explicit_limit,
-            Integrator::AxialImplicit => transverse_limit,
+            Integrator::AxialImplicit => accurate,
             _ => longest,
         };
         Choice { integrator, step_max: step_max.min(longest), explicit_limit, transverse_limit }
@@ -54,7 +68,7 @@ impl Choice {
 
 fn choose(model: &Model, network: &Network, explicit: f64, accurate: f64) -> Integrator {
     let lines = || network.lines.iter().map(|&line| &model.lines[line]);
-    if lines().any(|line| !serves_kernels(line)) {
+    if lines().any(|line| !line.serves_leapfrog()) {
         return Integrator::GeneralisedAlpha;
     }
     let steps = accurate / explicit;
@@ -65,9 +79,4 @@ fn choose(model: &Model, network: &Network, explicit: f64, accurate: f64) -> Int
     } else {
         Integrator::Leapfrog
     }
-}
-
-/// Whether the leapfrog kernels can take a line: one strain measure, and every node with a mass.
-pub fn serves_kernels(line: &Line) -> bool {
-    line.uniform_law().is_some() && line.nodes.mass_normal.iter().all(|mass| *mass > 0.0)
 }

@@ -13,6 +13,8 @@ use crate::physics::stretch::StretchLaw;
 
 /// Index of node 0 and of segment 0.
 pub(super) const FIRST: usize = LANES;
+/// Speed that only an unstable step reaches [m/s]: the fastest axial waves run at about this speed.
+const SPEED_MAX: f64 = 1e4;
 /// Keeps coincident nodes from dividing by zero [m²].
 const LENGTH2_MIN: f64 = 1e-200;
 
@@ -195,12 +197,13 @@ impl Layout {
         (0..=self.segment_count).map(rate).fold(0.0, f64::max)
     }
 
-    /// Index of the first node whose position or velocity is not finite.
+    /// Index of the first node that has no finite position, or a speed that no mooring line reaches.
     pub fn broken_node(&self) -> Option<usize> {
-        (0..=self.segment_count).find(|i| {
-            let sum = self.position.get(FIRST + i) + self.velocity.get(FIRST + i);
-            !sum.iter().all(|value| value.is_finite())
-        })
+        let broken = |i: &usize| {
+            let (position, velocity) = (self.position.get(FIRST + i), self.velocity.get(FIRST + i));
+            !position.iter().all(|value| value.is_finite()) || !(velocity.norm_squared() < SPEED_MAX * SPEED_MAX)
+        };
+        (0..=self.segment_count).find(broken)
     }
 }
 

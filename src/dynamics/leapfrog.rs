@@ -358,7 +358,7 @@ impl LineWork {
         self.layout.drag_rate(line)
     }
 
-    /// Index of the first node whose position or velocity is not finite.
+    /// Index of the first node that has no finite position, or a speed that no mooring line reaches.
     pub fn broken_node(&self) -> Option<usize> {
         self.layout.broken_node()
     }

@@ -12,10 +12,16 @@
 //! Source: Belytschko, Liu & Moran (2000), Nonlinear Finite Elements for Continua and Structures, section 6.2.6 (damped
 //! central differences with lagged velocity). Contact is implicit and sets no limit.
 
-use crate::model::Line;
+use crate::model::{End, Line, Model};
 
 /// Part of the closed-form limit that is used [-].
 const SAFETY: f64 = 0.9;
+/// The same for a line with less damping than this ratio [-]: where it slackens, the kink of its tension law feeds the
+/// highest axial modes.
+const SAFETY_UNDAMPED: f64 = 0.5;
+const DAMPED_RATIO: f64 = 0.01;
+/// Steps that resolve the first axial period for 2 % of error in a tension with snaps [-].
+const STEPS_PER_AXIAL_PERIOD: f64 = 70.0;
 /// Strain up to which a stiffening measure is stable [-].
 const STRAIN_EXPECTED: f64 = 0.05;
 /// Transverse Courant number of the axial-implicit leapfrog [-].
@@ -24,21 +30,63 @@ const TRANSVERSE_COURANT: f64 = 0.6;
 /// Explicit axial step limit [s] of a line, with safety; infinite for a line without interior nodes.
 pub fn explicit_step(line: &Line) -> f64 {
     let segments = &line.segments;
-    let stiffness = |i: usize| {
-        let slope = segments.law[i].at(STRAIN_EXPECTED).slope.max(1.0);
-        segments.axial_stiffness[i] * slope / segments.length[i] // k [N/m]
-    };
     let mut limit = f64::INFINITY;
     for i in 1..line.segment_count() {
-        let (left, right) = (stiffness(i - 1), stiffness(i));
+        let (left, right) = (stiffness(line, i - 1), stiffness(line, i));
         let mass = line.nodes.mass_tangent[i].min(line.nodes.mass_normal[i]);
         let omega = (2.0 * (left + right) / mass).sqrt();
         let lag = segments.axial_damping[i - 1] / segments.axial_stiffness[i - 1];
         let lag = lag.max(segments.axial_damping[i] / segments.axial_stiffness[i]); // BA/EA [s]
-        let zeta = 0.5 * omega * lag;
-        limit = limit.min(2.0 / omega * ((1.0 + zeta * zeta).sqrt() - zeta));
+        limit = limit.min(damped_limit(omega, lag));
     }
-    SAFETY * limit
+    limit
+}
+
+/// Explicit step limit [s] of a free point with all that is tied to it, with safety; infinite without a line.
+pub fn free_point_step(model: &Model, point: usize) -> f64 {
+    let Some(free) = model.points[point].free() else {
+        return f64::INFINITY;
+    };
+    let (mut mass, mut sum, mut lag) = (free.mass, 0.0, 0.0_f64);
+    for &(index, end) in &model.points[point].attached {
+        let line = &model.lines[index];
+        let node = line.end_node(end);
+        let segment = match end {
+            End::A => 0,
+            End::B => node - 1,
+        };
+        mass += line.nodes.mass_tangent[node].min(line.nodes.mass_normal[node]);
+        sum += stiffness(line, segment);
+        lag = lag.max(line.segments.axial_damping[segment] / line.segments.axial_stiffness[segment]);
+    }
+    damped_limit((2.0 * sum / mass).sqrt(), lag)
+}
+
+/// k = EA/l of a segment [N/m], at the greatest slope expected of its strain measure.
+fn stiffness(line: &Line, i: usize) -> f64 {
+    let segments = &line.segments;
+    let slope = segments.law[i].at(STRAIN_EXPECTED).slope.max(1.0);
+    segments.axial_stiffness[i] * slope / segments.length[i]
+}
+
+/// Limit for a circular frequency ω [rad/s] and BA/EA [s], with safety.
+fn damped_limit(omega: f64, lag: f64) -> f64 {
+    let zeta = 0.5 * omega * lag;
+    let safety = if zeta < DAMPED_RATIO { SAFETY_UNDAMPED } else { SAFETY };
+    safety * 2.0 / omega * ((1.0 + zeta * zeta).sqrt() - zeta)
+}
+
+/// Step [s] that resolves the first axial period 4L/c for a target error of tension [-].
+pub fn axial_accuracy_step(line: &Line, tolerance: f64) -> f64 {
+    let segments = &line.segments;
+    let travel: f64 = (0..line.segment_count())
+        .map(|i| {
+            let mass = line.nodes.mass_tangent[i] + line.nodes.mass_tangent[i + 1];
+            let length = line.nodes.length[i] + line.nodes.length[i + 1];
+            segments.length[i] * (mass / length / segments.axial_stiffness[i]).sqrt()
+        })
+        .sum();
+    4.0 * travel / STEPS_PER_AXIAL_PERIOD * (tolerance / 0.02).sqrt()
 }
 
 /// Transverse step limit [s] of a line under a tension [N]; infinite without tension.

@@ -11,7 +11,14 @@ use crate::physics::rayleigh;
 use crate::physics::seabed::{ContactCoefficients, regularised};
 use crate::physics::stretch::StretchLaw;
 use crate::physics::weight::{cross_section, submerged_weight};
-use crate::scene::{self, Axis, ContactLaw, LineType, PointKind, Scene, SceneError, Strain};
+use crate::scene::{
+    self, Axis, ContactLaw, Integrator, LineType, PointKind, Scene, SceneError, Strain,
+};
+
+/// Axial damping of a segment whose line type leaves it open, as a part of critical [-]. A line that slackens and snaps
+/// without any is driven by the kink of its own tension law when the step is explicit; codes of that kind damp the
+/// highest axial frequencies, which no mesh resolves, by as much (linear bulk viscosity).
+pub const NUMERICAL_DAMPING_RATIO: f64 = 0.02;
 
 impl Model {
     /// Makes a scene discrete.
@@ -32,11 +39,13 @@ impl Model {
             points[built.ends[1]].attached.push((index, End::B));
             lines.push(built);
         }
+        let networks = networks(&points, &lines);
+        networks.iter().try_for_each(|network| check_integrator(scene, &points, &lines, network))?;
         Ok(Model {
             gravity: scene.gravity,
             bed: scene.seabed.as_ref().map(|bed| -bed.depth),
             bed_friction: scene.seabed.as_ref().map_or(0.0, |bed| bed.friction),
-            networks: networks(&points, &lines),
+            networks,
             points,
             lines,
             solver: scene.solver.clone(),
@@ -85,7 +94,7 @@ struct LineLaw {
     law: StretchLaw,
     axial_stiffness: f64,                 // EA [N]
     axial_damping: f64,                   // BA [N s], without the damping ratio's part
-    damping_ratio: Option<f64>,           // ζ [-]
+    damping_ratio: f64,                   // ζ [-]
     mass: f64,                            // m [kg/m]
     added_normal: f64,                    // ρA·C_an [kg/m]
     added_tangent: f64,                   // ρA·C_at [kg/m]
@@ -93,6 +102,12 @@ struct LineLaw {
     mass_damping: f64,                    // α [1/s]
     drag: Option<DragCoefficients>,       // [N s²/m³]
     contact: Option<ContactCoefficients>, // [N/m², N s/m²]
+}
+
+/// ζ as given; the numerical one where the line type says nothing of axial damping.
+fn damping_ratio(line_type: &LineType) -> f64 {
+    let silent = line_type.axial_damping.is_none() && line_type.rayleigh.is_none();
+    line_type.damping_ratio.unwrap_or(if silent { NUMERICAL_DAMPING_RATIO } else { 0.0 })
 }
 
 fn line_law(scene: &Scene, line_type: &LineType) -> LineLaw {
@@ -137,7 +152,7 @@ fn line_law(scene: &Scene, line_type: &LineType) -> LineLaw {
         axial_stiffness: ea,
         axial_damping: line_type.axial_damping.unwrap_or(0.0)
             + rayleigh.map_or(0.0, |r| r.stiffness * ea),
-        damping_ratio: line_type.damping_ratio,
+        damping_ratio: damping_ratio(line_type),
         mass,
         added_normal: displaced * line_type.added_mass_normal.unwrap_or(0.0),
         added_tangent: displaced * line_type.added_mass_tangential.unwrap_or(0.0),
@@ -219,7 +234,7 @@ fn segments(parts: &[SegmentPart]) -> Segments {
             mass,
             ..
         } = part.law;
-        axial_damping + damping_ratio.map_or(0.0, |zeta| zeta * part.length * (ea * mass).sqrt())
+        axial_damping + damping_ratio * part.length * (ea * mass).sqrt()
     };
     Segments {
         length: parts.iter().map(|part| part.length).collect(),
@@ -316,6 +331,34 @@ fn contact_in_reach(scene: &Scene, ends: [usize; 2], line: &scene::Line) -> bool
     let length: f64 = line.sections.iter().map(|section| section.length).sum();
     let lowest_end = ends.map(|end| scene.points[end].position[2]);
     lowest_end[0].min(lowest_end[1]) - 1.5 * length <= -bed.depth
+}
+
+/// Refuses a leapfrog for lines that it cannot take.
+fn check_integrator(
+    scene: &Scene,
+    points: &[Point],
+    lines: &[Line],
+    network: &Network,
+) -> Result<(), SceneError> {
+    let integrator = scene.solver.integrator;
+    let refuse = |what: String| {
+        let right = "use \"generalised_alpha\" or \"auto\"";
+        Err(SceneError::new("solver.integrator", format!("{what}; {right}")))
+    };
+    if !matches!(integrator, Integrator::Leapfrog | Integrator::AxialImplicit) {
+        return Ok(());
+    }
+    if let Some(&line) = network.lines.iter().find(|&&line| !lines[line].serves_leapfrog()) {
+        let name = &lines[line].name;
+        return refuse(format!("a leapfrog needs mass on every node and one strain measure along line \"{name}\""));
+    }
+    match network.free_points.first() {
+        Some(&point) if integrator == Integrator::AxialImplicit => {
+            let name = &points[point].name;
+            refuse(format!("\"axial_implicit\" serves lines between held points only, and point \"{name}\" is free"))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Lines grouped by shared free points.

@@ -203,6 +203,11 @@ impl Line {
         }
     }
 
+    /// Whether the leapfrogs can take it: one strain measure, and mass on every node.
+    pub fn serves_leapfrog(&self) -> bool {
+        self.uniform_law().is_some() && self.nodes.mass_normal.iter().all(|mass| *mass > 0.0)
+    }
+
     /// The strain measure, where all segments share one.
     pub fn uniform_law(&self) -> Option<StretchLaw> {
         let first = self.segments.law[0];

@@ -1,6 +1,62 @@
-//! The elastic catenary in closed form: a line hanging between two ends, with or without a bed under it.
+//! The elastic catenary in closed form: a line held at two ends, with or without a bed under it.
 //!
-//! DOCS
+//! ```text
+//!  z ↑          ● B (span, rise)        H    horizontal tension, constant in flight
+//!    │        ╱                         V    vertical tension, V' = w; up going from A to B
+//!    ● A    ╱                           T    √(H² + V²)
+//!     ╲___╱        bed, z = height      s    unstretched arc length from A
+//! ```
+//!
+//! dx/ds = H/T + H/EA,   dz/ds = V/T + V/EA,   dV/ds = w in flight;   V = 0, dH/ds = μw (or H = 0) on the bed
+//!
+//! # One stretch
+//! Over a uniform stretch ℓ with V from Vₐ to V_b = Vₐ + W, W = wℓ, tensions Tₐ and T_b, mean Vₘ and mean σ = (Tₐ + T_b)/2:
+//! T_b² − Tₐ² = 2WVₘ, so T_b − Tₐ = WVₘ/σ, and the textbook's z = (T_b − Tₐ)/w + Vₘℓ/EA is
+//!
+//! z = Vₘℓ (1/σ + 1/EA).
+//!
+//! With V = H sinh of μₘ ± λ at the ends, W = 2H cosh μₘ sinh λ and 2σ = 2H cosh μₘ cosh λ, so ε = W/2σ = tanh λ and the
+//! textbook's x = (H/w)(asinh V_b/H − asinh Vₐ/H) + Hℓ/EA = 2Hλ/w + Hℓ/EA is
+//!
+//! x = Hℓ (α/σ + 1/EA),   α = atanh(ε)/ε.
+//!
+//! Differences of large numbers are gone, and w = 0 (α = 1, σ = T) is nothing special.
+//!
+//! # One equation
+//! From the same identities H² = (σ² − Vₘ²)(1 − ε²). A line held at ends X, Z apart has H = X/(L(α/σ + 1/EA)) and
+//! Vₘ = Z/(L(1/σ + 1/EA)), both functions of σ = W/(2 tanh λ) alone; put into that identity they leave one equation in λ,
+//!
+//! X²/(λ/sinh λ + (σ/EA)/cosh λ)² + Z²/(1 + σ/EA)² = L²,
+//!
+//! whose left side increases with λ: one root, always. Without stretch it is the classical X sinh λ/λ = √(L² − Z²).
+//! See `uniform` for how it is balanced so that no digit is lost.
+//!
+//! # The bed
+//! A flight from the bed rises by D where T − H + V²/2EA = wD, a quadratic in V². Two flights and what lies between them
+//! must reach X; what a flight is longer than its span, (H/w)(sinh β − β) with sinh β = V/H, makes this one balance in H
+//! (`touchdown`). Without tension the flights hang and the rest of the line is slack: H = 0, the layout is one of many, and
+//! the one returned spreads the slack evenly. Friction acts towards A, as on a line laid from A and hauled at B.
+//!
+//! # Several sections
+//! The line is laid out from A under a given tension, which is searched (`sections`). What floats rises off the bed without
+//! a ceiling.
+//!
+//! # Source and validity
+//! The elastic catenary: H. M. Irvine, Cable Structures, MIT Press, 1981. Touchdown with friction as a model: J. M. Jonkman,
+//! Dynamics Modeling and Loads Analysis of an Offshore Floating Wind Turbine, NREL/TP-500-41958, 2007. The forms solved
+//! here are derived above. Linear stretch (tension EA times engineering strain), weight per unstretched length, no bending
+//! stiffness, a flat bed that does not yield.
+//!
+//! ```
+//! use moorline::statics::catenary::{Bed, Section, solve};
+//!
+//! let chain = Section { length: 902.2, weight: 698.094, axial_stiffness: 384.243e6 };
+//! let bed = Bed { height: 0.0, friction: 0.0 };
+//! let line = solve(&[chain], 848.67, 250.0, Some(bed))?;
+//! assert!((line.tension_b() - 911_088.36).abs() < 0.01);
+//! assert!((line.laid_length() - 134.7855).abs() < 1e-4);
+//! # Ok::<(), moorline::statics::catenary::CatenaryError>(())
+//! ```
 
 mod flight;
 mod root;
@@ -70,7 +126,9 @@ pub enum CatenaryError {
         wanted: &'static str,
     },
     /// An end lies below the bed.
-    #[error("bed.height: the bed at z = {bed} m is above end {end} at z = {z} m; it must be at or below both ends")]
+    #[error(
+        "bed.height: the bed at z = {bed} m is above end {end} at z = {z} m; it must be at or below both ends"
+    )]
     EndBelowBed {
         /// Which end, A or B.
         end: char,
@@ -109,40 +167,74 @@ pub struct Catenary {
 ///
 /// Every line that is one has a solution, so the only errors are inputs that are not finite, not positive where they must be,
 /// or an end below the bed.
-pub fn solve(sections: &[Section], span: f64, rise: f64, bed: Option<Bed>) -> Result<Catenary, CatenaryError> {
+pub fn solve(
+    sections: &[Section],
+    span: f64,
+    rise: f64,
+    bed: Option<Bed>,
+) -> Result<Catenary, CatenaryError> {
     let bed = check(sections, span, rise, bed)?;
     let (shape, held) = match uniform(sections) {
         Some(section) => solve_uniform(&section, span, rise, bed),
         None => solve_sections(sections, span, rise, bed),
     };
     let forces = held.horizontal_a + held.horizontal_b + held.vertical_a + held.vertical_b;
-    assert!(forces.is_finite(), "a valid line has finite end forces: {sections:?}, span {span}, rise {rise}, {bed:?}, {held:?}");
-    Ok(Catenary { shape, held, span, rise })
+    assert!(
+        forces.is_finite(),
+        "a valid line has finite end forces: {sections:?}, span {span}, rise {rise}, {bed:?}, {held:?}"
+    );
+    Ok(Catenary {
+        shape,
+        held,
+        span,
+        rise,
+    })
 }
 
 /// The one section that `sections` are, if they are all of one kind.
 fn uniform(sections: &[Section]) -> Option<Section> {
     let first = sections[0];
-    let alike = |s: &Section| s.weight == first.weight && s.axial_stiffness == first.axial_stiffness;
+    let alike =
+        |s: &Section| s.weight == first.weight && s.axial_stiffness == first.axial_stiffness;
     let length = sections.iter().map(|section| section.length).sum();
-    sections.iter().all(alike).then_some(Section { length, ..first })
+    sections
+        .iter()
+        .all(alike)
+        .then_some(Section { length, ..first })
 }
 
 fn solve_uniform(section: &Section, span: f64, rise: f64, bed: Option<Bed>) -> (Shape, Held) {
-    let line = Uniform { length: section.length, weight: section.weight, axial_stiffness: section.axial_stiffness };
+    let line = Uniform {
+        length: section.length,
+        weight: section.weight,
+        axial_stiffness: section.axial_stiffness,
+    };
     let held = line.suspend(span, rise);
     match bed {
         Some(bed) if lowest(section, &held) < bed.height => {
             if bed.friction > 0.0 && bed.height < 0.0 {
                 let mut shape = Shape::default();
-                let frictionless = Touchdown { span, height_a: -bed.height, height_b: rise - bed.height, friction: 0.0 };
+                let frictionless = Touchdown {
+                    span,
+                    height_a: -bed.height,
+                    height_b: rise - bed.height,
+                    friction: 0.0,
+                };
                 let guess = line.touch_down(&frictionless);
-                let line = Sections::new(std::slice::from_ref(section), span, rise, Some(bed));
-                let held = line.solve((guess.horizontal_a, guess.vertical_a), &mut shape);
+                let laid = section.length - (guess.vertical_b - guess.vertical_a) / section.weight;
+                // without friction H is about the mean along the bed
+                let horizontal_a = guess.horizontal_a - 0.5 * bed.friction * section.weight * laid;
+                let mut line = Sections::new(std::slice::from_ref(section), span, rise, Some(bed));
+                let held = line.solve((horizontal_a, guess.vertical_a), &mut shape);
                 return (shape, held);
             }
             let height_b = rise - bed.height;
-            let at = Touchdown { span, height_a: -bed.height, height_b, friction: bed.friction };
+            let at = Touchdown {
+                span,
+                height_a: -bed.height,
+                height_b,
+                friction: bed.friction,
+            };
             let held = line.touch_down(&at);
             (touchdown_shape(section, &held, bed, span), held)
         }
@@ -163,7 +255,14 @@ fn suspended_shape(section: &Section, held: &Held, span: f64, rise: f64) -> Shap
     let mut shape = Shape::default();
     if held.horizontal_a == 0.0 && held.vertical_a == 0.0 && held.vertical_b == 0.0 {
         let (x, z) = (span / section.length, rise / section.length);
-        shape.push(section.length, Kind::Slack { x, z, on_bed: false });
+        shape.push(
+            section.length,
+            Kind::Slack {
+                x,
+                z,
+                on_bed: false,
+            },
+        );
     } else {
         shape.fly(section, section.length, held.horizontal_a, held.vertical_a);
     }
@@ -172,7 +271,10 @@ fn suspended_shape(section: &Section, held: &Held, span: f64, rise: f64) -> Shap
 
 fn touchdown_shape(section: &Section, held: &Held, bed: Bed, span: f64) -> Shape {
     let mut shape = Shape::default();
-    let (a, b) = (-held.vertical_a / section.weight, held.vertical_b / section.weight);
+    let (a, b) = (
+        -held.vertical_a / section.weight,
+        held.vertical_b / section.weight,
+    );
     let growth = bed.friction * section.weight;
     shape.fly(section, a, held.horizontal_a, held.vertical_a);
     let laid = (section.length - a - b).max(0.0);
@@ -200,16 +302,26 @@ fn solve_sections(sections: &[Section], span: f64, rise: f64, bed: Option<Bed>) 
         return (shape, held);
     }
     let weight: f64 = sections.iter().map(|s| s.weight * s.length).sum();
-    let alike = Uniform { length, weight: weight / length, axial_stiffness: length / flexibility };
+    let alike = Uniform {
+        length,
+        weight: weight / length,
+        axial_stiffness: length / flexibility,
+    };
     let suspended = alike.suspend(span, rise);
     let guess = match bed {
         Some(bed) if alike.weight > 0.0 && suspended.vertical_a < 0.0 => {
-            let height_b = rise - bed.height;
-            alike.touch_down(&Touchdown { span, height_a: -bed.height, height_b, friction: 0.0 })
+            let (height_a, height_b) = (-bed.height, rise - bed.height);
+            let friction = if height_a == 0.0 { bed.friction } else { 0.0 };
+            alike.touch_down(&Touchdown {
+                span,
+                height_a,
+                height_b,
+                friction,
+            })
         }
         _ => suspended,
     };
-    let line = Sections::new(sections, span, rise, bed);
+    let mut line = Sections::new(sections, span, rise, bed);
     let held = line.solve((guess.horizontal_a, guess.vertical_a), &mut shape);
     (shape, held)
 }
@@ -217,11 +329,22 @@ fn solve_sections(sections: &[Section], span: f64, rise: f64, bed: Option<Bed>) 
 fn suspend_weightless(sections: &[Section], span: f64, rise: f64, shape: &mut Shape) -> Held {
     let length: f64 = sections.iter().map(|s| s.length).sum();
     let flexibility: f64 = sections.iter().map(|s| s.length / s.axial_stiffness).sum();
-    let alike = Uniform { length, weight: 0.0, axial_stiffness: length / flexibility };
+    let alike = Uniform {
+        length,
+        weight: 0.0,
+        axial_stiffness: length / flexibility,
+    };
     let held = alike.suspend(span, rise);
     for section in sections {
         if held.horizontal_a == 0.0 && held.vertical_a == 0.0 {
-            shape.push(section.length, Kind::Slack { x: span / length, z: rise / length, on_bed: false });
+            shape.push(
+                section.length,
+                Kind::Slack {
+                    x: span / length,
+                    z: rise / length,
+                    on_bed: false,
+                },
+            );
         } else {
             shape.fly(section, section.length, held.horizontal_a, held.vertical_a);
         }
@@ -230,24 +353,49 @@ fn suspend_weightless(sections: &[Section], span: f64, rise: f64, shape: &mut Sh
 }
 
 /// Refuses what is not a line; returns the bed with ends that are below it by rounding put on it.
-fn check(sections: &[Section], span: f64, rise: f64, bed: Option<Bed>) -> Result<Option<Bed>, CatenaryError> {
+fn check(
+    sections: &[Section],
+    span: f64,
+    rise: f64,
+    bed: Option<Bed>,
+) -> Result<Option<Bed>, CatenaryError> {
     if sections.is_empty() {
         return Err(CatenaryError::NoSections);
     }
     for (index, section) in sections.iter().enumerate() {
         let positive = |value: f64| value > 0.0 && value.is_finite();
-        let complain = |key, value, unit, wanted| Err(CatenaryError::Section { index, key, value, unit, wanted });
+        let complain = |key, value, unit, wanted| {
+            Err(CatenaryError::Section {
+                index,
+                key,
+                value,
+                unit,
+                wanted,
+            })
+        };
         if !positive(section.length) {
             return complain("length", section.length, "m", "positive and finite");
         }
         if !positive(section.axial_stiffness) {
-            return complain("axial_stiffness", section.axial_stiffness, "N", "positive and finite");
+            return complain(
+                "axial_stiffness",
+                section.axial_stiffness,
+                "N",
+                "positive and finite",
+            );
         }
         if !section.weight.is_finite() {
             return complain("weight", section.weight, "N/m", "finite");
         }
     }
-    let complain = |key, value, unit, wanted| Err(CatenaryError::Input { key, value, unit, wanted });
+    let complain = |key, value, unit, wanted| {
+        Err(CatenaryError::Input {
+            key,
+            value,
+            unit,
+            wanted,
+        })
+    };
     if !(span >= 0.0 && span.is_finite()) {
         return complain("span", span, "m", "at least 0 and finite");
     }
@@ -264,9 +412,16 @@ fn check(sections: &[Section], span: f64, rise: f64, bed: Option<Bed>) -> Result
     let (end, z) = if rise < 0.0 { ('B', rise) } else { ('A', 0.0) };
     let length: f64 = sections.iter().map(|section| section.length).sum();
     if bed.height > z + BED_TOLERANCE * length {
-        return Err(CatenaryError::EndBelowBed { end, z, bed: bed.height });
+        return Err(CatenaryError::EndBelowBed {
+            end,
+            z,
+            bed: bed.height,
+        });
     }
-    Ok(Some(Bed { height: bed.height.min(z), ..bed }))
+    Ok(Some(Bed {
+        height: bed.height.min(z),
+        ..bed
+    }))
 }
 
 impl Catenary {
@@ -300,6 +455,16 @@ impl Catenary {
         self.held.horizontal_b.hypot(self.held.vertical_b)
     }
 
+    /// Coulomb friction that the bed uses along what lies and is tight [-]: that of the bed; less only where sections float and no
+    /// state uses all of it; 0 where nothing lies.
+    pub fn friction(&self) -> f64 {
+        if self.laid().next().is_some() {
+            self.held.friction
+        } else {
+            0.0
+        }
+    }
+
     /// Unstretched length on the bed [m].
     pub fn laid_length(&self) -> f64 {
         self.laid().map(|(from, to)| to - from).sum()
@@ -313,7 +478,11 @@ impl Catenary {
 
     /// Length of the line under its tension [m].
     pub fn stretched_length(&self) -> f64 {
-        self.shape.pieces.iter().map(|piece| piece.length + piece.elongation()).sum()
+        self.shape
+            .pieces
+            .iter()
+            .map(|piece| piece.length + piece.elongation())
+            .sum()
     }
 
     /// Greatest vertical distance below the chord between the ends [m]; below the lower end where the span is 0.

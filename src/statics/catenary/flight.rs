@@ -96,7 +96,10 @@ impl Flight {
             0.0 => 0.0,
             h => h * self.length * (self.alpha(ta, tb, sigma) / sigma + flexibility),
         };
-        (x, self.vertical_mean() * self.length * (1.0 / sigma + flexibility))
+        (
+            x,
+            self.vertical_mean() * self.length * (1.0 / sigma + flexibility),
+        )
     }
 
     /// Rise of the end above the start, with its slopes in V and H.
@@ -105,7 +108,11 @@ impl Flight {
         let sigma = 0.5 * (ta + tb);
         let flexibility = 1.0 / self.axial_stiffness;
         if sigma == 0.0 {
-            return Rise { z: 0.0, by_vertical: self.length * flexibility, by_horizontal: 0.0 };
+            return Rise {
+                z: 0.0,
+                by_vertical: self.length * flexibility,
+                by_horizontal: 0.0,
+            };
         }
         let v = self.vertical_mean();
         let ratio = |force: f64, tension: f64| if tension > 0.0 { force / tension } else { 0.0 };
@@ -126,7 +133,11 @@ impl Flight {
             return 0.0;
         }
         let (h, v) = (self.horizontal, self.vertical_mean());
-        let bow = if h > 0.0 { self.alpha(ta, tb, sigma) * h * h } else { 0.0 };
+        let bow = if h > 0.0 {
+            self.alpha(ta, tb, sigma) * h * h
+        } else {
+            0.0
+        };
         0.5 * self.length * (sigma + (v * v + bow) / sigma) / self.axial_stiffness
     }
 
@@ -147,7 +158,13 @@ mod tests {
     use super::Flight;
 
     fn textbook(flight: &Flight) -> (f64, f64) {
-        let Flight { horizontal: h, vertical: va, length, weight: w, axial_stiffness: ea } = *flight;
+        let Flight {
+            horizontal: h,
+            vertical: va,
+            length,
+            weight: w,
+            axial_stiffness: ea,
+        } = *flight;
         let vb = va + w * length;
         let x = h / w * ((vb / h).asinh() - (va / h).asinh()) + h * length / ea;
         let z = (h.hypot(vb) - h.hypot(va)) / w + length * (va + 0.5 * w * length) / ea;
@@ -159,10 +176,19 @@ mod tests {
         for h in [0.03, 1.0, 40.0] {
             for v in [-9.0, -5.0, -0.1, 0.0, 2.0, 11.0] {
                 for weight in [-2.0, 0.9, 3.0] {
-                    let flight = Flight { horizontal: h, vertical: v, length: 3.0, weight, axial_stiffness: 200.0 };
+                    let flight = Flight {
+                        horizontal: h,
+                        vertical: v,
+                        length: 3.0,
+                        weight,
+                        axial_stiffness: 200.0,
+                    };
                     let (x, z) = flight.advance();
                     let (x_book, z_book) = textbook(&flight);
-                    assert!((x - x_book).abs() < 1e-13 && (z - z_book).abs() < 1e-13, "{flight:?}");
+                    assert!(
+                        (x - x_book).abs() < 1e-13 && (z - z_book).abs() < 1e-13,
+                        "{flight:?}"
+                    );
                 }
             }
         }
@@ -171,9 +197,19 @@ mod tests {
     #[test]
     fn a_flight_cut_in_two_ends_at_the_same_place_and_is_as_long() {
         for h in [1e-9, 0.2, 1e6] {
-            let whole = Flight { horizontal: h, vertical: -4.0, length: 7.0, weight: 1.5, axial_stiffness: 90.0 };
+            let whole = Flight {
+                horizontal: h,
+                vertical: -4.0,
+                length: 7.0,
+                weight: 1.5,
+                axial_stiffness: 90.0,
+            };
             let first = whole.first(2.9);
-            let second = Flight { vertical: first.vertical_end(), length: 7.0 - 2.9, ..whole };
+            let second = Flight {
+                vertical: first.vertical_end(),
+                length: 7.0 - 2.9,
+                ..whole
+            };
             let ((x, z), (x1, z1), (x2, z2)) = (whole.advance(), first.advance(), second.advance());
             let scale = 1.0 + x.abs();
             assert!((x - x1 - x2).abs() < 4e-15 * scale && (z - z1 - z2).abs() < 4e-15 * scale);
@@ -184,11 +220,29 @@ mod tests {
 
     #[test]
     fn the_slopes_of_the_rise_are_its_central_differences() {
-        let base = Flight { horizontal: 2.0, vertical: -3.0, length: 5.0, weight: 1.1, axial_stiffness: 60.0 };
+        let base = Flight {
+            horizontal: 2.0,
+            vertical: -3.0,
+            length: 5.0,
+            weight: 1.1,
+            axial_stiffness: 60.0,
+        };
         let step = 1e-5;
         let by = |dv: f64, dh: f64| {
-            let up = Flight { vertical: base.vertical + dv, horizontal: base.horizontal + dh, ..base }.rise().z;
-            let down = Flight { vertical: base.vertical - dv, horizontal: base.horizontal - dh, ..base }.rise().z;
+            let up = Flight {
+                vertical: base.vertical + dv,
+                horizontal: base.horizontal + dh,
+                ..base
+            }
+            .rise()
+            .z;
+            let down = Flight {
+                vertical: base.vertical - dv,
+                horizontal: base.horizontal - dh,
+                ..base
+            }
+            .rise()
+            .z;
             (up - down) / (2.0 * step)
         };
         assert!((by(step, 0.0) - base.rise().by_vertical).abs() < 1e-8);

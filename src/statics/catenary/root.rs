@@ -3,6 +3,12 @@
 /// Bound on the steps of any search: bisection of the whole double range needs fewer.
 const STEPS_MAX: usize = 200;
 
+/// Every so many steps a bracket is halved whatever Newton says: it may cycle.
+const HALVE_EVERY: usize = 12;
+
+/// Steps towards a root below the start before its existence is asked.
+const STEPS_DOWN_MAX: usize = 4;
+
 /// A root and what it cost.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Root {
@@ -23,7 +29,12 @@ pub(super) fn increasing(
     (bend, reach): (f64, impl Fn(f64) -> f64),
     tolerance: f64,
 ) -> Root {
-    let halfway = |a: f64, b: f64| bend * (0.5 * ((a / bend).asinh() + (b / bend).asinh())).sinh();
+    let halfway = |a: f64, b: f64| {
+        if a * b > 0.0 && a / b < 4.0 && b / a < 4.0 {
+            return 0.5 * (a + b);
+        }
+        bend * (0.5 * ((a / bend).asinh() + (b / bend).asinh())).sinh()
+    };
     let mut at = start.clamp(lower, upper);
     let mut width_before = f64::INFINITY;
     for steps in 1..=STEPS_MAX {
@@ -31,70 +42,98 @@ pub(super) fn increasing(
         if value.abs() <= tolerance {
             return Root { at, steps };
         }
-        if value < 0.0 { lower = at } else { upper = at }
-        let reach = reach(at);
-        let newton = -value / slope;
-        let step = if newton.is_finite() { newton.clamp(-reach, reach) } else { -reach.copysign(value) };
-        let mut next = at + step;
-        if next == at {
-            return Root { at, steps };
+        if value < 0.0 {
+            lower = at
+        } else {
+            upper = at
         }
+        let reach = reach(at);
+        // rounding may turn a vanishing slope around; the sign of the value is what counts
+        let step = if slope > 0.0 {
+            (-value / slope).clamp(-reach, reach)
+        } else {
+            -reach.copysign(value)
+        };
+        let (mut next, close) = (at + step, 2.0 * f64::EPSILON * at.abs());
         // a bracket that hardly shrinks is halved: Newton may creep along a kink
         let width = upper - lower;
-        let creeps = steps % 4 == 0 && width > 0.5 * width_before;
+        if step.abs() <= close || width <= close {
+            return Root {
+                at: next.clamp(lower, upper),
+                steps,
+            };
+        }
+        let creeps = steps % 4 == 0 && width.is_finite() && width > 0.5 * width_before;
         if steps % 4 == 0 {
             width_before = width;
         }
-        if !(next > lower && next < upper) || (creeps && width.is_finite()) {
+        if !(next > lower && next < upper) || creeps {
             next = halfway(lower, upper);
-        }
-        let close = 2.0 * f64::EPSILON * at.abs();
-        if (next - at).abs() <= close || width <= close {
-            return Root { at: next, steps };
         }
         at = next;
     }
-    Root { at, steps: STEPS_MAX }
+    Root {
+        at,
+        steps: STEPS_MAX,
+    }
 }
 
-/// Root of `function` (value only), increasing in x > 0 and searched on ln x from `start` outwards, down to `lowest`.
+/// Root of `function` (value only), increasing in x > 0 and searched on ln x from `start` outwards; `lowest` if it is below that.
 pub(super) fn increasing_by_ratio(
     mut function: impl FnMut(f64) -> f64,
     start: f64,
     lowest: f64,
     tolerance: f64,
 ) -> Root {
-    let (mut a, mut steps) = (start.ln(), 1);
-    let mut fa = function(start);
-    let (mut stride, floor) = (0.02, lowest.ln());
-    let (mut b, mut fb);
-    loop {
-        b = (a - stride * fa.signum()).max(floor);
-        fb = function(b.exp());
-        steps += 1;
-        if fa.abs() <= tolerance || (b <= floor && fb > 0.0) || steps > STEPS_MAX {
-            let at = if fa.abs() <= tolerance { a } else { b };
-            return Root { at: at.exp(), steps };
+    // searched on ln(x/start), which resolves the neighbourhood of a good start to the last digit
+    let mut value_at = |t: f64| function(start * t.exp());
+    let floor = (lowest / start).ln();
+    let (mut a, mut fa) = (0.0_f64, value_at(0.0));
+    let mut stride = 0.05;
+    for steps in 2..=STEPS_MAX {
+        if fa.abs() <= tolerance {
+            return Root {
+                at: start * a.exp(),
+                steps,
+            };
+        }
+        let mut b = (a - stride * fa.signum()).max(floor);
+        if fa > 0.0 && steps > STEPS_DOWN_MAX {
+            b = floor;
+        }
+        let fb = value_at(b);
+        if b <= floor && fb >= 0.0 {
+            return Root { at: lowest, steps };
         }
         if fa.signum() != fb.signum() {
-            break;
+            let inner = between(value_at, (a, fa), (b, fb), (tolerance, 0.5));
+            return Root {
+                at: start * inner.at.exp(),
+                steps: steps + inner.steps,
+            };
         }
         // where the secant points, stretched a little so that it passes the root
-        let secant = 1.5 * (b - a) * fb / (fa - fb);
-        stride = if secant.is_finite() { secant.abs().clamp(1e-9, 8.0 * stride).min(5.0) } else { 5.0 };
+        let secant = 1.2 * (b - a) * fb / (fa - fb);
+        stride = if secant.is_finite() {
+            secant.abs().clamp(1e-9, 8.0 * stride).min(5.0)
+        } else {
+            5.0
+        };
         (a, fa) = (b, fb);
     }
-    let inner = between(|t| function(t.exp()), (a, fa), (b, fb), tolerance);
-    Root { at: inner.at.exp(), steps: steps + inner.steps }
+    Root {
+        at: start * a.exp(),
+        steps: STEPS_MAX,
+    }
 }
 
 /// Root of `function` between two points whose values differ in sign: inverse quadratic interpolation where it is safe,
-/// else halving (the test of Chandrupatla 1997, Advances in Engineering Software 28, 145).
+/// else halving; to rounding of the greater of the root and `resolution` (the test of Chandrupatla 1997, Advances in Engineering Software 28, 145).
 pub(super) fn between(
     mut function: impl FnMut(f64) -> f64,
     (mut a, mut fa): (f64, f64),
     (mut b, mut fb): (f64, f64),
-    tolerance: f64,
+    (tolerance, resolution): (f64, f64),
 ) -> Root {
     let mut fraction = fa / (fa - fb);
     for steps in 1..=STEPS_MAX {
@@ -108,8 +147,12 @@ pub(super) fn between(
             (b, fb) = (a, fa);
         }
         (a, fa) = (at, value);
-        let (best, residual) = if fa.abs() < fb.abs() { (a, fa) } else { (b, fb) };
-        let close = f64::EPSILON * best.abs() + f64::MIN_POSITIVE;
+        let (best, residual) = if fa.abs() < fb.abs() {
+            (a, fa)
+        } else {
+            (b, fb)
+        };
+        let close = f64::EPSILON * best.abs().max(resolution);
         if residual.abs() <= tolerance || (b - a).abs() <= 2.0 * close {
             return Root { at: best, steps };
         }
@@ -122,7 +165,10 @@ pub(super) fn between(
         let margin = close / (b - a).abs();
         fraction = fraction.clamp(margin, 1.0 - margin);
     }
-    Root { at: if fa.abs() < fb.abs() { a } else { b }, steps: STEPS_MAX }
+    Root {
+        at: if fa.abs() < fb.abs() { a } else { b },
+        steps: STEPS_MAX,
+    }
 }
 
 /// Root of `function` (value, slope in ln x), increasing in x over (0, `upper`): Newton on x where `linear`, else on ln x.
@@ -139,18 +185,28 @@ pub(super) fn increasing_positive(
         if value == 0.0 || (at <= lowest && value > 0.0) || (at >= upper && value < 0.0) {
             return Root { at, steps };
         }
-        if value < 0.0 { lower = at } else { upper = at }
+        if value < 0.0 {
+            lower = at
+        } else {
+            upper = at
+        }
         let relative = -value / slope;
-        let mut next = if linear(at) { at + at * relative } else { at * relative.exp() };
-        if !(next > lower && next < upper) {
+        let mut next = if linear(at) {
+            at + at * relative
+        } else {
+            at * relative.exp()
+        };
+        if (next - at).abs() <= 1e-9 * at {
+            // quadratic convergence: the step after this one would be below rounding
+            return Root { at: next, steps };
+        }
+        let outside = !(next > lower && next < upper);
+        if outside || (steps % HALVE_EVERY == 0 && lower > 0.0 && upper.is_finite()) {
             next = match (lower > 0.0, upper.is_finite()) {
                 (true, true) => (lower * upper).sqrt(),
                 (false, _) => 0.03 * at,
                 (true, false) => 30.0 * at,
             };
-        } else if (next - at).abs() <= 1e-9 * at {
-            // quadratic convergence: the step after this one would be below rounding
-            return Root { at: next, steps };
         }
         next = next.max(lowest);
         if upper.is_finite() && upper - lower <= 2.0 * f64::EPSILON * upper {
@@ -158,7 +214,10 @@ pub(super) fn increasing_positive(
         }
         at = next;
     }
-    Root { at, steps: STEPS_MAX }
+    Root {
+        at,
+        steps: STEPS_MAX,
+    }
 }
 
 #[cfg(test)]
@@ -171,20 +230,40 @@ mod tests {
         let slope = |x: f64| 1e-6 / (1e-6 + (x - 3.7).abs()).powi(2) + 1e-9;
         for start in [1e-9, 1.0, 3.6, 5e5] {
             let everywhere = (f64::NEG_INFINITY, f64::INFINITY);
-            let newton = increasing(|x| (sigmoid(x), slope(x)), start, everywhere, (1.0, |x: f64| 1.0 + x.abs()), 0.0);
+            let newton = increasing(
+                |x| (sigmoid(x), slope(x)),
+                start,
+                everywhere,
+                (1.0, |x: f64| 1.0 + x.abs()),
+                0.0,
+            );
             assert!((newton.at - 3.7).abs() < 1e-14, "{newton:?}");
             let ratio = increasing_by_ratio(sigmoid, start, 1e-30, 0.0);
             assert!((ratio.at - 3.7).abs() < 1e-13, "{ratio:?}");
-            let positive = increasing_positive(|x| (sigmoid(x), x * slope(x)), start, (1e-30, f64::INFINITY), |_| false);
-            assert!((positive.at - 3.7).abs() < 1e-13, "{positive:?}");
+            let positive = increasing_positive(
+                |x| (sigmoid(x), x * slope(x)),
+                start,
+                (1e-30, f64::INFINITY),
+                |_| false,
+            );
+            // its last step, 1e-9 of the root, squares to 1e-11 over the 1e-6 on which this function bends
+            assert!((positive.at - 3.7).abs() < 1e-10, "{positive:?}");
         }
-        let halved = between(sigmoid, (-9.0, sigmoid(-9.0)), (1e4, sigmoid(1e4)), 0.0);
+        let halved = between(
+            sigmoid,
+            (-9.0, sigmoid(-9.0)),
+            (1e4, sigmoid(1e4)),
+            (0.0, 1.0),
+        );
         assert!((halved.at - 3.7).abs() < 1e-14, "{halved:?}");
     }
 
     #[test]
     fn a_search_that_meets_no_root_stops_at_the_lowest_value() {
-        assert_eq!(increasing_positive(|x| (1.0 + x, x), 2.0, (1e-30, f64::INFINITY), |_| false).at, 1e-30);
-        assert!(increasing_by_ratio(|x| 1.0 + x, 2.0, 1e-30, 0.0).at < 1.1e-30);
+        assert_eq!(
+            increasing_positive(|x| (1.0 + x, x), 2.0, (1e-30, f64::INFINITY), |_| false).at,
+            1e-30
+        );
+        assert_eq!(increasing_by_ratio(|x| 1.0 + x, 2.0, 1e-30, 0.0).at, 1e-30);
     }
 }

@@ -26,17 +26,28 @@ const LIMP_SHARE: f64 = 1e-40;
 /// Tension that counts as none, over the weights of the sections [-].
 const NOTHING_SHARE: f64 = 1e-30;
 
+/// Weight of a section that no other feels, over the weights of all: it is taken for weightless [-].
+const UNFELT_SHARE: f64 = 1e-22;
+
 /// Position error that counts as none, over the unstretched length [-].
-const CLOSURE: f64 = 1e-16;
+const CLOSURE: f64 = 3e-16;
+
+/// Position error that rounding cannot explain, over the unstretched length [-].
+const JUMP: f64 = 1e-9;
+
+/// Bound on the halvings of friction: the last is below rounding.
+const FRICTION_HALVINGS_MAX: usize = 60;
 
 /// Where the vertical tension at a section's end is below this share of the unknown one, it becomes the unknown [-].
 const REFERENCE_SHARE: f64 = 1e-3;
 
 /// A line of sections between two held ends.
-pub(super) struct Sections<'a> {
-    sections: &'a [Section],
+pub(super) struct Sections {
+    sections: Vec<Section>,
     /// Weight before each section, and of all [N].
     before: Vec<f64>,
+    /// Arc length at the start of each section [m].
+    starts: Vec<f64>,
     span: f64,
     rise: f64,
     bed: Option<Bed>,
@@ -62,6 +73,9 @@ struct Departure {
     from_bed: bool,
 }
 
+/// How a flight ends: None at B, else touching down in a section, at a distance from its start [m].
+type Touch = Option<(usize, f64)>;
+
 /// The tightest constraint of a flight.
 #[derive(Debug, Clone, Copy)]
 struct Flown {
@@ -71,8 +85,22 @@ struct Flown {
     by_vertical: f64,
     /// ∂gap/∂H [m/N].
     by_horizontal: f64,
-    /// None: end B; else the section touching down and the distance from its start [m].
-    touch: Option<(usize, f64)>,
+    touch: Touch,
+}
+
+/// A stretch of sections that do not float, after a touchdown in the first of them.
+#[derive(Debug, Clone, Copy)]
+struct Run {
+    /// Section after the last one.
+    end: usize,
+    /// Weight before the touchdown, which tells it as a place [N].
+    first: f64,
+    /// Weight before the end [N].
+    last: f64,
+    /// Section in which tension begins.
+    tight: usize,
+    /// Length from there to the end of that section [m].
+    rest: f64,
 }
 
 /// What the outer search changes.
@@ -87,57 +115,100 @@ struct Hold {
 /// Root and reference of each flight, from which its next search starts.
 type Memory = Vec<Option<(f64, usize)>>;
 
-impl<'a> Sections<'a> {
-    pub fn new(sections: &'a [Section], span: f64, rise: f64, bed: Option<Bed>) -> Self {
-        let mut before = vec![0.0];
-        for section in sections {
-            before.push(before[before.len() - 1] + section.weight * section.length);
+impl Sections {
+    pub fn new(sections: &[Section], span: f64, rise: f64, bed: Option<Bed>) -> Self {
+        let weights: f64 = sections.iter().map(|s| s.weight.abs() * s.length).sum();
+        let felt = |s: &Section| s.weight.abs() * s.length > UNFELT_SHARE * weights;
+        let unweighted = |s: &Section| Section { weight: 0.0, ..*s };
+        let sections: Vec<Section> = sections
+            .iter()
+            .map(|s| if felt(s) { *s } else { unweighted(s) })
+            .collect();
+        let (mut before, mut starts) = (vec![0.0], vec![0.0]);
+        for (index, section) in sections.iter().enumerate() {
+            before.push(before[index] + section.weight * section.length);
+            starts.push(starts[index] + section.length);
         }
+        let length = starts[sections.len()];
         Sections {
             sections,
             before,
+            starts,
             span,
             rise,
             bed,
-            length: sections.iter().map(|s| s.length).sum(),
-            weights: sections.iter().map(|s| s.weight.abs() * s.length).sum(),
+            length,
+            weights,
         }
     }
 
     /// Solves the line, from a guess of H and V at A [N]; leaves its pieces in `shape`.
-    pub fn solve(&self, guess: (f64, f64), shape: &mut Shape) -> Held {
-        let tolerance = CLOSURE * self.length;
-        let lowest = self.limp();
-        let mut memory: Memory = vec![Some((guess.1, 0))];
-        let mut miss = |horizontal_a: f64, tight_from: f64| {
-            self.lay_out(Hold { horizontal_a, tight_from }, &mut memory, shape) - self.span
-        };
-        let mut steps = 1;
-        let limp_miss = miss(lowest, 0.0);
-        if limp_miss < 0.0 {
-            let start = guess.0.max(1e-3 * self.weights);
-            let root = root::increasing_by_ratio(|h| miss(h, 0.0), start, lowest, tolerance);
-            steps += root.steps;
-            miss(root.at, 0.0);
-        } else {
-            let slack_miss = miss(lowest, self.length);
-            if slack_miss < 0.0 {
-                let ends = ((0.0, limp_miss), (self.length, slack_miss));
-                let root = root::between(|s| miss(lowest, s), ends.0, ends.1, tolerance);
-                steps += root.steps;
-                miss(lowest, root.at);
+    ///
+    /// With sections that float, strong friction can leave a span without a state that uses friction in full. Coulomb's
+    /// law is an inequality: the line then uses the greatest tried share of it, halved until the ends meet.
+    pub fn solve(&mut self, guess: (f64, f64), shape: &mut Shape) -> Held {
+        let mut steps = 0;
+        for _ in 0..FRICTION_HALVINGS_MAX {
+            steps += self.search(guess, shape);
+            if (shape.end.1 - self.span).abs() <= JUMP * self.length || self.friction() == 0.0 {
+                break;
             }
+            self.bed = self.bed.map(|bed| Bed {
+                friction: 0.5 * bed.friction,
+                ..bed
+            });
         }
-        shape.relax(NOTHING_SHARE * self.weights);
-        shape.close(self.span);
         let (a, b) = (shape.at(0.0), shape.at(self.length));
         Held {
             horizontal_a: a.horizontal,
             horizontal_b: b.horizontal,
             vertical_a: a.vertical,
             vertical_b: b.vertical,
+            friction: self.friction(),
             steps,
         }
+    }
+
+    /// Searches the tension at A, or else the place where tension begins, that brings the ends together; returns the steps.
+    fn search(&self, guess: (f64, f64), shape: &mut Shape) -> usize {
+        let tolerance = CLOSURE * self.length;
+        let lowest = self.limp();
+        let mut memory: Memory = vec![Some((guess.1, 0))];
+        let mut miss = |horizontal_a: f64, tight_from: f64| {
+            self.lay_out(
+                Hold {
+                    horizontal_a,
+                    tight_from,
+                },
+                &mut memory,
+                shape,
+            ) - self.span
+        };
+        let start = if guess.0 > 0.0 {
+            guess.0
+        } else {
+            1e-3 * self.weights
+        };
+        let root = root::increasing_by_ratio(|h| miss(h, 0.0), start, lowest, tolerance);
+        let mut steps = root.steps;
+        let limp_miss = miss(root.at, 0.0);
+        if root.at == lowest && limp_miss > 0.0 {
+            let slack_miss = miss(lowest, self.length);
+            if slack_miss < 0.0 {
+                let ends = ((0.0, limp_miss), (self.length, slack_miss));
+                let root = root::between(
+                    |s| miss(lowest, s),
+                    ends.0,
+                    ends.1,
+                    (tolerance, self.length),
+                );
+                steps += root.steps;
+                miss(lowest, root.at);
+            }
+        }
+        shape.relax(NOTHING_SHARE * self.weights);
+        shape.close(self.span);
+        steps
     }
 
     /// Horizontal tension that stands for the limit of none [N].
@@ -155,7 +226,8 @@ impl<'a> Sections<'a> {
             horizontal: hold.horizontal_a,
             vertical: 0.0,
             reference: 0,
-            from_bed: self.bed.is_some_and(|bed| bed.height >= 0.0) && self.sections[0].weight >= 0.0,
+            from_bed: self.bed.is_some_and(|bed| bed.height >= 0.0)
+                && self.sections[0].weight >= 0.0,
         };
         departure.from_bed = departure.from_bed && self.fly(&departure).gap >= 0.0;
         // every touchdown lies beyond the lift-off before it, in a section of its own
@@ -163,29 +235,43 @@ impl<'a> Sections<'a> {
             if memory.len() <= flight {
                 memory.push(None);
             }
-            departure = if departure.from_bed {
-                self.lift_off(&departure, hold.tight_from, &mut memory[flight], shape)
+            let (flying, touch) = if departure.from_bed {
+                let (lifted, touch) =
+                    self.lift_off(&departure, hold.tight_from, &mut memory[flight]);
+                self.lay(&departure, &lifted, hold.tight_from, shape);
+                (lifted, touch)
             } else {
                 self.take_off(&departure, &mut memory[flight])
             };
-            let Some((section, offset)) = self.follow(&departure, shape) else {
+            self.follow(&flying, touch, shape);
+            let Some((section, offset)) = touch else {
                 break;
             };
             let z = self.bed.map_or(shape.end.2, |bed| bed.height);
-            departure = Departure { section, offset, z, from_bed: true, ..departure };
+            departure = Departure {
+                section,
+                offset,
+                z,
+                from_bed: true,
+                ..flying
+            };
         }
         shape.end.1
     }
 
     /// The flight from the point `from` that clears every constraint by the least: its vertical tension is found.
-    fn take_off(&self, from: &Departure, memory: &mut Option<(f64, usize)>) -> Departure {
+    fn take_off(&self, from: &Departure, memory: &mut Option<(f64, usize)>) -> (Departure, Touch) {
         let reach = |vertical: f64| 2.0 * (vertical.abs() + from.horizontal + self.weights);
         let (mut start, mut reference) = memory.unwrap_or((0.0, from.section));
         // a second pass is enough: it only moves the reference to where V is small
         loop {
             let root = root::increasing(
                 |vertical| {
-                    let flown = self.fly(&Departure { vertical, reference, ..*from });
+                    let flown = self.fly(&Departure {
+                        vertical,
+                        reference,
+                        ..*from
+                    });
                     (flown.gap, flown.by_vertical)
                 },
                 start,
@@ -193,48 +279,50 @@ impl<'a> Sections<'a> {
                 (from.horizontal, reach),
                 CLOSURE * self.length,
             );
-            let departure = Departure { vertical: root.at, reference, ..*from };
-            let better = self.better_reference(&departure, from);
+            let departure = Departure {
+                vertical: root.at,
+                reference,
+                ..*from
+            };
+            let flown = self.fly(&departure);
+            let better = self.better_reference(&departure, from, &flown);
             if better.is_none() || start == root.at {
                 *memory = Some((root.at, reference));
-                return departure;
+                return (departure, flown.touch);
             }
             (start, reference) = better.unwrap_or_default();
         }
     }
 
-    /// The flight that leaves the bed after the touchdown `from`; what stays on the bed is appended to `shape`.
+    /// The flight that leaves the bed after the touchdown `from`, lifting off where it just clears every constraint.
     fn lift_off(
         &self,
         from: &Departure,
         tight_from: f64,
         memory: &mut Option<(f64, usize)>,
-        shape: &mut Shape,
-    ) -> Departure {
-        let friction = self.bed.map_or(0.0, |bed| bed.friction);
-        let heavy = self.sections[from.section..].iter().take_while(|section| section.weight >= 0.0);
-        let run_end = from.section + heavy.count();
-        // places on the bed are told by the weight before them
-        let first = self.before[from.section] + self.sections[from.section].weight * from.offset;
-        let last = self.before[run_end].max(first);
-        let limp = if from.horizontal > self.limp() { first } else { self.weight_before(tight_from).max(first) };
-        let leave = |vertical: f64, reference: usize| {
-            let place = (self.before[reference] - vertical).clamp(first, last);
-            let (section, offset) = self.locate(from, run_end, vertical, reference);
-            let horizontal = from.horizontal + friction * (place - limp).max(0.0);
-            Departure { section, offset, horizontal, vertical, reference, ..*from }
-        };
-        let (mut start, mut reference) = memory.unwrap_or((0.5 * (last - first), run_end));
-        let departure = loop {
-            let (lower, upper) = (self.before[reference] - last, self.before[reference] - first);
-            if self.fly(&leave(upper, reference)).gap <= 0.0 || upper <= lower {
-                break leave(upper, reference);
+    ) -> (Departure, Touch) {
+        let run = self.run(from, tight_from);
+        // the rise to B is quadratic in V there, so a search would leave V the root of its tolerance
+        let ends_on_bed =
+            run.end == self.sections.len() && self.bed.is_some_and(|bed| self.rise <= bed.height);
+        let (mut start, mut reference) = memory.unwrap_or((0.5 * (run.last - run.first), run.end));
+        loop {
+            let lower = self.before[reference] - run.last;
+            let upper = self.before[reference] - run.first;
+            let all_lifted = self.leave(from, &run, upper, reference);
+            let flown = self.fly(&all_lifted);
+            if flown.gap <= 0.0 || upper <= lower {
+                return (all_lifted, flown.touch);
+            }
+            if ends_on_bed {
+                return (self.leave(from, &run, lower, reference), None);
             }
             let root = root::increasing(
                 |vertical| {
-                    let departure = leave(vertical, reference);
+                    let departure = self.leave(from, &run, vertical, reference);
                     let flown = self.fly(&departure);
-                    let drag = if departure.horizontal > from.horizontal { friction } else { 0.0 };
+                    let dragged = departure.horizontal > from.horizontal;
+                    let drag = if dragged { self.friction() } else { 0.0 };
                     (flown.gap, flown.by_vertical - drag * flown.by_horizontal)
                 },
                 start,
@@ -242,16 +330,52 @@ impl<'a> Sections<'a> {
                 (from.horizontal, |_| upper - lower),
                 CLOSURE * self.length,
             );
-            let departure = leave(root.at, reference);
-            let better = self.better_reference(&departure, from);
+            let departure = self.leave(from, &run, root.at, reference);
+            let flown = self.fly(&departure);
+            let better = self.better_reference(&departure, from, &flown);
             if better.is_none() || start == root.at {
-                break departure;
+                *memory = Some((root.at, reference));
+                return (departure, flown.touch);
             }
             (start, reference) = better.unwrap_or_default();
-        };
-        *memory = Some((departure.vertical, departure.reference));
-        self.lay(from, &departure, tight_from, friction, shape);
-        departure
+        }
+    }
+
+    /// What may lie from the touchdown `from` on.
+    fn run(&self, from: &Departure, tight_from: f64) -> Run {
+        let sections = self.sections[from.section..].iter();
+        let heavy = sections.take_while(|section| section.weight >= 0.0);
+        let end = from.section + heavy.count();
+        let first = self.before[from.section] + self.sections[from.section].weight * from.offset;
+        let last = self.before[end].max(first);
+        let (tight, rest) = self.tight_place(tight_from, from, end);
+        Run {
+            end,
+            first,
+            last,
+            tight,
+            rest,
+        }
+    }
+
+    /// The flight that leaves the bed where the vertical tension at `reference` is then `vertical`.
+    fn leave(&self, from: &Departure, run: &Run, vertical: f64, reference: usize) -> Departure {
+        let (section, offset) = self.locate(from, run.end, vertical, reference);
+        let to_reference = self.before[reference] - self.before[run.tight + 1];
+        let beyond = to_reference + self.sections[run.tight].weight * run.rest;
+        let horizontal = from.horizontal + self.friction() * (beyond - vertical).max(0.0);
+        Departure {
+            section,
+            offset,
+            horizontal,
+            vertical,
+            reference,
+            ..*from
+        }
+    }
+
+    fn friction(&self) -> f64 {
+        self.bed.map_or(0.0, |bed| bed.friction)
     }
 
     /// Vertical tension at the start of section `index` of a flight [N].
@@ -261,47 +385,90 @@ impl<'a> Sections<'a> {
 
     /// A section's end, beyond where `from` the search began, where the vertical tension of the flight is so much smaller than at its reference that it is better
     /// found there: the vertical tension and the section.
-    fn better_reference(&self, flight: &Departure, from: &Departure) -> Option<(f64, usize)> {
-        let touch = self.fly(flight).touch.map_or(self.sections.len(), |(index, _)| index + 1);
+    fn better_reference(
+        &self,
+        flight: &Departure,
+        from: &Departure,
+        flown: &Flown,
+    ) -> Option<(f64, usize)> {
+        // where the gap jumps over zero the flight does not end at the touchdown it seems to have
+        let ends = flown.touch.filter(|_| flown.gap.abs() < JUMP * self.length);
+        let last = ends.map_or(self.sections.len(), |(index, _)| index + 1);
         let first = from.section + usize::from(from.from_bed);
-        let candidates = (first..=touch).map(|index| (self.vertical_at(flight, index), index));
+        let candidates = (first..=last).map(|index| (self.vertical_at(flight, index), index));
         let best = candidates.min_by(|a, b| a.0.abs().total_cmp(&b.0.abs()))?;
-        (best.1 != flight.reference && best.0.abs() < REFERENCE_SHARE * flight.vertical.abs()).then_some(best)
+        (best.1 != flight.reference && best.0.abs() < REFERENCE_SHARE * flight.vertical.abs())
+            .then_some(best)
     }
 
-    /// Weight of the line before arc length `s` [N].
-    fn weight_before(&self, s: f64) -> f64 {
-        let (mut weight, mut left) = (0.0, s);
-        for section in self.sections {
-            let length = left.min(section.length);
-            weight += section.weight * length;
-            left -= length;
+    /// Where tension begins on the bed after the touchdown `from`: a section and the length between there and its end [m].
+    fn tight_place(&self, tight_from: f64, from: &Departure, run_end: usize) -> (usize, f64) {
+        let whole = (
+            from.section,
+            self.sections[from.section].length - from.offset,
+        );
+        if from.horizontal > self.limp() {
+            return whole;
         }
-        weight
+        let ends = from.section + 1..=run_end;
+        match ends.into_iter().find(|&end| tight_from < self.starts[end]) {
+            None => (run_end - 1, 0.0),
+            Some(end) if end - 1 == from.section => {
+                (end - 1, whole.1.min(self.starts[end] - tight_from))
+            }
+            Some(end) => (
+                end - 1,
+                self.sections[end - 1]
+                    .length
+                    .min(self.starts[end] - tight_from),
+            ),
+        }
     }
 
     /// Section and offset of the lift-off after which the vertical tension at `reference` is `vertical`.
-    fn locate(&self, from: &Departure, run_end: usize, vertical: f64, reference: usize) -> (usize, f64) {
+    fn locate(
+        &self,
+        from: &Departure,
+        run_end: usize,
+        vertical: f64,
+        reference: usize,
+    ) -> (usize, f64) {
         for index in from.section..run_end {
             let section = &self.sections[index];
             // weight in flight of this section
             let flown = vertical + (self.before[index + 1] - self.before[reference]);
             if flown > 0.0 && section.weight > 0.0 {
-                let least = if index == from.section { from.offset } else { 0.0 };
-                return (index, (section.length - flown / section.weight).clamp(least, section.length));
+                let least = if index == from.section {
+                    from.offset
+                } else {
+                    0.0
+                };
+                return (
+                    index,
+                    (section.length - flown / section.weight).clamp(least, section.length),
+                );
             }
         }
         (run_end - 1, self.sections[run_end - 1].length)
     }
 
     /// Appends what lies between a touchdown and the lift-off after it.
-    fn lay(&self, from: &Departure, to: &Departure, tight_from: f64, friction: f64, shape: &mut Shape) {
+    fn lay(&self, from: &Departure, to: &Departure, tight_from: f64, shape: &mut Shape) {
+        let friction = self.friction();
         let (mut tension, mut offset) = (from.horizontal, from.offset);
         for index in from.section..=to.section {
             let section = &self.sections[index];
-            let end = if index == to.section { to.offset } else { section.length };
+            let end = if index == to.section {
+                to.offset
+            } else {
+                section.length
+            };
             let length = end - offset;
-            let slack = if tension > self.limp() { 0.0 } else { (tight_from - shape.end.0).clamp(0.0, length.max(0.0)) };
+            let slack = if tension > self.limp() {
+                0.0
+            } else {
+                (tight_from - shape.end.0).clamp(0.0, length.max(0.0))
+            };
             let growth = friction * section.weight;
             shape.lay(section, slack, tension, 0.0);
             shape.lay(section, length - slack, tension, growth);
@@ -313,7 +480,12 @@ impl<'a> Sections<'a> {
     /// Height to spare over the tightest constraint of the flight that starts at `from`.
     fn fly(&self, from: &Departure) -> Flown {
         let height = self.bed.map_or(f64::NEG_INFINITY, |bed| bed.height);
-        let mut tightest = Flown { gap: f64::INFINITY, by_vertical: 0.0, by_horizontal: 0.0, touch: None };
+        let mut tightest = Flown {
+            gap: f64::INFINITY,
+            by_vertical: 0.0,
+            by_horizontal: 0.0,
+            touch: None,
+        };
         let (mut z, mut by_vertical, mut by_horizontal) = (from.z, 0.0, 0.0);
         let (mut vertical, mut offset) = (self.vertical_start(from), from.offset);
         for (index, section) in self.sections.iter().enumerate().skip(from.section) {
@@ -339,25 +511,117 @@ impl<'a> Sections<'a> {
             (vertical, offset) = (vertical_end, 0.0);
         }
         let gap = z - self.rise;
-        if gap <= tightest.gap { Flown { gap, by_vertical, by_horizontal, touch: None } } else { tightest }
+        if gap <= tightest.gap {
+            Flown {
+                gap,
+                by_vertical,
+                by_horizontal,
+                touch: None,
+            }
+        } else {
+            tightest
+        }
     }
 
     /// Vertical tension at the very start of a flight [N].
     fn vertical_start(&self, from: &Departure) -> f64 {
-        if from.from_bed { 0.0 } else { self.vertical_at(from, from.section) }
+        if from.from_bed {
+            0.0
+        } else {
+            self.vertical_at(from, from.section)
+        }
     }
 
-    /// Appends the flight that starts at `from` up to where it ends; the section and offset of its touchdown, None at B.
-    fn follow(&self, from: &Departure, shape: &mut Shape) -> Option<(usize, f64)> {
-        let touch = self.fly(from).touch;
+    /// Appends the flight that starts at `from`, up to its `touch` or to B.
+    fn follow(&self, from: &Departure, touch: Touch, shape: &mut Shape) {
         let last = touch.map_or(self.sections.len() - 1, |(index, _)| index);
         let (mut vertical, mut offset) = (self.vertical_start(from), from.offset);
         for index in from.section..=last {
             let section = &self.sections[index];
-            let end = touch.filter(|_| index == last).map_or(section.length, |(_, offset)| offset);
+            let end = touch
+                .filter(|_| index == last)
+                .map_or(section.length, |(_, offset)| offset);
             shape.fly(section, end - offset, from.horizontal, vertical);
             (vertical, offset) = (self.vertical_at(from, index + 1), 0.0);
         }
-        touch
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Bed, Section, solve};
+    use super::{Sections, Shape};
+
+    #[test]
+    fn the_march_agrees_with_the_uniform_line_on_every_kind_of_it() {
+        let bed = |height, friction| Some(Bed { height, friction });
+        for (weight, ea, span, rise, bed) in [
+            (50.0, 1e7, 80.0, 30.0, None),
+            (50.0, 1e3, 130.0, -20.0, None),
+            (-50.0, 1e7, 60.0, 30.0, bed(0.0, 0.4)),
+            (50.0, 1e9, 88.0, 30.0, bed(0.0, 0.0)),
+            (50.0, 1e9, 88.0, 30.0, bed(0.0, 0.8)),
+            (50.0, 1e6, 75.0, 10.0, bed(-12.0, 0.0)),
+            (50.0, 1e6, 20.0, 10.0, bed(-12.0, 0.0)),
+            (50.0, 1e6, 0.0, -60.0, None),
+        ] {
+            let whole = Section {
+                length: 100.0,
+                weight,
+                axial_stiffness: ea,
+            };
+            let parts = [0.3, 0.2, 0.5].map(|share| Section {
+                length: 100.0 * share,
+                ..whole
+            });
+            let uniform = solve(&[whole], span, rise, bed).expect("a line");
+            let mut shape = Shape::default();
+            let held = Sections::new(&parts, span, rise, bed).solve((0.0, 0.0), &mut shape);
+            let tolerance = 1e-12 * (uniform.tension_b() + uniform.tension_a());
+            assert!(
+                (held.horizontal_b - uniform.horizontal()).abs() < tolerance,
+                "{held:?} {uniform:?}"
+            );
+            assert!(
+                (held.horizontal_a - uniform.horizontal_a()).abs() < tolerance,
+                "{held:?} {uniform:?}"
+            );
+            assert!(
+                (held.vertical_a - uniform.vertical_a()).abs() < tolerance,
+                "{held:?} {uniform:?}"
+            );
+            assert!(
+                (held.vertical_b - uniform.vertical_b()).abs() < tolerance,
+                "{held:?} {uniform:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_lazy_wave_may_lie_on_the_bed_twice() {
+        let heavy = |length| Section {
+            length,
+            weight: 30.0,
+            axial_stiffness: 1e8,
+        };
+        let float = Section {
+            length: 40.0,
+            weight: -40.0,
+            axial_stiffness: 1e8,
+        };
+        let sections = [heavy(150.0), float, heavy(200.0)];
+        let line = solve(
+            &sections,
+            300.0,
+            60.0,
+            Some(Bed {
+                height: 0.0,
+                friction: 0.0,
+            }),
+        )
+        .expect("a line");
+        let lifted = |s: f64| line.at(s).z > 1.0;
+        assert!(!lifted(50.0) && lifted(170.0) && !lifted(280.0) && lifted(380.0));
+        assert!(line.laid().count() >= 2);
     }
 }

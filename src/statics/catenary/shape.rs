@@ -9,7 +9,11 @@ pub(super) enum Kind {
     /// Its ends only.
     Flight(Flight),
     /// The bed, straight, with a tension that grows from `tension` [N] at its start by `growth` per metre [N/m].
-    Laid { tension: f64, growth: f64, axial_stiffness: f64 },
+    Laid {
+        tension: f64,
+        growth: f64,
+        axial_stiffness: f64,
+    },
     /// Nothing: no tension, so the shape is one of many; drawn straight, advancing (x, z) per metre [-].
     Slack { x: f64, z: f64, on_bed: bool },
 }
@@ -32,15 +36,23 @@ impl Piece {
     fn advance(&self, length: f64) -> (f64, f64) {
         match self.kind {
             Kind::Flight(flight) => flight.first(length).advance(),
-            Kind::Laid { tension, growth, axial_stiffness } => {
-                (length * (1.0 + (tension + 0.5 * growth * length) / axial_stiffness), 0.0)
-            }
+            Kind::Laid {
+                tension,
+                growth,
+                axial_stiffness,
+            } => (
+                length * (1.0 + (tension + 0.5 * growth * length) / axial_stiffness),
+                0.0,
+            ),
             Kind::Slack { x, z, .. } => (x * length, z * length),
         }
     }
 
     pub fn on_bed(&self) -> bool {
-        matches!(self.kind, Kind::Laid { .. } | Kind::Slack { on_bed: true, .. })
+        matches!(
+            self.kind,
+            Kind::Laid { .. } | Kind::Slack { on_bed: true, .. }
+        )
     }
 
     pub fn elongation(&self) -> f64 {
@@ -55,10 +67,18 @@ impl Piece {
         let (dx, dz) = self.advance(length);
         let (horizontal, vertical) = match self.kind {
             Kind::Flight(flight) => (flight.horizontal, flight.first(length).vertical_end()),
-            Kind::Laid { tension, growth, .. } => (tension + growth * length, 0.0),
+            Kind::Laid {
+                tension, growth, ..
+            } => (tension + growth * length, 0.0),
             Kind::Slack { .. } => (0.0, 0.0),
         };
-        Point { x: self.x + dx, z: self.z + dz, horizontal, vertical, tension: horizontal.hypot(vertical) }
+        Point {
+            x: self.x + dx,
+            z: self.z + dz,
+            horizontal,
+            vertical,
+            tension: horizontal.hypot(vertical),
+        }
     }
 }
 
@@ -83,7 +103,13 @@ impl Shape {
             return;
         }
         let (s, x, z) = self.end;
-        let piece = Piece { s, length, x, z, kind };
+        let piece = Piece {
+            s,
+            length,
+            x,
+            z,
+            kind,
+        };
         let (dx, dz) = piece.advance(length);
         self.end = (s + length, x + dx, z + dz);
         self.pieces.push(piece);
@@ -91,15 +117,32 @@ impl Shape {
 
     /// Appends a flight over `length` metres of `section` that starts under H and V.
     pub fn fly(&mut self, section: &Section, length: f64, horizontal: f64, vertical: f64) {
-        self.push(length, Kind::Flight(Flight::of(section, length, horizontal, vertical)));
+        self.push(
+            length,
+            Kind::Flight(Flight::of(section, length, horizontal, vertical)),
+        );
     }
 
     /// Appends `length` metres of `section` on the bed.
     pub fn lay(&mut self, section: &Section, length: f64, tension: f64, growth: f64) {
         if tension == 0.0 && growth == 0.0 {
-            self.push(length, Kind::Slack { x: 1.0, z: 0.0, on_bed: true });
+            self.push(
+                length,
+                Kind::Slack {
+                    x: 1.0,
+                    z: 0.0,
+                    on_bed: true,
+                },
+            );
         } else {
-            self.push(length, Kind::Laid { tension, growth, axial_stiffness: section.axial_stiffness });
+            self.push(
+                length,
+                Kind::Laid {
+                    tension,
+                    growth,
+                    axial_stiffness: section.axial_stiffness,
+                },
+            );
         }
     }
 
@@ -112,10 +155,16 @@ impl Shape {
                 Kind::Flight(flight) if flight.horizontal <= nothing => {
                     flight.horizontal = 0.0;
                     if flight.vertical.abs() <= nothing && flight.vertical_end().abs() <= nothing {
-                        piece.kind = Kind::Slack { x, z, on_bed: false };
+                        piece.kind = Kind::Slack {
+                            x,
+                            z,
+                            on_bed: false,
+                        };
                     }
                 }
-                Kind::Laid { tension, growth, .. } if *tension <= nothing => {
+                Kind::Laid {
+                    tension, growth, ..
+                } if *tension <= nothing => {
                     *tension = 0.0;
                     if *growth == 0.0 {
                         piece.kind = Kind::Slack { x, z, on_bed: true };
@@ -141,7 +190,11 @@ impl Shape {
         self.end = (0.0, 0.0, 0.0);
         for piece in pieces {
             let kind = match piece.kind {
-                Kind::Slack { x, z, on_bed } => Kind::Slack { x: x * factor, z, on_bed },
+                Kind::Slack { x, z, on_bed } => Kind::Slack {
+                    x: x * factor,
+                    z,
+                    on_bed,
+                },
                 kind => kind,
             };
             self.push(piece.length, kind);
@@ -158,7 +211,11 @@ impl Shape {
     /// Greatest vertical distance below the chord from (0, 0) to (`span`, `rise`) [m]; below the lower end where the span is 0.
     pub fn sag(&self, span: f64, rise: f64) -> f64 {
         let below = |point: Point| {
-            let chord = if span > 0.0 { rise * (point.x / span) } else { rise.min(0.0) };
+            let chord = if span > 0.0 {
+                rise * (point.x / span)
+            } else {
+                rise.min(0.0)
+            };
             chord - point.z
         };
         let mut sag = 0.0_f64;
@@ -166,7 +223,11 @@ impl Shape {
             sag = sag.max(below(piece.point(0.0)));
             if let Kind::Flight(flight) = piece.kind {
                 // lowest where the tension is parallel to the chord
-                let vertical = if span > 0.0 { flight.horizontal * (rise / span) } else { 0.0 };
+                let vertical = if span > 0.0 {
+                    flight.horizontal * (rise / span)
+                } else {
+                    0.0
+                };
                 if let Some(length) = flight.where_vertical_is(vertical) {
                     sag = sag.max(below(piece.point(length)));
                 }

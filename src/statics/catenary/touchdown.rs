@@ -12,8 +12,9 @@
 //! the sum over the one flight (A on the bed) or the two (A above it). The left falls with H, the right rises: one root.
 //! Friction lowers the tension on the bed by μw per metre towards A, not below 0, which enters the integral on the right.
 //! At H = 0 the flights hang vertically; if there is line left over even then, it is slack.
-//! Source: the same equilibrium as Jonkman (2007), NREL/TP-500-41958, section 2.6.2; this form is derived here. Valid for w > 0 and,
-//! with friction, for A on the bed.
+//! Every term is positive and computed without cancellation, and the logarithm of the ratio of the two sides is nearly linear in
+//! ln H, so Newton's method needs four or five steps. Derived here (module above, "The bed"). Valid for w > 0 and, with
+//! friction, for A on the bed.
 
 use super::root;
 use super::uniform::{Held, Uniform, sinh_less};
@@ -49,14 +50,25 @@ struct Lift {
 impl Uniform {
     fn lift(&self, h: f64, height: f64) -> Lift {
         if height <= 0.0 {
-            return Lift { vertical: 0.0, excess: 0.0, vertical_slope: 0.0, excess_slope: 0.0 };
+            return Lift {
+                vertical: 0.0,
+                excess: 0.0,
+                vertical_slope: 0.0,
+                excess_slope: 0.0,
+            };
         }
         let (w, ea) = (self.weight, self.axial_stiffness);
         let wd = w * height;
         let (hs, cs) = (h / ea, (wd + h) / ea);
-        let vertical = (2.0 * wd * (wd + 2.0 * h) / (1.0 + cs + (1.0 + 2.0 * cs + hs * hs).sqrt())).sqrt();
+        let vertical =
+            (2.0 * wd * (wd + 2.0 * h) / (1.0 + cs + (1.0 + 2.0 * cs + hs * hs).sqrt())).sqrt();
         if h == 0.0 {
-            return Lift { vertical, excess: vertical / w, vertical_slope: 0.0, excess_slope: 0.0 };
+            return Lift {
+                vertical,
+                excess: vertical / w,
+                vertical_slope: 0.0,
+                excess_slope: 0.0,
+            };
         }
         let tension = (h * h + vertical * vertical).sqrt();
         let beta = (vertical / h).asinh();
@@ -64,7 +76,11 @@ impl Uniform {
         let rest = sine * vertical / (tension + h); // 1 − H/T
         let vertical_slope = rest / (sine + vertical / ea);
         // tanh β − β, by its series where the difference would lose digits
-        let bend = if beta < 0.05 { -beta * beta * beta / 3.0 * (1.0 - 0.4 * beta * beta) } else { sine - beta };
+        let bend = if beta < 0.05 {
+            -beta * beta * beta / 3.0 * (1.0 - 0.4 * beta * beta)
+        } else {
+            sine - beta
+        };
         Lift {
             vertical,
             excess: h / w * sinh_less(beta),
@@ -76,7 +92,10 @@ impl Uniform {
     /// End forces of the line, which is known to touch the bed.
     pub fn touch_down(&self, at: &Touchdown) -> Held {
         let (l, w, ea) = (self.length, self.weight, self.axial_stiffness);
-        let hanging = (self.lift(0.0, at.height_a).vertical, self.lift(0.0, at.height_b).vertical);
+        let hanging = (
+            self.lift(0.0, at.height_a).vertical,
+            self.lift(0.0, at.height_b).vertical,
+        );
         let longer = at.span - l; // negative: line to spare
         if longer + (hanging.0 + hanging.1) / w <= 0.0 {
             return Held {
@@ -84,6 +103,7 @@ impl Uniform {
                 horizontal_b: 0.0,
                 vertical_a: -hanging.0,
                 vertical_b: hanging.1,
+                friction: at.friction,
                 steps: 1,
             };
         }
@@ -97,16 +117,23 @@ impl Uniform {
         };
         let knee = 0.1 * w * at.height_a.max(at.height_b);
         let lowest = HORIZONTAL_SHARE_MIN * w * l;
-        let root = root::increasing_positive(balance, self.guess(at), (lowest, f64::INFINITY), |h| h < knee);
+        let root =
+            root::increasing_positive(balance, self.guess(at), (lowest, f64::INFINITY), |h| {
+                h < knee
+            });
         let h = root.at;
         let (a, b) = (self.lift(h, at.height_a), self.lift(h, at.height_b));
         let laid = (l - (a.vertical + b.vertical) / w).max(0.0);
-        debug_assert!(ea > 0.0 && h.is_finite(), "touchdown found no horizontal tension");
+        debug_assert!(
+            ea > 0.0 && h.is_finite(),
+            "touchdown found no horizontal tension"
+        );
         Held {
             horizontal_a: (h - at.friction * w * laid).max(0.0),
             horizontal_b: h,
             vertical_a: -a.vertical,
             vertical_b: b.vertical,
+            friction: at.friction,
             steps: root.steps,
         }
     }
@@ -122,12 +149,18 @@ impl Uniform {
         let laid = l - flown;
         let fall = friction * w; // tension lost per metre
         let (area, area_slope) = if fall * laid < h {
-            (h * laid - 0.5 * fall * laid * laid, laid - (h - fall * laid) * flown_slope)
+            (
+                h * laid - 0.5 * fall * laid * laid,
+                laid - (h - fall * laid) * flown_slope,
+            )
         } else {
             (0.5 * h * h / fall, h / fall)
         };
         debug_assert!(a.vertical == 0.0, "with friction A lies on the bed");
-        ((h * flown + area) / ea, (flown + h * flown_slope + area_slope) / ea)
+        (
+            (h * flown + area) / ea,
+            (flown + h * flown_slope + area_slope) / ea,
+        )
     }
 
     /// Horizontal tension from the leading terms: parabola E = (2D)^1.5 √w/(6√H) against slack or stretch.
@@ -137,7 +170,78 @@ impl Uniform {
         let bow = 8.0_f64.sqrt() * heights * w.sqrt() / 6.0; // E = bow/√H
         let elastic = (bow * ea / l).powf(2.0 / 3.0);
         let longer = at.span - l;
-        let guess = if longer > 0.0 { elastic.max(ea * longer / l) } else { elastic.min((bow / longer).powi(2)) };
-        guess.max(1e-3 * w * at.height_a.max(at.height_b)).max(f64::MIN_POSITIVE)
+        let guess = if longer > 0.0 {
+            elastic.max(ea * longer / l)
+        } else {
+            elastic.min((bow / longer).powi(2))
+        };
+        guess
+            .max(1e-3 * w * at.height_a.max(at.height_b))
+            .max(f64::MIN_POSITIVE)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Touchdown, Uniform};
+
+    const LINE: Uniform = Uniform {
+        length: 100.0,
+        weight: 50.0,
+        axial_stiffness: 2e4,
+    };
+
+    #[test]
+    fn a_lift_meets_the_equation_it_was_solved_from() {
+        for h in [1e-6, 3.0, 700.0, 1e6] {
+            let lift = LINE.lift(h, 12.0);
+            let tension = h.hypot(lift.vertical);
+            let rise =
+                lift.vertical * lift.vertical / (tension + h) + lift.vertical * lift.vertical / 4e4;
+            assert!((rise - 600.0).abs() < 1e-10, "{h}: {rise}");
+        }
+    }
+
+    #[test]
+    fn the_slopes_of_a_lift_and_of_the_stretch_are_their_central_differences() {
+        for h in [3.0, 700.0, 2e4, 1e6] {
+            let step = 1e-5 * h;
+            let (up, down, here) = (
+                LINE.lift(h + step, 12.0),
+                LINE.lift(h - step, 12.0),
+                LINE.lift(h, 12.0),
+            );
+            let central = |up: f64, down: f64| (up - down) / (2.0 * step);
+            let close = |slope: f64, central: f64| (slope / central - 1.0).abs() < 1e-5;
+            assert!(
+                close(here.vertical_slope, central(up.vertical, down.vertical)),
+                "{h}"
+            );
+            assert!(
+                close(here.excess_slope, central(up.excess, down.excess)),
+                "{h}"
+            );
+            let ground = LINE.lift(h, 0.0);
+            for friction in [0.0, 0.4, 9.0] {
+                let (high, _) = LINE.stretch(h + step, &ground, &up, friction);
+                let (low, _) = LINE.stretch(h - step, &ground, &down, friction);
+                let (_, slope) = LINE.stretch(h, &ground, &here, friction);
+                assert!(close(slope, central(high, low)), "{h} {friction}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_line_pulled_straight_along_the_bed_stretches_as_a_bar() {
+        let at = Touchdown {
+            span: 101.0,
+            height_a: 0.0,
+            height_b: 0.0,
+            friction: 0.0,
+        };
+        let held = LINE.touch_down(&at);
+        assert!((held.horizontal_b - 200.0).abs() < 1e-10);
+        let slack = LINE.touch_down(&Touchdown { span: 99.0, ..at });
+        assert_eq!(slack.horizontal_b, 0.0);
     }
 }
