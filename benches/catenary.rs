@@ -6,18 +6,14 @@ fn main() {
     divan::main();
 }
 
-const CHAIN: Section = Section {
-    length: 902.2,
-    weight: 698.094,
-    axial_stiffness: 384.243e6,
-};
+/// Height of end B over end A [m].
+const RISE: f64 = 250.0;
 
-/// A class of line: its name, sections, span [m], rise [m], bed.
+/// A class of line: its name, sections, span [m], bed.
 struct Case {
     name: &'static str,
     sections: Vec<Section>,
     span: f64,
-    rise: f64,
     bed: Option<Bed>,
 }
 
@@ -27,127 +23,62 @@ impl std::fmt::Display for Case {
     }
 }
 
+/// Sections from their length [m], weight [N/m] and axial stiffness [N].
+fn sections(rows: &[[f64; 3]]) -> Vec<Section> {
+    let section = |&[length, weight, axial_stiffness]: &[f64; 3]| Section {
+        length,
+        weight,
+        axial_stiffness,
+    };
+    rows.iter().map(section).collect()
+}
+
+fn bed(height: f64, friction: f64) -> Option<Bed> {
+    Some(Bed { height, friction })
+}
+
 fn cases() -> Vec<Case> {
-    let on_bed = |friction| {
-        Some(Bed {
-            height: 0.0,
-            friction,
-        })
+    const EA: f64 = 384.243e6; // [N]
+    let of = |name, rows: &[[f64; 3]], span, bed| Case {
+        name,
+        sections: sections(rows),
+        span,
+        bed,
     };
-    let one = |name, weight, axial_stiffness, span, bed| {
-        let sections = vec![Section {
-            weight,
-            axial_stiffness,
-            ..CHAIN
-        }];
-        Case {
-            name,
-            sections,
-            span,
-            rise: 250.0,
-            bed,
-        }
-    };
-    let three = vec![
-        Section {
-            length: 400.0,
-            weight: 1500.0,
-            axial_stiffness: 6e8,
-        },
-        Section {
-            length: 400.0,
-            weight: 90.0,
-            axial_stiffness: 4e7,
-        },
-        Section {
-            length: 102.2,
-            weight: 1500.0,
-            axial_stiffness: 6e8,
-        },
+    let chain = [[902.2, 698.094, EA]];
+    let stiff = [[902.2, 698.094, 1e13]];
+    let light = [[902.2, 1e-11, EA]];
+    let buoyant = [[902.2, -100.0, EA]];
+    let three = [
+        [400.0, 1500.0, 6e8],
+        [400.0, 90.0, 4e7],
+        [102.2, 1500.0, 6e8],
     ];
-    let wave = vec![
-        Section {
-            length: 400.0,
-            weight: 300.0,
-            axial_stiffness: 6e8,
-        },
-        Section {
-            length: 200.0,
-            weight: -250.0,
-            axial_stiffness: 6e8,
-        },
-        Section {
-            length: 302.2,
-            weight: 300.0,
-            axial_stiffness: 6e8,
-        },
+    let wave = [
+        [400.0, 300.0, 6e8],
+        [200.0, -250.0, 6e8],
+        [302.2, 300.0, 6e8],
     ];
     vec![
-        one("suspended", 698.094, 384.243e6, 800.0, None),
-        one("touchdown", 698.094, 384.243e6, 848.67, on_bed(0.0)),
-        one(
-            "touchdown_friction",
-            698.094,
-            384.243e6,
-            848.67,
-            on_bed(0.5),
-        ),
-        one("slack", 698.094, 384.243e6, 500.0, on_bed(0.0)),
-        one("over_stretched", 698.094, 384.243e6, 900.0, None),
-        one("stiff", 698.094, 1e13, 800.0, None),
-        one("light", 1e-11, 384.243e6, 800.0, None),
-        one("buoyant", -100.0, 384.243e6, 800.0, on_bed(0.0)),
-        one(
-            "bed_below",
-            698.094,
-            384.243e6,
-            700.0,
-            Some(Bed {
-                height: -60.0,
-                friction: 0.0,
-            }),
-        ),
-        one(
-            "bed_below_friction",
-            698.094,
-            384.243e6,
-            700.0,
-            Some(Bed {
-                height: -60.0,
-                friction: 0.5,
-            }),
-        ),
-        Case {
-            name: "sections_suspended",
-            sections: three.clone(),
-            span: 820.0,
-            rise: 250.0,
-            bed: None,
-        },
-        Case {
-            name: "sections_touchdown",
-            sections: three,
-            span: 855.0,
-            rise: 250.0,
-            bed: on_bed(0.5),
-        },
-        Case {
-            name: "lazy_wave",
-            sections: wave,
-            span: 700.0,
-            rise: 250.0,
-            bed: on_bed(0.0),
-        },
+        of("suspended", &chain, 800.0, None),
+        of("touchdown", &chain, 848.67, bed(0.0, 0.0)),
+        of("touchdown_friction", &chain, 848.67, bed(0.0, 0.5)),
+        of("slack", &chain, 500.0, bed(0.0, 0.0)),
+        of("over_stretched", &chain, 900.0, None),
+        of("stiff", &stiff, 800.0, None),
+        of("light", &light, 800.0, None),
+        of("buoyant", &buoyant, 800.0, bed(0.0, 0.0)),
+        of("bed_below", &chain, 700.0, bed(-60.0, 0.0)),
+        of("bed_below_friction", &chain, 700.0, bed(-60.0, 0.5)),
+        of("sections_suspended", &three, 820.0, None),
+        of("sections_touchdown", &three, 855.0, bed(0.0, 0.5)),
+        of("lazy_wave", &wave, 700.0, bed(0.0, 0.0)),
     ]
 }
 
 #[divan::bench(args = cases())]
 fn one_solve(case: &Case) -> f64 {
-    let line = solve(
-        divan::black_box(&case.sections),
-        case.span,
-        case.rise,
-        case.bed,
-    );
+    let sections = divan::black_box(&case.sections);
+    let line = solve(sections, case.span, RISE, case.bed);
     line.expect("the case is a line").horizontal()
 }

@@ -9,7 +9,12 @@ fn main() {
         "{:<16} {:<15} {:>5} {:>10} {:>14} {:>12} {:>10}",
         "scene", "integrator", "n", "steps/s", "ns/node/step", "s/s", "real-time"
     );
-    for name in ["oc3_catenary", "oc4_chain", "taut_polyester", "lindahl_fast"] {
+    for name in [
+        "oc3_catenary",
+        "oc4_chain",
+        "taut_polyester",
+        "lindahl_fast",
+    ] {
         for integrator in [Integrator::Leapfrog, Integrator::AxialImplicit] {
             for elements in [20, 40, 80, 160] {
                 let mut scene = common::scene(name);

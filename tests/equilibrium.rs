@@ -430,7 +430,7 @@ fn random_line(seed: &mut u64, class: usize) -> Model {
     let contact = if u() < 0.5 { "regularised" } else { "as_given" };
     let depth = -z.min(0.0) + if u() < 0.5 { 0.0 } else { 0.2 * length * u() };
     let mut text = String::new();
-    if class % 2 == 0 {
+    if class.is_multiple_of(2) {
         text += &format!("[seabed]\ndepth = {depth:e}\ncontact = \"{contact}\"\n");
     }
     text += &format!(
@@ -474,7 +474,7 @@ fn random_network(seed: &mut u64, class: usize) -> Model {
     let middle: Vector3<f64> = corners.iter().sum::<Vector3<f64>>() / corners.len() as f64;
     let joint = middle + Vector3::from_fn(|_, _| 0.3 * scale * (u() - 0.5));
     let load = if u() < 0.5 { 0.0 } else { weight * scale * u() };
-    let axes = if class % 7 == 0 {
+    let axes = if class.is_multiple_of(7) {
         "free = [\"x\", \"y\"]"
     } else {
         ""

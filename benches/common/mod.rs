@@ -1,4 +1,5 @@
 //! Timing of fixed steps from a saved state: the least of many repetitions, which noise cannot lower.
+#![allow(dead_code)] // each bench uses a part
 
 use std::time::Instant;
 
@@ -50,7 +51,12 @@ pub fn measure(scene: &Scene) -> Cost {
         }
         best = best.min(clock.elapsed().as_secs_f64());
     }
-    let nodes: usize = simulation.model().lines.iter().map(|line| line.segment_count() + 1).sum();
+    let nodes: usize = simulation
+        .model()
+        .lines
+        .iter()
+        .map(|line| line.segment_count() + 1)
+        .sum();
     Cost {
         node_step: 1e9 * best / (nodes * substeps) as f64,
         second: best / SPAN,

@@ -67,13 +67,21 @@ impl Lanes {
     /// `yes` where x > 0, else `no`.
     #[inline(always)]
     pub fn choose(self, yes: Lanes, no: Lanes) -> Lanes {
-        Lanes(from_fn(|i| if self.0[i] > 0.0 { yes.0[i] } else { no.0[i] }))
+        Lanes(from_fn(
+            |i| if self.0[i] > 0.0 { yes.0[i] } else { no.0[i] },
+        ))
     }
 
     /// The greater of two, lane by lane.
     #[inline(always)]
     pub fn max(self, other: Lanes) -> Lanes {
-        Lanes(from_fn(|i| if self.0[i] > other.0[i] { self.0[i] } else { other.0[i] }))
+        Lanes(from_fn(|i| {
+            if self.0[i] > other.0[i] {
+                self.0[i]
+            } else {
+                other.0[i]
+            }
+        }))
     }
 
     /// Whether any lane is > 0.

@@ -138,7 +138,7 @@ fn line_law(scene: &Scene, line_type: &LineType) -> LineLaw {
         .as_ref()
         .zip(line_type.diameter)
         .and_then(|(bed, diameter)| {
-            (bed.stiffness > 0.0).then(|| ContactCoefficients {
+            (bed.stiffness > 0.0).then_some(ContactCoefficients {
                 stiffness: bed.stiffness * diameter,
                 damping: bed.damping * diameter,
             })
