@@ -210,18 +210,18 @@ impl AxialWork {
         self.prepare_segments(step);
         self.prepare_nodes(step);
         self.prepare_ends(step, ends);
-        let (mut passes, mut greatest) = (0, 0.0);
+        let mut passes = 0;
         loop {
             passes += 1;
             self.assemble_rows(step);
-            greatest = self.rows.solve(self.layout.segment_count);
+            let greatest = self.rows.solve(self.layout.segment_count);
+            self.tension_peak = self.tension_peak.max(greatest);
             let bed_holds = self.find_velocities(step);
             let slack_holds = self.check_segments(step, greatest);
             if bed_holds && slack_holds || passes == PASSES_MAX {
                 break;
             }
         }
-        self.tension_peak = self.tension_peak.max(greatest);
         self.book(step);
         std::mem::swap(&mut self.layout.velocity, &mut self.layout.velocity_before);
         self.layout.drift(step.drift);
