@@ -94,7 +94,8 @@ pub struct Seabed {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ContactLaw {
-    /// Softened together so that a resting line sinks in by a small part of its segment length.
+    /// Softened together until a resting node compresses its spring by a small part of its segment length; the spring begins
+    /// that much above the bed, so that the node lies on it.
     #[default]
     Regularised,
     /// Exactly the given coefficients.

@@ -88,7 +88,7 @@ impl Scene {
         };
         let law = match seabed.contact {
             ContactLaw::Regularised => {
-                "softened together so that a resting line sinks in by a small part of its segment length"
+                "softened together to suit the mesh; a resting line lies on the bed"
             }
             ContactLaw::AsGiven => "exactly as given",
         };
