@@ -570,6 +570,7 @@ mod tests {
         axial_stiffness = 1.0e6
         [line_types.wire]
         weight = 3.0
+        diameter = 0.02
         axial_stiffness = 1.0e7
         damping_ratio = 0.1
         [[points]]
@@ -663,6 +664,7 @@ mod tests {
                 "right.z",
                 "wire.axial_stiffness",
                 "wire.weight",
+                "wire.diameter",
                 "span.length",
                 "seabed.depth"
             ]

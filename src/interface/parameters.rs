@@ -1,6 +1,6 @@
 //! The parameters of a scene: what a host may change before the simulation starts.
 
-use super::{Binding, Causality, Kind, Unit, Variability, Variable, row};
+use super::{Binding, Causality, Kind, Unit, Variable, row};
 use crate::scene::{LineType, Reconstruction, Scene};
 
 /// A parameter of the scene.
@@ -218,89 +218,114 @@ impl Parameter {
 
 /// Rows of all parameters that the scene gives.
 pub(super) fn variables(scene: &Scene) -> Vec<Variable> {
-    let mut rows = Vec::new();
-    let mut push = |name: String, description: String, unit: Unit, parameter: Parameter| {
-        if let Some(start) = parameter.value(scene) {
-            let mut variable = row(
-                name,
-                description,
-                Causality::Parameter,
-                unit,
-                Binding::Parameter(parameter),
-            );
-            variable.start = Some(start);
-            rows.push(variable);
-        }
+    let mut rows = Rows {
+        scene,
+        variables: Vec::new(),
     };
-    for name in scene.line_types.keys() {
-        for (property, key, unit, meaning) in PROPERTIES {
-            let parameter = Parameter::LineType {
-                name: name.clone(),
-                property,
-            };
-            push(
-                format!("{name}.{key}"),
-                format!("{name}: {meaning}"),
-                unit,
-                parameter,
-            );
+    rows.push_line_types();
+    rows.push_lengths();
+    rows.push_globals();
+    rows.variables
+}
+
+/// Rows in the making.
+struct Rows<'a> {
+    scene: &'a Scene,
+    variables: Vec<Variable>,
+}
+
+impl Rows<'_> {
+    /// Adds a row if the scene has the parameter.
+    fn push(&mut self, name: String, description: String, unit: Unit, parameter: Parameter) {
+        let Some(start) = parameter.value(self.scene) else {
+            return;
+        };
+        let kind = match parameter {
+            Parameter::InputReconstruction => Kind::Int32,
+            _ => Kind::Float64,
+        };
+        let binding = Binding::Parameter(parameter);
+        let mut variable = row(name, description, Causality::Parameter, unit, binding);
+        variable.kind = kind;
+        variable.start = Some(start);
+        self.variables.push(variable);
+    }
+
+    fn push_line_types(&mut self) {
+        for name in self.scene.line_types.keys() {
+            for (property, key, unit, meaning) in PROPERTIES {
+                let parameter = Parameter::LineType {
+                    name: name.clone(),
+                    property,
+                };
+                self.push(
+                    format!("{name}.{key}"),
+                    format!("{name}: {meaning}"),
+                    unit,
+                    parameter,
+                );
+            }
         }
     }
-    for (index, line) in scene.lines.iter().enumerate() {
-        for section in 0..line.sections.len() {
-            let (key, part) = if line.sections.len() == 1 {
-                ("length".to_string(), String::new())
-            } else {
+
+    fn push_lengths(&mut self) {
+        for (line, described) in self.scene.lines.iter().enumerate() {
+            let name = &described.name;
+            for section in 0..described.sections.len() {
                 let number = section + 1;
-                (
-                    format!("section{number}.length"),
-                    format!(" of section {number}, counted from end A"),
-                )
-            };
-            push(
-                format!("{}.{key}", line.name),
-                format!("{}: unstretched length{part}", line.name),
-                Unit::METRE,
-                Parameter::SectionLength {
-                    line: index,
-                    section,
-                },
-            );
+                let (key, part) = if described.sections.len() == 1 {
+                    ("length".to_string(), String::new())
+                } else {
+                    (
+                        format!("section{number}.length"),
+                        format!(" of section {number}, counted from end A"),
+                    )
+                };
+                self.push(
+                    format!("{name}.{key}"),
+                    format!("{name}: unstretched length{part}"),
+                    Unit::METRE,
+                    Parameter::SectionLength { line, section },
+                );
+            }
         }
     }
-    push(
-        "water.density".into(),
-        "density of the water".into(),
-        Unit::KILOGRAM_PER_CUBIC_METRE,
-        Parameter::WaterDensity,
-    );
-    push(
-        "seabed.depth".into(),
-        "depth of the seabed below z = 0".into(),
-        Unit::METRE,
-        Parameter::SeabedDepth,
-    );
-    push(
-        "gravity".into(),
-        "gravitational acceleration".into(),
-        Unit::METRE_PER_SECOND_SQUARED,
-        Parameter::Gravity,
-    );
-    push(
-        "solver.tolerance".into(),
-        "target error of fairlead tension; sets the number of elements where the scene leaves it open".into(),
-        Unit::ONE,
-        Parameter::Tolerance,
-    );
-    push(
-        "solver.input_reconstruction".into(),
-        "path of a coupled point between communication points: 0 smooth, 1 constant velocity with a jump".into(),
-        Unit::ONE,
-        Parameter::InputReconstruction,
-    );
-    if let Some(last) = rows.last_mut() {
-        last.kind = Kind::Int32;
-        last.variability = Variability::Fixed;
+
+    fn push_globals(&mut self) {
+        let rows = [
+            (
+                "water.density",
+                "density of the water",
+                Unit::KILOGRAM_PER_CUBIC_METRE,
+                Parameter::WaterDensity,
+            ),
+            (
+                "seabed.depth",
+                "depth of the seabed below z = 0",
+                Unit::METRE,
+                Parameter::SeabedDepth,
+            ),
+            (
+                "gravity",
+                "gravitational acceleration",
+                Unit::METRE_PER_SECOND_SQUARED,
+                Parameter::Gravity,
+            ),
+            (
+                "solver.tolerance",
+                "target error of fairlead tension; sets the number of elements where the scene leaves it open",
+                Unit::ONE,
+                Parameter::Tolerance,
+            ),
+            (
+                "solver.input_reconstruction",
+                "path of a coupled point between communication points: 0 smooth, 1 constant velocity with a jump",
+                Unit::ONE,
+                Parameter::InputReconstruction,
+            ),
+        ];
+        for (name, description, unit, parameter) in rows {
+            self.push(name.to_string(), description.to_string(), unit, parameter);
+        }
     }
-    rows
 }

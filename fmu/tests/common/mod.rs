@@ -1,6 +1,7 @@
 //! A small scene, packaged with the library that this test run built.
 
 use std::path::{Path, PathBuf};
+use std::process::Command;
 use std::sync::OnceLock;
 
 use moorline::output::package;
@@ -33,23 +34,61 @@ to = "fairlead"
 sections = [{ type = "chain", length = 835.35, elements = 20 }]
 "#;
 
+/// Builds the library as it is now, with the profile of this test, and returns a copy that later builds leave alone.
+/// Cargo by itself does not: nothing links to a library for C.
+fn build_library(features: &[&str]) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(env!("CARGO_CRATE_NAME"));
+    std::fs::create_dir_all(&folder).unwrap();
+    run_cargo(features);
+    let built = package::find_library().unwrap();
+    let copy = folder.join(built.file_name().unwrap());
+    std::fs::copy(&built, &copy).unwrap();
+    if !features.is_empty() {
+        run_cargo(&[]); // leaves the plain library where users look for it
+    }
+    copy
+}
+
+fn run_cargo(features: &[&str]) {
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    // target/PROFILE/deps/TEST
+    let program = std::env::current_exe().unwrap();
+    let target = program.ancestors().nth(3).unwrap();
+    let profile = if cfg!(debug_assertions) {
+        "test"
+    } else {
+        "release"
+    };
+    let done = Command::new(cargo)
+        .args(["build", "--package", "moorline-fmu", "--lib"])
+        .args(["--profile", profile, "--target-dir"])
+        .arg(target)
+        .args(features.iter().flat_map(|feature| ["--features", feature]))
+        .output()
+        .unwrap();
+    assert!(
+        done.status.success(),
+        "{}",
+        String::from_utf8_lossy(&done.stderr)
+    );
+}
+
 /// The packaged scene, written once for each test program and version.
-fn package(version: FmiVersion) -> &'static Path {
+fn package(version: FmiVersion, features: &[&str]) -> &'static Path {
+    static LIBRARY: OnceLock<PathBuf> = OnceLock::new();
     static PACKAGED: [OnceLock<PathBuf>; 2] = [OnceLock::new(), OnceLock::new()];
+    let library = LIBRARY.get_or_init(|| build_library(features));
     PACKAGED[version as usize].get_or_init(|| {
-        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(env!("CARGO_CRATE_NAME"));
-        std::fs::create_dir_all(&folder).unwrap();
-        let scene = folder.join(format!("scene{version}.toml"));
-        let fmu = folder.join(format!("line{version}.fmu"));
+        let scene = library.with_file_name(format!("scene{version}.toml"));
+        let fmu = library.with_file_name(format!("line{version}.fmu"));
         std::fs::write(&scene, SCENE).unwrap();
         let loaded = moorline::scene::load(&scene).unwrap();
-        let library = package::find_library().unwrap();
-        package::write_fmu(&loaded, version, &library, &fmu).unwrap();
+        package::write_fmu(&loaded, version, library, &fmu).unwrap();
         fmu
     })
 }
 
-/// Packages and opens the scene.
-pub fn open(version: FmiVersion) -> Fmu {
-    Fmu::open(package(version)).unwrap()
+/// Packages the scene with a library that is built with the given features, and opens it.
+pub fn open(version: FmiVersion, features: &[&str]) -> Fmu {
+    Fmu::open(package(version, features)).unwrap()
 }
