@@ -18,7 +18,7 @@ fn taut_string(n: usize) -> Scene {
     scene(&format!(
         r#"
         gravity = 0.0
-        line_types.string = {{ mass = 5.0, axial_stiffness = 1e7 }}
+        line_types.string = {{ mass = 5.0, axial_stiffness = 1e7, axial_damping = 0.0 }}
         points = [
           {{ name = "left", position = [0.0, 0.0, 0.0], kind = "fixed" }},
           {{ name = "right", position = [100.0, 0.0, 0.0], kind = "fixed" }},
@@ -184,7 +184,7 @@ fn loaded_bar(n: usize) -> Scene {
     let scene = scene(&format!(
         r#"
         gravity = 0.0
-        line_types.bar = {{ mass = {BAR_MASS}, axial_stiffness = {BAR_EA} }}
+        line_types.bar = {{ mass = {BAR_MASS}, axial_stiffness = {BAR_EA}, axial_damping = 0.0 }}
         points = [
           {{ name = "wall", position = [0.0, 0.0, 0.0], kind = "fixed" }},
           {{ name = "tip", position = [{tip}, 0.0, 0.0], kind = "free", free = ["x"], force = {{ x = {total} }} }},
@@ -302,7 +302,7 @@ fn bessel_zero(k: usize) -> f64 {
 fn hanging_chain(n: usize, tip_mass: f64) -> Scene {
     scene(&format!(
         r#"
-        line_types.chain = {{ mass = 2.0, axial_stiffness = 1e9 }}
+        line_types.chain = {{ mass = 2.0, axial_stiffness = 1e9, axial_damping = 0.0 }}
         points = [
           {{ name = "top", position = [0.0, 0.0, 0.0], kind = "fixed" }},
           {{ name = "tip", position = [0.0, 0.0, -10.0], kind = "free", mass = {tip_mass} }},
@@ -590,7 +590,7 @@ fn whirl(omega: f64, n: usize) -> [f64; 2] {
     let scene = scene(&format!(
         r#"
         gravity = 0.0
-        line_types.string = {{ mass = 1.0, axial_stiffness = 1e4 }}
+        line_types.string = {{ mass = 1.0, axial_stiffness = 1e4, axial_damping = 0.0 }}
         points = [
           {{ name = "hub", position = [0.0, 0.0, 0.0], kind = "fixed" }},
           {{ name = "tip", position = [{}, 0.0, 0.0], kind = "free" }},

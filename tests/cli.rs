@@ -245,7 +245,7 @@ fn a_run_that_blows_up_is_a_computation_that_failed_and_leaves_no_results() {
     let wild = SCENE.replace("[[0.05, 2.0]], ramp = 1.0", "[[1.0e7, 0.02]]");
     let wild = wild.replace("duration = 1.0", "duration = 60.0");
     fs::write(folder.path().join("wild.toml"), wild).unwrap();
-    let parts = ["error: at t = ", " s, line", "try"];
+    let parts = ["error: t = ", " s, line", "try"];
     refused(folder.path(), &["run", "wild.toml", "-o", "r"], 1, &parts);
     assert_eq!(names(folder.path()), ["scene.toml", "wild.toml"]);
 }

@@ -34,7 +34,7 @@ fn undamped(integrator: Integrator, n: usize, step: f64) -> Scene {
         step,
     );
     for line_type in scene.line_types.values_mut() {
-        line_type.axial_damping = None;
+        line_type.axial_damping = Some(0.0);
     }
     if integrator == Integrator::GeneralisedAlpha {
         scene.solver.spectral_radius = Some(0.5); // less dissipation than the default: order two from coarser steps on

@@ -397,7 +397,7 @@ const LINE_TYPES: &[Refusal] = &[
     (
         "mass = 100.0",
         "mass = -100.0",
-        "11:8: line_types.chain.mass: -100 kg/m is not positive",
+        "11:8: line_types.chain.mass: -100 kg/m is negative",
     ),
     (
         "mass = 100.0",
@@ -972,7 +972,7 @@ fn all_mistakes_are_listed_in_the_order_of_the_file() {
         .replace("depth = 50.0", "depth = -50.0")
         .replace("to = \"buoy\"", "to = \"bouy\"")
         .replace("interval = 0.1", "interval = 0.0")
-        .replace("mass = 100.0", "mass = 0.0");
+        .replace("mass = 100.0", "mass = -1.0");
     fs::write(&path, &text).unwrap();
     let error = load(&path).unwrap_err();
     let list = error.list();

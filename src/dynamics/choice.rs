@@ -53,13 +53,15 @@ impl Choice {
             .max(AXIAL_RESOLUTION_MIN * transverse_limit)
             .min(transverse_limit);
         let longest = model.solver.time_step_max;
-        let integrator = match model.solver.integrator {
+        let asked = model.solver.integrator;
+        let integrator = match asked {
             Integrator::Auto => choose(model, network, explicit_limit, accurate.min(longest)),
             chosen => chosen,
         };
         let step_max = match integrator {
             Integrator::Leapfrog => explicit_limit,
-            Integrator::AxialImplicit => accurate,
+            Integrator::AxialImplicit if asked == Integrator::Auto => accurate,
+            Integrator::AxialImplicit => transverse_limit,
             _ => longest,
         };
         Choice { integrator, step_max: step_max.min(longest), explicit_limit, transverse_limit }

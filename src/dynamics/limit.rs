@@ -16,10 +16,6 @@ use crate::model::{End, Line, Model};
 
 /// Part of the closed-form limit that is used [-].
 const SAFETY: f64 = 0.9;
-/// The same for a line with less damping than this ratio [-]: where it slackens, the kink of its tension law feeds the
-/// highest axial modes.
-const SAFETY_UNDAMPED: f64 = 0.5;
-const DAMPED_RATIO: f64 = 0.01;
 /// Steps that resolve the first axial period for 2 % of error in a tension with snaps [-].
 const STEPS_PER_AXIAL_PERIOD: f64 = 70.0;
 /// Strain up to which a stiffening measure is stable [-].
@@ -72,8 +68,7 @@ fn stiffness(line: &Line, i: usize) -> f64 {
 /// Limit for a circular frequency ω [rad/s] and BA/EA [s], with safety.
 fn damped_limit(omega: f64, lag: f64) -> f64 {
     let zeta = 0.5 * omega * lag;
-    let safety = if zeta < DAMPED_RATIO { SAFETY_UNDAMPED } else { SAFETY };
-    safety * 2.0 / omega * ((1.0 + zeta * zeta).sqrt() - zeta)
+    SAFETY * 2.0 / omega * ((1.0 + zeta * zeta).sqrt() - zeta)
 }
 
 /// Step [s] that resolves the first axial period 4L/c for a target error of tension [-].

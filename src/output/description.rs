@@ -532,7 +532,8 @@ mod tests {
 
     #[test]
     fn a_title_with_control_characters_stays_legal_xml() {
-        let scene = Scene::from_toml("title = \"a\\u0001<b>\"").unwrap();
+        let mut scene = Scene::from_toml(include_str!("../../scenes/demo.toml")).unwrap();
+        scene.title = "a\u{1}<b>".into();
         assert_eq!(model_name(&scene), "a <b>");
     }
 

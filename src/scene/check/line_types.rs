@@ -18,7 +18,7 @@ pub(super) fn check(scene: &Scene, findings: &mut Findings) {
 fn check_numbers(findings: &mut Findings, at: &str, line_type: &LineType) {
     let coefficient = Bounds::NotNegative(1e3);
     let rows = [
-        ("mass", line_type.mass, Bounds::Positive(1e6), "kg/m"),
+        ("mass", line_type.mass, Bounds::NotNegative(1e6), "kg/m"),
         ("weight", line_type.weight, Bounds::Magnitude(1e8), "N/m"),
         ("diameter", line_type.diameter, Bounds::Positive(100.0), "m"),
         (
