@@ -13,11 +13,11 @@ use crate::dynamics::advance::{Counters, Workspace};
 use crate::dynamics::ledger::Ledger;
 use crate::dynamics::motion::{HostPath, Sample};
 use crate::dynamics::{Choice, StepError, reaction};
-use crate::model::{End, Kinematics, Line, LineState, Model, PointState, Role, State};
+use crate::model::{ClosedForm, End, Kinematics, Line, LineState, Model, PointState, Role, State};
 use crate::physics::stretch::StretchLaw;
-use crate::scene::{Scene, SceneError};
+use crate::scene::{Integrator, Scene, SceneError};
 use crate::statics::catenary::{self, Bed, Catenary};
-use crate::statics::{StaticsError, assembly, equilibrium};
+use crate::statics::{StaticsError, assembly, catenary_network, equilibrium};
 
 /// Why a simulation could not be made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -241,6 +241,9 @@ impl Simulation {
 
     /// Greatest tension along a line [N].
     pub fn tension_max(&self, line: usize) -> f64 {
+        if let Some(closed_form) = self.closed_form(line) {
+            return closed_form.tension.iter().copied().fold(0.0, f64::max);
+        }
         let (model, state) = (&self.model.lines[line], &self.snapshot.state.lines[line]);
         (0..model.segment_count())
             .map(|i| reaction::tension(model, state, i, self.model.solver.negative_tension))
@@ -249,21 +252,28 @@ impl Simulation {
 
     /// Unstretched length that the seabed carries [m].
     pub fn laid_length(&self, line: usize) -> f64 {
-        laid_length(&self.model.lines[line], &self.snapshot.state.lines[line])
+        self.closed_form(line).map_or_else(
+            || laid_length(&self.model.lines[line], &self.snapshot.state.lines[line]),
+            |closed_form| closed_form.laid_length,
+        )
     }
 
     /// Greatest vertical distance below the chord between the ends [m].
     pub fn sag(&self, line: usize) -> f64 {
-        sag(&self.snapshot.state.lines[line].position)
+        let nodes = &self.snapshot.state.lines[line].position;
+        self.closed_form(line).map_or_else(|| sag(nodes), |closed_form| closed_form.sag)
     }
 
     /// Stretched length [m].
     pub fn stretched_length(&self, line: usize) -> f64 {
         let nodes = &self.snapshot.state.lines[line].position;
-        nodes
-            .windows(2)
-            .map(|pair| (pair[1] - pair[0]).norm())
-            .sum()
+        let chords = nodes.windows(2).map(|pair| (pair[1] - pair[0]).norm());
+        self.closed_form(line).map_or_else(|| chords.sum(), |closed_form| closed_form.stretched_length)
+    }
+
+    /// What the closed-form catenary of a quasi-static line says of it now.
+    fn closed_form(&self, line: usize) -> Option<&ClosedForm> {
+        self.snapshot.state.lines[line].closed_form.as_ref()
     }
 
     /// Elastic catenary of the reference configuration, where the line's ends are held and its strain is small or
@@ -274,6 +284,9 @@ impl Simulation {
 
     /// Effective tension at every node [N].
     pub fn tensions(&self, line: usize) -> Vec<f64> {
+        if let Some(closed_form) = self.closed_form(line) {
+            return closed_form.tension.clone();
+        }
         let (model, state) = (&self.model.lines[line], &self.snapshot.state.lines[line]);
         let segment =
             |i: usize| reaction::tension(model, state, i, self.model.solver.negative_tension);
@@ -377,7 +390,8 @@ fn begin(
     Ok((Snapshot { state, inputs, paths, follows_scene, counters, ledger }, work))
 }
 
-/// In static equilibrium, or on the shapes the scene gives.
+/// In static equilibrium, or on the shapes the scene gives. Quasi-static lines start on their catenaries; those that will move
+/// start where their elements are at rest.
 fn at_rest(model: &Model, time: f64, places: &[Vector3<f64>]) -> Result<State, StaticsError> {
     let given = |line: &Line| {
         let [a, b] = line.ends.map(|point| places[point]);
@@ -387,7 +401,11 @@ fn at_rest(model: &Model, time: f64, places: &[Vector3<f64>]) -> Result<State, S
         let points = places.iter().copied().map(PointState::at_rest).collect();
         return Ok(State { time, points, lines: shapes.into_iter().map(LineState::at_rest).collect() });
     }
-    let mut state = equilibrium::solve(model, places, time, &mut assembly::Workspace::new(model))?;
+    let mut work = assembly::Workspace::new(model);
+    let mut state = match model.solver.integrator {
+        Integrator::QuasiStatic => catenary_network::solve(model, places, time, &mut work)?,
+        _ => equilibrium::solve(model, places, time, &mut work)?,
+    };
     for (line, shape) in model.lines.iter().zip(&mut state.lines) {
         if let Some(nodes) = given(line) {
             *shape = LineState::at_rest(nodes);

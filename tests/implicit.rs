@@ -7,7 +7,7 @@ use moorline::dynamics::quasi_static;
 use moorline::model::{Kinematics, Model, State};
 use moorline::scene::Scene;
 use moorline::statics::assembly::{Counters, Workspace};
-use moorline::statics::equilibrium::solve;
+use moorline::statics::equilibrium::{continue_from, solve};
 use nalgebra::Vector3;
 
 fn model(text: &str) -> Model {
@@ -617,8 +617,13 @@ fn slow_motion_is_quasi_static() {
         let span = [50.0 * step as f64, 50.0 * (step + 1) as f64];
         quasi_static::advance(&model, 0, &mut resting, &held, span, &mut work).unwrap();
     }
-    assert!(gap(&moving, &resting) < 1e-3, "{}", gap(&moving, &resting));
     let fairlead = held(1, 1000.0);
+    let mut elements = statics(&model);
+    let places = [model.points[0].reference, fairlead.position];
+    continue_from(&model, &mut elements, &places, 1000.0, &mut work).unwrap();
+    assert!(gap(&moving, &elements) < 1e-3, "{}", gap(&moving, &elements));
+    // quasi-static lines are catenaries, from which elements of 45 m differ by 0.1 m
+    assert!(gap(&moving, &resting) < 0.15, "{}", gap(&moving, &resting));
     assert!(
         (resting.points[1].velocity - fairlead.velocity).norm() < 0.1 * fairlead.velocity.norm()
     );

@@ -25,7 +25,8 @@ const RETRIES_MAX: u32 = 6;
 pub struct Counters {
     /// Internal steps, of the network with the most.
     pub substeps: usize,
-    /// Force evaluations of the explicit leapfrog, linear solves of the other integrators, of all networks.
+    /// Force evaluations of the explicit leapfrog, closed-form catenaries of quasi-static networks that have them, linear solves of
+    /// the other integrators, of all networks.
     pub solves: usize,
 }
 

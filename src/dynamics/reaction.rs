@@ -5,7 +5,7 @@
 //! F = T q − [M(t) a + w ẑ − f_drag − f_bed],
 //!
 //! T q pointing into the line, v and a those of the point. Leaving the half node out would make the end force first order in
-//! the segment length.
+//! the segment length. A line on its closed-form catenary brings the forces of that.
 //!
 //! Source: the node's own equation of motion, as for the interior nodes.
 
@@ -16,8 +16,11 @@ use crate::model::{End, Line, LineState, PointState};
 use crate::physics::morison::{self, DragCoefficients};
 use crate::physics::seabed::{self, ContactCoefficients};
 
-/// Tension of segment `i` [N].
+/// Tension of segment `i` [N]; on a closed-form catenary the mean of its ends'.
 pub fn tension(line: &Line, state: &LineState, i: usize, negative_tension: bool) -> f64 {
+    if let Some(closed_form) = &state.closed_form {
+        return 0.5 * (closed_form.tension[i] + closed_form.tension[i + 1]);
+    }
     let pair = |values: &[Vector3<f64>]| [values[i], values[i + 1]];
     segment_tension(
         line,
@@ -36,6 +39,13 @@ pub fn end_force(
     point: &PointState,
     negative_tension: bool,
 ) -> Vector3<f64> {
+    if let Some(closed_form) = &state.closed_form {
+        let [a, b] = closed_form.end_force;
+        return match end {
+            End::A => a,
+            End::B => b,
+        };
+    }
     let node = line.end_node(end);
     let (segment, other) = match end {
         End::A => (0, 1),

@@ -15,7 +15,7 @@ use crate::physics::stretch::StretchLaw;
 use crate::scene::{InitialShape, PointForce, Solver};
 
 pub use motion::{Kinematics, Motion};
-pub use state::{LineState, PointState, State};
+pub use state::{ClosedForm, LineState, PointState, State};
 
 /// A scene made discrete. Immutable; shared by reference.
 #[derive(Debug, Clone)]

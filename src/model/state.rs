@@ -38,6 +38,24 @@ pub struct LineState {
     pub acceleration: Vec<Vector3<f64>>,
     /// What the leapfrogs remember of the steps before.
     pub half_step: HalfStep,
+    /// The rest of the closed-form catenary that the nodes lie on; kept by quasi-static networks only.
+    pub closed_form: Option<ClosedForm>,
+}
+
+/// What a closed-form catenary says that its nodes do not: their chords are shorter than the arcs between them, which on a stiff line
+/// hides all of the strain.
+#[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ClosedForm {
+    /// Effective tension at every node [N].
+    pub tension: Vec<f64>,
+    /// Forces of the line on the points at ends A and B [N].
+    pub end_force: [Vector3<f64>; 2],
+    /// Unstretched length on the bed [m].
+    pub laid_length: f64,
+    /// Stretched length [m].
+    pub stretched_length: f64,
+    /// Greatest vertical distance below the chord between the ends [m].
+    pub sag: f64,
 }
 
 /// Memory of the leapfrogs. Empty where another integrator runs.
@@ -75,6 +93,7 @@ impl LineState {
             acceleration: zeros,
             position,
             half_step: HalfStep::default(),
+            closed_form: None,
         }
     }
 }
@@ -103,7 +122,15 @@ clone_in_place!(LineState {
     position,
     velocity,
     acceleration,
-    half_step
+    half_step,
+    closed_form
+});
+clone_in_place!(ClosedForm {
+    tension,
+    end_force,
+    laid_length,
+    stretched_length,
+    sag
 });
 clone_in_place!(HalfStep {
     velocity,

@@ -22,6 +22,7 @@ use crate::model::{End, FreePoint, Line, LineState, Model, Network, PointState, 
 use crate::physics::morison::{DragCoefficients, drag, drag_slope};
 use crate::physics::seabed::ContactCoefficients;
 use crate::physics::stretch::total_tension;
+use crate::statics::catenary::Catenary;
 
 /// Scratch of the implicit solvers for a whole model. Nothing in it is read before it is written.
 #[derive(Debug, Clone)]
@@ -32,6 +33,8 @@ pub struct Workspace {
     pub(crate) points: Vec<PointWork>,
     /// Per network of the model.
     pub(crate) systems: Vec<DenseSystem>,
+    /// Per line of the model: its closed form at the last evaluation of a network of catenaries.
+    pub(crate) catenaries: Vec<Option<Catenary>>,
     /// The state before a step of the caller's.
     pub(crate) start: State,
     /// The state before a step.
@@ -49,7 +52,7 @@ pub struct Workspace {
 pub struct Counters {
     /// Time steps or load steps.
     pub steps: usize,
-    /// Linear solves.
+    /// Linear solves; closed-form catenaries where a network is solved with those.
     pub solves: usize,
     /// Steps that were halved.
     pub halvings: usize,
@@ -142,6 +145,7 @@ impl Workspace {
             lines: model.lines.iter().map(line).collect(),
             points,
             systems: model.networks.iter().map(system).collect(),
+            catenaries: vec![None; model.lines.len()],
             start: blank_state(model),
             before: blank_state(model),
             saved: blank_state(model),

@@ -2,6 +2,7 @@
 
 pub mod assembly;
 pub mod catenary;
+pub mod catenary_network;
 pub mod equilibrium;
 mod guess;
 pub mod modes;

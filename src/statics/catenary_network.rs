@@ -1,0 +1,510 @@
+//! Static equilibrium of lines that meet at free points, each line one closed-form elastic catenary.
+//!
+//! Unknowns are the positions of the free points on their free axes, nothing else: what is out of balance at a point is
+//!
+//!   R = Σ F_line + F_load(t) − w ẑ,
+//!
+//! F the end force of a catenary, which lies in the vertical plane through its ends. Newton's method; the stiffness of a line in
+//! free flight is exact ([`stiffness`]), that of a line on the bed a difference quotient of its closed form; across its plane a line
+//! has H/X. Steps are limited, and cut until the power R·δ has not turned: without friction the potential energy is convex
+//! in the positions of the points, so this finds the one equilibrium. A point whose lines can touch the bed rests on it
+//! where it would sink.
+//!
+//! Valid for engineering strain, which the closed form is made for, and where no end lies under the bed. A line's friction on the bed
+//! is that of [`super::catenary`]: towards end A, as hauled at B. Where it leaves no tension at a point on the bed, the point may lie
+//! anywhere in a range, and stays where it was.
+//!
+//! Source: energy and convexity as for cables under gravity, Irvine (1981), Cable Structures, chapter 2; the rest is derived here.
+
+mod stiffness;
+
+use nalgebra::{Matrix2, Matrix3, Vector3};
+
+use super::StaticsError;
+use super::assembly::{Workspace, for_free_points, place_ends};
+use super::catenary::Catenary;
+use super::{equilibrium, guess};
+use crate::model::{ClosedForm, Line, LineState, Model, Network, PointState, State};
+use crate::physics::stretch::StretchLaw;
+
+/// Accepted force out of balance, over the greatest force [-].
+const FORCE_TOLERANCE: f64 = 1e-12;
+/// Linear solves of one equilibrium.
+const NEWTON_SOLVES_MAX: usize = 60;
+/// Cuts of one step.
+const CUTS_MAX: usize = 12;
+/// Longest step, over the longest line [-].
+const STEP_MAX: f64 = 0.2;
+/// Turned power that a step may end with, over the power it started with [-].
+const TURNED_MAX: f64 = 0.5;
+/// Greatest and least stiffness that is added to every unknown, over forces per length of line [-].
+const RELAXATION: [f64; 2] = [1.0, 1e-13];
+/// Displacement of the difference quotients, over the length of the line [-].
+const DIFFERENCE: f64 = 1e-9;
+
+/// Whether every line of a network has a closed form.
+pub fn serves(model: &Model, network: &Network) -> bool {
+    let mut sections = network
+        .lines
+        .iter()
+        .flat_map(|&line| &model.lines[line].sections);
+    sections.all(|section| section.law == StretchLaw::Engineering)
+}
+
+/// As [`equilibrium::solve`], with every network on closed-form catenaries that can be; the others, and those whose free
+/// points find no rest on catenaries, in equilibrium of their elements.
+///
+/// # Errors
+/// No equilibrium was found, or there is none.
+pub fn solve(
+    model: &Model,
+    points: &[Vector3<f64>],
+    t: f64,
+    work: &mut Workspace,
+) -> Result<State, StaticsError> {
+    let blank = |line: &Line| LineState::at_rest(vec![Vector3::zeros(); line.segment_count() + 1]);
+    let mut state = State {
+        time: t,
+        points: points.iter().copied().map(PointState::at_rest).collect(),
+        lines: model.lines.iter().map(blank).collect(),
+    };
+    if (0..model.networks.len()).all(|number| solve_network(model, number, &mut state, t, work)) {
+        return Ok(state);
+    }
+    let mut state = equilibrium::solve(model, points, t, work)?;
+    for number in 0..model.networks.len() {
+        solve_network(model, number, &mut state, t, work);
+    }
+    Ok(state)
+}
+
+/// Moves the free points of a network from where they are in `state` to where they rest at time `t` [s], and puts its lines on
+/// their catenaries. Held points stay where they are. False, and the state as it was, where that is not possible: a line
+/// without a closed form, an end under the bed, or no rest found in a bounded number of steps.
+pub fn solve_network(
+    model: &Model,
+    number: usize,
+    state: &mut State,
+    t: f64,
+    work: &mut Workspace,
+) -> bool {
+    let network = &model.networks[number];
+    if !serves(model, network) {
+        return false;
+    }
+    for &index in &network.free_points {
+        work.saved.points[index] = state.points[index];
+    }
+    let problem = Problem::new(model, number, t);
+    if !problem.newton(state, work) {
+        for &index in &network.free_points {
+            state.points[index] = work.saved.points[index];
+        }
+        return false;
+    }
+    for &index in &network.lines {
+        if let Some(solved) = &work.catenaries[index] {
+            draw(&model.lines[index], solved, state, index);
+        }
+    }
+    place_ends(model, network, state);
+    true
+}
+
+/// Ends of a line in the vertical plane through them.
+struct Plane {
+    /// Horizontal direction from A to B [-].
+    along: Vector3<f64>,
+    /// Horizontal distance [m].
+    span: f64,
+    /// Height of B over A [m].
+    rise: f64,
+}
+
+impl Plane {
+    fn new(a: Vector3<f64>, b: Vector3<f64>) -> Plane {
+        let across = Vector3::new(b.x - a.x, b.y - a.y, 0.0);
+        let span = across.norm();
+        let along = if span > 0.0 {
+            across / span
+        } else {
+            Vector3::x()
+        };
+        Plane {
+            along,
+            span,
+            rise: b.z - a.z,
+        }
+    }
+
+    /// Forces of a line on the points at its ends [N].
+    fn end_forces(&self, solved: &Catenary) -> [Vector3<f64>; 2] {
+        let force = |h: f64, v: f64| h * self.along + v * Vector3::z();
+        let (a, b) = (
+            force(solved.horizontal_a(), solved.vertical_a()),
+            force(solved.horizontal(), solved.vertical_b()),
+        );
+        [a, -b]
+    }
+}
+
+/// Nodes of a line, and what they do not tell, from its catenary; the line is at rest.
+fn draw(line: &Line, solved: &Catenary, state: &mut State, index: usize) {
+    let [a, b] = line.ends.map(|point| state.points[point].position);
+    let plane = Plane::new(a, b);
+    let shape = &mut state.lines[index];
+    let closed_form = shape.closed_form.get_or_insert_with(ClosedForm::default);
+    closed_form.tension.resize(line.nodes.arc.len(), 0.0);
+    let nodes = shape.position.iter_mut().zip(&mut closed_form.tension);
+    for ((r, tension), &s) in nodes.zip(&line.nodes.arc) {
+        let point = solved.at(s);
+        *r = a + point.x * plane.along + point.z * Vector3::z();
+        *tension = point.tension;
+    }
+    let last = closed_form.tension.len() - 1;
+    (closed_form.tension[0], closed_form.tension[last]) = (solved.tension_a(), solved.tension_b());
+    closed_form.end_force = plane.end_forces(solved);
+    closed_form.laid_length = solved.laid_length();
+    closed_form.stretched_length = solved.stretched_length();
+    closed_form.sag = solved.sag();
+    shape.velocity.fill(Vector3::zeros());
+    shape.acceleration.fill(Vector3::zeros());
+}
+
+/// Slopes of the end forces H_A, V_A, H_B, V_B [N/m].
+struct Slopes {
+    by_span: [f64; 4],
+    by_height_a: [f64; 4],
+    by_height_b: [f64; 4],
+}
+
+impl Slopes {
+    /// Of a line that touches nothing.
+    fn in_flight(stiffness: &Matrix2<f64>) -> Slopes {
+        let both = |column: usize| {
+            let [h, v] = [stiffness[(0, column)], stiffness[(1, column)]];
+            [h, v, h, v]
+        };
+        Slopes {
+            by_span: both(0),
+            by_height_a: both(1).map(|slope| -slope),
+            by_height_b: both(1),
+        }
+    }
+
+    /// −∂F/∂r of the forces on A and B by the positions of A and B [N/m]; `pulls` are the horizontal tensions [N].
+    fn stiffness(&self, plane: &Plane, pulls: [f64; 2], length: f64) -> [[Matrix3<f64>; 2]; 2] {
+        let (e, z) = (plane.along, Vector3::z());
+        let sideways = Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, 0.0)) - e * e.transpose();
+        let row = |end: usize| {
+            let vector = |slopes: &[f64; 4]| slopes[2 * end] * e + slopes[2 * end + 1] * z;
+            // H/X tends to the slope where the span vanishes
+            let swing = if plane.span > DIFFERENCE * length {
+                pulls[end] / plane.span
+            } else {
+                self.by_span[2 * end]
+            };
+            let by_b = vector(&self.by_span) * e.transpose() + swing * sideways;
+            let sign = if end == 0 { -1.0 } else { 1.0 };
+            [
+                sign * (vector(&self.by_height_a) * z.transpose() - by_b),
+                sign * (vector(&self.by_height_b) * z.transpose() + by_b),
+            ]
+        };
+        [row(0), row(1)]
+    }
+}
+
+/// One network, one time.
+struct Problem<'a> {
+    model: &'a Model,
+    network: &'a Network,
+    number: usize,
+    time: f64,
+    /// Sum of weights and loads [N], or 1 N without any.
+    force: f64,
+    /// Length of the longest line [m].
+    length: f64,
+}
+
+impl<'a> Problem<'a> {
+    fn new(model: &'a Model, number: usize, time: f64) -> Problem<'a> {
+        let network = &model.networks[number];
+        let lines = || network.lines.iter().map(|&line| &model.lines[line]);
+        let weights = lines()
+            .flat_map(|line| &line.sections)
+            .map(|section| (section.weight * section.length).abs());
+        let mut force: f64 = weights.sum();
+        for_free_points(model, network, |index, free| {
+            force += free.weight.abs() + model.points[index].load_at(time).norm();
+        });
+        let length = lines().map(Line::unstretched_length).fold(0.0, f64::max);
+        Problem {
+            model,
+            network,
+            number,
+            time,
+            force: if force > 0.0 { force } else { 1.0 },
+            length,
+        }
+    }
+
+    fn newton(&self, state: &mut State, work: &mut Workspace) -> bool {
+        for &index in &self.network.free_points {
+            let point = &mut state.points[index];
+            *point = PointState::at_rest(point.position);
+            point.position.z = point.position.z.max(self.bed_under(index));
+        }
+        if !self.evaluate(state, work) {
+            return false;
+        }
+        let [mut relaxation, least] = RELAXATION;
+        for _ in 0..NEWTON_SOLVES_MAX {
+            let residual = self.greatest_residual(work);
+            let tolerance = FORCE_TOLERANCE * self.greatest_force(work);
+            if residual <= tolerance {
+                return true;
+            }
+            let (stiffest, farthest) =
+                self.assemble(state, work, relaxation * self.force / self.length);
+            if residual <= tolerance + 4.0 * f64::EPSILON * stiffest * farthest {
+                return true;
+            }
+            let whole = work.systems[self.number].solve() && self.step(state, work);
+            let [most, _] = RELAXATION;
+            relaxation = if whole {
+                (1e-3 * relaxation).max(least)
+            } else {
+                (10.0 * relaxation).min(most)
+            };
+        }
+        false
+    }
+
+    /// Catenaries of all lines and what is out of balance at all points; false where a line has none.
+    fn evaluate(&self, state: &State, work: &mut Workspace) -> bool {
+        for_free_points(self.model, self.network, |index, free| {
+            let own = self.model.points[index].load_at(self.time) - free.weight * Vector3::z();
+            work.points[index].residual = own;
+        });
+        for &index in &self.network.lines {
+            let line = &self.model.lines[index];
+            let [a, b] = line.ends.map(|point| state.points[point].position);
+            let plane = Plane::new(a, b);
+            work.counters.solves += 1;
+            let Some(solved) = guess::closed_form(self.model, line, a, plane.span, plane.rise)
+            else {
+                return false;
+            };
+            for (point, force) in line.ends.into_iter().zip(plane.end_forces(&solved)) {
+                if work.points[point].slot.is_some() {
+                    work.points[point].residual += force;
+                }
+            }
+            work.catenaries[index] = Some(solved);
+        }
+        for_free_points(self.model, self.network, |index, free| {
+            let mut total = work.points[index].residual;
+            for axis in (0..3).filter(|&axis| self.is_held(state, work, index, free.axes, axis)) {
+                total[axis] = 0.0;
+            }
+            work.points[index].total = total;
+        });
+        true
+    }
+
+    /// z below which a point that moves vertically does not sink [m].
+    fn bed_under(&self, point: usize) -> f64 {
+        let point = &self.model.points[point];
+        if !point.free().is_some_and(|free| free.axes[2]) {
+            return f64::NEG_INFINITY;
+        }
+        let lines = point
+            .attached
+            .iter()
+            .map(|(line, _)| &self.model.lines[*line]);
+        lines
+            .filter_map(|line| Some(line.nodes.contact.as_ref()?.bed))
+            .fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// Whether a free point cannot move along an axis: not free there, or pressed on the bed.
+    fn is_held(
+        &self,
+        state: &State,
+        work: &Workspace,
+        point: usize,
+        axes: [bool; 3],
+        axis: usize,
+    ) -> bool {
+        let pressed = work.points[point].residual.z <= 0.0
+            && state.points[point].position.z <= self.bed_under(point);
+        !axes[axis] || (axis == 2 && pressed)
+    }
+
+    /// Sets up the linear system; the greatest stiffness [N/m] and the greatest coordinate of a point [m].
+    fn assemble(&self, state: &State, work: &mut Workspace, anchoring: f64) -> (f64, f64) {
+        work.systems[self.number].clear();
+        let (mut stiffest, mut farthest) = (0.0_f64, 0.0_f64);
+        for &index in &self.network.lines {
+            let line = &self.model.lines[index];
+            let blocks = self.line_stiffness(state, work, index);
+            for (end, row) in line.ends.into_iter().zip(&blocks) {
+                farthest = farthest.max(state.points[end].position.amax());
+                for (other, block) in line.ends.into_iter().zip(row) {
+                    if let (Some(row), Some(column)) =
+                        (work.points[end].slot, work.points[other].slot)
+                    {
+                        work.systems[self.number].add_block(row, column, block);
+                        stiffest = stiffest.max(block.amax());
+                    }
+                }
+            }
+        }
+        let anchoring = Matrix3::from_diagonal_element(anchoring + 8.0 * f64::EPSILON * stiffest);
+        for (slot, &index) in self.network.free_points.iter().enumerate() {
+            work.systems[self.number].add_block(slot, slot, &anchoring);
+            work.systems[self.number].add_right(slot, work.points[index].total);
+        }
+        for_free_points(self.model, self.network, |index, free| {
+            for axis in 0..3 {
+                if self.is_held(state, work, index, free.axes, axis) {
+                    work.systems[self.number].hold(work.points[index].slot.unwrap_or(0), axis);
+                }
+            }
+        });
+        (stiffest, farthest)
+    }
+
+    /// −∂F/∂r of the forces on A and B by the positions of A and B [N/m].
+    fn line_stiffness(
+        &self,
+        state: &State,
+        work: &mut Workspace,
+        index: usize,
+    ) -> [[Matrix3<f64>; 2]; 2] {
+        let line = &self.model.lines[index];
+        let Some(solved) = &work.catenaries[index] else {
+            return [[Matrix3::zeros(); 2]; 2];
+        };
+        let plane = Plane::new(
+            state.points[line.ends[0]].position,
+            state.points[line.ends[1]].position,
+        );
+        let pulls = [solved.horizontal_a(), solved.horizontal()];
+        let length = line.unstretched_length();
+        let slopes = if solved.laid().next().is_none() {
+            Slopes::in_flight(&stiffness::in_flight(&line.sections, solved))
+        } else {
+            let (slopes, solves) = self.slopes_on_bed(state, line, solved);
+            work.counters.solves += solves;
+            slopes
+        };
+        slopes.stiffness(&plane, pulls, length)
+    }
+
+    /// Slopes of a line that touches the bed, by difference quotients, with the number of catenaries solved.
+    fn slopes_on_bed(&self, state: &State, line: &Line, solved: &Catenary) -> (Slopes, usize) {
+        let forces = |c: &Catenary| {
+            [
+                c.horizontal_a(),
+                c.vertical_a(),
+                c.horizontal(),
+                c.vertical_b(),
+            ]
+        };
+        let [a, b] = line.ends.map(|point| state.points[point].position);
+        let step = DIFFERENCE * line.unstretched_length().max(a.amax()).max(b.amax());
+        let (plane, base) = (Plane::new(a, b), forces(solved));
+        let slope = |span: f64, up_a: f64, up_b: f64| {
+            let lifted = a + up_a * Vector3::z();
+            let moved = guess::closed_form(
+                self.model,
+                line,
+                lifted,
+                plane.span + span,
+                plane.rise + up_b - up_a,
+            );
+            let moved = moved.map_or(base, |moved| forces(&moved));
+            std::array::from_fn(|i| (moved[i] - base[i]) / step)
+        };
+        let slopes = Slopes {
+            by_span: slope(step, 0.0, 0.0),
+            by_height_a: slope(0.0, step, 0.0),
+            by_height_b: slope(0.0, 0.0, step),
+        };
+        (slopes, 3)
+    }
+
+    /// Moves the free points along the solution, as far as the power does not turn; whether that was all the way.
+    fn step(&self, state: &mut State, work: &mut Workspace) -> bool {
+        let (mut longest, mut before, balance) = (0.0_f64, 0.0, self.greatest_residual(work));
+        for (slot, &index) in self.network.free_points.iter().enumerate() {
+            let point = &mut work.points[index];
+            point.solution = work.systems[self.number].solution(slot);
+            longest = longest.max(point.solution.norm());
+            before += point.solution.dot(&point.total);
+            work.trial.points[index] = state.points[index];
+        }
+        if !(longest.is_finite() && before > 0.0) {
+            return false;
+        }
+        let mut part = (STEP_MAX * self.length / longest).min(1.0);
+        for _ in 0..CUTS_MAX {
+            self.place(state, work, part);
+            if !self.evaluate(state, work) {
+                self.place(state, work, 0.0);
+                self.evaluate(state, work);
+                return false;
+            }
+            let points = self
+                .network
+                .free_points
+                .iter()
+                .map(|&index| &work.points[index]);
+            let after: f64 = points.map(|point| point.solution.dot(&point.total)).sum();
+            if after >= -TURNED_MAX * before || self.greatest_residual(work) <= 0.5 * balance {
+                return part == 1.0;
+            }
+            part *= (before / (before - after)).clamp(0.1, 0.7);
+        }
+        false
+    }
+
+    /// Puts the free points a `part` of the solution away from where the step began.
+    fn place(&self, state: &mut State, work: &Workspace, part: f64) {
+        for &index in &self.network.free_points {
+            let mut moved = work.trial.points[index].position + part * work.points[index].solution;
+            moved.z = moved.z.max(self.bed_under(index));
+            state.points[index].position = moved;
+        }
+    }
+
+    fn greatest_residual(&self, work: &Workspace) -> f64 {
+        let points = self
+            .network
+            .free_points
+            .iter()
+            .map(|&index| work.points[index].total.norm());
+        points.fold(0.0, f64::max)
+    }
+
+    /// Greatest tension, weight or load [N].
+    fn greatest_force(&self, work: &Workspace) -> f64 {
+        let lines = self
+            .network
+            .lines
+            .iter()
+            .filter_map(|&index| work.catenaries[index].as_ref());
+        let tension = lines
+            .map(|line| line.tension_a().max(line.tension_b()))
+            .fold(0.0, f64::max);
+        let mut force = tension;
+        for_free_points(self.model, self.network, |index, free| {
+            force = force
+                .max(free.weight.abs())
+                .max(self.model.points[index].load_at(self.time).norm());
+        });
+        force
+    }
+}

@@ -1,0 +1,427 @@
+//! Quasi-static stepping: closed-form catenaries joined at free points, against closed forms, force balances and the assembled
+//! equilibrium.
+
+mod common;
+
+use common::{scene, shipped, with_elements};
+use moorline::dynamics::quasi_static;
+use moorline::model::{End, Kinematics, Model, State};
+use moorline::scene::Scene;
+use moorline::simulation::Simulation;
+use moorline::statics::assembly::{Counters, Workspace};
+use moorline::statics::catenary::{self, Bed, Catenary, Section};
+use moorline::statics::{catenary_network, equilibrium};
+use nalgebra::Vector3;
+
+// ------------------------------------------------------------------ sliding collar
+
+/// Span and sag of the inextensible wire at 20 N, g = 9.81 m/s² [m].
+const COLLAR: [f64; 2] = [17.693_670_564, 4.086_064_837];
+/// Pull on the collar [N], and half the weight of the wire: 0.2 kg/m · 9.81 m/s² · 10 m.
+const PULL: f64 = 20.0;
+const HALF_WEIGHT: f64 = 19.62;
+
+/// The shipped scene with another mesh and stiffness [N], run to its end: the collar drawn out by 20 N within 5 s, 10 s in all.
+fn drawn_out(elements: usize, axial_stiffness: f64) -> Simulation {
+    let mut collar = with_elements(shipped("collar"), elements);
+    for line_type in collar.line_types.values_mut() {
+        line_type.axial_stiffness = axial_stiffness;
+    }
+    let mut simulation = Simulation::new(&collar).unwrap();
+    let mut solves = 0;
+    for _ in 0..100 {
+        simulation.advance(0.1).unwrap();
+        let counters = simulation.counters();
+        assert!(
+            counters.substeps == 1 && counters.solves <= 12,
+            "{counters:?}"
+        );
+        solves += counters.solves;
+    }
+    assert!(solves <= 320, "{solves}"); // three of the wire a step
+    simulation
+}
+
+fn span_and_sag(simulation: &Simulation) -> [f64; 2] {
+    [simulation.state().points[1].position.x, simulation.sag(0)]
+}
+
+/// Lowest node, below the wall [m]: what the drawn mesh shows of the sag.
+fn depth(simulation: &Simulation) -> f64 {
+    simulation.state().lines[0]
+        .position
+        .iter()
+        .map(|r| -r.z)
+        .fold(0.0, f64::max)
+}
+
+#[test]
+fn the_collar_slides_to_the_inextensible_catenary_on_any_mesh() {
+    // The shipped EA of 5.35e6 N lengthens the wire by 1e-4 m; 1e10 N by 5e-8 m.
+    for (elements, axial_stiffness, tolerance) in
+        [(20, 5.35e6, 1e-3), (20, 1e10, 1e-6), (200, 1e10, 1e-6)]
+    {
+        let simulation = drawn_out(elements, axial_stiffness);
+        for (value, exact) in span_and_sag(&simulation).into_iter().zip(COLLAR) {
+            assert!(
+                (value / exact - 1.0).abs() < tolerance,
+                "{elements}: {value}"
+            );
+        }
+        assert!((depth(&simulation) / COLLAR[1] - 1.0).abs() < tolerance);
+    }
+}
+
+#[test]
+fn the_stretching_collar_wire_is_the_elastic_catenary() {
+    let (weight, ea) = (1.962, 5.35e6);
+    let tension = PULL.hypot(HALF_WEIGHT);
+    let span = 2.0 * PULL / weight * (HALF_WEIGHT / PULL).asinh() + PULL * 20.0 / ea;
+    let sag = (tension - PULL) / weight + HALF_WEIGHT * HALF_WEIGHT / (2.0 * weight * ea);
+    let simulation = drawn_out(200, ea);
+    for (value, exact) in span_and_sag(&simulation).into_iter().zip([span, sag]) {
+        assert!((value - exact).abs() < 1e-11, "{value} {exact}");
+    }
+}
+
+#[test]
+fn the_wall_feels_the_pull_on_the_collar_and_half_the_weight_of_the_wire() {
+    let simulation = drawn_out(20, 5.35e6);
+    let exact = [PULL, 0.0, -HALF_WEIGHT];
+    for (value, exact) in simulation.end_force(0).into_iter().zip(exact) {
+        assert!((value - exact).abs() < 1e-10, "{value} {exact}");
+    }
+    let tension = PULL.hypot(HALF_WEIGHT);
+    for value in [
+        simulation.tension_a(0),
+        simulation.tension_b(0),
+        simulation.tension_max(0),
+    ] {
+        assert!((value - tension).abs() < 1e-10, "{value}");
+    }
+    let lowest = simulation.profile(0)[10];
+    assert!((lowest.tension - PULL).abs() < 1e-10, "{lowest:?}");
+    let chords: f64 = simulation.state().lines[0]
+        .position
+        .windows(2)
+        .map(|pair| (pair[1] - pair[0]).norm())
+        .sum();
+    assert!(simulation.stretched_length(0) > 20.0 && chords < 20.0);
+}
+
+#[test]
+fn without_a_pull_the_wire_hangs_folded_below_the_wall_and_is_drawn_out_from_there() {
+    let mut simulation = Simulation::new(&shipped("collar")).unwrap();
+    assert!(simulation.state().points[1].position.x.abs() < 1e-9);
+    assert!(
+        (simulation.sag(0) - 10.0).abs() < 1e-3
+            && (simulation.tension_b(0) - HALF_WEIGHT).abs() < 1e-9
+    );
+    let mut span = simulation.state().points[1].position.x;
+    for _ in 0..50 {
+        simulation.advance(0.1).unwrap();
+        let x = simulation.state().points[1].position.x;
+        assert!(
+            x > span && (simulation.state().points[1].velocity.x - (x - span) / 0.1).abs() < 1e-9
+        );
+        span = x;
+    }
+}
+
+#[test]
+fn a_saved_quasi_static_simulation_replays_bit_for_bit() {
+    let mut simulation = Simulation::new(&shipped("collar")).unwrap();
+    (0..20).for_each(|_| simulation.advance(0.1).unwrap());
+    let saved = simulation.snapshot().clone();
+    (0..20).for_each(|_| simulation.advance(0.1).unwrap());
+    let first = simulation.snapshot().clone();
+    simulation.restore(saved);
+    (0..20).for_each(|_| simulation.advance(0.1).unwrap());
+    assert_eq!(first, *simulation.snapshot());
+}
+
+// ------------------------------------------------------------------ lines on the bed
+
+const CHAIN: &str = "[seabed]\ndepth = 50.0\nstiffness = 3.0e6\nfriction = 0.6\n\
+    [line_types.chain]\nmass = 80.0\ndiameter = 0.08\naxial_stiffness = 4.0e8\n\
+    [line_types.rope]\nmass = 6.0\ndiameter = 0.08\naxial_stiffness = 2.0e7\n";
+
+fn point(name: &str, position: [f64; 3], rest: &str) -> String {
+    format!("[[points]]\nname = \"{name}\"\nposition = {position:?}\n{rest}\n")
+}
+
+fn line(name: &str, ends: [&str; 2], sections: &[(&str, f64, usize)]) -> String {
+    let [from, to] = ends;
+    let section = |(kind, length, elements): &(&str, f64, usize)| {
+        format!("{{ type = \"{kind}\", length = {length:?}, elements = {elements} }}")
+    };
+    let sections = sections.iter().map(section).collect::<Vec<_>>().join(", ");
+    format!(
+        "[[lines]]\nname = \"{name}\"\nfrom = \"{from}\"\nto = \"{to}\"\nsections = [{sections}]\n"
+    )
+}
+
+const FIXED: &str = "kind = \"fixed\"";
+const FREE: &str = "kind = \"free\"";
+const QUASI_STATIC: &str = "[solver]\nintegrator = \"quasi_static\"\n";
+
+/// A chain with a rope above it, from an anchor on the bed to a coupled point.
+fn moored() -> Scene {
+    let text = CHAIN.to_string()
+        + QUASI_STATIC
+        + &point("anchor", [0.0, 0.0, -50.0], FIXED)
+        + &point("fairlead", [190.0, 30.0, -5.0], "kind = \"coupled\"")
+        + &line(
+            "mooring",
+            ["anchor", "fairlead"],
+            &[("chain", 150.0, 30), ("rope", 60.0, 12)],
+        );
+    scene(&text)
+}
+
+fn closed_form(model: &Model, state: &State) -> Catenary {
+    let line = &model.lines[0];
+    let [a, b] = line.ends.map(|point| state.points[point].position);
+    let section = |s: &moorline::model::Section| Section {
+        length: s.length,
+        weight: s.weight,
+        axial_stiffness: s.axial_stiffness,
+    };
+    let sections: Vec<Section> = line.sections.iter().map(section).collect();
+    let bed = Bed {
+        height: -50.0 - a.z,
+        friction: model.bed_friction,
+    };
+    catenary::solve(&sections, (b - a).xy().norm(), b.z - a.z, Some(bed)).unwrap()
+}
+
+#[test]
+fn a_line_on_a_bed_with_friction_is_its_catenary_at_every_step_and_costs_one_solve() {
+    let mut simulation = Simulation::new(&moored()).unwrap();
+    for step in 0..=40 {
+        if step > 0 {
+            let phase = 0.15 * f64::from(step);
+            simulation.set_displacement(
+                1,
+                [
+                    6.0 * phase.sin(),
+                    3.0 * (phase.cos() - 1.0),
+                    2.0 * (2.0 * phase).sin(),
+                ],
+            );
+            simulation.advance(1.0).unwrap();
+            assert_eq!(simulation.counters().solves, 1);
+        }
+        let (model, state) = (simulation.model(), simulation.state());
+        let exact = closed_form(model, state);
+        let [a, b] = [0, 1].map(|point| state.points[point].position);
+        let along = Vector3::new(b.x - a.x, b.y - a.y, 0.0).normalize();
+        let up = Vector3::z();
+        let pull = exact.tension_b();
+        let forces = [
+            exact.horizontal_a() * along + exact.vertical_a() * up,
+            -(exact.horizontal() * along + exact.vertical_b() * up),
+        ];
+        for (end, force) in [End::A, End::B].into_iter().zip(forces) {
+            assert!((simulation.line_end_force(0, end) - force).norm() <= 1e-14 * pull);
+        }
+        for (node, &s) in simulation.profile(0).iter().zip(&model.lines[0].nodes.arc) {
+            let at = exact.at(s);
+            let place = a + at.x * along + at.z * up;
+            assert!(
+                (Vector3::new(node.x, node.y, node.z) - place).norm() < 1e-10,
+                "{node:?}"
+            );
+            assert!(
+                (node.tension - at.tension).abs() <= 1e-12 * pull,
+                "{node:?}"
+            );
+        }
+        assert_eq!(simulation.laid_length(0), exact.laid_length());
+        assert_eq!(simulation.sag(0), exact.sag());
+        assert!(simulation.laid_length(0) > 10.0 && exact.horizontal_a() < exact.horizontal());
+    }
+}
+
+#[test]
+fn a_line_with_an_end_under_the_bed_rests_on_its_elements() {
+    let mut simulation = Simulation::new(&moored()).unwrap();
+    assert!(simulation.state().lines[0].closed_form.is_some());
+    simulation.set_displacement(1, [-2.0, 0.0, -45.1]);
+    simulation.advance(1.0).unwrap();
+    assert!(simulation.state().lines[0].closed_form.is_none());
+    assert!(simulation.counters().solves > 1);
+}
+
+// ------------------------------------------------------------------ networks
+
+/// Three lines from two anchors and a coupled point above, which meet in a point with a weight of its own.
+fn bridle(elements: usize, stiffness: f64, more: &str) -> Scene {
+    let text = format!(
+        "[line_types.rope]\nmass = 6.0\ndiameter = 0.08\naxial_stiffness = {stiffness:e}\n"
+    ) + QUASI_STATIC
+        + more
+        + &point("port", [0.0, 10.0, -40.0], FIXED)
+        + &point("starboard", [-5.0, -12.0, -42.0], FIXED)
+        + &point("buoy", [60.0, 0.0, -20.0], "kind = \"coupled\"")
+        + &point("knot", [20.0, 4.0, -35.0], "kind = \"free\"\nmass = 50.0")
+        + &line("one", ["port", "knot"], &[("rope", 30.0, elements)])
+        + &line("two", ["knot", "starboard"], &[("rope", 34.0, elements)])
+        + &line("three", ["knot", "buoy"], &[("rope", 40.0, elements)]);
+    scene(&text)
+}
+
+/// What is out of balance at a free point of some mass [kg], over the greatest tension there [-].
+fn imbalance(simulation: &Simulation, point: usize, mass: f64) -> f64 {
+    let pull = Vector3::from(simulation.end_force(point))
+        - mass * simulation.model().gravity * Vector3::z();
+    let tensions = (0..simulation.model().lines.len()).map(|line| simulation.tension_max(line));
+    pull.norm() / tensions.fold(0.0, f64::max)
+}
+
+#[test]
+fn the_lines_of_a_bridle_carry_the_weight_of_its_knot() {
+    for stiffness in [1e4, 2e7, 1e10, 1e13] {
+        let mut total = 0;
+        let mut simulation = Simulation::new(&bridle(10, stiffness, "")).unwrap();
+        for step in 0..=60 {
+            let phase = 0.1 * f64::from(step);
+            simulation.set_displacement(
+                2,
+                [
+                    8.0 * phase.sin(),
+                    6.0 * (1.0 - phase.cos()),
+                    3.0 * phase.sin(),
+                ],
+            );
+            if step > 0 {
+                simulation.advance(1.0).unwrap();
+                let counters = simulation.counters();
+                total += counters.solves;
+                assert!(
+                    counters.solves <= if stiffness < 1e12 { 100 } else { 500 },
+                    "{stiffness}: {counters:?}"
+                );
+            }
+            assert!(
+                imbalance(&simulation, 3, 50.0) < 1e-9,
+                "{stiffness}, {step}: {}",
+                imbalance(&simulation, 3, 50.0)
+            );
+            assert!((0..3).all(|line| simulation.state().lines[line].closed_form.is_some()));
+        }
+        // five to eight of each line a step, although the fairlead moves by 0.8 m between steps and draws the lines taut
+        assert!(total <= 60 * 27, "{stiffness}: {total}");
+    }
+}
+
+#[test]
+fn the_assembled_equilibrium_of_a_bridle_tends_to_the_catenaries_at_second_order() {
+    let counts = [8.0, 16.0, 32.0, 64.0];
+    let errors = counts.map(|n| {
+        let model = Model::new(&bridle(n as usize, 2e7, "")).unwrap();
+        let places: Vec<Vector3<f64>> = model.points.iter().map(|point| point.reference).collect();
+        let mut work = Workspace::new(&model);
+        let exact = catenary_network::solve(&model, &places, 0.0, &mut work).unwrap();
+        let assembled = equilibrium::solve(&model, &places, 0.0, &mut work).unwrap();
+        (exact.points[3].position - assembled.points[3].position).norm()
+    });
+    for pair in errors.windows(2) {
+        let order = (pair[0] / pair[1]).log2();
+        assert!((order - 2.0).abs() < 0.1, "{errors:?}");
+    }
+}
+
+#[test]
+fn a_line_split_at_a_free_point_hangs_as_the_whole_one() {
+    // weak enough that tension is left at the joint: where there is none, friction holds it anywhere in a range
+    let ends = CHAIN.replace("friction = 0.6", "friction = 0.05")
+        + QUASI_STATIC
+        + &point("anchor", [0.0, 0.0, -50.0], FIXED)
+        + &point("fairlead", [190.0, 30.0, -5.0], "kind = \"coupled\"");
+    // joined in the air, where it touches down, and on the bed
+    for first in [180.0, 120.0, 60.0, 20.0] {
+        let whole = ends.clone()
+            + &line(
+                "whole",
+                ["anchor", "fairlead"],
+                &[("chain", first, 10), ("chain", 210.0 - first, 20)],
+            );
+        let split = ends.clone()
+            + &point("joint", [150.0, 20.0, -30.0], FREE)
+            + &line("lower", ["anchor", "joint"], &[("chain", first, 10)])
+            + &line(
+                "upper",
+                ["joint", "fairlead"],
+                &[("chain", 210.0 - first, 20)],
+            );
+        let (mut whole, mut split) = (
+            Simulation::new(&scene(&whole)).unwrap(),
+            Simulation::new(&scene(&split)).unwrap(),
+        );
+        for step in 0..20 {
+            let phase = 0.3 * f64::from(step);
+            for simulation in [&mut whole, &mut split] {
+                simulation.set_displacement(1, [5.0 * phase.sin(), 0.0, 2.0 * phase.sin()]);
+                simulation.advance(1.0).unwrap();
+                assert!(
+                    (0..simulation.model().lines.len())
+                        .all(|line| simulation.state().lines[line].closed_form.is_some())
+                );
+            }
+            let force = whole.line_end_force(0, End::B);
+            let gap = (split.line_end_force(1, End::B) - force).norm() / force.norm();
+            assert!(gap < 1e-9, "{first} {step}: {gap} {:?}", split.counters());
+        }
+    }
+}
+
+#[test]
+fn a_heavy_free_point_rests_on_the_bed_and_is_lifted_by_a_load() {
+    let load = "kind = \"free\"\nmass = 5000.0\nforce = { z = { step = [0.0, 0.0, 10.0, 2.0e5] } }";
+    let text = CHAIN.to_string()
+        + QUASI_STATIC
+        + &point("anchor", [0.0, 0.0, -50.0], FIXED)
+        + &point("clump", [120.0, 0.0, -48.0], load)
+        + &point("fairlead", [190.0, 0.0, -5.0], FIXED)
+        + &line("lower", ["anchor", "clump"], &[("chain", 130.0, 20)])
+        + &line("upper", ["clump", "fairlead"], &[("rope", 90.0, 20)]);
+    let mut simulation = Simulation::new(&scene(&text)).unwrap();
+    assert_eq!(simulation.state().points[1].position.z, -50.0);
+    let (mut lifted, mut count) = (-50.0, 0);
+    for step in 1..=20 {
+        simulation.advance(0.5).unwrap();
+        let z = simulation.state().points[1].position.z;
+        assert!(z >= lifted, "{step}: {z}");
+        lifted = z;
+        if z > -50.0 {
+            let load = simulation.model().points[1].load_at(simulation.time());
+            let pull = Vector3::from(simulation.end_force(1)) + load
+                - 5000.0 * simulation.model().gravity * Vector3::z();
+            assert!(pull.norm() < 1e-9 * load.norm(), "{step}: {pull}");
+            count += 1;
+        }
+    }
+    assert!(count > 5 && lifted > -45.0, "{count} {lifted}");
+}
+
+// ------------------------------------------------------------------ where there is no closed form
+
+#[test]
+fn a_cable_of_green_strain_rests_on_its_elements() {
+    let mut loaded = shipped("point_load");
+    loaded.solver.integrator = moorline::scene::Integrator::QuasiStatic;
+    let model = Model::new(&loaded).unwrap();
+    assert!(!catenary_network::serves(&model, &model.networks[0]));
+    let places: Vec<Vector3<f64>> = model.points.iter().map(|point| point.reference).collect();
+    let mut work = Workspace::new(&model);
+    let mut state = catenary_network::solve(&model, &places, 0.0, &mut work).unwrap();
+    let held = |point: usize, _| Kinematics {
+        position: places[point],
+        ..Kinematics::default()
+    };
+    let done = quasi_static::advance(&model, 0, &mut state, &held, [0.0, 1.0], &mut work).unwrap();
+    assert!(
+        done != Counters::default() && state.lines.iter().all(|line| line.closed_form.is_none())
+    );
+}
