@@ -20,9 +20,13 @@ fn main() {
         cases.push((name, scene));
     };
     without("no seabed", &|scene| scene.seabed = None);
-    without("no axial damping", &|scene| chain(scene, &|line| line.axial_damping = Some(0.0)));
+    without("no axial damping", &|scene| {
+        chain(scene, &|line| line.axial_damping = Some(0.0))
+    });
     without("no drag", &|scene| {
-        chain(scene, &|line| (line.drag_normal, line.drag_tangential) = (None, None));
+        chain(scene, &|line| {
+            (line.drag_normal, line.drag_tangential) = (None, None)
+        });
     });
     let dry = |scene: &mut Scene| {
         let weight = 698.0; // as in water: the shape stays
@@ -35,10 +39,16 @@ fn main() {
         scene.seabed = None;
         chain(scene, &|line| line.axial_damping = Some(0.0));
     });
-    println!("{:<34} {:>14} {:>10}", "oc3_catenary, n = 40, leapfrog", "ns/node/step", "of all");
+    println!(
+        "{:<34} {:>14} {:>10}",
+        "oc3_catenary, n = 40, leapfrog", "ns/node/step", "of all"
+    );
     let mut all = None;
     for (name, scene) in cases {
         let cost = common::measure(&scene).node_step;
-        println!("{name:<34} {cost:>14.2} {:>9.0}%", 100.0 * cost / *all.get_or_insert(cost));
+        println!(
+            "{name:<34} {cost:>14.2} {:>9.0}%",
+            100.0 * cost / *all.get_or_insert(cost)
+        );
     }
 }

@@ -85,7 +85,11 @@ impl Simulation {
         let inputs = vec![Input::default(); model.points.len()];
         let (snapshot, work) = begin(&model, 0.0, inputs, false)?;
         Ok(Simulation {
-            catenaries: model.lines.iter().map(|line| reference_catenary(&model, line)).collect(),
+            catenaries: model
+                .lines
+                .iter()
+                .map(|line| reference_catenary(&model, line))
+                .collect(),
             paths: snapshot.paths.clone(),
             snapshot,
             work,
@@ -179,7 +183,9 @@ impl Simulation {
         }
         let (model, paths, follows) = (&*self.model, &self.paths, self.snapshot.follows_scene);
         let held = |point: usize, t: f64| held(model, paths, follows, point, t);
-        let done = self.work.advance(model, &mut self.snapshot.state, step, &held)?;
+        let done = self
+            .work
+            .advance(model, &mut self.snapshot.state, step, &held)?;
         let held = self.work.energy(model, &self.snapshot.state);
         self.snapshot.counters = done.counters;
         self.snapshot.ledger.book(held, done.flow, step);
@@ -197,7 +203,15 @@ impl Simulation {
             }
             for (axis, path) in path.0.iter_mut().enumerate() {
                 let position = point.reference[axis] + input.displacement[axis];
-                path.extend(Sample { time, position, velocity: input.velocity[axis] }, step, reconstruction);
+                path.extend(
+                    Sample {
+                        time,
+                        position,
+                        velocity: input.velocity[axis],
+                    },
+                    step,
+                    reconstruction,
+                );
             }
         }
     }
@@ -261,14 +275,16 @@ impl Simulation {
     /// Greatest vertical distance below the chord between the ends [m].
     pub fn sag(&self, line: usize) -> f64 {
         let nodes = &self.snapshot.state.lines[line].position;
-        self.closed_form(line).map_or_else(|| sag(nodes), |closed_form| closed_form.sag)
+        self.closed_form(line)
+            .map_or_else(|| sag(nodes), |closed_form| closed_form.sag)
     }
 
     /// Stretched length [m].
     pub fn stretched_length(&self, line: usize) -> f64 {
         let nodes = &self.snapshot.state.lines[line].position;
         let chords = nodes.windows(2).map(|pair| (pair[1] - pair[0]).norm());
-        self.closed_form(line).map_or_else(|| chords.sum(), |closed_form| closed_form.stretched_length)
+        self.closed_form(line)
+            .map_or_else(|| chords.sum(), |closed_form| closed_form.stretched_length)
     }
 
     /// What the closed-form catenary of a quasi-static line says of it now.
@@ -377,17 +393,30 @@ fn begin(
 ) -> Result<(Snapshot, Workspace), Error> {
     let placed = model.points.iter().zip(&inputs);
     let paths: Vec<HostPath> = placed
-        .map(|(point, input)| HostPath::at_rest(time, point.reference + Vector3::from(input.displacement)))
+        .map(|(point, input)| {
+            HostPath::at_rest(time, point.reference + Vector3::from(input.displacement))
+        })
         .collect();
     let held = |point: usize, t: f64| held(model, &paths, follows_scene, point, t);
-    let places: Vec<Vector3<f64>> =
-        (0..model.points.len()).map(|point| held(point, time).position).collect();
+    let places: Vec<Vector3<f64>> = (0..model.points.len())
+        .map(|point| held(point, time).position)
+        .collect();
     let mut state = at_rest(model, time, &places)?;
     let mut work = Workspace::new(model, &state, |line| static_tension(model, &state, line));
     work.start(model, &mut state, &held);
     let counters = Counters::default();
     let ledger = Ledger::new(work.energy(model, &state));
-    Ok((Snapshot { state, inputs, paths, follows_scene, counters, ledger }, work))
+    Ok((
+        Snapshot {
+            state,
+            inputs,
+            paths,
+            follows_scene,
+            counters,
+            ledger,
+        },
+        work,
+    ))
 }
 
 /// In static equilibrium, or on the shapes the scene gives. Quasi-static lines start on their catenaries; those that will move
@@ -399,7 +428,11 @@ fn at_rest(model: &Model, time: f64, places: &[Vector3<f64>]) -> Result<State, S
     };
     if let Some(shapes) = model.lines.iter().map(given).collect::<Option<Vec<_>>>() {
         let points = places.iter().copied().map(PointState::at_rest).collect();
-        return Ok(State { time, points, lines: shapes.into_iter().map(LineState::at_rest).collect() });
+        return Ok(State {
+            time,
+            points,
+            lines: shapes.into_iter().map(LineState::at_rest).collect(),
+        });
     }
     let mut work = assembly::Workspace::new(model);
     let mut state = match model.solver.integrator {

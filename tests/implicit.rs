@@ -621,7 +621,11 @@ fn slow_motion_is_quasi_static() {
     let mut elements = statics(&model);
     let places = [model.points[0].reference, fairlead.position];
     continue_from(&model, &mut elements, &places, 1000.0, &mut work).unwrap();
-    assert!(gap(&moving, &elements) < 1e-3, "{}", gap(&moving, &elements));
+    assert!(
+        gap(&moving, &elements) < 1e-3,
+        "{}",
+        gap(&moving, &elements)
+    );
     // quasi-static lines are catenaries, from which elements of 45 m differ by 0.1 m
     assert!(gap(&moving, &resting) < 0.15, "{}", gap(&moving, &resting));
     assert!(

@@ -68,7 +68,11 @@ impl Workspace {
                 (choice, solver)
             })
             .collect();
-        Workspace { networks, implicit: assembly::Workspace::new(model), next: state.clone() }
+        Workspace {
+            networks,
+            implicit: assembly::Workspace::new(model),
+            next: state.clone(),
+        }
     }
 
     /// What was chosen, by network.
@@ -86,7 +90,12 @@ impl Workspace {
     }
 
     /// Gives a state at rest the accelerations that the implicit integrators start from.
-    pub fn start(&mut self, model: &Model, state: &mut State, held: &impl Fn(usize, f64) -> Kinematics) {
+    pub fn start(
+        &mut self,
+        model: &Model,
+        state: &mut State,
+        held: &impl Fn(usize, f64) -> Kinematics,
+    ) {
         let time = state.time;
         place_held(model, state, held);
         for (number, (_, solver)) in self.networks.iter().enumerate() {
@@ -108,13 +117,21 @@ impl Workspace {
         length: f64,
         held: &impl Fn(usize, f64) -> Kinematics,
     ) -> Result<Done, StepError> {
-        let step = Communication { model, state, start: state.time, length, held };
+        let step = Communication {
+            model,
+            state,
+            start: state.time,
+            length,
+            held,
+        };
         let mut total = Done::default();
         for (number, (choice, solver)) in self.networks.iter_mut().enumerate() {
             let next = &mut self.next;
             let done = match solver {
                 Solver::Leapfrog(work) => step.leapfrog(number, choice.step_max, work, next)?,
-                Solver::AxialImplicit(work) => step.axial_implicit(number, choice.step_max, work, next)?,
+                Solver::AxialImplicit(work) => {
+                    step.axial_implicit(number, choice.step_max, work, next)?
+                }
                 Solver::Implicit(scheme) => {
                     step.implicit(number, choice.step_max, scheme, &mut self.implicit, next)?
                 }
@@ -134,11 +151,15 @@ impl Workspace {
 impl Solver {
     fn new(model: &Model, network: &Network, integrator: Integrator) -> Solver {
         let negative = model.solver.negative_tension;
-        let kernel = |solver: Option<Solver>| solver.expect("the integrator was chosen for these lines");
+        let kernel =
+            |solver: Option<Solver>| solver.expect("the integrator was chosen for these lines");
         match integrator {
             Integrator::QuasiStatic => Solver::QuasiStatic,
             Integrator::AxialImplicit => {
-                let rho = model.solver.spectral_radius.unwrap_or(AXIAL_SPECTRAL_RADIUS);
+                let rho = model
+                    .solver
+                    .spectral_radius
+                    .unwrap_or(AXIAL_SPECTRAL_RADIUS);
                 let line = &model.lines[network.lines[0]];
                 kernel(AxialWork::new(line, rho, negative).map(Solver::AxialImplicit))
             }
@@ -173,7 +194,13 @@ impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
             let count = self.substeps(step_max.min(1.0 / work.drag_rate(model, network)), retry);
             let drift = self.length / count as f64;
             let mut steps = self.state.lines[network.lines[0]].half_step.steps;
-            work.put_ends(model, network, self.start, Step::after(steps, drift), self.held);
+            work.put_ends(
+                model,
+                network,
+                self.start,
+                Step::after(steps, drift),
+                self.held,
+            );
             for k in 0..count {
                 let t = self.start + k as f64 * drift;
                 work.step(model, network, t, Step::after(steps, drift), self.held);
@@ -181,7 +208,13 @@ impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
             }
             if work.broken_node().is_none() {
                 work.store(network, next, steps);
-                return Ok(Done { counters: Counters { substeps: count, solves: count }, flow: work.flow() });
+                return Ok(Done {
+                    counters: Counters {
+                        substeps: count,
+                        solves: count,
+                    },
+                    flow: work.flow(),
+                });
             }
         }
         let (line, node) = work.broken_node().unwrap_or((0, 0));
@@ -198,7 +231,9 @@ impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
         let index = self.model.networks[number].lines[0];
         let line = &self.model.lines[index];
         let transverse = transverse_step(line, 1.0); // over √T [s √N]
-        let tension_now = self.state.lines[index].half_step.tension[0].iter().fold(0.0, |a: f64, b| a.max(*b));
+        let tension_now = self.state.lines[index].half_step.tension[0]
+            .iter()
+            .fold(0.0, |a: f64, b| a.max(*b));
         let step_max = step_max.min(transverse / (SNAP_GROWTH * tension_now).sqrt());
         for retry in 0..=RETRIES_MAX {
             work.load(&self.state.lines[index]);
@@ -219,7 +254,13 @@ impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
             let too_long = drift > transverse / work.tension_peak().sqrt() && retry < RETRIES_MAX;
             if work.broken_node().is_none() && !too_long {
                 work.store(&mut next.lines[index], steps);
-                return Ok(Done { counters: Counters { substeps: count, solves }, flow: work.flow() });
+                return Ok(Done {
+                    counters: Counters {
+                        substeps: count,
+                        solves,
+                    },
+                    flow: work.flow(),
+                });
             }
         }
         Err(self.diverged(index, work.broken_node().unwrap_or(0)))
@@ -235,13 +276,23 @@ impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
     ) -> Result<Done, StepError> {
         copy_network(self.model, &self.model.networks[number], self.state, next);
         let end = self.start + self.length;
-        let span = implicit::Span { start: self.start, end, step_max };
+        let span = implicit::Span {
+            start: self.start,
+            end,
+            step_max,
+        };
         let done = implicit::advance(self.model, number, next, self.held, span, scheme, work)?;
         let network = &self.model.networks[number];
         let mut flow = ledger::power(self.model, network, self.state, self.start);
         flow.add(ledger::power(self.model, network, next, end));
-        let counters = Counters { substeps: done.steps, solves: done.solves };
-        Ok(Done { counters, flow: flow.times(0.5 * self.length) })
+        let counters = Counters {
+            substeps: done.steps,
+            solves: done.solves,
+        };
+        Ok(Done {
+            counters,
+            flow: flow.times(0.5 * self.length),
+        })
     }
 
     fn quasi_static(
@@ -253,8 +304,14 @@ impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
         copy_network(self.model, &self.model.networks[number], self.state, next);
         let times = [self.start, self.start + self.length];
         let done = quasi_static::advance(self.model, number, next, self.held, times, work)?;
-        let counters = Counters { substeps: done.steps, solves: done.solves };
-        Ok(Done { counters, flow: Flow::default() })
+        let counters = Counters {
+            substeps: done.steps,
+            solves: done.solves,
+        };
+        Ok(Done {
+            counters,
+            flow: Flow::default(),
+        })
     }
 
     /// Equal steps no longer than `step_max` [s], halved `retry` times.
@@ -279,7 +336,8 @@ fn place_held(model: &Model, state: &mut State, held: &impl Fn(usize, f64) -> Ki
     for (index, point) in state.points.iter_mut().enumerate() {
         if model.points[index].free().is_none() {
             let k = held(index, state.time);
-            (point.position, point.velocity, point.acceleration) = (k.position, k.velocity, k.acceleration);
+            (point.position, point.velocity, point.acceleration) =
+                (k.position, k.velocity, k.acceleration);
         }
     }
     for (line, shape) in model.lines.iter().zip(&mut state.lines) {

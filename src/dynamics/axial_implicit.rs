@@ -166,7 +166,12 @@ impl AxialWork {
         (self.lost, self.given, self.tension_peak) = (Lanes::splat(0.0), 0.0, 0.0);
         let count = self.layout.segment_count;
         if state.half_step.tension[0].len() == count {
-            for (own, kept) in self.segments.history.iter_mut().zip(&state.half_step.tension) {
+            for (own, kept) in self
+                .segments
+                .history
+                .iter_mut()
+                .zip(&state.half_step.tension)
+            {
                 own[FIRST..FIRST + count].copy_from_slice(kept);
             }
             return;
@@ -175,20 +180,31 @@ impl AxialWork {
             let (chord, inverse_l) = self.layout.chord(at);
             let (force, _) = self.force_and_slope(at, chord.dot(chord) * inverse_l);
             let tension = Lanes::load(&self.layout.axial_stiffness, at) * force.positive();
-            self.segments.history.iter_mut().for_each(|history| tension.store(history, at));
+            self.segments
+                .history
+                .iter_mut()
+                .for_each(|history| tension.store(history, at));
         }
     }
 
     /// Energy given by the held ends and lost between them since [`Self::load`].
     pub fn flow(&self) -> Flow {
-        Flow { given: self.given, lost: self.lost.sum() }
+        Flow {
+            given: self.given,
+            lost: self.lost.sum(),
+        }
     }
 
     /// Hands the state back after steps of `steps` [s].
     pub fn store(&self, state: &mut LineState, steps: [f64; 2]) {
         self.layout.store(state, steps);
         let own = FIRST..FIRST + self.layout.segment_count;
-        for (kept, history) in state.half_step.tension.iter_mut().zip(&self.segments.history) {
+        for (kept, history) in state
+            .half_step
+            .tension
+            .iter_mut()
+            .zip(&self.segments.history)
+        {
             kept.clear();
             kept.extend_from_slice(&history[own.clone()]);
         }
@@ -226,7 +242,9 @@ impl AxialWork {
         std::mem::swap(&mut self.layout.velocity, &mut self.layout.velocity_before);
         self.layout.drift(step.drift);
         self.layout.position.set(FIRST, ends[0]);
-        self.layout.position.set(FIRST + self.layout.segment_count, ends[1]);
+        self.layout
+            .position
+            .set(FIRST + self.layout.segment_count, ends[1]);
         passes
     }
 
@@ -237,7 +255,10 @@ impl AxialWork {
         let strain = l * Lanes::load(&self.layout.inverse_length, at) - one;
         match self.layout.law {
             StretchLaw::Engineering => (strain, one),
-            law => (strain.map(|e| law.at(e).force), strain.map(|e| law.at(e).slope)),
+            law => (
+                strain.map(|e| law.at(e).force),
+                strain.map(|e| law.at(e).slope),
+            ),
         }
     }
 
@@ -274,7 +295,9 @@ impl AxialWork {
             elastic.store(&mut segments.elastic, at);
             known.store(&mut segments.known, at);
             curvature.store(&mut segments.curvature, at);
-            (known + curvature).choose(Lanes::splat(1.0), Lanes::splat(-1.0)).store(&mut segments.taut, at);
+            (known + curvature)
+                .choose(Lanes::splat(1.0), Lanes::splat(-1.0))
+                .store(&mut segments.taut, at);
         }
     }
 
@@ -290,7 +313,11 @@ impl AxialWork {
             let mut mass_tangent = Lanes::load(&self.nodes.mass_tangent, at);
             let zero = Lanes::splat(0.0);
             let weight = zero - Lanes::load(&line.weight, at);
-            let mut force = Vectors { x: zero, y: zero, z: weight };
+            let mut force = Vectors {
+                x: zero,
+                y: zero,
+                z: weight,
+            };
             if let Some(drag) = &line.drag {
                 let now = line.velocity_now(at, step);
                 let speed = now.dot(tangent);
@@ -317,11 +344,18 @@ impl AxialWork {
             across.store(&mut nodes.across, at);
             excess.store(&mut nodes.excess, at);
             nodes.tangent.store(tangent, at);
-            nodes.response.store(Vectors { z: response.z + across, ..response }, at);
+            nodes.response.store(
+                Vectors {
+                    z: response.z + across,
+                    ..response
+                },
+                at,
+            );
             nodes.fall.store(velocity + inverted.scale(kick), at);
             nodes.loose.store(velocity + inverted.scale(kick), at);
             if self.layout.contact.is_some() {
-                self.touches(at, velocity.z, step).store(&mut self.nodes.touches, at);
+                self.touches(at, velocity.z, step)
+                    .store(&mut self.nodes.touches, at);
                 self.settle(at, step);
             }
         }
@@ -348,7 +382,8 @@ impl AxialWork {
     fn touches(&self, at: usize, rise: Lanes, step: Step) -> Lanes {
         let contact = self.layout.contact.as_ref().expect("asked over a bed only");
         let drift = Lanes::splat(step.drift);
-        let penetration = Lanes::load(&contact.level, at) - Lanes::load(&self.layout.position.z, at);
+        let penetration =
+            Lanes::load(&contact.level, at) - Lanes::load(&self.layout.position.z, at);
         let next = penetration - drift * rise;
         let push = Lanes::load(&contact.stiffness, at) * next * drift
             + Lanes::load(&contact.damping, at) * (next - penetration.positive());
@@ -365,7 +400,8 @@ impl AxialWork {
         let touches = Lanes::load(&self.nodes.touches, at);
         let stiffness = Lanes::load(&contact.stiffness, at);
         let damping = Lanes::load(&contact.damping, at);
-        let penetration = Lanes::load(&contact.level, at) - Lanes::load(&self.layout.position.z, at);
+        let penetration =
+            Lanes::load(&contact.level, at) - Lanes::load(&self.layout.position.z, at);
         let above = penetration - penetration.positive(); // the damper acts below the bed only
         let landing = damping * above * Lanes::splat(1.0 / step.drift);
         let resistance = kick * (stiffness * drift + damping);
@@ -373,7 +409,9 @@ impl AxialWork {
         let fall = self.nodes.fall.load(at);
         let share = (one + resistance * response.z).recip();
         let impulse = (kick * (stiffness * penetration + landing) - resistance * fall.z) * share;
-        touches.choose(resistance * share, zero).store(&mut self.nodes.held, at);
+        touches
+            .choose(resistance * share, zero)
+            .store(&mut self.nodes.held, at);
         let loose = fall + response.scale(touches.choose(impulse, zero));
         self.nodes.loose.store(loose, at);
     }
@@ -391,9 +429,15 @@ impl AxialWork {
             let known = Lanes::load(&segments.known, at);
             let taut_known = known + Lanes::load(&segments.curvature, at);
             let (resistance, known) = if self.layout.negative_tension {
-                (elastic + damping, taut.choose(taut_known, known - Lanes::load(&segments.elastic, at)))
+                (
+                    elastic + damping,
+                    taut.choose(taut_known, known - Lanes::load(&segments.elastic, at)),
+                )
             } else {
-                (taut.choose(elastic + damping, zero), taut.choose(taut_known, zero))
+                (
+                    taut.choose(elastic + damping, zero),
+                    taut.choose(taut_known, zero),
+                )
             };
             let k = resistance * kick;
             let low = nodes.inverse_mass(at, direction);
@@ -413,9 +457,15 @@ impl AxialWork {
         let mut holds = true;
         for at in self.layout.node_blocks() {
             let pull = |at: usize| {
-                self.segments.direction.load(at).scale(Lanes::load(&self.rows.tension, at))
+                self.segments
+                    .direction
+                    .load(at)
+                    .scale(Lanes::load(&self.rows.tension, at))
             };
-            let moved = self.nodes.inverse_mass(at, pull(at) - pull(at - 1)).scale(kick);
+            let moved = self
+                .nodes
+                .inverse_mass(at, pull(at) - pull(at - 1))
+                .scale(kick);
             let velocity = self.nodes.loose.load(at) + moved;
             self.layout.velocity_before.store(velocity, at);
             if self.layout.contact.is_some() {
@@ -462,7 +512,9 @@ impl AxialWork {
             let total = if line.negative_tension {
                 Lanes::load(&segments.elastic, at) + stretching
             } else {
-                Lanes::load(&segments.known, at) + stretching + Lanes::load(&segments.damping, at) * along
+                Lanes::load(&segments.known, at)
+                    + stretching
+                    + Lanes::load(&segments.damping, at) * along
             };
             let taut = total.choose(one, Lanes::splat(-1.0));
             let flips = Lanes::splat(0.0) - taut * Lanes::load(&segments.taut, at);
@@ -470,7 +522,8 @@ impl AxialWork {
             let l = Lanes::load(&segments.length, at);
             let square = drift * (l * along + l * along + drift * relative.dot(relative));
             let longer = (l * l + square).positive().sqrt();
-            let transverse = square * (l + longer + Lanes::splat(f64::MIN_POSITIVE)).recip() - drift * along;
+            let transverse =
+                square * (l + longer + Lanes::splat(f64::MIN_POSITIVE)).recip() - drift * along;
             let true_curvature = stiffness * transverse * Lanes::splat(1.0 / step.drift);
             let off = (true_curvature - curvature).abs() - tolerance;
             let again = flips.max(taut.choose(off, Lanes::splat(-1.0)));
@@ -491,9 +544,8 @@ impl AxialWork {
         let line = &self.layout;
         for at in line.segment_blocks() {
             let direction = self.segments.direction.load(at);
-            let relative = |velocity: &Components| {
-                direction.dot(velocity.load(at + 1) - velocity.load(at))
-            };
+            let relative =
+                |velocity: &Components| direction.dot(velocity.load(at + 1) - velocity.load(at));
             let (old, new) = (relative(&line.velocity), relative(&line.velocity_before));
             let stiffness = Lanes::load(&self.segments.stiffness, at);
             let spring = Lanes::load(&self.segments.elastic, at)
@@ -506,7 +558,10 @@ impl AxialWork {
             let (old, new) = (line.velocity.load(at), line.velocity_before.load(at));
             // what is left of the node's momentum beside tension and weight is what water, damping and bed took
             let pull = |at: usize| {
-                self.segments.direction.load(at).scale(Lanes::load(&self.rows.tension, at))
+                self.segments
+                    .direction
+                    .load(at)
+                    .scale(Lanes::load(&self.rows.tension, at))
             };
             let mut impulse = (pull(at) - pull(at - 1)).scale(kick);
             impulse.z = impulse.z - Lanes::load(&line.weight, at) * kick;

@@ -64,7 +64,12 @@ impl Choice {
             Integrator::AxialImplicit => transverse_limit,
             _ => longest,
         };
-        Choice { integrator, step_max: step_max.min(longest), explicit_limit, transverse_limit }
+        Choice {
+            integrator,
+            step_max: step_max.min(longest),
+            explicit_limit,
+            transverse_limit,
+        }
     }
 }
 

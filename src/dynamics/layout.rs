@@ -76,10 +76,10 @@ impl Layout {
             axial_stiffness: keep(&line.segments.axial_stiffness),
             axial_damping: keep(&line.segments.axial_damping),
             weight: keep(&nodes.weight),
-            drag: nodes
-                .drag
-                .as_ref()
-                .map(|drag| DragArrays { normal: keep(&drag.normal), tangent: keep(&drag.tangent) }),
+            drag: nodes.drag.as_ref().map(|drag| DragArrays {
+                normal: keep(&drag.normal),
+                tangent: keep(&drag.tangent),
+            }),
             mass_damping: nodes.mass_damping.as_ref().map(|damping| keep(damping)),
             contact: nodes.contact.as_ref().map(|contact| ContactArrays {
                 level: keep(&contact.level),
@@ -114,7 +114,10 @@ impl Layout {
         memory.steps = steps;
         let extrapolation = Step::after(steps, steps[0]).extrapolation;
         for i in 0..count {
-            let (velocity, before) = (self.velocity.get(FIRST + i), self.velocity_before.get(FIRST + i));
+            let (velocity, before) = (
+                self.velocity.get(FIRST + i),
+                self.velocity_before.get(FIRST + i),
+            );
             state.position[i] = self.position.get(FIRST + i);
             state.velocity[i] = velocity + extrapolation * (velocity - before);
             memory.velocity[i] = velocity;
@@ -153,21 +156,31 @@ impl Layout {
     #[inline(always)]
     pub fn tangent(&self, at: usize) -> Vectors {
         let chord = self.position.load(at + 1) - self.position.load(at - 1);
-        chord.scale((chord.dot(chord) + Lanes::splat(LENGTH2_MIN)).sqrt().recip())
+        chord.scale(
+            (chord.dot(chord) + Lanes::splat(LENGTH2_MIN))
+                .sqrt()
+                .recip(),
+        )
     }
 
     /// Vectors along the segments, and the inverse of their lengths.
     #[inline(always)]
     pub fn chord(&self, at: usize) -> (Vectors, Lanes) {
         let chord = self.position.load(at + 1) - self.position.load(at);
-        (chord, (chord.dot(chord) + Lanes::splat(LENGTH2_MIN)).sqrt().recip())
+        (
+            chord,
+            (chord.dot(chord) + Lanes::splat(LENGTH2_MIN))
+                .sqrt()
+                .recip(),
+        )
     }
 
     /// Velocities extrapolated to t_n [m/s].
     #[inline(always)]
     pub fn velocity_now(&self, at: usize, step: Step) -> Vectors {
         let velocity = self.velocity.load(at);
-        velocity + (velocity - self.velocity_before.load(at)).scale(Lanes::splat(step.extrapolation))
+        velocity
+            + (velocity - self.velocity_before.load(at)).scale(Lanes::splat(step.extrapolation))
     }
 
     /// Moves the nodes from t_n to t_{n+1}.
@@ -201,7 +214,8 @@ impl Layout {
     pub fn broken_node(&self) -> Option<usize> {
         let broken = |i: &usize| {
             let (position, velocity) = (self.position.get(FIRST + i), self.velocity.get(FIRST + i));
-            !position.iter().all(|value| value.is_finite()) || !(velocity.norm_squared() < SPEED_MAX * SPEED_MAX)
+            !position.iter().all(|value| value.is_finite())
+                || !(velocity.norm_squared() < SPEED_MAX * SPEED_MAX)
         };
         (0..=self.segment_count).find(broken)
     }
@@ -240,6 +254,10 @@ pub(super) fn interior(segment_count: usize) -> Vec<f64> {
 /// Padding far away and apart: its chords are never zero.
 fn padded_positions(size: usize) -> Components {
     let mut position = Components::zeros(size);
-    position.x.iter_mut().enumerate().for_each(|(i, x)| *x = i as f64);
+    position
+        .x
+        .iter_mut()
+        .enumerate()
+        .for_each(|(i, x)| *x = i as f64);
     position
 }

@@ -53,8 +53,12 @@ impl WaterWork {
     fn new(line: &Line, layout: &Layout) -> Option<WaterWork> {
         let nodes = &line.nodes;
         let zeros = vec![0.0; layout.weight.len()];
-        let excess: Vec<f64> =
-            nodes.mass_tangent.iter().zip(&nodes.mass_normal).map(|(t, n)| 1.0 / t - 1.0 / n).collect();
+        let excess: Vec<f64> = nodes
+            .mass_tangent
+            .iter()
+            .zip(&nodes.mass_normal)
+            .map(|(t, n)| 1.0 / t - 1.0 / n)
+            .collect();
         let wet = layout.drag.is_some() || excess.iter().any(|excess| *excess != 0.0);
         let drag = layout.drag.as_ref();
         wet.then(|| WaterWork {
@@ -143,9 +147,18 @@ impl LineWork {
     /// Scratch for a line; `None` where its sections have different strain measures, which the kernel does not mix.
     pub fn new(line: &Line, held: [bool; 2], negative_tension: bool) -> Option<LineWork> {
         let layout = Layout::new(line, negative_tension)?;
-        let inverse_mass: Vec<f64> = line.nodes.mass_normal.iter().map(|mass| 1.0 / mass).collect();
+        let inverse_mass: Vec<f64> = line
+            .nodes
+            .mass_normal
+            .iter()
+            .map(|mass| 1.0 / mass)
+            .collect();
         Some(LineWork {
-            damped: line.segments.axial_damping.iter().any(|damping| *damping != 0.0),
+            damped: line
+                .segments
+                .axial_damping
+                .iter()
+                .any(|damping| *damping != 0.0),
             pull: Components::zeros(layout.weight.len()),
             inverse_mass: pad(layout.segment_count, &inverse_mass, 0.0),
             water: WaterWork::new(line, &layout),
@@ -165,7 +178,10 @@ impl LineWork {
 
     /// Energy given by held ends and lost between them since [`Self::load`].
     pub fn flow(&self) -> Flow {
-        Flow { given: self.given, lost: self.lost.sum() }
+        Flow {
+            given: self.given,
+            lost: self.lost.sum(),
+        }
     }
 
     /// Hands the state back after steps of `steps` [s].
@@ -250,7 +266,11 @@ impl LineWork {
             let mut force = self.pull.load(at) - self.pull.load(at - 1);
             force.z = force.z - Lanes::load(&line.weight, at);
             let zero = Lanes::splat(0.0);
-            let mut resistance = Vectors { x: zero, y: zero, z: zero };
+            let mut resistance = Vectors {
+                x: zero,
+                y: zero,
+                z: zero,
+            };
             if MASS_DAMPING {
                 let damping = line.mass_damping.as_deref().unwrap_or_default();
                 resistance = velocity.scale(Lanes::load(damping, at));
@@ -265,11 +285,21 @@ impl LineWork {
                 let response = tangent.scale(excess * tangent.z);
                 (
                     force.scale(inverse_mass) + tangent.scale(excess * force.dot(tangent)),
-                    Vectors { z: response.z + inverse_mass, ..response },
+                    Vectors {
+                        z: response.z + inverse_mass,
+                        ..response
+                    },
                 )
             } else {
                 force = force - resistance;
-                (force.scale(inverse_mass), Vectors { x: zero, y: zero, z: inverse_mass })
+                (
+                    force.scale(inverse_mass),
+                    Vectors {
+                        x: zero,
+                        y: zero,
+                        z: inverse_mass,
+                    },
+                )
             };
             let mut kicked = velocity + inverted.scale(kick);
             let mut given_away = zero; // twice the energy that leaves the nodes
@@ -298,7 +328,10 @@ impl LineWork {
     /// Books the work of the ends in a step, after [`Self::put_end`] has told how they move on; ends at free points do no
     /// work that the line loses.
     pub fn book_ends(&mut self, step: Step) {
-        for end in [End::A, End::B].into_iter().filter(|&end| self.held[end as usize]) {
+        for end in [End::A, End::B]
+            .into_iter()
+            .filter(|&end| self.held[end as usize])
+        {
             let at = self.layout.end_index(end);
             let pull = match end {
                 End::A => self.pull.get(at),
@@ -343,7 +376,11 @@ impl LineWork {
         let mass = mass_normal * Matrix3::identity()
             + (mass_tangent - mass_normal) * tangent * tangent.transpose();
         let contact = line.contact.as_ref().map_or([0.0; 3], |c| {
-            [c.stiffness[at], c.damping[at], c.stiffness[at] * c.level[at]]
+            [
+                c.stiffness[at],
+                c.damping[at],
+                c.stiffness[at] * c.level[at],
+            ]
         });
         EndLoad {
             force: force + resistance,
@@ -366,7 +403,13 @@ impl LineWork {
 
 /// Impulse Δt·F of the bed: F = k(p − Δt u') − c u' ≥ 0 with u' = u + Δt μ F, only if p − Δt u > 0.
 #[inline(always)]
-fn contact_impulse(line: &Layout, at: usize, velocity_z: Lanes, response_z: Lanes, step: Step) -> Lanes {
+fn contact_impulse(
+    line: &Layout,
+    at: usize,
+    velocity_z: Lanes,
+    response_z: Lanes,
+    step: Step,
+) -> Lanes {
     let contact = line.contact.as_ref().expect("this kernel runs over a bed");
     let (drift, kick) = (Lanes::splat(step.drift), Lanes::splat(step.kick));
     let stiffness = Lanes::load(&contact.stiffness, at);

@@ -51,14 +51,21 @@ impl Flow {
 
     /// This flow times a factor.
     pub fn times(self, factor: f64) -> Flow {
-        Flow { given: factor * self.given, lost: factor * self.lost }
+        Flow {
+            given: factor * self.given,
+            lost: factor * self.lost,
+        }
     }
 }
 
 impl Ledger {
     /// At rest with an energy [J].
     pub fn new(energy: f64) -> Ledger {
-        Ledger { start: energy, held: energy, ..Ledger::default() }
+        Ledger {
+            start: energy,
+            held: energy,
+            ..Ledger::default()
+        }
     }
 
     /// Imbalance [J].
@@ -145,7 +152,9 @@ pub fn power(model: &Model, network: &Network, state: &State, t: f64) -> Flow {
         flow.add(line_power(&model.lines[index], &state.lines[index], model));
     }
     for &point in &network.free_points {
-        flow.given += model.points[point].load_at(t).dot(&state.points[point].velocity);
+        flow.given += model.points[point]
+            .load_at(t)
+            .dot(&state.points[point].velocity);
     }
     flow
 }
@@ -155,16 +164,30 @@ fn line_power(line: &Line, shape: &LineState, model: &Model) -> Flow {
     let mut flow = Flow::default();
     for i in 0..n {
         let pair = |values: &[Vector3<f64>]| [values[i], values[i + 1]];
-        let tension = segment_tension(line, i, pair(&shape.position), pair(&shape.velocity), negative);
+        let tension = segment_tension(
+            line,
+            i,
+            pair(&shape.position),
+            pair(&shape.velocity),
+            negative,
+        );
         let chord = shape.position[i + 1] - shape.position[i];
-        let Some(direction) = chord.try_normalize(0.0) else { continue };
+        let Some(direction) = chord.try_normalize(0.0) else {
+            continue;
+        };
         let strain = chord.norm() / line.segments.length[i] - 1.0;
         let elastic = line.segments.axial_stiffness[i] * line.segments.law[i].at(strain).force;
         let stretching = direction.dot(&(shape.velocity[i + 1] - shape.velocity[i]));
         flow.lost += (tension - elastic.max(0.0)) * stretching;
         let end = |node: usize, sign: f64| {
-            let held = model.points[line.ends[usize::from(node > 0)]].free().is_none();
-            if held { sign * tension * direction.dot(&shape.velocity[node]) } else { 0.0 }
+            let held = model.points[line.ends[usize::from(node > 0)]]
+                .free()
+                .is_none();
+            if held {
+                sign * tension * direction.dot(&shape.velocity[node])
+            } else {
+                0.0
+            }
         };
         flow.given += if i == 0 { end(0, -1.0) } else { 0.0 };
         flow.given += if i + 1 == n { end(n, 1.0) } else { 0.0 };
@@ -182,14 +205,20 @@ fn node_loss(line: &Line, shape: &LineState, i: usize) -> f64 {
     let (nodes, velocity) = (&line.nodes, shape.velocity[i]);
     let mut lost = 0.0;
     if let Some(coefficients) = &nodes.drag {
-        let k = DragCoefficients { normal: coefficients.normal[i], tangent: coefficients.tangent[i] };
+        let k = DragCoefficients {
+            normal: coefficients.normal[i],
+            tangent: coefficients.tangent[i],
+        };
         lost -= drag(k, velocity, tangent(shape, i)).dot(&velocity);
     }
     if let Some(damping) = &nodes.mass_damping {
         lost += damping[i] * velocity.norm_squared();
     }
     if let Some(contact) = &nodes.contact {
-        let k = ContactCoefficients { stiffness: contact.stiffness[i], damping: contact.damping[i] };
+        let k = ContactCoefficients {
+            stiffness: contact.stiffness[i],
+            damping: contact.damping[i],
+        };
         lost -= normal_force(k, contact.level[i] - shape.position[i].z, velocity.z) * velocity.z;
     }
     lost

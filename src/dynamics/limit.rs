@@ -53,7 +53,8 @@ pub fn free_point_step(model: &Model, point: usize) -> f64 {
         };
         mass += line.nodes.mass_tangent[node].min(line.nodes.mass_normal[node]);
         sum += stiffness(line, segment);
-        lag = lag.max(line.segments.axial_damping[segment] / line.segments.axial_stiffness[segment]);
+        lag =
+            lag.max(line.segments.axial_damping[segment] / line.segments.axial_stiffness[segment]);
     }
     damped_limit((2.0 * sum / mass).sqrt(), lag)
 }

@@ -222,7 +222,9 @@ impl Polynomial {
         };
         let mut best = (0, f64::INFINITY);
         for degree in 0..=DEGREE_MAX.min(known - 1 - judged) {
-            let error: f64 = (known - judged..known).map(|newest| miss(degree, newest)).sum();
+            let error: f64 = (known - judged..known)
+                .map(|newest| miss(degree, newest))
+                .sum();
             if error < best.1 {
                 best = (degree, error);
             }

@@ -23,12 +23,18 @@ impl NetworkWork {
             .lines
             .iter()
             .map(|&line| {
-                let held = model.lines[line].ends.map(|point| model.points[point].free().is_none());
+                let held = model.lines[line]
+                    .ends
+                    .map(|point| model.points[point].free().is_none());
                 LineWork::new(&model.lines[line], held, model.solver.negative_tension)
             })
             .collect::<Option<Vec<LineWork>>>()?;
         let points = vec![PointState::at_rest(Vector3::zeros()); network.free_points.len()];
-        Some(NetworkWork { lines, points, point_flow: Flow::default() })
+        Some(NetworkWork {
+            lines,
+            points,
+            point_flow: Flow::default(),
+        })
     }
 
     /// Takes over the state.
@@ -64,12 +70,17 @@ impl NetworkWork {
     /// Greatest ratio K |v| / M of all nodes [1/s].
     pub fn drag_rate(&self, model: &Model, network: &Network) -> f64 {
         let lines = self.lines.iter().zip(&network.lines);
-        lines.map(|(work, &line)| work.drag_rate(&model.lines[line])).fold(0.0, f64::max)
+        lines
+            .map(|(work, &line)| work.drag_rate(&model.lines[line]))
+            .fold(0.0, f64::max)
     }
 
     /// The first line, by its place in the network, and node whose position or velocity is not finite.
     pub fn broken_node(&self) -> Option<(usize, usize)> {
-        self.lines.iter().enumerate().find_map(|(line, work)| Some((line, work.broken_node()?)))
+        self.lines
+            .iter()
+            .enumerate()
+            .find_map(|(line, work)| Some((line, work.broken_node()?)))
     }
 
     /// One step from `t` [s]. `held` tells where held points are.
@@ -81,7 +92,9 @@ impl NetworkWork {
         step: Step,
         held: &impl Fn(usize, f64) -> Kinematics,
     ) {
-        self.lines.iter_mut().for_each(|line| line.pull_segments(step));
+        self.lines
+            .iter_mut()
+            .for_each(|line| line.pull_segments(step));
         self.step_points(model, network, t, step);
         for line in &mut self.lines {
             line.kick_nodes(step);
@@ -116,7 +129,11 @@ impl NetworkWork {
                     }
                     None => {
                         let k = held(point, t);
-                        work.put_end(end, k.position, k.velocity - 0.5 * step.drift * k.acceleration);
+                        work.put_end(
+                            end,
+                            k.position,
+                            k.velocity - 0.5 * step.drift * k.acceleration,
+                        );
                     }
                 }
             }
@@ -159,7 +176,10 @@ impl EndLoad {
         self.force += other.force;
         self.resistance += other.resistance;
         self.mass += other.mass;
-        self.contact.iter_mut().zip(other.contact).for_each(|(own, other)| *own += other);
+        self.contact
+            .iter_mut()
+            .zip(other.contact)
+            .for_each(|(own, other)| *own += other);
     }
 
     /// v_{n+½} of a point that moves along `axes` only, and the impulse of the bed [N s], which is implicit.

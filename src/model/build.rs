@@ -40,7 +40,9 @@ impl Model {
             lines.push(built);
         }
         let networks = networks(&points, &lines);
-        networks.iter().try_for_each(|network| check_integrator(scene, &points, &lines, network))?;
+        networks
+            .iter()
+            .try_for_each(|network| check_integrator(scene, &points, &lines, network))?;
         Ok(Model {
             gravity: scene.gravity,
             bed: scene.seabed.as_ref().map(|bed| -bed.depth),
@@ -107,7 +109,9 @@ struct LineLaw {
 /// ζ as given; the numerical one where the line type says nothing of axial damping.
 fn damping_ratio(line_type: &LineType) -> f64 {
     let silent = line_type.axial_damping.is_none() && line_type.rayleigh.is_none();
-    line_type.damping_ratio.unwrap_or(if silent { NUMERICAL_DAMPING_RATIO } else { 0.0 })
+    line_type
+        .damping_ratio
+        .unwrap_or(if silent { NUMERICAL_DAMPING_RATIO } else { 0.0 })
 }
 
 fn line_law(scene: &Scene, line_type: &LineType) -> LineLaw {
@@ -307,7 +311,11 @@ fn contact(
                 stiffness: stiffness[i],
                 damping: damping[i],
             };
-            let spacing = if i == 0 || i == last { 2.0 * length[i] } else { length[i] };
+            let spacing = if i == 0 || i == last {
+                2.0 * length[i]
+            } else {
+                length[i]
+            };
             let soft = regularised(given, weight[i], spacing);
             if soft.stiffness < given.stiffness {
                 level[i] += weight[i] / soft.stiffness; // so that a resting node lies on the bed, not in it
@@ -343,19 +351,30 @@ fn check_integrator(
     let integrator = scene.solver.integrator;
     let refuse = |what: String| {
         let right = "use \"generalised_alpha\" or \"auto\"";
-        Err(SceneError::new("solver.integrator", format!("{what}; {right}")))
+        Err(SceneError::new(
+            "solver.integrator",
+            format!("{what}; {right}"),
+        ))
     };
     if !matches!(integrator, Integrator::Leapfrog | Integrator::AxialImplicit) {
         return Ok(());
     }
-    if let Some(&line) = network.lines.iter().find(|&&line| !lines[line].serves_leapfrog()) {
+    if let Some(&line) = network
+        .lines
+        .iter()
+        .find(|&&line| !lines[line].serves_leapfrog())
+    {
         let name = &lines[line].name;
-        return refuse(format!("a leapfrog needs mass on every node and one strain measure along line \"{name}\""));
+        return refuse(format!(
+            "a leapfrog needs mass on every node and one strain measure along line \"{name}\""
+        ));
     }
     match network.free_points.first() {
         Some(&point) if integrator == Integrator::AxialImplicit => {
             let name = &points[point].name;
-            refuse(format!("\"axial_implicit\" serves lines between held points only, and point \"{name}\" is free"))
+            refuse(format!(
+                "\"axial_implicit\" serves lines between held points only, and point \"{name}\" is free"
+            ))
         }
         _ => Ok(()),
     }
