@@ -83,3 +83,28 @@ from = "buoy1"
 to = "buoy2"
 sections = [{ type = "wire", length = 12.0 }]
 """
+
+ELASTIC = """\
+title = "two elements of a soft cord: cheap enough for many steps"
+
+[line_types.cord]
+mass = 1.0
+axial_stiffness = 50.0
+axial_damping = 5.0
+
+[[points]]
+name = "wall"
+position = [0.0, 0.0, 0.0]
+kind = "fixed"
+
+[[points]]
+name = "hand"
+position = [10.0, 0.0, 0.0]
+kind = "coupled"
+
+[[lines]]
+name = "cord"
+from = "wall"
+to = "hand"
+sections = [{ type = "cord", length = 9.0, elements = 2 }]
+"""

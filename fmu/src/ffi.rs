@@ -6,9 +6,10 @@
 
 use std::any::Any;
 use std::cell::Cell;
+use std::collections::BTreeMap;
 use std::ffi::{CStr, CString, c_char, c_void};
 use std::panic::{self, AssertUnwindSafe};
-use std::sync::{Mutex, Once, PoisonError};
+use std::sync::{Mutex, MutexGuard, Once, PoisonError};
 
 use moorline_host::fmi2::{fmi2CallbackFunctions, fmi2CallbackLogger};
 use moorline_host::fmi3::fmi3LogMessageCallback;
@@ -104,8 +105,17 @@ thread_local! {
     static IS_GUARDED: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Where the last guarded panic happened.
-static PANIC_PLACE: Mutex<Option<String>> = Mutex::new(None);
+/// Where guarded panics happened, by thread, until their guards have told it.
+static PANIC_PLACES: Mutex<BTreeMap<usize, String>> = Mutex::new(BTreeMap::new());
+
+fn panic_places() -> MutexGuard<'static, BTreeMap<usize, String>> {
+    PANIC_PLACES.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// A number that no other living thread has: where its flag is.
+fn thread_number() -> usize {
+    IS_GUARDED.with(|flag| std::ptr::from_ref(flag).addr())
+}
 
 /// Keeps guarded panics off the console; others go where they went before.
 fn silence_guarded_panics() {
@@ -114,8 +124,9 @@ fn silence_guarded_panics() {
         let before = panic::take_hook();
         panic::set_hook(Box::new(move |info| {
             if IS_GUARDED.get() {
-                let place = info.location().map(ToString::to_string);
-                *PANIC_PLACE.lock().unwrap_or_else(PoisonError::into_inner) = place;
+                if let Some(place) = info.location() {
+                    panic_places().insert(thread_number(), place.to_string());
+                }
             } else {
                 before(info);
             }
@@ -130,10 +141,7 @@ pub(crate) fn guard<T>(body: impl FnOnce() -> T) -> Result<T, String> {
     let result = panic::catch_unwind(AssertUnwindSafe(body));
     IS_GUARDED.set(outer);
     result.map_err(|payload| {
-        let place = PANIC_PLACE
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-            .take();
+        let place = panic_places().remove(&thread_number());
         let said = panic_text(payload.as_ref());
         // A payload with a destructor that panics must not do so here.
         std::mem::forget(payload);
@@ -425,6 +433,20 @@ mod tests {
         assert!(message.contains("node 7 lost"), "{message}");
         assert!(message.contains("ffi.rs"), "{message}");
         assert_eq!(guard(|| 42), Ok(42));
+    }
+
+    #[test]
+    fn panics_in_many_threads_keep_their_own_messages_and_places() {
+        let here = |k: u32| {
+            let message = guard(|| -> u32 { panic!("number {k}") }).unwrap_err();
+            assert!(message.contains(&format!("number {k}")), "{message}");
+            assert!(message.contains("ffi.rs"), "{message}");
+        };
+        std::thread::scope(|scope| {
+            for k in 0..8 {
+                scope.spawn(move || (0..200).for_each(|_| here(k)));
+            }
+        });
     }
 
     #[test]
