@@ -17,6 +17,8 @@ use crate::statics::assembly::{self, copy_network};
 const AXIAL_SPECTRAL_RADIUS: f64 = 0.9;
 /// Tension that may arise within a step, over the greatest one before it [-].
 const SNAP_GROWTH: f64 = 1.5;
+/// Internal steps of a communication step, at most [-].
+const SUBSTEPS_MAX: f64 = 1e7;
 /// A failed step is tried again with half the internal step, at most so often [-].
 const RETRIES_MAX: u32 = 6;
 
@@ -191,7 +193,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
         let (model, network) = (self.model, &self.model.networks[number]);
         for retry in 0..=RETRIES_MAX {
             work.load(network, self.state);
-            let count = self.substeps(step_max.min(1.0 / work.drag_rate(model, network)), retry);
+            let count = self.substeps(step_max.min(1.0 / work.drag_rate(model, network)), retry)?;
             let drift = self.length / count as f64;
             let mut steps = self.state.lines[network.lines[0]].half_step.steps;
             work.put_ends(
@@ -237,7 +239,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
         let step_max = step_max.min(transverse / (SNAP_GROWTH * tension_now).sqrt());
         for retry in 0..=RETRIES_MAX {
             work.load(&self.state.lines[index]);
-            let count = self.substeps(step_max, retry);
+            let count = self.substeps(step_max, retry)?;
             let drift = self.length / count as f64;
             let mut steps = self.state.lines[index].half_step.steps;
             let mut solves = 0;
@@ -315,9 +317,19 @@ impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
     }
 
     /// Equal steps no longer than `step_max` [s], halved `retry` times.
-    fn substeps(&self, step_max: f64, retry: u32) -> usize {
+    fn substeps(&self, step_max: f64, retry: u32) -> Result<usize, StepError> {
         // a span of exactly one limit must not become two steps by rounding
-        ((self.length / step_max * (1.0 - 1e-9)).ceil().max(1.0) as usize) << retry
+        let count = (self.length / step_max * (1.0 - 1e-9)).ceil().max(1.0);
+        if count <= SUBSTEPS_MAX {
+            return Ok((count as usize) << retry);
+        }
+        Err(StepError {
+            time: self.start,
+            line: self.model.lines[0].name.clone(),
+            node: 0,
+            reason: format!("steps of {step_max:.1e} s would be needed, {count:.0e} of them"),
+            advice: "check masses, lengths and stiffnesses, or use solver.integrator = \"generalised_alpha\"",
+        })
     }
 
     fn diverged(&self, line: usize, node: usize) -> StepError {
