@@ -388,7 +388,8 @@ impl AxialWork {
         let push = Lanes::load(&contact.stiffness, at) * next * drift
             + Lanes::load(&contact.damping, at) * (next - penetration.positive());
         let (yes, no) = (Lanes::splat(1.0), Lanes::splat(-1.0));
-        next.choose(push.choose(yes, no), no)
+        let free = Lanes::load(&self.interior, at); // held ends yield to no bed
+        free.choose(next.choose(push.choose(yes, no), no), no)
     }
 
     /// Adds the bed to the nodes it pushes: a rank-one update of the inverse mass, and its impulse.
@@ -475,22 +476,11 @@ impl AxialWork {
                 if changed.any_positive() {
                     touches.store(&mut self.nodes.touches, at);
                     self.settle(at, step);
-                    self.release_ends();
                     holds = false;
                 }
             }
         }
         holds
-    }
-
-    /// Ends are held: no bed acts on their motion.
-    #[inline(always)]
-    fn release_ends(&mut self) {
-        for at in [FIRST, FIRST + self.layout.segment_count] {
-            self.nodes.held[at] = 0.0;
-            self.nodes.touches[at] = -1.0;
-            self.nodes.loose.set(at, self.nodes.fall.get(at));
-        }
     }
 
     /// Updates slack flags and the true stretch; false if either asks for another pass.
