@@ -3,12 +3,13 @@
 
 mod common;
 
+use std::process::Command;
+
 use common::{scene, shipped, with_elements};
-use moorline::dynamics::quasi_static;
-use moorline::model::{End, Kinematics, Model, State};
+use moorline::model::{End, Model, State};
 use moorline::scene::Scene;
 use moorline::simulation::Simulation;
-use moorline::statics::assembly::{Counters, Workspace};
+use moorline::statics::assembly::Workspace;
 use moorline::statics::catenary::{self, Bed, Catenary, Section};
 use moorline::statics::{catenary_network, equilibrium};
 use nalgebra::Vector3;
@@ -70,6 +71,27 @@ fn the_collar_slides_to_the_inextensible_catenary_on_any_mesh() {
         }
         assert!((depth(&simulation) / COLLAR[1] - 1.0).abs() < tolerance);
     }
+}
+
+#[test]
+fn the_command_line_draws_the_collar_out_too() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = format!("{}/scenes/collar.toml", env!("CARGO_MANIFEST_DIR"));
+    let done = Command::new(env!("CARGO_BIN_EXE_moorline"))
+        .args(["run", &scene, "-o"])
+        .arg(folder.path())
+        .output()
+        .unwrap();
+    assert!(done.status.success(), "{done:?}");
+    let mut table = csv::Reader::from_path(folder.path().join("results.csv")).unwrap();
+    let names = table.headers().unwrap().clone();
+    let last = table.records().last().unwrap().unwrap();
+    let value = |name: &str| -> f64 {
+        let column = names.iter().position(|other| other == name).unwrap();
+        last[column].parse().unwrap()
+    };
+    assert!((value("wire.sag") / COLLAR[1] - 1.0).abs() < 1e-5);
+    assert!((value("wire.tension_a") - PULL.hypot(HALF_WEIGHT)).abs() < 1e-10);
 }
 
 #[test]
@@ -405,23 +427,116 @@ fn a_heavy_free_point_rests_on_the_bed_and_is_lifted_by_a_load() {
     assert!(count > 5 && lifted > -45.0, "{count} {lifted}");
 }
 
+/// A number in 0 … 1.
+fn random(seed: &mut u64) -> f64 {
+    *seed = seed
+        .wrapping_mul(6364136223846793005)
+        .wrapping_add(1442695040888963407);
+    (*seed >> 11) as f64 / (1u64 << 53) as f64
+}
+
+/// Two knots, sinking or floating, over a bed: each tied to an anchor, to a point above and to the other, slack to taut, in water.
+fn tangle(seed: &mut u64) -> Scene {
+    let mut text = "[seabed]\ndepth = 30.0\nstiffness = 1.0e6\n[water]\ndensity = 1025.0\n"
+        .to_string()
+        + QUASI_STATIC;
+    for (name, heaviest) in [("chain", 60.0), ("rope", 10.0)] {
+        let (mass, stiffness) = (
+            1.0 + heaviest * random(seed),
+            10_f64.powf(4.0 + 5.0 * random(seed)),
+        );
+        text += &format!(
+            "[line_types.{name}]\nmass = {mass:?}\ndiameter = 0.05\naxial_stiffness = {stiffness:e}\n"
+        );
+    }
+    let names = ["south", "north", "pile", "vessel", "left", "right"];
+    let mut places = Vec::new();
+    for name in names {
+        let z = match name {
+            "south" | "north" => -30.0,
+            "pile" | "vessel" => -20.0 * random(seed),
+            _ => -30.0 * random(seed),
+        };
+        let place = [40.0 * random(seed), 40.0 * random(seed), z];
+        let knot = format!(
+            "kind = \"free\"\nmass = {:?}\nvolume = {:?}",
+            500.0 * random(seed),
+            0.3 * random(seed)
+        );
+        let kind = match name {
+            "left" | "right" => &knot,
+            "vessel" => "kind = \"coupled\"",
+            _ => FIXED,
+        };
+        text += &point(name, place, kind);
+        places.push(Vector3::from(place));
+    }
+    for (number, [a, b]) in [[0, 4], [1, 5], [4, 5], [4, 2], [5, 3]]
+        .into_iter()
+        .enumerate()
+    {
+        let length = (0.95 + 0.5 * random(seed)) * (places[b] - places[a]).norm();
+        let chain = (0.1 + 0.8 * random(seed)) * length;
+        let sections = [("chain", chain, 5), ("rope", length - chain, 5)];
+        text += &line(&format!("line{number}"), [names[a], names[b]], &sections);
+    }
+    scene(&text)
+}
+
+#[test]
+fn random_networks_rest_on_their_catenaries_in_balance() {
+    let (mut seed, mut on_elements) = (11, 0);
+    for case in 0..200 {
+        let mut simulation = Simulation::new(&tangle(&mut seed)).unwrap();
+        for step in 0..5 {
+            let shift = (0.3 * f64::from(step)).sin();
+            simulation.set_displacement(3, [2.0 * shift, shift, shift]);
+            simulation.advance(0.5).unwrap();
+            if simulation.state().lines[0].closed_form.is_none() {
+                on_elements += 1;
+                continue;
+            }
+            let tension = (0..5)
+                .map(|line| simulation.tension_max(line))
+                .fold(0.0, f64::max);
+            for knot in [4, 5] {
+                let own = simulation.model().points[knot].free().unwrap().weight;
+                let mut pull = Vector3::from(simulation.end_force(knot)) - own * Vector3::z();
+                if simulation.state().points[knot].position.z <= -30.0 {
+                    pull.z = pull.z.max(0.0); // the bed carries it
+                }
+                assert!(
+                    pull.norm() < 1e-9 * tension,
+                    "{case} {step}: {pull} {tension}"
+                );
+            }
+        }
+    }
+    assert!(on_elements <= 20, "{on_elements}");
+}
+
 // ------------------------------------------------------------------ where there is no closed form
 
 #[test]
 fn a_cable_of_green_strain_rests_on_its_elements() {
-    let mut loaded = shipped("point_load");
-    loaded.solver.integrator = moorline::scene::Integrator::QuasiStatic;
-    let model = Model::new(&loaded).unwrap();
-    assert!(!catenary_network::serves(&model, &model.networks[0]));
-    let places: Vec<Vector3<f64>> = model.points.iter().map(|point| point.reference).collect();
-    let mut work = Workspace::new(&model);
-    let mut state = catenary_network::solve(&model, &places, 0.0, &mut work).unwrap();
-    let held = |point: usize, _| Kinematics {
-        position: places[point],
-        ..Kinematics::default()
-    };
-    let done = quasi_static::advance(&model, 0, &mut state, &held, [0.0, 1.0], &mut work).unwrap();
-    assert!(
-        done != Counters::default() && state.lines.iter().all(|line| line.closed_form.is_none())
-    );
+    let mut simulation = Simulation::new(&shipped("point_load")).unwrap();
+    let networks = &simulation.model().networks;
+    assert!(!catenary_network::serves(simulation.model(), &networks[0]));
+    for step in 0..=10 {
+        let load = -simulation.model().points[1].load_at(f64::from(step)).z;
+        let exact = (load / (8.0 * 5000.0)).cbrt(); // W = 8·EA·u³/L³
+        let deflection = -simulation.state().points[1].position.z;
+        assert!(
+            (deflection / exact - 1.0).abs() < 1e-9,
+            "{load} N: {deflection} m"
+        );
+        assert!(
+            simulation
+                .state()
+                .lines
+                .iter()
+                .all(|line| line.closed_form.is_none())
+        );
+        simulation.advance(1.0).unwrap();
+    }
 }

@@ -164,7 +164,7 @@ fn draw(line: &Line, solved: &Catenary, state: &mut State, index: usize) {
     let last = closed_form.tension.len() - 1;
     (closed_form.tension[0], closed_form.tension[last]) = (solved.tension_a(), solved.tension_b());
     closed_form.end_force = plane.end_forces(solved);
-    closed_form.laid_length = solved.laid_length();
+    closed_form.laid_length = solved.laid_length() + 0.0; // an empty sum is −0
     closed_form.stretched_length = solved.stretched_length();
     closed_form.sag = solved.sag();
     shape.velocity.fill(Vector3::zeros());
