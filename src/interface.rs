@@ -511,7 +511,7 @@ fn push_solver(variables: &mut Vec<Variable>) {
     ));
     variables.push(row(
         "solver.power_residual".into(),
-        "power that the energy balance of the last communication step misses".into(),
+        "energy error over the time since the start".into(),
         Causality::Output,
         Unit::WATT,
         Binding::Solver(SolverResult::PowerResidual),

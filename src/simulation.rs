@@ -48,6 +48,7 @@ pub struct Snapshot {
     follows_scene: bool,
     counters: Counters,
     ledger: Ledger,
+    start_time: f64,
 }
 
 /// A mooring in time.
@@ -186,9 +187,8 @@ impl Simulation {
         let done = self
             .work
             .advance(model, &mut self.snapshot.state, step, &held)?;
-        let held = self.work.energy(model, &self.snapshot.state);
         self.snapshot.counters = done.counters;
-        self.snapshot.ledger.book(held, done.flow, step);
+        self.snapshot.ledger.flow.add(done.flow);
         self.snapshot.paths.clone_from(&self.paths);
         Ok(())
     }
@@ -344,7 +344,8 @@ impl Simulation {
 
     /// Imbalance of the energy ledger since the start [J].
     pub fn energy_error(&self) -> f64 {
-        self.snapshot.ledger.error()
+        let held = self.work.energy(&self.model, &self.snapshot.state);
+        self.snapshot.ledger.error(held)
     }
 
     /// The energy ledger.
@@ -352,9 +353,14 @@ impl Simulation {
         &self.snapshot.ledger
     }
 
-    /// Imbalance of the energy ledger in the last communication step, over its length [W].
+    /// Imbalance of the energy ledger since the start, over the time since then [W].
     pub fn power_residual(&self) -> f64 {
-        self.snapshot.ledger.power_residual
+        let elapsed = self.time() - self.snapshot.start_time;
+        if elapsed > 0.0 {
+            self.energy_error() / elapsed
+        } else {
+            0.0
+        }
     }
 }
 
@@ -414,6 +420,7 @@ fn begin(
             follows_scene,
             counters,
             ledger,
+            start_time: time,
         },
         work,
     ))

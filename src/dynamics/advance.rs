@@ -52,7 +52,7 @@ pub struct Workspace {
 #[derive(Debug, Clone)]
 enum Solver {
     Leapfrog(NetworkWork),
-    AxialImplicit(AxialWork),
+    AxialImplicit(Box<AxialWork>),
     Implicit(Scheme),
     QuasiStatic,
 }
@@ -163,7 +163,10 @@ impl Solver {
                     .spectral_radius
                     .unwrap_or(AXIAL_SPECTRAL_RADIUS);
                 let line = &model.lines[network.lines[0]];
-                kernel(AxialWork::new(line, rho, negative).map(Solver::AxialImplicit))
+                kernel(
+                    AxialWork::new(line, rho, negative)
+                        .map(|work| Solver::AxialImplicit(Box::new(work))),
+                )
             }
             Integrator::Leapfrog => kernel(NetworkWork::new(model, network).map(Solver::Leapfrog)),
             _ => Solver::Implicit(Scheme::new(&model.solver)),

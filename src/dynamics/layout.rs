@@ -215,7 +215,8 @@ impl Layout {
         let broken = |i: &usize| {
             let (position, velocity) = (self.position.get(FIRST + i), self.velocity.get(FIRST + i));
             !position.iter().all(|value| value.is_finite())
-                || !(velocity.norm_squared() < SPEED_MAX * SPEED_MAX)
+                || !velocity.norm_squared().is_finite()
+                || velocity.norm() > SPEED_MAX
         };
         (0..=self.segment_count).find(broken)
     }

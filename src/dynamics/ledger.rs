@@ -29,17 +29,13 @@ pub struct Flow {
     pub lost: f64,
 }
 
-/// Balance of a whole model since the start.
+/// What a whole model started with, and what has crossed its border since.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Ledger {
     /// Energy at the start [J].
     pub start: f64,
-    /// Energy now [J].
-    pub held: f64,
     /// All that was given and lost [J].
     pub flow: Flow,
-    /// Change of the imbalance in the last communication step, over its length [W].
-    pub power_residual: f64,
 }
 
 impl Flow {
@@ -63,22 +59,13 @@ impl Ledger {
     pub fn new(energy: f64) -> Ledger {
         Ledger {
             start: energy,
-            held: energy,
-            ..Ledger::default()
+            flow: Flow::default(),
         }
     }
 
-    /// Imbalance [J].
-    pub fn error(&self) -> f64 {
-        self.held - self.start - self.flow.given + self.flow.lost
-    }
-
-    /// Books a communication step of a length [s].
-    pub fn book(&mut self, held: f64, flow: Flow, length: f64) {
-        let before = self.error();
-        self.held = held;
-        self.flow.add(flow);
-        self.power_residual = (self.error() - before) / length;
+    /// Imbalance [J] where the model now holds an energy [J].
+    pub fn error(&self, held: f64) -> f64 {
+        held - self.start - self.flow.given + self.flow.lost
     }
 }
 

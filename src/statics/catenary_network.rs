@@ -5,7 +5,7 @@
 //!   R = Σ F_line + F_load(t) − w ẑ,
 //!
 //! F the end force of a catenary, which lies in the vertical plane through its ends. Newton's method; the stiffness of a line in
-//! free flight is exact ([`stiffness`]), that of a line on the bed a difference quotient of its closed form; across its plane a line
+//! free flight is exact (see `stiffness`), that of a line on the bed a difference quotient of its closed form; across its plane a line
 //! has H/X. Steps are limited, and cut until the power R·δ has not turned: without friction the potential energy is convex
 //! in the positions of the points, so this finds the one equilibrium. A point whose lines can touch the bed rests on it
 //! where it would sink.

@@ -1,0 +1,56 @@
+//! Nothing is allocated in a step: counted by an allocator that counts.
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+
+use moorline::scene::{Integrator, Scene};
+use moorline::simulation::Simulation;
+
+struct Counting;
+
+thread_local! {
+    static COUNT: Cell<usize> = const { Cell::new(0) };
+}
+
+// SAFETY: every call is handed on to the system's allocator as it came.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        COUNT.with(|count| count.set(count.get() + 1));
+        // SAFETY: the caller keeps the contract of `alloc`.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        // SAFETY: the caller keeps the contract of `dealloc`.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+#[test]
+fn a_step_allocates_nothing() {
+    for integrator in [
+        Integrator::Leapfrog,
+        Integrator::AxialImplicit,
+        Integrator::GeneralisedAlpha,
+        Integrator::Bossak,
+    ] {
+        let mut scene = Scene::from_toml(include_str!("../../scenes/oc4_chain.toml")).unwrap();
+        scene.solver.integrator = integrator;
+        let mut simulation = Simulation::new(&scene).unwrap();
+        let fairlead = simulation.model().point_index("fairlead").unwrap();
+        let mut drive = |steps: std::ops::Range<u32>| {
+            for step in steps {
+                let time = 0.05 * f64::from(step);
+                simulation.set_displacement(fairlead, [3.0 * (0.5 * time).sin(), 0.0, 0.0]);
+                simulation.advance(0.05).unwrap();
+            }
+        };
+        drive(0..5); // buffers grow to their sizes
+        let before = COUNT.with(Cell::get);
+        drive(5..200);
+        assert_eq!(COUNT.with(Cell::get) - before, 0, "{integrator:?}");
+    }
+}
