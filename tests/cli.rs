@@ -6,7 +6,6 @@ use std::io::Read;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
-use moorline::output::package::find_library;
 use tempfile::TempDir;
 
 /// A hanging line in still air, quick to run.
@@ -459,26 +458,29 @@ fn an_fmu_that_cannot_be_placed_is_refused() {
     assert_eq!(names(folder.path()), ["scene.toml"]);
 }
 
-/// Puts the FMU library beside the program under test, once: `cargo test` leaves it among the test programs, or does not build it.
-/// Asked for in the company of all packages, it shares what `cargo test` has compiled.
+/// Puts the FMU library beside the program under test, once: `cargo test` does not build it for the tests of another package.
 fn build_library() {
     static BUILT: std::sync::Once = std::sync::Once::new();
     BUILT.call_once(|| {
-        let mut cargo = Command::new(env!("CARGO"));
-        cargo.args(["test", "--quiet", "--no-run", "--test", "host"]);
-        if !cfg!(debug_assertions) {
-            cargo.arg("--release");
-        }
-        let output = cargo
+        let profile = if cfg!(debug_assertions) {
+            "dev"
+        } else {
+            "release"
+        };
+        let output = Command::new(env!("CARGO"))
+            .args([
+                "build",
+                "--quiet",
+                "--package",
+                "moorline-fmu",
+                "--lib",
+                "--profile",
+                profile,
+            ])
             .current_dir(env!("CARGO_MANIFEST_DIR"))
             .output()
             .unwrap();
         assert!(output.status.success(), "{}", err(&output));
-        let built = find_library().unwrap();
-        let program = Path::new(env!("CARGO_BIN_EXE_moorline"));
-        let target = program.with_file_name(built.file_name().unwrap());
-        let _ = fs::remove_file(&target); // it may be a link to what is copied, or not be there
-        fs::copy(built, target).unwrap();
     });
 }
 
