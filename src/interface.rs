@@ -3,9 +3,9 @@
 //! modelDescription.xml, the FMU's getters and setters, the CSV header and `moorline check` all read this table, so
 //! that they cannot drift apart. The value reference of a variable is its position in the table, counted from 1.
 //!
-//! The table holds, in this order: inputs and forces of every coupled point, outputs of every line, the solver's
-//! outputs, the calculated parameters, the parameters, and the profiles where the scene asks for them. Vessels, winches
-//! and releases get their rows between points and lines when a scene can describe them.
+//! The table holds, in this order: inputs and forces of every coupled point and of every vessel, outputs of every line, the
+//! solver's outputs, the calculated parameters, the parameters, and the profiles where the scene asks for them. Winches and
+//! releases get their rows between vessels and lines when a scene can describe them.
 
 mod dependencies;
 mod parameters;
@@ -13,7 +13,7 @@ mod profile;
 
 use std::collections::BTreeSet;
 
-use crate::model::{Line, Model};
+use crate::model::{Body, Line, Model};
 use crate::physics::stretch::StretchLaw;
 use crate::scene::{Axis, PointKind, Scene, SceneError};
 use crate::simulation::Simulation;
@@ -83,6 +83,8 @@ impl Unit {
     pub const METRE_PER_SECOND_SQUARED: Unit = Unit::of("m/s2", 0, 1, -2);
     /// Newton.
     pub const NEWTON: Unit = Unit::of("N", 1, 1, -2);
+    /// Newton metre.
+    pub const NEWTON_METRE: Unit = Unit::of("N.m", 1, 2, -2);
     /// Newton per metre.
     pub const NEWTON_PER_METRE: Unit = Unit::of("N/m", 1, 0, -2);
     /// Newton second.
@@ -104,6 +106,15 @@ impl Unit {
         rad: 1,
     };
 
+    /// Radian per second.
+    pub const RADIAN_PER_SECOND: Unit = Unit {
+        name: "rad/s",
+        kg: 0,
+        m: 0,
+        s: -1,
+        rad: 1,
+    };
+
     const fn of(name: &'static str, kg: i8, m: i8, s: i8) -> Unit {
         Unit {
             name,
@@ -118,25 +129,25 @@ impl Unit {
 /// What getting or setting a variable touches. Points and lines are counted in the scene's order.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Binding {
-    /// Displacement of a coupled point from its reference position [m].
+    /// Displacement of a coupled point or a vessel from its reference [m] or [rad].
     Displacement {
-        /// The point.
-        point: usize,
-        /// Its axis, 0 to 2.
+        /// What moves.
+        body: Body,
+        /// Its axis: x, y, z and of a vessel roll, pitch, yaw, 0 to 5.
         axis: usize,
     },
-    /// Velocity of a coupled point [m/s].
+    /// Velocity of a coupled point or a vessel [m/s] or [rad/s].
     Velocity {
-        /// The point.
-        point: usize,
-        /// Its axis, 0 to 2.
+        /// What moves.
+        body: Body,
+        /// Its axis, 0 to 5.
         axis: usize,
     },
-    /// Force of all lines on a coupled point [N].
+    /// Force of all lines on a coupled point or a vessel [N], and moment on a vessel [N m].
     EndForce {
-        /// The point.
-        point: usize,
-        /// Its axis, 0 to 2.
+        /// What the lines pull at.
+        body: Body,
+        /// Its axis, 0 to 5.
         axis: usize,
     },
     /// A result of a line.
@@ -258,10 +269,14 @@ impl Interface {
     pub fn new(scene: &Scene, model: &Model, layout: Layout) -> Result<Interface, SceneError> {
         let mut variables = Vec::new();
         for (index, point) in scene.points.iter().enumerate() {
-            if point.kind == PointKind::Coupled {
+            if point.kind == PointKind::Coupled && point.on.is_none() {
                 check_name(&point.name, &format!("points[{index}].name"))?;
                 push_point(&mut variables, index, &point.name);
             }
+        }
+        for (index, vessel) in scene.vessels.iter().enumerate() {
+            check_name(&vessel.name, &format!("vessels[{index}].name"))?;
+            push_vessel(&mut variables, index, &vessel.name);
         }
         for (index, line) in scene.lines.iter().enumerate() {
             check_name(&line.name, &format!("lines[{index}].name"))?;
@@ -319,7 +334,12 @@ impl Interface {
     ) -> Result<(), String> {
         assert_eq!(values.len(), variable.size(), "one place for each value");
         match variable.binding {
-            Binding::EndForce { point, axis } => values[0] = simulation.end_force(point)[axis],
+            Binding::EndForce { body, axis } => {
+                values[0] = match body {
+                    Body::Point(point) => simulation.end_force(point)[axis],
+                    Body::Vessel(vessel) => simulation.vessel_force(vessel)[axis],
+                }
+            }
             Binding::Line { line, result } => {
                 values[0] = line_result(simulation, line, result).ok_or_else(|| {
                     format!(
@@ -400,13 +420,14 @@ fn row(
 const AXES: [&str; 3] = ["x", "y", "z"];
 
 fn push_point(variables: &mut Vec<Variable>, point: usize, name: &str) {
+    let body = Body::Point(point);
     for (axis, label) in AXES.iter().enumerate() {
         variables.push(row(
             format!("{name}.{label}"),
             format!("displacement of {name} from its reference position along global {label}"),
             Causality::Input,
             Unit::METRE,
-            Binding::Displacement { point, axis },
+            Binding::Displacement { body, axis },
         ));
     }
     for (axis, label) in AXES.iter().enumerate() {
@@ -415,7 +436,7 @@ fn push_point(variables: &mut Vec<Variable>, point: usize, name: &str) {
             format!("velocity of {name} along global {label}; derived from the displacements if never set"),
             Causality::Input,
             Unit::METRE_PER_SECOND,
-            Binding::Velocity { point, axis },
+            Binding::Velocity { body, axis },
         ));
     }
     for (axis, label) in AXES.iter().enumerate() {
@@ -424,8 +445,54 @@ fn push_point(variables: &mut Vec<Variable>, point: usize, name: &str) {
             format!("force of all lines at {name} on what carries it, along global {label}"),
             Causality::Output,
             Unit::NEWTON,
-            Binding::EndForce { point, axis },
+            Binding::EndForce { body, axis },
         ));
+    }
+}
+
+/// Rows of a vessel: its pose, its velocities, and what its moorings do to it.
+fn push_vessel(variables: &mut Vec<Variable>, vessel: usize, name: &str) {
+    let body = Body::Vessel(vessel);
+    for (axis, label) in ["x", "y", "z", "roll", "pitch", "yaw"].iter().enumerate() {
+        let (meaning, unit) = match axis {
+            0..3 => (
+                format!("displacement of {name} from its reference position along global {label}"),
+                Unit::METRE,
+            ),
+            _ => (
+                format!(
+                    "{label} of {name} from its reference attitude; body to global by yaw about z, pitch about y', roll about x''"
+                ),
+                Unit::RADIAN,
+            ),
+        };
+        let binding = Binding::Displacement { body, axis };
+        let name = format!("{name}.{label}");
+        variables.push(row(name, meaning, Causality::Input, unit, binding));
+    }
+    for (axis, label) in ["vx", "vy", "vz", "wx", "wy", "wz"].iter().enumerate() {
+        let (what, unit) = match axis {
+            0..3 => ("velocity", Unit::METRE_PER_SECOND),
+            _ => ("angular velocity", Unit::RADIAN_PER_SECOND),
+        };
+        let along = AXES[axis % 3];
+        let meaning = format!(
+            "{what} of {name}, component {along} in global axes; derived from the displacements if never set"
+        );
+        let binding = Binding::Velocity { body, axis };
+        let name = format!("{name}.{label}");
+        variables.push(row(name, meaning, Causality::Input, unit, binding));
+    }
+    for (axis, label) in ["fx", "fy", "fz", "mx", "my", "mz"].iter().enumerate() {
+        let (what, unit) = match axis {
+            0..3 => ("force", Unit::NEWTON),
+            _ => ("moment about the origin", Unit::NEWTON_METRE),
+        };
+        let along = AXES[axis % 3];
+        let meaning = format!("{what} of the mooring on {name}, component {along} in global axes");
+        let binding = Binding::EndForce { body, axis };
+        let name = format!("{name}.{label}");
+        variables.push(row(name, meaning, Causality::Output, unit, binding));
     }
 }
 

@@ -15,7 +15,7 @@ use crate::dynamics::motion::{AxisPath, HostPath, Sample, VesselPath};
 use crate::dynamics::{Choice, StepError, reaction};
 use crate::math::attitude::angle_rates;
 use crate::model::{
-    ClosedForm, End, Frame, Kinematics, Line, LineState, Model, PointState, Role, State,
+    Body, ClosedForm, End, Frame, Kinematics, Line, LineState, Model, PointState, Role, State,
 };
 use crate::physics::stretch::StretchLaw;
 use crate::scene::{Integrator, Scene, SceneError};
@@ -234,6 +234,21 @@ impl Simulation {
     /// Pose of a vessel as set [m, rad].
     pub fn pose(&self, vessel: usize) -> [f64; 6] {
         self.snapshot.inputs.vessels[vessel].pose
+    }
+
+    /// Sets where a body is now and how it moves, along its first three axes or all six.
+    pub fn set_body(&mut self, body: Body, pose: [f64; 6], velocity: [Option<f64>; 6]) {
+        match body {
+            Body::Point(point) => {
+                let ([x, y, z, ..], [vx, vy, vz, ..]) = (pose, velocity);
+                self.set_displacement(point, [x, y, z]);
+                self.set_velocity(point, [vx, vy, vz]);
+            }
+            Body::Vessel(vessel) => {
+                self.set_pose(vessel, pose);
+                self.set_vessel_velocity(vessel, velocity);
+            }
+        }
     }
 
     /// Sets how a vessel moves now: velocity of its origin [m/s] and angular velocity [rad/s], both in global axes. What is absent is

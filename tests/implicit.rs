@@ -39,6 +39,7 @@ fn swing(model: &Model, amplitude: Vector3<f64>, period: f64) -> impl Fn(usize, 
             position: reference[point] + s.powi(4) * moved,
             velocity: 4.0 * w * s.powi(3) * c * moved,
             acceleration: 4.0 * w * w * s * s * (3.0 * c * c - s * s) * moved,
+            ..Kinematics::default()
         }
     }
 }

@@ -58,7 +58,7 @@ fn mapped(mut scene: Scene, map: impl Fn(Vector3<f64>) -> Vector3<f64>) -> Scene
         let rows = (0..=400).map(|k| {
             let t = 0.05 * k as f64;
             let u = map(motion.at(t).position);
-            [t, u.x, u.y, u.z]
+            [t, u.x, u.y, u.z, 0.0, 0.0, 0.0]
         });
         *path = MotionPath::Table(rows.collect());
     }

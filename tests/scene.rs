@@ -1023,7 +1023,7 @@ fn a_motion_file_is_read_beside_the_scene_and_packed_into_its_text() {
     let folder = tempfile::tempdir().unwrap();
     let csv = b"time [s], x [m], y [m], z [m]\n0, 0, 0, 0\n0.1, 1e-3, 0.3, -7\n";
     let scene = load_with_motion_file(folder.path(), csv).unwrap();
-    let rows = vec![[0.0; 4], [0.1, 1e-3, 0.3, -7.0]];
+    let rows = vec![[0.0; 7], [0.1, 1e-3, 0.3, -7.0, 0.0, 0.0, 0.0]];
     assert_eq!(scene.motion["fairlead"].rows(), Some(rows.as_slice()));
     let packed = Scene::from_toml(&scene.to_toml()).unwrap();
     assert_eq!(packed.motion["fairlead"], MotionPath::Table(rows));
@@ -1309,7 +1309,7 @@ proptest! {
             y: Some(TimeFunction::Ramp([-1.0, f, t, -f])),
             z: Some(TimeFunction::Table(vec![[-t - 1.0, f], [t, x]])),
         });
-        scene.motion.insert("fairlead".into(), MotionPath::Table(vec![[t, x, tiny, -0.0]]));
+        scene.motion.insert("fairlead".into(), MotionPath::Table(vec![[t, x, tiny, -0.0, 0.0, 0.0, 0.0]]));
         let read = Scene::from_toml(&scene.to_toml()).unwrap();
         let bits = |scene: &Scene| scene.points[0].position.map(f64::to_bits);
         prop_assert_eq!(bits(&read), bits(&scene));

@@ -5,7 +5,7 @@
 //! `Discard`, since a smaller communication step cannot help a solver that has already substepped.
 
 use moorline::interface::{Binding, Causality, Interface, Kind, Variable};
-use moorline::model::Model;
+use moorline::model::{Body, Model};
 use moorline::output::description::{Description, VERSION, time_reference};
 use moorline::scene::Scene;
 use moorline::simulation::Simulation;
@@ -13,7 +13,7 @@ use moorline_host::{FmiVersion, Status};
 
 use crate::log::{Log, Topic};
 use crate::resources;
-use crate::saved::{Phase, PointInput, Snapshot};
+use crate::saved::{BodyInput, Phase, Snapshot};
 
 /// Why a call was refused or failed, in words for the host's log.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -50,9 +50,9 @@ pub(crate) struct Instance {
     start_time: f64,
     stop_time: Option<f64>,
     time: f64,
-    inputs: Vec<PointInput>,
+    inputs: Vec<BodyInput>,
     /// Displacements at which the statics were solved last [m].
-    start_displacements: Vec<[f64; 3]>,
+    start_displacements: Vec<[f64; 6]>,
     /// Statics with the present parameters and inputs, or where the last step ended; `None` while they are not known.
     simulation: Option<Simulation>,
     has_warned_of_time: bool,
@@ -79,8 +79,8 @@ impl Instance {
             )));
         }
         Ok(Instance {
-            inputs: vec![PointInput::default(); scene.points.len()],
-            start_displacements: vec![[0.0; 3]; scene.points.len()],
+            inputs: vec![BodyInput::default(); scene.points.len() + scene.vessels.len()],
+            start_displacements: vec![[0.0; 6]; scene.points.len() + scene.vessels.len()],
             time_reference: (version == FmiVersion::Three)
                 .then(|| time_reference(&description.interface)),
             packaged: scene.clone(),
@@ -197,7 +197,7 @@ impl Instance {
     /// Back to just after instantiation; the log keeps its settings.
     pub(crate) fn reset(&mut self) -> Outcome {
         self.scene.clone_from(&self.packaged);
-        self.inputs.fill(PointInput::default());
+        self.inputs.fill(BodyInput::default());
         self.phase = Phase::Instantiated;
         self.start_time = 0.0;
         self.stop_time = None;
@@ -253,10 +253,12 @@ impl Instance {
             let (own, others) = rest.split_at_mut(variable.size());
             rest = others;
             match &variable.binding {
-                Binding::Displacement { point, axis } => {
-                    own[0] = self.inputs[*point].displacement[*axis];
+                Binding::Displacement { body, axis } => {
+                    own[0] = self.inputs[slot(&self.scene, *body)].displacement[*axis];
                 }
-                Binding::Velocity { point, axis } => own[0] = self.inputs[*point].velocity[*axis],
+                Binding::Velocity { body, axis } => {
+                    own[0] = self.inputs[slot(&self.scene, *body)].velocity[*axis];
+                }
                 Binding::Parameter(parameter) => {
                     own[0] = parameter
                         .value(&self.scene)
@@ -368,14 +370,14 @@ impl Instance {
         for (&reference, &value) in references.iter().zip(values) {
             let binding = &Self::variable(&self.interface, reference)?.binding;
             match *binding {
-                Binding::Displacement { point, axis } => {
-                    self.inputs[point].displacement[axis] = value;
+                Binding::Displacement { body, axis } => {
+                    self.inputs[slot(&self.scene, body)].displacement[axis] = value;
                     if self.phase == Phase::Initialization {
                         self.simulation = None;
                     }
                 }
-                Binding::Velocity { point, axis } => {
-                    let input = &mut self.inputs[point];
+                Binding::Velocity { body, axis } => {
+                    let input = &mut self.inputs[slot(&self.scene, body)];
                     input.velocity[axis] = value;
                     // Hosts write the start value 0 of every input: that is not yet a velocity.
                     input.has_velocity[axis] |= self.phase == Phase::Step || value != 0.0;
@@ -453,13 +455,17 @@ impl Instance {
                     "{value} is not a finite number; nothing was set"
                 )));
             }
-            if let Binding::Displacement { point, axis } = variable.binding {
-                targets.push((point, axis, value));
+            match variable.binding {
+                // The rates of roll, pitch and yaw are no angular velocity: the path through the poses has its own.
+                Binding::Displacement { body, axis } if axis < 3 => {
+                    targets.push((slot(&self.scene, body), axis, value));
+                }
+                _ => {}
             }
         }
-        for (point, axis, value) in targets {
-            self.inputs[point].velocity[axis] = value;
-            self.inputs[point].has_velocity[axis] = true;
+        for (body, axis, value) in targets {
+            self.inputs[body].velocity[axis] = value;
+            self.inputs[body].has_velocity[axis] = true;
         }
         Ok(())
     }
@@ -612,11 +618,20 @@ impl Instance {
     }
 }
 
-/// Static equilibrium at the given displacements of the points [m], always from the same first guess.
-fn statics(scene: &Scene, start: f64, displacements: &[[f64; 3]]) -> Result<Simulation, Refusal> {
+/// Place of a body among the inputs: all points, then all vessels.
+fn slot(scene: &Scene, body: Body) -> usize {
+    match body {
+        Body::Point(point) => point,
+        Body::Vessel(vessel) => scene.points.len() + vessel,
+    }
+}
+
+/// Static equilibrium at the given displacements of the bodies [m, rad], always from the same first guess.
+fn statics(scene: &Scene, start: f64, displacements: &[[f64; 6]]) -> Result<Simulation, Refusal> {
     let mut simulation = Simulation::new(scene).map_err(|e| e.to_string())?;
-    for (point, displacement) in displacements.iter().enumerate() {
-        simulation.set_displacement(point, *displacement);
+    let bodies: Vec<Body> = simulation.model().bodies().collect();
+    for (body, displacement) in bodies.into_iter().zip(displacements) {
+        simulation.set_body(body, *displacement, [None; 6]);
     }
     simulation.restart(start).map_err(|e| e.to_string())?;
     Ok(simulation)
@@ -628,14 +643,14 @@ fn same_bits(these: &[f64], those: &[f64]) -> bool {
 }
 
 /// Gives the simulation what the host last set.
-fn hand_over(inputs: &[PointInput], simulation: &mut Simulation) {
-    for (point, input) in inputs.iter().enumerate() {
-        let mut velocity = [None; 3];
+fn hand_over(inputs: &[BodyInput], simulation: &mut Simulation) {
+    for (index, input) in inputs.iter().enumerate() {
+        let body = simulation.model().body(index);
+        let mut velocity = [None; 6];
         for (axis, velocity) in velocity.iter_mut().enumerate() {
             *velocity = input.has_velocity[axis].then_some(input.velocity[axis]);
         }
-        simulation.set_displacement(point, input.displacement);
-        simulation.set_velocity(point, velocity);
+        simulation.set_body(body, input.displacement, velocity);
     }
 }
 

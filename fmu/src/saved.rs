@@ -20,15 +20,15 @@ pub(crate) enum Phase {
     Terminated,
 }
 
-/// What the host last set at a point.
+/// What the host last set at a point or a vessel; points use the first three axes.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct PointInput {
-    /// Displacement [m].
-    pub(crate) displacement: [f64; 3],
-    /// Velocity [m/s].
-    pub(crate) velocity: [f64; 3],
+pub(crate) struct BodyInput {
+    /// Displacement [m] and angles [rad].
+    pub(crate) displacement: [f64; 6],
+    /// Velocity [m/s] and angular velocity [rad/s].
+    pub(crate) velocity: [f64; 6],
     /// Whether the host gives the velocity.
-    pub(crate) has_velocity: [bool; 3],
+    pub(crate) has_velocity: [bool; 6],
 }
 
 /// All that changes in an instance.
@@ -43,11 +43,11 @@ pub(crate) struct Snapshot {
     pub(crate) time: f64,
     /// Parameters in the order of the interface.
     pub(crate) parameters: Vec<f64>,
-    /// Inputs of every point of the scene.
-    pub(crate) inputs: Vec<PointInput>,
-    /// Displacements of every point at which the statics were solved [m]: what the solver decided there, such as its
+    /// Inputs of every point of the scene, then of every vessel.
+    pub(crate) inputs: Vec<BodyInput>,
+    /// Displacements of every body at which the statics were solved [m, rad]: what the solver decided there, such as its
     /// step limits, is not in its state and is decided again from them.
-    pub(crate) start_displacements: Vec<[f64; 3]>,
+    pub(crate) start_displacements: Vec<[f64; 6]>,
     /// The solver's state, once there is one.
     pub(crate) solver: Option<simulation::Snapshot>,
 }
@@ -101,8 +101,8 @@ mod tests {
             stop_time: None,
             time: 1.0 / 3.0,
             parameters: vec![9.80665, -0.0],
-            inputs: vec![PointInput::default()],
-            start_displacements: vec![[0.0; 3]],
+            inputs: vec![BodyInput::default()],
+            start_displacements: vec![[0.0; 6]],
             solver: None,
         }
     }

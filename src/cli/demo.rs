@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use moorline::interface::{Binding, Interface, Kind, Layout, Variable};
+use moorline::model::Body;
 use moorline::output::record::{Frame, Node, Record};
 use moorline::output::{collect, make_folder, write_run};
 use moorline::scene::{LoadedScene, Scene};
@@ -95,8 +96,8 @@ fn drive(target: &Path, scene: &Scene, reference: &Simulation) -> Result<Record,
 struct Host<'a> {
     slave: Slave,
     reference: &'a Simulation,
-    /// Displacements of the coupled points: point, axis, value reference.
-    displacements: Vec<(usize, usize, u32)>,
+    /// Displacements of the coupled points and vessels: body, axis, value reference.
+    displacements: Vec<(Body, usize, u32)>,
     /// What is recorded at every step, and its value references.
     recorded: Vec<&'a Variable>,
     references: Vec<u32>,
@@ -114,8 +115,8 @@ impl<'a> Host<'a> {
         let recorded: Vec<&Variable> = recorded(interface).collect();
         let mut displacements = Vec::new();
         for variable in interface.variables() {
-            if let Binding::Displacement { point, axis } = variable.binding {
-                displacements.push((point, axis, find(variable)?));
+            if let Binding::Displacement { body, axis } = variable.binding {
+                displacements.push((body, axis, find(variable)?));
             }
         }
         let node = |line: &str, number: usize| -> Result<[u32; 4], HostError> {
@@ -142,12 +143,12 @@ impl<'a> Host<'a> {
         })
     }
 
-    /// Sets where the scene's motion has the coupled points at `time` [s].
+    /// Sets where the scene's motion has the coupled points and vessels at `time` [s].
     fn set_motion(&mut self, time: f64) -> Result<(), HostError> {
-        for (point, k) in scene_motion(self.reference.model(), time) {
+        for moving in scene_motion(self.reference.model(), time) {
             for &(owner, axis, reference) in &self.displacements {
-                if owner == point {
-                    self.slave.set_real(&[reference], &[k.position[axis]])?;
+                if owner == moving.body {
+                    self.slave.set_real(&[reference], &[moving.pose[axis]])?;
                 }
             }
         }

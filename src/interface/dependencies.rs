@@ -27,8 +27,10 @@ pub(super) fn fill(variables: &mut [Variable], scene: &Scene, model: &Model) {
     let mut known_scopes: BTreeMap<(BTreeSet<usize>, bool), Vec<u32>> = BTreeMap::new();
     for variable in variables {
         let (lines, closed_form) = match &variable.binding {
-            Binding::EndForce { point, .. } => {
-                let attached = model.points[*point].attached.iter();
+            Binding::EndForce { body, .. } => {
+                let points =
+                    (0..model.points.len()).filter(|&point| model.moves_with(point, *body));
+                let attached = points.flat_map(|point| &model.points[point].attached);
                 (networks_of(model, attached.map(|(line, _)| *line)), false)
             }
             Binding::Line { line, result } if is_catenary(*result) => {
@@ -89,12 +91,11 @@ struct Scope<'a> {
 impl Scope<'_> {
     fn depends_on(&self, known: &Binding) -> bool {
         match known {
-            Binding::Displacement { point, .. } => {
-                !self.closed_form
-                    && self.model.points[*point]
-                        .attached
-                        .iter()
-                        .any(|(line, _)| self.lines.contains(line))
+            Binding::Displacement { body, .. } => {
+                let points = &self.model.points;
+                let moved = (0..points.len()).filter(|&point| self.model.moves_with(point, *body));
+                let mut attached = moved.flat_map(|point| &points[point].attached);
+                !self.closed_form && attached.any(|(line, _)| self.lines.contains(line))
             }
             Binding::Parameter(parameter) => self.depends_on_parameter(parameter),
             _ => false,

@@ -55,6 +55,15 @@ pub struct Point {
     pub attached: Vec<(usize, End)>,
 }
 
+/// What a host moves: a coupled point along three axes, a vessel along and about all six.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Body {
+    /// A coupled point, by its index.
+    Point(usize),
+    /// A vessel, by its index.
+    Vessel(usize),
+}
+
 /// Who moves a point.
 #[derive(Debug, Clone)]
 pub enum Role {
@@ -253,6 +262,28 @@ impl Model {
     /// Index of the line called `name`.
     pub fn line_index(&self, name: &str) -> Option<usize> {
         self.lines.iter().position(|line| line.name == name)
+    }
+
+    /// All points followed by all vessels.
+    pub fn bodies(&self) -> impl Iterator<Item = Body> {
+        (0..self.points.len() + self.vessels.len()).map(|index| self.body(index))
+    }
+
+    /// The body at a place of the list of all points followed by all vessels.
+    pub fn body(&self, index: usize) -> Body {
+        match index.checked_sub(self.points.len()) {
+            None => Body::Point(index),
+            Some(vessel) => Body::Vessel(vessel),
+        }
+    }
+
+    /// Whether a point is the body or rides on it.
+    pub fn moves_with(&self, point: usize, body: Body) -> bool {
+        match (body, &self.points[point].role) {
+            (Body::Point(driven), _) => point == driven,
+            (Body::Vessel(carrier), Role::Carried { vessel, .. }) => *vessel == carrier,
+            (Body::Vessel(_), _) => false,
+        }
     }
 
     /// Index of the point called `name`.

@@ -16,7 +16,7 @@ pub struct Kinematics {
     pub velocity: Vector3<f64>,
     /// Acceleration [m/s²].
     pub acceleration: Vector3<f64>,
-    /// Rotation from the reference attitude of what the point is fixed to.
+    /// Rotation from the reference attitude of what the point is fixed to [-], a unit quaternion.
     pub orientation: UnitQuaternion<f64>,
     /// Angular velocity of what the point is fixed to, in global axes [rad/s].
     pub spin: Vector3<f64>,

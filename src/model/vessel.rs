@@ -45,7 +45,7 @@ impl Vessel {
         }
     }
 
-    /// From body axes to global ones in the reference attitude.
+    /// Rotation [-] from body axes to global ones in the reference attitude, a unit quaternion.
     pub fn reference_rotation(&self) -> UnitQuaternion<f64> {
         let [roll, pitch, yaw] = self.attitude.into();
         UnitQuaternion::from_euler_angles(roll, pitch, yaw)

@@ -161,7 +161,7 @@ pub struct HarmonicMotion {
 }
 
 impl HarmonicMotion {
-    /// The six axes by name, with their components.
+    /// The six axes by name, with their components: amplitudes [m] of x, y, z and [rad] of roll, pitch, yaw.
     pub fn axes(&self) -> [(&'static str, &Vec<Vec<f64>>); 6] {
         [
             ("x", &self.x),

@@ -59,30 +59,6 @@ fn check_numbers(findings: &mut Findings, at: &str, line_type: &LineType) {
             coefficient,
             "-",
         ),
-        (
-            "bending_stiffness",
-            line_type.bending_stiffness,
-            Bounds::NotNegative(1e15),
-            "N m²",
-        ),
-        (
-            "shear_stiffness",
-            line_type.shear_stiffness,
-            Bounds::Positive(1e15),
-            "N",
-        ),
-        (
-            "torsional_stiffness",
-            line_type.torsional_stiffness,
-            Bounds::Positive(1e15),
-            "N m²",
-        ),
-        (
-            "rotary_inertia",
-            line_type.rotary_inertia,
-            Bounds::Positive(1e9),
-            "kg m",
-        ),
     ];
     for (key, value, bounds, unit) in rows {
         findings.number_if(format!("{at}.{key}"), value, bounds, unit);
@@ -190,6 +166,31 @@ fn check_bending(findings: &mut Findings, at: &str, line_type: &LineType, scene:
         );
         let poisson = Bounds::Within(0.0, 0.5);
         findings.number(format!("{at}.poisson"), section.poisson, poisson, "-");
+    }
+    let stiff = Bounds::Positive(1e15);
+    let rows = [
+        (
+            "bending_stiffness",
+            line_type.bending_stiffness,
+            Bounds::NotNegative(1e15),
+            "N m²",
+        ),
+        ("shear_stiffness", line_type.shear_stiffness, stiff, "N"),
+        (
+            "torsional_stiffness",
+            line_type.torsional_stiffness,
+            stiff,
+            "N m²",
+        ),
+        (
+            "rotary_inertia",
+            line_type.rotary_inertia,
+            Bounds::Positive(1e9),
+            "kg m",
+        ),
+    ];
+    for (key, value, bounds, unit) in rows {
+        findings.number_if(format!("{at}.{key}"), value, bounds, unit);
     }
     let bends = line_type.solid_section.is_some() || line_type.bending_stiffness > Some(0.0);
     match line_type.fibres {
