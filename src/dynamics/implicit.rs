@@ -106,6 +106,7 @@ pub fn start<K: Fn(usize, f64) -> Kinematics>(
         velocity: 0.0,
         acceleration: 1.0,
         predicted: false,
+        convex: false,
     };
     work.fade_dampers(model, network, state, 0.0);
     work.assemble_dynamic::<true>(model, network, state, t, &weights);
@@ -300,6 +301,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
             velocity: 0.0,
             acceleration: 0.0,
             predicted: false,
+            convex: false,
         };
         work.fade_dampers(self.model, self.network, state, dt);
         work.assemble_dynamic::<false>(self.model, self.network, state, t0, &old);
@@ -314,12 +316,15 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
             velocity: (1.0 - alpha_f) * per_velocity,
             acceleration: (1.0 - alpha_m) * per_acceleration,
             predicted: true,
+            convex: false,
         };
         let tolerance = NEWTON_TOLERANCE * self.shortest_segment();
         for _ in 0..ITERATIONS_MAX {
             work.assemble_dynamic::<true>(self.model, self.network, state, t1, &new);
             work.add_remembered(self.model, self.network);
-            if !work.solve(self.model, self.network, self.number) {
+            if !work.solve(self.model, self.network, self.number)
+                && !self.solve_convex(state, t1, &new, work)
+            {
                 return false;
             }
             let correction = work.greatest_solution(self.network);
@@ -333,6 +338,21 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
             }
         }
         false
+    }
+
+    /// Solves once more where the exact tangent of lines that bend is indefinite, with one that is not.
+    fn solve_convex(&self, state: &State, t: f64, weights: &Weights, work: &mut Workspace) -> bool {
+        let bends = |&line: &usize| self.model.lines[line].bending.is_some();
+        if !self.network.lines.iter().any(bends) {
+            return false;
+        }
+        let convex = Weights {
+            convex: true,
+            ..*weights
+        };
+        work.assemble_dynamic::<true>(self.model, self.network, state, t, &convex);
+        work.add_remembered(self.model, self.network);
+        work.solve(self.model, self.network, self.number)
     }
 
     fn shortest_segment(&self) -> f64 {
@@ -374,7 +394,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
     ) {
         for &index in &self.network.lines {
             let nodes = &mut state.lines[index];
-            for (i, x) in work.lines[index].chain.solution().iter().enumerate() {
+            for (i, x) in work.lines[index].solution().iter().enumerate() {
                 nodes.position[i] -= x;
                 nodes.velocity[i] -= per_velocity * x;
                 nodes.acceleration[i] -= per_acceleration * x;

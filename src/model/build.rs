@@ -217,6 +217,7 @@ fn build_line(scene: &Scene, index: usize, line: &scene::Line) -> Result<Line, S
         ends,
         segments: segments(&parts),
         nodes: nodes(scene, &parts, contact_in_reach(scene, ends, line)),
+        bending: None,
         sections: sections.collect(),
         initial: line.initial.clone(),
     })

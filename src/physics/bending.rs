@@ -61,6 +61,37 @@ pub struct Hessian {
     pub second: Matrix3<f64>,
 }
 
+impl Hessian {
+    /// Times a factor.
+    #[inline(always)]
+    pub fn times(&self, factor: f64) -> Hessian {
+        Hessian {
+            first: factor * self.first,
+            mixed: factor * self.mixed,
+            second: factor * self.second,
+        }
+    }
+
+    /// The sum of two.
+    #[inline(always)]
+    pub fn plus(&self, other: &Hessian) -> Hessian {
+        Hessian {
+            first: self.first + other.first,
+            mixed: self.mixed + other.mixed,
+            second: self.second + other.second,
+        }
+    }
+
+    /// Its product with changes of e₁ and e₂.
+    #[inline(always)]
+    pub fn product(&self, [v1, v2]: [Vector3<f64>; 2]) -> [Vector3<f64>; 2] {
+        [
+            self.first * v1 + self.mixed * v2,
+            self.mixed.tr_mul(&v1) + self.second * v2,
+        ]
+    }
+}
+
 /// The turn from one direction to the next.
 #[derive(Debug, Clone, Copy)]
 pub struct Turn {

@@ -16,11 +16,15 @@
 //! its greatest force, the loads are applied little by little instead, and every step must lie close to the one before and
 //! have a positive definite tangent.
 //!
+//! Lines with bending stiffness are in [`bending`].
+//!
 //! Accepted is a residual of at most 1e-11 of the greatest force in the network (tension, nodal weight or load) plus what
 //! rounding of the positions makes of the stiffest segment.
 //!
 //! Source: Kelley & Keyes (1998), SIAM J. Numer. Anal. 35(2), 508-523 (pseudo-transient continuation); the elimination of
 //! predicted tensions is derived here.
+
+mod bending;
 
 use nalgebra::Vector3;
 
@@ -175,23 +179,6 @@ fn check_finite(model: &Model, points: &[Vector3<f64>]) -> Result<(), StaticsErr
     Ok(())
 }
 
-/// Greatest stiffness of a segment of at most this EA [N], or of the bed under a node [N/m].
-fn stiffest_spring(line: &Line, stiffness_max: f64) -> f64 {
-    let segments = line
-        .segments
-        .axial_stiffness
-        .iter()
-        .zip(&line.segments.length);
-    let bed = line
-        .nodes
-        .contact
-        .iter()
-        .flat_map(|contact| &contact.stiffness)
-        .copied();
-    bed.chain(segments.map(|(ea, length)| ea.min(stiffness_max) / length))
-        .fold(0.0, f64::max)
-}
-
 /// One network, one time.
 struct Problem<'a> {
     model: &'a Model,
@@ -202,6 +189,8 @@ struct Problem<'a> {
     force: f64,
     /// Length of the longest line [m].
     length: f64,
+    /// Whether any of its lines has bending stiffness, and that is not left out.
+    bends: bool,
 }
 
 impl<'a> Problem<'a> {
@@ -222,6 +211,7 @@ impl<'a> Problem<'a> {
             number,
             time,
             force: if force > 0.0 { force } else { 1.0 },
+            bends: lines.clone().any(|line| line.bending.is_some()),
             length: lines
                 .map(|line| line.unstretched_length())
                 .fold(0.0, f64::max),
@@ -237,6 +227,8 @@ impl<'a> Problem<'a> {
             tension_min: 0.0,
             anchoring: 0.0,
             predicted: false,
+            bends: self.bends,
+            convex: false,
         }
     }
 
@@ -244,7 +236,11 @@ impl<'a> Problem<'a> {
         place_ends(self.model, self.network, state);
         let mut guess = std::mem::take(&mut work.saved);
         copy_network(self.model, self.network, state, &mut guess);
-        let result = self.solve_from(&guess, state, work);
+        let result = if self.bends {
+            self.solve_bent(&guess, state, work)
+        } else {
+            self.solve_from(&guess, state, work)
+        };
         work.saved = guess;
         result
     }
@@ -303,7 +299,12 @@ impl<'a> Problem<'a> {
         let mut relaxation: f64 = 1.0;
         let mut step = f64::INFINITY;
         let mut balanced = 0;
-        for _ in 0..NEWTON_SOLVES_MAX {
+        let solves_max = if self.bends {
+            bending::NEWTON_SOLVES_MAX
+        } else {
+            NEWTON_SOLVES_MAX
+        };
+        for _ in 0..solves_max {
             case.tension_min = relaxation * self.force;
             case.anchoring = relaxation * self.force / self.length + self.rounding_stiffness(&case);
             work.assemble_static(self.model, self.network, state, &case);
@@ -325,7 +326,10 @@ impl<'a> Problem<'a> {
             if !step.is_finite() {
                 return false;
             }
-            let part = (STEP_MAX * self.reach(state) / step).min(1.0);
+            let mut part = (STEP_MAX * self.reach(state) / step).min(1.0);
+            if self.bends {
+                part = part.min(self.turning_part(work));
+            }
             work.predict_tensions(self.model, self.network, part);
             self.advance(state, work, part);
             if part == 1.0 {
@@ -355,8 +359,31 @@ impl<'a> Problem<'a> {
             .map(|&line| &self.model.lines[line]);
         8.0 * f64::EPSILON
             * lines
-                .map(|line| stiffest_spring(line, case.stiffness_max))
+                .map(|line| self.stiffest_spring(line, case.stiffness_max))
                 .fold(0.0, f64::max)
+    }
+
+    /// Greatest stiffness of a segment of at most this EA [N], of the bed under a node, or of a joint [N/m].
+    fn stiffest_spring(&self, line: &Line, stiffness_max: f64) -> f64 {
+        let segments = line
+            .segments
+            .axial_stiffness
+            .iter()
+            .zip(&line.segments.length);
+        let bed = line
+            .nodes
+            .contact
+            .iter()
+            .flat_map(|contact| &contact.stiffness)
+            .copied();
+        let spring = bed
+            .chain(segments.map(|(ea, length)| ea.min(stiffness_max) / length))
+            .fold(0.0, f64::max);
+        if self.bends {
+            spring.max(bending::stiffest_joint(line))
+        } else {
+            spring
+        }
     }
 
     /// Accepted force out of balance [N] at the last assembly.
@@ -374,7 +401,10 @@ impl<'a> Problem<'a> {
                     .max(work.lines[index].elastic[i])
                     .max(line.nodes.weight[i].abs());
             }
-            rounding = rounding.max(far * stiffest_spring(line, stiffness_max));
+            if let (Some(joints), true) = (&work.lines[index].bending, self.bends) {
+                force = force.max(joints.greatest);
+            }
+            rounding = rounding.max(far * self.stiffest_spring(line, stiffness_max));
         }
         for_free_points(self.model, self.network, |index, free| {
             let load = self.model.points[index].load_at(self.time).norm();
@@ -387,8 +417,11 @@ impl<'a> Problem<'a> {
     fn no_push(&self, work: &Workspace, tolerance: f64) -> bool {
         self.network.lines.iter().all(|&line| {
             let line = &work.lines[line];
-            let mut segments = line.elastic.iter().zip(&line.tension);
-            segments.all(|(&elastic, &tension)| tension <= 0.0 || elastic >= -tolerance)
+            let segments = line.elastic.iter().zip(&line.tension);
+            segments.enumerate().all(|(i, (&elastic, &tension))| {
+                let least = 0.0 - line.push[i];
+                tension <= least || elastic >= least - tolerance
+            })
         })
     }
 
@@ -396,7 +429,7 @@ impl<'a> Problem<'a> {
     fn advance(&self, state: &mut State, work: &Workspace, part: f64) {
         for &index in &self.network.lines {
             let nodes = state.lines[index].position.iter_mut();
-            for (r, x) in nodes.zip(work.lines[index].chain.solution()) {
+            for (r, x) in nodes.zip(work.lines[index].solution()) {
                 *r -= part * x;
             }
         }
@@ -419,7 +452,10 @@ impl<'a> Problem<'a> {
             .copied()
             .fold(0.0, f64::max);
         loop {
-            let case = self.case(stiffness);
+            let case = StaticCase {
+                convex: self.bends,
+                ..self.case(stiffness)
+            };
             self.descend(state, work, case);
             self.remember_tensions(work);
             let mut trial = std::mem::take(&mut work.trial);
@@ -457,7 +493,10 @@ impl<'a> Problem<'a> {
                 continue;
             }
             let step = work.greatest_solution(self.network);
-            let longest = (STEP_MAX * self.reach(state) / step).min(1.0);
+            let mut longest = (STEP_MAX * self.reach(state) / step).min(1.0);
+            if self.bends {
+                longest = longest.min(self.turning_part(work));
+            }
             let part = self.cut(state, work, &case, longest);
             relaxation *= if part >= 1.0 {
                 0.1
@@ -495,10 +534,7 @@ impl<'a> Problem<'a> {
     fn power(&self, work: &Workspace) -> f64 {
         let mut sum = 0.0;
         for &index in &self.network.lines {
-            let (x, r) = (
-                work.lines[index].chain.solution(),
-                &work.lines[index].residual,
-            );
+            let (x, r) = (work.lines[index].solution(), &work.lines[index].residual);
             let last = r.len() - 1;
             sum -= (1..last).map(|i| x[i].dot(&r[i])).sum::<f64>();
         }

@@ -13,6 +13,7 @@ const FORCES: Weights = Weights {
     velocity: 0.0,
     acceleration: 0.0,
     predicted: false,
+    convex: false,
 };
 
 /// A repeatable number in −1 … 1.
@@ -282,7 +283,7 @@ fn the_linear_solution_satisfies_the_system_of_both_lines_and_the_point() {
     assert!(work.solve(&model, network, 0));
     let mut joint = work.points[1].diagonal * work.points[1].solution - work.points[1].residual;
     for line in &work.lines {
-        let x = line.chain.solution();
+        let x = line.solution();
         let last = x.len() - 1;
         let row = |i: usize| {
             let mut sum = line.diagonal[i] * x[i] - line.residual[i];
