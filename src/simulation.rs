@@ -10,10 +10,12 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use crate::dynamics::advance::{Counters, Workspace};
-use crate::dynamics::ledger::Ledger;
+use crate::dynamics::ledger::{Energy, Ledger};
 use crate::dynamics::motion::{HostPath, Sample};
 use crate::dynamics::{Choice, StepError, reaction};
-use crate::model::{ClosedForm, End, Kinematics, Line, LineState, Model, PointState, Role, State};
+use crate::model::{
+    ClosedForm, End, Kinematics, Line, LineState, Model, PointState, Role, State, joint,
+};
 use crate::physics::stretch::StretchLaw;
 use crate::scene::{Integrator, Scene, SceneError};
 use crate::statics::catenary::{self, Bed, Catenary};
@@ -74,6 +76,17 @@ pub struct ProfileNode {
     pub z: f64,
     /// Effective tension [N].
     pub tension: f64,
+    /// How it bends, where the line has bending stiffness.
+    pub bending: Option<NodeBending>,
+}
+
+/// How a line bends at a node.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct NodeBending {
+    /// Curvature [1/m].
+    pub curvature: f64,
+    /// Bending moment [N m].
+    pub moment: f64,
 }
 
 impl Simulation {
@@ -316,18 +329,38 @@ impl Simulation {
             .collect()
     }
 
+    /// Curvature [1/m] and bending moment [N m] at every node, where the line has bending stiffness; zero at hinges and pinned ends.
+    pub fn bending(&self, line: usize) -> Option<Vec<NodeBending>> {
+        let (data, state) = (&self.model.lines[line], &self.snapshot.state);
+        let bending = data.bending.as_ref()?;
+        let clamps = data.clamps(&state.points);
+        let nodes = &state.lines[line].position;
+        let at = |i: usize| {
+            let turn = (bending.joint[i] > 0.0).then(|| joint(clamps, nodes, i));
+            let bend = turn.flatten().map(|turn| turn.bend());
+            bend.map_or(NodeBending::default(), |bend| NodeBending {
+                curvature: bend / bending.length[i],
+                moment: bending.joint[i] * (bend - bending.rest[i]).abs(),
+            })
+        };
+        Some((0..nodes.len()).map(at).collect())
+    }
+
     /// Nodes of a line with their tensions, from end A to end B.
     pub fn profile(&self, line: usize) -> Vec<ProfileNode> {
+        let bending = self.bending(line);
         let arcs = &self.model.lines[line].nodes.arc;
         let nodes = arcs.iter().zip(&self.snapshot.state.lines[line].position);
         nodes
             .zip(self.tensions(line))
-            .map(|((s, r), tension)| ProfileNode {
+            .enumerate()
+            .map(|(node, ((s, r), tension))| ProfileNode {
                 s: *s,
                 x: r.x,
                 y: r.y,
                 z: r.z,
                 tension,
+                bending: bending.as_ref().map(|nodes| nodes[node]),
             })
             .collect()
     }
@@ -342,10 +375,14 @@ impl Simulation {
         self.snapshot.counters
     }
 
+    /// Energy held, by kind.
+    pub fn energy(&self) -> Energy {
+        self.work.energy(&self.model, &self.snapshot.state)
+    }
+
     /// Imbalance of the energy ledger since the start [J].
     pub fn energy_error(&self) -> f64 {
-        let held = self.work.energy(&self.model, &self.snapshot.state);
-        self.snapshot.ledger.error(held)
+        self.snapshot.ledger.error(self.energy().total())
     }
 
     /// The energy ledger.
@@ -411,7 +448,7 @@ fn begin(
     let mut work = Workspace::new(model, &state, |line| static_tension(model, &state, line));
     work.start(model, &mut state, &held);
     let counters = Counters::default();
-    let ledger = Ledger::new(work.energy(model, &state));
+    let ledger = Ledger::new(work.energy(model, &state).total());
     Ok((
         Snapshot {
             state,

@@ -204,6 +204,7 @@ impl<'a> Host<'a> {
                     s,
                     position: [x, y, z],
                     tension,
+                    bending: None,
                 });
             }
             lines.push(nodes);

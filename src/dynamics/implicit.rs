@@ -190,6 +190,35 @@ pub fn advance<K: Fn(usize, f64) -> Kinematics>(
     scheme: &Scheme,
     work: &mut Workspace,
 ) -> Result<Counters, StepError> {
+    let held = Held {
+        kinematics: held,
+        scheme,
+    };
+    advance_observed(model, number, state, held, span, work, |_, _| {})
+}
+
+/// What moves a network from outside, and by which scheme it follows.
+#[derive(Debug)]
+pub struct Held<'a, K> {
+    /// Position, velocity and acceleration of held points.
+    pub kinematics: &'a K,
+    /// The integrator.
+    pub scheme: &'a Scheme,
+}
+
+/// [`advance`], showing the state and its time [s] after every internal step.
+///
+/// # Errors
+/// As there.
+pub fn advance_observed<K: Fn(usize, f64) -> Kinematics>(
+    model: &Model,
+    number: usize,
+    state: &mut State,
+    held: Held<K>,
+    span: Span,
+    work: &mut Workspace,
+    mut observe: impl FnMut(&State, f64),
+) -> Result<Counters, StepError> {
     if span.end <= span.start {
         return Ok(Counters::default());
     }
@@ -202,13 +231,13 @@ pub fn advance<K: Fn(usize, f64) -> Kinematics>(
         model,
         network,
         number,
-        held,
-        scheme,
+        held: held.kinematics,
+        scheme: held.scheme,
     };
     let mut result = Ok(());
     for step in 0..steps {
         let at = |step: usize| span.start + (span.end - span.start) * step as f64 / steps as f64;
-        result = integrator.pass([at(step), at(step + 1)], state, work);
+        result = integrator.pass([at(step), at(step + 1)], state, work, &mut observe);
         if result.is_err() {
             copy_network(model, network, &start, state);
             break;
@@ -241,6 +270,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
         [t0, t1]: [f64; 2],
         state: &mut State,
         work: &mut Workspace,
+        observe: &mut impl FnMut(&State, f64),
     ) -> Result<(), StepError> {
         let at = |parts: usize| t0 + (t1 - t0) * parts as f64 / PARTS_MAX as f64;
         let mut before = std::mem::take(&mut work.before);
@@ -250,6 +280,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
             copy_network(self.model, self.network, state, &mut before);
             let span = [at(done), at(done + parts)];
             if self.step(span, state, work) {
+                observe(state, span[1]);
                 work.counters.steps += 1;
                 done += parts;
                 if done % (2 * parts) == 0 && parts < PARTS_MAX {

@@ -1,7 +1,7 @@
 //! Quasi-static stepping: at the end of every step the lines are in equilibrium.
 //!
 //! Positions are the equilibrium for the held points and the loads at that time, found from the one before; velocities are
-//! differences over the step, and there is no acceleration. Lines of engineering strain are closed-form catenaries, joined at
+//! differences over the step, and there is no acceleration. Flexible lines of engineering strain are closed-form catenaries, joined at
 //! free points; others, and those that find no rest that way, are chains of elements. Valid where motions are slow beside the lowest natural period
 //! and drag is small beside weight.
 

@@ -62,7 +62,7 @@ pub fn end_force(
     let mut force = tension(line, state, segment, negative_tension) * inward - inertia;
     force.z -= nodes.weight[node];
     if line.bending.is_some() {
-        force += end_shear(line, state, end, point);
+        force += end_shear(line, [&state.position, &state.velocity], end, point);
     }
     if let Some(drag) = &nodes.drag {
         let coefficients = DragCoefficients {

@@ -367,7 +367,7 @@ fn check_integrator(
     {
         let name = &lines[line].name;
         return refuse(format!(
-            "a leapfrog needs mass on every node and one strain measure along line \"{name}\""
+            "a leapfrog needs mass on every node, one strain measure and no bending stiffness along line \"{name}\""
         ));
     }
     match network.free_points.first() {

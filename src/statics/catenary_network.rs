@@ -44,11 +44,11 @@ const DIFFERENCE: f64 = 1e-9;
 
 /// Whether every line of a network has a closed form.
 pub fn serves(model: &Model, network: &Network) -> bool {
-    let mut sections = network
-        .lines
-        .iter()
-        .flat_map(|&line| &model.lines[line].sections);
-    sections.all(|section| section.law == StretchLaw::Engineering)
+    let mut lines = network.lines.iter().map(|&line| &model.lines[line]);
+    lines.all(|line| {
+        let mut sections = line.sections.iter();
+        line.bending.is_none() && sections.all(|section| section.law == StretchLaw::Engineering)
+    })
 }
 
 /// As [`equilibrium::solve`], with every network on closed-form catenaries that can be; the others, and those whose free

@@ -206,13 +206,42 @@ fn rates(velocity: &[Vector3<f64>], node: usize) -> [Vector3<f64>; 2] {
     [rate(node.checked_sub(1)), rate(Some(node))]
 }
 
-/// Force [N] of the joints at and next to an end of a line on the point there: the shear.
-pub fn end_shear(line: &Line, state: &LineState, end: End, point: &PointState) -> Vector3<f64> {
+/// Power that the dampers of a line's joints take [W].
+pub fn joint_damping_power(
+    line: &Line,
+    state: &LineState,
+    clamps: [Option<Vector3<f64>>; 2],
+) -> f64 {
+    let Some(damping) = line
+        .bending
+        .as_ref()
+        .and_then(|bending| bending.damping.as_ref())
+    else {
+        return 0.0;
+    };
+    let power = |(i, damping): (usize, &f64)| {
+        let Some(turn) = joint(clamps, &state.position, i) else {
+            return 0.0;
+        };
+        let rates = rates(&state.velocity, i);
+        let drag = turn.damper(*damping).product(rates);
+        drag[0].dot(&rates[0]) + drag[1].dot(&rates[1])
+    };
+    damping.iter().enumerate().map(power).sum()
+}
+
+/// Force [N] of the joints at and next to an end of a line on the point there: the shear. Without velocities nothing damps.
+pub fn end_shear(
+    line: &Line,
+    [position, velocity]: [&[Vector3<f64>]; 2],
+    end: End,
+    point: &PointState,
+) -> Vector3<f64> {
     let Some(bending) = &line.bending else {
         return Vector3::zeros();
     };
     let clamp = line.clamp(end, point);
-    let last = state.position.len() - 1;
+    let last = position.len() - 1;
     let (clamps, joints) = match end {
         End::A => ([clamp, None], [(0, 1.0), (1, 1.0)]),
         End::B => ([None, clamp], [(last, -1.0), (last - 1, -1.0)]),
@@ -223,14 +252,12 @@ pub fn end_shear(line: &Line, state: &LineState, end: End, point: &PointState) -
         if own && clamp.is_none() || bending.joint[node] == 0.0 {
             continue;
         }
-        let Some(turn) = joint(clamps, &state.position, node) else {
+        let Some(turn) = joint(clamps, position, node) else {
             continue;
         };
         let mut slope = turn.energy(bending.joint[node], bending.rest[node]).slope;
         if let Some(damping) = &bending.damping {
-            let drag = turn
-                .damper(damping[node])
-                .product(rates(&state.velocity, node));
+            let drag = turn.damper(damping[node]).product(rates(velocity, node));
             slope = [slope[0] + drag[0], slope[1] + drag[1]];
         }
         // the slope with the end's own segment
