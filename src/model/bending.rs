@@ -87,7 +87,7 @@ impl Line {
         }
     }
 
-    /// [`Line::clamp`] of both ends.
+    /// [`Line::clamp`] of both ends [-].
     pub fn clamps(&self, points: &[PointState]) -> [Option<Vector3<f64>>; 2] {
         let [a, b] = self.ends.map(|point| &points[point]);
         [self.clamp(End::A, a), self.clamp(End::B, b)]

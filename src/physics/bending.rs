@@ -53,11 +53,11 @@ pub struct Bend {
 /// Second derivatives of the energy [N/m].
 #[derive(Debug, Clone, Copy)]
 pub struct Hessian {
-    /// ∂²W/∂e₁².
+    /// ∂²W/∂e₁² [N/m].
     pub first: Matrix3<f64>,
-    /// ∂²W/∂e₁∂e₂, row of e₁.
+    /// ∂²W/∂e₁∂e₂, row of e₁ [N/m].
     pub mixed: Matrix3<f64>,
-    /// ∂²W/∂e₂².
+    /// ∂²W/∂e₂² [N/m].
     pub second: Matrix3<f64>,
 }
 

@@ -191,8 +191,6 @@ pub(crate) struct StaticCase {
     pub predicted: bool,
     /// Whether lines with bending stiffness have it, and push.
     pub bends: bool,
-    /// Whether the tangent must not be indefinite, rather than exact.
-    pub convex: bool,
 }
 
 /// Weights of the parts of residual and tangent in a time step.
@@ -287,7 +285,7 @@ impl LineWork {
             self.add_static_segment(line, position, case, i);
         }
         if let (Some(bending), true) = (&line.bending, case.bends) {
-            let parts = Parts::at_rest(case.convex);
+            let parts = Parts::AT_REST;
             self.add_bending(bending, clamps, [position, &[]], &parts);
         }
         for (i, r) in position.iter().enumerate() {
@@ -330,7 +328,6 @@ impl LineWork {
         } else {
             (least, 0.0)
         };
-        let least = if case.convex { 0.0 } else { least };
         // A segment folded to nothing has no direction to be stiff across.
         let across = predicted.max(least + case.tension_min) / g.length.max(0.1 * unstretched);
         let stiffness = Matrix3::from_diagonal_element(across) + (slope - across) * g.along();

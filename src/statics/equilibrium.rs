@@ -47,6 +47,8 @@ const DESCENT_SOLVES_MAX: usize = 200;
 const CUTS_MAX: usize = 12;
 /// EA over the sum of the loads in the soft problem [-].
 const SOFT_STIFFNESS: f64 = 50.0;
+/// Negative stiffness that is taken for rounding, over the sum of the loads and the length of the longest line [-].
+const INSTABILITY: f64 = 1e-12;
 /// Load steps on a softening line.
 const LOAD_STEPS_MAX: usize = 200;
 /// Strain over the limit strain from which a failure is put down to the limit [-].
@@ -228,7 +230,6 @@ impl<'a> Problem<'a> {
             anchoring: 0.0,
             predicted: false,
             bends: self.bends,
-            convex: false,
         }
     }
 
@@ -298,7 +299,7 @@ impl<'a> Problem<'a> {
         case.predicted = true;
         let mut relaxation: f64 = 1.0;
         let mut step = f64::INFINITY;
-        let mut balanced = 0;
+        let (mut balanced, mut refused) = (0, 0);
         let solves_max = if self.bends {
             bending::NEWTON_SOLVES_MAX
         } else {
@@ -320,6 +321,10 @@ impl<'a> Problem<'a> {
             }
             if !work.solve(self.model, self.network, self.number) {
                 relaxation = (10.0 * relaxation).min(1.0);
+                refused += 1;
+                if self.bends && refused > bending::REFUSALS_MAX {
+                    return false;
+                }
                 continue;
             }
             step = work.greatest_solution(self.network);
@@ -452,10 +457,7 @@ impl<'a> Problem<'a> {
             .copied()
             .fold(0.0, f64::max);
         loop {
-            let case = StaticCase {
-                convex: self.bends,
-                ..self.case(stiffness)
-            };
+            let case = self.case(stiffness);
             self.descend(state, work, case);
             self.remember_tensions(work);
             let mut trial = std::mem::take(&mut work.trial);
@@ -493,10 +495,7 @@ impl<'a> Problem<'a> {
                 continue;
             }
             let step = work.greatest_solution(self.network);
-            let mut longest = (STEP_MAX * self.reach(state) / step).min(1.0);
-            if self.bends {
-                longest = longest.min(self.turning_part(work));
-            }
+            let longest = (STEP_MAX * self.reach(state) / step).min(1.0);
             let part = self.cut(state, work, &case, longest);
             relaxation *= if part >= 1.0 {
                 0.1
@@ -555,7 +554,12 @@ impl<'a> Problem<'a> {
 
     /// Whether the tangent of a converged state is positive definite.
     fn stable(&self, state: &State, work: &mut Workspace, case: StaticCase) -> bool {
-        let anchoring = self.rounding_stiffness(&case) + 1e-12 * self.force / self.length;
+        let least = if self.bends {
+            bending::INSTABILITY
+        } else {
+            INSTABILITY
+        };
+        let anchoring = self.rounding_stiffness(&case) + least * self.force / self.length;
         let case = StaticCase {
             anchoring,
             predicted: false,

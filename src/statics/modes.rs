@@ -43,7 +43,6 @@ impl Modes {
             anchoring: 0.0,
             predicted: false,
             bends: true,
-            convex: false,
         };
         work.assemble_static(model, network, state, &case);
         let mut stiffness = DMatrix::zeros(count, count);

@@ -46,15 +46,13 @@ pub(super) struct Parts {
 
 impl Parts {
     /// Those of statics.
-    pub(super) fn at_rest(convex: bool) -> Parts {
-        Parts {
-            force: 1.0,
-            position: 1.0,
-            velocity: 0.0,
-            tangent: true,
-            convex,
-        }
-    }
+    pub(super) const AT_REST: Parts = Parts {
+        force: 1.0,
+        position: 1.0,
+        velocity: 0.0,
+        tangent: true,
+        convex: false,
+    };
 
     /// Those of a time step.
     pub(super) fn of_step(weights: &Weights, tangent: bool) -> Parts {

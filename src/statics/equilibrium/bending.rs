@@ -5,14 +5,14 @@
 //!
 //! 1. Newton's method with the exact tangent from the shape at hand: the flexible line's catenary, or the equilibrium before.
 //! 2. The same from the equilibrium of the perfectly flexible line.
-//! 3. From either, minimisation of the energy with a tangent that cannot be indefinite, then Newton's method.
+//! 3. Pseudo-transient relaxation from a small wave across the shape at hand: anchoring springs as stiff as the exact tangent needs to
+//!    be positive definite, which lets grow what is unstable.
 //! 4. The same from a smooth curve along the clamps, where the flexible line leaves them too sharply: a cantilever whose
 //!    flexible line hangs straight down starts unbent.
 //!
-//! An equilibrium that is not stable is left by a small wave across the line, from which the energy is minimised.
+//! An equilibrium that is not stable is left by a small wave too.
 //!
-//! Source: the minimisation is that of [`super`], Nocedal & Wright (2006), Numerical Optimization, section 3.4 (modified Newton);
-//! the order is found by trial on cantilevers, arches, columns and slack lines in `tests/bending.rs`.
+//! Source: Kelley & Keyes (1998), SIAM J. Numer. Anal. 35(2), 508-523 (pseudo-transient continuation); the order is found by trial on cantilevers, arches, columns and slack lines in `tests/bending.rs`.
 
 use nalgebra::Vector3;
 
@@ -23,8 +23,19 @@ use crate::statics::assembly::{Workspace, place_ends};
 
 /// Solves of one Newton iteration with bending.
 pub(super) const NEWTON_SOLVES_MAX: usize = 100;
+/// Indefinite tangents in one Newton iteration.
+pub(super) const REFUSALS_MAX: usize = 8;
+/// Negative stiffness that does not count as instability, over the sum of the loads and the length of the longest line [-]: on a mass
+/// as heavy as the load it grows by a factor e in an hour.
+pub(super) const INSTABILITY: f64 = 1e-7;
 /// Turn of a segment in one step [rad].
 const TURN_MAX: f64 = 0.5;
+/// Solves of one relaxation.
+const RELAX_SOLVES_MAX: usize = 1000;
+/// Longest step of a relaxation, over the longest line [-].
+const RELAX_STEP_MAX: f64 = 0.05;
+/// Anchoring over forces per length at which a relaxation is given up [-].
+const RELAXATION_MAX: f64 = 1e20;
 /// Amplitude of the wave that leaves an unstable equilibrium, over the line's length [-].
 const WAVE: f64 = 1e-3;
 
@@ -76,15 +87,12 @@ impl Problem<'_> {
             return Ok(());
         }
         self.restart(guess, state, work);
-        if self.stiffen_gradually(state, work) && self.settle(state, work) {
+        if self.relax(state, work) && self.settle(state, work) {
             return Ok(());
         }
         self.restart(guess, state, work);
-        if self.follow_clamps(state) {
-            self.remember_shape(state, work);
-            if self.stiffen_gradually(state, work) && self.settle(state, work) {
-                return Ok(());
-            }
+        if self.follow_clamps(state) && self.relax(state, work) && self.settle(state, work) {
+            return Ok(());
         }
         Err(self.not_converged(state, work, start))
     }
@@ -94,24 +102,54 @@ impl Problem<'_> {
         self.remember_tensions(work);
     }
 
-    /// Whether an equilibrium is stable, or became so after a small wave.
+    /// Whether an equilibrium is stable, or another one was found from it after a small wave.
     fn settle(&self, state: &mut State, work: &mut Workspace) -> bool {
         let full = self.case(f64::INFINITY);
-        if self.stable(state, work, full) {
-            return true;
-        }
+        self.stable(state, work, full)
+            || (self.relax(state, work) && self.stable(state, work, full))
+    }
+
+    /// Lets the lines move as if in honey, from a small wave on their shape: Newton's method with predicted tensions, whose anchoring
+    /// springs follow the nodes and fade only as fast as the exact tangent stays positive definite, so that what is unstable grows.
+    fn relax(&self, state: &mut State, work: &mut Workspace) -> bool {
         self.wave(state);
         self.remember_shape(state, work);
-        self.descend(
-            state,
-            work,
-            StaticCase {
-                convex: true,
-                ..full
-            },
-        );
-        self.remember_tensions(work);
-        self.newton(state, work, full) && self.stable(state, work, full)
+        let mut case = StaticCase {
+            predicted: true,
+            ..self.case(f64::INFINITY)
+        };
+        let (mut relaxation, mut balanced) = (1.0_f64, 0);
+        for _ in 0..RELAX_SOLVES_MAX {
+            let springs = relaxation * self.force / self.length;
+            case.anchoring = springs + self.rounding_stiffness(&case);
+            work.assemble_static(self.model, self.network, state, &case);
+            let (residual, _) = work.greatest_residual(self.network);
+            let tolerance = self.tolerance(state, work, case.stiffness_max);
+            balanced = if residual <= tolerance && self.no_push(work, tolerance) {
+                balanced + 1
+            } else {
+                0
+            };
+            if balanced >= 3 {
+                return true;
+            }
+            if !work.solve(self.model, self.network, self.number) {
+                relaxation *= 3.0;
+                continue;
+            }
+            let step = work.greatest_solution(self.network);
+            if !step.is_finite() || relaxation > RELAXATION_MAX {
+                return false;
+            }
+            let part = (RELAX_STEP_MAX * self.length / step)
+                .min(self.turning_part(work))
+                .min(1.0);
+            work.predict_tensions(self.model, self.network, part);
+            self.advance(state, work, part);
+            relaxation *= if part < 0.3 { 2.0 } else { 0.5 };
+            relaxation = relaxation.max(1e-12);
+        }
+        false
     }
 
     /// Puts a small wave on every line, across it in a vertical plane where it has one.
