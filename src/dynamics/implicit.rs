@@ -152,11 +152,14 @@ fn hold<K: Fn(usize, f64) -> Kinematics>(
                     position,
                     velocity,
                     acceleration,
+                    orientation,
+                    ..
                 } = held(point, t);
                 state.points[point] = PointState {
                     position,
                     velocity,
                     acceleration,
+                    orientation,
                     ..state.points[point]
                 };
             }

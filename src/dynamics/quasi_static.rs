@@ -67,7 +67,7 @@ fn hang<K: Fn(usize, f64) -> Kinematics>(
         .flat_map(|&line| model.lines[line].ends)
     {
         if model.points[point].free().is_none() {
-            state.points[point] = PointState::at_rest(held(point, t1).position);
+            state.points[point] = PointState::held(&held(point, t1));
         }
     }
     for &point in &network.free_points {
@@ -98,14 +98,7 @@ fn continue_elements<K: Fn(usize, f64) -> Kinematics>(
     let (mut done, mut parts) = (0, PARTS_MAX);
     while done < PARTS_MAX {
         let time = t0 + (t1 - t0) * (done + parts) as f64 / PARTS_MAX as f64;
-        match continue_network(
-            model,
-            number,
-            state,
-            |point| held(point, time).position,
-            time,
-            work,
-        ) {
+        match continue_network(model, number, state, |point| held(point, time), time, work) {
             Ok(()) => {
                 work.counters.steps += 1;
                 done += parts;

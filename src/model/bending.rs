@@ -79,12 +79,13 @@ impl Bending {
 impl Line {
     /// Direction from end A to end B that the line is held to at an end whose point is `point` [-]; pinned where there is none. The
     /// one place where a clamp follows what it is fixed to.
-    pub fn clamp(&self, end: End, _point: &PointState) -> Option<Vector3<f64>> {
-        let clamps = self.bending.as_ref()?.clamps;
-        match end {
-            End::A => clamps[0],
-            End::B => clamps[1],
-        }
+    pub fn clamp(&self, end: End, point: &PointState) -> Option<Vector3<f64>> {
+        let [a, b] = self.bending.as_ref()?.clamps;
+        let reference = match end {
+            End::A => a,
+            End::B => b,
+        };
+        reference.map(|along| point.orientation * along)
     }
 
     /// [`Line::clamp`] of both ends [-].

@@ -144,6 +144,12 @@ impl Turn {
         }
     }
 
+    /// Moment [N m] on what holds the first direction, where that is held: it would turn it to the second.
+    pub fn moment_on_first(&self, stiffness: f64, rest: f64) -> Vector3<f64> {
+        let [slope, _] = self.slopes(stiffness, rest);
+        -slope * self.first.along.cross(&self.second.along)
+    }
+
     /// dW/dc and d²W/dc² [J].
     #[inline(always)]
     fn slopes(&self, stiffness: f64, rest: f64) -> [f64; 2] {
@@ -228,6 +234,12 @@ fn across(direction: &Direction) -> Matrix3<f64> {
 /// EI [N m²] of a solid round section of a diameter [m] and Young's modulus [Pa].
 pub fn solid_round(diameter: f64, youngs_modulus: f64) -> f64 {
     youngs_modulus * PI * diameter.powi(4) / 64.0
+}
+
+/// EI [N m²] of a section of loose strands, from that of one solid section: divided by their number to the power of 1 or, in the other
+/// reading, 2.
+pub fn of_strands(solid: f64, strands: usize, power: i32) -> f64 {
+    solid / (strands as f64).powi(power)
 }
 
 /// B [N m] of two halves of segments in series, each with its length [m] and EI [N m²].
@@ -352,6 +364,34 @@ mod tests {
             Vector3::zeros(),
             epsilon = 1e-14
         );
+    }
+
+    #[test]
+    fn the_moment_on_a_clamp_is_minus_the_slope_of_the_energy_with_its_rotation() {
+        let held = |angle: f64| Direction {
+            along: Vector3::new(angle.cos(), angle.sin(), 0.0),
+            per_length: 0.0,
+        };
+        let energy = |angle| {
+            Turn::new(held(angle), direction(PAIRS[0][1]))
+                .energy(3.0, 0.0)
+                .energy
+        };
+        let moment = Turn::new(held(0.2), direction(PAIRS[0][1])).moment_on_first(3.0, 0.0);
+        let difference = (energy(0.2 + 1e-6) - energy(0.2 - 1e-6)) / 2e-6;
+        assert_relative_eq!(moment.z, -difference, epsilon = 1e-8);
+    }
+
+    #[test]
+    fn strands_side_by_side_share_the_stiffness() {
+        let strand = solid_round(0.1 / 20.0_f64.sqrt(), 2e11);
+        let solid = solid_round(0.1, 2e11);
+        assert_relative_eq!(
+            20.0 * strand,
+            of_strands(solid, 20, 1),
+            max_relative = 1e-14
+        );
+        assert_relative_eq!(strand, of_strands(solid, 20, 2), max_relative = 1e-14);
     }
 
     #[test]

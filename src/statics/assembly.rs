@@ -30,7 +30,7 @@ use crate::statics::catenary::Catenary;
 
 pub(crate) use bending::BendingWork;
 use bending::Parts;
-pub use bending::{end_shear, joint_damping_power};
+pub use bending::{end_moment, end_shear, joint_damping_power};
 
 /// Scratch of the implicit solvers for a whole model. Nothing in it is read before it is written.
 #[derive(Debug, Clone)]

@@ -31,7 +31,7 @@ use nalgebra::Vector3;
 use super::StaticsError;
 use super::assembly::{StaticCase, Workspace, copy_network, for_free_points, place_ends};
 use super::guess;
-use crate::model::{Line, LineState, Model, Network, PointState, State};
+use crate::model::{Kinematics, Line, LineState, Model, Network, PointState, State};
 
 /// Accepted force out of balance, over the greatest force [-].
 const FORCE_TOLERANCE: f64 = 1e-11;
@@ -69,14 +69,29 @@ pub fn solve(
     t: f64,
     work: &mut Workspace,
 ) -> Result<State, StaticsError> {
-    check_finite(model, points)?;
+    let points: Vec<PointState> = points.iter().copied().map(PointState::at_rest).collect();
+    solve_posed(model, &points, t, work)
+}
+
+/// [`solve`] with the orientations of all points, which clamped lines follow.
+///
+/// # Errors
+/// As there.
+pub fn solve_posed(
+    model: &Model,
+    points: &[PointState],
+    t: f64,
+    work: &mut Workspace,
+) -> Result<State, StaticsError> {
+    let places: Vec<Vector3<f64>> = points.iter().map(|point| point.position).collect();
+    check_finite(model, &places)?;
     let mut state = State {
         time: t,
-        points: points.iter().copied().map(PointState::at_rest).collect(),
+        points: points.to_vec(),
         lines: Vec::with_capacity(model.lines.len()),
     };
     for (line, work) in model.lines.iter().zip(&mut work.lines) {
-        let [a, b] = line.ends.map(|point| points[point]);
+        let [a, b] = line.ends.map(|point| places[point]);
         let mut position = vec![a; line.segment_count() + 1];
         guess::hang(model, line, a, b, &mut position, &mut work.tension);
         state.lines.push(LineState::at_rest(
@@ -103,7 +118,12 @@ pub fn continue_from(
     check_finite(model, points)?;
     let before = state.clone();
     for number in 0..model.networks.len() {
-        if let Err(error) = continue_network(model, number, state, |point| points[point], t, work) {
+        let held = |point: usize| Kinematics {
+            position: points[point],
+            orientation: before.points[point].orientation,
+            ..Kinematics::default()
+        };
+        if let Err(error) = continue_network(model, number, state, held, t, work) {
             *state = before;
             return Err(error);
         }
@@ -120,7 +140,7 @@ pub fn continue_network(
     model: &Model,
     number: usize,
     state: &mut State,
-    held: impl Fn(usize) -> Vector3<f64>,
+    held: impl Fn(usize) -> Kinematics,
     t: f64,
     work: &mut Workspace,
 ) -> Result<(), StaticsError> {
@@ -134,7 +154,7 @@ pub fn continue_network(
         line.tension.copy_from_slice(&line.elastic);
         for point in model.lines[index].ends {
             if model.points[point].free().is_none() {
-                state.points[point] = PointState::at_rest(held(point));
+                state.points[point] = PointState::held(&held(point));
             }
         }
         shift(state, &before, model, index);

@@ -263,3 +263,24 @@ pub fn end_shear(
     }
     force
 }
+
+/// Moment [N m] of a line on what it is clamped to at an end.
+pub fn end_moment(
+    line: &Line,
+    position: &[Vector3<f64>],
+    end: End,
+    point: &PointState,
+) -> Vector3<f64> {
+    let (Some(bending), Some(clamp)) = (&line.bending, line.clamp(end, point)) else {
+        return Vector3::zeros();
+    };
+    let node = line.end_node(end);
+    let (clamps, sign) = match end {
+        End::A => ([Some(clamp), None], 1.0),
+        End::B => ([None, Some(clamp)], -1.0),
+    };
+    let turn = joint(clamps, position, node);
+    turn.map_or(Vector3::zeros(), |turn| {
+        sign * turn.moment_on_first(bending.joint[node], bending.rest[node])
+    })
+}
