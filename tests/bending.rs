@@ -204,7 +204,7 @@ const ELASTICA: [(f64, f64, f64); 4] = [
 #[test]
 fn a_loaded_cantilever_tends_to_the_elastica_at_second_order() {
     for (alpha, deflection, shortening) in ELASTICA {
-        let errors = [10, 20, 40, 80].map(|elements| {
+        let errors = [40, 80, 160, 320].map(|elements| {
             let [x, _, z] = tip(&bent_down(alpha, elements));
             let error = (-z / LENGTH - deflection).hypot(1.0 - x / LENGTH - shortening);
             (1.0 / elements as f64, error)
@@ -214,7 +214,7 @@ fn a_loaded_cantilever_tends_to_the_elastica_at_second_order() {
             (order - 2.0).abs() < 0.1,
             "{alpha}: order {order}, {errors:?}"
         );
-        assert!(errors[3].1 < 3e-4);
+        assert!(errors[3].1 < 1e-4);
     }
 }
 
@@ -392,6 +392,9 @@ fn the_energy_error_of_a_driven_cable_falls_with_the_square_of_the_step() {
         cable.solver.integrator = Integrator::GeneralisedAlpha;
         cable.solver.time_step_max = step;
         cable.seabed = None;
+        for line_type in cable.line_types.values_mut() {
+            line_type.added_mass_tangential = line_type.added_mass_normal; // a mass that turns makes or takes energy
+        }
         let mut simulation = Simulation::new(&cable).unwrap();
         simulation.follow_scene().unwrap();
         for _ in 0..100 {
@@ -433,6 +436,9 @@ fn stiffness_from_a_millionth_to_a_hundred_million_times_a_wires_finds_rest() {
         for elements in [2, 20, 200] {
             let mut collar = with_elements(shipped("collar"), elements);
             for line_type in collar.line_types.values_mut() {
+                // a radius of gyration of 0.1 m at most
+                line_type.axial_stiffness =
+                    line_type.axial_stiffness.max(100.0 * bending_stiffness);
                 line_type.bending_stiffness = Some(bending_stiffness);
             }
             let [span, sag] = span_and_sag(&drawn_out(&collar));

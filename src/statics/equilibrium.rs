@@ -353,7 +353,7 @@ impl<'a> Problem<'a> {
             }
             let mut part = (STEP_MAX * self.reach(state) / step).min(1.0);
             if self.bends {
-                part = part.min(self.turning_part(work));
+                part = part.min(self.turning_part(state, work));
             }
             work.predict_tensions(self.model, self.network, part);
             self.advance(state, work, part);

@@ -51,12 +51,13 @@ pub(super) fn stiffest_joint(line: &Line) -> f64 {
 
 impl Problem<'_> {
     /// The part of the last correction that turns no segment by more than is sensible [-].
-    pub(super) fn turning_part(&self, work: &Workspace) -> f64 {
+    pub(super) fn turning_part(&self, state: &State, work: &Workspace) -> f64 {
         let mut turn = 0.0_f64;
         for &index in &self.network.lines {
             let lengths = &self.model.lines[index].segments.length;
-            let x = work.lines[index].solution();
-            for (i, length) in lengths.iter().enumerate() {
+            let (nodes, x) = (&state.lines[index].position, work.lines[index].solution());
+            for (i, unstretched) in lengths.iter().enumerate() {
+                let length = (nodes[i + 1] - nodes[i]).norm().min(*unstretched);
                 turn = turn.max((x[i + 1] - x[i]).norm() / length);
             }
         }
@@ -142,7 +143,7 @@ impl Problem<'_> {
                 return false;
             }
             let part = (RELAX_STEP_MAX * self.length / step)
-                .min(self.turning_part(work))
+                .min(self.turning_part(state, work))
                 .min(1.0);
             work.predict_tensions(self.model, self.network, part);
             self.advance(state, work, part);
