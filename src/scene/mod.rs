@@ -12,6 +12,7 @@ mod nearest;
 mod notes;
 mod path;
 mod read;
+mod section;
 mod time_function;
 mod units;
 mod words;
