@@ -89,6 +89,8 @@ impl Unit {
     pub const PER_METRE: Unit = Unit::of("1/m", 0, -1, 0);
     /// Newton metre.
     pub const NEWTON_METRE: Unit = Unit::of("N.m", 1, 2, -2);
+    /// Newton square metre.
+    pub const NEWTON_SQUARE_METRE: Unit = Unit::of("N.m2", 1, 3, -2);
     /// Newton second.
     pub const NEWTON_SECOND: Unit = Unit::of("N.s", 1, 1, -1);
     /// Kilogram per metre.
@@ -378,24 +380,27 @@ fn line_result(simulation: &Simulation, line: usize, result: LineResult) -> Opti
         LineResult::CurvatureMax
         | LineResult::MomentMax
         | LineResult::MomentA
-        | LineResult::MomentB => bending_result(&simulation.bending(line)?, result),
+        | LineResult::MomentB => {
+            let nodes = simulation.bending(line).unwrap_or_default();
+            Some(bending_result(&nodes, result))
+        }
         LineResult::CatenarySag => catenary().map(|c| c.sag()),
         LineResult::CatenaryHorizontal => catenary().map(|c| c.horizontal()),
         LineResult::CatenaryTensionB => catenary().map(|c| c.tension_b()),
     }
 }
 
-fn bending_result(nodes: &[NodeBending], result: LineResult) -> Option<f64> {
-    let moments = || nodes.iter().map(|node| node.moment);
+/// Zero where the host has set the bending stiffness to nothing.
+fn bending_result(nodes: &[NodeBending], result: LineResult) -> f64 {
+    let mut moments = nodes.iter().map(|node| node.moment);
     match result {
         LineResult::CurvatureMax => {
             let curvatures = nodes.iter().map(|node| node.curvature);
-            Some(curvatures.fold(0.0, f64::max))
+            curvatures.fold(0.0, f64::max)
         }
-        LineResult::MomentMax => Some(moments().fold(0.0, f64::max)),
-        LineResult::MomentA => moments().next(),
-        LineResult::MomentB => moments().next_back(),
-        _ => None,
+        LineResult::MomentA => moments.next().unwrap_or(0.0),
+        LineResult::MomentB => moments.next_back().unwrap_or(0.0),
+        _ => moments.fold(0.0, f64::max),
     }
 }
 

@@ -87,7 +87,8 @@ pub(super) fn read(
         }
         ProfileQuantity::Curvature | ProfileQuantity::Moment => {
             let nodes = simulation.bending(line).unwrap_or_default();
-            for (value, node) in values.iter_mut().zip(&nodes[range]) {
+            for (value, node) in values.iter_mut().zip(range) {
+                let node = nodes.get(node).copied().unwrap_or_default();
                 *value = match quantity {
                     ProfileQuantity::Curvature => node.curvature,
                     _ => node.moment,

@@ -27,7 +27,7 @@ pub fn section_elements(line: &Line, tolerance: f64) -> Vec<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{InitialShape, Section};
+    use crate::scene::{InitialShape, RestShape, Section};
 
     fn section(length: f64, elements: Option<usize>) -> Section {
         Section {
