@@ -105,6 +105,35 @@ fn strands(fibres: usize, law: FibreLaw) -> [f64; 2] {
     span_and_sag(&drawn_out(&collar))
 }
 
+#[test]
+fn words_say_the_stiffness_and_where_it_comes_from() {
+    let mut collar = shipped("collar");
+    let line_type = collar.line_types.get_mut("wire").unwrap();
+    line_type.bending_stiffness = Some(10.0);
+    line_type.fibres = Some(20);
+    let said = |scene: &Scene| {
+        let words = scene.in_words();
+        words.split_whitespace().collect::<Vec<_>>().join(" ")
+    };
+    let words = said(&collar);
+    assert!(
+        words.contains(
+            "bending stiffness 0.5 N m², which is EI 10 N m² as given shared by 20 fibres (EI/20"
+        ),
+        "{words}"
+    );
+    assert!(
+        words.contains("not modelled torsion and shear of lines"),
+        "{words}"
+    );
+    collar.line_types.get_mut("wire").unwrap().fibre_law = FibreLaw::Squared;
+    assert!(said(&collar).contains("0.025 N m², which is EI 10 N m² as given"));
+    let simulation = Simulation::new(&collar).unwrap();
+    let joints = simulation.model().lines[0].bending.as_ref().unwrap();
+    assert_eq!(joints.stiffness[0], 0.025);
+    assert!(said(&shipped("power_cable")).contains("clamped at end A along (-1, 0, 0)"));
+}
+
 /// Published: 17.70 and 4.09 for twenty fibres.
 #[test]
 fn the_published_twenty_fibres_are_the_squared_reading() {
@@ -248,6 +277,82 @@ fn a_column_stands_below_its_euler_load_and_bends_above() {
     assert!(x.hypot(y) < 1e-6 && (z - LENGTH).abs() < 1e-5);
     let [x, y, _] = column(2.6);
     assert!(x.hypot(y) > 0.3 * LENGTH);
+}
+
+/// A cantilever on a vessel, along x in its reference attitude, its tip under a load.
+fn carried(solver: &str, load: f64) -> Simulation {
+    let carried = scene(&format!(
+        r#"
+        gravity = 0.0
+        line_types.rod = {{ mass = {MASS}, axial_stiffness = 1e7, bending_stiffness = {EI} }}
+        solver = {{ {solver} }}
+        [[vessels]]
+        name = "floater"
+        position = [0.0, 0.0, 0.0]
+        [[points]]
+        name = "root"
+        position = [3.0, 0.0, 0.0]
+        kind = "coupled"
+        on = "floater"
+        [[points]]
+        name = "tip"
+        position = [{}, 0.0, 0.0]
+        kind = "free"
+        force = {{ z = {load} }}
+        [[lines]]
+        name = "rod"
+        from = "root"
+        to = "tip"
+        sections = [{{ type = "rod", length = {LENGTH}, elements = 20 }}]
+        clamped_a = [1.0, 0.0, 0.0]
+        "#,
+        3.0 + LENGTH
+    ));
+    Simulation::new(&carried).unwrap()
+}
+
+#[test]
+fn a_clamp_turns_with_its_vessel() {
+    let mut rod = carried("integrator = \"quasi_static\"", 0.0);
+    for i in 1..=20 {
+        rod.set_pose(0, [0.0, 0.0, 0.0, 0.0, 0.0, 0.05 * f64::from(i)]);
+        rod.advance(1.0).unwrap();
+    }
+    let root = rod.state().points[0].position;
+    let [x, y, z] = tip(&rod);
+    assert!(root.y > 2.0 && z.abs() < 1e-9);
+    let ratio = (3.0 + LENGTH) / 3.0;
+    assert!(
+        (x - ratio * root.x).hypot(y - ratio * root.y) < 1e-5,
+        "{x} {y}"
+    );
+    assert!(rod.energy().bending < 1e-9);
+}
+
+#[test]
+fn a_vessel_feels_the_moment_of_what_is_clamped_to_it() {
+    let rod = carried("", -2.0);
+    let [fx, fy, fz, mx, my, mz] = rod.vessel_force(0);
+    let [x, ..] = tip(&rod);
+    assert!(fx.abs() < 1e-6 && fy.abs() < 1e-6 && (fz + 2.0).abs() < 1e-6);
+    assert!((my - 2.0 * x).abs() < 1e-6, "{my} is not {}", 2.0 * x);
+    assert!(mx.abs() < 1e-6 && mz.abs() < 1e-6);
+}
+
+#[test]
+fn the_work_of_a_clamp_that_turns_is_in_the_ledger() {
+    let errors = [0.04, 0.02, 0.01, 0.005].map(|step| {
+        let solver = format!("integrator = \"generalised_alpha\", time_step_max = {step}");
+        let mut rod = carried(&solver, 0.0);
+        for i in 0..100 {
+            let angle = |t: f64| 0.2 * (1.5 * t).sin().powi(3);
+            rod.set_pose(0, [0.0, 0.0, 0.0, 0.0, angle(0.04 * f64::from(i)), 0.0]);
+            rod.advance(0.04).unwrap();
+        }
+        assert!(rod.ledger().flow.given > 0.05);
+        (step, rod.energy_error().abs())
+    });
+    assert!(fit_order(&errors) > 1.5, "{errors:?}");
 }
 
 // ------------------------------------------------------------------ vibration

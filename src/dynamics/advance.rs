@@ -363,7 +363,7 @@ fn place_held(model: &Model, state: &mut State, held: &impl Fn(usize, f64) -> Ki
             let k = held(index, state.time);
             (point.position, point.velocity, point.acceleration) =
                 (k.position, k.velocity, k.acceleration);
-            point.orientation = k.orientation;
+            (point.orientation, point.spin) = (k.orientation, k.spin);
         }
     }
     for (line, shape) in model.lines.iter().zip(&mut state.lines) {

@@ -153,13 +153,14 @@ fn hold<K: Fn(usize, f64) -> Kinematics>(
                     velocity,
                     acceleration,
                     orientation,
-                    ..
+                    spin,
                 } = held(point, t);
                 state.points[point] = PointState {
                     position,
                     velocity,
                     acceleration,
                     orientation,
+                    spin,
                     ..state.points[point]
                 };
             }

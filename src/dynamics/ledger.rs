@@ -2,7 +2,8 @@
 //!
 //! Held:  E = Σ ½ vᵀM v + Σ EA·W(ε)·L + Σ ½B(|κb| − k₀)² + Σ w z  over free nodes, segments that carry force, joints and free
 //!        points, by kind in [`Energy`].
-//! Given: the work of the held ends on the line, −∫ (T q + S)·V dt with the shear S of lines that bend, and of point loads.
+//! Given: the work of the held ends on the line, −∫ (T q + S)·V + M·Ω dt with the shear S of lines that bend and the moment M on
+//!        clamps that turn, and of point loads.
 //! Lost:  drag, axial, bending and mass damping, and what the seabed takes (its springs give some of it back).
 //!
 //! E − E₀ − given + lost is the error of the time integration: numerical dissipation shows up as a negative one.
@@ -23,7 +24,7 @@ use super::leapfrog::segment_tension;
 use crate::model::{ClosedForm, End, Line, LineState, Model, Network, PointState, State, joint};
 use crate::physics::morison::{DragCoefficients, drag};
 use crate::physics::seabed::{ContactCoefficients, normal_force};
-use crate::statics::assembly::{end_shear, joint_damping_power};
+use crate::statics::assembly::{end_moment, end_shear, joint_damping_power};
 
 /// Energy that crossed the border of a network, or the rate at which it does.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
@@ -313,6 +314,9 @@ pub fn work_at_rest(
                 |state: &State| force_at_rest(line, &state.lines[index], end, &state.points[point]);
             let moved = after.points[point].position - before.points[point].position;
             flow.given -= 0.5 * (force(before) + force(after)).dot(&moved);
+            if line.bending.is_some() {
+                flow.given -= clamp_work(line, index, end, [before, after]);
+            }
         }
         let shapes = [before, after].map(|state| &state.lines[index]);
         if let (Some(contact), true) = (
@@ -332,6 +336,15 @@ pub fn work_at_rest(
         flow.given += 0.5 * loads.dot(&moved);
     }
     flow
+}
+
+/// Work [J] of a line on the clamp at one of its ends, which turned between two states.
+fn clamp_work(line: &Line, index: usize, end: End, states: [&State; 2]) -> f64 {
+    let points = states.map(|state| &state.points[line.ends[usize::from(end == End::B)]]);
+    let shapes = states.map(|state| &state.lines[index].position);
+    let moment = |i: usize| end_moment(line, shapes[i], end, points[i]);
+    let turned = points[1].orientation * points[0].orientation.inverse();
+    0.5 * (moment(0) + moment(1)).dot(&turned.scaled_axis())
 }
 
 /// Force [N] of a line at rest on a held point, without the weight of its own half node, whose energy is not held, unless the line
@@ -381,7 +394,8 @@ fn bending_power(model: &Model, line: &Line, state: &State, index: usize) -> Flo
             Some(_) => 0.0,
             None => {
                 let shear = end_shear(line, [&shape.position, &shape.velocity], end, at);
-                -shear.dot(&shape.velocity[line.end_node(end)])
+                let moment = end_moment(line, &shape.position, end, at);
+                -shear.dot(&shape.velocity[line.end_node(end)]) - moment.dot(&at.spin)
             }
         }
     };

@@ -6,13 +6,15 @@ use super::{
     Bending, Contact, Drag, End, FreePoint, Line, Model, Motion, Network, Nodes, Point, Role,
     Section, Segments, Vessel, mesh,
 };
+use crate::physics::bending;
 use crate::physics::morison::{DragCoefficients, drag_per_length};
 use crate::physics::rayleigh;
 use crate::physics::seabed::{ContactCoefficients, regularised};
 use crate::physics::stretch::StretchLaw;
 use crate::physics::weight::{cross_section, submerged_weight};
 use crate::scene::{
-    self, Axis, ContactLaw, Integrator, LineType, PointKind, RestShape, Scene, SceneError, Strain,
+    self, Axis, ContactLaw, FibreLaw, Integrator, LineModel, LineType, PointKind, RestShape, Scene,
+    SceneError, Strain,
 };
 
 /// Axial damping of a segment whose line type leaves it open, as a part of critical [-]. A line that slackens and snaps
@@ -134,6 +136,25 @@ fn damping_ratio(line_type: &LineType) -> f64 {
         .unwrap_or(if silent { NUMERICAL_DAMPING_RATIO } else { 0.0 })
 }
 
+/// EI of a cable's section [N m²]: as given or of its solid section, shared by its strands. Beams have their own.
+fn bending_stiffness(line_type: &LineType) -> f64 {
+    if line_type.model == LineModel::Beam {
+        return 0.0;
+    }
+    let of_section = |section: scene::SolidSection| {
+        bending::solid_round(section.diameter, section.youngs_modulus)
+    };
+    let solid = line_type
+        .bending_stiffness
+        .or(line_type.solid_section.map(of_section));
+    let power = match line_type.fibre_law {
+        FibreLaw::Linear => 1,
+        FibreLaw::Squared => 2,
+    };
+    let strands = line_type.fibres.unwrap_or(1).max(1);
+    bending::of_strands(solid.unwrap_or(0.0), strands, power)
+}
+
 fn line_law(scene: &Scene, line_type: &LineType) -> LineLaw {
     let density = scene.water.as_ref().map_or(0.0, |water| water.density);
     let displaced = line_type
@@ -182,7 +203,7 @@ fn line_law(scene: &Scene, line_type: &LineType) -> LineLaw {
         added_tangent: displaced * line_type.added_mass_tangential.unwrap_or(0.0),
         weight,
         mass_damping: rayleigh.map_or(0.0, |r| r.mass),
-        bending_stiffness: line_type.cable_stiffness().unwrap_or(0.0),
+        bending_stiffness: bending_stiffness(line_type),
         bending_damping: rayleigh.map_or(0.0, |r| r.stiffness),
         drag,
         contact,

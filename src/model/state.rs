@@ -25,8 +25,10 @@ pub struct PointState {
     pub velocity: Vector3<f64>,
     /// Acceleration [m/s²].
     pub acceleration: Vector3<f64>,
-    /// Rotation from the reference attitude of what the point is fixed to, which its clamped lines follow.
+    /// Rotation from the reference attitude of what the point is fixed to, which its clamped lines follow [-].
     pub orientation: UnitQuaternion<f64>,
+    /// Angular velocity of what the point is fixed to [rad/s].
+    pub spin: Vector3<f64>,
     /// Velocities half a step and one and a half steps before the time of the position [m/s], for the leapfrog.
     pub half_step: [Vector3<f64>; 2],
 }
@@ -84,6 +86,7 @@ impl PointState {
             velocity: zero,
             acceleration: zero,
             orientation: UnitQuaternion::identity(),
+            spin: zero,
             half_step: [zero; 2],
         }
     }

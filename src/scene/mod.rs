@@ -12,7 +12,6 @@ mod nearest;
 mod notes;
 mod path;
 mod read;
-mod section;
 mod time_function;
 mod units;
 mod words;

@@ -197,7 +197,7 @@ impl Scene {
             }
             InitialShape::Nodes(_) => "starts at the given nodes, at rest".to_string(),
         };
-        let bends = if self.bends(line) {
+        let bends = if bending::bends(self, line) {
             format!("; {}", bending::ends_in_words(line))
         } else {
             String::new()

@@ -1,11 +1,32 @@
 //! Bending of cables in words.
 
+use std::f64::consts::PI;
+
 use crate::scene::check::{number, quantity};
-use crate::scene::{FibreLaw, Line, LineType, RestShape, Scene};
+use crate::scene::{FibreLaw, Line, LineModel, LineType, RestShape, Scene};
+
+/// EI of one solid section [N m²]: as given, else Eπd⁴/64; `None` for flexible cables, and for beams.
+fn solid_stiffness(line_type: &LineType) -> Option<f64> {
+    let of_section = || {
+        let section = line_type.solid_section?;
+        Some(section.youngs_modulus * PI * section.diameter.powi(4) / 64.0)
+    };
+    let solid = line_type.bending_stiffness.or_else(of_section);
+    solid.filter(|ei| *ei > 0.0 && line_type.model == LineModel::Cable)
+}
+
+/// Whether a line has a section with bending stiffness.
+pub(super) fn bends(scene: &Scene, line: &Line) -> bool {
+    let mut types = line
+        .sections
+        .iter()
+        .filter_map(|section| scene.line_types.get(&section.line_type));
+    types.any(|line_type| solid_stiffness(line_type).is_some())
+}
 
 /// EI of a line type, where it comes from and who shares it; nothing for a flexible line.
 pub(super) fn stiffness_in_words(line_type: &LineType) -> Option<String> {
-    let stiffness = line_type.cable_stiffness()?;
+    let solid = solid_stiffness(line_type)?;
     let source = match (line_type.bending_stiffness, line_type.solid_section) {
         (None, Some(section)) => format!(
             "of a solid round section of {} with Young's modulus {}",
@@ -14,18 +35,21 @@ pub(super) fn stiffness_in_words(line_type: &LineType) -> Option<String> {
         ),
         _ => "as given".to_string(),
     };
-    let said = quantity(stiffness, "N m²");
-    let strands = match line_type.fibres {
-        None | Some(0 | 1) => return Some(format!("bending stiffness EI {said} {source}")),
-        Some(strands) => strands,
-    };
-    let solid = quantity(line_type.solid_stiffness()?, "N m²");
-    let law = match line_type.fibre_law {
-        FibreLaw::Linear => format!("EI/{strands}: strands that slide on each other side by side"),
-        FibreLaw::Squared => format!("EI/{strands}²: that of a single strand"),
+    let said = quantity(solid, "N m²");
+    let (strands, law, share) = match (line_type.fibres, line_type.fibre_law) {
+        (None | Some(0 | 1), _) => return Some(format!("bending stiffness EI {said} {source}")),
+        (Some(n), FibreLaw::Linear) => {
+            let law = format!("EI/{n}: strands that slide on each other side by side");
+            (n, law, solid / n as f64)
+        }
+        (Some(n), FibreLaw::Squared) => {
+            let law = format!("EI/{n}²: that of a single strand");
+            (n, law, solid / (n as f64).powi(2))
+        }
     };
     Some(format!(
-        "bending stiffness {said}, which is EI {solid} {source} shared by {strands} fibres ({law})"
+        "bending stiffness {}, which is EI {said} {source} shared by {strands} fibres ({law})",
+        quantity(share, "N m²")
     ))
 }
 
@@ -51,7 +75,7 @@ pub(super) fn ends_in_words(line: &Line) -> String {
 
 /// What of bending, torsion and shear is left out.
 pub(super) fn absence_in_words(scene: &Scene) -> &'static str {
-    let bending = scene.lines.iter().filter(|line| scene.bends(line)).count();
+    let bending = scene.lines.iter().filter(|line| bends(scene, line)).count();
     match bending {
         0 => "bending, torsion and shear of lines",
         n if n == scene.lines.len() => "torsion and shear of lines",
@@ -61,7 +85,7 @@ pub(super) fn absence_in_words(scene: &Scene) -> &'static str {
 
 /// What carries compression.
 pub(super) fn compression_in_words(scene: &Scene) -> &'static str {
-    if scene.lines.iter().any(|line| scene.bends(line)) {
+    if scene.lines.iter().any(|line| bends(scene, line)) {
         "tension is never negative where a line is flexible; where it has bending stiffness an element of length l pushes with \
          up to 4EI/l², beyond which it would buckle within itself"
     } else {
