@@ -621,12 +621,10 @@ fn at_rest(model: &Model, time: f64, places: &[PointState]) -> Result<State, Sta
         });
     }
     let mut work = assembly::Workspace::new(model);
-    let mut state = equilibrium::solve_posed(model, places, time, &mut work)?;
-    if model.solver.integrator == Integrator::QuasiStatic {
-        for number in 0..model.networks.len() {
-            catenary_network::solve_network(model, number, &mut state, time, &mut work);
-        }
-    }
+    let mut state = match model.solver.integrator {
+        Integrator::QuasiStatic => catenary_network::solve_posed(model, places, time, &mut work)?,
+        _ => equilibrium::solve_posed(model, places, time, &mut work)?,
+    };
     for (line, shape) in model.lines.iter().zip(&mut state.lines) {
         if let Some(nodes) = given(line) {
             *shape = LineState::at_rest(nodes);

@@ -24,6 +24,7 @@ use super::leapfrog::segment_tension;
 use crate::model::{ClosedForm, End, Line, LineState, Model, Network, PointState, State, joint};
 use crate::physics::morison::{DragCoefficients, drag};
 use crate::physics::seabed::{ContactCoefficients, normal_force};
+use crate::physics::stretch::total_tension;
 use crate::statics::assembly::{end_moment, end_shear, joint_damping_power};
 
 /// Energy that crossed the border of a network, or the rate at which it does.
@@ -407,40 +408,32 @@ fn bending_power(model: &Model, line: &Line, state: &State, index: usize) -> Flo
 
 fn line_power(line: &Line, shape: &LineState, model: &Model) -> Flow {
     let (n, negative) = (line.segment_count(), model.solver.negative_tension);
+    let segments = &line.segments;
+    let [a, b] = line.ends.map(|point| model.points[point].free().is_none());
     let mut flow = Flow::default();
     for i in 0..n {
-        let pair = |values: &[Vector3<f64>]| [values[i], values[i + 1]];
-        let tension = segment_tension(
-            line,
-            i,
-            pair(&shape.position),
-            pair(&shape.velocity),
-            negative,
-        );
         let chord = shape.position[i + 1] - shape.position[i];
-        let Some(direction) = chord.try_normalize(0.0) else {
+        let length = chord.norm();
+        if length == 0.0 {
             continue;
-        };
-        let strain = chord.norm() / line.segments.length[i] - 1.0;
-        let elastic = line.segments.axial_stiffness[i] * line.segments.law[i].at(strain).force;
+        }
+        let direction = chord / length;
+        let unstretched = segments.length[i];
+        let stretch = segments.law[i].at(length / unstretched - 1.0);
+        let elastic = segments.axial_stiffness[i] * stretch.force;
         let stretching = direction.dot(&(shape.velocity[i + 1] - shape.velocity[i]));
-        flow.lost += (tension - elastic.max(0.0 - line.compression_max(i))) * stretching;
-        let end = |node: usize, sign: f64| {
-            let held = model.points[line.ends[usize::from(node > 0)]]
-                .free()
-                .is_none();
-            if held {
-                sign * tension * direction.dot(&shape.velocity[node])
-            } else {
-                0.0
-            }
-        };
-        flow.given += if i == 0 { end(0, -1.0) } else { 0.0 };
-        flow.given += if i + 1 == n { end(n, 1.0) } else { 0.0 };
+        let damping = segments.axial_damping[i] * stretching / unstretched;
+        let least = 0.0 - line.compression_max(i);
+        let tension = total_tension(elastic, damping, least, negative);
+        flow.lost += (tension - elastic.max(least)) * stretching;
+        if i == 0 && a {
+            flow.given -= tension * direction.dot(&shape.velocity[0]);
+        }
+        if i + 1 == n && b {
+            flow.given += tension * direction.dot(&shape.velocity[n]);
+        }
     }
-    let first = usize::from(model.points[line.ends[0]].free().is_none());
-    let last = n - usize::from(model.points[line.ends[1]].free().is_none());
-    for i in first..=last {
+    for i in usize::from(a)..=n - usize::from(b) {
         flow.lost += node_loss(line, shape, i);
     }
     flow
