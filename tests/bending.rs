@@ -614,6 +614,128 @@ fn a_slack_cable_on_the_seabed_buckles_and_goes_on() {
     }
 }
 
+/// A heavy rod clamped at one end, its other end free.
+fn heavy_rod(bending_stiffness: f64, elements: usize, clamp: &str) -> Scene {
+    scene(&format!(
+        r#"
+        solver = {{ time_step_max = 0.02 }}
+        line_types.rod = {{ mass = 1.0, axial_stiffness = 1e7, bending_stiffness = {bending_stiffness:e} }}
+        points = [
+          {{ name = "root", position = [0.0, 0.0, 0.0], kind = "fixed" }},
+          {{ name = "tip", position = [5.0, 0.0, 0.0], kind = "free" }},
+        ]
+        [[lines]]
+        name = "rod"
+        from = "root"
+        to = "tip"
+        sections = [{{ type = "rod", length = 5.0, elements = {elements} }}]
+        clamped_a = {clamp}
+        "#
+    ))
+}
+
+/// Without bending stiffness all of these hang straight down, some of them folded back at the clamp.
+#[test]
+fn a_heavy_cantilever_comes_to_rest_whichever_way_it_is_clamped() {
+    for clamp in [
+        "[1.0, 0.0, 0.0]",
+        "[0.3, 0.2, 1.0]",
+        "[0.0, 0.0, 1.0]",
+        "[0.0, 0.0, -1.0]",
+    ] {
+        for exponent in [-4, -2, 0, 2, 4, 6] {
+            for elements in [5, 50] {
+                let scene = heavy_rod(10.0_f64.powi(exponent), elements, clamp);
+                let mut rod = Simulation::new(&scene)
+                    .unwrap_or_else(|error| panic!("1e{exponent}, {clamp}: {error}"));
+                let before = nalgebra::Vector3::from(tip(&rod));
+                for _ in 0..20 {
+                    rod.advance(0.1).unwrap();
+                }
+                let drift = (nalgebra::Vector3::from(tip(&rod)) - before).norm();
+                assert!(drift < 1e-6, "1e{exponent}, {clamp}: {drift} m");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_section_without_bending_stiffness_is_a_hinge() {
+    let mut chain = shipped("power_cable");
+    chain
+        .line_types
+        .get_mut("buoyant")
+        .unwrap()
+        .bending_stiffness = None;
+    let cable = Simulation::new(&chain).unwrap();
+    let nodes = cable.bending(0).unwrap();
+    assert!(nodes[100..=150].iter().all(|node| node.moment == 0.0));
+    assert!(nodes[151..].iter().any(|node| node.moment > 0.0));
+}
+
+#[test]
+fn a_line_split_into_sections_of_one_type_is_the_same_line() {
+    let mut split = shipped("power_cable");
+    split.line_types.get_mut("buoyant").unwrap().mass = Some(70.0);
+    let mut parts = split.clone();
+    let first = parts.lines[0].sections[0].clone();
+    let half = |length, elements| moorline::scene::Section {
+        length,
+        elements: Some(elements),
+        ..first.clone()
+    };
+    parts.lines[0]
+        .sections
+        .splice(0..1, [half(30.0, 30), half(70.0, 70)]);
+    let [whole, parts] = [split, parts].map(|scene| Simulation::new(&scene).unwrap());
+    let pairs = whole
+        .bending(0)
+        .unwrap()
+        .into_iter()
+        .zip(parts.bending(0).unwrap());
+    for (a, b) in pairs {
+        assert!((a.moment - b.moment).abs() < 1e-6);
+    }
+}
+
+#[test]
+fn a_line_that_is_unstressed_as_it_lies_stays_there() {
+    let mut rod = heavy_rod(40.0, 20, "[1.0, 0.0, 0.0]");
+    rod.gravity = 0.0;
+    rod.lines[0].initial = moorline::scene::InitialShape::Nodes(
+        (0..=20)
+            .map(|i| 0.25 * f64::from(i) / 4.0)
+            .map(|angle| [4.0 * angle.sin(), 4.0 * (1.0 - angle.cos()), 0.0])
+            .collect(),
+    );
+    rod.lines[0].sections[0].length = 20.0 * 8.0 * (0.5 * 0.0625_f64).sin(); // the chords
+    rod.points[1].position = [4.0 * 1.25_f64.sin(), 4.0 * (1.0 - 1.25_f64.cos()), 0.0];
+    let moments = |scene: &Scene| Simulation::new(scene).unwrap().bending(0).unwrap();
+    let straight = moments(&rod);
+    assert!((straight[10].moment / (40.0 / 4.0) - 1.0).abs() < 0.01);
+    rod.lines[0].rest_shape = moorline::scene::RestShape::Initial;
+    assert!(moments(&rod).iter().all(|node| node.moment == 0.0));
+    let mut rod = Simulation::new(&rod).unwrap();
+    let before = tip(&rod);
+    for _ in 0..20 {
+        rod.advance(0.1).unwrap();
+    }
+    let after = tip(&rod);
+    assert!(
+        (0..3).all(|axis| (after[axis] - before[axis]).abs() < 1e-6),
+        "{after:?}"
+    );
+}
+
+#[test]
+fn a_line_that_bends_needs_two_elements() {
+    let message = Simulation::new(&heavy_rod(1.0, 1, "[1.0, 0.0, 0.0]")).unwrap_err();
+    assert!(
+        message.to_string().starts_with("lines[0].sections"),
+        "{message}"
+    );
+}
+
 #[test]
 fn a_leapfrog_is_refused_where_lines_bend() {
     for integrator in [Integrator::Leapfrog, Integrator::AxialImplicit] {
