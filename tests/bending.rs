@@ -224,10 +224,10 @@ fn tip(simulation: &Simulation) -> [f64; 3] {
 /// PL²/EI [-], deflection over L [-], shortening over L [-]: inextensible elastica with a dead load across its tip, from elliptic
 /// integrals in high precision.
 const ELASTICA: [(f64, f64, f64); 4] = [
-    (0.5, 0.16214357565836961, 0.015918962470837497),
-    (1.0, 0.30172077379981353, 0.056433236283376883),
-    (5.0, 0.71379152361191273, 0.38762836072442987),
-    (10.0, 0.81060902488029645, 0.55499559775375127),
+    (0.5, 0.16214357565836962, 0.015918962470837496),
+    (1.0, 0.30172077379981355, 0.05643323628337688),
+    (5.0, 0.7137915236119128, 0.38762836072442985),
+    (10.0, 0.8106090248802964, 0.5549955977537513),
 ];
 
 #[test]
@@ -408,11 +408,11 @@ fn frequencies_of_beams_have_second_order() {
     let both = "clamped_a = [1.0, 0.0, 0.0]\nclamped_b = [1.0, 0.0, 0.0]";
     let pi = std::f64::consts::PI;
     assert_second_order(
-        square([1.8751040687119612, 4.6940911329741746, 7.8547574382376126]),
+        square([1.8751040687119611, 4.694091132974175, 7.854757438237613]),
         |n| frequencies("free", held, 0.0, n),
     );
     assert_second_order(
-        square([4.730040744862704, 7.8532046240958376, 10.995607838001671]),
+        square([4.730040744862704, 7.853204624095838, 10.995607838001671]),
         |n| frequencies("fixed", both, 0.0, n),
     );
     assert_second_order(square([pi, 2.0 * pi, 3.0 * pi]), |n| {
@@ -456,7 +456,7 @@ fn scene_force(z: f64) -> Option<moorline::scene::PointForce> {
 
 #[test]
 fn a_cantilever_let_go_swings_with_its_first_natural_period() {
-    let exact = 1.8751040687119612_f64.powi(2) * (EI / MASS / LENGTH.powi(4)).sqrt();
+    let exact = 1.8751040687119611_f64.powi(2) * (EI / MASS / LENGTH.powi(4)).sqrt();
     let mut rod = let_go("spectral_radius = 0.8");
     let (step, mut crossings, mut last) = (0.01, Vec::new(), tip(&rod)[2]);
     for i in 1..=2000 {

@@ -83,8 +83,14 @@ impl Problem<'_> {
             ..*self
         };
         self.restart(guess, state, work);
-        let hangs = flexible.solve_from(guess, state, work).is_ok();
-        if hangs && self.newton(state, work, self.case(f64::INFINITY)) && self.settle(state, work) {
+        let hangs = flexible.solve_from(guess, state, work);
+        if let Err(limit @ StaticsError::LimitLoad { .. }) = hangs {
+            return Err(limit);
+        }
+        if hangs.is_ok()
+            && self.newton(state, work, self.case(f64::INFINITY))
+            && self.settle(state, work)
+        {
             return Ok(());
         }
         self.restart(guess, state, work);
@@ -103,11 +109,12 @@ impl Problem<'_> {
         self.remember_tensions(work);
     }
 
-    /// Whether an equilibrium is stable, or another one was found from it after a small wave.
+    /// Whether an equilibrium is stable and within the limits of its strain measures, or another one was found from it after a small wave.
     fn settle(&self, state: &mut State, work: &mut Workspace) -> bool {
         let full = self.case(f64::INFINITY);
-        self.stable(state, work, full)
-            || (self.relax(state, work) && self.stable(state, work, full))
+        let found = self.stable(state, work, full)
+            || (self.relax(state, work) && self.stable(state, work, full));
+        found && self.strain_over_limit(state).0 <= 1.0
     }
 
     /// Lets the lines move as if in honey, from a small wave on their shape: Newton's method with predicted tensions, whose anchoring
@@ -166,10 +173,11 @@ impl Problem<'_> {
             } else {
                 Vector3::new(-1.0, 0.3, 0.0)
             };
-            for i in 1..last {
-                let u = line.nodes.arc[i] / length;
+            let inner = nodes.iter_mut().zip(&line.nodes.arc).take(last).skip(1);
+            for (r, arc) in inner {
+                let u = arc / length;
                 let shape = (std::f64::consts::PI * u).sin() + 0.4 * (5.0 * u).sin();
-                nodes[i] -= WAVE * length * shape * across;
+                *r -= WAVE * length * shape * across;
             }
         }
     }
