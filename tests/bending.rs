@@ -3,6 +3,7 @@
 mod common;
 
 use common::{modes, scene, shipped, with_elements};
+use moorline::interface::{Interface, Layout};
 use moorline::scene::{FibreLaw, Integrator, Scene};
 use moorline::simulation::Simulation;
 
@@ -774,6 +775,32 @@ fn the_power_cable_rests_in_a_lazy_wave() {
         nodes.iter().map(|node| node.curvature).fold(0.0, f64::max)
     };
     assert!((0.01..1.0).contains(&curvature(&cable)));
+}
+
+#[test]
+fn curvature_and_moment_are_outputs_of_lines_that_bend() {
+    let scene = shipped("power_cable");
+    let cable = Simulation::new(&scene).unwrap();
+    let table = Interface::new(&scene, cable.model(), Layout::Arrays).unwrap();
+    let read = |name: &str| {
+        let mut rows = table.variables().iter();
+        let row = rows.find(|row| row.name == name).unwrap();
+        let mut values = vec![f64::NAN; row.size()];
+        Interface::read(row, &cable, &mut values).unwrap();
+        values
+    };
+    let moments = read("cable.profile.moment");
+    let greatest = moments.iter().copied().fold(0.0, f64::max);
+    assert_eq!(read("cable.moment_max"), [greatest]);
+    assert_eq!(read("cable.moment_b"), [moments[240]]);
+    assert_eq!(read("cable.moment_a"), [moments[0]]);
+    let stiffness = greatest / read("cable.curvature_max")[0];
+    assert!((stiffness / 1e4 - 1.0).abs() < 1e-9, "{stiffness}");
+    let plain = shipped("collar");
+    let model = moorline::model::Model::new(&plain).unwrap();
+    let table = Interface::new(&plain, &model, Layout::Scalars).unwrap();
+    let bends = |name: &str| name.contains("moment") || name.contains("curvature");
+    assert!(!table.variables().iter().any(|row| bends(&row.name)));
 }
 
 #[test]

@@ -119,6 +119,31 @@ mod tests {
     }
 
     #[test]
+    fn a_line_that_bends_has_its_curvature_and_moment_in_the_profile() {
+        let mut record = sample::record();
+        record.frames[0].lines[1][2].bending = Some(crate::simulation::NodeBending {
+            curvature: 0.25,
+            moment: 8.0,
+        });
+        let mut bytes = Vec::new();
+        write_profile(&record, &mut bytes).unwrap();
+        let text = String::from_utf8(bytes).unwrap();
+        assert!(
+            text.lines()
+                .next()
+                .unwrap()
+                .ends_with(",tension,curvature,moment")
+        );
+        assert_eq!(
+            text.lines()
+                .filter(|row| row.ends_with(",0.25,8.0"))
+                .count(),
+            1
+        );
+        assert!(text.lines().nth(1).unwrap().ends_with(",,"));
+    }
+
+    #[test]
     fn the_profile_has_a_row_for_every_time_line_and_node() {
         let record = sample::record();
         let mut bytes = Vec::new();
