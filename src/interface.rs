@@ -16,7 +16,7 @@ use std::collections::BTreeSet;
 use crate::model::{Body, Line, Model};
 use crate::physics::stretch::StretchLaw;
 use crate::scene::{Axis, PointKind, Scene, SceneError};
-use crate::simulation::Simulation;
+use crate::simulation::{NodeBending, Simulation};
 
 pub use parameters::Parameter;
 
@@ -87,6 +87,12 @@ impl Unit {
     pub const NEWTON_METRE: Unit = Unit::of("N.m", 1, 2, -2);
     /// Newton per metre.
     pub const NEWTON_PER_METRE: Unit = Unit::of("N/m", 1, 0, -2);
+    /// One per metre.
+    pub const PER_METRE: Unit = Unit::of("1/m", 0, -1, 0);
+    /// Newton metre.
+    pub const NEWTON_METRE: Unit = Unit::of("N.m", 1, 2, -2);
+    /// Newton square metre.
+    pub const NEWTON_SQUARE_METRE: Unit = Unit::of("N.m2", 1, 3, -2);
     /// Newton second.
     pub const NEWTON_SECOND: Unit = Unit::of("N.s", 1, 1, -1);
     /// Kilogram per metre.
@@ -185,6 +191,14 @@ pub enum LineResult {
     LaidLength,
     /// Greatest vertical distance below the chord between the ends [m].
     Sag,
+    /// Greatest curvature along the line [1/m].
+    CurvatureMax,
+    /// Greatest bending moment along the line [N m].
+    MomentMax,
+    /// Bending moment at end A [N m].
+    MomentA,
+    /// Bending moment at end B [N m].
+    MomentB,
     /// Sag of the closed-form catenary in the reference configuration [m].
     CatenarySag,
     /// Horizontal tension of that catenary [N].
@@ -211,6 +225,10 @@ pub enum ProfileQuantity {
     Position(Axis),
     /// Axial tension [N].
     Tension,
+    /// Curvature [1/m].
+    Curvature,
+    /// Bending moment [N m].
+    Moment,
 }
 
 /// How profiles appear.
@@ -281,6 +299,9 @@ impl Interface {
         for (index, line) in scene.lines.iter().enumerate() {
             check_name(&line.name, &format!("lines[{index}].name"))?;
             push_line(&mut variables, index, &line.name);
+            if model.lines[index].bending.is_some() {
+                push_bending(&mut variables, index, &line.name);
+            }
         }
         push_solver(&mut variables);
         for (index, line) in model.lines.iter().enumerate() {
@@ -376,9 +397,30 @@ fn line_result(simulation: &Simulation, line: usize, result: LineResult) -> Opti
         LineResult::TensionMax => Some(simulation.tension_max(line)),
         LineResult::LaidLength => Some(simulation.laid_length(line)),
         LineResult::Sag => Some(simulation.sag(line)),
+        LineResult::CurvatureMax
+        | LineResult::MomentMax
+        | LineResult::MomentA
+        | LineResult::MomentB => {
+            let nodes = simulation.bending(line).unwrap_or_default();
+            Some(bending_result(&nodes, result))
+        }
         LineResult::CatenarySag => catenary().map(|c| c.sag()),
         LineResult::CatenaryHorizontal => catenary().map(|c| c.horizontal()),
         LineResult::CatenaryTensionB => catenary().map(|c| c.tension_b()),
+    }
+}
+
+/// Zero where the host has set the bending stiffness to nothing.
+fn bending_result(nodes: &[NodeBending], result: LineResult) -> f64 {
+    let mut moments = nodes.iter().map(|node| node.moment);
+    match result {
+        LineResult::CurvatureMax => {
+            let curvatures = nodes.iter().map(|node| node.curvature);
+            curvatures.fold(0.0, f64::max)
+        }
+        LineResult::MomentA => moments.next().unwrap_or(0.0),
+        LineResult::MomentB => moments.next_back().unwrap_or(0.0),
+        _ => moments.fold(0.0, f64::max),
     }
 }
 
@@ -521,6 +563,44 @@ fn push_line(variables: &mut Vec<Variable>, line: usize, name: &str) {
             LineResult::LaidLength | LineResult::Sag => Unit::METRE,
             _ => Unit::NEWTON,
         };
+        variables.push(row(
+            format!("{name}.{label}"),
+            format!("{name}: {meaning}"),
+            Causality::Output,
+            unit,
+            Binding::Line { line, result },
+        ));
+    }
+}
+
+fn push_bending(variables: &mut Vec<Variable>, line: usize, name: &str) {
+    let results = [
+        (
+            "curvature_max",
+            "greatest curvature along the line",
+            Unit::PER_METRE,
+            LineResult::CurvatureMax,
+        ),
+        (
+            "moment_max",
+            "greatest bending moment along the line",
+            Unit::NEWTON_METRE,
+            LineResult::MomentMax,
+        ),
+        (
+            "moment_a",
+            "bending moment at end A",
+            Unit::NEWTON_METRE,
+            LineResult::MomentA,
+        ),
+        (
+            "moment_b",
+            "bending moment at end B",
+            Unit::NEWTON_METRE,
+            LineResult::MomentB,
+        ),
+    ];
+    for (label, meaning, unit, result) in results {
         variables.push(row(
             format!("{name}.{label}"),
             format!("{name}: {meaning}"),

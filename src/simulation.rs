@@ -10,12 +10,12 @@ use nalgebra::{Vector3, Vector6};
 use serde::{Deserialize, Serialize};
 
 use crate::dynamics::advance::{Counters, Workspace};
-use crate::dynamics::ledger::Ledger;
+use crate::dynamics::ledger::{Energy, Ledger};
 use crate::dynamics::motion::{AxisPath, HostPath, Sample, VesselPath};
 use crate::dynamics::{Choice, StepError, reaction};
 use crate::math::attitude::angle_rates;
 use crate::model::{
-    Body, ClosedForm, End, Frame, Kinematics, Line, LineState, Model, PointState, Role, State,
+    Body, ClosedForm, End, Frame, Kinematics, Line, LineState, Model, PointState, Role, State, joint,
 };
 use crate::physics::stretch::StretchLaw;
 use crate::scene::{Integrator, Scene, SceneError};
@@ -131,6 +131,17 @@ pub struct ProfileNode {
     pub z: f64,
     /// Effective tension [N].
     pub tension: f64,
+    /// How it bends, where the line has bending stiffness.
+    pub bending: Option<NodeBending>,
+}
+
+/// How a line bends at a node.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct NodeBending {
+    /// Curvature [1/m].
+    pub curvature: f64,
+    /// Bending moment [N m].
+    pub moment: f64,
 }
 
 impl Simulation {
@@ -336,10 +347,21 @@ impl Simulation {
             }
             let force = Vector3::from(self.end_force(index));
             let arm = self.snapshot.state.points[index].position - origin;
-            let moment = arm.cross(&force);
+            let moment = arm.cross(&force) + self.clamp_moment(index);
             sum += Vector6::new(force.x, force.y, force.z, moment.x, moment.y, moment.z);
         }
         sum.into()
+    }
+
+    /// Moment [N m] of the lines that are clamped at a point on what holds it.
+    pub fn clamp_moment(&self, point: usize) -> Vector3<f64> {
+        let (model, state) = (&*self.model, &self.snapshot.state);
+        let attached = model.points[point].attached.iter();
+        let moment = |&(line, end): &(usize, End)| {
+            let (data, nodes) = (&model.lines[line], &state.lines[line].position);
+            assembly::end_moment(data, nodes, end, &state.points[point])
+        };
+        attached.map(moment).sum()
     }
 
     /// Force of the mooring on a point [N]: what a vessel feels there.
@@ -442,18 +464,38 @@ impl Simulation {
             .collect()
     }
 
+    /// Curvature [1/m] and bending moment [N m] at every node, where the line has bending stiffness; zero at hinges and pinned ends.
+    pub fn bending(&self, line: usize) -> Option<Vec<NodeBending>> {
+        let (data, state) = (&self.model.lines[line], &self.snapshot.state);
+        let bending = data.bending.as_ref()?;
+        let clamps = data.clamps(&state.points);
+        let nodes = &state.lines[line].position;
+        let at = |i: usize| {
+            let turn = (bending.joint[i] > 0.0).then(|| joint(clamps, nodes, i));
+            let bend = turn.flatten().map(|turn| turn.bend());
+            bend.map_or(NodeBending::default(), |bend| NodeBending {
+                curvature: bend / bending.length[i],
+                moment: bending.joint[i] * (bend - bending.rest[i]).abs(),
+            })
+        };
+        Some((0..nodes.len()).map(at).collect())
+    }
+
     /// Nodes of a line with their tensions, from end A to end B.
     pub fn profile(&self, line: usize) -> Vec<ProfileNode> {
+        let bending = self.bending(line);
         let arcs = &self.model.lines[line].nodes.arc;
         let nodes = arcs.iter().zip(&self.snapshot.state.lines[line].position);
         nodes
             .zip(self.tensions(line))
-            .map(|((s, r), tension)| ProfileNode {
+            .enumerate()
+            .map(|(node, ((s, r), tension))| ProfileNode {
                 s: *s,
                 x: r.x,
                 y: r.y,
                 z: r.z,
                 tension,
+                bending: bending.as_ref().map(|nodes| nodes[node]),
             })
             .collect()
     }
@@ -468,10 +510,14 @@ impl Simulation {
         self.snapshot.counters
     }
 
+    /// Energy held, by kind.
+    pub fn energy(&self) -> Energy {
+        self.work.energy(&self.model, &self.snapshot.state)
+    }
+
     /// Imbalance of the energy ledger since the start [J].
     pub fn energy_error(&self) -> f64 {
-        let held = self.work.energy(&self.model, &self.snapshot.state);
-        self.snapshot.ledger.error(held)
+        self.snapshot.ledger.error(self.energy().total())
     }
 
     /// The energy ledger.
@@ -553,14 +599,14 @@ fn begin(
         follows_scene,
     };
     let held = |point: usize, t: f64| at.point(point, t);
-    let places: Vec<Vector3<f64>> = (0..model.points.len())
-        .map(|point| held(point, time).position)
+    let places: Vec<PointState> = (0..model.points.len())
+        .map(|point| PointState::held(&held(point, time)))
         .collect();
     let mut state = at_rest(model, time, &places)?;
     let mut work = Workspace::new(model, &state, |line| static_tension(model, &state, line));
     work.start(model, &mut state, &held);
     let counters = Counters::default();
-    let ledger = Ledger::new(work.energy(model, &state));
+    let ledger = Ledger::new(work.energy(model, &state).total());
     Ok((
         Snapshot {
             state,
@@ -577,23 +623,22 @@ fn begin(
 
 /// In static equilibrium, or on the shapes the scene gives. Quasi-static lines start on their catenaries; those that will move
 /// start where their elements are at rest.
-fn at_rest(model: &Model, time: f64, places: &[Vector3<f64>]) -> Result<State, StaticsError> {
+fn at_rest(model: &Model, time: f64, places: &[PointState]) -> Result<State, StaticsError> {
     let given = |line: &Line| {
-        let [a, b] = line.ends.map(|point| places[point]);
+        let [a, b] = line.ends.map(|point| places[point].position);
         line.given_shape(a, b)
     };
     if let Some(shapes) = model.lines.iter().map(given).collect::<Option<Vec<_>>>() {
-        let points = places.iter().copied().map(PointState::at_rest).collect();
         return Ok(State {
             time,
-            points,
+            points: places.to_vec(),
             lines: shapes.into_iter().map(LineState::at_rest).collect(),
         });
     }
     let mut work = assembly::Workspace::new(model);
     let mut state = match model.solver.integrator {
-        Integrator::QuasiStatic => catenary_network::solve(model, places, time, &mut work)?,
-        _ => equilibrium::solve(model, places, time, &mut work)?,
+        Integrator::QuasiStatic => catenary_network::solve_posed(model, places, time, &mut work)?,
+        _ => equilibrium::solve_posed(model, places, time, &mut work)?,
     };
     for (line, shape) in model.lines.iter().zip(&mut state.lines) {
         if let Some(nodes) = given(line) {

@@ -205,6 +205,7 @@ impl<'a> Host<'a> {
                     s,
                     position: [x, y, z],
                     tension,
+                    bending: None,
                 });
             }
             lines.push(nodes);

@@ -75,6 +75,14 @@ pub fn static_table(record: &Record) -> Table {
         add("horizontal force at end B [N]", |line| line.horizontal);
         add("sag [m]", |line| line.sag);
         add("length on the seabed [m]", |line| line.laid_length);
+        if let Some(bending) = &line.equilibrium.bending {
+            for (name, value) in [
+                ("greatest curvature [1/m]", bending.curvature),
+                ("greatest moment [N m]", bending.moment),
+            ] {
+                table.row(&format!("{} {name}", line.name), &[value]);
+            }
+        }
     }
     table
 }

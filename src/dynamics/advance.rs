@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::axial_implicit::AxialWork;
 use super::implicit::{self, Scheme};
 use super::leapfrog::Step;
-use super::ledger::{self, Flow};
+use super::ledger::{self, Energy, Flow};
 use super::limit::transverse_step;
 use super::network::NetworkWork;
 use super::{Choice, StepError, quasi_static};
@@ -82,13 +82,17 @@ impl Workspace {
         self.networks.iter().map(|(choice, _)| choice)
     }
 
-    /// Energy that the networks with a ledger hold [J].
-    pub fn energy(&self, model: &Model, state: &State) -> f64 {
-        let networks = self.networks.iter().zip(&model.networks);
-        networks
-            .filter(|((_, solver), _)| !matches!(solver, Solver::QuasiStatic))
-            .map(|(_, network)| ledger::energy(model, network, state))
-            .sum()
+    /// Energy that the networks hold; none of motion where they are quasi-static.
+    pub fn energy(&self, model: &Model, state: &State) -> Energy {
+        let mut sum = Energy::default();
+        for ((_, solver), network) in self.networks.iter().zip(&model.networks) {
+            let mut energy = ledger::energy(model, network, state);
+            if matches!(solver, Solver::QuasiStatic) {
+                energy.kinetic = 0.0;
+            }
+            sum.add(energy);
+        }
+        sum
     }
 
     /// Gives a state at rest the accelerations that the implicit integrators start from.
@@ -286,18 +290,25 @@ impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
             end,
             step_max,
         };
-        let done = implicit::advance(self.model, number, next, self.held, span, scheme, work)?;
-        let network = &self.model.networks[number];
-        let mut flow = ledger::power(self.model, network, self.state, self.start);
-        flow.add(ledger::power(self.model, network, next, end));
+        let (model, network) = (self.model, &self.model.networks[number]);
+        let (mut flow, mut last) = (Flow::default(), self.start);
+        let mut before = ledger::power(model, network, self.state, self.start);
+        let count = |state: &State, t: f64| {
+            let now = ledger::power(model, network, state, t);
+            flow.add(before.times(0.5 * (t - last)));
+            flow.add(now.times(0.5 * (t - last)));
+            (before, last) = (now, t);
+        };
+        let held = implicit::Held {
+            kinematics: self.held,
+            scheme,
+        };
+        let done = implicit::advance_observed(model, number, next, held, span, work, count)?;
         let counters = Counters {
             substeps: done.steps,
             solves: done.solves,
         };
-        Ok(Done {
-            counters,
-            flow: flow.times(0.5 * self.length),
-        })
+        Ok(Done { counters, flow })
     }
 
     fn quasi_static(
@@ -313,10 +324,9 @@ impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
             substeps: done.steps,
             solves: done.solves,
         };
-        Ok(Done {
-            counters,
-            flow: Flow::default(),
-        })
+        let states = [self.state, &*next];
+        let flow = ledger::work_at_rest(self.model, &self.model.networks[number], states, times);
+        Ok(Done { counters, flow })
     }
 
     /// Equal steps no longer than `step_max` [s], halved `retry` times.
@@ -353,6 +363,7 @@ fn place_held(model: &Model, state: &mut State, held: &impl Fn(usize, f64) -> Ki
             let k = held(index, state.time);
             (point.position, point.velocity, point.acceleration) =
                 (k.position, k.velocity, k.acceleration);
+            (point.orientation, point.spin) = (k.orientation, k.spin);
         }
     }
     for (line, shape) in model.lines.iter().zip(&mut state.lines) {

@@ -106,6 +106,7 @@ pub fn start<K: Fn(usize, f64) -> Kinematics>(
         velocity: 0.0,
         acceleration: 1.0,
         predicted: false,
+        convex: false,
     };
     work.fade_dampers(model, network, state, 0.0);
     work.assemble_dynamic::<true>(model, network, state, t, &weights);
@@ -151,12 +152,15 @@ fn hold<K: Fn(usize, f64) -> Kinematics>(
                     position,
                     velocity,
                     acceleration,
-                    ..
+                    orientation,
+                    spin,
                 } = held(point, t);
                 state.points[point] = PointState {
                     position,
                     velocity,
                     acceleration,
+                    orientation,
+                    spin,
                     ..state.points[point]
                 };
             }
@@ -190,6 +194,35 @@ pub fn advance<K: Fn(usize, f64) -> Kinematics>(
     scheme: &Scheme,
     work: &mut Workspace,
 ) -> Result<Counters, StepError> {
+    let held = Held {
+        kinematics: held,
+        scheme,
+    };
+    advance_observed(model, number, state, held, span, work, |_, _| {})
+}
+
+/// What moves a network from outside, and by which scheme it follows.
+#[derive(Debug)]
+pub struct Held<'a, K> {
+    /// Position, velocity and acceleration of held points.
+    pub kinematics: &'a K,
+    /// The integrator.
+    pub scheme: &'a Scheme,
+}
+
+/// [`advance`], showing the state and its time [s] after every internal step.
+///
+/// # Errors
+/// As there.
+pub fn advance_observed<K: Fn(usize, f64) -> Kinematics>(
+    model: &Model,
+    number: usize,
+    state: &mut State,
+    held: Held<K>,
+    span: Span,
+    work: &mut Workspace,
+    mut observe: impl FnMut(&State, f64),
+) -> Result<Counters, StepError> {
     if span.end <= span.start {
         return Ok(Counters::default());
     }
@@ -202,13 +235,13 @@ pub fn advance<K: Fn(usize, f64) -> Kinematics>(
         model,
         network,
         number,
-        held,
-        scheme,
+        held: held.kinematics,
+        scheme: held.scheme,
     };
     let mut result = Ok(());
     for step in 0..steps {
         let at = |step: usize| span.start + (span.end - span.start) * step as f64 / steps as f64;
-        result = integrator.pass([at(step), at(step + 1)], state, work);
+        result = integrator.pass([at(step), at(step + 1)], state, work, &mut observe);
         if result.is_err() {
             copy_network(model, network, &start, state);
             break;
@@ -241,6 +274,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
         [t0, t1]: [f64; 2],
         state: &mut State,
         work: &mut Workspace,
+        observe: &mut impl FnMut(&State, f64),
     ) -> Result<(), StepError> {
         let at = |parts: usize| t0 + (t1 - t0) * parts as f64 / PARTS_MAX as f64;
         let mut before = std::mem::take(&mut work.before);
@@ -250,6 +284,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
             copy_network(self.model, self.network, state, &mut before);
             let span = [at(done), at(done + parts)];
             if self.step(span, state, work) {
+                observe(state, span[1]);
                 work.counters.steps += 1;
                 done += parts;
                 if done % (2 * parts) == 0 && parts < PARTS_MAX {
@@ -301,6 +336,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
             velocity: 0.0,
             acceleration: 0.0,
             predicted: false,
+            convex: false,
         };
         work.fade_dampers(self.model, self.network, state, dt);
         work.assemble_dynamic::<false>(self.model, self.network, state, t0, &old);
@@ -315,12 +351,15 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
             velocity: (1.0 - alpha_f) * per_velocity,
             acceleration: (1.0 - alpha_m) * per_acceleration,
             predicted: true,
+            convex: false,
         };
         let tolerance = NEWTON_TOLERANCE * self.shortest_segment();
         for _ in 0..ITERATIONS_MAX {
             work.assemble_dynamic::<true>(self.model, self.network, state, t1, &new);
             work.add_remembered(self.model, self.network);
-            if !work.solve(self.model, self.network, self.number) {
+            if !work.solve(self.model, self.network, self.number)
+                && !self.solve_convex(state, t1, &new, work)
+            {
                 return false;
             }
             let correction = work.greatest_solution(self.network);
@@ -334,6 +373,21 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
             }
         }
         false
+    }
+
+    /// Solves once more where the exact tangent of lines that bend is indefinite, with one that is not.
+    fn solve_convex(&self, state: &State, t: f64, weights: &Weights, work: &mut Workspace) -> bool {
+        let bends = |&line: &usize| self.model.lines[line].bending.is_some();
+        if !self.network.lines.iter().any(bends) {
+            return false;
+        }
+        let convex = Weights {
+            convex: true,
+            ..*weights
+        };
+        work.assemble_dynamic::<true>(self.model, self.network, state, t, &convex);
+        work.add_remembered(self.model, self.network);
+        work.solve(self.model, self.network, self.number)
     }
 
     fn shortest_segment(&self) -> f64 {
@@ -375,7 +429,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
     ) {
         for &index in &self.network.lines {
             let nodes = &mut state.lines[index];
-            for (i, x) in work.lines[index].chain.solution().iter().enumerate() {
+            for (i, x) in work.lines[index].solution().iter().enumerate() {
                 nodes.position[i] -= x;
                 nodes.velocity[i] -= per_velocity * x;
                 nodes.acceleration[i] -= per_acceleration * x;

@@ -442,6 +442,7 @@ pub fn segment_tension(
     total_tension(
         elastic,
         segments.axial_damping[segment] * rate,
+        0.0 - line.compression_max(segment),
         negative_tension,
     )
 }

@@ -1,14 +1,19 @@
 //! The energy ledger: what a network holds, what it was given, and what it lost.
 //!
-//! Held:  E = Σ ½ vᵀM v + Σ EA·W(ε)·L + Σ w z  over free nodes, taut segments and free points.
-//! Given: the work of the held ends on the line, −∫ T q·V dt, and of point loads.
-//! Lost:  drag, axial and mass damping, and what the seabed takes (its springs give some of it back).
+//! Held:  E = Σ ½ vᵀM v + Σ EA·W(ε)·L + Σ ½B(|κb| − k₀)² + Σ w z  over free nodes, segments that carry force, joints and free
+//!        points, by kind in [`Energy`].
+//! Given: the work of the held ends on the line, −∫ (T q + S)·V + M·Ω dt with the shear S of lines that bend and the moment M on
+//!        clamps that turn, and of point loads.
+//! Lost:  drag, axial, bending and mass damping, and what the seabed takes (its springs give some of it back).
 //!
 //! E − E₀ − given + lost is the error of the time integration: numerical dissipation shows up as a negative one.
 //!
 //! The leapfrogs sum the flows of every internal step, forces at t_n times the mean of the velocities around it; energy is then
 //! exact at t − Δt/2, where the velocities live, and so E is taken there. The implicit integrators use the trapezoidal
-//! rule over communication steps. Quasi-static networks have no ledger.
+//! rule over every internal step. Quasi-static networks hold no kinetic energy; the work of ends and loads is that of the mean of the
+//! forces before and after a step. Where they are closed-form catenaries, the whole of these counts, held ends included:
+//!
+//! ∫ T²/(2EA) ds and ∫ w z ds, exact where the line hangs.
 //!
 //! Source: the discrete energy balance of the leapfrog, e.g. Hairer, Lubich & Wanner (2003), Acta Numerica 12, section 1.
 
@@ -16,9 +21,11 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use super::leapfrog::segment_tension;
-use crate::model::{Line, LineState, Model, Network, State};
+use crate::model::{ClosedForm, End, Line, LineState, Model, Network, PointState, State, joint};
 use crate::physics::morison::{DragCoefficients, drag};
 use crate::physics::seabed::{ContactCoefficients, normal_force};
+use crate::physics::stretch::total_tension;
+use crate::statics::assembly::{end_moment, end_shear, joint_damping_power};
 
 /// Energy that crossed the border of a network, or the rate at which it does.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
@@ -27,6 +34,40 @@ pub struct Flow {
     pub given: f64,
     /// Taken by water, damping and seabed [J] or [W].
     pub lost: f64,
+}
+
+/// Energy held, by kind.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct Energy {
+    /// Of motion [J].
+    pub kinetic: f64,
+    /// Of stretch [J].
+    pub axial: f64,
+    /// Of bending [J].
+    pub bending: f64,
+    /// Of shear [J].
+    pub shear: f64,
+    /// Of torsion [J].
+    pub torsion: f64,
+    /// Of weight less buoyancy, above z = 0 [J].
+    pub gravitational: f64,
+}
+
+impl Energy {
+    /// The sum of all kinds [J].
+    pub fn total(&self) -> f64 {
+        self.kinetic + self.axial + self.bending + self.shear + self.torsion + self.gravitational
+    }
+
+    /// Adds another energy, kind by kind.
+    pub fn add(&mut self, other: Energy) {
+        self.kinetic += other.kinetic;
+        self.axial += other.axial;
+        self.bending += other.bending;
+        self.shear += other.shear;
+        self.torsion += other.torsion;
+        self.gravitational += other.gravitational;
+    }
 }
 
 /// What a whole model started with, and what has crossed its border since.
@@ -69,29 +110,29 @@ impl Ledger {
     }
 }
 
-/// Energy held by a network [J], at the time its velocities belong to.
-pub fn energy(model: &Model, network: &Network, state: &State) -> f64 {
-    let lines: f64 = network
-        .lines
-        .iter()
-        .map(|&line| line_energy(&model.lines[line], &state.lines[line], model))
-        .sum();
-    let points: f64 = network
-        .free_points
-        .iter()
-        .map(|&point| {
-            let (free, at) = (model.points[point].free(), &state.points[point]);
-            let Some(free) = free else { return 0.0 };
-            let [velocity, _] = at.half_step;
-            let (velocity, lag) = match half_step(state, network) {
-                Some(lag) => (velocity, lag),
-                None => (at.velocity, 0.0),
-            };
-            let height = at.position.z - lag * velocity.z;
-            0.5 * free.mass * velocity.norm_squared() + free.weight * height
-        })
-        .sum();
-    lines + points
+/// Energy held by a network, at the time its velocities belong to.
+pub fn energy(model: &Model, network: &Network, state: &State) -> Energy {
+    let mut sum = Energy::default();
+    for &line in &network.lines {
+        let (data, shape) = (&model.lines[line], &state.lines[line]);
+        sum.add(match &shape.closed_form {
+            Some(closed_form) => catenary_energy(data, shape, closed_form),
+            None => line_energy(data, state, shape, model),
+        });
+    }
+    for &point in &network.free_points {
+        let (free, at) = (model.points[point].free(), &state.points[point]);
+        let Some(free) = free else { continue };
+        let [velocity, _] = at.half_step;
+        let (velocity, lag) = match half_step(state, network) {
+            Some(lag) => (velocity, lag),
+            None => (at.velocity, 0.0),
+        };
+        let height = at.position.z - lag * velocity.z;
+        sum.kinetic += 0.5 * free.mass * velocity.norm_squared();
+        sum.gravitational += free.weight * height;
+    }
+    sum
 }
 
 /// Time from the velocities to the positions of a network that a leapfrog serves [s].
@@ -100,7 +141,7 @@ fn half_step(state: &State, network: &Network) -> Option<f64> {
     (!memory.velocity.is_empty()).then(|| 0.5 * memory.steps[0])
 }
 
-fn line_energy(line: &Line, shape: &LineState, model: &Model) -> f64 {
+fn line_energy(line: &Line, state: &State, shape: &LineState, model: &Model) -> Energy {
     let memory = &shape.half_step;
     let (velocity, lag) = match memory.velocity.is_empty() {
         true => (&shape.velocity, 0.0),
@@ -108,13 +149,10 @@ fn line_energy(line: &Line, shape: &LineState, model: &Model) -> f64 {
     };
     let position = |i: usize| shape.position[i] - lag * velocity[i];
     let n = line.segment_count();
-    let mut energy = 0.0;
+    let mut energy = Energy::default();
     for i in 0..n {
-        let data = &line.segments;
-        let strain = (position(i + 1) - position(i)).norm() / data.length[i] - 1.0;
-        if strain > 0.0 {
-            energy += data.axial_stiffness[i] * data.law[i].at(strain).energy * data.length[i];
-        }
+        let strain = (position(i + 1) - position(i)).norm() / line.segments.length[i] - 1.0;
+        energy.axial += axial_energy(line, i, strain);
     }
     let free = |i: usize| match i {
         0 => model.points[line.ends[0]].free().is_some(),
@@ -126,10 +164,209 @@ fn line_energy(line: &Line, shape: &LineState, model: &Model) -> f64 {
         let along = velocity[i].dot(&tangent);
         let across = velocity[i].norm_squared() - along * along;
         let nodes = &line.nodes;
-        energy += 0.5 * (nodes.mass_normal[i] * across + nodes.mass_tangent[i] * along * along);
-        energy += nodes.weight[i] * position(i).z;
+        energy.kinetic +=
+            0.5 * (nodes.mass_normal[i] * across + nodes.mass_tangent[i] * along * along);
+        energy.gravitational += nodes.weight[i] * position(i).z;
+    }
+    if let Some(bending) = &line.bending {
+        let clamps = line.clamps(&state.points);
+        energy.bending = (0..=n)
+            .filter(|&i| bending.joint[i] > 0.0)
+            .filter_map(|i| Some((i, joint(clamps, &shape.position, i)?)))
+            .map(|(i, turn)| turn.energy(bending.joint[i], bending.rest[i]).energy)
+            .sum();
     }
     energy
+}
+
+/// Energy [J] of a segment at a strain [-]: that of its law while it pulls, and pushes no more than it can.
+fn axial_energy(line: &Line, i: usize, strain: f64) -> f64 {
+    let data = &line.segments;
+    let (ea, length, push) = (
+        data.axial_stiffness[i],
+        data.length[i],
+        line.compression_max(i),
+    );
+    let law = data.law[i].at(strain);
+    if strain > 0.0 || ea * law.force > -push {
+        ea * law.energy * length
+    } else {
+        let limit = -push / ea; // where the push stops growing, by the slope at no strain
+        (0.5 * push * push / ea + push * (limit - strain)) * length
+    }
+}
+
+/// Energy of a whole line on its closed form.
+fn catenary_energy(line: &Line, shape: &LineState, closed_form: &ClosedForm) -> Energy {
+    let (segments, n) = (&line.segments, line.segment_count());
+    let mut section_end = 0.0;
+    let mut ends = line.sections.iter().map(|section| {
+        section_end += section.length;
+        (section_end, section.weight)
+    });
+    let (mut end, mut weight) = ends.next().unwrap_or((0.0, 0.0));
+    let pull = closed_form.end_force[0];
+    let horizontal = pull.xy().norm();
+    let mut vertical = pull.z; // upward part of the tension from A to B [N]
+    let mut energy = Energy::default();
+    for i in 0..n {
+        let (h, ea) = (segments.length[i], segments.axial_stiffness[i]);
+        while line.nodes.arc[i] + 0.5 * h > end {
+            (end, weight) = ends.next().unwrap_or((f64::INFINITY, weight));
+        }
+        let [low, high] = [i, i + 1].map(|node| {
+            let contact = line.nodes.contact.as_ref();
+            let height = shape.position[node].z;
+            let lies = contact.is_some_and(|contact| height <= contact.bed);
+            (height, closed_form.tension[node], lies)
+        });
+        let rising = (high.1 * high.1 - horizontal * horizontal).max(0.0).sqrt();
+        let hanging = match (low.2, high.2) {
+            (true, true) => 0.0,
+            (true, false) => rising / weight,
+            (false, true) => -vertical / weight,
+            (false, false) => h,
+        };
+        let part = Hanging {
+            length: if weight == 0.0 {
+                0.0
+            } else {
+                hanging.clamp(0.0, h)
+            },
+            weight,
+            axial_stiffness: ea,
+            horizontal,
+            vertical: if low.2 { 0.0 } else { vertical },
+        };
+        let rest = h - part.length;
+        let squares = part.squared_tension() + 0.5 * rest * (low.1 * low.1 + high.1 * high.1);
+        energy.axial += squares / (2.0 * ea);
+        let mean = if weight == 0.0 || low.2 {
+            low.0
+        } else {
+            high.0
+        };
+        energy.gravitational += weight * (part.height(low.0) + rest * mean);
+        vertical = part.vertical + weight * part.length;
+    }
+    energy
+}
+
+/// A piece of an elastic catenary that hangs free.
+struct Hanging {
+    /// Unstretched length [m].
+    length: f64,
+    /// Weight [N/m], not 0 unless there is no length.
+    weight: f64,
+    /// EA [N].
+    axial_stiffness: f64,
+    /// Horizontal tension [N].
+    horizontal: f64,
+    /// Upward part of the tension at its start [N].
+    vertical: f64,
+}
+
+impl Hanging {
+    fn end(&self) -> f64 {
+        self.vertical + self.weight * self.length
+    }
+
+    /// ∫ T² ds [N² m].
+    fn squared_tension(&self) -> f64 {
+        let (v0, v1) = (self.vertical, self.end());
+        self.length * (self.horizontal.powi(2) + (v0 * v0 + v0 * v1 + v1 * v1) / 3.0)
+    }
+
+    /// ∫ z ds [m²] from a height [m] at its start: z = z₀ + (T − T₀)/w + (V² − V₀²)/(2 EA w).
+    fn height(&self, start: f64) -> f64 {
+        if self.length == 0.0 {
+            return 0.0;
+        }
+        let (h, w, v0, v1) = (self.length, self.weight, self.vertical, self.end());
+        let tension = |v: f64| self.horizontal.hypot(v);
+        let turned = |v: f64| match self.horizontal > 0.0 {
+            true => self.horizontal.powi(2) * (v / self.horizontal).asinh(),
+            false => 0.0,
+        };
+        let area = |v: f64| v * tension(v) + turned(v);
+        let tensions = (area(v1) - area(v0)) / (2.0 * w); // ∫ T ds
+        let squares = h * (v0 * v0 + v0 * v1 + v1 * v1) / 3.0; // ∫ V² ds
+        let stretched = (squares - v0 * v0 * h) / (2.0 * self.axial_stiffness * w);
+        start * h + (tensions - tension(v0) * h) / w + stretched
+    }
+}
+
+/// Work given to and lost by a network at rest before and after a step from `t0` to `t1` [s].
+pub fn work_at_rest(
+    model: &Model,
+    network: &Network,
+    [before, after]: [&State; 2],
+    [t0, t1]: [f64; 2],
+) -> Flow {
+    let mut flow = Flow::default();
+    for &index in &network.lines {
+        let line = &model.lines[index];
+        for end in [End::A, End::B] {
+            let point = line.ends[usize::from(end == End::B)];
+            if model.points[point].free().is_some() {
+                continue;
+            }
+            let force =
+                |state: &State| force_at_rest(line, &state.lines[index], end, &state.points[point]);
+            let moved = after.points[point].position - before.points[point].position;
+            flow.given -= 0.5 * (force(before) + force(after)).dot(&moved);
+            if line.bending.is_some() {
+                flow.given -= clamp_work(line, index, end, [before, after]);
+            }
+        }
+        let shapes = [before, after].map(|state| &state.lines[index]);
+        if let (Some(contact), true) = (
+            &line.nodes.contact,
+            shapes.iter().any(|shape| shape.closed_form.is_none()),
+        ) {
+            for i in 1..line.segment_count() {
+                let [z0, z1] = shapes.map(|shape| shape.position[i].z);
+                let push = |z: f64| contact.stiffness[i] * (contact.level[i] - z).max(0.0);
+                flow.lost -= 0.5 * (push(z0) + push(z1)) * (z1 - z0);
+            }
+        }
+    }
+    for &point in &network.free_points {
+        let loads = model.points[point].load_at(t0) + model.points[point].load_at(t1);
+        let moved = after.points[point].position - before.points[point].position;
+        flow.given += 0.5 * loads.dot(&moved);
+    }
+    flow
+}
+
+/// Work [J] of a line on the clamp at one of its ends, which turned between two states.
+fn clamp_work(line: &Line, index: usize, end: End, states: [&State; 2]) -> f64 {
+    let points = states.map(|state| &state.points[line.ends[usize::from(end == End::B)]]);
+    let shapes = states.map(|state| &state.lines[index].position);
+    let moment = |i: usize| end_moment(line, shapes[i], end, points[i]);
+    let turned = points[1].orientation * points[0].orientation.inverse();
+    0.5 * (moment(0) + moment(1)).dot(&turned.scaled_axis())
+}
+
+/// Force [N] of a line at rest on a held point, without the weight of its own half node, whose energy is not held, unless the line
+/// is a closed-form catenary.
+fn force_at_rest(line: &Line, shape: &LineState, end: End, point: &PointState) -> Vector3<f64> {
+    if let Some(closed_form) = &shape.closed_form {
+        return closed_form.end_force[usize::from(end == End::B)];
+    }
+    let (segment, sign) = match end {
+        End::A => (0, 1.0),
+        End::B => (line.segment_count() - 1, -1.0),
+    };
+    let ends = [shape.position[segment], shape.position[segment + 1]];
+    let still = [Vector3::zeros(); 2];
+    let tension = segment_tension(line, segment, ends, still, false);
+    let chord = (ends[1] - ends[0]).try_normalize(0.0);
+    let mut force = sign * tension * chord.unwrap_or_else(Vector3::zeros);
+    if line.bending.is_some() {
+        force += end_shear(line, [&shape.position, &[]], end, point);
+    }
+    force
 }
 
 /// Power given to and lost by a network at time `t` [s], in [W], from the velocities at the time of the positions.
@@ -137,6 +374,9 @@ pub fn power(model: &Model, network: &Network, state: &State, t: f64) -> Flow {
     let mut flow = Flow::default();
     for &index in &network.lines {
         flow.add(line_power(&model.lines[index], &state.lines[index], model));
+        if model.lines[index].bending.is_some() {
+            flow.add(bending_power(model, &model.lines[index], state, index));
+        }
     }
     for &point in &network.free_points {
         flow.given += model.points[point]
@@ -146,42 +386,54 @@ pub fn power(model: &Model, network: &Network, state: &State, t: f64) -> Flow {
     flow
 }
 
+/// Power of the shear at held ends, and that of the joints' dampers [W].
+fn bending_power(model: &Model, line: &Line, state: &State, index: usize) -> Flow {
+    let shape = &state.lines[index];
+    let given = |(end, point): (End, usize)| {
+        let at = &state.points[point];
+        match model.points[point].free() {
+            Some(_) => 0.0,
+            None => {
+                let shear = end_shear(line, [&shape.position, &shape.velocity], end, at);
+                let moment = end_moment(line, &shape.position, end, at);
+                -shear.dot(&shape.velocity[line.end_node(end)]) - moment.dot(&at.spin)
+            }
+        }
+    };
+    Flow {
+        given: [End::A, End::B].into_iter().zip(line.ends).map(given).sum(),
+        lost: joint_damping_power(line, shape, line.clamps(&state.points)),
+    }
+}
+
 fn line_power(line: &Line, shape: &LineState, model: &Model) -> Flow {
     let (n, negative) = (line.segment_count(), model.solver.negative_tension);
+    let segments = &line.segments;
+    let [a, b] = line.ends.map(|point| model.points[point].free().is_none());
     let mut flow = Flow::default();
     for i in 0..n {
-        let pair = |values: &[Vector3<f64>]| [values[i], values[i + 1]];
-        let tension = segment_tension(
-            line,
-            i,
-            pair(&shape.position),
-            pair(&shape.velocity),
-            negative,
-        );
         let chord = shape.position[i + 1] - shape.position[i];
-        let Some(direction) = chord.try_normalize(0.0) else {
+        let length = chord.norm();
+        if length == 0.0 {
             continue;
-        };
-        let strain = chord.norm() / line.segments.length[i] - 1.0;
-        let elastic = line.segments.axial_stiffness[i] * line.segments.law[i].at(strain).force;
+        }
+        let direction = chord / length;
+        let unstretched = segments.length[i];
+        let stretch = segments.law[i].at(length / unstretched - 1.0);
+        let elastic = segments.axial_stiffness[i] * stretch.force;
         let stretching = direction.dot(&(shape.velocity[i + 1] - shape.velocity[i]));
-        flow.lost += (tension - elastic.max(0.0)) * stretching;
-        let end = |node: usize, sign: f64| {
-            let held = model.points[line.ends[usize::from(node > 0)]]
-                .free()
-                .is_none();
-            if held {
-                sign * tension * direction.dot(&shape.velocity[node])
-            } else {
-                0.0
-            }
-        };
-        flow.given += if i == 0 { end(0, -1.0) } else { 0.0 };
-        flow.given += if i + 1 == n { end(n, 1.0) } else { 0.0 };
+        let damping = segments.axial_damping[i] * stretching / unstretched;
+        let least = 0.0 - line.compression_max(i);
+        let tension = total_tension(elastic, damping, least, negative);
+        flow.lost += (tension - elastic.max(least)) * stretching;
+        if i == 0 && a {
+            flow.given -= tension * direction.dot(&shape.velocity[0]);
+        }
+        if i + 1 == n && b {
+            flow.given += tension * direction.dot(&shape.velocity[n]);
+        }
     }
-    let first = usize::from(model.points[line.ends[0]].free().is_none());
-    let last = n - usize::from(model.points[line.ends[1]].free().is_none());
-    for i in first..=last {
+    for i in usize::from(a)..=n - usize::from(b) {
         flow.lost += node_loss(line, shape, i);
     }
     flow
@@ -215,4 +467,36 @@ fn tangent(shape: &LineState, i: usize) -> Vector3<f64> {
     let last = shape.position.len() - 1;
     let chord = shape.position[(i + 1).min(last)] - shape.position[i.saturating_sub(1)];
     chord.try_normalize(0.0).unwrap_or_else(Vector3::zeros)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    #[test]
+    fn the_integrals_of_a_hanging_piece_are_those_of_its_shape() {
+        for weight in [3.0, -2.0] {
+            let piece = Hanging {
+                length: 8.0,
+                weight,
+                axial_stiffness: 400.0,
+                horizontal: 5.0,
+                vertical: -7.0,
+            };
+            let count = 200_000;
+            let step = piece.length / f64::from(count);
+            let (mut height, mut squares, mut heights) = (1.5, 0.0, 0.0);
+            for i in 0..count {
+                let v = piece.vertical + weight * step * (f64::from(i) + 0.5);
+                let tension = piece.horizontal.hypot(v);
+                let rise = step * (1.0 + tension / piece.axial_stiffness) * v / tension;
+                squares += step * tension * tension;
+                heights += step * (height + 0.5 * rise);
+                height += rise;
+            }
+            assert_relative_eq!(piece.squared_tension(), squares, max_relative = 1e-8);
+            assert_relative_eq!(piece.height(1.5), heights, max_relative = 1e-8);
+        }
+    }
 }

@@ -1,7 +1,7 @@
 //! Quasi-static stepping: at the end of every step the lines are in equilibrium.
 //!
 //! Positions are the equilibrium for the held points and the loads at that time, found from the one before; velocities are
-//! differences over the step, and there is no acceleration. Lines of engineering strain are closed-form catenaries, joined at
+//! differences over the step, and there is no acceleration. Flexible lines of engineering strain are closed-form catenaries, joined at
 //! free points; others, and those that find no rest that way, are chains of elements. Valid where motions are slow beside the lowest natural period
 //! and drag is small beside weight.
 
@@ -67,7 +67,7 @@ fn hang<K: Fn(usize, f64) -> Kinematics>(
         .flat_map(|&line| model.lines[line].ends)
     {
         if model.points[point].free().is_none() {
-            state.points[point] = PointState::at_rest(held(point, t1).position);
+            state.points[point] = PointState::held(&held(point, t1));
         }
     }
     for &point in &network.free_points {
@@ -98,14 +98,7 @@ fn continue_elements<K: Fn(usize, f64) -> Kinematics>(
     let (mut done, mut parts) = (0, PARTS_MAX);
     while done < PARTS_MAX {
         let time = t0 + (t1 - t0) * (done + parts) as f64 / PARTS_MAX as f64;
-        match continue_network(
-            model,
-            number,
-            state,
-            |point| held(point, time).position,
-            time,
-            work,
-        ) {
+        match continue_network(model, number, state, |point| held(point, time), time, work) {
             Ok(()) => {
                 work.counters.steps += 1;
                 done += parts;

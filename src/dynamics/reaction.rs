@@ -2,9 +2,9 @@
 //!
 //! The end's half node belongs to the line, so that what the vessel feels is
 //!
-//! F = T q − [M(t) a + w ẑ − f_drag − f_bed],
+//! F = T q + S − [M(t) a + w ẑ − f_drag − f_bed],
 //!
-//! T q pointing into the line, v and a those of the point. Leaving the half node out would make the end force first order in
+//! T q pointing into the line, S the shear of a line with bending stiffness, v and a those of the point. Leaving the half node out would make the end force first order in
 //! the segment length. A line on its closed-form catenary brings the forces of that.
 //!
 //! Source: the node's own equation of motion, as for the interior nodes.
@@ -15,6 +15,7 @@ use super::leapfrog::segment_tension;
 use crate::model::{End, Line, LineState, PointState};
 use crate::physics::morison::{self, DragCoefficients};
 use crate::physics::seabed::{self, ContactCoefficients};
+use crate::statics::assembly::end_shear;
 
 /// Tension of segment `i` [N]; on a closed-form catenary the mean of its ends'.
 pub fn tension(line: &Line, state: &LineState, i: usize, negative_tension: bool) -> f64 {
@@ -60,6 +61,9 @@ pub fn end_force(
         nodes.mass_normal[node] * (acceleration - along) + nodes.mass_tangent[node] * along;
     let mut force = tension(line, state, segment, negative_tension) * inward - inertia;
     force.z -= nodes.weight[node];
+    if line.bending.is_some() {
+        force += end_shear(line, [&state.position, &state.velocity], end, point);
+    }
     if let Some(drag) = &nodes.drag {
         let coefficients = DragCoefficients {
             normal: drag.normal[node],

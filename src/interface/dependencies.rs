@@ -139,6 +139,7 @@ impl Scope<'_> {
             Property::Diameter => {
                 self.is_buoyant(name) || (self.scene.seabed.is_some() && !self.closed_form)
             }
+            Property::BendingStiffness => !self.closed_form,
             Property::AxialDamping
             | Property::DampingRatio
             | Property::DragNormal

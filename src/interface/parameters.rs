@@ -43,6 +43,8 @@ pub enum Property {
     Diameter,
     /// Axial stiffness EA [N].
     AxialStiffness,
+    /// Bending stiffness EI of one solid section [N m²].
+    BendingStiffness,
     /// Axial damping BA [N s].
     AxialDamping,
     /// Axial damping as a ratio of the critical [-].
@@ -58,12 +60,18 @@ pub enum Property {
 }
 
 /// Properties with key, unit and meaning.
-const PROPERTIES: [(Property, &str, Unit, &str); 10] = [
+const PROPERTIES: [(Property, &str, Unit, &str); 11] = [
     (
         Property::AxialStiffness,
         "axial_stiffness",
         Unit::NEWTON,
         "axial stiffness EA",
+    ),
+    (
+        Property::BendingStiffness,
+        "bending_stiffness",
+        Unit::NEWTON_SQUARE_METRE,
+        "bending stiffness EI of one solid section",
     ),
     (
         Property::Mass,
@@ -128,6 +136,7 @@ impl Property {
             Property::Weight => line_type.weight,
             Property::Diameter => line_type.diameter,
             Property::AxialStiffness => Some(line_type.axial_stiffness),
+            Property::BendingStiffness => line_type.bending_stiffness,
             Property::AxialDamping => line_type.axial_damping,
             Property::DampingRatio => line_type.damping_ratio,
             Property::DragNormal => line_type.drag_normal,
@@ -146,6 +155,7 @@ impl Property {
             Property::Mass => &mut line_type.mass,
             Property::Weight => &mut line_type.weight,
             Property::Diameter => &mut line_type.diameter,
+            Property::BendingStiffness => &mut line_type.bending_stiffness,
             Property::AxialDamping => &mut line_type.axial_damping,
             Property::DampingRatio => &mut line_type.damping_ratio,
             Property::DragNormal => &mut line_type.drag_normal,

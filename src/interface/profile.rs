@@ -48,6 +48,20 @@ pub(super) fn push(variables: &mut Vec<Variable>, model: &Model, layout: Layout)
             Unit::NEWTON,
             ProfileQuantity::Tension,
         );
+        if built.bending.is_some() {
+            push(
+                "curvature",
+                "curvature",
+                Unit::PER_METRE,
+                ProfileQuantity::Curvature,
+            );
+            push(
+                "moment",
+                "bending moment",
+                Unit::NEWTON_METRE,
+                ProfileQuantity::Moment,
+            );
+        }
     }
 }
 
@@ -70,6 +84,16 @@ pub(super) fn read(
         }
         ProfileQuantity::Tension => {
             values.copy_from_slice(&simulation.tensions(line)[range]);
+        }
+        ProfileQuantity::Curvature | ProfileQuantity::Moment => {
+            let nodes = simulation.bending(line).unwrap_or_default();
+            for (value, node) in values.iter_mut().zip(range) {
+                let node = nodes.get(node).copied().unwrap_or_default();
+                *value = match quantity {
+                    ProfileQuantity::Curvature => node.curvature,
+                    _ => node.moment,
+                };
+            }
         }
     }
 }

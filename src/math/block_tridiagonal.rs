@@ -112,7 +112,7 @@ impl Chain {
 }
 
 /// LU factors of a 3×3 matrix with positive pivots; the pivots are stored inverted.
-struct Lu3 {
+pub(super) struct Lu3 {
     inverse: [f64; 3],
     l: [f64; 3], // l10, l20, l21
     u: [f64; 3], // u01, u02, u12
@@ -120,7 +120,7 @@ struct Lu3 {
 
 impl Lu3 {
     #[inline(always)]
-    fn new(m: &Matrix3<f64>) -> Option<Lu3> {
+    pub(super) fn new(m: &Matrix3<f64>) -> Option<Lu3> {
         let d0 = positive(m[(0, 0)])?;
         let (l10, l20) = (m[(1, 0)] * d0, m[(2, 0)] * d0);
         let (u01, u02) = (m[(0, 1)], m[(0, 2)]);
@@ -136,7 +136,7 @@ impl Lu3 {
     }
 
     #[inline(always)]
-    fn solve(&self, b: Vector3<f64>) -> Vector3<f64> {
+    pub(super) fn solve(&self, b: Vector3<f64>) -> Vector3<f64> {
         let [l10, l20, l21] = self.l;
         let [u01, u02, u12] = self.u;
         let y1 = b.y - l10 * b.x;
@@ -147,7 +147,7 @@ impl Lu3 {
     }
 
     #[inline(always)]
-    fn solve3(&self, b: &Matrix3<f64>) -> Matrix3<f64> {
+    pub(super) fn solve3(&self, b: &Matrix3<f64>) -> Matrix3<f64> {
         let column = |i: usize| self.solve(b.column(i).into_owned());
         Matrix3::from_columns(&[column(0), column(1), column(2)])
     }

@@ -1,5 +1,6 @@
-//! No physics: small fixed-size algebra, block-tridiagonal solve, interpolation.
+//! No physics: small fixed-size algebra, block-tridiagonal and block-pentadiagonal solves, interpolation.
 pub mod attitude;
 pub mod block_tridiagonal;
 pub mod hermite;
 pub mod lanes;
+pub mod pentadiagonal;

@@ -3,16 +3,18 @@
 use nalgebra::Vector3;
 
 use super::{
-    Contact, Drag, End, FreePoint, Line, Model, Motion, Network, Nodes, Point, Role, Section,
-    Segments, Vessel, mesh,
+    Bending, Contact, Drag, End, FreePoint, Line, Model, Motion, Network, Nodes, Point, Role,
+    Section, Segments, Vessel, mesh,
 };
+use crate::physics::bending;
 use crate::physics::morison::{DragCoefficients, drag_per_length};
 use crate::physics::rayleigh;
 use crate::physics::seabed::{ContactCoefficients, regularised};
 use crate::physics::stretch::StretchLaw;
 use crate::physics::weight::{cross_section, submerged_weight};
 use crate::scene::{
-    self, Axis, ContactLaw, Integrator, LineType, PointKind, Scene, SceneError, Strain,
+    self, Axis, ContactLaw, FibreLaw, Integrator, LineModel, LineType, PointKind, RestShape, Scene,
+    SceneError, Strain,
 };
 
 /// Axial damping of a segment whose line type leaves it open, as a part of critical [-]. A line that slackens and snaps
@@ -35,7 +37,8 @@ impl Model {
             .collect();
         let mut lines = Vec::with_capacity(scene.lines.len());
         for (index, line) in scene.lines.iter().enumerate() {
-            let built = build_line(scene, index, line)?;
+            let mut built = build_line(scene, index, line)?;
+            rest_as_it_lies(&mut built, &points, line.rest_shape);
             points[built.ends[0]].attached.push((index, End::A));
             points[built.ends[1]].attached.push((index, End::B));
             lines.push(built);
@@ -119,6 +122,8 @@ struct LineLaw {
     added_tangent: f64,                   // ρA·C_at [kg/m]
     weight: f64,                          // w [N/m]
     mass_damping: f64,                    // α [1/s]
+    bending_stiffness: f64,               // EI [N m²]
+    bending_damping: f64,                 // β [s]
     drag: Option<DragCoefficients>,       // [N s²/m³]
     contact: Option<ContactCoefficients>, // [N/m², N s/m²]
 }
@@ -129,6 +134,25 @@ fn damping_ratio(line_type: &LineType) -> f64 {
     line_type
         .damping_ratio
         .unwrap_or(if silent { NUMERICAL_DAMPING_RATIO } else { 0.0 })
+}
+
+/// EI of a cable's section [N m²]: as given or of its solid section, shared by its strands. Beams have their own.
+fn bending_stiffness(line_type: &LineType) -> f64 {
+    if line_type.model == LineModel::Beam {
+        return 0.0;
+    }
+    let of_section = |section: scene::SolidSection| {
+        bending::solid_round(section.diameter, section.youngs_modulus)
+    };
+    let solid = line_type
+        .bending_stiffness
+        .or(line_type.solid_section.map(of_section));
+    let power = match line_type.fibre_law {
+        FibreLaw::Linear => 1,
+        FibreLaw::Squared => 2,
+    };
+    let strands = line_type.fibres.unwrap_or(1).max(1);
+    bending::of_strands(solid.unwrap_or(0.0), strands, power)
 }
 
 fn line_law(scene: &Scene, line_type: &LineType) -> LineLaw {
@@ -179,6 +203,8 @@ fn line_law(scene: &Scene, line_type: &LineType) -> LineLaw {
         added_tangent: displaced * line_type.added_mass_tangential.unwrap_or(0.0),
         weight,
         mass_damping: rayleigh.map_or(0.0, |r| r.mass),
+        bending_stiffness: bending_stiffness(line_type),
+        bending_damping: rayleigh.map_or(0.0, |r| r.stiffness),
         drag,
         contact,
     }
@@ -229,14 +255,55 @@ fn build_line(scene: &Scene, index: usize, line: &scene::Line) -> Result<Line, S
             axial_stiffness: law.axial_stiffness,
             law: law.law,
         });
-    Ok(Line {
+    let mut built = Line {
         name: line.name.clone(),
         ends,
         segments: segments(&parts),
         nodes: nodes(scene, &parts, contact_in_reach(scene, ends, line)),
+        bending: None,
         sections: sections.collect(),
         initial: line.initial.clone(),
-    })
+    };
+    built.bending = line_bending(index, line, &parts, &built)?;
+    Ok(built)
+}
+
+/// Joints and clamps of a line, where any of its sections has bending stiffness.
+fn line_bending(
+    index: usize,
+    line: &scene::Line,
+    parts: &[SegmentPart],
+    built: &Line,
+) -> Result<Option<Bending>, SceneError> {
+    if parts.iter().all(|part| part.law.bending_stiffness == 0.0) {
+        return Ok(None);
+    }
+    if parts.len() < 2 {
+        return Err(SceneError::new(
+            format!("lines[{index}].sections"),
+            "a line bends between its elements: it needs at least 2 of them",
+        ));
+    }
+    let clamps = [line.clamped_a, line.clamped_b]
+        .map(|clamp| clamp.and_then(|along| Vector3::from(along).try_normalize(0.0)));
+    let per_segment =
+        |value: fn(&LineLaw) -> f64| parts.iter().map(|part| value(part.law)).collect::<Vec<_>>();
+    Ok(Some(Bending::new(
+        &built.segments.length,
+        per_segment(|law| law.bending_stiffness),
+        &per_segment(|law| law.bending_damping),
+        clamps,
+    )))
+}
+
+/// Takes the shape at the start as the one that bends nothing, where the scene says so and gives one.
+fn rest_as_it_lies(line: &mut Line, points: &[Point], rest_shape: RestShape) {
+    let [a, b] = line.ends.map(|point| points[point].reference);
+    let nodes = line.given_shape(a, b);
+    if let (Some(bending), Some(nodes), RestShape::Initial) = (&mut line.bending, nodes, rest_shape)
+    {
+        bending.rest_at(&nodes);
+    }
 }
 
 /// One segment and the law of its section.
@@ -383,7 +450,7 @@ fn check_integrator(
     {
         let name = &lines[line].name;
         return refuse(format!(
-            "a leapfrog needs mass on every node and one strain measure along line \"{name}\""
+            "a leapfrog needs mass on every node, one strain measure and no bending stiffness along line \"{name}\""
         ));
     }
     match network.free_points.first() {

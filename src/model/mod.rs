@@ -3,6 +3,7 @@
 //! [`Model::new`] is the one gate from the user's [`Scene`]: below it nothing asks what the user wrote. Physics that the
 //! scene does not contain is `None` here, not zero.
 
+mod bending;
 mod build;
 mod initial;
 mod mesh;
@@ -15,6 +16,7 @@ use nalgebra::Vector3;
 use crate::physics::stretch::StretchLaw;
 use crate::scene::{InitialShape, PointForce, Solver};
 
+pub use bending::{Bending, joint};
 pub use motion::{Kinematics, Motion, Pose};
 pub use state::{ClosedForm, LineState, PointState, State};
 pub use vessel::{Frame, Vessel};
@@ -118,6 +120,8 @@ pub struct Line {
     pub segments: Segments,
     /// n + 1 lumped nodes.
     pub nodes: Nodes,
+    /// Bending stiffness, where a line type has it.
+    pub bending: Option<Bending>,
     /// Sections as the closed-form catenary takes them.
     pub sections: Vec<Section>,
     /// Shape at the start.
@@ -223,9 +227,11 @@ impl Line {
         }
     }
 
-    /// Whether the leapfrogs can take it: one strain measure, and mass on every node.
+    /// Whether the leapfrogs can take it: one strain measure, mass on every node, and no bending stiffness.
     pub fn serves_leapfrog(&self) -> bool {
-        self.uniform_law().is_some() && self.nodes.mass_normal.iter().all(|mass| *mass > 0.0)
+        self.uniform_law().is_some()
+            && self.bending.is_none()
+            && self.nodes.mass_normal.iter().all(|mass| *mass > 0.0)
     }
 
     /// The strain measure, where all segments share one.

@@ -1,7 +1,9 @@
 //! All that changes: positions, velocities and the memory of the integrators. Cloning it saves a simulation.
 
-use nalgebra::Vector3;
+use nalgebra::{UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
+
+use super::Kinematics;
 
 /// State of a whole model at one time.
 #[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -23,6 +25,10 @@ pub struct PointState {
     pub velocity: Vector3<f64>,
     /// Acceleration [m/s²].
     pub acceleration: Vector3<f64>,
+    /// Rotation from the reference attitude of what the point is fixed to, which its clamped lines follow [-].
+    pub orientation: UnitQuaternion<f64>,
+    /// Angular velocity of what the point is fixed to [rad/s].
+    pub spin: Vector3<f64>,
     /// Velocities half a step and one and a half steps before the time of the position [m/s], for the leapfrog.
     pub half_step: [Vector3<f64>; 2],
 }
@@ -79,7 +85,19 @@ impl PointState {
             position,
             velocity: zero,
             acceleration: zero,
+            orientation: UnitQuaternion::identity(),
+            spin: zero,
             half_step: [zero; 2],
+        }
+    }
+}
+
+impl PointState {
+    /// At rest where a held point is.
+    pub fn held(kinematics: &Kinematics) -> PointState {
+        PointState {
+            orientation: kinematics.orientation,
+            ..PointState::at_rest(kinematics.position)
         }
     }
 }

@@ -6,7 +6,7 @@ use super::json;
 use super::record::{Catenary, Column, Frame, LineRecord, Node, Record, StaticLine, Surroundings};
 use crate::model::{End, Role};
 use crate::scene::{PointKind, Scene};
-use crate::simulation::Simulation;
+use crate::simulation::{NodeBending, Simulation};
 
 /// Points of a catenary's drawn shape [-].
 const CATENARY_POINTS: usize = 201;
@@ -42,6 +42,7 @@ fn line_record(simulation: &Simulation, line: usize) -> LineRecord {
             horizontal: x.hypot(y),
             sag: simulation.sag(line),
             laid_length: simulation.laid_length(line),
+            bending: greatest_bending(simulation, line),
         },
         catenary: simulation.catenary(line).map(|catenary| Catenary {
             figures: StaticLine {
@@ -49,10 +50,21 @@ fn line_record(simulation: &Simulation, line: usize) -> LineRecord {
                 horizontal: catenary.horizontal(),
                 sag: catenary.sag(),
                 laid_length: catenary.laid_length(),
+                bending: None,
             },
             profile: catenary_profile(simulation, line),
         }),
     }
+}
+
+/// Greatest curvature and moment of a line, where it has bending stiffness.
+fn greatest_bending(simulation: &Simulation, line: usize) -> Option<NodeBending> {
+    let nodes = simulation.bending(line)?;
+    let greatest = |value: fn(&NodeBending) -> f64| nodes.iter().map(value).fold(0.0, f64::max);
+    Some(NodeBending {
+        curvature: greatest(|node| node.curvature),
+        moment: greatest(|node| node.moment),
+    })
 }
 
 /// Shape of the closed form between the line's reference ends, in global axes [m].
@@ -83,6 +95,7 @@ pub fn frame(simulation: &Simulation, time: f64) -> Frame {
             s: node.s,
             position: [node.x, node.y, node.z],
             tension: node.tension,
+            bending: node.bending,
         });
         nodes.collect()
     };
@@ -137,6 +150,7 @@ fn static_line(simulation: &Simulation, line: usize) -> json::Line {
                 y: node.y,
                 z: node.z,
                 tension: node.tension,
+                bending: node.bending,
             })
             .collect(),
     }

@@ -2,7 +2,8 @@
 //!
 //! `results.csv` has one plain header row (`time,fairlead.x,…`) and one row for every output time, as `pandas.read_csv` and
 //! spreadsheets expect; `results.units.csv` beside it has a row `name,unit,description` for every column. `profile.csv` holds
-//! the shape of the lines in long form, a row for every time, line and node. Numbers have the fewest digits that read back to
+//! the shape of the lines in long form, a row for every time, line and node; where any line has bending stiffness there are columns
+//! for curvature and moment, empty for the others. Numbers have the fewest digits that read back to
 //! the same bits.
 
 use std::io::{self, Write};
@@ -38,13 +39,23 @@ pub fn write_units(record: &Record, out: impl Write) -> io::Result<()> {
     table.flush()
 }
 
-/// Writes the shapes of the lines: time [s], line, node, unstretched arc length s [m], x, y, z [m], effective tension [N].
+/// Header of what lines with bending stiffness have besides.
+const BENDING_HEADER: [&str; 2] = ["curvature", "moment"];
+
+/// Writes the shapes of the lines: time [s], line, node, unstretched arc length s [m], x, y, z [m], effective tension [N], and
+/// curvature [1/m] and moment [N m] where a line bends.
 ///
 /// # Errors
 /// Where `out` refuses.
 pub fn write_profile(record: &Record, out: impl Write) -> io::Result<()> {
     let mut table = csv::Writer::from_writer(out);
-    table.write_record(PROFILE_HEADER)?;
+    let mut nodes = record
+        .frames
+        .iter()
+        .flat_map(|frame| frame.lines.iter().flatten());
+    let bends = nodes.any(|node| node.bending.is_some());
+    let more = if bends { &BENDING_HEADER[..] } else { &[] };
+    table.write_record(PROFILE_HEADER.iter().chain(more))?;
     for frame in &record.frames {
         for (line, nodes) in record.lines.iter().zip(&frame.lines) {
             for (index, node) in nodes.iter().enumerate() {
@@ -52,7 +63,13 @@ pub fn write_profile(record: &Record, out: impl Write) -> io::Result<()> {
                 table.write_field(shortest(frame.time))?;
                 table.write_field(&line.name)?;
                 table.write_field(index.to_string())?;
-                table.write_record([node.s, x, y, z, node.tension].map(shortest))?;
+                let numbers = [node.s, x, y, z, node.tension].map(shortest);
+                let bending = match node.bending {
+                    Some(bending) => [bending.curvature, bending.moment].map(shortest),
+                    None => [String::new(), String::new()],
+                };
+                let more = if bends { &bending[..] } else { &[] };
+                table.write_record(numbers.iter().chain(more))?;
             }
         }
     }
@@ -99,6 +116,31 @@ mod tests {
         let text = String::from_utf8(bytes).unwrap();
         assert!(text.starts_with("name,unit,description\ntime,s,simulated time\n"));
         assert!(text.contains("fairlead.fx,N,\"end force, on the vessel\"\n"));
+    }
+
+    #[test]
+    fn a_line_that_bends_has_its_curvature_and_moment_in_the_profile() {
+        let mut record = sample::record();
+        record.frames[0].lines[1][2].bending = Some(crate::simulation::NodeBending {
+            curvature: 0.25,
+            moment: 8.0,
+        });
+        let mut bytes = Vec::new();
+        write_profile(&record, &mut bytes).unwrap();
+        let text = String::from_utf8(bytes).unwrap();
+        assert!(
+            text.lines()
+                .next()
+                .unwrap()
+                .ends_with(",tension,curvature,moment")
+        );
+        assert_eq!(
+            text.lines()
+                .filter(|row| row.ends_with(",0.25,8.0"))
+                .count(),
+            1
+        );
+        assert!(text.lines().nth(1).unwrap().ends_with(",,"));
     }
 
     #[test]

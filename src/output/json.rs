@@ -20,6 +20,8 @@
 //! | `….s` | m | unstretched arc length from end A |
 //! | `….x`, `y`, `z` | m | position |
 //! | `….tension` | N | effective tension |
+//! | `….curvature` | 1/m | curvature; only on lines with bending stiffness, as the moment |
+//! | `….moment` | N m | bending moment |
 //! | `points[]` | | points in the order of the scene |
 //! | `points[].name` | | name of the point |
 //! | `points[].kind` | | `fixed`, `coupled`, `prescribed` or `free` |
@@ -33,6 +35,8 @@
 use std::io::{self, Write};
 
 use serde::Serialize;
+
+use crate::simulation::NodeBending;
 
 /// A static equilibrium.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -92,6 +96,9 @@ pub struct ProfileNode {
     pub z: f64,
     /// Effective tension [N].
     pub tension: f64,
+    /// Curvature and moment, where the line has bending stiffness.
+    #[serde(flatten)]
+    pub bending: Option<NodeBending>,
 }
 
 /// A point in equilibrium.
@@ -142,6 +149,7 @@ mod tests {
             y: 0.0,
             z: -1.0 / 3.0,
             tension: 1.0,
+            bending: None,
         };
         Statics {
             title: "one".to_string(),
@@ -201,6 +209,23 @@ mod tests {
             ["force", "kind", "name", "position"]
         );
         assert_eq!(json["vessels"], serde_json::json!([]));
+    }
+
+    #[test]
+    fn a_line_that_bends_says_so_at_its_nodes() {
+        let mut statics = statics();
+        statics.lines[0].profile[0].bending = Some(NodeBending {
+            curvature: 0.5,
+            moment: 3.0,
+        });
+        let mut bytes = Vec::new();
+        write(&statics, &mut bytes).unwrap();
+        let json: serde_json::Value = serde_json::from_slice(&bytes).unwrap();
+        let node = &json["lines"][0]["profile"][0];
+        assert_eq!(
+            (node["curvature"].as_f64(), node["moment"].as_f64()),
+            (Some(0.5), Some(3.0))
+        );
     }
 
     #[test]

@@ -5,6 +5,8 @@
 
 use std::time::Duration;
 
+use crate::simulation::NodeBending;
+
 /// A column of the results: one output variable in time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Column {
@@ -25,6 +27,8 @@ pub struct Node {
     pub position: [f64; 3],
     /// Effective tension [N].
     pub tension: f64,
+    /// Curvature and moment, where the line has bending stiffness.
+    pub bending: Option<NodeBending>,
 }
 
 /// The shapes of all lines at one instant.
@@ -47,6 +51,8 @@ pub struct StaticLine {
     pub sag: f64,
     /// Unstretched length that lies on the seabed [m].
     pub laid_length: f64,
+    /// Greatest curvature and moment, where the line has bending stiffness.
+    pub bending: Option<NodeBending>,
 }
 
 /// The closed-form elastic catenary of a line in its reference configuration.

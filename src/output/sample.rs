@@ -44,6 +44,7 @@ fn shape(side: f64, shift: f64) -> Vec<Node> {
                     -DEPTH + 186.0 * hang * hang,
                 ],
                 tension: 0.7e6 + 0.2e6 * hang,
+                bending: None,
             }
         })
         .collect()
@@ -55,6 +56,7 @@ fn line(name: &str, side: f64) -> LineRecord {
         horizontal: 736_939.29,
         sag: 81.3,
         laid_length: 260.0,
+        bending: None,
     };
     LineRecord {
         name: name.to_string(),

@@ -10,7 +10,7 @@
 //! Crisfield (1991), Non-linear Finite Element Analysis of Solids and Structures, vol. 1, section 3.1-3.2.
 //! Valid for λ > 0. The logarithmic measure with ν > 0 softens and has a limit load.
 //!
-//! A cable does not push: the total tension is clipped, see [`total_tension`].
+//! A cable does not push, unless it has bending stiffness: the total tension is clipped, see [`total_tension`].
 
 /// Strain measure with its parameters.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -90,13 +90,14 @@ fn logarithmic_energy(log: f64, a: f64) -> f64 {
 /// Tension [N] of a segment from its elastic force and its damping force.
 ///
 /// By default the total is never negative, max(0, N + C): with damping acting in compression a slack cable is
-/// ill-posed. The peers' law (MoorDyn), max(0, N) + C, is kept for comparison with them.
+/// ill-posed. The peers' law (MoorDyn), max(0, N) + C, is kept for comparison with them. `least` is minus the push that bending
+/// stiffness lets the segment carry, 0 without.
 #[inline(always)]
-pub fn total_tension(elastic: f64, damping: f64, negative_tension: bool) -> f64 {
+pub fn total_tension(elastic: f64, damping: f64, least: f64, negative_tension: bool) -> f64 {
     if negative_tension {
-        elastic.max(0.0) + damping
+        elastic.max(least) + damping
     } else {
-        (elastic + damping).max(0.0)
+        (elastic + damping).max(least)
     }
 }
 
@@ -153,8 +154,8 @@ mod tests {
 
     #[test]
     fn a_slack_rope_carries_no_tension_however_fast_it_shortens() {
-        assert_eq!(total_tension(-5.0, -3.0, false), 0.0);
-        assert_eq!(total_tension(5.0, -30.0, false), 0.0);
-        assert_eq!(total_tension(-5.0, -3.0, true), -3.0);
+        assert_eq!(total_tension(-5.0, -3.0, 0.0, false), 0.0);
+        assert_eq!(total_tension(5.0, -30.0, 0.0, false), 0.0);
+        assert_eq!(total_tension(-5.0, -3.0, 0.0, true), -3.0);
     }
 }

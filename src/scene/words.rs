@@ -1,5 +1,7 @@
 //! A scene in words: what it models, and what it does not.
 
+mod bending;
+
 use std::f64::consts::PI;
 use std::fmt::Write;
 
@@ -133,6 +135,7 @@ impl Scene {
             "axial waves at {} m/s",
             significant((ea / mass).sqrt())
         ));
+        parts.extend(bending::stiffness_in_words(line_type));
         parts.push(damping_in_words(line_type));
         if self.water.is_some() {
             parts.push(water_forces_in_words(line_type));
@@ -194,8 +197,13 @@ impl Scene {
             }
             InitialShape::Nodes(_) => "starts at the given nodes, at rest".to_string(),
         };
+        let bends = if bending::bends(self, line) {
+            format!("; {}", bending::ends_in_words(line))
+        } else {
+            String::new()
+        };
         format!(
-            "{}: from {} to {}, {}; {fit}; {start}",
+            "{}: from {} to {}, {}; {fit}; {start}{bends}",
             line.name,
             line.from,
             line.to,
@@ -221,7 +229,7 @@ impl Scene {
         let tension = if solver.negative_tension {
             "axial damping acts in compression too, so tension can be negative (the peers' law)"
         } else {
-            "tension is never negative: a slack line carries nothing"
+            bending::compression_in_words(self)
         };
         let output = &self.output;
         vec![
@@ -245,10 +253,7 @@ impl Scene {
     }
 
     fn absences_in_words(&self) -> Vec<String> {
-        let mut absent = vec![
-            "bending, torsion and shear of lines",
-            "vessels with rotation",
-        ];
+        let mut absent = vec![bending::absence_in_words(self), "vessels with rotation"];
         if self.water.is_some() {
             absent.push("current, waves and the water's surface");
         } else {

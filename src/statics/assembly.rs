@@ -13,7 +13,11 @@
 //!
 //!   A = c_k [EA·N'/l₀ q qᵀ + T/l P + BA/(l l₀) q (P ġ)ᵀ] + c_c BA/l₀ q qᵀ.
 //!
-//! The geometric stiffness T/l P is never negative. Statics keeps springs and weight only.
+//! The geometric stiffness T/l P is never negative in a line that cannot push. A line with bending stiffness has the joints of
+//! [`bending`] at its nodes and pushes up to what its segments carry, T ≥ −P; its tangent is exact, or made such that it cannot be
+//! indefinite where `convex` is asked for. Statics keeps springs and weight only.
+
+mod bending;
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -23,6 +27,10 @@ use crate::physics::morison::{DragCoefficients, drag, drag_slope};
 use crate::physics::seabed::ContactCoefficients;
 use crate::physics::stretch::total_tension;
 use crate::statics::catenary::Catenary;
+
+pub(crate) use bending::BendingWork;
+use bending::Parts;
+pub use bending::{end_moment, end_shear, joint_damping_power};
 
 /// Scratch of the implicit solvers for a whole model. Nothing in it is read before it is written.
 #[derive(Debug, Clone)]
@@ -87,8 +95,12 @@ pub(crate) struct LineWork {
     pub history: Vec<Vector3<f64>>,
     /// Half the range of penetrations over which the seabed damper fades in, per node [m].
     pub reach: Vec<f64>,
-    /// Elimination.
-    pub chain: Chain,
+    /// Greatest push of the segments [N]; 0 in lines without bending stiffness.
+    pub push: Vec<f64>,
+    /// Joints, where the line has bending stiffness.
+    pub bending: Option<BendingWork>,
+    /// Elimination where nothing bends.
+    chain: Chain,
 }
 
 /// Scratch of a point.
@@ -123,6 +135,8 @@ impl Workspace {
                 direction: vec![Vector3::zeros(); n],
                 history: vec![Vector3::zeros(); n + 1],
                 reach: vec![0.0; n + 1],
+                push: vec![0.0; n],
+                bending: line.bending.as_ref().map(|_| BendingWork::new(n + 1)),
                 chain: Chain::new(n + 1),
             }
         };
@@ -175,6 +189,8 @@ pub(crate) struct StaticCase {
     pub anchoring: f64,
     /// Whether the geometric stiffness comes from the predicted tension instead of the elastic one.
     pub predicted: bool,
+    /// Whether lines with bending stiffness have it, and push.
+    pub bends: bool,
 }
 
 /// Weights of the parts of residual and tangent in a time step.
@@ -192,6 +208,8 @@ pub(crate) struct Weights {
     pub acceleration: f64,
     /// Whether a segment is taut, and its geometric stiffness, come from the tension that was predicted.
     pub predicted: bool,
+    /// Whether the tangent must not be indefinite, rather than exact.
+    pub convex: bool,
 }
 
 /// Compression that is taken for rounding [-], as a strain.
@@ -228,6 +246,16 @@ impl Geometry {
 }
 
 impl LineWork {
+    /// How much the segments push: nothing unless the line `bends`.
+    fn set_push(&mut self, line: &Line, bends: bool) {
+        if let (Some(bending), Some(work)) = (&line.bending, &mut self.bending) {
+            work.active = bends;
+            for (push, most) in self.push.iter_mut().zip(&bending.compression_max) {
+                *push = if bends { *most } else { 0.0 };
+            }
+        }
+    }
+
     #[inline(always)]
     fn clear(&mut self) {
         self.residual.fill(Vector3::zeros());
@@ -244,10 +272,21 @@ impl LineWork {
     }
 
     /// Residual and tangent of a line at rest.
-    fn assemble_static(&mut self, line: &Line, position: &[Vector3<f64>], case: &StaticCase) {
+    fn assemble_static(
+        &mut self,
+        line: &Line,
+        position: &[Vector3<f64>],
+        clamps: [Option<Vector3<f64>>; 2],
+        case: &StaticCase,
+    ) {
         self.clear();
+        self.set_push(line, case.bends);
         for i in 0..line.segment_count() {
             self.add_static_segment(line, position, case, i);
+        }
+        if let (Some(bending), true) = (&line.bending, case.bends) {
+            let parts = Parts::AT_REST;
+            self.add_bending(bending, clamps, [position, &[]], &parts);
         }
         for (i, r) in position.iter().enumerate() {
             self.residual[i].z += case.load * line.nodes.weight[i];
@@ -283,13 +322,14 @@ impl LineWork {
         } else {
             elastic
         };
-        let (tension, slope) = if predicted > 0.0 || elastic > 0.0 {
+        let least = 0.0 - self.push[i];
+        let (tension, slope) = if predicted > least || elastic > least {
             (elastic, slope)
         } else {
-            (0.0, 0.0)
+            (least, 0.0)
         };
         // A segment folded to nothing has no direction to be stiff across.
-        let across = predicted.max(case.tension_min) / g.length.max(0.1 * unstretched);
+        let across = predicted.max(least + case.tension_min) / g.length.max(0.1 * unstretched);
         let stiffness = Matrix3::from_diagonal_element(across) + (slope - across) * g.along();
         self.add_segment(i, tension * g.direction, stiffness);
     }
@@ -299,12 +339,18 @@ impl LineWork {
         &mut self,
         line: &Line,
         state: &LineState,
+        clamps: [Option<Vector3<f64>>; 2],
         weights: &Weights,
         negative_tension: bool,
     ) {
         self.clear();
+        self.set_push(line, true);
         for i in 0..line.segment_count() {
             self.add_dynamic_segment::<TANGENT>(line, state, weights, negative_tension, i);
+        }
+        if let Some(bending) = &line.bending {
+            let parts = Parts::of_step(weights, TANGENT);
+            self.add_bending(bending, clamps, [&state.position, &state.velocity], &parts);
         }
         self.add_weight_and_inertia::<TANGENT>(line, state, weights);
         if line.nodes.drag.is_some() {
@@ -343,15 +389,16 @@ impl LineWork {
         let elastic = ea * stretch.force;
         let total = elastic + ba * g.direction.dot(&rate) / unstretched;
         let predicted = weights.predicted && !negative_tension;
+        let least = 0.0 - self.push[i];
         let taut = match (negative_tension, predicted) {
-            (true, _) => elastic > 0.0,
-            (_, true) => total > 0.0 || self.tension[i] > 0.0,
-            _ => total > 0.0,
+            (true, _) => elastic > least,
+            (_, true) => total > least || self.tension[i] > least,
+            _ => total > least,
         };
         let tension = match negative_tension {
-            true => total_tension(elastic, total - elastic, true),
+            true => total_tension(elastic, total - elastic, least, true),
             false if taut => total,
-            false => 0.0,
+            false => least,
         };
         let mut stiffness = Matrix3::zeros();
         if TANGENT && g.length > 0.0 {
@@ -364,7 +411,8 @@ impl LineWork {
             let damper = if damps { ba / unstretched } else { 0.0 };
             let along = weights.position * spring + weights.velocity * damper;
             let pull = if predicted { self.tension[i] } else { tension };
-            let across = weights.position * pull.max(0.0) / g.length;
+            let least = if weights.convex { 0.0 } else { least };
+            let across = weights.position * pull.max(least) / g.length;
             stiffness = Matrix3::from_diagonal_element(across) + (along - across) * g.along();
             if damps && ba > 0.0 {
                 let turning = rate - rate.dot(&g.direction) * g.direction; // P ġ
@@ -538,8 +586,8 @@ impl Workspace {
         case: &StaticCase,
     ) {
         for &index in &network.lines {
-            let position = &state.lines[index].position;
-            self.lines[index].assemble_static(&model.lines[index], position, case);
+            let (line, position) = (&model.lines[index], &state.lines[index].position);
+            self.lines[index].assemble_static(line, position, line.clamps(&state.points), case);
         }
         for_free_points(model, network, |index, free| {
             let point = &mut self.points[index];
@@ -565,6 +613,7 @@ impl Workspace {
             self.lines[index].assemble_dynamic::<TANGENT>(
                 line,
                 line_state,
+                line.clamps(&state.points),
                 weights,
                 negative_tension,
             );
@@ -604,10 +653,7 @@ impl Workspace {
         for &index in &network.lines {
             let work = &mut self.lines[index];
             let [a, b] = model.lines[index].ends.map(|point| self.points[point].slot);
-            let Some(ends) =
-                work.chain
-                    .eliminate(&work.diagonal, &work.coupling, &work.residual, a.is_some())
-            else {
+            let Some(ends) = work.eliminate(a.is_some()) else {
                 return false;
             };
             if let Some(a) = a {
@@ -640,7 +686,7 @@ impl Workspace {
         }
         for &index in &network.lines {
             let [a, b] = model.lines[index].ends.map(|point| self.solution_at(point));
-            self.lines[index].chain.substitute(a, b);
+            self.lines[index].substitute(a, b);
         }
         true
     }
@@ -654,12 +700,13 @@ impl Workspace {
                 &mut self.lines[index],
                 &model.lines[index].segments.axial_stiffness,
             );
-            let x = line.chain.solution();
             for i in 0..line.tension.len() {
+                let x = line.solution();
                 let growth = -line.direction[i].dot(&(x[i + 1] - x[i])); // of the segment's length [m]
                 let predicted = line.elastic[i] + line.slope[i] * growth;
-                consistent &=
-                    line.tension[i] <= 0.0 || line.elastic[i] >= -PUSH_STRAIN * stiffness[i];
+                let least = 0.0 - line.push[i];
+                consistent &= line.tension[i] <= least
+                    || line.elastic[i] >= least - PUSH_STRAIN * stiffness[i];
                 line.tension[i] += part * (predicted - line.tension[i]);
             }
         }
@@ -716,7 +763,7 @@ impl Workspace {
         let lines = network
             .lines
             .iter()
-            .flat_map(|&line| self.lines[line].chain.solution());
+            .flat_map(|&line| self.lines[line].solution());
         lines.map(|x| x.norm_squared()).fold(0.0, longer).sqrt()
     }
 
@@ -855,15 +902,17 @@ pub fn end_force(
         velocity: 0.0,
         acceleration: 0.0,
         predicted: false,
+        convex: false,
     };
     let negative_tension = model.solver.negative_tension;
+    let clamps = model.lines[line].clamps(&state.points);
     let (line_model, line_state, line_work) = (
         &model.lines[line],
         &state.lines[line],
         &mut work.lines[line],
     );
     line_work.fade_dampers(line_model, line_state, 0.0);
-    line_work.assemble_dynamic::<false>(line_model, line_state, &weights, negative_tension);
+    line_work.assemble_dynamic::<false>(line_model, line_state, clamps, &weights, negative_tension);
     -line_work.residual[line_model.end_node(end)]
 }
 

@@ -44,11 +44,11 @@ const DIFFERENCE: f64 = 1e-9;
 
 /// Whether every line of a network has a closed form.
 pub fn serves(model: &Model, network: &Network) -> bool {
-    let mut sections = network
-        .lines
-        .iter()
-        .flat_map(|&line| &model.lines[line].sections);
-    sections.all(|section| section.law == StretchLaw::Engineering)
+    let mut lines = network.lines.iter().map(|&line| &model.lines[line]);
+    lines.all(|line| {
+        let mut sections = line.sections.iter();
+        line.bending.is_none() && sections.all(|section| section.law == StretchLaw::Engineering)
+    })
 }
 
 /// As [`equilibrium::solve`], with every network on closed-form catenaries that can be; the others, and those whose free
@@ -62,16 +62,30 @@ pub fn solve(
     t: f64,
     work: &mut Workspace,
 ) -> Result<State, StaticsError> {
+    let points: Vec<PointState> = points.iter().copied().map(PointState::at_rest).collect();
+    solve_posed(model, &points, t, work)
+}
+
+/// [`solve`] with the orientations of all points, which clamped lines follow.
+///
+/// # Errors
+/// As there.
+pub fn solve_posed(
+    model: &Model,
+    points: &[PointState],
+    t: f64,
+    work: &mut Workspace,
+) -> Result<State, StaticsError> {
     let blank = |line: &Line| LineState::at_rest(vec![Vector3::zeros(); line.segment_count() + 1]);
     let mut state = State {
         time: t,
-        points: points.iter().copied().map(PointState::at_rest).collect(),
+        points: points.to_vec(),
         lines: model.lines.iter().map(blank).collect(),
     };
     if (0..model.networks.len()).all(|number| solve_network(model, number, &mut state, t, work)) {
         return Ok(state);
     }
-    let mut state = equilibrium::solve(model, points, t, work)?;
+    let mut state = equilibrium::solve_posed(model, points, t, work)?;
     for number in 0..model.networks.len() {
         solve_network(model, number, &mut state, t, work);
     }

@@ -16,18 +16,22 @@
 //! its greatest force, the loads are applied little by little instead, and every step must lie close to the one before and
 //! have a positive definite tangent.
 //!
+//! Lines with bending stiffness are in [`bending`].
+//!
 //! Accepted is a residual of at most 1e-11 of the greatest force in the network (tension, nodal weight or load) plus what
 //! rounding of the positions makes of the stiffest segment.
 //!
 //! Source: Kelley & Keyes (1998), SIAM J. Numer. Anal. 35(2), 508-523 (pseudo-transient continuation); the elimination of
 //! predicted tensions is derived here.
 
+mod bending;
+
 use nalgebra::Vector3;
 
 use super::StaticsError;
 use super::assembly::{StaticCase, Workspace, copy_network, for_free_points, place_ends};
 use super::guess;
-use crate::model::{Line, LineState, Model, Network, PointState, State};
+use crate::model::{Kinematics, Line, LineState, Model, Network, PointState, State};
 
 /// Accepted force out of balance, over the greatest force [-].
 const FORCE_TOLERANCE: f64 = 1e-11;
@@ -43,6 +47,8 @@ const DESCENT_SOLVES_MAX: usize = 200;
 const CUTS_MAX: usize = 12;
 /// EA over the sum of the loads in the soft problem [-].
 const SOFT_STIFFNESS: f64 = 50.0;
+/// Negative stiffness that is taken for rounding, over the sum of the loads and the length of the longest line [-].
+const INSTABILITY: f64 = 1e-12;
 /// Load steps on a softening line.
 const LOAD_STEPS_MAX: usize = 200;
 /// Strain over the limit strain from which a failure is put down to the limit [-].
@@ -63,14 +69,29 @@ pub fn solve(
     t: f64,
     work: &mut Workspace,
 ) -> Result<State, StaticsError> {
-    check_finite(model, points)?;
+    let points: Vec<PointState> = points.iter().copied().map(PointState::at_rest).collect();
+    solve_posed(model, &points, t, work)
+}
+
+/// [`solve`] with the orientations of all points, which clamped lines follow.
+///
+/// # Errors
+/// As there.
+pub fn solve_posed(
+    model: &Model,
+    points: &[PointState],
+    t: f64,
+    work: &mut Workspace,
+) -> Result<State, StaticsError> {
+    let places: Vec<Vector3<f64>> = points.iter().map(|point| point.position).collect();
+    check_finite(model, &places)?;
     let mut state = State {
         time: t,
-        points: points.iter().copied().map(PointState::at_rest).collect(),
+        points: points.to_vec(),
         lines: Vec::with_capacity(model.lines.len()),
     };
     for (line, work) in model.lines.iter().zip(&mut work.lines) {
-        let [a, b] = line.ends.map(|point| points[point]);
+        let [a, b] = line.ends.map(|point| places[point]);
         let mut position = vec![a; line.segment_count() + 1];
         guess::hang(model, line, a, b, &mut position, &mut work.tension);
         state.lines.push(LineState::at_rest(
@@ -97,7 +118,12 @@ pub fn continue_from(
     check_finite(model, points)?;
     let before = state.clone();
     for number in 0..model.networks.len() {
-        if let Err(error) = continue_network(model, number, state, |point| points[point], t, work) {
+        let held = |point: usize| Kinematics {
+            position: points[point],
+            orientation: before.points[point].orientation,
+            ..Kinematics::default()
+        };
+        if let Err(error) = continue_network(model, number, state, held, t, work) {
             *state = before;
             return Err(error);
         }
@@ -114,7 +140,7 @@ pub fn continue_network(
     model: &Model,
     number: usize,
     state: &mut State,
-    held: impl Fn(usize) -> Vector3<f64>,
+    held: impl Fn(usize) -> Kinematics,
     t: f64,
     work: &mut Workspace,
 ) -> Result<(), StaticsError> {
@@ -128,7 +154,7 @@ pub fn continue_network(
         line.tension.copy_from_slice(&line.elastic);
         for point in model.lines[index].ends {
             if model.points[point].free().is_none() {
-                state.points[point] = PointState::at_rest(held(point));
+                state.points[point] = PointState::held(&held(point));
             }
         }
         shift(state, &before, model, index);
@@ -175,23 +201,6 @@ fn check_finite(model: &Model, points: &[Vector3<f64>]) -> Result<(), StaticsErr
     Ok(())
 }
 
-/// Greatest stiffness of a segment of at most this EA [N], or of the bed under a node [N/m].
-fn stiffest_spring(line: &Line, stiffness_max: f64) -> f64 {
-    let segments = line
-        .segments
-        .axial_stiffness
-        .iter()
-        .zip(&line.segments.length);
-    let bed = line
-        .nodes
-        .contact
-        .iter()
-        .flat_map(|contact| &contact.stiffness)
-        .copied();
-    bed.chain(segments.map(|(ea, length)| ea.min(stiffness_max) / length))
-        .fold(0.0, f64::max)
-}
-
 /// One network, one time.
 struct Problem<'a> {
     model: &'a Model,
@@ -202,6 +211,8 @@ struct Problem<'a> {
     force: f64,
     /// Length of the longest line [m].
     length: f64,
+    /// Whether any of its lines has bending stiffness, and that is not left out.
+    bends: bool,
 }
 
 impl<'a> Problem<'a> {
@@ -222,6 +233,7 @@ impl<'a> Problem<'a> {
             number,
             time,
             force: if force > 0.0 { force } else { 1.0 },
+            bends: lines.clone().any(|line| line.bending.is_some()),
             length: lines
                 .map(|line| line.unstretched_length())
                 .fold(0.0, f64::max),
@@ -237,6 +249,7 @@ impl<'a> Problem<'a> {
             tension_min: 0.0,
             anchoring: 0.0,
             predicted: false,
+            bends: self.bends,
         }
     }
 
@@ -244,7 +257,11 @@ impl<'a> Problem<'a> {
         place_ends(self.model, self.network, state);
         let mut guess = std::mem::take(&mut work.saved);
         copy_network(self.model, self.network, state, &mut guess);
-        let result = self.solve_from(&guess, state, work);
+        let result = if self.bends {
+            self.solve_bent(&guess, state, work)
+        } else {
+            self.solve_from(&guess, state, work)
+        };
         work.saved = guess;
         result
     }
@@ -302,8 +319,13 @@ impl<'a> Problem<'a> {
         case.predicted = true;
         let mut relaxation: f64 = 1.0;
         let mut step = f64::INFINITY;
-        let mut balanced = 0;
-        for _ in 0..NEWTON_SOLVES_MAX {
+        let (mut balanced, mut refused) = (0, 0);
+        let solves_max = if self.bends {
+            bending::NEWTON_SOLVES_MAX
+        } else {
+            NEWTON_SOLVES_MAX
+        };
+        for _ in 0..solves_max {
             case.tension_min = relaxation * self.force;
             case.anchoring = relaxation * self.force / self.length + self.rounding_stiffness(&case);
             work.assemble_static(self.model, self.network, state, &case);
@@ -319,13 +341,20 @@ impl<'a> Problem<'a> {
             }
             if !work.solve(self.model, self.network, self.number) {
                 relaxation = (10.0 * relaxation).min(1.0);
+                refused += 1;
+                if self.bends && refused > bending::REFUSALS_MAX {
+                    return false;
+                }
                 continue;
             }
             step = work.greatest_solution(self.network);
             if !step.is_finite() {
                 return false;
             }
-            let part = (STEP_MAX * self.reach(state) / step).min(1.0);
+            let mut part = (STEP_MAX * self.reach(state) / step).min(1.0);
+            if self.bends {
+                part = part.min(self.turning_part(state, work));
+            }
             work.predict_tensions(self.model, self.network, part);
             self.advance(state, work, part);
             if part == 1.0 {
@@ -355,8 +384,31 @@ impl<'a> Problem<'a> {
             .map(|&line| &self.model.lines[line]);
         8.0 * f64::EPSILON
             * lines
-                .map(|line| stiffest_spring(line, case.stiffness_max))
+                .map(|line| self.stiffest_spring(line, case.stiffness_max))
                 .fold(0.0, f64::max)
+    }
+
+    /// Greatest stiffness of a segment of at most this EA [N], of the bed under a node, or of a joint [N/m].
+    fn stiffest_spring(&self, line: &Line, stiffness_max: f64) -> f64 {
+        let segments = line
+            .segments
+            .axial_stiffness
+            .iter()
+            .zip(&line.segments.length);
+        let bed = line
+            .nodes
+            .contact
+            .iter()
+            .flat_map(|contact| &contact.stiffness)
+            .copied();
+        let spring = bed
+            .chain(segments.map(|(ea, length)| ea.min(stiffness_max) / length))
+            .fold(0.0, f64::max);
+        if self.bends {
+            spring.max(bending::stiffest_joint(line))
+        } else {
+            spring
+        }
     }
 
     /// Accepted force out of balance [N] at the last assembly.
@@ -374,7 +426,10 @@ impl<'a> Problem<'a> {
                     .max(work.lines[index].elastic[i])
                     .max(line.nodes.weight[i].abs());
             }
-            rounding = rounding.max(far * stiffest_spring(line, stiffness_max));
+            if let (Some(joints), true) = (&work.lines[index].bending, self.bends) {
+                force = force.max(joints.greatest);
+            }
+            rounding = rounding.max(far * self.stiffest_spring(line, stiffness_max));
         }
         for_free_points(self.model, self.network, |index, free| {
             let load = self.model.points[index].load_at(self.time).norm();
@@ -387,8 +442,11 @@ impl<'a> Problem<'a> {
     fn no_push(&self, work: &Workspace, tolerance: f64) -> bool {
         self.network.lines.iter().all(|&line| {
             let line = &work.lines[line];
-            let mut segments = line.elastic.iter().zip(&line.tension);
-            segments.all(|(&elastic, &tension)| tension <= 0.0 || elastic >= -tolerance)
+            let segments = line.elastic.iter().zip(&line.tension);
+            segments.enumerate().all(|(i, (&elastic, &tension))| {
+                let least = 0.0 - line.push[i];
+                tension <= least || elastic >= least - tolerance
+            })
         })
     }
 
@@ -396,7 +454,7 @@ impl<'a> Problem<'a> {
     fn advance(&self, state: &mut State, work: &Workspace, part: f64) {
         for &index in &self.network.lines {
             let nodes = state.lines[index].position.iter_mut();
-            for (r, x) in nodes.zip(work.lines[index].chain.solution()) {
+            for (r, x) in nodes.zip(work.lines[index].solution()) {
                 *r -= part * x;
             }
         }
@@ -495,10 +553,7 @@ impl<'a> Problem<'a> {
     fn power(&self, work: &Workspace) -> f64 {
         let mut sum = 0.0;
         for &index in &self.network.lines {
-            let (x, r) = (
-                work.lines[index].chain.solution(),
-                &work.lines[index].residual,
-            );
+            let (x, r) = (work.lines[index].solution(), &work.lines[index].residual);
             let last = r.len() - 1;
             sum -= (1..last).map(|i| x[i].dot(&r[i])).sum::<f64>();
         }
@@ -519,7 +574,12 @@ impl<'a> Problem<'a> {
 
     /// Whether the tangent of a converged state is positive definite.
     fn stable(&self, state: &State, work: &mut Workspace, case: StaticCase) -> bool {
-        let anchoring = self.rounding_stiffness(&case) + 1e-12 * self.force / self.length;
+        let least = if self.bends {
+            bending::INSTABILITY
+        } else {
+            INSTABILITY
+        };
+        let anchoring = self.rounding_stiffness(&case) + least * self.force / self.length;
         let case = StaticCase {
             anchoring,
             predicted: false,

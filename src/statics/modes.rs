@@ -1,7 +1,7 @@
 //! Natural frequencies and mode shapes of a network of lines about a state at rest.
 //!
 //! K φ = ω² M φ over the nodes between the ends of every line and the free axes of free points. K is the assembled tangent
-//! of statics: axial and geometric stiffness of the segments and the bed's springs where they touch. M is that of dynamics:
+//! of statics: axial, geometric and bending stiffness of the lines and the bed's springs where they touch. M is that of dynamics:
 //! lumped, added mass included, M_n I + (M_t − M_n) t tᵀ at a node. With the Cholesky factor M = L Lᵀ the symmetric problem
 //! L⁻¹ K L⁻ᵀ y = ω² y is solved densely, φ = L⁻ᵀ y. Damping and drag are left out.
 //!
@@ -11,7 +11,7 @@
 
 use nalgebra::{Cholesky, DMatrix, Dyn, Matrix3, SymmetricEigen, Vector3};
 
-use super::assembly::{StaticCase, Workspace, node_tangent};
+use super::assembly::{BendingWork, StaticCase, Workspace, node_tangent};
 use crate::model::{Line, Model, Network, State};
 
 /// The modes of a network, lowest first.
@@ -42,6 +42,7 @@ impl Modes {
             tension_min: 0.0,
             anchoring: 0.0,
             predicted: false,
+            bends: true,
         };
         work.assemble_static(model, network, state, &case);
         let mut stiffness = DMatrix::zeros(count, count);
@@ -60,6 +61,9 @@ impl Modes {
             for (pair, coupling) in nodes.windows(2).zip(&tangent.coupling) {
                 add_block(&mut stiffness, pair[0], pair[1], coupling);
                 add_block(&mut stiffness, pair[1], pair[0], &coupling.transpose());
+            }
+            if let Some(bending) = &tangent.bending {
+                add_second_neighbours(&mut stiffness, nodes, bending);
             }
         }
         for &index in &network.free_points {
@@ -147,6 +151,21 @@ fn add_block(
             if let (Some(row), Some(column)) = (row, column) {
                 matrix[(row, column)] += block[(i, j)];
             }
+        }
+    }
+}
+
+/// What the joints of a line couple.
+fn add_second_neighbours(
+    stiffness: &mut DMatrix<f64>,
+    nodes: &[[Option<usize>; 3]],
+    bending: &BendingWork,
+) {
+    for (step, blocks) in [(1, &bending.near), (2, &bending.far)] {
+        for (i, block) in blocks.iter().enumerate() {
+            let (row, column) = (nodes[i], nodes[i + step]);
+            add_block(stiffness, row, column, block);
+            add_block(stiffness, column, row, &block.transpose());
         }
     }
 }

@@ -1,0 +1,169 @@
+//! Bending of a line: joints at its nodes, clamps at its ends.
+
+use nalgebra::Vector3;
+
+use super::{End, Line, PointState};
+use crate::physics::bending::{Direction, Turn, compression_max, in_series};
+
+/// Lumped bending stiffness: every node is a joint between the segments that meet there, a clamped end one between the clamp and
+/// its segment.
+#[derive(Debug, Clone)]
+pub struct Bending {
+    /// EI per segment [N m²]; 0 where it is a hinge.
+    pub stiffness: Vec<f64>,
+    /// B = EI/l̄ per node [N m]; 0 at hinges and pinned ends.
+    pub joint: Vec<f64>,
+    /// Unstretched length l̄ that a joint's turn belongs to [m].
+    pub length: Vec<f64>,
+    /// |κb| of the unstressed shape per node [-].
+    pub rest: Vec<f64>,
+    /// Greatest push that a segment carries [N].
+    pub compression_max: Vec<f64>,
+    /// Damping of the joints [N m s], where a line type has it.
+    pub damping: Option<Vec<f64>>,
+    /// Direction from end A to end B that the line is held to at each end [-]; pinned where there is none.
+    clamps: [Option<Vector3<f64>>; 2],
+}
+
+impl Bending {
+    /// From the length [m], EI [N m²] and stiffness-proportional damping β [s] of every segment, straight where unstressed.
+    pub fn new(
+        length: &[f64],
+        stiffness: Vec<f64>,
+        beta: &[f64],
+        clamps: [Option<Vector3<f64>>; 2],
+    ) -> Bending {
+        let n = length.len();
+        let half = |segment: usize, factor: f64| (length[segment], factor * stiffness[segment]);
+        let joints = |factor: &dyn Fn(usize) -> f64| -> Vec<f64> {
+            let at = |node: usize| match node {
+                0 => clamps[0].map_or(0.0, |_| 2.0 * factor(0) * stiffness[0] / length[0]),
+                i if i == n => clamps[1].map_or(0.0, |_| {
+                    2.0 * factor(n - 1) * stiffness[n - 1] / length[n - 1]
+                }),
+                i => in_series([half(i - 1, factor(i - 1)), half(i, factor(i))]),
+            };
+            (0..=n).map(at).collect()
+        };
+        let tributary = |node: usize| {
+            let before = node.checked_sub(1).map_or(0.0, |i| length[i]);
+            0.5 * (before + length.get(node).copied().unwrap_or(0.0))
+        };
+        Bending {
+            joint: joints(&|_| 1.0),
+            length: (0..=n).map(tributary).collect(),
+            rest: vec![0.0; n + 1],
+            compression_max: (0..n)
+                .map(|i| compression_max(stiffness[i], length[i]))
+                .collect(),
+            damping: beta
+                .iter()
+                .any(|beta| *beta > 0.0)
+                .then(|| joints(&|segment| beta[segment])),
+            clamps,
+            stiffness,
+        }
+    }
+
+    /// Takes a shape of the line as the unstressed one.
+    pub fn rest_at(&mut self, position: &[Vector3<f64>]) {
+        for node in 0..position.len() {
+            self.rest[node] = match joint(self.clamps, position, node) {
+                Some(turn) => turn.bend(),
+                None => 0.0,
+            };
+        }
+    }
+}
+
+impl Line {
+    /// Direction from end A to end B that the line is held to at an end whose point is `point` [-]; pinned where there is none. The
+    /// one place where a clamp follows what it is fixed to.
+    pub fn clamp(&self, end: End, point: &PointState) -> Option<Vector3<f64>> {
+        let [a, b] = self.bending.as_ref()?.clamps;
+        let reference = match end {
+            End::A => a,
+            End::B => b,
+        };
+        reference.map(|along| point.orientation * along)
+    }
+
+    /// [`Line::clamp`] of both ends [-].
+    pub fn clamps(&self, points: &[PointState]) -> [Option<Vector3<f64>>; 2] {
+        let [a, b] = self.ends.map(|point| &points[point]);
+        [self.clamp(End::A, a), self.clamp(End::B, b)]
+    }
+
+    /// Greatest push that a segment carries [N]: none without bending stiffness.
+    pub fn compression_max(&self, segment: usize) -> f64 {
+        self.bending
+            .as_ref()
+            .map_or(0.0, |bending| bending.compression_max[segment])
+    }
+}
+
+/// Keeps coincident nodes from dividing by zero [m].
+const LENGTH_MIN: f64 = 1e-9;
+
+/// The turn at a node between its segments, or between a clamp and a segment; `None` at a pinned end.
+#[inline(always)]
+pub fn joint(
+    clamps: [Option<Vector3<f64>>; 2],
+    position: &[Vector3<f64>],
+    node: usize,
+) -> Option<Turn> {
+    let segment = |i: usize| {
+        let chord = position[i + 1] - position[i];
+        let length = chord.norm();
+        Direction {
+            along: if length > 0.0 {
+                chord / length
+            } else {
+                Vector3::x()
+            },
+            per_length: 1.0 / length.max(LENGTH_MIN),
+        }
+    };
+    let held = |along: Vector3<f64>| Direction {
+        along,
+        per_length: 0.0,
+    };
+    let last = position.len() - 1;
+    Some(match node {
+        0 => Turn::new(held(clamps[0]?), segment(0)),
+        i if i == last => Turn::new(segment(i - 1), held(clamps[1]?)),
+        i => Turn::new(segment(i - 1), segment(i)),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    #[test]
+    fn joints_are_stiff_over_their_halves_and_clamps_over_half_a_segment() {
+        let clamps = [Some(Vector3::x()), None];
+        let bending = Bending::new(&[1.0, 3.0, 2.0], vec![4.0, 4.0, 0.0], &[0.0; 3], clamps);
+        assert_relative_eq!(bending.joint[0], 8.0);
+        assert_relative_eq!(bending.joint[1], 2.0);
+        assert_eq!(bending.joint[2..], [0.0, 0.0]); // a hinge and a pinned end
+        assert_eq!(bending.length, [0.5, 2.0, 2.5, 1.0]);
+        assert!(bending.damping.is_none());
+        assert_eq!(bending.compression_max[2], 0.0);
+    }
+
+    #[test]
+    fn a_shape_taken_as_unstressed_bends_nothing() {
+        let nodes = [
+            Vector3::zeros(),
+            Vector3::new(1.0, 0.0, 0.0),
+            Vector3::new(1.8, 0.6, 0.0),
+        ];
+        let mut bending = Bending::new(&[1.0, 1.0], vec![4.0; 2], &[0.0; 2], [None, None]);
+        bending.rest_at(&nodes);
+        let turn = joint([None, None], &nodes, 1).unwrap();
+        assert_eq!(turn.energy(4.0, bending.rest[1]).energy, 0.0);
+        assert_eq!(bending.rest[0], 0.0);
+    }
+}

@@ -1,0 +1,418 @@
+//! Bending of a line between two directions that follow each other: no rotations, no torsion.
+//!
+//! Between unit vectors q₁ and q₂ with c = q₁·q₂, over the material length l̄ that the turn belongs to, the curvature vector is
+//! κb/l̄ with κb = 2 q₁×q₂/(1 + c), |κb| = 2 tan(φ/2) at the angle φ, and the energy
+//!
+//! W = ½ B (|κb| − k₀)²,   B = EI/l̄ [N m];   without rest curvature W = 2B f,   f = |κb|²/4 = (1 − c)/(1 + c).
+//!
+//! 1 − c is taken as ½|q₂ − q₁|², which does not cancel. The slopes are f' = −2/(1 + c)² and f'' = 4/(1 + c)³ with c, and with the
+//! end-to-end vectors e₁ and e₂ of the two segments of lengths l₁ and l₂, P = I − q qᵀ,
+//!
+//! ∂c/∂e₁ = P₁q₂/l₁ = u₁,   ∂²c/∂e₁² = −(q₁u₁ᵀ + u₁q₁ᵀ + c P₁/l₁)/l₁,   ∂²c/∂e₁∂e₂ = P₁P₂/(l₁l₂).
+//!
+//! Two directions that meet where stiffness changes bend in series: 1/B = l₁/(2EI₁) + l₂/(2EI₂), and nothing where one of them is
+//! a hinge. A clamp is a direction that is held.
+//!
+//! Also here: EI of a solid round section and of a bundle of loose fibres, and the compression a segment can carry. A bundle of N equal loose strands of
+//! area A/N, d' = d/√N each, that slide on each other: N·(A/N)²E/4π = EI/N. The other reading, EI/N², is one strand of them alone.
+//! A chain of segments of length l buckles in its shortest wave, a zigzag, at 4EI/l²: the bending energy of a zigzag of
+//! amplitude a is ½(EI/l)(4a/l)² a node, and a push P gives ½P(2a)²/l. No push beyond it has a shape that the mesh resolves, and
+//! so a segment carries no more; without EI that is the rope that does not push at all.
+//!
+//! Source: Bergou, Wardetzky, Robinson, Audoly & Grinspun (2008), Discrete Elastic Rods, ACM Trans. Graph. 27(3), eq. 1 and
+//! section 4.2 (κb and the bending energy); second derivatives, series stiffness, fibres and zigzag derived here. The limit of compression is what
+//! OrcaFlex offers as "segment Euler load", there π²EI/l².
+//! Valid for slender lines, l̄ well below the radius of curvature, and for φ < 180°, where the energy is infinite. A rest curvature has a
+//! size but no direction, as in a line that is free to twist: its force is not smooth where the line is straight.
+
+use std::f64::consts::PI;
+
+use nalgebra::{Matrix3, Vector3};
+
+/// |κb| below which the direction of a rest curvature fades [-].
+const REST_FADE: f64 = 1e-6;
+
+/// A segment as bending sees it.
+#[derive(Debug, Clone, Copy)]
+pub struct Direction {
+    /// Unit vector q [-].
+    pub along: Vector3<f64>,
+    /// 1/l [1/m]; 0 for a direction that is held.
+    pub per_length: f64,
+}
+
+/// Energy and its slopes with the end-to-end vectors e₁ and e₂ of the two segments.
+#[derive(Debug, Clone, Copy)]
+pub struct Bend {
+    /// W [J].
+    pub energy: f64,
+    /// ∂W/∂e₁ and ∂W/∂e₂ [N].
+    pub slope: [Vector3<f64>; 2],
+}
+
+/// Second derivatives of the energy [N/m].
+#[derive(Debug, Clone, Copy)]
+pub struct Hessian {
+    /// ∂²W/∂e₁² [N/m].
+    pub first: Matrix3<f64>,
+    /// ∂²W/∂e₁∂e₂, row of e₁ [N/m].
+    pub mixed: Matrix3<f64>,
+    /// ∂²W/∂e₂² [N/m].
+    pub second: Matrix3<f64>,
+}
+
+impl Hessian {
+    /// Times a factor.
+    #[inline(always)]
+    pub fn times(&self, factor: f64) -> Hessian {
+        Hessian {
+            first: factor * self.first,
+            mixed: factor * self.mixed,
+            second: factor * self.second,
+        }
+    }
+
+    /// The sum of two.
+    #[inline(always)]
+    pub fn plus(&self, other: &Hessian) -> Hessian {
+        Hessian {
+            first: self.first + other.first,
+            mixed: self.mixed + other.mixed,
+            second: self.second + other.second,
+        }
+    }
+
+    /// Its product with changes of e₁ and e₂.
+    #[inline(always)]
+    pub fn product(&self, [v1, v2]: [Vector3<f64>; 2]) -> [Vector3<f64>; 2] {
+        [
+            self.first * v1 + self.mixed * v2,
+            self.mixed.tr_mul(&v1) + self.second * v2,
+        ]
+    }
+}
+
+/// The turn from one direction to the next.
+#[derive(Debug, Clone, Copy)]
+pub struct Turn {
+    first: Direction,
+    second: Direction,
+    /// q₁·q₂.
+    cosine: f64,
+    /// 1 + c, kept off zero.
+    sum: f64,
+    /// f = |κb|²/4.
+    square: f64,
+    /// u₁ and u₂.
+    gradient: [Vector3<f64>; 2],
+}
+
+impl Turn {
+    /// From `first` to `second`.
+    #[inline(always)]
+    pub fn new(first: Direction, second: Direction) -> Turn {
+        let (q1, q2) = (first.along, second.along);
+        let rest = 0.5 * (q2 - q1).norm_squared(); // 1 − c
+        let cosine = 1.0 - rest;
+        let sum = (2.0 - rest).max(1e-9);
+        Turn {
+            first,
+            second,
+            cosine,
+            sum,
+            square: rest / sum,
+            gradient: [
+                first.per_length * (q2 - q1 + rest * q1),
+                second.per_length * (q1 - q2 + rest * q2),
+            ],
+        }
+    }
+
+    /// |κb| = 2 tan(φ/2) [-]: curvature times material length.
+    pub fn bend(&self) -> f64 {
+        2.0 * self.square.sqrt()
+    }
+
+    /// Energy and slopes for a stiffness B [N m] and a rest bend k₀ [-].
+    #[inline(always)]
+    pub fn energy(&self, stiffness: f64, rest: f64) -> Bend {
+        let [slope, _] = self.slopes(stiffness, rest);
+        let bend = self.bend() - rest;
+        Bend {
+            energy: 0.5 * stiffness * bend * bend,
+            slope: self.gradient.map(|u| slope * u),
+        }
+    }
+
+    /// Moment [N m] on what holds the first direction, where that is held: it would turn it to the second.
+    pub fn moment_on_first(&self, stiffness: f64, rest: f64) -> Vector3<f64> {
+        let [slope, _] = self.slopes(stiffness, rest);
+        -slope * self.first.along.cross(&self.second.along)
+    }
+
+    /// dW/dc and d²W/dc² [J].
+    #[inline(always)]
+    fn slopes(&self, stiffness: f64, rest: f64) -> [f64; 2] {
+        let (d1, d2) = (-2.0 / self.sum.powi(2), 4.0 / self.sum.powi(3)); // f', f''
+        if rest == 0.0 {
+            return [2.0 * stiffness * d1, 2.0 * stiffness * d2];
+        }
+        let root = (self.square + REST_FADE * REST_FADE).sqrt();
+        // W = 2B (f − k₀√f) + ½Bk₀²
+        let along = 1.0 - 0.5 * rest / root;
+        let across = 0.25 * rest / (root * root * root);
+        [
+            2.0 * stiffness * along * d1,
+            2.0 * stiffness * (along * d2 + across * d1 * d1),
+        ]
+    }
+
+    /// The exact second derivatives.
+    #[inline(always)]
+    pub fn hessian(&self, stiffness: f64, rest: f64) -> Hessian {
+        let [d1, d2] = self.slopes(stiffness, rest);
+        let [u1, u2] = self.gradient;
+        let (p1, p2) = (across(&self.first), across(&self.second));
+        let own = |direction: &Direction, u: Vector3<f64>, p: &Matrix3<f64>| {
+            let turned = direction.along * u.transpose();
+            let curved = turned + turned.transpose() + self.cosine * direction.per_length * p;
+            d2 * u * u.transpose() - d1 * direction.per_length * curved
+        };
+        let lengths = self.first.per_length * self.second.per_length;
+        Hessian {
+            first: own(&self.first, u1, &p1),
+            mixed: d2 * u1 * u2.transpose() + d1 * lengths * p1 * p2,
+            second: own(&self.second, u2, &p2),
+        }
+    }
+
+    /// B JᵀJ with the slopes J of k = (q₂ − q₁)√(2/(1 + c)), |k| = |κb|: never indefinite, and exact where the line is straight.
+    #[inline(always)]
+    pub fn convex_hessian(&self, stiffness: f64) -> Hessian {
+        let [j1, j2] = self.bend_slopes();
+        Hessian {
+            first: stiffness * j1.transpose() * j1,
+            mixed: stiffness * j1.transpose() * j2,
+            second: stiffness * j2.transpose() * j2,
+        }
+    }
+
+    /// Slopes of k with e₁ and e₂ [1/m].
+    #[inline(always)]
+    fn bend_slopes(&self) -> [Matrix3<f64>; 2] {
+        let scale = (2.0 / self.sum).sqrt();
+        let growth = -0.5 * scale / self.sum * (self.second.along - self.first.along);
+        let [u1, u2] = self.gradient;
+        [
+            -scale * self.first.per_length * across(&self.first) + growth * u1.transpose(),
+            scale * self.second.per_length * across(&self.second) + growth * u2.transpose(),
+        ]
+    }
+
+    /// Stiffness of a damper of `damping` [N m s] on the rate of k across the line, the section not spinning about its axis:
+    /// [N s/m]. What turns with the line as a whole is not damped.
+    #[inline(always)]
+    pub fn damper(&self, damping: f64) -> Hessian {
+        let mean = (self.first.along + self.second.along).normalize();
+        let [j1, j2] = self
+            .bend_slopes()
+            .map(|j| j - mean * (mean.transpose() * j));
+        Hessian {
+            first: damping * j1.transpose() * j1,
+            mixed: damping * j1.transpose() * j2,
+            second: damping * j2.transpose() * j2,
+        }
+    }
+}
+
+/// P = I − q qᵀ.
+#[inline(always)]
+fn across(direction: &Direction) -> Matrix3<f64> {
+    Matrix3::identity() - direction.along * direction.along.transpose()
+}
+
+/// EI [N m²] of a solid round section of a diameter [m] and Young's modulus [Pa].
+pub fn solid_round(diameter: f64, youngs_modulus: f64) -> f64 {
+    youngs_modulus * PI * diameter.powi(4) / 64.0
+}
+
+/// EI [N m²] of a section of loose strands, from that of one solid section: divided by their number to the power of 1 or, in the other
+/// reading, 2.
+pub fn of_strands(solid: f64, strands: usize, power: i32) -> f64 {
+    solid / (strands as f64).powi(power)
+}
+
+/// B [N m] of two halves of segments in series, each with its length [m] and EI [N m²].
+pub fn in_series(halves: [(f64, f64); 2]) -> f64 {
+    let [(l1, ei1), (l2, ei2)] = halves;
+    if ei1 > 0.0 && ei2 > 0.0 {
+        2.0 / (l1 / ei1 + l2 / ei2)
+    } else {
+        0.0
+    }
+}
+
+/// Greatest push [N] that a segment of a length [m] and EI [N m²] carries.
+pub fn compression_max(stiffness: f64, length: f64) -> f64 {
+    4.0 * stiffness / (length * length)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    fn direction(e: Vector3<f64>) -> Direction {
+        Direction {
+            along: e.normalize(),
+            per_length: 1.0 / e.norm(),
+        }
+    }
+
+    fn turn(e: [Vector3<f64>; 2]) -> Turn {
+        Turn::new(direction(e[0]), direction(e[1]))
+    }
+
+    const PAIRS: [[Vector3<f64>; 2]; 3] = [
+        [Vector3::new(0.7, 0.1, -0.2), Vector3::new(0.5, 0.3, 0.4)],
+        [Vector3::new(1.0, 0.0, 0.0), Vector3::new(1.0, 1e-3, 0.0)],
+        [Vector3::new(0.0, 0.3, 0.1), Vector3::new(0.8, -0.1, 0.2)],
+    ];
+
+    fn moved(e: [Vector3<f64>; 2], side: usize, axis: usize, h: f64) -> Turn {
+        let mut e = e;
+        e[side][axis] += h;
+        turn(e)
+    }
+
+    #[test]
+    fn slopes_are_those_of_the_energy() {
+        let h = 1e-6;
+        for (e, rest) in PAIRS.into_iter().zip([0.0, 0.0, 0.4]) {
+            let slope = turn(e).energy(3.0, rest).slope;
+            for (side, axis) in (0..2).flat_map(|side| (0..3).map(move |axis| (side, axis))) {
+                let energy = |h| moved(e, side, axis, h).energy(3.0, rest).energy;
+                let difference = (energy(h) - energy(-h)) / (2.0 * h);
+                assert_relative_eq!(slope[side][axis], difference, epsilon = 1e-8);
+            }
+        }
+    }
+
+    #[test]
+    fn second_derivatives_are_those_of_the_slopes() {
+        let h = 1e-6;
+        for (e, rest) in PAIRS.into_iter().zip([0.0, 0.0, 0.4]) {
+            let exact = turn(e).hessian(3.0, rest);
+            for axis in 0..3 {
+                let slopes = |side, h| moved(e, side, axis, h).energy(3.0, rest).slope;
+                let difference =
+                    |side, row: usize| (slopes(side, h)[row] - slopes(side, -h)[row]) / (2.0 * h);
+                let column = |m: &Matrix3<f64>| m.column(axis).into_owned();
+                let close = |a: Vector3<f64>, b: Vector3<f64>| {
+                    assert_relative_eq!(a, b, epsilon = 1e-7, max_relative = 1e-7);
+                };
+                close(difference(0, 0), column(&exact.first));
+                close(difference(0, 1), column(&exact.mixed.transpose()));
+                close(difference(1, 0), column(&exact.mixed));
+                close(difference(1, 1), column(&exact.second));
+            }
+        }
+    }
+
+    #[test]
+    fn a_clamp_takes_no_force_along_its_own_direction() {
+        let clamp = Direction {
+            along: Vector3::x(),
+            per_length: 0.0,
+        };
+        let bend = Turn::new(clamp, direction(PAIRS[0][1])).energy(2.0, 0.0);
+        assert_eq!(bend.slope[0], Vector3::zeros());
+        assert!(bend.slope[1].norm() > 0.0);
+    }
+
+    #[test]
+    fn the_convex_second_derivatives_are_exact_on_a_straight_line_and_positive_on_a_bent_one() {
+        let straight = turn([Vector3::new(0.3, 0.4, 0.0), Vector3::new(0.6, 0.8, 0.0)]);
+        let (exact, convex) = (straight.hessian(5.0, 0.0), straight.convex_hessian(5.0));
+        assert_relative_eq!(exact.first, convex.first, epsilon = 1e-12);
+        assert_relative_eq!(exact.mixed, convex.mixed, epsilon = 1e-12);
+        for e in PAIRS {
+            for h in [turn(e).convex_hessian(5.0), turn(e).damper(5.0)] {
+                let mut full = nalgebra::Matrix6::zeros();
+                full.fixed_view_mut::<3, 3>(0, 0).copy_from(&h.first);
+                full.fixed_view_mut::<3, 3>(0, 3).copy_from(&h.mixed);
+                full.fixed_view_mut::<3, 3>(3, 0)
+                    .copy_from(&h.mixed.transpose());
+                full.fixed_view_mut::<3, 3>(3, 3).copy_from(&h.second);
+                let least = full.symmetric_eigenvalues().min();
+                assert!(least > -1e-11 * full.norm());
+            }
+        }
+    }
+
+    #[test]
+    fn what_turns_as_a_whole_across_its_axis_is_not_damped() {
+        let e = PAIRS[0];
+        let t = turn(e);
+        let mean = (t.first.along + t.second.along).normalize();
+        let spin = Vector3::new(0.3, -0.5, 0.8);
+        let spin = spin - spin.dot(&mean) * mean;
+        let [v1, v2] = e.map(|e| spin.cross(&e));
+        let h = t.damper(1.0);
+        assert_relative_eq!(
+            h.first * v1 + h.mixed * v2,
+            Vector3::zeros(),
+            epsilon = 1e-14
+        );
+    }
+
+    #[test]
+    fn the_moment_on_a_clamp_is_minus_the_slope_of_the_energy_with_its_rotation() {
+        let held = |angle: f64| Direction {
+            along: Vector3::new(angle.cos(), angle.sin(), 0.0),
+            per_length: 0.0,
+        };
+        let energy = |angle| {
+            Turn::new(held(angle), direction(PAIRS[0][1]))
+                .energy(3.0, 0.0)
+                .energy
+        };
+        let moment = Turn::new(held(0.2), direction(PAIRS[0][1])).moment_on_first(3.0, 0.0);
+        let difference = (energy(0.2 + 1e-6) - energy(0.2 - 1e-6)) / 2e-6;
+        assert_relative_eq!(moment.z, -difference, epsilon = 1e-8);
+    }
+
+    #[test]
+    fn strands_side_by_side_share_the_stiffness() {
+        let strand = solid_round(0.1 / 20.0_f64.sqrt(), 2e11);
+        let solid = solid_round(0.1, 2e11);
+        assert_relative_eq!(
+            20.0 * strand,
+            of_strands(solid, 20, 1),
+            max_relative = 1e-14
+        );
+        assert_relative_eq!(strand, of_strands(solid, 20, 2), max_relative = 1e-14);
+    }
+
+    #[test]
+    fn a_small_turn_has_the_energy_of_a_beam_bent_to_a_circle() {
+        let (angle, length, ei) = (1e-4_f64, 0.5, 7.0);
+        let (q1, q2) = (Vector3::x(), Vector3::new(angle.cos(), angle.sin(), 0.0));
+        let turn = turn([length * q1, length * q2]);
+        assert_relative_eq!(turn.bend(), angle, max_relative = 1e-8);
+        let energy = turn.energy(ei / length, 0.0).energy;
+        let beam = 0.5 * ei * (angle / length).powi(2) * length;
+        assert_relative_eq!(energy, beam, max_relative = 1e-8);
+    }
+
+    #[test]
+    fn stiffness_in_series_is_that_of_a_uniform_line_and_nothing_at_a_hinge() {
+        assert_relative_eq!(in_series([(0.5, 8.0), (0.5, 8.0)]), 16.0);
+        assert_eq!(in_series([(0.5, 8.0), (0.5, 0.0)]), 0.0);
+    }
+
+    #[test]
+    fn the_solid_rod_of_the_collar_has_the_published_stiffness() {
+        assert_relative_eq!(solid_round(5.6955e-3, 2.1e11), 10.85, max_relative = 1e-3);
+    }
+}

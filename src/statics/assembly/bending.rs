@@ -1,0 +1,286 @@
+//! Bending in the assembled system: joints that couple three nodes, and the chain that they make.
+//!
+//! A joint at node i has the slopes g₁ and g₂ of its energy with the vectors e₁ and e₂ of its two segments, and so
+//! R_{i−1} −= g₁, R_i += g₁ − g₂, R_{i+1} += g₂; J likewise from the second derivatives. A clamp takes the place of a segment
+//! that nothing moves.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::{LineWork, Weights};
+use crate::math::block_tridiagonal::Ends;
+use crate::math::pentadiagonal::{Blocks, Chain};
+use crate::model::{Bending, End, Line, LineState, PointState, joint};
+use crate::physics::bending::Hessian;
+
+/// Scratch of a line that bends.
+#[derive(Debug, Clone)]
+pub(crate) struct BendingWork {
+    /// Whether the last assembly had bending in it.
+    pub active: bool,
+    /// J of the joints in the rows of nodes and the columns of the next ones, transposed the other way.
+    pub near: Vec<Matrix3<f64>>,
+    /// J in the rows of nodes and the columns of the second next ones.
+    pub far: Vec<Matrix3<f64>>,
+    /// Greatest force of a joint on a node at the last assembly [N].
+    pub greatest: f64,
+    /// `near` with the segments' coupling, above and below the diagonal.
+    above: Vec<Matrix3<f64>>,
+    below: Vec<Matrix3<f64>>,
+    chain: Chain,
+}
+
+/// Which parts of residual and tangent to add.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Parts {
+    /// Of the joints' forces in R [-].
+    pub force: f64,
+    /// c_k: of ∂R/∂r [-].
+    pub position: f64,
+    /// c_c: of ∂R/∂v [1/s].
+    pub velocity: f64,
+    /// Whether the tangent is needed.
+    pub tangent: bool,
+    /// Whether it must not be indefinite, rather than exact.
+    pub convex: bool,
+}
+
+impl Parts {
+    /// Those of statics.
+    pub(super) const AT_REST: Parts = Parts {
+        force: 1.0,
+        position: 1.0,
+        velocity: 0.0,
+        tangent: true,
+        convex: false,
+    };
+
+    /// Those of a time step.
+    pub(super) fn of_step(weights: &Weights, tangent: bool) -> Parts {
+        Parts {
+            force: weights.force,
+            position: weights.position,
+            velocity: weights.velocity,
+            tangent,
+            convex: weights.convex,
+        }
+    }
+}
+
+impl BendingWork {
+    /// Scratch for a line of `nodes` nodes.
+    pub(super) fn new(nodes: usize) -> BendingWork {
+        let zeros = |count: usize| vec![Matrix3::zeros(); count];
+        BendingWork {
+            active: false,
+            near: zeros(nodes - 1),
+            far: zeros(nodes.saturating_sub(2)),
+            greatest: 0.0,
+            above: zeros(nodes - 1),
+            below: zeros(nodes - 1),
+            chain: Chain::new(nodes),
+        }
+    }
+
+    fn clear(&mut self) {
+        self.greatest = 0.0;
+        self.near.fill(Matrix3::zeros());
+        self.far.fill(Matrix3::zeros());
+    }
+}
+
+impl LineWork {
+    /// Adds the joints of a line to residual and tangent; without velocities nothing damps.
+    pub(super) fn add_bending(
+        &mut self,
+        bending: &Bending,
+        clamps: [Option<Vector3<f64>>; 2],
+        [position, velocity]: [&[Vector3<f64>]; 2],
+        parts: &Parts,
+    ) {
+        let Some(work) = &mut self.bending else {
+            return;
+        };
+        work.clear();
+        let last = position.len() - 1;
+        for i in (0..=last).filter(|&i| bending.joint[i] > 0.0) {
+            let Some(turn) = joint(clamps, position, i) else {
+                continue;
+            };
+            let (stiffness, rest) = (bending.joint[i], bending.rest[i]);
+            let [mut first, mut second] = turn.energy(stiffness, rest).slope;
+            work.greatest = work.greatest.max(first.norm()).max(second.norm());
+            let mut tangent = parts.tangent.then(|| {
+                let stiff = if parts.convex {
+                    turn.convex_hessian(stiffness)
+                } else {
+                    turn.hessian(stiffness, rest)
+                };
+                stiff.times(parts.position)
+            });
+            if let Some(damping) = &bending.damping {
+                let damper = turn.damper(damping[i]);
+                let drag = damper.product(rates(velocity, i));
+                (first, second) = (first + drag[0], second + drag[1]);
+                tangent = tangent.map(|stiff| stiff.plus(&damper.times(parts.velocity)));
+            }
+            if i > 0 {
+                self.residual[i - 1] -= parts.force * first;
+            }
+            self.residual[i] += parts.force * (first - second);
+            if i < last {
+                self.residual[i + 1] += parts.force * second;
+            }
+            if let Some(tangent) = tangent {
+                work.add_tangent(&mut self.diagonal, i, &tangent);
+            }
+        }
+    }
+
+    /// Removes the nodes between the ends from the system; `None` if it is not positive definite.
+    pub(super) fn eliminate(&mut self, first_free: bool) -> Option<Ends> {
+        let Some(work) = self.bending.as_mut().filter(|work| work.active) else {
+            return self.chain.eliminate(
+                &self.diagonal,
+                &self.coupling,
+                &self.residual,
+                first_free,
+            );
+        };
+        for (i, coupling) in self.coupling.iter().enumerate() {
+            work.above[i] = coupling + work.near[i];
+            work.below[i] = coupling + work.near[i].transpose();
+        }
+        let blocks = Blocks {
+            diagonal: &self.diagonal,
+            above: &work.above,
+            below: &work.below,
+            far: &work.far,
+        };
+        work.chain.eliminate(blocks, &self.residual, first_free)
+    }
+
+    /// The whole solution from that of the ends.
+    pub(super) fn substitute(&mut self, a: Vector3<f64>, b: Vector3<f64>) {
+        match self.bending.as_mut().filter(|work| work.active) {
+            Some(work) => work.chain.substitute(a, b),
+            None => self.chain.substitute(a, b),
+        }
+    }
+
+    /// The solution, one block per node.
+    pub(crate) fn solution(&self) -> &[Vector3<f64>] {
+        match self.bending.as_ref().filter(|work| work.active) {
+            Some(work) => work.chain.solution(),
+            None => self.chain.solution(),
+        }
+    }
+}
+
+impl BendingWork {
+    #[inline(always)]
+    fn add_tangent(&mut self, diagonal: &mut [Matrix3<f64>], i: usize, h: &Hessian) {
+        let back = h.mixed.transpose();
+        diagonal[i] += h.first - h.mixed - back + h.second;
+        if i > 0 {
+            diagonal[i - 1] += h.first;
+            self.near[i - 1] += h.mixed - h.first;
+        }
+        if i + 1 < diagonal.len() {
+            diagonal[i + 1] += h.second;
+            self.near[i] += h.mixed - h.second;
+        }
+        if i > 0 && i + 1 < diagonal.len() {
+            self.far[i - 1] -= h.mixed;
+        }
+    }
+}
+
+/// Rates of the vectors that meet at a node [m/s]; zero where a clamp or nothing moves.
+fn rates(velocity: &[Vector3<f64>], node: usize) -> [Vector3<f64>; 2] {
+    let rate = |from: Option<usize>| match from {
+        Some(i) if i + 1 < velocity.len() => velocity[i + 1] - velocity[i],
+        _ => Vector3::zeros(),
+    };
+    [rate(node.checked_sub(1)), rate(Some(node))]
+}
+
+/// Power that the dampers of a line's joints take [W].
+pub fn joint_damping_power(
+    line: &Line,
+    state: &LineState,
+    clamps: [Option<Vector3<f64>>; 2],
+) -> f64 {
+    let Some(damping) = line
+        .bending
+        .as_ref()
+        .and_then(|bending| bending.damping.as_ref())
+    else {
+        return 0.0;
+    };
+    let power = |(i, damping): (usize, &f64)| {
+        let Some(turn) = joint(clamps, &state.position, i) else {
+            return 0.0;
+        };
+        let rates = rates(&state.velocity, i);
+        let drag = turn.damper(*damping).product(rates);
+        drag[0].dot(&rates[0]) + drag[1].dot(&rates[1])
+    };
+    damping.iter().enumerate().map(power).sum()
+}
+
+/// Force [N] of the joints at and next to an end of a line on the point there: the shear. Without velocities nothing damps.
+pub fn end_shear(
+    line: &Line,
+    [position, velocity]: [&[Vector3<f64>]; 2],
+    end: End,
+    point: &PointState,
+) -> Vector3<f64> {
+    let Some(bending) = &line.bending else {
+        return Vector3::zeros();
+    };
+    let clamp = line.clamp(end, point);
+    let last = position.len() - 1;
+    let (clamps, joints) = match end {
+        End::A => ([clamp, None], [(0, 1.0), (1, 1.0)]),
+        End::B => ([None, clamp], [(last, -1.0), (last - 1, -1.0)]),
+    };
+    let mut force = Vector3::zeros();
+    for (node, sign) in joints {
+        let own = node == 0 || node == last;
+        if own && clamp.is_none() || bending.joint[node] == 0.0 {
+            continue;
+        }
+        let Some(turn) = joint(clamps, position, node) else {
+            continue;
+        };
+        let mut slope = turn.energy(bending.joint[node], bending.rest[node]).slope;
+        if let Some(damping) = &bending.damping {
+            let drag = turn.damper(damping[node]).product(rates(velocity, node));
+            slope = [slope[0] + drag[0], slope[1] + drag[1]];
+        }
+        // the slope with the end's own segment
+        force += sign * slope[usize::from((end == End::A) == own)];
+    }
+    force
+}
+
+/// Moment [N m] of a line on what it is clamped to at an end.
+pub fn end_moment(
+    line: &Line,
+    position: &[Vector3<f64>],
+    end: End,
+    point: &PointState,
+) -> Vector3<f64> {
+    let (Some(bending), Some(clamp)) = (&line.bending, line.clamp(end, point)) else {
+        return Vector3::zeros();
+    };
+    let node = line.end_node(end);
+    let (clamps, sign) = match end {
+        End::A => ([Some(clamp), None], 1.0),
+        End::B => ([None, Some(clamp)], -1.0),
+    };
+    let turn = joint(clamps, position, node);
+    turn.map_or(Vector3::zeros(), |turn| {
+        sign * turn.moment_on_first(bending.joint[node], bending.rest[node])
+    })
+}
