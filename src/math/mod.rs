@@ -2,3 +2,5 @@
 pub mod block_tridiagonal;
 pub mod hermite;
 pub mod lanes;
+pub mod pivoted_chain;
+pub mod rotation;

@@ -3,5 +3,6 @@
 pub mod morison;
 pub mod rayleigh;
 pub mod seabed;
+pub mod section;
 pub mod stretch;
 pub mod weight;
