@@ -3,6 +3,7 @@
 //! [`Model::new`] is the one gate from the user's [`Scene`]: below it nothing asks what the user wrote. Physics that the
 //! scene does not contain is `None` here, not zero.
 
+mod beam;
 mod build;
 mod initial;
 mod mesh;
@@ -14,6 +15,7 @@ use nalgebra::Vector3;
 use crate::physics::stretch::StretchLaw;
 use crate::scene::{InitialShape, PointForce, Solver};
 
+pub use beam::{Beam, BeamElement, BeamState};
 pub use motion::{Kinematics, Motion};
 pub use state::{ClosedForm, LineState, PointState, State};
 

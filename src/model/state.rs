@@ -3,6 +3,8 @@
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
+use super::BeamState;
+
 /// State of a whole model at one time.
 #[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct State {
@@ -40,6 +42,8 @@ pub struct LineState {
     pub half_step: HalfStep,
     /// The rest of the closed-form catenary that the nodes lie on; kept by quasi-static networks only.
     pub closed_form: Option<ClosedForm>,
+    /// What the nodes of a beam have beside positions and velocities.
+    pub beam: Option<BeamState>,
 }
 
 /// What a closed-form catenary says that its nodes do not: their chords are shorter than the arcs between them, which on a stiff line
@@ -94,6 +98,7 @@ impl LineState {
             position,
             half_step: HalfStep::default(),
             closed_form: None,
+            beam: None,
         }
     }
 }
@@ -123,7 +128,8 @@ clone_in_place!(LineState {
     velocity,
     acceleration,
     half_step,
-    closed_form
+    closed_form,
+    beam
 });
 clone_in_place!(ClosedForm {
     tension,

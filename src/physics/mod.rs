@@ -1,5 +1,6 @@
 //! One law per file, pointwise: value, exact slopes and energy. No scene, no index, no loop over nodes.
 
+pub mod contact_step;
 pub mod morison;
 pub mod rayleigh;
 pub mod seabed;

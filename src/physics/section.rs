@@ -5,19 +5,28 @@
 //!
 //!   Γ_i = ½(d_i^a + d_i^b)·φ',    K_k = ½ ε_kij d_j'·d_i (a sign off) = ½ ε_kij d_i^b·d_j^a / L,
 //!
-//! so that Γ = (0, 0, 1) and K = 0 for a straight beam, and K is the axial vector of ΛᵀΛ'. With the rest values Γ⁰, K⁰,
+//! so that Γ = (0, 0, 1) and K = 0 for a straight beam, and K is the axial vector of ΛᵀΛ'. With spins s, δd = s × d, they change by
+//! δΓ = Λ_mᵀ δφ' + ½ Λ_aᵀ (φ' × s_a) + ½ Λ_bᵀ (φ' × s_b) and L δK_k = q_k·(s_b − s_a), q_k = ½ ε_kij d_i^b × d_j^a. They are
+//! bilinear in positions and directors: over a step, their change is exactly their gradient at the mean of both ends of the step times the
+//! change of positions and directors.
 //!
-//!   N = C_Γ (Γ − Γ⁰),  M = C_K (K − K⁰),  U = ½ L [N·(Γ − Γ⁰) + M·(K − K⁰)],  C_Γ = (GA, GA, EA),  C_K = (EI, EI, GJ).
+//! Across a turn by α, LK is sin α along the axis of the turn, and Γ₃ on an unstretched arc is sin α/α. The law takes the strains
 //!
-//! The strains are bilinear in positions and directors, so that their change over a step is exactly their gradient at the mean of
-//! both ends of the step times the change of positions and directors: the gradient taken there is a discrete one.
+//!   K* = h(u) K,  u = L²|K|²,      Γ₃* = Γ₃ + p(v),  v = L²(K₁² + K₂²),
+//!   h = 1 + u/6 + 3u²/40,          p = v/6 + 17v²/360,
 //!
-//! With spins s, δd = s × d, the gradient is δΓ = Λ_mᵀ δφ' + ½ Λ_aᵀ (φ' × s_a) + ½ Λ_bᵀ (φ' × s_b) and L δK_k = q_k·(s_b − s_a),
-//! q_k = ½ ε_kij d_i^b × d_j^a.
+//! which a circular arc and a uniform twist have exactly up to terms in α⁴ and α⁶ (h and p are the series of α/sin α and 1 − sin α/α in sin² α).
+//! Under a moment, elements of 0.2 rad bend 2.2 % too far without them and 0.002 % with them. From the rest values Γ⁰, K⁰,
+//!
+//!   N = C_Γ (Γ* − Γ⁰),  M = C_K (K* − K⁰),  U = ½ L [N·(Γ* − Γ⁰) + M·(K* − K⁰)],  C_Γ = (GA, GA, EA),  C_K = (EI, EI, GJ).
+//!
+//! Polynomials have exact divided differences, so that the change of the starred strains, too, is a discrete gradient D times that of the
+//! plain ones: ΔK* = [h̄ I + 2L² h[u₀,u₁] K̄ K̄ᵀ] ΔK, ΔΓ₃* = ΔΓ₃ + 2L² p[v₀,v₁] (K̄₁ΔK₁ + K̄₂ΔK₂), bars for means over the step.
 //!
 //! Source: strains by Simo (1985), Comput. Methods Appl. Mech. Eng. 49, 55-70; directors interpolated as in Romero & Armero (2002),
-//! Int. J. Numer. Methods Eng. 54, 1683-1716, and Betsch & Steinmann (2002), ibid. 54, 1775-1788; slopes derived here, checked by
-//! differences. Valid for small strain; neighbouring sections must differ by less than a quarter turn, since K saturates there.
+//! Int. J. Numer. Methods Eng. 54, 1683-1716, and Betsch & Steinmann (2002), ibid. 54, 1775-1788; discrete gradients by Gonzalez (1996),
+//! J. Nonlinear Sci. 6, 449-467; starred strains and slopes derived here, checked by differences. Valid for small strain; neighbouring
+//! sections must differ by less than a quarter turn, at which K goes through its maximum.
 
 use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
 
@@ -94,6 +103,109 @@ impl StrainEnergy {
     /// Sum of all parts [J].
     pub fn total(&self) -> f64 {
         self.axial + self.shear + self.bending + self.torsion
+    }
+}
+
+/// How the stress of a step follows the strains at its ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Mixture {
+    /// Part of the change of strain over the step that acts [-]: ½; in statics, where both ends are the same, 1.
+    pub share: f64,
+    /// 1/Δt [1/s]; 0 in statics.
+    pub rate: f64,
+}
+
+/// Stress of a step and its slope.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Response {
+    /// What times the change of the plain strains is the work on an element, per length.
+    pub stress: Sextuple,
+    /// Its slope with the plain strains at the end of the step.
+    pub slope: Matrix6<f64>,
+}
+
+/// Starred strains (Γ*, K*) of plain ones (Γ, K) over an unstretched length [m].
+#[inline(always)]
+pub fn corrected(strain: &Sextuple, length: f64) -> Sextuple {
+    let (u, v) = turns(strain, length);
+    let (mut stretch, curvature) = split(strain);
+    stretch.z += v / 6.0 + 17.0 / 360.0 * v * v;
+    join(stretch, (1.0 + u / 6.0 + 0.075 * u * u) * curvature)
+}
+
+/// u and v: squares of the sine of the turn, and of its part about the first two directors.
+#[inline(always)]
+fn turns(strain: &Sextuple, length: f64) -> (f64, f64) {
+    let v = length * length * (strain[3] * strain[3] + strain[4] * strain[4]);
+    (v + length * length * strain[5] * strain[5], v)
+}
+
+/// D: what times the change of the plain strains is the change of the starred ones.
+#[inline(always)]
+fn correction_gradient(before: &Sextuple, now: &Sextuple, length: f64) -> Matrix6<f64> {
+    let ((u0, v0), (u1, v1)) = (turns(before, length), turns(now, length));
+    let curvature = split(&(0.5 * (before + now))).1;
+    let h = 1.0 + (u0 + u1) / 12.0 + 0.0375 * (u0 * u0 + u1 * u1);
+    let twice = 2.0 * length * length;
+    let (turning, shortening) = (
+        twice * (1.0 / 6.0 + 0.075 * (u0 + u1)),
+        twice * (1.0 / 6.0 + 17.0 / 360.0 * (v0 + v1)),
+    );
+    let mut gradient = Matrix6::identity();
+    gradient[(2, 3)] = shortening * curvature.x;
+    gradient[(2, 4)] = shortening * curvature.y;
+    let block = Matrix3::from_diagonal_element(h) + turning * curvature * curvature.transpose();
+    gradient.fixed_view_mut::<3, 3>(3, 3).copy_from(&block);
+    gradient
+}
+
+/// Change of Dᵀ S with the plain strains at the end of the step, where S = `stress` stays.
+#[inline(always)]
+fn correction_curvature(
+    before: &Sextuple,
+    now: &Sextuple,
+    stress: &Sextuple,
+    length: f64,
+) -> Matrix3<f64> {
+    let ((u0, v0), (u1, v1)) = (turns(before, length), turns(now, length));
+    let (mean, last) = (split(&(0.5 * (before + now))).1, split(now).1);
+    let (n, m) = (stress[2], split(stress).1);
+    let square = length * length;
+    let along = mean.dot(&m);
+    let turning = 1.0 / 6.0 + 0.075 * (u0 + u1);
+    let shortening = 1.0 / 6.0 + 17.0 / 360.0 * (v0 + v1);
+    let [bent, bent_last] = [mean, last].map(|k| Vector3::new(k.x, k.y, 0.0));
+    square * (1.0 / 6.0 + 0.15 * u1) * m * last.transpose()
+        + square * turning * (Matrix3::from_diagonal_element(along) + mean * m.transpose())
+        + 0.3 * square * square * along * mean * last.transpose()
+        + square * shortening * n * Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, 0.0))
+        + 17.0 / 90.0 * square * square * n * bent * bent_last.transpose()
+}
+
+/// Stress of a step between the plain strains `before` and `now`, from the starred strains at `rest`.
+#[inline(always)]
+pub fn response(
+    [law, damping]: [&SectionLaw; 2],
+    length: f64,
+    [before, now]: [&Sextuple; 2],
+    rest: &Sextuple,
+    mixture: Mixture,
+) -> Response {
+    let (c, d) = (law.diagonal(), mixture.rate * damping.diagonal());
+    let (start, end) = (corrected(before, length), corrected(now, length));
+    let starred = c.component_mul(&(0.5 * (start + end) - rest)) + d.component_mul(&(end - start));
+    let gradient = correction_gradient(before, now, length);
+    let mut slopes = correction_gradient(now, now, length);
+    let stiffness = mixture.share * c + d;
+    for (mut row, factor) in slopes.row_iter_mut().zip(&stiffness) {
+        row *= *factor;
+    }
+    let mut slope = gradient.tr_mul(&slopes);
+    let mut turned = slope.fixed_view_mut::<3, 3>(3, 3);
+    turned += 2.0 * mixture.share * correction_curvature(before, now, &starred, length);
+    Response {
+        stress: gradient.tr_mul(&starred),
+        slope,
     }
 }
 
@@ -338,14 +450,89 @@ mod tests {
         assert_relative_eq!(arc[3], angle / LENGTH, max_relative = 1e-8);
     }
 
+    const LAW: SectionLaw = SectionLaw {
+        shear: 2.0,
+        axial: 3.0,
+        bending: 5.0,
+        torsion: 7.0,
+    };
+    const DAMPING: SectionLaw = SectionLaw {
+        shear: 0.1,
+        axial: 0.2,
+        bending: 0.3,
+        torsion: 0.4,
+    };
+
+    fn strains() -> [Sextuple; 2] {
+        [strain_of(pair()), strain_of(later())].map(|s| s + 0.3 * STRESS / 5.0)
+    }
+
+    #[test]
+    fn the_stress_of_a_step_does_the_work_that_the_energy_changes_by() {
+        let [before, now] = strains();
+        let rest = straight();
+        let energy = |plain: &Sextuple| {
+            let strain = corrected(plain, LENGTH) - rest;
+            LAW.energy(&strain, LENGTH).total()
+        };
+        let undamped = SectionLaw {
+            shear: 0.0,
+            axial: 0.0,
+            bending: 0.0,
+            torsion: 0.0,
+        };
+        let mixture = Mixture {
+            share: 0.5,
+            rate: 3.0,
+        };
+        let at = response([&LAW, &undamped], LENGTH, [&before, &now], &rest, mixture);
+        assert_relative_eq!(
+            LENGTH * at.stress.dot(&(now - before)),
+            energy(&now) - energy(&before),
+            epsilon = 1e-13
+        );
+        let damped = response([&LAW, &DAMPING], LENGTH, [&before, &now], &rest, mixture);
+        assert!((damped.stress - at.stress).dot(&(now - before)) > 0.0);
+    }
+
+    #[test]
+    fn the_slope_of_the_stress_equals_central_differences() {
+        let [before, now] = strains();
+        let rest = straight();
+        for (share, rate, still) in [(0.5, 3.0, false), (1.0, 0.0, true)] {
+            let at = |now: Sextuple| {
+                let from = if still { now } else { before };
+                let mixture = Mixture { share, rate };
+                response([&LAW, &DAMPING], LENGTH, [&from, &now], &rest, mixture)
+            };
+            for unknown in 0..6 {
+                let mut step = Sextuple::zeros();
+                step[unknown] = 1e-6;
+                let difference = (at(now + step).stress - at(now - step).stress) / 2e-6;
+                let column = at(now).slope.column(unknown).into_owned();
+                assert_relative_eq!(column, difference, epsilon = 1e-7);
+            }
+        }
+    }
+
+    #[test]
+    fn the_starred_strains_of_an_arc_are_its_own_to_fourth_order() {
+        for (angle, tolerance) in [(0.1, 1e-7), (0.2, 4e-6), (0.4, 2.6e-4)] {
+            let angle: f64 = angle;
+            let radius = LENGTH / angle;
+            let at = |turn: f64| Section {
+                position: radius * Vector3::new(0.0, turn.cos() - 1.0, turn.sin()),
+                frame: cayley(2.0 * (0.5 * turn).tan() * Vector3::x()),
+            };
+            let starred = corrected(&strain_of([at(0.0), at(angle)]), LENGTH);
+            assert_relative_eq!(starred[3] * LENGTH, angle, max_relative = tolerance);
+            assert_relative_eq!(starred[2], 1.0, max_relative = tolerance);
+        }
+    }
+
     #[test]
     fn the_energy_is_the_sum_of_its_parts() {
-        let law = SectionLaw {
-            shear: 2.0,
-            axial: 3.0,
-            bending: 5.0,
-            torsion: 7.0,
-        };
+        let law = LAW;
         let total = 0.5 * LENGTH * STRESS.dot(&law.diagonal().component_mul(&STRESS));
         assert_relative_eq!(
             law.energy(&STRESS, LENGTH).total(),

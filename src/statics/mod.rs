@@ -1,6 +1,7 @@
 //! Statics: what a mooring does when nothing moves.
 
 pub mod assembly;
+pub mod beam;
 pub mod catenary;
 pub mod catenary_network;
 pub mod equilibrium;

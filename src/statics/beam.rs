@@ -1,0 +1,363 @@
+//! Equilibrium of a geometrically exact beam.
+//!
+//! Unknowns are position and spin of every node. With the gradient B of the strains (see `physics::section`) the nodes' forces and
+//! moments out of balance are
+//!
+//!   R = Σ L Bᵀ S + w ẑ − contact − loads,   J = Σ (L Bᵀ C B + geometric part) + contact,
+//!
+//! solved by Newton's method; spins are applied by the Cayley transform, and steps are shortened to a fraction of a turn. Where the
+//! beam starts free of stress the loads are raised in parts, the fewer the better. Elsewhere, and where that fails, the search is
+//! pseudo-transient: J + λ D with D the nodes' own stiffness, λ lowered as the forces out of balance are.
+//!
+//! A beam that neither end holds from turning about itself does so without resistance: its first node then resists a turn about d₃, which
+//! changes the way to the equilibrium and not the equilibrium.
+
+use nalgebra::{Matrix3, Vector3};
+
+use crate::math::pivoted_chain::PivotedChain;
+use crate::math::rotation::cayley;
+use crate::model::{Beam, Nodes};
+use crate::physics::section::{
+    Mixture, Response, Section, Sextuple, geometric_stiffness, response, split, strain,
+    strain_gradient,
+};
+
+/// Change of position over the beam's length, and spin [rad], that end the search [-].
+const TOLERANCE: f64 = 1e-11;
+/// A step below this [-] that no longer shrinks has met rounding.
+const ROUNDING: f64 = 1e-6;
+/// Longest step: change of position over the beam's length, and spin [rad].
+const STEP_MAX: [f64; 2] = [0.1, 0.3];
+/// Solves in a part of the load [-].
+const NEWTON_SOLVES_MAX: usize = 60;
+/// Parts that the load is raised in: each of these is tried [-].
+const LOAD_PARTS: [usize; 4] = [1, 5, 25, 125];
+/// Solves of the pseudo-transient search [-].
+const TRANSIENT_SOLVES_MAX: usize = 3000;
+/// λ below which it is taken for zero [-].
+const ANCHORING_MIN: f64 = 1e-9;
+
+/// What holds and loads an end of a beam.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BeamEnd {
+    /// Whether x, y, z and the turns about them are held.
+    pub held: [bool; 6],
+    /// Force [N] and moment [N m] on the end, along the global axes.
+    pub load: Sextuple,
+}
+
+impl BeamEnd {
+    /// Neither held nor loaded.
+    pub fn free() -> BeamEnd {
+        BeamEnd {
+            held: [false; 6],
+            load: Sextuple::zeros(),
+        }
+    }
+
+    /// Held in place, free to turn.
+    pub fn pinned() -> BeamEnd {
+        BeamEnd {
+            held: [true, true, true, false, false, false],
+            ..BeamEnd::free()
+        }
+    }
+
+    /// Held in place and from turning.
+    pub fn clamped() -> BeamEnd {
+        BeamEnd {
+            held: [true; 6],
+            ..BeamEnd::free()
+        }
+    }
+}
+
+/// A beam and what acts on it.
+#[derive(Debug, Clone, Copy)]
+pub struct BeamCase<'a> {
+    /// Its elements.
+    pub beam: &'a Beam,
+    /// Its lumped weight and contact.
+    pub nodes: &'a Nodes,
+    /// Strains of the elements without stress.
+    pub rest: &'a [Sextuple],
+    /// What holds and loads ends A and B.
+    pub ends: [BeamEnd; 2],
+}
+
+/// Why no equilibrium was found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Imbalance {
+    /// Node where the forces and moments are farthest from balance.
+    pub node: usize,
+    /// Force out of balance there, moments over the element length included [N].
+    pub residual: f64,
+    /// Linear solves spent [-].
+    pub solves: usize,
+}
+
+/// Where the sections of a beam are before, at the mean of, and after a step; in statics all are the same.
+pub(crate) struct Span<'a> {
+    pub mean: &'a [Section],
+    pub now: &'a [Section],
+    /// Plain strains before the step; `None` in statics.
+    pub strain_before: Option<&'a [Sextuple]>,
+    /// T of every node: what spin a change of its unknown makes.
+    pub spin: &'a [Matrix3<f64>],
+}
+
+/// Subtracts the forces of all elements from the right-hand side and adds their slopes to the matrix.
+pub(crate) fn add_elements(
+    chain: &mut PivotedChain,
+    beam: &Beam,
+    rest: &[Sextuple],
+    span: &Span,
+    mixture: Mixture,
+) {
+    for (i, element) in beam.elements.iter().enumerate() {
+        let (now, mean) = (
+            [&span.now[i], &span.now[i + 1]],
+            [&span.mean[i], &span.mean[i + 1]],
+        );
+        let after = strain(now[0], now[1], element.length);
+        let before = span.strain_before.map_or(after, |strains| strains[i]);
+        let laws = [&element.law, &element.damping];
+        let Response { stress, slope } =
+            response(laws, element.length, [&before, &after], &rest[i], mixture);
+        let weights = strain_gradient(mean[0], mean[1], element.length);
+        let slopes = strain_gradient(now[0], now[1], element.length)
+            .map(|gradient| element.length * slope * gradient);
+        let geometric = geometric_stiffness(mean, now, &stress, mixture.share);
+        let block = |row: usize, column: usize| {
+            let mut block = weights[row].tr_mul(&slopes[column]) + geometric[row][column];
+            let turned = block.fixed_view::<6, 3>(0, 3) * span.spin[i + column];
+            block.fixed_view_mut::<6, 3>(0, 3).copy_from(&turned);
+            block
+        };
+        chain.diagonal[i] += block(0, 0);
+        chain.diagonal[i + 1] += block(1, 1);
+        chain.upper[i] = block(0, 1);
+        chain.lower[i] = block(1, 0);
+        for (node, weight) in [i, i + 1].into_iter().zip(&weights) {
+            chain.right[node] -= element.length * weight.tr_mul(&stress);
+        }
+    }
+}
+
+/// Scratch of the search for an equilibrium.
+#[derive(Debug, Clone)]
+pub struct BeamStatics {
+    chain: PivotedChain,
+    unit: Vec<Matrix3<f64>>,
+    start: Vec<Section>,
+    solves: usize,
+}
+
+impl BeamStatics {
+    /// Scratch for a beam of so many nodes.
+    pub fn new(nodes: usize) -> BeamStatics {
+        BeamStatics {
+            chain: PivotedChain::new(nodes),
+            unit: vec![Matrix3::identity(); nodes],
+            start: Vec::with_capacity(nodes),
+            solves: 0,
+        }
+    }
+
+    /// Moves `sections` to equilibrium; held unknowns stay as they are. Gives the number of linear solves.
+    ///
+    /// # Errors
+    /// None was found; the sections are then where they were.
+    pub fn solve(
+        &mut self,
+        case: &BeamCase,
+        sections: &mut Vec<Section>,
+    ) -> Result<usize, Imbalance> {
+        self.start.clone_from(sections);
+        self.solves = 0;
+        self.assemble(case, sections, 0.0, 0.0);
+        let unloaded = self.imbalance(case);
+        self.assemble(case, sections, 1.0, 0.0);
+        let from_rest = unloaded.1 <= 1e-9 * self.imbalance(case).1;
+        let found = if from_rest {
+            self.raise_load(case, sections) || self.settle(case, sections)
+        } else {
+            self.settle(case, sections) || self.raise_load(case, sections)
+        };
+        if found {
+            return Ok(self.solves);
+        }
+        self.assemble(case, sections, 1.0, 0.0);
+        let (node, residual) = self.imbalance(case);
+        sections.clone_from(&self.start);
+        Err(Imbalance {
+            node,
+            residual,
+            solves: self.solves,
+        })
+    }
+
+    fn raise_load(&mut self, case: &BeamCase, sections: &mut Vec<Section>) -> bool {
+        LOAD_PARTS.into_iter().any(|parts| {
+            sections.clone_from(&self.start);
+            (1..=parts).all(|part| self.newton(case, sections, part as f64 / parts as f64))
+        })
+    }
+
+    /// Newton's method at a part of the load [-].
+    fn newton(&mut self, case: &BeamCase, sections: &mut [Section], load: f64) -> bool {
+        let mut last = f64::INFINITY;
+        for _ in 0..NEWTON_SOLVES_MAX {
+            self.assemble(case, sections, load, 0.0);
+            let Some(step) = self.step(case, sections) else {
+                return false;
+            };
+            if step <= TOLERANCE || (step <= ROUNDING && step >= 0.5 * last) {
+                return true;
+            }
+            last = step;
+        }
+        false
+    }
+
+    /// The pseudo-transient search at full load.
+    fn settle(&mut self, case: &BeamCase, sections: &mut Vec<Section>) -> bool {
+        sections.clone_from(&self.start);
+        let (mut anchoring, mut residual, mut last) = (1.0, f64::INFINITY, f64::INFINITY);
+        for _ in 0..TRANSIENT_SOLVES_MAX {
+            self.assemble(case, sections, 1.0, anchoring);
+            let (_, now) = self.imbalance(case);
+            let fallen: f64 = now / residual;
+            anchoring *= if residual.is_finite() {
+                fallen.clamp(0.3, 2.0) * 0.7
+            } else {
+                1.0
+            };
+            anchoring = if anchoring < ANCHORING_MIN {
+                0.0
+            } else {
+                anchoring
+            };
+            residual = now;
+            let Some(step) = self.step(case, sections) else {
+                anchoring = 10.0 * anchoring.max(1e-3);
+                continue;
+            };
+            let done = step <= TOLERANCE || (step <= ROUNDING && step >= 0.5 * last);
+            if done && anchoring <= ANCHORING_MIN {
+                return true;
+            }
+            if anchoring == 0.0 && step > 0.1 {
+                anchoring = 1e-3;
+            }
+            last = step;
+        }
+        false
+    }
+
+    fn assemble(&mut self, case: &BeamCase, sections: &[Section], load: f64, anchoring: f64) {
+        self.chain.clear();
+        let span = Span {
+            mean: sections,
+            now: sections,
+            strain_before: None,
+            spin: &self.unit,
+        };
+        let still = Mixture {
+            share: 1.0,
+            rate: 0.0,
+        };
+        add_elements(&mut self.chain, case.beam, case.rest, &span, still);
+        for (i, section) in sections.iter().enumerate() {
+            self.chain.right[i].z -= load * case.nodes.weight[i];
+            if let Some(contact) = &case.nodes.contact {
+                let penetration = contact.level[i] - section.position.z;
+                if penetration > 0.0 {
+                    self.chain.right[i].z += contact.stiffness[i] * penetration;
+                    self.chain.diagonal[i][(2, 2)] += contact.stiffness[i];
+                }
+            }
+        }
+        let last = sections.len() - 1;
+        for (node, end) in [0, last].into_iter().zip(&case.ends) {
+            self.chain.right[node] += load * end.load;
+        }
+        if anchoring > 0.0 {
+            self.anchor(case.beam, anchoring);
+        }
+        let turns_freely = case
+            .ends
+            .iter()
+            .all(|end| end.held[3..].iter().all(|held| !held));
+        if turns_freely {
+            let element = &case.beam.elements[0];
+            let axis: Vector3<f64> = sections[0].frame.column(2).into_owned();
+            let brake = element.law.torsion / element.length * axis * axis.transpose();
+            let mut turn = self.chain.diagonal[0].fixed_view_mut::<3, 3>(3, 3);
+            turn += brake;
+        }
+        for (node, end) in [0, last].into_iter().zip(&case.ends) {
+            (0..6)
+                .filter(|&unknown| end.held[unknown])
+                .for_each(|unknown| self.chain.hold(node, unknown, 0.0));
+        }
+    }
+
+    /// λ D: every node resists to be moved by a part of what its elements do.
+    fn anchor(&mut self, beam: &Beam, anchoring: f64) {
+        for (i, element) in beam.elements.iter().enumerate() {
+            let (law, l) = (&element.law, element.length);
+            let push = anchoring * law.axial.max(law.shear) / l;
+            let turn = anchoring * (law.bending.max(law.torsion) / l);
+            for node in [i, i + 1] {
+                for axis in 0..3 {
+                    self.chain.diagonal[node][(axis, axis)] += push;
+                    self.chain.diagonal[node][(axis + 3, axis + 3)] += turn;
+                }
+            }
+        }
+    }
+
+    /// Node and size of the greatest force out of balance [N]; moments count over an element's length.
+    fn imbalance(&self, case: &BeamCase) -> (usize, f64) {
+        let last = case.beam.elements.len() - 1;
+        let size = |i: usize| {
+            let (force, moment) = split(&self.chain.right[i]);
+            force.norm() + moment.norm() / case.beam.elements[i.min(last)].length
+        };
+        (0..self.chain.right.len())
+            .map(|i| (i, size(i)))
+            .fold(
+                (0, 0.0),
+                |worst, next| {
+                    if next.1 > worst.1 { next } else { worst }
+                },
+            )
+    }
+
+    /// Solves and moves the sections, by no more than a step may; the size of the whole step [-].
+    fn step(&mut self, case: &BeamCase, sections: &mut [Section]) -> Option<f64> {
+        self.solves += 1;
+        if !self.chain.solve() {
+            return None;
+        }
+        let length: f64 = case.beam.elements.iter().map(|e| e.length).sum();
+        let (mut moved, mut turned) = (0.0_f64, 0.0_f64);
+        for change in &self.chain.right {
+            let (position, spin) = split(change);
+            moved = moved.max(position.norm() / length);
+            turned = turned.max(spin.norm());
+        }
+        let [moved_max, turned_max] = STEP_MAX;
+        let part = (moved_max / moved).min(turned_max / turned).min(1.0);
+        for (section, change) in sections.iter_mut().zip(&self.chain.right) {
+            let (position, spin) = split(change);
+            section.position += part * position;
+            section.frame = cayley(part * spin) * section.frame;
+        }
+        Some(moved.max(turned))
+    }
+}
+
+#[cfg(test)]
+mod tests;
