@@ -1,7 +1,6 @@
 use super::*;
-use crate::math::rotation::turned_to;
 use crate::model::{BeamElement, BeamState};
-use crate::physics::section::{SectionLaw, straight};
+use crate::physics::section::SectionLaw;
 use approx::assert_relative_eq;
 
 fn spaghetti_law(bending: f64) -> SectionLaw {
@@ -58,11 +57,8 @@ fn beam(n: usize, a: Vector3<f64>, b: Vector3<f64>, law: SectionLaw) -> (Beam, N
     };
     let position = (0..=n).map(|i| a + (b - a) * i as f64 / n as f64).collect();
     let mut shape = LineState::at_rest(position);
-    shape.beam = Some(BeamState {
-        frames: vec![turned_to(&Matrix3::identity(), (b - a).normalize()); n + 1],
-        spins: vec![Vector3::zeros(); n + 1],
-        rest: vec![straight(); n],
-    });
+    let attitude = [Matrix3::identity(); 2];
+    shape.beam = Some(BeamState::at_rest(&beam, &shape.position, attitude));
     (beam, nodes, shape)
 }
 
