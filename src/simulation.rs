@@ -438,7 +438,7 @@ fn at_rest(model: &Model, time: f64, places: &[Vector3<f64>]) -> Result<State, S
         return Ok(State {
             time,
             points,
-            lines: shapes.into_iter().map(LineState::at_rest).collect(),
+            lines: at_rest_on(model, shapes),
         });
     }
     let mut work = assembly::Workspace::new(model);
@@ -449,9 +449,21 @@ fn at_rest(model: &Model, time: f64, places: &[Vector3<f64>]) -> Result<State, S
     for (line, shape) in model.lines.iter().zip(&mut state.lines) {
         if let Some(nodes) = given(line) {
             *shape = LineState::at_rest(nodes);
+            shape.become_beam(line);
         }
     }
     Ok(state)
+}
+
+fn at_rest_on(model: &Model, shapes: Vec<Vec<Vector3<f64>>>) -> Vec<LineState> {
+    let lines = model.lines.iter().zip(shapes);
+    lines
+        .map(|(line, nodes)| {
+            let mut shape = LineState::at_rest(nodes);
+            shape.become_beam(line);
+            shape
+        })
+        .collect()
 }
 
 fn static_tension(model: &Model, state: &State, line: usize) -> f64 {

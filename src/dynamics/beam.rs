@@ -18,6 +18,7 @@
 //! 54, 1683-1716, and Betsch & Steinmann (2003), Multibody Syst. Dyn. 8, 367-391 (directors, discrete gradient). Valid for turns below half a
 //! circle in a step.
 
+mod drive;
 mod measures;
 
 use nalgebra::{Matrix3, Vector3};
@@ -34,6 +35,7 @@ use crate::physics::section::{
 };
 use crate::statics::beam::{BeamEnd, Span, add_elements};
 
+pub use drive::{Driven, drive, held};
 pub use measures::{BeamEnergy, BeamView, Momentum};
 
 /// Change of position over the beam's length, and of θ, that ends the iteration [-].
@@ -46,6 +48,8 @@ const SOLVES_MAX: usize = 30;
 const TURN_MAX: f64 = 1.0;
 /// |θ| beyond which a node turns too far in a step [-]: 2 tan(α/2) of 150°.
 const THETA_MAX: f64 = 7.5;
+/// Cosine of the turn from node to node below which an element is refused [-]: 60°; its moment is greatest at 56°.
+const COSINE_MIN: f64 = 0.5;
 /// Half the range of penetrations over which the seabed damper fades in, in static penetrations of the node [-].
 const DAMPER_FADE: f64 = 2.0;
 
@@ -62,17 +66,47 @@ pub struct BeamStep<'a> {
     pub targets: [Section; 2],
     /// Mass at the ends beside the line's own [kg].
     pub end_mass: [f64; 2],
+    /// Weight less buoyancy at the ends beside the line's own [N].
+    pub end_weight: [f64; 2],
     /// Length of the step [s].
     pub length: f64,
 }
 
-/// Why a step failed.
+/// Why a step failed, and where.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stuck {
-    /// Node that changed most in the last iteration.
+    /// Node where it went wrong.
     pub node: usize,
-    /// Linear solves spent [-].
-    pub solves: usize,
+    /// What went wrong.
+    pub reason: StuckReason,
+}
+
+/// What keeps a beam from stepping on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum StuckReason {
+    /// Newton's method found no solution.
+    #[error("the beam's motion over the step could not be found")]
+    Diverged,
+    /// A node turns by nearly half a circle in a step.
+    #[error("the beam turns by more than 150 degrees in a step")]
+    Turned,
+    /// An element is bent or twisted beyond what two sections can tell.
+    #[error("the beam turns by more than 60 degrees from this node to the next")]
+    Folded,
+}
+
+impl StuckReason {
+    /// What to try.
+    pub fn advice(self) -> &'static str {
+        match self {
+            StuckReason::Diverged | StuckReason::Turned => {
+                "try a smaller solver.time_step_max, or some damping of the line"
+            }
+            StuckReason::Folded => {
+                "use more elements there, or a greater bending or torsional stiffness"
+            }
+        }
+    }
 }
 
 /// Scratch of a beam. Nothing in it is read before it is written.
@@ -120,14 +154,16 @@ impl BeamWork {
         for solves in 1..=SOLVES_MAX {
             self.assemble(case, shape);
             if !self.chain.solve() {
-                return Err(Stuck { node: 0, solves });
+                break;
             }
             let (node, change) = self.correct(length);
-            let too_far = self.theta.iter().any(|theta| !(theta.norm() < THETA_MAX));
-            if too_far {
-                return Err(Stuck { node, solves });
+            let turned = |theta: &Vector3<f64>| theta.norm() >= THETA_MAX;
+            if self.theta.iter().any(turned) {
+                let reason = StuckReason::Turned;
+                return Err(Stuck { node, reason });
             }
             if change <= TOLERANCE || (change <= ROUNDING && change >= 0.5 * last) {
+                self.check_folds()?;
                 let flow = self.flow(case, shape);
                 self.store(case, shape);
                 return Ok((solves, flow));
@@ -135,10 +171,22 @@ impl BeamWork {
             last = change;
         }
         let (node, _) = self.largest_change(length);
-        Err(Stuck {
-            node,
-            solves: SOLVES_MAX,
-        })
+        let reason = StuckReason::Diverged;
+        Err(Stuck { node, reason })
+    }
+
+    /// The first element whose sections differ by more than its strains can tell.
+    fn check_folds(&self) -> Result<(), Stuck> {
+        let cosine = |pair: &[Section]| 0.5 * (pair[0].frame.dot(&pair[1].frame) - 1.0);
+        let reason = StuckReason::Folded;
+        match self
+            .now
+            .windows(2)
+            .position(|pair| cosine(pair) < COSINE_MIN)
+        {
+            Some(node) => Err(Stuck { node, reason }),
+            None => Ok(()),
+        }
     }
 
     /// Takes over the state before the step and guesses the one after it.
@@ -247,8 +295,10 @@ impl BeamWork {
             self.add_surroundings(case, i);
         }
         let last = self.now.len() - 1;
-        for (node, end) in [0, last].into_iter().zip(&case.ends) {
+        let ends = case.ends.iter().zip(case.end_weight);
+        for (node, (end, weight)) in [0, last].into_iter().zip(ends) {
             self.chain.right[node] += end.load;
+            self.chain.right[node].z -= weight;
             (0..6)
                 .filter(|&unknown| end.held[unknown])
                 .for_each(|unknown| self.chain.hold(node, unknown, 0.0));

@@ -75,6 +75,9 @@ impl Choice {
 
 fn choose(model: &Model, network: &Network, explicit: f64, accurate: f64) -> Integrator {
     let lines = || network.lines.iter().map(|&line| &model.lines[line]);
+    if lines().any(|line| line.beam.is_some()) {
+        return Integrator::Beam;
+    }
     if lines().any(|line| !line.serves_leapfrog()) {
         return Integrator::GeneralisedAlpha;
     }

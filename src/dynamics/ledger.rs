@@ -15,6 +15,7 @@
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
+use super::beam::{self, BeamView};
 use super::leapfrog::segment_tension;
 use crate::model::{Line, LineState, Model, Network, State};
 use crate::physics::morison::{DragCoefficients, drag};
@@ -107,6 +108,9 @@ fn line_energy(line: &Line, shape: &LineState, model: &Model) -> f64 {
         false => (&memory.velocity, 0.5 * memory.steps[0]),
     };
     let position = |i: usize| shape.position[i] - lag * velocity[i];
+    if let Some(view) = BeamView::of(line, shape) {
+        return view.energy(beam::held(model, line)).total();
+    }
     let n = line.segment_count();
     let mut energy = 0.0;
     for i in 0..n {

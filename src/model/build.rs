@@ -72,6 +72,7 @@ fn build_point(scene: &Scene, point: &scene::Point) -> Point {
         reference: Vector3::from(point.position),
         role,
         load: point.force.clone(),
+        moment: None,
         attached: Vec::new(),
     }
 }
@@ -219,6 +220,7 @@ fn build_line(scene: &Scene, index: usize, line: &scene::Line) -> Result<Line, S
         nodes: nodes(scene, &parts, contact_in_reach(scene, ends, line)),
         sections: sections.collect(),
         initial: line.initial.clone(),
+        beam: None,
     })
 }
 

@@ -13,7 +13,7 @@ mod state;
 use nalgebra::Vector3;
 
 use crate::physics::stretch::StretchLaw;
-use crate::scene::{InitialShape, PointForce, Solver};
+use crate::scene::{InitialShape, PointForce, Solver, TimeFunction};
 
 pub use beam::{Beam, BeamElement, BeamState};
 pub use motion::{Kinematics, Motion};
@@ -49,6 +49,8 @@ pub struct Point {
     pub role: Role,
     /// Load in time.
     pub load: Option<PointForce>,
+    /// Moment in time, on the ends of beams.
+    pub moment: Option<PointForce>,
     /// (line, end) pairs that meet here.
     pub attached: Vec<(usize, End)>,
 }
@@ -104,6 +106,8 @@ pub struct Line {
     pub sections: Vec<Section>,
     /// Shape at the start.
     pub initial: InitialShape,
+    /// What makes it a beam, where it is one.
+    pub beam: Option<Beam>,
 }
 
 /// A section as the closed-form catenary takes it.
@@ -232,15 +236,40 @@ impl Point {
 
     /// Point load at time `t` [s], in [N].
     pub fn load_at(&self, t: f64) -> Vector3<f64> {
-        let Some(load) = &self.load else {
-            return Vector3::zeros();
-        };
-        let along = |f: &Option<crate::scene::TimeFunction>| f.as_ref().map_or(0.0, |f| f.at(t));
-        Vector3::new(along(&load.x), along(&load.y), along(&load.z))
+        along_axes(&self.load, |f| f.at(t))
+    }
+
+    /// Mean point load from `from` to `to` [s], in [N].
+    pub fn load_mean(&self, from: f64, to: f64) -> Vector3<f64> {
+        along_axes(&self.load, |f| f.mean(from, to))
+    }
+
+    /// Moment at time `t` [s], in [N m].
+    pub fn moment_at(&self, t: f64) -> Vector3<f64> {
+        along_axes(&self.moment, |f| f.at(t))
+    }
+
+    /// Mean moment from `from` to `to` [s], in [N m].
+    pub fn moment_mean(&self, from: f64, to: f64) -> Vector3<f64> {
+        along_axes(&self.moment, |f| f.mean(from, to))
     }
 }
 
+/// What is made of each function of time; nothing where there is none.
+fn along_axes(load: &Option<PointForce>, of: impl Fn(&TimeFunction) -> f64) -> Vector3<f64> {
+    let along = |f: &Option<TimeFunction>| f.as_ref().map_or(0.0, &of);
+    load.as_ref().map_or(Vector3::zeros(), |load| {
+        Vector3::new(along(&load.x), along(&load.y), along(&load.z))
+    })
+}
+
 impl Model {
+    /// The beam that makes up a network, if one does.
+    pub fn beam_of(&self, network: usize) -> Option<usize> {
+        let line = self.networks[network].lines[0];
+        self.lines[line].beam.is_some().then_some(line)
+    }
+
     /// Index of the line called `name`.
     pub fn line_index(&self, name: &str) -> Option<usize> {
         self.lines.iter().position(|line| line.name == name)

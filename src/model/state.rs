@@ -1,9 +1,9 @@
 //! All that changes: positions, velocities and the memory of the integrators. Cloning it saves a simulation.
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 
-use super::BeamState;
+use super::{BeamState, Line};
 
 /// State of a whole model at one time.
 #[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -89,6 +89,15 @@ impl PointState {
 }
 
 impl LineState {
+    /// Gives a line that is a beam, and rests on its positions, what beams have besides.
+    pub fn become_beam(&mut self, line: &Line) {
+        let attitude = [Matrix3::identity(); 2];
+        self.beam = line
+            .beam
+            .as_ref()
+            .map(|beam| BeamState::at_rest(beam, &self.position, attitude));
+    }
+
     /// At rest at the given node positions [m].
     pub fn at_rest(position: Vec<Vector3<f64>>) -> LineState {
         let zeros = vec![Vector3::zeros(); position.len()];

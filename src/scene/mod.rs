@@ -296,6 +296,8 @@ pub enum Integrator {
     GeneralisedAlpha,
     /// Wood, Bossak and Zienkiewicz, fully implicit.
     Bossak,
+    /// Energy- and momentum-conserving beam.
+    Beam,
     /// Static equilibrium at every communication point.
     QuasiStatic,
 }

@@ -16,11 +16,12 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::math::pivoted_chain::PivotedChain;
 use crate::math::rotation::cayley;
-use crate::model::{Beam, Nodes};
+use crate::model::{Beam, Model, Nodes, Point, PointState, State};
 use crate::physics::section::{
-    Mixture, Response, Section, Sextuple, geometric_stiffness, response, split, strain,
+    Mixture, Response, Section, Sextuple, geometric_stiffness, join, response, split, strain,
     strain_gradient,
 };
+use crate::statics::StaticsError;
 
 /// Change of position over the beam's length, and spin [rad], that end the search [-].
 const TOLERANCE: f64 = 1e-11;
@@ -70,6 +71,75 @@ impl BeamEnd {
             ..BeamEnd::free()
         }
     }
+}
+
+/// What holds an end that lies at a point: the point's axes, and the clamp.
+pub(crate) fn end_hold(point: &Point, clamped: bool) -> BeamEnd {
+    let axes = point.free().map_or([false; 3], |free| free.axes);
+    let mut held = [clamped; 6];
+    for (held, free) in held.iter_mut().zip(axes) {
+        *held = !free;
+    }
+    BeamEnd {
+        held,
+        ..BeamEnd::free()
+    }
+}
+
+/// Brings the beam `index` of `state` to rest under the loads of time `t` [s], from where its nodes and frames are.
+///
+/// # Errors
+/// No equilibrium was found; the state is then as it was.
+pub fn rest(model: &Model, index: usize, state: &mut State, t: f64) -> Result<(), StaticsError> {
+    let line = &model.lines[index];
+    let (Some(beam), Some(shape)) = (&line.beam, &state.lines[index].beam) else {
+        return Ok(());
+    };
+    let position = &state.lines[index].position;
+    let mut sections: Vec<Section> = position
+        .iter()
+        .zip(&shape.frames)
+        .map(|(position, frame)| Section {
+            position: *position,
+            frame: *frame,
+        })
+        .collect();
+    let end = |end: usize| {
+        let point = &model.points[line.ends[end]];
+        let own = point.free().map_or(0.0, |free| free.weight);
+        let force = point.load_at(t) - own * Vector3::z();
+        BeamEnd {
+            load: join(force, point.moment_at(t)),
+            ..end_hold(point, beam.clamped[end].is_some())
+        }
+    };
+    let case = BeamCase {
+        beam,
+        nodes: &line.nodes,
+        rest: &shape.rest,
+        ends: [end(0), end(1)],
+    };
+    BeamStatics::new(sections.len())
+        .solve(&case, &mut sections)
+        .map_err(|imbalance| StaticsError::BeamNotConverged {
+            line: line.name.clone(),
+            node: imbalance.node,
+            residual: imbalance.residual,
+            iterations: imbalance.solves,
+        })?;
+    let line_state = &mut state.lines[index];
+    for (i, section) in sections.iter().enumerate() {
+        line_state.position[i] = section.position;
+        if let Some(shape) = &mut line_state.beam {
+            shape.frames[i] = section.frame;
+        }
+    }
+    for (point, node) in line.ends.into_iter().zip([0, line.segment_count()]) {
+        if model.points[point].free().is_some() {
+            state.points[point] = PointState::at_rest(sections[node].position);
+        }
+    }
+    Ok(())
 }
 
 /// A beam and what acts on it.

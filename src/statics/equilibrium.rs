@@ -26,8 +26,9 @@ use nalgebra::Vector3;
 
 use super::StaticsError;
 use super::assembly::{StaticCase, Workspace, copy_network, for_free_points, place_ends};
-use super::guess;
+use super::{beam, guess};
 use crate::model::{Line, LineState, Model, Network, PointState, State};
+use crate::scene::InitialShape;
 
 /// Accepted force out of balance, over the greatest force [-].
 const FORCE_TOLERANCE: f64 = 1e-11;
@@ -73,12 +74,18 @@ pub fn solve(
         let [a, b] = line.ends.map(|point| points[point]);
         let mut position = vec![a; line.segment_count() + 1];
         guess::hang(model, line, a, b, &mut position, &mut work.tension);
-        state.lines.push(LineState::at_rest(
-            line.given_shape(a, b).unwrap_or(position),
-        ));
+        let mut shape = LineState::at_rest(line.given_shape(a, b).unwrap_or(position));
+        shape.become_beam(line);
+        state.lines.push(shape);
     }
     for number in 0..model.networks.len() {
-        Problem::new(model, number, t).solve(&mut state, work)?;
+        match model.beam_of(number) {
+            Some(line) if model.lines[line].initial == InitialShape::Static => {
+                beam::rest(model, line, &mut state, t)?;
+            }
+            Some(_) => {}
+            None => Problem::new(model, number, t).solve(&mut state, work)?,
+        }
     }
     Ok(state)
 }

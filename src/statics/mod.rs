@@ -45,6 +45,21 @@ pub enum StaticsError {
         /// Linear solves spent [-].
         iterations: usize,
     },
+    /// The search for the equilibrium of a beam ended without one.
+    #[error(
+        "line \"{line}\", node {node}: no equilibrium of the beam found in {iterations} solves, {residual:.3e} N are out of balance; \
+         use more elements, hold the beam at its ends, or give it a shape to start from"
+    )]
+    BeamNotConverged {
+        /// Name of the line.
+        line: String,
+        /// Node where the imbalance is greatest, from 0 at end A.
+        node: usize,
+        /// Force out of balance there [N].
+        residual: f64,
+        /// Linear solves spent [-].
+        iterations: usize,
+    },
     /// An input is not a finite number.
     #[error("{place}: {value} m is not a finite position")]
     NotFinite {

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use super::{beam_state, drag_of, node_mass};
-use crate::model::{Beam, End, LineState, Nodes, PointState};
+use crate::model::{Beam, End, Line, LineState, Nodes, PointState};
 use crate::physics::morison::drag;
 use crate::physics::seabed::{ContactCoefficients, normal_force};
 use crate::physics::section::{
@@ -48,7 +48,16 @@ impl BeamEnergy {
     }
 }
 
-impl BeamView<'_> {
+impl<'a> BeamView<'a> {
+    /// Of a line, where it is a beam.
+    pub fn of(line: &'a Line, shape: &'a LineState) -> Option<BeamView<'a>> {
+        line.beam.as_ref().map(|beam| BeamView {
+            beam,
+            nodes: &line.nodes,
+            shape,
+        })
+    }
+
     fn section(&self, i: usize) -> Section {
         Section {
             position: self.shape.position[i],

@@ -102,6 +102,7 @@ impl Flight {
             ends,
             targets: [at(0), at(self.shape.position.len() - 1)],
             end_mass: [0.0; 2],
+            end_weight: [0.0; 2],
             length: dt,
         };
         let (solves, flow) = self.work.step(&case, &mut self.shape).unwrap();
@@ -222,6 +223,7 @@ fn the_ledger_of_a_damped_beam_in_water_over_a_bed_closes_to_rounding() {
             ends: [BeamEnd::clamped(), BeamEnd::free()],
             targets: [target(flight.time + 0.02); 2],
             end_mass: [0.0; 2],
+            end_weight: [0.0; 2],
             length: 0.02,
         };
         let (_, flow) = flight.work.step(&case, &mut flight.shape).unwrap();
@@ -253,6 +255,7 @@ fn a_turn_of_more_than_half_a_circle_in_a_step_is_refused_and_changes_nothing() 
             frame: Matrix3::identity(),
         }; 2],
         end_mass: [0.0; 2],
+        end_weight: [0.0; 2],
         length: 1.0,
     };
     assert!(flight.work.step(&case, &mut flight.shape).is_err());
