@@ -1,7 +1,7 @@
 //! Lines, their sections, their start, and whether anything holds them.
 
 use super::{Bounds, Findings, quantity, unknown};
-use crate::scene::{InitialShape, Line, PointKind, Scene};
+use crate::scene::{InitialShape, Integrator, Line, LineModel, PointKind, Scene};
 
 /// Most elements of a section.
 const ELEMENTS_MAX: usize = 100_000;
@@ -173,10 +173,20 @@ fn check_held(scene: &Scene, findings: &mut Findings) {
         if let Some((a, b)) = join
             && a != b
             && !held[*a]
+            && !flies(scene, &scene.lines[i])
         {
             let problem = "nothing holds this line: neither it nor the lines joined to it end at a \
                            fixed, coupled or prescribed point";
             findings.say(format!("lines[{i}]"), problem);
         }
     }
+}
+
+/// Whether a line is a beam that starts from a given shape, so that it may fly.
+fn flies(scene: &Scene, line: &Line) -> bool {
+    let types = line.sections.iter();
+    let mut types = types.filter_map(|section| scene.line_types.get(&section.line_type));
+    let beam = scene.solver.integrator == Integrator::Beam
+        || types.any(|line_type| line_type.model == LineModel::Beam);
+    beam && line.initial != InitialShape::Static
 }
