@@ -10,6 +10,7 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use crate::dynamics::advance::{Counters, Workspace};
+use crate::dynamics::beam::{BeamView, Momentum};
 use crate::dynamics::ledger::Ledger;
 use crate::dynamics::motion::{HostPath, Sample};
 use crate::dynamics::{Choice, StepError, reaction};
@@ -330,6 +331,20 @@ impl Simulation {
                 tension,
             })
             .collect()
+    }
+
+    /// Momenta of all beams.
+    pub fn momentum(&self) -> Momentum {
+        let lines = self.model.lines.iter().zip(&self.snapshot.state.lines);
+        lines
+            .filter_map(|(line, shape)| BeamView::of(line, shape))
+            .fold(Momentum::default(), |sum, view| {
+                let own = view.momentum();
+                Momentum {
+                    linear: sum.linear + own.linear,
+                    angular: sum.angular + own.angular,
+                }
+            })
     }
 
     /// Internal steps of the last communication step.

@@ -1,0 +1,191 @@
+//! The geometrically exact beam against published and closed-form solutions, through scenes as a user writes them.
+
+mod common;
+
+use approx::assert_relative_eq;
+use common::{scene, shipped, with_elements};
+use moorline::scene::{Scene, TimeFunction};
+use moorline::simulation::Simulation;
+use nalgebra::Vector3;
+
+/// Slope of log(error) over log(size), by least squares.
+fn order(points: &[(f64, f64)]) -> f64 {
+    let logs: Vec<(f64, f64)> = points.iter().map(|(h, e)| (h.ln(), e.ln())).collect();
+    let count = logs.len() as f64;
+    let mx = logs.iter().map(|p| p.0).sum::<f64>() / count;
+    let my = logs.iter().map(|p| p.1).sum::<f64>() / count;
+    logs.iter().map(|p| (p.0 - mx) * (p.1 - my)).sum::<f64>()
+        / logs.iter().map(|p| (p.0 - mx).powi(2)).sum::<f64>()
+}
+
+/// The flying rod with n elements and a step [s].
+fn spaghetti(elements: usize, step: f64) -> Scene {
+    let mut scene = with_elements(shipped("flying_spaghetti"), elements);
+    scene.solver.time_step_max = step;
+    scene
+}
+
+/// Displacements of the tips A and B at the end of `count` steps of `step` [s], then of the next counts.
+fn tips(scene: &Scene, step: f64, counts: &[usize]) -> Vec<[Vector3<f64>; 2]> {
+    let mut simulation = Simulation::new(scene).unwrap();
+    let ends = |simulation: &Simulation| {
+        let nodes = &simulation.state().lines[0].position;
+        [nodes[0], nodes[nodes.len() - 1]]
+    };
+    let [a, b] = ends(&simulation);
+    let mut done = 0;
+    let mut found = Vec::new();
+    for &count in counts {
+        for _ in done..count {
+            simulation.advance(step).unwrap();
+        }
+        done = count;
+        let [now_a, now_b] = ends(&simulation);
+        found.push([now_a - a, now_b - b]);
+    }
+    found
+}
+
+/// Energy held [J], by the ledger.
+fn energy(simulation: &Simulation) -> f64 {
+    let ledger = simulation.ledger();
+    simulation.energy_error() + ledger.start + ledger.flow.given - ledger.flow.lost
+}
+
+/// A flight of 10 s in steps of 0.1 s: energy and momenta stay after the load, and the impulse is exact.
+fn assert_conserves(scene: &Scene) {
+    let mut simulation = Simulation::new(scene).unwrap();
+    (0..25).for_each(|_| simulation.advance(0.1).unwrap());
+    let (start, before) = (energy(&simulation), simulation.momentum());
+    assert_relative_eq!(before.linear, Vector3::new(20.0, 0.0, 0.0), epsilon = 1e-11);
+    for _ in 25..100 {
+        simulation.advance(0.1).unwrap();
+        let now = simulation.momentum();
+        assert_relative_eq!(energy(&simulation), start, max_relative = 1e-10);
+        assert_relative_eq!(now.linear, before.linear, epsilon = 1e-11);
+        let turned = (now.angular - before.angular).norm();
+        assert!(turned < 1e-10 * before.angular.norm(), "{turned:e}");
+        assert_eq!(simulation.substeps(), 1);
+    }
+    assert!(simulation.energy_error().abs() < 1e-9 * start);
+}
+
+/// The rod with another bending and torsional stiffness [N m²].
+fn stiffened(mut scene: Scene, stiffness: f64) -> Scene {
+    for line_type in scene.line_types.values_mut() {
+        line_type.bending_stiffness = Some(stiffness);
+        line_type.torsional_stiffness = Some(stiffness);
+    }
+    scene
+}
+
+/// The rod under the opposite moment.
+fn opposed(mut scene: Scene) -> Scene {
+    let moment = scene.points[0].moment.as_mut().unwrap();
+    moment.z = Some(TimeFunction::Table(vec![[2.5, 80.0], [2.5, 0.0]]));
+    scene
+}
+
+#[test]
+fn a_flying_rod_keeps_energy_and_momenta_to_rounding() {
+    for stiffness in [100.0, 500.0] {
+        assert_conserves(&stiffened(shipped("flying_spaghetti"), stiffness));
+        assert_conserves(&stiffened(opposed(shipped("flying_spaghetti")), stiffness));
+        assert_conserves(&stiffened(shipped("flying_spaghetti_3d"), stiffness));
+    }
+}
+
+#[test]
+fn a_flying_rod_tends_to_the_converged_flight_at_second_order() {
+    // Displacements of A and B [m] at 2.5, 5 and 10 s: spectral elements, converged to 5e-6 m; energy [J] after 2.5 s.
+    let reference = [
+        [[-1.036_913_2, 4.476_005_5], [3.583_146_0, -1.888_104_1]],
+        [[3.783_685_3, 8.203_803_1], [8.074_362_2, -6.241_153_4]],
+        [[16.970_853_5, 6.411_931_2], [21.324_745_5, -4.390_124_5]],
+    ];
+    let converged = 379.573_203;
+    let mut errors = Vec::new();
+    for n in [20, 40, 80, 160] {
+        let step = 2.0 / n as f64;
+        let count = 5 * n / 4;
+        let found = tips(&spaghetti(n, step), step, &[count, 2 * count, 4 * count]);
+        let error: Vec<f64> = found
+            .iter()
+            .zip(reference)
+            .map(|(found, reference)| {
+                let miss = |end: usize| {
+                    let [x, y] = reference[end];
+                    (found[end] - Vector3::new(x, y, 0.0)).norm()
+                };
+                miss(0).max(miss(1))
+            })
+            .collect();
+        if n == 160 {
+            assert!(
+                error[0] < 2e-3 && error[1] < 2e-3 && error[2] < 1e-2,
+                "{error:?}"
+            );
+            let mut simulation = Simulation::new(&spaghetti(n, step)).unwrap();
+            (0..count).for_each(|_| simulation.advance(step).unwrap());
+            assert_relative_eq!(energy(&simulation), converged, max_relative = 2e-4);
+        }
+        errors.push((step, error.iter().map(|e| e * e).sum::<f64>().sqrt()));
+    }
+    let slope = order(&errors);
+    assert!((slope - 2.0).abs() < 0.1, "order {slope:.3}: {errors:?}");
+}
+
+/// A weightless beam along x from the origin: EI 1 N m², 1 kg/m, so stiff otherwise that Euler and Bernoulli hold.
+fn slender(elements: usize, ends: &str) -> String {
+    format!(
+        r#"
+        gravity = 0.0
+        [line_types.rod]
+        model = "beam"
+        mass = 1.0
+        axial_stiffness = 1.0e6
+        shear_stiffness = 1.0e6
+        bending_stiffness = 1.0
+        torsional_stiffness = 1.0
+        rotary_inertia = 1.0e-7
+        [[lines]]
+        name = "rod"
+        from = "a"
+        to = "b"
+        sections = [{{ type = "rod", length = 1.0, elements = {elements} }}]
+        {ends}
+        "#
+    )
+}
+
+const ANCHOR: &str = "[[points]]\nname = \"a\"\nposition = [0.0, 0.0, 0.0]\nkind = \"fixed\"\n";
+
+#[test]
+fn the_statics_of_a_cantilever_tend_to_the_elastica_at_second_order() {
+    // Bisshopp & Drucker (1945), Quart. Appl. Math. 3, 272-275, here to 16 digits: PL²/EI, deflection/L, shortening/L
+    for (load, deflection, shortening) in [
+        (1.0, 0.301_720_773_799_813_5, 0.056_433_236_283_376_88),
+        (10.0, 0.810_609_024_880_296_4, 0.554_995_597_753_751_3),
+    ] {
+        let error = |n: usize| {
+            let tip = format!(
+                "[[points]]\nname = \"b\"\nposition = [1.0, 0.0, 0.0]\nkind = \"free\"\nforce = {{ y = {load} }}\n"
+            );
+            let text = slender(n, "clamped_a = [1.0, 0.0, 0.0]") + ANCHOR + &tip;
+            let simulation = Simulation::new(&scene(&text)).unwrap();
+            let tip = simulation.state().lines[0].position[n];
+            (tip - Vector3::new(1.0 - shortening, deflection, 0.0)).norm()
+        };
+        let errors: Vec<(f64, f64)> = [8, 16, 32, 64].map(|n| (1.0 / n as f64, error(n))).into();
+        let slope = order(&errors);
+        assert!((slope - 2.0).abs() < 0.1, "order {slope:.3}: {errors:?}");
+    }
+}
+
+#[test]
+fn an_end_moment_rolls_a_cantilever_up_to_a_circle() {
+    let tip = "[[points]]\nname = \"b\"\nposition = [1.0, 0.0, 0.0]\nkind = \"free\"\nmoment = { z = 6.283185307179586 }\n";
+    let text = slender(40, "clamped_a = [1.0, 0.0, 0.0]") + ANCHOR + tip;
+    let simulation = Simulation::new(&scene(&text)).unwrap();
+    assert!(simulation.state().lines[0].position[40].norm() < 1e-5);
+}
