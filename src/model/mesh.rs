@@ -49,9 +49,6 @@ mod tests {
                 section(99.0, Some(7)),
             ],
             initial: InitialShape::Static,
-            clamped_a: None,
-            clamped_b: None,
-            rest_shape: Default::default(),
         };
         assert_eq!(section_elements(&line, 0.02), vec![30, 1, 7]);
     }

@@ -131,53 +131,6 @@ pub struct LineType {
     pub added_mass_normal: Option<f64>,
     /// Tangential added-mass coefficient [-], on the displaced volume.
     pub added_mass_tangential: Option<f64>,
-    /// What a line of this type is.
-    #[serde(default)]
-    pub model: LineModel,
-    /// Bending stiffness EI [N m²].
-    pub bending_stiffness: Option<f64>,
-    /// Torsional stiffness GJ [N m²].
-    pub torsional_stiffness: Option<f64>,
-    /// Shear stiffness GA [N].
-    pub shear_stiffness: Option<f64>,
-    /// Rotary inertia Iρ [kg m].
-    pub rotary_inertia: Option<f64>,
-    /// Solid section.
-    pub solid_section: Option<SolidSection>,
-}
-
-/// Cable or beam.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum LineModel {
-    /// Cable.
-    #[default]
-    Cable,
-    /// Beam.
-    Beam,
-}
-
-/// Solid section.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct SolidSection {
-    /// [m]
-    pub diameter: f64,
-    /// [Pa]
-    pub youngs_modulus: f64,
-    /// [-]
-    pub poisson: Option<f64>,
-}
-
-/// Rest shape.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum RestShape {
-    /// Straight.
-    #[default]
-    Straight,
-    /// As initial.
-    Initial,
 }
 
 /// Damping ratios at two circular frequencies; they fix C = α·M + β·K.
@@ -221,8 +174,6 @@ pub struct Point {
     pub volume: Option<f64>,
     /// Point load in time.
     pub force: Option<PointForce>,
-    /// Moment.
-    pub moment: Option<PointForce>,
     /// Its prescribed displacement in time, `kind = "prescribed"` only.
     pub motion: Option<MotionPath>,
 }
@@ -280,13 +231,6 @@ pub struct Line {
     /// Shape at the start.
     #[serde(default)]
     pub initial: InitialShape,
-    /// Clamp.
-    pub clamped_a: Option<[f64; 3]>,
-    /// Clamp.
-    pub clamped_b: Option<[f64; 3]>,
-    /// Rest shape.
-    #[serde(default)]
-    pub rest_shape: RestShape,
 }
 
 /// A part of a line with one line type.
