@@ -4,9 +4,10 @@ mod common;
 
 use approx::assert_relative_eq;
 use common::{scene, shipped, with_elements};
-use moorline::scene::{Scene, TimeFunction};
+use moorline::scene::{InitialShape, Scene, TimeFunction};
 use moorline::simulation::Simulation;
 use nalgebra::Vector3;
+use std::f64::consts::{PI, TAU};
 
 /// Slope of log(error) over log(size), by least squares.
 fn order(points: &[(f64, f64)]) -> f64 {
@@ -188,4 +189,104 @@ fn an_end_moment_rolls_a_cantilever_up_to_a_circle() {
     let text = slender(40, "clamped_a = [1.0, 0.0, 0.0]") + ANCHOR + tip;
     let simulation = Simulation::new(&scene(&text)).unwrap();
     assert!(simulation.state().lines[0].position[40].norm() < 1e-5);
+}
+
+/// A node's height sampled over time, and the mean time between its zero crossings, from the first to the last [s].
+fn half_period(samples: &[f64], step: f64) -> f64 {
+    let crossings: Vec<f64> = samples
+        .windows(2)
+        .enumerate()
+        .filter(|(_, pair)| (pair[0] > 0.0) != (pair[1] > 0.0))
+        .map(|(i, pair)| step * (i as f64 + pair[0] / (pair[0] - pair[1])))
+        .collect();
+    (crossings[crossings.len() - 1] - crossings[0]) / (crossings.len() - 1) as f64
+}
+
+/// First natural frequency [rad/s] of a slender beam that starts as `shape` of x/L times 1e-6 of its length, with 100 steps a period.
+fn natural_frequency(
+    elements: usize,
+    steps: usize,
+    [ends, points]: [&str; 2],
+    expected: f64,
+    shape: impl Fn(f64) -> f64,
+) -> f64 {
+    let length: f64 = 1.0;
+    let nodes: Vec<[f64; 3]> = (0..=elements)
+        .map(|i| i as f64 / elements as f64)
+        .map(|x| [x * length, 0.0, 1e-6 * shape(x)])
+        .collect();
+    let mut scene = scene(&(slender(elements, ends) + points));
+    scene.lines[0].initial = InitialShape::Nodes(nodes);
+    let period = TAU / expected;
+    let step = period / steps as f64;
+    scene.solver.time_step_max = step;
+    let mut simulation = Simulation::new(&scene).unwrap();
+    // onto the mode, so that what else the start excites falls out
+    let weights: Vec<f64> = (0..=elements)
+        .map(|i| shape(i as f64 / elements as f64))
+        .collect();
+    let mut samples = Vec::new();
+    for _ in 0..(21 * steps / 4) {
+        simulation.advance(step).unwrap();
+        let nodes = &simulation.state().lines[0].position;
+        samples.push(nodes.iter().zip(&weights).map(|(r, w)| r.z * w).sum());
+    }
+    PI / half_period(&samples, step)
+}
+
+/// Fits the order of a frequency over meshes of 8 to 64 elements, with steps in proportion.
+fn assert_frequency(ends: [&str; 2], exact: f64, shape: impl Fn(f64) -> f64) {
+    let errors: Vec<(f64, f64)> = [8, 16, 32, 64]
+        .map(|n| {
+            let found = natural_frequency(n, 10 * n, ends, exact, &shape);
+            (1.0 / n as f64, (found / exact - 1.0).abs())
+        })
+        .into();
+    let slope = order(&errors);
+    assert!((slope - 2.0).abs() < 0.1, "order {slope:.3}: {errors:?}");
+}
+
+/// Euler and Bernoulli's mode of a beam clamped at x = 0, with the coefficient of its sines [-].
+fn clamped_mode(beta: f64, sigma: f64) -> impl Fn(f64) -> f64 {
+    move |x: f64| {
+        let u = beta * x;
+        u.cosh() - u.cos() - sigma * (u.sinh() - u.sin())
+    }
+}
+
+#[test]
+fn the_frequency_of_a_cantilever_tends_to_the_closed_form_at_second_order() {
+    let beta: f64 = 1.875_104_068_711_961_2; // cos βL cosh βL = −1
+    let sigma = (beta.cosh() + beta.cos()) / (beta.sinh() + beta.sin());
+    let mode = clamped_mode(beta, sigma);
+    let tip = mode(1.0);
+    let free = format!(
+        "[[points]]\nname = \"b\"\nposition = [1.0, 0.0, {}]\nkind = \"free\"\n",
+        1e-6 * tip
+    );
+    let ends = ["clamped_a = [1.0, 0.0, 0.0]", &(ANCHOR.to_string() + &free)];
+    assert_frequency(ends, beta * beta, mode);
+}
+
+#[test]
+fn the_frequency_of_a_beam_clamped_at_both_ends_tends_to_the_closed_form_at_second_order() {
+    let beta: f64 = 4.730_040_744_862_704; // cos βL cosh βL = 1
+    let sigma = (beta.cosh() - beta.cos()) / (beta.sinh() - beta.sin());
+    let far = "[[points]]\nname = \"b\"\nposition = [1.0, 0.0, 0.0]\nkind = \"fixed\"\n";
+    let clamps = "clamped_a = [1.0, 0.0, 0.0]\nclamped_b = [1.0, 0.0, 0.0]";
+    let ends = [clamps, &(ANCHOR.to_string() + far)];
+    assert_frequency(ends, beta * beta, clamped_mode(beta, sigma));
+}
+
+#[test]
+fn the_frequency_of_a_tensioned_beam_tends_to_the_closed_form_at_second_order() {
+    // pinned ends: ω² = (π/L)⁴ EI/m + (π/L)² T/m; the stretch of 1e-5 that makes T = 10 N shows in L and m only by itself
+    let stretch = 1e-5;
+    let far = format!(
+        "[[points]]\nname = \"b\"\nposition = [{}, 0.0, 0.0]\nkind = \"fixed\"\n",
+        1.0 + stretch
+    );
+    let exact = (PI.powi(4) + PI.powi(2) * 1e6 * stretch).sqrt();
+    let ends = ["", &(ANCHOR.to_string() + &far)];
+    assert_frequency(ends, exact, |x| (PI * x).sin());
 }

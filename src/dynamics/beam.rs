@@ -35,7 +35,7 @@ use crate::physics::section::{
 };
 use crate::statics::beam::{BeamEnd, Span, add_elements};
 
-pub use drive::{Driven, drive, held};
+pub use drive::{Driven, attitude, drive, held};
 pub use measures::{BeamEnergy, BeamView, Momentum};
 
 /// Change of position over the beam's length, and of θ, that ends the iteration [-].

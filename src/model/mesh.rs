@@ -27,7 +27,7 @@ pub fn section_elements(line: &Line, tolerance: f64) -> Vec<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{InitialShape, Section};
+    use crate::scene::{InitialShape, RestShape, Section};
 
     fn section(length: f64, elements: Option<usize>) -> Section {
         Section {
@@ -49,6 +49,9 @@ mod tests {
                 section(99.0, Some(7)),
             ],
             initial: InitialShape::Static,
+            rest_shape: RestShape::Straight,
+            clamped_a: None,
+            clamped_b: None,
         };
         assert_eq!(section_elements(&line, 0.02), vec![30, 1, 7]);
     }

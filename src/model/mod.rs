@@ -9,15 +9,17 @@ mod initial;
 mod mesh;
 mod motion;
 mod state;
+mod vessel;
 
 use nalgebra::Vector3;
 
 use crate::physics::stretch::StretchLaw;
-use crate::scene::{InitialShape, PointForce, Solver, TimeFunction};
+use crate::scene::{InitialShape, PointForce, PointMoment, Solver, TimeFunction};
 
 pub use beam::{Beam, BeamElement, BeamState};
-pub use motion::{Kinematics, Motion};
+pub use motion::{Kinematics, Motion, Pose};
 pub use state::{ClosedForm, LineState, PointState, State};
+pub use vessel::{Frame, Vessel};
 
 /// A scene made discrete. Immutable; shared by reference.
 #[derive(Debug, Clone)]
@@ -32,6 +34,8 @@ pub struct Model {
     pub points: Vec<Point>,
     /// Lines in the order of the scene.
     pub lines: Vec<Line>,
+    /// Vessels in the order of the scene.
+    pub vessels: Vec<Vessel>,
     /// Sets of lines that share free points and so must be solved together.
     pub networks: Vec<Network>,
     /// How to solve, as the user asked.
@@ -50,7 +54,7 @@ pub struct Point {
     /// Load in time.
     pub load: Option<PointForce>,
     /// Moment in time, on the ends of beams.
-    pub moment: Option<PointForce>,
+    pub moment: Option<PointMoment>,
     /// (line, end) pairs that meet here.
     pub attached: Vec<(usize, End)>,
 }
@@ -64,6 +68,13 @@ pub enum Role {
     Coupled {
         /// The scene's motion for it.
         motion: Option<Motion>,
+    },
+    /// It rides on a vessel, which the host moves.
+    Carried {
+        /// Index of the vessel.
+        vessel: usize,
+        /// Its place in the vessel's axes [m].
+        arm: Vector3<f64>,
     },
     /// Its own path moves it.
     Prescribed(Motion),
@@ -236,31 +247,37 @@ impl Point {
 
     /// Point load at time `t` [s], in [N].
     pub fn load_at(&self, t: f64) -> Vector3<f64> {
-        along_axes(&self.load, |f| f.at(t))
+        self.load_axes().map(|f| f.map_or(0.0, |f| f.at(t))).into()
     }
 
     /// Mean point load from `from` to `to` [s], in [N].
     pub fn load_mean(&self, from: f64, to: f64) -> Vector3<f64> {
-        along_axes(&self.load, |f| f.mean(from, to))
+        let mean = |f: Option<&TimeFunction>| f.map_or(0.0, |f| f.mean(from, to));
+        self.load_axes().map(mean).into()
     }
 
     /// Moment at time `t` [s], in [N m].
     pub fn moment_at(&self, t: f64) -> Vector3<f64> {
-        along_axes(&self.moment, |f| f.at(t))
+        self.moment_axes()
+            .map(|f| f.map_or(0.0, |f| f.at(t)))
+            .into()
     }
 
     /// Mean moment from `from` to `to` [s], in [N m].
     pub fn moment_mean(&self, from: f64, to: f64) -> Vector3<f64> {
-        along_axes(&self.moment, |f| f.mean(from, to))
+        let mean = |f: Option<&TimeFunction>| f.map_or(0.0, |f| f.mean(from, to));
+        self.moment_axes().map(mean).into()
     }
-}
 
-/// What is made of each function of time; nothing where there is none.
-fn along_axes(load: &Option<PointForce>, of: impl Fn(&TimeFunction) -> f64) -> Vector3<f64> {
-    let along = |f: &Option<TimeFunction>| f.as_ref().map_or(0.0, &of);
-    load.as_ref().map_or(Vector3::zeros(), |load| {
-        Vector3::new(along(&load.x), along(&load.y), along(&load.z))
-    })
+    fn load_axes(&self) -> [Option<&TimeFunction>; 3] {
+        let load = self.load.as_ref();
+        load.map_or([None; 3], |f| [f.x.as_ref(), f.y.as_ref(), f.z.as_ref()])
+    }
+
+    fn moment_axes(&self) -> [Option<&TimeFunction>; 3] {
+        let moment = self.moment.as_ref();
+        moment.map_or([None; 3], |m| [m.x.as_ref(), m.y.as_ref(), m.z.as_ref()])
+    }
 }
 
 impl Model {

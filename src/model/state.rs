@@ -89,9 +89,8 @@ impl PointState {
 }
 
 impl LineState {
-    /// Gives a line that is a beam, and rests on its positions, what beams have besides.
-    pub fn become_beam(&mut self, line: &Line) {
-        let attitude = [Matrix3::identity(); 2];
+    /// Gives a line that is a beam, and rests on its positions, what beams have besides; its points have turned by `attitude` [-].
+    pub fn become_beam(&mut self, line: &Line, attitude: [Matrix3<f64>; 2]) {
         self.beam = line
             .beam
             .as_ref()

@@ -120,7 +120,7 @@ pub struct Mixture {
 pub struct Response {
     /// What times the change of the plain strains is the work on an element, per length.
     pub stress: Sextuple,
-    /// Its slope with the plain strains at the end of the step.
+    /// Its slope with the plain strains at the end of the step: stiffness [N] for forces over stretches, and so on.
     pub slope: Matrix6<f64>,
 }
 
@@ -222,7 +222,7 @@ pub fn strain(a: &Section, b: &Section, length: f64) -> Sextuple {
     join(stretch, turn) / length
 }
 
-/// ∂(Γ, K)/∂(φ, spin) of both sections. Its transpose times a stress and the length gives the sections' forces and moments.
+/// ∂(Γ, K)/∂(φ, spin) of both sections, K [1/m] over φ [m] and spin [rad]. Its transpose times a stress and the length gives the sections' forces and moments.
 #[inline(always)]
 pub fn strain_gradient(a: &Section, b: &Section, length: f64) -> [Matrix6<f64>; 2] {
     let slope = skew((b.position - a.position) / length); // φ' ×
@@ -293,7 +293,7 @@ pub fn geometric_stiffness(
     [[block(0, 0), block(0, 1)], [block(1, 0), block(1, 1)]]
 }
 
-/// The parts of a strain or stress that belong to forces and to moments.
+/// The parts of a strain or stress that belong to forces [N] and to moments [N m].
 #[inline(always)]
 pub fn split(both: &Sextuple) -> (Vector3<f64>, Vector3<f64>) {
     (

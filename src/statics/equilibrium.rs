@@ -26,9 +26,8 @@ use nalgebra::Vector3;
 
 use super::StaticsError;
 use super::assembly::{StaticCase, Workspace, copy_network, for_free_points, place_ends};
-use super::{beam, guess};
+use super::guess;
 use crate::model::{Line, LineState, Model, Network, PointState, State};
-use crate::scene::InitialShape;
 
 /// Accepted force out of balance, over the greatest force [-].
 const FORCE_TOLERANCE: f64 = 1e-11;
@@ -74,17 +73,13 @@ pub fn solve(
         let [a, b] = line.ends.map(|point| points[point]);
         let mut position = vec![a; line.segment_count() + 1];
         guess::hang(model, line, a, b, &mut position, &mut work.tension);
-        let mut shape = LineState::at_rest(line.given_shape(a, b).unwrap_or(position));
-        shape.become_beam(line);
-        state.lines.push(shape);
+        state.lines.push(LineState::at_rest(
+            line.given_shape(a, b).unwrap_or(position),
+        ));
     }
     for number in 0..model.networks.len() {
-        match model.beam_of(number) {
-            Some(line) if model.lines[line].initial == InitialShape::Static => {
-                beam::rest(model, line, &mut state, t)?;
-            }
-            Some(_) => {}
-            None => Problem::new(model, number, t).solve(&mut state, work)?,
+        if model.beam_of(number).is_none() {
+            Problem::new(model, number, t).solve(&mut state, work)?;
         }
     }
     Ok(state)

@@ -121,8 +121,8 @@ pub fn held(model: &Model, line: &Line) -> [[bool; 6]; 2] {
 }
 
 /// Attitude of a held point over its reference.
-fn attitude(_: &Kinematics) -> Matrix3<f64> {
-    Matrix3::identity()
+pub fn attitude(k: &Kinematics) -> Matrix3<f64> {
+    k.orientation.to_rotation_matrix().into_inner()
 }
 
 /// Free points go where their ends went.

@@ -2,7 +2,7 @@
 //!
 //! What a line type leaves open of its section follows from `solid_section`, a circle of diameter d with Young's modulus E and
 //! Poisson's ratio ν: EI = E π d⁴/64, GJ = E/(2(1 + ν)) π d⁴/32, GA = κ E/(2(1 + ν)) π d²/4 with κ = 6(1 + ν)/(7 + 6ν), rotary inertia
-//! m d²/16 about a diameter and m d²/8 about the axis.
+//! m d²/16 about a diameter and m d²/8 about the axis. Fibres lower EI alone, by `fibre_law`.
 //!
 //! Source of κ: Cowper (1966), J. Appl. Mech. 33, 335-340, table 1.
 
@@ -15,11 +15,9 @@ use crate::model::{Beam, BeamElement};
 use crate::physics::rayleigh;
 use crate::physics::section::SectionLaw;
 use crate::scene::{
-    Integrator, Line, LineModel, LineType, RestShape, Scene, SceneError, SolidSection, Strain,
+    FibreLaw, Integrator, Line, LineModel, LineType, RestShape, Scene, SceneError, SolidSection,
+    Strain,
 };
-
-/// Poisson's ratio of a solid section that gives none [-].
-const POISSON: f64 = 0.3;
 
 /// A section of a beam line, per unstretched length.
 struct Part {
@@ -115,10 +113,11 @@ fn part(name: &str, line_type: &LineType, law: &LineLaw) -> Result<Part, SceneEr
             .or_else(|| solid.map(of))
             .ok_or_else(|| SceneError::new(at(key), missing))
     };
+    let strands = strands(line_type);
     let section = SectionLaw {
         axial: law.axial_stiffness,
         shear: stiffness("shear_stiffness", line_type.shear_stiffness, shear)?,
-        bending: stiffness("bending_stiffness", line_type.bending_stiffness, bending)?,
+        bending: stiffness("bending_stiffness", line_type.bending_stiffness, bending)? / strands,
         torsion: stiffness(
             "torsional_stiffness",
             line_type.torsional_stiffness,
@@ -142,6 +141,15 @@ fn part(name: &str, line_type: &LineType, law: &LineLaw) -> Result<Part, SceneEr
     })
 }
 
+/// How many times more easily the section bends than a solid one [-].
+fn strands(line_type: &LineType) -> f64 {
+    let fibres = line_type.fibres.unwrap_or(1) as f64;
+    match line_type.fibre_law {
+        FibreLaw::Linear => fibres,
+        FibreLaw::Squared => fibres * fibres,
+    }
+}
+
 fn rotary_inertia(name: &str, line_type: &LineType, mass: f64) -> Result<Vector3<f64>, SceneError> {
     if let Some(given) = line_type.rotary_inertia {
         return Ok(Vector3::repeat(given));
@@ -157,15 +165,11 @@ fn rotary_inertia(name: &str, line_type: &LineType, mass: f64) -> Result<Vector3
 }
 
 fn shear_modulus(solid: &SolidSection) -> f64 {
-    solid.youngs_modulus / (2.0 * (1.0 + poisson(solid)))
-}
-
-fn poisson(solid: &SolidSection) -> f64 {
-    solid.poisson.unwrap_or(POISSON)
+    solid.youngs_modulus / (2.0 * (1.0 + solid.poisson))
 }
 
 fn shear(solid: &SolidSection) -> f64 {
-    let nu = poisson(solid);
+    let nu = solid.poisson;
     let kappa = 6.0 * (1.0 + nu) / (7.0 + 6.0 * nu); // κ [-]
     kappa * shear_modulus(solid) * 0.25 * PI * solid.diameter.powi(2)
 }
