@@ -136,16 +136,16 @@ fn a_flying_rod_tends_to_the_converged_flight_at_second_order() {
     assert!((slope - 2.0).abs() < 0.1, "order {slope:.3}: {errors:?}");
 }
 
-/// A weightless beam along x from the origin: EI 1 N m², 1 kg/m, so stiff otherwise that Euler and Bernoulli hold.
-fn slender(elements: usize, ends: &str) -> String {
+/// A weightless beam along x from the origin: EI 1 N m², 1 kg/m, EA and GA [N] so great that Euler and Bernoulli hold.
+fn slender(elements: usize, stiffness: f64, ends: &str) -> String {
     format!(
         r#"
         gravity = 0.0
         [line_types.rod]
         model = "beam"
         mass = 1.0
-        axial_stiffness = 1.0e6
-        shear_stiffness = 1.0e6
+        axial_stiffness = {stiffness}
+        shear_stiffness = {stiffness}
         bending_stiffness = 1.0
         torsional_stiffness = 1.0
         rotary_inertia = 1.0e-7
@@ -172,7 +172,7 @@ fn the_statics_of_a_cantilever_tend_to_the_elastica_at_second_order() {
             let tip = format!(
                 "[[points]]\nname = \"b\"\nposition = [1.0, 0.0, 0.0]\nkind = \"free\"\nforce = {{ y = {load} }}\n"
             );
-            let text = slender(n, "clamped_a = [1.0, 0.0, 0.0]") + ANCHOR + &tip;
+            let text = slender(n, 1e6, "clamped_a = [1.0, 0.0, 0.0]") + ANCHOR + &tip;
             let simulation = Simulation::new(&scene(&text)).unwrap();
             let tip = simulation.state().lines[0].position[n];
             (tip - Vector3::new(1.0 - shortening, deflection, 0.0)).norm()
@@ -186,7 +186,7 @@ fn the_statics_of_a_cantilever_tend_to_the_elastica_at_second_order() {
 #[test]
 fn an_end_moment_rolls_a_cantilever_up_to_a_circle() {
     let tip = "[[points]]\nname = \"b\"\nposition = [1.0, 0.0, 0.0]\nkind = \"free\"\nmoment = { z = 6.283185307179586 }\n";
-    let text = slender(40, "clamped_a = [1.0, 0.0, 0.0]") + ANCHOR + tip;
+    let text = slender(40, 1e6, "clamped_a = [1.0, 0.0, 0.0]") + ANCHOR + tip;
     let simulation = Simulation::new(&scene(&text)).unwrap();
     assert!(simulation.state().lines[0].position[40].norm() < 1e-5);
 }
@@ -202,20 +202,21 @@ fn half_period(samples: &[f64], step: f64) -> f64 {
     (crossings[crossings.len() - 1] - crossings[0]) / (crossings.len() - 1) as f64
 }
 
-/// First natural frequency [rad/s] of a slender beam that starts as `shape` of x/L times 1e-6 of its length, with 100 steps a period.
+/// First natural frequency [rad/s] of a slender beam that starts as 1e-6 m times `shape` of x/L, with so many steps a period.
 fn natural_frequency(
     elements: usize,
     steps: usize,
+    stiffness: f64,
     [ends, points]: [&str; 2],
     expected: f64,
     shape: impl Fn(f64) -> f64,
 ) -> f64 {
-    let length: f64 = 1.0;
+    let mut scene = scene(&(slender(elements, stiffness, ends) + points));
+    let chord = scene.points[1].position[0];
     let nodes: Vec<[f64; 3]> = (0..=elements)
         .map(|i| i as f64 / elements as f64)
-        .map(|x| [x * length, 0.0, 1e-6 * shape(x)])
+        .map(|x| [x * chord, 0.0, 1e-6 * shape(x)])
         .collect();
-    let mut scene = scene(&(slender(elements, ends) + points));
     scene.lines[0].initial = InitialShape::Nodes(nodes);
     let period = TAU / expected;
     let step = period / steps as f64;
@@ -235,10 +236,10 @@ fn natural_frequency(
 }
 
 /// Fits the order of a frequency over meshes of 8 to 64 elements, with steps in proportion.
-fn assert_frequency(ends: [&str; 2], exact: f64, shape: impl Fn(f64) -> f64) {
+fn assert_frequency(stiffness: f64, ends: [&str; 2], exact: f64, shape: impl Fn(f64) -> f64) {
     let errors: Vec<(f64, f64)> = [8, 16, 32, 64]
         .map(|n| {
-            let found = natural_frequency(n, 10 * n, ends, exact, &shape);
+            let found = natural_frequency(n, 10 * n, stiffness, ends, exact, &shape);
             (1.0 / n as f64, (found / exact - 1.0).abs())
         })
         .into();
@@ -265,7 +266,7 @@ fn the_frequency_of_a_cantilever_tends_to_the_closed_form_at_second_order() {
         1e-6 * tip
     );
     let ends = ["clamped_a = [1.0, 0.0, 0.0]", &(ANCHOR.to_string() + &free)];
-    assert_frequency(ends, beta * beta, mode);
+    assert_frequency(1e6, ends, beta * beta, mode);
 }
 
 #[test]
@@ -275,18 +276,96 @@ fn the_frequency_of_a_beam_clamped_at_both_ends_tends_to_the_closed_form_at_seco
     let far = "[[points]]\nname = \"b\"\nposition = [1.0, 0.0, 0.0]\nkind = \"fixed\"\n";
     let clamps = "clamped_a = [1.0, 0.0, 0.0]\nclamped_b = [1.0, 0.0, 0.0]";
     let ends = [clamps, &(ANCHOR.to_string() + far)];
-    assert_frequency(ends, beta * beta, clamped_mode(beta, sigma));
+    assert_frequency(1e6, ends, beta * beta, clamped_mode(beta, sigma));
 }
 
 #[test]
 fn the_frequency_of_a_tensioned_beam_tends_to_the_closed_form_at_second_order() {
-    // pinned ends: ω² = (π/L)⁴ EI/m + (π/L)² T/m; the stretch of 1e-5 that makes T = 10 N shows in L and m only by itself
-    let stretch = 1e-5;
+    // pinned ends: ω² = (π/L)⁴ EI/m + (π/L)² T/m; the stretch of 1e-6 that makes T = 10 N shows in L and m only by itself
+    let (stiffness, stretch) = (1e7, 1e-6);
     let far = format!(
         "[[points]]\nname = \"b\"\nposition = [{}, 0.0, 0.0]\nkind = \"fixed\"\n",
         1.0 + stretch
     );
-    let exact = (PI.powi(4) + PI.powi(2) * 1e6 * stretch).sqrt();
+    let exact = (PI.powi(4) + PI.powi(2) * stiffness * stretch).sqrt();
     let ends = ["", &(ANCHOR.to_string() + &far)];
-    assert_frequency(ends, exact, |x| (PI * x).sin());
+    assert_frequency(stiffness, ends, exact, |x| (PI * x).sin());
+}
+
+/// A clamped rod whose end B is turned about its axis by `turns` in 10 s and then drawn in by half of its length in 20 s.
+fn hockle(elements: usize, turns: f64) -> Scene {
+    scene(&format!(
+        r#"
+        gravity = 9.81
+        [line_types.rod]
+        model = "beam"
+        mass = 1.0
+        axial_stiffness = 1.0e5
+        shear_stiffness = 4.0e4
+        bending_stiffness = 100.0
+        torsional_stiffness = 80.0
+        rotary_inertia = 0.01
+        rayleigh = {{ ratios = [0.02, 0.02], frequencies = [2.0, 20.0] }}
+        [[vessels]]
+        name = "winch"
+        position = [10.0, 0.0, 0.0]
+        [[points]]
+        name = "a"
+        position = [0.0, 0.0, 0.0]
+        kind = "fixed"
+        [[points]]
+        name = "b"
+        position = [0.0, 0.0, 0.0]
+        kind = "coupled"
+        on = "winch"
+        [[lines]]
+        name = "rod"
+        from = "a"
+        to = "b"
+        clamped_a = [1.0, 0.0, 0.0]
+        clamped_b = [1.0, 0.0, 0.0]
+        sections = [{{ type = "rod", length = 10.0, elements = {elements} }}]
+        [solver]
+        time_step_max = 0.02
+        [motion]
+        winch = {{ table = [[0.0, 0, 0, 0, 0, 0, 0], [10.0, 0, 0, 0, {angle}, 0, 0], [30.0, -5.0, 0, 0, {angle}, 0, 0], [35.0, -5.0, 0, 0, {angle}, 0, 0]] }}
+        "#,
+        angle = TAU * turns
+    ))
+}
+
+/// Follows a hockle to the end, finite throughout; the simulation there, or the message that ended it.
+fn twist_and_slacken(scene: &Scene) -> Result<Simulation, String> {
+    let mut simulation = Simulation::new(scene).unwrap();
+    simulation.follow_scene().unwrap();
+    for _ in 0..350 {
+        simulation.advance(0.1).map_err(|error| error.to_string())?;
+        let nodes = &simulation.state().lines[0].position;
+        assert!(nodes.iter().all(|r| r.iter().all(|x| x.is_finite())));
+    }
+    Ok(simulation)
+}
+
+#[test]
+fn a_twisted_rod_drawn_in_leaves_its_plane_and_its_ledger_closes() {
+    for (elements, turns) in [(40, 2.0), (80, 4.0)] {
+        let end = twist_and_slacken(&hockle(elements, turns)).unwrap();
+        assert!(end.energy_error().abs() < 1e-8);
+    }
+    let mut flat = Simulation::new(&hockle(40, 0.0)).unwrap();
+    let mut twisted = Simulation::new(&hockle(40, 2.0)).unwrap();
+    let aside = |simulation: &mut Simulation| {
+        simulation.follow_scene().unwrap();
+        (0..250).for_each(|_| simulation.advance(0.1).unwrap());
+        let nodes = simulation.state().lines[0].position.iter();
+        nodes.map(|r| r.y.abs()).fold(0.0, f64::max)
+    };
+    assert!(aside(&mut flat) < 1e-6);
+    assert!(aside(&mut twisted) > 0.5);
+}
+
+#[test]
+fn a_hockle_too_tight_for_its_elements_is_refused_in_words() {
+    let message = twist_and_slacken(&hockle(40, 4.0)).unwrap_err();
+    assert!(message.contains("more than 60 degrees") && message.contains("use more elements"));
 }
