@@ -10,7 +10,7 @@ use nalgebra::{Matrix3, Vector3, Vector6};
 use serde::{Deserialize, Serialize};
 
 use crate::dynamics::advance::{Counters, Workspace};
-use crate::dynamics::beam::{self, BeamView, Momentum};
+use crate::dynamics::beam::{self, BeamEnergy, BeamView, Momentum};
 use crate::dynamics::ledger::Ledger;
 use crate::dynamics::motion::{AxisPath, HostPath, Sample, VesselPath};
 use crate::dynamics::{Choice, StepError, reaction};
@@ -442,6 +442,18 @@ impl Simulation {
                 tension,
             })
             .collect()
+    }
+
+    /// Energy of all beams, without that of their held ends.
+    pub fn beam_energy(&self) -> BeamEnergy {
+        let lines = self.model.lines.iter().zip(&self.snapshot.state.lines);
+        let mut sum = BeamEnergy::default();
+        for (line, shape) in lines {
+            if let Some(view) = BeamView::of(line, shape) {
+                sum.add(view.energy(beam::held(&self.model, line)));
+            }
+        }
+        sum
     }
 
     /// Momenta of all beams.

@@ -104,6 +104,14 @@ impl StrainEnergy {
     pub fn total(&self) -> f64 {
         self.axial + self.shear + self.bending + self.torsion
     }
+
+    /// Adds another energy, kind by kind.
+    pub fn add(&mut self, other: StrainEnergy) {
+        self.axial += other.axial;
+        self.shear += other.shear;
+        self.bending += other.bending;
+        self.torsion += other.torsion;
+    }
 }
 
 /// How the stress of a step follows the strains at its ends.

@@ -46,6 +46,13 @@ impl BeamEnergy {
     pub fn total(&self) -> f64 {
         self.kinetic + self.strain.total() + self.gravitational
     }
+
+    /// Adds another energy, kind by kind.
+    pub fn add(&mut self, other: BeamEnergy) {
+        self.kinetic += other.kinetic;
+        self.strain.add(other.strain);
+        self.gravitational += other.gravitational;
+    }
 }
 
 impl<'a> BeamView<'a> {
@@ -72,11 +79,7 @@ impl<'a> BeamView<'a> {
         let mut energy = BeamEnergy::default();
         for (i, element) in self.beam.elements.iter().enumerate() {
             let strain = element.strain(&self.section(i), &self.section(i + 1), &state.rest[i]);
-            let parts = element.energy(&strain);
-            energy.strain.axial += parts.axial;
-            energy.strain.shear += parts.shear;
-            energy.strain.bending += parts.bending;
-            energy.strain.torsion += parts.torsion;
+            energy.strain.add(element.energy(&strain));
         }
         for i in 0..=last {
             let held = match i {
