@@ -322,10 +322,23 @@ impl Simulation {
             }
             let force = Vector3::from(self.end_force(index));
             let arm = self.snapshot.state.points[index].position - origin;
-            let moment = arm.cross(&force);
+            let moment = arm.cross(&force) + self.end_moment(index);
             sum += Vector6::new(force.x, force.y, force.z, moment.x, moment.y, moment.z);
         }
         sum.into()
+    }
+
+    /// Moment [N m] of the beams that are clamped to a point, about it, in global axes.
+    pub fn end_moment(&self, point: usize) -> Vector3<f64> {
+        let state = &self.snapshot.state;
+        let moment = |&(line, end): &(usize, End)| {
+            let (data, at) = (&self.model.lines[line], &state.points[point]);
+            let view = BeamView::of(data, &state.lines[line])?;
+            let clamped = view.beam.clamped[usize::from(end == End::B)].is_some();
+            clamped.then(|| view.end_action(end, at).1)
+        };
+        let attached = &self.model.points[point].attached;
+        attached.iter().filter_map(moment).sum()
     }
 
     /// Force of the mooring on a point [N]: what a vessel feels there.

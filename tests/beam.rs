@@ -3,8 +3,9 @@
 mod common;
 
 use approx::assert_relative_eq;
-use common::{scene, shipped, with_elements};
-use moorline::scene::{InitialShape, Scene, TimeFunction};
+use common::{History, following, scene, shipped, with_elements};
+use moorline::dynamics::beam::BeamView;
+use moorline::scene::{InitialShape, Integrator, LineModel, PointKind, Scene, TimeFunction};
 use moorline::simulation::Simulation;
 use nalgebra::Vector3;
 use std::f64::consts::{PI, TAU};
@@ -368,4 +369,141 @@ fn a_twisted_rod_drawn_in_leaves_its_plane_and_its_ledger_closes() {
 fn a_hockle_too_tight_for_its_elements_is_refused_in_words() {
     let message = twist_and_slacken(&hockle(40, 4.0)).unwrap_err();
     assert!(message.contains("more than 60 degrees") && message.contains("use more elements"));
+}
+
+#[test]
+fn the_moments_of_a_cantilever_under_an_end_load_grow_straight_to_its_clamp() {
+    let tip = "[[points]]\nname = \"b\"\nposition = [1.0, 0.0, 0.0]\nkind = \"free\"\nforce = { z = 0.001 }\n";
+    let text = slender(10, 1e6, "clamped_a = [1.0, 0.0, 0.0]") + ANCHOR + tip;
+    let simulation = Simulation::new(&scene(&text)).unwrap();
+    let line = &simulation.model().lines[0];
+    let view = BeamView::of(line, &simulation.state().lines[0]).unwrap();
+    for node in 0..=10 {
+        let moment = 0.001 * (1.0 - 0.1 * node as f64);
+        assert_relative_eq!(view.bending_moment(node), moment, epsilon = 1e-9);
+        assert_relative_eq!(view.curvature(node), moment, epsilon = 1e-9); // EI is 1 N m²
+    }
+    let [x, y, z] = simulation.end_force(0);
+    assert_relative_eq!(Vector3::new(x, y, z), 0.001 * Vector3::z(), epsilon = 1e-10);
+    let moment = simulation.end_moment(0);
+    assert_relative_eq!(moment, -0.001 * Vector3::y(), epsilon = 1e-9);
+}
+
+/// The OC3 line as a beam of a bending stiffness [N m²].
+fn mooring_beam(bending: f64) -> Scene {
+    let mut scene = shipped("oc3_catenary");
+    for line_type in scene.line_types.values_mut() {
+        line_type.model = LineModel::Beam;
+        line_type.bending_stiffness = Some(bending);
+        line_type.torsional_stiffness = Some(bending);
+        line_type.shear_stiffness = Some(1e8);
+        line_type.rotary_inertia = Some(0.04);
+    }
+    scene
+}
+
+#[test]
+fn a_mooring_line_as_a_supple_beam_hangs_and_moves_as_the_line_does() {
+    let (mut line, mut beam) = (
+        following(&shipped("oc3_catenary")),
+        following(&mooring_beam(1.0)),
+    );
+    assert_relative_eq!(beam.tension_b(0), line.tension_b(0), max_relative = 1e-4);
+    let (line, beam) = (
+        History::record(&mut line, 0.05, 800),
+        History::record(&mut beam, 0.05, 800),
+    );
+    let moved = beam.middle_error(&line, 400);
+    assert!(moved < 0.01, "{moved}");
+    let tension = beam.tension_error(&line, 400);
+    assert!(tension < 0.05, "{tension}");
+}
+
+#[test]
+fn bending_stiffness_from_a_hair_to_a_girder_finds_its_rest_on_the_bed() {
+    let mut last = f64::INFINITY;
+    for bending in [1e-6, 1.0, 1e3, 1e5, 1e7, 1e9, 1e11] {
+        let rest = Simulation::new(&mooring_beam(bending)).unwrap();
+        let tension = rest.tension_b(0);
+        assert!(tension < last * (1.0 + 1e-6), "{bending}: {tension}");
+        last = tension;
+    }
+}
+
+#[test]
+fn a_beam_in_water_over_a_bed_has_a_ledger_that_closes() {
+    let mut beam = following(&mooring_beam(1e5));
+    let start = beam.ledger().start.abs();
+    (0..400).for_each(|_| beam.advance(0.05).unwrap());
+    let flow = beam.ledger().flow;
+    assert!(flow.lost > 1e3);
+    assert!(
+        beam.energy_error().abs() < 1e-9 * start,
+        "{:e}",
+        beam.energy_error()
+    );
+}
+
+#[test]
+fn a_saved_beam_replays_bit_for_bit() {
+    let mut simulation = Simulation::new(&shipped("flying_spaghetti_3d")).unwrap();
+    (0..30).for_each(|_| simulation.advance(0.1).unwrap());
+    let saved = simulation.snapshot().clone();
+    (0..30).for_each(|_| simulation.advance(0.1).unwrap());
+    let first = simulation.snapshot().clone();
+    simulation.restore(saved);
+    (0..30).for_each(|_| simulation.advance(0.1).unwrap());
+    assert_eq!(*simulation.snapshot(), first);
+}
+
+#[test]
+fn a_clamped_end_that_its_vessel_turns_takes_the_beam_along() {
+    let mut simulation = Simulation::new(&hockle(20, 0.0)).unwrap();
+    let pose = [0.0, 0.0, 0.0, 0.0, 0.3, 0.0];
+    simulation.set_pose(0, pose);
+    simulation.restart(0.0).unwrap();
+    let direction = |simulation: &Simulation| {
+        let shape = simulation.state().lines[0].beam.as_ref().unwrap();
+        shape.frames[20].column(2).into_owned()
+    };
+    let pitched = Vector3::new(0.3_f64.cos(), 0.0, -(0.3_f64.sin()));
+    assert_relative_eq!(direction(&simulation), pitched, epsilon = 1e-12);
+    for step in 1..=50 {
+        simulation.set_pose(0, [0.0, 0.0, 0.0, 0.0, 0.3 - 0.01 * f64::from(step), 0.0]);
+        simulation.advance(0.1).unwrap();
+    }
+    (0..3).for_each(|_| simulation.advance(0.1).unwrap());
+    let end = Vector3::new(0.2_f64.cos(), 0.0, 0.2_f64.sin());
+    assert_relative_eq!(direction(&simulation), end, epsilon = 1e-3);
+    let [_, _, _, _, moment, _] = simulation.vessel_force(0);
+    assert!(moment.abs() > 1.0);
+}
+
+#[test]
+fn what_beams_cannot_do_is_refused_with_its_place() {
+    let refused = |change: &dyn Fn(&mut Scene)| {
+        let mut scene = mooring_beam(1e5);
+        change(&mut scene);
+        Simulation::new(&scene).err().map(|error| error.to_string())
+    };
+    let message = refused(&|scene| scene.solver.integrator = Integrator::Leapfrog).unwrap();
+    assert!(
+        message.contains("solver.integrator") && message.contains("\"beam\""),
+        "{message}"
+    );
+    let message = refused(&|scene| scene.solver.integrator = Integrator::QuasiStatic).unwrap();
+    assert!(message.contains("solver.integrator"), "{message}");
+    let message = refused(&|scene| {
+        let mut second = scene.lines[0].clone();
+        second.name = "line2".into();
+        scene.lines.push(second);
+        scene.points[1].kind = PointKind::Free;
+        scene.motion.clear();
+    });
+    assert!(
+        message
+            .unwrap()
+            .contains("meets another line at the free point")
+    );
+    assert_eq!(refused(&|_| {}), None);
 }

@@ -117,8 +117,8 @@ impl<'a> BeamView<'a> {
         beam_state(self.shape).frames[i].column(2).into_owned()
     }
 
-    /// Stress of an element, its damping included, as it works on the plain strains.
-    fn stress(&self, i: usize) -> Sextuple {
+    /// Stress of an element as it works on the plain strains, with or without its damping.
+    fn stress(&self, i: usize, damped: bool) -> Sextuple {
         let (element, state) = (&self.beam.elements[i], beam_state(self.shape));
         let (a, b) = (self.section(i), self.section(i + 1));
         let now = strain(&a, &b, element.length);
@@ -128,6 +128,9 @@ impl<'a> BeamView<'a> {
         };
         let laws = [&element.law, &element.damping];
         let elastic = response(laws, element.length, [&now, &now], &state.rest[i], still);
+        if !damped {
+            return elastic.stress;
+        }
         let moving = [i, i + 1].map(|node| {
             join(
                 self.shape.velocity[node],
@@ -141,30 +144,38 @@ impl<'a> BeamView<'a> {
 
     /// Effective tension of an element: what its stress pulls with along it [N].
     pub fn tension(&self, i: usize) -> f64 {
-        let force = self.end_stress(i, 1).0;
+        let force = self.end_stress(i, 1, true).0;
         let chord = self.shape.position[i + 1] - self.shape.position[i];
         let along = chord.try_normalize(0.0).unwrap_or_else(Vector3::zeros);
         force.dot(&along)
     }
 
     /// Force [N] and moment [N m] that the section at the lower (0) or upper (1) end of an element needs against its stress.
-    fn end_stress(&self, i: usize, side: usize) -> (Vector3<f64>, Vector3<f64>) {
+    fn end_stress(&self, i: usize, side: usize, damped: bool) -> (Vector3<f64>, Vector3<f64>) {
         let element = &self.beam.elements[i];
         let gradient = strain_gradient(&self.section(i), &self.section(i + 1), element.length);
-        split(&(element.length * gradient[side].tr_mul(&self.stress(i))))
+        split(&(element.length * gradient[side].tr_mul(&self.stress(i, damped))))
     }
 
-    /// Curvature of an element, starred and without its rest value [1/m].
-    pub fn curvature(&self, i: usize) -> f64 {
-        let state = beam_state(self.shape);
-        let (a, b) = (self.section(i), self.section(i + 1));
-        let strain = self.beam.elements[i].strain(&a, &b, &state.rest[i]);
-        strain[3].hypot(strain[4])
+    /// Bending moment at a node [N m], of its elements' elastic stress: the mean of both sides, which differ by what turns the node.
+    pub fn bending_moment(&self, node: usize) -> f64 {
+        let last = self.beam.elements.len();
+        let upper = (node < last).then(|| -self.end_stress(node, 0, false).1);
+        let lower = (node > 0).then(|| self.end_stress(node - 1, 1, false).1);
+        let moment = match (lower, upper) {
+            (Some(lower), Some(upper)) => 0.5 * (lower + upper),
+            (lower, upper) => lower.or(upper).unwrap_or_else(Vector3::zeros),
+        };
+        let tangent = self.tangent(node);
+        (moment - moment.dot(&tangent) * tangent).norm()
     }
 
-    /// Bending moment of an element [N m].
-    pub fn bending_moment(&self, i: usize) -> f64 {
-        self.beam.elements[i].law.bending * self.curvature(i)
+    /// Curvature at a node beyond that of the rest shape [1/m]: its bending moment over the bending stiffness there.
+    pub fn curvature(&self, node: usize) -> f64 {
+        let last = self.beam.elements.len() - 1;
+        let beside = [node.saturating_sub(1), node.min(last)];
+        let compliance = beside.map(|i| 0.5 / self.beam.elements[i].law.bending);
+        self.bending_moment(node) * compliance.iter().sum::<f64>()
     }
 
     /// Force [N] and moment [N m] of the beam on the point at one of its ends: its element's and its half node's.
@@ -174,7 +185,7 @@ impl<'a> BeamView<'a> {
             End::A => (0, 0, 0),
             End::B => (last, last - 1, 1),
         };
-        let (pull, moment) = self.end_stress(element, side);
+        let (pull, moment) = self.end_stress(element, side, true);
         let tangent = self.tangent(node);
         let mut force = -pull - node_mass(self.nodes, node, tangent) * point.acceleration;
         force.z -= self.nodes.weight[node];
