@@ -249,11 +249,12 @@ impl BeamStatics {
         let unloaded = self.imbalance(case);
         self.assemble(case, sections, 1.0, 0.0);
         let from_rest = unloaded.1 <= 1e-9 * self.imbalance(case).1;
-        let found = if from_rest {
-            self.raise_load(case, sections) || self.settle(case, sections)
-        } else {
-            self.settle(case, sections) || self.raise_load(case, sections)
-        };
+        let found = [from_rest, !from_rest]
+            .into_iter()
+            .any(|raise| match raise {
+                true => self.raise_load(case, sections),
+                false => self.settle(case, sections),
+            });
         if found {
             return Ok(self.solves);
         }
