@@ -33,7 +33,7 @@ use crate::physics::seabed::ContactCoefficients;
 use crate::physics::section::{
     Mixture, Section, Sextuple, corrected, join, response, split, strain, strain_gradient,
 };
-use crate::statics::beam::{BeamEnd, Span, add_elements};
+use crate::statics::beam::{BeamEnd, Span, add_elements, folded};
 
 pub use drive::{Driven, attitude, drive, held};
 pub use measures::{BeamEnergy, BeamView, Momentum};
@@ -48,8 +48,6 @@ const SOLVES_MAX: usize = 30;
 const TURN_MAX: f64 = 1.0;
 /// |θ| beyond which a node turns too far in a step [-]: 2 tan(α/2) of 150°.
 const THETA_MAX: f64 = 7.5;
-/// Cosine of the turn from node to node below which an element is refused [-]: 60°; its moment is greatest at 56°.
-const COSINE_MIN: f64 = 0.5;
 /// Half the range of penetrations over which the seabed damper fades in, in static penetrations of the node [-].
 const DAMPER_FADE: f64 = 2.0;
 
@@ -163,7 +161,10 @@ impl BeamWork {
                 return Err(Stuck { node, reason });
             }
             if change <= TOLERANCE || (change <= ROUNDING && change >= 0.5 * last) {
-                self.check_folds()?;
+                if let Some(node) = folded(&self.now) {
+                    let reason = StuckReason::Folded;
+                    return Err(Stuck { node, reason });
+                }
                 let flow = self.flow(case, shape);
                 self.store(case, shape);
                 return Ok((solves, flow));
@@ -173,20 +174,6 @@ impl BeamWork {
         let (node, _) = self.largest_change(length);
         let reason = StuckReason::Diverged;
         Err(Stuck { node, reason })
-    }
-
-    /// The first element whose sections differ by more than its strains can tell.
-    fn check_folds(&self) -> Result<(), Stuck> {
-        let cosine = |pair: &[Section]| 0.5 * (pair[0].frame.dot(&pair[1].frame) - 1.0);
-        let reason = StuckReason::Folded;
-        match self
-            .now
-            .windows(2)
-            .position(|pair| cosine(pair) < COSINE_MIN)
-        {
-            Some(node) => Err(Stuck { node, reason }),
-            None => Ok(()),
-        }
     }
 
     /// Takes over the state before the step and guesses the one after it.

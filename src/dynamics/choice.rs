@@ -3,7 +3,7 @@
 //! The explicit leapfrog costs least a step. Its axial-implicit variant costs about four times as much and is chosen where
 //! the axial limit lies more than four times below the step that accuracy allows; it serves single lines between held ends.
 //! Networks joined at free points whose axial limit would need more than 25 steps for one of those are integrated fully
-//! implicitly, and so are lines that mix strain measures or have nodes without mass.
+//! implicitly, and so are lines that mix strain measures or have nodes without mass. Beams have an integrator of their own.
 
 use super::limit::{axial_accuracy_step, explicit_step, free_point_step, transverse_step};
 use crate::model::{Line, Model, Network};

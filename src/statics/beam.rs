@@ -121,12 +121,7 @@ pub fn rest(model: &Model, index: usize, state: &mut State, t: f64) -> Result<()
     };
     BeamStatics::new(sections.len())
         .solve(&case, &mut sections)
-        .map_err(|imbalance| StaticsError::BeamNotConverged {
-            line: line.name.clone(),
-            node: imbalance.node,
-            residual: imbalance.residual,
-            iterations: imbalance.solves,
-        })?;
+        .map_err(|restless| refusal(&line.name, restless))?;
     let line_state = &mut state.lines[index];
     for (i, section) in sections.iter().enumerate() {
         line_state.position[i] = section.position;
@@ -140,6 +135,23 @@ pub fn rest(model: &Model, index: usize, state: &mut State, t: f64) -> Result<()
         }
     }
     Ok(())
+}
+
+fn refusal(line: &str, restless: Restless) -> StaticsError {
+    let line = line.to_string();
+    match restless {
+        Restless::Imbalance {
+            node,
+            residual,
+            solves,
+        } => StaticsError::BeamNotConverged {
+            line,
+            node,
+            residual,
+            iterations: solves,
+        },
+        Restless::Folded { node } => StaticsError::BeamFolded { line, node },
+    }
 }
 
 /// A beam and what acts on it.
@@ -157,13 +169,32 @@ pub struct BeamCase<'a> {
 
 /// Why no equilibrium was found.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Imbalance {
-    /// Node where the forces and moments are farthest from balance.
-    pub node: usize,
-    /// Force out of balance there, moments over the element length included [N].
-    pub residual: f64,
-    /// Linear solves spent [-].
-    pub solves: usize,
+pub enum Restless {
+    /// The search ended without one.
+    Imbalance {
+        /// Node where the forces and moments are farthest from balance.
+        node: usize,
+        /// Force out of balance there, moments over the element length included [N].
+        residual: f64,
+        /// Linear solves spent [-].
+        solves: usize,
+    },
+    /// It was found with an element bent or twisted beyond what two sections can tell.
+    Folded {
+        /// Node at the lower end of the element.
+        node: usize,
+    },
+}
+
+/// Cosine of the turn from node to node below which an element is refused [-]: 60°; its moment is greatest at 56°.
+const COSINE_MIN: f64 = 0.5;
+
+/// The first element whose sections differ by more than its strains can tell, by its lower node.
+pub(crate) fn folded(sections: &[Section]) -> Option<usize> {
+    let cosine = |pair: &[Section]| 0.5 * (pair[0].frame.dot(&pair[1].frame) - 1.0);
+    sections
+        .windows(2)
+        .position(|pair| cosine(pair) < COSINE_MIN)
 }
 
 /// Where the sections of a beam are before, at the mean of, and after a step; in statics all are the same.
@@ -242,7 +273,7 @@ impl BeamStatics {
         &mut self,
         case: &BeamCase,
         sections: &mut Vec<Section>,
-    ) -> Result<usize, Imbalance> {
+    ) -> Result<usize, Restless> {
         self.start.clone_from(sections);
         self.solves = 0;
         self.assemble(case, sections, 0.0, 0.0);
@@ -255,17 +286,19 @@ impl BeamStatics {
                 true => self.raise_load(case, sections),
                 false => self.settle(case, sections),
             });
-        if found {
-            return Ok(self.solves);
-        }
         self.assemble(case, sections, 1.0, 0.0);
         let (node, residual) = self.imbalance(case);
+        let restless = match (found, folded(sections)) {
+            (true, None) => return Ok(self.solves),
+            (true, Some(node)) => Restless::Folded { node },
+            (false, _) => Restless::Imbalance {
+                node,
+                residual,
+                solves: self.solves,
+            },
+        };
         sections.clone_from(&self.start);
-        Err(Imbalance {
-            node,
-            residual,
-            solves: self.solves,
-        })
+        Err(restless)
     }
 
     fn raise_load(&mut self, case: &BeamCase, sections: &mut Vec<Section>) -> bool {

@@ -60,6 +60,17 @@ pub enum StaticsError {
         /// Linear solves spent [-].
         iterations: usize,
     },
+    /// The equilibrium of a beam bends or twists an element beyond what its ends can tell.
+    #[error(
+        "line \"{line}\", node {node}: at rest the beam turns by more than 60 degrees from this node to the next; use more elements \
+         there, or a greater bending or torsional stiffness"
+    )]
+    BeamFolded {
+        /// Name of the line.
+        line: String,
+        /// Node at the lower end of the element, from 0 at end A.
+        node: usize,
+    },
     /// An input is not a finite number.
     #[error("{place}: {value} m is not a finite position")]
     NotFinite {

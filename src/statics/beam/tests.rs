@@ -246,3 +246,30 @@ fn a_beam_that_nothing_holds_is_refused_and_left_where_it_was() {
     assert!(BeamStatics::new(7).solve(&case, &mut sections).is_err());
     assert_eq!(sections, bench.sections);
 }
+
+#[test]
+fn an_equilibrium_that_folds_its_elements_is_refused() {
+    let bench = straight_bench(2, 1.0, law(1e4, 1.0));
+    let mut sections = bench.sections.clone();
+    let (sin, cos) = 2.6_f64.sin_cos(); // two elements of 75° each
+    sections[1].frame = turned_to(
+        &sections[0].frame,
+        Vector3::new(0.27, 0.96, 0.0).normalize(),
+    );
+    sections[2].frame = turned_to(&sections[1].frame, Vector3::new(cos, sin, 0.0));
+    sections[1].position = Vector3::new(0.4, 0.2, 0.0);
+    sections[2].position = Vector3::new(0.2, 0.6, 0.0);
+    let start = sections.clone();
+    let case = BeamCase {
+        beam: &bench.beam,
+        nodes: &bench.nodes,
+        rest: &bench.rest,
+        ends: [BeamEnd::clamped(), BeamEnd::clamped()],
+    };
+    let refused = BeamStatics::new(3).solve(&case, &mut sections);
+    assert!(
+        matches!(refused, Err(Restless::Folded { .. })),
+        "{refused:?}"
+    );
+    assert_eq!(sections, start);
+}
