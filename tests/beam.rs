@@ -538,3 +538,112 @@ fn a_sliding_collar_draws_a_bending_wire_to_its_published_span_at_second_order()
         );
     }
 }
+
+/// A repeatable number in 0 … 1.
+fn noise(seed: &mut u64) -> f64 {
+    *seed = seed
+        .wrapping_mul(6364136223846793005)
+        .wrapping_add(1442695040888963407);
+    (*seed >> 11) as f64 / (1u64 << 53) as f64
+}
+
+/// A beam over a bed in water, with a fairlead that moves; stiffnesses, lengths, ends and motions as the seed has them.
+fn any_beam(seed: &mut u64) -> Scene {
+    let mut decades = |low: f64, high: f64| 10.0_f64.powf(low + (high - low) * noise(seed));
+    let (ea, ei) = (decades(6.0, 9.0), decades(0.0, 6.0));
+    let (ga, gj) = (decades(6.0, 8.0), ei * decades(-0.5, 0.5));
+    let (inertia, slack) = (decades(-5.0, 0.0), decades(-3.0, -0.9) + 0.99);
+    let (period, amplitude) = (decades(0.5, 1.3), decades(-1.0, 0.0));
+    let elements = decades(1.2, 1.9) as usize;
+    let clamp = |key: &str, given: bool, seed: &mut u64| match given {
+        true => format!(
+            "{key} = [{}, {}, {}]",
+            0.5 + noise(seed),
+            noise(seed) - 0.5,
+            noise(seed) - 0.5
+        ),
+        false => String::new(),
+    };
+    let stiff = ei > 1e4; // a bend at a clamp is √(EI/T) long, and elements must be shorter
+    let given = [0, 1].map(|_| noise(seed) < 0.5 && stiff);
+    let clamps = [
+        clamp("clamped_a", given[0], seed),
+        clamp("clamped_b", given[1], seed),
+    ];
+    let b = [10.0 + 40.0 * noise(seed), 5.0 * noise(seed), -5.0];
+    let chord = (b[0] * b[0] + b[1] * b[1] + 15.0 * 15.0_f64).sqrt();
+    scene(&format!(
+        r#"
+        [water]
+        density = 1025.0
+        [seabed]
+        depth = 20.0
+        [line_types.rod]
+        model = "beam"
+        mass = 20.0
+        diameter = 0.1
+        drag_normal = 1.2
+        added_mass_normal = 1.0
+        axial_stiffness = {ea}
+        shear_stiffness = {ga}
+        bending_stiffness = {ei}
+        torsional_stiffness = {gj}
+        rotary_inertia = {inertia}
+        rayleigh = {{ ratios = [0.05, 0.05], frequencies = [1.0, 50.0] }}
+        [[points]]
+        name = "a"
+        position = [0.0, 0.0, -20.0]
+        kind = "fixed"
+        [[points]]
+        name = "b"
+        position = {b:?}
+        kind = "coupled"
+        [[lines]]
+        name = "rod"
+        from = "a"
+        to = "b"
+        {}
+        {}
+        sections = [{{ type = "rod", length = {}, elements = {elements} }}]
+        [motion]
+        b = {{ x = [[{amplitude}, {period}]], z = [[{amplitude}, {}]] }}
+        "#,
+        clamps[0],
+        clamps[1],
+        slack * chord,
+        0.7 * period
+    ))
+}
+
+#[test]
+fn any_beam_runs_or_says_why_not() {
+    let mut seed = 1;
+    let (mut ran, mut refused) = (0, 0);
+    let mut refuse = |message: String| {
+        let advised = ["use more elements", "solver.time_step_max"];
+        assert!(
+            advised.iter().any(|advice| message.contains(advice)),
+            "{message}"
+        );
+        refused += 1;
+    };
+    for _ in 0..60 {
+        let mut simulation = match Simulation::new(&any_beam(&mut seed)) {
+            Ok(simulation) => simulation,
+            Err(error) => {
+                refuse(error.to_string());
+                continue;
+            }
+        };
+        simulation.follow_scene().unwrap();
+        let result = (0..60).try_for_each(|_| simulation.advance(0.05));
+        let nodes = &simulation.state().lines[0].position;
+        assert!(nodes.iter().all(|r| r.iter().all(|x| x.is_finite())));
+        assert!(simulation.tension_b(0).is_finite() && simulation.energy_error().is_finite());
+        match result {
+            Ok(()) => ran += 1,
+            Err(error) => refuse(error.to_string()),
+        }
+    }
+    assert!(ran >= 45, "{ran} ran, {refused} were refused");
+}

@@ -6,17 +6,18 @@
 //!   R = Σ L Bᵀ S + w ẑ − contact − loads,   J = Σ (L Bᵀ C B + geometric part) + contact,
 //!
 //! solved by Newton's method; spins are applied by the Cayley transform, and steps are shortened to a fraction of a turn. Where the
-//! beam starts free of stress the loads are raised in parts, the fewer the better. Elsewhere, and where that fails, the search is
-//! pseudo-transient: J + λ D with D the nodes' own stiffness, λ lowered as the forces out of balance are.
+//! beam starts free of stress the loads are raised in parts, the fewer the better. Elsewhere, and where that fails, the search goes down
+//! in energy: J + λ D with D the nodes' own stiffness, λ lowered where the energy falls and raised where it does not, on a beam that is soft
+//! in stretch and shear at first. So it ends at a minimum. Clamps begin along the beam and are turned to where they are held.
 //!
 //! A beam that neither end holds from turning about itself does so without resistance: its first node then resists a turn about d₃, which
 //! changes the way to the equilibrium and not the equilibrium.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Rotation3, Vector3};
 
 use crate::math::pivoted_chain::PivotedChain;
-use crate::math::rotation::cayley;
-use crate::model::{Beam, Model, Nodes, Point, PointState, State};
+use crate::math::rotation::{cayley, turned_to};
+use crate::model::{Beam, BeamElement, Model, Nodes, Point, PointState, State};
 use crate::physics::section::{
     Mixture, Response, Section, Sextuple, geometric_stiffness, join, response, split, strain,
     strain_gradient,
@@ -33,10 +34,18 @@ const STEP_MAX: [f64; 2] = [0.1, 0.3];
 const NEWTON_SOLVES_MAX: usize = 60;
 /// Parts that the load is raised in: each of these is tried [-].
 const LOAD_PARTS: [usize; 4] = [1, 5, 25, 125];
-/// Solves of the pseudo-transient search [-].
-const TRANSIENT_SOLVES_MAX: usize = 3000;
-/// λ below which it is taken for zero [-].
-const ANCHORING_MIN: f64 = 1e-9;
+/// Solves of the search by falling energy, for each stiffness on the way [-].
+const DESCENT_SOLVES_MAX: usize = 400;
+/// Steps of that search below this [-] leave the rest to Newton's method.
+const SETTLED: f64 = 1e-4;
+/// Least λ [-].
+const ANCHORING_MIN: f64 = 1e-12;
+/// From each axial and shear stiffness to the next on the way [-].
+const STIFFENING: f64 = 30.0;
+/// Least axial and shear stiffness on the way, over weight, loads and EI/l² [-].
+const SOFTNESS: f64 = 100.0;
+/// Turn of a clamp from one equilibrium to the next on the way to where it is held [rad].
+const CLAMP_TURN: f64 = 0.25;
 
 /// What holds and loads an end of a beam.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -119,9 +128,7 @@ pub fn rest(model: &Model, index: usize, state: &mut State, t: f64) -> Result<()
         rest: &shape.rest,
         ends: [end(0), end(1)],
     };
-    BeamStatics::new(sections.len())
-        .solve(&case, &mut sections)
-        .map_err(|restless| refusal(&line.name, restless))?;
+    turn_clamps_in(&case, &mut sections).map_err(|restless| refusal(&line.name, restless))?;
     let line_state = &mut state.lines[index];
     for (i, section) in sections.iter().enumerate() {
         line_state.position[i] = section.position;
@@ -135,6 +142,39 @@ pub fn rest(model: &Model, index: usize, state: &mut State, t: f64) -> Result<()
         }
     }
     Ok(())
+}
+
+/// Finds the equilibrium with the clamped ends along their neighbours, then turns them step by step to where they are held.
+fn turn_clamps_in(case: &BeamCase, sections: &mut Vec<Section>) -> Result<usize, Restless> {
+    let last = sections.len() - 1;
+    let mut work = BeamStatics::new(last + 1);
+    let held = [(0, 1), (last, last - 1)].map(|(node, next)| {
+        let target = sections[node].frame;
+        let along = sections[next].frame.column(2).into_owned();
+        let start = match case.ends[node / last].held[3] && last > 1 {
+            true => turned_to(&target, along),
+            false => target,
+        };
+        let turn = Rotation3::from_matrix_unchecked(target * start.transpose());
+        (node, start, turn.scaled_axis(), target)
+    });
+    let angle = held[0].2.norm().max(held[1].2.norm());
+    let parts = (angle / CLAMP_TURN).ceil() as usize;
+    let mut solves = 0;
+    for part in 0..parts {
+        for (node, start, turn, _) in &held {
+            if case.ends[node / last].held[3] {
+                let share = part as f64 / parts as f64;
+                sections[*node].frame = Rotation3::new(share * turn).matrix() * start;
+            }
+        }
+        // an equilibrium on the way that is not found is passed over
+        solves += work.solve(case, sections).unwrap_or(0);
+    }
+    for (node, _, _, target) in &held {
+        sections[*node].frame = *target;
+    }
+    Ok(solves + work.solve(case, sections)?)
 }
 
 fn refusal(line: &str, restless: Restless) -> StaticsError {
@@ -245,12 +285,66 @@ pub(crate) fn add_elements(
     }
 }
 
+/// Axial and shear stiffness that the search begins with [N].
+fn softest(case: &BeamCase) -> f64 {
+    let weight: f64 = case.nodes.weight.iter().map(|w| w.abs()).sum();
+    let loads = case.ends.iter().map(|end| split(&end.load).0.norm());
+    let bending = |element: &BeamElement| {
+        element.law.bending.max(element.law.torsion) / element.length.powi(2)
+    };
+    let bending = case.beam.elements.iter().map(bending).fold(0.0, f64::max);
+    SOFTNESS * (weight + loads.sum::<f64>()).max(bending)
+}
+
+/// Force out of balance that the rounding of positions alone may leave [N].
+fn rounding(case: &BeamCase, sections: &[Section]) -> f64 {
+    let reach = sections
+        .iter()
+        .map(|s| s.position.norm())
+        .fold(0.0, f64::max);
+    let noise = |element: &BeamElement| {
+        element.law.axial.max(element.law.shear) * (reach / element.length + 1.0)
+    };
+    f64::EPSILON * case.beam.elements.iter().map(noise).fold(0.0, f64::max)
+}
+
+/// Potential energy, and the size of what it is the sum of [J].
+struct Energy {
+    value: f64,
+    size: f64,
+}
+
+/// Of strain, weight, contact and the forces at the ends; moments on ends have no potential and are left out.
+fn energy(case: &BeamCase, sections: &[Section]) -> Energy {
+    let (mut value, mut size) = (0.0, 0.0);
+    let mut add = |part: f64| {
+        value += part;
+        size += part.abs();
+    };
+    for (i, element) in case.beam.elements.iter().enumerate() {
+        let strain = element.strain(&sections[i], &sections[i + 1], &case.rest[i]);
+        add(element.energy(&strain).total());
+    }
+    for (i, section) in sections.iter().enumerate() {
+        add(case.nodes.weight[i] * section.position.z);
+        if let Some(contact) = &case.nodes.contact {
+            let penetration = (contact.level[i] - section.position.z).max(0.0);
+            add(0.5 * contact.stiffness[i] * penetration * penetration);
+        }
+    }
+    for (node, end) in [0, sections.len() - 1].into_iter().zip(&case.ends) {
+        add(-split(&end.load).0.dot(&sections[node].position));
+    }
+    Energy { value, size }
+}
+
 /// Scratch of the search for an equilibrium.
 #[derive(Debug, Clone)]
 pub struct BeamStatics {
     chain: PivotedChain,
     unit: Vec<Matrix3<f64>>,
     start: Vec<Section>,
+    trial: Vec<Section>,
     solves: usize,
 }
 
@@ -261,6 +355,7 @@ impl BeamStatics {
             chain: PivotedChain::new(nodes),
             unit: vec![Matrix3::identity(); nodes],
             start: Vec::with_capacity(nodes),
+            trial: Vec::with_capacity(nodes),
             solves: 0,
         }
     }
@@ -310,9 +405,12 @@ impl BeamStatics {
 
     /// Newton's method at a part of the load [-].
     fn newton(&mut self, case: &BeamCase, sections: &mut [Section], load: f64) -> bool {
-        let mut last = f64::INFINITY;
+        let (mut last, rounding) = (f64::INFINITY, rounding(case, sections));
         for _ in 0..NEWTON_SOLVES_MAX {
             self.assemble(case, sections, load, 0.0);
+            if self.imbalance(case).1 <= rounding {
+                return true;
+            }
             let Some(step) = self.step(case, sections) else {
                 return false;
             };
@@ -324,39 +422,56 @@ impl BeamStatics {
         false
     }
 
-    /// The pseudo-transient search at full load.
+    /// The search at full load by falling energy, on beams that are stiffened from soft to as they are; Newton's method ends it.
     fn settle(&mut self, case: &BeamCase, sections: &mut Vec<Section>) -> bool {
         sections.clone_from(&self.start);
-        let (mut anchoring, mut residual, mut last) = (1.0, f64::INFINITY, f64::INFINITY);
-        for _ in 0..TRANSIENT_SOLVES_MAX {
-            self.assemble(case, sections, 1.0, anchoring);
-            let (_, now) = self.imbalance(case);
-            let fallen: f64 = now / residual;
-            anchoring *= if residual.is_finite() {
-                fallen.clamp(0.3, 2.0) * 0.7
-            } else {
-                1.0
-            };
-            anchoring = if anchoring < ANCHORING_MIN {
-                0.0
-            } else {
-                anchoring
-            };
-            residual = now;
-            let Some(step) = self.step(case, sections) else {
-                anchoring = 10.0 * anchoring.max(1e-3);
-                continue;
-            };
-            let done = step <= TOLERANCE || (step <= ROUNDING && step >= 0.5 * last);
-            if done && anchoring <= ANCHORING_MIN {
-                return true;
+        let stiffest = |element: &BeamElement| element.law.axial.max(element.law.shear);
+        let full = case.beam.elements.iter().map(stiffest).fold(0.0, f64::max);
+        let mut stiffness = softest(case).min(full);
+        let mut soft = case.beam.clone();
+        let mut anchoring = 1.0;
+        loop {
+            for (soft, element) in soft.elements.iter_mut().zip(&case.beam.elements) {
+                soft.law.axial = element.law.axial.min(stiffness);
+                soft.law.shear = element.law.shear.min(stiffness);
             }
-            if anchoring == 0.0 && step > 0.1 {
-                anchoring = 1e-3;
+            let softened = BeamCase {
+                beam: &soft,
+                ..*case
+            };
+            anchoring = self.descend(&softened, sections, anchoring);
+            if stiffness >= full {
+                return self.newton(case, sections, 1.0);
             }
-            last = step;
+            stiffness = (STIFFENING * stiffness).min(full);
         }
-        false
+    }
+
+    /// Goes down in energy until steps are short: J + λ D, λ lowered where the energy fell and raised where it did not. Gives the λ it ended
+    /// with [-].
+    fn descend(&mut self, case: &BeamCase, sections: &mut Vec<Section>, from: f64) -> f64 {
+        let (mut anchoring, mut last) = (from.max(1e-6), energy(case, sections));
+        for _ in 0..DESCENT_SOLVES_MAX {
+            self.assemble(case, sections, 1.0, anchoring);
+            self.trial.clone_from(sections);
+            let step = self.step(case, sections);
+            let now = energy(case, sections);
+            let rounding = 1e-12 * (now.size + last.size);
+            match step {
+                Some(step) if now.value <= last.value + rounding => {
+                    if step < SETTLED && anchoring <= ANCHORING_MIN {
+                        break;
+                    }
+                    anchoring = (0.2 * anchoring).max(ANCHORING_MIN);
+                    last = now;
+                }
+                _ => {
+                    sections.clone_from(&self.trial);
+                    anchoring *= 6.0;
+                }
+            }
+        }
+        anchoring
     }
 
     fn assemble(&mut self, case: &BeamCase, sections: &[Section], load: f64, anchoring: f64) {
@@ -412,7 +527,7 @@ impl BeamStatics {
         for (i, element) in beam.elements.iter().enumerate() {
             let (law, l) = (&element.law, element.length);
             let push = anchoring * law.axial.max(law.shear) / l;
-            let turn = anchoring * (law.bending.max(law.torsion) / l);
+            let turn = 0.25 * push * l * l + anchoring * law.bending.max(law.torsion) / l;
             for node in [i, i + 1] {
                 for axis in 0..3 {
                     self.chain.diagonal[node][(axis, axis)] += push;

@@ -32,7 +32,7 @@ pub fn drive<K: Fn(usize, f64) -> Kinematics>(
     work: &mut BeamWork,
 ) -> Result<Driven, Stuck> {
     let line = &model.lines[index];
-    let Some(beam) = &line.beam else {
+    let (Some(beam), Some(_)) = (&line.beam, &state.lines[index].beam) else {
         return Ok(Driven::default());
     };
     let step = (end - start) / count as f64;

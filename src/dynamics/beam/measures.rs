@@ -58,7 +58,8 @@ impl BeamEnergy {
 impl<'a> BeamView<'a> {
     /// Of a line, where it is a beam.
     pub fn of(line: &'a Line, shape: &'a LineState) -> Option<BeamView<'a>> {
-        line.beam.as_ref().map(|beam| BeamView {
+        let beam = line.beam.as_ref()?;
+        shape.beam.is_some().then_some(BeamView {
             beam,
             nodes: &line.nodes,
             shape,
