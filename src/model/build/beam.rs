@@ -15,8 +15,8 @@ use crate::model::{Beam, BeamElement};
 use crate::physics::rayleigh;
 use crate::physics::section::SectionLaw;
 use crate::scene::{
-    FibreLaw, Integrator, Line, LineModel, LineType, RestShape, Scene, SceneError, SolidSection,
-    Strain,
+    FibreLaw, InitialShape, Integrator, Line, LineModel, LineType, RestShape, Scene, SceneError,
+    SolidSection, Strain,
 };
 
 /// A section of a beam line, per unstretched length.
@@ -74,7 +74,9 @@ fn assemble(line: &Line, parts: &[Part], elements: &[usize]) -> Beam {
         rotary_inertia: vec![Vector3::zeros()],
         clamped: [line.clamped_a, line.clamped_b]
             .map(|direction| direction.map(|d| Vector3::from(d).normalize())),
-        rests_as_it_starts: line.rest_shape == RestShape::Initial,
+        // an equilibrium is no shape that is given
+        rests_as_it_starts: line.rest_shape == RestShape::Initial
+            && line.initial != InitialShape::Static,
     };
     for ((section, part), &count) in line.sections.iter().zip(parts).zip(elements) {
         let length = section.length / count as f64;
