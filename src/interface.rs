@@ -83,8 +83,6 @@ impl Unit {
     pub const METRE_PER_SECOND_SQUARED: Unit = Unit::of("m/s2", 0, 1, -2);
     /// Newton.
     pub const NEWTON: Unit = Unit::of("N", 1, 1, -2);
-    /// Newton metre.
-    pub const NEWTON_METRE: Unit = Unit::of("N.m", 1, 2, -2);
     /// Newton per metre.
     pub const NEWTON_PER_METRE: Unit = Unit::of("N/m", 1, 0, -2);
     /// One per metre.
@@ -299,7 +297,7 @@ impl Interface {
         for (index, line) in scene.lines.iter().enumerate() {
             check_name(&line.name, &format!("lines[{index}].name"))?;
             push_line(&mut variables, index, &line.name);
-            if model.lines[index].bending.is_some() {
+            if model.lines[index].bends() {
                 push_bending(&mut variables, index, &line.name);
             }
         }

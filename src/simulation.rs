@@ -6,21 +6,23 @@
 
 use std::sync::Arc;
 
-use nalgebra::{Vector3, Vector6};
+use nalgebra::{Matrix3, Vector3, Vector6};
 use serde::{Deserialize, Serialize};
 
 use crate::dynamics::advance::{Counters, Workspace};
+use crate::dynamics::beam::{self, BeamView, Momentum};
 use crate::dynamics::ledger::{Energy, Ledger};
 use crate::dynamics::motion::{AxisPath, HostPath, Sample, VesselPath};
 use crate::dynamics::{Choice, StepError, reaction};
 use crate::math::attitude::angle_rates;
 use crate::model::{
-    Body, ClosedForm, End, Frame, Kinematics, Line, LineState, Model, PointState, Role, State, joint,
+    Body, ClosedForm, End, Frame, Kinematics, Line, LineState, Model, PointState, Role, State,
+    joint,
 };
 use crate::physics::stretch::StretchLaw;
-use crate::scene::{Integrator, Scene, SceneError};
+use crate::scene::{InitialShape, Integrator, Scene, SceneError};
 use crate::statics::catenary::{self, Bed, Catenary};
-use crate::statics::{StaticsError, assembly, catenary_network, equilibrium};
+use crate::statics::{self, StaticsError, assembly, catenary_network, equilibrium};
 
 /// Why a simulation could not be made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -347,21 +349,28 @@ impl Simulation {
             }
             let force = Vector3::from(self.end_force(index));
             let arm = self.snapshot.state.points[index].position - origin;
-            let moment = arm.cross(&force) + self.clamp_moment(index);
+            let moment = arm.cross(&force) + self.end_moment(index);
             sum += Vector6::new(force.x, force.y, force.z, moment.x, moment.y, moment.z);
         }
         sum.into()
     }
 
-    /// Moment [N m] of the lines that are clamped at a point on what holds it.
-    pub fn clamp_moment(&self, point: usize) -> Vector3<f64> {
+    /// Moment [N m] of the lines that are clamped to a point on what holds it, in global axes.
+    pub fn end_moment(&self, point: usize) -> Vector3<f64> {
         let (model, state) = (&*self.model, &self.snapshot.state);
-        let attached = model.points[point].attached.iter();
+        let at = &state.points[point];
         let moment = |&(line, end): &(usize, End)| {
-            let (data, nodes) = (&model.lines[line], &state.lines[line].position);
-            assembly::end_moment(data, nodes, end, &state.points[point])
+            let (data, shape) = (&model.lines[line], &state.lines[line]);
+            match BeamView::of(data, shape) {
+                Some(view) => {
+                    let clamped = view.beam.clamped[usize::from(end == End::B)].is_some();
+                    clamped.then(|| view.end_action(end, at).1)
+                }
+                None => Some(assembly::end_moment(data, &shape.position, end, at)),
+            }
         };
-        attached.map(moment).sum()
+        let attached = &model.points[point].attached;
+        attached.iter().filter_map(moment).sum()
     }
 
     /// Force of the mooring on a point [N]: what a vessel feels there.
@@ -467,6 +476,13 @@ impl Simulation {
     /// Curvature [1/m] and bending moment [N m] at every node, where the line has bending stiffness; zero at hinges and pinned ends.
     pub fn bending(&self, line: usize) -> Option<Vec<NodeBending>> {
         let (data, state) = (&self.model.lines[line], &self.snapshot.state);
+        if let Some(view) = BeamView::of(data, &state.lines[line]) {
+            let at = |node| NodeBending {
+                curvature: view.curvature(node),
+                moment: view.bending_moment(node),
+            };
+            return Some((0..=data.segment_count()).map(at).collect());
+        }
         let bending = data.bending.as_ref()?;
         let clamps = data.clamps(&state.points);
         let nodes = &state.lines[line].position;
@@ -498,6 +514,20 @@ impl Simulation {
                 bending: bending.as_ref().map(|nodes| nodes[node]),
             })
             .collect()
+    }
+
+    /// Momenta of all beams.
+    pub fn momentum(&self) -> Momentum {
+        let lines = self.model.lines.iter().zip(&self.snapshot.state.lines);
+        lines
+            .filter_map(|(line, shape)| BeamView::of(line, shape))
+            .fold(Momentum::default(), |sum, view| {
+                let own = view.momentum();
+                Momentum {
+                    linear: sum.linear + own.linear,
+                    angular: sum.angular + own.angular,
+                }
+            })
     }
 
     /// Internal steps of the last communication step.
@@ -603,6 +633,9 @@ fn begin(
         .map(|point| PointState::held(&held(point, time)))
         .collect();
     let mut state = at_rest(model, time, &places)?;
+    rest_beams(model, &mut state, time, |point| {
+        beam::attitude(&held(point, time))
+    })?;
     let mut work = Workspace::new(model, &state, |line| static_tension(model, &state, line));
     work.start(model, &mut state, &held);
     let counters = Counters::default();
@@ -646,6 +679,24 @@ fn at_rest(model: &Model, time: f64, places: &[PointState]) -> Result<State, Sta
         }
     }
     Ok(state)
+}
+
+/// Gives beams their frames at time `t` [s], and rest where no shape is given; `attitude` tells how a point has turned.
+fn rest_beams(
+    model: &Model,
+    state: &mut State,
+    t: f64,
+    attitude: impl Fn(usize) -> Matrix3<f64>,
+) -> Result<(), StaticsError> {
+    for (index, line) in model.lines.iter().enumerate() {
+        if line.beam.is_some() {
+            state.lines[index].become_beam(line, line.ends.map(&attitude));
+            if line.initial == InitialShape::Static {
+                statics::beam::rest(model, index, state, t)?;
+            }
+        }
+    }
+    Ok(())
 }
 
 fn static_tension(model: &Model, state: &State, line: usize) -> f64 {

@@ -30,6 +30,16 @@ unsafe impl GlobalAlloc for Counting {
 static ALLOCATOR: Counting = Counting;
 
 #[test]
+fn a_step_of_a_beam_allocates_nothing() {
+    let scene = Scene::from_toml(include_str!("../../scenes/flying_spaghetti_3d.toml")).unwrap();
+    let mut simulation = Simulation::new(&scene).unwrap();
+    simulation.advance(0.1).unwrap();
+    let before = COUNT.with(Cell::get);
+    (0..99).for_each(|_| simulation.advance(0.1).unwrap());
+    assert_eq!(COUNT.with(Cell::get) - before, 0);
+}
+
+#[test]
 fn a_step_allocates_nothing() {
     for integrator in [
         Integrator::Leapfrog,

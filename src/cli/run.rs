@@ -77,6 +77,7 @@ fn step_through(
     let stride = times.frame_stride(scene.output.profile);
     record.add_row(0.0, variables.iter().map(|v| value(v, simulation, 0.0)));
     record.frames.push(collect::frame(simulation, 0.0));
+    record.flight.extend(collect::flight(simulation, 0.0));
     let bar = progress(times.count as u64);
     let mut wall = Duration::ZERO;
     for index in 0..times.count {
@@ -94,6 +95,7 @@ fn step_through(
             .collect();
         check_finite(now, &variables, &row)?;
         record.add_row(now, row);
+        record.flight.extend(collect::flight(simulation, now));
         if (index + 1) % stride == 0 || index + 1 == times.count {
             record.frames.push(collect::frame(simulation, now));
         }

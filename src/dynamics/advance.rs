@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::axial_implicit::AxialWork;
+use super::beam::{self, BeamWork, Driven, Stuck, StuckReason};
 use super::implicit::{self, Scheme};
 use super::leapfrog::Step;
 use super::ledger::{self, Energy, Flow};
@@ -54,6 +55,7 @@ enum Solver {
     Leapfrog(NetworkWork),
     AxialImplicit(Box<AxialWork>),
     Implicit(Scheme),
+    Beam(Box<BeamWork>),
     QuasiStatic,
 }
 
@@ -141,6 +143,7 @@ impl Workspace {
                 Solver::Implicit(scheme) => {
                     step.implicit(number, choice.step_max, scheme, &mut self.implicit, next)?
                 }
+                Solver::Beam(work) => step.beam(number, choice.step_max, work, next)?,
                 Solver::QuasiStatic => step.quasi_static(number, &mut self.implicit, next)?,
             };
             total.counters.substeps = total.counters.substeps.max(done.counters.substeps);
@@ -161,6 +164,10 @@ impl Solver {
             |solver: Option<Solver>| solver.expect("the integrator was chosen for these lines");
         match integrator {
             Integrator::QuasiStatic => Solver::QuasiStatic,
+            Integrator::Beam => {
+                let nodes = model.lines[network.lines[0]].segment_count() + 1;
+                Solver::Beam(Box::new(BeamWork::new(nodes)))
+            }
             Integrator::AxialImplicit => {
                 let rho = model
                     .solver
@@ -309,6 +316,42 @@ impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
             solves: done.solves,
         };
         Ok(Done { counters, flow })
+    }
+
+    fn beam(
+        &self,
+        number: usize,
+        step_max: f64,
+        work: &mut BeamWork,
+        next: &mut State,
+    ) -> Result<Done, StepError> {
+        let (model, network) = (self.model, &self.model.networks[number]);
+        let (index, span) = (network.lines[0], [self.start, self.start + self.length]);
+        let mut stuck = Stuck {
+            node: 0,
+            reason: StuckReason::Diverged,
+        };
+        for retry in 0..=RETRIES_MAX {
+            let count = self.substeps(step_max, retry)?;
+            copy_network(model, network, self.state, next);
+            match beam::drive(model, index, next, self.held, span, count, work) {
+                Ok(Driven { solves, flow }) => {
+                    let counters = Counters {
+                        substeps: count,
+                        solves,
+                    };
+                    return Ok(Done { counters, flow });
+                }
+                Err(failure) => stuck = failure,
+            }
+        }
+        Err(StepError {
+            time: self.start,
+            line: model.lines[index].name.clone(),
+            node: stuck.node,
+            reason: stuck.reason.to_string(),
+            advice: stuck.reason.advice(),
+        })
     }
 
     fn quasi_static(

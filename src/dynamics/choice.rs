@@ -3,7 +3,7 @@
 //! The explicit leapfrog costs least a step. Its axial-implicit variant costs about four times as much and is chosen where
 //! the axial limit lies more than four times below the step that accuracy allows; it serves single lines between held ends.
 //! Networks joined at free points whose axial limit would need more than 25 steps for one of those are integrated fully
-//! implicitly, and so are lines that bend, mix strain measures or have nodes without mass.
+//! implicitly, and so are lines that bend, mix strain measures or have nodes without mass. Beams have an integrator of their own.
 
 use super::limit::{axial_accuracy_step, explicit_step, free_point_step, transverse_step};
 use crate::model::{Line, Model, Network};
@@ -75,6 +75,9 @@ impl Choice {
 
 fn choose(model: &Model, network: &Network, explicit: f64, accurate: f64) -> Integrator {
     let lines = || network.lines.iter().map(|&line| &model.lines[line]);
+    if lines().any(|line| line.beam.is_some()) {
+        return Integrator::Beam;
+    }
     if lines().any(|line| !line.serves_leapfrog()) {
         return Integrator::GeneralisedAlpha;
     }

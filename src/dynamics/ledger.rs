@@ -20,6 +20,7 @@
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
+use super::beam::{self, BeamView};
 use super::leapfrog::segment_tension;
 use crate::model::{ClosedForm, End, Line, LineState, Model, Network, PointState, State, joint};
 use crate::physics::morison::{DragCoefficients, drag};
@@ -148,6 +149,9 @@ fn line_energy(line: &Line, state: &State, shape: &LineState, model: &Model) -> 
         false => (&memory.velocity, 0.5 * memory.steps[0]),
     };
     let position = |i: usize| shape.position[i] - lag * velocity[i];
+    if let Some(view) = BeamView::of(line, shape) {
+        return view.energy(beam::held(model, line));
+    }
     let n = line.segment_count();
     let mut energy = Energy::default();
     for i in 0..n {

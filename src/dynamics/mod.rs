@@ -2,6 +2,7 @@
 
 pub mod advance;
 pub mod axial_implicit;
+pub mod beam;
 mod choice;
 pub mod implicit;
 mod layout;

@@ -11,6 +11,7 @@
 
 use nalgebra::Vector3;
 
+use super::beam::BeamView;
 use super::leapfrog::segment_tension;
 use crate::model::{End, Line, LineState, PointState};
 use crate::physics::morison::{self, DragCoefficients};
@@ -19,6 +20,9 @@ use crate::statics::assembly::end_shear;
 
 /// Tension of segment `i` [N]; on a closed-form catenary the mean of its ends'.
 pub fn tension(line: &Line, state: &LineState, i: usize, negative_tension: bool) -> f64 {
+    if let Some(view) = BeamView::of(line, state) {
+        return view.tension(i);
+    }
     if let Some(closed_form) = &state.closed_form {
         return 0.5 * (closed_form.tension[i] + closed_form.tension[i + 1]);
     }
@@ -40,6 +44,9 @@ pub fn end_force(
     point: &PointState,
     negative_tension: bool,
 ) -> Vector3<f64> {
+    if let Some(view) = BeamView::of(line, state) {
+        return view.end_action(end, point).0;
+    }
     if let Some(closed_form) = &state.closed_form {
         let [a, b] = closed_form.end_force;
         return match end {

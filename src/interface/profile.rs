@@ -48,7 +48,7 @@ pub(super) fn push(variables: &mut Vec<Variable>, model: &Model, layout: Layout)
             Unit::NEWTON,
             ProfileQuantity::Tension,
         );
-        if built.bending.is_some() {
+        if built.bends() {
             push(
                 "curvature",
                 "curvature",

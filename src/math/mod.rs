@@ -4,3 +4,5 @@ pub mod block_tridiagonal;
 pub mod hermite;
 pub mod lanes;
 pub mod pentadiagonal;
+pub mod pivoted_chain;
+pub mod rotation;

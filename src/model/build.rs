@@ -1,5 +1,7 @@
 //! Scene -> Model.
 
+mod beam;
+
 use nalgebra::Vector3;
 
 use super::{
@@ -44,9 +46,10 @@ impl Model {
             lines.push(built);
         }
         let networks = networks(&points, &lines);
-        networks
-            .iter()
-            .try_for_each(|network| check_integrator(scene, &points, &lines, network))?;
+        networks.iter().try_for_each(|network| {
+            check_beam(&points, &lines, network)?;
+            check_integrator(scene, &points, &lines, network)
+        })?;
         Ok(Model {
             gravity: scene.gravity,
             bed: scene.seabed.as_ref().map(|bed| -bed.depth),
@@ -92,6 +95,7 @@ fn build_point(scene: &Scene, vessels: &[Vessel], point: &scene::Point) -> Point
         reference: carrier.map_or(place, |vessel| vessels[vessel].reference_place(place)),
         role,
         load: point.force.clone(),
+        moment: point.moment.clone(),
         attached: Vec::new(),
     }
 }
@@ -235,6 +239,7 @@ fn build_line(scene: &Scene, index: usize, line: &scene::Line) -> Result<Line, S
         laws.push(line_law(scene, line_type));
     }
     let elements = mesh::section_elements(line, scene.solver.tolerance);
+    let beam = beam::build(scene, index, line, &laws, &elements)?;
     let parts: Vec<SegmentPart> = line
         .sections
         .iter()
@@ -263,6 +268,7 @@ fn build_line(scene: &Scene, index: usize, line: &scene::Line) -> Result<Line, S
         bending: None,
         sections: sections.collect(),
         initial: line.initial.clone(),
+        beam,
     };
     built.bending = line_bending(index, line, &parts, &built)?;
     Ok(built)
@@ -275,7 +281,7 @@ fn line_bending(
     parts: &[SegmentPart],
     built: &Line,
 ) -> Result<Option<Bending>, SceneError> {
-    if parts.iter().all(|part| part.law.bending_stiffness == 0.0) {
+    if built.beam.is_some() || parts.iter().all(|part| part.law.bending_stiffness == 0.0) {
         return Ok(None);
     }
     if parts.len() < 2 {
@@ -423,6 +429,32 @@ fn contact_in_reach(scene: &Scene, ends: [usize; 2], line: &scene::Line) -> bool
     let length: f64 = line.sections.iter().map(|section| section.length).sum();
     let lowest_end = ends.map(|end| scene.points[end].position[2]);
     lowest_end[0].min(lowest_end[1]) - 1.5 * length <= -bed.depth
+}
+
+/// Refuses a beam that shares a free point with another line.
+fn check_beam(points: &[Point], lines: &[Line], network: &Network) -> Result<(), SceneError> {
+    let beam = network
+        .lines
+        .iter()
+        .find(|&&line| lines[line].beam.is_some());
+    match (beam, network.lines.len()) {
+        (None, _) | (_, 1) => Ok(()),
+        (Some(&beam), _) => {
+            let shared = network.free_points.iter();
+            let mut shared = shared.filter(|&&point| points[point].attached.len() > 1);
+            let name = shared
+                .next()
+                .map_or("", |&point| points[point].name.as_str());
+            Err(SceneError::new(
+                format!("lines[{beam}]"),
+                format!(
+                    "line \"{}\" is a beam and meets another line at the free point \"{name}\": a beam may end at a free point of its own, \
+                     or at points that are fixed, coupled or prescribed",
+                    lines[beam].name
+                ),
+            ))
+        }
+    }
 }
 
 /// Refuses a leapfrog for lines that it cannot take.

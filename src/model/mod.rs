@@ -3,6 +3,7 @@
 //! [`Model::new`] is the one gate from the user's [`Scene`]: below it nothing asks what the user wrote. Physics that the
 //! scene does not contain is `None` here, not zero.
 
+mod beam;
 mod bending;
 mod build;
 mod initial;
@@ -14,8 +15,9 @@ mod vessel;
 use nalgebra::Vector3;
 
 use crate::physics::stretch::StretchLaw;
-use crate::scene::{InitialShape, PointForce, Solver};
+use crate::scene::{InitialShape, PointForce, PointMoment, Solver, TimeFunction};
 
+pub use beam::{Beam, BeamElement, BeamState};
 pub use bending::{Bending, joint};
 pub use motion::{Kinematics, Motion, Pose};
 pub use state::{ClosedForm, LineState, PointState, State};
@@ -53,6 +55,8 @@ pub struct Point {
     pub role: Role,
     /// Load in time.
     pub load: Option<PointForce>,
+    /// Moment in time, on the ends of beams.
+    pub moment: Option<PointMoment>,
     /// (line, end) pairs that meet here.
     pub attached: Vec<(usize, End)>,
 }
@@ -126,6 +130,8 @@ pub struct Line {
     pub sections: Vec<Section>,
     /// Shape at the start.
     pub initial: InitialShape,
+    /// What makes it a beam, where it is one.
+    pub beam: Option<Beam>,
 }
 
 /// A section as the closed-form catenary takes it.
@@ -219,6 +225,11 @@ impl Line {
         self.sections.iter().map(|section| section.length).sum()
     }
 
+    /// Whether it resists bending, as a cable or as a beam.
+    pub fn bends(&self) -> bool {
+        self.bending.is_some() || self.beam.is_some()
+    }
+
     /// Index of the node at an end.
     pub fn end_node(&self, end: End) -> usize {
         match end {
@@ -256,15 +267,46 @@ impl Point {
 
     /// Point load at time `t` [s], in [N].
     pub fn load_at(&self, t: f64) -> Vector3<f64> {
-        let Some(load) = &self.load else {
-            return Vector3::zeros();
-        };
-        let along = |f: &Option<crate::scene::TimeFunction>| f.as_ref().map_or(0.0, |f| f.at(t));
-        Vector3::new(along(&load.x), along(&load.y), along(&load.z))
+        self.load_axes().map(|f| f.map_or(0.0, |f| f.at(t))).into()
+    }
+
+    /// Mean point load from `from` to `to` [s], in [N].
+    pub fn load_mean(&self, from: f64, to: f64) -> Vector3<f64> {
+        let mean = |f: Option<&TimeFunction>| f.map_or(0.0, |f| f.mean(from, to));
+        self.load_axes().map(mean).into()
+    }
+
+    /// Moment at time `t` [s], in [N m].
+    pub fn moment_at(&self, t: f64) -> Vector3<f64> {
+        self.moment_axes()
+            .map(|f| f.map_or(0.0, |f| f.at(t)))
+            .into()
+    }
+
+    /// Mean moment from `from` to `to` [s], in [N m].
+    pub fn moment_mean(&self, from: f64, to: f64) -> Vector3<f64> {
+        let mean = |f: Option<&TimeFunction>| f.map_or(0.0, |f| f.mean(from, to));
+        self.moment_axes().map(mean).into()
+    }
+
+    fn load_axes(&self) -> [Option<&TimeFunction>; 3] {
+        let load = self.load.as_ref();
+        load.map_or([None; 3], |f| [f.x.as_ref(), f.y.as_ref(), f.z.as_ref()])
+    }
+
+    fn moment_axes(&self) -> [Option<&TimeFunction>; 3] {
+        let moment = self.moment.as_ref();
+        moment.map_or([None; 3], |m| [m.x.as_ref(), m.y.as_ref(), m.z.as_ref()])
     }
 }
 
 impl Model {
+    /// The beam that makes up a network, if one does.
+    pub fn beam_of(&self, network: usize) -> Option<usize> {
+        let line = self.networks[network].lines[0];
+        self.lines[line].beam.is_some().then_some(line)
+    }
+
     /// Index of the line called `name`.
     pub fn line_index(&self, name: &str) -> Option<usize> {
         self.lines.iter().position(|line| line.name == name)

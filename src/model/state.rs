@@ -1,9 +1,9 @@
 //! All that changes: positions, velocities and the memory of the integrators. Cloning it saves a simulation.
 
-use nalgebra::{UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
 
-use super::Kinematics;
+use super::{BeamState, Kinematics, Line};
 
 /// State of a whole model at one time.
 #[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -46,6 +46,8 @@ pub struct LineState {
     pub half_step: HalfStep,
     /// The rest of the closed-form catenary that the nodes lie on; kept by quasi-static networks only.
     pub closed_form: Option<ClosedForm>,
+    /// What the nodes of a beam have beside positions and velocities.
+    pub beam: Option<BeamState>,
 }
 
 /// What a closed-form catenary says that its nodes do not: their chords are shorter than the arcs between them, which on a stiff line
@@ -103,6 +105,14 @@ impl PointState {
 }
 
 impl LineState {
+    /// Gives a line that is a beam, and rests on its positions, what beams have besides; its points have turned by `attitude` [-].
+    pub fn become_beam(&mut self, line: &Line, attitude: [Matrix3<f64>; 2]) {
+        self.beam = line
+            .beam
+            .as_ref()
+            .map(|beam| BeamState::at_rest(beam, &self.position, attitude));
+    }
+
     /// At rest at the given node positions [m].
     pub fn at_rest(position: Vec<Vector3<f64>>) -> LineState {
         let zeros = vec![Vector3::zeros(); position.len()];
@@ -112,6 +122,7 @@ impl LineState {
             position,
             half_step: HalfStep::default(),
             closed_form: None,
+            beam: None,
         }
     }
 }
@@ -141,7 +152,8 @@ clone_in_place!(LineState {
     velocity,
     acceleration,
     half_step,
-    closed_form
+    closed_form,
+    beam
 });
 clone_in_place!(ClosedForm {
     tension,

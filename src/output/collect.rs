@@ -3,8 +3,10 @@
 use nalgebra::Vector3;
 
 use super::json;
-use super::record::{Catenary, Column, Frame, LineRecord, Node, Record, StaticLine, Surroundings};
-use crate::model::{End, Role};
+use super::record::{
+    Catenary, Column, Flight, Frame, LineRecord, Node, Record, StaticLine, Surroundings,
+};
+use crate::model::{End, Line, Role};
 use crate::scene::{PointKind, Scene};
 use crate::simulation::{NodeBending, Simulation};
 
@@ -103,6 +105,26 @@ pub fn frame(simulation: &Simulation, time: f64) -> Frame {
         time,
         lines: (0..simulation.model().lines.len()).map(nodes).collect(),
     }
+}
+
+/// What beams in free flight hold now, which is `time` [s]; `None` where anything holds a line.
+pub fn flight(simulation: &Simulation, time: f64) -> Option<Flight> {
+    let model = simulation.model();
+    let free = |line: &Line| {
+        let mut ends = line.ends.iter();
+        line.beam.is_some() && ends.all(|&point| model.points[point].free().is_some())
+    };
+    if !model.lines.iter().all(free) {
+        return None;
+    }
+    let energy = simulation.energy();
+    Some(Flight {
+        time,
+        kinetic: energy.kinetic,
+        strain: energy.axial + energy.bending + energy.shear + energy.torsion,
+        gravitational: energy.gravitational,
+        angular_momentum: simulation.momentum().angular.into(),
+    })
 }
 
 /// The equilibrium that a simulation stands in.

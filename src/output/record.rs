@@ -40,6 +40,21 @@ pub struct Frame {
     pub lines: Vec<Vec<Node>>,
 }
 
+/// What beams in free flight hold at one instant.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Flight {
+    /// Time [s].
+    pub time: f64,
+    /// Energy of motion [J].
+    pub kinetic: f64,
+    /// Energy of strain [J].
+    pub strain: f64,
+    /// Energy of weight, above z = 0 [J].
+    pub gravitational: f64,
+    /// Angular momentum about the origin [N m s].
+    pub angular_momentum: [f64; 3],
+}
+
 /// Static figures of a line in its reference configuration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StaticLine {
@@ -114,6 +129,8 @@ pub struct Record {
     pub frames: Vec<Frame>,
     /// The lines.
     pub lines: Vec<LineRecord>,
+    /// What the lines hold in time, where all of them are beams that nothing holds.
+    pub flight: Vec<Flight>,
     /// Names of the points whose force is recorded: the fairleads.
     pub points: Vec<String>,
     /// What surrounds the lines.
@@ -136,6 +153,7 @@ impl Record {
             values: Vec::new(),
             frames: Vec::new(),
             lines: Vec::new(),
+            flight: Vec::new(),
             points: Vec::new(),
             surroundings: Surroundings::default(),
             counters: Counters::default(),

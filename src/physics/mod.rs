@@ -1,8 +1,10 @@
 //! One law per file, pointwise: value, exact slopes and energy. No scene, no index, no loop over nodes.
 
 pub mod bending;
+pub mod contact_step;
 pub mod morison;
 pub mod rayleigh;
 pub mod seabed;
+pub mod section;
 pub mod stretch;
 pub mod weight;

@@ -15,7 +15,7 @@ pub enum TimeFunction {
     Step([f64; 4]),
     /// Straight from f0 before t0 to f1 after t1.
     Ramp([f64; 4]),
-    /// Straight between (t, f) pairs of ascending t, constant outside.
+    /// Straight between (t, f) pairs of ascending t, constant outside; two pairs at one time are a jump.
     Table(Vec<[f64; 2]>),
 }
 
@@ -101,6 +101,36 @@ impl TimeFunction {
             }
             TimeFunction::Table(pairs) => interpolate(pairs, t),
         }
+    }
+
+    /// Mean from `from` to `to` [s], in the unit of its numbers; exact, jumps and kinks included.
+    pub fn mean(&self, from: f64, to: f64) -> f64 {
+        if to <= from {
+            return self.at(from);
+        }
+        match self {
+            TimeFunction::Constant(value) => *value,
+            TimeFunction::Step([t0, _, t1, _]) | TimeFunction::Ramp([t0, _, t1, _]) => {
+                self.mean_over([*t0, *t1].into_iter(), from, to)
+            }
+            TimeFunction::Table(pairs) => {
+                self.mean_over(pairs.iter().map(|[time, _]| *time), from, to)
+            }
+        }
+    }
+
+    /// Two points of Gauss are exact for the cubics between the ascending `breaks` [s].
+    fn mean_over(&self, breaks: impl Iterator<Item = f64>, from: f64, to: f64) -> f64 {
+        let inside = breaks.filter(|t| (from..to).contains(t));
+        let (mut start, mut mean) = (from, 0.0);
+        for end in inside.chain(std::iter::once(to)) {
+            let (middle, half) = (0.5 * (start + end), 0.5 * (end - start));
+            let reach = half / 3.0_f64.sqrt();
+            let both = self.at(middle - reach) + self.at(middle + reach);
+            mean += both * (half / (to - from));
+            start = end;
+        }
+        mean
     }
 }
 
@@ -317,5 +347,30 @@ mod tests {
         assert_eq!(table.at(0.5), 2.0);
         assert_eq!(table.at(2.0), 5.0);
         assert_eq!(table.at(3.0), 5.0);
+    }
+
+    #[test]
+    fn a_mean_over_a_span_is_that_of_many_samples_and_knows_where_a_load_jumps() {
+        let functions = [
+            TimeFunction::Constant(3.0),
+            TimeFunction::Step([1.0, 2.0, 3.0, 6.0]),
+            TimeFunction::Ramp([1.0, 2.0, 3.0, 6.0]),
+            TimeFunction::Table(vec![[0.5, 1.0], [2.0, 5.0], [2.0, -1.0], [4.0, 0.0]]),
+        ];
+        for function in functions {
+            let (from, to, n) = (0.2, 4.7, 1_000_000);
+            let sample =
+                |i: i32| function.at(from + (to - from) * (f64::from(i) + 0.5) / f64::from(n));
+            let mean = (0..n).map(sample).sum::<f64>() / f64::from(n);
+            assert!(
+                (function.mean(from, to) - mean).abs() < 1e-5,
+                "{function:?}"
+            );
+        }
+        let load = TimeFunction::Table(vec![[2.5, 8.0], [2.5, 0.0]]);
+        assert_eq!(load.mean(2.4, 2.5), 8.0);
+        assert!((load.mean(2.0, 3.0) - 4.0).abs() < 1e-15);
+        assert_eq!(load.mean(2.5, 2.6), 0.0);
+        assert_eq!(load.mean(1.0, 1.0), 8.0);
     }
 }

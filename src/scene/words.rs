@@ -1,5 +1,6 @@
 //! A scene in words: what it models, and what it does not.
 
+mod beam;
 mod bending;
 
 use std::f64::consts::PI;
@@ -135,7 +136,8 @@ impl Scene {
             "axial waves at {} m/s",
             significant((ea / mass).sqrt())
         ));
-        parts.extend(bending::stiffness_in_words(line_type));
+        let section = self.section_in_words(line_type);
+        parts.extend(section.or_else(|| bending::stiffness_in_words(line_type)));
         parts.push(damping_in_words(line_type));
         if self.water.is_some() {
             parts.push(water_forces_in_words(line_type));
@@ -154,6 +156,9 @@ impl Scene {
         }
         if let Some(force) = &point.force {
             write!(said, ", {}", force_in_words(force)).expect("a String takes all");
+        }
+        if let Some(moment) = &point.moment {
+            write!(said, ", {}", beam::moment_in_words(moment)).expect("a String takes all");
         }
         if let Some(motion) = &point.motion {
             write!(said, ", {}", motion_in_words(motion)).expect("a String takes all");
@@ -197,13 +202,13 @@ impl Scene {
             }
             InitialShape::Nodes(_) => "starts at the given nodes, at rest".to_string(),
         };
-        let bends = if bending::bends(self, line) {
-            format!("; {}", bending::ends_in_words(line))
-        } else {
-            String::new()
+        let held = match self.hold_in_words(line) {
+            Some(held) => Some(held),
+            None => bending::bends(self, line).then(|| bending::ends_in_words(line)),
         };
+        let held = held.map_or(String::new(), |held| format!("; {held}"));
         format!(
-            "{}: from {} to {}, {}; {fit}; {start}{bends}",
+            "{}: from {} to {}, {}; {fit}; {start}{held}",
             line.name,
             line.from,
             line.to,
@@ -228,6 +233,8 @@ impl Scene {
         };
         let tension = if solver.negative_tension {
             "axial damping acts in compression too, so tension can be negative (the peers' law)"
+        } else if self.all_beams() {
+            "beams push as they pull: tension may be negative"
         } else {
             bending::compression_in_words(self)
         };
@@ -253,7 +260,10 @@ impl Scene {
     }
 
     fn absences_in_words(&self) -> Vec<String> {
-        let mut absent = vec![bending::absence_in_words(self), "vessels with rotation"];
+        let mut absent: Vec<&str> = Vec::new();
+        if !self.all_beams() {
+            absent.push(bending::absence_in_words(self));
+        }
         if self.water.is_some() {
             absent.push("current, waves and the water's surface");
         } else {
@@ -425,19 +435,19 @@ fn force_in_words(force: &PointForce) -> String {
         .iter()
         .filter_map(|(axis, function)| {
             let function = function.as_ref()?;
-            Some(format!("{} along {axis}", load_in_words(function)))
+            Some(format!("{} along {axis}", load_in_words(function, "N")))
         })
         .collect();
     format!("force {}", said.join(" and "))
 }
 
-fn load_in_words(function: &TimeFunction) -> String {
+fn load_in_words(function: &TimeFunction, unit: &str) -> String {
     let rise = |how: &str, [t0, f0, t1, f1]: [f64; 4]| {
         let [t0, f0, t1, f1] = [t0, f0, t1, f1].map(number);
-        format!("{how} from {f0} N at {t0} s to {f1} N at {t1} s")
+        format!("{how} from {f0} {unit} at {t0} s to {f1} {unit} at {t1} s")
     };
     match function {
-        TimeFunction::Constant(value) => quantity(*value, "N"),
+        TimeFunction::Constant(value) => quantity(*value, unit),
         TimeFunction::Step(numbers) => rise("rising smoothly", *numbers),
         TimeFunction::Ramp(numbers) => rise("rising straight", *numbers),
         TimeFunction::Table(rows) => format!("from a table of {} rows", rows.len()),

@@ -867,6 +867,7 @@ pub(crate) fn copy_network(model: &Model, network: &Network, from: &State, to: &
         to_line
             .acceleration
             .copy_from_slice(&from_line.acceleration);
+        to_line.beam.clone_from(&from_line.beam);
         for point in model.lines[index].ends {
             to.points[point] = from.points[point];
         }

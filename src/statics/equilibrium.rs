@@ -99,7 +99,9 @@ pub fn solve_posed(
         ));
     }
     for number in 0..model.networks.len() {
-        Problem::new(model, number, t).solve(&mut state, work)?;
+        if model.beam_of(number).is_none() {
+            Problem::new(model, number, t).solve(&mut state, work)?;
+        }
     }
     Ok(state)
 }

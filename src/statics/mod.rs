@@ -1,6 +1,7 @@
 //! Statics: what a mooring does when nothing moves.
 
 pub mod assembly;
+pub mod beam;
 pub mod catenary;
 pub mod catenary_network;
 pub mod equilibrium;
@@ -43,6 +44,32 @@ pub enum StaticsError {
         tolerance: f64,
         /// Linear solves spent [-].
         iterations: usize,
+    },
+    /// The search for the equilibrium of a beam ended without one.
+    #[error(
+        "line \"{line}\", node {node}: no equilibrium of the beam found in {iterations} solves, {residual:.3e} N are out of balance; \
+         use more elements, hold the beam at its ends, or give it a shape to start from"
+    )]
+    BeamNotConverged {
+        /// Name of the line.
+        line: String,
+        /// Node where the imbalance is greatest, from 0 at end A.
+        node: usize,
+        /// Force out of balance there [N].
+        residual: f64,
+        /// Linear solves spent [-].
+        iterations: usize,
+    },
+    /// The equilibrium of a beam bends or twists an element beyond what its ends can tell.
+    #[error(
+        "line \"{line}\", node {node}: at rest the beam turns by more than 60 degrees from this node to the next; use more elements \
+         there, or a greater bending or torsional stiffness"
+    )]
+    BeamFolded {
+        /// Name of the line.
+        line: String,
+        /// Node at the lower end of the element, from 0 at end A.
+        node: usize,
     },
     /// An input is not a finite number.
     #[error("{place}: {value} m is not a finite position")]

@@ -43,6 +43,8 @@ pub enum Stroke {
     Bold,
     /// Dashes.
     Dashed,
+    /// A thin full line.
+    Fine,
     /// A thin pale line.
     Faint,
     /// A straight level: still water, seabed.
@@ -86,6 +88,7 @@ impl Curve {
         let (opacity, width) = match self.stroke {
             Stroke::Bold => (1.0, 1.8),
             Stroke::Dashed => (0.9, 1.4),
+            Stroke::Fine => (1.0, 1.2),
             Stroke::Faint => (0.22, 1.0),
             Stroke::Level => (1.0, 1.4),
             Stroke::Nodes => (0.75, 1.0),
@@ -224,7 +227,7 @@ impl Chart {
             let points = || curve.points.iter().map(|&[x, y]| (x, y));
             let style = curve.style();
             match curve.stroke {
-                Stroke::Bold | Stroke::Faint | Stroke::Level => {
+                Stroke::Bold | Stroke::Fine | Stroke::Faint | Stroke::Level => {
                     chart.draw_series(LineSeries::new(points(), style))?;
                 }
                 Stroke::Dashed => {
@@ -272,7 +275,7 @@ fn draw_entry(area: &Area, curve: &Curve, left: u32, middle: u32) -> DrawResult 
     let style = curve.style();
     let (x0, x1, y) = (fine(left), fine(left + SAMPLE), fine(middle));
     match curve.stroke {
-        Stroke::Bold | Stroke::Faint | Stroke::Level => {
+        Stroke::Bold | Stroke::Fine | Stroke::Faint | Stroke::Level => {
             area.draw(&PathElement::new([(x0, y), (x1, y)], style))?;
         }
         Stroke::Dashed => {

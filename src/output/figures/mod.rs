@@ -1,9 +1,11 @@
-//! Figures of a run as SVG: profile against the static catenary, plan, tension and end force in time.
+//! Figures of a run as SVG: profile against the static catenary, plan, tension and end force in time; of beams in free flight their shapes
+//! and what they keep.
 //!
 //! Text is left to the viewer's sans-serif font: no font files are needed to draw.
 
 mod axis;
 mod chart;
+mod flight;
 
 use axis::{Axis, force_unit};
 use chart::{Chart, Curve, Stroke};
@@ -42,15 +44,26 @@ fn colour(index: usize) -> [u8; 3] {
 
 /// Every figure that the record has something for, as file stem and SVG.
 pub fn all(record: &Record) -> Vec<(&'static str, String)> {
-    [
+    if !record.flight.is_empty() {
+        let figures = [
+            ("flight", flight::shapes(record)),
+            ("balance", flight::balance(record)),
+        ];
+        return drawn(figures.into());
+    }
+    drawn(vec![
         ("profile", profile(record)),
         ("plan", plan(record)),
         ("tension", tension(record)),
         ("force", force(record)),
-    ]
-    .into_iter()
-    .filter_map(|(stem, svg)| Some((stem, svg?)))
-    .collect()
+    ])
+}
+
+fn drawn(figures: Vec<(&'static str, Option<String>)>) -> Vec<(&'static str, String)> {
+    let figures = figures.into_iter();
+    figures
+        .filter_map(|(stem, svg)| Some((stem, svg?)))
+        .collect()
 }
 
 /// Lines seen from the side, on one scale in both directions: the closed-form catenary dashed, the equilibrium, the last

@@ -47,7 +47,7 @@ pub(super) fn check_load_in_time(
         TimeFunction::Ramp(numbers) => check_rise(findings, &format!("{at}.ramp"), *numbers, unit),
         TimeFunction::Table(pairs) => {
             let at = format!("{at}.table");
-            check_times(findings, &at, pairs.iter().map(|pair| pair[0]));
+            check_times(findings, &at, pairs.iter().map(|pair| pair[0]), true);
             for (row, pair) in pairs.iter().enumerate() {
                 findings.number(format!("{at}[{row}][1]"), pair[1], force, unit);
             }
@@ -72,8 +72,8 @@ fn check_rise(findings: &mut Findings, at: &str, [t0, f0, t1, f1]: [f64; 4], uni
     }
 }
 
-/// The first column of a table.
-fn check_times(findings: &mut Findings, at: &str, times: impl Iterator<Item = f64>) {
+/// The first column of a table; where it may jump, two rows may share a time.
+fn check_times(findings: &mut Findings, at: &str, times: impl Iterator<Item = f64>, jumps: bool) {
     let mut last: Option<f64> = None;
     for (row, time) in times.enumerate() {
         let here = format!("{at}[{row}][0]");
@@ -81,7 +81,7 @@ fn check_times(findings: &mut Findings, at: &str, times: impl Iterator<Item = f6
             return;
         }
         if let Some(last) = last
-            && time <= last
+            && (time < last || (time == last && !jumps))
         {
             let problem = format!(
                 "time {} does not come after {}: write the rows in ascending time",
@@ -113,7 +113,7 @@ pub(super) fn check_motion(findings: &mut Findings, at: &str, motion: &MotionPat
 /// Rows of time, displacement and rotation; `in_scene` where the key path can name the row.
 fn check_rows(findings: &mut Findings, at: &str, rows: &[MotionRow], in_scene: bool) {
     let mut of_rows = Findings::default();
-    check_times(&mut of_rows, at, rows.iter().map(|row| row[0]));
+    check_times(&mut of_rows, at, rows.iter().map(|row| row[0]), false);
     for (i, row) in rows.iter().enumerate() {
         for (column, value) in row.iter().enumerate().skip(1) {
             let (bounds, unit) = if column < 4 {

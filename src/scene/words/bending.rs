@@ -15,13 +15,13 @@ fn solid_stiffness(line_type: &LineType) -> Option<f64> {
     solid.filter(|ei| *ei > 0.0 && line_type.model == LineModel::Cable)
 }
 
-/// Whether a line has a section with bending stiffness.
+/// Whether a cable has a section with bending stiffness.
 pub(super) fn bends(scene: &Scene, line: &Line) -> bool {
     let mut types = line
         .sections
         .iter()
         .filter_map(|section| scene.line_types.get(&section.line_type));
-    types.any(|line_type| solid_stiffness(line_type).is_some())
+    !scene.is_beam(line) && types.any(|line_type| solid_stiffness(line_type).is_some())
 }
 
 /// EI of a line type, where it comes from and who shares it; nothing for a flexible line.
@@ -75,10 +75,11 @@ pub(super) fn ends_in_words(line: &Line) -> String {
 
 /// What of bending, torsion and shear is left out.
 pub(super) fn absence_in_words(scene: &Scene) -> &'static str {
-    let bending = scene.lines.iter().filter(|line| bends(scene, line)).count();
+    let cables = || scene.lines.iter().filter(|line| !scene.is_beam(line));
+    let bending = cables().filter(|line| bends(scene, line)).count();
     match bending {
         0 => "bending, torsion and shear of lines",
-        n if n == scene.lines.len() => "torsion and shear of lines",
+        n if n == cables().count() => "torsion and shear of lines",
         _ => "bending of lines without bending stiffness, torsion and shear of all lines",
     }
 }

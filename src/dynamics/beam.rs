@@ -1,0 +1,500 @@
+//! Energy- and momentum-conserving steps of a geometrically exact beam.
+//!
+//! From t to t + Δt a node goes from (φ, v, Λ, W) to (φ₁, v₁, Λ₁, W₁): position, velocity, frame, angular velocity along its directors.
+//! With the unknowns φ₁ and the Cayley vector θ of its turn, Λ₁ = cay(θ) Λ,
+//!
+//!   M̄ (v₁ − v)/Δt = f̄,            ½(v + v₁) Δt = φ₁ − φ,
+//!   (Λ₁J W₁ − ΛJ W)/Δt = m̄,       ½(W + W₁) Δt = Λᵀθ = Λ₁ᵀθ,
+//!
+//! where f̄, m̄ gather −L B̄ᵀS̄ of the elements (the gradient B̄ at the mean of both ends of the step, S̄ the mean stress), weight, loads, and
+//! what water and seabed do. The strains are bilinear, so that B̄ is a discrete gradient: without water, bed and damping the energy
+//! ½ vᵀM v + ½ W·J W + Σ U + Σ w z changes by the work of the loads alone, and both momenta by their impulses, to rounding.
+//!
+//! Loads are means over the step, so that an impulse is exact wherever the load jumps. Viscous damping adds D (E₁ − E)/Δt to S̄. Added mass
+//! and drag take the tangent in the middle of the step from the angular velocity before it: second order, and no part of the slopes.
+//! J is the lumped rotary inertia; held unknowns follow their points.
+//!
+//! Source: Simo, Tarnow & Doblaré (1995), Int. J. Numer. Methods Eng. 38, 1431-1473 (momenta and Cayley update); Romero & Armero (2002), ibid.
+//! 54, 1683-1716, and Betsch & Steinmann (2003), Multibody Syst. Dyn. 8, 367-391 (directors, discrete gradient). Valid for turns below half a
+//! circle in a step.
+
+mod drive;
+mod measures;
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::ledger::Flow;
+use crate::math::pivoted_chain::PivotedChain;
+use crate::math::rotation::{cayley, cayley_vector, skew, spin_of_cayley};
+use crate::model::{Beam, LineState, Nodes};
+use crate::physics::contact_step::{ContactStep, contact_step};
+use crate::physics::morison::{DragCoefficients, drag, drag_slope};
+use crate::physics::seabed::ContactCoefficients;
+use crate::physics::section::{
+    Mixture, Section, Sextuple, corrected, join, response, split, strain, strain_gradient,
+};
+use crate::statics::beam::{BeamEnd, Span, add_elements, folded};
+
+pub use drive::{Driven, attitude, drive, held};
+pub use measures::{BeamView, Momentum};
+
+/// Change of position over the beam's length, and of θ, that ends the iteration [-].
+const TOLERANCE: f64 = 1e-12;
+/// A change below this [-] that no longer shrinks has met rounding.
+const ROUNDING: f64 = 1e-7;
+/// Iterations of a step [-].
+const SOLVES_MAX: usize = 30;
+/// Largest change of θ in an iteration [-].
+const TURN_MAX: f64 = 1.0;
+/// |θ| beyond which a node turns too far in a step [-]: 2 tan(α/2) of 150°.
+const THETA_MAX: f64 = 7.5;
+/// Half the range of penetrations over which the seabed damper fades in, in static penetrations of the node [-].
+const DAMPER_FADE: f64 = 2.0;
+
+/// A beam over one step.
+#[derive(Debug, Clone, Copy)]
+pub struct BeamStep<'a> {
+    /// Its elements.
+    pub beam: &'a Beam,
+    /// Its lumped mass, weight, drag and contact.
+    pub nodes: &'a Nodes,
+    /// What holds its ends, and the mean loads on them over the step.
+    pub ends: [BeamEnd; 2],
+    /// Where held unknowns of the ends are after the step.
+    pub targets: [Section; 2],
+    /// Mass at the ends beside the line's own [kg].
+    pub end_mass: [f64; 2],
+    /// Weight less buoyancy at the ends beside the line's own [N].
+    pub end_weight: [f64; 2],
+    /// Length of the step [s].
+    pub length: f64,
+}
+
+/// Why a step failed, and where.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stuck {
+    /// Node where it went wrong.
+    pub node: usize,
+    /// What went wrong.
+    pub reason: StuckReason,
+}
+
+/// What keeps a beam from stepping on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum StuckReason {
+    /// Newton's method found no solution.
+    #[error("the beam's motion over the step could not be found")]
+    Diverged,
+    /// A node turns by nearly half a circle in a step.
+    #[error("the beam turns by more than 150 degrees in a step")]
+    Turned,
+    /// An element is bent or twisted beyond what two sections can tell.
+    #[error("the beam turns by more than 60 degrees from this node to the next")]
+    Folded,
+}
+
+impl StuckReason {
+    /// What to try.
+    pub fn advice(self) -> &'static str {
+        match self {
+            StuckReason::Diverged | StuckReason::Turned => {
+                "try a smaller solver.time_step_max, or some damping of the line"
+            }
+            StuckReason::Folded => {
+                "use more elements there, or a greater bending or torsional stiffness"
+            }
+        }
+    }
+}
+
+/// Scratch of a beam. Nothing in it is read before it is written.
+#[derive(Debug, Clone)]
+pub struct BeamWork {
+    chain: PivotedChain,
+    before: Vec<Section>,
+    now: Vec<Section>,
+    mean: Vec<Section>,
+    theta: Vec<Vector3<f64>>,
+    spin: Vec<Matrix3<f64>>,
+    strain_before: Vec<Sextuple>,
+    mass: Vec<Matrix3<f64>>,
+    tangent: Vec<Vector3<f64>>,
+}
+
+impl BeamWork {
+    /// Scratch for a beam of so many nodes.
+    pub fn new(nodes: usize) -> BeamWork {
+        let section = Section {
+            position: Vector3::zeros(),
+            frame: Matrix3::identity(),
+        };
+        BeamWork {
+            chain: PivotedChain::new(nodes),
+            before: vec![section; nodes],
+            now: vec![section; nodes],
+            mean: vec![section; nodes],
+            theta: vec![Vector3::zeros(); nodes],
+            spin: vec![Matrix3::identity(); nodes],
+            strain_before: vec![Sextuple::zeros(); nodes.saturating_sub(1)],
+            mass: vec![Matrix3::zeros(); nodes],
+            tangent: vec![Vector3::zeros(); nodes],
+        }
+    }
+
+    /// Moves `shape` by one step; gives linear solves and the energy that crossed the border of the beam.
+    ///
+    /// # Errors
+    /// The iteration did not converge; the shape is as it was.
+    pub fn step(&mut self, case: &BeamStep, shape: &mut LineState) -> Result<(usize, Flow), Stuck> {
+        self.predict(case, shape);
+        let length: f64 = case.beam.elements.iter().map(|e| e.length).sum();
+        let mut last = f64::INFINITY;
+        for solves in 1..=SOLVES_MAX {
+            self.assemble(case, shape);
+            if !self.chain.solve() {
+                break;
+            }
+            let (node, change) = self.correct(length);
+            let turned = |theta: &Vector3<f64>| theta.norm() >= THETA_MAX;
+            if self.theta.iter().any(turned) {
+                let reason = StuckReason::Turned;
+                return Err(Stuck { node, reason });
+            }
+            if change <= TOLERANCE || (change <= ROUNDING && change >= 0.5 * last) {
+                if let Some(node) = folded(&self.now) {
+                    let reason = StuckReason::Folded;
+                    return Err(Stuck { node, reason });
+                }
+                let flow = self.flow(case, shape);
+                self.store(case, shape);
+                return Ok((solves, flow));
+            }
+            last = change;
+        }
+        let (node, _) = self.largest_change(length);
+        let reason = StuckReason::Diverged;
+        Err(Stuck { node, reason })
+    }
+
+    /// Takes over the state before the step and guesses the one after it.
+    fn predict(&mut self, case: &BeamStep, shape: &LineState) {
+        let state = beam_state(shape);
+        let dt = case.length;
+        for i in 0..self.before.len() {
+            let frame = state.frames[i];
+            self.before[i] = Section {
+                position: shape.position[i],
+                frame,
+            };
+            let turning = frame * state.spins[i]; // angular velocity, global axes [rad/s]
+            self.theta[i] = dt * turning;
+            self.now[i].position = shape.position[i] + dt * shape.velocity[i];
+            self.tangent[i] = cayley(0.5 * dt * turning) * frame.column(2);
+            self.mass[i] = self.effective_mass(case, i, self.tangent[i]);
+        }
+        let last = self.before.len() - 1;
+        for (end, node) in [0, last].into_iter().enumerate() {
+            let (held, target) = (&case.ends[end].held, &case.targets[end]);
+            for axis in (0..3).filter(|&axis| held[axis]) {
+                self.now[node].position[axis] = target.position[axis];
+            }
+            if held[3] {
+                let turn = target.frame * self.before[node].frame.transpose();
+                self.theta[node] = cayley_vector(&turn);
+            }
+        }
+        for (i, element) in case.beam.elements.iter().enumerate() {
+            let (a, b) = (&self.before[i], &self.before[i + 1]);
+            self.strain_before[i] = strain(a, b, element.length);
+        }
+        self.turn();
+    }
+
+    /// Mass of a node with its added mass, for a tangent [kg].
+    fn effective_mass(&self, case: &BeamStep, i: usize, tangent: Vector3<f64>) -> Matrix3<f64> {
+        let last = self.before.len() - 1;
+        let own = match i {
+            0 => case.end_mass[0],
+            i if i == last => case.end_mass[1],
+            _ => 0.0,
+        };
+        Matrix3::from_diagonal_element(own) + node_mass(case.nodes, i, tangent)
+    }
+
+    /// Frames and means that follow from positions and θ.
+    fn turn(&mut self) {
+        for i in 0..self.now.len() {
+            self.now[i].frame = cayley(self.theta[i]) * self.before[i].frame;
+            self.mean[i] = self.before[i].mean(&self.now[i]);
+            self.spin[i] = spin_of_cayley(self.theta[i]);
+        }
+    }
+
+    /// Applies the solution of the linear system; the node that changed most and by how much [-].
+    fn correct(&mut self, length: f64) -> (usize, f64) {
+        let largest = self.largest_change(length);
+        let turned = self
+            .chain
+            .right
+            .iter()
+            .fold(0.0_f64, |most, change| most.max(split(change).1.norm()));
+        let part = (TURN_MAX / turned).min(1.0);
+        for (i, change) in self.chain.right.iter().enumerate() {
+            let (position, theta) = split(change);
+            self.now[i].position += part * position;
+            self.theta[i] += part * theta;
+        }
+        self.turn();
+        largest
+    }
+
+    fn largest_change(&self, length: f64) -> (usize, f64) {
+        let size = |change: &Sextuple| {
+            let (position, theta) = split(change);
+            (position.norm() / length).max(theta.norm())
+        };
+        let changes = self.chain.right.iter().map(size).enumerate();
+        changes.fold(
+            (0, 0.0),
+            |most, next| if next.1 > most.1 { next } else { most },
+        )
+    }
+
+    fn assemble(&mut self, case: &BeamStep, shape: &LineState) {
+        self.chain.clear();
+        let state = beam_state(shape);
+        let span = Span {
+            mean: &self.mean,
+            now: &self.now,
+            strain_before: Some(&self.strain_before),
+            spin: &self.spin,
+        };
+        add_elements(
+            &mut self.chain,
+            case.beam,
+            &state.rest,
+            &span,
+            mixture(case.length),
+        );
+        for i in 0..self.now.len() {
+            self.add_translation(case, shape, i);
+            self.add_rotation(case, state.spins[i], i);
+            self.add_surroundings(case, i);
+        }
+        let last = self.now.len() - 1;
+        let ends = case.ends.iter().zip(case.end_weight);
+        for (node, (end, weight)) in [0, last].into_iter().zip(ends) {
+            self.chain.right[node] += end.load;
+            self.chain.right[node].z -= weight;
+            (0..6)
+                .filter(|&unknown| end.held[unknown])
+                .for_each(|unknown| self.chain.hold(node, unknown, 0.0));
+        }
+    }
+
+    /// Translational inertia, weight and mass damping of a node.
+    fn add_translation(&mut self, case: &BeamStep, shape: &LineState, i: usize) {
+        let dt = case.length;
+        let moved = self.now[i].position - self.before[i].position;
+        let acceleration = 2.0 / dt * (moved / dt - shape.velocity[i]);
+        let mut force = -self.mass[i] * acceleration - case.nodes.weight[i] * Vector3::z();
+        let mut slope = 2.0 / (dt * dt) * self.mass[i];
+        if let Some(damping) = &case.nodes.mass_damping {
+            force -= damping[i] / dt * moved;
+            slope += Matrix3::from_diagonal_element(damping[i] / dt);
+        }
+        let mut right = self.chain.right[i].fixed_rows_mut::<3>(0);
+        right += force;
+        let mut block = self.chain.diagonal[i].fixed_view_mut::<3, 3>(0, 0);
+        block += slope;
+    }
+
+    /// Rotary inertia of a node.
+    fn add_rotation(&mut self, case: &BeamStep, spin_before: Vector3<f64>, i: usize) {
+        let dt = case.length;
+        let inertia = Matrix3::from_diagonal(&case.beam.rotary_inertia[i]);
+        let (before, now) = (self.before[i].frame, self.now[i].frame);
+        let spin_now = 2.0 / dt * before.tr_mul(&self.theta[i]) - spin_before;
+        let momentum = now * inertia * spin_now;
+        let change = momentum - before * inertia * spin_before;
+        let slope = 2.0 / dt * now * inertia * before.transpose() - skew(momentum) * self.spin[i];
+        let mut right = self.chain.right[i].fixed_rows_mut::<3>(3);
+        right -= change / dt;
+        let mut block = self.chain.diagonal[i].fixed_view_mut::<3, 3>(3, 3);
+        block += slope / dt;
+    }
+
+    /// Water and seabed on a node.
+    fn add_surroundings(&mut self, case: &BeamStep, i: usize) {
+        let dt = case.length;
+        if let Some(k) = drag_of(case.nodes, i) {
+            let velocity = (self.now[i].position - self.before[i].position) / dt;
+            let mut right = self.chain.right[i].fixed_rows_mut::<3>(0);
+            right += drag(k, velocity, self.tangent[i]);
+            let mut block = self.chain.diagonal[i].fixed_view_mut::<3, 3>(0, 0);
+            block += drag_slope(k, velocity, self.tangent[i]) / dt;
+        }
+        if let Some(contact) = self.contact(case, i) {
+            self.chain.right[i].z += contact.force;
+            self.chain.diagonal[i][(2, 2)] += contact.slope;
+        }
+    }
+
+    fn contact(&self, case: &BeamStep, i: usize) -> Option<ContactStep> {
+        let contact = case.nodes.contact.as_ref()?;
+        let k = ContactCoefficients {
+            stiffness: contact.stiffness[i],
+            damping: contact.damping[i],
+        };
+        let [before, after] =
+            [&self.before[i], &self.now[i]].map(|s| contact.level[i] - s.position.z);
+        let reach = if k.stiffness > 0.0 {
+            DAMPER_FADE * case.nodes.weight[i].abs() / k.stiffness
+        } else {
+            0.0
+        };
+        Some(contact_step(k, [before, after], reach, case.length))
+    }
+
+    /// Energy that crossed the border of the beam in the step.
+    fn flow(&self, case: &BeamStep, shape: &LineState) -> Flow {
+        let mut flow = Flow::default();
+        let (dt, last) = (case.length, self.now.len() - 1);
+        for (i, element) in case.beam.elements.iter().enumerate() {
+            let after = strain(&self.now[i], &self.now[i + 1], element.length);
+            let plain = [&self.strain_before[i], &after];
+            let [start, end] = plain.map(|strain| corrected(strain, element.length));
+            let rate = (end - start) / dt;
+            let damping = element.damping.diagonal();
+            flow.lost += dt * element.length * rate.dot(&damping.component_mul(&rate));
+        }
+        for (end, node) in [0, last].into_iter().enumerate() {
+            flow.given += self.end_work(case, shape, end, node);
+        }
+        for i in 0..=last {
+            let held = match i {
+                0 => &case.ends[0].held,
+                i if i == last => &case.ends[1].held,
+                _ => &[false; 6],
+            };
+            if !held[..3].iter().all(|held| *held) {
+                flow.lost += self.node_loss(case, shape, i);
+            }
+        }
+        flow
+    }
+
+    /// Mean forces and moments that hold the end of the beam against its element's stress.
+    fn end_pull(&self, case: &BeamStep, shape: &LineState, end: usize) -> Sextuple {
+        let i = end * (case.beam.elements.len() - 1);
+        let (element, rest) = (&case.beam.elements[i], &beam_state(shape).rest[i]);
+        let after = strain(&self.now[i], &self.now[i + 1], element.length);
+        let (laws, plain) = (
+            [&element.law, &element.damping],
+            [&self.strain_before[i], &after],
+        );
+        let stress = response(laws, element.length, plain, rest, mixture(case.length)).stress;
+        let gradient = strain_gradient(&self.mean[i], &self.mean[i + 1], element.length);
+        element.length * gradient[end].tr_mul(&stress)
+    }
+
+    /// Work of the loads on the free unknowns of an end, and of what moves the held ones [J].
+    fn end_work(&self, case: &BeamStep, shape: &LineState, end: usize, node: usize) -> f64 {
+        let moved = self.now[node].position - self.before[node].position;
+        let change = join(moved, self.theta[node]);
+        let pull = self.end_pull(case, shape, end);
+        let BeamEnd { held, load } = &case.ends[end];
+        (0..6)
+            .map(|unknown| change[unknown] * if held[unknown] { pull } else { *load }[unknown])
+            .sum()
+    }
+
+    /// What water, bed and mass damping take from a node [J].
+    fn node_loss(&self, case: &BeamStep, shape: &LineState, i: usize) -> f64 {
+        let moved = self.now[i].position - self.before[i].position;
+        let mut lost = 0.0;
+        if let Some(k) = drag_of(case.nodes, i) {
+            lost -= drag(k, moved / case.length, self.tangent[i]).dot(&moved);
+        }
+        if let Some(contact) = self.contact(case, i) {
+            lost -= contact.force * moved.z;
+        }
+        if let Some(damping) = &case.nodes.mass_damping {
+            lost += damping[i] / case.length * moved.norm_squared();
+        }
+        // An added mass that turns with the line takes or gives what its constant value in the step leaves out.
+        let before = shape.velocity[i];
+        let after = 2.0 / case.length * moved - before;
+        let turned = |section: &Section, v: Vector3<f64>| {
+            let mass = self.effective_mass(case, i, section.frame.column(2).into_owned());
+            0.5 * v.dot(&((mass - self.mass[i]) * v))
+        };
+        lost + turned(&self.before[i], before) - turned(&self.now[i], after)
+    }
+
+    fn store(&self, case: &BeamStep, shape: &mut LineState) {
+        let (dt, last) = (case.length, self.now.len() - 1);
+        for i in 0..=last {
+            let held = match i {
+                0 => case.ends[0].held,
+                i if i == last => case.ends[1].held,
+                _ => [false; 6],
+            };
+            let moved = self.now[i].position - self.before[i].position;
+            let before = shape.velocity[i];
+            for axis in 0..3 {
+                let mean = moved[axis] / dt;
+                shape.velocity[i][axis] = if held[axis] {
+                    mean
+                } else {
+                    2.0 * mean - before[axis]
+                };
+            }
+            shape.acceleration[i] = (shape.velocity[i] - before) / dt;
+            shape.position[i] = self.now[i].position;
+            let Some(state) = &mut shape.beam else {
+                continue;
+            };
+            let mean = self.before[i].frame.tr_mul(&self.theta[i]) / dt;
+            state.spins[i] = if held[3] {
+                mean
+            } else {
+                2.0 * mean - state.spins[i]
+            };
+            state.frames[i] = self.now[i].frame;
+        }
+    }
+}
+
+/// Mean stress over a step [s].
+fn mixture(step: f64) -> Mixture {
+    Mixture {
+        share: 0.5,
+        rate: 1.0 / step,
+    }
+}
+
+/// The beam's part of a line's state.
+fn beam_state(shape: &LineState) -> &crate::model::BeamState {
+    shape
+        .beam
+        .as_ref()
+        .expect("a line that is integrated as a beam has a beam's state")
+}
+
+/// Mass of a node with its added mass for a tangent [kg].
+fn node_mass(nodes: &Nodes, i: usize, tangent: Vector3<f64>) -> Matrix3<f64> {
+    let (normal, along) = (nodes.mass_normal[i], nodes.mass_tangent[i]);
+    Matrix3::from_diagonal_element(normal) + (along - normal) * tangent * tangent.transpose()
+}
+
+fn drag_of(nodes: &Nodes, i: usize) -> Option<DragCoefficients> {
+    let drag = nodes.drag.as_ref()?;
+    Some(DragCoefficients {
+        normal: drag.normal[i],
+        tangent: drag.tangent[i],
+    })
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,141 @@
+//! A beam of a model over a span of time: what its points do to its ends, and what they get back.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::{BeamStep, BeamWork, Stuck, beam_state};
+use crate::dynamics::ledger::Flow;
+use crate::model::{Beam, Kinematics, Line, Model, State};
+use crate::physics::section::{Section, join};
+use crate::statics::beam::{BeamEnd, end_hold};
+
+/// Linear solves, and the energy that crossed the border.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Driven {
+    /// Linear solves.
+    pub solves: usize,
+    /// Energy given and lost.
+    pub flow: Flow,
+}
+
+/// Advances the beam `index` of `state` from `start` to `end` [s] in `count` equal steps; `held` tells where held points are.
+/// `state.time` and held points are left to the caller.
+///
+/// # Errors
+/// A step did not converge; the state is then somewhere within the span.
+pub fn drive<K: Fn(usize, f64) -> Kinematics>(
+    model: &Model,
+    index: usize,
+    state: &mut State,
+    held: &K,
+    [start, end]: [f64; 2],
+    count: usize,
+    work: &mut BeamWork,
+) -> Result<Driven, Stuck> {
+    let line = &model.lines[index];
+    let (Some(beam), Some(_)) = (&line.beam, &state.lines[index].beam) else {
+        return Ok(Driven::default());
+    };
+    let step = (end - start) / count as f64;
+    let mut driven = Driven::default();
+    for k in 0..count {
+        let times = [k, k + 1].map(|k| start + k as f64 * step);
+        let ends = [0, 1].map(|e| end_of_step(model, beam, index, state, held, e, times));
+        let case = BeamStep {
+            beam,
+            nodes: &line.nodes,
+            ends: ends.map(|end| end.hold),
+            targets: ends.map(|end| end.target),
+            end_mass: ends.map(|end| end.mass),
+            end_weight: ends.map(|end| end.weight),
+            length: step,
+        };
+        let (solves, flow) = work.step(&case, &mut state.lines[index])?;
+        driven.solves += solves;
+        driven.flow.add(flow);
+        carry_free_points(model, index, state);
+    }
+    Ok(driven)
+}
+
+/// An end over one step.
+#[derive(Clone, Copy)]
+struct EndOfStep {
+    hold: BeamEnd,
+    target: Section,
+    mass: f64,
+    weight: f64,
+}
+
+fn end_of_step<K: Fn(usize, f64) -> Kinematics>(
+    model: &Model,
+    beam: &Beam,
+    index: usize,
+    state: &State,
+    held: &K,
+    end: usize,
+    [from, to]: [f64; 2],
+) -> EndOfStep {
+    let number = model.lines[index].ends[end];
+    let point = &model.points[number];
+    let load = join(point.load_mean(from, to), point.moment_mean(from, to));
+    let hold = BeamEnd {
+        load,
+        ..end_hold(point, beam.clamped[end].is_some())
+    };
+    let shape = beam_state(&state.lines[index]);
+    let frame = |attitude: Matrix3<f64>| attitude * shape.carried[end];
+    match point.free() {
+        Some(free) => EndOfStep {
+            hold,
+            target: Section {
+                position: state.points[number].position,
+                frame: frame(Matrix3::identity()),
+            },
+            mass: free.mass,
+            weight: free.weight,
+        },
+        None => {
+            let k = held(number, to);
+            EndOfStep {
+                hold,
+                target: Section {
+                    position: k.position,
+                    frame: frame(attitude(&k)),
+                },
+                mass: 0.0,
+                weight: 0.0,
+            }
+        }
+    }
+}
+
+/// Which unknowns of a beam's ends are held.
+pub fn held(model: &Model, line: &Line) -> [[bool; 6]; 2] {
+    [0, 1].map(|end| {
+        let clamped = line
+            .beam
+            .as_ref()
+            .is_some_and(|beam| beam.clamped[end].is_some());
+        end_hold(&model.points[line.ends[end]], clamped).held
+    })
+}
+
+/// Attitude of a held point over its reference.
+pub fn attitude(k: &Kinematics) -> Matrix3<f64> {
+    k.orientation.to_rotation_matrix().into_inner()
+}
+
+/// Free points go where their ends went.
+fn carry_free_points(model: &Model, index: usize, state: &mut State) {
+    let line = &model.lines[index];
+    let shape = &state.lines[index];
+    for (point, node) in line.ends.into_iter().zip([0, line.segment_count()]) {
+        if model.points[point].free().is_some() {
+            let at = &mut state.points[point];
+            at.position = shape.position[node];
+            at.velocity = shape.velocity[node];
+            at.acceleration = shape.acceleration[node];
+            at.half_step = [Vector3::zeros(); 2];
+        }
+    }
+}

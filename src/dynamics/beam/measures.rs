@@ -1,0 +1,188 @@
+//! What a beam holds and carries at one time: energy, momenta, reactions, curvature and moments.
+
+use nalgebra::Vector3;
+
+use super::super::ledger::Energy;
+use super::{beam_state, drag_of, node_mass};
+use crate::model::{Beam, End, Line, LineState, Nodes, PointState};
+use crate::physics::morison::drag;
+use crate::physics::seabed::{ContactCoefficients, normal_force};
+use crate::physics::section::{
+    Mixture, Section, Sextuple, StrainEnergy, join, response, split, strain, strain_gradient,
+};
+
+/// Momenta of a beam's own mass.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Momentum {
+    /// Linear momentum [N s].
+    pub linear: Vector3<f64>,
+    /// Angular momentum about the origin of the scene [N m s].
+    pub angular: Vector3<f64>,
+}
+
+/// A beam and its state at one time.
+#[derive(Debug, Clone, Copy)]
+pub struct BeamView<'a> {
+    /// Its elements.
+    pub beam: &'a Beam,
+    /// Its lumped nodes.
+    pub nodes: &'a Nodes,
+    /// Its state.
+    pub shape: &'a LineState,
+}
+
+impl<'a> BeamView<'a> {
+    /// Of a line, where it is a beam.
+    pub fn of(line: &'a Line, shape: &'a LineState) -> Option<BeamView<'a>> {
+        let beam = line.beam.as_ref()?;
+        shape.beam.is_some().then_some(BeamView {
+            beam,
+            nodes: &line.nodes,
+            shape,
+        })
+    }
+
+    fn section(&self, i: usize) -> Section {
+        Section {
+            position: self.shape.position[i],
+            frame: beam_state(self.shape).frames[i],
+        }
+    }
+
+    /// Energy, without that of the unknowns that `held` says are held at ends A and B.
+    pub fn energy(&self, held: [[bool; 6]; 2]) -> Energy {
+        let state = beam_state(self.shape);
+        let last = self.shape.position.len() - 1;
+        let mut strained = StrainEnergy::default();
+        let mut energy = Energy::default();
+        for (i, element) in self.beam.elements.iter().enumerate() {
+            let strain = element.strain(&self.section(i), &self.section(i + 1), &state.rest[i]);
+            strained.add(element.energy(&strain));
+        }
+        (energy.axial, energy.bending) = (strained.axial, strained.bending);
+        (energy.shear, energy.torsion) = (strained.shear, strained.torsion);
+        for i in 0..=last {
+            let held = match i {
+                0 => held[0],
+                i if i == last => held[1],
+                _ => [false; 6],
+            };
+            let free = |axis: usize| f64::from(u8::from(!held[axis]));
+            let velocity = self.shape.velocity[i];
+            let velocity = velocity.component_mul(&Vector3::new(free(0), free(1), free(2)));
+            let mass = node_mass(self.nodes, i, self.tangent(i));
+            energy.kinetic += 0.5 * velocity.dot(&(mass * velocity));
+            let spin = free(3) * state.spins[i];
+            energy.kinetic += 0.5 * spin.dot(&self.beam.rotary_inertia[i].component_mul(&spin));
+            energy.gravitational += free(2) * self.nodes.weight[i] * self.shape.position[i].z;
+        }
+        energy
+    }
+
+    /// Momenta of the mass in air and of rotary inertia.
+    pub fn momentum(&self) -> Momentum {
+        let state = beam_state(self.shape);
+        let mut momentum = Momentum::default();
+        for i in 0..self.shape.position.len() {
+            let linear = self.nodes.mass[i] * self.shape.velocity[i];
+            let spin = self.beam.rotary_inertia[i].component_mul(&state.spins[i]);
+            momentum.linear += linear;
+            momentum.angular += self.shape.position[i].cross(&linear) + state.frames[i] * spin;
+        }
+        momentum
+    }
+
+    /// d₃ of a node [-].
+    fn tangent(&self, i: usize) -> Vector3<f64> {
+        beam_state(self.shape).frames[i].column(2).into_owned()
+    }
+
+    /// Stress of an element as it works on the plain strains, with or without its damping.
+    fn stress(&self, i: usize, damped: bool) -> Sextuple {
+        let (element, state) = (&self.beam.elements[i], beam_state(self.shape));
+        let (a, b) = (self.section(i), self.section(i + 1));
+        let now = strain(&a, &b, element.length);
+        let still = Mixture {
+            share: 1.0,
+            rate: 0.0,
+        };
+        let laws = [&element.law, &element.damping];
+        let elastic = response(laws, element.length, [&now, &now], &state.rest[i], still);
+        if !damped {
+            return elastic.stress;
+        }
+        let moving = [i, i + 1].map(|node| {
+            join(
+                self.shape.velocity[node],
+                state.frames[node] * state.spins[node],
+            )
+        });
+        let gradient = strain_gradient(&a, &b, element.length);
+        let rate = gradient[0] * moving[0] + gradient[1] * moving[1];
+        elastic.stress + element.damping.diagonal().component_mul(&rate)
+    }
+
+    /// Effective tension of an element: what its stress pulls with along it [N].
+    pub fn tension(&self, i: usize) -> f64 {
+        let force = self.end_stress(i, 1, true).0;
+        let chord = self.shape.position[i + 1] - self.shape.position[i];
+        let along = chord.try_normalize(0.0).unwrap_or_else(Vector3::zeros);
+        force.dot(&along)
+    }
+
+    /// Force [N] and moment [N m] that the section at the lower (0) or upper (1) end of an element needs against its stress.
+    fn end_stress(&self, i: usize, side: usize, damped: bool) -> (Vector3<f64>, Vector3<f64>) {
+        let element = &self.beam.elements[i];
+        let gradient = strain_gradient(&self.section(i), &self.section(i + 1), element.length);
+        split(&(element.length * gradient[side].tr_mul(&self.stress(i, damped))))
+    }
+
+    /// Bending moment at a node [N m], of its elements' elastic stress: the mean of both sides, which differ by what turns the node.
+    pub fn bending_moment(&self, node: usize) -> f64 {
+        let last = self.beam.elements.len();
+        let upper = (node < last).then(|| -self.end_stress(node, 0, false).1);
+        let lower = (node > 0).then(|| self.end_stress(node - 1, 1, false).1);
+        let moment = match (lower, upper) {
+            (Some(lower), Some(upper)) => 0.5 * (lower + upper),
+            (lower, upper) => lower.or(upper).unwrap_or_else(Vector3::zeros),
+        };
+        let tangent = self.tangent(node);
+        (moment - moment.dot(&tangent) * tangent).norm()
+    }
+
+    /// Curvature at a node beyond that of the rest shape [1/m]: its bending moment over the bending stiffness there.
+    pub fn curvature(&self, node: usize) -> f64 {
+        let last = self.beam.elements.len() - 1;
+        let beside = [node.saturating_sub(1), node.min(last)];
+        let compliance = beside.map(|i| 0.5 / self.beam.elements[i].law.bending);
+        self.bending_moment(node) * compliance.iter().sum::<f64>()
+    }
+
+    /// Force [N] and moment [N m] of the beam on the point at one of its ends: its element's and its half node's.
+    pub fn end_action(&self, end: End, point: &PointState) -> (Vector3<f64>, Vector3<f64>) {
+        let last = self.beam.elements.len();
+        let (node, element, side) = match end {
+            End::A => (0, 0, 0),
+            End::B => (last, last - 1, 1),
+        };
+        let (pull, moment) = self.end_stress(element, side, true);
+        let tangent = self.tangent(node);
+        let mut force = -pull - node_mass(self.nodes, node, tangent) * point.acceleration;
+        force.z -= self.nodes.weight[node];
+        if let Some(k) = drag_of(self.nodes, node) {
+            force += drag(k, point.velocity, tangent);
+        }
+        if let Some(damping) = &self.nodes.mass_damping {
+            force -= damping[node] * point.velocity;
+        }
+        if let Some(contact) = &self.nodes.contact {
+            let k = ContactCoefficients {
+                stiffness: contact.stiffness[node],
+                damping: contact.damping[node],
+            };
+            let penetration = contact.level[node] - self.shape.position[node].z;
+            force.z += normal_force(k, penetration, point.velocity.z);
+        }
+        (force, -moment)
+    }
+}

@@ -1,0 +1,214 @@
+//! What a line is made of where it is a geometrically exact beam, and what of it changes.
+
+use nalgebra::{Matrix3, Vector3};
+use serde::{Deserialize, Serialize};
+
+use crate::math::rotation::{frame_along, turned_to};
+use crate::physics::section::{self, Section, SectionLaw, Sextuple, StrainEnergy};
+
+/// A line as a beam: two-node elements, one per segment, and lumped rotary inertia.
+#[derive(Debug, Clone)]
+pub struct Beam {
+    /// One per segment.
+    pub elements: Vec<BeamElement>,
+    /// Rotary inertia of the nodes about their three directors [kg m²].
+    pub rotary_inertia: Vec<Vector3<f64>>,
+    /// Direction of the line at ends A and B where they are clamped, with the point as it stands in the scene [-].
+    pub clamped: [Option<Vector3<f64>>; 2],
+    /// Whether the shape the line starts from is free of stress; else the straight line is.
+    pub rests_as_it_starts: bool,
+}
+
+/// A two-node beam element.
+#[derive(Debug, Clone, Copy)]
+pub struct BeamElement {
+    /// Unstretched length [m].
+    pub length: f64,
+    /// Stiffness of its section.
+    pub law: SectionLaw,
+    /// Viscous damping of its section, along the same axes.
+    pub damping: SectionLaw,
+}
+
+/// State of a beam: what its nodes have beside positions and velocities.
+#[derive(Debug, PartialEq, Serialize, Deserialize)]
+pub struct BeamState {
+    /// Orthonormal frames of the nodes, d₁ d₂ d₃ as columns [-].
+    pub frames: Vec<Matrix3<f64>>,
+    /// Angular velocities along those directors [rad/s].
+    pub spins: Vec<Vector3<f64>>,
+    /// Starred strains of the elements without stress [-], [1/m].
+    pub rest: Vec<Sextuple>,
+    /// Frames of ends A and B as their points, in reference attitude, carry them where they are clamped [-].
+    pub carried: [Matrix3<f64>; 2],
+}
+
+impl BeamState {
+    /// At rest on node positions [m], without twist; the points that the ends are clamped to have the given attitudes [-].
+    pub fn at_rest(
+        beam: &Beam,
+        position: &[Vector3<f64>],
+        attitude: [Matrix3<f64>; 2],
+    ) -> BeamState {
+        let last = position.len() - 1;
+        let clamp = |end: usize| beam.clamped[end].map(|direction| attitude[end] * direction);
+        let direction = |i: usize| match i {
+            0 => clamp(0).unwrap_or_else(|| node_direction(position, 0)),
+            i if i == last => clamp(1).unwrap_or_else(|| node_direction(position, last)),
+            i => node_direction(position, i),
+        };
+        let mut frames = Vec::with_capacity(position.len());
+        let mut frame = frame_along(direction(0), Vector3::z());
+        for i in 0..=last {
+            frame = turned_to(&frame, direction(i));
+            frames.push(frame);
+        }
+        let section = |i: usize| Section {
+            position: position[i],
+            frame: frames[i],
+        };
+        let rest = |(i, element): (usize, &BeamElement)| match beam.rests_as_it_starts {
+            true => {
+                let plain = section::strain(&section(i), &section(i + 1), element.length);
+                section::corrected(&plain, element.length)
+            }
+            false => section::straight(),
+        };
+        BeamState {
+            rest: beam.elements.iter().enumerate().map(rest).collect(),
+            carried: [0, 1].map(|end| attitude[end].transpose() * frames[end * last]),
+            spins: vec![Vector3::zeros(); position.len()],
+            frames,
+        }
+    }
+}
+
+/// Unit tangent at a node: the mean of its segments' directions; at an end, that of the arc through it and the next node.
+fn node_direction(position: &[Vector3<f64>], i: usize) -> Vector3<f64> {
+    let last = position.len() - 1;
+    let segment = |i: usize| unit(position[i + 1] - position[i]).unwrap_or_else(Vector3::zeros);
+    let inner = |i: usize| unit(segment(i - 1) + segment(i)).unwrap_or_else(|| segment(i));
+    let direction = match i {
+        0 | 1 if last == 1 => segment(0),
+        0 => mirrored(inner(1), segment(0)),
+        i if i == last => mirrored(inner(last - 1), segment(last - 1)),
+        i => inner(i),
+    };
+    unit(direction).unwrap_or_else(Vector3::x)
+}
+
+fn unit(v: Vector3<f64>) -> Option<Vector3<f64>> {
+    v.try_normalize(f64::MIN_POSITIVE)
+}
+
+/// A direction mirrored about another: a circle's tangents at both ends of a chord.
+fn mirrored(v: Vector3<f64>, about: Vector3<f64>) -> Vector3<f64> {
+    2.0 * v.dot(&about) * about - v
+}
+
+impl BeamElement {
+    /// Strain from rest between two sections.
+    #[inline(always)]
+    pub fn strain(&self, a: &Section, b: &Section, rest: &Sextuple) -> Sextuple {
+        section::corrected(&section::strain(a, b, self.length), self.length) - rest
+    }
+
+    /// Energy at a strain from rest.
+    pub fn energy(&self, strain: &Sextuple) -> StrainEnergy {
+        self.law.energy(strain, self.length)
+    }
+}
+
+impl Clone for BeamState {
+    fn clone(&self) -> Self {
+        BeamState {
+            frames: self.frames.clone(),
+            spins: self.spins.clone(),
+            rest: self.rest.clone(),
+            carried: self.carried,
+        }
+    }
+
+    fn clone_from(&mut self, source: &Self) {
+        self.frames.clone_from(&source.frames);
+        self.spins.clone_from(&source.spins);
+        self.rest.clone_from(&source.rest);
+        self.carried = source.carried;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    const NONE: SectionLaw = SectionLaw {
+        shear: 0.0,
+        axial: 0.0,
+        bending: 0.0,
+        torsion: 0.0,
+    };
+
+    fn beam(n: usize, length: f64, clamped: [Option<Vector3<f64>>; 2], rests: bool) -> Beam {
+        let element = BeamElement {
+            length: length / n as f64,
+            law: NONE,
+            damping: NONE,
+        };
+        Beam {
+            elements: vec![element; n],
+            rotary_inertia: vec![Vector3::zeros(); n + 1],
+            clamped,
+            rests_as_it_starts: rests,
+        }
+    }
+
+    /// A quarter circle of radius 1 m.
+    fn quarter(n: usize) -> Vec<Vector3<f64>> {
+        (0..=n)
+            .map(|i| std::f64::consts::FRAC_PI_2 * i as f64 / n as f64)
+            .map(|angle| Vector3::new(angle.sin(), 0.0, 1.0 - angle.cos()))
+            .collect()
+    }
+
+    #[test]
+    fn frames_on_an_arc_lie_along_its_tangents() {
+        let n = 6;
+        let arc = quarter(n);
+        let state = BeamState::at_rest(
+            &beam(n, 1.57, [None, None], false),
+            &arc,
+            [Matrix3::identity(); 2],
+        );
+        for (frame, r) in state.frames.iter().zip(&arc) {
+            let tangent = Vector3::new(1.0 - r.z, 0.0, r.x);
+            assert_relative_eq!(frame.column(2).into_owned(), tangent, epsilon = 1e-14);
+        }
+    }
+
+    #[test]
+    fn a_beam_that_rests_as_it_starts_has_no_strain_there() {
+        let n = 5;
+        let beam = beam(n, 1.5, [None, None], true);
+        let arc = quarter(n);
+        let state = BeamState::at_rest(&beam, &arc, [Matrix3::identity(); 2]);
+        for i in 0..n {
+            let section = |i: usize| Section {
+                position: arc[i],
+                frame: state.frames[i],
+            };
+            let strain = beam.elements[i].strain(&section(i), &section(i + 1), &state.rest[i]);
+            assert_relative_eq!(strain, Sextuple::zeros(), epsilon = 1e-15);
+        }
+    }
+
+    #[test]
+    fn a_clamped_end_points_along_its_clamp_and_follows_the_attitude_of_its_point() {
+        let turn = crate::math::rotation::cayley(Vector3::new(0.0, 0.4, 0.1));
+        let beam = beam(4, 1.5, [Some(Vector3::z()), None], false);
+        let state = BeamState::at_rest(&beam, &quarter(4), [turn, Matrix3::identity()]);
+        let along = state.frames[0].column(2).into_owned();
+        assert_relative_eq!(along, turn * Vector3::z(), epsilon = 1e-14);
+        assert_relative_eq!(turn * state.carried[0], state.frames[0], epsilon = 1e-14);
+    }
+}

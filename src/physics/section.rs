@@ -1,0 +1,551 @@
+//! Cross-sections of a geometrically exact beam: strains between two of them, stress, energy, exact slopes.
+//!
+//! A section has a position φ and an orthonormal frame Λ = [d₁ d₂ d₃], d₃ along the unstrained axis. Between two sections a, b an
+//! unstretched length L apart, with φ' = (φ_b − φ_a)/L and directors interpolated linearly, the middle has
+//!
+//!   Γ_i = ½(d_i^a + d_i^b)·φ',    K_k = ½ ε_kij d_j'·d_i (a sign off) = ½ ε_kij d_i^b·d_j^a / L,
+//!
+//! so that Γ = (0, 0, 1) and K = 0 for a straight beam, and K is the axial vector of ΛᵀΛ'. With spins s, δd = s × d, they change by
+//! δΓ = Λ_mᵀ δφ' + ½ Λ_aᵀ (φ' × s_a) + ½ Λ_bᵀ (φ' × s_b) and L δK_k = q_k·(s_b − s_a), q_k = ½ ε_kij d_i^b × d_j^a. They are
+//! bilinear in positions and directors: over a step, their change is exactly their gradient at the mean of both ends of the step times the
+//! change of positions and directors.
+//!
+//! Across a turn by α, LK is sin α along the axis of the turn, and Γ₃ on an unstretched arc is sin α/α. The law takes the strains
+//!
+//!   K* = h(u) K,  u = L²|K|²,      Γ₃* = Γ₃ + p(v),  v = L²(K₁² + K₂²),
+//!   h = 1 + u/6 + 3u²/40,          p = v/6 + 17v²/360,
+//!
+//! which a circular arc and a uniform twist have exactly up to terms in α⁴ and α⁶ (h and p are the series of α/sin α and 1 − sin α/α in sin² α).
+//! Under a moment, elements of 0.2 rad bend 2.2 % too far without them and 0.002 % with them. From the rest values Γ⁰, K⁰,
+//!
+//!   N = C_Γ (Γ* − Γ⁰),  M = C_K (K* − K⁰),  U = ½ L [N·(Γ* − Γ⁰) + M·(K* − K⁰)],  C_Γ = (GA, GA, EA),  C_K = (EI, EI, GJ).
+//!
+//! Polynomials have exact divided differences, so that the change of the starred strains, too, is a discrete gradient D times that of the
+//! plain ones: ΔK* = [h̄ I + 2L² h[u₀,u₁] K̄ K̄ᵀ] ΔK, ΔΓ₃* = ΔΓ₃ + 2L² p[v₀,v₁] (K̄₁ΔK₁ + K̄₂ΔK₂), bars for means over the step.
+//!
+//! Source: strains by Simo (1985), Comput. Methods Appl. Mech. Eng. 49, 55-70; directors interpolated as in Romero & Armero (2002),
+//! Int. J. Numer. Methods Eng. 54, 1683-1716, and Betsch & Steinmann (2002), ibid. 54, 1775-1788; discrete gradients by Gonzalez (1996),
+//! J. Nonlinear Sci. 6, 449-467; starred strains and slopes derived here, checked by differences. Valid for small strain; neighbouring
+//! sections must differ by less than a quarter turn, at which K goes through its maximum.
+
+use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
+
+use crate::math::rotation::{axial, skew};
+
+/// A cross-section, or the mean of one over a step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Section {
+    /// Position φ [m].
+    pub position: Vector3<f64>,
+    /// Directors d₁, d₂, d₃ as columns [-].
+    pub frame: Matrix3<f64>,
+}
+
+/// Six numbers of a section: in forces' place Γ or N, in moments' place K or M.
+pub type Sextuple = Vector6<f64>;
+
+/// Stiffness or damping of a section along its directors.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SectionLaw {
+    /// Shear stiffness GA, alike across both directors [N], or its damping [N s].
+    pub shear: f64,
+    /// Axial stiffness EA [N], or its damping [N s].
+    pub axial: f64,
+    /// Bending stiffness EI, alike about both directors [N m²], or its damping [N m² s].
+    pub bending: f64,
+    /// Torsional stiffness GJ [N m²], or its damping [N m² s].
+    pub torsion: f64,
+}
+
+/// The parts of the strain energy.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct StrainEnergy {
+    /// Of stretching [J].
+    pub axial: f64,
+    /// Of shear [J].
+    pub shear: f64,
+    /// Of bending [J].
+    pub bending: f64,
+    /// Of torsion [J].
+    pub torsion: f64,
+}
+
+impl Section {
+    /// Mean of two sections; its directors are neither of unit length nor orthogonal.
+    pub fn mean(&self, other: &Section) -> Section {
+        Section {
+            position: 0.5 * (self.position + other.position),
+            frame: 0.5 * (self.frame + other.frame),
+        }
+    }
+}
+
+impl SectionLaw {
+    /// C, as the diagonal that multiplies a strain.
+    pub fn diagonal(&self) -> Sextuple {
+        let (ga, ea, ei, gj) = (self.shear, self.axial, self.bending, self.torsion);
+        Sextuple::new(ga, ga, ea, ei, ei, gj)
+    }
+
+    /// Energy of a strain from rest over an unstretched length [m].
+    pub fn energy(&self, strain: &Sextuple, length: f64) -> StrainEnergy {
+        let parts = 0.5 * length * self.diagonal().component_mul(&strain.component_mul(strain));
+        StrainEnergy {
+            shear: parts[0] + parts[1],
+            axial: parts[2],
+            bending: parts[3] + parts[4],
+            torsion: parts[5],
+        }
+    }
+}
+
+impl StrainEnergy {
+    /// Sum of all parts [J].
+    pub fn total(&self) -> f64 {
+        self.axial + self.shear + self.bending + self.torsion
+    }
+
+    /// Adds another energy, kind by kind.
+    pub fn add(&mut self, other: StrainEnergy) {
+        self.axial += other.axial;
+        self.shear += other.shear;
+        self.bending += other.bending;
+        self.torsion += other.torsion;
+    }
+}
+
+/// How the stress of a step follows the strains at its ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Mixture {
+    /// Part of the change of strain over the step that acts [-]: ½; in statics, where both ends are the same, 1.
+    pub share: f64,
+    /// 1/Δt [1/s]; 0 in statics.
+    pub rate: f64,
+}
+
+/// Stress of a step and its slope.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Response {
+    /// What times the change of the plain strains is the work on an element, per length.
+    pub stress: Sextuple,
+    /// Its slope with the plain strains at the end of the step: stiffness [N] for forces over stretches, and so on.
+    pub slope: Matrix6<f64>,
+}
+
+/// Starred strains (Γ*, K*) of plain ones (Γ, K) over an unstretched length [m].
+#[inline(always)]
+pub fn corrected(strain: &Sextuple, length: f64) -> Sextuple {
+    let (u, v) = turns(strain, length);
+    let (mut stretch, curvature) = split(strain);
+    stretch.z += v / 6.0 + 17.0 / 360.0 * v * v;
+    join(stretch, (1.0 + u / 6.0 + 0.075 * u * u) * curvature)
+}
+
+/// u and v: squares of the sine of the turn, and of its part about the first two directors.
+#[inline(always)]
+fn turns(strain: &Sextuple, length: f64) -> (f64, f64) {
+    let v = length * length * (strain[3] * strain[3] + strain[4] * strain[4]);
+    (v + length * length * strain[5] * strain[5], v)
+}
+
+/// D: what times the change of the plain strains is the change of the starred ones.
+#[inline(always)]
+fn correction_gradient(before: &Sextuple, now: &Sextuple, length: f64) -> Matrix6<f64> {
+    let ((u0, v0), (u1, v1)) = (turns(before, length), turns(now, length));
+    let curvature = split(&(0.5 * (before + now))).1;
+    let h = 1.0 + (u0 + u1) / 12.0 + 0.0375 * (u0 * u0 + u1 * u1);
+    let twice = 2.0 * length * length;
+    let (turning, shortening) = (
+        twice * (1.0 / 6.0 + 0.075 * (u0 + u1)),
+        twice * (1.0 / 6.0 + 17.0 / 360.0 * (v0 + v1)),
+    );
+    let mut gradient = Matrix6::identity();
+    gradient[(2, 3)] = shortening * curvature.x;
+    gradient[(2, 4)] = shortening * curvature.y;
+    let block = Matrix3::from_diagonal_element(h) + turning * curvature * curvature.transpose();
+    gradient.fixed_view_mut::<3, 3>(3, 3).copy_from(&block);
+    gradient
+}
+
+/// Change of Dᵀ S with the plain strains at the end of the step, where S = `stress` stays.
+#[inline(always)]
+fn correction_curvature(
+    before: &Sextuple,
+    now: &Sextuple,
+    stress: &Sextuple,
+    length: f64,
+) -> Matrix3<f64> {
+    let ((u0, v0), (u1, v1)) = (turns(before, length), turns(now, length));
+    let (mean, last) = (split(&(0.5 * (before + now))).1, split(now).1);
+    let (n, m) = (stress[2], split(stress).1);
+    let square = length * length;
+    let along = mean.dot(&m);
+    let turning = 1.0 / 6.0 + 0.075 * (u0 + u1);
+    let shortening = 1.0 / 6.0 + 17.0 / 360.0 * (v0 + v1);
+    let [bent, bent_last] = [mean, last].map(|k| Vector3::new(k.x, k.y, 0.0));
+    square * (1.0 / 6.0 + 0.15 * u1) * m * last.transpose()
+        + square * turning * (Matrix3::from_diagonal_element(along) + mean * m.transpose())
+        + 0.3 * square * square * along * mean * last.transpose()
+        + square * shortening * n * Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, 0.0))
+        + 17.0 / 90.0 * square * square * n * bent * bent_last.transpose()
+}
+
+/// Stress of a step between the plain strains `before` and `now`, from the starred strains at `rest`.
+#[inline(always)]
+pub fn response(
+    [law, damping]: [&SectionLaw; 2],
+    length: f64,
+    [before, now]: [&Sextuple; 2],
+    rest: &Sextuple,
+    mixture: Mixture,
+) -> Response {
+    let (c, d) = (law.diagonal(), mixture.rate * damping.diagonal());
+    let (start, end) = (corrected(before, length), corrected(now, length));
+    let starred = c.component_mul(&(0.5 * (start + end) - rest)) + d.component_mul(&(end - start));
+    let gradient = correction_gradient(before, now, length);
+    let mut slopes = correction_gradient(now, now, length);
+    let stiffness = mixture.share * c + d;
+    for (mut row, factor) in slopes.row_iter_mut().zip(&stiffness) {
+        row *= *factor;
+    }
+    let mut slope = gradient.tr_mul(&slopes);
+    let mut turned = slope.fixed_view_mut::<3, 3>(3, 3);
+    turned += 2.0 * mixture.share * correction_curvature(before, now, &starred, length);
+    Response {
+        stress: gradient.tr_mul(&starred),
+        slope,
+    }
+}
+
+/// Strain (Γ, K) of a straight beam without stress.
+pub fn straight() -> Sextuple {
+    Sextuple::new(0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
+}
+
+/// Strain (Γ, K) between two sections an unstretched length [m] apart.
+#[inline(always)]
+pub fn strain(a: &Section, b: &Section, length: f64) -> Sextuple {
+    let stretch = 0.5 * (a.frame + b.frame).tr_mul(&(b.position - a.position));
+    let turn = axial(&a.frame.tr_mul(&b.frame));
+    join(stretch, turn) / length
+}
+
+/// ∂(Γ, K)/∂(φ, spin) of both sections, K [1/m] over φ [m] and spin [rad]. Its transpose times a stress and the length gives the sections' forces and moments.
+#[inline(always)]
+pub fn strain_gradient(a: &Section, b: &Section, length: f64) -> [Matrix6<f64>; 2] {
+    let slope = skew((b.position - a.position) / length); // φ' ×
+    let along = 0.5 * (a.frame + b.frame).transpose() / length;
+    let turn = turn_gradient(a, b) / length;
+    let block = |sign: f64, own: &Section| {
+        let mut gradient = Matrix6::zeros();
+        gradient
+            .fixed_view_mut::<3, 3>(0, 0)
+            .copy_from(&(sign * along));
+        gradient
+            .fixed_view_mut::<3, 3>(0, 3)
+            .copy_from(&(0.5 * own.frame.tr_mul(&slope)));
+        gradient
+            .fixed_view_mut::<3, 3>(3, 3)
+            .copy_from(&(sign * turn));
+        gradient
+    };
+    [block(-1.0, a), block(1.0, b)]
+}
+
+/// Rows q_k = ½ ε_kij d_i^b × d_j^a.
+#[inline(always)]
+fn turn_gradient(a: &Section, b: &Section) -> Matrix3<f64> {
+    let director = |section: &Section, i: usize| section.frame.column(i).into_owned();
+    let row = |i: usize, j: usize| {
+        0.5 * (director(b, i).cross(&director(a, j)) - director(b, j).cross(&director(a, i)))
+    };
+    Matrix3::from_columns(&[row(1, 2), row(2, 0), row(0, 1)]).transpose()
+}
+
+/// Change of the forces and moments of both sections, [`strain_gradient`] at `mean` transposed times length and `stress`, with positions
+/// and spins of the sections `now`, where the stress stays: [row][column], and the mean follows by the part `share` [-].
+#[inline(always)]
+pub fn geometric_stiffness(
+    mean: [&Section; 2],
+    now: [&Section; 2],
+    stress: &Sextuple,
+    share: f64,
+) -> [[Matrix6<f64>; 2]; 2] {
+    let (n, m) = split(stress);
+    let half = 0.5 * share;
+    let chord = skew(mean[1].position - mean[0].position);
+    let carried = mean.map(|section| skew(section.frame * n)); // ν ×
+    let turned = now.map(|section| skew(section.frame * n));
+    let moment = skew(m);
+    let by_b = now[1].frame * moment * mean[0].frame.transpose();
+    let by_a = mean[1].frame * moment * now[0].frame.transpose();
+    let of_b = by_b - Matrix3::from_diagonal_element(by_b.trace());
+    let of_a = Matrix3::from_diagonal_element(by_a.trace()) - by_a.transpose();
+    let block = |row: usize, column: usize| {
+        let (up, across) = ([-1.0, 1.0][row], [-1.0, 1.0][column]);
+        let mut turn = -up * [of_a, of_b][column];
+        if row == column {
+            turn += chord * turned[row];
+        }
+        let mut stiffness = Matrix6::zeros();
+        let mut put = |i: usize, j: usize, block: Matrix3<f64>| {
+            stiffness
+                .fixed_view_mut::<3, 3>(i, j)
+                .copy_from(&(half * block));
+        };
+        put(0, 3, -up * turned[column]);
+        put(3, 0, across * carried[row]);
+        put(3, 3, turn);
+        stiffness
+    };
+    [[block(0, 0), block(0, 1)], [block(1, 0), block(1, 1)]]
+}
+
+/// The parts of a strain or stress that belong to forces [N] and to moments [N m].
+#[inline(always)]
+pub fn split(both: &Sextuple) -> (Vector3<f64>, Vector3<f64>) {
+    (
+        both.fixed_rows::<3>(0).into_owned(),
+        both.fixed_rows::<3>(3).into_owned(),
+    )
+}
+
+/// The inverse of [`split`].
+#[inline(always)]
+pub fn join(force: Vector3<f64>, moment: Vector3<f64>) -> Sextuple {
+    Sextuple::new(force.x, force.y, force.z, moment.x, moment.y, moment.z)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::rotation::cayley;
+    use approx::assert_relative_eq;
+
+    const LENGTH: f64 = 0.7;
+    const STRESS: Sextuple = Sextuple::new(3.0, -2.0, 5.0, 0.7, 1.1, -0.9);
+
+    fn pair() -> [Section; 2] {
+        [
+            Section {
+                position: Vector3::new(0.1, -0.2, 0.3),
+                frame: cayley(Vector3::new(0.3, 0.1, -0.5)),
+            },
+            Section {
+                position: Vector3::new(0.2, 0.1, 0.9),
+                frame: cayley(Vector3::new(0.5, -0.3, 0.1)),
+            },
+        ]
+    }
+
+    fn later() -> [Section; 2] {
+        pair().map(|section| Section {
+            position: 1.1 * section.position + Vector3::new(0.0, 0.1, 0.2),
+            frame: cayley(Vector3::new(-0.2, 0.9, 0.4)) * section.frame,
+        })
+    }
+
+    /// One of the twelve unknowns moved: position, then spin, of section a, then b.
+    fn moved(sections: [Section; 2], unknown: usize, by: f64) -> [Section; 2] {
+        let mut sections = sections;
+        let section = &mut sections[unknown / 6];
+        let mut step = Vector3::zeros();
+        step[unknown % 3] = by;
+        if unknown % 6 < 3 {
+            section.position += step;
+        } else {
+            section.frame = cayley(step) * section.frame;
+        }
+        sections
+    }
+
+    fn strain_of([a, b]: [Section; 2]) -> Sextuple {
+        strain(&a, &b, LENGTH)
+    }
+
+    #[test]
+    fn the_strain_gradient_equals_central_differences() {
+        let [a, b] = pair();
+        let gradient = strain_gradient(&a, &b, LENGTH);
+        for unknown in 0..12 {
+            let step = |by: f64| strain_of(moved(pair(), unknown, by));
+            let difference = (step(1e-6) - step(-1e-6)) / 2e-6;
+            let column = gradient[unknown / 6].column(unknown % 6).into_owned();
+            assert_relative_eq!(column, difference, epsilon = 1e-8);
+        }
+    }
+
+    #[test]
+    fn the_geometric_stiffness_equals_central_differences() {
+        let before = pair();
+        let loads = |now: [Section; 2]| {
+            let mean = [before[0].mean(&now[0]), before[1].mean(&now[1])];
+            let [a, b] = strain_gradient(&mean[0], &mean[1], LENGTH);
+            [a, b].map(|gradient| LENGTH * gradient.tr_mul(&STRESS))
+        };
+        let now = later();
+        let mean = [before[0].mean(&now[0]), before[1].mean(&now[1])];
+        let [m, n] = [[&mean[0], &mean[1]], [&now[0], &now[1]]];
+        let stiffness = geometric_stiffness(m, n, &STRESS, 0.5);
+        for unknown in 0..12 {
+            let (high, low) = (
+                loads(moved(now, unknown, 1e-6)),
+                loads(moved(now, unknown, -1e-6)),
+            );
+            for row in 0..2 {
+                let difference = (high[row] - low[row]) / 2e-6;
+                let block = &stiffness[row][unknown / 6];
+                let column = block.column(unknown % 6).into_owned();
+                assert_relative_eq!(column, difference, epsilon = 1e-8);
+            }
+        }
+    }
+
+    #[test]
+    fn the_gradient_at_the_mean_times_the_change_is_the_change_of_strain() {
+        let (before, thetas) = (
+            pair(),
+            [Vector3::new(0.4, -0.7, 0.2), Vector3::new(0.1, 0.3, 1.2)],
+        );
+        let now = [0, 1].map(|i| Section {
+            position: before[i].position + Vector3::new(0.2, i as f64, -0.3),
+            frame: cayley(thetas[i]) * before[i].frame,
+        });
+        let mean = [before[0].mean(&now[0]), before[1].mean(&now[1])];
+        let gradient = strain_gradient(&mean[0], &mean[1], LENGTH);
+        let change: Sextuple = (0..2)
+            .map(|i| gradient[i] * join(now[i].position - before[i].position, thetas[i]))
+            .sum();
+        assert_relative_eq!(change, strain_of(now) - strain_of(before), epsilon = 1e-14);
+    }
+
+    #[test]
+    fn rotating_and_moving_the_world_changes_no_strain() {
+        let turn = cayley(Vector3::new(1.0, -2.0, 0.5));
+        let shift = Vector3::new(10.0, 20.0, -30.0);
+        let turned = pair().map(|section| Section {
+            position: turn * section.position + shift,
+            frame: turn * section.frame,
+        });
+        assert_relative_eq!(strain_of(turned), strain_of(pair()), epsilon = 1e-13);
+    }
+
+    #[test]
+    fn forces_and_moments_of_a_stress_are_in_balance() {
+        let [a, b] = pair();
+        let gradient = strain_gradient(&a, &b, LENGTH);
+        let [at_a, at_b] = gradient.map(|g| split(&(LENGTH * g.tr_mul(&STRESS))));
+        assert_relative_eq!(at_a.0 + at_b.0, Vector3::zeros(), epsilon = 1e-14);
+        let moment = at_a.1 + at_b.1 + (b.position - a.position).cross(&at_b.0);
+        assert_relative_eq!(moment, Vector3::zeros(), epsilon = 1e-14);
+    }
+
+    #[test]
+    fn a_straight_beam_has_no_curvature_and_an_arc_has_its_own() {
+        let frame = Matrix3::identity();
+        let section = |position: Vector3<f64>, frame| Section { position, frame };
+        let along = strain_of([
+            section(Vector3::zeros(), frame),
+            section(LENGTH * Vector3::z(), frame),
+        ]);
+        assert_relative_eq!(along, straight(), epsilon = 1e-15);
+        let angle: f64 = 1e-4; // about d₁ by an angle over the length
+        let bent = cayley(angle * Vector3::x());
+        let arc = strain_of([
+            section(Vector3::zeros(), frame),
+            section(LENGTH * Vector3::z(), bent),
+        ]);
+        assert_relative_eq!(arc[3], angle / LENGTH, max_relative = 1e-8);
+    }
+
+    const LAW: SectionLaw = SectionLaw {
+        shear: 2.0,
+        axial: 3.0,
+        bending: 5.0,
+        torsion: 7.0,
+    };
+    const DAMPING: SectionLaw = SectionLaw {
+        shear: 0.1,
+        axial: 0.2,
+        bending: 0.3,
+        torsion: 0.4,
+    };
+
+    fn strains() -> [Sextuple; 2] {
+        [strain_of(pair()), strain_of(later())].map(|s| s + 0.3 * STRESS / 5.0)
+    }
+
+    #[test]
+    fn the_stress_of_a_step_does_the_work_that_the_energy_changes_by() {
+        let [before, now] = strains();
+        let rest = straight();
+        let energy = |plain: &Sextuple| {
+            let strain = corrected(plain, LENGTH) - rest;
+            LAW.energy(&strain, LENGTH).total()
+        };
+        let undamped = SectionLaw {
+            shear: 0.0,
+            axial: 0.0,
+            bending: 0.0,
+            torsion: 0.0,
+        };
+        let mixture = Mixture {
+            share: 0.5,
+            rate: 3.0,
+        };
+        let at = response([&LAW, &undamped], LENGTH, [&before, &now], &rest, mixture);
+        assert_relative_eq!(
+            LENGTH * at.stress.dot(&(now - before)),
+            energy(&now) - energy(&before),
+            epsilon = 1e-13
+        );
+        let damped = response([&LAW, &DAMPING], LENGTH, [&before, &now], &rest, mixture);
+        assert!((damped.stress - at.stress).dot(&(now - before)) > 0.0);
+    }
+
+    #[test]
+    fn the_slope_of_the_stress_equals_central_differences() {
+        let [before, now] = strains();
+        let rest = straight();
+        for (share, rate, still) in [(0.5, 3.0, false), (1.0, 0.0, true)] {
+            let at = |now: Sextuple| {
+                let from = if still { now } else { before };
+                let mixture = Mixture { share, rate };
+                response([&LAW, &DAMPING], LENGTH, [&from, &now], &rest, mixture)
+            };
+            for unknown in 0..6 {
+                let mut step = Sextuple::zeros();
+                step[unknown] = 1e-6;
+                let difference = (at(now + step).stress - at(now - step).stress) / 2e-6;
+                let column = at(now).slope.column(unknown).into_owned();
+                assert_relative_eq!(column, difference, epsilon = 1e-7);
+            }
+        }
+    }
+
+    #[test]
+    fn the_starred_strains_of_an_arc_are_its_own_to_fourth_order() {
+        for (angle, tolerance) in [(0.1, 1e-7), (0.2, 4e-6), (0.4, 2.6e-4)] {
+            let angle: f64 = angle;
+            let radius = LENGTH / angle;
+            let at = |turn: f64| Section {
+                position: radius * Vector3::new(0.0, turn.cos() - 1.0, turn.sin()),
+                frame: cayley(2.0 * (0.5 * turn).tan() * Vector3::x()),
+            };
+            let starred = corrected(&strain_of([at(0.0), at(angle)]), LENGTH);
+            assert_relative_eq!(starred[3] * LENGTH, angle, max_relative = tolerance);
+            assert_relative_eq!(starred[2], 1.0, max_relative = tolerance);
+        }
+    }
+
+    #[test]
+    fn the_energy_is_the_sum_of_its_parts() {
+        let law = LAW;
+        let total = 0.5 * LENGTH * STRESS.dot(&law.diagonal().component_mul(&STRESS));
+        assert_relative_eq!(
+            law.energy(&STRESS, LENGTH).total(),
+            total,
+            max_relative = 1e-15
+        );
+    }
+}
