@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use moorline::interface::{Binding, Interface, Kind, Layout, Variable};
 use moorline::output::record::{Frame, Node, Record};
 use moorline::output::{collect, make_folder, write_run};
-use moorline::scene::{LoadedScene, Scene};
+use moorline::scene::{LoadedScene, Places, Scene, TOML};
 use moorline::simulation::Simulation;
 use moorline_host::{FmiVersion, Fmu, HostError, Slave};
 
@@ -54,6 +54,8 @@ fn built_in_scene() -> Result<LoadedScene, Failure> {
         scene,
         text: SCENE.to_string(),
         path: PathBuf::from("demo.toml"),
+        format: TOML,
+        places: Places::default(),
     })
 }
 

@@ -1,17 +1,24 @@
 //! What the user wrote: plain data, SI units, nothing computed. What is absent is `None`.
 //!
-//! A scene comes from a file ([`load`]) or from TOML text ([`Scene::from_toml`]); every mistake names its key, line
+//! A scene comes from a file ([`load`]), which may be a deck of MoorDyn or MAP++ too, or from TOML text ([`Scene::from_toml`]); every mistake names its key, line
 //! and column. [`Scene::notes`] says what is no mistake but may surprise, [`Scene::in_words`] what is modelled.
 //! [`crate::model::Model::new`] is the one gate from here to the solver.
 
+pub mod channel;
 mod check;
+mod commented;
 mod document;
 mod error;
+mod from_deck;
+mod map;
+mod moordyn;
 mod motion_file;
 mod nearest;
 mod notes;
 mod path;
+mod places;
 mod read;
+mod rows;
 mod time_function;
 mod units;
 mod words;
@@ -22,7 +29,9 @@ use serde::{Deserialize, Serialize};
 
 pub use error::{LoadError, SceneError};
 pub use notes::Note;
-pub use read::{LoadedScene, load};
+pub use places::Places;
+use read::Reading;
+pub use read::{LoadedScene, Supplement, TOML, load, load_with};
 pub use time_function::{HarmonicMotion, MotionFile, MotionPath, TimeFunction};
 
 /// Standard gravity [m/s²], the default of [`Scene::gravity`].
@@ -172,6 +181,10 @@ pub struct Point {
     pub mass: Option<f64>,
     /// Own displaced volume [m³], free points only.
     pub volume: Option<f64>,
+    /// Drag coefficient times area CdA [m²], free points only.
+    pub drag_area: Option<f64>,
+    /// Added-mass coefficient Ca [-], on the displaced volume; free points only.
+    pub added_mass: Option<f64>,
     /// Point load in time.
     pub force: Option<PointForce>,
     /// Its prescribed displacement in time, `kind = "prescribed"` only.
@@ -331,6 +344,8 @@ pub struct Output {
     pub interval: f64,
     /// Node positions and tensions as variables too.
     pub profile: bool,
+    /// Further columns of `moorline run`, by MoorDyn's names such as `FairTen1`.
+    pub channels: Vec<String>,
 }
 
 fn standard_gravity() -> f64 {
@@ -365,6 +380,7 @@ impl Default for Output {
             duration: 60.0,
             interval: 0.05,
             profile: false,
+            channels: Vec::new(),
         }
     }
 }

@@ -134,6 +134,14 @@ fn note_points(scene: &Scene, notes: &mut Vec<Note>) {
             let text = "without [water], a volume changes nothing";
             say(notes, format!("{at}.volume"), text);
         }
+        if point.drag_area.is_some() && scene.water.is_none() {
+            let text = "without [water], a drag area changes nothing";
+            say(notes, format!("{at}.drag_area"), text);
+        }
+        if point.added_mass.is_some() && point.volume.is_none() {
+            let text = "without a volume, an added mass is none: it is a part of the mass of displaced water";
+            say(notes, format!("{at}.added_mass"), text);
+        }
     }
 }
 

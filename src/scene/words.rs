@@ -149,6 +149,12 @@ impl Scene {
         if let Some(volume) = point.volume {
             write!(said, ", volume {}", quantity(volume, "m³")).expect("a String takes all");
         }
+        if let Some(area) = point.drag_area {
+            write!(said, ", drag area {}", quantity(area, "m²")).expect("a String takes all");
+        }
+        if let Some(coefficient) = point.added_mass {
+            write!(said, ", added mass {} of its volume", number(coefficient)).expect("a String takes all");
+        }
         if let Some(force) = &point.force {
             write!(said, ", {}", force_in_words(force)).expect("a String takes all");
         }
@@ -224,7 +230,7 @@ impl Scene {
             "tension is never negative: a slack line carries nothing"
         };
         let output = &self.output;
-        vec![
+        let mut said = vec![
             integrator,
             format!(
                 "target error of fairlead tension {} %",
@@ -241,7 +247,12 @@ impl Scene {
                     ""
                 }
             ),
-        ]
+        ];
+        if !output.channels.is_empty() {
+            let channels = output.channels.join(", ");
+            said.push(format!("further columns of `run`: {channels}"));
+        }
+        said
     }
 
     fn absences_in_words(&self) -> Vec<String> {
@@ -282,7 +293,7 @@ fn section(text: &mut String, heading: &str, entries: &[String]) {
 }
 
 /// Appends a sentence, broken into lines at spaces.
-fn paragraph(text: &mut String, indent: &str, sentence: &str) {
+pub(super) fn paragraph(text: &mut String, indent: &str, sentence: &str) {
     let mut width = 0;
     for word in sentence.split(' ') {
         let length = word.chars().count();
