@@ -348,6 +348,65 @@ pub struct Output {
     pub channels: Vec<String>,
 }
 
+impl Default for Scene {
+    fn default() -> Self {
+        Scene {
+            title: String::new(),
+            gravity: STANDARD_GRAVITY,
+            water: None,
+            seabed: None,
+            line_types: BTreeMap::new(),
+            points: Vec::new(),
+            lines: Vec::new(),
+            vessels: Vec::new(),
+            solver: Solver::default(),
+            motion: BTreeMap::new(),
+            output: Output::default(),
+        }
+    }
+}
+
+impl Point {
+    /// A point with nothing but a name, a reference position [m] and what moves it.
+    pub fn at(name: impl Into<String>, position: [f64; 3], kind: PointKind) -> Point {
+        Point {
+            name: name.into(),
+            position,
+            kind,
+            on: None,
+            free: None,
+            mass: None,
+            volume: None,
+            drag_area: None,
+            added_mass: None,
+            force: None,
+            moment: None,
+            motion: None,
+        }
+    }
+}
+
+impl Line {
+    /// A line between two points that starts in equilibrium.
+    pub fn between(
+        name: impl Into<String>,
+        from: impl Into<String>,
+        to: impl Into<String>,
+        sections: Vec<Section>,
+    ) -> Line {
+        Line {
+            name: name.into(),
+            from: from.into(),
+            to: to.into(),
+            sections,
+            initial: InitialShape::Static,
+            rest_shape: RestShape::Straight,
+            clamped_a: None,
+            clamped_b: None,
+        }
+    }
+}
+
 fn standard_gravity() -> f64 {
     STANDARD_GRAVITY
 }

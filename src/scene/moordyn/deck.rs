@@ -80,12 +80,10 @@ pub(super) struct LineType {
     pub lift: Option<Placed<f64>>,
 }
 
-/// A row of ROD TYPES.
+/// A row of ROD TYPES; its numbers are read and serve nothing yet.
 #[derive(Debug)]
 pub(super) struct RodType {
     pub name: Placed<String>,
-    /// Diam [m], Mass [kg/m], Cd, Ca, CdEnd, CaEnd [-].
-    pub properties: [Placed<f64>; 6],
 }
 
 /// A row of BODIES.

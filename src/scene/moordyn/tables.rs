@@ -359,9 +359,13 @@ pub(super) fn word_property(word: &str) -> Result<Property, String> {
 
 fn rod_types(sections: &Sections<'_>, findings: &mut Findings) -> Vec<RodType> {
     let rows = sections.rows(Kind::RodTypes);
-    read_rows(rows, Kind::RodTypes, &[7], |_| ROD_TYPES, findings, |cells| RodType {
-        name: cells.word(0),
-        properties: [1, 2, 3, 4, 5, 6].map(|column| cells.number(column)),
+    read_rows(rows, Kind::RodTypes, &[7], |_| ROD_TYPES, findings, |cells| {
+        for column in 1..ROD_TYPES.len() {
+            cells.number(column);
+        }
+        RodType {
+            name: cells.word(0),
+        }
     })
 }
 
