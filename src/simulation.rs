@@ -6,14 +6,17 @@
 
 use std::sync::Arc;
 
-use nalgebra::Vector3;
+use nalgebra::{Vector3, Vector6};
 use serde::{Deserialize, Serialize};
 
 use crate::dynamics::advance::{Counters, Workspace};
 use crate::dynamics::ledger::Ledger;
-use crate::dynamics::motion::{HostPath, Sample};
+use crate::dynamics::motion::{AxisPath, HostPath, Sample, VesselPath};
 use crate::dynamics::{Choice, StepError, reaction};
-use crate::model::{ClosedForm, End, Kinematics, Line, LineState, Model, PointState, Role, State};
+use crate::math::attitude::angle_rates;
+use crate::model::{
+    ClosedForm, End, Frame, Kinematics, Line, LineState, Model, PointState, Role, State,
+};
 use crate::physics::stretch::StretchLaw;
 use crate::scene::{Integrator, Scene, SceneError};
 use crate::statics::catenary::{self, Bed, Catenary};
@@ -30,21 +33,75 @@ pub enum Error {
     Statics(#[from] StaticsError),
 }
 
+/// What a host has said about points and vessels.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+struct Inputs {
+    points: Vec<PointInput>,
+    vessels: Vec<VesselInput>,
+}
+
 /// What a host has said about a point.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-struct Input {
+struct PointInput {
     /// Displacement from the reference position [m].
     displacement: [f64; 3],
     /// Velocity [m/s]; derived from the displacements where absent.
     velocity: [Option<f64>; 3],
 }
 
+/// What a host has said about a vessel.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+struct VesselInput {
+    /// Displacement from the reference position [m]; roll, pitch and yaw from the reference attitude [rad].
+    pose: [f64; 6],
+    /// Velocity [m/s] and angular velocity in global axes [rad/s]; derived from the poses where absent.
+    velocity: [Option<f64>; 6],
+}
+
+impl VesselInput {
+    /// Rates of the pose [m/s, rad/s]. Those of the angles need the whole angular velocity.
+    fn rates(&self, attitude: Vector3<f64>) -> [Option<f64>; 6] {
+        let [vx, vy, vz, wx, wy, wz] = self.velocity;
+        let [_, _, _, roll, pitch, yaw] = self.pose;
+        let turning = match (wx, wy, wz) {
+            (Some(x), Some(y), Some(z)) => angle_rates(
+                attitude + Vector3::new(roll, pitch, yaw),
+                Vector3::new(x, y, z),
+            ),
+            _ => None,
+        };
+        let angle = |axis: usize| turning.map(|rates| rates[axis]);
+        [vx, vy, vz, angle(0), angle(1), angle(2)]
+    }
+}
+
+/// The paths that points and vessels follow between communication points.
+#[derive(Debug, PartialEq, Serialize, Deserialize)]
+struct Paths {
+    points: Vec<HostPath>,
+    vessels: Vec<VesselPath>,
+}
+
+impl Clone for Paths {
+    fn clone(&self) -> Self {
+        Paths {
+            points: self.points.clone(),
+            vessels: self.vessels.clone(),
+        }
+    }
+
+    fn clone_from(&mut self, source: &Self) {
+        self.points.clone_from(&source.points);
+        self.vessels.clone_from(&source.vessels);
+    }
+}
+
 /// All that changes in a simulation. Putting it back replays it bit for bit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Snapshot {
     state: State,
-    inputs: Vec<Input>,
-    paths: Vec<HostPath>,
+    inputs: Inputs,
+    paths: Paths,
     follows_scene: bool,
     counters: Counters,
     ledger: Ledger,
@@ -57,7 +114,7 @@ pub struct Simulation {
     model: Arc<Model>,
     snapshot: Snapshot,
     work: Workspace,
-    paths: Vec<HostPath>,
+    paths: Paths,
     catenaries: Vec<Option<Catenary>>,
 }
 
@@ -83,7 +140,10 @@ impl Simulation {
     /// Mistakes in the scene, or an equilibrium that does not exist.
     pub fn new(scene: &Scene) -> Result<Simulation, Error> {
         let model = Arc::new(Model::new(scene)?);
-        let inputs = vec![Input::default(); model.points.len()];
+        let inputs = Inputs {
+            points: vec![PointInput::default(); model.points.len()],
+            vessels: vec![VesselInput::default(); model.vessels.len()],
+        };
         let (snapshot, work) = begin(&model, 0.0, inputs, false)?;
         Ok(Simulation {
             catenaries: model
@@ -147,22 +207,39 @@ impl Simulation {
 
     /// Sets where a coupled point is now, from its reference position [m].
     pub fn set_displacement(&mut self, point: usize, displacement: [f64; 3]) {
-        self.snapshot.inputs[point].displacement = displacement;
+        self.snapshot.inputs.points[point].displacement = displacement;
     }
 
     /// Displacement of a coupled point as set [m].
     pub fn displacement(&self, point: usize) -> [f64; 3] {
-        self.snapshot.inputs[point].displacement
+        self.snapshot.inputs.points[point].displacement
     }
 
     /// Sets how a coupled point moves now [m/s]; axes without a velocity are derived from the displacements.
     pub fn set_velocity(&mut self, point: usize, velocity: [Option<f64>; 3]) {
-        self.snapshot.inputs[point].velocity = velocity;
+        self.snapshot.inputs.points[point].velocity = velocity;
     }
 
     /// Velocity of a coupled point as set [m/s].
     pub fn velocity(&self, point: usize) -> [Option<f64>; 3] {
-        self.snapshot.inputs[point].velocity
+        self.snapshot.inputs.points[point].velocity
+    }
+
+    /// Sets where a vessel is now: displacement from its reference position [m]; roll, pitch and yaw added to those of its reference
+    /// attitude [rad].
+    pub fn set_pose(&mut self, vessel: usize, pose: [f64; 6]) {
+        self.snapshot.inputs.vessels[vessel].pose = pose;
+    }
+
+    /// Pose of a vessel as set [m, rad].
+    pub fn pose(&self, vessel: usize) -> [f64; 6] {
+        self.snapshot.inputs.vessels[vessel].pose
+    }
+
+    /// Sets how a vessel moves now: velocity of its origin [m/s] and angular velocity [rad/s], both in global axes. What is absent is
+    /// derived from the poses; the rotation needs all three components.
+    pub fn set_vessel_velocity(&mut self, vessel: usize, velocity: [Option<f64>; 6]) {
+        self.snapshot.inputs.vessels[vessel].velocity = velocity;
     }
 
     /// Which integrator serves each network, and its step limits.
@@ -182,8 +259,13 @@ impl Simulation {
         if !self.snapshot.follows_scene {
             self.extend_paths(step);
         }
-        let (model, paths, follows) = (&*self.model, &self.paths, self.snapshot.follows_scene);
-        let held = |point: usize, t: f64| held(model, paths, follows, point, t);
+        let model = &*self.model;
+        let at = Held {
+            model,
+            paths: &self.paths,
+            follows_scene: self.snapshot.follows_scene,
+        };
+        let held = |point: usize, t: f64| at.point(point, t);
         let done = self
             .work
             .advance(model, &mut self.snapshot.state, step, &held)?;
@@ -193,27 +275,56 @@ impl Simulation {
         Ok(())
     }
 
-    /// Continues the paths of the coupled points by a communication step [s].
+    /// Continues the paths of the coupled points and the vessels by a communication step [s].
     fn extend_paths(&mut self, step: f64) {
         let (time, reconstruction) = (self.time(), self.model.solver.input_reconstruction);
-        let points = self.model.points.iter().zip(&self.snapshot.inputs);
-        for (path, (point, input)) in self.paths.iter_mut().zip(points) {
+        let extend = |path: &mut AxisPath, position: f64, velocity: Option<f64>| {
+            let sample = Sample {
+                time,
+                position,
+                velocity,
+            };
+            path.extend(sample, step, reconstruction);
+        };
+        let points = self.model.points.iter().zip(&self.snapshot.inputs.points);
+        for (path, (point, input)) in self.paths.points.iter_mut().zip(points) {
             if !matches!(point.role, Role::Coupled { .. }) {
                 continue;
             }
             for (axis, path) in path.0.iter_mut().enumerate() {
                 let position = point.reference[axis] + input.displacement[axis];
-                path.extend(
-                    Sample {
-                        time,
-                        position,
-                        velocity: input.velocity[axis],
-                    },
-                    step,
-                    reconstruction,
-                );
+                extend(path, position, input.velocity[axis]);
             }
         }
+        let vessels = self.model.vessels.iter().zip(&self.snapshot.inputs.vessels);
+        for (path, (vessel, input)) in self.paths.vessels.iter_mut().zip(vessels) {
+            let rates = input.rates(vessel.attitude);
+            for (axis, path) in path.0.iter_mut().enumerate() {
+                extend(path, input.pose[axis], rates[axis]);
+            }
+        }
+    }
+
+    /// Force [N] and moment [N m] of the mooring on a vessel, about its origin, in global axes.
+    pub fn vessel_force(&self, vessel: usize) -> [f64; 6] {
+        let model = &*self.model;
+        let at = Held {
+            model,
+            paths: &self.snapshot.paths,
+            follows_scene: self.snapshot.follows_scene,
+        };
+        let origin = at.frame(vessel, self.time()).origin.position;
+        let mut sum = Vector6::zeros();
+        for (index, point) in model.points.iter().enumerate() {
+            if !matches!(point.role, Role::Carried { vessel: carrier, .. } if carrier == vessel) {
+                continue;
+            }
+            let force = Vector3::from(self.end_force(index));
+            let arm = self.snapshot.state.points[index].position - origin;
+            let moment = arm.cross(&force);
+            sum += Vector6::new(force.x, force.y, force.z, moment.x, moment.y, moment.z);
+        }
+        sum.into()
     }
 
     /// Force of the mooring on a point [N]: what a vessel feels there.
@@ -364,29 +475,42 @@ impl Simulation {
     }
 }
 
-/// Where a held point is at time `t` [s].
-fn held(
-    model: &Model,
-    paths: &[HostPath],
+/// Where everything that forces do not move is in time.
+struct Held<'a> {
+    model: &'a Model,
+    paths: &'a Paths,
     follows_scene: bool,
-    point: usize,
-    t: f64,
-) -> Kinematics {
-    let reference = model.points[point].reference;
-    let moved = |k: Kinematics| Kinematics {
-        position: reference + k.position,
-        ..k
-    };
-    match &model.points[point].role {
-        Role::Prescribed(motion) => moved(motion.at(t)),
-        Role::Coupled {
-            motion: Some(motion),
-        } if follows_scene => moved(motion.at(t)),
-        Role::Coupled { .. } => paths[point].at(t),
-        Role::Fixed | Role::Free(_) => Kinematics {
-            position: reference,
-            ..Kinematics::default()
-        },
+}
+
+impl Held<'_> {
+    /// A point at time `t` [s].
+    fn point(&self, point: usize, t: f64) -> Kinematics {
+        let reference = self.model.points[point].reference;
+        let moved = |k: Kinematics| Kinematics {
+            position: reference + k.position,
+            ..k
+        };
+        match &self.model.points[point].role {
+            Role::Prescribed(motion) => moved(motion.at(t)),
+            Role::Coupled {
+                motion: Some(motion),
+            } if self.follows_scene => moved(motion.at(t)),
+            Role::Coupled { .. } => self.paths.points[point].at(t),
+            Role::Carried { vessel, arm } => {
+                self.model.vessels[*vessel].carry(&self.frame(*vessel, t), *arm)
+            }
+            Role::Fixed | Role::Free(_) => moved(Kinematics::default()),
+        }
+    }
+
+    /// A vessel at time `t` [s].
+    fn frame(&self, vessel: usize, t: f64) -> Frame {
+        let body = &self.model.vessels[vessel];
+        let pose = match &body.motion {
+            Some(motion) if self.follows_scene => motion.pose(t),
+            _ => self.paths.vessels[vessel].at(t),
+        };
+        body.frame(&pose)
     }
 }
 
@@ -394,16 +518,26 @@ fn held(
 fn begin(
     model: &Model,
     time: f64,
-    inputs: Vec<Input>,
+    inputs: Inputs,
     follows_scene: bool,
 ) -> Result<(Snapshot, Workspace), Error> {
-    let placed = model.points.iter().zip(&inputs);
-    let paths: Vec<HostPath> = placed
-        .map(|(point, input)| {
-            HostPath::at_rest(time, point.reference + Vector3::from(input.displacement))
-        })
-        .collect();
-    let held = |point: usize, t: f64| held(model, &paths, follows_scene, point, t);
+    let placed = model.points.iter().zip(&inputs.points);
+    let points = placed.map(|(point, input)| {
+        HostPath::at_rest(time, point.reference + Vector3::from(input.displacement))
+    });
+    let vessels = inputs.vessels.iter();
+    let paths = Paths {
+        points: points.collect(),
+        vessels: vessels
+            .map(|input| VesselPath::at_rest(time, input.pose))
+            .collect(),
+    };
+    let at = Held {
+        model,
+        paths: &paths,
+        follows_scene,
+    };
+    let held = |point: usize, t: f64| at.point(point, t);
     let places: Vec<Vector3<f64>> = (0..model.points.len())
         .map(|point| held(point, time).position)
         .collect();

@@ -151,6 +151,7 @@ fn hold<K: Fn(usize, f64) -> Kinematics>(
                     position,
                     velocity,
                     acceleration,
+                    ..
                 } = held(point, t);
                 state.points[point] = PointState {
                     position,

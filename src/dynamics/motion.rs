@@ -1,4 +1,4 @@
-//! The path of a coupled point, axis by axis, between communication points.
+//! The path of a coupled point or a vessel, axis by axis, between communication points.
 //!
 //! A host sets the displacement x_k (perhaps the velocity v_k) at t_k and asks for t_k + h. Stepping to x_k there and then
 //! would jump, which is the commonest noise of coupled simulations. Instead the point follows one C1 curve: on every
@@ -12,11 +12,11 @@
 //! the choice of degree is made here. Valid for any sequence of step sizes: samples closer
 //! together than half the coming step are passed over, and all are dropped when the host steps back.
 
-use nalgebra::Vector3;
+use nalgebra::{Vector3, Vector6};
 use serde::{Deserialize, Serialize};
 
 use crate::math::hermite::{self, Hermite};
-use crate::model::Kinematics;
+use crate::model::{Kinematics, Pose};
 use crate::scene::Reconstruction;
 
 /// Highest degree of the extrapolated polynomial [-].
@@ -161,6 +161,28 @@ impl HostPath {
             position: Vector3::new(x.value, y.value, z.value),
             velocity: Vector3::new(x.slope, y.slope, z.slope),
             acceleration: Vector3::new(x.curvature, y.curvature, z.curvature),
+            ..Kinematics::default()
+        }
+    }
+}
+
+/// The paths of a vessel's displacement [m] along x, y and z and of its roll, pitch and yaw [rad].
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct VesselPath(pub [AxisPath; 6]);
+
+impl VesselPath {
+    /// At rest at a pose [m, rad] at a time [s].
+    pub fn at_rest(time: f64, pose: [f64; 6]) -> VesselPath {
+        VesselPath(pose.map(|value| AxisPath::at_rest(time, value)))
+    }
+
+    /// Pose and its derivatives at time `t` [s].
+    pub fn at(&self, t: f64) -> Pose {
+        let axes = self.0.map(|axis| axis.at(t));
+        Pose {
+            value: Vector6::from_fn(|i, _| axes[i].value),
+            rate: Vector6::from_fn(|i, _| axes[i].slope),
+            acceleration: Vector6::from_fn(|i, _| axes[i].curvature),
         }
     }
 }

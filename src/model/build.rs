@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use super::{
     Contact, Drag, End, FreePoint, Line, Model, Motion, Network, Nodes, Point, Role, Section,
-    Segments, mesh,
+    Segments, Vessel, mesh,
 };
 use crate::physics::morison::{DragCoefficients, drag_per_length};
 use crate::physics::rayleigh;
@@ -27,10 +27,11 @@ impl Model {
     /// The mistakes that [`Scene::check`] finds, and names that do not exist.
     pub fn new(scene: &Scene) -> Result<Model, SceneError> {
         scene.check()?;
+        let vessels: Vec<Vessel> = scene.vessels.iter().map(|v| vessel(scene, v)).collect();
         let mut points: Vec<Point> = scene
             .points
             .iter()
-            .map(|point| build_point(scene, point))
+            .map(|point| build_point(scene, &vessels, point))
             .collect();
         let mut lines = Vec::with_capacity(scene.lines.len());
         for (index, line) in scene.lines.iter().enumerate() {
@@ -50,26 +51,42 @@ impl Model {
             networks,
             points,
             lines,
+            vessels,
             solver: scene.solver.clone(),
         })
     }
 }
 
-fn build_point(scene: &Scene, point: &scene::Point) -> Point {
-    let role = match point.kind {
-        PointKind::Fixed => Role::Fixed,
-        PointKind::Coupled => Role::Coupled {
+fn vessel(scene: &Scene, vessel: &scene::Vessel) -> Vessel {
+    Vessel {
+        name: vessel.name.clone(),
+        position: Vector3::from(vessel.position),
+        attitude: Vector3::from(vessel.attitude),
+        motion: scene.motion.get(&vessel.name).map(Motion::new),
+    }
+}
+
+fn build_point(scene: &Scene, vessels: &[Vessel], point: &scene::Point) -> Point {
+    let place = Vector3::from(point.position);
+    let carrier = point
+        .on
+        .as_ref()
+        .and_then(|name| vessels.iter().position(|vessel| vessel.name == *name));
+    let role = match (point.kind, carrier) {
+        (PointKind::Coupled, Some(vessel)) => Role::Carried { vessel, arm: place },
+        (PointKind::Coupled, None) => Role::Coupled {
             motion: scene.motion.get(&point.name).map(Motion::new),
         },
-        PointKind::Prescribed => point
+        (PointKind::Fixed, _) => Role::Fixed,
+        (PointKind::Prescribed, _) => point
             .motion
             .as_ref()
             .map_or(Role::Fixed, |m| Role::Prescribed(Motion::new(m))),
-        PointKind::Free => Role::Free(free_point(scene, point)),
+        (PointKind::Free, _) => Role::Free(free_point(scene, point)),
     };
     Point {
         name: point.name.clone(),
-        reference: Vector3::from(point.position),
+        reference: carrier.map_or(place, |vessel| vessels[vessel].reference_place(place)),
         role,
         load: point.force.clone(),
         attached: Vec::new(),

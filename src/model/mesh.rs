@@ -49,6 +49,9 @@ mod tests {
                 section(99.0, Some(7)),
             ],
             initial: InitialShape::Static,
+            rest_shape: RestShape::Straight,
+            clamped_a: None,
+            clamped_b: None,
         };
         assert_eq!(section_elements(&line, 0.02), vec![30, 1, 7]);
     }

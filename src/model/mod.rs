@@ -8,14 +8,16 @@ mod initial;
 mod mesh;
 mod motion;
 mod state;
+mod vessel;
 
 use nalgebra::Vector3;
 
 use crate::physics::stretch::StretchLaw;
 use crate::scene::{InitialShape, PointForce, Solver};
 
-pub use motion::{Kinematics, Motion};
+pub use motion::{Kinematics, Motion, Pose};
 pub use state::{ClosedForm, LineState, PointState, State};
+pub use vessel::{Frame, Vessel};
 
 /// A scene made discrete. Immutable; shared by reference.
 #[derive(Debug, Clone)]
@@ -30,6 +32,8 @@ pub struct Model {
     pub points: Vec<Point>,
     /// Lines in the order of the scene.
     pub lines: Vec<Line>,
+    /// Vessels in the order of the scene.
+    pub vessels: Vec<Vessel>,
     /// Sets of lines that share free points and so must be solved together.
     pub networks: Vec<Network>,
     /// How to solve, as the user asked.
@@ -60,6 +64,13 @@ pub enum Role {
     Coupled {
         /// The scene's motion for it.
         motion: Option<Motion>,
+    },
+    /// It rides on a vessel, which the host moves.
+    Carried {
+        /// Index of the vessel.
+        vessel: usize,
+        /// Its place in the vessel's axes [m].
+        arm: Vector3<f64>,
     },
     /// Its own path moves it.
     Prescribed(Motion),

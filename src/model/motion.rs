@@ -1,11 +1,11 @@
-//! Prescribed motion of a point: displacement, velocity and acceleration in time.
+//! Prescribed motion of a point or a vessel: displacement, velocity and acceleration in time.
 
 use std::f64::consts::{PI, TAU};
 
-use nalgebra::Vector3;
+use nalgebra::{UnitQuaternion, Vector3, Vector6};
 
 use crate::math::hermite::Hermite;
-use crate::scene::{HarmonicMotion, MotionPath};
+use crate::scene::{MotionPath, MotionRow};
 
 /// Where a driven point is, and how it moves.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -16,6 +16,34 @@ pub struct Kinematics {
     pub velocity: Vector3<f64>,
     /// Acceleration [m/s²].
     pub acceleration: Vector3<f64>,
+    /// Rotation from the reference attitude of what the point is fixed to.
+    pub orientation: UnitQuaternion<f64>,
+    /// Angular velocity of what the point is fixed to, in global axes [rad/s].
+    pub spin: Vector3<f64>,
+}
+
+/// Displacement x, y, z [m] and roll, pitch, yaw [rad], with their rates per second and per second squared.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Pose {
+    /// Displacement [m] and angles [rad].
+    pub value: Vector6<f64>,
+    /// Their first derivatives [m/s, rad/s].
+    pub rate: Vector6<f64>,
+    /// Their second derivatives [m/s², rad/s²].
+    pub acceleration: Vector6<f64>,
+}
+
+impl Pose {
+    /// The translation alone.
+    pub fn kinematics(&self) -> Kinematics {
+        let first = |six: &Vector6<f64>| Vector3::new(six[0], six[1], six[2]);
+        Kinematics {
+            position: first(&self.value),
+            velocity: first(&self.rate),
+            acceleration: first(&self.acceleration),
+            ..Kinematics::default()
+        }
+    }
 }
 
 /// A displacement in time.
@@ -23,8 +51,8 @@ pub struct Kinematics {
 pub enum Motion {
     /// ramp(t)·Σ amplitude·sin(ωt + phase) per axis.
     Harmonic {
-        /// Components of x, y and z.
-        axes: [Vec<Harmonic>; 3],
+        /// Components of x, y, z, roll, pitch and yaw.
+        axes: [Vec<Harmonic>; 6],
         /// Duration of the cosine ramp [s].
         ramp: Option<f64>,
     },
@@ -35,7 +63,7 @@ pub enum Motion {
 /// One sine.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Harmonic {
-    /// Amplitude [m].
+    /// Amplitude [m] or [rad].
     pub amplitude: f64,
     /// Circular frequency [rad/s].
     pub frequency: f64,
@@ -48,35 +76,42 @@ pub struct Harmonic {
 pub struct TableRow {
     /// Time [s].
     pub time: f64,
-    /// Displacement [m].
-    pub displacement: Vector3<f64>,
-    /// Slope of the curve at the row [m/s].
-    pub slope: Vector3<f64>,
+    /// Displacement [m] and angles [rad].
+    pub displacement: Vector6<f64>,
+    /// Slope of the curve at the row [m/s, rad/s].
+    pub slope: Vector6<f64>,
 }
 
 impl Motion {
     /// The motion that a checked scene describes.
     pub fn new(path: &MotionPath) -> Motion {
         match path {
-            MotionPath::Harmonic(HarmonicMotion { x, y, z, ramp }) => Motion::Harmonic {
-                axes: [x, y, z].map(|components| components.iter().map(|c| harmonic(c)).collect()),
-                ramp: ramp.filter(|ramp| *ramp > 0.0),
+            MotionPath::Harmonic(motion) => Motion::Harmonic {
+                axes: motion
+                    .axes()
+                    .map(|(_, components)| components.iter().map(|c| harmonic(c)).collect()),
+                ramp: motion.ramp.filter(|ramp| *ramp > 0.0),
             },
             MotionPath::File(file) => Motion::Table(table(&file.rows)),
             MotionPath::Table(rows) => Motion::Table(table(rows)),
         }
     }
 
-    /// Displacement and its derivatives at time `t` [s].
+    /// Displacement of a point and its derivatives at time `t` [s].
     pub fn at(&self, t: f64) -> Kinematics {
+        self.pose(t).kinematics()
+    }
+
+    /// Displacement and angles of a vessel and their derivatives at time `t` [s].
+    pub fn pose(&self, t: f64) -> Pose {
         match self {
             Motion::Harmonic { axes, ramp } => {
-                let mut sum = Kinematics::default();
+                let mut sum = Pose::default();
                 for (axis, components) in axes.iter().enumerate() {
                     for h in components {
                         let (sin, cos) = (h.frequency * t + h.phase).sin_cos();
-                        sum.position[axis] += h.amplitude * sin;
-                        sum.velocity[axis] += h.amplitude * h.frequency * cos;
+                        sum.value[axis] += h.amplitude * sin;
+                        sum.rate[axis] += h.amplitude * h.frequency * cos;
                         sum.acceleration[axis] -= h.amplitude * h.frequency * h.frequency * sin;
                     }
                 }
@@ -99,35 +134,35 @@ fn harmonic(component: &[f64]) -> Harmonic {
 }
 
 /// Product of a motion with r(t) = ½(1 − cos(πt/ramp)), 0 before t = 0.
-fn ramped(k: Kinematics, t: f64, ramp: f64) -> Kinematics {
+fn ramped(k: Pose, t: f64, ramp: f64) -> Pose {
     if t <= 0.0 {
         let rate2 = if t == 0.0 {
             0.5 * (PI / ramp).powi(2)
         } else {
             0.0
         };
-        return Kinematics {
-            acceleration: rate2 * k.position,
-            ..Kinematics::default()
+        return Pose {
+            acceleration: rate2 * k.value,
+            ..Pose::default()
         };
     }
     let w = PI / ramp;
     let (sin, cos) = (w * t).sin_cos();
     let (r, dr, ddr) = (0.5 * (1.0 - cos), 0.5 * w * sin, 0.5 * w * w * cos);
-    Kinematics {
-        position: r * k.position,
-        velocity: r * k.velocity + dr * k.position,
-        acceleration: r * k.acceleration + 2.0 * dr * k.velocity + ddr * k.position,
+    Pose {
+        value: r * k.value,
+        rate: r * k.rate + dr * k.value,
+        acceleration: r * k.acceleration + 2.0 * dr * k.rate + ddr * k.value,
     }
 }
 
-fn table(rows: &[[f64; 4]]) -> Vec<TableRow> {
-    let point = |row: &[f64; 4]| (row[0], Vector3::new(row[1], row[2], row[3]));
+fn table(rows: &[MotionRow]) -> Vec<TableRow> {
+    let point = |row: &MotionRow| (row[0], Vector6::from_column_slice(&row[1..]));
     (0..rows.len())
         .map(|i| {
             let (time, displacement) = point(&rows[i]);
             let slope = if i == 0 || i + 1 == rows.len() {
-                Vector3::zeros()
+                Vector6::zeros()
             } else {
                 let ((t0, p0), (t2, p2)) = (point(&rows[i - 1]), point(&rows[i + 1]));
                 let (h0, h1) = (time - t0, t2 - time);
@@ -142,7 +177,7 @@ fn table(rows: &[[f64; 4]]) -> Vec<TableRow> {
         .collect()
 }
 
-fn interpolate(rows: &[TableRow], t: f64) -> Kinematics {
+fn interpolate(rows: &[TableRow], t: f64) -> Pose {
     let after = rows.partition_point(|row| row.time <= t);
     if after == 0 || after == rows.len() {
         let held = if after == 0 {
@@ -150,26 +185,27 @@ fn interpolate(rows: &[TableRow], t: f64) -> Kinematics {
         } else {
             rows.last()
         };
-        return Kinematics {
-            position: held.map_or(Vector3::zeros(), |row| row.displacement),
-            ..Kinematics::default()
+        return Pose {
+            value: held.map_or(Vector6::zeros(), |row| row.displacement),
+            ..Pose::default()
         };
     }
     let (low, high) = (rows[after - 1], rows[after]);
-    let mut kinematics = Kinematics::default();
-    for axis in 0..3 {
+    let mut pose = Pose::default();
+    for axis in 0..6 {
         let knot = |row: &TableRow| (row.time, row.displacement[axis], row.slope[axis]);
         let sample = Hermite::new(knot(&low), knot(&high)).at(t);
-        kinematics.position[axis] = sample.value;
-        kinematics.velocity[axis] = sample.slope;
-        kinematics.acceleration[axis] = sample.curvature;
+        pose.value[axis] = sample.value;
+        pose.rate[axis] = sample.slope;
+        pose.acceleration[axis] = sample.curvature;
     }
-    kinematics
+    pose
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::HarmonicMotion;
     use approx::assert_relative_eq;
 
     fn swinging(ramp: Option<f64>) -> Motion {
@@ -178,6 +214,7 @@ mod tests {
             y: vec![],
             z: vec![vec![2.0, 9.0]],
             ramp,
+            ..HarmonicMotion::default()
         }))
     }
 
@@ -206,9 +243,9 @@ mod tests {
 
     #[test]
     fn a_table_is_met_at_its_rows_and_smooth_between() {
-        let rows: Vec<[f64; 4]> = (0..50)
+        let rows: Vec<MotionRow> = (0..50)
             .map(|i| 0.1 * i as f64)
-            .map(|t| [t, t.sin(), 0.0, 1.0 - t])
+            .map(|t| [t, t.sin(), 0.0, 1.0 - t, 0.0, 0.0, 0.0])
             .collect();
         let motion = Motion::Table(table(&rows));
         assert_relative_eq!(motion.at(2.0).position.x, f64::sin(2.0), epsilon = 1e-14);

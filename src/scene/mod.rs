@@ -32,7 +32,7 @@ pub use notes::Note;
 pub use places::Places;
 use read::Reading;
 pub use read::{LoadedScene, Supplement, TOML, load, load_with};
-pub use time_function::{HarmonicMotion, MotionFile, MotionPath, TimeFunction};
+pub use time_function::{HarmonicMotion, MotionFile, MotionPath, MotionRow, TimeFunction};
 
 /// Standard gravity [m/s²], the default of [`Scene::gravity`].
 pub const STANDARD_GRAVITY: f64 = 9.80665;
@@ -60,10 +60,13 @@ pub struct Scene {
     /// Lines between points.
     #[serde(default)]
     pub lines: Vec<Line>,
+    /// Floating bodies that carry points, moved by the host.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub vessels: Vec<Vessel>,
     /// How to solve.
     #[serde(default)]
     pub solver: Solver,
-    /// What moves the coupled points in `moorline run`, by point name.
+    /// What moves the coupled points and the vessels in `moorline run`, by name.
     #[serde(default)]
     pub motion: BTreeMap<String, MotionPath>,
     /// What `moorline run` and the FMU write.
@@ -115,6 +118,9 @@ pub enum ContactLaw {
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LineType {
+    /// What the line's elements resist.
+    #[serde(default)]
+    pub model: LineModel,
     /// Mass in air [kg/m].
     pub mass: Option<f64>,
     /// Weight in the scene's surroundings [N/m]; where given, buoyancy is not subtracted again.
@@ -140,6 +146,56 @@ pub struct LineType {
     pub added_mass_normal: Option<f64>,
     /// Tangential added-mass coefficient [-], on the displaced volume.
     pub added_mass_tangential: Option<f64>,
+    /// Bending stiffness EI of one solid section [N m²]; absent or 0, the line is perfectly flexible.
+    pub bending_stiffness: Option<f64>,
+    /// Solid round section that stiffnesses not given otherwise follow from.
+    pub solid_section: Option<SolidSection>,
+    /// Number of loose strands that share the section [-]; 1 where absent.
+    pub fibres: Option<usize>,
+    /// How the bending stiffness falls with the number of fibres.
+    #[serde(default)]
+    pub fibre_law: FibreLaw,
+    /// Shear stiffness GA [N], beams only.
+    pub shear_stiffness: Option<f64>,
+    /// Torsional stiffness GJ [N m²], beams only.
+    pub torsional_stiffness: Option<f64>,
+    /// Rotary inertia of the section per length, about any axis [kg m], beams only.
+    pub rotary_inertia: Option<f64>,
+}
+
+/// What the elements of a line resist.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum LineModel {
+    /// Stretch, and bending where there is a bending stiffness.
+    #[default]
+    Cable,
+    /// Stretch, shear, bending and torsion, with rotary inertia: the geometrically exact beam.
+    Beam,
+}
+
+/// A solid round section of one material.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SolidSection {
+    /// Diameter of the load-bearing section [m].
+    pub diameter: f64,
+    /// Young's modulus E [Pa].
+    pub youngs_modulus: f64,
+    /// Poisson's ratio ν [-], for shear and torsion.
+    #[serde(default = "steel_poisson")]
+    pub poisson: f64,
+}
+
+/// How bending stiffness falls with the number n of loose strands that share a section.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FibreLaw {
+    /// EI/n: n round strands of the same total area, each of 1/n² of the EI, bend side by side.
+    #[default]
+    Linear,
+    /// EI/n²: the stiffness of a single strand.
+    Squared,
 }
 
 /// Damping ratios at two circular frequencies; they fix C = α·M + β·K.
@@ -175,6 +231,8 @@ pub struct Point {
     pub position: [f64; 3],
     /// Who moves it.
     pub kind: PointKind,
+    /// Vessel that a coupled point rides on; its position [m] is then in the vessel's frame.
+    pub on: Option<String>,
     /// Axes along which a free point may move; all where absent.
     pub free: Option<Vec<Axis>>,
     /// Own mass [kg], free points only.
@@ -187,6 +245,8 @@ pub struct Point {
     pub added_mass: Option<f64>,
     /// Point load in time.
     pub force: Option<PointForce>,
+    /// Moment in time, on the end of a beam at a free point.
+    pub moment: Option<PointMoment>,
     /// Its prescribed displacement in time, `kind = "prescribed"` only.
     pub motion: Option<MotionPath>,
 }
@@ -229,6 +289,32 @@ pub struct PointForce {
     pub z: Option<TimeFunction>,
 }
 
+/// A moment [N m] about the global axes.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PointMoment {
+    /// About x [N m].
+    pub x: Option<TimeFunction>,
+    /// About y [N m].
+    pub y: Option<TimeFunction>,
+    /// About z [N m].
+    pub z: Option<TimeFunction>,
+}
+
+/// A floating body that the host moves: a frame that carries points.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Vessel {
+    /// Name, the stem of its variables.
+    pub name: String,
+    /// Reference position of its origin [m].
+    #[serde(default)]
+    pub position: [f64; 3],
+    /// Reference attitude: roll, pitch, yaw [rad], body to global by yaw about z, then pitch about y', then roll about x''.
+    #[serde(default)]
+    pub attitude: [f64; 3],
+}
+
 /// A line from end A (anchor) to end B (fairlead).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -244,6 +330,24 @@ pub struct Line {
     /// Shape at the start.
     #[serde(default)]
     pub initial: InitialShape,
+    /// Shape that bends nothing.
+    #[serde(default)]
+    pub rest_shape: RestShape,
+    /// Direction of the line from A to B at end A [-], where that end is clamped; pinned where absent.
+    pub clamped_a: Option<[f64; 3]>,
+    /// Direction of the line from A to B at end B [-], where that end is clamped; pinned where absent.
+    pub clamped_b: Option<[f64; 3]>,
+}
+
+/// The shape of a line that is free of bending and torsion.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RestShape {
+    /// Straight.
+    #[default]
+    Straight,
+    /// As it lies at the start.
+    Initial,
 }
 
 /// A part of a line with one line type.
@@ -309,6 +413,8 @@ pub enum Integrator {
     GeneralisedAlpha,
     /// Wood, Bossak and Zienkiewicz, fully implicit.
     Bossak,
+    /// Energy- and momentum-conserving; every line is a beam.
+    Beam,
     /// Static equilibrium at every communication point.
     QuasiStatic,
 }
@@ -409,6 +515,10 @@ impl Line {
 
 fn standard_gravity() -> f64 {
     STANDARD_GRAVITY
+}
+
+fn steel_poisson() -> f64 {
+    0.3
 }
 
 fn seabed_stiffness() -> f64 {

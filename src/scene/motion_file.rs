@@ -1,20 +1,25 @@
-//! Motion tables in CSV files: a header row, then time, x, y, z.
+//! Motion tables in CSV files: a header row, then time, x, y, z, and for vessels roll, pitch, yaw.
 
 use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;
 
-/// Columns of a motion file, in order.
-const COLUMNS: [&str; 4] = ["time", "x", "y", "z"];
+use super::MotionRow;
+
+/// Columns of a motion file, in order; the last three may be left out together.
+const COLUMNS: [&str; 7] = ["time", "x", "y", "z", "roll", "pitch", "yaw"];
+
+/// Columns of a motion without rotation.
+const TRANSLATION: usize = 4;
 
 /// Most rows that are read: a day at 100 Hz.
 const ROWS_MAX: usize = 8_640_000;
 
-/// Rows of time [s] and displacement x, y, z [m].
+/// Rows of time [s], displacement x, y, z [m] and rotation [rad].
 ///
 /// # Errors
 /// The file, the line and what would be right.
-pub(super) fn read(path: &Path) -> Result<Vec<[f64; 4]>, String> {
+pub(super) fn read(path: &Path) -> Result<Vec<MotionRow>, String> {
     let name = path.display();
     if path.is_dir() {
         return Err(format!("{name} is a folder, not a CSV file"));
@@ -33,12 +38,14 @@ pub(super) fn read(path: &Path) -> Result<Vec<[f64; 4]>, String> {
     let header = reader
         .headers()
         .map_err(|error| format!("{name}: {}", in_words(&error)))?;
+    let columns = header.len();
     check_header(header).map_err(|problem| format!("{name}, line 1: {problem}"))?;
-    let mut rows: Vec<[f64; 4]> = Vec::new();
+    let mut rows: Vec<MotionRow> = Vec::new();
     for record in reader.records() {
         let record = record.map_err(|error| format!("{name}: {}", in_words(&error)))?;
         let line = record.position().map_or(0, csv::Position::line);
-        let row = row(&record).map_err(|problem| format!("{name}, line {line}: {problem}"))?;
+        let row =
+            row(&record, columns).map_err(|problem| format!("{name}, line {line}: {problem}"))?;
         if let Some(last) = rows.last()
             && row[0] <= last[0]
         {
@@ -65,24 +72,26 @@ fn check_header(header: &csv::StringRecord) -> Result<(), String> {
         let first = first.trim_start_matches('\u{feff}').to_lowercase();
         first == wanted || (wanted == "time" && first == "t")
     };
-    if header.len() == COLUMNS.len() && header.iter().zip(COLUMNS).all(named) {
+    let complete = [TRANSLATION, COLUMNS.len()].contains(&header.len());
+    if complete && header.iter().zip(COLUMNS).all(named) {
         return Ok(());
     }
     let found: Vec<&str> = header.iter().take(8).collect();
     Err(format!(
-        "the header must be \"time,x,y,z\" [s, m], found \"{}\"",
+        "the header must be \"time,x,y,z\" [s, m] or \"time,x,y,z,roll,pitch,yaw\" [s, m, rad], found \"{}\"",
         found.join(",")
     ))
 }
 
-fn row(record: &csv::StringRecord) -> Result<[f64; 4], String> {
-    if record.len() != COLUMNS.len() {
+fn row(record: &csv::StringRecord, columns: usize) -> Result<MotionRow, String> {
+    if record.len() != columns {
         return Err(format!(
-            "expected 4 numbers (time, x, y, z), found {}",
+            "expected {columns} numbers ({}), found {}",
+            COLUMNS[..columns].join(", "),
             record.len()
         ));
     }
-    let mut row = [0.0; 4];
+    let mut row = [0.0; 7];
     for ((value, field), column) in row.iter_mut().zip(record).zip(COLUMNS) {
         *value = match field.parse::<f64>() {
             Ok(value) if value.is_finite() => value,

@@ -268,17 +268,13 @@ impl Cells<'_, '_> {
 /// Says where the names above a table are those of other columns: readers go by the place of a column, not by its name.
 pub(super) fn compare_header(header: &Row<'_>, columns: &[Column], findings: &mut Findings) {
     let names = header.fields();
-    let named = |text: &str| {
+    let is = |text: &str, column: &Column| {
         let upper = text.trim_matches(['(', ')', '*', '#']).to_uppercase();
-        columns
-            .iter()
-            .position(|column| column.spellings.contains(&upper.as_str()))
+        column.spellings.contains(&upper.as_str())
     };
-    let wrong = names
-        .iter()
-        .zip(columns)
-        .enumerate()
-        .find(|(place, (name, _))| named(name.text).is_some_and(|meant| meant != *place));
+    let wrong = names.iter().zip(columns).enumerate().find(|(_, (name, column))| {
+        !is(name.text, column) && columns.iter().any(|other| is(name.text, other))
+    });
     if let Some((place, (name, column))) = wrong {
         findings.remark(
             name.span.start,

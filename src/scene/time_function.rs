@@ -116,25 +116,29 @@ fn interpolate(pairs: &[[f64; 2]], t: f64) -> f64 {
     f0 + (f1 - f0) * (t - t0) / (t1 - t0)
 }
 
-/// A prescribed displacement from the reference position.
+/// A row of a motion table: time [s], displacement x, y, z [m], then roll, pitch and yaw [rad], which are 0 for points.
+pub type MotionRow = [f64; 7];
+
+/// A prescribed displacement from the reference position, and of vessels a rotation from the reference attitude.
 #[derive(Debug, Clone, PartialEq, serde::Deserialize)]
 #[serde(try_from = "MotionText")]
 pub enum MotionPath {
     /// Read from a table in a CSV file.
     File(MotionFile),
-    /// A table in the scene: rows of time [s], then displacement x, y, z [m].
-    Table(Vec<[f64; 4]>),
+    /// A table in the scene.
+    Table(Vec<MotionRow>),
     /// A sum of sines per axis.
     Harmonic(HarmonicMotion),
 }
 
-/// `file = "motion.csv"`: columns time, x, y, z [s, m], a header row, relative to the scene's folder.
+/// `file = "motion.csv"`: columns time, x, y, z [s, m] and for vessels roll, pitch, yaw [rad], a header row, relative to the scene's
+/// folder.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MotionFile {
     /// Path of the file.
     pub file: String,
-    /// Its rows, filled in by the reader: time [s], then displacement x, y, z [m].
-    pub rows: Vec<[f64; 4]>,
+    /// Its rows, filled in by the reader.
+    pub rows: Vec<MotionRow>,
 }
 
 /// x(t) = ramp(t)·Σ amplitude·sin(2π t/period + phase), per axis.
@@ -146,81 +150,145 @@ pub struct HarmonicMotion {
     pub y: Vec<Vec<f64>>,
     /// Components along z: [amplitude [m], period [s]] or [amplitude, period, phase [rad]].
     pub z: Vec<Vec<f64>>,
+    /// Components of roll: [amplitude [rad], period [s]] or [amplitude, period, phase [rad]]; vessels only.
+    pub roll: Vec<Vec<f64>>,
+    /// Components of pitch: [amplitude [rad], period [s]] or [amplitude, period, phase [rad]]; vessels only.
+    pub pitch: Vec<Vec<f64>>,
+    /// Components of yaw: [amplitude [rad], period [s]] or [amplitude, period, phase [rad]]; vessels only.
+    pub yaw: Vec<Vec<f64>>,
     /// Duration of the cosine ramp ½(1 − cos(πt/ramp)) [s]; none where absent.
     pub ramp: Option<f64>,
 }
 
+impl HarmonicMotion {
+    /// The six axes by name, with their components.
+    pub fn axes(&self) -> [(&'static str, &Vec<Vec<f64>>); 6] {
+        [
+            ("x", &self.x),
+            ("y", &self.y),
+            ("z", &self.z),
+            ("roll", &self.roll),
+            ("pitch", &self.pitch),
+            ("yaw", &self.yaw),
+        ]
+    }
+}
+
 impl MotionPath {
-    /// Rows of time [s] and displacement x, y, z [m] where the motion is a table or was read from a file.
-    pub fn rows(&self) -> Option<&[[f64; 4]]> {
+    /// Rows where the motion is a table or was read from a file.
+    pub fn rows(&self) -> Option<&[MotionRow]> {
         match self {
             MotionPath::File(file) => Some(&file.rows),
             MotionPath::Table(rows) => Some(rows),
             MotionPath::Harmonic(_) => None,
         }
     }
+
+    /// Whether it rotates.
+    pub fn turns(&self) -> bool {
+        match self {
+            MotionPath::Harmonic(h) => h.axes()[3..].iter().any(|(_, axis)| !axis.is_empty()),
+            _ => self.rows().is_some_and(turning),
+        }
+    }
+}
+
+fn turning(rows: &[MotionRow]) -> bool {
+    rows.iter().any(|row| row[4..] != [0.0; 3])
 }
 
 /// The keys that TOML may give a [`MotionPath`].
-#[derive(serde::Serialize, serde::Deserialize)]
+#[derive(Default, serde::Serialize, serde::Deserialize)]
 #[serde(
     deny_unknown_fields,
     expecting = "{ x = [[amplitude, period], …], z = …, ramp = … }, { table = [[t, x, y, z], …] } or { file = \"motion.csv\" }"
 )]
 struct MotionText {
     file: Option<String>,
-    table: Option<Vec<[f64; 4]>>,
+    table: Option<Vec<Vec<f64>>>,
     x: Option<Vec<Vec<f64>>>,
     y: Option<Vec<Vec<f64>>>,
     z: Option<Vec<Vec<f64>>>,
+    roll: Option<Vec<Vec<f64>>>,
+    pitch: Option<Vec<Vec<f64>>>,
+    yaw: Option<Vec<Vec<f64>>>,
     ramp: Option<f64>,
 }
 
 impl TryFrom<MotionText> for MotionPath {
-    type Error = &'static str;
+    type Error = String;
 
     fn try_from(text: MotionText) -> Result<Self, Self::Error> {
-        let axes = text.x.is_some() || text.y.is_some() || text.z.is_some();
+        let axes = [
+            &text.x,
+            &text.y,
+            &text.z,
+            &text.roll,
+            &text.pitch,
+            &text.yaw,
+        ];
+        let swings = axes.iter().any(|axis| axis.is_some());
         match (text.file, text.table) {
-            (Some(_), Some(_)) => Err("`file` and `table` cannot both be given"),
-            (Some(_), _) | (_, Some(_)) if axes || text.ramp.is_some() => {
-                Err("`x`, `y`, `z` and `ramp` cannot be given beside `file` or `table`")
-            }
+            (Some(_), Some(_)) => Err("`file` and `table` cannot both be given".into()),
+            (Some(_), _) | (_, Some(_)) if swings || text.ramp.is_some() => Err(
+                "`x`, `y`, `z`, `roll`, `pitch`, `yaw` and `ramp` cannot be given beside `file` or `table`".into(),
+            ),
             (Some(file), None) => Ok(MotionPath::File(MotionFile {
                 file,
                 rows: Vec::new(),
             })),
-            (None, Some(rows)) => Ok(MotionPath::Table(rows)),
-            (None, None) if !axes => Err("a motion needs `x`, `y` or `z`, or `table`, or `file`"),
+            (None, Some(rows)) => {
+                let rows = rows.iter().enumerate().map(|(i, row)| table_row(i, row));
+                rows.collect::<Result<_, _>>().map(MotionPath::Table)
+            }
+            (None, None) if !swings => {
+                Err("a motion needs `x`, `y` or `z`, or `table`, or `file`; vessels also `roll`, `pitch` or `yaw`".into())
+            }
             (None, None) => Ok(MotionPath::Harmonic(HarmonicMotion {
                 x: text.x.unwrap_or_default(),
                 y: text.y.unwrap_or_default(),
                 z: text.z.unwrap_or_default(),
+                roll: text.roll.unwrap_or_default(),
+                pitch: text.pitch.unwrap_or_default(),
+                yaw: text.yaw.unwrap_or_default(),
                 ramp: text.ramp,
             })),
         }
     }
 }
 
+/// A row of 4 numbers, or of 7 with the rotations.
+fn table_row(index: usize, numbers: &[f64]) -> Result<MotionRow, String> {
+    let mut row = [0.0; 7];
+    match numbers.len() {
+        n @ (4 | 7) => row[..n].copy_from_slice(numbers),
+        n => {
+            return Err(format!(
+                "row {index} (from 0) of the table has {n} numbers: write [t, x, y, z], or [t, x, y, z, roll, pitch, yaw] of a vessel"
+            ));
+        }
+    }
+    Ok(row)
+}
+
 impl Serialize for MotionPath {
     /// Rows that were read from a file are written in its place, so that the scene needs no other file.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut text = MotionText {
-            file: None,
-            table: None,
-            x: None,
-            y: None,
-            z: None,
-            ramp: None,
-        };
+        let mut text = MotionText::default();
         match self {
             MotionPath::File(file) if file.rows.is_empty() => text.file = Some(file.file.clone()),
-            MotionPath::File(file) => text.table = Some(file.rows.clone()),
-            MotionPath::Table(rows) => text.table = Some(rows.clone()),
+            MotionPath::File(MotionFile { rows, .. }) | MotionPath::Table(rows) => {
+                let width = if turning(rows) { 7 } else { 4 };
+                text.table = Some(rows.iter().map(|row| row[..width].to_vec()).collect());
+            }
             MotionPath::Harmonic(harmonic) => {
+                let turn = |axis: &Vec<Vec<f64>>| (!axis.is_empty()).then(|| axis.clone());
                 text.x = Some(harmonic.x.clone());
                 text.y = Some(harmonic.y.clone());
                 text.z = Some(harmonic.z.clone());
+                text.roll = turn(&harmonic.roll);
+                text.pitch = turn(&harmonic.pitch);
+                text.yaw = turn(&harmonic.yaw);
                 text.ramp = harmonic.ramp;
             }
         }

@@ -2,7 +2,7 @@
 
 use super::{Bounds, Findings, check_name, quantity};
 use crate::scene::path::quoted;
-use crate::scene::{LineType, Rayleigh, Scene, Strain};
+use crate::scene::{Integrator, LineModel, LineType, Rayleigh, Scene, Strain};
 
 pub(super) fn check(scene: &Scene, findings: &mut Findings) {
     for (name, line_type) in &scene.line_types {
@@ -12,6 +12,7 @@ pub(super) fn check(scene: &Scene, findings: &mut Findings) {
         check_mass(findings, &at, line_type, scene);
         check_diameter(findings, &at, name, line_type, scene);
         check_stretch(findings, &at, line_type);
+        check_bending(findings, &at, line_type, scene);
     }
 }
 
@@ -57,6 +58,30 @@ fn check_numbers(findings: &mut Findings, at: &str, line_type: &LineType) {
             line_type.added_mass_tangential,
             coefficient,
             "-",
+        ),
+        (
+            "bending_stiffness",
+            line_type.bending_stiffness,
+            Bounds::NotNegative(1e15),
+            "N m²",
+        ),
+        (
+            "shear_stiffness",
+            line_type.shear_stiffness,
+            Bounds::Positive(1e15),
+            "N",
+        ),
+        (
+            "torsional_stiffness",
+            line_type.torsional_stiffness,
+            Bounds::Positive(1e15),
+            "N m²",
+        ),
+        (
+            "rotary_inertia",
+            line_type.rotary_inertia,
+            Bounds::Positive(1e9),
+            "kg m",
         ),
     ];
     for (key, value, bounds, unit) in rows {
@@ -143,6 +168,82 @@ fn check_stretch(findings: &mut Findings, at: &str, line_type: &LineType) {
     }
     if let Some(rayleigh) = &line_type.rayleigh {
         check_rayleigh(findings, &format!("{at}.rayleigh"), rayleigh);
+    }
+}
+
+/// Bending of cables, and what beams need beside it.
+fn check_bending(findings: &mut Findings, at: &str, line_type: &LineType, scene: &Scene) {
+    if let Some(section) = &line_type.solid_section {
+        let at = format!("{at}.solid_section");
+        let (diameter, modulus) = (section.diameter, section.youngs_modulus);
+        findings.number(
+            format!("{at}.diameter"),
+            diameter,
+            Bounds::Positive(100.0),
+            "m",
+        );
+        findings.number(
+            format!("{at}.youngs_modulus"),
+            modulus,
+            Bounds::Positive(1e15),
+            "Pa",
+        );
+        let poisson = Bounds::Within(0.0, 0.5);
+        findings.number(format!("{at}.poisson"), section.poisson, poisson, "-");
+    }
+    let bends = line_type.solid_section.is_some() || line_type.bending_stiffness > Some(0.0);
+    match line_type.fibres {
+        Some(0) => findings.say(
+            format!("{at}.fibres"),
+            "0 fibres: a section has 1 or more of them",
+        ),
+        Some(_) if !bends => findings.say(
+            format!("{at}.fibres"),
+            "fibres share a bending stiffness: give `bending_stiffness` [N m²] or `solid_section` too",
+        ),
+        _ => {}
+    }
+    if line_type.model == LineModel::Beam || scene.solver.integrator == Integrator::Beam {
+        check_beam(findings, at, line_type);
+        return;
+    }
+    let beam_only = [
+        ("shear_stiffness", line_type.shear_stiffness),
+        ("torsional_stiffness", line_type.torsional_stiffness),
+        ("rotary_inertia", line_type.rotary_inertia),
+    ];
+    for (key, value) in beam_only {
+        if value.is_some() {
+            let problem = "only a beam has it: write model = \"beam\" or leave it out";
+            findings.say(format!("{at}.{key}"), problem);
+        }
+    }
+}
+
+/// A beam resists everything, by a number of its own or by its solid section.
+fn check_beam(findings: &mut Findings, at: &str, line_type: &LineType) {
+    let needed = [
+        (
+            "bending_stiffness",
+            line_type.bending_stiffness.filter(|ei| *ei > 0.0),
+            "N m²",
+        ),
+        ("shear_stiffness", line_type.shear_stiffness, "N"),
+        ("torsional_stiffness", line_type.torsional_stiffness, "N m²"),
+        ("rotary_inertia", line_type.rotary_inertia, "kg m"),
+    ];
+    for (key, value, unit) in needed {
+        if value.is_none() && line_type.solid_section.is_none() {
+            let problem =
+                format!("a beam needs `{key}` [{unit}], or a `solid_section` that it follows from");
+            findings.say(at, problem);
+        }
+    }
+    if line_type.strain != Strain::Engineering {
+        findings.say(
+            format!("{at}.strain"),
+            "a beam stretches by the engineering strain: leave it out",
+        );
     }
 }
 

@@ -1,7 +1,7 @@
 //! Lines, their sections, their start, and whether anything holds them.
 
 use super::{Bounds, Findings, quantity, unknown};
-use crate::scene::{InitialShape, Line, PointKind, Scene};
+use crate::scene::{InitialShape, Integrator, Line, LineModel, PointKind, Scene};
 
 /// Most elements of a section.
 const ELEMENTS_MAX: usize = 100_000;
@@ -15,6 +15,7 @@ pub(super) fn check(scene: &Scene, findings: &mut Findings) {
         check_ends(findings, &at, line, scene);
         check_sections(findings, &at, line, scene);
         check_start(findings, &format!("{at}.initial"), line, scene);
+        check_clamps(findings, &at, line, scene);
     }
     check_held(scene, findings);
 }
@@ -143,6 +144,45 @@ fn check_nodes(
     }
 }
 
+/// Directions of clamped ends, which only lines that bend can have.
+fn check_clamps(findings: &mut Findings, at: &str, line: &Line, scene: &Scene) {
+    let sections = [line.sections.first(), line.sections.last()];
+    let ends = [("clamped_a", line.clamped_a), ("clamped_b", line.clamped_b)];
+    for ((key, direction), section) in ends.into_iter().zip(sections) {
+        let Some(direction) = direction else { continue };
+        let at = format!("{at}.{key}");
+        let mut right = true;
+        for (axis, value) in direction.iter().enumerate() {
+            let bounds = Bounds::Magnitude(1e6);
+            right &= findings.number(format!("{at}[{axis}]"), *value, bounds, "-");
+        }
+        if right && direction == [0.0; 3] {
+            findings.say(at.clone(), "[0, 0, 0] is no direction");
+        }
+        let line_type = section.and_then(|section| scene.line_types.get(&section.line_type));
+        let bends = line_type.is_none_or(|line_type| {
+            line_type.bending_stiffness > Some(0.0) || line_type.solid_section.is_some()
+        });
+        if !bends {
+            let problem = "a perfectly flexible line cannot be clamped: give its type a `bending_stiffness` [N m²]";
+            findings.say(at, problem);
+        }
+    }
+}
+
+/// Whether a line flies where nothing holds it: a beam, whose shape at the start is given.
+fn flies(line: &Line, scene: &Scene) -> bool {
+    let beam = |line_type: &str| {
+        scene.solver.integrator == Integrator::Beam
+            || scene
+                .line_types
+                .get(line_type)
+                .is_some_and(|t| t.model == LineModel::Beam)
+    };
+    let mut sections = line.sections.iter();
+    line.initial != InitialShape::Static && sections.all(|section| beam(&section.line_type))
+}
+
 /// Every line must hang, over other lines, on something that does not just fall.
 fn check_held(scene: &Scene, findings: &mut Findings) {
     let place = |name: &str| scene.points.iter().position(|point| point.name == name);
@@ -173,9 +213,10 @@ fn check_held(scene: &Scene, findings: &mut Findings) {
         if let Some((a, b)) = join
             && a != b
             && !held[*a]
+            && !flies(&scene.lines[i], scene)
         {
             let problem = "nothing holds this line: neither it nor the lines joined to it end at a \
-                           fixed, coupled or prescribed point";
+                           fixed, coupled or prescribed point (a beam flies freely if its `initial` shape is given)";
             findings.say(format!("lines[{i}]"), problem);
         }
     }

@@ -1,11 +1,12 @@
 //! Points, their loads and their motions.
 
 use std::collections::BTreeMap;
+use std::f64::consts::TAU;
 
-use super::time::{check_force, check_motion};
+use super::time::{Load, check_load_in_time, check_motion};
 use super::{Bounds, Findings, check_names, quantity, unknown};
 use crate::scene::path::quoted;
-use crate::scene::{Point, PointKind, Scene};
+use crate::scene::{Point, PointKind, Scene, TimeFunction};
 
 pub(super) fn check(scene: &Scene, findings: &mut Findings) {
     let mut taken = BTreeMap::new();
@@ -13,10 +14,14 @@ pub(super) fn check(scene: &Scene, findings: &mut Findings) {
     check_names(findings, &mut taken, "points", points);
     let lines = scene.lines.iter().map(|line| line.name.as_str());
     check_names(findings, &mut taken, "lines", lines);
+    let vessels = scene.vessels.iter().map(|vessel| vessel.name.as_str());
+    check_names(findings, &mut taken, "vessels", vessels);
+    check_vessels(scene, findings);
     for (i, point) in scene.points.iter().enumerate() {
         let at = format!("points[{i}]");
         check_place(findings, &at, point, scene);
         check_freedom(findings, &at, point);
+        check_carrier(findings, &at, point, scene);
         check_load(findings, &at, point);
         check_own_motion(findings, &at, point);
     }
@@ -31,6 +36,9 @@ fn check_place(findings: &mut Findings, at: &str, point: &Point, scene: &Scene) 
         right &= findings.number(place, *value, Bounds::Magnitude(1e7), "m");
     }
     let Some(seabed) = &scene.seabed else { return };
+    if point.on.is_some() {
+        return; // in the vessel's frame
+    }
     let z = point.position[2];
     // Positions typed with few digits may miss the bed by a rounding.
     let rounding = 1e-9 * seabed.depth.abs().max(1.0);
@@ -108,20 +116,72 @@ fn kind_in_words(kind: PointKind) -> &'static str {
     }
 }
 
-fn check_load(findings: &mut Findings, at: &str, point: &Point) {
-    let Some(force) = &point.force else { return };
-    for (axis, function) in [("x", &force.x), ("y", &force.y), ("z", &force.z)] {
-        if let Some(function) = function {
-            check_force(findings, &format!("{at}.force.{axis}"), function);
+fn check_vessels(scene: &Scene, findings: &mut Findings) {
+    for (i, vessel) in scene.vessels.iter().enumerate() {
+        for axis in 0..3 {
+            let (place, angle) = (vessel.position[axis], vessel.attitude[axis]);
+            let at = format!("vessels[{i}]");
+            let far = Bounds::Magnitude(1e7);
+            findings.number(format!("{at}.position[{axis}]"), place, far, "m");
+            let turn = Bounds::Magnitude(TAU);
+            findings.number(format!("{at}.attitude[{axis}]"), angle, turn, "rad");
         }
     }
-    if force.x.is_none() && force.y.is_none() && force.z.is_none() {
-        findings.say(format!("{at}.force"), "no force along `x`, `y` or `z`");
+}
+
+/// The vessel that a point rides on.
+fn check_carrier(findings: &mut Findings, at: &str, point: &Point, scene: &Scene) {
+    let Some(carrier) = &point.on else { return };
+    let vessels = scene.vessels.iter().map(|vessel| vessel.name.as_str());
+    if vessels.clone().all(|vessel| vessel != carrier) {
+        let problem = unknown("vessel", "vessels", carrier, vessels);
+        findings.say(format!("{at}.on"), problem);
+    }
+    if point.kind != PointKind::Coupled {
+        let problem = format!(
+            "a point on a vessel moves with it, and this one is {}: write kind = \"coupled\"",
+            kind_in_words(point.kind)
+        );
+        findings.say(format!("{at}.on"), problem);
+    }
+}
+
+fn check_load(findings: &mut Findings, at: &str, point: &Point) {
+    if let Some(force) = &point.force {
+        let axes = [&force.x, &force.y, &force.z];
+        check_axes(findings, &format!("{at}.force"), axes, Load::FORCE);
+    }
+    if let Some(moment) = &point.moment {
+        let at = format!("{at}.moment");
+        let axes = [&moment.x, &moment.y, &moment.z];
+        check_axes(findings, &at, axes, Load::MOMENT);
+        if point.kind != PointKind::Free {
+            let problem = format!(
+                "a moment turns the end of a beam at a free point, and this one is {}",
+                kind_in_words(point.kind)
+            );
+            findings.say(at, problem);
+        }
+    }
+}
+
+fn check_axes(findings: &mut Findings, at: &str, axes: [&Option<TimeFunction>; 3], load: Load) {
+    for (axis, function) in ["x", "y", "z"].into_iter().zip(axes) {
+        if let Some(function) = function {
+            check_load_in_time(findings, &format!("{at}.{axis}"), function, load);
+        }
+    }
+    if axes.iter().all(|axis| axis.is_none()) {
+        findings.say(at, format!("no {} `x`, `y` or `z`", load.preposition));
     }
 }
 
 fn check_own_motion(findings: &mut Findings, at: &str, point: &Point) {
     match (&point.motion, point.kind) {
+        (Some(motion), PointKind::Prescribed) if motion.turns() => findings.say(
+            format!("{at}.motion"),
+            "a point does not turn: only vessels have `roll`, `pitch` and `yaw`",
+        ),
         (Some(motion), PointKind::Prescribed) => {
             check_motion(findings, &format!("{at}.motion"), motion);
         }
@@ -159,25 +219,43 @@ fn check_unconnected(scene: &Scene, findings: &mut Findings) {
     }
 }
 
-/// `[motion]` drives coupled points only.
+/// `[motion]` drives coupled points and vessels only.
 fn check_run_motion(scene: &Scene, findings: &mut Findings) {
     let coupled = scene
         .points
         .iter()
-        .filter(|point| point.kind == PointKind::Coupled)
+        .filter(|point| point.kind == PointKind::Coupled && point.on.is_none())
         .map(|point| point.name.as_str());
+    let vessels = scene.vessels.iter().map(|vessel| vessel.name.as_str());
     for (name, motion) in &scene.motion {
         let at = format!("motion.{}", quoted(name));
+        if vessels.clone().any(|vessel| vessel == name) {
+            check_motion(findings, &at, motion);
+            continue;
+        }
+        if motion.turns() {
+            let problem = "a point does not turn: only vessels have `roll`, `pitch` and `yaw`";
+            findings.say(at.clone(), problem);
+        }
         match scene.points.iter().find(|point| point.name == *name) {
             None => {
-                let problem = unknown("coupled point", "coupled points", name, coupled.clone());
+                let driven = coupled.clone().chain(vessels.clone());
+                let what = "coupled point or vessel";
+                let problem = unknown(what, "coupled points and vessels", name, driven);
                 findings.say(at.clone(), problem);
             }
             Some(point) if point.kind != PointKind::Coupled => {
                 let problem = format!(
-                    "`{name}` is {}, and [motion] moves coupled points only",
+                    "`{name}` is {}, and [motion] moves coupled points and vessels only",
                     kind_in_words(point.kind)
                 );
+                findings.say(at.clone(), problem);
+            }
+            Some(Point {
+                on: Some(vessel), ..
+            }) => {
+                let problem =
+                    format!("`{name}` rides on the vessel `{vessel}`: write the motion of that");
                 findings.say(at.clone(), problem);
             }
             Some(_) => {}

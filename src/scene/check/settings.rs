@@ -58,6 +58,7 @@ pub(in crate::scene) fn integrator_name(integrator: Integrator) -> &'static str 
         Integrator::AxialImplicit => "axial_implicit",
         Integrator::GeneralisedAlpha => "generalised_alpha",
         Integrator::Bossak => "bossak",
+        Integrator::Beam => "beam",
         Integrator::QuasiStatic => "quasi_static",
     }
 }

@@ -1,7 +1,7 @@
 //! Functions of time: loads and motions.
 
 use super::{Bounds, Findings, quantity};
-use crate::scene::{HarmonicMotion, MotionPath, TimeFunction};
+use crate::scene::{HarmonicMotion, MotionPath, MotionRow, TimeFunction};
 
 /// Times of tables and steps, in seconds: thirty years.
 const TIME: Bounds = Bounds::Magnitude(1e9);
@@ -9,32 +9,59 @@ const TIME: Bounds = Bounds::Magnitude(1e9);
 /// Displacements, in metres.
 const DISPLACEMENT: Bounds = Bounds::Magnitude(1e7);
 
-/// Checks a load [N].
-pub(super) fn check_force(findings: &mut Findings, at: &str, function: &TimeFunction) {
-    let force = Bounds::Magnitude(1e15);
+/// Rotations, in radians: many turns.
+const ROTATION: Bounds = Bounds::Magnitude(1e4);
+
+/// What acts on a point.
+#[derive(Clone, Copy)]
+pub(super) struct Load {
+    unit: &'static str,
+    /// "force along", "moment about".
+    pub(super) preposition: &'static str,
+}
+
+impl Load {
+    pub(super) const FORCE: Load = Load {
+        unit: "N",
+        preposition: "force along",
+    };
+    pub(super) const MOMENT: Load = Load {
+        unit: "N m",
+        preposition: "moment about",
+    };
+}
+
+/// Checks a load.
+pub(super) fn check_load_in_time(
+    findings: &mut Findings,
+    at: &str,
+    function: &TimeFunction,
+    load: Load,
+) {
+    let (force, unit) = (Bounds::Magnitude(1e15), load.unit);
     match function {
         TimeFunction::Constant(value) => {
-            findings.number(at, *value, force, "N");
+            findings.number(at, *value, force, unit);
         }
-        TimeFunction::Step(numbers) => check_rise(findings, &format!("{at}.step"), *numbers),
-        TimeFunction::Ramp(numbers) => check_rise(findings, &format!("{at}.ramp"), *numbers),
+        TimeFunction::Step(numbers) => check_rise(findings, &format!("{at}.step"), *numbers, unit),
+        TimeFunction::Ramp(numbers) => check_rise(findings, &format!("{at}.ramp"), *numbers, unit),
         TimeFunction::Table(pairs) => {
             let at = format!("{at}.table");
             check_times(findings, &at, pairs.iter().map(|pair| pair[0]));
             for (row, pair) in pairs.iter().enumerate() {
-                findings.number(format!("{at}[{row}][1]"), pair[1], force, "N");
+                findings.number(format!("{at}[{row}][1]"), pair[1], force, unit);
             }
         }
     }
 }
 
 /// `[t0, f0, t1, f1]` of a step or ramp.
-fn check_rise(findings: &mut Findings, at: &str, [t0, f0, t1, f1]: [f64; 4]) {
+fn check_rise(findings: &mut Findings, at: &str, [t0, f0, t1, f1]: [f64; 4], unit: &str) {
     let force = Bounds::Magnitude(1e15);
     let mut right = findings.number(format!("{at}[0]"), t0, TIME, "s");
     right &= findings.number(format!("{at}[2]"), t1, TIME, "s");
-    findings.number(format!("{at}[1]"), f0, force, "N");
-    findings.number(format!("{at}[3]"), f1, force, "N");
+    findings.number(format!("{at}[1]"), f0, force, unit);
+    findings.number(format!("{at}[3]"), f1, force, unit);
     if right && t1 <= t0 {
         let problem = format!(
             "it ends at {}, not after its start at {}: write [t0, f0, t1, f1] with t1 > t0",
@@ -83,13 +110,18 @@ pub(super) fn check_motion(findings: &mut Findings, at: &str, motion: &MotionPat
     }
 }
 
-/// Rows of time and displacement; `in_scene` where the key path can name the row.
-fn check_rows(findings: &mut Findings, at: &str, rows: &[[f64; 4]], in_scene: bool) {
+/// Rows of time, displacement and rotation; `in_scene` where the key path can name the row.
+fn check_rows(findings: &mut Findings, at: &str, rows: &[MotionRow], in_scene: bool) {
     let mut of_rows = Findings::default();
     check_times(&mut of_rows, at, rows.iter().map(|row| row[0]));
     for (i, row) in rows.iter().enumerate() {
         for (column, value) in row.iter().enumerate().skip(1) {
-            of_rows.number(format!("{at}[{i}][{column}]"), *value, DISPLACEMENT, "m");
+            let (bounds, unit) = if column < 4 {
+                (DISPLACEMENT, "m")
+            } else {
+                (ROTATION, "rad")
+            };
+            of_rows.number(format!("{at}[{i}][{column}]"), *value, bounds, unit);
         }
     }
     if in_scene {
@@ -104,18 +136,23 @@ fn check_rows(findings: &mut Findings, at: &str, rows: &[[f64; 4]], in_scene: bo
 }
 
 fn check_harmonic(findings: &mut Findings, at: &str, harmonic: &HarmonicMotion) {
-    for (axis, components) in [("x", &harmonic.x), ("y", &harmonic.y), ("z", &harmonic.z)] {
+    for (number, (axis, components)) in harmonic.axes().into_iter().enumerate() {
+        let (size, unit) = if number < 3 {
+            (DISPLACEMENT, "m")
+        } else {
+            (ROTATION, "rad")
+        };
         for (i, component) in components.iter().enumerate() {
             let at = format!("{at}.{axis}[{i}]");
             let (2 | 3) = component.len() else {
                 let problem = format!(
-                    "expected [amplitude [m], period [s]] or [amplitude, period, phase [rad]], found {} numbers",
+                    "expected [amplitude [{unit}], period [s]] or [amplitude, period, phase [rad]], found {} numbers",
                     component.len()
                 );
                 findings.say(at, problem);
                 continue;
             };
-            findings.number(format!("{at}[0]"), component[0], DISPLACEMENT, "m");
+            findings.number(format!("{at}[0]"), component[0], size, unit);
             findings.number(format!("{at}[1]"), component[1], Bounds::Positive(1e9), "s");
             if let Some(phase) = component.get(2) {
                 findings.number(format!("{at}[2]"), *phase, Bounds::Magnitude(1e6), "rad");

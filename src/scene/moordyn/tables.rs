@@ -63,7 +63,7 @@ const BODIES: &[Column] = columns![
     "Z0" ["m"] "Z0" "Z",
     "r0" ["deg"] "R0",
     "p0" ["deg"] "P0",
-    "y0" ["deg"],
+    "y0" ["deg"] "Y0",
     "Mass" ["kg"] "MASS" "M",
     "CG" ["m"] "CG",
     "I" ["kg m²"] "I",
@@ -214,7 +214,9 @@ fn title(sections: &Sections<'_>) -> String {
     let rows = sections.preamble.iter().filter(|row| {
         let fields = row.fields();
         let echo = fields.get(1).is_some_and(|f| f.text.eq_ignore_ascii_case("echo"));
-        !row.text.contains("---") && !echo
+        let upper = row.text.to_uppercase();
+        let kind = upper.contains("MOORDYN") && upper.contains("INPUT FILE") && fields.len() <= 5;
+        !row.text.contains("---") && !echo && !kind
     });
     let words = rows.flat_map(|row| row.fields()).map(|field| field.text);
     let title: String = words.collect::<Vec<_>>().join(" ");

@@ -1,0 +1,114 @@
+//! A vessel: a rigid frame that the host moves, and the points that ride on it.
+
+use nalgebra::{UnitQuaternion, Vector3};
+
+use super::{Kinematics, Motion, Pose};
+use crate::math::attitude::Attitude;
+
+/// A frame that carries points.
+#[derive(Debug, Clone)]
+pub struct Vessel {
+    /// Name.
+    pub name: String,
+    /// Reference position of its origin [m].
+    pub position: Vector3<f64>,
+    /// Reference roll, pitch and yaw [rad].
+    pub attitude: Vector3<f64>,
+    /// The scene's motion for it.
+    pub motion: Option<Motion>,
+}
+
+/// Where a vessel is, and how it moves.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Frame {
+    /// Its origin.
+    pub origin: Kinematics,
+    /// Its attitude, and how it turns.
+    pub attitude: Attitude,
+}
+
+impl Vessel {
+    /// The frame displaced by a pose: x, y, z [m] from the reference position; roll, pitch and yaw [rad] added to the reference angles.
+    pub fn frame(&self, pose: &Pose) -> Frame {
+        let turn = |six: &nalgebra::Vector6<f64>| Vector3::new(six[3], six[4], six[5]);
+        let moved = pose.kinematics();
+        Frame {
+            origin: Kinematics {
+                position: self.position + moved.position,
+                ..moved
+            },
+            attitude: Attitude::new(
+                self.attitude + turn(&pose.value),
+                turn(&pose.rate),
+                turn(&pose.acceleration),
+            ),
+        }
+    }
+
+    /// From body axes to global ones in the reference attitude.
+    pub fn reference_rotation(&self) -> UnitQuaternion<f64> {
+        let [roll, pitch, yaw] = self.attitude.into();
+        UnitQuaternion::from_euler_angles(roll, pitch, yaw)
+    }
+
+    /// Where a point of the body at `arm` [m] is in the reference position [m].
+    pub fn reference_place(&self, arm: Vector3<f64>) -> Vector3<f64> {
+        self.position + self.reference_rotation() * arm
+    }
+
+    /// Kinematics of a point of the body at `arm` [m] in body axes; its orientation is relative to the reference attitude.
+    pub fn carry(&self, frame: &Frame, arm: Vector3<f64>) -> Kinematics {
+        let Frame { origin, attitude } = frame;
+        let arm = attitude.rotation * arm;
+        let swing = attitude.spin.cross(&arm);
+        Kinematics {
+            position: origin.position + arm,
+            velocity: origin.velocity + swing,
+            acceleration: origin.acceleration
+                + attitude.spin_rate.cross(&arm)
+                + attitude.spin.cross(&swing),
+            orientation: attitude.rotation * self.reference_rotation().inverse(),
+            spin: attitude.spin,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+    use nalgebra::Vector6;
+
+    fn vessel() -> Vessel {
+        Vessel {
+            name: "platform".into(),
+            position: Vector3::new(100.0, -20.0, 3.0),
+            attitude: Vector3::new(0.0, 0.1, 0.8),
+            motion: None,
+        }
+    }
+
+    fn pose(t: f64) -> Pose {
+        let rate = Vector6::new(0.3, -0.2, 0.5, 0.4, 0.1, -0.3);
+        Pose {
+            value: t * rate,
+            rate,
+            acceleration: Vector6::zeros(),
+        }
+    }
+
+    #[test]
+    fn a_carried_point_moves_as_its_place_changes() {
+        let (vessel, arm, h) = (vessel(), Vector3::new(30.0, 5.0, -12.0), 1e-4);
+        let at = |t: f64| vessel.carry(&vessel.frame(&pose(t)), arm);
+        let [low, now, high] = [-h, 0.0, h].map(at);
+        let (velocity, acceleration) = (
+            (high.position - low.position) / (2.0 * h),
+            (high.velocity - low.velocity) / (2.0 * h),
+        );
+        assert_relative_eq!(now.position, vessel.reference_place(arm), epsilon = 1e-12);
+        assert_relative_eq!(now.velocity, velocity, epsilon = 1e-6);
+        assert_relative_eq!(now.acceleration, acceleration, epsilon = 1e-6);
+        assert_relative_eq!(now.orientation.angle(), 0.0, epsilon = 1e-7);
+    }
+}
