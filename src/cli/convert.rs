@@ -34,7 +34,12 @@ pub fn placed_vessel(text: &str) -> Result<(String, [f64; 3]), String> {
     let (name, position) = text.split_once('=').ok_or(wanted)?;
     let numbers: Vec<f64> = position
         .split(',')
-        .map(|part| part.trim().parse::<f64>().ok().filter(|number| number.is_finite()))
+        .map(|part| {
+            part.trim()
+                .parse::<f64>()
+                .ok()
+                .filter(|number| number.is_finite())
+        })
         .collect::<Option<_>>()
         .ok_or(wanted)?;
     let position = numbers.try_into().map_err(|_| wanted)?;
@@ -49,7 +54,14 @@ mod tests {
     fn a_vessel_is_placed_by_name_and_three_numbers() {
         let placed = placed_vessel("turbine2=1600,0,-0.5");
         assert_eq!(placed, Ok(("turbine2".to_string(), [1600.0, 0.0, -0.5])));
-        for wrong in ["turbine2", "turbine2=1,2", "a=1,2,3,4", "a=1,2,x", "a=1,2,nan", ""] {
+        for wrong in [
+            "turbine2",
+            "turbine2=1,2",
+            "a=1,2,3,4",
+            "a=1,2,x",
+            "a=1,2,nan",
+            "",
+        ] {
             assert!(placed_vessel(wrong).is_err(), "{wrong}");
         }
     }

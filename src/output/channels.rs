@@ -35,15 +35,21 @@ impl Channels {
     /// # Errors
     /// The first channel whose name is unknown or speaks of what the model does not have.
     pub fn new(scene: &Scene, model: &Model) -> Result<Channels, SceneError> {
-        let found = scene.output.channels.iter().enumerate().map(|(index, name)| {
-            let source = Channel::parse(name).and_then(|channel| {
-                channel.check(scene)?;
-                source(&channel, model)
+        let found = scene
+            .output
+            .channels
+            .iter()
+            .enumerate()
+            .map(|(index, name)| {
+                let source = Channel::parse(name).and_then(|channel| {
+                    channel.check(scene)?;
+                    source(&channel, model)
+                });
+                let source = source.map_err(|problem| {
+                    SceneError::new(format!("output.channels[{index}]"), problem)
+                })?;
+                Ok((column(name, source, model), source))
             });
-            let source =
-                source.map_err(|problem| SceneError::new(format!("output.channels[{index}]"), problem))?;
-            Ok((column(name, source, model), source))
-        });
         Ok(Channels {
             list: found.collect::<Result<_, _>>()?,
         })
@@ -57,7 +63,9 @@ impl Channels {
     /// The channels' values now, each in its column's unit.
     pub fn values(&self, simulation: &Simulation) -> Vec<f64> {
         let sources = self.list.iter();
-        sources.map(|(_, source)| value(*source, simulation)).collect()
+        sources
+            .map(|(_, source)| value(*source, simulation))
+            .collect()
     }
 }
 
@@ -113,7 +121,10 @@ fn column(name: &str, source: Source, model: &Model) -> Column {
             line,
             node,
             quantity,
-        } => (format!("node {node} of {}", model.lines[line].name), quantity),
+        } => (
+            format!("node {node} of {}", model.lines[line].name),
+            quantity,
+        ),
         Source::Point { point, quantity } => (model.points[point].name.clone(), quantity),
     };
     let letter = |axis: usize| ["x", "y", "z"][axis];
@@ -149,7 +160,12 @@ fn value(source: Source, simulation: &Simulation) -> f64 {
             Quantity::Position(axis) => state.points[point].position[axis],
             Quantity::Velocity(axis) => state.points[point].velocity[axis],
             Quantity::Force(axis) => simulation.end_force(point)[axis],
-            Quantity::Tension => simulation.end_force(point).iter().map(|part| part * part).sum::<f64>().sqrt(),
+            Quantity::Tension => simulation
+                .end_force(point)
+                .iter()
+                .map(|part| part * part)
+                .sum::<f64>()
+                .sqrt(),
         },
     }
 }
@@ -189,7 +205,16 @@ mod tests {
 
     #[test]
     fn channels_are_what_the_simulation_says_of_the_same_places() {
-        let names = ["FairTen1", "AnchTen1", "L1N4Pz", "Line1NBPx", "L1N4T", "Con2Fx", "P2T", "Point1Vz"];
+        let names = [
+            "FairTen1",
+            "AnchTen1",
+            "L1N4Pz",
+            "Line1NBPx",
+            "L1N4T",
+            "Con2Fx",
+            "P2T",
+            "Point1Vz",
+        ];
         let (scene, simulation) = simulation(&names);
         let channels = Channels::new(&scene, simulation.model()).unwrap();
         let profile = simulation.profile(0);
@@ -219,6 +244,9 @@ mod tests {
         let model = Model::new(&scene).unwrap();
         let mistake = Channels::new(&scene, &model).unwrap_err();
         assert_eq!(mistake.at, "output.channels[1]");
-        assert!(mistake.problem.starts_with("node 5000 of a line of"), "{mistake}");
+        assert!(
+            mistake.problem.starts_with("node 5000 of a line of"),
+            "{mistake}"
+        );
     }
 }

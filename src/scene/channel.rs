@@ -159,16 +159,24 @@ pub fn check_node(node: usize, elements: usize) -> Result<(), String> {
 }
 
 fn split_letters(text: &str) -> (&str, &str) {
-    text.split_at(text.find(|c: char| c.is_ascii_digit()).unwrap_or(text.len()))
+    text.split_at(
+        text.find(|c: char| c.is_ascii_digit())
+            .unwrap_or(text.len()),
+    )
 }
 
 fn split_digits(text: &str) -> (&str, &str) {
-    text.split_at(text.find(|c: char| !c.is_ascii_digit()).unwrap_or(text.len()))
+    text.split_at(
+        text.find(|c: char| !c.is_ascii_digit())
+            .unwrap_or(text.len()),
+    )
 }
 
 /// `N10…`, `NA…`, `NB…`.
 fn node(text: &str) -> Option<(NodePlace, &str)> {
-    let rest = text.strip_prefix("NODE").or_else(|| text.strip_prefix('N'))?;
+    let rest = text
+        .strip_prefix("NODE")
+        .or_else(|| text.strip_prefix('N'))?;
     let (digits, after) = split_digits(rest);
     if !digits.is_empty() {
         return Some((NodePlace::Number(digits.parse().ok()?), after));
@@ -209,13 +217,21 @@ mod tests {
         end("ANCHTEN12", "line12", LineEnd::A);
         let node = |name: &str, node, quantity| {
             let line = "line3".to_string();
-            let channel = Channel::Node { line, node, quantity };
+            let channel = Channel::Node {
+                line,
+                node,
+                quantity,
+            };
             assert_eq!(Channel::parse(name), Ok(channel));
         };
         node("L3N10T", NodePlace::Number(10), Quantity::Tension);
         node("l3n0ten", NodePlace::Number(0), Quantity::Tension);
         node("L3N19Px", NodePlace::Number(19), Quantity::Position(0));
-        node("LINE3NAPZ", NodePlace::End(LineEnd::A), Quantity::Position(2));
+        node(
+            "LINE3NAPZ",
+            NodePlace::End(LineEnd::A),
+            Quantity::Position(2),
+        );
         node("L3NBVy", NodePlace::End(LineEnd::B), Quantity::Velocity(1));
         let point = |name: &str, quantity| {
             let point = "point4".to_string();
@@ -230,8 +246,26 @@ mod tests {
     #[test]
     fn any_other_name_is_refused_with_what_is_known() {
         for name in [
-            "", "fx", "FairTen", "FairTen1x", "L1", "L1T", "L1N", "L1NCPx", "L1N2Q", "L1N2Fx", "Con1", "Con1Ax", "ConPx",
-            "Q1T", "T1T", "Body1Px", "R1N2Px", "FairTen99999999999999999999999", "ü1T", "L1N1PxPy",
+            "",
+            "fx",
+            "FairTen",
+            "FairTen1x",
+            "L1",
+            "L1T",
+            "L1N",
+            "L1NCPx",
+            "L1N2Q",
+            "L1N2Fx",
+            "Con1",
+            "Con1Ax",
+            "ConPx",
+            "Q1T",
+            "T1T",
+            "Body1Px",
+            "R1N2Px",
+            "FairTen99999999999999999999999",
+            "ü1T",
+            "L1N1PxPy",
         ] {
             let problem = Channel::parse(name).unwrap_err();
             assert!(problem.contains("known are FairTen1"), "{name}: {problem}");

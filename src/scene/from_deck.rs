@@ -10,7 +10,13 @@ pub(super) const SEA_WATER: f64 = 1025.0;
 
 /// A name of a line type as a scene takes it: variables of the FMU are called after it.
 pub(super) fn type_name(given: &str, taken: &BTreeSet<String>) -> String {
-    let letter = |c: char| if c.is_ascii_alphanumeric() || c == '_' || c == '-' { c } else { '_' };
+    let letter = |c: char| {
+        if c.is_ascii_alphanumeric() || c == '_' || c == '-' {
+            c
+        } else {
+            '_'
+        }
+    };
     let mut name: String = given.chars().map(letter).take(48).collect();
     let first = name.chars().next();
     let reserved = ["time", "solver"].contains(&name.as_str());
@@ -52,7 +58,9 @@ pub(super) fn depth(
         return supplement.depth;
     }
     let fixed = points.iter().filter(|point| point.kind == PointKind::Fixed);
-    let deepest = fixed.map(|point| -point.position[2]).fold(f64::NEG_INFINITY, f64::max);
+    let deepest = fixed
+        .map(|point| -point.position[2])
+        .fold(f64::NEG_INFINITY, f64::max);
     if deepest > 0.0 {
         let text = format!(
             "no water depth in the file, for the host gives it: taken from the deepest fixed point, {deepest} m"
@@ -60,7 +68,8 @@ pub(super) fn depth(
         findings.remark_on_all(text);
         return Some(deepest);
     }
-    findings.remark_on_all("no water depth in the file, and no fixed point below the water: no seabed");
+    findings
+        .remark_on_all("no water depth in the file, and no fixed point below the water: no seabed");
     None
 }
 
@@ -90,7 +99,12 @@ impl Vessels<'_> {
         attitude: [f64; 3],
     ) -> String {
         if scene.vessels.iter().all(|vessel| vessel.name != name) {
-            let position = self.supplement.positions.get(name).copied().unwrap_or(position);
+            let position = self
+                .supplement
+                .positions
+                .get(name)
+                .copied()
+                .unwrap_or(position);
             scene.vessels.push(Vessel {
                 name: name.to_string(),
                 position,
@@ -104,7 +118,11 @@ impl Vessels<'_> {
     pub(super) fn check(&self, scene: &Scene, findings: &mut Findings) {
         for name in self.supplement.positions.keys() {
             if scene.vessels.iter().all(|vessel| vessel.name != *name) {
-                let known: Vec<&str> = scene.vessels.iter().map(|vessel| vessel.name.as_str()).collect();
+                let known: Vec<&str> = scene
+                    .vessels
+                    .iter()
+                    .map(|vessel| vessel.name.as_str())
+                    .collect();
                 let problem = format!(
                     "a position is given for `{name}`, but the file has {}",
                     if known.is_empty() {

@@ -83,8 +83,14 @@ mod tests {
         places.put("points[0]", &(4..5), "point 1");
         places.put("points[0].position[2]", &(6..7), "point 1, Z");
         let located = |at: &str| places.locate(SceneError::new(at, "wrong"));
-        assert_eq!(located("points[0].position[2]").to_string(), "point 1, Z: wrong");
+        assert_eq!(
+            located("points[0].position[2]").to_string(),
+            "point 1, Z: wrong"
+        );
         assert_eq!(located("points[0].mass").span, Some(4..5));
-        assert_eq!(located("points[1].mass").to_string(), "points[1].mass: wrong");
+        assert_eq!(
+            located("points[1].mass").to_string(),
+            "points[1].mass: wrong"
+        );
     }
 }

@@ -41,7 +41,10 @@ impl LoadedScene {
             return self.places.locate(mistake);
         }
         match Document::parse(&self.text) {
-            Ok(document) => document.place(vec![mistake.clone()]).pop().unwrap_or(mistake),
+            Ok(document) => document
+                .place(vec![mistake.clone()])
+                .pop()
+                .unwrap_or(mistake),
             Err(_) => mistake,
         }
     }
@@ -158,7 +161,11 @@ fn deck_scene(reading: Reading, text: &str) -> Result<Checked, Vec<SceneError>> 
         mistakes.sort_by_key(|mistake| mistake.span.as_ref().map_or(0, |span| span.start));
         return Err(mistakes);
     };
-    mistakes = scene.mistakes().into_iter().map(|mistake| places.locate(mistake)).collect();
+    mistakes = scene
+        .mistakes()
+        .into_iter()
+        .map(|mistake| places.locate(mistake))
+        .collect();
     if !mistakes.is_empty() {
         mistakes.sort_by_key(|mistake| mistake.span.as_ref().map_or(0, |span| span.start));
         return Err(mistakes);
@@ -247,9 +254,10 @@ fn syntax_mistake(text: &str, error: &toml::de::Error) -> SceneError {
     if let Some(span) = moordyn::first_header(text) {
         return SceneError {
             at: String::new(),
-            problem: "this is a MoorDyn file, and TOML is expected here: give the file itself, or what \
+            problem:
+                "this is a MoorDyn file, and TOML is expected here: give the file itself, or what \
                       `moorline convert` makes of it"
-                .into(),
+                    .into(),
             span: Some(span),
         };
     }

@@ -153,7 +153,8 @@ impl Scene {
             write!(said, ", drag area {}", quantity(area, "m²")).expect("a String takes all");
         }
         if let Some(coefficient) = point.added_mass {
-            write!(said, ", added mass {} of its volume", number(coefficient)).expect("a String takes all");
+            write!(said, ", added mass {} of its volume", number(coefficient))
+                .expect("a String takes all");
         }
         if let Some(force) = &point.force {
             write!(said, ", {}", force_in_words(force)).expect("a String takes all");

@@ -93,7 +93,11 @@ impl<'d> Builder<'d> {
             ("added_mass_tangential", &kind.added_mass_tangential, "CaAx"),
         ];
         for (key, cell, column) in cells {
-            self.places.put(format!("{at}.{key}"), &cell.span, format!("{words}, {column}"));
+            self.places.put(
+                format!("{at}.{key}"),
+                &cell.span,
+                format!("{words}, {column}"),
+            );
         }
         let properties = [
             ("axial_stiffness", Some(&kind.stiffness), "EA"),
@@ -103,7 +107,11 @@ impl<'d> Builder<'d> {
         ];
         for (key, cell, column) in properties {
             if let Some(cell) = cell {
-                self.places.put(format!("{at}.{key}"), &cell.span, format!("{words}, {column}"));
+                self.places.put(
+                    format!("{at}.{key}"),
+                    &cell.span,
+                    format!("{words}, {column}"),
+                );
             }
         }
     }
@@ -113,7 +121,8 @@ impl<'d> Builder<'d> {
             let at = format!("points[{}]", self.scene.points.len());
             let words = format!("point {}", point.id.value);
             self.places.put(at.clone(), &point.id.span, words.clone());
-            self.places.put(format!("{at}.on"), &point.attachment.span, words.clone());
+            self.places
+                .put(format!("{at}.on"), &point.attachment.span, words.clone());
             place_position(self.places, &at, &words, &point.position);
             for (key, cell, column) in [
                 ("mass", &point.mass, "Mass"),
@@ -121,7 +130,11 @@ impl<'d> Builder<'d> {
                 ("drag_area", &point.drag_area, "CdA"),
                 ("added_mass", &point.added_mass, "Ca"),
             ] {
-                self.places.put(format!("{at}.{key}"), &cell.span, format!("{words}, {column}"));
+                self.places.put(
+                    format!("{at}.{key}"),
+                    &cell.span,
+                    format!("{words}, {column}"),
+                );
             }
             let position = [0, 1, 2].map(|axis| point.position[axis].value);
             let mut made = self.attached(
@@ -181,7 +194,9 @@ impl<'d> Builder<'d> {
         position: [f64; 3],
         attitude: [f64; 3],
     ) -> scene::Point {
-        let name = self.vessels.board(&mut self.scene, vessel, position, attitude);
+        let name = self
+            .vessels
+            .board(&mut self.scene, vessel, position, attitude);
         scene::Point {
             kind: PointKind::Coupled,
             on: Some(name),
@@ -191,10 +206,14 @@ impl<'d> Builder<'d> {
 
     /// A farm's host knows where its turbines stand.
     fn needs_position(&mut self, number: usize, attachment: &Placed<Attachment>) {
-        let mut numbers = self.deck.points.iter().filter_map(|point| match point.attachment.value {
-            Attachment::Turbine(number) => Some(number),
-            _ => None,
-        });
+        let mut numbers =
+            self.deck
+                .points
+                .iter()
+                .filter_map(|point| match point.attachment.value {
+                    Attachment::Turbine(number) => Some(number),
+                    _ => None,
+                });
         let several = numbers.any(|other| other != number);
         let name = format!("turbine{number}");
         let placed = self.vessels.supplement.positions.contains_key(&name);
@@ -222,15 +241,13 @@ impl<'d> Builder<'d> {
                 ..point
             };
         }
-        let name = match body.attachment.value {
-            Attachment::Turbine(number) => format!("turbine{number}_body{}", body.id.value),
-            _ => format!("body{}", body.id.value),
-        };
+        let name = format!("body{}", body.id.value);
         let index = self.scene.vessels.len();
         let known = self.scene.vessels.iter().any(|vessel| vessel.name == name);
         if !known {
             let words = format!("body {}", body.id.value);
-            self.places.put(format!("vessels[{index}]"), &body.id.span, words);
+            self.places
+                .put(format!("vessels[{index}]"), &body.id.span, words);
         }
         self.aboard(point, &name, place, attitude(&turn))
     }
@@ -262,7 +279,8 @@ impl<'d> Builder<'d> {
             } else {
                 "holds no line and is left out"
             };
-            self.findings.remark(rod.id.span.start, format!("rod {} {text}", rod.id.value));
+            self.findings
+                .remark(rod.id.span.start, format!("rod {} {text}", rod.id.value));
         }
     }
 
@@ -272,26 +290,34 @@ impl<'d> Builder<'d> {
             self.scene.gravity = gravity.value;
             self.places.put("gravity", &gravity.span, "OPTIONS, g");
         }
-        let density = options.density.as_ref().map_or(SEA_WATER, |density| density.value);
+        let density = options
+            .density
+            .as_ref()
+            .map_or(SEA_WATER, |density| density.value);
         self.scene.water = Some(Water { density });
         if let Some(density) = &options.density {
-            self.places.put("water.density", &density.span, "OPTIONS, rho");
+            self.places
+                .put("water.density", &density.span, "OPTIONS, rho");
         }
         let given = options.depth.as_ref().map(|depth| plain(&depth.value));
-        let Some(depth) = from_deck::depth(given, supplement, &self.scene.points, self.findings) else {
+        let Some(depth) = from_deck::depth(given, supplement, &self.scene.points, self.findings)
+        else {
             return;
         };
         let mut seabed = bed(depth);
         if let Some(depth) = &options.depth {
-            self.places.put("seabed.depth", &depth.span, "OPTIONS, WtrDpth");
+            self.places
+                .put("seabed.depth", &depth.span, "OPTIONS, WtrDpth");
         }
         if let Some(stiffness) = &options.bed_stiffness {
             seabed.stiffness = stiffness.value;
-            self.places.put("seabed.stiffness", &stiffness.span, "OPTIONS, kBot");
+            self.places
+                .put("seabed.stiffness", &stiffness.span, "OPTIONS, kBot");
         }
         if let Some(damping) = &options.bed_damping {
             seabed.damping = damping.value;
-            self.places.put("seabed.damping", &damping.span, "OPTIONS, cBot");
+            self.places
+                .put("seabed.damping", &damping.span, "OPTIONS, cBot");
         }
         seabed.friction = self.friction();
         self.scene.seabed = Some(seabed);
@@ -300,7 +326,9 @@ impl<'d> Builder<'d> {
     /// Friction coefficient of the bed [-]: the only one, or that along the line where there are two.
     fn friction(&mut self) -> f64 {
         let coefficients = &self.deck.options.friction;
-        let along = coefficients.iter().find(|(key, _)| key.eq_ignore_ascii_case("mu_kA"));
+        let along = coefficients
+            .iter()
+            .find(|(key, _)| key.eq_ignore_ascii_case("mu_kA"));
         let Some((key, coefficient)) = along.or(coefficients.first()) else {
             return 0.0;
         };
@@ -309,7 +337,10 @@ impl<'d> Builder<'d> {
         let others = coefficients.iter().filter(|(other, _)| other != key);
         for (other, other_coefficient) in others {
             if other_coefficient.value != coefficient.value {
-                let text = format!("{other} {} is not modelled: {key} {} counts in all directions", other_coefficient.value, coefficient.value);
+                let text = format!(
+                    "{other} {} is not modelled: {key} {} counts in all directions",
+                    other_coefficient.value, coefficient.value
+                );
                 self.findings.remark(other_coefficient.span.start, text);
             }
         }
@@ -329,7 +360,8 @@ impl<'d> Builder<'d> {
                 (".sections[0].length", &line.length.span, ", UnstrLen"),
                 (".sections[0].elements", &line.segments.span, ", NumSegs"),
             ] {
-                self.places.put(format!("{at}{key}"), span, format!("{words}{column}"));
+                self.places
+                    .put(format!("{at}{key}"), span, format!("{words}{column}"));
             }
             let made = self.line(line);
             self.scene.lines.push(made);
@@ -342,16 +374,21 @@ impl<'d> Builder<'d> {
             length: line.length.value,
             elements: Some(line.segments.value),
         };
-        let bends = self.scene.line_types[&section.line_type].bending_stiffness.is_some();
+        let bends = self.scene.line_types[&section.line_type]
+            .bending_stiffness
+            .is_some();
         let clamp = |builder: &mut Self, index: usize| {
-            bends.then(|| builder.clamp(&line.ends[index], index)).flatten()
+            bends
+                .then(|| builder.clamp(&line.ends[index], index))
+                .flatten()
         };
         let (clamped_a, clamped_b) = (clamp(self, 0), clamp(self, 1));
         let [from, to] = [0, 1].map(|index| match line.ends[index].value {
             LineEnd::Point(id) => format!("point{id}"),
             LineEnd::Rod(id, b) => format!("rod{id}{}", if b { "b" } else { "a" }),
         });
-        let mut made = scene::Line::between(format!("line{}", line.id.value), from, to, vec![section]);
+        let mut made =
+            scene::Line::between(format!("line{}", line.id.value), from, to, vec![section]);
         made.clamped_a = clamped_a;
         made.clamped_b = clamped_b;
         made
@@ -367,7 +404,8 @@ impl<'d> Builder<'d> {
         if along == [0.0; 3] {
             let problem = "the two ends of the rod are the same point, so it has no direction to hold the line in: \
                            write an Xb Yb Zb that differs from Xa Ya Za";
-            self.findings.mistake(format!("rod {id}"), rod.ends[1][0].span.clone(), problem);
+            self.findings
+                .mistake(format!("rod {id}"), rod.ends[1][0].span.clone(), problem);
             return None;
         }
         // Leaving at B or arriving at A is along the rod, leaving at A or arriving at B is against it.
@@ -380,18 +418,23 @@ impl<'d> Builder<'d> {
         for placed in &self.deck.outputs {
             // MoorDyn says that it does not know these and goes on.
             if ["FX", "FY", "FZ"].contains(&placed.value.to_uppercase().as_str()) {
-                let text = format!("the output {:?} names no object, and MoorDyn writes none for it: left out", placed.value);
+                let text = format!(
+                    "the output {:?} names no object, and MoorDyn writes none for it: left out",
+                    placed.value
+                );
                 self.findings.remark(placed.span.start, text);
                 continue;
             }
             let at = format!("output.channels[{}]", self.scene.output.channels.len());
-            self.places.put(at, &placed.span, format!("OUTPUTS, {}", placed.value));
+            self.places
+                .put(at, &placed.span, format!("OUTPUTS, {}", placed.value));
             self.scene.output.channels.push(placed.value.clone());
         }
         if let Some(interval) = &self.deck.options.output_interval
             && interval.value != 0.0
         {
-            self.places.put("output.interval", &interval.span, "OPTIONS, dtOut");
+            self.places
+                .put("output.interval", &interval.span, "OPTIONS, dtOut");
             self.scene.output.interval = interval.value;
             self.scene.output.duration = Output::default().duration.max(interval.value);
         }
@@ -406,7 +449,10 @@ fn line_type(kind: &LineType) -> scene::LineType {
         axial_stiffness: plain(&kind.stiffness.value),
         axial_damping: (damping >= 0.0).then_some(damping),
         damping_ratio: (damping < 0.0).then_some(-damping),
-        bending_stiffness: kind.bending.as_ref().and_then(|bending| given(plain(&bending.value))),
+        bending_stiffness: kind
+            .bending
+            .as_ref()
+            .and_then(|bending| given(plain(&bending.value))),
         drag_normal: given(kind.drag_normal.value),
         drag_tangential: given(kind.drag_tangential.value),
         added_mass_normal: given(kind.added_mass_normal.value),

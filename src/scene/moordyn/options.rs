@@ -7,10 +7,35 @@ use crate::scene::rows::{Findings, Placed, ROWS_MAX, Row, number, shown};
 
 /// Keys in capitals that choose how MoorDyn solves, starts and writes: nothing here needs them.
 const UNNEEDED: &[&str] = &[
-    "DTM", "DT", "CFL", "TSCHEME", "DTIC", "ICDT", "TMAXIC", "ICTMAX", "CDSCALEIC", "ICDFAC", "THRESHIC",
-    "ICTHRESH", "FILEIC", "ICGENDYNAMIC", "WRITELOG", "WRITEUNITS", "DISABLEOUTPUT", "DISABLEOUTTIME", "OUTSWITCH",
-    "INERTIALF", "INERTIALF_RAMPT", "ECHO", "DTWAVE", "UNIFYCURRENTGRID", "DTOUTSNAP", "FRICDAMP", "STATDYNFRICSCALE",
-    "MC", "CV",
+    "DTM",
+    "DT",
+    "CFL",
+    "TSCHEME",
+    "DTIC",
+    "ICDT",
+    "TMAXIC",
+    "ICTMAX",
+    "CDSCALEIC",
+    "ICDFAC",
+    "THRESHIC",
+    "ICTHRESH",
+    "FILEIC",
+    "ICGENDYNAMIC",
+    "WRITELOG",
+    "WRITEUNITS",
+    "DISABLEOUTPUT",
+    "DISABLEOUTTIME",
+    "OUTSWITCH",
+    "INERTIALF",
+    "INERTIALF_RAMPT",
+    "ECHO",
+    "DTWAVE",
+    "UNIFYCURRENTGRID",
+    "DTOUTSNAP",
+    "FRICDAMP",
+    "STATDYNFRICSCALE",
+    "MC",
+    "CV",
 ];
 
 /// Keys that say something, with what they mean.
@@ -53,7 +78,9 @@ enum Meaning {
 }
 
 fn meaning(key: &str) -> Option<Meaning> {
-    let known = NEEDED.iter().find(|(known, _)| known.eq_ignore_ascii_case(key));
+    let known = NEEDED
+        .iter()
+        .find(|(known, _)| known.eq_ignore_ascii_case(key));
     known.map(|(_, meaning)| *meaning)
 }
 
@@ -68,7 +95,10 @@ pub(super) fn read(rows: &[Row<'_>], findings: &mut Findings) -> Options {
     for row in rows.iter().take(ROWS_MAX) {
         let fields = row.fields();
         let [value, key, ..] = fields.as_slice() else {
-            let problem = format!("expected a value and a key, found {}", shown(row.text.trim()));
+            let problem = format!(
+                "expected a value and a key, found {}",
+                shown(row.text.trim())
+            );
             findings.mistake("OPTIONS", row.span(), problem);
             continue;
         };
@@ -97,9 +127,17 @@ pub(super) fn read(rows: &[Row<'_>], findings: &mut Findings) -> Options {
 
 fn unknown(value: &str, key: &str) -> String {
     if meaning(value).is_some() || is_unneeded(value) {
-        return format!("an option is written as value and key, here {} {}", shown(key), value);
+        return format!(
+            "an option is written as value and key, here {} {}",
+            shown(key),
+            value
+        );
     }
-    let known: Vec<&str> = NEEDED.iter().map(|(key, _)| *key).chain(UNNEEDED.iter().copied()).collect();
+    let known: Vec<&str> = NEEDED
+        .iter()
+        .map(|(key, _)| *key)
+        .chain(UNNEEDED.iter().copied())
+        .collect();
     let meant = nearest(key, known.iter().copied());
     let meant = meant.map_or(String::new(), |known| format!(", did you mean {known}?"));
     format!("unknown option {}{meant}", shown(key))
@@ -130,7 +168,9 @@ fn take(
         Meaning::OutputInterval => options.output_interval = placed(),
         Meaning::Friction => {
             let coefficient = placed();
-            options.friction.extend(coefficient.map(|c| (key.to_string(), c)));
+            options
+                .friction
+                .extend(coefficient.map(|c| (key.to_string(), c)));
         }
         Meaning::Depth => match word_property(&value.value) {
             Ok(depth) => {

@@ -41,7 +41,12 @@ fn stiffness_laws(deck: &Deck, findings: &mut Findings) {
                 shown(name)
             ),
         };
-        refuse(findings, about_type(&kind.name, "EA"), &kind.stiffness.span, problem);
+        refuse(
+            findings,
+            about_type(&kind.name, "EA"),
+            &kind.stiffness.span,
+            problem,
+        );
     }
 }
 
@@ -60,17 +65,29 @@ fn damping_laws(deck: &Deck, findings: &mut Findings) {
                 shown(name)
             ),
         };
-        refuse(findings, about_type(&kind.name, "BA/-zeta"), &kind.damping.span, problem);
+        refuse(
+            findings,
+            about_type(&kind.name, "BA/-zeta"),
+            &kind.damping.span,
+            problem,
+        );
     }
 }
 
 /// EI from a table.
 fn bending_laws(deck: &Deck, findings: &mut Findings) {
     for kind in &deck.line_types {
-        let Some(bending) = &kind.bending else { continue };
+        let Some(bending) = &kind.bending else {
+            continue;
+        };
         if !matches!(bending.value, Property::Number(_)) {
             let problem = "only a constant EI [N m²] is modelled: write it as a number".to_string();
-            refuse(findings, about_type(&kind.name, "EI"), &bending.span, problem);
+            refuse(
+                findings,
+                about_type(&kind.name, "EI"),
+                &bending.span,
+                problem,
+            );
         }
     }
 }
@@ -92,17 +109,29 @@ fn bodies_in_motion(deck: &Deck, findings: &mut Findings) {
         let what = match body.attachment.value {
             Attachment::Free => "a free body",
             Attachment::CoupledPinned => "a body that is coupled but free to turn",
-            Attachment::Fixed | Attachment::Coupled | Attachment::Vessel | Attachment::Turbine(_) => continue,
+            Attachment::Fixed | Attachment::Coupled | Attachment::Vessel => continue,
+            Attachment::Turbine(_) => "a body on a turbine of a farm",
             Attachment::Body(_) | Attachment::Pinned(_) => {
-                let problem = "a body is Fixed, Coupled, Vessel or Turbine1".to_string();
-                refuse(findings, about("body", body.id.value), &body.attachment.span, problem);
+                let problem = "a body is Fixed, Coupled, Vessel or Free".to_string();
+                refuse(
+                    findings,
+                    about("body", body.id.value),
+                    &body.attachment.span,
+                    problem,
+                );
                 continue;
             }
         };
         let problem = format!(
-            "{what} is not modelled: a free point carries mass, volume and drag without turning; a coupled body is moved by the host"
+            "{what} is not modelled: a free point carries mass, volume and drag without turning, a coupled body is moved by \
+             the host, and points can be attached to a turbine by themselves"
         );
-        refuse(findings, about("body", body.id.value), &body.attachment.span, problem);
+        refuse(
+            findings,
+            about("body", body.id.value),
+            &body.attachment.span,
+            problem,
+        );
     }
 }
 
@@ -113,7 +142,10 @@ fn bodies_with_mass(deck: &Deck, findings: &mut Findings) {
             continue;
         }
         let [_, _, drag, _] = &body.parts;
-        let drag = drag.value.iter().fold(0.0, |sum: f64, part| sum + part.abs());
+        let drag = drag
+            .value
+            .iter()
+            .fold(0.0, |sum: f64, part| sum + part.abs());
         let sizes = [
             ("mass", body.mass.value, &body.mass.span),
             ("volume", body.volume.value, &body.volume.span),
@@ -134,11 +166,21 @@ fn points_that_turn(deck: &Deck, findings: &mut Findings) {
         match point.attachment.value {
             Attachment::Pinned(_) | Attachment::CoupledPinned => {
                 let problem = "a point does not turn: write Fixed, Coupled or Body1".to_string();
-                refuse(findings, about("point", point.id.value), &point.attachment.span, problem);
+                refuse(
+                    findings,
+                    about("point", point.id.value),
+                    &point.attachment.span,
+                    problem,
+                );
             }
             Attachment::Body(id) if deck.bodies.iter().all(|body| body.id.value != id) => {
                 let problem = format!("no body has the number {id}");
-                refuse(findings, about("point", point.id.value), &point.attachment.span, problem);
+                refuse(
+                    findings,
+                    about("point", point.id.value),
+                    &point.attachment.span,
+                    problem,
+                );
             }
             _ => {}
         }
@@ -169,7 +211,11 @@ fn rods(deck: &Deck, findings: &mut Findings) {
         if let Some(problem) = problem {
             refuse(findings, at.clone(), &rod.attachment.span, problem);
         }
-        if deck.rod_types.iter().all(|kind| kind.name.value != rod.rod_type.value) {
+        if deck
+            .rod_types
+            .iter()
+            .all(|kind| kind.name.value != rod.rod_type.value)
+        {
             let problem = format!("no rod type is called {}", shown(&rod.rod_type.value));
             refuse(findings, at, &rod.rod_type.span, problem);
         }
@@ -190,9 +236,16 @@ fn waves_currents_and_beds(deck: &Deck, findings: &mut Findings) {
             "SEAFLOORFILE" | "BATHYMETRYFILE" | "BATHFILE" => {
                 "a seabed from a file is not modelled: give one depth with WtrDpth [m]"
             }
-            _ => "waves and currents of a deck are not read: write 0, and give them in the scene or the host",
+            _ => {
+                "waves and currents of a deck are not read: write 0, and give them in the scene or the host"
+            }
         };
-        refuse(findings, format!("OPTIONS, {key}"), &value.span, what.to_string());
+        refuse(
+            findings,
+            format!("OPTIONS, {key}"),
+            &value.span,
+            what.to_string(),
+        );
     }
 }
 

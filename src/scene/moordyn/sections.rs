@@ -167,7 +167,10 @@ fn begin<'t>(
         return (!sections.list.is_empty()).then_some(header);
     };
     if sections.get(kind).is_some() {
-        let problem = format!("a second section {}: write all of its rows in one", kind.name());
+        let problem = format!(
+            "a second section {}: write all of its rows in one",
+            kind.name()
+        );
         findings.mistake(kind.name(), header.span(), problem);
     }
     sections.list.push(Section {

@@ -213,14 +213,20 @@ fn unique<'d, T: Ord + std::fmt::Display + 'd>(
 fn title(sections: &Sections<'_>) -> String {
     let rows = sections.preamble.iter().filter(|row| {
         let fields = row.fields();
-        let echo = fields.get(1).is_some_and(|f| f.text.eq_ignore_ascii_case("echo"));
+        let echo = fields
+            .get(1)
+            .is_some_and(|f| f.text.eq_ignore_ascii_case("echo"));
         let upper = row.text.to_uppercase();
         let kind = upper.contains("MOORDYN") && upper.contains("INPUT FILE") && fields.len() <= 5;
         !row.text.contains("---") && !echo && !kind
     });
     let words = rows.flat_map(|row| row.fields()).map(|field| field.text);
     let title: String = words.collect::<Vec<_>>().join(" ");
-    title.chars().filter(|c| !c.is_control()).take(200).collect()
+    title
+        .chars()
+        .filter(|c| !c.is_control())
+        .take(200)
+        .collect()
 }
 
 /// Version 1 has nine columns of line types, none of them EI.
@@ -260,7 +266,11 @@ fn read_rows<T>(
             let names: Vec<String> = accepted
                 .iter()
                 .map(|width| {
-                    let names: Vec<&str> = columns(*width).iter().take(*width).map(|c| c.name).collect();
+                    let names: Vec<&str> = columns(*width)
+                        .iter()
+                        .take(*width)
+                        .map(|c| c.name)
+                        .collect();
                     format!("{width} ({})", names.join(" "))
                 })
                 .collect();
@@ -269,7 +279,10 @@ fn read_rows<T>(
             continue;
         };
         if let Some(extra) = fields.get(widest) {
-            let text = format!("{}: what stands behind column {widest} is not read", kind.name());
+            let text = format!(
+                "{}: what stands behind column {widest} is not read",
+                kind.name()
+            );
             findings.remark(extra.span.start, text);
         }
         table.push(read(&mut Cells {
@@ -282,15 +295,16 @@ fn read_rows<T>(
     table
 }
 
-fn line_types(
-    sections: &Sections<'_>,
-    version: Version,
-    findings: &mut Findings,
-) -> Vec<LineType> {
+fn line_types(sections: &Sections<'_>, version: Version, findings: &mut Findings) -> Vec<LineType> {
     let rows = sections.rows(Kind::LineTypes);
     match version {
-        Version::One => read_rows(rows, Kind::LineTypes, &[9], |_| LINE_TYPES_1, findings, |cells| {
-            LineType {
+        Version::One => read_rows(
+            rows,
+            Kind::LineTypes,
+            &[9],
+            |_| LINE_TYPES_1,
+            findings,
+            |cells| LineType {
                 name: cells.word(0),
                 diameter: cells.number(1),
                 mass: cells.number(2),
@@ -302,10 +316,15 @@ fn line_types(
                 drag_normal: cells.number(7),
                 drag_tangential: cells.number(8),
                 lift: None,
-            }
-        }),
-        Version::Two => {
-            read_rows(rows, Kind::LineTypes, &[10, 11, 13], |_| LINE_TYPES_2, findings, |cells| {
+            },
+        ),
+        Version::Two => read_rows(
+            rows,
+            Kind::LineTypes,
+            &[10, 11, 13],
+            |_| LINE_TYPES_2,
+            findings,
+            |cells| {
                 let lift = cells.fields.len() > 10;
                 LineType {
                     name: cells.word(0),
@@ -320,8 +339,8 @@ fn line_types(
                     added_mass_tangential: cells.number(9),
                     lift: lift.then(|| cells.number(10)),
                 }
-            })
-        }
+            },
+        ),
     }
 }
 
@@ -361,32 +380,46 @@ pub(super) fn word_property(word: &str) -> Result<Property, String> {
 
 fn rod_types(sections: &Sections<'_>, findings: &mut Findings) -> Vec<RodType> {
     let rows = sections.rows(Kind::RodTypes);
-    read_rows(rows, Kind::RodTypes, &[7], |_| ROD_TYPES, findings, |cells| {
-        for column in 1..ROD_TYPES.len() {
-            cells.number(column);
-        }
-        RodType {
-            name: cells.word(0),
-        }
-    })
+    read_rows(
+        rows,
+        Kind::RodTypes,
+        &[7],
+        |_| ROD_TYPES,
+        findings,
+        |cells| {
+            for column in 1..ROD_TYPES.len() {
+                cells.number(column);
+            }
+            RodType {
+                name: cells.word(0),
+            }
+        },
+    )
 }
 
 fn bodies(sections: &Sections<'_>, findings: &mut Findings) -> Vec<Body> {
     let rows = sections.rows(Kind::Bodies);
-    read_rows(rows, Kind::Bodies, &[14], |_| BODIES, findings, |cells| Body {
-        id: cells.count(0, 1),
-        attachment: attachment(cells, 1),
-        position: cells.vector(2),
-        attitude: cells.vector(5),
-        mass: cells.number(8),
-        volume: cells.number(11),
-        parts: [
-            parts(cells, 9, &[1, 3]),
-            parts(cells, 10, &[1, 3]),
-            parts(cells, 12, &[1, 2, 3, 6]),
-            parts(cells, 13, &[1, 3]),
-        ],
-    })
+    read_rows(
+        rows,
+        Kind::Bodies,
+        &[14],
+        |_| BODIES,
+        findings,
+        |cells| Body {
+            id: cells.count(0, 1),
+            attachment: attachment(cells, 1),
+            position: cells.vector(2),
+            attitude: cells.vector(5),
+            mass: cells.number(8),
+            volume: cells.number(11),
+            parts: [
+                parts(cells, 9, &[1, 3]),
+                parts(cells, 10, &[1, 3]),
+                parts(cells, 12, &[1, 2, 3, 6]),
+                parts(cells, 13, &[1, 3]),
+            ],
+        },
+    )
 }
 
 /// One number or several joined by bars.
@@ -413,13 +446,20 @@ fn parts(cells: &mut Cells<'_, '_>, column: usize, counts: &[usize]) -> Placed<V
 
 fn rods(sections: &Sections<'_>, findings: &mut Findings) -> Vec<Rod> {
     let rows = sections.rows(Kind::Rods);
-    read_rows(rows, Kind::Rods, &[11], |_| RODS, findings, |cells| Rod {
-        id: cells.count(0, 1),
-        rod_type: cells.word(1),
-        attachment: attachment(cells, 2),
-        ends: [cells.vector(3), cells.vector(6)],
-        segments: cells.count(9, 0),
-    })
+    read_rows(
+        rows,
+        Kind::Rods,
+        &[11],
+        |_| RODS,
+        findings,
+        |cells| Rod {
+            id: cells.count(0, 1),
+            rod_type: cells.word(1),
+            attachment: attachment(cells, 2),
+            ends: [cells.vector(3), cells.vector(6)],
+            segments: cells.count(9, 0),
+        },
+    )
 }
 
 fn points(sections: &Sections<'_>, findings: &mut Findings) -> Vec<Point> {
@@ -444,9 +484,13 @@ fn points(sections: &Sections<'_>, findings: &mut Findings) -> Vec<Point> {
 /// Words and numbers by turns: "Body1Pinned" -> "BODY", 1, "PINNED".
 fn decomposed(word: &str) -> (String, Option<usize>, String) {
     let upper = word.to_uppercase();
-    let first = upper.find(|c: char| c.is_ascii_digit()).unwrap_or(upper.len());
+    let first = upper
+        .find(|c: char| c.is_ascii_digit())
+        .unwrap_or(upper.len());
     let (letters, rest) = upper.split_at(first);
-    let digits = rest.find(|c: char| !c.is_ascii_digit()).unwrap_or(rest.len());
+    let digits = rest
+        .find(|c: char| !c.is_ascii_digit())
+        .unwrap_or(rest.len());
     let (digits, tail) = rest.split_at(digits);
     (letters.to_string(), digits.parse().ok(), tail.to_string())
 }
@@ -523,7 +567,11 @@ fn length_comes_first(section: &Section<'_>, deck: &Deck) -> bool {
     let names = section.names.as_ref().map(|names| names.fields());
     let named = names.and_then(|names| {
         let mut names = names.iter();
-        names.position(|name| LINES_1[2].spellings.contains(&name.text.to_uppercase().as_str()))
+        names.position(|name| {
+            LINES_1[2]
+                .spellings
+                .contains(&name.text.to_uppercase().as_str())
+        })
     });
     match named {
         Some(column) => column == 2,
@@ -536,15 +584,26 @@ fn lines(sections: &Sections<'_>, deck: &Deck, findings: &mut Findings) -> Vec<L
         return Vec::new();
     };
     let first = length_comes_first(section, deck);
-    let (ends, length, columns) = if first { (4, 2, LINES_1) } else { (2, 4, LINES_2) };
-    read_rows(&section.rows, Kind::Lines, &[7], |_| columns, findings, |cells| Line {
-        id: cells.count(0, 1),
-        line_type: known_type(cells, deck),
-        ends: [attached(cells, ends, deck), attached(cells, ends + 1, deck)],
-        length: cells.number(length),
-        segments: cells.count(length + 1, 1),
-        outputs: cells.word(6),
-    })
+    let (ends, length, columns) = if first {
+        (4, 2, LINES_1)
+    } else {
+        (2, 4, LINES_2)
+    };
+    read_rows(
+        &section.rows,
+        Kind::Lines,
+        &[7],
+        |_| columns,
+        findings,
+        |cells| Line {
+            id: cells.count(0, 1),
+            line_type: known_type(cells, deck),
+            ends: [attached(cells, ends, deck), attached(cells, ends + 1, deck)],
+            length: cells.number(length),
+            segments: cells.count(length + 1, 1),
+            outputs: cells.word(6),
+        },
+    )
 }
 
 fn known_type(cells: &mut Cells<'_, '_>, deck: &Deck) -> Placed<String> {
@@ -553,7 +612,10 @@ fn known_type(cells: &mut Cells<'_, '_>, deck: &Deck) -> Placed<String> {
     if types.clone().all(|name| name != word.value) {
         let meant = types.find(|name| name.eq_ignore_ascii_case(&word.value));
         let meant = meant.map_or(String::new(), |name| format!(", did you mean {name:?}?"));
-        cells.wrong(1, format!("no line type is called {}{meant}", shown(&word.value)));
+        cells.wrong(
+            1,
+            format!("no line type is called {}{meant}", shown(&word.value)),
+        );
     }
     word
 }

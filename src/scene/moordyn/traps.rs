@@ -132,7 +132,12 @@ fn line_files(deck: &Deck, findings: &mut Findings) {
 fn masses_of_held_points(deck: &Deck, findings: &mut Findings) {
     for point in &deck.points {
         let free = point.attachment.value == Attachment::Free;
-        let sizes = [&point.mass, &point.volume, &point.drag_area, &point.added_mass];
+        let sizes = [
+            &point.mass,
+            &point.volume,
+            &point.drag_area,
+            &point.added_mass,
+        ];
         if let Some(given) = sizes.iter().find(|size| size.value != 0.0)
             && !free
         {
