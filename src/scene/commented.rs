@@ -3,6 +3,7 @@
 //! The comments stand in lines of the TOML that [`Scene::to_toml`] writes and change nothing of it, so that what is read back
 //! is the same scene, bit for bit.
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use super::read::LoadedScene;
@@ -44,7 +45,7 @@ struct Place {
     /// Its header, such as `lines.sections`.
     table: String,
     /// How many points, lines and vessels have begun.
-    begun: std::collections::BTreeMap<String, usize>,
+    begun: BTreeMap<String, usize>,
 }
 
 impl Place {
@@ -65,17 +66,16 @@ impl Place {
                 *count += 1;
             }
             let line = loaded.places.line(&loaded.text, &at)?;
-            return Some(format!("line {line}"));
+            return Some(format!("file line {line}"));
         }
         let (key, value) = line.split_once(" = ")?;
         // A list of tables holds several units.
         if value.contains('{') {
             return None;
         }
-        match units::unit(owner(&self.table)?, key) {
-            Some(unit) => Some(unit.to_string()),
-            None => None,
-        }
+        units::unit(owner(&self.table)?, key)
+            .filter(|unit| *unit != "-")
+            .map(str::to_string)
     }
 }
 

@@ -61,7 +61,7 @@ impl Places {
     pub(super) fn locate_note(&self, source: &str, mut note: Note) -> Note {
         if let Some(place) = self.find(&note.at) {
             let (line, _) = path::line_column(source, place.span.start);
-            note.at = format!("line {line}, {}", place.words);
+            note.at = format!("file line {line}, {}", place.words);
         }
         note
     }
