@@ -82,7 +82,7 @@ impl Place {
 /// The struct that a table is read into.
 fn owner(table: &str) -> Option<&'static str> {
     let mut keys = table.split('.');
-    Some(match (keys.next()?, keys.last()) {
+    Some(match (keys.next()?, keys.next_back()) {
         ("", _) => "Scene",
         ("water", None) => "Water",
         ("seabed", None) => "Seabed",

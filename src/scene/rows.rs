@@ -4,8 +4,8 @@ use std::ops::Range;
 
 use super::{Note, SceneError, path};
 
-/// Most mistakes that are kept of one file: nobody reads more.
-const MISTAKES_MAX: usize = 50;
+/// Most mistakes that are told of one file: nobody reads more.
+pub(super) const MISTAKES_MAX: usize = 50;
 
 /// Most rows of a table: beyond any mooring, and short enough for every check.
 pub(super) const ROWS_MAX: usize = 5_000;

@@ -215,13 +215,13 @@ impl Builder<'_> {
 
     /// The bed that all lines meet, or none of them.
     fn seabed(&mut self) {
-        let omitting = self
+        let mut omitting = self
             .deck
             .lines
             .iter()
             .filter_map(|line| line.omits_contact.as_ref());
         let count = omitting.clone().count();
-        match omitting.last() {
+        match omitting.next_back() {
             Some(flag) if count < self.deck.lines.len() => {
                 let problem = "some lines that meet the bed and some that do not are not modelled: flag all of them, or none";
                 self.findings

@@ -429,7 +429,12 @@ fn parts(cells: &mut Cells<'_, '_>, column: usize, counts: &[usize]) -> Placed<V
     let value = match numbers {
         Ok(numbers) if counts.contains(&numbers.len()) => numbers,
         Ok(numbers) => {
-            let problem = format!("{} numbers joined by |, expected {counts:?}", numbers.len());
+            let counts: Vec<String> = counts.iter().map(usize::to_string).collect();
+            let problem = format!(
+                "{} numbers joined by |, expected {}",
+                numbers.len(),
+                counts.join(" or ")
+            );
             cells.wrong(column, problem);
             vec![0.0]
         }
