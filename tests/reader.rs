@@ -180,6 +180,32 @@ fn the_traps_of_a_deck_are_named_with_their_lines() {
 }
 
 #[test]
+fn the_words_for_a_deck_tell_of_its_vessel_and_of_where_points_are_on_it() {
+    let words = read("moordyn_c.txt").scene.in_words();
+    let words = words.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(
+        words.contains("body1: moved by the host, its origin at (0, 0, -20) m, at roll 0 rad, pitch 0 rad, yaw 1.5708 rad"),
+        "{words}"
+    );
+    assert!(
+        words.contains("carries point7; in `run` it stays where it is"),
+        "{words}"
+    );
+    assert!(
+        words.contains("point7: rides on body1, at (5, 0, 15) m in its frame"),
+        "{words}"
+    );
+    // In its body's frame the point is above z = 0, but the body lies deep, and turned.
+    assert!(!notes(&read("moordyn_c.txt")).contains("above z = 0"));
+    assert!(
+        words.contains(
+            "line1: from rod1a to point7, 160 m of cable in 16 elements; 27.902 m longer"
+        ),
+        "{words}"
+    );
+}
+
+#[test]
 fn the_two_versions_of_a_deck_are_the_same_scene() {
     let one = read("moordyn_v1.dat");
     let two = read("moordyn_v2_same.dat");

@@ -11,7 +11,7 @@ use toml::de::{DeTable, DeValue};
 
 use super::notes::Note;
 use super::places::Places;
-use super::rows::Findings;
+use super::rows::{Findings, MISTAKES_MAX};
 use super::{LoadError, MotionPath, Scene, SceneError, document, map, moordyn, motion_file, path};
 
 /// Longest scene file that is read [bytes].
@@ -156,19 +156,21 @@ fn deck_scene(reading: Reading, text: &str) -> Result<Checked, Vec<SceneError>> 
         places,
         findings,
     } = reading;
-    let mut mistakes = findings.mistakes.clone();
-    let Some(scene) = scene.filter(|_| mistakes.is_empty()) else {
+    let in_order = |mut mistakes: Vec<SceneError>| {
         mistakes.sort_by_key(|mistake| mistake.span.as_ref().map_or(0, |span| span.start));
-        return Err(mistakes);
+        mistakes.truncate(MISTAKES_MAX);
+        mistakes
     };
-    mistakes = scene
+    let Some(scene) = scene.filter(|_| findings.mistakes.is_empty()) else {
+        return Err(in_order(findings.mistakes));
+    };
+    let mistakes: Vec<SceneError> = scene
         .mistakes()
         .into_iter()
         .map(|mistake| places.locate(mistake))
         .collect();
     if !mistakes.is_empty() {
-        mistakes.sort_by_key(|mistake| mistake.span.as_ref().map_or(0, |span| span.start));
-        return Err(mistakes);
+        return Err(in_order(mistakes));
     }
     let mut notes = findings.notes(text);
     let of_scene = scene.notes().into_iter();

@@ -1,5 +1,7 @@
 //! A scene in words: what it models, and what it does not.
 
+mod vessels;
+
 use std::f64::consts::PI;
 use std::fmt::Write;
 
@@ -9,6 +11,7 @@ use super::{
     Axis, ContactLaw, HarmonicMotion, InitialShape, Integrator, Line, LineType, MotionPath, Point,
     PointForce, PointKind, Scene, Strain, TimeFunction,
 };
+use vessels::vessel_in_words;
 
 /// Widest line of the text, in characters.
 const WIDTH: usize = 110;
@@ -31,6 +34,12 @@ impl Scene {
             .iter()
             .map(|point| self.point_in_words(point))
             .collect();
+        let vessels: Vec<_> = self
+            .vessels
+            .iter()
+            .map(|vessel| vessel_in_words(self, vessel))
+            .collect();
+        section(&mut text, "vessels", &vessels);
         section(&mut text, "points", &points);
         let lines: Vec<_> = self
             .lines
@@ -142,7 +151,16 @@ impl Scene {
 
     fn point_in_words(&self, point: &Point) -> String {
         let [x, y, z] = point.position.map(number);
-        let mut said = format!("{}: {}, at ({x}, {y}, {z}) m", point.name, role(point));
+        let frame = if point.on.is_some() {
+            " in its frame"
+        } else {
+            ""
+        };
+        let mut said = format!(
+            "{}: {}, at ({x}, {y}, {z}) m{frame}",
+            point.name,
+            role(point)
+        );
         if let Some(mass) = point.mass {
             write!(said, ", mass {}", quantity(mass, "kg")).expect("a String takes all");
         }
@@ -162,7 +180,7 @@ impl Scene {
         if let Some(motion) = &point.motion {
             write!(said, ", {}", motion_in_words(motion)).expect("a String takes all");
         }
-        if point.kind == PointKind::Coupled {
+        if point.kind == PointKind::Coupled && point.on.is_none() {
             let motion = self.motion.get(&point.name).map(motion_in_words);
             let motion = motion.unwrap_or_else(|| "stays where it is".to_string());
             write!(said, "; in `run` it {motion}").expect("a String takes all");
@@ -257,10 +275,7 @@ impl Scene {
     }
 
     fn absences_in_words(&self) -> Vec<String> {
-        let mut absent = vec![
-            "bending, torsion and shear of lines",
-            "vessels with rotation",
-        ];
+        let mut absent = vec!["bending, torsion and shear of lines"];
         if self.water.is_some() {
             absent.push("current, waves and the water's surface");
         } else {
@@ -409,7 +424,10 @@ fn water_forces_in_words(line_type: &LineType) -> String {
 fn role(point: &Point) -> String {
     match (point.kind, &point.free) {
         (PointKind::Fixed, _) => "fixed".to_string(),
-        (PointKind::Coupled, _) => "coupled to the host".to_string(),
+        (PointKind::Coupled, _) => match &point.on {
+            Some(vessel) => format!("rides on {vessel}"),
+            None => "coupled to the host".to_string(),
+        },
         (PointKind::Prescribed, _) => "moved along its own path".to_string(),
         (PointKind::Free, None) => "free".to_string(),
         (PointKind::Free, Some(axes)) => {

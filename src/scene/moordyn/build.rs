@@ -491,7 +491,7 @@ fn rotation([roll, pitch, yaw]: [f64; 3]) -> [[f64; 3]; 3] {
 
 /// Roll, pitch and yaw [rad] of the same turn by R = Rz·Ry·Rx, as scenes have it.
 fn attitude(turn: &[[f64; 3]; 3]) -> [f64; 3] {
-    let pitch = (-turn[2][0]).clamp(-1.0, 1.0).asin();
+    let pitch = (0.0 - turn[2][0]).clamp(-1.0, 1.0).asin();
     [
         turn[2][1].atan2(turn[2][2]),
         pitch,
