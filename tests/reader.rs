@@ -268,6 +268,41 @@ fn a_line_is_clamped_as_it_runs_along_or_against_its_rod() {
 }
 
 #[test]
+fn a_clamp_on_a_turned_body_is_a_direction_in_global_axes() {
+    let rod = "1    clamp     Fixed      120   0    -60   118    0    -60   0";
+    let deck = with(C_STYLE, rod, "1 clamp Body1 5 0 0 3 0 0 0");
+    let scene = load_text(&deck)
+        .unwrap_or_else(|error| panic!("{}", error.list()))
+        .scene;
+    assert_eq!(point(&scene, "rod1a").on.as_deref(), Some("body1"));
+    let [x, y, z] = scene.lines[0].clamped_a.unwrap();
+    assert!(
+        x.abs() < 1e-15 && (y - 1.0).abs() < 1e-15 && z == 0.0,
+        "{x} {y} {z}"
+    );
+}
+
+#[test]
+fn points_on_a_fixed_body_are_fixed_where_it_has_them() {
+    let deck = with(
+        C_STYLE,
+        "1    Coupled     0      0    -20",
+        "1    Fixed     10      0    -20",
+    );
+    let scene = load_text(&deck)
+        .unwrap_or_else(|error| panic!("{}", error.list()))
+        .scene;
+    assert!(scene.vessels.is_empty());
+    let held = point(&scene, "point7");
+    assert_eq!(held.kind, PointKind::Fixed);
+    let [x, y, z] = held.position;
+    assert!(
+        (x - 10.0).abs() < 1e-12 && (y - 5.0).abs() < 1e-12 && z == -5.0,
+        "{x} {y} {z}"
+    );
+}
+
+#[test]
 fn a_farm_stands_where_its_host_says() {
     let said = said(FARM);
     assert!(said.starts_with("input:10:6: Turbine1: "), "{said}");

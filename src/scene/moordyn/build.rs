@@ -232,10 +232,9 @@ impl<'d> Builder<'d> {
 
     fn on_body(&mut self, point: scene::Point, body: &Body) -> scene::Point {
         let place = [0, 1, 2].map(|axis| body.position[axis].value);
-        let turn = rotation([0, 1, 2].map(|axis| body.attitude[axis].value.to_radians()));
+        let turn = turn_of(body);
         if body.attachment.value == Attachment::Fixed {
-            let local = point.position;
-            let turned = turn.map(|row| (0..3).map(|axis| row[axis] * local[axis]).sum::<f64>());
+            let turned = applied(&turn, point.position);
             return scene::Point {
                 position: [0, 1, 2].map(|axis| place[axis] + turned[axis]),
                 ..point
@@ -411,7 +410,20 @@ impl<'d> Builder<'d> {
         // Leaving at B or arriving at A is along the rod, leaving at A or arriving at B is against it.
         let leaves = index == 0;
         let sign = if leaves == at_b { 1.0 } else { -1.0 };
+        let along = self.turned(&rod.attachment.value, along);
         Some(along.map(|part| sign * part))
+    }
+
+    /// A direction in the frame of what carries it, in global axes.
+    fn turned(&self, attachment: &Attachment, direction: [f64; 3]) -> [f64; 3] {
+        let Attachment::Body(id) = attachment else {
+            return direction;
+        };
+        let mut bodies = self.deck.bodies.iter();
+        match bodies.find(|body| body.id.value == *id) {
+            Some(body) => applied(&turn_of(body), direction),
+            None => direction,
+        }
     }
 
     fn output(&mut self) {
@@ -477,6 +489,16 @@ fn axis(rod: &Rod) -> [f64; 3] {
     } else {
         [0.0; 3]
     }
+}
+
+/// The turn of a body's axes.
+fn turn_of(body: &Body) -> [[f64; 3]; 3] {
+    rotation([0, 1, 2].map(|axis| body.attitude[axis].value.to_radians()))
+}
+
+/// A vector turned by a matrix of rows, in the unit of the vector.
+fn applied(turn: &[[f64; 3]; 3], vector: [f64; 3]) -> [f64; 3] {
+    turn.map(|row| (0..3).map(|axis| row[axis] * vector[axis]).sum::<f64>())
 }
 
 /// Rows of the matrix that turns a body's axes into the global ones, R = Rx·Ry·Rz of the angles [rad], as in MoorDyn.
