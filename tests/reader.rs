@@ -173,7 +173,7 @@ fn the_traps_of_a_deck_are_named_with_their_lines() {
     }
     let said = notes(&read("moordyn_v1.dat"));
     assert!(
-        said.contains("file line 5: chain: the header has Pa s above the damping"),
+        said.contains("file line 6: chain: the header has Pa s above the damping"),
         "{said}"
     );
     assert!(said.contains("read as MoorDyn v1"), "{said}");
@@ -733,6 +733,25 @@ fn assert_refused(deck: &str, refusals: &[(&str, &str, &str)]) {
 #[test]
 fn every_refusal_names_file_line_and_column_and_what_would_be_right() {
     assert_refused(OPENFAST, REFUSALS);
+}
+
+#[test]
+fn a_count_of_rows_that_is_wrong_is_refused_as_moordyn_v1_would_lose_some() {
+    assert_refused(
+        VERSION_1,
+        &[
+            (
+                "2   NLines",
+                "1   NLines",
+                "input:15:1: LINES: 1 rows are announced, and there are 2",
+            ),
+            (
+                "3   NConnects",
+                "x   NConnects",
+                "input:8:1: POINTS: expected the number of rows below",
+            ),
+        ],
+    );
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! A deck cut at its headers.
 
-use crate::scene::rows::{Findings, Row, number, shown};
+use crate::scene::rows::{Findings, Placed, Row, number, shown};
 
 /// What a section holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -75,6 +75,8 @@ impl Kind {
 pub(super) struct Section<'t> {
     pub kind: Kind,
     pub header: Row<'t>,
+    /// The number of rows, which decks of version 1 say below the header.
+    count: Option<Placed<Option<usize>>>,
     /// The line that names the columns of a table.
     pub names: Option<Row<'t>>,
     /// The line of their units.
@@ -152,6 +154,7 @@ pub(super) fn split<'t>(text: &'t str, findings: &mut Findings) -> Sections<'t> 
     }
     for section in &sections.list {
         check_names(section, findings);
+        check_count(section, findings);
     }
     sections
 }
@@ -176,6 +179,7 @@ fn begin<'t>(
     sections.list.push(Section {
         kind,
         header,
+        count: None,
         names: None,
         units: None,
         rows: Vec::new(),
@@ -183,14 +187,55 @@ fn begin<'t>(
     None
 }
 
+/// `3  NLines - number of lines`.
+fn count(row: &Row<'_>) -> Option<Placed<Option<usize>>> {
+    let fields = row.fields();
+    let key = fields.get(1)?.text.to_uppercase();
+    let counted = [
+        "NTYPES",
+        "NLINETYPES",
+        "NCONNECTS",
+        "NCONNECTIONS",
+        "NPOINTS",
+        "NLINES",
+    ];
+    counted.contains(&key.as_str()).then_some(())?;
+    Some(Placed {
+        value: fields[0].text.parse().ok(),
+        span: fields[0].span.clone(),
+    })
+}
+
 fn add<'t>(section: &mut Section<'t>, row: Row<'t>) {
-    if section.kind.is_table() && section.names.is_none() {
+    let first = section.names.is_none() && section.count.is_none();
+    if section.kind.is_table()
+        && first
+        && let Some(count) = count(&row)
+    {
+        section.count = Some(count);
+    } else if section.kind.is_table() && section.names.is_none() {
         section.names = Some(row);
     } else if section.kind.is_table() && section.units.is_none() {
         section.units = Some(row);
     } else {
         section.rows.push(row);
     }
+}
+
+/// MoorDyn v1 would read that many rows and no more.
+fn check_count(section: &Section<'_>, findings: &mut Findings) {
+    let Some(count) = &section.count else {
+        return;
+    };
+    let problem = match count.value {
+        Some(value) if value == section.rows.len() => return,
+        Some(value) => {
+            let rows = section.rows.len();
+            format!("{value} rows are announced, and there are {rows}")
+        }
+        None => "expected the number of rows below".to_string(),
+    };
+    findings.mistake(section.kind.name(), count.span.clone(), problem);
 }
 
 /// A row of the table in place of names and units would be lost without a word.
