@@ -1,7 +1,8 @@
 //! What the user wrote: plain data, SI units, nothing computed. What is absent is `None`.
 //!
-//! A scene comes from a file ([`load`]), which may be a deck of MoorDyn or MAP++ too, or from TOML text ([`Scene::from_toml`]); every mistake names its key, line
-//! and column. [`Scene::notes`] says what is no mistake but may surprise, [`Scene::in_words`] what is modelled.
+//! A scene comes from a file ([`load`]), which may be a deck of MoorDyn or MAP++ too, or from TOML text
+//! ([`Scene::from_toml`]); every mistake names its key, line and column. [`Scene::notes`] says what is no mistake but may
+//! surprise, [`Scene::in_words`] what is modelled.
 //! [`crate::model::Model::new`] is the one gate from here to the solver.
 
 pub mod channel;
