@@ -10,6 +10,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 
 use cli::run::Drive;
+use moorline::scene::Supplement;
 
 /// Mooring-line dynamics: statics, time-domain runs, FMUs.
 #[derive(Debug, Parser)]
@@ -50,6 +51,20 @@ enum Command {
         #[arg(long, requires = "communication_step")]
         velocities: bool,
     },
+    /// Write a MoorDyn or MAP++ file as a scene with comments
+    Convert {
+        /// MoorDyn or MAP++ file
+        deck: PathBuf,
+        /// The scene
+        #[arg(short, long, value_name = "FILE")]
+        output: PathBuf,
+        /// Water depth D [m], where the file leaves it to its host
+        #[arg(long, value_name = "D", value_parser = cli::positive_number)]
+        depth: Option<f64>,
+        /// Reference position of a vessel [m], where the file leaves it to its host; may be given several times
+        #[arg(long, value_name = "NAME=X,Y,Z", value_parser = cli::convert::placed_vessel)]
+        at: Vec<(String, [f64; 3])>,
+    },
     /// Package a scene as an FMU for co-simulation
     Fmu {
         /// Scene file
@@ -84,6 +99,18 @@ fn main() -> ExitCode {
                 None => Drive::Scene,
             };
             cli::run::run(&scene, &output, drive)
+        }
+        Command::Convert {
+            deck,
+            output,
+            depth,
+            at,
+        } => {
+            let supplement = Supplement {
+                depth,
+                positions: at.into_iter().collect(),
+            };
+            cli::convert::convert(&deck, &output, &supplement)
         }
         Command::Fmu { scene, output, fmi } => cli::fmu::fmu(&scene, &output, &fmi),
         Command::Demo { output } => cli::demo::demo(&output),

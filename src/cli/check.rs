@@ -5,7 +5,8 @@ use std::path::Path;
 
 use moorline::interface::{Causality, Interface, Layout};
 use moorline::model::Model;
-use moorline::scene::load;
+use moorline::output::channels::Channels;
+use moorline::scene::{TOML, load};
 
 use super::failure::Failure;
 use super::print;
@@ -16,7 +17,12 @@ pub fn check(path: &Path) -> Result<(), Failure> {
     let located = |mistake| Failure::of_scene(mistake, &loaded);
     let model = Model::new(&loaded.scene).map_err(located)?;
     let interface = Interface::new(&loaded.scene, &model, Layout::Arrays).map_err(located)?;
-    let mut text = loaded.scene.in_words();
+    Channels::new(&loaded.scene, &model).map_err(located)?;
+    let mut text = String::new();
+    if loaded.format != TOML {
+        writeln!(text, "read as a {} file", loaded.format).expect("a string takes any text");
+    }
+    text.push_str(&loaded.scene.in_words());
     text.push_str("\nvariables of the FMU\n");
     for (role, causality) in [
         ("in", Causality::Input),

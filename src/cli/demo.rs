@@ -8,7 +8,7 @@ use moorline::interface::{Binding, Interface, Kind, Layout, Variable};
 use moorline::model::Body;
 use moorline::output::record::{Frame, Node, Record};
 use moorline::output::{collect, make_folder, write_run};
-use moorline::scene::{LoadedScene, Scene};
+use moorline::scene::{LoadedScene, Places, Scene, TOML};
 use moorline::simulation::Simulation;
 use moorline_host::{FmiVersion, Fmu, HostError, Slave};
 
@@ -55,6 +55,8 @@ fn built_in_scene() -> Result<LoadedScene, Failure> {
         scene,
         text: SCENE.to_string(),
         path: PathBuf::from("demo.toml"),
+        format: TOML,
+        places: Places::default(),
     })
 }
 

@@ -44,7 +44,7 @@ impl Failure {
         let name = loaded.path.display().to_string();
         Failure::Scene(LoadError::Scene {
             source_text: Box::new(NamedSource::new(name, loaded.text.clone())),
-            mistakes: vec![mistake],
+            mistakes: vec![loaded.locate(mistake)],
         })
     }
 

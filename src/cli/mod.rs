@@ -1,6 +1,7 @@
 //! The commands, and what they share.
 
 pub mod check;
+pub mod convert;
 pub mod demo;
 mod failure;
 pub mod fmu;

@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 
 use moorline::interface::{Binding, Causality, Interface, Layout, Variable};
 use moorline::model::{Body, Model, Role};
+use moorline::output::channels::Channels;
 use moorline::output::record::{Column, Record};
 use moorline::output::{collect, make_folder, write_run};
 use moorline::scene::Scene;
@@ -46,7 +47,13 @@ pub fn run(path: &Path, folder: &Path, drive: Drive) -> Result<(), Failure> {
     start.map_err(|error| Failure::of_simulation(error, &loaded))?;
     let interface = Interface::new(&loaded.scene, simulation.model(), Layout::Scalars)
         .map_err(|mistake| Failure::of_scene(mistake, &loaded))?;
-    let record = step_through(&loaded.scene, &mut simulation, &interface, drive)?;
+    let channels = Channels::new(&loaded.scene, simulation.model())
+        .map_err(|mistake| Failure::of_scene(mistake, &loaded))?;
+    let recorder = Recorder {
+        variables: recorded(&interface).collect(),
+        channels,
+    };
+    let record = step_through(&loaded.scene, &mut simulation, &recorder, drive)?;
     write_run(
         &record,
         folder,
@@ -64,18 +71,17 @@ pub fn run(path: &Path, folder: &Path, drive: Drive) -> Result<(), Failure> {
 fn step_through(
     scene: &Scene,
     simulation: &mut Simulation,
-    interface: &Interface,
+    recorder: &Recorder<'_>,
     drive: Drive,
 ) -> Result<Record, Failure> {
-    let variables: Vec<&Variable> = recorded(interface).collect();
-    let mut record = collect::record(scene, simulation, columns(&variables));
+    let mut record = collect::record(scene, simulation, recorder.columns());
     let interval = match drive {
         Drive::Scene => scene.output.interval,
         Drive::Host { step, .. } => step,
     };
     let times = Times::new(scene.output.duration, interval);
     let stride = times.frame_stride(scene.output.profile);
-    record.add_row(0.0, variables.iter().map(|v| value(v, simulation, 0.0)));
+    record.add_row(0.0, recorder.row(simulation, 0.0));
     record.frames.push(collect::frame(simulation, 0.0));
     record.flight.extend(collect::flight(simulation, 0.0));
     let bar = progress(times.count as u64);
@@ -89,11 +95,8 @@ fn step_through(
         wall += before.elapsed();
         record.counters.substeps += simulation.substeps() as u64;
         let now = times.at(index + 1);
-        let row: Vec<f64> = variables
-            .iter()
-            .map(|v| value(v, simulation, now))
-            .collect();
-        check_finite(now, &variables, &row)?;
+        let row = recorder.row(simulation, now);
+        check_finite(now, record.columns(), &row)?;
         record.add_row(now, row);
         record.flight.extend(collect::flight(simulation, now));
         if (index + 1) % stride == 0 || index + 1 == times.count {
@@ -108,17 +111,38 @@ fn step_through(
 }
 
 /// What has blown up is no result.
-fn check_finite(time: f64, variables: &[&Variable], row: &[f64]) -> Result<(), Failure> {
-    let lost = variables
-        .iter()
-        .zip(row)
-        .find(|(_, value)| !value.is_finite());
-    lost.map_or(Ok(()), |(variable, value)| {
+fn check_finite(time: f64, columns: &[Column], row: &[f64]) -> Result<(), Failure> {
+    // The first column is the time.
+    let values = columns.iter().skip(1).zip(row);
+    let lost = values.into_iter().find(|(_, value)| !value.is_finite());
+    lost.map_or(Ok(()), |(column, value)| {
         Err(Failure::Computation(format!(
             "at t = {time} s, {}: {value} {} is no result; try a smaller solver.time_step_max, and look at the motion",
-            variable.name, variable.unit.name
+            column.name, column.unit
         )))
     })
+}
+
+/// What a row of results holds: variables of the interface, then channels.
+struct Recorder<'i> {
+    variables: Vec<&'i Variable>,
+    channels: Channels,
+}
+
+impl Recorder<'_> {
+    fn columns(&self) -> Vec<Column> {
+        let mut all = columns(&self.variables);
+        all.extend(self.channels.columns());
+        all
+    }
+
+    /// Values at `time` [s], each in its column's unit.
+    fn row(&self, simulation: &Simulation, time: f64) -> Vec<f64> {
+        let variables = self.variables.iter();
+        let mut row: Vec<f64> = variables.map(|v| value(v, simulation, time)).collect();
+        row.extend(self.channels.values(simulation));
+        row
+    }
 }
 
 /// Output times: multiples of an interval, and the end.

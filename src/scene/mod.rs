@@ -1,17 +1,25 @@
 //! What the user wrote: plain data, SI units, nothing computed. What is absent is `None`.
 //!
-//! A scene comes from a file ([`load`]) or from TOML text ([`Scene::from_toml`]); every mistake names its key, line
-//! and column. [`Scene::notes`] says what is no mistake but may surprise, [`Scene::in_words`] what is modelled.
+//! A scene comes from a file ([`load`]), which may be a deck of MoorDyn or MAP++ too, or from TOML text
+//! ([`Scene::from_toml`]); every mistake names its key, line and column. [`Scene::notes`] says what is no mistake but may
+//! surprise, [`Scene::in_words`] what is modelled.
 //! [`crate::model::Model::new`] is the one gate from here to the solver.
 
+pub mod channel;
 mod check;
+mod commented;
 mod document;
 mod error;
+mod from_deck;
+mod map;
+mod moordyn;
 mod motion_file;
 mod nearest;
 mod notes;
 mod path;
+mod places;
 mod read;
+mod rows;
 mod time_function;
 mod units;
 mod words;
@@ -22,7 +30,9 @@ use serde::{Deserialize, Serialize};
 
 pub use error::{LoadError, SceneError};
 pub use notes::Note;
-pub use read::{LoadedScene, load};
+pub use places::Places;
+use read::Reading;
+pub use read::{LoadedScene, Supplement, TOML, load, load_with};
 pub use time_function::{HarmonicMotion, MotionFile, MotionPath, MotionRow, TimeFunction};
 
 /// Standard gravity [m/s²], the default of [`Scene::gravity`].
@@ -230,6 +240,10 @@ pub struct Point {
     pub mass: Option<f64>,
     /// Own displaced volume [m³], free points only.
     pub volume: Option<f64>,
+    /// Drag coefficient times area CdA [m²], free points only.
+    pub drag_area: Option<f64>,
+    /// Added-mass coefficient Ca [-], on the displaced volume; free points only.
+    pub added_mass: Option<f64>,
     /// Point load in time.
     pub force: Option<PointForce>,
     /// Moment in time, on the end of a beam at a free point.
@@ -437,6 +451,67 @@ pub struct Output {
     pub interval: f64,
     /// Node positions and tensions as variables too.
     pub profile: bool,
+    /// Further columns of `moorline run`, by MoorDyn's names such as `FairTen1`.
+    pub channels: Vec<String>,
+}
+
+impl Default for Scene {
+    fn default() -> Self {
+        Scene {
+            title: String::new(),
+            gravity: STANDARD_GRAVITY,
+            water: None,
+            seabed: None,
+            line_types: BTreeMap::new(),
+            points: Vec::new(),
+            lines: Vec::new(),
+            vessels: Vec::new(),
+            solver: Solver::default(),
+            motion: BTreeMap::new(),
+            output: Output::default(),
+        }
+    }
+}
+
+impl Point {
+    /// A point with nothing but a name, a reference position [m] and what moves it.
+    pub fn at(name: impl Into<String>, position: [f64; 3], kind: PointKind) -> Point {
+        Point {
+            name: name.into(),
+            position,
+            kind,
+            on: None,
+            free: None,
+            mass: None,
+            volume: None,
+            drag_area: None,
+            added_mass: None,
+            force: None,
+            moment: None,
+            motion: None,
+        }
+    }
+}
+
+impl Line {
+    /// A line between two points that starts in equilibrium.
+    pub fn between(
+        name: impl Into<String>,
+        from: impl Into<String>,
+        to: impl Into<String>,
+        sections: Vec<Section>,
+    ) -> Line {
+        Line {
+            name: name.into(),
+            from: from.into(),
+            to: to.into(),
+            sections,
+            initial: InitialShape::Static,
+            rest_shape: RestShape::Straight,
+            clamped_a: None,
+            clamped_b: None,
+        }
+    }
 }
 
 fn standard_gravity() -> f64 {
@@ -475,6 +550,7 @@ impl Default for Output {
             duration: 60.0,
             interval: 0.05,
             profile: false,
+            channels: Vec::new(),
         }
     }
 }

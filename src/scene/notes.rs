@@ -2,9 +2,12 @@
 
 use std::fmt;
 
+use nalgebra::Vector3;
+
 use super::check::{coefficients, number};
 use super::path::quoted;
-use super::{Integrator, Line, LineType, PointKind, Scene};
+use super::{Integrator, Line, LineType, Point, PointKind, Scene};
+use crate::math::attitude::Attitude;
 
 /// A remark on a scene that can be used as it is.
 #[derive(Debug, Clone, PartialEq)]
@@ -85,11 +88,25 @@ fn note_line_type(scene: &Scene, name: &str, line_type: &LineType, notes: &mut V
     }
 }
 
+/// Where a point is in the reference configuration, global axes [m]; `None` on a vessel that there is not.
+fn reference_position(scene: &Scene, point: &Point) -> Option<[f64; 3]> {
+    let Some(carrier) = &point.on else {
+        return Some(point.position);
+    };
+    let vessel = scene
+        .vessels
+        .iter()
+        .find(|vessel| vessel.name == *carrier)?;
+    let still = Vector3::zeros();
+    let turn = Attitude::new(vessel.attitude.into(), still, still).rotation;
+    Some((Vector3::from(vessel.position) + turn * Vector3::from(point.position)).into())
+}
+
 /// Distance between the ends of a line [m], where both are known.
 pub(super) fn chord(scene: &Scene, line: &Line) -> Option<f64> {
     let position = |name: &str| {
         let point = scene.points.iter().find(|point| point.name == name)?;
-        Some(point.position)
+        reference_position(scene, point)
     };
     let (a, b) = (position(&line.from)?, position(&line.to)?);
     Some((0..3).map(|i| (b[i] - a[i]).powi(2)).sum::<f64>().sqrt())
@@ -122,7 +139,8 @@ fn note_points(scene: &Scene, notes: &mut Vec<Note>) {
         if lines.all(|line| line.from != point.name && line.to != point.name) {
             say(notes, at.clone(), "no line ends at this point");
         }
-        if scene.water.is_some() && point.position[2] > 0.0 {
+        let above = reference_position(scene, point).is_some_and(|place| place[2] > 0.0);
+        if scene.water.is_some() && above {
             let text = "above z = 0: the water is taken to fill all space, so lines there are submerged too";
             say(notes, format!("{at}.position"), text);
         }
@@ -133,6 +151,14 @@ fn note_points(scene: &Scene, notes: &mut Vec<Note>) {
         if point.volume.is_some() && scene.water.is_none() {
             let text = "without [water], a volume changes nothing";
             say(notes, format!("{at}.volume"), text);
+        }
+        if point.drag_area.is_some() && scene.water.is_none() {
+            let text = "without [water], a drag area changes nothing";
+            say(notes, format!("{at}.drag_area"), text);
+        }
+        if point.added_mass.is_some() && point.volume.is_none() {
+            let text = "without a volume, an added mass is none: it is a part of the mass of displaced water";
+            say(notes, format!("{at}.added_mass"), text);
         }
     }
 }

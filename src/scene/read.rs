@@ -1,5 +1,6 @@
-//! TOML text -> Scene, scene file -> Scene, Scene -> TOML text.
+//! TOML text -> Scene, file of any kind -> Scene, Scene -> TOML text.
 
+use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
@@ -9,7 +10,9 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::notes::Note;
-use super::{LoadError, MotionPath, Scene, SceneError, document, motion_file, path};
+use super::places::Places;
+use super::rows::{Findings, MISTAKES_MAX};
+use super::{LoadError, MotionPath, Scene, SceneError, document, map, moordyn, motion_file, path};
 
 /// Longest scene file that is read [bytes].
 const SIZE_MAX: u64 = 256 << 20;
@@ -25,7 +28,49 @@ pub struct LoadedScene {
     pub path: PathBuf,
     /// What is no mistake but may surprise.
     pub notes: Vec<Note>,
+    /// What kind of file it is.
+    pub format: &'static str,
+    /// Where the scene stands in a file that is no TOML.
+    pub places: Places,
 }
+
+impl LoadedScene {
+    /// Gives a mistake that was found later its place in the file.
+    pub fn locate(&self, mistake: SceneError) -> SceneError {
+        if self.format != TOML {
+            return self.places.locate(mistake);
+        }
+        match Document::parse(&self.text) {
+            Ok(document) => document
+                .place(vec![mistake.clone()])
+                .pop()
+                .unwrap_or(mistake),
+            Err(_) => mistake,
+        }
+    }
+}
+
+/// What a deck of another program leaves to its host.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Supplement {
+    /// Depth of the water [m], where the deck gives none.
+    pub depth: Option<f64>,
+    /// Reference positions [m] of vessels by name, such as those of the turbines of a farm.
+    pub positions: BTreeMap<String, [f64; 3]>,
+}
+
+/// What a reader makes of a file.
+pub(super) struct Reading {
+    /// What kind of file it is.
+    pub format: &'static str,
+    /// The scene; `None` where there are mistakes.
+    pub scene: Option<Scene>,
+    pub places: Places,
+    pub findings: Findings,
+}
+
+/// What kind of file a scene of moorline's own is.
+pub const TOML: &str = "TOML";
 
 impl Scene {
     /// Reads and checks a scene. Files it speaks of are not read: a motion must be written out.
@@ -47,24 +92,90 @@ impl Scene {
     }
 }
 
-/// Reads and checks a scene file and the motion files it names, which stand relative to its folder.
+/// Reads and checks a file: a scene and the motion files it names, which stand relative to its folder, or a deck of MoorDyn
+/// or MAP++. What the file is, its content says.
 ///
 /// # Errors
 /// What keeps the file from being read, or all mistakes in it.
 pub fn load(path: &Path) -> Result<LoadedScene, LoadError> {
+    load_with(path, &Supplement::default())
+}
+
+/// As [`load`], with what a deck leaves to its host.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_with(path: &Path, supplement: &Supplement) -> Result<LoadedScene, LoadError> {
     let text = read_text(path)?;
-    match scene_of(&text, path) {
-        Ok(scene) => Ok(LoadedScene {
-            notes: scene.notes(),
+    let loaded = match deck_of(&text) {
+        Some(read) => deck_scene(read(&text, supplement), &text),
+        None => scene_of(&text, path).map(|scene| {
+            let notes = scene.notes();
+            (scene, notes, TOML, Places::default())
+        }),
+    };
+    match loaded {
+        Ok((scene, notes, format, places)) => Ok(LoadedScene {
             scene,
             text,
             path: path.to_path_buf(),
+            notes,
+            format,
+            places,
         }),
         Err(mistakes) => Err(LoadError::Scene {
             source_text: Box::new(NamedSource::new(path.display().to_string(), text)),
             mistakes,
         }),
     }
+}
+
+type ReadDeck = fn(&str, &Supplement) -> Reading;
+
+/// The reader of a deck; `None` of TOML and of what is no deck.
+fn deck_of(text: &str) -> Option<ReadDeck> {
+    // Banners of dashes stand in comments and strings of scenes too.
+    if Document::parse(text).is_ok() {
+        None
+    } else if map::is_deck(text) {
+        Some(map::read)
+    } else if moordyn::is_deck(text) {
+        Some(moordyn::read)
+    } else {
+        None
+    }
+}
+
+type Checked = (Scene, Vec<Note>, &'static str, Places);
+
+/// What a reader made of a deck, checked as every scene is.
+fn deck_scene(reading: Reading, text: &str) -> Result<Checked, Vec<SceneError>> {
+    let Reading {
+        format,
+        scene,
+        places,
+        findings,
+    } = reading;
+    let in_order = |mut mistakes: Vec<SceneError>| {
+        mistakes.sort_by_key(|mistake| mistake.span.as_ref().map_or(0, |span| span.start));
+        mistakes.truncate(MISTAKES_MAX);
+        mistakes
+    };
+    let Some(scene) = scene.filter(|_| findings.mistakes.is_empty()) else {
+        return Err(in_order(findings.mistakes));
+    };
+    let mistakes: Vec<SceneError> = scene
+        .mistakes()
+        .into_iter()
+        .map(|mistake| places.locate(mistake))
+        .collect();
+    if !mistakes.is_empty() {
+        return Err(in_order(mistakes));
+    }
+    let mut notes = findings.notes(text);
+    let of_scene = scene.notes().into_iter();
+    notes.extend(of_scene.map(|note| places.locate_note(text, note)));
+    Ok((scene, notes, format, places))
 }
 
 fn scene_of(text: &str, path: &Path) -> Result<Scene, Vec<SceneError>> {
@@ -142,13 +253,14 @@ impl<'t> Document<'t> {
 
 /// What the TOML parser says, or that this is another program's file.
 fn syntax_mistake(text: &str, error: &toml::de::Error) -> SceneError {
-    if let Some(start) = moordyn_section(text) {
+    if let Some(span) = moordyn::first_header(text) {
         return SceneError {
             at: String::new(),
-            problem: "this is a MoorDyn file, and only TOML scenes are read: write the lines as `[[lines]]`, \
-                      the points as `[[points]]` and the types as `[line_types.name]`"
-                .into(),
-            span: Some(start..start + 3),
+            problem:
+                "this is a MoorDyn file, and TOML is expected here: give the file itself, or what \
+                      `moorline convert` makes of it"
+                    .into(),
+            span: Some(span),
         };
     }
     SceneError {
@@ -156,24 +268,6 @@ fn syntax_mistake(text: &str, error: &toml::de::Error) -> SceneError {
         problem: format!("not TOML: {}", error.message().replace('\n', ", ")),
         span: Some(error.span().unwrap_or(0..0)),
     }
-}
-
-/// First byte of a line such as `---------------------- LINE TYPES -----`, which heads a section of MoorDyn's files.
-fn moordyn_section(text: &str) -> Option<usize> {
-    let mut start = 0;
-    for line in text.split_inclusive('\n') {
-        let title = line.trim();
-        if title.starts_with("---")
-            && title
-                .trim_start_matches('-')
-                .chars()
-                .any(char::is_alphabetic)
-        {
-            return Some(start);
-        }
-        start += line.len();
-    }
-    None
 }
 
 fn read_text(path: &Path) -> Result<String, LoadError> {
@@ -205,17 +299,21 @@ fn read_text(path: &Path) -> Result<String, LoadError> {
             SIZE_MAX >> 20
         )));
     }
-    String::from_utf8(bytes).map_err(|error| {
+    String::from_utf8(bytes).or_else(|error| {
+        let latin: String = error.as_bytes().iter().map(|byte| char::from(*byte)).collect();
+        if deck_of(&latin).is_some() {
+            return Ok(latin);
+        }
         let byte = error.utf8_error().valid_up_to();
         let before = String::from_utf8_lossy(&error.as_bytes()[..byte]).into_owned();
         let (line, column) = path::line_column(&before, byte);
-        LoadError::NotText {
+        Err(LoadError::NotText {
             path: path.to_path_buf(),
             byte,
             problem: format!(
                 "not UTF-8 text: byte {byte} (line {line}, column {column}) is 0x{:02X}; save the file as UTF-8",
                 error.as_bytes()[byte]
             ),
-        }
+        })
     })
 }

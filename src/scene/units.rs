@@ -31,6 +31,8 @@ const UNITS: &[(&str, &str, &str)] = &[
     ("Point", "position", "m"),
     ("Point", "mass", "kg"),
     ("Point", "volume", "m³"),
+    ("Point", "drag_area", "m²"),
+    ("Point", "added_mass", "-"),
     ("PointForce", "x", "N"),
     ("PointForce", "y", "N"),
     ("PointForce", "z", "N"),

@@ -2,6 +2,7 @@
 
 mod beam;
 mod bending;
+mod vessels;
 
 use std::f64::consts::PI;
 use std::fmt::Write;
@@ -12,6 +13,7 @@ use super::{
     Axis, ContactLaw, HarmonicMotion, InitialShape, Integrator, Line, LineType, MotionPath, Point,
     PointForce, PointKind, Scene, Strain, TimeFunction,
 };
+use vessels::vessel_in_words;
 
 /// Widest line of the text, in characters.
 const WIDTH: usize = 110;
@@ -34,6 +36,12 @@ impl Scene {
             .iter()
             .map(|point| self.point_in_words(point))
             .collect();
+        let vessels: Vec<_> = self
+            .vessels
+            .iter()
+            .map(|vessel| vessel_in_words(self, vessel))
+            .collect();
+        section(&mut text, "vessels", &vessels);
         section(&mut text, "points", &points);
         let lines: Vec<_> = self
             .lines
@@ -147,12 +155,28 @@ impl Scene {
 
     fn point_in_words(&self, point: &Point) -> String {
         let [x, y, z] = point.position.map(number);
-        let mut said = format!("{}: {}, at ({x}, {y}, {z}) m", point.name, role(point));
+        let frame = if point.on.is_some() {
+            " in its frame"
+        } else {
+            ""
+        };
+        let mut said = format!(
+            "{}: {}, at ({x}, {y}, {z}) m{frame}",
+            point.name,
+            role(point)
+        );
         if let Some(mass) = point.mass {
             write!(said, ", mass {}", quantity(mass, "kg")).expect("a String takes all");
         }
         if let Some(volume) = point.volume {
             write!(said, ", volume {}", quantity(volume, "m³")).expect("a String takes all");
+        }
+        if let Some(area) = point.drag_area {
+            write!(said, ", drag area {}", quantity(area, "m²")).expect("a String takes all");
+        }
+        if let Some(coefficient) = point.added_mass {
+            write!(said, ", added mass {} of its volume", number(coefficient))
+                .expect("a String takes all");
         }
         if let Some(force) = &point.force {
             write!(said, ", {}", force_in_words(force)).expect("a String takes all");
@@ -163,7 +187,7 @@ impl Scene {
         if let Some(motion) = &point.motion {
             write!(said, ", {}", motion_in_words(motion)).expect("a String takes all");
         }
-        if point.kind == PointKind::Coupled {
+        if point.kind == PointKind::Coupled && point.on.is_none() {
             let motion = self.motion.get(&point.name).map(motion_in_words);
             let motion = motion.unwrap_or_else(|| "stays where it is".to_string());
             write!(said, "; in `run` it {motion}").expect("a String takes all");
@@ -239,7 +263,7 @@ impl Scene {
             bending::compression_in_words(self)
         };
         let output = &self.output;
-        vec![
+        let mut said = vec![
             integrator,
             format!(
                 "target error of fairlead tension {} %",
@@ -256,7 +280,12 @@ impl Scene {
                     ""
                 }
             ),
-        ]
+        ];
+        if !output.channels.is_empty() {
+            let channels = output.channels.join(", ");
+            said.push(format!("further columns of `run`: {channels}"));
+        }
+        said
     }
 
     fn absences_in_words(&self) -> Vec<String> {
@@ -297,7 +326,7 @@ fn section(text: &mut String, heading: &str, entries: &[String]) {
 }
 
 /// Appends a sentence, broken into lines at spaces.
-fn paragraph(text: &mut String, indent: &str, sentence: &str) {
+pub(super) fn paragraph(text: &mut String, indent: &str, sentence: &str) {
     let mut width = 0;
     for word in sentence.split(' ') {
         let length = word.chars().count();
@@ -412,7 +441,10 @@ fn water_forces_in_words(line_type: &LineType) -> String {
 fn role(point: &Point) -> String {
     match (point.kind, &point.free) {
         (PointKind::Fixed, _) => "fixed".to_string(),
-        (PointKind::Coupled, _) => "coupled to the host".to_string(),
+        (PointKind::Coupled, _) => match &point.on {
+            Some(vessel) => format!("rides on {vessel}"),
+            None => "coupled to the host".to_string(),
+        },
         (PointKind::Prescribed, _) => "moved along its own path".to_string(),
         (PointKind::Free, None) => "free".to_string(),
         (PointKind::Free, Some(axes)) => {

@@ -66,11 +66,25 @@ fn check_freedom(findings: &mut Findings, at: &str, point: &Point) {
         Bounds::NotNegative(1e9),
         "m³",
     );
+    findings.number_if(
+        format!("{at}.drag_area"),
+        point.drag_area,
+        Bounds::NotNegative(1e9),
+        "m²",
+    );
+    findings.number_if(
+        format!("{at}.added_mass"),
+        point.added_mass,
+        Bounds::NotNegative(1e3),
+        "-",
+    );
     if point.kind != PointKind::Free {
         let given = [
             ("free", point.free.is_some()),
             ("mass", point.mass.is_some()),
             ("volume", point.volume.is_some()),
+            ("drag_area", point.drag_area.is_some()),
+            ("added_mass", point.added_mass.is_some()),
         ];
         for (key, _) in given.iter().filter(|(_, given)| *given) {
             let problem = format!(

@@ -1,6 +1,7 @@
 //! Solver and output.
 
 use super::{Bounds, Findings, number, quantity};
+use crate::scene::channel::Channel;
 use crate::scene::{Integrator, Scene};
 
 /// Most output steps of a run.
@@ -64,6 +65,14 @@ pub(in crate::scene) fn integrator_name(integrator: Integrator) -> &'static str 
 
 fn check_output(scene: &Scene, findings: &mut Findings) {
     let output = &scene.output;
+    for (i, name) in output.channels.iter().enumerate() {
+        let at = format!("output.channels[{i}]");
+        if let Err(problem) = Channel::parse(name).and_then(|channel| channel.check(scene)) {
+            findings.say(at, problem);
+        } else if output.channels[..i].contains(name) {
+            findings.say(at, format!("the channel `{name}` is given twice"));
+        }
+    }
     let time = Bounds::Positive(1e9);
     let mut right = findings.number("output.duration", output.duration, time, "s");
     right &= findings.number("output.interval", output.interval, time, "s");

@@ -1,0 +1,252 @@
+//! Output channels by MoorDyn's names, as columns beside moorline's own.
+//!
+//! Tensions of inner nodes are the mean of the two segments beside them, those of the ends the size of the end's force, as
+//! in MoorDyn. Positions are global, and forces at a point are those of the lines on it.
+
+use super::record::Column;
+use crate::model::Model;
+use crate::scene::channel::{Channel, LineEnd, NodePlace, Quantity, check_node};
+use crate::scene::{Scene, SceneError};
+use crate::simulation::Simulation;
+
+/// The channels that a scene asks for.
+#[derive(Debug, Clone)]
+pub struct Channels {
+    list: Vec<(Column, Source)>,
+}
+
+/// Where a channel's value comes from, by the order of the model.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Source {
+    Node {
+        line: usize,
+        node: usize,
+        quantity: Quantity,
+    },
+    Point {
+        point: usize,
+        quantity: Quantity,
+    },
+}
+
+impl Channels {
+    /// Finds what the channels of a scene speak of in its model.
+    ///
+    /// # Errors
+    /// The first channel whose name is unknown or speaks of what the model does not have.
+    pub fn new(scene: &Scene, model: &Model) -> Result<Channels, SceneError> {
+        let found = scene
+            .output
+            .channels
+            .iter()
+            .enumerate()
+            .map(|(index, name)| {
+                let source = Channel::parse(name).and_then(|channel| {
+                    channel.check(scene)?;
+                    source(&channel, model)
+                });
+                let source = source.map_err(|problem| {
+                    SceneError::new(format!("output.channels[{index}]"), problem)
+                })?;
+                Ok((column(name, source, model), source))
+            });
+        Ok(Channels {
+            list: found.collect::<Result<_, _>>()?,
+        })
+    }
+
+    /// A column for every channel.
+    pub fn columns(&self) -> impl Iterator<Item = Column> {
+        self.list.iter().map(|(column, _)| column.clone())
+    }
+
+    /// The channels' values now, each in its column's unit.
+    pub fn values(&self, simulation: &Simulation) -> Vec<f64> {
+        let sources = self.list.iter();
+        sources
+            .map(|(_, source)| value(*source, simulation))
+            .collect()
+    }
+}
+
+fn source(channel: &Channel, model: &Model) -> Result<Source, String> {
+    let line_of = |name: &str| {
+        let index = model.lines.iter().position(|line| line.name == *name);
+        index.ok_or_else(|| format!("no line is called `{name}`"))
+    };
+    let end_node = |line: usize, end: LineEnd| match end {
+        LineEnd::A => 0,
+        LineEnd::B => model.lines[line].segment_count(),
+    };
+    Ok(match channel {
+        Channel::EndTension { line, end } => {
+            let line = line_of(line)?;
+            Source::Node {
+                line,
+                node: end_node(line, *end),
+                quantity: Quantity::Tension,
+            }
+        }
+        Channel::Node {
+            line,
+            node,
+            quantity,
+        } => {
+            let line = line_of(line)?;
+            let node = match *node {
+                NodePlace::Number(node) => {
+                    check_node(node, model.lines[line].segment_count())?;
+                    node
+                }
+                NodePlace::End(end) => end_node(line, end),
+            };
+            Source::Node {
+                line,
+                node,
+                quantity: *quantity,
+            }
+        }
+        Channel::Point { point, quantity } => Source::Point {
+            point: model
+                .point_index(point)
+                .ok_or_else(|| format!("no point is called `{point}`"))?,
+            quantity: *quantity,
+        },
+    })
+}
+
+fn column(name: &str, source: Source, model: &Model) -> Column {
+    let (place, quantity) = match source {
+        Source::Node {
+            line,
+            node,
+            quantity,
+        } => (
+            format!("node {node} of {}", model.lines[line].name),
+            quantity,
+        ),
+        Source::Point { point, quantity } => (model.points[point].name.clone(), quantity),
+    };
+    let letter = |axis: usize| ["x", "y", "z"][axis];
+    let (unit, what) = match quantity {
+        Quantity::Position(axis) => ("m", format!("position along {}", letter(axis))),
+        Quantity::Velocity(axis) => ("m/s", format!("velocity along {}", letter(axis))),
+        Quantity::Force(axis) => ("N", format!("force of the lines along {}", letter(axis))),
+        Quantity::Tension => match source {
+            Source::Node { .. } => ("N", "tension".to_string()),
+            Source::Point { .. } => ("N", "size of the force of the lines".to_string()),
+        },
+    };
+    Column {
+        name: name.to_string(),
+        unit: unit.to_string(),
+        description: format!("{what}, {place}"),
+    }
+}
+
+fn value(source: Source, simulation: &Simulation) -> f64 {
+    let state = simulation.state();
+    match source {
+        Source::Node {
+            line,
+            node,
+            quantity,
+        } => match quantity {
+            Quantity::Position(axis) => state.lines[line].position[node][axis],
+            Quantity::Velocity(axis) => state.lines[line].velocity[node][axis],
+            Quantity::Tension | Quantity::Force(_) => simulation.tensions(line)[node],
+        },
+        Source::Point { point, quantity } => match quantity {
+            Quantity::Position(axis) => state.points[point].position[axis],
+            Quantity::Velocity(axis) => state.points[point].velocity[axis],
+            Quantity::Force(axis) => simulation.end_force(point)[axis],
+            Quantity::Tension => simulation
+                .end_force(point)
+                .iter()
+                .map(|part| part * part)
+                .sum::<f64>()
+                .sqrt(),
+        },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SCENE: &str = r#"
+        [line_types.wire]
+        mass = 0.2
+        axial_stiffness = 5.35e6
+
+        [[points]]
+        name = "point1"
+        position = [0.0, 0.0, 0.0]
+        kind = "fixed"
+
+        [[points]]
+        name = "point2"
+        position = [15.0, 0.0, 2.0]
+        kind = "coupled"
+
+        [[lines]]
+        name = "line1"
+        from = "point1"
+        to = "point2"
+        sections = [{ type = "wire", length = 20.0, elements = 10 }]
+    "#;
+
+    fn simulation(channels: &[&str]) -> (Scene, Simulation) {
+        let mut scene = Scene::from_toml(SCENE).unwrap();
+        scene.output.channels = channels.iter().map(|name| (*name).to_string()).collect();
+        let simulation = Simulation::new(&scene).unwrap();
+        (scene, simulation)
+    }
+
+    #[test]
+    fn channels_are_what_the_simulation_says_of_the_same_places() {
+        let names = [
+            "FairTen1",
+            "AnchTen1",
+            "L1N4Pz",
+            "Line1NBPx",
+            "L1N4T",
+            "Con2Fx",
+            "P2T",
+            "Point1Vz",
+        ];
+        let (scene, simulation) = simulation(&names);
+        let channels = Channels::new(&scene, simulation.model()).unwrap();
+        let profile = simulation.profile(0);
+        let force = simulation.end_force(1);
+        let expected = [
+            simulation.tension_b(0),
+            simulation.tension_a(0),
+            profile[4].z,
+            15.0,
+            profile[4].tension,
+            force[0],
+            simulation.tension_b(0),
+            0.0,
+        ];
+        assert_eq!(channels.values(&simulation), expected);
+        let units: Vec<String> = channels.columns().map(|column| column.unit).collect();
+        assert_eq!(units, ["N", "N", "m", "m", "N", "N", "N", "m/s"]);
+        let first = channels.columns().next().unwrap();
+        assert_eq!(first.description, "tension, node 10 of line1");
+    }
+
+    #[test]
+    fn a_node_that_only_the_mesh_decides_about_is_checked_against_it() {
+        let (mut scene, _) = simulation(&[]);
+        scene.lines[0].sections[0].elements = None;
+        scene.output.channels = vec!["FairTen1".into(), "L1N5000T".into()];
+        let model = Model::new(&scene).unwrap();
+        let mistake = Channels::new(&scene, &model).unwrap_err();
+        assert_eq!(mistake.at, "output.channels[1]");
+        assert!(
+            mistake.problem.starts_with("node 5000 of a line of"),
+            "{mistake}"
+        );
+    }
+}

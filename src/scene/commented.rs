@@ -1,0 +1,100 @@
+//! A scene as TOML with comments: units behind numbers, and where each part stood in the file it was read from.
+//!
+//! The comments stand in lines of the TOML that [`Scene::to_toml`] writes and change nothing of it, so that what is read back
+//! is the same scene, bit for bit.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+use super::read::LoadedScene;
+use super::units;
+use super::words::paragraph;
+
+impl LoadedScene {
+    /// The scene as commented TOML that needs no other file and is read back to the same numbers, bit for bit.
+    pub fn to_commented_toml(&self) -> String {
+        let mut text = String::new();
+        let name = self.path.file_name().unwrap_or_default().to_string_lossy();
+        let name: String = name.chars().filter(|c| !c.is_control()).collect();
+        let heading = format!("{name}, a {} file, as a scene of moorline", self.format);
+        paragraph(&mut text, "# ", &heading);
+        for note in &self.notes {
+            let note: String = note
+                .to_string()
+                .chars()
+                .filter(|c| !c.is_control())
+                .collect();
+            paragraph(&mut text, "# ", &note);
+        }
+        text.push('\n');
+        let mut place = Place::default();
+        for line in self.scene.to_toml().lines() {
+            text.push_str(line);
+            if let Some(comment) = place.comment(line, self) {
+                write!(text, "  # {comment}").expect("a String takes all");
+            }
+            text.push('\n');
+        }
+        text
+    }
+}
+
+/// The table that a line of TOML stands in.
+#[derive(Default)]
+struct Place {
+    /// Its header, such as `lines.sections`.
+    table: String,
+    /// How many points, lines and vessels have begun.
+    begun: BTreeMap<String, usize>,
+}
+
+impl Place {
+    /// What is said behind a line of TOML.
+    fn comment(&mut self, line: &str, loaded: &LoadedScene) -> Option<String> {
+        let header = line
+            .strip_prefix('[')
+            .and_then(|rest| rest.strip_suffix(']'));
+        if let Some(header) = header {
+            let element = header
+                .strip_prefix('[')
+                .and_then(|rest| rest.strip_suffix(']'));
+            self.table = element.unwrap_or(header).to_string();
+            let mut at = self.table.clone();
+            if element.is_some() {
+                let count = self.begun.entry(self.table.clone()).or_default();
+                write!(at, "[{count}]").expect("a String takes all");
+                *count += 1;
+            }
+            let line = loaded.places.line(&loaded.text, &at)?;
+            return Some(format!("file line {line}"));
+        }
+        let (key, value) = line.split_once(" = ")?;
+        // A list of tables holds several units.
+        if value.contains('{') {
+            return None;
+        }
+        units::unit(owner(&self.table)?, key)
+            .filter(|unit| *unit != "-")
+            .map(str::to_string)
+    }
+}
+
+/// The struct that a table is read into.
+fn owner(table: &str) -> Option<&'static str> {
+    let mut keys = table.split('.');
+    Some(match (keys.next()?, keys.next_back()) {
+        ("", _) => "Scene",
+        ("water", None) => "Water",
+        ("seabed", None) => "Seabed",
+        ("line_types", Some("rayleigh")) => "Rayleigh",
+        ("line_types", Some(_)) => "LineType",
+        ("points", None) => "Point",
+        ("points", Some("force")) => "PointForce",
+        ("lines", Some("sections")) => "Section",
+        ("lines", None) => "Line",
+        ("vessels", None) => "Vessel",
+        ("solver", None) => "Solver",
+        ("output", None) => "Output",
+        _ => return None,
+    })
+}

@@ -1,0 +1,201 @@
+//! OPTIONS: `value key comment`.
+
+use super::deck::{Options, Property};
+use super::tables::word_property;
+use crate::scene::nearest::nearest;
+use crate::scene::rows::{Findings, Placed, ROWS_MAX, Row, number, shown};
+
+/// Keys in capitals that choose how MoorDyn solves, starts and writes: nothing here needs them.
+const UNNEEDED: &[&str] = &[
+    "DTM",
+    "DT",
+    "CFL",
+    "TSCHEME",
+    "DTIC",
+    "ICDT",
+    "TMAXIC",
+    "ICTMAX",
+    "CDSCALEIC",
+    "ICDFAC",
+    "THRESHIC",
+    "ICTHRESH",
+    "FILEIC",
+    "ICGENDYNAMIC",
+    "WRITELOG",
+    "WRITEUNITS",
+    "DISABLEOUTPUT",
+    "DISABLEOUTTIME",
+    "OUTSWITCH",
+    "INERTIALF",
+    "INERTIALF_RAMPT",
+    "ECHO",
+    "DTWAVE",
+    "UNIFYCURRENTGRID",
+    "DTOUTSNAP",
+    "FRICDAMP",
+    "STATDYNFRICSCALE",
+    "MC",
+    "CV",
+];
+
+/// Keys that say something, with what they mean.
+const NEEDED: &[(&str, Meaning)] = &[
+    ("G", Meaning::Gravity),
+    ("GRAVITY", Meaning::Gravity),
+    ("RHO", Meaning::Density),
+    ("RHOW", Meaning::Density),
+    ("WTRDNSTY", Meaning::Density),
+    ("WTRDPTH", Meaning::Depth),
+    ("WATERDEPTH", Meaning::Depth),
+    ("DEPTH", Meaning::Depth),
+    ("KBOT", Meaning::BedStiffness),
+    ("KB", Meaning::BedStiffness),
+    ("CBOT", Meaning::BedDamping),
+    ("CB", Meaning::BedDamping),
+    ("FRICTIONCOEFFICIENT", Meaning::Friction),
+    ("MU_KT", Meaning::Friction),
+    ("MU_KA", Meaning::Friction),
+    ("DTOUT", Meaning::OutputInterval),
+    ("WAVEKIN", Meaning::Surroundings),
+    ("WATERKIN", Meaning::Surroundings),
+    ("CURRENTS", Meaning::Surroundings),
+    ("CURRENT", Meaning::Surroundings),
+    ("SEAFLOORFILE", Meaning::Surroundings),
+    ("BATHYMETRYFILE", Meaning::Surroundings),
+    ("BATHFILE", Meaning::Surroundings),
+];
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Meaning {
+    Gravity,
+    Density,
+    Depth,
+    BedStiffness,
+    BedDamping,
+    Friction,
+    OutputInterval,
+    Surroundings,
+}
+
+fn meaning(key: &str) -> Option<Meaning> {
+    let known = NEEDED
+        .iter()
+        .find(|(known, _)| known.eq_ignore_ascii_case(key));
+    known.map(|(_, meaning)| *meaning)
+}
+
+fn is_unneeded(key: &str) -> bool {
+    UNNEEDED.iter().any(|known| known.eq_ignore_ascii_case(key))
+}
+
+/// Reads the rows of OPTIONS.
+pub(super) fn read(rows: &[Row<'_>], findings: &mut Findings) -> Options {
+    let mut options = Options::default();
+    let mut seen: Vec<String> = Vec::new();
+    for row in rows.iter().take(ROWS_MAX) {
+        let fields = row.fields();
+        let [value, key, ..] = fields.as_slice() else {
+            let problem = format!(
+                "expected a value and a key, found {}",
+                shown(row.text.trim())
+            );
+            findings.mistake("OPTIONS", row.span(), problem);
+            continue;
+        };
+        let upper = key.text.to_uppercase();
+        let value = Placed {
+            value: value.text.to_string(),
+            span: value.span.clone(),
+        };
+        if meaning(key.text).is_none() && !is_unneeded(key.text) {
+            findings.mistake("OPTIONS", key.span.clone(), unknown(&value.value, key.text));
+        } else if seen.contains(&upper) {
+            let problem = format!("a second value of {}: give one", key.text);
+            findings.mistake("OPTIONS", key.span.clone(), problem);
+        } else if let Some(meaning) = meaning(key.text) {
+            take(&mut options, meaning, key.text, value, findings);
+        } else {
+            options.unneeded.push(Placed {
+                value: key.text.to_string(),
+                span: key.span.clone(),
+            });
+        }
+        seen.push(upper);
+    }
+    options
+}
+
+fn unknown(value: &str, key: &str) -> String {
+    if meaning(value).is_some() || is_unneeded(value) {
+        return format!(
+            "an option is written as value and key, here {} {}",
+            shown(key),
+            value
+        );
+    }
+    let known: Vec<&str> = NEEDED
+        .iter()
+        .map(|(key, _)| *key)
+        .chain(UNNEEDED.iter().copied())
+        .collect();
+    let meant = nearest(key, known.iter().copied());
+    let meant = meant.map_or(String::new(), |known| format!(", did you mean {known}?"));
+    format!("unknown option {}{meant}", shown(key))
+}
+
+fn take(
+    options: &mut Options,
+    meaning: Meaning,
+    key: &str,
+    value: Placed<String>,
+    findings: &mut Findings,
+) {
+    let mut placed = || match number(&value.value) {
+        Ok(number) => Some(Placed {
+            value: number,
+            span: value.span.clone(),
+        }),
+        Err(problem) => {
+            findings.mistake(format!("OPTIONS, {key}"), value.span.clone(), problem);
+            None
+        }
+    };
+    match meaning {
+        Meaning::Gravity => options.gravity = placed(),
+        Meaning::Density => options.density = placed(),
+        Meaning::BedStiffness => options.bed_stiffness = placed(),
+        Meaning::BedDamping => options.bed_damping = placed(),
+        Meaning::OutputInterval => options.output_interval = placed(),
+        Meaning::Friction => {
+            let coefficient = placed();
+            options
+                .friction
+                .extend(coefficient.map(|c| (key.to_string(), c)));
+        }
+        Meaning::Depth => match word_property(&value.value) {
+            Ok(depth) => {
+                options.depth = Some(Placed {
+                    value: depth,
+                    span: value.span,
+                });
+            }
+            Err(problem) => findings.mistake(format!("OPTIONS, {key}"), value.span, problem),
+        },
+        // 0 asks for none.
+        Meaning::Surroundings if number(&value.value) == Ok(0.0) => options.unneeded.push(Placed {
+            value: key.to_string(),
+            span: value.span,
+        }),
+        Meaning::Surroundings => options.surroundings.push((key.to_string(), value)),
+    }
+    if meaning == Meaning::Depth
+        && let Some(depth) = &options.depth
+        && let Property::Parts(_) = depth.value
+    {
+        findings.mistake(
+            format!("OPTIONS, {key}"),
+            depth.span.clone(),
+            "expected one depth [m], or the name of a file",
+        );
+    }
+}

@@ -1,0 +1,152 @@
+//! What is right in a deck but often meant otherwise.
+
+use std::f64::consts::PI;
+
+use super::deck::{Attachment, Deck, LineType, Property, Version};
+use super::sections::{Kind, Sections};
+use super::tables::columns_of;
+use crate::scene::rows::{Findings, compare_header};
+
+/// Density of steel [kg/m³].
+const STEEL: f64 = 7850.0;
+
+/// Steel of a chain over that of one straight bar of its links [-]: two bars side by side, bends and perhaps studs make
+/// somewhat more than three.
+const CHAIN: std::ops::Range<f64> = 2.7..4.0;
+
+/// BA [N s] below which a ratio without its minus sign is likelier.
+const RATIO_LIKE: f64 = 10.0;
+
+/// Remarks on a deck.
+pub(super) fn remark(deck: &Deck, sections: &Sections<'_>, findings: &mut Findings) {
+    headers(deck, sections, findings);
+    for kind in &deck.line_types {
+        ratio_or_damping(kind, sections, findings);
+        chain_diameter(kind, findings);
+    }
+    if deck.version == Version::One {
+        findings.remark_on_all(
+            "read as MoorDyn v1: line types with nine columns, coefficients in the order Can Cat Cdn Cdt",
+        );
+    }
+    findings.remark_on_all(
+        "in MoorDyn, damping within a line acts in compression too, so that its tension can be negative; here a slack line \
+         carries nothing, and `negative_tension = true` in [solver] gives MoorDyn's law",
+    );
+    unneeded_options(deck, findings);
+    line_files(deck, findings);
+    masses_of_held_points(deck, findings);
+}
+
+fn headers(deck: &Deck, sections: &Sections<'_>, findings: &mut Findings) {
+    for section in &sections.list {
+        if let (Some(names), Some(columns)) = (&section.names, columns_of(section, deck)) {
+            compare_header(names, columns, findings);
+        }
+    }
+}
+
+/// A negative BA is a ratio of critical damping of a segment, a positive one is BA itself, whatever the header says.
+fn ratio_or_damping(kind: &LineType, sections: &Sections<'_>, findings: &mut Findings) {
+    let Property::Number(value) = kind.damping.value else {
+        return;
+    };
+    let name = &kind.name.value;
+    let at = kind.damping.span.start;
+    if value < 0.0 {
+        let ratio = -value;
+        let text = format!(
+            "{name}: BA/-zeta {value} is a damping ratio of {ratio}, of the critical damping of each segment, so BA \
+             changes with NumSegs"
+        );
+        return findings.remark(at, text);
+    }
+    if value > 0.0 && value < RATIO_LIKE {
+        let text = format!(
+            "{name}: BA {value} N s is next to none; a damping ratio is written with a minus sign, -{value}"
+        );
+        findings.remark(at, text);
+    }
+    let section = sections.get(Kind::LineTypes);
+    let units = section.and_then(|section| section.units.as_ref());
+    let pascal = units.is_some_and(|units| units.text.to_lowercase().contains("pa-s"));
+    if value >= RATIO_LIKE && pascal {
+        let text = format!(
+            "{name}: the header has Pa s above the damping, but {value} is read as BA [N s], as MoorDyn does: a \
+             damping in Pa s must be multiplied by the area of the section"
+        );
+        findings.remark(at, text);
+    }
+}
+
+/// The diameter is that of a cylinder of the line's volume, not that of a chain's bar.
+fn chain_diameter(kind: &LineType, findings: &mut Findings) {
+    let (diameter, mass) = (kind.diameter.value, kind.mass.value);
+    if diameter <= 0.0 || mass <= 0.0 {
+        return;
+    }
+    let density = mass / (0.25 * PI * diameter * diameter);
+    let name = &kind.name.value;
+    let steel_diameter = (mass / (0.25 * PI * STEEL)).sqrt();
+    let as_steel = format!(
+        "Diam counts for buoyancy and drag as that of a cylinder of the line's volume ({steel_diameter:.4} m, were it of steel)"
+    );
+    let at = kind.diameter.span.start;
+    if CHAIN.contains(&(density / STEEL)) {
+        let text = format!(
+            "{name}: mass and Diam {diameter} m fit a chain whose bar has this diameter, for the density comes out as \
+             {density:.0} kg/m³, far from steel; {as_steel}"
+        );
+        findings.remark(at, text);
+    } else if density > 1.2 * STEEL {
+        let text = format!(
+            "{name}: mass and Diam {diameter} m make a density of {density:.0} kg/m³, more than steel; {as_steel}"
+        );
+        findings.remark(at, text);
+    }
+}
+
+fn unneeded_options(deck: &Deck, findings: &mut Findings) {
+    let unneeded = &deck.options.unneeded;
+    if let Some(first) = unneeded.first() {
+        let keys: Vec<&str> = unneeded.iter().map(|key| key.value.as_str()).collect();
+        let text = format!(
+            "options that nothing here needs, since steps and the start from equilibrium are found without them: {}",
+            keys.join(", ")
+        );
+        findings.remark(first.span.start, text);
+    }
+}
+
+fn line_files(deck: &Deck, findings: &mut Findings) {
+    let mut lines = deck.lines.iter();
+    if let Some(line) = lines.find(|line| line.outputs.value.chars().any(char::is_alphabetic)) {
+        findings.remark(
+            line.outputs.span.start,
+            "no files of single lines are written: `profile = true` in [output] writes the nodes of all lines",
+        );
+    }
+}
+
+/// MoorDyn adds the weight and inertia of a point to the force on what moves it.
+fn masses_of_held_points(deck: &Deck, findings: &mut Findings) {
+    for point in &deck.points {
+        let free = point.attachment.value == Attachment::Free;
+        let sizes = [
+            &point.mass,
+            &point.volume,
+            &point.drag_area,
+            &point.added_mass,
+        ];
+        if let Some(given) = sizes.iter().find(|size| size.value != 0.0)
+            && !free
+        {
+            let text = format!(
+                "point {}: mass, volume and drag of a point that the forces do not move are left out of the force on what \
+                 holds it",
+                point.id.value
+            );
+            findings.remark(given.span.start, text);
+        }
+    }
+}
