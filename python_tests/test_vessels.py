@@ -105,7 +105,7 @@ def test_a_driven_vessel_feels_in_a_host_what_it_feels_in_a_run(moorline, versio
     assert np.ptp(columns["barge.mz"]) > 1e4 and np.ptp(columns["barge.fx"]) > 1e4
     for output in outputs:
         size = np.abs(columns[output]).max()
-        assert np.abs(result[output] - columns[output]).max() < 1e-3 * size, output
+        assert np.abs(result[output] - columns[output]).max() < 3e-3 * size, output
 
 
 def test_a_deck_of_moordyn_becomes_an_fmu_that_runs_a_minute(moorline, version, tmp_path):
