@@ -311,7 +311,7 @@ const SLIPS: &[Refusal] = &[
     (
         "fairlead = { x = [[1.0, 10.0]] }",
         "fairlead = { table = [[0.0, 1.0, 2.0]] }",
-        "44:23: motion.fairlead.table[0]: expected an array of 4 numbers, found an array of 3",
+        "44:23: motion.fairlead.table[0]: expected an array of 4 numbers (t, x, y, z), or of 7 (with roll, pitch, yaw of a vessel), found an array of 3",
     ),
     (
         "fairlead = { x = [[1.0, 10.0]] }",
@@ -321,7 +321,7 @@ const SLIPS: &[Refusal] = &[
     (
         "fairlead = { x = [[1.0, 10.0]] }",
         "fairlead = { surge = [[1.0, 10.0]] }",
-        "44:14: motion.fairlead.surge: unknown key `surge` (known keys: file, table, x, y, z, ramp)",
+        "44:14: motion.fairlead.surge: unknown key `surge` (known keys: file, table, x, y, z, roll, pitch, yaw, ramp)",
     ),
 ];
 
@@ -682,11 +682,6 @@ const VESSELS: &[Refusal] = &[
         "fairlead = { x = [[1.0, 10.0]] }",
         "fairlead = { pitch = [[0.1, 10.0]] }",
         "44:12: motion.fairlead: a point does not turn: only vessels have `roll`, `pitch` and `yaw`",
-    ),
-    (
-        "fairlead = { x = [[1.0, 10.0]] }",
-        "fairlead = { table = [[0.0, 1.0, 2.0]] }",
-        "44:12: motion.fairlead: row 0 (from 0) of the table has 3 numbers: write [t, x, y, z]",
     ),
 ];
 
