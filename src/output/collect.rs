@@ -142,7 +142,21 @@ pub fn statics(scene: &Scene, simulation: &Simulation) -> json::Statics {
                 force: simulation.end_force(point),
             })
             .collect(),
-        vessels: Vec::new(),
+        vessels: (0..simulation.model().vessels.len())
+            .map(|vessel| static_vessel(simulation, vessel))
+            .collect(),
+    }
+}
+
+fn static_vessel(simulation: &Simulation, vessel: usize) -> json::Vessel {
+    let (force, stiffness) = simulation.vessel_at_rest(vessel);
+    json::Vessel {
+        name: simulation.model().vessels[vessel].name.clone(),
+        hold: json::Hold { force, stiffness },
+        elements: json::Hold {
+            force: simulation.vessel_force(vessel),
+            stiffness: simulation.vessel_stiffness(vessel),
+        },
     }
 }
 

@@ -30,7 +30,12 @@
 //! | `vessels[]` | | vessels in the order of the scene; empty where the scene has none |
 //! | `vessels[].name` | | name of the vessel |
 //! | `vessels[].force` | N, N m | force and moment that the mooring applies, about the vessel's origin |
-//! | `vessels[].stiffness` | N/m, N, N m | 6×6 rows: minus the change of `force` with each displacement and rotation |
+//! | `vessels[].stiffness` | N/m, N, N m | 6×6 rows: minus the change of `force` with each displacement and small rotation along and about the global axes through the vessel's origin; `null` where that has no answer: beams |
+//! | `vessels[].elements` | | `force` and `stiffness` again, of the lines' elements everywhere |
+//!
+//! `vessels[].force` and `.stiffness` are those of the closed-form catenaries, bed friction included, of every line that has one and
+//! meets only such lines at free points; those of the elements elsewhere. `lines[]`, `points[]` and `vessels[].elements` are those of the elements, unless
+//! the scene is quasi-static.
 
 use std::io::{self, Write};
 
@@ -119,10 +124,20 @@ pub struct Point {
 pub struct Vessel {
     /// Name of the vessel.
     pub name: String,
+    /// Of closed-form catenaries, where the lines have them.
+    #[serde(flatten)]
+    pub hold: Hold,
+    /// Of the lines' elements.
+    pub elements: Hold,
+}
+
+/// How the mooring holds a vessel.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Hold {
     /// Force [N] and moment [N m] of the mooring, about the vessel's origin.
     pub force: [f64; 6],
     /// Rows of the stiffness: minus the change of force [N/m, N] and moment [N, N m] with displacement and rotation.
-    pub stiffness: [[f64; 6]; 6],
+    pub stiffness: Option<[[f64; 6]; 6]>,
 }
 
 /// Writes the equilibrium as indented JSON with a line end behind it.
