@@ -23,7 +23,7 @@ struct Deck {
     heading: f64,
 }
 
-/// OC3 Hywind: Jonkman (2010), NREL/TP-500-47535, table 5-1.
+/// OC3 Hywind: Jonkman (2010), NREL/TP-500-47535.
 const OC3: Deck = Deck {
     anchor: [853.87, 320.0],
     fairlead: [5.2, 70.0],
@@ -35,7 +35,7 @@ const OC3: Deck = Deck {
     heading: 0.0,
 };
 
-/// OC4 DeepCwind: Robertson et al. (2014), NREL/TP-5000-60601, table 5-1.
+/// OC4 DeepCwind: Robertson et al. (2014), NREL/TP-5000-60601.
 const OC4: Deck = Deck {
     anchor: [837.6, 200.0],
     fairlead: [40.868, 14.0],
@@ -262,6 +262,37 @@ fn a_network_that_nothing_ties_to_a_vessel_does_not_hold_it() {
     assert_eq!(simulation.vessel_stiffness(0), Some([[0.0; 6]; 6]));
 }
 
+#[test]
+fn the_stiffness_on_the_way_is_that_at_rest_where_lines_are_at_rest() {
+    let scene = bridle("integrator = \"quasi_static\"");
+    let mut simulation = Simulation::new(&scene).unwrap();
+    simulation.set_pose(0, POSE);
+    simulation.advance(1.0).unwrap();
+    let rest = posed(&scene, POSE).vessel_stiffness(0).unwrap();
+    let moved = simulation.vessel_stiffness(0).unwrap();
+    let error = difference(&matrix(moved), &matrix(rest));
+    assert!(error < 1e-8, "{error:e}");
+}
+
+#[test]
+fn a_slack_line_holds_a_vessel_by_the_weight_that_heave_lifts() {
+    let slack = Deck {
+        anchor: [80.0, 50.0],
+        fairlead: [10.0, 10.0],
+        length: 180.0,
+        axial_stiffness: 1e9,
+        friction: 0.0,
+        ..OC3
+    };
+    let simulation = Simulation::new(&slack.scene(20, "")).unwrap();
+    let (_, closed) = simulation.vessel_at_rest(0);
+    let closed = closed.unwrap();
+    assert_close(closed[2][2], 3.0 * slack.weight, 1e-3);
+    assert!(closed[0][0].abs() < 1e-3 * closed[2][2]);
+    let elements = matrix(simulation.vessel_stiffness(0).unwrap());
+    assert!(elements.norm().is_finite());
+}
+
 /// Diagonal of the stiffness of the closed forms, and the vertical force [N/m, N m/rad, N].
 fn published(deck: &Deck) -> ([f64; 6], f64) {
     let (force, stiffness) = Simulation::new(&deck.scene(20, ""))
@@ -281,7 +312,7 @@ fn assert_close(value: f64, expected: f64, tolerance: f64) {
 
 #[test]
 fn oc3_hywind_has_its_published_stiffness() {
-    // Jonkman (2010), NREL/TP-500-47535, equation 5-2, without the yaw spring that stands for the crowfoot
+    // Jonkman (2010), NREL/TP-500-47535, without the yaw spring that stands for the crowfoot
     let ([surge, sway, heave, roll, pitch, yaw], vertical) = published(&OC3);
     for (value, expected) in [
         (surge, 41_180.0),
@@ -297,8 +328,18 @@ fn oc3_hywind_has_its_published_stiffness() {
 }
 
 #[test]
+fn oc3_hywind_has_the_fairlead_tension_of_map() {
+    // summary file of MAP++ in the regression tests of OpenFAST
+    let simulation = Simulation::new(&OC3.scene(20, "")).unwrap();
+    let closed = simulation.catenary(0).unwrap();
+    assert_close(closed.tension_b(), 911_089.46, 1e-5);
+    assert_close(closed.horizontal(), 736_939.29, 1e-5);
+    assert_close(closed.vertical_b(), 535_727.99, 1e-5);
+}
+
+#[test]
 fn oc4_deepcwind_has_its_published_stiffness() {
-    // Robertson et al. (2014), NREL/TP-5000-60601, equation 5-2
+    // Robertson et al. (2014), NREL/TP-5000-60601
     let ([surge, sway, heave, roll, pitch, yaw], _) = published(&OC4);
     for (value, expected) in [
         (surge, 7.08e4),

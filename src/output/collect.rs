@@ -177,6 +177,14 @@ fn static_line(simulation: &Simulation, line: usize) -> json::Line {
         laid_length: simulation.laid_length(line),
         stretched_length: simulation.stretched_length(line),
         sag: simulation.sag(line),
+        catenary: simulation.catenary(line).map(|closed| json::Catenary {
+            tension_a: closed.tension_a(),
+            tension_b: closed.tension_b(),
+            horizontal: closed.horizontal(),
+            vertical: closed.vertical_b(),
+            laid_length: closed.laid_length() + 0.0, // an empty sum is −0
+            sag: closed.sag(),
+        }),
         profile: simulation
             .profile(line)
             .into_iter()

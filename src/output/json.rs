@@ -16,6 +16,9 @@
 //! | `lines[].laid_length` | m | unstretched length that lies on the seabed |
 //! | `lines[].stretched_length` | m | length of the line under tension |
 //! | `lines[].sag` | m | greatest vertical distance below the chord between the two ends |
+//! | `lines[].catenary` | | closed-form elastic catenary of the line with bed friction, beside the above; `null` where it has none: an end is free, or the strain is not engineering strain |
+//! | `….tension_a`, `tension_b` | N | axial tension at its ends |
+//! | `….horizontal`, `vertical`, `laid_length`, `sag` | N, m | as of the line |
 //! | `lines[].profile[]` | | nodes from end A to end B |
 //! | `….s` | m | unstretched arc length from end A |
 //! | `….x`, `y`, `z` | m | position |
@@ -75,8 +78,27 @@ pub struct Line {
     pub stretched_length: f64,
     /// Greatest vertical distance below the chord [m].
     pub sag: f64,
+    /// Its closed form, where it has one.
+    pub catenary: Option<Catenary>,
     /// Nodes from end A to end B.
     pub profile: Vec<ProfileNode>,
+}
+
+/// A closed-form catenary.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Catenary {
+    /// Axial tension at end A [N].
+    pub tension_a: f64,
+    /// Axial tension at end B [N].
+    pub tension_b: f64,
+    /// Horizontal part of the force at end B [N].
+    pub horizontal: f64,
+    /// Pull on end B downwards [N].
+    pub vertical: f64,
+    /// Unstretched length on the seabed [m].
+    pub laid_length: f64,
+    /// Greatest vertical distance below the chord [m].
+    pub sag: f64,
 }
 
 /// An end of a line.
@@ -177,6 +199,7 @@ mod tests {
                 laid_length: 0.0,
                 stretched_length: 10.0,
                 sag: 0.5,
+                catenary: None,
                 profile: vec![node],
             }],
             points: vec![Point {
@@ -206,6 +229,7 @@ mod tests {
         assert_eq!(keys(&json), ["lines", "points", "title", "vessels"]);
         let line = &json["lines"][0];
         let documented = [
+            "catenary",
             "end_a",
             "end_b",
             "horizontal",

@@ -18,8 +18,7 @@
 //! Without friction the mooring is conservative: the parts of K that concern displacements are symmetric, and K − Kᵀ of the rotations is ω ↦ M × ω,
 //! for finite rotations do not commute.
 //!
-//! Source: derived here; Jonkman (2007), NREL/TP-500-41958, section 2.5, linearises a mooring in the same six motions. Valid where
-//! the equilibrium is stable. A line that lies slack on the bed resists nothing sideways; anchoring springs of a part of 10⁻¹⁵ to 10⁻⁹ of its
+//! Source: derived here. Valid where the equilibrium is stable. A line that lies slack on the bed resists nothing sideways; anchoring springs of a part of 10⁻¹⁵ to 10⁻⁹ of its
 //! axial stiffness then keep it where it is. Beams have no tangent here.
 
 use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
@@ -91,12 +90,15 @@ impl Motion {
     }
 }
 
-/// A clamp on the vessel, and the second derivatives of its joint's energy with the direction and the segment.
+/// A clamp on the vessel, and how the energy of its joint changes.
 struct Clamp {
+    /// Direction d from end A to end B [-].
     direction: Vector3<f64>,
     /// Slope g of the energy with the direction [N m].
     slope: Vector3<f64>,
+    /// Second derivatives with the direction and the end's segment.
     hessian: Hessian,
+    /// The end it holds.
     stands: End,
 }
 
