@@ -359,14 +359,15 @@ fn elements_converge_to_the_stiffness_of_the_closed_form() {
         friction: 0.0,
         ..OC3
     };
-    let errors = [20, 40, 80, 160].map(|elements| {
+    let errors = [20, 160, 640].map(|elements| {
         let simulation = Simulation::new(&frictionless.scene(elements, "")).unwrap();
         let (_, closed) = simulation.vessel_at_rest(0);
         let [closed, solved] = [closed, simulation.vessel_stiffness(0)].map(|k| matrix(k.unwrap()));
         difference(&solved, &closed)
     });
+    // not evenly: the node at the touchdown is on the bed or off it
     assert!(
-        errors[3] < 0.01 && errors[3] < 0.3 * errors[0],
+        errors[0] < 0.08 && errors[1] < 0.015 && errors[2] < 0.001,
         "{errors:?}"
     );
 }
