@@ -14,7 +14,7 @@
 //!   A = c_k [EA·N'/l₀ q qᵀ + T/l P + BA/(l l₀) q (P ġ)ᵀ] + c_c BA/l₀ q qᵀ.
 //!
 //! The geometric stiffness T/l P is never negative in a line that cannot push. A line with bending stiffness has the joints of
-//! [`bending`] at its nodes and pushes up to what its segments carry, T ≥ −P; its tangent is exact, or made such that it cannot be
+//! `bending` at its nodes and pushes up to what its segments carry, T ≥ −P; its tangent is exact, or made such that it cannot be
 //! indefinite where `convex` is asked for. Statics keeps springs and weight only.
 
 mod bending;
