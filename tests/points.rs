@@ -24,7 +24,7 @@ fn on_a_thread(z: f64, body: &str, bed: &str) -> Scene {
         r#"
         water.density = {RHO}
         {bed}
-        line_types.thread = {{ mass = 1e-3, weight = 0.0, axial_stiffness = 100.0 }}
+        line_types.thread = {{ mass = 1e-3, weight = 0.0, diameter = 1e-6, axial_stiffness = 100.0 }}
         points = [
           {{ name = "top", position = [0.0, 0.0, {}], kind = "fixed" }},
           {{ name = "body", position = [0.0, 0.0, {z}], kind = "free", free = ["z"], {body} }},
@@ -76,6 +76,17 @@ fn a_floating_sphere_heaves_with_the_stiffness_of_its_waterplane() {
         assert_relative_eq!(PI / half, omega, max_relative = 5e-3);
         let start = 0.5 * RHO * G * PI * radius * radius * 1e-6;
         assert!(simulation.energy_error().abs() < 0.2 * start);
+    }
+}
+
+#[test]
+fn a_clump_that_lands_rests_on_the_bed() {
+    let bed = "seabed = { depth = 60.0, stiffness = 1e6, damping = 1e5 }";
+    let body = "mass = 500.0, volume = 0.1, drag_area = 0.3, added_mass = 0.5";
+    for integrator in BOTH {
+        let scene = with_integrator(on_a_thread(-58.0, body, bed), integrator, 0.01);
+        let (z, _) = heights(&scene, 0.1, 200);
+        assert!((z[200] + 60.0).abs() < 1e-4, "{}", z[200]);
     }
 }
 
