@@ -4,7 +4,8 @@
 //!        points, by kind in [`Energy`].
 //! Given: the work of the held ends on the line, −∫ (T q + S)·V + M·Ω dt with the shear S of lines that bend and the moment M on
 //!        clamps that turn, and of point loads.
-//! Lost:  drag, axial, bending and mass damping, and what the seabed takes (its springs give some of it back).
+//! Lost:  drag, axial, bending and mass damping, and what the seabed takes (its springs give some of it back). The added mass of a free
+//!        point that dips into the water brings ½ v² of what joins it, which counts as a negative loss.
 //!
 //! E − E₀ − given + lost is the error of the time integration: numerical dissipation shows up as a negative one.
 //!
@@ -22,7 +23,9 @@ use serde::{Deserialize, Serialize};
 
 use super::beam::{self, BeamView};
 use super::leapfrog::segment_tension;
-use crate::model::{ClosedForm, End, Line, LineState, Model, Network, PointState, State, joint};
+use crate::model::{
+    ClosedForm, End, FreePoint, Line, LineState, Model, Network, PointState, State, joint,
+};
 use crate::physics::morison::{DragCoefficients, drag};
 use crate::physics::seabed::{ContactCoefficients, normal_force};
 use crate::physics::stretch::total_tension;
@@ -130,8 +133,8 @@ pub fn energy(model: &Model, network: &Network, state: &State) -> Energy {
             None => (at.velocity, 0.0),
         };
         let height = at.position.z - lag * velocity.z;
-        sum.kinetic += 0.5 * free.mass * velocity.norm_squared();
-        sum.gravitational += free.weight * height;
+        sum.kinetic += 0.5 * free.at(height).mass * velocity.norm_squared();
+        sum.gravitational += free.potential(height);
     }
     sum
 }
@@ -339,6 +342,16 @@ pub fn work_at_rest(
         let loads = model.points[point].load_at(t0) + model.points[point].load_at(t1);
         let moved = after.points[point].position - before.points[point].position;
         flow.given += 0.5 * loads.dot(&moved);
+        let (line, _) = model.points[point].attached[0];
+        if after.lines[line].closed_form.is_none()
+            && let Some(free) = model.points[point].free()
+        {
+            let push = |state: &State| {
+                let spring = free.bed_at_rest(state.points[point].position.z);
+                spring.map_or(0.0, |(_, force)| force)
+            };
+            flow.lost -= 0.5 * (push(before) + push(after)) * moved.z;
+        }
     }
     flow
 }
@@ -383,11 +396,26 @@ pub fn power(model: &Model, network: &Network, state: &State, t: f64) -> Flow {
         }
     }
     for &point in &network.free_points {
-        flow.given += model.points[point]
-            .load_at(t)
-            .dot(&state.points[point].velocity);
+        let velocity = &state.points[point].velocity;
+        flow.given += model.points[point].load_at(t).dot(velocity);
+        if let Some(free) = model.points[point].free() {
+            flow.lost += point_loss(free, &state.points[point]);
+        }
     }
     flow
+}
+
+/// Power that water and seabed take from a free point [W]; what joins the added mass where it dips in is negative.
+fn point_loss(free: &FreePoint, state: &PointState) -> f64 {
+    let (z, velocity) = (state.position.z, state.velocity);
+    let at = free.at(z);
+    let mut lost = -free.drag(at.wetted, velocity).dot(&velocity);
+    lost -= 0.5 * at.mass_slope * velocity.z * velocity.norm_squared();
+    if let Some(contact) = &free.contact {
+        let push = normal_force(contact.coefficients, contact.level - z, velocity.z);
+        lost -= push * velocity.z;
+    }
+    lost
 }
 
 /// Power of the shear at held ends, and that of the joints' dampers [W].

@@ -43,7 +43,8 @@ pub fn free_point_step(model: &Model, point: usize) -> f64 {
     let Some(free) = model.points[point].free() else {
         return f64::INFINITY;
     };
-    let (mut mass, mut sum, mut lag) = (free.mass, 0.0, 0.0_f64);
+    let heave = free.sphere.map_or(0.0, |sphere| sphere.stiffness_max());
+    let (mut mass, mut sum, mut lag) = (free.mass, 0.5 * heave, 0.0_f64);
     for &(index, end) in &model.points[point].attached {
         let line = &model.lines[index];
         let node = line.end_node(end);

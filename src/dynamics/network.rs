@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::leapfrog::{EndLoad, LineWork, Step};
 use super::ledger::Flow;
-use crate::model::{End, Kinematics, Model, Network, PointState, State};
+use crate::model::{End, FreePoint, Kinematics, Model, Network, PointAtHeight, PointState, State};
 
 /// Scratch of a network: its lines laid out for the kernels, and its free points.
 #[derive(Debug, Clone)]
@@ -12,8 +12,21 @@ pub struct NetworkWork {
     /// Lines, in the order of the network.
     pub lines: Vec<LineWork>,
     points: Vec<PointState>,
+    /// Springs of the bed under the point that is stepped.
+    springs: Vec<Spring>,
     /// Energy given to and lost by the free points since the state was loaded [J].
     point_flow: Flow,
+}
+
+/// Spring and damper of the bed under a point: its own, or that of the half node of a line.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Spring {
+    /// Stiffness [N/m].
+    stiffness: f64,
+    /// Stiffness times drift and damping [N s/m].
+    resistance: f64,
+    /// Force at no velocity [N].
+    push: f64,
 }
 
 impl NetworkWork {
@@ -30,9 +43,15 @@ impl NetworkWork {
             })
             .collect::<Option<Vec<LineWork>>>()?;
         let points = vec![PointState::at_rest(Vector3::zeros()); network.free_points.len()];
+        let springs = network
+            .free_points
+            .iter()
+            .map(|&point| model.points[point].attached.len() + 1)
+            .max();
         Some(NetworkWork {
             lines,
             points,
+            springs: Vec::with_capacity(springs.unwrap_or(0)),
             point_flow: Flow::default(),
         })
     }
@@ -70,9 +89,17 @@ impl NetworkWork {
     /// Greatest ratio K |v| / M of all nodes [1/s].
     pub fn drag_rate(&self, model: &Model, network: &Network) -> f64 {
         let lines = self.lines.iter().zip(&network.lines);
-        lines
+        let of_lines = lines
             .map(|(work, &line)| work.drag_rate(&model.lines[line]))
-            .fold(0.0, f64::max)
+            .fold(0.0, f64::max);
+        let points = self.points.iter().zip(&network.free_points);
+        points
+            .filter_map(|(point, &index)| {
+                let sphere = model.points[index].free()?.sphere?;
+                let rate = sphere.drag * point.velocity.norm();
+                (rate > 0.0).then(|| rate / tied_mass(model, index))
+            })
+            .fold(of_lines, f64::max)
     }
 
     /// The first line, by its place in the network, and node whose position or velocity is not finite.
@@ -146,23 +173,34 @@ impl NetworkWork {
             let now = last + step.extrapolation * (last - before);
             let point = &model.points[index];
             let Some(law) = point.free() else { continue };
+            let height = self.points[free].position.z;
+            let at = law.at(height);
+            let drag = law.drag(at.wetted, now);
             let mut load = EndLoad {
-                force: point.load_at(t) - law.weight * Vector3::z(),
-                resistance: Vector3::zeros(),
-                mass: law.mass * Matrix3::identity(),
-                contact: [0.0; 3],
+                force: point.load_at(t) - at.weight * Vector3::z() + drag,
+                resistance: drag,
+                mass: at.mass * Matrix3::identity(),
+                contact: law.contact.map_or([0.0; 3], |contact| {
+                    let k = contact.coefficients;
+                    [k.stiffness, k.damping, k.stiffness * contact.level]
+                }),
             };
+            self.springs.clear();
+            self.springs.extend(Spring::new(load.contact, height, step));
             for &(line, end) in &point.attached {
                 let Some(at) = network.lines.iter().position(|&l| l == line) else {
                     continue;
                 };
-                load.add(&self.lines[at].end_load(end, now));
+                let brought = self.lines[at].end_load(end, now);
+                load.add(&brought);
+                self.springs
+                    .extend(Spring::new(brought.contact, height, step));
             }
-            let height = self.points[free].position.z;
-            let (velocity, impulse) = load.kicked(last, law.axes, height, step);
+            let (velocity, impulse) = load.kicked(last, law.axes, &self.springs, step);
             let mean = 0.5 * (last + velocity);
             self.point_flow.given += step.kick * point.load_at(t).dot(&mean);
             self.point_flow.lost -= step.kick * load.resistance.dot(&mean) + impulse * mean.z;
+            self.point_flow.lost -= mass_work(law, at, height, [last, velocity], step);
             let state = &mut self.points[free];
             state.half_step = [velocity, last];
             state.acceleration = (velocity - last) / step.kick;
@@ -171,23 +209,67 @@ impl NetworkWork {
     }
 }
 
+/// Mass of a free point and of the half nodes tied to it, at least [kg].
+fn tied_mass(model: &Model, point: usize) -> f64 {
+    let point = &model.points[point];
+    let tied = point.attached.iter().map(|&(line, end)| {
+        let line = &model.lines[line];
+        let node = line.end_node(end);
+        line.nodes.mass_tangent[node].min(line.nodes.mass_normal[node])
+    });
+    point.free().map_or(0.0, |free| free.mass) + tied.sum::<f64>()
+}
+
+/// Energy of motion [J] that a point has from the water which joins it, or that leaves with the water, between the half steps around t_n;
+/// `at` is what it is at t_n.
+fn mass_work(
+    law: &FreePoint,
+    at: PointAtHeight,
+    height: f64,
+    [last, velocity]: [Vector3<f64>; 2],
+    step: Step,
+) -> f64 {
+    let last_drift = 2.0 * step.kick - step.drift;
+    let low = height - 0.5 * last_drift * last.z;
+    let high = height + 0.5 * step.drift * velocity.z;
+    let [low, high] = [low, high].map(|z| law.at(z).mass);
+    0.5 * (at.mass - low) * last.norm_squared() + 0.5 * (high - at.mass) * velocity.norm_squared()
+}
+
+impl Spring {
+    /// The spring of stiffness, damping and force at z = 0 under a point at `height` [m]; `None` where there is none.
+    fn new(
+        [stiffness, damping, force_at_zero]: [f64; 3],
+        height: f64,
+        step: Step,
+    ) -> Option<Spring> {
+        (stiffness > 0.0).then(|| Spring {
+            stiffness,
+            resistance: stiffness * step.drift + damping,
+            push: force_at_zero - stiffness * height,
+        })
+    }
+
+    /// Whether the point would be in the bed after a step with the velocity ż [m/s].
+    fn lands(&self, velocity: f64, step: Step) -> bool {
+        self.push - self.stiffness * step.drift * velocity > 0.0
+    }
+}
+
 impl EndLoad {
     fn add(&mut self, other: &EndLoad) {
         self.force += other.force;
         self.resistance += other.resistance;
         self.mass += other.mass;
-        self.contact
-            .iter_mut()
-            .zip(other.contact)
-            .for_each(|(own, other)| *own += other);
     }
 
-    /// v_{n+½} of a point that moves along `axes` only, and the impulse of the bed [N s], which is implicit.
+    /// v_{n+½} of a point that moves along `axes` only, and the impulse of the bed [N s], which is implicit: the sum of springs that
+    /// only push is convex in the velocity, so that Newton's method from above finds it in as many iterations as there are springs.
     fn kicked(
         &self,
         last: Vector3<f64>,
         axes: [bool; 3],
-        height: f64,
+        springs: &[Spring],
         step: Step,
     ) -> (Vector3<f64>, f64) {
         let free = Vector3::from(axes.map(|free| f64::from(u8::from(free))));
@@ -199,18 +281,24 @@ impl EndLoad {
             return (last, 0.0);
         };
         let velocity = last + step.kick * inverse * self.force.component_mul(&free);
-        let [stiffness, damping, force_at_zero] = self.contact;
-        if stiffness == 0.0 {
-            return (velocity, 0.0);
-        }
-        let penetration = force_at_zero / stiffness - height;
         let response = inverse * Vector3::z() * free.z;
-        let resistance = stiffness * step.drift + damping;
-        if penetration - step.drift * velocity.z <= 0.0 {
-            return (velocity, 0.0);
+        let mut impulse = 0.0;
+        for _ in 0..springs.len() {
+            let z = velocity.z + response.z * impulse;
+            let (mut push, mut resistance) = (0.0, 0.0);
+            for spring in springs
+                .iter()
+                .filter(|spring| spring.lands(velocity.z, step))
+            {
+                let force = spring.push - spring.resistance * z;
+                if force > 0.0 {
+                    push += force;
+                    resistance += spring.resistance;
+                }
+            }
+            let excess = step.kick * push - impulse;
+            impulse += excess / (1.0 + response.z * step.kick * resistance);
         }
-        let push = (stiffness * penetration - resistance * velocity.z).max(0.0);
-        let impulse = step.kick * push / (1.0 + response.z * step.kick * resistance);
         (velocity + response * impulse, impulse)
     }
 }

@@ -5,13 +5,14 @@ mod beam;
 use nalgebra::Vector3;
 
 use super::{
-    Bending, Contact, Drag, End, FreePoint, Line, Model, Motion, Network, Nodes, Point, Role,
-    Section, Segments, Vessel, mesh,
+    Bending, Contact, Drag, End, FreePoint, Line, Model, Motion, Network, Nodes, Point,
+    PointContact, Role, Section, Segments, Vessel, mesh,
 };
 use crate::physics::bending;
 use crate::physics::morison::{DragCoefficients, drag_per_length};
+use crate::physics::point::Sphere;
 use crate::physics::rayleigh;
-use crate::physics::seabed::{ContactCoefficients, regularised};
+use crate::physics::seabed::{ContactCoefficients, regularised, under_point};
 use crate::physics::stretch::StretchLaw;
 use crate::physics::weight::{cross_section, submerged_weight};
 use crate::scene::{
@@ -106,13 +107,47 @@ fn free_point(scene: &Scene, point: &scene::Point) -> FreePoint {
         Some(free) => [Axis::X, Axis::Y, Axis::Z].map(|axis| free.contains(&axis)),
     };
     let mass = point.mass.unwrap_or(0.0);
-    let displaced =
-        scene.water.as_ref().map_or(0.0, |water| water.density) * point.volume.unwrap_or(0.0);
+    let density = scene.water.as_ref().map_or(0.0, |water| water.density);
+    let volume = point.volume.unwrap_or(0.0);
+    let of_water = [
+        volume,
+        point.drag_area.unwrap_or(0.0),
+        point.added_mass.unwrap_or(0.0),
+    ];
     FreePoint {
         axes,
         mass,
-        weight: submerged_weight(mass, displaced, scene.gravity),
+        weight: submerged_weight(mass, density * volume, scene.gravity),
+        sphere: Sphere::new(of_water, density, scene.gravity),
+        contact: point_contact(scene, point, axes, mass * scene.gravity),
     }
+}
+
+/// Contact of a free point that weighs `dry` [N] in air and moves along `axes`; one without weight rests on its lines' ends.
+fn point_contact(
+    scene: &Scene,
+    point: &scene::Point,
+    axes: [bool; 3],
+    dry: f64,
+) -> Option<PointContact> {
+    let bed = scene.seabed.as_ref()?;
+    let place = |name: &String| scene.points.iter().position(|point| point.name == *name);
+    let in_reach = scene.lines.iter().any(|line| {
+        let tied = line.from == point.name || line.to == point.name;
+        let ends = place(&line.from).zip(place(&line.to));
+        tied && ends.is_some_and(|(a, b)| contact_in_reach(scene, [a, b], line))
+    });
+    if !axes[2] || dry == 0.0 || bed.stiffness <= 0.0 || !in_reach {
+        return None;
+    }
+    let density = scene.water.as_ref().map_or(0.0, |water| water.density);
+    let wet = dry - density * scene.gravity * point.volume.unwrap_or(0.0);
+    let coefficients = under_point(dry, bed.damping / bed.stiffness);
+    Some(PointContact {
+        bed: -bed.depth,
+        level: -bed.depth + wet.max(0.0) / coefficients.stiffness,
+        coefficients,
+    })
 }
 
 /// Properties of a line type in the scene's surroundings, per unstretched length.

@@ -14,6 +14,8 @@ mod vessel;
 
 use nalgebra::Vector3;
 
+use crate::physics::point::{Sphere, Wetted};
+use crate::physics::seabed::ContactCoefficients;
 use crate::physics::stretch::StretchLaw;
 use crate::scene::{InitialShape, PointForce, PointMoment, Solver, TimeFunction};
 
@@ -100,8 +102,38 @@ pub struct FreePoint {
     pub axes: [bool; 3],
     /// Own mass [kg].
     pub mass: f64,
+    /// Own weight less buoyancy, all of it under water [N].
+    pub weight: f64,
+    /// What the water does to it, where there is water and it has a volume or a drag area.
+    pub sphere: Option<Sphere>,
+    /// Contact, where there is a seabed in reach and it has a weight.
+    pub contact: Option<PointContact>,
+}
+
+/// Contact of a free point with the bed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PointContact {
+    /// z of the bed [m].
+    pub bed: f64,
+    /// z below which the spring pushes [m]: such that the point lies on the bed where it rests with all of its weight.
+    pub level: f64,
+    /// Spring and damper.
+    pub coefficients: ContactCoefficients,
+}
+
+/// What a free point is at a height: its weight changes where it pierces the surface, and so does its mass.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PointAtHeight {
+    /// How much of it is in the water.
+    pub wetted: Wetted,
     /// Own weight less buoyancy [N].
     pub weight: f64,
+    /// Its slope with height [N/m], not negative.
+    pub weight_slope: f64,
+    /// Own and added mass [kg].
+    pub mass: f64,
+    /// Its slope with height [kg/m], not positive.
+    pub mass_slope: f64,
 }
 
 /// An end of a line.
@@ -253,6 +285,65 @@ impl Line {
             .iter()
             .all(|law| *law == first)
             .then_some(first)
+    }
+}
+
+impl FreePoint {
+    /// What it is at a height z [m].
+    #[inline]
+    pub fn at(&self, z: f64) -> PointAtHeight {
+        let Some(sphere) = &self.sphere else {
+            let wetted = Wetted {
+                part: 0.0,
+                slope: 0.0,
+            };
+            return PointAtHeight {
+                wetted,
+                weight: self.weight,
+                weight_slope: 0.0,
+                mass: self.mass,
+                mass_slope: 0.0,
+            };
+        };
+        let wetted = sphere.wetted(z);
+        PointAtHeight {
+            wetted,
+            weight: self.weight + sphere.buoyancy * (1.0 - wetted.part),
+            weight_slope: -sphere.buoyancy * wetted.slope,
+            mass: self.mass + sphere.added_mass * wetted.part,
+            mass_slope: sphere.added_mass * wetted.slope,
+        }
+    }
+
+    /// Drag [N] at a velocity relative to the water [m/s].
+    #[inline]
+    pub fn drag(&self, wetted: Wetted, velocity: Vector3<f64>) -> Vector3<f64> {
+        let sphere = self.sphere.as_ref();
+        sphere.map_or(Vector3::zeros(), |sphere| sphere.drag(wetted, velocity))
+    }
+
+    /// Energy of weight and buoyancy at a height z [m], in [J].
+    pub fn potential(&self, z: f64) -> f64 {
+        match &self.sphere {
+            None => self.weight * z,
+            Some(sphere) => (self.weight + sphere.buoyancy) * z + sphere.energy(z),
+        }
+    }
+
+    /// Greatest of its weight, its buoyancy and the difference of the two [N].
+    pub fn weight_max(&self) -> f64 {
+        let buoyancy = self.sphere.map_or(0.0, |sphere| sphere.buoyancy);
+        (self.weight + buoyancy)
+            .abs()
+            .max(self.weight.abs())
+            .max(buoyancy.abs())
+    }
+
+    /// Stiffness [N/m] and upward force [N] of the bed's spring at a height z [m], at rest.
+    pub fn bed_at_rest(&self, z: f64) -> Option<(f64, f64)> {
+        let contact = self.contact.as_ref()?;
+        let (stiffness, penetration) = (contact.coefficients.stiffness, contact.level - z);
+        (penetration > 0.0).then_some((stiffness, stiffness * penetration))
     }
 }
 

@@ -3,6 +3,7 @@
 pub mod bending;
 pub mod contact_step;
 pub mod morison;
+pub mod point;
 pub mod rayleigh;
 pub mod seabed;
 pub mod section;

@@ -13,6 +13,9 @@
 /// Static penetration of a resting node under regularised contact, per nodal length [-].
 pub const REGULARISED_PENETRATION: f64 = 0.02;
 
+/// Static penetration of a point that rests with all of its weight, the stiffness being chosen for it [m].
+pub const POINT_PENETRATION: f64 = 0.02;
+
 /// Lumped contact coefficients of a node.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactCoefficients {
@@ -34,6 +37,16 @@ pub fn regularised(contact: ContactCoefficients, weight: f64, spacing: f64) -> C
     ContactCoefficients {
         stiffness,
         damping: contact.damping * stiffness / contact.stiffness,
+    }
+}
+
+/// Contact of a point of `weight` [N], which has no length or diameter that the bed's own coefficients would refer to: as stiff as sinks
+/// it in by [`POINT_PENETRATION`], with the bed's ratio of damping to stiffness `lag` [s].
+pub fn under_point(weight: f64, lag: f64) -> ContactCoefficients {
+    let stiffness = weight.abs() / POINT_PENETRATION;
+    ContactCoefficients {
+        stiffness,
+        damping: lag * stiffness,
     }
 }
 

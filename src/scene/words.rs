@@ -2,6 +2,7 @@
 
 mod beam;
 mod bending;
+mod points;
 mod vessels;
 
 use std::f64::consts::PI;
@@ -178,6 +179,9 @@ impl Scene {
             write!(said, ", added mass {} of its volume", number(coefficient))
                 .expect("a String takes all");
         }
+        if let Some(sea) = self.sea_in_words(point) {
+            write!(said, ", {sea}").expect("a String takes all");
+        }
         if let Some(force) = &point.force {
             write!(said, ", {}", force_in_words(force)).expect("a String takes all");
         }
@@ -294,7 +298,11 @@ impl Scene {
             absent.push(bending::absence_in_words(self));
         }
         if self.water.is_some() {
-            absent.push("current, waves and the water's surface");
+            absent.push(if self.surface_matters() {
+                "current, waves and the water's surface over lines"
+            } else {
+                "current, waves and the water's surface"
+            });
         } else {
             absent.push("buoyancy, drag and added mass");
         }

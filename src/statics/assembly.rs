@@ -6,7 +6,8 @@
 //!   R_i = M_i(t) a_i − f_i,   f_i = T_i q_i − T_{i−1} q_{i−1} − w_i ẑ + drag + contact − (αm)_i v_i,
 //!
 //! with the segment's direction q, its total tension T = max(0, N(ε) + BA·ε̇) and M_i = M_n I + (M_t − M_n) t tᵀ. A line's
-//! end nodes contribute the same to their points; free points add their own mass, weight and load.
+//! end nodes contribute the same to their points; free points add their own mass, weight, drag, contact and load, their buoyancy and added
+//! mass as far as they are in the water.
 //!
 //! The tangent J = c_k ∂R/∂r + c_c ∂R/∂v + c_m ∂R/∂a is exact except that the tangent t of mass and drag is frozen. Per segment,
 //! with P = I − q qᵀ and ġ the rate of its end-to-end vector, J = [[A, −A], [−A, A]] with
@@ -22,7 +23,7 @@ mod bending;
 use nalgebra::{Matrix3, Vector3};
 
 use crate::math::block_tridiagonal::{Chain, DenseSystem};
-use crate::model::{End, FreePoint, Line, LineState, Model, Network, PointState, State};
+use crate::model::{End, FreePoint, Line, LineState, Model, Network, Point, PointState, State};
 use crate::physics::morison::{DragCoefficients, drag, drag_slope};
 use crate::physics::seabed::ContactCoefficients;
 use crate::physics::stretch::total_tension;
@@ -118,6 +119,8 @@ pub(crate) struct PointWork {
     pub solution: Vector3<f64>,
     /// What the time integrator carries over from the last step [N].
     pub history: Vector3<f64>,
+    /// Half the range of penetrations over which its seabed damper fades in [m].
+    pub reach: f64,
 }
 
 impl Workspace {
@@ -147,6 +150,7 @@ impl Workspace {
             diagonal: Matrix3::zeros(),
             solution: Vector3::zeros(),
             history: Vector3::zeros(),
+            reach: 0.0,
         };
         let mut points = vec![point; model.points.len()];
         for network in &model.networks {
@@ -512,6 +516,63 @@ impl LineWork {
     }
 }
 
+impl PointWork {
+    /// Residual and tangent of a point at rest, without its lines.
+    fn assemble_static(
+        &mut self,
+        point: &Point,
+        free: &FreePoint,
+        state: &PointState,
+        case: &StaticCase,
+    ) {
+        let (z, at) = (state.position.z, free.at(state.position.z));
+        let force = point.load_at(case.time) - at.weight * Vector3::z();
+        self.residual = -case.load * force;
+        self.diagonal = Matrix3::from_diagonal_element(case.anchoring);
+        self.diagonal[(2, 2)] += case.load * at.weight_slope;
+        if let Some((stiffness, push)) = free.bed_at_rest(z) {
+            self.residual.z -= push;
+            self.diagonal[(2, 2)] += stiffness;
+        }
+    }
+
+    /// Residual and, if TANGENT, tangent of a moving point under a `load` [N], without its lines.
+    fn assemble_dynamic<const TANGENT: bool>(
+        &mut self,
+        free: &FreePoint,
+        state: &PointState,
+        load: Vector3<f64>,
+        weights: &Weights,
+    ) {
+        let (z, v, a) = (state.position.z, state.velocity, state.acceleration);
+        let at = free.at(z);
+        let mut force = load - at.weight * Vector3::z();
+        self.diagonal = Matrix3::from_diagonal_element(weights.acceleration * at.mass);
+        if let Some(sphere) = &free.sphere {
+            force += sphere.drag(at.wetted, v);
+            if TANGENT {
+                self.diagonal += weights.velocity * sphere.drag_slope(at.wetted, v);
+                let mut by_height = sphere.drag_slope_with_height(at.wetted, v);
+                by_height.z += at.weight_slope;
+                let by_height = weights.position * by_height + weights.inertia * at.mass_slope * a;
+                self.diagonal
+                    .set_column(2, &(self.diagonal.column(2) + by_height));
+            }
+        }
+        if let Some(contact) = &free.contact
+            && let Some(bed) =
+                SmoothContact::new(contact.coefficients, contact.level - z, v.z, self.reach)
+        {
+            force.z += bed.force;
+            if TANGENT {
+                self.diagonal[(2, 2)] +=
+                    weights.position * bed.stiffness + weights.velocity * bed.damping;
+            }
+        }
+        self.residual = weights.inertia * at.mass * a - weights.force * force;
+    }
+}
+
 /// Half the range of penetrations over which the seabed damper fades in, in static penetrations of the node [-].
 const DAMPER_FADE: f64 = 2.0;
 
@@ -591,9 +652,7 @@ impl Workspace {
         }
         for_free_points(model, network, |index, free| {
             let point = &mut self.points[index];
-            let force = model.points[index].load_at(case.time) - free.weight * Vector3::z();
-            point.residual = -case.load * force;
-            point.diagonal = Matrix3::from_diagonal_element(case.anchoring);
+            point.assemble_static(&model.points[index], free, &state.points[index], case);
         });
         self.gather(model, network);
     }
@@ -620,10 +679,8 @@ impl Workspace {
         }
         for_free_points(model, network, |index, free| {
             let point = &mut self.points[index];
-            let force = model.points[index].load_at(t) - free.weight * Vector3::z();
-            point.residual = weights.inertia * free.mass * state.points[index].acceleration
-                - weights.force * force;
-            point.diagonal = Matrix3::from_diagonal_element(weights.acceleration * free.mass);
+            let load = model.points[index].load_at(t);
+            point.assemble_dynamic::<TANGENT>(free, &state.points[index], load, weights);
         });
         self.gather(model, network);
     }
@@ -724,6 +781,13 @@ impl Workspace {
         for &index in &network.lines {
             self.lines[index].fade_dampers(&model.lines[index], &state.lines[index], dt);
         }
+        for_free_points(model, network, |index, free| {
+            if let Some(contact) = &free.contact {
+                let resting = damper_reach(contact.coefficients.stiffness, free.weight);
+                let moved = state.points[index].velocity.z.abs() * dt;
+                self.points[index].reach = resting.max(moved);
+            }
+        });
     }
 
     /// Keeps the residual of the last assembly for the next step.

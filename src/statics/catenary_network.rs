@@ -4,7 +4,7 @@
 //!
 //!   R = Σ F_line + F_load(t) − w ẑ,
 //!
-//! F the end force of a catenary, which lies in the vertical plane through its ends. Newton's method; the stiffness of a line in
+//! w the weight less the buoyancy of what is in the water, F the end force of a catenary, which lies in the vertical plane through its ends. Newton's method; the stiffness of a line in
 //! free flight is exact (see `stiffness`), that of a line on the bed a difference quotient of its closed form; across its plane a line
 //! has H/X. Steps are limited, and cut until the power R·δ has not turned: without friction the potential energy is convex
 //! in the positions of the points, so this finds the one equilibrium. A point whose lines can touch the bed rests on it
@@ -351,7 +351,7 @@ impl<'a> Problem<'a> {
             .map(|section| (section.weight * section.length).abs());
         let mut force: f64 = weights.sum();
         for_free_points(model, network, |index, free| {
-            force += free.weight.abs() + model.points[index].load_at(time).norm();
+            force += free.weight_max() + model.points[index].load_at(time).norm();
         });
         let length = lines().map(Line::unstretched_length).fold(0.0, f64::max);
         Problem {
@@ -399,7 +399,8 @@ impl<'a> Problem<'a> {
     /// Catenaries of all lines and what is out of balance at all points; false where a line has none.
     fn evaluate(&self, state: &State, work: &mut Workspace) -> bool {
         for_free_points(self.model, self.network, |index, free| {
-            let own = self.model.points[index].load_at(self.time) - free.weight * Vector3::z();
+            let weight = free.at(state.points[index].position.z).weight;
+            let own = self.model.points[index].load_at(self.time) - weight * Vector3::z();
             work.points[index].residual = own;
         });
         for &index in &self.network.lines {
@@ -431,15 +432,17 @@ impl<'a> Problem<'a> {
     /// z below which a point that moves vertically does not sink [m].
     fn bed_under(&self, point: usize) -> f64 {
         let point = &self.model.points[point];
-        if !point.free().is_some_and(|free| free.axes[2]) {
+        let Some(free) = point.free().filter(|free| free.axes[2]) else {
             return f64::NEG_INFINITY;
-        }
+        };
+        let own = free.contact.map(|contact| contact.bed);
         let lines = point
             .attached
             .iter()
             .map(|(line, _)| &self.model.lines[*line]);
         lines
             .filter_map(|line| Some(line.nodes.contact.as_ref()?.bed))
+            .chain(own)
             .fold(f64::NEG_INFINITY, f64::max)
     }
 
@@ -482,6 +485,10 @@ impl<'a> Problem<'a> {
             work.systems[self.number].add_right(slot, work.points[index].total);
         }
         for_free_points(self.model, self.network, |index, free| {
+            let slot = work.points[index].slot.unwrap_or(0);
+            let heave = free.at(state.points[index].position.z).weight_slope;
+            let heave = Matrix3::from_diagonal(&Vector3::new(0.0, 0.0, heave));
+            work.systems[self.number].add_block(slot, slot, &heave);
             for axis in 0..3 {
                 if self.is_held(state, work, index, free.axes, axis) {
                     work.systems[self.number].hold(work.points[index].slot.unwrap_or(0), axis);
@@ -617,7 +624,7 @@ impl<'a> Problem<'a> {
         let mut force = tension;
         for_free_points(self.model, self.network, |index, free| {
             force = force
-                .max(free.weight.abs())
+                .max(free.weight_max())
                 .max(self.model.points[index].load_at(self.time).norm());
         });
         force

@@ -227,7 +227,7 @@ impl<'a> Problem<'a> {
             .map(|w| w.abs())
             .sum();
         for_free_points(model, network, |index, free| {
-            force += free.weight.abs() + model.points[index].load_at(time).norm();
+            force += free.weight_max() + model.points[index].load_at(time).norm();
         });
         Problem {
             model,
@@ -435,7 +435,10 @@ impl<'a> Problem<'a> {
         }
         for_free_points(self.model, self.network, |index, free| {
             let load = self.model.points[index].load_at(self.time).norm();
-            force = force.max(load).max(free.weight.abs());
+            force = force.max(load).max(free.weight_max());
+            if let Some(contact) = &free.contact {
+                rounding = rounding.max(contact.bed.abs() * contact.coefficients.stiffness);
+            }
         });
         FORCE_TOLERANCE * force + 4.0 * f64::EPSILON * rounding
     }

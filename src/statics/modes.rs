@@ -1,7 +1,7 @@
 //! Natural frequencies and mode shapes of a network of lines about a state at rest.
 //!
 //! K φ = ω² M φ over the nodes between the ends of every line and the free axes of free points. K is the assembled tangent
-//! of statics: axial, geometric and bending stiffness of the lines and the bed's springs where they touch. M is that of dynamics:
+//! of statics: axial, geometric and bending stiffness of the lines, the bed's springs where they touch, and the surface's where it is pierced. M is that of dynamics:
 //! lumped, added mass included, M_n I + (M_t − M_n) t tᵀ at a node. With the Cholesky factor M = L Lᵀ the symmetric problem
 //! L⁻¹ K L⁻ᵀ y = ω² y is solved densely, φ = L⁻ᵀ y. Damping and drag are left out.
 //!
@@ -67,8 +67,11 @@ impl Modes {
             }
         }
         for &index in &network.free_points {
-            let own = model.points[index].free().map_or(0.0, |free| free.mass);
+            let height = state.points[index].position.z;
+            let own = model.points[index].free();
+            let own = own.map_or(0.0, |free| free.at(height).mass);
             let point = point_unknowns(model, network, &unknowns, index);
+            add_block(&mut stiffness, point, point, &work.points[index].diagonal);
             add_block(
                 &mut mass,
                 point,

@@ -1,0 +1,88 @@
+//! Free points in the sea in words.
+
+use super::significant;
+use crate::physics::point::Sphere;
+use crate::physics::seabed::POINT_PENETRATION;
+use crate::scene::check::quantity;
+use crate::scene::{Axis, Point, PointKind, Scene};
+
+impl Scene {
+    /// What water and bed do to a free point; nothing where neither does anything.
+    pub(super) fn sea_in_words(&self, point: &Point) -> Option<String> {
+        if point.kind != PointKind::Free {
+            return None;
+        }
+        if self.ends_beam(point) {
+            let wet = self.sphere(point).is_some();
+            return wet.then(|| {
+                "at the end of a beam only weight and buoyancy act, as if it were under water"
+                    .into()
+            });
+        }
+        let said: Vec<String> = [self.water_in_words(point), self.bed_in_words(point)]
+            .into_iter()
+            .flatten()
+            .collect();
+        (!said.is_empty()).then(|| said.join("; "))
+    }
+
+    /// Whether the water's surface acts on a free point.
+    pub(super) fn surface_matters(&self) -> bool {
+        let mut free = self.points.iter().filter(|p| p.kind == PointKind::Free);
+        free.any(|point| self.sphere(point).is_some() && !self.ends_beam(point))
+    }
+
+    fn ends_beam(&self, point: &Point) -> bool {
+        let mut lines = self.lines.iter();
+        lines.any(|line| (line.from == point.name || line.to == point.name) && self.is_beam(line))
+    }
+
+    fn sphere(&self, point: &Point) -> Option<Sphere> {
+        let of_water = [point.volume, point.drag_area, point.added_mass];
+        let density = self.water.as_ref()?.density;
+        Sphere::new(
+            of_water.map(|value| value.unwrap_or(0.0)),
+            density,
+            self.gravity,
+        )
+    }
+
+    fn water_in_words(&self, point: &Point) -> Option<String> {
+        let sphere = self.sphere(point)?;
+        let volume = point.volume.is_some_and(|volume| volume > 0.0);
+        let acting = [
+            ("buoyancy", volume),
+            ("drag", sphere.drag > 0.0),
+            ("added mass", sphere.added_mass > 0.0),
+        ];
+        let named = |acts: bool| {
+            let kinds = acting.iter().filter(|(_, does)| *does == acts);
+            kinds.map(|(name, _)| *name).collect::<Vec<&str>>()
+        };
+        let absent = named(false);
+        let absent = match absent.is_empty() {
+            true => String::new(),
+            false => format!(", no {}", absent.join(", no ")),
+        };
+        Some(format!(
+            "in the water {}{absent}, as of a sphere of radius {} m as far as it is under z = 0",
+            named(true).join(", "),
+            significant(sphere.radius)
+        ))
+    }
+
+    fn bed_in_words(&self, point: &Point) -> Option<String> {
+        let bed = self.seabed.as_ref()?;
+        let weight = point.mass.unwrap_or(0.0) * self.gravity;
+        let moves = point
+            .free
+            .as_ref()
+            .is_none_or(|axes| axes.contains(&Axis::Z));
+        (weight > 0.0 && moves && bed.stiffness > 0.0).then(|| {
+            format!(
+                "should it touch the bed, it rests there on a spring that its weight in air presses in by {}",
+                quantity(POINT_PENETRATION, "m")
+            )
+        })
+    }
+}

@@ -1,0 +1,110 @@
+//! Free points in the sea: clumps that sink and rest on the bed, buoys that float, heave and hold lines up.
+
+mod common;
+
+use std::f64::consts::PI;
+
+use approx::assert_relative_eq;
+use common::*;
+use moorline::scene::{Integrator, Scene};
+use moorline::simulation::Simulation;
+
+const RHO: f64 = 1025.0; // [kg/m³]
+const G: f64 = 9.80665; // [m/s²]
+
+const BOTH: [Integrator; 2] = [Integrator::Leapfrog, Integrator::GeneralisedAlpha];
+
+/// A body on a weightless thread of 1 g/m, slack from a point 40 m above.
+///
+///      ● top              thread: 200 m in 4 elements, no diameter
+///     / \
+///     \  ● body at `z`    mass, volume, CdA, Ca
+fn on_a_thread(z: f64, body: &str, bed: &str) -> Scene {
+    scene(&format!(
+        r#"
+        water.density = {RHO}
+        {bed}
+        line_types.thread = {{ mass = 1e-3, weight = 0.0, diameter = 1e-6, axial_stiffness = 100.0 }}
+        points = [
+          {{ name = "top", position = [0.0, 0.0, {}], kind = "fixed" }},
+          {{ name = "body", position = [0.0, 0.0, {z}], kind = "free", free = ["z"], {body} }},
+        ]
+        lines = [{{ name = "thread", from = "top", to = "body", initial = "straight", sections = [{{ type = "thread", length = 200.0, elements = 4 }}] }}]
+        "#,
+        z + 40.0
+    ))
+}
+
+/// z of the body after every `step` [s], and the simulation.
+fn heights(scene: &Scene, step: f64, count: usize) -> (Vec<f64>, Simulation) {
+    let mut simulation = Simulation::new(scene).unwrap();
+    let body = simulation.model().point_index("body").unwrap();
+    let mut heights = vec![simulation.state().points[body].position.z];
+    for _ in 0..count {
+        simulation.advance(step).unwrap();
+        heights.push(simulation.state().points[body].position.z);
+    }
+    (heights, simulation)
+}
+
+#[test]
+fn a_sinking_clump_reaches_its_terminal_velocity() {
+    let (mass, volume, area) = (500.0, 0.1, 0.3);
+    let body = format!("mass = {mass}, volume = {volume}, drag_area = {area}, added_mass = 0.5");
+    let terminal = ((mass - RHO * volume) * G / (0.5 * RHO * area)).sqrt();
+    for integrator in BOTH {
+        let scene = with_integrator(on_a_thread(-50.0, &body, ""), integrator, 0.01);
+        let (z, simulation) = heights(&scene, 0.1, 100);
+        assert_relative_eq!((z[90] - z[100]) / 1.0, terminal, max_relative = 2e-3);
+        let error = simulation.energy_error().abs();
+        assert!(error < 1e-3 * simulation.ledger().flow.lost, "{error} J");
+    }
+}
+
+#[test]
+fn a_floating_sphere_heaves_with_the_stiffness_of_its_waterplane() {
+    let (volume, ca) = (1.0, 0.5);
+    let mass = 0.5 * RHO * volume; // floats half under: ds/dz = 3/(4R)
+    let radius = (0.75 * volume / PI).cbrt();
+    let omega = (RHO * G * PI * radius * radius / (mass + 0.5 * ca * RHO * volume)).sqrt();
+    let body = format!("mass = {mass}, volume = {volume}, added_mass = {ca}");
+    for integrator in BOTH {
+        let scene = with_integrator(on_a_thread(0.001, &body, ""), integrator, 0.002);
+        let (z, simulation) = heights(&scene, 0.02, 500);
+        let crossings = zero_crossings(&z, 0.02);
+        let half = (crossings[crossings.len() - 1] - crossings[0]) / (crossings.len() - 1) as f64;
+        assert_relative_eq!(PI / half, omega, max_relative = 5e-3);
+        let start = 0.5 * RHO * G * PI * radius * radius * 1e-6;
+        assert!(simulation.energy_error().abs() < 0.2 * start);
+    }
+}
+
+#[test]
+fn a_clump_that_lands_rests_on_the_bed() {
+    let bed = "seabed = { depth = 60.0, stiffness = 1e6, damping = 1e5 }";
+    let body = "mass = 500.0, volume = 0.1, drag_area = 0.3, added_mass = 0.5";
+    for integrator in BOTH {
+        let scene = with_integrator(on_a_thread(-58.0, body, bed), integrator, 0.01);
+        let (z, _) = heights(&scene, 0.1, 200);
+        assert!((z[200] + 60.0).abs() < 1e-4, "{}", z[200]);
+    }
+}
+
+#[test]
+fn a_buoy_on_a_slack_line_floats_where_its_weight_is_its_buoyancy_and_stays_there() {
+    let mut scene = on_a_thread(
+        0.1,
+        "mass = 400.0, volume = 1.0, drag_area = 1.0, added_mass = 0.5",
+        "",
+    );
+    scene.lines[0].initial = moorline::scene::InitialShape::Static;
+    scene.line_types.get_mut("thread").unwrap().weight = Some(0.01);
+    for integrator in BOTH {
+        let scene = with_integrator(scene.clone(), integrator, 0.05);
+        let (z, simulation) = heights(&scene, 0.5, 1200);
+        let body = simulation.model().point_index("body").unwrap();
+        let free = simulation.model().points[body].free().unwrap();
+        assert!(free.at(z[0]).weight.abs() < 5.0, "{}", free.at(z[0]).weight); // what hangs of the thread
+        assert!((z[1200] - z[0]).abs() < 1e-9 * 200.0, "{}", z[1200] - z[0]);
+    }
+}
