@@ -26,7 +26,13 @@ impl NetworkWork {
                 let held = model.lines[line]
                     .ends
                     .map(|point| model.points[point].free().is_none());
-                LineWork::new(&model.lines[line], held, model.solver.negative_tension)
+                let profile = model.current.as_ref().map(|current| &current.profile);
+                LineWork::new(
+                    &model.lines[line],
+                    profile,
+                    held,
+                    model.solver.negative_tension,
+                )
             })
             .collect::<Option<Vec<LineWork>>>()?;
         let points = vec![PointState::at_rest(Vector3::zeros()); network.free_points.len()];
@@ -92,6 +98,7 @@ impl NetworkWork {
         step: Step,
         held: &impl Fn(usize, f64) -> Kinematics,
     ) {
+        self.set_current(model, t);
         self.lines
             .iter_mut()
             .for_each(|line| line.pull_segments(step));
@@ -102,6 +109,15 @@ impl NetworkWork {
         }
         self.put_ends(model, network, t + step.drift, step, held);
         self.lines.iter_mut().for_each(|line| line.book_ends(step));
+    }
+
+    /// Sets the current to that of `t` [s].
+    pub fn set_current(&mut self, model: &Model, t: f64) {
+        if let Some(stream) = model.stream(t) {
+            self.lines
+                .iter_mut()
+                .for_each(|line| line.set_current(stream.factor));
+        }
     }
 
     /// Energy given and lost since the state was loaded.
@@ -149,6 +165,7 @@ impl NetworkWork {
             let mut load = EndLoad {
                 force: point.load_at(t) - law.weight * Vector3::z(),
                 resistance: Vector3::zeros(),
+                current_power: 0.0,
                 mass: law.mass * Matrix3::identity(),
                 contact: [0.0; 3],
             };
@@ -161,8 +178,10 @@ impl NetworkWork {
             let height = self.points[free].position.z;
             let (velocity, impulse) = load.kicked(last, law.axes, height, step);
             let mean = 0.5 * (last + velocity);
-            self.point_flow.given += step.kick * point.load_at(t).dot(&mean);
-            self.point_flow.lost -= step.kick * load.resistance.dot(&mean) + impulse * mean.z;
+            let by_current = step.kick * load.current_power;
+            self.point_flow.given += step.kick * point.load_at(t).dot(&mean) + by_current;
+            self.point_flow.lost -=
+                step.kick * load.resistance.dot(&mean) + impulse * mean.z - by_current;
             let state = &mut self.points[free];
             state.half_step = [velocity, last];
             state.acceleration = (velocity - last) / step.kick;
@@ -175,6 +194,7 @@ impl EndLoad {
     fn add(&mut self, other: &EndLoad) {
         self.force += other.force;
         self.resistance += other.resistance;
+        self.current_power += other.current_power;
         self.mass += other.mass;
         self.contact
             .iter_mut()

@@ -2,6 +2,7 @@
 
 pub mod bending;
 pub mod contact_step;
+pub mod flow;
 pub mod morison;
 pub mod rayleigh;
 pub mod seabed;

@@ -15,7 +15,8 @@
 //!
 //! The geometric stiffness T/l P is never negative in a line that cannot push. A line with bending stiffness has the joints of
 //! [`bending`] at its nodes and pushes up to what its segments carry, T ≥ −P; its tangent is exact, or made such that it cannot be
-//! indefinite where `convex` is asked for. Statics keeps springs and weight only.
+//! indefinite where `convex` is asked for. Statics keeps springs, weight and the drag
+//! of a current, whose forces are held while the shape is sought.
 
 mod bending;
 
@@ -23,6 +24,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::math::block_tridiagonal::{Chain, DenseSystem};
 use crate::model::{End, FreePoint, Line, LineState, Model, Network, PointState, State};
+use crate::physics::flow::Stream;
 use crate::physics::morison::{DragCoefficients, drag, drag_slope};
 use crate::physics::seabed::ContactCoefficients;
 use crate::physics::stretch::total_tension;
@@ -97,6 +99,8 @@ pub(crate) struct LineWork {
     pub reach: Vec<f64>,
     /// Greatest push of the segments [N]; 0 in lines without bending stiffness.
     pub push: Vec<f64>,
+    /// Drag of the current that statics holds for a while, per node [N]; empty where none acts.
+    pub load: Vec<Vector3<f64>>,
     /// Joints, where the line has bending stiffness.
     pub bending: Option<BendingWork>,
     /// Elimination where nothing bends.
@@ -136,6 +140,7 @@ impl Workspace {
                 history: vec![Vector3::zeros(); n + 1],
                 reach: vec![0.0; n + 1],
                 push: vec![0.0; n],
+                load: vec![Vector3::zeros(); if line.drifts(model) { n + 1 } else { 0 }],
                 bending: line.bending.as_ref().map(|_| BendingWork::new(n + 1)),
                 chain: Chain::new(n + 1),
             }
@@ -288,6 +293,9 @@ impl LineWork {
             let parts = Parts::AT_REST;
             self.add_bending(bending, clamps, [position, &[]], &parts);
         }
+        for (residual, load) in self.residual.iter_mut().zip(&self.load) {
+            *residual -= case.load * load;
+        }
         for (i, r) in position.iter().enumerate() {
             self.residual[i].z += case.load * line.nodes.weight[i];
             for axis in 0..3 {
@@ -340,6 +348,7 @@ impl LineWork {
         line: &Line,
         state: &LineState,
         clamps: [Option<Vector3<f64>>; 2],
+        stream: Option<Stream>,
         weights: &Weights,
         negative_tension: bool,
     ) {
@@ -354,7 +363,7 @@ impl LineWork {
         }
         self.add_weight_and_inertia::<TANGENT>(line, state, weights);
         if line.nodes.drag.is_some() {
-            self.add_drag::<TANGENT>(line, state, weights);
+            self.add_drag::<TANGENT>(line, state, stream, weights);
         }
         if line.nodes.contact.is_some() {
             self.add_contact::<TANGENT>(line, state, weights);
@@ -456,7 +465,13 @@ impl LineWork {
         }
     }
 
-    fn add_drag<const TANGENT: bool>(&mut self, line: &Line, state: &LineState, weights: &Weights) {
+    fn add_drag<const TANGENT: bool>(
+        &mut self,
+        line: &Line,
+        state: &LineState,
+        stream: Option<Stream>,
+        weights: &Weights,
+    ) {
         let Some(coefficients) = &line.nodes.drag else {
             return;
         };
@@ -465,10 +480,17 @@ impl LineWork {
                 normal: coefficients.normal[i],
                 tangent: coefficients.tangent[i],
             };
-            let (t, v) = (node_tangent(&state.position, i), state.velocity[i]);
+            let (t, z) = (node_tangent(&state.position, i), state.position[i].z);
+            let flow = stream.map_or(Vector3::zeros(), |stream| stream.velocity(z));
+            let v = state.velocity[i] - flow;
             self.residual[i] -= weights.force * drag(k, v, t);
             if TANGENT {
-                self.diagonal[i] += weights.velocity * drag_slope(k, v, t);
+                let slope = drag_slope(k, v, t);
+                self.diagonal[i] += weights.velocity * slope;
+                if let Some(stream) = stream {
+                    let mut by_height = self.diagonal[i].column_mut(2);
+                    by_height -= weights.position * slope * stream.shear(z);
+                }
             }
         }
     }
@@ -608,12 +630,14 @@ impl Workspace {
         weights: &Weights,
     ) {
         let negative_tension = model.solver.negative_tension;
+        let stream = model.stream(t);
         for &index in &network.lines {
             let (line, line_state) = (&model.lines[index], &state.lines[index]);
             self.lines[index].assemble_dynamic::<TANGENT>(
                 line,
                 line_state,
                 line.clamps(&state.points),
+                stream,
                 weights,
                 negative_tension,
             );
@@ -913,7 +937,15 @@ pub fn end_force(
         &mut work.lines[line],
     );
     line_work.fade_dampers(line_model, line_state, 0.0);
-    line_work.assemble_dynamic::<false>(line_model, line_state, clamps, &weights, negative_tension);
+    let stream = model.stream(state.time);
+    line_work.assemble_dynamic::<false>(
+        line_model,
+        line_state,
+        clamps,
+        stream,
+        &weights,
+        negative_tension,
+    );
     -line_work.residual[line_model.end_node(end)]
 }
 
