@@ -135,8 +135,8 @@ const SLIPS: &[Refusal] = &[
     ),
     (
         "[seabed]",
-        "[vessels]\n[seabed]",
-        "7:2: vessels: unknown key `vessels`",
+        "[bodies]\n[seabed]",
+        "7:2: bodies: unknown key `bodies`",
     ),
     (
         "mass = 100.0",
@@ -306,12 +306,12 @@ const SLIPS: &[Refusal] = &[
     (
         "fairlead = { x = [[1.0, 10.0]] }",
         r#"fairlead = { file = "a.csv", ramp = 2.0 }"#,
-        "44:12: motion.fairlead: `x`, `y`, `z` and `ramp` cannot be given beside `file` or `table`",
+        "44:12: motion.fairlead: `x`, `y`, `z`, `roll`, `pitch`, `yaw` and `ramp` cannot be given beside `file` or `table`",
     ),
     (
         "fairlead = { x = [[1.0, 10.0]] }",
         "fairlead = { table = [[0.0, 1.0, 2.0]] }",
-        "44:23: motion.fairlead.table[0]: expected an array of 4 numbers, found an array of 3",
+        "44:23: motion.fairlead.table[0]: expected an array of 4 numbers (t, x, y, z), or of 7 (with roll, pitch, yaw of a vessel), found an array of 3",
     ),
     (
         "fairlead = { x = [[1.0, 10.0]] }",
@@ -321,7 +321,7 @@ const SLIPS: &[Refusal] = &[
     (
         "fairlead = { x = [[1.0, 10.0]] }",
         "fairlead = { surge = [[1.0, 10.0]] }",
-        "44:14: motion.fairlead.surge: unknown key `surge` (known keys: file, table, x, y, z, ramp)",
+        "44:14: motion.fairlead.surge: unknown key `surge` (known keys: file, table, x, y, z, roll, pitch, yaw, ramp)",
     ),
 ];
 
@@ -585,14 +585,110 @@ const POINTS: &[Refusal] = &[
     (
         "fairlead = { x = [[1.0, 10.0]] }",
         "farlead = { x = [[1.0, 10.0]] }",
-        "44:11: motion.farlead: no coupled point is called `farlead`, did you mean `fairlead`? (coupled points: fairlead)",
+        "44:11: motion.farlead: no coupled point or vessel is called `farlead`, did you mean `fairlead`? (coupled points and vessels: fairlead)",
     ),
     (
         "fairlead = { x = [[1.0, 10.0]] }",
         "anchor = { x = [[1.0, 10.0]] }",
-        "44:10: motion.anchor: `anchor` is fixed, and [motion] moves coupled points only",
+        "44:10: motion.anchor: `anchor` is fixed, and [motion] moves coupled points and vessels only",
     ),
 ];
+
+const STIFF: &[Refusal] = &[
+    (
+        "drag_normal = 1.2",
+        "bending_stiffness = -1.0",
+        "14:21: line_types.chain.bending_stiffness: -1 N m² is negative",
+    ),
+    (
+        "drag_normal = 1.2",
+        "fibres = 0\nbending_stiffness = 5.0",
+        "14:10: line_types.chain.fibres: 0 fibres: a section has 1 or more of them",
+    ),
+    (
+        "drag_normal = 1.2",
+        "fibres = 20",
+        "14:10: line_types.chain.fibres: fibres share a bending stiffness: give `bending_stiffness` [N m²] or `solid_section` too",
+    ),
+    (
+        "drag_normal = 1.2",
+        "solid_section = { diameter = 0.1, youngs_modulus = 0.0 }",
+        "14:52: line_types.chain.solid_section.youngs_modulus: 0 Pa is not positive",
+    ),
+    (
+        "drag_normal = 1.2",
+        "solid_section = { diameter = 0.1 }",
+        "14:17: line_types.chain.solid_section: missing key `youngs_modulus` [Pa]",
+    ),
+    (
+        "drag_normal = 1.2",
+        "shear_stiffness = 1.0e4",
+        "14:19: line_types.chain.shear_stiffness: only a beam has it: write model = \"beam\" or leave it out",
+    ),
+    (
+        "drag_normal = 1.2",
+        "model = \"rod\"",
+        "14:9: line_types.chain.model: unknown value `rod` (known values: cable, beam)",
+    ),
+    (
+        "drag_normal = 1.2",
+        "model = \"beam\"",
+        "10:1: line_types.chain: a beam needs `bending_stiffness` [N m²], or a `solid_section` that it follows from",
+    ),
+    (
+        "to = \"buoy\"",
+        "to = \"buoy\"\nclamped_a = [0.0, 0.0, 1.0]",
+        "35:13: lines[0].clamped_a: a perfectly flexible line cannot be clamped: give its type a `bending_stiffness` [N m²]",
+    ),
+    (
+        "to = \"buoy\"",
+        "to = \"buoy\"\nclamped_b = [0.0, 0.0, 0.0]",
+        "35:13: lines[0].clamped_b: [0, 0, 0] is no direction",
+    ),
+    (
+        "kind = \"fixed\"",
+        "kind = \"fixed\"\nmoment = { x = 3.0 }",
+        "20:10: points[0].moment: a moment turns the end of a beam at a free point, and this one is fixed",
+    ),
+];
+
+#[test]
+fn stiffnesses_and_clamps_that_make_no_sense_are_refused() {
+    assert_refused(STIFF);
+}
+
+const VESSELS: &[Refusal] = &[
+    (
+        "kind = \"coupled\"",
+        "kind = \"coupled\"\non = \"platform\"",
+        "30:6: points[2].on: no vessel is called `platform`",
+    ),
+    (
+        "kind = \"fixed\"",
+        "kind = \"fixed\"\non = \"ship\"\n[[vessels]]\nname = \"ship\"",
+        "20:6: points[0].on: a point on a vessel moves with it, and this one is fixed: write kind = \"coupled\"",
+    ),
+    (
+        "kind = \"fixed\"",
+        "kind = \"fixed\"\n[[vessels]]\nname = \"fairlead\"",
+        "21:8: vessels[0].name: the name `fairlead` is taken by points[2]: take another",
+    ),
+    (
+        "kind = \"fixed\"",
+        "kind = \"fixed\"\n[[vessels]]\nname = \"ship\"\nattitude = [0.0, 180.0, 0.0]",
+        "22:18: vessels[0].attitude[1]: 180 rad is beyond the limit of",
+    ),
+    (
+        "fairlead = { x = [[1.0, 10.0]] }",
+        "fairlead = { pitch = [[0.1, 10.0]] }",
+        "44:12: motion.fairlead: a point does not turn: only vessels have `roll`, `pitch` and `yaw`",
+    ),
+];
+
+#[test]
+fn vessels_and_motions_that_make_no_sense_are_refused() {
+    assert_refused(VESSELS);
+}
 
 #[test]
 fn functions_of_time_that_make_no_sense_are_refused() {
@@ -794,7 +890,7 @@ const SETTINGS: &[Refusal] = &[
     (
         "[output]",
         "[solver]\nintegrator = \"rk4\"\n[output]",
-        "47:14: solver.integrator: unknown value `rk4` (known values: auto, leapfrog, axial_implicit, generalised_alpha, bossak, quasi_static)",
+        "47:14: solver.integrator: unknown value `rk4` (known values: auto, leapfrog, axial_implicit, generalised_alpha, bossak, beam, quasi_static)",
     ),
     (
         "[output]",
@@ -1035,11 +1131,11 @@ fn a_motion_file_with_a_mistake_is_refused_with_its_line() {
     let cases: [(&[u8], &str); 8] = [
         (
             b"",
-            "line 1: the header must be \"time,x,y,z\" [s, m], found \"\"",
+            "line 1: the header must be \"time,x,y,z\" [s, m] or \"time,x,y,z,roll,pitch,yaw\" [s, m, rad], found \"\"",
         ),
         (
             b"0,0,0,0\n1,0,0,0\n",
-            "line 1: the header must be \"time,x,y,z\" [s, m], found \"0,0,0,0\"",
+            "line 1: the header must be \"time,x,y,z\" [s, m] or \"time,x,y,z,roll,pitch,yaw\" [s, m, rad], found \"0,0,0,0\"",
         ),
         (b"time,x,y,z\n", "motion.csv: no rows below the header"),
         (

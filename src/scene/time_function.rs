@@ -235,7 +235,7 @@ fn turning(rows: &[MotionRow]) -> bool {
 )]
 struct MotionText {
     file: Option<String>,
-    table: Option<Vec<Vec<f64>>>,
+    table: Option<Vec<TableRow>>,
     x: Option<Vec<Vec<f64>>>,
     y: Option<Vec<Vec<f64>>>,
     z: Option<Vec<Vec<f64>>>,
@@ -267,10 +267,7 @@ impl TryFrom<MotionText> for MotionPath {
                 file,
                 rows: Vec::new(),
             })),
-            (None, Some(rows)) => {
-                let rows = rows.iter().enumerate().map(|(i, row)| table_row(i, row));
-                rows.collect::<Result<_, _>>().map(MotionPath::Table)
-            }
+            (None, Some(rows)) => Ok(MotionPath::Table(rows.iter().map(|row| row.0).collect())),
             (None, None) if !swings => {
                 Err("a motion needs `x`, `y` or `z`, or `table`, or `file`; vessels also `roll`, `pitch` or `yaw`".into())
             }
@@ -288,17 +285,32 @@ impl TryFrom<MotionText> for MotionPath {
 }
 
 /// A row of 4 numbers, or of 7 with the rotations.
-fn table_row(index: usize, numbers: &[f64]) -> Result<MotionRow, String> {
-    let mut row = [0.0; 7];
-    match numbers.len() {
-        n @ (4 | 7) => row[..n].copy_from_slice(numbers),
-        n => {
-            return Err(format!(
-                "row {index} (from 0) of the table has {n} numbers: write [t, x, y, z], or [t, x, y, z, roll, pitch, yaw] of a vessel"
-            ));
+#[derive(Clone, serde::Serialize, serde::Deserialize)]
+#[serde(try_from = "Vec<f64>", into = "Vec<f64>")]
+struct TableRow(MotionRow);
+
+impl TryFrom<Vec<f64>> for TableRow {
+    type Error = String;
+
+    fn try_from(numbers: Vec<f64>) -> Result<Self, Self::Error> {
+        let mut row = [0.0; 7];
+        match numbers.len() {
+            n @ (4 | 7) => row[..n].copy_from_slice(&numbers),
+            n => {
+                return Err(format!(
+                    "expected an array of 4 numbers (t, x, y, z), or of 7 (with roll, pitch, yaw of a vessel), found an array of {n}"
+                ));
+            }
         }
+        Ok(TableRow(row))
     }
-    Ok(row)
+}
+
+impl From<TableRow> for Vec<f64> {
+    fn from(TableRow(row): TableRow) -> Vec<f64> {
+        let width = if turning(&[row]) { 7 } else { 4 };
+        row[..width].to_vec()
+    }
 }
 
 impl Serialize for MotionPath {
@@ -308,8 +320,7 @@ impl Serialize for MotionPath {
         match self {
             MotionPath::File(file) if file.rows.is_empty() => text.file = Some(file.file.clone()),
             MotionPath::File(MotionFile { rows, .. }) | MotionPath::Table(rows) => {
-                let width = if turning(rows) { 7 } else { 4 };
-                text.table = Some(rows.iter().map(|row| row[..width].to_vec()).collect());
+                text.table = Some(rows.iter().copied().map(TableRow).collect());
             }
             MotionPath::Harmonic(harmonic) => {
                 let turn = |axis: &Vec<Vec<f64>>| (!axis.is_empty()).then(|| axis.clone());

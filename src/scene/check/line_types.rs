@@ -149,6 +149,38 @@ fn check_stretch(findings: &mut Findings, at: &str, line_type: &LineType) {
 
 /// Bending of cables, and what beams need beside it.
 fn check_bending(findings: &mut Findings, at: &str, line_type: &LineType, scene: &Scene) {
+    check_stiffnesses(findings, at, line_type);
+    let bends = line_type.solid_section.is_some() || line_type.bending_stiffness > Some(0.0);
+    match line_type.fibres {
+        Some(0) => findings.say(
+            format!("{at}.fibres"),
+            "0 fibres: a section has 1 or more of them",
+        ),
+        Some(_) if !bends => findings.say(
+            format!("{at}.fibres"),
+            "fibres share a bending stiffness: give `bending_stiffness` [N m²] or `solid_section` too",
+        ),
+        _ => {}
+    }
+    if line_type.model == LineModel::Beam || scene.solver.integrator == Integrator::Beam {
+        check_beam(findings, at, line_type);
+        return;
+    }
+    let beam_only = [
+        ("shear_stiffness", line_type.shear_stiffness),
+        ("torsional_stiffness", line_type.torsional_stiffness),
+        ("rotary_inertia", line_type.rotary_inertia),
+    ];
+    for (key, value) in beam_only {
+        if value.is_some() {
+            let problem = "only a beam has it: write model = \"beam\" or leave it out";
+            findings.say(format!("{at}.{key}"), problem);
+        }
+    }
+}
+
+/// Numbers that bending, shear and torsion follow from.
+fn check_stiffnesses(findings: &mut Findings, at: &str, line_type: &LineType) {
     if let Some(section) = &line_type.solid_section {
         let at = format!("{at}.solid_section");
         let (diameter, modulus) = (section.diameter, section.youngs_modulus);
@@ -191,33 +223,6 @@ fn check_bending(findings: &mut Findings, at: &str, line_type: &LineType, scene:
     ];
     for (key, value, bounds, unit) in rows {
         findings.number_if(format!("{at}.{key}"), value, bounds, unit);
-    }
-    let bends = line_type.solid_section.is_some() || line_type.bending_stiffness > Some(0.0);
-    match line_type.fibres {
-        Some(0) => findings.say(
-            format!("{at}.fibres"),
-            "0 fibres: a section has 1 or more of them",
-        ),
-        Some(_) if !bends => findings.say(
-            format!("{at}.fibres"),
-            "fibres share a bending stiffness: give `bending_stiffness` [N m²] or `solid_section` too",
-        ),
-        _ => {}
-    }
-    if line_type.model == LineModel::Beam || scene.solver.integrator == Integrator::Beam {
-        check_beam(findings, at, line_type);
-        return;
-    }
-    let beam_only = [
-        ("shear_stiffness", line_type.shear_stiffness),
-        ("torsional_stiffness", line_type.torsional_stiffness),
-        ("rotary_inertia", line_type.rotary_inertia),
-    ];
-    for (key, value) in beam_only {
-        if value.is_some() {
-            let problem = "only a beam has it: write model = \"beam\" or leave it out";
-            findings.say(format!("{at}.{key}"), problem);
-        }
     }
 }
 
