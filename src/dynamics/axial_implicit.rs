@@ -392,29 +392,43 @@ impl AxialWork {
                 mass_tangent = mass_tangent + half * damping;
                 force = force - velocity.scale(damping);
             }
-            let across = mass_normal.recip();
-            let excess = mass_tangent.recip() - across;
-            let response = tangent.scale(excess * tangent.z);
-            let inverted = force.scale(across) + tangent.scale(excess * force.dot(tangent));
-            let nodes = &mut self.nodes;
-            across.store(&mut nodes.across, at);
-            excess.store(&mut nodes.excess, at);
-            nodes.tangent.store(tangent, at);
-            nodes.response.store(
-                Vectors {
-                    z: response.z + across,
-                    ..response
-                },
-                at,
-            );
-            nodes.fall.store(velocity + inverted.scale(kick), at);
-            nodes.loose.store(velocity + inverted.scale(kick), at);
+            self.invert_mass(at, tangent, [mass_normal, mass_tangent], force, kick);
             if self.layout.contact.is_some() {
                 self.touches(at, velocity.z, step)
                     .store(&mut self.nodes.touches, at);
                 self.settle(at, step);
             }
         }
+    }
+
+    /// The inverse mass of nodes, and how they fall under a force without tension.
+    #[inline(always)]
+    fn invert_mass(
+        &mut self,
+        at: usize,
+        tangent: Vectors,
+        [mass_normal, mass_tangent]: [Lanes; 2],
+        force: Vectors,
+        kick: Lanes,
+    ) {
+        let velocity = self.layout.velocity.load(at);
+        let across = mass_normal.recip();
+        let excess = mass_tangent.recip() - across;
+        let response = tangent.scale(excess * tangent.z);
+        let inverted = force.scale(across) + tangent.scale(excess * force.dot(tangent));
+        let nodes = &mut self.nodes;
+        across.store(&mut nodes.across, at);
+        excess.store(&mut nodes.excess, at);
+        nodes.tangent.store(tangent, at);
+        nodes.response.store(
+            Vectors {
+                z: response.z + across,
+                ..response
+            },
+            at,
+        );
+        nodes.fall.store(velocity + inverted.scale(kick), at);
+        nodes.loose.store(velocity + inverted.scale(kick), at);
     }
 
     /// Held ends move by the secant of their path and yield to no force.

@@ -70,6 +70,46 @@ impl WaterWork {
         })
     }
 
+    /// What the water resists with at t_n, and the power of the drag on the water's way.
+    #[inline(always)]
+    fn drag_now<const CURRENT: bool>(
+        &self,
+        line: &Layout,
+        at: usize,
+        tangent: Vectors,
+        step: Step,
+    ) -> (Vectors, Lanes) {
+        let velocity = line.velocity_now(at, step);
+        let still = Lanes::splat(0.0);
+        if CURRENT {
+            let flow = line.water_velocity(at);
+            let drag = self.drag(at, velocity - flow, tangent);
+            (drag, still - drag.dot(flow))
+        } else {
+            (self.drag(at, velocity, tangent), still)
+        }
+    }
+
+    /// M⁻¹f, and M⁻¹ẑ for the bed.
+    #[inline(always)]
+    fn inverted(
+        &self,
+        at: usize,
+        inverse_mass: Lanes,
+        force: Vectors,
+        tangent: Vectors,
+    ) -> (Vectors, Vectors) {
+        let excess = Lanes::load(&self.inverse_mass_excess, at);
+        let response = tangent.scale(excess * tangent.z);
+        (
+            force.scale(inverse_mass) + tangent.scale(excess * force.dot(tangent)),
+            Vectors {
+                z: response.z + inverse_mass,
+                ..response
+            },
+        )
+    }
+
     /// K_n |u_n| u_n + K_t |u_t| u_t.
     #[inline(always)]
     fn drag(&self, at: usize, velocity: Vectors, tangent: Vectors) -> Vectors {
@@ -301,29 +341,16 @@ impl LineWork {
                 let damping = line.mass_damping.as_deref().unwrap_or_default();
                 resistance = velocity.scale(Lanes::load(damping, at));
             }
-            let mut by_current = zero; // work of the drag on the water's way
+            let mut current_power = zero;
             // M⁻¹f, and M⁻¹ẑ for the bed
             let (inverted, response) = if WATER {
                 let water = self.water.as_ref().expect("this kernel runs in water");
                 let tangent = line.tangent(at);
-                if CURRENT {
-                    let flow = line.water_velocity(at);
-                    let drag = water.drag(at, line.velocity_now(at, step) - flow, tangent);
-                    resistance = resistance + drag;
-                    by_current = zero - drag.dot(flow) * kick;
-                } else {
-                    resistance = resistance + water.drag(at, line.velocity_now(at, step), tangent);
-                }
+                let (drag, power) = water.drag_now::<CURRENT>(line, at, tangent, step);
+                resistance = resistance + drag;
+                current_power = power;
                 force = force - resistance;
-                let excess = Lanes::load(&water.inverse_mass_excess, at);
-                let response = tangent.scale(excess * tangent.z);
-                (
-                    force.scale(inverse_mass) + tangent.scale(excess * force.dot(tangent)),
-                    Vectors {
-                        z: response.z + inverse_mass,
-                        ..response
-                    },
-                )
+                water.inverted(at, inverse_mass, force, tangent)
             } else {
                 force = force - resistance;
                 (
@@ -350,7 +377,7 @@ impl LineWork {
                 self.lost = self.lost + half * given_away;
             }
             if CURRENT {
-                let given = Lanes::load(&self.interior, at) * by_current;
+                let given = Lanes::load(&self.interior, at) * current_power * kick;
                 self.given_by_current = self.given_by_current + given;
                 self.lost = self.lost + given;
             }
