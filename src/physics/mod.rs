@@ -1,5 +1,6 @@
 //! One law per file, pointwise: value, exact slopes and energy. No scene, no index, no loop over nodes.
 
+pub mod airy;
 pub mod bending;
 pub mod contact_step;
 pub mod flow;

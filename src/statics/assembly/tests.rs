@@ -250,8 +250,8 @@ fn the_convex_tangent_of_a_bent_line_has_positive_pivots() {
     let mut sum = Vector3::zeros();
     let line = &work.lines[0];
     let x = line.solution();
-    for j in 0..4 {
-        sum += block(line, 2, j) * x[j];
+    for (j, x) in x.iter().enumerate().take(4) {
+        sum += block(line, 2, j) * x;
     }
     sum += block(line, 2, 4) * x[4];
     assert_relative_eq!(sum, line.residual[2], epsilon = 1e-6);
