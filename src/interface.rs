@@ -95,6 +95,8 @@ impl Unit {
     pub const NEWTON_SECOND: Unit = Unit::of("N.s", 1, 1, -1);
     /// Kilogram per metre.
     pub const KILOGRAM_PER_METRE: Unit = Unit::of("kg/m", 1, -1, 0);
+    /// Kilogram metre.
+    pub const KILOGRAM_METRE: Unit = Unit::of("kg.m", 1, 1, 0);
     /// Kilogram per cubic metre.
     pub const KILOGRAM_PER_CUBIC_METRE: Unit = Unit::of("kg/m3", 1, -3, 0);
     /// Joule.

@@ -7,6 +7,10 @@
 //! M = M_n I + (M_t − M_n) t tᵀ,                                        t along the line
 //! ```
 //!
+//! Where lines have bending stiffness, every node is a joint as well: −∂/∂x_i of Σ ½ (EI/l̄) |κb|² is added, κb being the discrete
+//! curvature between the unit vectors of two segments ([`physics::bending`]). Lines may be geometrically exact beams instead, with
+//! shear, torsion and rotary inertia ([`physics::section`]). Points may ride on vessels that a host moves.
+//!
 //! SI units throughout. z points up, z = 0 is the still water level, the seabed lies at z = −depth. Lines run from end A (the
 //! anchor) to end B (the fairlead), and arc length counts unstretched metres from A. Forces at points are those that the
 //! mooring applies to what holds the point.

@@ -336,12 +336,7 @@ impl Simulation {
     /// Force [N] and moment [N m] of the mooring on a vessel, about its origin, in global axes.
     pub fn vessel_force(&self, vessel: usize) -> [f64; 6] {
         let model = &*self.model;
-        let at = Held {
-            model,
-            paths: &self.snapshot.paths,
-            follows_scene: self.snapshot.follows_scene,
-        };
-        let origin = at.frame(vessel, self.time()).origin.position;
+        let origin = self.vessel_origin(vessel);
         let mut sum = Vector6::zeros();
         for (index, point) in model.points.iter().enumerate() {
             if !matches!(point.role, Role::Carried { vessel: carrier, .. } if carrier == vessel) {
@@ -353,6 +348,42 @@ impl Simulation {
             sum += Vector6::new(force.x, force.y, force.z, moment.x, moment.y, moment.z);
         }
         sum.into()
+    }
+
+    /// Stiffness of the mooring on a vessel as it is now: minus the change of the static part of [`Simulation::vessel_force`], in [N/m]
+    /// and [N], and moment, in [N] and [N m], with displacement along and small rotation about the global axes through the vessel's
+    /// origin; rows of force. `None` where the lines are not stable as they are, or one of them is a beam. See
+    /// [`statics::stiffness`].
+    pub fn vessel_stiffness(&self, vessel: usize) -> Option<[[f64; 6]; 6]> {
+        let (model, state) = (&*self.model, &self.snapshot.state);
+        let mut work = assembly::Workspace::new(model);
+        let origin = self.vessel_origin(vessel);
+        let stiffness = statics::stiffness::of_vessel(model, state, vessel, origin, &mut work)?;
+        Some(stiffness.transpose().into()) // an array of columns
+    }
+
+    /// Force [N, N m] and stiffness [N/m, N, N m] of the mooring on a vessel were it at rest as it is now, every network that has one on
+    /// its closed-form catenaries and the others on their elements. The closed form has bed friction and no error of a mesh; of a network
+    /// on its elements this is the present force and stiffness.
+    pub fn vessel_at_rest(&self, vessel: usize) -> ([f64; 6], Option<[[f64; 6]; 6]>) {
+        let mut hung = self.clone();
+        let (model, time) = (&*self.model, self.time());
+        let mut work = assembly::Workspace::new(model);
+        for number in 0..model.networks.len() {
+            let state = &mut hung.snapshot.state;
+            catenary_network::solve_network(model, number, state, time, &mut work);
+        }
+        (hung.vessel_force(vessel), hung.vessel_stiffness(vessel))
+    }
+
+    /// Where the origin of a vessel is now [m].
+    fn vessel_origin(&self, vessel: usize) -> Vector3<f64> {
+        let at = Held {
+            model: &self.model,
+            paths: &self.snapshot.paths,
+            follows_scene: self.snapshot.follows_scene,
+        };
+        at.frame(vessel, self.time()).origin.position
     }
 
     /// Moment [N m] of the lines that are clamped to a point on what holds it, in global axes.

@@ -24,9 +24,36 @@ pub fn statics(path: &Path, as_json: bool) -> Result<(), Failure> {
     for point in &statics.points {
         points.row(&point.name, &point.force);
     }
+    let vessels: String = statics.vessels.iter().map(vessel_tables).collect();
     let mut text = String::new();
     if !statics.title.is_empty() {
         writeln!(text, "{}\n", statics.title).expect("a string takes any text");
     }
-    print(&format!("{text}{}\n{points}", static_table(&record)))
+    print(&format!(
+        "{text}{}\n{points}{vessels}",
+        static_table(&record)
+    ))
+}
+
+/// Force and stiffness of the mooring on a vessel.
+fn vessel_tables(vessel: &json::Vessel) -> String {
+    let name = &vessel.name;
+    let head = format!("{name}: force [N] and moment [N m] of the lines");
+    let mut force = Table::new(&[&head, "x", "y", "z", "roll", "pitch", "yaw"]);
+    force.row("closed form where there is one", &vessel.hold.force);
+    force.row("elements", &vessel.elements.force);
+    let Some(stiffness) = &vessel.hold.stiffness else {
+        return format!(
+            "\n{force}\n{name}: no stiffness, for a beam holds it or nothing holds the lines\n"
+        );
+    };
+    let head = format!("{name}: stiffness [N/m, N/rad, N, N m/rad]");
+    let mut table = Table::new(&[&head, "x", "y", "z", "roll", "pitch", "yaw"]);
+    for (row, name) in stiffness
+        .iter()
+        .zip(["x", "y", "z", "roll", "pitch", "yaw"])
+    {
+        table.row(name, row);
+    }
+    format!("\n{force}\n{table}")
 }

@@ -1,7 +1,7 @@
 //! What the static solution, and so every output during initialization, depends on.
 //!
 //! Lines that share free points are one network; a network depends on the displacements of the coupled points that it
-//! hangs on and on the parameters that enter its equilibrium. Velocities, drag, added mass and damping do not: nothing
+//! hangs on and on the parameters that enter its equilibrium. Velocities, drag, added mass, rotary inertia and damping do not: nothing
 //! moves. The closed-form catenary is that of the reference configuration and so depends on no displacement.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -139,8 +139,11 @@ impl Scope<'_> {
             Property::Diameter => {
                 self.is_buoyant(name) || (self.scene.seabed.is_some() && !self.closed_form)
             }
-            Property::BendingStiffness => !self.closed_form,
-            Property::AxialDamping
+            Property::BendingStiffness
+            | Property::ShearStiffness
+            | Property::TorsionalStiffness => !self.closed_form,
+            Property::RotaryInertia
+            | Property::AxialDamping
             | Property::DampingRatio
             | Property::DragNormal
             | Property::DragTangential

@@ -45,6 +45,12 @@ pub enum Property {
     AxialStiffness,
     /// Bending stiffness EI of one solid section [N m²].
     BendingStiffness,
+    /// Shear stiffness GA of a beam [N].
+    ShearStiffness,
+    /// Torsional stiffness GJ of a beam [N m²].
+    TorsionalStiffness,
+    /// Rotary inertia of a beam's section per length [kg m].
+    RotaryInertia,
     /// Axial damping BA [N s].
     AxialDamping,
     /// Axial damping as a ratio of the critical [-].
@@ -60,7 +66,7 @@ pub enum Property {
 }
 
 /// Properties with key, unit and meaning.
-const PROPERTIES: [(Property, &str, Unit, &str); 11] = [
+const PROPERTIES: [(Property, &str, Unit, &str); 14] = [
     (
         Property::AxialStiffness,
         "axial_stiffness",
@@ -72,6 +78,24 @@ const PROPERTIES: [(Property, &str, Unit, &str); 11] = [
         "bending_stiffness",
         Unit::NEWTON_SQUARE_METRE,
         "bending stiffness EI of one solid section",
+    ),
+    (
+        Property::ShearStiffness,
+        "shear_stiffness",
+        Unit::NEWTON,
+        "shear stiffness GA of beams",
+    ),
+    (
+        Property::TorsionalStiffness,
+        "torsional_stiffness",
+        Unit::NEWTON_SQUARE_METRE,
+        "torsional stiffness GJ of beams",
+    ),
+    (
+        Property::RotaryInertia,
+        "rotary_inertia",
+        Unit::KILOGRAM_METRE,
+        "rotary inertia of a beam's section per unstretched length",
     ),
     (
         Property::Mass,
@@ -137,6 +161,9 @@ impl Property {
             Property::Diameter => line_type.diameter,
             Property::AxialStiffness => Some(line_type.axial_stiffness),
             Property::BendingStiffness => line_type.bending_stiffness,
+            Property::ShearStiffness => line_type.shear_stiffness,
+            Property::TorsionalStiffness => line_type.torsional_stiffness,
+            Property::RotaryInertia => line_type.rotary_inertia,
             Property::AxialDamping => line_type.axial_damping,
             Property::DampingRatio => line_type.damping_ratio,
             Property::DragNormal => line_type.drag_normal,
@@ -156,6 +183,9 @@ impl Property {
             Property::Weight => &mut line_type.weight,
             Property::Diameter => &mut line_type.diameter,
             Property::BendingStiffness => &mut line_type.bending_stiffness,
+            Property::ShearStiffness => &mut line_type.shear_stiffness,
+            Property::TorsionalStiffness => &mut line_type.torsional_stiffness,
+            Property::RotaryInertia => &mut line_type.rotary_inertia,
             Property::AxialDamping => &mut line_type.axial_damping,
             Property::DampingRatio => &mut line_type.damping_ratio,
             Property::DragNormal => &mut line_type.drag_normal,

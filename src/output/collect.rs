@@ -142,7 +142,21 @@ pub fn statics(scene: &Scene, simulation: &Simulation) -> json::Statics {
                 force: simulation.end_force(point),
             })
             .collect(),
-        vessels: Vec::new(),
+        vessels: (0..simulation.model().vessels.len())
+            .map(|vessel| static_vessel(simulation, vessel))
+            .collect(),
+    }
+}
+
+fn static_vessel(simulation: &Simulation, vessel: usize) -> json::Vessel {
+    let (force, stiffness) = simulation.vessel_at_rest(vessel);
+    json::Vessel {
+        name: simulation.model().vessels[vessel].name.clone(),
+        hold: json::Hold { force, stiffness },
+        elements: json::Hold {
+            force: simulation.vessel_force(vessel),
+            stiffness: simulation.vessel_stiffness(vessel),
+        },
     }
 }
 
@@ -163,6 +177,14 @@ fn static_line(simulation: &Simulation, line: usize) -> json::Line {
         laid_length: simulation.laid_length(line),
         stretched_length: simulation.stretched_length(line),
         sag: simulation.sag(line),
+        catenary: simulation.catenary(line).map(|closed| json::Catenary {
+            tension_a: closed.tension_a(),
+            tension_b: closed.tension_b(),
+            horizontal: closed.horizontal(),
+            vertical: closed.vertical_b(),
+            laid_length: closed.laid_length() + 0.0, // an empty sum is −0
+            sag: closed.sag(),
+        }),
         profile: simulation
             .profile(line)
             .into_iter()

@@ -16,6 +16,9 @@
 //! | `lines[].laid_length` | m | unstretched length that lies on the seabed |
 //! | `lines[].stretched_length` | m | length of the line under tension |
 //! | `lines[].sag` | m | greatest vertical distance below the chord between the two ends |
+//! | `lines[].catenary` | | closed-form elastic catenary of the line with bed friction, beside the above; `null` where it has none: an end is free, or the strain is not engineering strain |
+//! | `….tension_a`, `tension_b` | N | axial tension at its ends |
+//! | `….horizontal`, `vertical`, `laid_length`, `sag` | N, m | as of the line |
 //! | `lines[].profile[]` | | nodes from end A to end B |
 //! | `….s` | m | unstretched arc length from end A |
 //! | `….x`, `y`, `z` | m | position |
@@ -30,7 +33,12 @@
 //! | `vessels[]` | | vessels in the order of the scene; empty where the scene has none |
 //! | `vessels[].name` | | name of the vessel |
 //! | `vessels[].force` | N, N m | force and moment that the mooring applies, about the vessel's origin |
-//! | `vessels[].stiffness` | N/m, N, N m | 6×6 rows: minus the change of `force` with each displacement and rotation |
+//! | `vessels[].stiffness` | N/m, N, N m | 6×6 rows: minus the change of `force` with each displacement and small rotation along and about the global axes through the vessel's origin; `null` where that has no answer: beams |
+//! | `vessels[].elements` | | `force` and `stiffness` again, of the lines' elements everywhere |
+//!
+//! `vessels[].force` and `.stiffness` are those of the closed-form catenaries, bed friction included, of every line that has one and
+//! meets only such lines at free points; those of the elements elsewhere. `lines[]`, `points[]` and `vessels[].elements` are those of the elements, unless
+//! the scene is quasi-static.
 
 use std::io::{self, Write};
 
@@ -70,8 +78,27 @@ pub struct Line {
     pub stretched_length: f64,
     /// Greatest vertical distance below the chord [m].
     pub sag: f64,
+    /// Its closed form, where it has one.
+    pub catenary: Option<Catenary>,
     /// Nodes from end A to end B.
     pub profile: Vec<ProfileNode>,
+}
+
+/// A closed-form catenary.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Catenary {
+    /// Axial tension at end A [N].
+    pub tension_a: f64,
+    /// Axial tension at end B [N].
+    pub tension_b: f64,
+    /// Horizontal part of the force at end B [N].
+    pub horizontal: f64,
+    /// Pull on end B downwards [N].
+    pub vertical: f64,
+    /// Unstretched length on the seabed [m].
+    pub laid_length: f64,
+    /// Greatest vertical distance below the chord [m].
+    pub sag: f64,
 }
 
 /// An end of a line.
@@ -119,10 +146,20 @@ pub struct Point {
 pub struct Vessel {
     /// Name of the vessel.
     pub name: String,
+    /// Of closed-form catenaries, where the lines have them.
+    #[serde(flatten)]
+    pub hold: Hold,
+    /// Of the lines' elements.
+    pub elements: Hold,
+}
+
+/// How the mooring holds a vessel.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Hold {
     /// Force [N] and moment [N m] of the mooring, about the vessel's origin.
     pub force: [f64; 6],
     /// Rows of the stiffness: minus the change of force [N/m, N] and moment [N, N m] with displacement and rotation.
-    pub stiffness: [[f64; 6]; 6],
+    pub stiffness: Option<[[f64; 6]; 6]>,
 }
 
 /// Writes the equilibrium as indented JSON with a line end behind it.
@@ -162,6 +199,7 @@ mod tests {
                 laid_length: 0.0,
                 stretched_length: 10.0,
                 sag: 0.5,
+                catenary: None,
                 profile: vec![node],
             }],
             points: vec![Point {
@@ -191,6 +229,7 @@ mod tests {
         assert_eq!(keys(&json), ["lines", "points", "title", "vessels"]);
         let line = &json["lines"][0];
         let documented = [
+            "catenary",
             "end_a",
             "end_b",
             "horizontal",

@@ -14,9 +14,9 @@
 //!   A = c_k [EA·N'/l₀ q qᵀ + T/l P + BA/(l l₀) q (P ġ)ᵀ] + c_c BA/l₀ q qᵀ.
 //!
 //! The geometric stiffness T/l P is never negative in a line that cannot push. A line with bending stiffness has the joints of
-//! [`bending`] at its nodes and pushes up to what its segments carry, T ≥ −P; its tangent is exact, or made such that it cannot be
-//! indefinite where `convex` is asked for. Statics keeps springs, weight and the drag
-//! of a current, whose forces are held while the shape is sought.
+//! `bending` at its nodes and pushes up to what its segments carry, T ≥ −P; its tangent is exact, or made such that it cannot be
+//! indefinite where `convex` is asked for. Statics keeps springs, weight and the drag of a current, whose forces are held while the
+//! shape is sought.
 
 mod bending;
 

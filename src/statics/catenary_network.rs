@@ -127,6 +127,107 @@ pub fn solve_network(
     true
 }
 
+/// How the lines of a network on its catenaries resist.
+pub(crate) struct HungNetwork {
+    /// In the order of the network.
+    pub lines: Vec<HungLine>,
+    /// Axes along which its free points cannot move.
+    held: Vec<[bool; 3]>,
+}
+
+/// How one line on its catenary resists.
+pub(crate) struct HungLine {
+    /// Forces on the points at ends A and B [N].
+    pub end_force: [Vector3<f64>; 2],
+    /// −∂F/∂r of those by the positions of ends A and B [N/m].
+    pub stiffness: [[Matrix3<f64>; 2]; 2],
+}
+
+/// The catenaries of a network between its points as they are; `None` where a line has none.
+pub(crate) fn hung(
+    model: &Model,
+    number: usize,
+    state: &State,
+    work: &mut Workspace,
+) -> Option<HungNetwork> {
+    let problem = Problem::new(model, number, state.time);
+    if !(serves(model, problem.network) && problem.evaluate(state, work)) {
+        return None;
+    }
+    let mut lines = Vec::with_capacity(problem.network.lines.len());
+    for &index in &problem.network.lines {
+        let [a, b] = model.lines[index]
+            .ends
+            .map(|end| state.points[end].position);
+        lines.push(HungLine {
+            end_force: Plane::new(a, b).end_forces(work.catenaries[index].as_ref()?),
+            stiffness: problem.line_stiffness(state, work, index),
+        });
+    }
+    let mut held = Vec::with_capacity(problem.network.free_points.len());
+    for_free_points(model, problem.network, |index, free| {
+        held.push([0, 1, 2].map(|axis| problem.is_held(state, work, index, free.axes, axis)));
+    });
+    Some(HungNetwork { lines, held })
+}
+
+impl HungNetwork {
+    /// How the ends A and B of every line move [m] as held points do by `moved` [m] and the free points follow; `None` where those
+    /// find no balance.
+    pub(crate) fn respond(
+        &self,
+        model: &Model,
+        number: usize,
+        moved: impl Fn(usize) -> Vector3<f64>,
+        work: &mut Workspace,
+    ) -> Option<Vec<[Vector3<f64>; 2]>> {
+        let network = &model.networks[number];
+        let system = &mut work.systems[number];
+        system.clear();
+        let blocks = self
+            .lines
+            .iter()
+            .flat_map(|line| line.stiffness.iter().flatten());
+        let stiffest = blocks.map(Matrix3::amax).fold(0.0, f64::max);
+        let rounding = Matrix3::from_diagonal_element(8.0 * f64::EPSILON * stiffest);
+        for slot in 0..self.held.len() {
+            system.add_block(slot, slot, &rounding);
+        }
+        for (&index, line) in network.lines.iter().zip(&self.lines) {
+            let ends = model.lines[index].ends;
+            for (row, blocks) in ends.into_iter().zip(&line.stiffness) {
+                let Some(row) = work.points[row].slot else {
+                    continue;
+                };
+                for (column, block) in ends.into_iter().zip(blocks) {
+                    match work.points[column].slot {
+                        Some(column) => system.add_block(row, column, block),
+                        None => system.add_right(row, block * moved(column)),
+                    }
+                }
+            }
+        }
+        for (slot, held) in self.held.iter().enumerate() {
+            for axis in (0..3).filter(|&axis| held[axis]) {
+                system.hold(slot, axis);
+            }
+        }
+        if !system.solve() {
+            return None;
+        }
+        let of_point = |point: usize| match work.points[point].slot {
+            Some(slot) => -work.systems[number].solution(slot),
+            None => moved(point),
+        };
+        let lines = network.lines.iter();
+        Some(
+            lines
+                .map(|&line| model.lines[line].ends.map(of_point))
+                .collect(),
+        )
+    }
+}
+
 /// Ends of a line in the vertical plane through them.
 struct Plane {
     /// Horizontal direction from A to B [-].

@@ -7,6 +7,7 @@ pub mod catenary_network;
 pub mod equilibrium;
 mod guess;
 pub mod modes;
+pub mod stiffness;
 
 /// Why no equilibrium was found.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

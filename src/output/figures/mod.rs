@@ -1,4 +1,4 @@
-//! Figures of a run as SVG: profile against the static catenary, plan, tension and end force in time; of beams in free flight their shapes
+//! Figures of a run as SVG: profile against the static catenary, plan, tension, end force and bending in time; of beams in free flight their shapes
 //! and what they keep.
 //!
 //! Text is left to the viewer's sans-serif font: no font files are needed to draw.
@@ -56,6 +56,7 @@ pub fn all(record: &Record) -> Vec<(&'static str, String)> {
         ("plan", plan(record)),
         ("tension", tension(record)),
         ("force", force(record)),
+        ("bending", bending(record)),
     ])
 }
 
@@ -152,12 +153,45 @@ pub fn force(record: &Record) -> Option<String> {
     (!charts.is_empty()).then(|| chart::stacked_svg(&charts))
 }
 
+/// Greatest curvature and bending moment along every line that bends, in time. `None` where none does.
+pub fn bending(record: &Record) -> Option<String> {
+    let histories = |result: &str| -> Vec<Curve> {
+        let lines = record.lines.iter().enumerate();
+        let curves = lines.filter_map(|(index, line)| {
+            let history = record.history(&format!("{}.{result}", line.name))?;
+            Some(Curve::new(history, colour(index), Stroke::Bold).named(&line.name))
+        });
+        curves.collect()
+    };
+    let curves = histories("curvature_max");
+    if curves.is_empty() {
+        return None;
+    }
+    let title = with_title("Greatest curvature", record);
+    let curvature = in_time(title, "curvature [1/m]".to_string(), curves);
+    let title = "Greatest bending moment".to_string();
+    let moment = moment_chart(title, histories("moment_max"))?;
+    Some(chart::stacked_svg(&[curvature, moment]))
+}
+
 fn history_chart(title: String, quantity: &str, curves: Vec<Curve>) -> Option<String> {
     Some(history_of(title, quantity, curves)?.svg())
 }
 
 /// Chart of forces [N] in time [s], in the multiple of the newton that fits.
 fn history_of(title: String, quantity: &str, mut curves: Vec<Curve>) -> Option<Chart> {
+    let unit = scale_to_unit(&mut curves)?;
+    Some(in_time(title, format!("{quantity} [{unit}]"), curves))
+}
+
+/// Chart of moments [N m] in time [s], in the multiple of the newton metre that fits.
+fn moment_chart(title: String, mut curves: Vec<Curve>) -> Option<Chart> {
+    let unit = scale_to_unit(&mut curves)?;
+    Some(in_time(title, format!("moment [{unit} m]"), curves))
+}
+
+/// Divides values [N], or [N m], by the multiple of the newton that fits, and returns its name. `None` without a finite value.
+fn scale_to_unit(curves: &mut [Curve]) -> Option<&'static str> {
     let values = curves.iter().flat_map(|c| &c.points).map(|p| p[1].abs());
     let greatest = values.filter(|v| v.is_finite()).fold(f64::NAN, f64::max);
     if greatest.is_nan() {
@@ -167,9 +201,13 @@ fn history_of(title: String, quantity: &str, mut curves: Vec<Curve>) -> Option<C
     for point in curves.iter_mut().flat_map(|c| &mut c.points) {
         point[1] /= size;
     }
+    Some(unit)
+}
+
+fn in_time(title: String, label: String, curves: Vec<Curve>) -> Chart {
     let x = Axis::fitting(&curves, 0, "time [s]".to_string());
-    let y = Axis::around(&curves, 1, format!("{quantity} [{unit}]"));
-    Some(Chart::new(title, x, y, curves, WIDTH, HISTORY_HEIGHT))
+    let y = Axis::around(&curves, 1, label);
+    Chart::new(title, x, y, curves, WIDTH, HISTORY_HEIGHT)
 }
 
 fn with_title(what: &str, record: &Record) -> String {
@@ -266,6 +304,7 @@ fn direction_label(cos: f64, sin: f64) -> String {
 
 #[cfg(test)]
 mod tests {
+    use super::super::record::Column;
     use super::super::sample;
     use super::*;
     use quick_xml::{Reader, events::Event};
@@ -314,6 +353,26 @@ mod tests {
         let force = labels(force(&record));
         for label in ["force [kN]", "fx", "fy", "fz"] {
             assert!(force.iter().any(|t| t == label), "{label} in {force:?}");
+        }
+    }
+
+    #[test]
+    fn lines_that_bend_have_a_figure_of_it_and_others_none() {
+        let sample = sample::record();
+        assert_eq!(bending(&sample), None);
+        let names = ["line1.curvature_max", "line1.moment_max"];
+        let columns = names.map(|name| Column {
+            name: name.to_string(),
+            unit: String::new(),
+            description: String::new(),
+        });
+        let mut record = Record::new("", columns.into());
+        record.lines = sample.lines;
+        record.add_row(0.0, [0.1, 8e3]);
+        record.add_row(1.0, [0.2, 16e3]);
+        let labels = texts(&bending(&record).unwrap());
+        for label in ["curvature [1/m]", "moment [kN m]", "line1"] {
+            assert!(labels.iter().any(|t| t == label), "{label} in {labels:?}");
         }
     }
 

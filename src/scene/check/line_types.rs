@@ -2,7 +2,7 @@
 
 use super::{Bounds, Findings, check_name, quantity};
 use crate::scene::path::quoted;
-use crate::scene::{Integrator, LineModel, LineType, Rayleigh, Scene, Strain};
+use crate::scene::{Integrator, LineModel, LineType, Rayleigh, Scene, SolidSection, Strain};
 
 pub(super) fn check(scene: &Scene, findings: &mut Findings) {
     for (name, line_type) in &scene.line_types {
@@ -147,6 +147,23 @@ fn check_stretch(findings: &mut Findings, at: &str, line_type: &LineType) {
     }
 }
 
+/// A solid section that stiffnesses follow from.
+fn check_solid_section(findings: &mut Findings, at: &str, section: &SolidSection) {
+    let rows = [
+        ("diameter", section.diameter, Bounds::Positive(100.0), "m"),
+        (
+            "youngs_modulus",
+            section.youngs_modulus,
+            Bounds::Positive(1e15),
+            "Pa",
+        ),
+        ("poisson", section.poisson, Bounds::Within(0.0, 0.5), "-"),
+    ];
+    for (key, value, bounds, unit) in rows {
+        findings.number(format!("{at}.{key}"), value, bounds, unit);
+    }
+}
+
 /// Bending of cables, and what beams need beside it.
 fn check_bending(findings: &mut Findings, at: &str, line_type: &LineType, scene: &Scene) {
     check_stiffnesses(findings, at, line_type);
@@ -182,22 +199,7 @@ fn check_bending(findings: &mut Findings, at: &str, line_type: &LineType, scene:
 /// Numbers that bending, shear and torsion follow from.
 fn check_stiffnesses(findings: &mut Findings, at: &str, line_type: &LineType) {
     if let Some(section) = &line_type.solid_section {
-        let at = format!("{at}.solid_section");
-        let (diameter, modulus) = (section.diameter, section.youngs_modulus);
-        findings.number(
-            format!("{at}.diameter"),
-            diameter,
-            Bounds::Positive(100.0),
-            "m",
-        );
-        findings.number(
-            format!("{at}.youngs_modulus"),
-            modulus,
-            Bounds::Positive(1e15),
-            "Pa",
-        );
-        let poisson = Bounds::Within(0.0, 0.5);
-        findings.number(format!("{at}.poisson"), section.poisson, poisson, "-");
+        check_solid_section(findings, &format!("{at}.solid_section"), section);
     }
     let stiff = Bounds::Positive(1e15);
     let rows = [

@@ -247,13 +247,9 @@ fn the_convex_tangent_of_a_bent_line_has_positive_pivots() {
     let network = &model.networks[0];
     work.assemble_dynamic::<true>(&model, network, &state, 0.0, &weights);
     assert!(work.solve(&model, network, 0));
-    let mut sum = Vector3::zeros();
     let line = &work.lines[0];
-    let x = line.solution();
-    for (j, x) in x.iter().enumerate().take(4) {
-        sum += block(line, 2, j) * x;
-    }
-    sum += block(line, 2, 4) * x[4];
+    let x = line.solution().iter().take(5).enumerate();
+    let sum: Vector3<f64> = x.map(|(j, x)| block(line, 2, j) * x).sum();
     assert_relative_eq!(sum, line.residual[2], epsilon = 1e-6);
 }
 
