@@ -427,6 +427,7 @@ impl Simulation {
             &state.lines[line],
             end,
             &state.points[point],
+            model.stream(state.time),
             negative,
         )
     }

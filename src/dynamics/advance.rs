@@ -174,8 +174,9 @@ impl Solver {
                     .spectral_radius
                     .unwrap_or(AXIAL_SPECTRAL_RADIUS);
                 let line = &model.lines[network.lines[0]];
+                let profile = model.current.as_ref().map(|current| &current.profile);
                 kernel(
-                    AxialWork::new(line, rho, negative)
+                    AxialWork::new(line, profile, rho, negative)
                         .map(|work| Solver::AxialImplicit(Box::new(work))),
                 )
             }
@@ -207,6 +208,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
         let (model, network) = (self.model, &self.model.networks[number]);
         for retry in 0..=RETRIES_MAX {
             work.load(network, self.state);
+            work.set_current(model, self.start);
             let count = self.substeps(step_max.min(1.0 / work.drag_rate(model, network)), retry)?;
             let drift = self.length / count as f64;
             let mut steps = self.state.lines[network.lines[0]].half_step.steps;
@@ -263,6 +265,9 @@ impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
             }
             for k in 1..=count {
                 let t = self.start + k as f64 * drift;
+                if let Some(stream) = self.model.stream(t - drift) {
+                    work.set_current(stream.factor);
+                }
                 let ends = line.ends.map(|point| (self.held)(point, t).position);
                 solves += work.step(Step::after(steps, drift), ends);
                 steps = [drift, steps[0]];

@@ -25,6 +25,7 @@ use super::leapfrog::Step;
 use super::ledger::Flow;
 use crate::math::lanes::{Components, Lanes, Vectors};
 use crate::model::{End, Line, LineState};
+use crate::physics::flow::Profile;
 use crate::physics::stretch::StretchLaw;
 
 /// Passes over slack and contact flags, at most [-].
@@ -55,6 +56,8 @@ pub struct AxialWork {
     segments: SegmentArrays,
     nodes: NodeArrays,
     rows: Rows,
+    /// The current at the nodes, where it acts on the line.
+    current: Option<CurrentArrays>,
     /// 1 for nodes between the ends, 0 elsewhere.
     interior: Vec<f64>,
     /// Energy lost and given since the state was loaded [J].
@@ -105,6 +108,16 @@ struct NodeArrays {
     loose: Components,
 }
 
+/// What a step knows of the water that flows past the nodes.
+#[derive(Debug, Clone)]
+struct CurrentArrays {
+    /// Velocity of the water [m/s].
+    flow: Components,
+    /// Drag over relative velocity, across and along the line [N s/m].
+    across: Vec<f64>,
+    along: Vec<f64>,
+}
+
 /// The tridiagonal system in T̄.
 #[derive(Debug, Clone)]
 struct Rows {
@@ -116,13 +129,23 @@ struct Rows {
 
 impl AxialWork {
     /// Scratch for a line; `None` where its sections have different strain measures, which the kernel does not mix.
-    pub fn new(line: &Line, rho: f64, negative_tension: bool) -> Option<AxialWork> {
-        let layout = Layout::new(line, negative_tension)?;
+    pub fn new(
+        line: &Line,
+        profile: Option<&Profile>,
+        rho: f64,
+        negative_tension: bool,
+    ) -> Option<AxialWork> {
+        let layout = Layout::new(line, profile, negative_tension)?;
         let n = layout.segment_count;
         let size = layout.weight.len();
         let (zeros, vectors) = (vec![0.0; size], Components::zeros(size));
         Some(AxialWork {
             interior: interior(n),
+            current: layout.current.as_ref().map(|_| CurrentArrays {
+                flow: vectors.clone(),
+                across: zeros.clone(),
+                along: zeros.clone(),
+            }),
             lost: Lanes::splat(0.0),
             given: 0.0,
             tension_peak: 0.0,
@@ -210,6 +233,11 @@ impl AxialWork {
         }
     }
 
+    /// Sets what multiplies the current at t_n [-].
+    pub fn set_current(&mut self, factor: f64) {
+        self.layout.set_current(factor);
+    }
+
     /// Puts an end at a position [m] with the velocity [m/s] that the next step takes as lagged.
     pub fn put_end(&mut self, end: End, position: Vector3<f64>, velocity: Vector3<f64>) {
         self.layout.put_end(end, position, velocity);
@@ -222,9 +250,17 @@ impl AxialWork {
     }
 
     #[inline(always)]
-    fn step_vectors(&mut self, step: Step, ends: [Vector3<f64>; 2]) -> usize {
+    fn choose_step(&mut self, step: Step, ends: [Vector3<f64>; 2]) -> usize {
+        match self.current {
+            None => self.step_vectors::<false>(step, ends),
+            Some(_) => self.step_vectors::<true>(step, ends),
+        }
+    }
+
+    #[inline(always)]
+    fn step_vectors<const CURRENT: bool>(&mut self, step: Step, ends: [Vector3<f64>; 2]) -> usize {
         self.prepare_segments(step);
-        self.prepare_nodes(step);
+        self.prepare_nodes::<CURRENT>(step);
         self.prepare_ends(step, ends);
         let mut passes = 0;
         loop {
@@ -239,6 +275,9 @@ impl AxialWork {
             }
         }
         self.book(step);
+        if CURRENT {
+            self.book_current(step);
+        }
         std::mem::swap(&mut self.layout.velocity, &mut self.layout.velocity_before);
         self.layout.drift(step.drift);
         self.layout.position.set(FIRST, ends[0]);
@@ -302,7 +341,7 @@ impl AxialWork {
     }
 
     #[inline(always)]
-    fn prepare_nodes(&mut self, step: Step) {
+    fn prepare_nodes<const CURRENT: bool>(&mut self, step: Step) {
         let kick = Lanes::splat(step.kick);
         let half = Lanes::splat(0.5) * kick;
         for at in self.layout.node_blocks() {
@@ -319,7 +358,16 @@ impl AxialWork {
                 z: weight,
             };
             if let Some(drag) = &line.drag {
-                let now = line.velocity_now(at, step);
+                let (mut now, mut last) = (line.velocity_now(at, step), velocity);
+                if CURRENT {
+                    let flow = line.water_velocity(at);
+                    (now, last) = (now - flow, last - flow);
+                    let current = self
+                        .current
+                        .as_mut()
+                        .expect("this kernel runs in a current");
+                    current.flow.store(flow, at);
+                }
                 let speed = now.dot(tangent);
                 let across = now - tangent.scale(speed);
                 let normal = Lanes::load(&drag.normal, at) * across.dot(across).sqrt();
@@ -327,8 +375,16 @@ impl AxialWork {
                 mass_normal = mass_normal + half * normal;
                 mass_tangent = mass_tangent + half * along;
                 force = force
-                    - velocity.scale(normal)
-                    - tangent.scale((along - normal) * velocity.dot(tangent));
+                    - last.scale(normal)
+                    - tangent.scale((along - normal) * last.dot(tangent));
+                if CURRENT {
+                    let current = self
+                        .current
+                        .as_mut()
+                        .expect("this kernel runs in a current");
+                    normal.store(&mut current.across, at);
+                    along.store(&mut current.along, at);
+                }
             }
             if let Some(damping) = &line.mass_damping {
                 let damping = Lanes::load(damping, at);
@@ -336,29 +392,43 @@ impl AxialWork {
                 mass_tangent = mass_tangent + half * damping;
                 force = force - velocity.scale(damping);
             }
-            let across = mass_normal.recip();
-            let excess = mass_tangent.recip() - across;
-            let response = tangent.scale(excess * tangent.z);
-            let inverted = force.scale(across) + tangent.scale(excess * force.dot(tangent));
-            let nodes = &mut self.nodes;
-            across.store(&mut nodes.across, at);
-            excess.store(&mut nodes.excess, at);
-            nodes.tangent.store(tangent, at);
-            nodes.response.store(
-                Vectors {
-                    z: response.z + across,
-                    ..response
-                },
-                at,
-            );
-            nodes.fall.store(velocity + inverted.scale(kick), at);
-            nodes.loose.store(velocity + inverted.scale(kick), at);
+            self.invert_mass(at, tangent, [mass_normal, mass_tangent], force, kick);
             if self.layout.contact.is_some() {
                 self.touches(at, velocity.z, step)
                     .store(&mut self.nodes.touches, at);
                 self.settle(at, step);
             }
         }
+    }
+
+    /// The inverse mass of nodes, and how they fall under a force without tension.
+    #[inline(always)]
+    fn invert_mass(
+        &mut self,
+        at: usize,
+        tangent: Vectors,
+        [mass_normal, mass_tangent]: [Lanes; 2],
+        force: Vectors,
+        kick: Lanes,
+    ) {
+        let velocity = self.layout.velocity.load(at);
+        let across = mass_normal.recip();
+        let excess = mass_tangent.recip() - across;
+        let response = tangent.scale(excess * tangent.z);
+        let inverted = force.scale(across) + tangent.scale(excess * force.dot(tangent));
+        let nodes = &mut self.nodes;
+        across.store(&mut nodes.across, at);
+        excess.store(&mut nodes.excess, at);
+        nodes.tangent.store(tangent, at);
+        nodes.response.store(
+            Vectors {
+                z: response.z + across,
+                ..response
+            },
+            at,
+        );
+        nodes.fall.store(velocity + inverted.scale(kick), at);
+        nodes.loose.store(velocity + inverted.scale(kick), at);
     }
 
     /// Held ends move by the secant of their path and yield to no force.
@@ -572,6 +642,30 @@ impl AxialWork {
         }
     }
 
+    /// Books the work of the drag on the water's way, which [`Self::book`] took off what was lost.
+    #[inline(always)]
+    fn book_current(&mut self, step: Step) {
+        let current = self
+            .current
+            .as_ref()
+            .expect("this kernel runs in a current");
+        let half = Lanes::splat(0.5);
+        let line = &self.layout;
+        let mut sum = Lanes::splat(0.0);
+        for at in line.node_blocks() {
+            let flow = current.flow.load(at);
+            let mean = (line.velocity.load(at) + line.velocity_before.load(at)).scale(half);
+            let tangent = self.nodes.tangent.load(at);
+            let (past, across) = (flow - mean, Lanes::load(&current.across, at));
+            let excess = Lanes::load(&current.along, at) - across;
+            let power = across * past.dot(flow) + excess * past.dot(tangent) * flow.dot(tangent);
+            sum = sum + Lanes::load(&self.interior, at) * power;
+        }
+        let work = sum * Lanes::splat(step.kick);
+        self.given += work.sum();
+        self.lost = self.lost + work;
+    }
+
     /// Greatest T̄ [N] since the state was loaded.
     pub fn tension_peak(&self) -> f64 {
         self.tension_peak
@@ -591,7 +685,7 @@ impl NullaryFnOnce for AxialStep<'_> {
 
     #[inline(always)]
     fn call(self) -> usize {
-        self.0.step_vectors(self.1, self.2)
+        self.0.choose_step(self.1, self.2)
     }
 }
 

@@ -9,6 +9,7 @@ use pulp::{Arch, NullaryFnOnce};
 use super::leapfrog::Step;
 use crate::math::lanes::{Components, LANES, Lanes, Vectors};
 use crate::model::{End, Line, LineState};
+use crate::physics::flow::{Profile, Stream};
 use crate::physics::stretch::StretchLaw;
 
 /// Index of node 0 and of segment 0.
@@ -37,6 +38,8 @@ pub(super) struct Layout {
     pub axial_damping: Vec<f64>,
     pub weight: Vec<f64>,
     pub drag: Option<DragArrays>,
+    /// The current, where it acts on the line.
+    pub current: Option<CurrentNow>,
     pub mass_damping: Option<Vec<f64>>,
     pub contact: Option<ContactArrays>,
 }
@@ -46,6 +49,23 @@ pub(super) struct Layout {
 pub(super) struct DragArrays {
     pub normal: Vec<f64>,
     pub tangent: Vec<f64>,
+}
+
+/// The current at t_n.
+#[derive(Debug, Clone)]
+pub(super) struct CurrentNow {
+    pub profile: Profile,
+    /// What multiplies it [-].
+    pub factor: f64,
+}
+
+impl CurrentNow {
+    fn stream(&self) -> Stream<'_> {
+        Stream {
+            profile: &self.profile,
+            factor: self.factor,
+        }
+    }
 }
 
 /// Lumped contact coefficients [N/m, N s/m] and the z [m] below which they push.
@@ -58,7 +78,7 @@ pub(super) struct ContactArrays {
 
 impl Layout {
     /// Arrays for a line; `None` where its sections have different strain measures, which the kernels do not mix.
-    pub fn new(line: &Line, negative_tension: bool) -> Option<Layout> {
+    pub fn new(line: &Line, profile: Option<&Profile>, negative_tension: bool) -> Option<Layout> {
         let n = line.segment_count();
         let size = padded_size(n);
         let keep = |values: &[f64]| pad(n, values, 0.0);
@@ -80,6 +100,12 @@ impl Layout {
                 normal: keep(&drag.normal),
                 tangent: keep(&drag.tangent),
             }),
+            current: profile
+                .filter(|_| nodes.drag.is_some())
+                .map(|profile| CurrentNow {
+                    profile: profile.clone(),
+                    factor: 1.0,
+                }),
             mass_damping: nodes.mass_damping.as_ref().map(|damping| keep(damping)),
             contact: nodes.contact.as_ref().map(|contact| ContactArrays {
                 level: keep(&contact.level),
@@ -123,6 +149,32 @@ impl Layout {
             memory.velocity[i] = velocity;
             memory.velocity_before[i] = before;
         }
+    }
+
+    /// Sets what multiplies the current at t_n [-].
+    pub fn set_current(&mut self, factor: f64) {
+        if let Some(current) = &mut self.current {
+            current.factor = factor;
+        }
+    }
+
+    /// Velocities of the water at the nodes [m/s]; the line must lie in a current.
+    #[inline(always)]
+    pub fn water_velocity(&self, at: usize) -> Vectors {
+        let current = self
+            .current
+            .as_ref()
+            .expect("this kernel runs in a current");
+        let z = Lanes::load(&self.position.z, at);
+        let shape = current.profile.velocities(z);
+        shape.scale(Lanes::splat(current.factor))
+    }
+
+    /// Velocity of the water at a node [m/s].
+    pub fn water_velocity_of(&self, at: usize) -> Vector3<f64> {
+        self.current.as_ref().map_or(Vector3::zeros(), |current| {
+            current.stream().velocity(self.position.z[at])
+        })
     }
 
     /// Puts an end at a position [m] with the velocity [m/s] that the next step takes as lagged.
@@ -198,14 +250,15 @@ impl Layout {
         }
     }
 
-    /// Greatest ratio K |v| / M of the nodes [1/s]: explicit drag wants Δt below its inverse.
+    /// Greatest ratio K |v| / M of the nodes [1/s], v relative to the water: explicit drag wants Δt below its inverse.
     pub fn drag_rate(&self, line: &Line) -> f64 {
         let Some(drag) = &line.nodes.drag else {
             return 0.0;
         };
         let rate = |i: usize| {
             let coefficient = drag.normal[i].max(drag.tangent[i]);
-            self.velocity.get(FIRST + i).norm() * coefficient / line.nodes.mass_normal[i]
+            let relative = self.velocity.get(FIRST + i) - self.water_velocity_of(FIRST + i);
+            relative.norm() * coefficient / line.nodes.mass_normal[i]
         };
         (0..=self.segment_count).map(rate).fold(0.0, f64::max)
     }

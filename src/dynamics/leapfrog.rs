@@ -19,6 +19,7 @@ use super::layout::{Layout, interior, pad};
 use super::ledger::Flow;
 use crate::math::lanes::{Components, Lanes, Vectors};
 use crate::model::{End, Line, LineState};
+use crate::physics::flow::Profile;
 use crate::physics::morison::{self, DragCoefficients};
 use crate::physics::stretch::{StretchLaw, total_tension};
 
@@ -35,9 +36,10 @@ pub struct LineWork {
     interior: Vec<f64>,
     /// Whether ends A and B are held.
     held: [bool; 2],
-    /// Energy lost and given since the state was loaded [J].
+    /// Energy lost, and given by held ends and by the current, since the state was loaded [J].
     lost: Lanes,
     given: f64,
+    given_by_current: Lanes,
 }
 
 /// What needs a node's tangent: drag, and a mass that differs along and across the line.
@@ -66,6 +68,46 @@ impl WaterWork {
             drag_tangent: drag.map_or(zeros, |drag| drag.tangent.clone()),
             inverse_mass_excess: pad(layout.segment_count, &excess, 0.0),
         })
+    }
+
+    /// What the water resists with at t_n, and the power of the drag on the water's way.
+    #[inline(always)]
+    fn drag_now<const CURRENT: bool>(
+        &self,
+        line: &Layout,
+        at: usize,
+        tangent: Vectors,
+        step: Step,
+    ) -> (Vectors, Lanes) {
+        let velocity = line.velocity_now(at, step);
+        let still = Lanes::splat(0.0);
+        if CURRENT {
+            let flow = line.water_velocity(at);
+            let drag = self.drag(at, velocity - flow, tangent);
+            (drag, still - drag.dot(flow))
+        } else {
+            (self.drag(at, velocity, tangent), still)
+        }
+    }
+
+    /// M⁻¹f, and M⁻¹ẑ for the bed.
+    #[inline(always)]
+    fn inverted(
+        &self,
+        at: usize,
+        inverse_mass: Lanes,
+        force: Vectors,
+        tangent: Vectors,
+    ) -> (Vectors, Vectors) {
+        let excess = Lanes::load(&self.inverse_mass_excess, at);
+        let response = tangent.scale(excess * tangent.z);
+        (
+            force.scale(inverse_mass) + tangent.scale(excess * force.dot(tangent)),
+            Vectors {
+                z: response.z + inverse_mass,
+                ..response
+            },
+        )
     }
 
     /// K_n |u_n| u_n + K_t |u_t| u_t.
@@ -137,6 +179,8 @@ pub struct EndLoad {
     pub force: Vector3<f64>,
     /// The part of it that water and damping resist with [N].
     pub resistance: Vector3<f64>,
+    /// Power of the drag on the water's way [W].
+    pub current_power: f64,
     /// Mass matrix of the half node [kg].
     pub mass: Matrix3<f64>,
     /// Contact stiffness [N/m] and damping [N s/m] of the half node, and its force at z = 0 [N].
@@ -145,8 +189,13 @@ pub struct EndLoad {
 
 impl LineWork {
     /// Scratch for a line; `None` where its sections have different strain measures, which the kernel does not mix.
-    pub fn new(line: &Line, held: [bool; 2], negative_tension: bool) -> Option<LineWork> {
-        let layout = Layout::new(line, negative_tension)?;
+    pub fn new(
+        line: &Line,
+        profile: Option<&Profile>,
+        held: [bool; 2],
+        negative_tension: bool,
+    ) -> Option<LineWork> {
+        let layout = Layout::new(line, profile, negative_tension)?;
         let inverse_mass: Vec<f64> = line
             .nodes
             .mass_normal
@@ -166,6 +215,7 @@ impl LineWork {
             held,
             lost: Lanes::splat(0.0),
             given: 0.0,
+            given_by_current: Lanes::splat(0.0),
             layout,
         })
     }
@@ -174,14 +224,20 @@ impl LineWork {
     pub fn load(&mut self, state: &LineState) {
         self.layout.load(state);
         (self.lost, self.given) = (Lanes::splat(0.0), 0.0);
+        self.given_by_current = Lanes::splat(0.0);
     }
 
-    /// Energy given by held ends and lost between them since [`Self::load`].
+    /// Energy given by held ends and the current and lost between them since [`Self::load`].
     pub fn flow(&self) -> Flow {
         Flow {
-            given: self.given,
+            given: self.given + self.given_by_current.sum(),
             lost: self.lost.sum(),
         }
+    }
+
+    /// Sets what multiplies the current at t_n [-].
+    pub fn set_current(&mut self, factor: f64) {
+        self.layout.set_current(factor);
     }
 
     /// Hands the state back after steps of `steps` [s].
@@ -237,24 +293,34 @@ impl LineWork {
 
     #[inline(always)]
     fn choose_node_pass(&mut self, step: Step) {
+        match (&self.water, &self.layout.current) {
+            (None, _) => self.choose_dry_pass::<false, false>(step),
+            (Some(_), None) => self.choose_dry_pass::<true, false>(step),
+            (Some(_), Some(_)) => self.choose_dry_pass::<true, true>(step),
+        }
+    }
+
+    /// What is chosen beside the water.
+    #[inline(always)]
+    fn choose_dry_pass<const WATER: bool, const CURRENT: bool>(&mut self, step: Step) {
         match (
-            self.water.is_some(),
             self.layout.contact.is_some(),
             self.layout.mass_damping.is_some(),
         ) {
-            (false, false, false) => self.node_pass::<false, false, false>(step),
-            (false, false, true) => self.node_pass::<false, false, true>(step),
-            (false, true, false) => self.node_pass::<false, true, false>(step),
-            (false, true, true) => self.node_pass::<false, true, true>(step),
-            (true, false, false) => self.node_pass::<true, false, false>(step),
-            (true, false, true) => self.node_pass::<true, false, true>(step),
-            (true, true, false) => self.node_pass::<true, true, false>(step),
-            (true, true, true) => self.node_pass::<true, true, true>(step),
+            (false, false) => self.node_pass::<WATER, CURRENT, false, false>(step),
+            (false, true) => self.node_pass::<WATER, CURRENT, false, true>(step),
+            (true, false) => self.node_pass::<WATER, CURRENT, true, false>(step),
+            (true, true) => self.node_pass::<WATER, CURRENT, true, true>(step),
         }
     }
 
     #[inline(always)]
-    fn node_pass<const WATER: bool, const BED: bool, const MASS_DAMPING: bool>(
+    fn node_pass<
+        const WATER: bool,
+        const CURRENT: bool,
+        const BED: bool,
+        const MASS_DAMPING: bool,
+    >(
         &mut self,
         step: Step,
     ) {
@@ -275,21 +341,16 @@ impl LineWork {
                 let damping = line.mass_damping.as_deref().unwrap_or_default();
                 resistance = velocity.scale(Lanes::load(damping, at));
             }
+            let mut current_power = zero;
             // M⁻¹f, and M⁻¹ẑ for the bed
             let (inverted, response) = if WATER {
                 let water = self.water.as_ref().expect("this kernel runs in water");
                 let tangent = line.tangent(at);
-                resistance = resistance + water.drag(at, line.velocity_now(at, step), tangent);
+                let (drag, power) = water.drag_now::<CURRENT>(line, at, tangent, step);
+                resistance = resistance + drag;
+                current_power = power;
                 force = force - resistance;
-                let excess = Lanes::load(&water.inverse_mass_excess, at);
-                let response = tangent.scale(excess * tangent.z);
-                (
-                    force.scale(inverse_mass) + tangent.scale(excess * force.dot(tangent)),
-                    Vectors {
-                        z: response.z + inverse_mass,
-                        ..response
-                    },
-                )
+                water.inverted(at, inverse_mass, force, tangent)
             } else {
                 force = force - resistance;
                 (
@@ -314,6 +375,11 @@ impl LineWork {
             if WATER || MASS_DAMPING || BED {
                 let half = Lanes::splat(0.5) * Lanes::load(&self.interior, at);
                 self.lost = self.lost + half * given_away;
+            }
+            if CURRENT {
+                let given = Lanes::load(&self.interior, at) * current_power * kick;
+                self.given_by_current = self.given_by_current + given;
+                self.lost = self.lost + given;
             }
             line.velocity_before.store(kicked, at); // v_{n−3/2} has been read
         }
@@ -357,7 +423,7 @@ impl LineWork {
         };
         let chord = line.position.get(other) - line.position.get(at);
         let tangent = chord.try_normalize(0.0).unwrap_or_else(Vector3::zeros);
-        let mut resistance = Vector3::zeros();
+        let (mut resistance, mut current_power) = (Vector3::zeros(), 0.0);
         let force = sign * self.pull.get(segment) - line.weight[at] * Vector3::z();
         let mut excess = 0.0;
         if let Some(water) = &self.water {
@@ -365,7 +431,9 @@ impl LineWork {
                 normal: water.drag_normal[at],
                 tangent: water.drag_tangent[at],
             };
-            resistance += morison::drag(coefficients, velocity, tangent);
+            let flow = line.water_velocity_of(at);
+            resistance += morison::drag(coefficients, velocity - flow, tangent);
+            current_power = resistance.dot(&flow);
             excess = water.inverse_mass_excess[at];
         }
         if let Some(damping) = &line.mass_damping {
@@ -385,6 +453,7 @@ impl LineWork {
         EndLoad {
             force: force + resistance,
             resistance,
+            current_power,
             mass,
             contact,
         }

@@ -3,9 +3,10 @@
 //! Held:  E = Σ ½ vᵀM v + Σ EA·W(ε)·L + Σ ½B(|κb| − k₀)² + Σ w z  over free nodes, segments that carry force, joints and free
 //!        points, by kind in [`Energy`].
 //! Given: the work of the held ends on the line, −∫ (T q + S)·V + M·Ω dt with the shear S of lines that bend and the moment M on
-//!        clamps that turn, and of point loads.
-//! Lost:  drag, axial, bending and mass damping, and what the seabed takes (its springs give some of it back). The added mass of a free
-//!        point that dips into the water brings ½ v² of what joins it, which counts as a negative loss.
+//!        clamps that turn, and of point loads; the work Σ f·u dt of the drag f on the way of a current u.
+//! Lost:  drag at the velocity through the water, axial, bending and mass damping, and what the seabed takes (its springs give
+//!        some of it back). The added mass of a free point that dips into the water brings ½ v² of what joins it, which counts as a
+//!        negative loss.
 //!
 //! E − E₀ − given + lost is the error of the time integration: numerical dissipation shows up as a negative one.
 //!
@@ -26,10 +27,12 @@ use super::leapfrog::segment_tension;
 use crate::model::{
     ClosedForm, End, FreePoint, Line, LineState, Model, Network, PointState, State, joint,
 };
+use crate::physics::flow::Stream;
 use crate::physics::morison::{DragCoefficients, drag};
 use crate::physics::seabed::{ContactCoefficients, normal_force};
 use crate::physics::stretch::total_tension;
 use crate::statics::assembly::{end_moment, end_shear, joint_damping_power};
+use crate::statics::equilibrium::current::drag_at_rest;
 
 /// Energy that crossed the border of a network, or the rate at which it does.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
@@ -326,6 +329,7 @@ pub fn work_at_rest(
                 flow.given -= clamp_work(line, index, end, [before, after]);
             }
         }
+        flow.given += current_work(model, index, [before, after], [t0, t1]);
         let shapes = [before, after].map(|state| &state.lines[index]);
         if let (Some(contact), true) = (
             &line.nodes.contact,
@@ -354,6 +358,23 @@ pub fn work_at_rest(
         }
     }
     flow
+}
+
+/// Work [J] of the drag of a current on the nodes of a line that moves from rest to rest.
+fn current_work(model: &Model, index: usize, states: [&State; 2], times: [f64; 2]) -> f64 {
+    let line = &model.lines[index];
+    let (Some(before), Some(after)) = (model.stream(times[0]), model.stream(times[1])) else {
+        return 0.0;
+    };
+    let free = |end: usize| model.points[line.ends[end]].free().is_some();
+    let [old, new] = states.map(|state| &state.lines[index].position);
+    let first = usize::from(!free(0));
+    let last = line.segment_count() - usize::from(!free(1));
+    let work = |i: usize| {
+        let force = drag_at_rest(line, old, i, before) + drag_at_rest(line, new, i, after);
+        0.5 * force.dot(&(new[i] - old[i]))
+    };
+    (first..=last).map(work).sum()
 }
 
 /// Work [J] of a line on the clamp at one of its ends, which turned between two states.
@@ -390,7 +411,8 @@ fn force_at_rest(line: &Line, shape: &LineState, end: End, point: &PointState) -
 pub fn power(model: &Model, network: &Network, state: &State, t: f64) -> Flow {
     let mut flow = Flow::default();
     for &index in &network.lines {
-        flow.add(line_power(&model.lines[index], &state.lines[index], model));
+        let (line, shape) = (&model.lines[index], &state.lines[index]);
+        flow.add(line_power(line, shape, model, model.stream(t)));
         if model.lines[index].bending.is_some() {
             flow.add(bending_power(model, &model.lines[index], state, index));
         }
@@ -399,23 +421,30 @@ pub fn power(model: &Model, network: &Network, state: &State, t: f64) -> Flow {
         let velocity = &state.points[point].velocity;
         flow.given += model.points[point].load_at(t).dot(velocity);
         if let Some(free) = model.points[point].free() {
-            flow.lost += point_loss(free, &state.points[point]);
+            flow.add(point_power(free, &state.points[point], model.stream(t)));
         }
     }
     flow
 }
 
-/// Power that water and seabed take from a free point [W]; what joins the added mass where it dips in is negative.
-fn point_loss(free: &FreePoint, state: &PointState) -> f64 {
+/// Power that a current gives a free point, and that water and seabed take from it [W]; what joins the added mass where it dips in
+/// is negative.
+fn point_power(free: &FreePoint, state: &PointState, stream: Option<Stream>) -> Flow {
     let (z, velocity) = (state.position.z, state.velocity);
     let at = free.at(z);
-    let mut lost = -free.drag(at.wetted, velocity).dot(&velocity);
+    let water = stream.map_or(Vector3::zeros(), |stream| stream.velocity(z));
+    let past = velocity - water;
+    let drag = free.drag(at.wetted, past);
+    let mut lost = -drag.dot(&past);
     lost -= 0.5 * at.mass_slope * velocity.z * velocity.norm_squared();
     if let Some(contact) = &free.contact {
         let push = normal_force(contact.coefficients, contact.level - z, velocity.z);
         lost -= push * velocity.z;
     }
-    lost
+    Flow {
+        given: drag.dot(&water),
+        lost,
+    }
 }
 
 /// Power of the shear at held ends, and that of the joints' dampers [W].
@@ -438,7 +467,7 @@ fn bending_power(model: &Model, line: &Line, state: &State, index: usize) -> Flo
     }
 }
 
-fn line_power(line: &Line, shape: &LineState, model: &Model) -> Flow {
+fn line_power(line: &Line, shape: &LineState, model: &Model, stream: Option<Stream>) -> Flow {
     let (n, negative) = (line.segment_count(), model.solver.negative_tension);
     let segments = &line.segments;
     let [a, b] = line.ends.map(|point| model.points[point].free().is_none());
@@ -466,21 +495,29 @@ fn line_power(line: &Line, shape: &LineState, model: &Model) -> Flow {
         }
     }
     for i in usize::from(a)..=n - usize::from(b) {
-        flow.lost += node_loss(line, shape, i);
+        flow.add(node_power(line, shape, i, stream));
     }
     flow
 }
 
-/// Power that water, mass damping and seabed take from a node [W].
-fn node_loss(line: &Line, shape: &LineState, i: usize) -> f64 {
+/// Power that water, mass damping and seabed take from a node, and that a current gives it [W].
+fn node_power(line: &Line, shape: &LineState, i: usize, stream: Option<Stream>) -> Flow {
     let (nodes, velocity) = (&line.nodes, shape.velocity[i]);
-    let mut lost = 0.0;
+    let (mut given, mut lost) = (0.0, 0.0);
     if let Some(coefficients) = &nodes.drag {
         let k = DragCoefficients {
             normal: coefficients.normal[i],
             tangent: coefficients.tangent[i],
         };
-        lost -= drag(k, velocity, tangent(shape, i)).dot(&velocity);
+        let tangent = tangent(shape, i);
+        match stream.map(|stream| stream.velocity(shape.position[i].z)) {
+            None => lost -= drag(k, velocity, tangent).dot(&velocity),
+            Some(water) => {
+                let force = drag(k, velocity - water, tangent);
+                given += force.dot(&water);
+                lost -= force.dot(&(velocity - water));
+            }
+        }
     }
     if let Some(damping) = &nodes.mass_damping {
         lost += damping[i] * velocity.norm_squared();
@@ -492,7 +529,7 @@ fn node_loss(line: &Line, shape: &LineState, i: usize) -> f64 {
         };
         lost -= normal_force(k, contact.level[i] - shape.position[i].z, velocity.z) * velocity.z;
     }
-    lost
+    Flow { given, lost }
 }
 
 fn tangent(shape: &LineState, i: usize) -> Vector3<f64> {

@@ -39,7 +39,13 @@ impl NetworkWork {
                 let held = model.lines[line]
                     .ends
                     .map(|point| model.points[point].free().is_none());
-                LineWork::new(&model.lines[line], held, model.solver.negative_tension)
+                let profile = model.current.as_ref().map(|current| &current.profile);
+                LineWork::new(
+                    &model.lines[line],
+                    profile,
+                    held,
+                    model.solver.negative_tension,
+                )
             })
             .collect::<Option<Vec<LineWork>>>()?;
         let points = vec![PointState::at_rest(Vector3::zeros()); network.free_points.len()];
@@ -119,6 +125,7 @@ impl NetworkWork {
         step: Step,
         held: &impl Fn(usize, f64) -> Kinematics,
     ) {
+        self.set_current(model, t);
         self.lines
             .iter_mut()
             .for_each(|line| line.pull_segments(step));
@@ -129,6 +136,15 @@ impl NetworkWork {
         }
         self.put_ends(model, network, t + step.drift, step, held);
         self.lines.iter_mut().for_each(|line| line.book_ends(step));
+    }
+
+    /// Sets the current to that of `t` [s].
+    pub fn set_current(&mut self, model: &Model, t: f64) {
+        if let Some(stream) = model.stream(t) {
+            self.lines
+                .iter_mut()
+                .for_each(|line| line.set_current(stream.factor));
+        }
     }
 
     /// Energy given and lost since the state was loaded.
@@ -175,10 +191,13 @@ impl NetworkWork {
             let Some(law) = point.free() else { continue };
             let height = self.points[free].position.z;
             let at = law.at(height);
-            let drag = law.drag(at.wetted, now);
+            let stream = model.stream(t);
+            let water = stream.map_or(Vector3::zeros(), |stream| stream.velocity(height));
+            let drag = law.drag(at.wetted, now - water);
             let mut load = EndLoad {
                 force: point.load_at(t) - at.weight * Vector3::z() + drag,
                 resistance: drag,
+                current_power: drag.dot(&water),
                 mass: at.mass * Matrix3::identity(),
                 contact: law.contact.map_or([0.0; 3], |contact| {
                     let k = contact.coefficients;
@@ -198,8 +217,10 @@ impl NetworkWork {
             }
             let (velocity, impulse) = load.kicked(last, law.axes, &self.springs, step);
             let mean = 0.5 * (last + velocity);
-            self.point_flow.given += step.kick * point.load_at(t).dot(&mean);
-            self.point_flow.lost -= step.kick * load.resistance.dot(&mean) + impulse * mean.z;
+            let by_current = step.kick * load.current_power;
+            self.point_flow.given += step.kick * point.load_at(t).dot(&mean) + by_current;
+            self.point_flow.lost -=
+                step.kick * load.resistance.dot(&mean) + impulse * mean.z - by_current;
             self.point_flow.lost -= mass_work(law, at, height, [last, velocity], step);
             let state = &mut self.points[free];
             state.half_step = [velocity, last];
@@ -260,6 +281,7 @@ impl EndLoad {
     fn add(&mut self, other: &EndLoad) {
         self.force += other.force;
         self.resistance += other.resistance;
+        self.current_power += other.current_power;
         self.mass += other.mass;
     }
 

@@ -14,6 +14,7 @@ use nalgebra::Vector3;
 use super::beam::BeamView;
 use super::leapfrog::segment_tension;
 use crate::model::{End, Line, LineState, PointState};
+use crate::physics::flow::Stream;
 use crate::physics::morison::{self, DragCoefficients};
 use crate::physics::seabed::{self, ContactCoefficients};
 use crate::statics::assembly::end_shear;
@@ -36,12 +37,13 @@ pub fn tension(line: &Line, state: &LineState, i: usize, negative_tension: bool)
     )
 }
 
-/// Force [N] of the line on the point at one of its ends.
+/// Force [N] of the line on the point at one of its ends, in a current or still water.
 pub fn end_force(
     line: &Line,
     state: &LineState,
     end: End,
     point: &PointState,
+    stream: Option<Stream>,
     negative_tension: bool,
 ) -> Vector3<f64> {
     if let Some(view) = BeamView::of(line, state) {
@@ -76,7 +78,8 @@ pub fn end_force(
             normal: drag.normal[node],
             tangent: drag.tangent[node],
         };
-        force += morison::drag(coefficients, velocity, inward);
+        let flow = stream.map_or(Vector3::zeros(), |s| s.velocity(state.position[node].z));
+        force += morison::drag(coefficients, velocity - flow, inward);
     }
     if let Some(damping) = &nodes.mass_damping {
         force -= damping[node] * velocity;

@@ -1,4 +1,5 @@
 //! No physics: small fixed-size algebra, block-tridiagonal and block-pentadiagonal solves, interpolation.
+pub mod anderson;
 pub mod attitude;
 pub mod block_tridiagonal;
 pub mod hermite;

@@ -5,10 +5,11 @@ mod beam;
 use nalgebra::Vector3;
 
 use super::{
-    Bending, Contact, Drag, End, FreePoint, Line, Model, Motion, Network, Nodes, Point,
+    Bending, Contact, Current, Drag, End, FreePoint, Line, Model, Motion, Network, Nodes, Point,
     PointContact, Role, Section, Segments, Vessel, mesh,
 };
 use crate::physics::bending;
+use crate::physics::flow::Profile;
 use crate::physics::morison::{DragCoefficients, drag_per_length};
 use crate::physics::point::Sphere;
 use crate::physics::rayleigh;
@@ -55,6 +56,7 @@ impl Model {
             gravity: scene.gravity,
             bed: scene.seabed.as_ref().map(|bed| -bed.depth),
             bed_friction: scene.seabed.as_ref().map_or(0.0, |bed| bed.friction),
+            current: scene.water.as_ref().and_then(current),
             networks,
             points,
             lines,
@@ -62,6 +64,20 @@ impl Model {
             solver: scene.solver.clone(),
         })
     }
+}
+
+/// The current of the water, where it has one.
+fn current(water: &scene::Water) -> Option<Current> {
+    let current = water.current.as_ref()?;
+    let row = |[z, vx, vy]: &[f64; 3]| (*z, Vector3::new(*vx, *vy, 0.0));
+    let profile = match (&current.profile, current.velocity) {
+        (Some(rows), _) => Profile::through(&rows.iter().map(row).collect::<Vec<_>>()),
+        (None, velocity) => Profile::uniform(Vector3::from(velocity.unwrap_or_default())),
+    };
+    Some(Current {
+        profile,
+        factor: current.factor.clone(),
+    })
 }
 
 fn vessel(scene: &Scene, vessel: &scene::Vessel) -> Vessel {

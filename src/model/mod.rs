@@ -14,6 +14,7 @@ mod vessel;
 
 use nalgebra::Vector3;
 
+use crate::physics::flow::{Profile, Stream};
 use crate::physics::point::{Sphere, Wetted};
 use crate::physics::seabed::ContactCoefficients;
 use crate::physics::stretch::StretchLaw;
@@ -34,6 +35,8 @@ pub struct Model {
     pub bed: Option<f64>,
     /// Coulomb friction of the seabed in the static catenary [-].
     pub bed_friction: f64,
+    /// The current, where the water flows.
+    pub current: Option<Current>,
     /// Points in the order of the scene.
     pub points: Vec<Point>,
     /// Lines in the order of the scene.
@@ -44,6 +47,25 @@ pub struct Model {
     pub networks: Vec<Network>,
     /// How to solve, as the user asked.
     pub solver: Solver,
+}
+
+/// A current.
+#[derive(Debug, Clone)]
+pub struct Current {
+    /// Its velocity over the height.
+    pub profile: Profile,
+    /// What multiplies it in time.
+    pub factor: Option<TimeFunction>,
+}
+
+impl Current {
+    /// The current at time `t` [s].
+    pub fn at(&self, t: f64) -> Stream<'_> {
+        Stream {
+            profile: &self.profile,
+            factor: self.factor.as_ref().map_or(1.0, |factor| factor.at(t)),
+        }
+    }
 }
 
 /// A point that lines end at.
@@ -262,6 +284,11 @@ impl Line {
         self.bending.is_some() || self.beam.is_some()
     }
 
+    /// Whether a current acts on it.
+    pub fn drifts(&self, model: &Model) -> bool {
+        self.nodes.drag.is_some() && model.current.is_some()
+    }
+
     /// Index of the node at an end.
     pub fn end_node(&self, end: End) -> usize {
         match end {
@@ -401,6 +428,11 @@ impl Model {
     /// Index of the line called `name`.
     pub fn line_index(&self, name: &str) -> Option<usize> {
         self.lines.iter().position(|line| line.name == name)
+    }
+
+    /// The current at time `t` [s], where the water flows.
+    pub fn stream(&self, t: f64) -> Option<Stream<'_>> {
+        self.current.as_ref().map(|current| current.at(t))
     }
 
     /// All points followed by all vessels.

@@ -1,7 +1,9 @@
 //! One law per file, pointwise: value, exact slopes and energy. No scene, no index, no loop over nodes.
 
+pub mod airy;
 pub mod bending;
 pub mod contact_step;
+pub mod flow;
 pub mod morison;
 pub mod point;
 pub mod rayleigh;

@@ -75,12 +75,41 @@ pub struct Scene {
     pub output: Output,
 }
 
-/// Still water that fills all space below and above z = 0: lines are fully submerged.
+/// Water that fills all space below and above z = 0: lines are fully submerged.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Water {
     /// Density [kg/m³].
     pub density: f64,
+    /// How it flows; still where absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub current: Option<Current>,
+}
+
+/// A current: `{ velocity = [vx, vy, vz] }`, alike at all heights, or `{ profile = [[z, vx, vy], …] }`, straight between the rows
+/// and constant outside; with `factor`, a function of time that multiplies it.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Current {
+    /// Velocity at all heights [m/s].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub velocity: Option<[f64; 3]>,
+    /// Rows of height z [m] and horizontal velocity vx, vy [m/s], no two at one height.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub profile: Option<Vec<[f64; 3]>>,
+    /// What multiplies the velocity in time; 1 where absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub factor: Option<TimeFunction>,
+}
+
+impl Water {
+    /// Still water of a density [kg/m³].
+    pub fn still(density: f64) -> Water {
+        Water {
+            density,
+            current: None,
+        }
+    }
 }
 
 /// A horizontal seabed at z = −depth.

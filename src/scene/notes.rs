@@ -66,11 +66,13 @@ fn note_line_type(scene: &Scene, name: &str, line_type: &LineType, notes: &mut V
         say(notes, at.clone(), text);
     }
     if scene.water.is_some() && line_type.drag_normal.is_none() {
-        say(
-            notes,
-            at.clone(),
-            "no `drag_normal`: the water does not damp the line's motion across itself",
-        );
+        let flows = scene.water.as_ref().is_some_and(|w| w.current.is_some());
+        let text = if flows {
+            "no `drag_normal`: the current does not push the line across itself, and the water does not damp it"
+        } else {
+            "no `drag_normal`: the water does not damp the line's motion across itself"
+        };
+        say(notes, at.clone(), text);
     }
     if scene.seabed.is_some() && scene.weight(line_type) < 0.0 {
         let text = "lighter than the water: it floats up from the seabed";

@@ -4,6 +4,7 @@
 const UNITS: &[(&str, &str, &str)] = &[
     ("Scene", "gravity", "m/s²"),
     ("Water", "density", "kg/m³"),
+    ("Current", "velocity", "m/s"),
     ("Seabed", "depth", "m"),
     ("Seabed", "stiffness", "Pa/m"),
     ("Seabed", "damping", "Pa s/m"),

@@ -3,6 +3,7 @@
 mod beam;
 mod bending;
 mod points;
+mod surroundings;
 mod vessels;
 
 use std::f64::consts::PI;
@@ -85,10 +86,17 @@ impl Scene {
             )
         };
         let water = match &self.water {
-            Some(water) => format!(
-                "still water of {} that fills all space",
-                quantity(water.density, "kg/m³")
-            ),
+            Some(water) => {
+                let density = quantity(water.density, "kg/m³");
+                match &water.current {
+                    None => format!("still water of {density} that fills all space"),
+                    Some(current) => format!(
+                        "water of {density} that fills all space, with a current: {}; the drag on lines follows their velocity through the \
+                         water, at rest too",
+                        surroundings::current_in_words(current)
+                    ),
+                }
+            }
             None => "no water".to_string(),
         };
         vec![gravity, water, self.seabed_in_words()]
@@ -298,11 +306,7 @@ impl Scene {
             absent.push(bending::absence_in_words(self));
         }
         if self.water.is_some() {
-            absent.push(if self.surface_matters() {
-                "current, waves and the water's surface over lines"
-            } else {
-                "current, waves and the water's surface"
-            });
+            absent.push(surroundings::absence_in_words(self));
         } else {
             absent.push("buoyancy, drag and added mass");
         }

@@ -16,7 +16,8 @@
 //!
 //! The geometric stiffness T/l P is never negative in a line that cannot push. A line with bending stiffness has the joints of
 //! `bending` at its nodes and pushes up to what its segments carry, T ≥ −P; its tangent is exact, or made such that it cannot be
-//! indefinite where `convex` is asked for. Statics keeps springs and weight only.
+//! indefinite where `convex` is asked for. Statics keeps springs, weight and the drag of a current, whose forces are held while the
+//! shape is sought.
 
 mod bending;
 
@@ -24,6 +25,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::math::block_tridiagonal::{Chain, DenseSystem};
 use crate::model::{End, FreePoint, Line, LineState, Model, Network, Point, PointState, State};
+use crate::physics::flow::Stream;
 use crate::physics::morison::{DragCoefficients, drag, drag_slope};
 use crate::physics::seabed::ContactCoefficients;
 use crate::physics::stretch::total_tension;
@@ -98,6 +100,8 @@ pub(crate) struct LineWork {
     pub reach: Vec<f64>,
     /// Greatest push of the segments [N]; 0 in lines without bending stiffness.
     pub push: Vec<f64>,
+    /// Drag of the current that statics holds for a while, per node [N]; empty where none acts.
+    pub load: Vec<Vector3<f64>>,
     /// Joints, where the line has bending stiffness.
     pub bending: Option<BendingWork>,
     /// Elimination where nothing bends.
@@ -139,6 +143,7 @@ impl Workspace {
                 history: vec![Vector3::zeros(); n + 1],
                 reach: vec![0.0; n + 1],
                 push: vec![0.0; n],
+                load: vec![Vector3::zeros(); if line.drifts(model) { n + 1 } else { 0 }],
                 bending: line.bending.as_ref().map(|_| BendingWork::new(n + 1)),
                 chain: Chain::new(n + 1),
             }
@@ -292,6 +297,9 @@ impl LineWork {
             let parts = Parts::AT_REST;
             self.add_bending(bending, clamps, [position, &[]], &parts);
         }
+        for (residual, load) in self.residual.iter_mut().zip(&self.load) {
+            *residual -= case.load * load;
+        }
         for (i, r) in position.iter().enumerate() {
             self.residual[i].z += case.load * line.nodes.weight[i];
             for axis in 0..3 {
@@ -344,6 +352,7 @@ impl LineWork {
         line: &Line,
         state: &LineState,
         clamps: [Option<Vector3<f64>>; 2],
+        stream: Option<Stream>,
         weights: &Weights,
         negative_tension: bool,
     ) {
@@ -358,7 +367,7 @@ impl LineWork {
         }
         self.add_weight_and_inertia::<TANGENT>(line, state, weights);
         if line.nodes.drag.is_some() {
-            self.add_drag::<TANGENT>(line, state, weights);
+            self.add_drag::<TANGENT>(line, state, stream, weights);
         }
         if line.nodes.contact.is_some() {
             self.add_contact::<TANGENT>(line, state, weights);
@@ -460,7 +469,13 @@ impl LineWork {
         }
     }
 
-    fn add_drag<const TANGENT: bool>(&mut self, line: &Line, state: &LineState, weights: &Weights) {
+    fn add_drag<const TANGENT: bool>(
+        &mut self,
+        line: &Line,
+        state: &LineState,
+        stream: Option<Stream>,
+        weights: &Weights,
+    ) {
         let Some(coefficients) = &line.nodes.drag else {
             return;
         };
@@ -469,10 +484,17 @@ impl LineWork {
                 normal: coefficients.normal[i],
                 tangent: coefficients.tangent[i],
             };
-            let (t, v) = (node_tangent(&state.position, i), state.velocity[i]);
+            let (t, z) = (node_tangent(&state.position, i), state.position[i].z);
+            let flow = stream.map_or(Vector3::zeros(), |stream| stream.velocity(z));
+            let v = state.velocity[i] - flow;
             self.residual[i] -= weights.force * drag(k, v, t);
             if TANGENT {
-                self.diagonal[i] += weights.velocity * drag_slope(k, v, t);
+                let slope = drag_slope(k, v, t);
+                self.diagonal[i] += weights.velocity * slope;
+                if let Some(stream) = stream {
+                    let mut by_height = self.diagonal[i].column_mut(2);
+                    by_height -= weights.position * slope * stream.shear(z);
+                }
             }
         }
     }
@@ -523,13 +545,22 @@ impl PointWork {
         point: &Point,
         free: &FreePoint,
         state: &PointState,
+        stream: Option<Stream>,
         case: &StaticCase,
     ) {
         let (z, at) = (state.position.z, free.at(state.position.z));
-        let force = point.load_at(case.time) - at.weight * Vector3::z();
-        self.residual = -case.load * force;
+        let mut force = point.load_at(case.time) - at.weight * Vector3::z();
         self.diagonal = Matrix3::from_diagonal_element(case.anchoring);
         self.diagonal[(2, 2)] += case.load * at.weight_slope;
+        if let (Some(sphere), Some(stream)) = (&free.sphere, stream) {
+            let past = -stream.velocity(z);
+            force += sphere.drag(at.wetted, past);
+            let by_height = sphere.drag_slope_with_height(at.wetted, past)
+                - sphere.drag_slope(at.wetted, past) * stream.shear(z);
+            self.diagonal
+                .set_column(2, &(self.diagonal.column(2) + case.load * by_height));
+        }
+        self.residual = -case.load * force;
         if let Some((stiffness, push)) = free.bed_at_rest(z) {
             self.residual.z -= push;
             self.diagonal[(2, 2)] += stiffness;
@@ -542,17 +573,22 @@ impl PointWork {
         free: &FreePoint,
         state: &PointState,
         load: Vector3<f64>,
+        stream: Option<Stream>,
         weights: &Weights,
     ) {
-        let (z, v, a) = (state.position.z, state.velocity, state.acceleration);
+        let (z, a) = (state.position.z, state.acceleration);
+        let v = state.velocity;
+        let past = v - stream.map_or(Vector3::zeros(), |stream| stream.velocity(z));
         let at = free.at(z);
         let mut force = load - at.weight * Vector3::z();
         self.diagonal = Matrix3::from_diagonal_element(weights.acceleration * at.mass);
         if let Some(sphere) = &free.sphere {
-            force += sphere.drag(at.wetted, v);
+            force += sphere.drag(at.wetted, past);
             if TANGENT {
-                self.diagonal += weights.velocity * sphere.drag_slope(at.wetted, v);
-                let mut by_height = sphere.drag_slope_with_height(at.wetted, v);
+                let slope = sphere.drag_slope(at.wetted, past);
+                self.diagonal += weights.velocity * slope;
+                let mut by_height = sphere.drag_slope_with_height(at.wetted, past);
+                by_height -= stream.map_or(Vector3::zeros(), |stream| slope * stream.shear(z));
                 by_height.z += at.weight_slope;
                 let by_height = weights.position * by_height + weights.inertia * at.mass_slope * a;
                 self.diagonal
@@ -650,9 +686,11 @@ impl Workspace {
             let (line, position) = (&model.lines[index], &state.lines[index].position);
             self.lines[index].assemble_static(line, position, line.clamps(&state.points), case);
         }
+        let stream = model.stream(case.time);
         for_free_points(model, network, |index, free| {
             let point = &mut self.points[index];
-            point.assemble_static(&model.points[index], free, &state.points[index], case);
+            let (data, state) = (&model.points[index], &state.points[index]);
+            point.assemble_static(data, free, state, stream, case);
         });
         self.gather(model, network);
     }
@@ -667,12 +705,14 @@ impl Workspace {
         weights: &Weights,
     ) {
         let negative_tension = model.solver.negative_tension;
+        let stream = model.stream(t);
         for &index in &network.lines {
             let (line, line_state) = (&model.lines[index], &state.lines[index]);
             self.lines[index].assemble_dynamic::<TANGENT>(
                 line,
                 line_state,
                 line.clamps(&state.points),
+                stream,
                 weights,
                 negative_tension,
             );
@@ -680,7 +720,7 @@ impl Workspace {
         for_free_points(model, network, |index, free| {
             let point = &mut self.points[index];
             let load = model.points[index].load_at(t);
-            point.assemble_dynamic::<TANGENT>(free, &state.points[index], load, weights);
+            point.assemble_dynamic::<TANGENT>(free, &state.points[index], load, stream, weights);
         });
         self.gather(model, network);
     }
@@ -977,7 +1017,15 @@ pub fn end_force(
         &mut work.lines[line],
     );
     line_work.fade_dampers(line_model, line_state, 0.0);
-    line_work.assemble_dynamic::<false>(line_model, line_state, clamps, &weights, negative_tension);
+    let stream = model.stream(state.time);
+    line_work.assemble_dynamic::<false>(
+        line_model,
+        line_state,
+        clamps,
+        stream,
+        &weights,
+        negative_tension,
+    );
     -line_work.residual[line_model.end_node(end)]
 }
 

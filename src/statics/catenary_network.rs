@@ -42,12 +42,14 @@ const RELAXATION: [f64; 2] = [1.0, 1e-13];
 /// Displacement of the difference quotients, over the length of the line [-].
 const DIFFERENCE: f64 = 1e-9;
 
-/// Whether every line of a network has a closed form.
+/// Whether every line of a network has a closed form; in a current, lines with drag have none.
 pub fn serves(model: &Model, network: &Network) -> bool {
     let mut lines = network.lines.iter().map(|&line| &model.lines[line]);
     lines.all(|line| {
         let mut sections = line.sections.iter();
-        line.bending.is_none() && sections.all(|section| section.law == StretchLaw::Engineering)
+        line.bending.is_none()
+            && !line.drifts(model)
+            && sections.all(|section| section.law == StretchLaw::Engineering)
     })
 }
 

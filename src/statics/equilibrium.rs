@@ -16,7 +16,7 @@
 //! its greatest force, the loads are applied little by little instead, and every step must lie close to the one before and
 //! have a positive definite tangent.
 //!
-//! Lines with bending stiffness are in `bending`.
+//! Lines with bending stiffness are in `bending`, lines in a current in [`current`].
 //!
 //! Accepted is a residual of at most 1e-11 of the greatest force in the network (tension, nodal weight or load) plus what
 //! rounding of the positions makes of the stiffest segment.
@@ -25,6 +25,7 @@
 //! predicted tensions is derived here.
 
 mod bending;
+pub(crate) mod current;
 
 use nalgebra::Vector3;
 
@@ -257,6 +258,17 @@ impl<'a> Problem<'a> {
 
     fn solve(&self, state: &mut State, work: &mut Workspace) -> Result<(), StaticsError> {
         place_ends(self.model, self.network, state);
+        let mut lines = self.network.lines.iter();
+        match self.model.stream(self.time) {
+            Some(stream) if lines.any(|&line| self.model.lines[line].drifts(self.model)) => {
+                self.solve_in_current(stream, state, work)
+            }
+            _ => self.solve_loaded(state, work),
+        }
+    }
+
+    /// Equilibrium under weight, point loads and the drag that is held.
+    fn solve_loaded(&self, state: &mut State, work: &mut Workspace) -> Result<(), StaticsError> {
         let mut guess = std::mem::take(&mut work.saved);
         copy_network(self.model, self.network, state, &mut guess);
         let result = if self.bends {

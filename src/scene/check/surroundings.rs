@@ -1,7 +1,8 @@
 //! Title, gravity, water, seabed.
 
+use super::time::{Load, check_load_in_time};
 use super::{Bounds, Findings, quantity};
-use crate::scene::Scene;
+use crate::scene::{Current, LineModel, Scene};
 
 pub(super) fn check(scene: &Scene, findings: &mut Findings) {
     if scene.title.chars().any(char::is_control) {
@@ -27,6 +28,9 @@ pub(super) fn check(scene: &Scene, findings: &mut Findings) {
             Bounds::Positive(1e5),
             "kg/m³",
         );
+        if let Some(current) = &water.current {
+            check_current(scene, current, findings);
+        }
     }
     if let Some(seabed) = &scene.seabed {
         if seabed.depth < 0.0 {
@@ -44,5 +48,61 @@ pub(super) fn check(scene: &Scene, findings: &mut Findings) {
         findings.number("seabed.damping", seabed.damping, damping, "Pa s/m");
         let friction = Bounds::NotNegative(10.0);
         findings.number("seabed.friction", seabed.friction, friction, "-");
+    }
+}
+
+/// Fastest water [m/s]; the strongest tidal streams reach 10 m/s.
+const SPEED: Bounds = Bounds::Magnitude(100.0);
+
+fn check_current(scene: &Scene, current: &Current, findings: &mut Findings) {
+    let at = "water.current";
+    match (&current.velocity, &current.profile) {
+        (None, None) => findings.say(
+            at,
+            "a current needs `velocity = [vx, vy, vz]` [m/s], or `profile = [[z, vx, vy], …]` [m, m/s]",
+        ),
+        (Some(_), Some(_)) => {
+            findings.say(at, "`velocity` and `profile` cannot both be given: the profile says all");
+        }
+        (Some(velocity), None) => {
+            for (axis, value) in velocity.iter().enumerate() {
+                findings.number(format!("{at}.velocity[{axis}]"), *value, SPEED, "m/s");
+            }
+        }
+        (None, Some(rows)) => check_profile(rows, findings),
+    }
+    if let Some(factor) = &current.factor {
+        check_load_in_time(findings, &format!("{at}.factor"), factor, Load::FACTOR);
+    }
+    for (name, line_type) in &scene.line_types {
+        let drags = line_type.drag_normal.is_some() || line_type.drag_tangential.is_some();
+        if line_type.model == LineModel::Beam && drags {
+            let problem = format!(
+                "line type {name:?} is a beam, and beams are modelled in still water only: use the cable model, whose lines may bend \
+                 too, or leave out the current or the drag coefficients"
+            );
+            return findings.say(at, problem);
+        }
+    }
+}
+
+fn check_profile(rows: &[[f64; 3]], findings: &mut Findings) {
+    let at = "water.current.profile";
+    if rows.is_empty() {
+        findings.say(at, "the profile has no rows: write [[z, vx, vy], …]");
+    }
+    for (i, [z, vx, vy]) in rows.iter().enumerate() {
+        let right = findings.number(format!("{at}[{i}][0]"), *z, Bounds::Magnitude(1e5), "m");
+        findings.number(format!("{at}[{i}][1]"), *vx, SPEED, "m/s");
+        findings.number(format!("{at}[{i}][2]"), *vy, SPEED, "m/s");
+        if let Some(twin) = rows[..i].iter().position(|row| row[0] == *z)
+            && right
+        {
+            let problem = format!(
+                "row {twin} is at {} too: every height has one velocity; put the heights of a jump 1 mm apart",
+                quantity(*z, "m")
+            );
+            findings.say(format!("{at}[{i}][0]"), problem);
+        }
     }
 }

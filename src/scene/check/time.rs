@@ -25,6 +25,10 @@ impl Load {
         unit: "N",
         preposition: "force along",
     };
+    pub(super) const FACTOR: Load = Load {
+        unit: "-",
+        preposition: "factor of",
+    };
     pub(super) const MOMENT: Load = Load {
         unit: "N m",
         preposition: "moment about",

@@ -40,7 +40,7 @@ pub(super) fn scene(
         deck,
         scene: Scene {
             title: deck.title.clone(),
-            water: Some(Water { density: SEA_WATER }),
+            water: Some(Water::still(SEA_WATER)),
             ..Scene::default()
         },
         vessels: Vessels { supplement },

@@ -293,7 +293,7 @@ impl<'d> Builder<'d> {
             .density
             .as_ref()
             .map_or(SEA_WATER, |density| density.value);
-        self.scene.water = Some(Water { density });
+        self.scene.water = Some(Water::still(density));
         if let Some(density) = &options.density {
             self.places
                 .put("water.density", &density.span, "OPTIONS, rho");

@@ -262,6 +262,14 @@ fn the_damping_is_the_slope_of_the_residual_in_water_and_on_the_bed() {
 }
 
 #[test]
+fn the_damping_is_the_slope_of_the_residual_in_a_sheared_current() {
+    let line_type = "mass = 2.0\ndiameter = 0.05\ndrag_normal = 1.2\ndrag_tangential = 0.3";
+    let current = "current = { profile = [[1.0, 0.9, -0.4], [-1.0, 0.1, 0.3]], factor = 1.3 }";
+    let model = network(&format!("{WATER}\n{current}"), line_type);
+    assert_tangent(&model, &random_state(&model, 1.0), Varied::Velocity);
+}
+
+#[test]
 fn the_mass_is_the_slope_of_the_residual_with_unequal_added_mass() {
     let line_type =
         "mass = 2.0\ndiameter = 0.05\nadded_mass_normal = 1.0\nadded_mass_tangential = 0.1";
