@@ -264,7 +264,7 @@ impl Spring {
         height: f64,
         step: Step,
     ) -> Option<Spring> {
-        (stiffness > 0.0).then(|| Spring {
+        (stiffness > 0.0).then_some(Spring {
             stiffness,
             resistance: stiffness * step.drift + damping,
             push: force_at_zero - stiffness * height,

@@ -1,9 +1,8 @@
 //! Free points in the sea in words.
 
+use std::f64::consts::PI;
+
 use super::significant;
-use crate::physics::point::Sphere;
-use crate::physics::seabed::POINT_PENETRATION;
-use crate::scene::check::quantity;
 use crate::scene::{Axis, Point, PointKind, Scene};
 
 impl Scene {
@@ -13,7 +12,7 @@ impl Scene {
             return None;
         }
         if self.ends_beam(point) {
-            let wet = self.sphere(point).is_some();
+            let wet = self.radius(point).is_some();
             return wet.then(|| {
                 "at the end of a beam only weight and buoyancy act, as if it were under water"
                     .into()
@@ -29,7 +28,7 @@ impl Scene {
     /// Whether the water's surface acts on a free point.
     pub(super) fn surface_matters(&self) -> bool {
         let mut free = self.points.iter().filter(|p| p.kind == PointKind::Free);
-        free.any(|point| self.sphere(point).is_some() && !self.ends_beam(point))
+        free.any(|point| self.radius(point).is_some() && !self.ends_beam(point))
     }
 
     fn ends_beam(&self, point: &Point) -> bool {
@@ -37,23 +36,22 @@ impl Scene {
         lines.any(|line| (line.from == point.name || line.to == point.name) && self.is_beam(line))
     }
 
-    fn sphere(&self, point: &Point) -> Option<Sphere> {
-        let of_water = [point.volume, point.drag_area, point.added_mass];
-        let density = self.water.as_ref()?.density;
-        Sphere::new(
-            of_water.map(|value| value.unwrap_or(0.0)),
-            density,
-            self.gravity,
-        )
+    /// Radius of the sphere that the water knows a point by [m]; `None` where it does nothing to it.
+    fn radius(&self, point: &Point) -> Option<f64> {
+        self.water.as_ref()?;
+        let of = |value: Option<f64>| value.filter(|value| *value > 0.0);
+        let by_volume = of(point.volume).map(|volume| (0.75 * volume / PI).cbrt());
+        by_volume.or_else(|| of(point.drag_area).map(|area| (area / PI).sqrt()))
     }
 
     fn water_in_words(&self, point: &Point) -> Option<String> {
-        let sphere = self.sphere(point)?;
-        let volume = point.volume.is_some_and(|volume| volume > 0.0);
+        let radius = self.radius(point)?;
+        let acts = |value: Option<f64>| value.is_some_and(|value| value > 0.0);
+        let volume = acts(point.volume);
         let acting = [
             ("buoyancy", volume),
-            ("drag", sphere.drag > 0.0),
-            ("added mass", sphere.added_mass > 0.0),
+            ("drag", acts(point.drag_area)),
+            ("added mass", volume && acts(point.added_mass)),
         ];
         let named = |acts: bool| {
             let kinds = acting.iter().filter(|(_, does)| *does == acts);
@@ -67,7 +65,7 @@ impl Scene {
         Some(format!(
             "in the water {}{absent}, as of a sphere of radius {} m as far as it is under z = 0",
             named(true).join(", "),
-            significant(sphere.radius)
+            significant(radius)
         ))
     }
 
@@ -79,10 +77,7 @@ impl Scene {
             .as_ref()
             .is_none_or(|axes| axes.contains(&Axis::Z));
         (weight > 0.0 && moves && bed.stiffness > 0.0).then(|| {
-            format!(
-                "should it touch the bed, it rests there on a spring that its weight in air presses in by {}",
-                quantity(POINT_PENETRATION, "m")
-            )
+            "should it touch the bed, it rests there on a spring that its weight in air presses in by 0.02 m".to_string()
         })
     }
 }
