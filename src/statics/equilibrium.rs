@@ -16,7 +16,7 @@
 //! its greatest force, the loads are applied little by little instead, and every step must lie close to the one before and
 //! have a positive definite tangent.
 //!
-//! Lines with bending stiffness are in `bending`, lines in a current in [`current`].
+//! Lines with bending stiffness are in `bending`, lines in a current in `current`.
 //!
 //! Accepted is a residual of at most 1e-11 of the greatest force in the network (tension, nodal weight or load) plus what
 //! rounding of the positions makes of the stiffest segment.
