@@ -96,6 +96,24 @@ impl Lanes {
         Lanes(self.0.map(f))
     }
 
+    /// The bits of every lane.
+    #[inline(always)]
+    pub fn to_bits(self) -> [u64; LANES] {
+        self.0.map(f64::to_bits)
+    }
+
+    /// The numbers that have these bits.
+    #[inline(always)]
+    pub fn from_bits(bits: [u64; LANES]) -> Lanes {
+        Lanes(bits.map(f64::from_bits))
+    }
+
+    /// Changes the sign of the lanes whose highest bit is set in `signs`, of which all other bits are 0.
+    #[inline(always)]
+    pub fn flip_signs(self, signs: [u64; LANES]) -> Lanes {
+        Lanes(from_fn(|i| f64::from_bits(self.0[i].to_bits() ^ signs[i])))
+    }
+
     /// Sum of the lanes.
     #[inline(always)]
     pub fn sum(self) -> f64 {
