@@ -367,6 +367,7 @@ impl Simulation {
     /// on its elements this is the present force and stiffness.
     pub fn vessel_at_rest(&self, vessel: usize) -> ([f64; 6], Option<[[f64; 6]; 6]>) {
         let mut hung = self.clone();
+        hung.snapshot.state.waves = None;
         let (model, time) = (&*self.model, self.time());
         let mut work = assembly::Workspace::new(model);
         for number in 0..model.networks.len() {
@@ -427,7 +428,7 @@ impl Simulation {
             &state.lines[line],
             end,
             &state.points[point],
-            model.stream(state.time),
+            model.water_along(state, line, state.time),
             negative,
         )
     }
@@ -698,6 +699,7 @@ fn at_rest(model: &Model, time: f64, places: &[PointState]) -> Result<State, Sta
             time,
             points: places.to_vec(),
             lines: shapes.into_iter().map(LineState::at_rest).collect(),
+            waves: None,
         });
     }
     let mut work = assembly::Workspace::new(model);

@@ -8,7 +8,8 @@ use pulp::{Arch, NullaryFnOnce};
 
 use super::leapfrog::Step;
 use crate::math::lanes::{Components, LANES, Lanes, Vectors};
-use crate::model::{End, Line, LineState};
+use crate::model::{End, Line, LineState, Model, WaveSpan};
+use crate::physics::airy::cubics;
 use crate::physics::flow::{Profile, Stream};
 use crate::physics::stretch::StretchLaw;
 
@@ -40,6 +41,8 @@ pub(super) struct Layout {
     pub drag: Option<DragArrays>,
     /// The current, where it acts on the line.
     pub current: Option<CurrentNow>,
+    /// The waves, where they act on the line.
+    pub waves: Option<WaveArrays>,
     pub mass_damping: Option<Vec<f64>>,
     pub contact: Option<ContactArrays>,
 }
@@ -49,6 +52,25 @@ pub(super) struct Layout {
 pub(super) struct DragArrays {
     pub normal: Vec<f64>,
     pub tangent: Vec<f64>,
+}
+
+/// What moves the water around a line.
+#[derive(Debug, Clone, Copy)]
+pub struct Water<'a> {
+    /// Shape of the current, where the water flows.
+    pub profile: Option<&'a Profile>,
+    /// Whether waves act on the line.
+    pub waves: bool,
+}
+
+impl<'a> Water<'a> {
+    /// Around a line of a model.
+    pub fn around(model: &'a Model, line: &Line) -> Water<'a> {
+        Water {
+            profile: model.current.as_ref().map(|current| &current.profile),
+            waves: line.heaves(model),
+        }
+    }
 }
 
 /// The current at t_n.
@@ -68,6 +90,76 @@ impl CurrentNow {
     }
 }
 
+/// Motion of the water by waves over a span of time: coefficients of the powers of the part of the span that has passed.
+#[derive(Debug, Clone)]
+pub(super) struct WaveArrays {
+    /// Of the velocity [m/s].
+    velocity: [Components; 4],
+    /// Of the acceleration [m/s²].
+    acceleration: [Components; 4],
+    /// Mass of the water that presses, across and along the line [kg].
+    normal: Vec<f64>,
+    tangent: Vec<f64>,
+    /// Start and end of the span [s].
+    times: [f64; 2],
+    /// Part of the span that has passed at t_n [-].
+    passed: f64,
+}
+
+impl WaveArrays {
+    fn new(line: &Line) -> WaveArrays {
+        let n = line.segment_count();
+        let zeros = || Components::zeros(padded_size(n));
+        let pressed = line.nodes.pressed.as_ref();
+        let mass = |of: fn(&crate::model::Pressed) -> &Vec<f64>| match pressed {
+            Some(pressed) => pad(n, of(pressed), 0.0),
+            None => vec![0.0; padded_size(n)],
+        };
+        WaveArrays {
+            velocity: std::array::from_fn(|_| zeros()),
+            acceleration: std::array::from_fn(|_| zeros()),
+            normal: mass(|pressed| &pressed.normal),
+            tangent: mass(|pressed| &pressed.tangent),
+            times: [0.0; 2],
+            passed: 0.0,
+        }
+    }
+
+    /// Velocities of the water at the nodes at t_n [m/s].
+    #[inline(always)]
+    fn velocity(&self, at: usize) -> Vectors {
+        polynomial(&self.velocity, self.passed, at)
+    }
+
+    /// Forces of the accelerated water on nodes with these unit tangents [N].
+    #[inline(always)]
+    pub fn press(&self, at: usize, tangent: Vectors) -> Vectors {
+        let acceleration = polynomial(&self.acceleration, self.passed, at);
+        let normal = Lanes::load(&self.normal, at);
+        let excess = Lanes::load(&self.tangent, at) - normal;
+        acceleration.scale(normal) + tangent.scale(excess * acceleration.dot(tangent))
+    }
+
+    /// Force of the accelerated water on a node with this unit tangent [N].
+    pub fn press_of(&self, at: usize, tangent: Vector3<f64>) -> Vector3<f64> {
+        let acceleration = self.value(&self.acceleration, at);
+        let excess = self.tangent[at] - self.normal[at];
+        self.normal[at] * acceleration + excess * acceleration.dot(&tangent) * tangent
+    }
+
+    fn value(&self, powers: &[Components; 4], at: usize) -> Vector3<f64> {
+        let [p0, p1, p2, p3] = [0, 1, 2, 3].map(|power| powers[power].get(at));
+        p0 + self.passed * (p1 + self.passed * (p2 + self.passed * p3))
+    }
+}
+
+#[inline(always)]
+fn polynomial(powers: &[Components; 4], passed: f64, at: usize) -> Vectors {
+    let u = Lanes::splat(passed);
+    let [p0, p1, p2, p3] = powers;
+    p0.load(at) + (p1.load(at) + (p2.load(at) + p3.load(at).scale(u)).scale(u)).scale(u)
+}
+
 /// Lumped contact coefficients [N/m, N s/m] and the z [m] below which they push.
 #[derive(Debug, Clone)]
 pub(super) struct ContactArrays {
@@ -78,7 +170,7 @@ pub(super) struct ContactArrays {
 
 impl Layout {
     /// Arrays for a line; `None` where its sections have different strain measures, which the kernels do not mix.
-    pub fn new(line: &Line, profile: Option<&Profile>, negative_tension: bool) -> Option<Layout> {
+    pub fn new(line: &Line, water: Water<'_>, negative_tension: bool) -> Option<Layout> {
         let n = line.segment_count();
         let size = padded_size(n);
         let keep = |values: &[f64]| pad(n, values, 0.0);
@@ -100,7 +192,9 @@ impl Layout {
                 normal: keep(&drag.normal),
                 tangent: keep(&drag.tangent),
             }),
-            current: profile
+            waves: water.waves.then(|| WaveArrays::new(line)),
+            current: water
+                .profile
                 .filter(|_| nodes.drag.is_some())
                 .map(|profile| CurrentNow {
                     profile: profile.clone(),
@@ -158,23 +252,61 @@ impl Layout {
         }
     }
 
-    /// Velocities of the water at the nodes [m/s]; the line must lie in a current.
+    /// Takes over what waves do at the nodes of line number `line` over a span of time.
+    pub fn load_waves(&mut self, span: Option<&WaveSpan>, line: usize) {
+        let (Some(waves), Some(span)) = (&mut self.waves, span) else {
+            return;
+        };
+        waves.times = span.times;
+        let [before, after] = &span.ends;
+        let nodes = before.lines[line].iter().zip(&after.lines[line]);
+        for (i, (before, after)) in nodes.enumerate() {
+            let [velocity, acceleration] = cubics(before, after, span.times);
+            for power in 0..4 {
+                waves.velocity[power].set(FIRST + i, velocity[power]);
+                waves.acceleration[power].set(FIRST + i, acceleration[power]);
+            }
+        }
+    }
+
+    /// Sets the waves to those of t_n [s].
+    pub fn set_time(&mut self, t: f64) {
+        if let Some(waves) = &mut self.waves {
+            let [t0, t1] = waves.times;
+            waves.passed = if t1 > t0 { (t - t0) / (t1 - t0) } else { 0.0 };
+        }
+    }
+
+    /// Whether the water moves.
+    pub fn flows(&self) -> bool {
+        self.current.is_some() || self.waves.is_some()
+    }
+
+    /// Velocities of the water at the nodes [m/s].
     #[inline(always)]
     pub fn water_velocity(&self, at: usize) -> Vectors {
-        let current = self
-            .current
-            .as_ref()
-            .expect("this kernel runs in a current");
-        let z = Lanes::load(&self.position.z, at);
-        let shape = current.profile.velocities(z);
-        shape.scale(Lanes::splat(current.factor))
+        let flow = self.current.as_ref().map(|current| {
+            let z = Lanes::load(&self.position.z, at);
+            let shape = current.profile.velocities(z);
+            shape.scale(Lanes::splat(current.factor))
+        });
+        match (flow, &self.waves) {
+            (Some(flow), None) => flow,
+            (Some(flow), Some(waves)) => flow + waves.velocity(at),
+            (None, Some(waves)) => waves.velocity(at),
+            (None, None) => Vectors::zero(),
+        }
     }
 
     /// Velocity of the water at a node [m/s].
     pub fn water_velocity_of(&self, at: usize) -> Vector3<f64> {
-        self.current.as_ref().map_or(Vector3::zeros(), |current| {
+        let flow = self.current.as_ref().map_or(Vector3::zeros(), |current| {
             current.stream().velocity(self.position.z[at])
-        })
+        });
+        match &self.waves {
+            None => flow,
+            Some(waves) => flow + waves.value(&waves.velocity, at),
+        }
     }
 
     /// Puts an end at a position [m] with the velocity [m/s] that the next step takes as lagged.

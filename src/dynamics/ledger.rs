@@ -3,7 +3,8 @@
 //! Held:  E = Σ ½ vᵀM v + Σ EA·W(ε)·L + Σ ½B(|κb| − k₀)² + Σ w z  over free nodes, segments that carry force, joints and free
 //!        points, by kind in [`Energy`].
 //! Given: the work of the held ends on the line, −∫ (T q + S)·V + M·Ω dt with the shear S of lines that bend and the moment M on
-//!        clamps that turn, and of point loads; the work Σ f·u dt of the drag f on the way of a current u.
+//!        clamps that turn, and of point loads; the work Σ f·u dt of the drag f on the way of the water u; the work of the water that
+//!        waves accelerate, and of the buoyancy by which a wave exceeds the still water at a free point.
 //! Lost:  drag at the velocity through the water, axial, bending and mass damping, and what the seabed takes (its springs give
 //!        some of it back). The added mass of a free point that dips into the water brings ½ v² of what joins it, which counts as a
 //!        negative loss.
@@ -25,8 +26,10 @@ use serde::{Deserialize, Serialize};
 use super::beam::{self, BeamView};
 use super::leapfrog::segment_tension;
 use crate::model::{
-    ClosedForm, End, FreePoint, Line, LineState, Model, Network, PointState, State, joint,
+    ClosedForm, End, FreePoint, Line, LineState, Model, Network, PointState, State, WaterAlong,
+    joint,
 };
+use crate::physics::airy::Orbit;
 use crate::physics::flow::Stream;
 use crate::physics::morison::{DragCoefficients, drag};
 use crate::physics::seabed::{ContactCoefficients, normal_force};
@@ -136,7 +139,9 @@ pub fn energy(model: &Model, network: &Network, state: &State) -> Energy {
             None => (at.velocity, 0.0),
         };
         let height = at.position.z - lag * velocity.z;
-        sum.kinetic += 0.5 * free.at(height).mass * velocity.norm_squared();
+        let waves = state.waves_at_point(point, state.time - lag);
+        let over = height - waves.map_or(0.0, |orbit| orbit.elevation);
+        sum.kinetic += 0.5 * free.at(over).mass * velocity.norm_squared();
         sum.gravitational += free.potential(height);
     }
     sum
@@ -412,7 +417,8 @@ pub fn power(model: &Model, network: &Network, state: &State, t: f64) -> Flow {
     let mut flow = Flow::default();
     for &index in &network.lines {
         let (line, shape) = (&model.lines[index], &state.lines[index]);
-        flow.add(line_power(line, shape, model, model.stream(t)));
+        let water = model.water_along(state, index, t);
+        flow.add(line_power(line, shape, model, water));
         if model.lines[index].bending.is_some() {
             flow.add(bending_power(model, &model.lines[index], state, index));
         }
@@ -421,30 +427,47 @@ pub fn power(model: &Model, network: &Network, state: &State, t: f64) -> Flow {
         let velocity = &state.points[point].velocity;
         flow.given += model.points[point].load_at(t).dot(velocity);
         if let Some(free) = model.points[point].free() {
-            flow.add(point_power(free, &state.points[point], model.stream(t)));
+            let waves = state.waves_at_point(point, t);
+            flow.add(point_power(
+                free,
+                &state.points[point],
+                model.stream(t),
+                waves,
+            ));
         }
     }
     flow
 }
 
-/// Power that a current gives a free point, and that water and seabed take from it [W]; what joins the added mass where it dips in
+/// Power that moving water gives a free point, and that water and seabed take from it [W]; what joins the added mass where it dips in
 /// is negative.
-fn point_power(free: &FreePoint, state: &PointState, stream: Option<Stream>) -> Flow {
+fn point_power(
+    free: &FreePoint,
+    state: &PointState,
+    stream: Option<Stream>,
+    waves: Option<Orbit>,
+) -> Flow {
     let (z, velocity) = (state.position.z, state.velocity);
-    let at = free.at(z);
-    let water = stream.map_or(Vector3::zeros(), |stream| stream.velocity(z));
+    let mut water = stream.map_or(Vector3::zeros(), |stream| stream.velocity(z));
+    let (mut at, mut given, mut sinks) = (free.at(z), 0.0, velocity.z);
+    if let Some(orbit) = &waves {
+        let still = at.weight;
+        at = free.at(z - orbit.elevation);
+        water += orbit.velocity;
+        sinks -= orbit.rise; // relative to the surface
+        given += free.pressed(at.wetted, orbit).dot(&velocity);
+        given += (still - at.weight) * velocity.z;
+    }
     let past = velocity - water;
     let drag = free.drag(at.wetted, past);
     let mut lost = -drag.dot(&past);
-    lost -= 0.5 * at.mass_slope * velocity.z * velocity.norm_squared();
+    lost -= 0.5 * at.mass_slope * sinks * velocity.norm_squared();
     if let Some(contact) = &free.contact {
         let push = normal_force(contact.coefficients, contact.level - z, velocity.z);
         lost -= push * velocity.z;
     }
-    Flow {
-        given: drag.dot(&water),
-        lost,
-    }
+    given += drag.dot(&water);
+    Flow { given, lost }
 }
 
 /// Power of the shear at held ends, and that of the joints' dampers [W].
@@ -467,7 +490,7 @@ fn bending_power(model: &Model, line: &Line, state: &State, index: usize) -> Flo
     }
 }
 
-fn line_power(line: &Line, shape: &LineState, model: &Model, stream: Option<Stream>) -> Flow {
+fn line_power(line: &Line, shape: &LineState, model: &Model, water: WaterAlong) -> Flow {
     let (n, negative) = (line.segment_count(), model.solver.negative_tension);
     let segments = &line.segments;
     let [a, b] = line.ends.map(|point| model.points[point].free().is_none());
@@ -495,13 +518,13 @@ fn line_power(line: &Line, shape: &LineState, model: &Model, stream: Option<Stre
         }
     }
     for i in usize::from(a)..=n - usize::from(b) {
-        flow.add(node_power(line, shape, i, stream));
+        flow.add(node_power(line, shape, i, water));
     }
     flow
 }
 
-/// Power that water, mass damping and seabed take from a node, and that a current gives it [W].
-fn node_power(line: &Line, shape: &LineState, i: usize, stream: Option<Stream>) -> Flow {
+/// Power that water, mass damping and seabed take from a node, and that moving water gives it [W].
+fn node_power(line: &Line, shape: &LineState, i: usize, water: WaterAlong) -> Flow {
     let (nodes, velocity) = (&line.nodes, shape.velocity[i]);
     let (mut given, mut lost) = (0.0, 0.0);
     if let Some(coefficients) = &nodes.drag {
@@ -510,14 +533,18 @@ fn node_power(line: &Line, shape: &LineState, i: usize, stream: Option<Stream>) 
             tangent: coefficients.tangent[i],
         };
         let tangent = tangent(shape, i);
-        match stream.map(|stream| stream.velocity(shape.position[i].z)) {
-            None => lost -= drag(k, velocity, tangent).dot(&velocity),
-            Some(water) => {
-                let force = drag(k, velocity - water, tangent);
-                given += force.dot(&water);
-                lost -= force.dot(&(velocity - water));
-            }
+        if water.is_still() {
+            lost -= drag(k, velocity, tangent).dot(&velocity);
+        } else {
+            let flow = water.velocity(i, shape.position[i].z);
+            let force = drag(k, velocity - flow, tangent);
+            given += force.dot(&flow);
+            lost -= force.dot(&(velocity - flow));
         }
+    }
+    if let (Some(pressed), Some(waves)) = (&nodes.pressed, &water.waves) {
+        let force = pressed.force(i, waves.at(i).acceleration, tangent(shape, i));
+        given += force.dot(&velocity);
     }
     if let Some(damping) = &nodes.mass_damping {
         lost += damping[i] * velocity.norm_squared();

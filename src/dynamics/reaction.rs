@@ -2,7 +2,7 @@
 //!
 //! The end's half node belongs to the line, so that what the vessel feels is
 //!
-//! F = T q + S − [M(t) a + w ẑ − f_drag − f_bed],
+//! F = T q + S − [M(t) a + w ẑ − f_drag − f_waves − f_bed],
 //!
 //! T q pointing into the line, S the shear of a line with bending stiffness, v and a those of the point. Leaving the half node out would make the end force first order in
 //! the segment length. A line on its closed-form catenary brings the forces of that.
@@ -13,8 +13,7 @@ use nalgebra::Vector3;
 
 use super::beam::BeamView;
 use super::leapfrog::segment_tension;
-use crate::model::{End, Line, LineState, PointState};
-use crate::physics::flow::Stream;
+use crate::model::{End, Line, LineState, PointState, WaterAlong};
 use crate::physics::morison::{self, DragCoefficients};
 use crate::physics::seabed::{self, ContactCoefficients};
 use crate::statics::assembly::end_shear;
@@ -37,13 +36,13 @@ pub fn tension(line: &Line, state: &LineState, i: usize, negative_tension: bool)
     )
 }
 
-/// Force [N] of the line on the point at one of its ends, in a current or still water.
+/// Force [N] of the line on the point at one of its ends, in water that moves or rests.
 pub fn end_force(
     line: &Line,
     state: &LineState,
     end: End,
     point: &PointState,
-    stream: Option<Stream>,
+    water: WaterAlong,
     negative_tension: bool,
 ) -> Vector3<f64> {
     if let Some(view) = BeamView::of(line, state) {
@@ -78,8 +77,11 @@ pub fn end_force(
             normal: drag.normal[node],
             tangent: drag.tangent[node],
         };
-        let flow = stream.map_or(Vector3::zeros(), |s| s.velocity(state.position[node].z));
+        let flow = water.velocity(node, state.position[node].z);
         force += morison::drag(coefficients, velocity - flow, inward);
+    }
+    if let (Some(pressed), Some(waves)) = (&nodes.pressed, &water.waves) {
+        force += pressed.force(node, waves.at(node).acceleration, inward);
     }
     if let Some(damping) = &nodes.mass_damping {
         force -= damping[node] * velocity;

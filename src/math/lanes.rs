@@ -157,6 +157,17 @@ pub struct Vectors {
 }
 
 impl Vectors {
+    /// Zero vectors.
+    #[inline(always)]
+    pub fn zero() -> Vectors {
+        let zero = Lanes::splat(0.0);
+        Vectors {
+            x: zero,
+            y: zero,
+            z: zero,
+        }
+    }
+
     /// Scalar products.
     #[inline(always)]
     pub fn dot(self, other: Vectors) -> Lanes {

@@ -93,6 +93,24 @@ impl Orbit {
     }
 }
 
+/// Coefficients of the powers of u = (t − t₀)/(t₁ − t₀) in the velocity [m/s] and the acceleration [m/s²] between two instants.
+pub fn cubics(before: &Orbit, after: &Orbit, [t0, t1]: [f64; 2]) -> [[Vector3<f64>; 4]; 2] {
+    let cubic = |[p0, m0]: [Vector3<f64>; 2], [p1, m1]: [Vector3<f64>; 2]| {
+        let (m0, m1, rise) = ((t1 - t0) * m0, (t1 - t0) * m1, p1 - p0);
+        [p0, m0, 3.0 * rise - 2.0 * m0 - m1, m0 + m1 - 2.0 * rise]
+    };
+    [
+        cubic(
+            [before.velocity, before.acceleration],
+            [after.velocity, after.acceleration],
+        ),
+        cubic(
+            [before.acceleration, before.jerk],
+            [after.acceleration, after.jerk],
+        ),
+    ]
+}
+
 /// A sum of wave trains.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Waves {

@@ -9,5 +9,6 @@ pub mod point;
 pub mod rayleigh;
 pub mod seabed;
 pub mod section;
+pub mod spectrum;
 pub mod stretch;
 pub mod weight;

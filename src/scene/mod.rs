@@ -22,6 +22,7 @@ mod read;
 mod rows;
 mod time_function;
 mod units;
+mod waves;
 mod words;
 
 use std::collections::BTreeMap;
@@ -34,6 +35,7 @@ pub use places::Places;
 use read::Reading;
 pub use read::{LoadedScene, Supplement, TOML, load, load_with};
 pub use time_function::{HarmonicMotion, MotionFile, MotionPath, MotionRow, TimeFunction};
+pub use waves::{RegularWave, Sea, SpectrumKind, WaveComponents, Waves};
 
 /// Standard gravity [m/s²], the default of [`Scene::gravity`].
 pub const STANDARD_GRAVITY: f64 = 9.80665;
@@ -84,6 +86,9 @@ pub struct Water {
     /// How it flows; still where absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub current: Option<Current>,
+    /// Its waves; none where absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub waves: Option<Waves>,
 }
 
 /// A current: `{ velocity = [vx, vy, vz] }`, alike at all heights, or `{ profile = [[z, vx, vy], …] }`, straight between the rows
@@ -108,6 +113,7 @@ impl Water {
         Water {
             density,
             current: None,
+            waves: None,
         }
     }
 }

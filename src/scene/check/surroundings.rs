@@ -31,6 +31,9 @@ pub(super) fn check(scene: &Scene, findings: &mut Findings) {
         if let Some(current) = &water.current {
             check_current(scene, current, findings);
         }
+        if let Some(waves) = &water.waves {
+            super::waves::check(scene, waves, findings);
+        }
     }
     if let Some(seabed) = &scene.seabed {
         if seabed.depth < 0.0 {

@@ -5,8 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::bending::Parts;
 use super::{BendingWork, StaticCase, Weights};
 use crate::math::block_tridiagonal::Chain;
-use crate::model::{Line, LineState, Model};
-use crate::physics::flow::Stream;
+use crate::model::{Line, LineState, Model, WaterAlong};
 use crate::physics::morison::{DragCoefficients, drag, drag_slope};
 use crate::physics::stretch::total_tension;
 
@@ -182,7 +181,7 @@ impl LineWork {
         line: &Line,
         state: &LineState,
         clamps: [Option<Vector3<f64>>; 2],
-        stream: Option<Stream>,
+        water: WaterAlong,
         weights: &Weights,
         negative_tension: bool,
     ) {
@@ -197,8 +196,9 @@ impl LineWork {
         }
         self.add_weight_and_inertia::<TANGENT>(line, state, weights);
         if line.nodes.drag.is_some() {
-            self.add_drag::<TANGENT>(line, state, stream, weights);
+            self.add_drag::<TANGENT>(line, state, water, weights);
         }
+        self.add_press(line, state, water, weights);
         if line.nodes.contact.is_some() {
             self.add_contact::<TANGENT>(line, state, weights);
         }
@@ -299,11 +299,22 @@ impl LineWork {
         }
     }
 
+    /// Force of water that waves accelerate; it does not depend on the state but by the tangent, which is frozen.
+    fn add_press(&mut self, line: &Line, state: &LineState, water: WaterAlong, weights: &Weights) {
+        let (Some(pressed), Some(waves)) = (&line.nodes.pressed, &water.waves) else {
+            return;
+        };
+        for (i, residual) in self.residual.iter_mut().enumerate() {
+            let tangent = node_tangent(&state.position, i);
+            *residual -= weights.force * pressed.force(i, waves.at(i).acceleration, tangent);
+        }
+    }
+
     fn add_drag<const TANGENT: bool>(
         &mut self,
         line: &Line,
         state: &LineState,
-        stream: Option<Stream>,
+        water: WaterAlong,
         weights: &Weights,
     ) {
         let Some(coefficients) = &line.nodes.drag else {
@@ -315,13 +326,12 @@ impl LineWork {
                 tangent: coefficients.tangent[i],
             };
             let (t, z) = (node_tangent(&state.position, i), state.position[i].z);
-            let flow = stream.map_or(Vector3::zeros(), |stream| stream.velocity(z));
-            let v = state.velocity[i] - flow;
+            let v = state.velocity[i] - water.velocity(i, z);
             self.residual[i] -= weights.force * drag(k, v, t);
             if TANGENT {
                 let slope = drag_slope(k, v, t);
                 self.diagonal[i] += weights.velocity * slope;
-                if let Some(stream) = stream {
+                if let Some(stream) = water.stream {
                     let mut by_height = self.diagonal[i].column_mut(2);
                     by_height -= weights.position * slope * stream.shear(z);
                 }
