@@ -79,7 +79,7 @@ fn the_water_presses_a_held_piece_as_morison_and_airy_say() {
     let k = omega * omega / GRAVITY;
     let along = Vector3::new(f64::cos(direction), f64::sin(direction), 0.0);
     let displaced = DENSITY * 0.25 * PI * 0.3 * 0.3; // [kg/m]
-    let mut greatest = 0.0_f64;
+    let (mut greatest, mut error) = (0.0_f64, 0.0_f64);
     for _ in 0..90 {
         simulation.advance(0.1).unwrap();
         let found =
@@ -95,28 +95,30 @@ fn the_water_presses_a_held_piece_as_morison_and_airy_say() {
                 + displaced * (1.9 * level + 1.2 * upward)
         };
         let expected = half_node(-12.0) + half_node(-10.0); // of 1 m each
-        assert!(
-            (found - expected).norm() < 2e-3 * expected.norm(),
-            "t = {} s: {found} N instead of {expected} N",
-            simulation.time()
-        );
+        error = error.max((found - expected).norm());
         greatest = greatest.max(expected.norm());
     }
     assert!(greatest > 100.0);
+    assert!(error < 1e-3 * greatest, "{error} N of {greatest} N");
 }
 
-/// A rope along y that weighs as much as water, free at both ends, at a depth [m].
+/// A rope along y that weighs as much as water, held by nothing but a slack thread that the water does not feel, at a depth [m].
 fn drifter(depth: f64) -> Scene {
     let mass = DENSITY * 0.25 * PI * 0.2 * 0.2;
     scene(&format!(
         r#"
         water = {{ density = {DENSITY} }}
         line_types.rope = {{ mass = {mass}, diameter = 0.2, axial_stiffness = 1e6, axial_damping = 1e4, drag_normal = 1.0, drag_tangential = 0.1, added_mass_normal = 1.0, added_mass_tangential = 0.3 }}
+        line_types.thread = {{ mass = 1e-6, weight = 0.0, axial_stiffness = 1e-3 }}
         points = [
+          {{ name = "wall", position = [0.0, -105.0, -{depth}], kind = "fixed" }},
           {{ name = "one", position = [0.0, -5.0, -{depth}], kind = "free" }},
           {{ name = "two", position = [0.0, 5.0, -{depth}], kind = "free" }},
         ]
-        lines = [{{ name = "rope", from = "one", to = "two", initial = "straight", sections = [{{ type = "rope", length = 10.0, elements = 5 }}] }}]
+        lines = [
+          {{ name = "rope", from = "one", to = "two", initial = "straight", sections = [{{ type = "rope", length = 10.0, elements = 5 }}] }},
+          {{ name = "thread", from = "wall", to = "one", initial = "straight", sections = [{{ type = "thread", length = 110.0, elements = 2 }}] }},
+        ]
         "#
     ))
 }
@@ -272,7 +274,7 @@ fn a_state_put_back_goes_on_to_the_last_bit() {
         for _ in 0..31 {
             simulation.advance(0.05).unwrap();
         }
-        let saved = serde_json::to_string(simulation.snapshot()).unwrap();
+        let saved = postcard::to_stdvec(simulation.snapshot()).unwrap();
         let on = |mut simulation: Simulation| {
             for step in [0.05, 0.05, 0.3, 1.7, 0.05, 0.02] {
                 simulation.advance(step).unwrap();
@@ -281,12 +283,12 @@ fn a_state_put_back_goes_on_to_the_last_bit() {
         };
         let straight = on(simulation.clone());
         let mut fresh = Simulation::new(&scene).unwrap();
-        fresh.restore(serde_json::from_str::<Snapshot>(&saved).unwrap());
-        assert_eq!(straight, on(fresh));
+        fresh.restore(postcard::from_bytes::<Snapshot>(&saved).unwrap());
+        assert!(straight == on(fresh));
         let mut back = simulation.clone();
         back.restore(straight);
         back.restore(simulation.snapshot().clone());
-        assert_eq!(on(back), on(simulation));
+        assert!(on(back) == on(simulation));
     }
 }
 

@@ -285,11 +285,15 @@ impl Layout {
     /// Velocities of the water at the nodes [m/s].
     #[inline(always)]
     pub fn water_velocity(&self, at: usize) -> Vectors {
-        let flow = self.current.as_ref().map(|current| {
-            let z = Lanes::load(&self.position.z, at);
-            let shape = current.profile.velocities(z);
-            shape.scale(Lanes::splat(current.factor))
-        });
+        // closures would not be compiled for the vector unit of the kernel
+        let flow = match &self.current {
+            None => None,
+            Some(current) => {
+                let z = Lanes::load(&self.position.z, at);
+                let shape = current.profile.velocities(z);
+                Some(shape.scale(Lanes::splat(current.factor)))
+            }
+        };
         match (flow, &self.waves) {
             (Some(flow), None) => flow,
             (Some(flow), Some(waves)) => flow + waves.velocity(at),

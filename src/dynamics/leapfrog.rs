@@ -85,8 +85,10 @@ impl WaterWork {
         if CURRENT {
             let flow = line.water_velocity(at);
             let drag = self.drag(at, velocity - flow, tangent);
-            let waves = line.waves.as_ref();
-            let press = waves.map_or(Vectors::zero(), |waves| waves.press(at, tangent));
+            let press = match &line.waves {
+                Some(waves) => waves.press(at, tangent),
+                None => Vectors::zero(),
+            };
             (drag, press, still - drag.dot(flow))
         } else {
             (self.drag(at, velocity, tangent), Vectors::zero(), still)

@@ -7,7 +7,7 @@
 use pulp::{Arch, NullaryFnOnce};
 
 use crate::model::{Model, State, WaveSpan, WavesAt};
-use crate::physics::airy::{Instant, Waves};
+use crate::physics::airy::{Instant, Orbit, Waves};
 
 /// Rounding of times, over a step [-].
 const ROUNDING: f64 = 1e-9;
@@ -136,23 +136,29 @@ impl NullaryFnOnce for Sampling<'_> {
     fn call(self) {
         let (model, state, found) = (self.model, self.state, self.found);
         found.lines.resize_with(model.lines.len(), Vec::new);
-        for ((line, shape), nodes) in model.lines.iter().zip(&state.lines).zip(&mut found.lines) {
+        for (index, line) in model.lines.iter().enumerate() {
+            let (shape, nodes) = (&state.lines[index], &mut found.lines[index]);
             nodes.clear();
             if line.heaves(model) {
-                let places = shape.position.iter().zip(&shape.velocity);
-                nodes.extend(
-                    places.map(|(r, v)| self.waves.orbit(r + self.ahead * v, self.instant)),
-                );
+                nodes.resize(shape.position.len(), Orbit::default());
+                // a closure would not be compiled for the vector unit
+                for (i, orbit) in nodes.iter_mut().enumerate() {
+                    let place = shape.position[i] + self.ahead * shape.velocity[i];
+                    *orbit = self.waves.orbit(place, self.instant);
+                }
             }
         }
         found.points.clear();
-        let points = model.points.iter().zip(&state.points);
-        found.points.extend(points.map(|(point, at)| {
+        found.points.resize(model.points.len(), Orbit::default());
+        for (index, orbit) in found.points.iter_mut().enumerate() {
+            let at = &state.points[index];
             let place = at.position + self.ahead * at.velocity;
-            match point.free().and_then(|free| free.sphere) {
-                Some(_) => self.waves.orbit(place, self.instant),
-                None => Default::default(),
+            if model.points[index]
+                .free()
+                .is_some_and(|free| free.sphere.is_some())
+            {
+                *orbit = self.waves.orbit(place, self.instant);
             }
-        }));
+        }
     }
 }

@@ -19,7 +19,7 @@ const PI_PARTS: [f64; 3] = [
     4.044_532_497_591_901e-21,
 ];
 /// ln 2 in two parts.
-const LN_2_PARTS: [f64; 2] = [6.931_471_803_691_238_2e-1, 1.908_214_929_270_587_7e-10];
+const LN_2_PARTS: [f64; 2] = [0.693_147_180_369_123_8, 1.908_214_929_270_587_7e-10];
 /// Least and greatest argument of the exponential.
 const EXPONENT_MAX: f64 = 708.0;
 
@@ -86,7 +86,7 @@ pub fn sin_cos(x: Lanes) -> (Lanes, Lanes) {
     let square = r * r;
     let sine = r + r * square * series(&SINE, square);
     let cosine = Lanes::splat(1.0) + square * series(&COSINE, square);
-    let odd = shifted.to_bits().map(|bits| bits << 63);
+    let odd = shifted.shifted_bits(0, 63);
     (sine.flip_signs(odd), cosine.flip_signs(odd))
 }
 
@@ -103,10 +103,7 @@ pub fn exp(x: Lanes) -> Lanes {
         r = r - n * Lanes::splat(part);
     }
     let power = Lanes::splat(1.0) + r + r * r * series(&EXPONENTIAL, r);
-    let scale = shifted
-        .to_bits()
-        .map(|bits| bits.wrapping_add(1023).wrapping_shl(52));
-    power * Lanes::from_bits(scale)
+    power * Lanes::from_bits(shifted.shifted_bits(1023, 52))
 }
 
 #[cfg(test)]

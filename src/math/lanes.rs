@@ -96,16 +96,16 @@ impl Lanes {
         Lanes(self.0.map(f))
     }
 
-    /// The bits of every lane.
+    /// The bits of every lane, a whole number added and shifted to the left.
     #[inline(always)]
-    pub fn to_bits(self) -> [u64; LANES] {
-        self.0.map(f64::to_bits)
+    pub fn shifted_bits(self, add: u64, left: u32) -> [u64; LANES] {
+        from_fn(|i| self.0[i].to_bits().wrapping_add(add) << left)
     }
 
     /// The numbers that have these bits.
     #[inline(always)]
     pub fn from_bits(bits: [u64; LANES]) -> Lanes {
-        Lanes(bits.map(f64::from_bits))
+        Lanes(from_fn(|i| f64::from_bits(bits[i])))
     }
 
     /// Changes the sign of the lanes whose highest bit is set in `signs`, of which all other bits are 0.

@@ -12,7 +12,9 @@
 //!
 //! A place is moved only by components that reach it: with A = a ω² e^{kz} the acceleration that a component would have there in deep
 //! water and R = √Σ(aω²)², those of the highest frequencies are left out that all have A < 10⁻⁴ R/√N. They add up to less than 10⁻⁴ of the
-//! acceleration at the surface. z is taken three standard deviations of the elevation too high for that, for the troughs.
+//! acceleration at the surface. z is taken three standard deviations of the elevation too high for that, for the troughs. From the
+//! elevation that stretches z those of the highest frequencies are left out whose √Σa² times √Σ(k aω² e^{kz})² is below 10⁻⁴ R; near the
+//! surface that is none.
 //!
 //! Between two instants not further apart than [`Waves::interval`] velocity, acceleration and elevation follow cubics with the slopes
 //! that they have there, [`Orbit::between`]. By the error h⁴f⁗/384 of that cubic the interval h = (384·10⁻³ √Σ(aω²)²/√Σ(aω⁶)²)^¼ leaves
@@ -67,7 +69,7 @@ pub struct Orbit {
     pub acceleration: Vector3<f64>,
     /// Rate of the acceleration ∂²u/∂t² [m/s³].
     pub jerk: Vector3<f64>,
-    /// Elevation of the surface above or below the place [m].
+    /// Elevation of the surface above or below the place, by the components that stretch the place, all of them near the surface [m].
     pub elevation: f64,
     /// Its rate by the components that reach the place, all of them near the surface [m/s].
     pub rise: f64,
@@ -119,6 +121,8 @@ pub struct Waves {
     table: Table,
     /// For every component, the height below which no place is moved by it or by those after it [m].
     reach: Vec<f64>,
+    /// For every component, the height below which its elevation, and that of those after it, stretches no place [m].
+    stretch: Vec<f64>,
     depth: Option<f64>,
     ramp: Option<f64>,
     interval: f64,
@@ -136,6 +140,14 @@ struct Table {
     bed: Vec<f64>,
     /// 1/(1 − q) [-].
     whole: Vec<f64>,
+}
+
+impl Table {
+    #[inline(always)]
+    fn headings(&self, at: usize) -> (Lanes, Lanes) {
+        let [east, north] = &self.heading;
+        (Lanes::load(east, at), Lanes::load(north, at))
+    }
 }
 
 /// The waves at one time: what every place needs of it. Also the scratch of the places.
@@ -200,6 +212,7 @@ impl Waves {
                 whole: column(&|_, k| depth.map_or(1.0, |h| -1.0 / (-2.0 * k * h).exp_m1())),
             },
             reach: reach(&components, &numbers),
+            stretch: stretch(&components, &numbers),
             interval: interval(&components),
             components,
             depth,
@@ -248,7 +261,8 @@ impl Waves {
     pub fn elevation(&self, x: f64, y: f64, t: f64) -> f64 {
         let mut instant = Instant::default();
         self.turn_to(t, &mut instant);
-        instant.growth[0] * self.raised(x, y, 0, &mut instant)
+        let all = self.table.amplitude.len();
+        instant.growth[0] * self.raised(x, y, [0, all], &mut instant)
     }
 
     /// Motion of the water at a place [m] and an instant; above the surface that of the surface.
@@ -256,7 +270,9 @@ impl Waves {
     pub fn orbit(&self, place: Vector3<f64>, instant: &mut Instant) -> Orbit {
         let count = self.reaching(place.z).next_multiple_of(LANES);
         let [growth, rate, bend] = instant.growth;
-        let raised = self.raised(place.x, place.y, count, instant);
+        let stretched = self.stretch.partition_point(|height| *height <= place.z);
+        let stretched = stretched.next_multiple_of(LANES).max(count);
+        let raised = self.raised(place.x, place.y, [count, stretched], instant);
         let elevation = growth * raised;
         let z = match self.depth {
             Some(h) => {
@@ -280,14 +296,14 @@ impl Waves {
         }
     }
 
-    /// Elevation without the ramp [m]; leaves the sines and cosines of the first `count` components in the instant.
+    /// Elevation of the first `stretched` components without the ramp [m]; leaves the sines and cosines of the first `count` in the instant.
     #[inline(always)]
-    fn raised(&self, x: f64, y: f64, count: usize, instant: &mut Instant) -> f64 {
+    fn raised(&self, x: f64, y: f64, [count, stretched]: [usize; 2], instant: &mut Instant) -> f64 {
         let table = &self.table;
         let (x, y) = (Lanes::splat(x), Lanes::splat(y));
         let mut sum = Lanes::splat(0.0);
-        for at in (0..table.amplitude.len()).step_by(LANES) {
-            let [east, north] = [0, 1].map(|axis| Lanes::load(&table.heading[axis], at));
+        for at in (0..stretched).step_by(LANES) {
+            let (east, north) = table.headings(at);
             let way = x * east + y * north;
             let angle = Lanes::load(&table.wave_number, at) * way + Lanes::load(&instant.turn, at);
             let (sine, cosine) = sin_cos(angle);
@@ -315,7 +331,8 @@ impl Waves {
             // u ~ cos ψ, ∂u/∂t ~ ω sin ψ, ∂²u/∂t² ~ −ω² cos ψ; w ~ sin ψ, −ω cos ψ, −ω² sin ψ
             let along = [cosine, frequency * sine, frequency * frequency * cosine];
             let across = [sine, frequency * cosine, frequency * frequency * sine];
-            let [east, north] = [0, 1].map(|axis| level * Lanes::load(&table.heading[axis], at));
+            let (east, north) = table.headings(at);
+            let (east, north) = (level * east, level * north);
             for order in 0..3 {
                 sums[3 * order] = sums[3 * order] + east * along[order];
                 sums[3 * order + 1] = sums[3 * order + 1] + north * along[order];
@@ -323,12 +340,12 @@ impl Waves {
             }
             sums[9] = sums[9] + speed * sine;
         }
-        let [vx, vy, vz, ax, ay, az, jx, jy, jz, rise] = sums.map(Lanes::sum);
+        let [vx, vy, vz, ax, ay, az, jx, jy, jz, rise] = sums;
         Sums {
-            velocity: Vector3::new(vx, vy, vz),
-            acceleration: Vector3::new(ax, ay, -az),
-            jerk: Vector3::new(-jx, -jy, -jz),
-            rise,
+            velocity: Vector3::new(vx.sum(), vy.sum(), vz.sum()),
+            acceleration: Vector3::new(ax.sum(), ay.sum(), -az.sum()),
+            jerk: -Vector3::new(jx.sum(), jy.sum(), jz.sum()),
+            rise: rise.sum(),
         }
     }
 
@@ -404,6 +421,38 @@ fn reach(components: &[Component], numbers: &[f64]) -> Vec<f64> {
     let mut heights: Vec<f64> = components.iter().zip(numbers).map(of).collect();
     for j in (1..heights.len()).rev() {
         heights[j - 1] = heights[j - 1].min(heights[j]);
+    }
+    heights
+}
+
+/// Heights that are tried for the elevation that stretches: each is deeper than the one before by this factor [-].
+const DEEPER: f64 = 1.15;
+/// Their number; the deepest is 2e5 times as deep as the first.
+const HEIGHTS: usize = 88;
+
+/// For every component, the height below which the elevation of it and of those after it is left out [m].
+fn stretch(components: &[Component], numbers: &[f64]) -> Vec<f64> {
+    let least = REACH * root(components, 2);
+    let margin = TROUGH * deviation(components);
+    let Some(longest) = numbers.first() else {
+        return Vec::new();
+    };
+    let first = 1e-4 / longest;
+    let mut slopes = Vec::with_capacity(HEIGHTS); // √Σ(k aω² e^{kz})², falling [1/s²]
+    for height in 0..HEIGHTS {
+        let z = -first * DEEPER.powi(height as i32);
+        let square = |(c, k): (&Component, &f64)| {
+            (k * c.amplitude * c.frequency.powi(2) * (k * z).exp()).powi(2)
+        };
+        let squares = components.iter().zip(numbers).map(square);
+        slopes.push((z - margin, squares.sum::<f64>().sqrt()));
+    }
+    let mut heights = vec![0.0; components.len()];
+    let mut tail = 0.0;
+    for (height, component) in heights.iter_mut().zip(components).rev() {
+        tail += component.amplitude.powi(2);
+        let deep = slopes.partition_point(|(_, slope)| slope * f64::sqrt(tail) > least);
+        *height = slopes.get(deep).map_or(f64::NEG_INFINITY, |(z, _)| *z);
     }
     heights
 }
@@ -595,6 +644,22 @@ mod tests {
         assert!((1..15).contains(&waves.reaching(-150.0)));
         let still = orbit(&waves, Vector3::new(0.0, 0.0, -5000.0), 3.0);
         assert_eq!(still.acceleration, Vector3::zeros());
+    }
+
+    #[test]
+    fn elevations_left_out_of_the_stretching_move_a_place_by_a_ten_thousandth() {
+        let mut waves = storm(None);
+        let surface = root(&waves.components, 2);
+        let places = [-1.0, -5.0, -20.0, -60.0, -140.0].map(|z| Vector3::new(12.0, 5.0, z));
+        let found = places.map(|place| orbit(&waves, place, 8.0).acceleration);
+        let fewer = waves.stretch.partition_point(|height| *height <= -60.0);
+        assert!((1..30).contains(&fewer));
+        assert!(waves.stretch.iter().all(|height| *height < -1.0));
+        waves.stretch.fill(f64::NEG_INFINITY);
+        for (place, found) in places.into_iter().zip(found) {
+            let all = orbit(&waves, place, 8.0).acceleration;
+            assert!((all - found).norm() < 1e-4 * surface, "z = {} m", place.z);
+        }
     }
 
     #[test]

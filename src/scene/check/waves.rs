@@ -30,8 +30,7 @@ pub(super) fn check(scene: &Scene, waves: &Waves, findings: &mut Findings) {
             _ => format!("{at}[{i}]"),
         };
         check_sea(&at, sea, findings);
-        let others = waves.seas[..i].iter().filter_map(|other| other.ramp);
-        if let (Some(ramp), Some(other)) = (sea.ramp, others.last())
+        if let (Some(ramp), Some(other)) = (sea.ramp, waves.ramp())
             && ramp != other
         {
             let problem = format!(
