@@ -22,6 +22,7 @@ mod read;
 mod rows;
 mod time_function;
 mod units;
+mod water_file;
 mod waves;
 mod words;
 
@@ -99,6 +100,9 @@ pub struct Current {
     /// Velocity at all heights [m/s].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub velocity: Option<[f64; 3]>,
+    /// A file of MoorDyn's format that the profile stands in: below three lines of headings, rows of z [m] and vx, vy, vz [m/s].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub file: Option<String>,
     /// Rows of height z [m] and horizontal velocity vx, vy [m/s], no two at one height.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub profile: Option<Vec<[f64; 3]>>,

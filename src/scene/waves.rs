@@ -23,6 +23,10 @@ pub struct Sea {
     /// Rows of amplitude [m], period [s], direction [rad], phase [rad]; or, of a spectrum, their number [-].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub components: Option<WaveComponents>,
+    /// A file of MoorDyn's format that the components stand in: rows of ω [rad/s], real and imaginary part of the amplitude [m] of
+    /// sin(ωt − kx) and direction [rad].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub file: Option<String>,
     /// A spectrum that components are drawn from.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub spectrum: Option<SpectrumKind>,

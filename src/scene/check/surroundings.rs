@@ -59,6 +59,10 @@ const SPEED: Bounds = Bounds::Magnitude(100.0);
 
 fn check_current(scene: &Scene, current: &Current, findings: &mut Findings) {
     let at = "water.current";
+    if current.file.is_some() {
+        let problem = "a scene that comes as text cannot read files: write the rows as `profile`";
+        return findings.say(format!("{at}.file"), problem);
+    }
     match (&current.velocity, &current.profile) {
         (None, None) => findings.say(
             at,

@@ -54,17 +54,22 @@ pub(super) fn check(scene: &Scene, waves: &Waves, findings: &mut Findings) {
 fn check_sea(at: &str, sea: &Sea, findings: &mut Findings) {
     findings.number_if(format!("{at}.ramp"), sea.ramp, Bounds::Positive(1e9), "s");
     let rows = matches!(sea.components, Some(WaveComponents::Rows(_)));
-    let ways = [sea.regular.is_some(), rows, sea.spectrum.is_some()];
+    let file = sea.file.is_some();
+    let ways = [sea.regular.is_some(), rows, sea.spectrum.is_some(), file];
     match ways.iter().filter(|given| **given).count() {
         0 => findings.say(
             at,
-            "a sea needs `regular = { height = …, period = … }`, `components = [[amplitude, period, direction, phase], …]` or \
+            "a sea needs `regular = { height = …, period = … }`, `components = [[amplitude, period, direction, phase], …]`, `file` or \
              `spectrum = \"jonswap\"` with `significant_height` and `peak_period`",
+        ),
+        1 if file => findings.say(
+            format!("{at}.file"),
+            "a scene that comes as text cannot read files: write the rows as `components`",
         ),
         1 => {}
         _ => findings.say(
             at,
-            "only one of `regular`, rows of `components` and `spectrum` describes a sea: write several seas as an array",
+            "only one of `regular`, rows of `components`, `file` and `spectrum` describes a sea: write several seas as an array",
         ),
     }
     if sea.spectrum.is_some() {
