@@ -17,14 +17,17 @@
 //! The geometric stiffness T/l P is never negative in a line that cannot push. A line with bending stiffness has the joints of
 //! `bending` at its nodes and pushes up to what its segments carry, T ≥ −P; its tangent is exact, or made such that it cannot be
 //! indefinite where `convex` is asked for. Statics keeps springs, weight and the drag of a current, whose forces are held while the
-//! shape is sought.
+//! shape is sought. A line that may pierce the water's surface lacks there what `surface` says.
 
 mod bending;
+mod surface;
 
 use nalgebra::{Matrix3, Vector3};
 
 use crate::math::block_tridiagonal::{Chain, DenseSystem};
-use crate::model::{End, FreePoint, Line, LineState, Model, Network, Point, PointState, State};
+use crate::model::{
+    Dry, End, FreePoint, Line, LineState, Model, Network, Point, PointState, State,
+};
 use crate::physics::flow::Stream;
 use crate::physics::morison::{DragCoefficients, drag, drag_slope};
 use crate::physics::seabed::ContactCoefficients;
@@ -102,6 +105,8 @@ pub(crate) struct LineWork {
     pub push: Vec<f64>,
     /// Drag of the current that statics holds for a while, per node [N]; empty where none acts.
     pub load: Vec<Vector3<f64>>,
+    /// What the water's surface does to every node; empty where the line does not meet it.
+    pub dry: Vec<Dry>,
     /// Joints, where the line has bending stiffness.
     pub bending: Option<BendingWork>,
     /// Elimination where nothing bends.
@@ -144,6 +149,7 @@ impl Workspace {
                 reach: vec![0.0; n + 1],
                 push: vec![0.0; n],
                 load: vec![Vector3::zeros(); if line.drifts(model) { n + 1 } else { 0 }],
+                dry: vec![Dry::default(); if line.surface.is_some() { n + 1 } else { 0 }],
                 bending: line.bending.as_ref().map(|_| BendingWork::new(n + 1)),
                 chain: Chain::new(n + 1),
             }
@@ -200,6 +206,8 @@ pub(crate) struct StaticCase {
     pub predicted: bool,
     /// Whether lines with bending stiffness have it, and push.
     pub bends: bool,
+    /// Least radius with which lines pierce the water's surface [m].
+    pub breadth: f64,
 }
 
 /// Weights of the parts of residual and tangent in a time step.
@@ -300,6 +308,7 @@ impl LineWork {
         for (residual, load) in self.residual.iter_mut().zip(&self.load) {
             *residual -= case.load * load;
         }
+        self.add_surface(line, position, [case.load; 2], case.breadth);
         for (i, r) in position.iter().enumerate() {
             self.residual[i].z += case.load * line.nodes.weight[i];
             for axis in 0..3 {
@@ -365,6 +374,12 @@ impl LineWork {
             let parts = Parts::of_step(weights, TANGENT);
             self.add_bending(bending, clamps, [&state.position, &state.velocity], &parts);
         }
+        self.add_surface(
+            line,
+            &state.position,
+            [weights.force, weights.position],
+            0.0,
+        );
         self.add_weight_and_inertia::<TANGENT>(line, state, weights);
         if line.nodes.drag.is_some() {
             self.add_drag::<TANGENT>(line, state, stream, weights);
@@ -451,7 +466,8 @@ impl LineWork {
         let nodes = &line.nodes;
         for i in 0..nodes.weight.len() {
             self.residual[i].z += weights.force * nodes.weight[i];
-            let (normal, tangent) = (nodes.mass_normal[i], nodes.mass_tangent[i]);
+            let dry = self.dry(i);
+            let [normal, tangent] = nodes.masses(i, dry.part);
             let a = state.acceleration[i];
             let mut inertia = normal * a;
             if TANGENT {
@@ -464,6 +480,13 @@ impl LineWork {
                     self.diagonal[i] +=
                         weights.acceleration * (tangent - normal) * t * t.transpose();
                 }
+            }
+            if TANGENT && dry.slope > 0.0 {
+                let (along, air) = (node_tangent(&state.position, i), nodes.mass[i]);
+                let along = along.dot(&a) * along;
+                let added = (nodes.mass_normal[i] - air) * (a - along)
+                    + (nodes.mass_tangent[i] - air) * along;
+                self.diagonal[i] += weights.inertia * surface::by_height(&dry, added);
             }
             self.residual[i] += weights.inertia * inertia;
         }
@@ -480,6 +503,7 @@ impl LineWork {
             return;
         };
         for i in 0..coefficients.normal.len() {
+            let dry = self.dry(i);
             let k = DragCoefficients {
                 normal: coefficients.normal[i],
                 tangent: coefficients.tangent[i],
@@ -487,6 +511,10 @@ impl LineWork {
             let (t, z) = (node_tangent(&state.position, i), state.position[i].z);
             let flow = stream.map_or(Vector3::zeros(), |stream| stream.velocity(z));
             let v = state.velocity[i] - flow;
+            if TANGENT && dry.slope > 0.0 {
+                self.diagonal[i] -= weights.position * surface::by_height(&dry, drag(k, v, t));
+            }
+            let k = k.times(1.0 - dry.part);
             self.residual[i] -= weights.force * drag(k, v, t);
             if TANGENT {
                 let slope = drag_slope(k, v, t);

@@ -253,6 +253,7 @@ impl<'a> Problem<'a> {
             anchoring: 0.0,
             predicted: false,
             bends: self.bends,
+            breadth: 0.0,
         }
     }
 
@@ -439,6 +440,11 @@ impl<'a> Problem<'a> {
                 force = force
                     .max(work.lines[index].elastic[i])
                     .max(line.nodes.weight[i].abs());
+            }
+            if let Some(surface) = &line.surface
+                && surface.is_pierced(&state.lines[index].position)
+            {
+                force = surface.buoyancy.iter().copied().fold(force, f64::max);
             }
             if let (Some(joints), true) = (&work.lines[index].bending, self.bends) {
                 force = force.max(joints.greatest);
