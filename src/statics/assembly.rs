@@ -481,7 +481,7 @@ impl LineWork {
                         weights.acceleration * (tangent - normal) * t * t.transpose();
                 }
             }
-            if TANGENT && dry.slope > 0.0 {
+            if TANGENT && weights.position > 0.0 && dry.slope > 0.0 {
                 let (along, air) = (node_tangent(&state.position, i), nodes.mass[i]);
                 let along = along.dot(&a) * along;
                 let added = (nodes.mass_normal[i] - air) * (a - along)
