@@ -733,3 +733,56 @@ fn a_deck_whose_files_are_wrong_is_refused_with_file_and_line() {
         "{refusal}"
     );
 }
+
+#[test]
+fn a_piece_at_the_surface_is_wet_under_crests_and_dry_over_troughs() {
+    for integrator in INTEGRATORS {
+        let scene = scene(&format!(
+            r#"
+            water = {{ density = {DENSITY}, waves = {{ regular = {{ amplitude = 1.0, period = 40.0 }} }} }}
+            solver = {{ integrator = "leapfrog" }}
+            line_types.rod = {{ mass = 100.0, diameter = 0.3, axial_stiffness = 1e9, added_mass_normal = 0.9 }}
+            points = [
+              {{ name = "left", position = [0.0, -1.0, 0.0], kind = "fixed" }},
+              {{ name = "right", position = [0.0, 1.0, 0.0], kind = "coupled" }},
+            ]
+            lines = [{{ name = "rod", from = "left", to = "right", initial = "straight", sections = [{{ type = "rod", length = 2.0, elements = 1 }}] }}]
+            "#
+        ));
+        let mut simulation = Simulation::new(&with_integrator(scene, integrator, 0.05)).unwrap();
+        let lift = |simulation: &Simulation| {
+            simulation.line_end_force(0, End::A).z + simulation.line_end_force(0, End::B).z
+        };
+        let displaced = DENSITY * 0.25 * PI * 0.3 * 0.3;
+        let dry = -200.0 * GRAVITY;
+        let pressed = 2.0 * displaced * 1.9 * (TAU / 40.0_f64).powi(2);
+        assert_relative_eq!(
+            lift(&simulation),
+            dry + 2.0 * displaced * GRAVITY - pressed,
+            max_relative = 1e-3
+        );
+        for _ in 0..40 {
+            simulation.advance(0.5).unwrap();
+        }
+        assert_relative_eq!(lift(&simulation), dry, max_relative = 1e-3);
+    }
+}
+
+#[test]
+fn the_ledger_closes_where_lines_pierce_the_surface_of_waves() {
+    for integrator in INTEGRATORS {
+        let errors = [0.01, 0.005].map(|step| {
+            let mut scene = riser(integrator, step);
+            scene.points[1].position = [30.0, -10.0, 3.0];
+            scene.lines[0].sections[0].elements = Some(40);
+            scene.lines[0].sections[0].length = 110.0;
+            let mut simulation = Simulation::new(&scene).unwrap();
+            assert!(simulation.model().lines[0].surface.is_some());
+            for _ in 0..60 {
+                simulation.advance(0.4).unwrap();
+            }
+            simulation.energy_error().abs() / simulation.ledger().flow.given
+        });
+        assert!(errors[1] < 2e-3, "{integrator:?}: {errors:?}");
+    }
+}

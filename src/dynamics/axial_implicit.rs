@@ -215,8 +215,8 @@ impl AxialWork {
     /// Energy given by the held ends and lost between them since [`Self::load`].
     pub fn flow(&self) -> Flow {
         Flow {
-            given: self.given,
-            lost: self.lost.sum(),
+            given: self.given + self.layout.lifted(),
+            lost: self.lost.sum() - self.layout.joined(),
         }
     }
 
@@ -238,6 +238,26 @@ impl AxialWork {
     /// Takes over what waves do at the nodes of this line, by its number, over a span of time.
     pub fn load_waves(&mut self, span: Option<&WaveSpan>, line: usize) {
         self.layout.load_waves(span, line);
+    }
+
+    /// Meets the water's surface as it is at t_n. Where that is `after` a step, what joined with the water in it is booked.
+    pub fn meet_surface(&mut self, after: Option<Step>) {
+        if let Some(step) = after {
+            self.layout.leave_surface(step, [true; 2]);
+        }
+        self.layout.find_surface();
+        let Some(surface) = &self.layout.surface else {
+            return;
+        };
+        for i in surface.crossed() {
+            let [across, along] = surface.node(i).masses;
+            self.nodes.mass_normal[FIRST + i] = across;
+            self.nodes.mass_tangent[FIRST + i] = along;
+        }
+        match after {
+            Some(_) => self.layout.book_surface([true; 2]),
+            None => self.layout.clear_surface(),
+        }
     }
 
     /// Sets what multiplies the current at t_n [-].
@@ -296,6 +316,7 @@ impl AxialWork {
         self.layout
             .position
             .set(FIRST + self.layout.segment_count, ends[1]);
+        self.meet_surface(Some(step));
         passes
     }
 
@@ -658,6 +679,7 @@ impl AxialWork {
             let pull = self.rows.tension[segment] * self.segments.direction.get(segment);
             let velocities = line.velocity.get(node) + line.velocity_before.get(node);
             self.given += sign * 0.5 * step.kick * pull.dot(&velocities);
+            self.given += 0.5 * step.kick * line.end_lack(end) * velocities.z;
         }
     }
 

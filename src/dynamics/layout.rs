@@ -7,9 +7,11 @@ use nalgebra::Vector3;
 use pulp::{Arch, NullaryFnOnce};
 
 use super::leapfrog::Step;
+use super::surface::SurfaceNow;
+use crate::math::hermite::Hermite;
 use crate::math::lanes::{Components, LANES, Lanes, Vectors};
 use crate::model::{End, Line, LineState, Model, WaveSpan};
-use crate::physics::airy::cubics;
+use crate::physics::airy::{Orbit, cubics};
 use crate::physics::flow::{Profile, Stream};
 use crate::physics::stretch::StretchLaw;
 
@@ -45,6 +47,8 @@ pub(super) struct Layout {
     pub waves: Option<WaveArrays>,
     pub mass_damping: Option<Vec<f64>>,
     pub contact: Option<ContactArrays>,
+    /// The water's surface, where the line may pierce it.
+    pub surface: Option<SurfaceNow>,
 }
 
 /// Lumped drag coefficients [N s²/m²].
@@ -104,6 +108,8 @@ pub(super) struct WaveArrays {
     times: [f64; 2],
     /// Part of the span that has passed at t_n [-].
     passed: f64,
+    /// Elevation of the surface over the nodes, and its rate, at both ends of the span [m, m/s].
+    surface: Vec<[[f64; 2]; 2]>,
 }
 
 impl WaveArrays {
@@ -122,7 +128,27 @@ impl WaveArrays {
             tangent: mass(|pressed| &pressed.tangent),
             times: [0.0; 2],
             passed: 0.0,
+            surface: Vec::new(),
         }
+    }
+
+    /// Goes on in time [s].
+    fn pass(&mut self, time: f64) {
+        let [t0, t1] = self.times;
+        if t1 > t0 {
+            self.passed += time / (t1 - t0);
+        }
+    }
+
+    /// Elevation of the surface over a node [m].
+    fn elevation(&self, node: usize) -> f64 {
+        let [[p0, m0], [p1, m1]] = self.surface[node];
+        let [t0, t1] = self.times;
+        if t1 <= t0 {
+            return p0;
+        }
+        let cubic = Hermite::new((t0, p0, m0), (t1, p1, m1));
+        cubic.at(t0 + self.passed * (t1 - t0)).value
     }
 
     /// Velocities of the water at the nodes at t_n [m/s].
@@ -206,6 +232,7 @@ impl Layout {
                 stiffness: keep(&contact.stiffness),
                 damping: keep(&contact.damping),
             }),
+            surface: SurfaceNow::new(line),
         })
     }
 
@@ -245,6 +272,78 @@ impl Layout {
         }
     }
 
+    /// Finds where the surface crosses the line, and sets the weights of the nodes it crosses.
+    pub fn find_surface(&mut self) {
+        let Some(surface) = &mut self.surface else {
+            return;
+        };
+        if let Some(waves) = &self.waves {
+            for (i, level) in surface.level.iter_mut().enumerate() {
+                *level = waves.elevation(i);
+            }
+            surface.find_calm(&self.position.z);
+        }
+        surface.find(&self.position.z);
+        for i in surface.crossed() {
+            let now = surface.node(i);
+            self.weight[FIRST + i] = now.weight;
+            if let Some(waves) = &mut self.waves {
+                [waves.normal[FIRST + i], waves.tangent[FIRST + i]] = now.pressed;
+            }
+            if let Some(drag) = &mut self.drag {
+                [drag.normal[FIRST + i], drag.tangent[FIRST + i]] = now.drag;
+            }
+        }
+    }
+
+    /// Books what joined with the water, except at ends that are held.
+    pub fn book_surface(&mut self, held: [bool; 2]) {
+        let Some(surface) = &mut self.surface else {
+            return;
+        };
+        let [first, last] = held.map(usize::from);
+        for i in first..=self.segment_count - last {
+            surface.book(i, &self.velocity, &self.position);
+        }
+    }
+
+    /// Goes on to the end of a step, and books what waves did with the buoyancy in it, except at ends that are held.
+    pub fn leave_surface(&mut self, step: Step, held: [bool; 2]) {
+        let (Some(surface), Some(waves)) = (&mut self.surface, &mut self.waves) else {
+            return;
+        };
+        let [first, last] = held.map(usize::from);
+        for i in first..=self.segment_count - last {
+            let velocities = self.velocity.z[FIRST + i] + self.velocity_before.z[FIRST + i];
+            surface.book_lift(i, 0.5 * step.kick * velocities);
+        }
+        waves.pass(step.drift);
+    }
+
+    /// Work of waves on the buoyancy since the state was loaded [J].
+    pub fn lifted(&self) -> f64 {
+        self.surface.as_ref().map_or(0.0, |surface| surface.lifted)
+    }
+
+    /// Forgets what joined with the water.
+    pub fn clear_surface(&mut self) {
+        if let Some(surface) = &mut self.surface {
+            (surface.joined, surface.lifted) = (0.0, 0.0);
+        }
+    }
+
+    /// Buoyancy that an end lacks at t_n [N].
+    pub fn end_lack(&self, end: End) -> f64 {
+        let node = self.end_index(end) - FIRST;
+        let surface = self.surface.as_ref();
+        surface.map_or(0.0, |surface| surface.lack(node, self.waves.is_some()))
+    }
+
+    /// Energy of motion that joined with the water since the state was loaded [J].
+    pub fn joined(&self) -> f64 {
+        self.surface.as_ref().map_or(0.0, |surface| surface.joined)
+    }
+
     /// Sets what multiplies the current at t_n [-].
     pub fn set_current(&mut self, factor: f64) {
         if let Some(current) = &mut self.current {
@@ -259,6 +358,12 @@ impl Layout {
         };
         waves.times = span.times;
         let [before, after] = &span.ends;
+        waves.surface.clear();
+        if self.surface.is_some() {
+            let of = |orbit: &Orbit| [orbit.elevation, orbit.rise];
+            let nodes = before.lines[line].iter().zip(&after.lines[line]);
+            waves.surface.extend(nodes.map(|(b, a)| [of(b), of(a)]));
+        }
         let nodes = before.lines[line].iter().zip(&after.lines[line]);
         for (i, (before, after)) in nodes.enumerate() {
             let [velocity, acceleration] = cubics(before, after, span.times);

@@ -15,7 +15,7 @@
 use nalgebra::{Matrix3, Vector3};
 use pulp::NullaryFnOnce;
 
-use super::layout::{Layout, Water, interior, pad};
+use super::layout::{FIRST, Layout, Water, interior, pad};
 use super::ledger::Flow;
 use crate::math::lanes::{Components, Lanes, Vectors};
 use crate::model::{End, Line, LineState, WaveSpan};
@@ -234,11 +234,35 @@ impl LineWork {
         self.given_by_current = Lanes::splat(0.0);
     }
 
+    /// Meets the water's surface as it is at t_n. Where that is `after` a step, what joined with the water in it is booked.
+    pub fn meet_surface(&mut self, after: Option<Step>) {
+        if let Some(step) = after {
+            self.layout.leave_surface(step, self.held);
+        }
+        self.layout.find_surface();
+        let Some(surface) = &self.layout.surface else {
+            return;
+        };
+        for i in surface.crossed() {
+            let (at, now) = (FIRST + i, surface.node(i));
+            let [across, along] = now.masses.map(|mass| 1.0 / mass);
+            self.inverse_mass[at] = across;
+            if let Some(water) = &mut self.water {
+                [water.drag_normal[at], water.drag_tangent[at]] = now.drag;
+                water.inverse_mass_excess[at] = along - across;
+            }
+        }
+        match after {
+            Some(_) => self.layout.book_surface(self.held),
+            None => self.layout.clear_surface(),
+        }
+    }
+
     /// Energy given by held ends and the current and lost between them since [`Self::load`].
     pub fn flow(&self) -> Flow {
         Flow {
-            given: self.given + self.given_by_current.sum(),
-            lost: self.lost.sum(),
+            given: self.given + self.given_by_current.sum() + self.layout.lifted(),
+            lost: self.lost.sum() - self.layout.joined(),
         }
     }
 
@@ -421,6 +445,7 @@ impl LineWork {
             };
             let velocities = self.layout.velocity_before.get(at) + self.layout.velocity.get(at);
             self.given -= 0.5 * step.kick * pull.dot(&velocities);
+            self.given += 0.5 * step.kick * self.layout.end_lack(end) * velocities.z;
         }
     }
 

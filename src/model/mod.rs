@@ -11,6 +11,7 @@ mod mesh;
 mod motion;
 mod sea;
 mod state;
+mod surface;
 mod vessel;
 
 use nalgebra::Vector3;
@@ -27,6 +28,7 @@ pub use bending::{Bending, joint};
 pub use motion::{Kinematics, Motion, Pose};
 pub use sea::{WaterAlong, WaveSpan, WavesAlong, WavesAt};
 pub use state::{ClosedForm, LineState, PointState, State};
+pub use surface::{Dry, Surface};
 pub use vessel::{Frame, Vessel};
 
 /// A scene made discrete. Immutable; shared by reference.
@@ -185,6 +187,8 @@ pub struct Line {
     pub nodes: Nodes,
     /// Bending stiffness, where a line type has it.
     pub bending: Option<Bending>,
+    /// The water's surface, where the line may pierce it.
+    pub surface: Option<Surface>,
     /// Sections as the closed-form catenary takes them.
     pub sections: Vec<Section>,
     /// Shape at the start.
@@ -278,6 +282,14 @@ impl Pressed {
     }
 }
 
+impl Pressed {
+    /// This node as it is where a `dry` part of it [-] is out of the water: mass across and along the line [kg].
+    #[inline]
+    pub fn masses(&self, node: usize, dry: f64) -> [f64; 2] {
+        [&self.normal, &self.tangent].map(|masses| (1.0 - dry) * masses[node])
+    }
+}
+
 /// Lumped contact coefficients of the nodes.
 #[derive(Debug, Clone)]
 pub struct Contact {
@@ -339,6 +351,16 @@ impl Line {
         self.uniform_law().is_some()
             && self.bending.is_none()
             && self.nodes.mass_normal.iter().all(|mass| *mass > 0.0)
+            && (self.surface.is_none() || self.nodes.mass.iter().all(|mass| *mass > 0.0))
+    }
+
+    /// Least mass of a node along any direction [kg]: in air where the line may pierce the water's surface.
+    pub fn least_mass(&self, node: usize) -> f64 {
+        let nodes = &self.nodes;
+        match &self.surface {
+            None => nodes.mass_tangent[node].min(nodes.mass_normal[node]),
+            Some(_) => nodes.mass[node],
+        }
     }
 
     /// The strain measure, where all segments share one.

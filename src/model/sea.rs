@@ -107,6 +107,20 @@ impl WaterAlong<'_> {
         self.stream.is_none() && self.waves.is_none()
     }
 
+    /// Elevation of the surface over a node [m].
+    #[inline]
+    pub fn elevation(&self, node: usize) -> f64 {
+        self.waves
+            .as_ref()
+            .map_or(0.0, |waves| waves.at(node).elevation)
+    }
+
+    /// How fast the surface rises over a node [m/s].
+    #[inline]
+    pub fn rise(&self, node: usize) -> f64 {
+        self.waves.as_ref().map_or(0.0, |waves| waves.at(node).rise)
+    }
+
     /// Velocity of the water at a node that is at the height z [m], in [m/s].
     #[inline]
     pub fn velocity(&self, node: usize, z: f64) -> Vector3<f64> {

@@ -20,6 +20,7 @@ mod path;
 mod places;
 mod read;
 mod rows;
+mod surface;
 mod time_function;
 mod units;
 mod water_file;
@@ -78,7 +79,7 @@ pub struct Scene {
     pub output: Output,
 }
 
-/// Water that fills all space below and above z = 0: lines are fully submerged.
+/// Water. Its surface is at z = 0 for free points and for lines that may come out of it; other lines are under water everywhere.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Water {
@@ -90,6 +91,10 @@ pub struct Water {
     /// Its waves; none where absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub waves: Option<Waves>,
+    /// Whether lines lose buoyancy, drag and added mass above z = 0. Where absent, those do that have an end above it, or could float
+    /// up to it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub surface: Option<bool>,
 }
 
 /// A current: `{ velocity = [vx, vy, vz] }`, alike at all heights, or `{ profile = [[z, vx, vy], …] }`, straight between the rows
@@ -118,6 +123,7 @@ impl Water {
             density,
             current: None,
             waves: None,
+            surface: None,
         }
     }
 }

@@ -106,6 +106,17 @@ impl Sea {
         }
     }
 
+    /// Variance of the elevation [m²].
+    pub fn variance(&self) -> f64 {
+        if let Some(regular) = &self.regular {
+            return 0.5 * regular.half_height().unwrap_or_default().powi(2);
+        }
+        match &self.components {
+            Some(WaveComponents::Rows(rows)) => rows.iter().map(|row| 0.5 * row[0] * row[0]).sum(),
+            _ => (0.25 * self.significant_height.unwrap_or_default()).powi(2),
+        }
+    }
+
     /// Peakedness γ of the spectrum [-]; 1 makes a Pierson-Moskowitz spectrum of it.
     pub fn gamma(&self) -> f64 {
         match self.spectrum {
@@ -127,6 +138,11 @@ impl RegularWave {
 }
 
 impl Waves {
+    /// Standard deviation of the elevation [m].
+    pub fn deviation(&self) -> f64 {
+        self.seas.iter().map(Sea::variance).sum::<f64>().sqrt()
+    }
+
     /// Duration of the ramp [s], where one of the seas says so.
     pub fn ramp(&self) -> Option<f64> {
         self.seas.iter().find_map(|sea| sea.ramp)

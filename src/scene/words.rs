@@ -71,7 +71,7 @@ impl Scene {
     }
 
     /// Weight per unstretched length in the scene's surroundings [N/m].
-    pub(super) fn weight(&self, line_type: &LineType) -> f64 {
+    pub(in crate::scene) fn weight(&self, line_type: &LineType) -> f64 {
         let wet = || (self.mass(line_type) - self.displaced(line_type)) * self.gravity;
         line_type.weight.unwrap_or_else(wet)
     }

@@ -8,11 +8,12 @@ use crate::scene::{
 /// "still water of 1025 kg/m³ that fills all space".
 pub(super) fn water_in_words(scene: &Scene, water: &Water) -> String {
     let density = quantity(water.density, "kg/m³");
+    let surface = surface_in_words(scene);
     let mut words = match (&water.current, &water.waves) {
-        (None, None) => return format!("still water of {density} that fills all space"),
-        (None, Some(_)) => format!("water of {density} that fills all space"),
+        (None, None) => return format!("still water of {density} {surface}"),
+        (None, Some(_)) => format!("water of {density} {surface}"),
         (Some(current), _) => format!(
-            "water of {density} that fills all space, with a current: {}; the drag on lines follows their velocity through the \
+            "water of {density} {surface}, with a current: {}; the drag on lines follows their velocity through the \
              water, at rest too",
             current_in_words(current)
         ),
@@ -30,7 +31,7 @@ fn waves_in_words(scene: &Scene, waves: &Waves) -> String {
         Some(bed) => format!("a depth of {}", quantity(bed.depth, "m")),
         None => "deep water".to_string(),
     };
-    let total = waves.seas.iter().map(variance).sum::<f64>();
+    let total = waves.seas.iter().map(Sea::variance).sum::<f64>();
     let all = match waves.seas.len() {
         1 => String::new(),
         _ => {
@@ -63,7 +64,7 @@ fn sea_in_words(sea: &Sea) -> String {
             1 => "1 wave train".to_string(),
             count => format!("{count} wave trains"),
         };
-        let height = (4e3 * variance(sea).sqrt()).round() / 1e3;
+        let height = (4e3 * sea.variance().sqrt()).round() / 1e3;
         return format!(
             "{trains} of a significant height of {}",
             quantity(height, "m")
@@ -94,17 +95,6 @@ fn regular_in_words(regular: &RegularWave) -> String {
         quantity(regular.period, "s"),
         quantity(regular.direction, "rad")
     )
-}
-
-/// Variance of the elevation [m²].
-fn variance(sea: &Sea) -> f64 {
-    if let Some(regular) = &sea.regular {
-        return 0.5 * regular.half_height().unwrap_or_default().powi(2);
-    }
-    match &sea.components {
-        Some(WaveComponents::Rows(rows)) => rows.iter().map(|row| 0.5 * row[0] * row[0]).sum(),
-        _ => (0.25 * sea.significant_height.unwrap_or_default()).powi(2),
-    }
 }
 
 /// "1 m/s along (1, 0, 0) at all heights".
@@ -156,16 +146,57 @@ fn profile_in_words(rows: &[[f64; 3]]) -> String {
     )
 }
 
+/// "that fills all space", or which lines know its surface.
+fn surface_in_words(scene: &Scene) -> String {
+    let named = |meet: bool| {
+        let lines = scene.lines.iter();
+        let lines = lines.filter(|line| scene.meets_surface(line) == meet);
+        lines.map(|line| line.name.as_str()).collect::<Vec<_>>()
+    };
+    let (piercing, submerged) = (named(true), named(false));
+    if piercing.is_empty() {
+        return "that fills all space".to_string();
+    }
+    let moves = scene.water.as_ref().is_some_and(|w| w.waves.is_some());
+    let level = if moves { ", which the waves move" } else { "" };
+    let mut said = format!(
+        "with its surface at z = 0{level}: above it {} no buoyancy, drag and added mass",
+        have(&piercing)
+    );
+    if !submerged.is_empty() {
+        said += &format!(", while {} them everywhere", have(&submerged));
+    }
+    said + "; closed-form catenaries take all of a line as under water"
+}
+
+/// "a, b and c have".
+fn have(names: &[&str]) -> String {
+    match names {
+        [] => String::new(),
+        [one] => format!("{one} has"),
+        [first @ .., last] => format!("{} and {last} have", first.join(", ")),
+    }
+}
+
 /// What the water of a scene does not do.
 pub(super) fn absence_in_words(scene: &Scene) -> &'static str {
     let flows = scene.water.as_ref().is_some_and(|w| w.current.is_some());
     let waves = scene.water.as_ref().is_some_and(|w| w.waves.is_some());
-    match (flows, waves, scene.surface_matters()) {
-        (true, false, true) => "waves and the water's surface over lines",
-        (true, false, false) => "waves and the water's surface",
-        (false, false, true) => "current, waves and the water's surface over lines",
-        (false, false, false) => "current, waves and the water's surface",
-        (true, true, _) => "the water's surface over lines",
-        (false, true, _) => "current and the water's surface over lines",
+    let mut lines = scene.lines.iter();
+    let all = !scene.lines.is_empty() && lines.clone().all(|line| scene.meets_surface(line));
+    let any = lines.any(|line| scene.meets_surface(line)) || scene.surface_matters();
+    match (flows, waves, all, any) {
+        (true, true, true, _) => "second-order waves",
+        (true, true, _, true) => "the water's surface over some lines",
+        (true, true, _, false) => "the water's surface",
+        (false, true, true, _) => "current",
+        (false, true, _, true) => "current and the water's surface over some lines",
+        (false, true, _, false) => "current and the water's surface",
+        (true, _, true, _) => "waves",
+        (true, _, _, true) => "waves and the water's surface over some lines",
+        (true, _, _, false) => "waves and the water's surface",
+        (false, _, true, _) => "current and waves",
+        (false, _, _, true) => "current, waves and the water's surface over some lines",
+        (false, _, _, false) => "current, waves and the water's surface",
     }
 }
