@@ -76,6 +76,18 @@ enum Command {
         #[arg(long, default_value = "2", value_name = "VERSION", value_parser = ["2", "3"])]
         fmi: String,
     },
+    /// Speed against error on this machine: meshes, integrators and steps against a converged solution
+    Accuracy {
+        /// Scene files; the five public scenes where none is given
+        scenes: Vec<PathBuf>,
+        /// Folder for tables and figures; made where it is missing
+        #[arg(short, long, value_name = "DIR", default_value = "moorline-accuracy")]
+        output: PathBuf,
+        /// Run MoorDyn and CableDyn too, in the same run on the same core; PYTHON is an interpreter, or the folder of a virtual
+        /// environment, that can import moordyn and cabledyn
+        #[arg(long, value_name = "PYTHON")]
+        peers: Option<PathBuf>,
+    },
     /// Package the built-in scene as an FMU, drive it as a host does, show what comes out
     Demo {
         /// Folder for the results; made where it is missing
@@ -113,6 +125,11 @@ fn main() -> ExitCode {
             cli::convert::convert(&deck, &output, &supplement)
         }
         Command::Fmu { scene, output, fmi } => cli::fmu::fmu(&scene, &output, &fmi),
+        Command::Accuracy {
+            scenes,
+            output,
+            peers,
+        } => cli::accuracy::accuracy(&scenes, &output, peers.as_deref()),
         Command::Demo { output } => cli::demo::demo(&output),
     };
     match result {

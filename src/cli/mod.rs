@@ -1,5 +1,6 @@
 //! The commands, and what they share.
 
+pub mod accuracy;
 pub mod check;
 pub mod convert;
 pub mod demo;

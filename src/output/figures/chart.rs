@@ -327,6 +327,7 @@ fn draw_stack(svg: &mut String, charts: &[Chart], width: u32, height: u32) -> Dr
 
 #[cfg(test)]
 mod tests {
+    use super::super::axis::Scale;
     use super::*;
 
     #[test]
@@ -346,6 +347,7 @@ mod tests {
     fn a_chart_to_scale_has_one_scale() {
         let axis = |min, max| Axis {
             label: String::new(),
+            scale: Scale::Linear,
             min,
             max,
         };

@@ -6,6 +6,7 @@
 mod axis;
 mod chart;
 mod flight;
+pub mod frontier;
 
 use axis::{Axis, force_unit};
 use chart::{Chart, Curve, Stroke};
