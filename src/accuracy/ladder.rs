@@ -3,7 +3,7 @@
 use crate::scene::{Integrator, Scene};
 
 /// Elements of the longest line [-].
-const ELEMENTS: [usize; 12] = [8, 10, 14, 20, 28, 40, 56, 80, 112, 160, 226, 320];
+const ELEMENTS: [usize; 14] = [4, 6, 8, 10, 14, 20, 28, 40, 56, 80, 112, 160, 226, 320];
 /// Elements of the longest line where steps are dear [-].
 const ELEMENTS_IMPLICIT: [usize; 5] = [10, 20, 40, 80, 160];
 /// Steps of the implicit integrators to the shortest period [-].

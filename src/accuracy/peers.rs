@@ -16,7 +16,7 @@ use crate::scene::{MotionPath, Point, PointKind, Scene};
 
 const SCRIPT: &str = include_str!("peers.py");
 /// Elements that the peers are tried with [-].
-const ELEMENTS: [usize; 7] = [10, 14, 20, 28, 40, 56, 80];
+const ELEMENTS: [usize; 10] = [4, 6, 8, 10, 14, 20, 28, 40, 56, 80];
 /// Processor time that a single run of a peer may take [s].
 const TIME_LIMIT: f64 = 60.0;
 
@@ -24,6 +24,8 @@ const TIME_LIMIT: f64 = 60.0;
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Peers {
     python: PathBuf,
+    /// Where the script lies: it starts itself again for every run.
+    script: PathBuf,
 }
 
 /// Why the peers cannot run.
@@ -38,6 +40,14 @@ pub enum PeerError {
         /// The interpreter.
         python: PathBuf,
         /// What it said.
+        said: String,
+    },
+    /// The script cannot be put into the folder.
+    #[error("cannot write {}: {said}", .script.display())]
+    NoScript {
+        /// The script.
+        script: PathBuf,
+        /// What the operating system said.
         said: String,
     },
 }
@@ -110,11 +120,11 @@ enum Answer {
 }
 
 impl Peers {
-    /// The peers' packages in an interpreter, or in the virtual environment in a folder.
+    /// The peers' packages in an interpreter, or in the virtual environment in a folder; their script goes into `folder`.
     ///
     /// # Errors
-    /// Where there is no interpreter or it lacks the packages.
-    pub fn find(place: &Path) -> Result<Peers, PeerError> {
+    /// Where there is no interpreter, it lacks the packages, or the script cannot be written.
+    pub fn find(place: &Path, folder: &Path) -> Result<Peers, PeerError> {
         let inside = ["bin/python", "Scripts/python.exe"].map(|file| place.join(file));
         let found = inside.into_iter().find(|file| file.is_file());
         let python = found.unwrap_or_else(|| place.to_path_buf());
@@ -122,12 +132,19 @@ impl Peers {
             .args(["-c", "import moordyn, cabledyn"])
             .output()
             .map_err(|_| PeerError::NoPython(python.clone()))?;
-        if asked.status.success() {
-            return Ok(Peers { python });
+        if !asked.status.success() {
+            let said = String::from_utf8_lossy(&asked.stderr);
+            let said = said.lines().last().unwrap_or("no message").to_string();
+            return Err(PeerError::NoPackages { python, said });
         }
-        let said = String::from_utf8_lossy(&asked.stderr);
-        let said = said.lines().last().unwrap_or("no message").to_string();
-        Err(PeerError::NoPackages { python, said })
+        let script = folder.join("peers.py");
+        match std::fs::write(&script, SCRIPT) {
+            Ok(()) => Ok(Peers { python, script }),
+            Err(error) => Err(PeerError::NoScript {
+                script,
+                said: error.to_string(),
+            }),
+        }
     }
 
     /// Runs the peers on a scene and judges what they answer.
@@ -155,7 +172,7 @@ impl Peers {
 
     fn ask(&self, question: &Question<'_>) -> Result<Vec<Answer>, String> {
         let mut child = Command::new(&self.python)
-            .args(["-c", SCRIPT])
+            .arg(&self.script)
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .stderr(Stdio::null())

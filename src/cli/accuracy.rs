@@ -38,9 +38,9 @@ const LEVELS: [f64; 5] = [0.05, 0.03, 0.02, 0.01, 0.005];
 /// Studies scenes, prints what each level of error costs and writes table and figures into a folder.
 pub fn accuracy(paths: &[PathBuf], folder: &Path, python: Option<&Path>) -> Result<(), Failure> {
     let scenes = scenes(paths)?;
-    let peers = python.map(Peers::find).transpose();
-    let peers = peers.map_err(|error| Failure::Argument(error.to_string()))?;
     make_folder(folder)?;
+    let peers = python.map(|python| Peers::find(python, folder)).transpose();
+    let peers = peers.map_err(|error| Failure::Argument(error.to_string()))?;
     stay_on_one_core();
     let mut studies = Vec::new();
     for (name, scene) in &scenes {
