@@ -30,13 +30,13 @@ MoorDyn's settings
     same error, AB2 to AB4 do not converge, Midpoint and backward Euler with more iterations, Wilson and ACA cost more
     for the same answer.
     Host step: the path goes in as straight pieces with the secant velocity, so that it has no jumps in position
-    (given the velocity at the start of the step the fairlead jumps by ah²/2), in steps of four internal ones but at
-    most 1/200 of the motion's period, or of one internal step where that is longer. A host step costs 0.4 µs more than
-    its internal ones.
+    (given the velocity at the start of the step the fairlead jumps by ah²/2), in steps of one to eight internal ones and
+    at most 1/200 of the motion's period, or of one internal step where that is longer. A host step costs 0.4 µs more
+    than its internal ones.
     Tension: the force at the fairlead's node (last segment, drag and weight of its half) less the node's mass times
-    its known acceleration. MoorDyn returns the force without the inertia, which is some 1 % of the
-    tension's deviation on a coarse taut line. RK2 and Midpoint leave that force at the middle of the
-    last internal step; it is given the time it belongs to.
+    its known acceleration. MoorDyn returns the force without the inertia, which is some 1 % of the tension's deviation
+    on a coarse taut line. RK2 and Midpoint leave that force at the middle of the last internal step; it is given the
+    time it belongs to.
 
 CableDyn's settings
     Two-node elements, generalised-α in process. A relative tolerance of 1e-2 in Newton's iteration is enough (the
@@ -375,6 +375,23 @@ class MoorDyn:
         return (solved - begin) - (ended - solved)
 
 
+def moordyn_steps(limit, period, interval):
+    """Return the host step and the internal step [s], the cheapest with an internal step of at most `limit` [s].
+
+    The internal step divides the host's, and the host's divides `interval` [s], so some waste is left to choose by.
+    """
+    if limit >= interval:
+        host = host_step(limit, interval)
+        return host, host
+    longest = max(limit, min(period / 200.0, 8.0 * limit))
+    hosts = [interval / parts for parts in range(1, math.ceil(interval / limit) + 1)]
+    steps = [(host, host / math.ceil(host / limit - 1e-9)) for host in hosts if host <= longest * (1.0 + 1e-9)]
+    if not steps:
+        host = host_step(longest, interval)
+        steps = [(host, host)]
+    return min(steps, key=lambda pair: 1.0 / pair[1] + 0.1 / pair[0])
+
+
 def moordyn_runs(scene, elements, period, bedded):
     """Return the runs of MoorDyn's ladder; `period` [s] is the motion's, `bedded` whether the line meets the bed."""
     runs = []
@@ -384,8 +401,7 @@ def moordyn_runs(scene, elements, period, bedded):
         scheme = min(limits, key=lambda name: (4 if name == "RK4" else 2) / limits[name])
         for part in (0.9, 0.6):
             limit = min(part * limits[scheme], period / 20.0)
-            host = host_step(max(limit, min(period / 200.0, 4.0 * limit)), scene["interval"])
-            step = host / math.ceil(host / limit - 1e-9)
+            host, step = moordyn_steps(limit, period, scene["interval"])
             label = f"n = {count}, {scheme}, dtM {step:.3g} s, host step {host:.3g} s"
             runs.append(
                 {"peer": "MoorDyn", "label": label, "elements": count, "scheme": scheme, "step": step, "host": host}
