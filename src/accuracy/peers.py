@@ -30,9 +30,9 @@ MoorDyn's settings
     same error, AB2 to AB4 do not converge, Midpoint and backward Euler with more iterations, Wilson and ACA cost more
     for the same answer.
     Host step: the path goes in as straight pieces with the secant velocity, so that it has no jumps in position
-    (given the velocity at the start of the step the fairlead jumps by ah²/2), in steps of one to eight internal ones and
-    at most 1/200 of the motion's period, or of one internal step where that is longer. A host step costs 0.4 µs more
-    than its internal ones.
+    (given the velocity at the start of the step the fairlead jumps by ah²/2), in steps of one to eight internal ones
+    and at most 1/200 of the motion's period, or of one internal step where that is longer. A host step costs 0.4 µs
+    more than its internal ones.
     Tension: the force at the fairlead's node (last segment, drag and weight of its half) less the node's mass times
     its known acceleration. MoorDyn returns the force without the inertia, which is some 1 % of the tension's deviation
     on a coarse taut line. RK2 and Midpoint leave that force at the middle of the last internal step; it is given the
