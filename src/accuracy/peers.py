@@ -9,38 +9,42 @@ Input (SI units)
     line {length [m], mass [kg/m], diameter [m], axial_stiffness [N], axial_damping [N·s], drag_normal, drag_tangential,
     added_mass_normal, added_mass_tangential [-]}, anchor [m], fairlead [m],
     harmonics {x, y, z: [[amplitude [m], period [s], phase [rad]], ...], ramp [s]} or else
-    motion {times [s], position [m], velocity [m/s]}, duration [s], interval [s], elements [-], time_limit_seconds [s].
-    `elements` and `time_limit_seconds` have defaults.
+    motion {times [s], position [m], velocity [m/s]}, duration [s], interval [s], elements [-], and
+    time_limit_seconds [s], the CPU time that all passes of a run may take. The last two have defaults, and a
+    density of null is a line in air.
 Output, per run
     peer, label, elements [-], and either cpu_seconds [s], tension [N] at the fairlead and mid [m], the position at
     s = L/2, both at interval, 2·interval, ...; or failed, the reason.
 
 What a run costs
     CPU time of the time loop alone: reading the deck, the initial equilibrium and the reading of results are not
-    charged. A first pass reads the results at every host step and is not timed; further passes repeat the same steps
-    without reading anything and are timed, the least of them counts. The price of calling from Python, measured on
+    charged. A first pass reads the results as it goes and is not timed; further passes repeat the same steps
+    without reading anything and are timed, their median counts. The price of calling from Python, measured on
     calls that do no work, is taken off. Each run has its own process, on whatever core the parent is bound to.
 
 MoorDyn's settings
     Schemes: RK2, RK4 and Midpoint2 (one fixed-point correction), whichever costs least per second at its stability
     limit, at 0.9 and 0.6 of that limit. The limit comes from the scheme's amplification factor on the axial waves of
-    the mesh and on the seabed's spring and damper; MoorDyn's own CFL option knows only the undamped axial wave. The rest
-    did not pay: Euler and Heun (one evaluation) need steps 3 to 10 times smaller for the same error, AB2 to AB4 do not
-    converge, Midpoint and backward Euler with more iterations, Wilson and ACA cost more for the same answer.
+    the mesh, on slack segments and on the seabed's spring and damper; MoorDyn's own CFL option knows the undamped
+    axial wave only. The rest did not pay: Euler and Heun (one evaluation) need steps 3 to 10 times smaller for the
+    same error, AB2 to AB4 do not converge, Midpoint and backward Euler with more iterations, Wilson and ACA cost more
+    for the same answer.
     Host step: the path goes in as straight pieces with the secant velocity, so that it has no jumps in position
-    (given the velocity at the start of the step the fairlead jumps by ah²/2), in steps of at most 1/200 of the
-    motion's period, or of the internal step where that is longer. A host step costs 0.4 µs more than its calls.
+    (given the velocity at the start of the step the fairlead jumps by ah²/2), in steps of one to eight internal ones
+    and at most 1/200 of the motion's period, or of one internal step where that is longer. A host step costs 0.4 µs
+    more than its internal ones.
     Tension: the force at the fairlead's node (last segment, drag and weight of its half) less the node's mass times
-    its known acceleration. MoorDyn returns the force without the inertia, which is some 1 % of the
-    tension's deviation on a coarse taut line. RK2 and Midpoint leave that force at the middle of the
-    last internal step; it is given the time it belongs to.
+    its known acceleration. MoorDyn returns the force without the inertia, which is some 1 % of the tension's deviation
+    on a coarse taut line. RK2 and Midpoint leave that force at the middle of the last internal step; it is given the
+    time it belongs to.
 
 CableDyn's settings
     Two-node elements, generalised-α in process. A relative tolerance of 1e-2 in Newton's iteration is enough (the
-    default 1e-8 costs up to twice as much for the same errors). With a seabed: ρ∞ = 0.4 with 1/360 of the motion's
-    period and ρ∞ = 0 with 1/180. Without: ρ∞ = 0.9, reused tangents, 1/30 and 1/20 of the period. The cubic element
-    with a token bending stiffness reaches the position error of 28 two-node elements with 8, at the same cost, and
-    diverges with 6; it needs several times more where the line touches the bed, and is left out.
+    default 1e-8 costs up to twice as much for the same errors). Where the line meets the bed: ρ∞ = 0.4 with 1/360 of
+    the motion's period, best for tension, and ρ∞ = 0 with 1/180 and 1/90, best for position. Where it does not:
+    ρ∞ = 0.9 and reused tangents with 1/30 and 1/20 of the period. The cubic element with a token bending stiffness
+    reaches the position error of 28 two-node elements with 8, at the same cost, and diverges with 6; where the line
+    meets the bed it costs several times more. It is left out.
     Tension: CalcOutput, which has the end's inertia in it (FairTen has not).
 
 Both get a water depth (CableDyn drops drag and added mass without one) that a scene without a seabed never reaches,
@@ -53,6 +57,7 @@ import ctypes
 import json
 import math
 import os
+import signal
 import subprocess
 import sys
 import tempfile
@@ -60,14 +65,24 @@ import time
 
 import numpy as np
 
-# Segments of a ladder when the scene names none [-].
+try:
+    import resource
+except ImportError:  # Windows has no such limits; there the clock on the wall ends a run
+    resource = None
+
+# Segments of a ladder when the scene names none [-]; a line on the bed is far out with fewer than 8.
 ELEMENTS = (4, 6, 8, 10, 14, 20, 28, 40, 56, 80)
-# Wall time of a run when the scene names none [s].
-TIME_LIMIT = 120.0
+ELEMENTS_ON_BED = ELEMENTS[2:]
+# CPU time of a run when the scene names none [s], and how much longer the clock on the wall may take [-].
+TIME_LIMIT, WALL = 60.0, 20.0
 # Depth by which a scene is lowered where its motion reaches the surface [m].
 LOWERED = 10.0
+# What stands for air's density where CableDyn wants a positive one [kg/m³].
+AIR = 1e-6
+# A line shorter than this part [-] of one that just leaves the bed at its anchor is taken to hang free.
+HANGS_FREE = 0.97
 # Timed passes of a run: at most this many, until they add up to this much CPU time [s].
-PASSES, PASSES_CPU = 4, 0.4
+PASSES, PASSES_CPU = 9, 0.4
 
 
 class Path:
@@ -159,6 +174,29 @@ class Site:
         return times, position, velocity, acceleration
 
 
+def lies_on_bed(scene, path):
+    """Return whether the line reaches the bed, by the inextensible catenary that leaves it at the anchor.
+
+    Its parameter a [m] satisfies X = a·acosh(1 + Z/a), its length is √(Z² + 2Za). This chooses settings only: the bed
+    stays in the decks.
+    """
+    if not scene.get("bed") or scene.get("depth") is None:
+        return False
+    position = path.at(np.linspace(0.0, scene["duration"], 4001))[0]
+    across = np.hypot(*(position - np.array(scene["anchor"]))[:, :2].T).min()
+    above = (position[:, 2] - scene["anchor"][2]).min()
+    if above <= 0.0 or across <= 0.0:
+        return True
+    lower, upper = 1e-6 * above, 1e9 * (above + across)
+    for _ in range(200):
+        middle = math.sqrt(lower * upper)
+        if middle * math.acosh(1.0 + above / middle) < across:
+            lower = middle
+        else:
+            upper = middle
+    return scene["line"]["length"] > HANGS_FREE * math.sqrt(above**2 + 2.0 * above * lower)
+
+
 def resampled(times, values, wanted):
     """Return `values` given at evenly spaced `times` [s] at the times `wanted` [s], by cubics through four points."""
     step = times[1] - times[0]
@@ -173,12 +211,16 @@ def resampled(times, values, wanted):
     return sum(weight * values[at + point] for point, weight in enumerate(weights))
 
 
-def least_cpu(timed_pass):
-    """Return the least CPU time [s] of a few passes; `timed_pass` returns one pass's."""
+def median_cpu(timed_pass):
+    """Return the median CPU time [s] of a few passes; `timed_pass` returns one pass's.
+
+    Not the least: on a shared virtual machine the CPU clock now and then jumps by a tick of 4 ms either way, which is
+    more than a cheap pass takes. The thread's clock, because the process's counts in such ticks under a CPU limit.
+    """
     costs = [timed_pass()]
     while sum(costs) < PASSES_CPU and len(costs) < PASSES:
         costs.append(timed_pass())
-    return max(min(costs), 0.0)
+    return max(float(np.median(costs)), 0.0)
 
 
 def host_step(wanted, interval):
@@ -206,8 +248,12 @@ def growth(scheme, z):
     return abs(np.linalg.eigvals(np.array([[1.0 + z * slope[0], z * slope[1]], slope]))).max()
 
 
-def eigenvalues(scene, elements):
-    """Return the fast modes' eigenvalues λ [1/s] of a lumped line: axial waves of the mesh, and contact with the bed."""
+def eigenvalues(scene, elements, bedded):
+    """Return the fast modes' eigenvalues λ [1/s] of a lumped line.
+
+    Axial waves of the mesh; the same segments slack, when their damping acts without their stiffness; where
+    `bedded`, contact with the bed.
+    """
     line, density = scene["line"], scene["density"]
     displaced = density * math.pi / 4.0 * line["diameter"] ** 2  # ρA [kg/m]
     mass_tangential = line["mass"] + displaced * line["added_mass_tangential"]
@@ -218,12 +264,12 @@ def eigenvalues(scene, elements):
         omega = part * 2.0 * wave * elements / line["length"]
         modes.append((omega, omega * line["axial_damping"] / (2.0 * line["axial_stiffness"])))
     bed = scene.get("bed")
-    if bed and bed["stiffness"] > 0.0:
+    if bedded and bed["stiffness"] > 0.0:
         omega = math.sqrt(bed["stiffness"] * line["diameter"] / mass_normal)
         modes.append((omega, bed["damping"] * line["diameter"] / (2.0 * omega * mass_normal)))
-    return [
-        omega * (-ratio + sign * cmath.sqrt(ratio**2 - 1.0)) for omega, ratio in modes for sign in (1.0, -1.0)
-    ]
+    slack = -2.0 * modes[0][1] * modes[0][0]
+    pairs = [(omega * -ratio, omega * cmath.sqrt(ratio**2 - 1.0)) for omega, ratio in modes]
+    return [slack] + [centre + sign * half for centre, half in pairs for sign in (1.0, -1.0)]
 
 
 def stable_step(scheme, modes):
@@ -317,29 +363,45 @@ class MoorDyn:
     def timed(self):
         """Run once without reading anything, and return the CPU time [s] less that of as many empty calls."""
         system, step, host = self.open(), self.library.step, self.run["host"]
-        begin = time.process_time()
+        begin = time.thread_time()
         for position, velocity, start in self.steps:
             step(system, position, velocity, start, host)
-        solved = time.process_time()
+        solved = time.thread_time()
         empty = self.library.get_dt
         for _position, _velocity, _start in self.steps:
             empty(system)
-        ended = time.process_time()
+        ended = time.thread_time()
         self.library.close(system)
         return (solved - begin) - (ended - solved)
 
 
-def moordyn_runs(scene, elements, period):
-    """Return the runs of MoorDyn's ladder; `period` [s] is the motion's."""
+def moordyn_steps(limit, period, interval):
+    """Return the host step and the internal step [s], the cheapest with an internal step of at most `limit` [s].
+
+    The internal step divides the host's, and the host's divides `interval` [s], so some waste is left to choose by.
+    """
+    if limit >= interval:
+        host = host_step(limit, interval)
+        return host, host
+    longest = max(limit, min(period / 200.0, 8.0 * limit))
+    hosts = [interval / parts for parts in range(1, math.ceil(interval / limit) + 1)]
+    steps = [(host, host / math.ceil(host / limit - 1e-9)) for host in hosts if host <= longest * (1.0 + 1e-9)]
+    if not steps:
+        host = host_step(longest, interval)
+        steps = [(host, host)]
+    return min(steps, key=lambda pair: 1.0 / pair[1] + 0.1 / pair[0])
+
+
+def moordyn_runs(scene, elements, period, bedded):
+    """Return the runs of MoorDyn's ladder; `period` [s] is the motion's, `bedded` whether the line meets the bed."""
     runs = []
     for count in elements:
-        modes = eigenvalues(scene, count)
+        modes = eigenvalues(scene, count, bedded)
         limits = {scheme: stable_step(scheme, modes) for scheme in ("RK2", "RK4", "Midpoint2")}
         scheme = min(limits, key=lambda name: (4 if name == "RK4" else 2) / limits[name])
         for part in (0.9, 0.6):
             limit = min(part * limits[scheme], period / 20.0)
-            host = host_step(max(limit, period / 200.0), scene["interval"])
-            step = host / math.ceil(host / limit - 1e-9)
+            host, step = moordyn_steps(limit, period, scene["interval"])
             label = f"n = {count}, {scheme}, dtM {step:.3g} s, host step {host:.3g} s"
             runs.append(
                 {"peer": "MoorDyn", "label": label, "elements": count, "scheme": scheme, "step": step, "host": host}
@@ -412,7 +474,7 @@ class CableDyn:
         self.replies = tuple(ctypes.byref(flag) for flag in self.flags)
 
     def calls(self):
-        """Yield the pointers to position, velocity and acceleration of every step, made beforehand."""
+        """Return the pointers to position, velocity and acceleration of every step, made beforehand."""
         double, width = ctypes.POINTER(ctypes.c_double), 8 * self.size
         return [
             tuple(ctypes.cast(values.ctypes.data + width * index, double) for values in self.history)
@@ -423,17 +485,20 @@ class CableDyn:
         """Run once, and return times [s] and values of tension [N] and mid-position [m]."""
         step, length = self.library.CableDyn_Step, ctypes.c_double(self.run["step"])
         nodes, forces, mids = self.run["elements"], [], []
+        every = max(1, round(self.scene["interval"] / self.run["step"]))
         with self.create("deck.dat") as model:
             line = model.lines[0]
-            for index, arguments in enumerate(self.calls()):
+            for index, arguments in enumerate(self.calls(), 1):
                 step(model._handle, length, *arguments, self.size, *self.replies)
                 if self.flags[3].value != 0:
-                    raise RuntimeError(f"step at {self.times[index]:g} s failed with status {self.flags[3].value}")
+                    raise RuntimeError(f"step to {self.times[index]:g} s failed with status {self.flags[3].value}")
+                if index % every != 0:
+                    continue
                 forces.append(model.calc_output()[self.driven])
                 position = line.node_positions()
                 mids.append(0.5 * (position[nodes // 2] + position[(nodes + 1) // 2]))
-        tension = np.linalg.norm(np.array(forces), axis=1)
-        return (self.times[1:], tension), (self.times[1:], np.array(mids))
+        times, tension = self.times[every::every], np.linalg.norm(np.array(forces), axis=1)
+        return (times, tension), (times, np.array(mids))
 
     def timed(self):
         """Run once without reading anything, and return the CPU time [s] less that of as many refused calls."""
@@ -441,22 +506,22 @@ class CableDyn:
         size, replies, nothing = self.size, self.replies, ctypes.c_void_p()
         with self.create("deck.dat") as model:
             handle = model._handle
-            begin = time.process_time()
+            begin = time.thread_time()
             for position, velocity, acceleration in calls:
                 step(handle, length, position, velocity, acceleration, size, *replies)
-            solved = time.process_time()
+            solved = time.thread_time()
             for position, velocity, acceleration in calls:
                 step(nothing, length, position, velocity, acceleration, size, *replies)
-            return (solved - begin) - (time.process_time() - solved)
+            return (solved - begin) - (time.thread_time() - solved)
 
 
-def cabledyn_runs(scene, elements, period):
-    """Return the runs of CableDyn's ladder; `period` [s] is the motion's."""
-    bedded = [(360.0, 0.4, False), (180.0, 0.0, False)]
+def cabledyn_runs(scene, elements, period, bedded):
+    """Return the runs of CableDyn's ladder; `period` [s] is the motion's, `bedded` whether the line meets the bed."""
+    landing = [(360.0, 0.4, False), (180.0, 0.0, False), (90.0, 0.0, False)]
     free = [(30.0, 0.9, True), (20.0, 0.9, True)]
     runs = []
     for count in elements:
-        for parts, radius, reuse in bedded if scene.get("bed") else free:
+        for parts, radius, reuse in landing if bedded else free:
             step = host_step(period / parts, scene["interval"])
             label = f"n = {count}, dt {step:.3g} s, rhoInf {radius:g}" + (", modified Newton" if reuse else "")
             run = {"peer": "CableDyn", "label": label, "elements": count, "step": step}
@@ -467,8 +532,11 @@ def cabledyn_runs(scene, elements, period):
 # One process a run
 
 
-def single(scene, run):
-    """Run one rung here, and return its answer; a peer that fails says why."""
+def single(scene, run, limit):
+    """Run one rung here in at most `limit` [s] of CPU, and return its answer; a peer that fails says why."""
+    if resource is not None:
+        _, hard = resource.getrlimit(resource.RLIMIT_CPU)
+        resource.setrlimit(resource.RLIMIT_CPU, (math.ceil(limit), hard))
     answer = {key: run[key] for key in ("peer", "label", "elements")}
     wanted = scene["interval"] * np.arange(1, round(scene["duration"] / scene["interval"]) + 1)
     with tempfile.TemporaryDirectory() as directory:
@@ -479,7 +547,7 @@ def single(scene, run):
             if not (np.isfinite(tension).all() and np.isfinite(mid).all()):
                 raise RuntimeError("the results are not finite")
             mid[:, 2] += peer.site.lowered
-            answer |= {"cpu_seconds": least_cpu(peer.timed), "tension": tension.tolist(), "mid": mid.tolist()}
+            answer |= {"cpu_seconds": median_cpu(peer.timed), "tension": tension.tolist(), "mid": mid.tolist()}
         except Exception as error:  # whatever a peer raises is the answer
             answer["failed"] = f"{type(error).__name__}: {error}"
         os.chdir(os.path.dirname(directory))
@@ -487,18 +555,21 @@ def single(scene, run):
 
 
 def in_own_process(scene, run, limit):
-    """Run one rung in a process of its own, for at most `limit` [s]; a crash or a timeout is an answer too."""
+    """Run one rung in a process of its own, for at most `limit` [s] of CPU; a crash or a timeout is an answer too."""
     answer = {key: run[key] for key in ("peer", "label", "elements")}
     command = [sys.executable, os.path.abspath(__file__), "--single"]
+    question = json.dumps([scene, run, limit])
     try:
         done = subprocess.run(
-            command, input=json.dumps([scene, run]), stdout=subprocess.PIPE, text=True, timeout=limit, check=False
+            command, input=question, stdout=subprocess.PIPE, text=True, timeout=WALL * limit, check=False
         )
     except subprocess.TimeoutExpired:
-        return answer | {"failed": f"not done in {limit:g} s"}
+        return answer | {"failed": f"not done in {WALL * limit:g} s"}
     try:
         return json.loads(done.stdout)
     except json.JSONDecodeError:
+        if hasattr(signal, "SIGXCPU") and done.returncode == -signal.SIGXCPU:
+            return answer | {"failed": f"not done in {limit:g} s of CPU time"}
         return answer | {"failed": f"ended with exit code {done.returncode}"}
 
 
@@ -511,9 +582,12 @@ def main():
         answers.close()
         return
     scene = json.load(sys.stdin)
-    elements = scene.get("elements") or ELEMENTS
-    period = Path(scene).period(scene["duration"])
-    for run in moordyn_runs(scene, elements, period) + cabledyn_runs(scene, elements, period):
+    scene["density"] = scene.get("density") or AIR
+    path = Path(scene)
+    period, bedded = path.period(scene["duration"]), lies_on_bed(scene, path)
+    elements = scene.get("elements") or (ELEMENTS_ON_BED if bedded else ELEMENTS)
+    settings = elements, period, bedded
+    for run in moordyn_runs(scene, *settings) + cabledyn_runs(scene, *settings):
         answer = in_own_process(scene, run, scene.get("time_limit_seconds") or TIME_LIMIT)
         print(json.dumps(answer), file=answers, flush=True)
     print(json.dumps({"done": True}), file=answers, flush=True)
