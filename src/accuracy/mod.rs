@@ -1,6 +1,6 @@
 //! Speed against error: a scene run with a ladder of meshes, integrators and steps, each judged against a converged solution.
 //!
-//! Cost is processor time of the stepping thread per simulated second, without reading, statics and output; the least of a few
+//! Cost is processor time of the stepping thread per simulated second, without reading, statics and output; the median of a few
 //! repetitions where a run is short. Errors are those of [`errors`], over the second half of the run. The converged solution's
 //! own uncertainty is its distance from one of half its resolution: nothing below that is a statement.
 //!

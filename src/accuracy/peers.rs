@@ -17,7 +17,9 @@ use crate::scene::{MotionPath, Point, PointKind, Scene};
 const SCRIPT: &str = include_str!("peers.py");
 /// Elements that the peers are tried with [-].
 const ELEMENTS: [usize; 10] = [4, 6, 8, 10, 14, 20, 28, 40, 56, 80];
-/// Processor time that a single run of a peer may take [s].
+/// Those of them that a line on a seabed starts from: with fewer it means nothing.
+const ELEMENTS_ON_BED: usize = 2;
+/// Processor time that all passes of a single run of a peer may take [s].
 const TIME_LIMIT: f64 = 60.0;
 
 /// A Python interpreter that can import the peers' packages.
@@ -296,7 +298,10 @@ fn question<'a>(name: &'a str, scene: &'a Scene) -> Result<Question<'a>, String>
         },
         duration: scene.output.duration,
         interval: scene.output.interval,
-        elements: &ELEMENTS,
+        elements: match scene.seabed {
+            Some(_) => &ELEMENTS[ELEMENTS_ON_BED..],
+            None => &ELEMENTS,
+        },
         time_limit_seconds: TIME_LIMIT,
     })
 }

@@ -8,8 +8,8 @@ use crate::model::{Line, Model, Role};
 use crate::scene::Scene;
 use crate::simulation::Simulation;
 
-/// Timed passes of a run, the least of which counts: at most this many, and no more once they add up to this time [s].
-const PASSES_MAX: usize = 4;
+/// Timed passes of a run, the median of which counts: at most this many, and no more once they add up to this time [s].
+const PASSES_MAX: usize = 9;
 const PASSES_TIME: f64 = 0.4;
 
 /// A run.
@@ -48,15 +48,12 @@ pub(super) fn run(scene: &Scene) -> Result<Timed, String> {
         .follow_scene()
         .map_err(|error| error.to_string())?;
     let mut timed = recorded(simulation.clone(), scene)?;
-    let (mut least, mut sum) = (f64::INFINITY, 0.0);
-    for _ in 0..PASSES_MAX {
-        let spent = stepped(simulation.clone(), scene)?;
-        (least, sum) = (least.min(spent), sum + spent);
-        if sum > PASSES_TIME {
-            break;
-        }
+    let mut times = Vec::with_capacity(PASSES_MAX);
+    while times.len() < PASSES_MAX && times.iter().sum::<f64>() < PASSES_TIME {
+        times.push(stepped(simulation.clone(), scene)?);
     }
-    timed.cost = least / (scene.output.interval * samples(scene) as f64);
+    times.sort_by(f64::total_cmp);
+    timed.cost = times[times.len() / 2] / (scene.output.interval * samples(scene) as f64);
     Ok(timed)
 }
 
