@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 use moorline::interface::{Binding, Causality, Interface, Layout, Variable};
 use moorline::model::{Body, Model, Role};
 use moorline::output::channels::Channels;
+use moorline::output::figures::ELEVATION;
 use moorline::output::record::{Column, Record};
 use moorline::output::{collect, make_folder, write_run};
 use moorline::scene::Scene;
@@ -74,7 +75,7 @@ fn step_through(
     recorder: &Recorder<'_>,
     drive: Drive,
 ) -> Result<Record, Failure> {
-    let mut record = collect::record(scene, simulation, recorder.columns());
+    let mut record = collect::record(scene, simulation, recorder.columns(simulation.model()));
     let interval = match drive {
         Drive::Scene => scene.output.interval,
         Drive::Host { step, .. } => step,
@@ -130,8 +131,13 @@ struct Recorder<'i> {
 }
 
 impl Recorder<'_> {
-    fn columns(&self) -> Vec<Column> {
+    fn columns(&self, model: &Model) -> Vec<Column> {
         let mut all = columns(&self.variables);
+        all.extend(model.waves.as_ref().map(|_| Column {
+            name: ELEVATION.to_string(),
+            unit: "m".to_string(),
+            description: "elevation of the surface at x = y = 0".to_string(),
+        }));
         all.extend(self.channels.columns());
         all
     }
@@ -140,6 +146,8 @@ impl Recorder<'_> {
     fn row(&self, simulation: &Simulation, time: f64) -> Vec<f64> {
         let variables = self.variables.iter();
         let mut row: Vec<f64> = variables.map(|v| value(v, simulation, time)).collect();
+        let waves = simulation.model().waves.as_ref();
+        row.extend(waves.map(|waves| waves.elevation(0.0, 0.0, time)));
         row.extend(self.channels.values(simulation));
         row
     }

@@ -11,7 +11,10 @@ use super::{print, read_scene, simulate};
 
 /// Solves the equilibrium and prints it.
 pub fn statics(path: &Path, as_json: bool) -> Result<(), Failure> {
-    let loaded = read_scene(path)?;
+    let mut loaded = read_scene(path)?;
+    if let Some(water) = &mut loaded.scene.water {
+        water.waves = None; // an equilibrium is that of the sea at rest
+    }
     let simulation = simulate(&loaded)?;
     let statics = collect::statics(&loaded.scene, &simulation);
     if as_json {

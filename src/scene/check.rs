@@ -6,6 +6,7 @@ mod points;
 mod settings;
 mod surroundings;
 mod time;
+mod waves;
 
 use std::collections::BTreeMap;
 
@@ -14,6 +15,7 @@ use super::{Scene, SceneError};
 
 pub(super) use line_types::coefficients;
 pub(super) use settings::integrator_name;
+pub(super) use waves::breaking;
 
 impl Scene {
     /// Finds the first mistake.
