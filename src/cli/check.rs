@@ -23,6 +23,10 @@ pub fn check(path: &Path) -> Result<(), Failure> {
         writeln!(text, "read as a {} file", loaded.format).expect("a string takes any text");
     }
     text.push_str(&loaded.scene.in_words());
+    text.push_str("elements\n");
+    for line in model.mesh_in_words(&loaded.scene) {
+        writeln!(text, "  {line}").expect("a string takes any text");
+    }
     text.push_str("\nvariables of the FMU\n");
     for (role, causality) in [
         ("in", Causality::Input),
