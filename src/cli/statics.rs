@@ -4,14 +4,15 @@ use std::fmt::Write;
 use std::path::Path;
 
 use moorline::output::{collect, json};
+use moorline::scene::Supplement;
 
 use super::failure::Failure;
 use super::summary::{Table, static_table};
 use super::{print, read_scene, simulate};
 
 /// Solves the equilibrium and prints it.
-pub fn statics(path: &Path, as_json: bool) -> Result<(), Failure> {
-    let loaded = read_scene(path)?;
+pub fn statics(path: &Path, supplement: &Supplement, as_json: bool) -> Result<(), Failure> {
+    let loaded = read_scene(path, supplement)?;
     let simulation = simulate(&loaded)?;
     let statics = collect::statics(&loaded.scene, &simulation);
     if as_json {
