@@ -1,4 +1,4 @@
-//! Computed against measured values: every condition a ring, the diagonal where they agree.
+//! Computed against measured values: every condition a disc, the diagonal where they agree.
 
 use super::axis::Axis;
 use super::chart::{Chart, Curve, Stroke};
@@ -25,10 +25,10 @@ pub fn agreement(title: &str, quantity: &str, series: &[Series]) -> Option<Strin
         return None;
     }
     let diagonal = Curve::new(vec![[low, low], [high, high]], DARK, Stroke::Fine).named("equal");
-    let rings = series.iter().enumerate().map(|(index, one)| {
-        Curve::new(one.pairs.clone(), colour(index), Stroke::Nodes).named(&one.name)
+    let discs = series.iter().enumerate().map(|(index, one)| {
+        Curve::new(one.pairs.clone(), colour(index), Stroke::Marks).named(&one.name)
     });
-    let curves: Vec<Curve> = [diagonal].into_iter().chain(rings).collect();
+    let curves: Vec<Curve> = [diagonal].into_iter().chain(discs).collect();
     let x = Axis::around(&curves, 0, format!("{quantity}, measured"));
     let y = Axis::around(&curves, 1, format!("{quantity}, computed"));
     Some(Chart::new(title.to_string(), x, y, curves, SIZE[0], SIZE[1]).svg())
@@ -39,7 +39,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_pair_is_a_ring_and_nothing_is_no_figure() {
+    fn every_pair_is_a_disc_and_nothing_is_no_figure() {
         let series = Series {
             name: "T = 2 s".to_string(),
             pairs: vec![[30.0, 31.0], [40.0, 39.0], [50.0, 52.0]],
