@@ -7,6 +7,7 @@ use nalgebra::Vector3;
 use pulp::{Arch, NullaryFnOnce};
 
 use super::leapfrog::Step;
+use super::surface::SurfaceNow;
 use crate::math::lanes::{Components, LANES, Lanes, Vectors};
 use crate::model::{End, Line, LineState};
 use crate::physics::flow::{Profile, Stream};
@@ -42,6 +43,8 @@ pub(super) struct Layout {
     pub current: Option<CurrentNow>,
     pub mass_damping: Option<Vec<f64>>,
     pub contact: Option<ContactArrays>,
+    /// The water's surface, where the line may pierce it.
+    pub surface: Option<SurfaceNow>,
 }
 
 /// Lumped drag coefficients [N s²/m²].
@@ -112,6 +115,7 @@ impl Layout {
                 stiffness: keep(&contact.stiffness),
                 damping: keep(&contact.damping),
             }),
+            surface: SurfaceNow::new(line),
         })
     }
 
@@ -149,6 +153,51 @@ impl Layout {
             memory.velocity[i] = velocity;
             memory.velocity_before[i] = before;
         }
+    }
+
+    /// Finds where the surface crosses the line, and sets the weights of the nodes it crosses.
+    pub fn find_surface(&mut self) {
+        let Some(surface) = &mut self.surface else {
+            return;
+        };
+        surface.find(&self.position.z);
+        for i in surface.crossed() {
+            let now = surface.node(i);
+            self.weight[FIRST + i] = now.weight;
+            if let Some(drag) = &mut self.drag {
+                [drag.normal[FIRST + i], drag.tangent[FIRST + i]] = now.drag;
+            }
+        }
+    }
+
+    /// Books what joined with the water, except at ends that are held.
+    pub fn book_surface(&mut self, held: [bool; 2]) {
+        let Some(surface) = &mut self.surface else {
+            return;
+        };
+        let [first, last] = held.map(usize::from);
+        for i in first..=self.segment_count - last {
+            surface.book(i, &self.velocity, &self.position);
+        }
+    }
+
+    /// Forgets what joined with the water.
+    pub fn clear_surface(&mut self) {
+        if let Some(surface) = &mut self.surface {
+            surface.joined = 0.0;
+        }
+    }
+
+    /// Buoyancy that an end lacks at t_n [N].
+    pub fn end_lack(&self, end: End) -> f64 {
+        let node = self.end_index(end) - FIRST;
+        let surface = self.surface.as_ref();
+        surface.map_or(0.0, |surface| surface.lack(node))
+    }
+
+    /// Energy of motion that joined with the water since the state was loaded [J].
+    pub fn joined(&self) -> f64 {
+        self.surface.as_ref().map_or(0.0, |surface| surface.joined)
     }
 
     /// Sets what multiplies the current at t_n [-].

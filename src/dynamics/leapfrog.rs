@@ -15,7 +15,7 @@
 use nalgebra::{Matrix3, Vector3};
 use pulp::NullaryFnOnce;
 
-use super::layout::{Layout, interior, pad};
+use super::layout::{FIRST, Layout, interior, pad};
 use super::ledger::Flow;
 use crate::math::lanes::{Components, Lanes, Vectors};
 use crate::model::{End, Line, LineState};
@@ -227,11 +227,32 @@ impl LineWork {
         self.given_by_current = Lanes::splat(0.0);
     }
 
+    /// Meets the water's surface as it is at t_n. Where that follows a step, `after_step`, what joined with the water is booked.
+    pub fn meet_surface(&mut self, after_step: bool) {
+        self.layout.find_surface();
+        let Some(surface) = &self.layout.surface else {
+            return;
+        };
+        for i in surface.crossed() {
+            let (at, now) = (FIRST + i, surface.node(i));
+            let [across, along] = now.masses.map(|mass| 1.0 / mass);
+            self.inverse_mass[at] = across;
+            if let Some(water) = &mut self.water {
+                [water.drag_normal[at], water.drag_tangent[at]] = now.drag;
+                water.inverse_mass_excess[at] = along - across;
+            }
+        }
+        match after_step {
+            true => self.layout.book_surface(self.held),
+            false => self.layout.clear_surface(),
+        }
+    }
+
     /// Energy given by held ends and the current and lost between them since [`Self::load`].
     pub fn flow(&self) -> Flow {
         Flow {
             given: self.given + self.given_by_current.sum(),
-            lost: self.lost.sum(),
+            lost: self.lost.sum() - self.layout.joined(),
         }
     }
 
@@ -405,6 +426,7 @@ impl LineWork {
             };
             let velocities = self.layout.velocity_before.get(at) + self.layout.velocity.get(at);
             self.given -= 0.5 * step.kick * pull.dot(&velocities);
+            self.given += 0.5 * step.kick * self.layout.end_lack(end) * velocities.z;
         }
     }
 
