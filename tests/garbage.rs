@@ -33,7 +33,7 @@ impl Chance {
     }
 }
 
-/// A system with a bit of everything: a vessel, sections, a free point with a clump's properties, current, motions, loads.
+/// A system with a bit of everything: a vessel, sections, a clump, a line through the surface, a motion.
 const SYSTEM: &str = r#"title = "a barge on two lines, one of them with a clump"
 gravity = 9.81
 
@@ -83,7 +83,7 @@ added_mass = 0.5
 
 [[points]]
 name = "bow"
-position = [20.0, 0.0, -7.0]
+position = [20.0, 0.0, 4.0]
 kind = "coupled"
 on = "barge"
 
