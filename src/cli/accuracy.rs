@@ -6,7 +6,7 @@ use moorline::accuracy::{Code, Metric, Peers, Run, Study, study};
 use moorline::output::accuracy::write_runs;
 use moorline::output::figures::frontier;
 use moorline::output::{make_folder, write_file};
-use moorline::scene::Scene;
+use moorline::scene::{Scene, Supplement};
 
 use super::failure::Failure;
 use super::summary::Table;
@@ -73,7 +73,7 @@ fn scenes(paths: &[PathBuf]) -> Result<Vec<(String, Scene)>, Failure> {
     }
     let read = |path: &PathBuf| {
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
-        Ok((name.into_owned(), read_scene(path)?.scene))
+        Ok((name.into_owned(), read_scene(path, &Supplement::default())?.scene))
     };
     paths.iter().map(read).collect()
 }

@@ -49,8 +49,10 @@ pub enum Stroke {
     Faint,
     /// A straight level: still water, seabed.
     Level,
-    /// Rings at the points.
+    /// Small rings at the points.
     Nodes,
+    /// Discs at the points.
+    Marks,
 }
 
 /// A curve of a chart.
@@ -92,6 +94,7 @@ impl Curve {
             Stroke::Faint => (0.22, 1.0),
             Stroke::Level => (1.0, 1.4),
             Stroke::Nodes => (0.75, 1.0),
+            Stroke::Marks => (0.85, 1.0),
         };
         RGBColor(r, g, b).mix(opacity).stroke_width(fine_f(width))
     }
@@ -236,6 +239,10 @@ impl Chart {
                 Stroke::Nodes => {
                     chart.draw_series(points().map(|p| Circle::new(p, fine_f(2.2), style)))?;
                 }
+                Stroke::Marks => {
+                    let disc = |p| Circle::new(p, fine_f(3.4), style.filled());
+                    chart.draw_series(points().map(disc))?;
+                }
             };
         }
         Ok(())
@@ -284,6 +291,10 @@ fn draw_entry(area: &Area, curve: &Curve, left: u32, middle: u32) -> DrawResult 
         }
         Stroke::Nodes => {
             area.draw(&Circle::new(((x0 + x1) / 2, y), fine_f(2.6), style))?;
+        }
+        Stroke::Marks => {
+            let disc = Circle::new(((x0 + x1) / 2, y), fine_f(3.4), style.filled());
+            area.draw(&disc)?;
         }
     }
     let text = text_style(f64::from(TEXT))

@@ -3,6 +3,7 @@
 //!
 //! Text is left to the viewer's sans-serif font: no font files are needed to draw.
 
+pub mod agreement;
 mod axis;
 mod chart;
 mod flight;

@@ -193,6 +193,7 @@ mod tests {
             anchoring: 0.0,
             predicted: false,
             bends: false,
+            breadth: 0.0,
         };
         for z in HEIGHTS {
             let residual = |state: &PointState| {
@@ -230,7 +231,7 @@ mod tests {
                     let mut work = PointWork::new();
                     work.reach = 0.05;
                     let stream = model.stream(0.0);
-                    work.assemble_dynamic::<true>(free, state, load, stream, &weights);
+                    work.assemble_dynamic::<true>(free, state, load, (stream, None), &weights);
                     (work.residual, work.diagonal)
                 };
                 // where only the velocity moves, what depends on height stays in J and so must not be asked for
