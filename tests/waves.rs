@@ -99,7 +99,8 @@ fn the_water_presses_a_held_piece_as_morison_and_airy_say() {
         greatest = greatest.max(expected.norm());
     }
     assert!(greatest > 100.0);
-    assert!(error < 1e-3 * greatest, "{error} N of {greatest} N");
+    // the slopes of the stretched velocity are those of the linear theory: an error of the order of (ka)², 2.5e-3 here, in between
+    assert!(error < 2e-3 * greatest, "{error} N of {greatest} N");
 }
 
 /// A rope along y that weighs as much as water, held by nothing but a slack thread that the water does not feel, at a depth [m].
@@ -142,13 +143,17 @@ fn what_weighs_as_much_as_water_goes_round_as_the_water_does() {
                     places.push(simulation.state().lines[0].position[2]);
                 }
             }
+            // without the drift of Stokes, from the first place of a period to the last
+            let drift = (places[places.len() - 1] - places[0]) / (places.len() - 1) as f64;
             let range = |axis: usize| {
-                let values = places.iter().map(|place| place[axis]);
+                let way = |k: usize| k as f64 * drift[axis];
+                let values = places.iter().enumerate();
+                let values = values.map(|(k, place)| place[axis] - way(k));
                 let most = values.clone().fold(f64::NEG_INFINITY, f64::max);
                 0.5 * (most - values.fold(f64::INFINITY, f64::min))
             };
             let radius = amplitude * (-k * depth).exp();
-            // the drift of Stokes and the stretching are of the order of ka, 3 % here
+            // what is left of the drift and the stretching are of the order of ka, 3 % here
             for axis in [0, 2] {
                 assert_relative_eq!(range(axis), radius, max_relative = 0.04);
             }
@@ -497,7 +502,6 @@ fn refused(waves: &str, place: &str, problem: &str) {
 
 #[test]
 fn every_mistake_in_waves_is_refused_with_its_place() {
-    let spectrum = |rest: &str| format!("{{ spectrum = \"jonswap\", {rest} }}");
     refused("{}", "water.waves", "a sea needs");
     refused("[]", "water.waves", "no sea in the array");
     refused("3.0", "water.waves", "expected a sea");
@@ -532,6 +536,11 @@ fn every_mistake_in_waves_is_refused_with_its_place() {
         "water.waves.components[0][1]",
         "is not between",
     );
+}
+
+#[test]
+fn every_mistake_in_a_spectrum_is_refused_with_its_place() {
+    let spectrum = |rest: &str| format!("{{ spectrum = \"jonswap\", {rest} }}");
     refused("{ components = 50 }", "water.waves", "a sea needs");
     refused(
         &spectrum("significant_height = 2.0"),
