@@ -789,12 +789,19 @@ fn solve_catenary(
     catenary::solve(&sections, span, b.z - a.z, bed).ok()
 }
 
-fn reference_catenary(model: &Model, line: &Line) -> Option<Catenary> {
+/// The closed-form catenary of a line in its reference configuration; none where an end is free, or where it would come out of the
+/// water, of which the closed form knows nothing.
+pub(crate) fn reference_catenary(model: &Model, line: &Line) -> Option<Catenary> {
     let ends = line.ends.map(|point| &model.points[point]);
     if ends.iter().any(|point| point.free().is_some()) {
         return None;
     }
-    solve_catenary(model, line, ends[0].reference, ends[1].reference)
+    let [a, b] = ends.map(|point| point.reference);
+    let solved = solve_catenary(model, line, a, b)?;
+    let height = |&s: &f64| Vector3::new(0.0, 0.0, a.z + solved.at(s).z);
+    let shape = || line.nodes.arc.iter().map(height).collect::<Vec<_>>();
+    let surface = line.surface.as_ref();
+    (!surface.is_some_and(|surface| surface.is_pierced(&shape()))).then_some(solved)
 }
 
 /// Length whose weight the contact springs carry [m].

@@ -7,13 +7,13 @@
 //!        waves accelerate, and of the buoyancy by which a wave exceeds the still water at a free point.
 //! Lost:  drag at the velocity through the water, axial, bending and mass damping, and what the seabed takes (its springs give
 //!        some of it back). The added mass of a free point or node that dips into the water brings ½ v² of what joins it, which counts
-//!        as a negative loss.
+//!        as a negative loss; so does ½ vᵀṀv of nodes whose added mass differs along and across the line, which turns.
 //!
 //! E − E₀ − given + lost is the error of the time integration: numerical dissipation shows up as a negative one.
 //!
 //! The leapfrogs sum the flows of every internal step, forces at t_n times the mean of the velocities around it; energy is then
 //! exact at t − Δt/2, where the velocities live, and so E is taken there. The implicit integrators use the trapezoidal
-//! rule over every internal step. Quasi-static networks hold no kinetic energy; the work of ends and loads is that of the mean of the
+//! rule over every internal step; the leapfrogs leave ½ vᵀṀv of turning nodes out. Quasi-static networks hold no kinetic energy; the work of ends and loads is that of the mean of the
 //! forces before and after a step. Where they are closed-form catenaries, the whole of these counts, held ends included:
 //!
 //! ∫ T²/(2EA) ds and ∫ w z ds, exact where the line hangs.
@@ -551,6 +551,23 @@ fn line_power(line: &Line, shape: &LineState, model: &Model, water: WaterAlong) 
     flow
 }
 
+/// ½ vᵀṀv of a node whose added mass differs along and across the line, as that turns [W].
+fn turning_power(line: &Line, shape: &LineState, i: usize, water: WaterAlong) -> f64 {
+    let [normal, along] = line.nodes.masses(i, dry_part(line, shape, i, water));
+    if normal == along {
+        return 0.0;
+    }
+    let (low, high) = (i.saturating_sub(1), (i + 1).min(shape.position.len() - 1));
+    let length = (shape.position[high] - shape.position[low]).norm();
+    if length == 0.0 {
+        return 0.0;
+    }
+    let (tangent, velocity) = (tangent(shape, i), shape.velocity[i]);
+    let rate = (shape.velocity[high] - shape.velocity[low]) / length; // of the chord [1/s]
+    let turning = rate - rate.dot(&tangent) * tangent;
+    (along - normal) * velocity.dot(&tangent) * velocity.dot(&turning)
+}
+
 /// Power of held ends on the buoyancy that they lack in calm water, that of the buoyancy by which waves exceed it on the other nodes, and
 /// minus that of the added mass which joins the nodes with the water [W].
 fn surface_power(line: &Line, shape: &LineState, held: [bool; 2], water: WaterAlong) -> Flow {
@@ -598,7 +615,7 @@ fn surface_power(line: &Line, shape: &LineState, held: [bool; 2], water: WaterAl
 /// Power that water, mass damping and seabed take from a node, and that moving water gives it [W].
 fn node_power(line: &Line, shape: &LineState, i: usize, water: WaterAlong) -> Flow {
     let (nodes, velocity) = (&line.nodes, shape.velocity[i]);
-    let (mut given, mut lost) = (0.0, 0.0);
+    let (mut given, mut lost) = (0.0, -turning_power(line, shape, i, water));
     if let Some(coefficients) = &nodes.drag {
         let k = DragCoefficients {
             normal: coefficients.normal[i],

@@ -5,6 +5,7 @@ pub mod block_tridiagonal;
 pub mod elementary;
 pub mod hermite;
 pub mod lanes;
+pub mod low_pass;
 pub mod pentadiagonal;
 pub mod pivoted_chain;
 pub mod random;

@@ -1,6 +1,7 @@
 //! Scene -> Model.
 
 mod beam;
+mod spacing;
 mod waves;
 
 use nalgebra::Vector3;
@@ -41,8 +42,9 @@ impl Model {
             .map(|point| build_point(scene, &vessels, point))
             .collect();
         let mut lines = Vec::with_capacity(scene.lines.len());
+        let elements = spacing::elements(scene);
         for (index, line) in scene.lines.iter().enumerate() {
-            let mut built = build_line(scene, index, line)?;
+            let mut built = build_line(scene, index, line, (&points, &vessels), elements[index])?;
             rest_as_it_lies(&mut built, &points, line.rest_shape);
             points[built.ends[0]].attached.push((index, End::A));
             points[built.ends[1]].attached.push((index, End::B));
@@ -65,6 +67,11 @@ impl Model {
             vessels,
             solver: scene.solver.clone(),
         })
+    }
+
+    /// How many elements of which lengths [m] the lines have, and why, where this is the model of that scene: one sentence a line.
+    pub fn mesh_in_words(&self, scene: &Scene) -> Vec<String> {
+        spacing::in_words(scene, self)
     }
 }
 
@@ -273,7 +280,14 @@ fn line_law(scene: &Scene, line_type: &LineType) -> LineLaw {
     }
 }
 
-fn build_line(scene: &Scene, index: usize, line: &scene::Line) -> Result<Line, SceneError> {
+/// A line of the scene that is to have so many elements [-] where the scene leaves them open.
+fn build_line(
+    scene: &Scene,
+    index: usize,
+    line: &scene::Line,
+    (points, vessels): (&[Point], &[Vessel]),
+    elements: f64,
+) -> Result<Line, SceneError> {
     let point = |key: &str, name: &str| {
         scene
             .points
@@ -297,16 +311,16 @@ fn build_line(scene: &Scene, index: usize, line: &scene::Line) -> Result<Line, S
         })?;
         laws.push(line_law(scene, line_type));
     }
-    let elements = mesh::section_elements(line, scene.solver.tolerance);
-    let beam = beam::build(scene, index, line, &laws, &elements)?;
-    let parts: Vec<SegmentPart> = line
-        .sections
+    let wanted = spacing::refinements(scene, line, ends.map(|end| &points[end]), vessels, &laws);
+    let lengths = mesh::lengths(&pieces(line), elements, &wanted);
+    let beam = beam::build(scene, index, line, &laws, &lengths)?;
+    let parts: Vec<SegmentPart> = laws
         .iter()
-        .zip(&laws)
-        .zip(&elements)
-        .flat_map(|((section, law), &count)| {
-            let length = section.length / count as f64;
-            std::iter::repeat_n(SegmentPart { length, law }, count)
+        .zip(&lengths)
+        .flat_map(|(law, lengths)| {
+            lengths
+                .iter()
+                .map(move |&length| SegmentPart { length, law })
         })
         .collect();
     let sections = line
@@ -335,6 +349,15 @@ fn build_line(scene: &Scene, index: usize, line: &scene::Line) -> Result<Line, S
         built.surface = Some(Surface::new(&parts, &built.nodes.length));
     }
     Ok(built)
+}
+
+/// Sections as the mesher sees them.
+fn pieces(line: &scene::Line) -> Vec<mesh::Piece> {
+    let piece = |section: &scene::Section| mesh::Piece {
+        length: section.length,
+        elements: section.elements,
+    };
+    line.sections.iter().map(piece).collect()
 }
 
 /// Joints and clamps of a line, where any of its sections has bending stiffness.

@@ -2,6 +2,7 @@
 
 pub mod airy;
 pub mod bending;
+pub mod catenary;
 pub mod contact_step;
 pub mod flow;
 pub mod morison;

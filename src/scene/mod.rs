@@ -9,6 +9,7 @@ pub mod channel;
 mod check;
 mod commented;
 mod document;
+mod drive;
 mod error;
 mod from_deck;
 mod map;
@@ -31,6 +32,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+pub use drive::{Drive, RegularMotion};
 pub use error::{LoadError, SceneError};
 pub use notes::Note;
 pub use places::Places;

@@ -3,9 +3,11 @@
 //!
 //! Text is left to the viewer's sans-serif font: no font files are needed to draw.
 
+pub mod agreement;
 mod axis;
 mod chart;
 mod flight;
+pub mod frontier;
 
 use axis::{Axis, force_unit};
 use chart::{Chart, Curve, Stroke};

@@ -166,7 +166,7 @@ fn surface_in_words(scene: &Scene) -> String {
     if !submerged.is_empty() {
         said += &format!(", while {} them everywhere", have(&submerged));
     }
-    said + "; closed-form catenaries take all of a line as under water"
+    said
 }
 
 /// "a, b and c have".
