@@ -292,7 +292,7 @@ impl AxialWork {
     fn force_and_slope(&self, at: usize, l: Lanes) -> (Lanes, Lanes) {
         let one = Lanes::splat(1.0);
         let strain = l * Lanes::load(&self.layout.inverse_length, at) - one;
-        match self.layout.law {
+        match &self.layout.law {
             StretchLaw::Engineering => (strain, one),
             law => (
                 strain.map(|e| law.at(e).force),

@@ -252,10 +252,13 @@ impl LineWork {
 
     #[inline(always)]
     fn choose_segment_pass(&mut self, step: Step) {
-        match (self.layout.law, self.damped) {
+        match (&self.layout.law, self.damped) {
             (StretchLaw::Engineering, false) => self.segment_pass::<false>(step, |strain| strain),
             (StretchLaw::Engineering, true) => self.segment_pass::<true>(step, |strain| strain),
-            (law, _) => self.segment_pass::<true>(step, |strain| strain.map(|e| law.at(e).force)),
+            (law, _) => {
+                let law = law.clone();
+                self.segment_pass::<true>(step, |strain| strain.map(|e| law.at(e).force));
+            }
         }
     }
 

@@ -201,7 +201,8 @@ fn axial_energy(line: &Line, i: usize, strain: f64) -> f64 {
     if strain > 0.0 || ea * law.force > -push {
         ea * law.energy * length
     } else {
-        let limit = -push / ea; // where the push stops growing, by the slope at no strain
+        let ea = ea * data.law[i].at(0.0).slope; // the push stops growing by the slope at no strain
+        let limit = -push / ea;
         (0.5 * push * push / ea + push * (limit - strain)) * length
     }
 }

@@ -159,7 +159,7 @@ impl Property {
             Property::Mass => line_type.mass,
             Property::Weight => line_type.weight,
             Property::Diameter => line_type.diameter,
-            Property::AxialStiffness => Some(line_type.axial_stiffness),
+            Property::AxialStiffness => line_type.axial_stiffness,
             Property::BendingStiffness => line_type.bending_stiffness,
             Property::ShearStiffness => line_type.shear_stiffness,
             Property::TorsionalStiffness => line_type.torsional_stiffness,
@@ -175,10 +175,7 @@ impl Property {
 
     fn set(self, line_type: &mut LineType, value: f64) {
         let target = match self {
-            Property::AxialStiffness => {
-                line_type.axial_stiffness = value;
-                return;
-            }
+            Property::AxialStiffness => &mut line_type.axial_stiffness,
             Property::Mass => &mut line_type.mass,
             Property::Weight => &mut line_type.weight,
             Property::Diameter => &mut line_type.diameter,

@@ -15,6 +15,7 @@ use crate::physics::point::Sphere;
 use crate::physics::rayleigh;
 use crate::physics::seabed::{ContactCoefficients, regularised, under_point};
 use crate::physics::stretch::StretchLaw;
+use crate::physics::tension_table::TensionTable;
 use crate::physics::weight::{cross_section, submerged_weight};
 use crate::scene::{
     self, Axis, ContactLaw, FibreLaw, Integrator, LineModel, LineType, PointKind, RestShape, Scene,
@@ -210,6 +211,20 @@ fn bending_stiffness(line_type: &LineType) -> f64 {
     bending::of_strands(solid.unwrap_or(0.0), strands, power)
 }
 
+/// The law of the axial force and its EA [N].
+fn stretch_law(line_type: &LineType) -> (StretchLaw, f64) {
+    if let Some(table) = &line_type.tension_strain {
+        let (table, ea) = TensionTable::through(&table.rows);
+        return (StretchLaw::Tabulated(table), ea);
+    }
+    let law = match line_type.strain {
+        Strain::Engineering => StretchLaw::Engineering,
+        Strain::Green => StretchLaw::Green,
+        Strain::Logarithmic(poisson) => StretchLaw::Logarithmic { poisson },
+    };
+    (law, line_type.axial_stiffness.unwrap_or(0.0))
+}
+
 fn line_law(scene: &Scene, line_type: &LineType) -> LineLaw {
     let density = scene.water.as_ref().map_or(0.0, |water| water.density);
     let displaced = line_type
@@ -224,7 +239,7 @@ fn line_law(scene: &Scene, line_type: &LineType) -> LineLaw {
     let rayleigh = line_type
         .rayleigh
         .map(|r| rayleigh::coefficients(r.ratios, r.frequencies));
-    let ea = line_type.axial_stiffness;
+    let (law, ea) = stretch_law(line_type);
     let drag = line_type.diameter.and_then(|diameter| {
         let (normal, tangent) = (
             line_type.drag_normal.unwrap_or(0.0),
@@ -244,11 +259,7 @@ fn line_law(scene: &Scene, line_type: &LineType) -> LineLaw {
             })
         });
     LineLaw {
-        law: match line_type.strain {
-            Strain::Engineering => StretchLaw::Engineering,
-            Strain::Green => StretchLaw::Green,
-            Strain::Logarithmic(poisson) => StretchLaw::Logarithmic { poisson },
-        },
+        law,
         axial_stiffness: ea,
         axial_damping: line_type.axial_damping.unwrap_or(0.0)
             + rayleigh.map_or(0.0, |r| r.stiffness * ea),
@@ -309,7 +320,7 @@ fn build_line(scene: &Scene, index: usize, line: &scene::Line) -> Result<Line, S
             length: section.length,
             weight: law.weight,
             axial_stiffness: law.axial_stiffness,
-            law: law.law,
+            law: law.law.clone(),
         });
     let mut built = Line {
         name: line.name.clone(),
@@ -385,7 +396,7 @@ fn segments(parts: &[SegmentPart]) -> Segments {
         length: parts.iter().map(|part| part.length).collect(),
         axial_stiffness: parts.iter().map(|part| part.law.axial_stiffness).collect(),
         axial_damping: parts.iter().map(damping).collect(),
-        law: parts.iter().map(|part| part.law.law).collect(),
+        law: parts.iter().map(|part| part.law.law.clone()).collect(),
     }
 }
 

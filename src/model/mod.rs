@@ -189,7 +189,7 @@ pub struct Line {
 }
 
 /// A section as the closed-form catenary takes it.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Section {
     /// Unstretched length [m].
     pub length: f64,
@@ -306,12 +306,12 @@ impl Line {
 
     /// The strain measure, where all segments share one.
     pub fn uniform_law(&self) -> Option<StretchLaw> {
-        let first = self.segments.law[0];
+        let first = &self.segments.law[0];
         self.segments
             .law
             .iter()
-            .all(|law| *law == first)
-            .then_some(first)
+            .all(|law| law == first)
+            .then(|| first.clone())
     }
 }
 

@@ -10,4 +10,5 @@ pub mod rayleigh;
 pub mod seabed;
 pub mod section;
 pub mod stretch;
+pub mod tension_table;
 pub mod weight;

@@ -20,6 +20,7 @@ mod path;
 mod places;
 mod read;
 mod rows;
+mod tension_strain;
 mod time_function;
 mod units;
 mod words;
@@ -33,6 +34,7 @@ pub use notes::Note;
 pub use places::Places;
 use read::Reading;
 pub use read::{LoadedScene, Supplement, TOML, load, load_with};
+pub use tension_strain::TensionStrain;
 pub use time_function::{HarmonicMotion, MotionFile, MotionPath, MotionRow, TimeFunction};
 
 /// Standard gravity [m/s²], the default of [`Scene::gravity`].
@@ -158,7 +160,10 @@ pub struct LineType {
     /// Volume-equivalent diameter [m].
     pub diameter: Option<f64>,
     /// Axial stiffness EA [N].
-    pub axial_stiffness: f64,
+    pub axial_stiffness: Option<f64>,
+    /// Tension over strain, instead of `axial_stiffness`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tension_strain: Option<TensionStrain>,
     /// Axial damping BA [N s].
     pub axial_damping: Option<f64>,
     /// Axial damping as a ratio of the critical damping of each segment [-]; instead of `axial_damping`.

@@ -12,7 +12,7 @@ use toml::de::{DeTable, DeValue};
 use super::notes::Note;
 use super::places::Places;
 use super::rows::{Findings, MISTAKES_MAX};
-use super::{LoadError, MotionPath, Scene, SceneError, document, map, moordyn, motion_file, path};
+use super::{LoadError, MotionPath, Scene, SceneError, document, map, moordyn, motion_file, path, tension_strain};
 
 /// Longest scene file that is read [bytes].
 const SIZE_MAX: u64 = 256 << 20;
@@ -108,7 +108,7 @@ pub fn load(path: &Path) -> Result<LoadedScene, LoadError> {
 pub fn load_with(path: &Path, supplement: &Supplement) -> Result<LoadedScene, LoadError> {
     let text = read_text(path)?;
     let loaded = match deck_of(&text) {
-        Some(read) => deck_scene(read(&text, supplement), &text),
+        Some(read) => deck_scene(read(&text, supplement), &text, path),
         None => scene_of(&text, path).map(|scene| {
             let notes = scene.notes();
             (scene, notes, TOML, Places::default())
@@ -149,7 +149,7 @@ fn deck_of(text: &str) -> Option<ReadDeck> {
 type Checked = (Scene, Vec<Note>, &'static str, Places);
 
 /// What a reader made of a deck, checked as every scene is.
-fn deck_scene(reading: Reading, text: &str) -> Result<Checked, Vec<SceneError>> {
+fn deck_scene(reading: Reading, text: &str, path: &Path) -> Result<Checked, Vec<SceneError>> {
     let Reading {
         format,
         scene,
@@ -161,11 +161,12 @@ fn deck_scene(reading: Reading, text: &str) -> Result<Checked, Vec<SceneError>> 
         mistakes.truncate(MISTAKES_MAX);
         mistakes
     };
-    let Some(scene) = scene.filter(|_| findings.mistakes.is_empty()) else {
+    let Some(mut scene) = scene.filter(|_| findings.mistakes.is_empty()) else {
         return Err(in_order(findings.mistakes));
     };
-    let mistakes: Vec<SceneError> = scene
-        .mistakes()
+    let of_files = read_tables(&mut scene, folder_of(path));
+    let mistakes = all_mistakes(&scene, of_files);
+    let mistakes: Vec<SceneError> = mistakes
         .into_iter()
         .map(|mistake| places.locate(mistake))
         .collect();
@@ -181,18 +182,49 @@ fn deck_scene(reading: Reading, text: &str) -> Result<Checked, Vec<SceneError>> 
 fn scene_of(text: &str, path: &Path) -> Result<Scene, Vec<SceneError>> {
     let document = Document::parse(text).map_err(|mistake| vec![mistake])?;
     let mut scene = document.scene().map_err(|mistake| vec![mistake])?;
-    let folder = path.parent().unwrap_or(Path::new("."));
-    let mut mistakes = read_motions(&mut scene, folder);
-    for mistake in scene.mistakes() {
-        if mistakes.iter().all(|known| known.at != mistake.at) {
-            mistakes.push(mistake);
-        }
-    }
+    let mut of_files = read_motions(&mut scene, folder_of(path));
+    of_files.extend(read_tables(&mut scene, folder_of(path)));
+    let mistakes = all_mistakes(&scene, of_files);
     if mistakes.is_empty() {
         Ok(scene)
     } else {
         Err(document.place(mistakes))
     }
+}
+
+/// The folder that a scene's files stand in.
+fn folder_of(path: &Path) -> &Path {
+    path.parent().unwrap_or(Path::new("."))
+}
+
+/// What is wrong with the files of a scene, and what else is wrong with it.
+fn all_mistakes(scene: &Scene, mut of_files: Vec<SceneError>) -> Vec<SceneError> {
+    for mistake in scene.mistakes() {
+        if of_files.iter().all(|known| known.at != mistake.at) {
+            of_files.push(mistake);
+        }
+    }
+    of_files
+}
+
+/// Reads every table of tension over strain that stands in a file; returns what is wrong with them.
+fn read_tables(scene: &mut Scene, folder: &Path) -> Vec<SceneError> {
+    let mut mistakes = Vec::new();
+    for (name, line_type) in &mut scene.line_types {
+        let Some(table) = &mut line_type.tension_strain else {
+            continue;
+        };
+        if let Some(file) = &table.file {
+            match tension_strain::read(&folder.join(file)) {
+                Ok(rows) => table.rows = rows,
+                Err(problem) => {
+                    let at = format!("line_types.{}.tension_strain", path::quoted(name));
+                    mistakes.push(SceneError::new(at, problem));
+                }
+            }
+        }
+    }
+    mistakes
 }
 
 /// Reads every motion file of the scene; returns what is wrong with them.

@@ -13,6 +13,7 @@ const UNITS: &[(&str, &str, &str)] = &[
     ("LineType", "weight", "N/m"),
     ("LineType", "diameter", "m"),
     ("LineType", "axial_stiffness", "N"),
+    ("LineType", "tension_strain", "- and N"),
     ("LineType", "axial_damping", "N s"),
     ("LineType", "damping_ratio", "-"),
     ("LineType", "drag_normal", "-"),

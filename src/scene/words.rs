@@ -3,6 +3,7 @@
 mod beam;
 mod bending;
 mod points;
+mod stretch;
 mod surroundings;
 mod vessels;
 
@@ -143,16 +144,7 @@ impl Scene {
         if let Some(diameter) = line_type.diameter {
             parts.push(format!("diameter {}", quantity(diameter, "m")));
         }
-        let ea = line_type.axial_stiffness; // EA [N]
-        parts.push(format!(
-            "EA {} on the {} strain",
-            quantity(ea, "N"),
-            strain_in_words(line_type.strain)
-        ));
-        parts.push(format!(
-            "axial waves at {} m/s",
-            significant((ea / mass).sqrt())
-        ));
+        parts.push(stretch::in_words(line_type, mass));
         let section = self.section_in_words(line_type);
         parts.extend(section.or_else(|| bending::stiffness_in_words(line_type)));
         parts.push(damping_in_words(line_type));

@@ -6,7 +6,7 @@ use super::deck::{Attachment, Body, Deck, Line, LineEnd, LineType, Point, Proper
 use crate::scene::from_deck::{self, SEA_WATER, Vessels, bed, place_position};
 use crate::scene::rows::{Findings, Placed};
 use crate::scene::{
-    self, Output, Places, PointForce, PointKind, Scene, Section, Supplement, TimeFunction, Water,
+    self, Output, Places, PointForce, PointKind, Scene, Section, Supplement, TensionStrain, TimeFunction, Water,
 };
 
 /// A deck on its way to a scene.
@@ -101,6 +101,7 @@ impl<'d> Builder<'d> {
         }
         let properties = [
             ("axial_stiffness", Some(&kind.stiffness), "EA"),
+            ("tension_strain", Some(&kind.stiffness), "EA"),
             ("axial_damping", Some(&kind.damping), "BA/-zeta"),
             ("damping_ratio", Some(&kind.damping), "BA/-zeta"),
             ("bending_stiffness", kind.bending.as_ref(), "EI"),
@@ -455,10 +456,15 @@ impl<'d> Builder<'d> {
 
 fn line_type(kind: &LineType) -> scene::LineType {
     let damping = plain(&kind.damping.value);
+    let (axial_stiffness, tension_strain) = match &kind.stiffness.value {
+        Property::Named(file) => (None, Some(TensionStrain::from_file(file))),
+        number => (Some(plain(number)), None),
+    };
     scene::LineType {
         mass: Some(kind.mass.value),
         diameter: Some(kind.diameter.value),
-        axial_stiffness: plain(&kind.stiffness.value),
+        axial_stiffness,
+        tension_strain,
         axial_damping: (damping >= 0.0).then_some(damping),
         damping_ratio: (damping < 0.0).then_some(-damping),
         bending_stiffness: kind

@@ -26,20 +26,16 @@ fn refuse(findings: &mut Findings, at: impl Into<String>, span: &Range<usize>, p
     findings.mistake(at, span.clone(), problem);
 }
 
-/// EA from a table, viscoelastic EA.
+/// Viscoelastic EA.
 fn stiffness_laws(deck: &Deck, findings: &mut Findings) {
     for kind in &deck.line_types {
         let problem = match &kind.stiffness.value {
-            Property::Number(_) => continue,
+            Property::Number(_) | Property::Named(_) => continue,
             Property::Parts(_) => {
                 "a static and a dynamic stiffness are not modelled: write one EA [N], the dynamic one for motions in \
                  waves, the static one for slow offsets"
                     .to_string()
             }
-            Property::Named(name) => format!(
-                "a stiffness from {} is not modelled: write EA [N] as a number, the slope of the table at the mean tension",
-                shown(name)
-            ),
         };
         refuse(
             findings,
