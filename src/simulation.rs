@@ -665,6 +665,11 @@ fn begin(
         .map(|point| PointState::held(&held(point, time)))
         .collect();
     let mut state = at_rest(model, time, &places)?;
+    if model.solver.integrator != Integrator::QuasiStatic {
+        for (line, shape) in model.lines.iter().zip(&mut state.lines) {
+            shape.become_viscoelastic(line);
+        }
+    }
     rest_beams(model, &mut state, time, |point| {
         beam::attitude(&held(point, time))
     })?;

@@ -201,8 +201,13 @@ impl AxialWork {
         }
         for at in self.layout.segment_blocks() {
             let (chord, inverse_l) = self.layout.chord(at);
-            let (force, _) = self.force_and_slope(at, chord.dot(chord) * inverse_l);
-            let tension = Lanes::load(&self.layout.axial_stiffness, at) * force.positive();
+            let tension = match &self.layout.creep {
+                None => {
+                    let (force, _) = self.force_and_slope(at, chord.dot(chord) * inverse_l);
+                    Lanes::load(&self.layout.axial_stiffness, at) * force.positive()
+                }
+                Some(creep) => creep.elastic(at, self.layout.strain(at)).positive(),
+            };
             self.segments
                 .history
                 .iter_mut()
@@ -259,7 +264,10 @@ impl AxialWork {
 
     #[inline(always)]
     fn step_vectors<const CURRENT: bool>(&mut self, step: Step, ends: [Vector3<f64>; 2]) -> usize {
-        self.prepare_segments(step);
+        match self.layout.creep {
+            None => self.prepare_segments::<false>(step),
+            Some(_) => self.prepare_segments::<true>(step),
+        }
         self.prepare_nodes::<CURRENT>(step);
         self.prepare_ends(step, ends);
         let mut passes = 0;
@@ -284,6 +292,7 @@ impl AxialWork {
         self.layout
             .position
             .set(FIRST + self.layout.segment_count, ends[1]);
+        self.layout.creep(step.drift);
         passes
     }
 
@@ -302,7 +311,7 @@ impl AxialWork {
     }
 
     #[inline(always)]
-    fn prepare_segments(&mut self, step: Step) {
+    fn prepare_segments<const CREEPS: bool>(&mut self, step: Step) {
         let [b1, h0, h1, h2] = self.weights.0.map(Lanes::splat);
         let drift = Lanes::splat(step.drift);
         for at in self.layout.segment_blocks() {
@@ -315,15 +324,22 @@ impl AxialWork {
             let along = direction.dot(relative);
             let (force, slope) = self.force_and_slope(at, l);
             let ea = Lanes::load(&line.axial_stiffness, at);
-            let tension = ea * force.positive();
+            let mut tension = ea * force.positive();
+            let (mut ahead, mut tangent) = (b1 * ea * force, b1 * ea * slope);
+            if CREEPS {
+                let (now, coming, stiffness) = self.creeping_forces(at, direction, step);
+                tension = now.positive();
+                (ahead, tangent) = (b1 * coming, b1 * stiffness);
+            }
+            let line = &self.layout;
             let segments = &mut self.segments;
             let [last, before] = &mut segments.history;
             let (t1, t2) = (Lanes::load(last, at), Lanes::load(before, at));
             tension.store(last, at);
             t1.store(before, at);
-            let elastic = b1 * ea * force + h0 * tension + h1 * t1 + h2 * t2;
+            let elastic = ahead + h0 * tension + h1 * t1 + h2 * t2;
             let damping = Lanes::splat(0.5) * Lanes::load(&line.axial_damping, at) * inverse_length;
-            let stiffness = b1 * ea * slope * drift * inverse_length;
+            let stiffness = tangent * drift * inverse_length;
             let bend = relative.dot(relative) - along * along;
             let curvature = Lanes::splat(0.5) * stiffness * drift * bend * inverse_l;
             let known = elastic + damping * Lanes::splat(1.0 - DAMPING_SHIFT) * along;
@@ -338,6 +354,28 @@ impl AxialWork {
                 .choose(Lanes::splat(1.0), Lanes::splat(-1.0))
                 .store(&mut segments.taut, at);
         }
+    }
+
+    /// Elastic force of viscoelastic segments now [N], after the step without further strain [N], and its slope with the strain then
+    /// [N]; books what is lost in the step.
+    #[inline(always)]
+    fn creeping_forces(
+        &mut self,
+        at: usize,
+        direction: Vectors,
+        step: Step,
+    ) -> (Lanes, Lanes, Lanes) {
+        let strain = self.layout.strain(at);
+        let rate = self.layout.strain_rate(at, direction, step);
+        let creep = self.layout.creep.as_mut().expect("this line creeps");
+        strain.store(&mut creep.strain, at);
+        let now = creep.elastic(at, strain);
+        let loss = creep.loss(at, strain, rate, now.positive());
+        let length = Lanes::load(&self.layout.inverse_length, at).recip();
+        self.lost = self.lost + loss * length * Lanes::splat(step.kick);
+        let creep = self.layout.creep.as_ref().expect("this line creeps");
+        let (coming, stiffness) = creep.ahead(at, strain, step.drift);
+        (now, coming, stiffness)
     }
 
     #[inline(always)]

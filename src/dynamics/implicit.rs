@@ -369,6 +369,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
             self.correct(state, work, per_velocity, per_acceleration);
             let consistent = work.predict_tensions(self.model, self.network, 1.0);
             if correction <= tolerance && consistent {
+                work.creep(self.model, self.network, state);
                 return true;
             }
         }

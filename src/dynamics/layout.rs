@@ -6,6 +6,7 @@
 use nalgebra::Vector3;
 use pulp::{Arch, NullaryFnOnce};
 
+use super::creep::CreepArrays;
 use super::leapfrog::Step;
 use crate::math::lanes::{Components, LANES, Lanes, Vectors};
 use crate::model::{End, Line, LineState};
@@ -42,6 +43,8 @@ pub(super) struct Layout {
     pub current: Option<CurrentNow>,
     pub mass_damping: Option<Vec<f64>>,
     pub contact: Option<ContactArrays>,
+    /// Memory of viscoelastic segments, where the line has any.
+    pub creep: Option<CreepArrays>,
 }
 
 /// Lumped drag coefficients [N s²/m²].
@@ -84,6 +87,14 @@ impl Layout {
         let keep = |values: &[f64]| pad(n, values, 0.0);
         let nodes = &line.nodes;
         let lengths = pad(n, &line.segments.length, 1.0);
+        let creep = CreepArrays::new(line);
+        let (stiffness, damping) = match &creep {
+            Some(creep) => (creep.stiffness.clone(), creep.damping.clone()),
+            None => (
+                keep(&line.segments.axial_stiffness),
+                keep(&line.segments.axial_damping),
+            ),
+        };
         Some(Layout {
             segment_count: n,
             vector_unit: Arch::new(),
@@ -93,8 +104,8 @@ impl Layout {
             velocity: Components::zeros(size),
             velocity_before: Components::zeros(size),
             inverse_length: lengths.iter().map(|length| 1.0 / length).collect(),
-            axial_stiffness: keep(&line.segments.axial_stiffness),
-            axial_damping: keep(&line.segments.axial_damping),
+            axial_stiffness: stiffness,
+            axial_damping: damping,
             weight: keep(&nodes.weight),
             drag: nodes.drag.as_ref().map(|drag| DragArrays {
                 normal: keep(&drag.normal),
@@ -112,11 +123,15 @@ impl Layout {
                 stiffness: keep(&contact.stiffness),
                 damping: keep(&contact.damping),
             }),
+            creep,
         })
     }
 
     /// Takes over positions and velocities of a line.
     pub fn load(&mut self, state: &LineState) {
+        if let Some(creep) = &mut self.creep {
+            creep.load(&state.creep);
+        }
         let memory = &state.half_step;
         let fresh = memory.velocity.is_empty();
         for (i, position) in state.position.iter().enumerate() {
@@ -133,6 +148,9 @@ impl Layout {
 
     /// Hands them back after steps of `steps` [s], with velocities extrapolated to the time of the positions.
     pub fn store(&self, state: &mut LineState, steps: [f64; 2]) {
+        if let Some(creep) = &self.creep {
+            creep.store(&mut state.creep);
+        }
         let memory = &mut state.half_step;
         let count = state.position.len();
         memory.velocity.resize(count, Vector3::zeros());
@@ -202,6 +220,31 @@ impl Layout {
     /// Starts of the vectors that cover all nodes.
     pub fn node_blocks(&self) -> impl Iterator<Item = usize> + use<> {
         (FIRST..=FIRST + self.segment_count).step_by(LANES)
+    }
+
+    /// Strain rate at t_n [1/s].
+    #[inline(always)]
+    pub fn strain_rate(&self, at: usize, direction: Vectors, step: Step) -> Lanes {
+        let relative = self.velocity_now(at + 1, step) - self.velocity_now(at, step);
+        direction.dot(relative) * Lanes::load(&self.inverse_length, at)
+    }
+
+    /// Strain of the segments [-].
+    #[inline(always)]
+    pub fn strain(&self, at: usize) -> Lanes {
+        let (chord, inverse_l) = self.chord(at);
+        let inverse_length = Lanes::load(&self.inverse_length, at);
+        chord.dot(chord) * inverse_l * inverse_length - Lanes::splat(1.0)
+    }
+
+    /// Takes the memory of viscoelastic segments from t_n to t_{n+1}, `drift` [s] later, where the nodes now are.
+    pub fn creep(&mut self, drift: f64) {
+        if let Some(mut creep) = self.creep.take() {
+            for at in self.segment_blocks() {
+                creep.advance(at, self.strain(at), drift);
+            }
+            self.creep = Some(creep);
+        }
     }
 
     /// Unit vectors along the chord of the neighbouring nodes.

@@ -253,6 +253,7 @@ impl LineWork {
     #[inline(always)]
     fn choose_segment_pass(&mut self, step: Step) {
         match (&self.layout.law, self.damped) {
+            _ if self.layout.creep.is_some() => self.creeping_segment_pass(step),
             (StretchLaw::Engineering, false) => self.segment_pass::<false>(step, |strain| strain),
             (StretchLaw::Engineering, true) => self.segment_pass::<true>(step, |strain| strain),
             (law, _) => {
@@ -287,6 +288,39 @@ impl LineWork {
             }
             self.pull.store(chord.scale(tension * inverse_l), at);
         }
+    }
+
+    /// [`LineWork::segment_pass`] of a line with viscoelastic segments.
+    #[inline(always)]
+    fn creeping_segment_pass(&mut self, step: Step) {
+        let mut creep = self.layout.creep.take().expect("this line creeps");
+        let line = &self.layout;
+        for at in line.segment_blocks() {
+            let (chord, inverse_l) = line.chord(at);
+            let direction = chord.scale(inverse_l);
+            let inverse_length = Lanes::load(&line.inverse_length, at);
+            let strain = line.strain(at);
+            strain.store(&mut creep.strain, at);
+            let relative = line.velocity.load(at + 1) - line.velocity.load(at);
+            let rate = direction.dot(relative) * inverse_length;
+            let elastic = creep.elastic(at, strain);
+            let damping = Lanes::load(&line.axial_damping, at) * rate;
+            let tension = if line.negative_tension {
+                elastic.positive() + damping
+            } else {
+                (elastic + damping).positive()
+            };
+            let now = line.strain_rate(at, direction, step);
+            let loss = creep.loss(at, strain, now, tension);
+            self.lost = self.lost + loss * Lanes::splat(step.kick) * inverse_length.recip();
+            self.pull.store(direction.scale(tension), at);
+        }
+        self.layout.creep = Some(creep);
+    }
+
+    /// After the ends were put where they are at t_{n+1}: takes the memory of viscoelastic segments there.
+    pub fn creep(&mut self, step: Step) {
+        self.layout.creep(step.drift);
     }
 
     /// Step 2: velocities from t_{n−½} to t_{n+½}.

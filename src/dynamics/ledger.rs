@@ -23,6 +23,7 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use super::beam::{self, BeamView};
+use super::creep::{Creeping, Stretching};
 use super::leapfrog::segment_tension;
 use crate::model::{
     ClosedForm, End, FreePoint, Line, LineState, Model, Network, PointState, State, joint,
@@ -162,7 +163,14 @@ fn line_energy(line: &Line, state: &State, shape: &LineState, model: &Model) -> 
     let mut energy = Energy::default();
     for i in 0..n {
         let strain = (position(i + 1) - position(i)).norm() / line.segments.length[i] - 1.0;
-        energy.axial += axial_energy(line, i, strain);
+        energy.axial += match Creeping::of(line, shape, i) {
+            None => axial_energy(line, i, strain),
+            Some(creep) => {
+                let pair = |values: &[Vector3<f64>]| [values[i], values[i + 1]];
+                let now = Stretching::of(line, i, pair(&shape.position), pair(&shape.velocity));
+                creep.energy(strain, now, lag) * line.segments.length[i]
+            }
+        };
     }
     let free = |i: usize| match i {
         0 => model.points[line.ends[0]].free().is_some(),
@@ -482,10 +490,18 @@ fn line_power(line: &Line, shape: &LineState, model: &Model, stream: Option<Stre
         let direction = chord / length;
         let unstretched = segments.length[i];
         let stretch = segments.law[i].at(length / unstretched - 1.0);
-        let elastic = segments.axial_stiffness[i] * stretch.force;
+        let mut elastic = segments.axial_stiffness[i] * stretch.force;
         let stretching = direction.dot(&(shape.velocity[i + 1] - shape.velocity[i]));
-        let damping = segments.axial_damping[i] * stretching / unstretched;
+        let mut damping = segments.axial_damping[i] * stretching / unstretched;
         let least = 0.0 - line.compression_max(i);
+        if let Some(creep) = Creeping::of(line, shape, i) {
+            let now = Stretching {
+                strain: length / unstretched - 1.0,
+                rate: stretching / unstretched,
+            };
+            (elastic, damping) = creep.forces(now);
+            flow.lost += creep.loss(now, elastic.max(least)) * unstretched;
+        }
         let tension = total_tension(elastic, damping, least, negative);
         flow.lost += (tension - elastic.max(least)) * stretching;
         if i == 0 && a {

@@ -12,7 +12,7 @@
 //! Source: Belytschko, Liu & Moran (2000), Nonlinear Finite Elements for Continua and Structures, section 6.2.6 (damped
 //! central differences with lagged velocity). Contact is implicit and sets no limit.
 
-use crate::model::{End, Line, Model};
+use crate::model::{End, Line, Model, Segments};
 
 /// Part of the closed-form limit that is used [-].
 const SAFETY: f64 = 0.9;
@@ -31,8 +31,7 @@ pub fn explicit_step(line: &Line) -> f64 {
         let (left, right) = (stiffness(line, i - 1), stiffness(line, i));
         let mass = line.nodes.mass_tangent[i].min(line.nodes.mass_normal[i]);
         let omega = (2.0 * (left + right) / mass).sqrt();
-        let lag = segments.axial_damping[i - 1] / segments.axial_stiffness[i - 1];
-        let lag = lag.max(segments.axial_damping[i] / segments.axial_stiffness[i]); // BA/EA [s]
+        let lag = lag(segments, i - 1).max(lag(segments, i));
         limit = limit.min(damped_limit(omega, lag));
     }
     limit
@@ -44,7 +43,7 @@ pub fn free_point_step(model: &Model, point: usize) -> f64 {
         return f64::INFINITY;
     };
     let heave = free.sphere.map_or(0.0, |sphere| sphere.stiffness_max());
-    let (mut mass, mut sum, mut lag) = (free.mass, 0.5 * heave, 0.0_f64);
+    let (mut mass, mut sum, mut longest) = (free.mass, 0.5 * heave, 0.0_f64);
     for &(index, end) in &model.points[point].attached {
         let line = &model.lines[index];
         let node = line.end_node(end);
@@ -54,17 +53,22 @@ pub fn free_point_step(model: &Model, point: usize) -> f64 {
         };
         mass += line.nodes.mass_tangent[node].min(line.nodes.mass_normal[node]);
         sum += stiffness(line, segment);
-        lag =
-            lag.max(line.segments.axial_damping[segment] / line.segments.axial_stiffness[segment]);
+        longest = longest.max(lag(&line.segments, segment));
     }
-    damped_limit((2.0 * sum / mass).sqrt(), lag)
+    damped_limit((2.0 * sum / mass).sqrt(), longest)
 }
 
 /// k = EA/l of a segment [N/m], at the greatest slope expected of its strain measure.
 fn stiffness(line: &Line, i: usize) -> f64 {
     let segments = &line.segments;
     let slope = segments.law[i].at(STRAIN_EXPECTED).slope.max(1.0);
-    segments.axial_stiffness[i] * slope / segments.length[i]
+    segments.in_motion(i).0 * slope / segments.length[i]
+}
+
+/// BA/EA of a segment [s].
+fn lag(segments: &Segments, i: usize) -> f64 {
+    let (stiffness, damping) = segments.in_motion(i);
+    damping / stiffness
 }
 
 /// Limit for a circular frequency ω [rad/s] and BA/EA [s], with safety.
@@ -80,7 +84,7 @@ pub fn axial_accuracy_step(line: &Line, tolerance: f64) -> f64 {
         .map(|i| {
             let mass = line.nodes.mass_tangent[i] + line.nodes.mass_tangent[i + 1];
             let length = line.nodes.length[i] + line.nodes.length[i + 1];
-            segments.length[i] * (mass / length / segments.axial_stiffness[i]).sqrt()
+            segments.length[i] * (mass / length / segments.in_motion(i).0).sqrt()
         })
         .sum();
     4.0 * travel / STEPS_PER_AXIAL_PERIOD * (tolerance / 0.02).sqrt()

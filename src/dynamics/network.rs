@@ -135,7 +135,10 @@ impl NetworkWork {
             line.drift_nodes(step);
         }
         self.put_ends(model, network, t + step.drift, step, held);
-        self.lines.iter_mut().for_each(|line| line.book_ends(step));
+        for line in &mut self.lines {
+            line.creep(step);
+            line.book_ends(step);
+        }
     }
 
     /// Sets the current to that of `t` [s].

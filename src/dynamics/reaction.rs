@@ -12,6 +12,7 @@
 use nalgebra::Vector3;
 
 use super::beam::BeamView;
+use super::creep::{Creeping, Stretching};
 use super::leapfrog::segment_tension;
 use crate::model::{End, Line, LineState, PointState};
 use crate::physics::flow::Stream;
@@ -28,6 +29,10 @@ pub fn tension(line: &Line, state: &LineState, i: usize, negative_tension: bool)
         return 0.5 * (closed_form.tension[i] + closed_form.tension[i + 1]);
     }
     let pair = |values: &[Vector3<f64>]| [values[i], values[i + 1]];
+    if let Some(creep) = Creeping::of(line, state, i) {
+        let strain = Stretching::of(line, i, pair(&state.position), pair(&state.velocity));
+        return creep.tension(strain, line.compression_max(i), negative_tension);
+    }
     segment_tension(
         line,
         i,

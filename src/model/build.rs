@@ -16,6 +16,7 @@ use crate::physics::rayleigh;
 use crate::physics::seabed::{ContactCoefficients, regularised, under_point};
 use crate::physics::stretch::StretchLaw;
 use crate::physics::tension_table::TensionTable;
+use crate::physics::viscoelastic::Viscoelastic;
 use crate::physics::weight::{cross_section, submerged_weight};
 use crate::scene::{
     self, Axis, ContactLaw, FibreLaw, Integrator, LineModel, LineType, PointKind, RestShape, Scene,
@@ -170,7 +171,8 @@ fn point_contact(
 /// Properties of a line type in the scene's surroundings, per unstretched length.
 struct LineLaw {
     law: StretchLaw,
-    axial_stiffness: f64,                 // EA [N]
+    axial_stiffness: f64,                 // EA [N], at rest
+    viscoelastic: Option<[f64; 2]>,       // EA_d [N], BA_s [N s]
     axial_damping: f64,                   // BA [N s], without the damping ratio's part
     damping_ratio: f64,                   // ζ [-]
     mass: f64,                            // m [kg/m]
@@ -186,7 +188,9 @@ struct LineLaw {
 
 /// ζ as given; the numerical one where the line type says nothing of axial damping.
 fn damping_ratio(line_type: &LineType) -> f64 {
-    let silent = line_type.axial_damping.is_none() && line_type.rayleigh.is_none();
+    let silent = line_type.axial_damping.is_none()
+        && line_type.dynamic_damping.is_none()
+        && line_type.rayleigh.is_none();
     line_type
         .damping_ratio
         .unwrap_or(if silent { NUMERICAL_DAMPING_RATIO } else { 0.0 })
@@ -222,7 +226,8 @@ fn stretch_law(line_type: &LineType) -> (StretchLaw, f64) {
         Strain::Green => StretchLaw::Green,
         Strain::Logarithmic(poisson) => StretchLaw::Logarithmic { poisson },
     };
-    (law, line_type.axial_stiffness.unwrap_or(0.0))
+    let stiffness = line_type.axial_stiffness.or(line_type.static_stiffness);
+    (law, stiffness.unwrap_or(0.0))
 }
 
 fn line_law(scene: &Scene, line_type: &LineType) -> LineLaw {
@@ -261,7 +266,14 @@ fn line_law(scene: &Scene, line_type: &LineType) -> LineLaw {
     LineLaw {
         law,
         axial_stiffness: ea,
-        axial_damping: line_type.axial_damping.unwrap_or(0.0)
+        viscoelastic: line_type
+            .dynamic_stiffness
+            .zip(line_type.static_damping)
+            .map(<[f64; 2]>::from),
+        axial_damping: line_type
+            .axial_damping
+            .or(line_type.dynamic_damping)
+            .unwrap_or(0.0)
             + rayleigh.map_or(0.0, |r| r.stiffness * ea),
         damping_ratio: damping_ratio(line_type),
         mass,
@@ -301,6 +313,7 @@ fn build_line(scene: &Scene, index: usize, line: &scene::Line) -> Result<Line, S
         laws.push(line_law(scene, line_type));
     }
     let elements = mesh::section_elements(line, scene.solver.tolerance);
+    check_mixture(index, &laws)?;
     let beam = beam::build(scene, index, line, &laws, &elements)?;
     let parts: Vec<SegmentPart> = line
         .sections
@@ -334,6 +347,18 @@ fn build_line(scene: &Scene, index: usize, line: &scene::Line) -> Result<Line, S
     };
     built.bending = line_bending(index, line, &parts, &built)?;
     Ok(built)
+}
+
+/// Refuses a viscoelastic section beside one of another strain measure.
+fn check_mixture(index: usize, laws: &[LineLaw]) -> Result<(), SceneError> {
+    let viscoelastic = laws.iter().any(|law| law.viscoelastic.is_some());
+    if viscoelastic && laws.iter().any(|law| law.law != StretchLaw::Engineering) {
+        return Err(SceneError::new(
+            format!("lines[{index}].sections"),
+            "a viscoelastic section stands beside sections of engineering strain only, without a table",
+        ));
+    }
+    Ok(())
 }
 
 /// Joints and clamps of a line, where any of its sections has bending stiffness.
@@ -388,14 +413,27 @@ fn segments(parts: &[SegmentPart]) -> Segments {
             axial_damping,
             damping_ratio,
             mass,
+            viscoelastic,
             ..
         } = part.law;
+        let ea = viscoelastic.map_or(*ea, |[fast, _]| fast);
         axial_damping + damping_ratio * part.length * (ea * mass).sqrt()
     };
+    let axial_damping: Vec<f64> = parts.iter().map(damping).collect();
+    let viscoelastic = |(part, damping): (&SegmentPart, &f64)| match part.law.viscoelastic {
+        Some([fast, slow_damping]) => {
+            Viscoelastic::new([part.law.axial_stiffness, fast], [slow_damping, *damping])
+        }
+        None => Viscoelastic::plain(part.law.axial_stiffness, *damping),
+    };
     Segments {
+        viscoelastic: parts
+            .iter()
+            .any(|part| part.law.viscoelastic.is_some())
+            .then(|| parts.iter().zip(&axial_damping).map(viscoelastic).collect()),
         length: parts.iter().map(|part| part.length).collect(),
         axial_stiffness: parts.iter().map(|part| part.law.axial_stiffness).collect(),
-        axial_damping: parts.iter().map(damping).collect(),
+        axial_damping,
         law: parts.iter().map(|part| part.law.law.clone()).collect(),
     }
 }

@@ -18,6 +18,7 @@ use crate::physics::flow::{Profile, Stream};
 use crate::physics::point::{Sphere, Wetted};
 use crate::physics::seabed::ContactCoefficients;
 use crate::physics::stretch::StretchLaw;
+use crate::physics::viscoelastic::Viscoelastic;
 use crate::scene::{InitialShape, PointForce, PointMoment, Solver, TimeFunction};
 
 pub use beam::{Beam, BeamElement, BeamState};
@@ -212,6 +213,8 @@ pub struct Segments {
     pub axial_damping: Vec<f64>,
     /// Strain measure.
     pub law: Vec<StretchLaw>,
+    /// What replaces stiffness and damping in motion, where the line has a viscoelastic section; EA is then the static one.
+    pub viscoelastic: Option<Vec<Viscoelastic>>,
 }
 
 /// Lumped properties of the nodes: per-length properties times half of each neighbouring segment.
@@ -266,6 +269,16 @@ pub struct Network {
     pub lines: Vec<usize>,
     /// Its free points.
     pub free_points: Vec<usize>,
+}
+
+impl Segments {
+    /// Stiffness [N] and damping [N s] that a segment has in fast motion.
+    pub fn in_motion(&self, i: usize) -> (f64, f64) {
+        match &self.viscoelastic {
+            Some(laws) => (laws[i].fast, laws[i].damping),
+            None => (self.axial_stiffness[i], self.axial_damping[i]),
+        }
+    }
 }
 
 impl Line {

@@ -11,4 +11,5 @@ pub mod seabed;
 pub mod section;
 pub mod stretch;
 pub mod tension_table;
+pub mod viscoelastic;
 pub mod weight;

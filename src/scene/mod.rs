@@ -164,6 +164,18 @@ pub struct LineType {
     /// Tension over strain, instead of `axial_stiffness`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tension_strain: Option<TensionStrain>,
+    /// Static stiffness EA_s of a viscoelastic rope [N], instead of `axial_stiffness`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub static_stiffness: Option<f64>,
+    /// Dynamic stiffness EA_d of a viscoelastic rope [N].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub dynamic_stiffness: Option<f64>,
+    /// Damping BA_s of the slow part of a viscoelastic rope [N s].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub static_damping: Option<f64>,
+    /// Damping BA_d of the fast part of a viscoelastic rope [N s].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub dynamic_damping: Option<f64>,
     /// Axial damping BA [N s].
     pub axial_damping: Option<f64>,
     /// Axial damping as a ratio of the critical damping of each segment [-]; instead of `axial_damping`.

@@ -20,6 +20,7 @@
 //! shape is sought.
 
 mod bending;
+mod creep;
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -34,6 +35,7 @@ use crate::statics::catenary::Catenary;
 pub(crate) use bending::BendingWork;
 use bending::Parts;
 pub use bending::{end_moment, end_shear, joint_damping_power};
+use creep::CreepWork;
 
 /// Scratch of the implicit solvers for a whole model. Nothing in it is read before it is written.
 #[derive(Debug, Clone)]
@@ -104,6 +106,8 @@ pub(crate) struct LineWork {
     pub load: Vec<Vector3<f64>>,
     /// Joints, where the line has bending stiffness.
     pub bending: Option<BendingWork>,
+    /// Memory of viscoelastic segments, where the line has any.
+    creep: Option<CreepWork>,
     /// Elimination where nothing bends.
     chain: Chain,
 }
@@ -145,6 +149,7 @@ impl Workspace {
                 push: vec![0.0; n],
                 load: vec![Vector3::zeros(); if line.drifts(model) { n + 1 } else { 0 }],
                 bending: line.bending.as_ref().map(|_| BendingWork::new(n + 1)),
+                creep: CreepWork::new(line),
                 chain: Chain::new(n + 1),
             }
         };
@@ -399,7 +404,11 @@ impl LineWork {
         let g = Geometry::new(state.position[i], state.position[i + 1], unstretched);
         let rate = state.velocity[i + 1] - state.velocity[i]; // ġ [m/s]
         let stretch = line.segments.law[i].at(g.strain);
-        let elastic = ea * stretch.force;
+        let (mut elastic, mut tangent, mut ba) = (ea * stretch.force, ea * stretch.slope, ba);
+        if let Some(creep) = &self.creep {
+            let taken = creep.respond(line, state, i, g.strain, weights.predicted);
+            (elastic, tangent, ba) = (taken.elastic, taken.tangent, taken.damping);
+        }
         let total = elastic + ba * g.direction.dot(&rate) / unstretched;
         let predicted = weights.predicted && !negative_tension;
         let least = 0.0 - self.push[i];
@@ -416,11 +425,7 @@ impl LineWork {
         let mut stiffness = Matrix3::zeros();
         if TANGENT && g.length > 0.0 {
             let damps = taut || negative_tension;
-            let spring = if taut {
-                ea * stretch.slope / unstretched
-            } else {
-                0.0
-            };
+            let spring = if taut { tangent / unstretched } else { 0.0 };
             let damper = if damps { ba / unstretched } else { 0.0 };
             let along = weights.position * spring + weights.velocity * damper;
             let pull = if predicted { self.tension[i] } else { tension };
@@ -820,6 +825,9 @@ impl Workspace {
     ) {
         for &index in &network.lines {
             self.lines[index].fade_dampers(&model.lines[index], &state.lines[index], dt);
+            if let Some(creep) = &mut self.lines[index].creep {
+                creep.begin(&model.lines[index], &state.lines[index], dt);
+            }
         }
         for_free_points(model, network, |index, free| {
             if let Some(contact) = &free.contact {
@@ -828,6 +836,15 @@ impl Workspace {
                 self.points[index].reach = resting.max(moved);
             }
         });
+    }
+
+    /// Takes the memory of viscoelastic lines to the end of a step, where the nodes now are.
+    pub(crate) fn creep(&self, model: &Model, network: &Network, state: &mut State) {
+        for &index in &network.lines {
+            if let Some(creep) = &self.lines[index].creep {
+                creep.finish(&model.lines[index], &mut state.lines[index]);
+            }
+        }
     }
 
     /// Keeps the residual of the last assembly for the next step.
@@ -971,6 +988,7 @@ pub(crate) fn copy_network(model: &Model, network: &Network, from: &State, to: &
         to_line
             .acceleration
             .copy_from_slice(&from_line.acceleration);
+        to_line.creep.clone_from(&from_line.creep);
         to_line.beam.clone_from(&from_line.beam);
         for point in model.lines[index].ends {
             to.points[point] = from.points[point];
@@ -980,7 +998,11 @@ pub(crate) fn copy_network(model: &Model, network: &Network, from: &State, to: &
 
 /// A state of `model` with room for everything and nothing in place.
 fn blank_state(model: &Model) -> State {
-    let line = |line: &Line| LineState::at_rest(vec![Vector3::zeros(); line.segment_count() + 1]);
+    let line = |line: &Line| {
+        let mut shape = LineState::at_rest(vec![Vector3::zeros(); line.segment_count() + 1]);
+        shape.become_viscoelastic(line);
+        shape
+    };
     State {
         time: 0.0,
         points: model

@@ -2,7 +2,9 @@
 
 use super::{Bounds, Findings, check_name, quantity};
 use crate::scene::path::quoted;
-use crate::scene::{Integrator, LineModel, LineType, Rayleigh, Scene, SolidSection, Strain, TensionStrain};
+use crate::scene::{
+    Integrator, LineModel, LineType, Rayleigh, Scene, SolidSection, Strain, TensionStrain,
+};
 
 pub(super) fn check(scene: &Scene, findings: &mut Findings) {
     for (name, line_type) in &scene.line_types {
@@ -27,6 +29,30 @@ fn check_numbers(findings: &mut Findings, at: &str, line_type: &LineType) {
             line_type.axial_stiffness,
             Bounds::Positive(1e15),
             "N",
+        ),
+        (
+            "static_stiffness",
+            line_type.static_stiffness,
+            Bounds::Positive(1e15),
+            "N",
+        ),
+        (
+            "dynamic_stiffness",
+            line_type.dynamic_stiffness,
+            Bounds::Positive(1e15),
+            "N",
+        ),
+        (
+            "static_damping",
+            line_type.static_damping,
+            Bounds::Positive(1e15),
+            "N s",
+        ),
+        (
+            "dynamic_damping",
+            line_type.dynamic_damping,
+            Bounds::NotNegative(1e15),
+            "N s",
         ),
         (
             "axial_damping",
@@ -131,8 +157,15 @@ pub(in crate::scene) fn coefficients(line_type: &LineType) -> [(&'static str, Op
     ]
 }
 
-/// What the axial force follows from: a stiffness or a table.
+/// What the axial force follows from: a stiffness, a table, or two stiffnesses with dampers.
 fn check_axial(findings: &mut Findings, at: &str, line_type: &LineType) {
+    if viscoelastic(line_type)
+        .iter()
+        .any(|(_, value)| value.is_some())
+    {
+        check_viscoelastic(findings, at, line_type);
+        return;
+    }
     let Some(table) = &line_type.tension_strain else {
         if line_type.axial_stiffness.is_none() {
             findings.say(
@@ -156,9 +189,66 @@ fn check_axial(findings: &mut Findings, at: &str, line_type: &LineType) {
         );
     }
     if line_type.model == LineModel::Beam {
-        findings.say(&at_table, "a beam has one `axial_stiffness` [N], and no table");
+        findings.say(
+            &at_table,
+            "a beam has one `axial_stiffness` [N], and no table",
+        );
     }
     check_table(findings, &at_table, table);
+}
+
+/// The keys of a viscoelastic rope.
+fn viscoelastic(line_type: &LineType) -> [(&'static str, Option<f64>); 4] {
+    [
+        ("static_stiffness", line_type.static_stiffness),
+        ("dynamic_stiffness", line_type.dynamic_stiffness),
+        ("static_damping", line_type.static_damping),
+        ("dynamic_damping", line_type.dynamic_damping),
+    ]
+}
+
+/// A viscoelastic rope has two stiffnesses and two dampings, and nothing else that resists stretch.
+fn check_viscoelastic(findings: &mut Findings, at: &str, line_type: &LineType) {
+    for (key, value) in &viscoelastic(line_type)[..3] {
+        if value.is_none() {
+            let unit = if key.ends_with("stiffness") {
+                "N"
+            } else {
+                "N s"
+            };
+            findings.say(
+                at,
+                format!("missing key `{key}` [{unit}] of a viscoelastic rope"),
+            );
+        }
+    }
+    if let (Some(slow), Some(fast)) = (line_type.static_stiffness, line_type.dynamic_stiffness)
+        && fast <= slow
+    {
+        let problem = format!(
+            "{} is not above the static stiffness of {}: a rope is stiffer in fast motion",
+            quantity(fast, "N"),
+            quantity(slow, "N")
+        );
+        findings.say(format!("{at}.dynamic_stiffness"), problem);
+    }
+    let others = [
+        ("axial_stiffness", line_type.axial_stiffness.is_some()),
+        ("tension_strain", line_type.tension_strain.is_some()),
+        ("axial_damping", line_type.axial_damping.is_some()),
+        ("rayleigh", line_type.rayleigh.is_some()),
+        ("strain", line_type.strain != Strain::Engineering),
+        ("model", line_type.model == LineModel::Beam),
+    ];
+    for (key, _) in others.iter().filter(|(_, given)| *given) {
+        let problem = "a viscoelastic rope stretches by `static_stiffness`, `dynamic_stiffness` and the damping of each: \
+                       leave this out";
+        findings.say(format!("{at}.{key}"), problem);
+    }
+    if line_type.dynamic_damping.is_some() && line_type.damping_ratio.is_some() {
+        let problem = "`dynamic_damping` is given too: give one of them";
+        findings.say(format!("{at}.damping_ratio"), problem);
+    }
 }
 
 /// Rows of a table of strain and tension.
@@ -182,7 +272,9 @@ fn check_table(findings: &mut Findings, at: &str, table: &TensionStrain) {
     }
     if table.rows.len() < 2 {
         let problem = match &table.file {
-            Some(file) if table.rows.is_empty() => format!("{file} was not read: write its rows here"),
+            Some(file) if table.rows.is_empty() => {
+                format!("{file} was not read: write its rows here")
+            }
             _ => "a table has two rows [strain, tension] or more".to_string(),
         };
         findings.say(at, problem);

@@ -15,6 +15,22 @@ pub(super) fn in_words(line_type: &LineType, mass: f64) -> String {
             significant(last[0])
         );
     }
+    if let (Some(slow), Some(fast), Some(damping)) = (
+        line_type.static_stiffness,
+        line_type.dynamic_stiffness,
+        line_type.static_damping,
+    ) {
+        let own = line_type.dynamic_damping.map_or_else(String::new, |damping| {
+            format!(" and its damper {}", quantity(damping, "N s"))
+        });
+        return format!(
+            "viscoelastic: EA {} at rest and in slow motion, {} in fast motion{own}, the slow part damped by {}, {}",
+            quantity(slow, "N"),
+            quantity(fast, "N"),
+            quantity(damping, "N s"),
+            waves(fast)
+        );
+    }
     let ea = line_type.axial_stiffness.unwrap_or(0.0); // EA [N]
     format!(
         "EA {} on the {} strain, {}",
