@@ -45,6 +45,8 @@ pub(crate) struct Snapshot {
     pub(crate) parameters: Vec<f64>,
     /// Inputs of every point of the scene, then of every vessel.
     pub(crate) inputs: Vec<BodyInput>,
+    /// Whether each line is to let go.
+    pub(crate) releases: Vec<bool>,
     /// Displacements of every body at which the statics were solved [m, rad]: what the solver decided there, such as its
     /// step limits, is not in its state and is decided again from them.
     pub(crate) start_displacements: Vec<[f64; 6]>,

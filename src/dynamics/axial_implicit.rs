@@ -24,7 +24,7 @@ use super::layout::{FIRST, Layout, interior, pad};
 use super::leapfrog::Step;
 use super::ledger::Flow;
 use crate::math::lanes::{Components, Lanes, Vectors};
-use crate::model::{End, Line, LineState};
+use crate::model::{End, Line, LineState, Parting};
 use crate::physics::flow::Profile;
 use crate::physics::stretch::StretchLaw;
 
@@ -60,6 +60,8 @@ pub struct AxialWork {
     current: Option<CurrentArrays>,
     /// 1 for nodes between the ends, 0 elsewhere.
     interior: Vec<f64>,
+    /// Whether ends A and B have parted from their points.
+    parted: [bool; 2],
     /// Energy lost and given since the state was loaded [J].
     lost: Lanes,
     given: f64,
@@ -141,6 +143,7 @@ impl AxialWork {
         let (zeros, vectors) = (vec![0.0; size], Components::zeros(size));
         Some(AxialWork {
             interior: interior(n),
+            parted: [false; 2],
             current: layout.current.as_ref().map(|_| CurrentArrays {
                 flow: vectors.clone(),
                 across: zeros.clone(),
@@ -186,6 +189,11 @@ impl AxialWork {
     /// Takes over the state of a line.
     pub fn load(&mut self, state: &LineState) {
         self.layout.load(state);
+        self.parted = state.parted;
+        for end in [End::A, End::B] {
+            let at = self.layout.end_index(end);
+            self.interior[at] = f64::from(u8::from(self.parted[end as usize]));
+        }
         (self.lost, self.given, self.tension_peak) = (Lanes::splat(0.0), 0.0, 0.0);
         let count = self.layout.segment_count;
         if state.half_step.tension[0].len() == count {
@@ -225,6 +233,7 @@ impl AxialWork {
 
     /// Hands the state back after steps of `steps` [s].
     pub fn store(&self, state: &mut LineState, steps: [f64; 2]) {
+        state.parted = self.parted;
         self.layout.store(state, steps);
         let own = FIRST..FIRST + self.layout.segment_count;
         for (kept, history) in state
@@ -245,7 +254,32 @@ impl AxialWork {
 
     /// Puts an end at a position [m] with the velocity [m/s] that the next step takes as lagged.
     pub fn put_end(&mut self, end: End, position: Vector3<f64>, velocity: Vector3<f64>) {
-        self.layout.put_end(end, position, velocity);
+        if !self.parted[end as usize] {
+            self.layout.put_end(end, position, velocity);
+        }
+    }
+
+    /// Parts the ends from their points that the tensions of t_n, `t` [s], are too much for, or the time has come for.
+    pub fn part_ends(&mut self, partings: &[Parting; 2], t: f64, step: Step) {
+        for end in [End::A, End::B] {
+            let (side, at) = (end as usize, self.layout.end_index(end));
+            let tension = self.layout.end_tension(end, step);
+            if self.parted[side] || !partings[side].parts(tension, t) {
+                continue;
+            }
+            let masses = [self.nodes.mass_normal[at], self.nodes.mass_tangent[at]];
+            self.given += self.layout.joining_energy(end, masses, step);
+            self.parted[side] = true;
+            self.interior[at] = 1.0;
+        }
+    }
+
+    /// Ends that a point holds.
+    fn held_ends(&self) -> impl Iterator<Item = End> + use<> {
+        let parted = self.parted;
+        [End::A, End::B]
+            .into_iter()
+            .filter(move |&end| !parted[end as usize])
     }
 
     /// One step; `ends` are the positions [m] of both ends after it. Returns the passes it took.
@@ -288,10 +322,10 @@ impl AxialWork {
         }
         std::mem::swap(&mut self.layout.velocity, &mut self.layout.velocity_before);
         self.layout.drift(step.drift);
-        self.layout.position.set(FIRST, ends[0]);
-        self.layout
-            .position
-            .set(FIRST + self.layout.segment_count, ends[1]);
+        for end in self.held_ends() {
+            let at = self.layout.end_index(end);
+            self.layout.position.set(at, ends[end as usize]);
+        }
         self.layout.creep(step.drift);
         passes
     }
@@ -472,8 +506,8 @@ impl AxialWork {
     /// Held ends move by the secant of their path and yield to no force.
     #[inline(always)]
     fn prepare_ends(&mut self, step: Step, ends: [Vector3<f64>; 2]) {
-        for (end, position) in [End::A, End::B].into_iter().zip(ends) {
-            let at = self.layout.end_index(end);
+        for end in self.held_ends() {
+            let (at, position) = (self.layout.end_index(end), ends[end as usize]);
             let secant = (position - self.layout.position.get(at)) / step.drift;
             let nodes = &mut self.nodes;
             (nodes.across[at], nodes.excess[at], nodes.held[at]) = (0.0, 0.0, 0.0);
@@ -671,7 +705,9 @@ impl AxialWork {
             let taken = (impulse - momentum).dot(old + new) * half;
             self.lost = self.lost + Lanes::load(&self.interior, at) * taken;
         }
-        for (end, sign) in [(End::A, -1.0), (End::B, 1.0)] {
+        for end in self.held_ends() {
+            let sign = if end == End::A { -1.0 } else { 1.0 };
+            let line = &self.layout;
             let node = line.end_index(end);
             let segment = if sign < 0.0 { node } else { node - 1 };
             let pull = self.rows.tension[segment] * self.segments.direction.get(segment);

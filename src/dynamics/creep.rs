@@ -140,6 +140,11 @@ impl CreepArrays {
         load(&self.stiffness) * strain + load(&self.memory) * load(&self.slow)
     }
 
+    /// The same of one segment.
+    pub fn elastic_of(&self, at: usize, strain: f64) -> f64 {
+        self.stiffness[at] * strain + self.memory[at] * self.slow[at]
+    }
+
     /// [`Viscoelastic::loss`] at t_n.
     #[inline(always)]
     pub fn loss(&self, at: usize, strain: Lanes, rate: Lanes, tension: Lanes) -> Lanes {

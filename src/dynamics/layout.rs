@@ -11,7 +11,7 @@ use super::leapfrog::Step;
 use crate::math::lanes::{Components, LANES, Lanes, Vectors};
 use crate::model::{End, Line, LineState};
 use crate::physics::flow::{Profile, Stream};
-use crate::physics::stretch::StretchLaw;
+use crate::physics::stretch::{StretchLaw, total_tension};
 
 /// Index of node 0 and of segment 0.
 pub(super) const FIRST: usize = LANES;
@@ -220,6 +220,50 @@ impl Layout {
     /// Starts of the vectors that cover all nodes.
     pub fn node_blocks(&self) -> impl Iterator<Item = usize> + use<> {
         (FIRST..=FIRST + self.segment_count).step_by(LANES)
+    }
+
+    /// Tension [N] of the segment at an end at t_n.
+    pub fn end_tension(&self, end: End, step: Step) -> f64 {
+        let at = match end {
+            End::A => FIRST,
+            End::B => FIRST + self.segment_count - 1,
+        };
+        let chord = self.position.get(at + 1) - self.position.get(at);
+        let relative = self.velocity.get(at + 1) - self.velocity.get(at);
+        let before = self.velocity_before.get(at + 1) - self.velocity_before.get(at);
+        let now = relative + step.extrapolation * (relative - before);
+        let (l, inverse) = (chord.norm(), self.inverse_length[at]);
+        let strain = l * inverse - 1.0;
+        let elastic = match &self.creep {
+            Some(creep) => creep.elastic_of(at, strain),
+            None => self.axial_stiffness[at] * self.law.at(strain).force,
+        };
+        let rate = if l > 0.0 {
+            chord.dot(&now) / l * inverse
+        } else {
+            0.0
+        };
+        total_tension(
+            elastic,
+            self.axial_damping[at] * rate,
+            0.0,
+            self.negative_tension,
+        )
+    }
+
+    /// Energy [J] that the half node at an end of masses across and along the line [kg] brings to the line when it parts from what held it
+    /// at t_n.
+    pub fn joining_energy(&self, end: End, [across, along]: [f64; 2], step: Step) -> f64 {
+        let at = self.end_index(end);
+        let velocity = self.velocity.get(at);
+        let other = if end == End::A { at + 1 } else { at - 1 };
+        let chord = self.position.get(other) - self.position.get(at);
+        let tangent = chord.try_normalize(0.0).unwrap_or_else(Vector3::zeros);
+        let lag = step.kick - 0.5 * step.drift; // from the velocities to the positions
+        let height = self.position.z[at] - lag * velocity.z;
+        let axial = velocity.dot(&tangent).powi(2);
+        let kinetic = 0.5 * (across * (velocity.norm_squared() - axial) + along * axial);
+        kinetic + self.weight[at] * height
     }
 
     /// Strain rate at t_n [1/s].

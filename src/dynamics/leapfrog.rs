@@ -18,7 +18,7 @@ use pulp::NullaryFnOnce;
 use super::layout::{Layout, interior, pad};
 use super::ledger::Flow;
 use crate::math::lanes::{Components, Lanes, Vectors};
-use crate::model::{End, Line, LineState};
+use crate::model::{End, Line, LineState, Parting};
 use crate::physics::flow::Profile;
 use crate::physics::morison::{self, DragCoefficients};
 use crate::physics::stretch::{StretchLaw, total_tension};
@@ -34,8 +34,10 @@ pub struct LineWork {
     water: Option<WaterWork>,
     /// 1 for nodes between the ends, 0 elsewhere.
     interior: Vec<f64>,
-    /// Whether ends A and B are held.
-    held: [bool; 2],
+    /// Whether ends A and B are held, were none parted.
+    tied: [bool; 2],
+    /// Whether they have parted from their points.
+    parted: [bool; 2],
     /// Energy lost, and given by held ends and by the current, since the state was loaded [J].
     lost: Lanes,
     given: f64,
@@ -212,7 +214,8 @@ impl LineWork {
             inverse_mass: pad(layout.segment_count, &inverse_mass, 0.0),
             water: WaterWork::new(line, &layout),
             interior: interior(layout.segment_count),
-            held,
+            tied: held,
+            parted: [false; 2],
             lost: Lanes::splat(0.0),
             given: 0.0,
             given_by_current: Lanes::splat(0.0),
@@ -223,6 +226,11 @@ impl LineWork {
     /// Takes over the state of a line.
     pub fn load(&mut self, state: &LineState) {
         self.layout.load(state);
+        self.parted = state.parted;
+        for end in [End::A, End::B] {
+            let at = self.layout.end_index(end);
+            self.interior[at] = f64::from(u8::from(self.is_parted(end)));
+        }
         (self.lost, self.given) = (Lanes::splat(0.0), 0.0);
         self.given_by_current = Lanes::splat(0.0);
     }
@@ -242,7 +250,36 @@ impl LineWork {
 
     /// Hands the state back after steps of `steps` [s].
     pub fn store(&self, state: &mut LineState, steps: [f64; 2]) {
+        state.parted = self.parted;
         self.layout.store(state, steps);
+    }
+
+    /// Whether an end has parted from its point.
+    pub fn is_parted(&self, end: End) -> bool {
+        self.parted[end as usize]
+    }
+
+    /// Parts the ends from their points that the tensions of t_n, `t` [s], are too much for, or the time has come for.
+    pub fn part_ends(&mut self, partings: &[Parting; 2], t: f64, step: Step) {
+        for end in [End::A, End::B] {
+            let side = end as usize;
+            let layout = &self.layout;
+            if self.parted[side] || !partings[side].parts(layout.end_tension(end, step), t) {
+                continue;
+            }
+            let at = layout.end_index(end);
+            if self.tied[side] {
+                let excess = self
+                    .water
+                    .as_ref()
+                    .map_or(0.0, |w| w.inverse_mass_excess[at]);
+                let across = self.inverse_mass[at];
+                let masses = [1.0 / across, 1.0 / (across + excess)];
+                self.given += layout.joining_energy(end, masses, step);
+            }
+            self.parted[side] = true;
+            self.interior[at] = 1.0;
+        }
     }
 
     /// Step 1: tensions from positions at t_n and velocities at t_{n−½}.
@@ -433,7 +470,7 @@ impl LineWork {
     pub fn book_ends(&mut self, step: Step) {
         for end in [End::A, End::B]
             .into_iter()
-            .filter(|&end| self.held[end as usize])
+            .filter(|&end| self.tied[end as usize] && !self.parted[end as usize])
         {
             let at = self.layout.end_index(end);
             let pull = match end {
@@ -445,9 +482,11 @@ impl LineWork {
         }
     }
 
-    /// Puts an end at a position [m] with the velocity [m/s] that the next step takes as lagged.
+    /// Puts an end at a position [m] with the velocity [m/s] that the next step takes as lagged, unless it has parted from its point.
     pub fn put_end(&mut self, end: End, position: Vector3<f64>, velocity: Vector3<f64>) {
-        self.layout.put_end(end, position, velocity);
+        if !self.is_parted(end) {
+            self.layout.put_end(end, position, velocity);
+        }
     }
 
     /// What the end brings to a free point, after [`Self::pull_segments`]; `velocity` [m/s] is the point's at t_n.

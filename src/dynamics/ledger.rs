@@ -173,8 +173,8 @@ fn line_energy(line: &Line, state: &State, shape: &LineState, model: &Model) -> 
         };
     }
     let free = |i: usize| match i {
-        0 => model.points[line.ends[0]].free().is_some(),
-        i if i == n => model.points[line.ends[1]].free().is_some(),
+        0 => !line.is_held(model, shape, End::A),
+        i if i == n => !line.is_held(model, shape, End::B),
         _ => true,
     };
     for i in (0..=n).filter(|&i| free(i)) {
@@ -213,6 +213,45 @@ fn axial_energy(line: &Line, i: usize, strain: f64) -> f64 {
         let limit = -push / ea;
         (0.5 * push * push / ea + push * (limit - strain)) * length
     }
+}
+
+/// How many ends of a network's lines have parted from their points.
+pub fn parted_ends(network: &Network, state: &State) -> usize {
+    let ends = network
+        .lines
+        .iter()
+        .flat_map(|&line| state.lines[line].parted);
+    ends.filter(|parted| *parted).count()
+}
+
+/// Energy [J] that the half nodes bring to their lines which have parted from held points between two states.
+pub fn joined_energy(model: &Model, network: &Network, [before, after]: [&State; 2]) -> f64 {
+    let mut sum = 0.0;
+    for &index in &network.lines {
+        let (line, [old, new]) = (
+            &model.lines[index],
+            [before, after].map(|state| &state.lines[index]),
+        );
+        for end in [End::A, End::B] {
+            if line.is_held(model, old, end) && !line.is_held(model, new, end) {
+                sum += end_energy(line, new, end);
+            }
+        }
+    }
+    sum
+}
+
+/// Energy of motion and of weight of the half node at an end [J], when its velocity belongs to.
+fn end_energy(line: &Line, shape: &LineState, end: End) -> f64 {
+    let (memory, i) = (&shape.half_step, line.end_node(end));
+    let (velocity, lag) = match memory.velocity.is_empty() {
+        true => (shape.velocity[i], 0.0),
+        false => (memory.velocity[i], 0.5 * memory.steps[0]),
+    };
+    let along = velocity.dot(&tangent(shape, i)).powi(2);
+    let (across, nodes) = (velocity.norm_squared() - along, &line.nodes);
+    let kinetic = 0.5 * (nodes.mass_normal[i] * across + nodes.mass_tangent[i] * along);
+    kinetic + nodes.weight[i] * (shape.position[i].z - lag * velocity.z)
 }
 
 /// Energy of a whole line on its closed form.
@@ -479,7 +518,7 @@ fn bending_power(model: &Model, line: &Line, state: &State, index: usize) -> Flo
 fn line_power(line: &Line, shape: &LineState, model: &Model, stream: Option<Stream>) -> Flow {
     let (n, negative) = (line.segment_count(), model.solver.negative_tension);
     let segments = &line.segments;
-    let [a, b] = line.ends.map(|point| model.points[point].free().is_none());
+    let [a, b] = [End::A, End::B].map(|end| line.is_held(model, shape, end));
     let mut flow = Flow::default();
     for i in 0..n {
         let chord = shape.position[i + 1] - shape.position[i];

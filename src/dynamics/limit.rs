@@ -43,6 +43,7 @@ pub fn free_point_step(model: &Model, point: usize) -> f64 {
         return f64::INFINITY;
     };
     let heave = free.sphere.map_or(0.0, |sphere| sphere.stiffness_max());
+    let mut alone = 0.0_f64; // greatest k/M of one line, should all others part
     let (mut mass, mut sum, mut longest) = (free.mass, 0.5 * heave, 0.0_f64);
     for &(index, end) in &model.points[point].attached {
         let line = &model.lines[index];
@@ -53,9 +54,24 @@ pub fn free_point_step(model: &Model, point: usize) -> f64 {
         };
         mass += line.nodes.mass_tangent[node].min(line.nodes.mass_normal[node]);
         sum += stiffness(line, segment);
+        if line.parting.is_some() {
+            alone = lone_rates(model, point);
+        }
         longest = longest.max(lag(&line.segments, segment));
     }
-    damped_limit((2.0 * sum / mass).sqrt(), longest)
+    damped_limit((2.0 * (sum / mass).max(alone)).sqrt(), longest)
+}
+
+/// Greatest ratio of a segment's stiffness to the mass of its half node [1/s²] among the lines at a point.
+fn lone_rates(model: &Model, point: usize) -> f64 {
+    let attached = model.points[point].attached.iter();
+    let rate = |&(index, end): &(usize, End)| {
+        let line = &model.lines[index];
+        let node = line.end_node(end);
+        let mass = line.nodes.mass_tangent[node].min(line.nodes.mass_normal[node]);
+        stiffness(line, if end == End::A { 0 } else { node - 1 }) / mass
+    };
+    attached.map(rate).fold(0.0, f64::max)
 }
 
 /// k = EA/l of a segment [N/m], at the greatest slope expected of its strain measure.

@@ -51,6 +51,9 @@ pub fn end_force(
     stream: Option<Stream>,
     negative_tension: bool,
 ) -> Vector3<f64> {
+    if state.parted[usize::from(end == End::B)] {
+        return Vector3::zeros();
+    }
     if let Some(view) = BeamView::of(line, state) {
         return view.end_action(end, point).0;
     }

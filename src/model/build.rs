@@ -5,8 +5,8 @@ mod beam;
 use nalgebra::Vector3;
 
 use super::{
-    Bending, Contact, Current, Drag, End, FreePoint, Line, Model, Motion, Network, Nodes, Point,
-    PointContact, Role, Section, Segments, Vessel, mesh,
+    Bending, Contact, Current, Drag, End, FreePoint, Line, Model, Motion, Network, Nodes, Parting,
+    Point, PointContact, Role, Section, Segments, Vessel, mesh,
 };
 use crate::physics::bending;
 use crate::physics::flow::Profile;
@@ -18,6 +18,7 @@ use crate::physics::stretch::StretchLaw;
 use crate::physics::tension_table::TensionTable;
 use crate::physics::viscoelastic::Viscoelastic;
 use crate::physics::weight::{cross_section, submerged_weight};
+use crate::scene::channel::LineEnd;
 use crate::scene::{
     self, Axis, ContactLaw, FibreLaw, Integrator, LineModel, LineType, PointKind, RestShape, Scene,
     SceneError, Strain,
@@ -344,9 +345,24 @@ fn build_line(scene: &Scene, index: usize, line: &scene::Line) -> Result<Line, S
         sections: sections.collect(),
         initial: line.initial.clone(),
         beam,
+        parting: partings(line),
     };
     built.bending = line_bending(index, line, &parts, &built)?;
     Ok(built)
+}
+
+/// When the ends of a line part from their points.
+fn partings(line: &scene::Line) -> Option<[Parting; 2]> {
+    let mut partings = [Parting::default(); 2];
+    let side = |end: LineEnd| usize::from(end == LineEnd::B);
+    if let Some(end) = line.release {
+        partings[side(end)].on_release = true;
+    }
+    if let Some(parting) = &line.parting {
+        let end = &mut partings[side(parting.at)];
+        (end.tension, end.time) = (parting.tension, parting.time);
+    }
+    (line.release.is_some() || line.parting.is_some()).then_some(partings)
 }
 
 /// Refuses a viscoelastic section beside one of another strain measure.

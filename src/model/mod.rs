@@ -187,6 +187,26 @@ pub struct Line {
     pub initial: InitialShape,
     /// What makes it a beam, where it is one.
     pub beam: Option<Beam>,
+    /// When ends A and B part from their points, where one of them may.
+    pub parting: Option<[Parting; 2]>,
+}
+
+/// When an end of a line parts from its point.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Parting {
+    /// Tension of the end's segment that parts it [N].
+    pub tension: Option<f64>,
+    /// Time from which on it is parted [s].
+    pub time: Option<f64>,
+    /// Whether the host's input parts it.
+    pub on_release: bool,
+}
+
+impl Parting {
+    /// Whether an end under a tension [N] at time `t` [s] parts by itself.
+    pub fn parts(&self, tension: f64, t: f64) -> bool {
+        self.tension.is_some_and(|most| tension >= most) || self.time.is_some_and(|time| t >= time)
+    }
 }
 
 /// A section as the closed-form catenary takes it.
@@ -300,6 +320,12 @@ impl Line {
     /// Whether a current acts on it.
     pub fn drifts(&self, model: &Model) -> bool {
         self.nodes.drag.is_some() && model.current.is_some()
+    }
+
+    /// Whether an end is held: by a point that forces do not move, and that it has not parted from.
+    pub fn is_held(&self, model: &Model, state: &LineState, end: End) -> bool {
+        let side = usize::from(end == End::B);
+        model.points[self.ends[side]].free().is_none() && !state.parted[side]
     }
 
     /// Index of the node at an end.

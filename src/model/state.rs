@@ -48,6 +48,8 @@ pub struct LineState {
     pub closed_form: Option<ClosedForm>,
     /// Strain of the slow part of every segment [-]; empty unless the line is viscoelastic and in motion.
     pub creep: Vec<f64>,
+    /// Whether ends A and B have parted from their points.
+    pub parted: [bool; 2],
     /// What the nodes of a beam have beside positions and velocities.
     pub beam: Option<BeamState>,
 }
@@ -144,6 +146,7 @@ impl LineState {
             half_step: HalfStep::default(),
             closed_form: None,
             creep: Vec::new(),
+            parted: [false; 2],
             beam: None,
         }
     }
@@ -176,6 +179,7 @@ clone_in_place!(LineState {
     half_step,
     closed_form,
     creep,
+    parted,
     beam
 });
 clone_in_place!(ClosedForm {

@@ -384,6 +384,26 @@ pub struct Line {
     pub clamped_a: Option<[f64; 3]>,
     /// Direction of the line from A to B at end B [-], where that end is clamped; pinned where absent.
     pub clamped_b: Option<[f64; 3]>,
+    /// End that lets go of its point when the host's input `L.release` becomes true; there is no such input where absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub release: Option<channel::LineEnd>,
+    /// When the line parts from one of its points by itself.
+    #[serde(default, rename = "break", skip_serializing_if = "Option::is_none")]
+    pub parting: Option<Break>,
+}
+
+/// When a line breaks: `{ at = "b", tension = 4.0e6, time = 100.0 }`, at the first of both.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Break {
+    /// The end that parts from its point.
+    pub at: channel::LineEnd,
+    /// Tension of the end's segment that breaks it [N].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tension: Option<f64>,
+    /// Time at which it breaks [s].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub time: Option<f64>,
 }
 
 /// The shape of a line that is free of bending and torsion.
@@ -556,6 +576,8 @@ impl Line {
             rest_shape: RestShape::Straight,
             clamped_a: None,
             clamped_b: None,
+            release: None,
+            parting: None,
         }
     }
 }

@@ -12,7 +12,10 @@ use toml::de::{DeTable, DeValue};
 use super::notes::Note;
 use super::places::Places;
 use super::rows::{Findings, MISTAKES_MAX};
-use super::{LoadError, MotionPath, Scene, SceneError, document, map, moordyn, motion_file, path, tension_strain};
+use super::{
+    LoadError, MotionPath, Scene, SceneError, document, map, moordyn, motion_file, path,
+    tension_strain,
+};
 
 /// Longest scene file that is read [bytes].
 const SIZE_MAX: u64 = 256 << 20;

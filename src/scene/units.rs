@@ -49,6 +49,8 @@ const UNITS: &[(&str, &str, &str)] = &[
     ("Vessel", "attitude", "rad"),
     ("Line", "clamped_a", "-"),
     ("Line", "clamped_b", "-"),
+    ("Break", "tension", "N"),
+    ("Break", "time", "s"),
     ("InitialShape", "parabola", "m"),
     ("InitialShape", "nodes", "m"),
     ("Strain", "logarithmic", "-"),

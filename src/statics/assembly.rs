@@ -21,6 +21,7 @@
 
 mod bending;
 mod creep;
+mod parted;
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -36,6 +37,7 @@ pub(crate) use bending::BendingWork;
 use bending::Parts;
 pub use bending::{end_moment, end_shear, joint_damping_power};
 use creep::CreepWork;
+use parted::Parted;
 
 /// Scratch of the implicit solvers for a whole model. Nothing in it is read before it is written.
 #[derive(Debug, Clone)]
@@ -108,6 +110,10 @@ pub(crate) struct LineWork {
     pub bending: Option<BendingWork>,
     /// Memory of viscoelastic segments, where the line has any.
     creep: Option<CreepWork>,
+    /// Whether ends A and B have parted from their points.
+    parted: [bool; 2],
+    /// What was eliminated of them last.
+    loose: Option<Parted>,
     /// Elimination where nothing bends.
     chain: Chain,
 }
@@ -150,6 +156,8 @@ impl Workspace {
                 load: vec![Vector3::zeros(); if line.drifts(model) { n + 1 } else { 0 }],
                 bending: line.bending.as_ref().map(|_| BendingWork::new(n + 1)),
                 creep: CreepWork::new(line),
+                parted: [false; 2],
+                loose: None,
                 chain: Chain::new(n + 1),
             }
         };
@@ -735,6 +743,9 @@ impl Workspace {
         for_free_points(model, network, |index, free| {
             let mut total = self.points[index].residual;
             for &(line, end) in &model.points[index].attached {
+                if self.lines[line].parted[usize::from(end == End::B)] {
+                    continue;
+                }
                 total += self.lines[line].residual[model.lines[line].end_node(end)];
             }
             for axis in 0..3 {
@@ -755,7 +766,11 @@ impl Workspace {
         for &index in &network.lines {
             let work = &mut self.lines[index];
             let [a, b] = model.lines[index].ends.map(|point| self.points[point].slot);
-            let Some(ends) = work.eliminate(a.is_some()) else {
+            let [a, b] = [a.filter(|_| !work.parted[0]), b.filter(|_| !work.parted[1])];
+            let Some(ends) = work.eliminate(a.is_some() || work.parted[0]) else {
+                return false;
+            };
+            let Some(ends) = work.eliminate_parted(ends) else {
                 return false;
             };
             if let Some(a) = a {
@@ -788,7 +803,7 @@ impl Workspace {
         }
         for &index in &network.lines {
             let [a, b] = model.lines[index].ends.map(|point| self.solution_at(point));
-            self.lines[index].substitute(a, b);
+            self.lines[index].substitute_all(a, b);
         }
         true
     }
@@ -825,6 +840,7 @@ impl Workspace {
     ) {
         for &index in &network.lines {
             self.lines[index].fade_dampers(&model.lines[index], &state.lines[index], dt);
+            self.lines[index].parted = state.lines[index].parted;
             if let Some(creep) = &mut self.lines[index].creep {
                 creep.begin(&model.lines[index], &state.lines[index], dt);
             }
@@ -970,7 +986,9 @@ pub(crate) fn for_free_points(
 pub(crate) fn place_ends(model: &Model, network: &Network, state: &mut State) {
     for &index in &network.lines {
         let line = &model.lines[index];
-        for (point, node) in line.ends.into_iter().zip([0, line.segment_count()]) {
+        let parted = state.lines[index].parted;
+        let ends = line.ends.into_iter().zip([0, line.segment_count()]);
+        for ((point, node), _) in ends.zip(parted).filter(|(_, parted)| !parted) {
             let (point, nodes) = (&state.points[point], &mut state.lines[index]);
             nodes.position[node] = point.position;
             nodes.velocity[node] = point.velocity;
@@ -989,6 +1007,7 @@ pub(crate) fn copy_network(model: &Model, network: &Network, from: &State, to: &
             .acceleration
             .copy_from_slice(&from_line.acceleration);
         to_line.creep.clone_from(&from_line.creep);
+        to_line.parted = from_line.parted;
         to_line.beam.clone_from(&from_line.beam);
         for point in model.lines[index].ends {
             to.points[point] = from.points[point];

@@ -6,7 +6,8 @@ use super::deck::{Attachment, Body, Deck, Line, LineEnd, LineType, Point, Proper
 use crate::scene::from_deck::{self, SEA_WATER, Vessels, bed, place_position};
 use crate::scene::rows::{Findings, Placed};
 use crate::scene::{
-    self, Output, Places, PointForce, PointKind, Scene, Section, Supplement, TensionStrain, TimeFunction, Water,
+    self, Output, Places, PointForce, PointKind, Scene, Section, Supplement, TensionStrain,
+    TimeFunction, Water,
 };
 
 /// A deck on its way to a scene.
