@@ -1,6 +1,6 @@
 //! Viscoelastic segments in the implicit integrators: their memory at the end of a step is a function of the strain there.
 
-use super::Geometry;
+use super::line::Geometry;
 use crate::model::{Line, LineState};
 use crate::physics::viscoelastic::Viscoelastic;
 
