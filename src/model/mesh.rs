@@ -52,6 +52,8 @@ mod tests {
             rest_shape: RestShape::Straight,
             clamped_a: None,
             clamped_b: None,
+            release: None,
+            parting: None,
         };
         assert_eq!(section_elements(&line, 0.02), vec![30, 1, 7]);
     }

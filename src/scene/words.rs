@@ -2,6 +2,7 @@
 
 mod beam;
 mod bending;
+mod parting;
 mod points;
 mod stretch;
 mod surroundings;
@@ -236,11 +237,12 @@ impl Scene {
         };
         let held = held.map_or(String::new(), |held| format!("; {held}"));
         format!(
-            "{}: from {} to {}, {}; {fit}; {start}{held}",
+            "{}: from {} to {}, {}; {fit}; {start}{held}{}",
             line.name,
             line.from,
             line.to,
-            sections.join(", ")
+            sections.join(", "),
+            parting::in_words(line)
         )
     }
 
