@@ -104,6 +104,7 @@ mod tests {
             time: 1.0 / 3.0,
             parameters: vec![9.80665, -0.0],
             inputs: vec![BodyInput::default()],
+            releases: vec![true, false],
             start_displacements: vec![[0.0; 6]],
             solver: None,
         }

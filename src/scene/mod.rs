@@ -161,7 +161,7 @@ pub struct LineType {
     pub diameter: Option<f64>,
     /// Axial stiffness EA [N].
     pub axial_stiffness: Option<f64>,
-    /// Tension over strain, instead of `axial_stiffness`.
+    /// Tension over strain [- and N], instead of `axial_stiffness`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tension_strain: Option<TensionStrain>,
     /// Static stiffness EA_s of a viscoelastic rope [N], instead of `axial_stiffness`.

@@ -31,30 +31,6 @@ fn check_numbers(findings: &mut Findings, at: &str, line_type: &LineType) {
             "N",
         ),
         (
-            "static_stiffness",
-            line_type.static_stiffness,
-            Bounds::Positive(1e15),
-            "N",
-        ),
-        (
-            "dynamic_stiffness",
-            line_type.dynamic_stiffness,
-            Bounds::Positive(1e15),
-            "N",
-        ),
-        (
-            "static_damping",
-            line_type.static_damping,
-            Bounds::Positive(1e15),
-            "N s",
-        ),
-        (
-            "dynamic_damping",
-            line_type.dynamic_damping,
-            Bounds::NotNegative(1e15),
-            "N s",
-        ),
-        (
             "axial_damping",
             line_type.axial_damping,
             Bounds::NotNegative(1e15),
@@ -209,13 +185,18 @@ fn viscoelastic(line_type: &LineType) -> [(&'static str, Option<f64>); 4] {
 
 /// A viscoelastic rope has two stiffnesses and two dampings, and nothing else that resists stretch.
 fn check_viscoelastic(findings: &mut Findings, at: &str, line_type: &LineType) {
-    for (key, value) in &viscoelastic(line_type)[..3] {
-        if value.is_none() {
-            let unit = if key.ends_with("stiffness") {
-                "N"
-            } else {
-                "N s"
-            };
+    for (key, value) in viscoelastic(line_type) {
+        let unit = if key.ends_with("stiffness") {
+            "N"
+        } else {
+            "N s"
+        };
+        let bounds = match key {
+            "dynamic_damping" => Bounds::NotNegative(1e15),
+            _ => Bounds::Positive(1e15),
+        };
+        findings.number_if(format!("{at}.{key}"), value, bounds, unit);
+        if value.is_none() && key != "dynamic_damping" {
             findings.say(
                 at,
                 format!("missing key `{key}` [{unit}] of a viscoelastic rope"),

@@ -267,7 +267,9 @@ fn bathymetry(deck: &Deck, findings: &mut Findings) {
 
 fn line_failures(deck: &Deck, findings: &mut Findings) {
     for row in &deck.failures {
-        let problem = "lines that break are not modelled: take the section FAILURE out".to_string();
+        let problem = "breaks are not read from decks: take the section FAILURE out, and write `break = { at = …, tension = …, time = … }` \
+                       to the lines of the scene that `moorline convert` makes"
+            .to_string();
         refuse(findings, "FAILURE", &row.span, problem);
     }
 }
