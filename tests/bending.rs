@@ -543,8 +543,8 @@ fn stiffness_from_a_millionth_to_a_hundred_million_times_a_wires_finds_rest() {
             let mut collar = with_elements(shipped("collar"), elements);
             for line_type in collar.line_types.values_mut() {
                 // a radius of gyration of 0.1 m at most
-                let least = Some(100.0 * bending_stiffness);
-                line_type.axial_stiffness = line_type.axial_stiffness.max(least);
+                let stiffness = &mut line_type.axial_stiffness;
+                *stiffness = stiffness.map(|ea| ea.max(100.0 * bending_stiffness));
                 line_type.bending_stiffness = Some(bending_stiffness);
             }
             let [span, sag] = span_and_sag(&drawn_out(&collar));

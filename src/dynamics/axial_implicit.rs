@@ -227,7 +227,7 @@ impl AxialWork {
     pub fn flow(&self) -> Flow {
         Flow {
             given: self.given,
-            lost: self.lost.sum(),
+            lost: self.lost.sum() - self.layout.joined(),
         }
     }
 
@@ -244,6 +244,23 @@ impl AxialWork {
         {
             kept.clear();
             kept.extend_from_slice(&history[own.clone()]);
+        }
+    }
+
+    /// Meets the water's surface as it is at t_n. Where that follows a step, `after_step`, what joined with the water is booked.
+    pub fn meet_surface(&mut self, after_step: bool) {
+        self.layout.find_surface();
+        let Some(surface) = &self.layout.surface else {
+            return;
+        };
+        for i in surface.crossed() {
+            let [across, along] = surface.node(i).masses;
+            self.nodes.mass_normal[FIRST + i] = across;
+            self.nodes.mass_tangent[FIRST + i] = along;
+        }
+        match after_step {
+            true => self.layout.book_surface(self.parted.map(|parted| !parted)),
+            false => self.layout.clear_surface(),
         }
     }
 
@@ -327,6 +344,7 @@ impl AxialWork {
             self.layout.position.set(at, ends[end as usize]);
         }
         self.layout.creep(step.drift);
+        self.meet_surface(true);
         passes
     }
 
@@ -713,6 +731,7 @@ impl AxialWork {
             let pull = self.rows.tension[segment] * self.segments.direction.get(segment);
             let velocities = line.velocity.get(node) + line.velocity_before.get(node);
             self.given += sign * 0.5 * step.kick * pull.dot(&velocities);
+            self.given += 0.5 * step.kick * line.end_lack(end) * velocities.z;
         }
     }
 

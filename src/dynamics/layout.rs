@@ -8,6 +8,7 @@ use pulp::{Arch, NullaryFnOnce};
 
 use super::creep::CreepArrays;
 use super::leapfrog::Step;
+use super::surface::SurfaceNow;
 use crate::math::lanes::{Components, LANES, Lanes, Vectors};
 use crate::model::{End, Line, LineState};
 use crate::physics::flow::{Profile, Stream};
@@ -45,6 +46,8 @@ pub(super) struct Layout {
     pub contact: Option<ContactArrays>,
     /// Memory of viscoelastic segments, where the line has any.
     pub creep: Option<CreepArrays>,
+    /// The water's surface, where the line may pierce it.
+    pub surface: Option<SurfaceNow>,
 }
 
 /// Lumped drag coefficients [N s²/m²].
@@ -124,6 +127,7 @@ impl Layout {
                 damping: keep(&contact.damping),
             }),
             creep,
+            surface: SurfaceNow::new(line),
         })
     }
 
@@ -167,6 +171,51 @@ impl Layout {
             memory.velocity[i] = velocity;
             memory.velocity_before[i] = before;
         }
+    }
+
+    /// Finds where the surface crosses the line, and sets the weights of the nodes it crosses.
+    pub fn find_surface(&mut self) {
+        let Some(surface) = &mut self.surface else {
+            return;
+        };
+        surface.find(&self.position.z);
+        for i in surface.crossed() {
+            let now = surface.node(i);
+            self.weight[FIRST + i] = now.weight;
+            if let Some(drag) = &mut self.drag {
+                [drag.normal[FIRST + i], drag.tangent[FIRST + i]] = now.drag;
+            }
+        }
+    }
+
+    /// Books what joined with the water, except at ends that are held.
+    pub fn book_surface(&mut self, held: [bool; 2]) {
+        let Some(surface) = &mut self.surface else {
+            return;
+        };
+        let [first, last] = held.map(usize::from);
+        for i in first..=self.segment_count - last {
+            surface.book(i, &self.velocity, &self.position);
+        }
+    }
+
+    /// Forgets what joined with the water.
+    pub fn clear_surface(&mut self) {
+        if let Some(surface) = &mut self.surface {
+            surface.joined = 0.0;
+        }
+    }
+
+    /// Buoyancy that an end lacks at t_n [N].
+    pub fn end_lack(&self, end: End) -> f64 {
+        let node = self.end_index(end) - FIRST;
+        let surface = self.surface.as_ref();
+        surface.map_or(0.0, |surface| surface.lack(node))
+    }
+
+    /// Energy of motion that joined with the water since the state was loaded [J].
+    pub fn joined(&self) -> f64 {
+        self.surface.as_ref().map_or(0.0, |surface| surface.joined)
     }
 
     /// Sets what multiplies the current at t_n [-].
@@ -263,7 +312,12 @@ impl Layout {
         let height = self.position.z[at] - lag * velocity.z;
         let axial = velocity.dot(&tangent).powi(2);
         let kinetic = 0.5 * (across * (velocity.norm_squared() - axial) + along * axial);
-        kinetic + self.weight[at] * height
+        // the surface holds the energy of the buoyancy that is lacking by itself
+        let lack = self
+            .surface
+            .as_ref()
+            .map_or(0.0, |surface| surface.lack(at - FIRST));
+        kinetic + (self.weight[at] - lack) * height
     }
 
     /// Strain rate at t_n [1/s].

@@ -15,7 +15,7 @@
 use nalgebra::{Matrix3, Vector3};
 use pulp::NullaryFnOnce;
 
-use super::layout::{Layout, interior, pad};
+use super::layout::{FIRST, Layout, interior, pad};
 use super::ledger::Flow;
 use crate::math::lanes::{Components, Lanes, Vectors};
 use crate::model::{End, Line, LineState, Parting};
@@ -235,11 +235,32 @@ impl LineWork {
         self.given_by_current = Lanes::splat(0.0);
     }
 
+    /// Meets the water's surface as it is at t_n. Where that follows a step, `after_step`, what joined with the water is booked.
+    pub fn meet_surface(&mut self, after_step: bool) {
+        self.layout.find_surface();
+        let Some(surface) = &self.layout.surface else {
+            return;
+        };
+        for i in surface.crossed() {
+            let (at, now) = (FIRST + i, surface.node(i));
+            let [across, along] = now.masses.map(|mass| 1.0 / mass);
+            self.inverse_mass[at] = across;
+            if let Some(water) = &mut self.water {
+                [water.drag_normal[at], water.drag_tangent[at]] = now.drag;
+                water.inverse_mass_excess[at] = along - across;
+            }
+        }
+        match after_step {
+            true => self.layout.book_surface(self.held()),
+            false => self.layout.clear_surface(),
+        }
+    }
+
     /// Energy given by held ends and the current and lost between them since [`Self::load`].
     pub fn flow(&self) -> Flow {
         Flow {
             given: self.given + self.given_by_current.sum(),
-            lost: self.lost.sum(),
+            lost: self.lost.sum() - self.layout.joined(),
         }
     }
 
@@ -252,6 +273,11 @@ impl LineWork {
     pub fn store(&self, state: &mut LineState, steps: [f64; 2]) {
         state.parted = self.parted;
         self.layout.store(state, steps);
+    }
+
+    /// Whether ends A and B are held.
+    fn held(&self) -> [bool; 2] {
+        [0, 1].map(|side| self.tied[side] && !self.parted[side])
     }
 
     /// Whether an end has parted from its point.
@@ -468,9 +494,10 @@ impl LineWork {
     /// Books the work of the ends in a step, after [`Self::put_end`] has told how they move on; ends at free points do no
     /// work that the line loses.
     pub fn book_ends(&mut self, step: Step) {
+        let held = self.held();
         for end in [End::A, End::B]
             .into_iter()
-            .filter(|&end| self.tied[end as usize] && !self.parted[end as usize])
+            .filter(|&end| held[end as usize])
         {
             let at = self.layout.end_index(end);
             let pull = match end {
@@ -479,6 +506,7 @@ impl LineWork {
             };
             let velocities = self.layout.velocity_before.get(at) + self.layout.velocity.get(at);
             self.given -= 0.5 * step.kick * pull.dot(&velocities);
+            self.given += 0.5 * step.kick * self.layout.end_lack(end) * velocities.z;
         }
     }
 

@@ -141,7 +141,15 @@ impl NetworkWork {
         for line in &mut self.lines {
             line.creep(step);
             line.book_ends(step);
+            line.meet_surface(true);
         }
+    }
+
+    /// Meets the water's surface where the lines lie before the first step.
+    pub fn meet_surface(&mut self) {
+        self.lines
+            .iter_mut()
+            .for_each(|line| line.meet_surface(false));
     }
 
     /// Sets the current to that of `t` [s].
@@ -245,7 +253,7 @@ fn tied_mass(model: &Model, point: usize) -> f64 {
     let tied = point.attached.iter().map(|&(line, end)| {
         let line = &model.lines[line];
         let node = line.end_node(end);
-        line.nodes.mass_tangent[node].min(line.nodes.mass_normal[node])
+        line.least_mass(node)
     });
     point.free().map_or(0.0, |free| free.mass) + tied.sum::<f64>()
 }

@@ -10,6 +10,7 @@ mod initial;
 mod mesh;
 mod motion;
 mod state;
+mod surface;
 mod vessel;
 
 use nalgebra::Vector3;
@@ -25,6 +26,7 @@ pub use beam::{Beam, BeamElement, BeamState};
 pub use bending::{Bending, joint};
 pub use motion::{Kinematics, Motion, Pose};
 pub use state::{ClosedForm, LineState, PointState, State};
+pub use surface::{Dry, Surface};
 pub use vessel::{Frame, Vessel};
 
 /// A scene made discrete. Immutable; shared by reference.
@@ -181,6 +183,8 @@ pub struct Line {
     pub nodes: Nodes,
     /// Bending stiffness, where a line type has it.
     pub bending: Option<Bending>,
+    /// The water's surface, where the line may pierce it.
+    pub surface: Option<Surface>,
     /// Sections as the closed-form catenary takes them.
     pub sections: Vec<Section>,
     /// Shape at the start.
@@ -341,6 +345,16 @@ impl Line {
         self.uniform_law().is_some()
             && self.bending.is_none()
             && self.nodes.mass_normal.iter().all(|mass| *mass > 0.0)
+            && (self.surface.is_none() || self.nodes.mass.iter().all(|mass| *mass > 0.0))
+    }
+
+    /// Least mass of a node along any direction [kg]: in air where the line may pierce the water's surface.
+    pub fn least_mass(&self, node: usize) -> f64 {
+        let nodes = &self.nodes;
+        match &self.surface {
+            None => nodes.mass_tangent[node].min(nodes.mass_normal[node]),
+            Some(_) => nodes.mass[node],
+        }
     }
 
     /// The strain measure, where all segments share one.

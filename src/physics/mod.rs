@@ -10,6 +10,7 @@ pub mod rayleigh;
 pub mod seabed;
 pub mod section;
 pub mod stretch;
+pub mod surface;
 pub mod tension_table;
 pub mod viscoelastic;
 pub mod weight;

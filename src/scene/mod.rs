@@ -20,6 +20,7 @@ mod path;
 mod places;
 mod read;
 mod rows;
+mod surface;
 mod tension_strain;
 mod time_function;
 mod units;
@@ -77,7 +78,7 @@ pub struct Scene {
     pub output: Output,
 }
 
-/// Water that fills all space below and above z = 0: lines are fully submerged.
+/// Water. Its surface is at z = 0 for free points and for lines that may come out of it; other lines are under water everywhere.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Water {
@@ -86,6 +87,10 @@ pub struct Water {
     /// How it flows; still where absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub current: Option<Current>,
+    /// Whether lines lose buoyancy, drag and added mass above z = 0. Where absent, those do that have an end above it, or could float
+    /// up to it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub surface: Option<bool>,
 }
 
 /// A current: `{ velocity = [vx, vy, vz] }`, alike at all heights, or `{ profile = [[z, vx, vy], …] }`, straight between the rows
@@ -110,6 +115,7 @@ impl Water {
         Water {
             density,
             current: None,
+            surface: None,
         }
     }
 }

@@ -17,7 +17,7 @@
 //! The geometric stiffness T/l P is never negative in a line that cannot push. A line with bending stiffness has the joints of
 //! `bending` at its nodes and pushes up to what its segments carry, T ≥ −P; its tangent is exact, or made such that it cannot be
 //! indefinite where `convex` is asked for. Statics keeps springs, weight and the drag of a current, whose forces are held while the
-//! shape is sought.
+//! shape is sought. A line that may pierce the water's surface lacks there what `surface` says.
 
 mod bending;
 mod contact;
@@ -26,6 +26,7 @@ mod line;
 mod parted;
 mod places;
 mod points;
+mod surface;
 
 use nalgebra::Vector3;
 
@@ -131,6 +132,8 @@ pub(crate) struct StaticCase {
     pub predicted: bool,
     /// Whether lines with bending stiffness have it, and push.
     pub bends: bool,
+    /// Least radius with which lines pierce the water's surface [m].
+    pub breadth: f64,
 }
 
 /// Weights of the parts of residual and tangent in a time step.

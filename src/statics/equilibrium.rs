@@ -16,7 +16,7 @@
 //! its greatest force, the loads are applied little by little instead, and every step must lie close to the one before and
 //! have a positive definite tangent.
 //!
-//! Lines with bending stiffness are in `bending`, lines in a current in `current`.
+//! Lines with bending stiffness are in `bending`, lines in a current in `current`, lines that float in `surface`.
 //!
 //! Accepted is a residual of at most 1e-11 of the greatest force in the network (tension, nodal weight or load) plus what
 //! rounding of the positions makes of the stiffest segment.
@@ -26,6 +26,7 @@
 
 mod bending;
 pub(crate) mod current;
+mod surface;
 
 use nalgebra::Vector3;
 
@@ -253,6 +254,7 @@ impl<'a> Problem<'a> {
             anchoring: 0.0,
             predicted: false,
             bends: self.bends,
+            breadth: 0.0,
         }
     }
 
@@ -301,6 +303,12 @@ impl<'a> Problem<'a> {
             }
             if let Some(error) = self.limit_load(state, reached) {
                 return Err(error);
+            }
+        }
+        if self.meets_surface() {
+            self.restart(guess, state, work);
+            if self.thin_gradually(state, work) && self.strain_over_limit(state).0 <= 1.0 {
+                return Ok(());
             }
         }
         self.restart(guess, state, work);
@@ -439,6 +447,11 @@ impl<'a> Problem<'a> {
                 force = force
                     .max(work.lines[index].elastic[i])
                     .max(line.nodes.weight[i].abs());
+            }
+            if let Some(surface) = &line.surface
+                && surface.is_pierced(&state.lines[index].position)
+            {
+                force = surface.buoyancy.iter().copied().fold(force, f64::max);
             }
             if let (Some(joints), true) = (&work.lines[index].bending, self.bends) {
                 force = force.max(joints.greatest);

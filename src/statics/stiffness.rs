@@ -272,6 +272,7 @@ impl Problem<'_> {
             anchoring: part * springs.fold(0.0, f64::max),
             predicted: false,
             bends: lines().any(|line| line.bending.is_some()),
+            breadth: 0.0,
         };
         work.assemble_static(self.model, self.network, self.state, &case);
         let at_rest = |(line, end): (usize, End)| {
