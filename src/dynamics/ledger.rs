@@ -8,6 +8,9 @@
 //!        some of it back). The added mass of a free point or node that dips into the water brings ½ v² of what joins it, which counts
 //!        as a negative loss.
 //!
+//! The springs of viscoelastic segments count as held, what their dampers take as lost. An end that parts from a held point brings the energy of
+//! its half node along, which counts as given.
+//!
 //! E − E₀ − given + lost is the error of the time integration: numerical dissipation shows up as a negative one.
 //!
 //! The leapfrogs sum the flows of every internal step, forces at t_n times the mean of the velocities around it; energy is then
