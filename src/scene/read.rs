@@ -13,8 +13,8 @@ use super::notes::Note;
 use super::places::Places;
 use super::rows::{Findings, MISTAKES_MAX};
 use super::{
-    LoadError, MotionPath, Scene, SceneError, document, map, moordyn, motion_file, path,
-    tension_strain,
+    LoadError, MotionPath, Scene, SceneError, WaveComponents, document, map, moordyn, motion_file,
+    path, tension_strain, water_file,
 };
 
 /// Longest scene file that is read [bytes].
@@ -111,7 +111,7 @@ pub fn load(path: &Path) -> Result<LoadedScene, LoadError> {
 pub fn load_with(path: &Path, supplement: &Supplement) -> Result<LoadedScene, LoadError> {
     let text = read_text(path)?;
     let loaded = match deck_of(&text) {
-        Some(read) => deck_scene(read(&text, supplement), &text, path),
+        Some(read) => deck_scene(read(&text, supplement), &text, folder_of(path)),
         None => scene_of(&text, path).map(|scene| {
             let notes = scene.notes();
             (scene, notes, TOML, Places::default())
@@ -152,7 +152,7 @@ fn deck_of(text: &str) -> Option<ReadDeck> {
 type Checked = (Scene, Vec<Note>, &'static str, Places);
 
 /// What a reader made of a deck, checked as every scene is.
-fn deck_scene(reading: Reading, text: &str, path: &Path) -> Result<Checked, Vec<SceneError>> {
+fn deck_scene(reading: Reading, text: &str, folder: &Path) -> Result<Checked, Vec<SceneError>> {
     let Reading {
         format,
         scene,
@@ -167,7 +167,8 @@ fn deck_scene(reading: Reading, text: &str, path: &Path) -> Result<Checked, Vec<
     let Some(mut scene) = scene.filter(|_| findings.mistakes.is_empty()) else {
         return Err(in_order(findings.mistakes));
     };
-    let of_files = read_tables(&mut scene, folder_of(path));
+    let mut of_files = read_water(&mut scene, folder);
+    of_files.extend(read_tables(&mut scene, folder));
     let mistakes = all_mistakes(&scene, of_files);
     let mistakes: Vec<SceneError> = mistakes
         .into_iter()
@@ -185,8 +186,10 @@ fn deck_scene(reading: Reading, text: &str, path: &Path) -> Result<Checked, Vec<
 fn scene_of(text: &str, path: &Path) -> Result<Scene, Vec<SceneError>> {
     let document = Document::parse(text).map_err(|mistake| vec![mistake])?;
     let mut scene = document.scene().map_err(|mistake| vec![mistake])?;
-    let mut of_files = read_motions(&mut scene, folder_of(path));
-    of_files.extend(read_tables(&mut scene, folder_of(path)));
+    let folder = folder_of(path);
+    let mut of_files = read_motions(&mut scene, folder);
+    of_files.extend(read_water(&mut scene, folder));
+    of_files.extend(read_tables(&mut scene, folder));
     let mistakes = all_mistakes(&scene, of_files);
     if mistakes.is_empty() {
         Ok(scene)
@@ -224,6 +227,43 @@ fn read_tables(scene: &mut Scene, folder: &Path) -> Vec<SceneError> {
                     let at = format!("line_types.{}.tension_strain", path::quoted(name));
                     mistakes.push(SceneError::new(at, problem));
                 }
+            }
+        }
+    }
+    mistakes
+}
+
+/// Reads the files of waves and current, whose rows take their place; returns what is wrong with them.
+fn read_water(scene: &mut Scene, folder: &Path) -> Vec<SceneError> {
+    let mut mistakes = Vec::new();
+    let Some(water) = &mut scene.water else {
+        return mistakes;
+    };
+    if let Some(current) = &mut water.current
+        && current.profile.is_none()
+        && let Some(file) = &current.file
+    {
+        match water_file::profile(&folder.join(file)) {
+            Ok(rows) => (current.profile, current.file) = (Some(rows), None),
+            Err(problem) => mistakes.push(SceneError::new("water.current.file", problem)),
+        }
+    }
+    let Some(waves) = &mut water.waves else {
+        return mistakes;
+    };
+    let count = waves.seas.len();
+    for (i, sea) in waves.seas.iter_mut().enumerate() {
+        let Some(file) = sea.file.as_ref().filter(|_| sea.components.is_none()) else {
+            continue;
+        };
+        match water_file::components(&folder.join(file)) {
+            Ok(rows) => (sea.components, sea.file) = (Some(WaveComponents::Rows(rows)), None),
+            Err(problem) => {
+                let at = match count {
+                    1 => "water.waves.file".to_string(),
+                    _ => format!("water.waves[{i}].file"),
+                };
+                mistakes.push(SceneError::new(at, problem));
             }
         }
     }
