@@ -1,12 +1,14 @@
 //! Scene -> Model.
 
 mod beam;
+mod spacing;
+mod waves;
 
 use nalgebra::Vector3;
 
 use super::{
     Bending, Contact, Current, Drag, End, FreePoint, Line, Model, Motion, Network, Nodes, Point,
-    PointContact, Role, Section, Segments, Surface, Vessel, mesh,
+    PointContact, Pressed, Role, Section, Segments, Surface, Vessel, mesh,
 };
 use crate::physics::bending;
 use crate::physics::flow::Profile;
@@ -40,8 +42,9 @@ impl Model {
             .map(|point| build_point(scene, &vessels, point))
             .collect();
         let mut lines = Vec::with_capacity(scene.lines.len());
+        let elements = spacing::elements(scene);
         for (index, line) in scene.lines.iter().enumerate() {
-            let mut built = build_line(scene, index, line)?;
+            let mut built = build_line(scene, index, line, (&points, &vessels), elements[index])?;
             rest_as_it_lies(&mut built, &points, line.rest_shape);
             points[built.ends[0]].attached.push((index, End::A));
             points[built.ends[1]].attached.push((index, End::B));
@@ -57,12 +60,18 @@ impl Model {
             bed: scene.seabed.as_ref().map(|bed| -bed.depth),
             bed_friction: scene.seabed.as_ref().map_or(0.0, |bed| bed.friction),
             current: scene.water.as_ref().and_then(current),
+            waves: waves::waves(scene),
             networks,
             points,
             lines,
             vessels,
             solver: scene.solver.clone(),
         })
+    }
+
+    /// How many elements of which lengths [m] the lines have, and why, where this is the model of that scene: one sentence a line.
+    pub fn mesh_in_words(&self, scene: &Scene) -> Vec<String> {
+        spacing::in_words(scene, self)
     }
 }
 
@@ -173,6 +182,7 @@ pub(super) struct LineLaw {
     axial_damping: f64,                   // BA [N s], without the damping ratio's part
     damping_ratio: f64,                   // ζ [-]
     mass: f64,                            // m [kg/m]
+    displaced: f64,                       // ρA [kg/m]
     added_normal: f64,                    // ρA·C_an [kg/m]
     added_tangent: f64,                   // ρA·C_at [kg/m]
     weight: f64,                          // w [N/m]
@@ -256,6 +266,7 @@ fn line_law(scene: &Scene, line_type: &LineType) -> LineLaw {
             + rayleigh.map_or(0.0, |r| r.stiffness * ea),
         damping_ratio: damping_ratio(line_type),
         mass,
+        displaced,
         added_normal: displaced * line_type.added_mass_normal.unwrap_or(0.0),
         added_tangent: displaced * line_type.added_mass_tangential.unwrap_or(0.0),
         weight,
@@ -269,7 +280,14 @@ fn line_law(scene: &Scene, line_type: &LineType) -> LineLaw {
     }
 }
 
-fn build_line(scene: &Scene, index: usize, line: &scene::Line) -> Result<Line, SceneError> {
+/// A line of the scene that is to have so many elements [-] where the scene leaves them open.
+fn build_line(
+    scene: &Scene,
+    index: usize,
+    line: &scene::Line,
+    (points, vessels): (&[Point], &[Vessel]),
+    elements: f64,
+) -> Result<Line, SceneError> {
     let point = |key: &str, name: &str| {
         scene
             .points
@@ -293,16 +311,16 @@ fn build_line(scene: &Scene, index: usize, line: &scene::Line) -> Result<Line, S
         })?;
         laws.push(line_law(scene, line_type));
     }
-    let elements = mesh::section_elements(line, scene.solver.tolerance);
-    let beam = beam::build(scene, index, line, &laws, &elements)?;
-    let parts: Vec<SegmentPart> = line
-        .sections
+    let wanted = spacing::refinements(scene, line, ends.map(|end| &points[end]), vessels, &laws);
+    let lengths = mesh::lengths(&pieces(line), elements, &wanted);
+    let beam = beam::build(scene, index, line, &laws, &lengths)?;
+    let parts: Vec<SegmentPart> = laws
         .iter()
-        .zip(&laws)
-        .zip(&elements)
-        .flat_map(|((section, law), &count)| {
-            let length = section.length / count as f64;
-            std::iter::repeat_n(SegmentPart { length, law }, count)
+        .zip(&lengths)
+        .flat_map(|(law, lengths)| {
+            lengths
+                .iter()
+                .map(move |&length| SegmentPart { length, law })
         })
         .collect();
     let sections = line
@@ -331,6 +349,15 @@ fn build_line(scene: &Scene, index: usize, line: &scene::Line) -> Result<Line, S
         built.surface = Some(Surface::new(&parts, &built.nodes.length));
     }
     Ok(built)
+}
+
+/// Sections as the mesher sees them.
+fn pieces(line: &scene::Line) -> Vec<mesh::Piece> {
+    let piece = |section: &scene::Section| mesh::Piece {
+        length: section.length,
+        elements: section.elements,
+    };
+    line.sections.iter().map(piece).collect()
 }
 
 /// Joints and clamps of a line, where any of its sections has bending stiffness.
@@ -406,6 +433,11 @@ fn nodes(scene: &Scene, parts: &[SegmentPart], contact_in_reach: bool) -> Nodes 
         normal: lump(&|law| law.drag.map_or(0.0, |drag| drag.normal)),
         tangent: lump(&|law| law.drag.map_or(0.0, |drag| drag.tangent)),
     });
+    let waves = scene.water.as_ref().is_some_and(|w| w.waves.is_some());
+    let pressed = (waves && any(&|law| law.displaced > 0.0)).then(|| Pressed {
+        normal: lump(&|law| law.displaced + law.added_normal),
+        tangent: lump(&|law| law.displaced + law.added_tangent),
+    });
     let contact = (contact_in_reach && any(&|law| law.contact.is_some())).then(|| {
         let stiffness = lump(&|law| law.contact.map_or(0.0, |contact| contact.stiffness));
         let damping = lump(&|law| law.contact.map_or(0.0, |contact| contact.damping));
@@ -426,6 +458,7 @@ fn nodes(scene: &Scene, parts: &[SegmentPart], contact_in_reach: bool) -> Nodes 
         length,
         weight,
         drag,
+        pressed,
         contact,
     }
 }
