@@ -187,6 +187,7 @@ mod tests {
             anchoring: 0.0,
             predicted: false,
             bends: false,
+            breadth: 0.0,
         };
         for z in HEIGHTS {
             let residual = |state: &PointState| {
