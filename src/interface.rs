@@ -16,7 +16,7 @@ use std::collections::BTreeSet;
 use crate::model::{Body, Line, Model};
 use crate::physics::stretch::StretchLaw;
 use crate::scene::{Axis, PointKind, Scene, SceneError};
-use crate::simulation::{NodeBending, Simulation};
+use crate::simulation::{NodeBending, Simulation, reference_catenary};
 
 pub use parameters::Parameter;
 
@@ -424,7 +424,7 @@ fn bending_result(nodes: &[NodeBending], result: LineResult) -> f64 {
     }
 }
 
-/// Whether a line has a closed-form catenary: held ends and engineering strain.
+/// Whether a line has a closed-form catenary: held ends and engineering strain, and under water where there is any.
 fn has_closed_form(model: &Model, line: &Line) -> bool {
     line.ends
         .iter()
@@ -433,6 +433,7 @@ fn has_closed_form(model: &Model, line: &Line) -> bool {
             .sections
             .iter()
             .all(|section| section.law == StretchLaw::Engineering)
+        && (line.surface.is_none() || reference_catenary(model, line).is_some())
 }
 
 fn row(

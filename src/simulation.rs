@@ -4,6 +4,7 @@
 //! point to the next. Coupled points follow what [`Simulation::set_displacement`] says, or the scene's own motion after
 //! [`Simulation::follow_scene`].
 
+use std::cell::Cell;
 use std::sync::Arc;
 
 use nalgebra::{Matrix3, Vector3, Vector6};
@@ -288,11 +289,7 @@ impl Simulation {
             self.extend_paths(step);
         }
         let model = &*self.model;
-        let at = Held {
-            model,
-            paths: &self.paths,
-            follows_scene: self.snapshot.follows_scene,
-        };
+        let at = Held::new(model, &self.paths, self.snapshot.follows_scene);
         let held = |point: usize, t: f64| at.point(point, t);
         let done = self
             .work
@@ -367,6 +364,7 @@ impl Simulation {
     /// on its elements this is the present force and stiffness.
     pub fn vessel_at_rest(&self, vessel: usize) -> ([f64; 6], Option<[[f64; 6]; 6]>) {
         let mut hung = self.clone();
+        hung.snapshot.state.waves = None;
         let (model, time) = (&*self.model, self.time());
         let mut work = assembly::Workspace::new(model);
         for number in 0..model.networks.len() {
@@ -378,11 +376,8 @@ impl Simulation {
 
     /// Where the origin of a vessel is now [m].
     fn vessel_origin(&self, vessel: usize) -> Vector3<f64> {
-        let at = Held {
-            model: &self.model,
-            paths: &self.snapshot.paths,
-            follows_scene: self.snapshot.follows_scene,
-        };
+        let snapshot = &self.snapshot;
+        let at = Held::new(&self.model, &snapshot.paths, snapshot.follows_scene);
         at.frame(vessel, self.time()).origin.position
     }
 
@@ -427,7 +422,7 @@ impl Simulation {
             &state.lines[line],
             end,
             &state.points[point],
-            model.stream(state.time),
+            model.water_along(state, line, state.time),
             negative,
         )
     }
@@ -603,9 +598,23 @@ struct Held<'a> {
     model: &'a Model,
     paths: &'a Paths,
     follows_scene: bool,
+    /// Vessels at times that were asked for: one line after the other asks for the same.
+    found: [Cell<Option<(usize, f64, Frame)>>; FOUND],
 }
 
-impl Held<'_> {
+/// Times that are kept; a power of two.
+const FOUND: usize = 64;
+
+impl<'a> Held<'a> {
+    fn new(model: &'a Model, paths: &'a Paths, follows_scene: bool) -> Held<'a> {
+        Held {
+            model,
+            paths,
+            follows_scene,
+            found: [const { Cell::new(None) }; FOUND],
+        }
+    }
+
     /// A point at time `t` [s].
     fn point(&self, point: usize, t: f64) -> Kinematics {
         let reference = self.model.points[point].reference;
@@ -628,6 +637,20 @@ impl Held<'_> {
 
     /// A vessel at time `t` [s].
     fn frame(&self, vessel: usize, t: f64) -> Frame {
+        // the upper bits of a product with an odd number tell neighbouring times apart
+        let mixed = (t.to_bits() ^ vessel as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        let place = &self.found[(mixed >> 32) as usize % FOUND];
+        match place.get() {
+            Some((known, time, frame)) if known == vessel && time == t => frame,
+            _ => {
+                let frame = self.frame_anew(vessel, t);
+                place.set(Some((vessel, t, frame)));
+                frame
+            }
+        }
+    }
+
+    fn frame_anew(&self, vessel: usize, t: f64) -> Frame {
         let body = &self.model.vessels[vessel];
         let pose = match &body.motion {
             Some(motion) if self.follows_scene => motion.pose(t),
@@ -655,11 +678,7 @@ fn begin(
             .map(|input| VesselPath::at_rest(time, input.pose))
             .collect(),
     };
-    let at = Held {
-        model,
-        paths: &paths,
-        follows_scene,
-    };
+    let at = Held::new(model, &paths, follows_scene);
     let held = |point: usize, t: f64| at.point(point, t);
     let places: Vec<PointState> = (0..model.points.len())
         .map(|point| PointState::held(&held(point, time)))
@@ -698,6 +717,7 @@ fn at_rest(model: &Model, time: f64, places: &[PointState]) -> Result<State, Sta
             time,
             points: places.to_vec(),
             lines: shapes.into_iter().map(LineState::at_rest).collect(),
+            waves: None,
         });
     }
     let mut work = assembly::Workspace::new(model);
@@ -769,12 +789,19 @@ fn solve_catenary(
     catenary::solve(&sections, span, b.z - a.z, bed).ok()
 }
 
-fn reference_catenary(model: &Model, line: &Line) -> Option<Catenary> {
+/// The closed-form catenary of a line in its reference configuration; none where an end is free, or where it would come out of the
+/// water, of which the closed form knows nothing.
+pub(crate) fn reference_catenary(model: &Model, line: &Line) -> Option<Catenary> {
     let ends = line.ends.map(|point| &model.points[point]);
     if ends.iter().any(|point| point.free().is_some()) {
         return None;
     }
-    solve_catenary(model, line, ends[0].reference, ends[1].reference)
+    let [a, b] = ends.map(|point| point.reference);
+    let solved = solve_catenary(model, line, a, b)?;
+    let height = |&s: &f64| Vector3::new(0.0, 0.0, a.z + solved.at(s).z);
+    let shape = || line.nodes.arc.iter().map(height).collect::<Vec<_>>();
+    let surface = line.surface.as_ref();
+    (!surface.is_some_and(|surface| surface.is_pierced(&shape()))).then_some(solved)
 }
 
 /// Length whose weight the contact springs carry [m].

@@ -650,7 +650,7 @@ const REFUSALS: &[(&str, &str, &str)] = &[
     (
         "2.0e6    kbot",
         "1 WaveKin",
-        "input:26:1: OPTIONS, WaveKin: waves and currents of a deck are not read",
+        "input:26:1: OPTIONS, WaveKin: only WaveKin 7 (components of wave_frequencies.txt)",
     ),
     (
         "2.0e6    kbot",

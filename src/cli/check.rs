@@ -6,14 +6,14 @@ use std::path::Path;
 use moorline::interface::{Causality, Interface, Layout};
 use moorline::model::Model;
 use moorline::output::channels::Channels;
-use moorline::scene::{TOML, load};
+use moorline::scene::{Supplement, TOML, load_with};
 
 use super::failure::Failure;
 use super::print;
 
 /// Reads a scene, makes it discrete, and says what it models, what surprises, and which variables a host finds.
-pub fn check(path: &Path) -> Result<(), Failure> {
-    let loaded = load(path)?;
+pub fn check(path: &Path, supplement: &Supplement) -> Result<(), Failure> {
+    let loaded = load_with(path, supplement)?;
     let located = |mistake| Failure::of_scene(mistake, &loaded);
     let model = Model::new(&loaded.scene).map_err(located)?;
     let interface = Interface::new(&loaded.scene, &model, Layout::Arrays).map_err(located)?;

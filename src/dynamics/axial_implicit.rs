@@ -20,12 +20,11 @@
 use nalgebra::Vector3;
 use pulp::NullaryFnOnce;
 
-use super::layout::{FIRST, Layout, interior, pad};
+use super::layout::{FIRST, Layout, Water, interior, pad};
 use super::leapfrog::Step;
 use super::ledger::Flow;
 use crate::math::lanes::{Components, Lanes, Vectors};
-use crate::model::{End, Line, LineState};
-use crate::physics::flow::Profile;
+use crate::model::{End, Line, LineState, WaveSpan};
 use crate::physics::stretch::StretchLaw;
 
 /// Passes over slack and contact flags, at most [-].
@@ -56,7 +55,7 @@ pub struct AxialWork {
     segments: SegmentArrays,
     nodes: NodeArrays,
     rows: Rows,
-    /// The current at the nodes, where it acts on the line.
+    /// The moving water at the nodes, where it acts on the line.
     current: Option<CurrentArrays>,
     /// 1 for nodes between the ends, 0 elsewhere.
     interior: Vec<f64>,
@@ -116,6 +115,8 @@ struct CurrentArrays {
     /// Drag over relative velocity, across and along the line [N s/m].
     across: Vec<f64>,
     along: Vec<f64>,
+    /// Force of water that waves accelerate [N].
+    press: Components,
 }
 
 /// The tridiagonal system in T̄.
@@ -131,20 +132,21 @@ impl AxialWork {
     /// Scratch for a line; `None` where its sections have different strain measures, which the kernel does not mix.
     pub fn new(
         line: &Line,
-        profile: Option<&Profile>,
+        water: Water<'_>,
         rho: f64,
         negative_tension: bool,
     ) -> Option<AxialWork> {
-        let layout = Layout::new(line, profile, negative_tension)?;
+        let layout = Layout::new(line, water, negative_tension)?;
         let n = layout.segment_count;
         let size = layout.weight.len();
         let (zeros, vectors) = (vec![0.0; size], Components::zeros(size));
         Some(AxialWork {
             interior: interior(n),
-            current: layout.current.as_ref().map(|_| CurrentArrays {
+            current: layout.flows().then(|| CurrentArrays {
                 flow: vectors.clone(),
                 across: zeros.clone(),
                 along: zeros.clone(),
+                press: vectors.clone(),
             }),
             lost: Lanes::splat(0.0),
             given: 0.0,
@@ -213,7 +215,7 @@ impl AxialWork {
     /// Energy given by the held ends and lost between them since [`Self::load`].
     pub fn flow(&self) -> Flow {
         Flow {
-            given: self.given,
+            given: self.given + self.layout.lifted(),
             lost: self.lost.sum() - self.layout.joined(),
         }
     }
@@ -233,8 +235,16 @@ impl AxialWork {
         }
     }
 
-    /// Meets the water's surface as it is at t_n. Where that follows a step, `after_step`, what joined with the water is booked.
-    pub fn meet_surface(&mut self, after_step: bool) {
+    /// Takes over what waves do at the nodes of this line, by its number, over a span of time.
+    pub fn load_waves(&mut self, span: Option<&WaveSpan>, line: usize) {
+        self.layout.load_waves(span, line);
+    }
+
+    /// Meets the water's surface as it is at t_n. Where that is `after` a step, what joined with the water in it is booked.
+    pub fn meet_surface(&mut self, after: Option<Step>) {
+        if let Some(step) = after {
+            self.layout.leave_surface(step, [true; 2]);
+        }
         self.layout.find_surface();
         let Some(surface) = &self.layout.surface else {
             return;
@@ -244,15 +254,20 @@ impl AxialWork {
             self.nodes.mass_normal[FIRST + i] = across;
             self.nodes.mass_tangent[FIRST + i] = along;
         }
-        match after_step {
-            true => self.layout.book_surface([true; 2]),
-            false => self.layout.clear_surface(),
+        match after {
+            Some(_) => self.layout.book_surface([true; 2]),
+            None => self.layout.clear_surface(),
         }
     }
 
     /// Sets what multiplies the current at t_n [-].
     pub fn set_current(&mut self, factor: f64) {
         self.layout.set_current(factor);
+    }
+
+    /// Sets the waves to those of t_n [s].
+    pub fn set_time(&mut self, t: f64) {
+        self.layout.set_time(t);
     }
 
     /// Puts an end at a position [m] with the velocity [m/s] that the next step takes as lagged.
@@ -301,7 +316,7 @@ impl AxialWork {
         self.layout
             .position
             .set(FIRST + self.layout.segment_count, ends[1]);
-        self.meet_surface(true);
+        self.meet_surface(Some(step));
         passes
     }
 
@@ -383,7 +398,7 @@ impl AxialWork {
                     let current = self
                         .current
                         .as_mut()
-                        .expect("this kernel runs in a current");
+                        .expect("this kernel runs in moving water");
                     current.flow.store(flow, at);
                 }
                 let speed = now.dot(tangent);
@@ -399,10 +414,17 @@ impl AxialWork {
                     let current = self
                         .current
                         .as_mut()
-                        .expect("this kernel runs in a current");
+                        .expect("this kernel runs in moving water");
                     normal.store(&mut current.across, at);
                     along.store(&mut current.along, at);
                 }
+            }
+            if CURRENT && let Some(waves) = &line.waves {
+                let press = waves.press(at, tangent);
+                force = force + press;
+                let current = self.current.as_mut();
+                let current = current.expect("this kernel runs in moving water");
+                current.press.store(press, at);
             }
             if let Some(damping) = &line.mass_damping {
                 let damping = Lanes::load(damping, at);
@@ -661,13 +683,13 @@ impl AxialWork {
         }
     }
 
-    /// Books the work of the drag on the water's way, which [`Self::book`] took off what was lost.
+    /// Books the work of the drag on the water's way and that of the water's press, which [`Self::book`] took off what was lost.
     #[inline(always)]
     fn book_current(&mut self, step: Step) {
         let current = self
             .current
             .as_ref()
-            .expect("this kernel runs in a current");
+            .expect("this kernel runs in moving water");
         let half = Lanes::splat(0.5);
         let line = &self.layout;
         let mut sum = Lanes::splat(0.0);
@@ -678,7 +700,8 @@ impl AxialWork {
             let (past, across) = (flow - mean, Lanes::load(&current.across, at));
             let excess = Lanes::load(&current.along, at) - across;
             let power = across * past.dot(flow) + excess * past.dot(tangent) * flow.dot(tangent);
-            sum = sum + Lanes::load(&self.interior, at) * power;
+            let pressing = current.press.load(at).dot(mean);
+            sum = sum + Lanes::load(&self.interior, at) * (power + pressing);
         }
         let work = sum * Lanes::splat(step.kick);
         self.given += work.sum();

@@ -15,11 +15,10 @@
 use nalgebra::{Matrix3, Vector3};
 use pulp::NullaryFnOnce;
 
-use super::layout::{FIRST, Layout, interior, pad};
+use super::layout::{FIRST, Layout, Water, interior, pad};
 use super::ledger::Flow;
 use crate::math::lanes::{Components, Lanes, Vectors};
-use crate::model::{End, Line, LineState};
-use crate::physics::flow::Profile;
+use crate::model::{End, Line, LineState, WaveSpan};
 use crate::physics::morison::{self, DragCoefficients};
 use crate::physics::stretch::{StretchLaw, total_tension};
 
@@ -36,7 +35,7 @@ pub struct LineWork {
     interior: Vec<f64>,
     /// Whether ends A and B are held.
     held: [bool; 2],
-    /// Energy lost, and given by held ends and by the current, since the state was loaded [J].
+    /// Energy lost, and given by held ends and by moving water, since the state was loaded [J].
     lost: Lanes,
     given: f64,
     given_by_current: Lanes,
@@ -61,7 +60,9 @@ impl WaterWork {
             .zip(&nodes.mass_normal)
             .map(|(t, n)| 1.0 / t - 1.0 / n)
             .collect();
-        let wet = layout.drag.is_some() || excess.iter().any(|excess| *excess != 0.0);
+        let wet = layout.drag.is_some()
+            || layout.waves.is_some()
+            || excess.iter().any(|excess| *excess != 0.0);
         let drag = layout.drag.as_ref();
         wet.then(|| WaterWork {
             drag_normal: drag.map_or(zeros.clone(), |drag| drag.normal.clone()),
@@ -70,7 +71,7 @@ impl WaterWork {
         })
     }
 
-    /// What the water resists with at t_n, and the power of the drag on the water's way.
+    /// What the water resists with at t_n, what it presses with, and the power of the drag on the water's way.
     #[inline(always)]
     fn drag_now<const CURRENT: bool>(
         &self,
@@ -78,15 +79,19 @@ impl WaterWork {
         at: usize,
         tangent: Vectors,
         step: Step,
-    ) -> (Vectors, Lanes) {
+    ) -> (Vectors, Vectors, Lanes) {
         let velocity = line.velocity_now(at, step);
         let still = Lanes::splat(0.0);
         if CURRENT {
             let flow = line.water_velocity(at);
             let drag = self.drag(at, velocity - flow, tangent);
-            (drag, still - drag.dot(flow))
+            let press = match &line.waves {
+                Some(waves) => waves.press(at, tangent),
+                None => Vectors::zero(),
+            };
+            (drag, press, still - drag.dot(flow))
         } else {
-            (self.drag(at, velocity, tangent), still)
+            (self.drag(at, velocity, tangent), Vectors::zero(), still)
         }
     }
 
@@ -179,6 +184,8 @@ pub struct EndLoad {
     pub force: Vector3<f64>,
     /// The part of it that water and damping resist with [N].
     pub resistance: Vector3<f64>,
+    /// The part of it that accelerated water presses with [N].
+    pub press: Vector3<f64>,
     /// Power of the drag on the water's way [W].
     pub current_power: f64,
     /// Mass matrix of the half node [kg].
@@ -191,11 +198,11 @@ impl LineWork {
     /// Scratch for a line; `None` where its sections have different strain measures, which the kernel does not mix.
     pub fn new(
         line: &Line,
-        profile: Option<&Profile>,
+        water: Water<'_>,
         held: [bool; 2],
         negative_tension: bool,
     ) -> Option<LineWork> {
-        let layout = Layout::new(line, profile, negative_tension)?;
+        let layout = Layout::new(line, water, negative_tension)?;
         let inverse_mass: Vec<f64> = line
             .nodes
             .mass_normal
@@ -227,8 +234,11 @@ impl LineWork {
         self.given_by_current = Lanes::splat(0.0);
     }
 
-    /// Meets the water's surface as it is at t_n. Where that follows a step, `after_step`, what joined with the water is booked.
-    pub fn meet_surface(&mut self, after_step: bool) {
+    /// Meets the water's surface as it is at t_n. Where that is `after` a step, what joined with the water in it is booked.
+    pub fn meet_surface(&mut self, after: Option<Step>) {
+        if let Some(step) = after {
+            self.layout.leave_surface(step, self.held);
+        }
         self.layout.find_surface();
         let Some(surface) = &self.layout.surface else {
             return;
@@ -242,23 +252,33 @@ impl LineWork {
                 water.inverse_mass_excess[at] = along - across;
             }
         }
-        match after_step {
-            true => self.layout.book_surface(self.held),
-            false => self.layout.clear_surface(),
+        match after {
+            Some(_) => self.layout.book_surface(self.held),
+            None => self.layout.clear_surface(),
         }
     }
 
     /// Energy given by held ends and the current and lost between them since [`Self::load`].
     pub fn flow(&self) -> Flow {
         Flow {
-            given: self.given + self.given_by_current.sum(),
+            given: self.given + self.given_by_current.sum() + self.layout.lifted(),
             lost: self.lost.sum() - self.layout.joined(),
         }
+    }
+
+    /// Takes over what waves do at the nodes of this line, by its number, over a span of time.
+    pub fn load_waves(&mut self, span: Option<&WaveSpan>, line: usize) {
+        self.layout.load_waves(span, line);
     }
 
     /// Sets what multiplies the current at t_n [-].
     pub fn set_current(&mut self, factor: f64) {
         self.layout.set_current(factor);
+    }
+
+    /// Sets the waves to those of t_n [s].
+    pub fn set_time(&mut self, t: f64) {
+        self.layout.set_time(t);
     }
 
     /// Hands the state back after steps of `steps` [s].
@@ -314,10 +334,10 @@ impl LineWork {
 
     #[inline(always)]
     fn choose_node_pass(&mut self, step: Step) {
-        match (&self.water, &self.layout.current) {
+        match (&self.water, self.layout.flows()) {
             (None, _) => self.choose_dry_pass::<false, false>(step),
-            (Some(_), None) => self.choose_dry_pass::<true, false>(step),
-            (Some(_), Some(_)) => self.choose_dry_pass::<true, true>(step),
+            (Some(_), false) => self.choose_dry_pass::<true, false>(step),
+            (Some(_), true) => self.choose_dry_pass::<true, true>(step),
         }
     }
 
@@ -353,24 +373,21 @@ impl LineWork {
             let mut force = self.pull.load(at) - self.pull.load(at - 1);
             force.z = force.z - Lanes::load(&line.weight, at);
             let zero = Lanes::splat(0.0);
-            let mut resistance = Vectors {
-                x: zero,
-                y: zero,
-                z: zero,
-            };
+            let mut resistance = Vectors::zero();
             if MASS_DAMPING {
                 let damping = line.mass_damping.as_deref().unwrap_or_default();
                 resistance = velocity.scale(Lanes::load(damping, at));
             }
-            let mut current_power = zero;
+            let (mut press, mut power) = (Vectors::zero(), zero);
             // M⁻¹f, and M⁻¹ẑ for the bed
             let (inverted, response) = if WATER {
                 let water = self.water.as_ref().expect("this kernel runs in water");
                 let tangent = line.tangent(at);
-                let (drag, power) = water.drag_now::<CURRENT>(line, at, tangent, step);
+                let drag;
+                (drag, press, power) = water.drag_now::<CURRENT>(line, at, tangent, step);
                 resistance = resistance + drag;
-                current_power = power;
                 force = force - resistance;
+                force = if CURRENT { force + press } else { force };
                 water.inverted(at, inverse_mass, force, tangent)
             } else {
                 force = force - resistance;
@@ -398,8 +415,10 @@ impl LineWork {
                 self.lost = self.lost + half * given_away;
             }
             if CURRENT {
-                let given = Lanes::load(&self.interior, at) * current_power * kick;
-                self.given_by_current = self.given_by_current + given;
+                let part = Lanes::load(&self.interior, at);
+                let by_press = part * press.dot(velocity + kicked) * kick * Lanes::splat(0.5);
+                let given = part * power * kick;
+                self.given_by_current = self.given_by_current + given + by_press;
                 self.lost = self.lost + given;
             }
             line.velocity_before.store(kicked, at); // v_{n−3/2} has been read
@@ -461,6 +480,8 @@ impl LineWork {
         if let Some(damping) = &line.mass_damping {
             resistance -= damping[at] * velocity;
         }
+        let press = line.waves.as_ref();
+        let press = press.map_or(Vector3::zeros(), |waves| waves.press_of(at, tangent));
         let mass_normal = 1.0 / self.inverse_mass[at];
         let mass_tangent = 1.0 / (self.inverse_mass[at] + excess);
         let mass = mass_normal * Matrix3::identity()
@@ -473,8 +494,9 @@ impl LineWork {
             ]
         });
         EndLoad {
-            force: force + resistance,
+            force: force + resistance + press,
             resistance,
+            press,
             current_power,
             mass,
             contact,

@@ -2,7 +2,7 @@
 //!
 //! The end's half node belongs to the line, so that what the vessel feels is
 //!
-//! F = T q + S − [M(t) a + w ẑ − f_drag − f_bed],
+//! F = T q + S − [M(t) a + w ẑ − f_drag − f_waves − f_bed],
 //!
 //! T q pointing into the line, S the shear of a line with bending stiffness, v and a those of the point. Leaving the half node out would make the end force first order in
 //! the segment length. A line on its closed-form catenary brings the forces of that.
@@ -13,8 +13,7 @@ use nalgebra::Vector3;
 
 use super::beam::BeamView;
 use super::leapfrog::segment_tension;
-use crate::model::{Dry, End, Line, LineState, PointState};
-use crate::physics::flow::Stream;
+use crate::model::{Dry, End, Line, LineState, PointState, WaterAlong};
 use crate::physics::morison::{self, DragCoefficients};
 use crate::physics::seabed::{self, ContactCoefficients};
 use crate::statics::assembly::end_shear;
@@ -37,13 +36,13 @@ pub fn tension(line: &Line, state: &LineState, i: usize, negative_tension: bool)
     )
 }
 
-/// Force [N] of the line on the point at one of its ends, in a current or still water.
+/// Force [N] of the line on the point at one of its ends, in water that moves or rests.
 pub fn end_force(
     line: &Line,
     state: &LineState,
     end: End,
     point: &PointState,
-    stream: Option<Stream>,
+    water: WaterAlong,
     negative_tension: bool,
 ) -> Vector3<f64> {
     if let Some(view) = BeamView::of(line, state) {
@@ -67,7 +66,7 @@ pub fn end_force(
     let (velocity, acceleration) = (point.velocity, point.acceleration);
     let surface = line.surface.as_ref();
     let dry = surface.map_or(Dry::default(), |surface| {
-        surface.node(node, &state.position)
+        surface.node_in(water, node, &state.position)
     });
     let along = acceleration.dot(&inward) * inward;
     let [mass_normal, mass_tangent] = nodes.masses(node, dry.part);
@@ -83,8 +82,12 @@ pub fn end_force(
             tangent: drag.tangent[node],
         }
         .times(1.0 - dry.part);
-        let flow = stream.map_or(Vector3::zeros(), |s| s.velocity(state.position[node].z));
+        let flow = water.velocity(node, state.position[node].z);
         force += morison::drag(coefficients, velocity - flow, inward);
+    }
+    if let (Some(pressed), Some(waves)) = (&nodes.pressed, &water.waves) {
+        let wet = 1.0 - dry.part;
+        force += wet * pressed.force(node, waves.at(node).acceleration, inward);
     }
     if let Some(damping) = &nodes.mass_damping {
         force -= damping[node] * velocity;

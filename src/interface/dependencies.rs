@@ -117,6 +117,7 @@ impl Scope<'_> {
             Parameter::Gravity => {
                 self.types()
                     .any(|name| scene.line_types[name].weight.is_none())
+                    || self.emerges()
                     || self
                         .free_points()
                         .any(|point| point.mass.is_some() || point.volume.is_some())
@@ -152,10 +153,18 @@ impl Scope<'_> {
         }
     }
 
-    /// Whether buoyancy is subtracted from the weight of a line type.
+    /// Whether buoyancy is subtracted from the weight of a line type, under water or where it comes out.
     fn is_buoyant(&self, name: &str) -> bool {
         let line_type = &self.scene.line_types[name];
-        self.scene.water.is_some() && line_type.weight.is_none() && line_type.diameter.is_some()
+        self.scene.water.is_some()
+            && line_type.diameter.is_some()
+            && (line_type.weight.is_none() || self.emerges())
+    }
+
+    /// Whether a line may come out of the water, which closed forms never do.
+    fn emerges(&self) -> bool {
+        let mut lines = self.lines.iter();
+        !self.closed_form && lines.any(|&line| self.model.lines[line].surface.is_some())
     }
 
     /// Line types that the lines use.

@@ -2,12 +2,13 @@
 
 mod beam;
 mod spacing;
+mod waves;
 
 use nalgebra::Vector3;
 
 use super::{
     Bending, Contact, Current, Drag, End, FreePoint, Line, Model, Motion, Network, Nodes, Point,
-    PointContact, Role, Section, Segments, Surface, Vessel, mesh,
+    PointContact, Pressed, Role, Section, Segments, Surface, Vessel, mesh,
 };
 use crate::physics::bending;
 use crate::physics::flow::Profile;
@@ -59,6 +60,7 @@ impl Model {
             bed: scene.seabed.as_ref().map(|bed| -bed.depth),
             bed_friction: scene.seabed.as_ref().map_or(0.0, |bed| bed.friction),
             current: scene.water.as_ref().and_then(current),
+            waves: waves::waves(scene),
             networks,
             points,
             lines,
@@ -180,6 +182,7 @@ pub(super) struct LineLaw {
     axial_damping: f64,                   // BA [N s], without the damping ratio's part
     damping_ratio: f64,                   // ζ [-]
     mass: f64,                            // m [kg/m]
+    displaced: f64,                       // ρA [kg/m]
     added_normal: f64,                    // ρA·C_an [kg/m]
     added_tangent: f64,                   // ρA·C_at [kg/m]
     weight: f64,                          // w [N/m]
@@ -263,6 +266,7 @@ fn line_law(scene: &Scene, line_type: &LineType) -> LineLaw {
             + rayleigh.map_or(0.0, |r| r.stiffness * ea),
         damping_ratio: damping_ratio(line_type),
         mass,
+        displaced,
         added_normal: displaced * line_type.added_mass_normal.unwrap_or(0.0),
         added_tangent: displaced * line_type.added_mass_tangential.unwrap_or(0.0),
         weight,
@@ -429,6 +433,11 @@ fn nodes(scene: &Scene, parts: &[SegmentPart], contact_in_reach: bool) -> Nodes 
         normal: lump(&|law| law.drag.map_or(0.0, |drag| drag.normal)),
         tangent: lump(&|law| law.drag.map_or(0.0, |drag| drag.tangent)),
     });
+    let waves = scene.water.as_ref().is_some_and(|w| w.waves.is_some());
+    let pressed = (waves && any(&|law| law.displaced > 0.0)).then(|| Pressed {
+        normal: lump(&|law| law.displaced + law.added_normal),
+        tangent: lump(&|law| law.displaced + law.added_tangent),
+    });
     let contact = (contact_in_reach && any(&|law| law.contact.is_some())).then(|| {
         let stiffness = lump(&|law| law.contact.map_or(0.0, |contact| contact.stiffness));
         let damping = lump(&|law| law.contact.map_or(0.0, |contact| contact.damping));
@@ -449,6 +458,7 @@ fn nodes(scene: &Scene, parts: &[SegmentPart], contact_in_reach: bool) -> Nodes 
         length,
         weight,
         drag,
+        pressed,
         contact,
     }
 }

@@ -9,12 +9,14 @@ mod build;
 mod initial;
 mod mesh;
 mod motion;
+mod sea;
 mod state;
 mod surface;
 mod vessel;
 
 use nalgebra::Vector3;
 
+use crate::physics::airy::{Orbit, Waves};
 use crate::physics::flow::{Profile, Stream};
 use crate::physics::point::{Sphere, Wetted};
 use crate::physics::seabed::ContactCoefficients;
@@ -24,6 +26,7 @@ use crate::scene::{InitialShape, PointForce, PointMoment, Solver, TimeFunction};
 pub use beam::{Beam, BeamElement, BeamState};
 pub use bending::{Bending, joint};
 pub use motion::{Kinematics, Motion, Pose};
+pub use sea::{WaterAlong, WaveSpan, WavesAlong, WavesAt};
 pub use state::{ClosedForm, LineState, PointState, State};
 pub use surface::{Dry, Surface};
 pub use vessel::{Frame, Vessel};
@@ -39,6 +42,8 @@ pub struct Model {
     pub bed_friction: f64,
     /// The current, where the water flows.
     pub current: Option<Current>,
+    /// The waves, where there are some.
+    pub waves: Option<Waves>,
     /// Points in the order of the scene.
     pub points: Vec<Point>,
     /// Lines in the order of the scene.
@@ -235,6 +240,8 @@ pub struct Nodes {
     pub weight: Vec<f64>,
     /// Drag, where there is water and a coefficient.
     pub drag: Option<Drag>,
+    /// What the water presses with where waves accelerate it.
+    pub pressed: Option<Pressed>,
     /// Contact, where there is a seabed in reach.
     pub contact: Option<Contact>,
     /// Mass-proportional damping α·m [N s/m], where a line type has it.
@@ -248,6 +255,39 @@ pub struct Drag {
     pub normal: Vec<f64>,
     /// Along the line [N s²/m²].
     pub tangent: Vec<f64>,
+}
+
+/// Mass of the water whose acceleration a node feels: that of the displaced water, by the pressure of the undisturbed wave (Froude and
+/// Krylov), and the added mass. Across the line ρA(1 + C_an)l, along it ρA(1 + C_at)l, since the pressure that the effective tension leaves
+/// out acts along the line too.
+#[derive(Debug, Clone)]
+pub struct Pressed {
+    /// Across the line [kg].
+    pub normal: Vec<f64>,
+    /// Along the line [kg].
+    pub tangent: Vec<f64>,
+}
+
+impl Pressed {
+    /// Force [N] on a node whose unit tangent is `tangent` [-], by water of an acceleration [m/s²].
+    #[inline]
+    pub fn force(
+        &self,
+        node: usize,
+        acceleration: Vector3<f64>,
+        tangent: Vector3<f64>,
+    ) -> Vector3<f64> {
+        let excess = self.tangent[node] - self.normal[node];
+        self.normal[node] * acceleration + excess * acceleration.dot(&tangent) * tangent
+    }
+}
+
+impl Pressed {
+    /// This node as it is where a `dry` part of it [-] is out of the water: mass across and along the line [kg].
+    #[inline]
+    pub fn masses(&self, node: usize, dry: f64) -> [f64; 2] {
+        [&self.normal, &self.tangent].map(|masses| (1.0 - dry) * masses[node])
+    }
 }
 
 /// Lumped contact coefficients of the nodes.
@@ -291,6 +331,11 @@ impl Line {
     /// Whether a current acts on it.
     pub fn drifts(&self, model: &Model) -> bool {
         self.nodes.drag.is_some() && model.current.is_some()
+    }
+
+    /// Whether waves act on it.
+    pub fn heaves(&self, model: &Model) -> bool {
+        model.waves.is_some() && (self.nodes.drag.is_some() || self.nodes.pressed.is_some())
     }
 
     /// Index of the node at an end.
@@ -361,6 +406,14 @@ impl FreePoint {
     pub fn drag(&self, wetted: Wetted, velocity: Vector3<f64>) -> Vector3<f64> {
         let sphere = self.sphere.as_ref();
         sphere.map_or(Vector3::zeros(), |sphere| sphere.drag(wetted, velocity))
+    }
+
+    /// Force [N] of the water that waves accelerate, where it is wet.
+    #[inline]
+    pub fn pressed(&self, wetted: Wetted, orbit: &Orbit) -> Vector3<f64> {
+        let sphere = self.sphere.as_ref();
+        let mass = sphere.map_or(0.0, |sphere| sphere.displaced + sphere.added_mass);
+        mass * wetted.part * orbit.acceleration
     }
 
     /// Energy of weight and buoyancy at a height z [m], in [J].

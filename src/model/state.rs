@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
 
-use super::{BeamState, Kinematics, Line};
+use super::{BeamState, Kinematics, Line, WaveSpan};
 
 /// State of a whole model at one time.
 #[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -14,6 +14,8 @@ pub struct State {
     pub points: Vec<PointState>,
     /// Lines, in the order of the model.
     pub lines: Vec<LineState>,
+    /// What waves do at the nodes around this time, where there are waves.
+    pub waves: Option<WaveSpan>,
 }
 
 /// State of a point.
@@ -145,7 +147,8 @@ macro_rules! clone_in_place {
 clone_in_place!(State {
     time,
     points,
-    lines
+    lines,
+    waves
 });
 clone_in_place!(LineState {
     position,

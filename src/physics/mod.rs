@@ -10,6 +10,7 @@ pub mod point;
 pub mod rayleigh;
 pub mod seabed;
 pub mod section;
+pub mod spectrum;
 pub mod stretch;
 pub mod surface;
 pub mod weight;

@@ -9,6 +9,7 @@ pub mod channel;
 mod check;
 mod commented;
 mod document;
+mod drive;
 mod error;
 mod from_deck;
 mod map;
@@ -23,18 +24,22 @@ mod rows;
 mod surface;
 mod time_function;
 mod units;
+mod water_file;
+mod waves;
 mod words;
 
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+pub use drive::{Drive, RegularMotion};
 pub use error::{LoadError, SceneError};
 pub use notes::Note;
 pub use places::Places;
 use read::Reading;
 pub use read::{LoadedScene, Supplement, TOML, load, load_with};
 pub use time_function::{HarmonicMotion, MotionFile, MotionPath, MotionRow, TimeFunction};
+pub use waves::{RegularWave, Sea, SpectrumKind, WaveComponents, Waves};
 
 /// Standard gravity [m/s²], the default of [`Scene::gravity`].
 pub const STANDARD_GRAVITY: f64 = 9.80665;
@@ -85,6 +90,9 @@ pub struct Water {
     /// How it flows; still where absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub current: Option<Current>,
+    /// Its waves; none where absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub waves: Option<Waves>,
     /// Whether lines lose buoyancy, drag and added mass above z = 0. Where absent, those do that have an end above it, or could float
     /// up to it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -99,6 +107,9 @@ pub struct Current {
     /// Velocity at all heights [m/s].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub velocity: Option<[f64; 3]>,
+    /// A file of MoorDyn's format that the profile stands in: below three lines of headings, rows of z [m] and vx, vy, vz [m/s].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub file: Option<String>,
     /// Rows of height z [m] and horizontal velocity vx, vy [m/s], no two at one height.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub profile: Option<Vec<[f64; 3]>>,
@@ -113,6 +124,7 @@ impl Water {
         Water {
             density,
             current: None,
+            waves: None,
             surface: None,
         }
     }

@@ -12,7 +12,10 @@ use toml::de::{DeTable, DeValue};
 use super::notes::Note;
 use super::places::Places;
 use super::rows::{Findings, MISTAKES_MAX};
-use super::{LoadError, MotionPath, Scene, SceneError, document, map, moordyn, motion_file, path};
+use super::{
+    LoadError, MotionPath, Scene, SceneError, WaveComponents, document, map, moordyn, motion_file,
+    path, water_file,
+};
 
 /// Longest scene file that is read [bytes].
 const SIZE_MAX: u64 = 256 << 20;
@@ -108,7 +111,7 @@ pub fn load(path: &Path) -> Result<LoadedScene, LoadError> {
 pub fn load_with(path: &Path, supplement: &Supplement) -> Result<LoadedScene, LoadError> {
     let text = read_text(path)?;
     let loaded = match deck_of(&text) {
-        Some(read) => deck_scene(read(&text, supplement), &text),
+        Some(read) => deck_scene(read(&text, supplement), &text, folder_of(path)),
         None => scene_of(&text, path).map(|scene| {
             let notes = scene.notes();
             (scene, notes, TOML, Places::default())
@@ -149,7 +152,7 @@ fn deck_of(text: &str) -> Option<ReadDeck> {
 type Checked = (Scene, Vec<Note>, &'static str, Places);
 
 /// What a reader made of a deck, checked as every scene is.
-fn deck_scene(reading: Reading, text: &str) -> Result<Checked, Vec<SceneError>> {
+fn deck_scene(reading: Reading, text: &str, folder: &Path) -> Result<Checked, Vec<SceneError>> {
     let Reading {
         format,
         scene,
@@ -161,9 +164,14 @@ fn deck_scene(reading: Reading, text: &str) -> Result<Checked, Vec<SceneError>> 
         mistakes.truncate(MISTAKES_MAX);
         mistakes
     };
-    let Some(scene) = scene.filter(|_| findings.mistakes.is_empty()) else {
+    let Some(mut scene) = scene.filter(|_| findings.mistakes.is_empty()) else {
         return Err(in_order(findings.mistakes));
     };
+    let of_files = read_water(&mut scene, folder);
+    if !of_files.is_empty() {
+        let located = of_files.into_iter().map(|mistake| places.locate(mistake));
+        return Err(in_order(located.collect()));
+    }
     let mistakes: Vec<SceneError> = scene
         .mistakes()
         .into_iter()
@@ -181,8 +189,9 @@ fn deck_scene(reading: Reading, text: &str) -> Result<Checked, Vec<SceneError>> 
 fn scene_of(text: &str, path: &Path) -> Result<Scene, Vec<SceneError>> {
     let document = Document::parse(text).map_err(|mistake| vec![mistake])?;
     let mut scene = document.scene().map_err(|mistake| vec![mistake])?;
-    let folder = path.parent().unwrap_or(Path::new("."));
+    let folder = folder_of(path);
     let mut mistakes = read_motions(&mut scene, folder);
+    mistakes.extend(read_water(&mut scene, folder));
     for mistake in scene.mistakes() {
         if mistakes.iter().all(|known| known.at != mistake.at) {
             mistakes.push(mistake);
@@ -193,6 +202,48 @@ fn scene_of(text: &str, path: &Path) -> Result<Scene, Vec<SceneError>> {
     } else {
         Err(document.place(mistakes))
     }
+}
+
+/// The folder that a scene's files stand in.
+fn folder_of(path: &Path) -> &Path {
+    path.parent().unwrap_or(Path::new("."))
+}
+
+/// Reads the files of waves and current, whose rows take their place; returns what is wrong with them.
+fn read_water(scene: &mut Scene, folder: &Path) -> Vec<SceneError> {
+    let mut mistakes = Vec::new();
+    let Some(water) = &mut scene.water else {
+        return mistakes;
+    };
+    if let Some(current) = &mut water.current
+        && current.profile.is_none()
+        && let Some(file) = &current.file
+    {
+        match water_file::profile(&folder.join(file)) {
+            Ok(rows) => (current.profile, current.file) = (Some(rows), None),
+            Err(problem) => mistakes.push(SceneError::new("water.current.file", problem)),
+        }
+    }
+    let Some(waves) = &mut water.waves else {
+        return mistakes;
+    };
+    let count = waves.seas.len();
+    for (i, sea) in waves.seas.iter_mut().enumerate() {
+        let Some(file) = sea.file.as_ref().filter(|_| sea.components.is_none()) else {
+            continue;
+        };
+        match water_file::components(&folder.join(file)) {
+            Ok(rows) => (sea.components, sea.file) = (Some(WaveComponents::Rows(rows)), None),
+            Err(problem) => {
+                let at = match count {
+                    1 => "water.waves.file".to_string(),
+                    _ => format!("water.waves[{i}].file"),
+                };
+                mistakes.push(SceneError::new(at, problem));
+            }
+        }
+    }
+    mistakes
 }
 
 /// Reads every motion file of the scene; returns what is wrong with them.

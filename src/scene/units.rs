@@ -5,6 +5,18 @@ const UNITS: &[(&str, &str, &str)] = &[
     ("Scene", "gravity", "m/s²"),
     ("Water", "density", "kg/m³"),
     ("Current", "velocity", "m/s"),
+    ("Sea", "significant_height", "m"),
+    ("Sea", "peak_period", "s"),
+    ("Sea", "peakedness", "-"),
+    ("Sea", "direction", "rad"),
+    ("Sea", "spreading", "-"),
+    ("Sea", "seed", "-"),
+    ("Sea", "ramp", "s"),
+    ("RegularWave", "height", "m"),
+    ("RegularWave", "amplitude", "m"),
+    ("RegularWave", "period", "s"),
+    ("RegularWave", "direction", "rad"),
+    ("RegularWave", "phase", "rad"),
     ("Seabed", "depth", "m"),
     ("Seabed", "stiffness", "Pa/m"),
     ("Seabed", "damping", "Pa s/m"),
@@ -78,7 +90,7 @@ mod tests {
 
     #[test]
     fn every_unit_said_in_a_message_stands_in_the_docs_of_its_key() {
-        let source = include_str!("mod.rs");
+        let source = concat!(include_str!("mod.rs"), include_str!("waves.rs"));
         for (owner, key, unit) in UNITS {
             let Some(body) = body(source, owner) else {
                 let elsewhere = ["MotionText", "InitialShape", "Strain"];

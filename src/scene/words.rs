@@ -86,18 +86,7 @@ impl Scene {
             )
         };
         let water = match &self.water {
-            Some(water) => {
-                let density = quantity(water.density, "kg/m³");
-                let surface = surroundings::surface_in_words(self);
-                match &water.current {
-                    None => format!("still water of {density} {surface}"),
-                    Some(current) => format!(
-                        "water of {density} {surface}, with a current: {}; the drag on lines follows their velocity through the \
-                         water, at rest too",
-                        surroundings::current_in_words(current)
-                    ),
-                }
-            }
+            Some(water) => surroundings::water_in_words(self, water),
             None => "no water".to_string(),
         };
         vec![gravity, water, self.seabed_in_words()]

@@ -194,7 +194,7 @@ impl Workspace {
                 line,
                 line_state,
                 line.clamps(&state.points),
-                stream,
+                model.water_along(state, index, t),
                 weights,
                 negative_tension,
             );
@@ -202,7 +202,8 @@ impl Workspace {
         for_free_points(model, network, |index, free| {
             let point = &mut self.points[index];
             let load = model.points[index].load_at(t);
-            point.assemble_dynamic::<TANGENT>(free, &state.points[index], load, stream, weights);
+            let water = (stream, state.waves_at_point(index, t));
+            point.assemble_dynamic::<TANGENT>(free, &state.points[index], load, water, weights);
         });
         self.gather(model, network);
     }
@@ -405,12 +406,12 @@ pub fn end_force(
         &mut work.lines[line],
     );
     line_work.fade_dampers(line_model, line_state, 0.0);
-    let stream = model.stream(state.time);
+    let water = model.water_along(state, line, state.time);
     line_work.assemble_dynamic::<false>(
         line_model,
         line_state,
         clamps,
-        stream,
+        water,
         &weights,
         negative_tension,
     );

@@ -91,6 +91,7 @@ pub fn solve_posed(
         time: t,
         points: points.to_vec(),
         lines: Vec::with_capacity(model.lines.len()),
+        waves: None,
     };
     for (line, work) in model.lines.iter().zip(&mut work.lines) {
         let [a, b] = line.ends.map(|point| places[point]);

@@ -245,6 +245,7 @@ mod tests {
             time: 0.0,
             points,
             lines,
+            waves: None,
         };
         Modes::new(model, 0, &state, &mut Workspace::new(model))
     }

@@ -6,7 +6,8 @@ use super::deck::{Attachment, Body, Deck, Line, LineEnd, LineType, Point, Proper
 use crate::scene::from_deck::{self, SEA_WATER, Vessels, bed, place_position};
 use crate::scene::rows::{Findings, Placed};
 use crate::scene::{
-    self, Output, Places, PointForce, PointKind, Scene, Section, Supplement, TimeFunction, Water,
+    self, Current, Output, Places, PointForce, PointKind, Scene, Sea, Section, Supplement,
+    TimeFunction, Water, Waves,
 };
 
 /// A deck on its way to a scene.
@@ -65,6 +66,20 @@ fn plain(property: &Property) -> f64 {
 /// Zero says that there is none.
 fn given(value: f64) -> Option<f64> {
     (value != 0.0).then_some(value)
+}
+
+/// File of the components of waves.
+const WAVES_FILE: &str = "wave_frequencies.txt";
+/// File of a steady current.
+const CURRENT_FILE: &str = "current_profile.txt";
+
+/// The file beside a deck that an option asks for: of waves by components (7), or of a steady current (1); `None` of other options.
+pub(super) fn water_file(key: &str, value: &str) -> Option<&'static str> {
+    match (key.to_uppercase().as_str(), value) {
+        ("WAVEKIN", "7") => Some(WAVES_FILE),
+        ("CURRENTS" | "CURRENT", "1") => Some(CURRENT_FILE),
+        _ => None,
+    }
 }
 
 impl<'d> Builder<'d> {
@@ -293,7 +308,9 @@ impl<'d> Builder<'d> {
             .density
             .as_ref()
             .map_or(SEA_WATER, |density| density.value);
-        self.scene.water = Some(Water::still(density));
+        let mut water = Water::still(density);
+        self.moving_water(&mut water);
+        self.scene.water = Some(water);
         if let Some(density) = &options.density {
             self.places
                 .put("water.density", &density.span, "OPTIONS, rho");
@@ -320,6 +337,32 @@ impl<'d> Builder<'d> {
         }
         seabed.friction = self.friction();
         self.scene.seabed = Some(seabed);
+    }
+
+    /// Waves and current in files beside the deck.
+    fn moving_water(&mut self, water: &mut Water) {
+        for (key, value) in &self.deck.options.surroundings {
+            let words = format!("OPTIONS, {key}");
+            let Some(file) = water_file(key, &value.value) else {
+                continue;
+            };
+            let text = format!("{key} {}: read from {file} beside this file", value.value);
+            self.findings.remark(value.span.start, text);
+            if file == WAVES_FILE {
+                self.places.put("water.waves.file", &value.span, words);
+                let sea = Sea {
+                    file: Some(file.to_string()),
+                    ..Sea::default()
+                };
+                water.waves = Some(Waves { seas: vec![sea] });
+            } else {
+                self.places.put("water.current.file", &value.span, words);
+                water.current = Some(Current {
+                    file: Some(file.to_string()),
+                    ..Current::default()
+                });
+            }
+        }
     }
 
     /// Friction coefficient of the bed [-]: the only one, or that along the line where there are two.

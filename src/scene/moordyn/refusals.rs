@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::build::water_file;
 use super::deck::{Attachment, Deck, Property};
 use crate::scene::rows::{Findings, Placed, shown};
 
@@ -232,12 +233,16 @@ fn carried(segments: usize) -> Option<String> {
 /// Waves and currents from options and files.
 fn waves_currents_and_beds(deck: &Deck, findings: &mut Findings) {
     for (key, value) in &deck.options.surroundings {
+        if water_file(key, &value.value).is_some() {
+            continue;
+        }
         let what = match key.to_uppercase().as_str() {
             "SEAFLOORFILE" | "BATHYMETRYFILE" | "BATHFILE" => {
                 "a seabed from a file is not modelled: give one depth with WtrDpth [m]"
             }
             _ => {
-                "waves and currents of a deck are not read: write 0, and give them in the scene or the host"
+                "only WaveKin 7 (components of wave_frequencies.txt) and Currents 1 (steady, current_profile.txt) are read of a deck: \
+                 write one of them or 0, and give other waves and currents in the scene"
             }
         };
         refuse(

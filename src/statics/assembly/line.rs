@@ -5,8 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::bending::Parts;
 use super::{BendingWork, StaticCase, Weights, surface};
 use crate::math::block_tridiagonal::Chain;
-use crate::model::{Dry, Line, LineState, Model};
-use crate::physics::flow::Stream;
+use crate::model::{Dry, Line, LineState, Model, WaterAlong};
 use crate::physics::morison::{DragCoefficients, drag, drag_slope};
 use crate::physics::stretch::total_tension;
 
@@ -139,7 +138,13 @@ impl LineWork {
         for (residual, load) in self.residual.iter_mut().zip(&self.load) {
             *residual -= case.load * load;
         }
-        self.add_surface(line, position, [case.load; 2], case.breadth);
+        self.add_surface(
+            line,
+            position,
+            WaterAlong::default(),
+            [case.load; 2],
+            case.breadth,
+        );
         for i in 0..position.len() {
             self.residual[i].z += case.load * line.nodes.weight[i];
             for axis in 0..3 {
@@ -186,7 +191,7 @@ impl LineWork {
         line: &Line,
         state: &LineState,
         clamps: [Option<Vector3<f64>>; 2],
-        stream: Option<Stream>,
+        water: WaterAlong,
         weights: &Weights,
         negative_tension: bool,
     ) {
@@ -202,13 +207,15 @@ impl LineWork {
         self.add_surface(
             line,
             &state.position,
+            water,
             [weights.force, weights.position],
             0.0,
         );
         self.add_weight_and_inertia::<TANGENT>(line, state, weights);
         if line.nodes.drag.is_some() {
-            self.add_drag::<TANGENT>(line, state, stream, weights);
+            self.add_drag::<TANGENT>(line, state, water, weights);
         }
+        self.add_press(line, state, water, weights);
         if line.nodes.contact.is_some() {
             self.add_contact::<TANGENT>(line, state, weights);
         }
@@ -317,11 +324,24 @@ impl LineWork {
         }
     }
 
+    /// Force of water that waves accelerate; it does not depend on the state but by the tangent, which is frozen.
+    fn add_press(&mut self, line: &Line, state: &LineState, water: WaterAlong, weights: &Weights) {
+        let (Some(pressed), Some(waves)) = (&line.nodes.pressed, &water.waves) else {
+            return;
+        };
+        for i in 0..self.residual.len() {
+            let tangent = node_tangent(&state.position, i);
+            let wet = 1.0 - self.dry(i).part;
+            let force = pressed.force(i, waves.at(i).acceleration, tangent);
+            self.residual[i] -= weights.force * wet * force;
+        }
+    }
+
     fn add_drag<const TANGENT: bool>(
         &mut self,
         line: &Line,
         state: &LineState,
-        stream: Option<Stream>,
+        water: WaterAlong,
         weights: &Weights,
     ) {
         let Some(coefficients) = &line.nodes.drag else {
@@ -334,8 +354,7 @@ impl LineWork {
                 tangent: coefficients.tangent[i],
             };
             let (t, z) = (node_tangent(&state.position, i), state.position[i].z);
-            let flow = stream.map_or(Vector3::zeros(), |stream| stream.velocity(z));
-            let v = state.velocity[i] - flow;
+            let v = state.velocity[i] - water.velocity(i, z);
             if TANGENT && dry.slope > 0.0 {
                 self.diagonal[i] -= weights.position * surface::by_height(&dry, drag(k, v, t));
             }
@@ -344,7 +363,7 @@ impl LineWork {
             if TANGENT {
                 let slope = drag_slope(k, v, t);
                 self.diagonal[i] += weights.velocity * slope;
-                if let Some(stream) = stream {
+                if let Some(stream) = water.stream {
                     let mut by_height = self.diagonal[i].column_mut(2);
                     by_height -= weights.position * slope * stream.shear(z);
                 }

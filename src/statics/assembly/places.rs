@@ -80,5 +80,6 @@ pub(super) fn blank_state(model: &Model) -> State {
             .map(|point| PointState::at_rest(point.reference))
             .collect(),
         lines: model.lines.iter().map(line).collect(),
+        waves: None,
     }
 }

@@ -5,6 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::contact::SmoothContact;
 use super::{StaticCase, Weights};
 use crate::model::{FreePoint, Model, Network, Point, PointState};
+use crate::physics::airy::Orbit;
 use crate::physics::flow::Stream;
 
 /// Scratch of a point.
@@ -73,14 +74,19 @@ impl PointWork {
         free: &FreePoint,
         state: &PointState,
         load: Vector3<f64>,
-        stream: Option<Stream>,
+        water: (Option<Stream>, Option<Orbit>),
         weights: &Weights,
     ) {
         let (z, a) = (state.position.z, state.acceleration);
         let v = state.velocity;
-        let past = v - stream.map_or(Vector3::zeros(), |stream| stream.velocity(z));
-        let at = free.at(z);
+        let (stream, waves) = water;
+        let mut past = v - stream.map_or(Vector3::zeros(), |stream| stream.velocity(z));
+        let at = free.at(z - waves.map_or(0.0, |orbit| orbit.elevation));
         let mut force = load - at.weight * Vector3::z();
+        if let Some(orbit) = &waves {
+            past -= orbit.velocity;
+            force += free.pressed(at.wetted, orbit);
+        }
         self.diagonal = Matrix3::from_diagonal_element(weights.acceleration * at.mass);
         if let Some(sphere) = &free.sphere {
             force += sphere.drag(at.wetted, past);
@@ -225,7 +231,7 @@ mod tests {
                     let mut work = PointWork::new();
                     work.reach = 0.05;
                     let stream = model.stream(0.0);
-                    work.assemble_dynamic::<true>(free, state, load, stream, &weights);
+                    work.assemble_dynamic::<true>(free, state, load, (stream, None), &weights);
                     (work.residual, work.diagonal)
                 };
                 // where only the velocity moves, what depends on height stays in J and so must not be asked for
