@@ -65,7 +65,6 @@ pub(super) fn refinements(
     let (shapes, known) = shapes(scene, line, ends, vessels, laws);
     let total: f64 = line.sections.iter().map(|section| section.length).sum();
     let mut wanted = Vec::new();
-    let bend = |stiffness: f64, tension: f64| (stiffness / tension).sqrt();
     let greatest = |of: fn(&Catenary) -> f64| shapes.iter().map(of).fold(0.0, f64::max);
     let clamps = [
         (
@@ -86,7 +85,7 @@ pub(super) fn refinements(
         if clamp.is_none() || stiffness == 0.0 || tension == 0.0 {
             continue;
         }
-        let bend = bend(stiffness, tension);
+        let bend = (stiffness / tension).sqrt();
         let reach = (BENDS * bend).min(total);
         let (from, to) = match place {
             Place::ClampA => (0.0, reach),
@@ -104,7 +103,7 @@ pub(super) fn refinements(
         let stiffness = section_at(line, laws, 0.5 * (from + to)).bending_stiffness;
         let tension = greatest(Catenary::horizontal);
         if stiffness > 0.0 && tension > 0.0 {
-            let bend = bend(stiffness, tension);
+            let bend = (stiffness / tension).sqrt();
             wanted.push(Refinement {
                 from: (from - spread - BENDS * bend).max(0.0),
                 to: (to + spread + BENDS * bend).min(total),
