@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::dynamics::advance::{Counters, Workspace};
 use crate::dynamics::beam::{self, BeamView, Momentum};
-use crate::dynamics::ledger::{Energy, Ledger};
+use crate::dynamics::ledger::{self, Energy, Ledger};
 use crate::dynamics::motion::{AxisPath, HostPath, Sample, VesselPath};
 use crate::dynamics::{Choice, StepError, reaction};
 use crate::math::attitude::angle_rates;
@@ -41,6 +41,8 @@ pub enum Error {
 struct Inputs {
     points: Vec<PointInput>,
     vessels: Vec<VesselInput>,
+    /// Whether each line is to let go.
+    releases: Vec<bool>,
 }
 
 /// What a host has said about a point.
@@ -157,6 +159,7 @@ impl Simulation {
         let inputs = Inputs {
             points: vec![PointInput::default(); model.points.len()],
             vessels: vec![VesselInput::default(); model.vessels.len()],
+            releases: vec![false; model.lines.len()],
         };
         let (snapshot, work) = begin(&model, 0.0, inputs, false)?;
         Ok(Simulation {
@@ -271,6 +274,49 @@ impl Simulation {
         self.snapshot.inputs.vessels[vessel].velocity = velocity;
     }
 
+    /// Says whether a line is to let go of the point that its scene names; it does so at the next step, and for good.
+    pub fn set_release(&mut self, line: usize, release: bool) {
+        self.snapshot.inputs.releases[line] = release;
+    }
+
+    /// Whether a line is to let go, as set.
+    pub fn release(&self, line: usize) -> bool {
+        self.snapshot.inputs.releases[line]
+    }
+
+    /// Whether ends A and B of a line have parted from their points.
+    pub fn parted(&self, line: usize) -> [bool; 2] {
+        self.snapshot.state.lines[line].parted
+    }
+
+    /// Parts the lines from their points that are to let go, and books what their ends bring along; returns who was parted before.
+    fn let_go(&mut self) -> Option<(State, Ledger)> {
+        let model = &*self.model;
+        let lines = model.lines.iter().zip(&self.snapshot.inputs.releases);
+        let states = self.snapshot.state.lines.iter();
+        let released = |((line, release), shape): ((&Line, &bool), &LineState)| {
+            let partings = line.parting.filter(|_| *release);
+            let lets_go = |side: usize| partings.is_some_and(|p| p[side].on_release);
+            (0..2).any(|side| lets_go(side) && !shape.parted[side])
+        };
+        if !lines.clone().zip(states).any(released) {
+            return None;
+        }
+        let before = (self.snapshot.state.clone(), self.snapshot.ledger);
+        for ((line, release), shape) in lines.zip(&mut self.snapshot.state.lines) {
+            if let Some(partings) = line.parting.filter(|_| *release) {
+                for (parted, parting) in shape.parted.iter_mut().zip(partings) {
+                    *parted |= parting.on_release;
+                }
+            }
+        }
+        for network in &model.networks {
+            let states = [&before.0, &self.snapshot.state];
+            self.snapshot.ledger.flow.given += ledger::joined_energy(model, network, states);
+        }
+        Some(before)
+    }
+
     /// Which integrator serves each network, and its step limits.
     pub fn choices(&self) -> impl Iterator<Item = &Choice> {
         self.work.choices()
@@ -288,12 +334,17 @@ impl Simulation {
         if !self.snapshot.follows_scene {
             self.extend_paths(step);
         }
+        let before = self.let_go();
         let model = &*self.model;
         let at = Held::new(model, &self.paths, self.snapshot.follows_scene);
         let held = |point: usize, t: f64| at.point(point, t);
-        let done = self
+        let advanced = self
             .work
-            .advance(model, &mut self.snapshot.state, step, &held)?;
+            .advance(model, &mut self.snapshot.state, step, &held);
+        if let (Err(_), Some((state, ledger))) = (&advanced, before) {
+            (self.snapshot.state, self.snapshot.ledger) = (state, ledger);
+        }
+        let done = advanced?;
         self.snapshot.counters = done.counters;
         self.snapshot.ledger.flow.add(done.flow);
         self.snapshot.paths.clone_from(&self.paths);
@@ -684,6 +735,11 @@ fn begin(
         .map(|point| PointState::held(&held(point, time)))
         .collect();
     let mut state = at_rest(model, time, &places)?;
+    if model.solver.integrator != Integrator::QuasiStatic {
+        for (line, shape) in model.lines.iter().zip(&mut state.lines) {
+            shape.become_viscoelastic(line);
+        }
+    }
     rest_beams(model, &mut state, time, |point| {
         beam::attitude(&held(point, time))
     })?;

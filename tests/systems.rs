@@ -91,7 +91,7 @@ fn loads(
     let (mut forces, mut pulls) = (vec![Vector3::zeros(); nodes.len()], Vec::new());
     for (i, (kind, length)) in kinds.iter().enumerate() {
         let chord = nodes[i + 1] - nodes[i];
-        let tension = kind.axial_stiffness * (chord.norm() / length - 1.0).max(0.0);
+        let tension = kind.axial_stiffness.unwrap() * (chord.norm() / length - 1.0).max(0.0);
         pulls.push(tension * chord.normalize());
         for node in [i, i + 1] {
             let [before, after] = [node.saturating_sub(1), (node + 1).min(nodes.len() - 1)];

@@ -267,6 +267,7 @@ fn question<'a>(name: &'a str, scene: &'a Scene) -> Result<Question<'a>, String>
         .get(&section.line_type)
         .ok_or_else(refuse)?;
     let (mass, diameter) = line_type.mass.zip(line_type.diameter).ok_or_else(refuse)?;
+    let axial_stiffness = line_type.axial_stiffness.ok_or_else(refuse)?;
     let or_zero = |value: Option<f64>| value.unwrap_or(0.0);
     Ok(Question {
         name,
@@ -281,7 +282,7 @@ fn question<'a>(name: &'a str, scene: &'a Scene) -> Result<Question<'a>, String>
             length: section.length,
             mass,
             diameter,
-            axial_stiffness: line_type.axial_stiffness,
+            axial_stiffness,
             axial_damping: or_zero(line_type.axial_damping),
             drag_normal: or_zero(line_type.drag_normal),
             drag_tangential: or_zero(line_type.drag_tangential),

@@ -355,6 +355,9 @@ impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
                 }
                 work.set_time(t - drift);
                 let ends = line.ends.map(|point| (self.held)(point, t).position);
+                if let Some(partings) = &line.parting {
+                    work.part_ends(partings, t - drift, Step::after(steps, drift));
+                }
                 solves += work.step(Step::after(steps, drift), ends);
                 steps = [drift, steps[0]];
             }
@@ -391,7 +394,13 @@ impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
         let (model, network) = (self.model, &self.model.networks[number]);
         let (mut flow, mut last) = (Flow::default(), self.start);
         let mut before = ledger::power(model, network, self.state, self.start);
+        let mut parted = ledger::parted_ends(network, self.state);
         let count = |state: &State, t: f64| {
+            let now_parted = ledger::parted_ends(network, state);
+            if now_parted != parted {
+                flow.given += ledger::joined_energy(model, network, [self.state, state]);
+                parted = now_parted;
+            }
             let now = ledger::power(model, network, state, t);
             flow.add(before.times(0.5 * (t - last)));
             flow.add(now.times(0.5 * (t - last)));
@@ -501,8 +510,11 @@ fn place_held(model: &Model, state: &mut State, held: &impl Fn(usize, f64) -> Ki
         }
     }
     for (line, shape) in model.lines.iter().zip(&mut state.lines) {
-        for (node, point) in [0, line.segment_count()].into_iter().zip(line.ends) {
-            shape.velocity[node] = state.points[point].velocity;
+        let ends = [0, line.segment_count()].into_iter().zip(line.ends);
+        for ((node, point), parted) in ends.zip(shape.parted) {
+            if !parted {
+                shape.velocity[node] = state.points[point].velocity;
+            }
         }
     }
 }

@@ -24,7 +24,7 @@ use super::layout::{FIRST, Layout, Water, interior, pad};
 use super::leapfrog::Step;
 use super::ledger::Flow;
 use crate::math::lanes::{Components, Lanes, Vectors};
-use crate::model::{End, Line, LineState, WaveSpan};
+use crate::model::{End, Line, LineState, Parting, WaveSpan};
 use crate::physics::stretch::StretchLaw;
 
 /// Passes over slack and contact flags, at most [-].
@@ -59,6 +59,8 @@ pub struct AxialWork {
     current: Option<CurrentArrays>,
     /// 1 for nodes between the ends, 0 elsewhere.
     interior: Vec<f64>,
+    /// Whether ends A and B have parted from their points.
+    parted: [bool; 2],
     /// Energy lost and given since the state was loaded [J].
     lost: Lanes,
     given: f64,
@@ -142,6 +144,7 @@ impl AxialWork {
         let (zeros, vectors) = (vec![0.0; size], Components::zeros(size));
         Some(AxialWork {
             interior: interior(n),
+            parted: [false; 2],
             current: layout.flows().then(|| CurrentArrays {
                 flow: vectors.clone(),
                 across: zeros.clone(),
@@ -188,6 +191,11 @@ impl AxialWork {
     /// Takes over the state of a line.
     pub fn load(&mut self, state: &LineState) {
         self.layout.load(state);
+        self.parted = state.parted;
+        for end in [End::A, End::B] {
+            let at = self.layout.end_index(end);
+            self.interior[at] = f64::from(u8::from(self.parted[end as usize]));
+        }
         (self.lost, self.given, self.tension_peak) = (Lanes::splat(0.0), 0.0, 0.0);
         let count = self.layout.segment_count;
         if state.half_step.tension[0].len() == count {
@@ -203,8 +211,13 @@ impl AxialWork {
         }
         for at in self.layout.segment_blocks() {
             let (chord, inverse_l) = self.layout.chord(at);
-            let (force, _) = self.force_and_slope(at, chord.dot(chord) * inverse_l);
-            let tension = Lanes::load(&self.layout.axial_stiffness, at) * force.positive();
+            let tension = match &self.layout.creep {
+                None => {
+                    let (force, _) = self.force_and_slope(at, chord.dot(chord) * inverse_l);
+                    Lanes::load(&self.layout.axial_stiffness, at) * force.positive()
+                }
+                Some(creep) => creep.elastic(at, self.layout.strain(at)).positive(),
+            };
             self.segments
                 .history
                 .iter_mut()
@@ -222,6 +235,7 @@ impl AxialWork {
 
     /// Hands the state back after steps of `steps` [s].
     pub fn store(&self, state: &mut LineState, steps: [f64; 2]) {
+        state.parted = self.parted;
         self.layout.store(state, steps);
         let own = FIRST..FIRST + self.layout.segment_count;
         for (kept, history) in state
@@ -243,7 +257,8 @@ impl AxialWork {
     /// Meets the water's surface as it is at t_n. Where that is `after` a step, what joined with the water in it is booked.
     pub fn meet_surface(&mut self, after: Option<Step>) {
         if let Some(step) = after {
-            self.layout.leave_surface(step, [true; 2]);
+            self.layout
+                .leave_surface(step, self.parted.map(|parted| !parted));
         }
         self.layout.find_surface();
         let Some(surface) = &self.layout.surface else {
@@ -255,7 +270,7 @@ impl AxialWork {
             self.nodes.mass_tangent[FIRST + i] = along;
         }
         match after {
-            Some(_) => self.layout.book_surface([true; 2]),
+            Some(_) => self.layout.book_surface(self.parted.map(|parted| !parted)),
             None => self.layout.clear_surface(),
         }
     }
@@ -272,7 +287,32 @@ impl AxialWork {
 
     /// Puts an end at a position [m] with the velocity [m/s] that the next step takes as lagged.
     pub fn put_end(&mut self, end: End, position: Vector3<f64>, velocity: Vector3<f64>) {
-        self.layout.put_end(end, position, velocity);
+        if !self.parted[end as usize] {
+            self.layout.put_end(end, position, velocity);
+        }
+    }
+
+    /// Parts the ends from their points that the tensions of t_n, `t` [s], are too much for, or the time has come for.
+    pub fn part_ends(&mut self, partings: &[Parting; 2], t: f64, step: Step) {
+        for end in [End::A, End::B] {
+            let (side, at) = (end as usize, self.layout.end_index(end));
+            let tension = self.layout.end_tension(end, step);
+            if self.parted[side] || !partings[side].parts(tension, t) {
+                continue;
+            }
+            let masses = [self.nodes.mass_normal[at], self.nodes.mass_tangent[at]];
+            self.given += self.layout.joining_energy(end, masses, step);
+            self.parted[side] = true;
+            self.interior[at] = 1.0;
+        }
+    }
+
+    /// Ends that a point holds.
+    fn held_ends(&self) -> impl Iterator<Item = End> + use<> {
+        let parted = self.parted;
+        [End::A, End::B]
+            .into_iter()
+            .filter(move |&end| !parted[end as usize])
     }
 
     /// One step; `ends` are the positions [m] of both ends after it. Returns the passes it took.
@@ -291,7 +331,10 @@ impl AxialWork {
 
     #[inline(always)]
     fn step_vectors<const CURRENT: bool>(&mut self, step: Step, ends: [Vector3<f64>; 2]) -> usize {
-        self.prepare_segments(step);
+        match self.layout.creep {
+            None => self.prepare_segments::<false>(step),
+            Some(_) => self.prepare_segments::<true>(step),
+        }
         self.prepare_nodes::<CURRENT>(step);
         self.prepare_ends(step, ends);
         let mut passes = 0;
@@ -312,10 +355,11 @@ impl AxialWork {
         }
         std::mem::swap(&mut self.layout.velocity, &mut self.layout.velocity_before);
         self.layout.drift(step.drift);
-        self.layout.position.set(FIRST, ends[0]);
-        self.layout
-            .position
-            .set(FIRST + self.layout.segment_count, ends[1]);
+        for end in self.held_ends() {
+            let at = self.layout.end_index(end);
+            self.layout.position.set(at, ends[end as usize]);
+        }
+        self.layout.creep(step.drift);
         self.meet_surface(Some(step));
         passes
     }
@@ -325,7 +369,7 @@ impl AxialWork {
     fn force_and_slope(&self, at: usize, l: Lanes) -> (Lanes, Lanes) {
         let one = Lanes::splat(1.0);
         let strain = l * Lanes::load(&self.layout.inverse_length, at) - one;
-        match self.layout.law {
+        match &self.layout.law {
             StretchLaw::Engineering => (strain, one),
             law => (
                 strain.map(|e| law.at(e).force),
@@ -335,7 +379,7 @@ impl AxialWork {
     }
 
     #[inline(always)]
-    fn prepare_segments(&mut self, step: Step) {
+    fn prepare_segments<const CREEPS: bool>(&mut self, step: Step) {
         let [b1, h0, h1, h2] = self.weights.0.map(Lanes::splat);
         let drift = Lanes::splat(step.drift);
         for at in self.layout.segment_blocks() {
@@ -348,15 +392,22 @@ impl AxialWork {
             let along = direction.dot(relative);
             let (force, slope) = self.force_and_slope(at, l);
             let ea = Lanes::load(&line.axial_stiffness, at);
-            let tension = ea * force.positive();
+            let mut tension = ea * force.positive();
+            let (mut ahead, mut tangent) = (b1 * ea * force, b1 * ea * slope);
+            if CREEPS {
+                let (now, coming, stiffness) = self.creeping_forces(at, direction, step);
+                tension = now.positive();
+                (ahead, tangent) = (b1 * coming, b1 * stiffness);
+            }
+            let line = &self.layout;
             let segments = &mut self.segments;
             let [last, before] = &mut segments.history;
             let (t1, t2) = (Lanes::load(last, at), Lanes::load(before, at));
             tension.store(last, at);
             t1.store(before, at);
-            let elastic = b1 * ea * force + h0 * tension + h1 * t1 + h2 * t2;
+            let elastic = ahead + h0 * tension + h1 * t1 + h2 * t2;
             let damping = Lanes::splat(0.5) * Lanes::load(&line.axial_damping, at) * inverse_length;
-            let stiffness = b1 * ea * slope * drift * inverse_length;
+            let stiffness = tangent * drift * inverse_length;
             let bend = relative.dot(relative) - along * along;
             let curvature = Lanes::splat(0.5) * stiffness * drift * bend * inverse_l;
             let known = elastic + damping * Lanes::splat(1.0 - DAMPING_SHIFT) * along;
@@ -371,6 +422,28 @@ impl AxialWork {
                 .choose(Lanes::splat(1.0), Lanes::splat(-1.0))
                 .store(&mut segments.taut, at);
         }
+    }
+
+    /// Elastic force of viscoelastic segments now [N], after the step without further strain [N], and its slope with the strain then
+    /// [N]; books what is lost in the step.
+    #[inline(always)]
+    fn creeping_forces(
+        &mut self,
+        at: usize,
+        direction: Vectors,
+        step: Step,
+    ) -> (Lanes, Lanes, Lanes) {
+        let strain = self.layout.strain(at);
+        let rate = self.layout.strain_rate(at, direction, step);
+        let creep = self.layout.creep.as_mut().expect("this line creeps");
+        strain.store(&mut creep.strain, at);
+        let now = creep.elastic(at, strain);
+        let loss = creep.loss(at, strain, rate, now.positive());
+        let length = Lanes::load(&self.layout.inverse_length, at).recip();
+        self.lost = self.lost + loss * length * Lanes::splat(step.kick);
+        let creep = self.layout.creep.as_ref().expect("this line creeps");
+        let (coming, stiffness) = creep.ahead(at, strain, step.drift);
+        (now, coming, stiffness)
     }
 
     #[inline(always)]
@@ -474,8 +547,8 @@ impl AxialWork {
     /// Held ends move by the secant of their path and yield to no force.
     #[inline(always)]
     fn prepare_ends(&mut self, step: Step, ends: [Vector3<f64>; 2]) {
-        for (end, position) in [End::A, End::B].into_iter().zip(ends) {
-            let at = self.layout.end_index(end);
+        for end in self.held_ends() {
+            let (at, position) = (self.layout.end_index(end), ends[end as usize]);
             let secant = (position - self.layout.position.get(at)) / step.drift;
             let nodes = &mut self.nodes;
             (nodes.across[at], nodes.excess[at], nodes.held[at]) = (0.0, 0.0, 0.0);
@@ -673,7 +746,9 @@ impl AxialWork {
             let taken = (impulse - momentum).dot(old + new) * half;
             self.lost = self.lost + Lanes::load(&self.interior, at) * taken;
         }
-        for (end, sign) in [(End::A, -1.0), (End::B, 1.0)] {
+        for end in self.held_ends() {
+            let sign = if end == End::A { -1.0 } else { 1.0 };
+            let line = &self.layout;
             let node = line.end_index(end);
             let segment = if sign < 0.0 { node } else { node - 1 };
             let pull = self.rows.tension[segment] * self.segments.direction.get(segment);

@@ -27,7 +27,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::StepError;
+use super::{StepError, reaction};
 use crate::model::{Kinematics, Model, Network, PointState, State};
 use crate::scene::{Integrator, Solver};
 use crate::statics::assembly::{
@@ -289,6 +289,9 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
             let span = [at(done), at(done + parts)];
             if self.step(span, &before, state, work) {
                 observe(state, span[1]);
+                if self.part_ends(state, span[1]) {
+                    observe(state, span[1]);
+                }
                 work.counters.steps += 1;
                 done += parts;
                 if done % (2 * parts) == 0 && parts < PARTS_MAX {
@@ -306,6 +309,26 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
         }
         work.before = before;
         result
+    }
+
+    /// Parts the ends from their points that the tension at `t` [s] is too much for, or the time has come for; whether there were any.
+    fn part_ends(&self, state: &mut State, t: f64) -> bool {
+        let mut any = false;
+        for &index in &self.network.lines {
+            let (line, shape) = (&self.model.lines[index], &mut state.lines[index]);
+            let Some(partings) = &line.parting else {
+                continue;
+            };
+            for (side, segment) in [0, line.segment_count() - 1].into_iter().enumerate() {
+                let negative = self.model.solver.negative_tension;
+                let tension = reaction::tension(line, shape, segment, negative);
+                if !shape.parted[side] && partings[side].parts(tension, t) {
+                    shape.parted[side] = true;
+                    any = true;
+                }
+            }
+        }
+        any
     }
 
     fn failure(&self, [t0, t1]: [f64; 2], work: &Workspace) -> StepError {
@@ -380,6 +403,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
             self.correct(state, work, per_velocity, now);
             let consistent = work.predict_tensions(self.model, self.network, 1.0);
             if correction <= tolerance && consistent {
+                work.creep(self.model, self.network, state);
                 self.shift_accelerations(state, before);
                 return true;
             }

@@ -6,6 +6,7 @@
 use nalgebra::Vector3;
 use pulp::{Arch, NullaryFnOnce};
 
+use super::creep::CreepArrays;
 use super::leapfrog::Step;
 use super::surface::SurfaceNow;
 use crate::math::hermite::Hermite;
@@ -13,7 +14,7 @@ use crate::math::lanes::{Components, LANES, Lanes, Vectors};
 use crate::model::{End, Line, LineState, Model, WaveSpan};
 use crate::physics::airy::{Orbit, cubics};
 use crate::physics::flow::{Profile, Stream};
-use crate::physics::stretch::StretchLaw;
+use crate::physics::stretch::{StretchLaw, total_tension};
 
 /// Index of node 0 and of segment 0.
 pub(super) const FIRST: usize = LANES;
@@ -47,6 +48,8 @@ pub(super) struct Layout {
     pub waves: Option<WaveArrays>,
     pub mass_damping: Option<Vec<f64>>,
     pub contact: Option<ContactArrays>,
+    /// Memory of viscoelastic segments, where the line has any.
+    pub creep: Option<CreepArrays>,
     /// The water's surface, where the line may pierce it.
     pub surface: Option<SurfaceNow>,
 }
@@ -202,6 +205,14 @@ impl Layout {
         let keep = |values: &[f64]| pad(n, values, 0.0);
         let nodes = &line.nodes;
         let lengths = pad(n, &line.segments.length, 1.0);
+        let creep = CreepArrays::new(line);
+        let (stiffness, damping) = match &creep {
+            Some(creep) => (creep.stiffness.clone(), creep.damping.clone()),
+            None => (
+                keep(&line.segments.axial_stiffness),
+                keep(&line.segments.axial_damping),
+            ),
+        };
         Some(Layout {
             segment_count: n,
             vector_unit: Arch::new(),
@@ -211,8 +222,8 @@ impl Layout {
             velocity: Components::zeros(size),
             velocity_before: Components::zeros(size),
             inverse_length: lengths.iter().map(|length| 1.0 / length).collect(),
-            axial_stiffness: keep(&line.segments.axial_stiffness),
-            axial_damping: keep(&line.segments.axial_damping),
+            axial_stiffness: stiffness,
+            axial_damping: damping,
             weight: keep(&nodes.weight),
             drag: nodes.drag.as_ref().map(|drag| DragArrays {
                 normal: keep(&drag.normal),
@@ -232,12 +243,16 @@ impl Layout {
                 stiffness: keep(&contact.stiffness),
                 damping: keep(&contact.damping),
             }),
+            creep,
             surface: SurfaceNow::new(line),
         })
     }
 
     /// Takes over positions and velocities of a line.
     pub fn load(&mut self, state: &LineState) {
+        if let Some(creep) = &mut self.creep {
+            creep.load(&state.creep);
+        }
         let memory = &state.half_step;
         let fresh = memory.velocity.is_empty();
         for (i, position) in state.position.iter().enumerate() {
@@ -254,6 +269,9 @@ impl Layout {
 
     /// Hands them back after steps of `steps` [s], with velocities extrapolated to the time of the positions.
     pub fn store(&self, state: &mut LineState, steps: [f64; 2]) {
+        if let Some(creep) = &self.creep {
+            creep.store(&mut state.creep);
+        }
         let memory = &mut state.half_step;
         let count = state.position.len();
         memory.velocity.resize(count, Vector3::zeros());
@@ -443,6 +461,80 @@ impl Layout {
     /// Starts of the vectors that cover all nodes.
     pub fn node_blocks(&self) -> impl Iterator<Item = usize> + use<> {
         (FIRST..=FIRST + self.segment_count).step_by(LANES)
+    }
+
+    /// Tension [N] of the segment at an end at t_n.
+    pub fn end_tension(&self, end: End, step: Step) -> f64 {
+        let at = match end {
+            End::A => FIRST,
+            End::B => FIRST + self.segment_count - 1,
+        };
+        let chord = self.position.get(at + 1) - self.position.get(at);
+        let relative = self.velocity.get(at + 1) - self.velocity.get(at);
+        let before = self.velocity_before.get(at + 1) - self.velocity_before.get(at);
+        let now = relative + step.extrapolation * (relative - before);
+        let (l, inverse) = (chord.norm(), self.inverse_length[at]);
+        let strain = l * inverse - 1.0;
+        let elastic = match &self.creep {
+            Some(creep) => creep.elastic_of(at, strain),
+            None => self.axial_stiffness[at] * self.law.at(strain).force,
+        };
+        let rate = if l > 0.0 {
+            chord.dot(&now) / l * inverse
+        } else {
+            0.0
+        };
+        total_tension(
+            elastic,
+            self.axial_damping[at] * rate,
+            0.0,
+            self.negative_tension,
+        )
+    }
+
+    /// Energy [J] that the half node at an end of masses across and along the line [kg] brings to the line when it parts from what held it
+    /// at t_n.
+    pub fn joining_energy(&self, end: End, [across, along]: [f64; 2], step: Step) -> f64 {
+        let at = self.end_index(end);
+        let velocity = self.velocity.get(at);
+        let other = if end == End::A { at + 1 } else { at - 1 };
+        let chord = self.position.get(other) - self.position.get(at);
+        let tangent = chord.try_normalize(0.0).unwrap_or_else(Vector3::zeros);
+        let lag = step.kick - 0.5 * step.drift; // from the velocities to the positions
+        let height = self.position.z[at] - lag * velocity.z;
+        let axial = velocity.dot(&tangent).powi(2);
+        let kinetic = 0.5 * (across * (velocity.norm_squared() - axial) + along * axial);
+        // the surface holds the energy of the buoyancy that is lacking by itself
+        let lack = self
+            .surface
+            .as_ref()
+            .map_or(0.0, |surface| surface.lack(at - FIRST, false));
+        kinetic + (self.weight[at] - lack) * height
+    }
+
+    /// Strain rate at t_n [1/s].
+    #[inline(always)]
+    pub fn strain_rate(&self, at: usize, direction: Vectors, step: Step) -> Lanes {
+        let relative = self.velocity_now(at + 1, step) - self.velocity_now(at, step);
+        direction.dot(relative) * Lanes::load(&self.inverse_length, at)
+    }
+
+    /// Strain of the segments [-].
+    #[inline(always)]
+    pub fn strain(&self, at: usize) -> Lanes {
+        let (chord, inverse_l) = self.chord(at);
+        let inverse_length = Lanes::load(&self.inverse_length, at);
+        chord.dot(chord) * inverse_l * inverse_length - Lanes::splat(1.0)
+    }
+
+    /// Takes the memory of viscoelastic segments from t_n to t_{n+1}, `drift` [s] later, where the nodes now are.
+    pub fn creep(&mut self, drift: f64) {
+        if let Some(mut creep) = self.creep.take() {
+            for at in self.segment_blocks() {
+                creep.advance(at, self.strain(at), drift);
+            }
+            self.creep = Some(creep);
+        }
     }
 
     /// Unit vectors along the chord of the neighbouring nodes.

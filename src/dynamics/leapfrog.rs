@@ -18,7 +18,7 @@ use pulp::NullaryFnOnce;
 use super::layout::{FIRST, Layout, Water, interior, pad};
 use super::ledger::Flow;
 use crate::math::lanes::{Components, Lanes, Vectors};
-use crate::model::{End, Line, LineState, WaveSpan};
+use crate::model::{End, Line, LineState, Parting, WaveSpan};
 use crate::physics::morison::{self, DragCoefficients};
 use crate::physics::stretch::{StretchLaw, total_tension};
 
@@ -33,8 +33,10 @@ pub struct LineWork {
     water: Option<WaterWork>,
     /// 1 for nodes between the ends, 0 elsewhere.
     interior: Vec<f64>,
-    /// Whether ends A and B are held.
-    held: [bool; 2],
+    /// Whether ends A and B are held, were none parted.
+    tied: [bool; 2],
+    /// Whether they have parted from their points.
+    parted: [bool; 2],
     /// Energy lost, and given by held ends and by moving water, since the state was loaded [J].
     lost: Lanes,
     given: f64,
@@ -219,7 +221,8 @@ impl LineWork {
             inverse_mass: pad(layout.segment_count, &inverse_mass, 0.0),
             water: WaterWork::new(line, &layout),
             interior: interior(layout.segment_count),
-            held,
+            tied: held,
+            parted: [false; 2],
             lost: Lanes::splat(0.0),
             given: 0.0,
             given_by_current: Lanes::splat(0.0),
@@ -230,6 +233,11 @@ impl LineWork {
     /// Takes over the state of a line.
     pub fn load(&mut self, state: &LineState) {
         self.layout.load(state);
+        self.parted = state.parted;
+        for end in [End::A, End::B] {
+            let at = self.layout.end_index(end);
+            self.interior[at] = f64::from(u8::from(self.is_parted(end)));
+        }
         (self.lost, self.given) = (Lanes::splat(0.0), 0.0);
         self.given_by_current = Lanes::splat(0.0);
     }
@@ -237,7 +245,7 @@ impl LineWork {
     /// Meets the water's surface as it is at t_n. Where that is `after` a step, what joined with the water in it is booked.
     pub fn meet_surface(&mut self, after: Option<Step>) {
         if let Some(step) = after {
-            self.layout.leave_surface(step, self.held);
+            self.layout.leave_surface(step, self.held());
         }
         self.layout.find_surface();
         let Some(surface) = &self.layout.surface else {
@@ -253,7 +261,7 @@ impl LineWork {
             }
         }
         match after {
-            Some(_) => self.layout.book_surface(self.held),
+            Some(_) => self.layout.book_surface(self.held()),
             None => self.layout.clear_surface(),
         }
     }
@@ -283,7 +291,41 @@ impl LineWork {
 
     /// Hands the state back after steps of `steps` [s].
     pub fn store(&self, state: &mut LineState, steps: [f64; 2]) {
+        state.parted = self.parted;
         self.layout.store(state, steps);
+    }
+
+    /// Whether ends A and B are held.
+    fn held(&self) -> [bool; 2] {
+        [0, 1].map(|side| self.tied[side] && !self.parted[side])
+    }
+
+    /// Whether an end has parted from its point.
+    pub fn is_parted(&self, end: End) -> bool {
+        self.parted[end as usize]
+    }
+
+    /// Parts the ends from their points that the tensions of t_n, `t` [s], are too much for, or the time has come for.
+    pub fn part_ends(&mut self, partings: &[Parting; 2], t: f64, step: Step) {
+        for end in [End::A, End::B] {
+            let side = end as usize;
+            let layout = &self.layout;
+            if self.parted[side] || !partings[side].parts(layout.end_tension(end, step), t) {
+                continue;
+            }
+            let at = layout.end_index(end);
+            if self.tied[side] {
+                let excess = self
+                    .water
+                    .as_ref()
+                    .map_or(0.0, |w| w.inverse_mass_excess[at]);
+                let across = self.inverse_mass[at];
+                let masses = [1.0 / across, 1.0 / (across + excess)];
+                self.given += layout.joining_energy(end, masses, step);
+            }
+            self.parted[side] = true;
+            self.interior[at] = 1.0;
+        }
     }
 
     /// Step 1: tensions from positions at t_n and velocities at t_{n−½}.
@@ -293,10 +335,14 @@ impl LineWork {
 
     #[inline(always)]
     fn choose_segment_pass(&mut self, step: Step) {
-        match (self.layout.law, self.damped) {
+        match (&self.layout.law, self.damped) {
+            _ if self.layout.creep.is_some() => self.creeping_segment_pass(step),
             (StretchLaw::Engineering, false) => self.segment_pass::<false>(step, |strain| strain),
             (StretchLaw::Engineering, true) => self.segment_pass::<true>(step, |strain| strain),
-            (law, _) => self.segment_pass::<true>(step, |strain| strain.map(|e| law.at(e).force)),
+            (law, _) => {
+                let law = law.clone();
+                self.segment_pass::<true>(step, |strain| strain.map(|e| law.at(e).force));
+            }
         }
     }
 
@@ -325,6 +371,39 @@ impl LineWork {
             }
             self.pull.store(chord.scale(tension * inverse_l), at);
         }
+    }
+
+    /// [`LineWork::segment_pass`] of a line with viscoelastic segments.
+    #[inline(always)]
+    fn creeping_segment_pass(&mut self, step: Step) {
+        let mut creep = self.layout.creep.take().expect("this line creeps");
+        let line = &self.layout;
+        for at in line.segment_blocks() {
+            let (chord, inverse_l) = line.chord(at);
+            let direction = chord.scale(inverse_l);
+            let inverse_length = Lanes::load(&line.inverse_length, at);
+            let strain = line.strain(at);
+            strain.store(&mut creep.strain, at);
+            let relative = line.velocity.load(at + 1) - line.velocity.load(at);
+            let rate = direction.dot(relative) * inverse_length;
+            let elastic = creep.elastic(at, strain);
+            let damping = Lanes::load(&line.axial_damping, at) * rate;
+            let tension = if line.negative_tension {
+                elastic.positive() + damping
+            } else {
+                (elastic + damping).positive()
+            };
+            let now = line.strain_rate(at, direction, step);
+            let loss = creep.loss(at, strain, now, tension);
+            self.lost = self.lost + loss * Lanes::splat(step.kick) * inverse_length.recip();
+            self.pull.store(direction.scale(tension), at);
+        }
+        self.layout.creep = Some(creep);
+    }
+
+    /// After the ends were put where they are at t_{n+1}: takes the memory of viscoelastic segments there.
+    pub fn creep(&mut self, step: Step) {
+        self.layout.creep(step.drift);
     }
 
     /// Step 2: velocities from t_{n−½} to t_{n+½}.
@@ -434,9 +513,10 @@ impl LineWork {
     /// Books the work of the ends in a step, after [`Self::put_end`] has told how they move on; ends at free points do no
     /// work that the line loses.
     pub fn book_ends(&mut self, step: Step) {
+        let held = self.held();
         for end in [End::A, End::B]
             .into_iter()
-            .filter(|&end| self.held[end as usize])
+            .filter(|&end| held[end as usize])
         {
             let at = self.layout.end_index(end);
             let pull = match end {
@@ -449,9 +529,11 @@ impl LineWork {
         }
     }
 
-    /// Puts an end at a position [m] with the velocity [m/s] that the next step takes as lagged.
+    /// Puts an end at a position [m] with the velocity [m/s] that the next step takes as lagged, unless it has parted from its point.
     pub fn put_end(&mut self, end: End, position: Vector3<f64>, velocity: Vector3<f64>) {
-        self.layout.put_end(end, position, velocity);
+        if !self.is_parted(end) {
+            self.layout.put_end(end, position, velocity);
+        }
     }
 
     /// What the end brings to a free point, after [`Self::pull_segments`]; `velocity` [m/s] is the point's at t_n.

@@ -9,6 +9,9 @@
 //!        some of it back). The added mass of a free point or node that dips into the water brings ½ v² of what joins it, which counts
 //!        as a negative loss; so does ½ vᵀṀv of nodes whose added mass differs along and across the line, which turns.
 //!
+//! The springs of viscoelastic segments count as held, what their dampers take as lost. An end that parts from a held point brings the energy of
+//! its half node along, which counts as given.
+//!
 //! E − E₀ − given + lost is the error of the time integration: numerical dissipation shows up as a negative one.
 //!
 //! The leapfrogs sum the flows of every internal step, forces at t_n times the mean of the velocities around it; energy is then
@@ -24,6 +27,7 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use super::beam::{self, BeamView};
+use super::creep::{Creeping, Stretching};
 use super::leapfrog::segment_tension;
 use crate::model::{
     ClosedForm, End, FreePoint, Line, LineState, Model, Network, PointState, State, WaterAlong,
@@ -171,11 +175,18 @@ fn line_energy(line: &Line, state: &State, index: usize, model: &Model) -> Energ
     let mut energy = Energy::default();
     for i in 0..n {
         let strain = (position(i + 1) - position(i)).norm() / line.segments.length[i] - 1.0;
-        energy.axial += axial_energy(line, i, strain);
+        energy.axial += match Creeping::of(line, shape, i) {
+            None => axial_energy(line, i, strain),
+            Some(creep) => {
+                let pair = |values: &[Vector3<f64>]| [values[i], values[i + 1]];
+                let now = Stretching::of(line, i, pair(&shape.position), pair(&shape.velocity));
+                creep.energy(strain, now, lag) * line.segments.length[i]
+            }
+        };
     }
     let free = |i: usize| match i {
-        0 => model.points[line.ends[0]].free().is_some(),
-        i if i == n => model.points[line.ends[1]].free().is_some(),
+        0 => !line.is_held(model, shape, End::A),
+        i if i == n => !line.is_held(model, shape, End::B),
         _ => true,
     };
     for i in (0..=n).filter(|&i| free(i)) {
@@ -228,9 +239,51 @@ fn axial_energy(line: &Line, i: usize, strain: f64) -> f64 {
     if strain > 0.0 || ea * law.force > -push {
         ea * law.energy * length
     } else {
-        let limit = -push / ea; // where the push stops growing, by the slope at no strain
+        let ea = ea * data.law[i].at(0.0).slope; // the push stops growing by the slope at no strain
+        let limit = -push / ea;
         (0.5 * push * push / ea + push * (limit - strain)) * length
     }
+}
+
+/// How many ends of a network's lines have parted from their points.
+pub fn parted_ends(network: &Network, state: &State) -> usize {
+    let ends = network
+        .lines
+        .iter()
+        .flat_map(|&line| state.lines[line].parted);
+    ends.filter(|parted| *parted).count()
+}
+
+/// Energy [J] that the half nodes bring to their lines which have parted from held points between two states.
+pub fn joined_energy(model: &Model, network: &Network, [before, after]: [&State; 2]) -> f64 {
+    let mut sum = 0.0;
+    for &index in &network.lines {
+        let (line, [old, new]) = (
+            &model.lines[index],
+            [before, after].map(|state| &state.lines[index]),
+        );
+        for end in [End::A, End::B] {
+            if line.is_held(model, old, end) && !line.is_held(model, new, end) {
+                sum += end_energy(model, after, index, end);
+            }
+        }
+    }
+    sum
+}
+
+/// Energy of motion and of weight of the half node at an end [J], when its velocity belongs to.
+fn end_energy(model: &Model, state: &State, index: usize, end: End) -> f64 {
+    let (line, shape) = (&model.lines[index], &state.lines[index]);
+    let water = model.water_along(state, index, state.time);
+    let (memory, i) = (&shape.half_step, line.end_node(end));
+    let (velocity, lag) = match memory.velocity.is_empty() {
+        true => (shape.velocity[i], 0.0),
+        false => (memory.velocity[i], 0.5 * memory.steps[0]),
+    };
+    let [across, along] = squares(shape, i, velocity);
+    let [normal, tangent] = line.nodes.masses(i, dry_part(line, shape, i, water));
+    0.5 * (normal * across + tangent * along)
+        + line.nodes.weight[i] * (shape.position[i].z - lag * velocity.z)
 }
 
 /// Energy of a whole line on its closed form.
@@ -518,7 +571,7 @@ fn bending_power(model: &Model, line: &Line, state: &State, index: usize) -> Flo
 fn line_power(line: &Line, shape: &LineState, model: &Model, water: WaterAlong) -> Flow {
     let (n, negative) = (line.segment_count(), model.solver.negative_tension);
     let segments = &line.segments;
-    let [a, b] = line.ends.map(|point| model.points[point].free().is_none());
+    let [a, b] = [End::A, End::B].map(|end| line.is_held(model, shape, end));
     let mut flow = Flow::default();
     for i in 0..n {
         let chord = shape.position[i + 1] - shape.position[i];
@@ -529,10 +582,18 @@ fn line_power(line: &Line, shape: &LineState, model: &Model, water: WaterAlong) 
         let direction = chord / length;
         let unstretched = segments.length[i];
         let stretch = segments.law[i].at(length / unstretched - 1.0);
-        let elastic = segments.axial_stiffness[i] * stretch.force;
+        let mut elastic = segments.axial_stiffness[i] * stretch.force;
         let stretching = direction.dot(&(shape.velocity[i + 1] - shape.velocity[i]));
-        let damping = segments.axial_damping[i] * stretching / unstretched;
+        let mut damping = segments.axial_damping[i] * stretching / unstretched;
         let least = 0.0 - line.compression_max(i);
+        if let Some(creep) = Creeping::of(line, shape, i) {
+            let now = Stretching {
+                strain: length / unstretched - 1.0,
+                rate: stretching / unstretched,
+            };
+            (elastic, damping) = creep.forces(now);
+            flow.lost += creep.loss(now, elastic.max(least)) * unstretched;
+        }
         let tension = total_tension(elastic, damping, least, negative);
         flow.lost += (tension - elastic.max(least)) * stretching;
         if i == 0 && a {

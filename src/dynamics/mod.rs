@@ -4,6 +4,7 @@ pub mod advance;
 pub mod axial_implicit;
 pub mod beam;
 mod choice;
+mod creep;
 pub mod implicit;
 mod layout;
 pub mod leapfrog;

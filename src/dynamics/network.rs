@@ -139,9 +139,12 @@ impl NetworkWork {
         held: &impl Fn(usize, f64) -> Kinematics,
     ) {
         self.set_current(model, t);
-        self.lines
-            .iter_mut()
-            .for_each(|line| line.pull_segments(step));
+        for (work, &line) in self.lines.iter_mut().zip(&network.lines) {
+            if let Some(partings) = &model.lines[line].parting {
+                work.part_ends(partings, t, step);
+            }
+            work.pull_segments(step);
+        }
         self.step_points(model, network, t, step);
         for line in &mut self.lines {
             line.kick_nodes(step);
@@ -149,6 +152,7 @@ impl NetworkWork {
         }
         self.put_ends(model, network, t + step.drift, step, held);
         for line in &mut self.lines {
+            line.creep(step);
             line.book_ends(step);
             line.meet_surface(Some(step));
         }
@@ -230,6 +234,9 @@ impl NetworkWork {
                 let Some(at) = network.lines.iter().position(|&l| l == line) else {
                     continue;
                 };
+                if self.lines[at].is_parted(end) {
+                    continue;
+                }
                 let brought = self.lines[at].end_load(end, now);
                 load.add(&brought);
                 self.springs

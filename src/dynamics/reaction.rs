@@ -12,6 +12,7 @@
 use nalgebra::Vector3;
 
 use super::beam::BeamView;
+use super::creep::{Creeping, Stretching};
 use super::leapfrog::segment_tension;
 use crate::model::{Dry, End, Line, LineState, PointState, WaterAlong};
 use crate::physics::morison::{self, DragCoefficients};
@@ -27,6 +28,10 @@ pub fn tension(line: &Line, state: &LineState, i: usize, negative_tension: bool)
         return 0.5 * (closed_form.tension[i] + closed_form.tension[i + 1]);
     }
     let pair = |values: &[Vector3<f64>]| [values[i], values[i + 1]];
+    if let Some(creep) = Creeping::of(line, state, i) {
+        let strain = Stretching::of(line, i, pair(&state.position), pair(&state.velocity));
+        return creep.tension(strain, line.compression_max(i), negative_tension);
+    }
     segment_tension(
         line,
         i,
@@ -45,6 +50,9 @@ pub fn end_force(
     water: WaterAlong,
     negative_tension: bool,
 ) -> Vector3<f64> {
+    if state.parted[usize::from(end == End::B)] {
+        return Vector3::zeros();
+    }
     if let Some(view) = BeamView::of(line, state) {
         return view.end_action(end, point).0;
     }

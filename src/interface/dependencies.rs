@@ -135,7 +135,7 @@ impl Scope<'_> {
 
     fn depends_on_property(&self, name: &str, property: Property) -> bool {
         match property {
-            Property::AxialStiffness | Property::Weight => true,
+            Property::AxialStiffness | Property::StaticStiffness | Property::Weight => true,
             Property::Mass => self.scene.line_types[name].weight.is_none(),
             Property::Diameter => {
                 self.is_buoyant(name) || (self.scene.seabed.is_some() && !self.closed_form)
@@ -144,6 +144,9 @@ impl Scope<'_> {
             | Property::ShearStiffness
             | Property::TorsionalStiffness => !self.closed_form,
             Property::RotaryInertia
+            | Property::DynamicStiffness
+            | Property::StaticDamping
+            | Property::DynamicDamping
             | Property::AxialDamping
             | Property::DampingRatio
             | Property::DragNormal

@@ -7,8 +7,8 @@ mod waves;
 use nalgebra::Vector3;
 
 use super::{
-    Bending, Contact, Current, Drag, End, FreePoint, Line, Model, Motion, Network, Nodes, Point,
-    PointContact, Pressed, Role, Section, Segments, Surface, Vessel, mesh,
+    Bending, Contact, Current, Drag, End, FreePoint, Line, Model, Motion, Network, Nodes, Parting,
+    Point, PointContact, Pressed, Role, Section, Segments, Surface, Vessel, mesh,
 };
 use crate::physics::bending;
 use crate::physics::flow::Profile;
@@ -17,7 +17,10 @@ use crate::physics::point::Sphere;
 use crate::physics::rayleigh;
 use crate::physics::seabed::{ContactCoefficients, regularised, under_point};
 use crate::physics::stretch::StretchLaw;
+use crate::physics::tension_table::TensionTable;
+use crate::physics::viscoelastic::Viscoelastic;
 use crate::physics::weight::{cross_section, submerged_weight};
+use crate::scene::channel::LineEnd;
 use crate::scene::{
     self, Axis, ContactLaw, FibreLaw, Integrator, LineModel, LineType, PointKind, RestShape, Scene,
     SceneError, Strain,
@@ -178,7 +181,8 @@ fn point_contact(
 /// Properties of a line type in the scene's surroundings, per unstretched length.
 pub(super) struct LineLaw {
     law: StretchLaw,
-    axial_stiffness: f64,                 // EA [N]
+    axial_stiffness: f64,                 // EA [N], at rest
+    viscoelastic: Option<[f64; 2]>,       // EA_d [N], BA_s [N s]
     axial_damping: f64,                   // BA [N s], without the damping ratio's part
     damping_ratio: f64,                   // ζ [-]
     mass: f64,                            // m [kg/m]
@@ -197,7 +201,9 @@ pub(super) struct LineLaw {
 
 /// ζ as given; the numerical one where the line type says nothing of axial damping.
 fn damping_ratio(line_type: &LineType) -> f64 {
-    let silent = line_type.axial_damping.is_none() && line_type.rayleigh.is_none();
+    let silent = line_type.axial_damping.is_none()
+        && line_type.dynamic_damping.is_none()
+        && line_type.rayleigh.is_none();
     line_type
         .damping_ratio
         .unwrap_or(if silent { NUMERICAL_DAMPING_RATIO } else { 0.0 })
@@ -222,6 +228,21 @@ fn bending_stiffness(line_type: &LineType) -> f64 {
     bending::of_strands(solid.unwrap_or(0.0), strands, power)
 }
 
+/// The law of the axial force and its EA [N].
+fn stretch_law(line_type: &LineType) -> (StretchLaw, f64) {
+    if let Some(table) = &line_type.tension_strain {
+        let (table, ea) = TensionTable::through(&table.rows);
+        return (StretchLaw::Tabulated(table), ea);
+    }
+    let law = match line_type.strain {
+        Strain::Engineering => StretchLaw::Engineering,
+        Strain::Green => StretchLaw::Green,
+        Strain::Logarithmic(poisson) => StretchLaw::Logarithmic { poisson },
+    };
+    let stiffness = line_type.axial_stiffness.or(line_type.static_stiffness);
+    (law, stiffness.unwrap_or(0.0))
+}
+
 fn line_law(scene: &Scene, line_type: &LineType) -> LineLaw {
     let density = scene.water.as_ref().map_or(0.0, |water| water.density);
     let displaced = line_type
@@ -236,7 +257,7 @@ fn line_law(scene: &Scene, line_type: &LineType) -> LineLaw {
     let rayleigh = line_type
         .rayleigh
         .map(|r| rayleigh::coefficients(r.ratios, r.frequencies));
-    let ea = line_type.axial_stiffness;
+    let (law, ea) = stretch_law(line_type);
     let drag = line_type.diameter.and_then(|diameter| {
         let (normal, tangent) = (
             line_type.drag_normal.unwrap_or(0.0),
@@ -256,13 +277,16 @@ fn line_law(scene: &Scene, line_type: &LineType) -> LineLaw {
             })
         });
     LineLaw {
-        law: match line_type.strain {
-            Strain::Engineering => StretchLaw::Engineering,
-            Strain::Green => StretchLaw::Green,
-            Strain::Logarithmic(poisson) => StretchLaw::Logarithmic { poisson },
-        },
+        law,
         axial_stiffness: ea,
-        axial_damping: line_type.axial_damping.unwrap_or(0.0)
+        viscoelastic: line_type
+            .dynamic_stiffness
+            .zip(line_type.static_damping)
+            .map(<[f64; 2]>::from),
+        axial_damping: line_type
+            .axial_damping
+            .or(line_type.dynamic_damping)
+            .unwrap_or(0.0)
             + rayleigh.map_or(0.0, |r| r.stiffness * ea),
         damping_ratio: damping_ratio(line_type),
         mass,
@@ -311,6 +335,7 @@ fn build_line(
         })?;
         laws.push(line_law(scene, line_type));
     }
+    check_mixture(index, &laws)?;
     let wanted = spacing::refinements(scene, line, ends.map(|end| &points[end]), vessels, &laws);
     let lengths = mesh::lengths(&pieces(line), elements, &wanted);
     let beam = beam::build(scene, index, line, &laws, &lengths)?;
@@ -331,7 +356,7 @@ fn build_line(
             length: section.length,
             weight: law.weight,
             axial_stiffness: law.axial_stiffness,
-            law: law.law,
+            law: law.law.clone(),
         });
     let mut built = Line {
         name: line.name.clone(),
@@ -343,12 +368,39 @@ fn build_line(
         sections: sections.collect(),
         initial: line.initial.clone(),
         beam,
+        parting: partings(line),
     };
     built.bending = line_bending(index, line, &parts, &built)?;
     if scene.meets_surface(line) {
         built.surface = Some(Surface::new(&parts, &built.nodes.length));
     }
     Ok(built)
+}
+
+/// When the ends of a line part from their points.
+fn partings(line: &scene::Line) -> Option<[Parting; 2]> {
+    let mut partings = [Parting::default(); 2];
+    let side = |end: LineEnd| usize::from(end == LineEnd::B);
+    if let Some(end) = line.release {
+        partings[side(end)].on_release = true;
+    }
+    if let Some(parting) = &line.parting {
+        let end = &mut partings[side(parting.at)];
+        (end.tension, end.time) = (parting.tension, parting.time);
+    }
+    (line.release.is_some() || line.parting.is_some()).then_some(partings)
+}
+
+/// Refuses a viscoelastic section beside one of another strain measure.
+fn check_mixture(index: usize, laws: &[LineLaw]) -> Result<(), SceneError> {
+    let viscoelastic = laws.iter().any(|law| law.viscoelastic.is_some());
+    if viscoelastic && laws.iter().any(|law| law.law != StretchLaw::Engineering) {
+        return Err(SceneError::new(
+            format!("lines[{index}].sections"),
+            "a viscoelastic section stands beside sections of engineering strain only, without a table",
+        ));
+    }
+    Ok(())
 }
 
 /// Sections as the mesher sees them.
@@ -412,15 +464,28 @@ fn segments(parts: &[SegmentPart]) -> Segments {
             axial_damping,
             damping_ratio,
             mass,
+            viscoelastic,
             ..
         } = part.law;
+        let ea = viscoelastic.map_or(*ea, |[fast, _]| fast);
         axial_damping + damping_ratio * part.length * (ea * mass).sqrt()
     };
+    let axial_damping: Vec<f64> = parts.iter().map(damping).collect();
+    let viscoelastic = |(part, damping): (&SegmentPart, &f64)| match part.law.viscoelastic {
+        Some([fast, slow_damping]) => {
+            Viscoelastic::new([part.law.axial_stiffness, fast], [slow_damping, *damping])
+        }
+        None => Viscoelastic::plain(part.law.axial_stiffness, *damping),
+    };
     Segments {
+        viscoelastic: parts
+            .iter()
+            .any(|part| part.law.viscoelastic.is_some())
+            .then(|| parts.iter().zip(&axial_damping).map(viscoelastic).collect()),
         length: parts.iter().map(|part| part.length).collect(),
         axial_stiffness: parts.iter().map(|part| part.law.axial_stiffness).collect(),
-        axial_damping: parts.iter().map(damping).collect(),
-        law: parts.iter().map(|part| part.law.law).collect(),
+        axial_damping,
+        law: parts.iter().map(|part| part.law.law.clone()).collect(),
     }
 }
 

@@ -21,6 +21,7 @@ use crate::physics::flow::{Profile, Stream};
 use crate::physics::point::{Sphere, Wetted};
 use crate::physics::seabed::ContactCoefficients;
 use crate::physics::stretch::StretchLaw;
+use crate::physics::viscoelastic::Viscoelastic;
 use crate::scene::{InitialShape, PointForce, PointMoment, Solver, TimeFunction};
 
 pub use beam::{Beam, BeamElement, BeamState};
@@ -195,10 +196,30 @@ pub struct Line {
     pub initial: InitialShape,
     /// What makes it a beam, where it is one.
     pub beam: Option<Beam>,
+    /// When ends A and B part from their points, where one of them may.
+    pub parting: Option<[Parting; 2]>,
+}
+
+/// When an end of a line parts from its point.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Parting {
+    /// Tension of the end's segment that parts it [N].
+    pub tension: Option<f64>,
+    /// Time from which on it is parted [s].
+    pub time: Option<f64>,
+    /// Whether the host's input parts it.
+    pub on_release: bool,
+}
+
+impl Parting {
+    /// Whether an end under a tension [N] at time `t` [s] parts by itself.
+    pub fn parts(&self, tension: f64, t: f64) -> bool {
+        self.tension.is_some_and(|most| tension >= most) || self.time.is_some_and(|time| t >= time)
+    }
 }
 
 /// A section as the closed-form catenary takes it.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Section {
     /// Unstretched length [m].
     pub length: f64,
@@ -221,6 +242,8 @@ pub struct Segments {
     pub axial_damping: Vec<f64>,
     /// Strain measure.
     pub law: Vec<StretchLaw>,
+    /// What replaces stiffness and damping in motion, where the line has a viscoelastic section; EA is then the static one.
+    pub viscoelastic: Option<Vec<Viscoelastic>>,
 }
 
 /// Lumped properties of the nodes: per-length properties times half of each neighbouring segment.
@@ -312,6 +335,16 @@ pub struct Network {
     pub free_points: Vec<usize>,
 }
 
+impl Segments {
+    /// Stiffness [N] and damping [N s] that a segment has in fast motion.
+    pub fn in_motion(&self, i: usize) -> (f64, f64) {
+        match &self.viscoelastic {
+            Some(laws) => (laws[i].fast, laws[i].damping),
+            None => (self.axial_stiffness[i], self.axial_damping[i]),
+        }
+    }
+}
+
 impl Line {
     /// Number of segments n.
     pub fn segment_count(&self) -> usize {
@@ -331,6 +364,12 @@ impl Line {
     /// Whether a current acts on it.
     pub fn drifts(&self, model: &Model) -> bool {
         self.nodes.drag.is_some() && model.current.is_some()
+    }
+
+    /// Whether an end is held: by a point that forces do not move, and that it has not parted from.
+    pub fn is_held(&self, model: &Model, state: &LineState, end: End) -> bool {
+        let side = usize::from(end == End::B);
+        model.points[self.ends[side]].free().is_none() && !state.parted[side]
     }
 
     /// Whether waves act on it.
@@ -365,12 +404,12 @@ impl Line {
 
     /// The strain measure, where all segments share one.
     pub fn uniform_law(&self) -> Option<StretchLaw> {
-        let first = self.segments.law[0];
+        let first = &self.segments.law[0];
         self.segments
             .law
             .iter()
-            .all(|law| *law == first)
-            .then_some(first)
+            .all(|law| law == first)
+            .then(|| first.clone())
     }
 }
 

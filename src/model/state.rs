@@ -48,6 +48,10 @@ pub struct LineState {
     pub half_step: HalfStep,
     /// The rest of the closed-form catenary that the nodes lie on; kept by quasi-static networks only.
     pub closed_form: Option<ClosedForm>,
+    /// Strain of the slow part of every segment [-]; empty unless the line is viscoelastic and in motion.
+    pub creep: Vec<f64>,
+    /// Whether ends A and B have parted from their points.
+    pub parted: [bool; 2],
     /// What the nodes of a beam have beside positions and velocities.
     pub beam: Option<BeamState>,
 }
@@ -115,6 +119,25 @@ impl LineState {
             .map(|beam| BeamState::at_rest(beam, &self.position, attitude));
     }
 
+    /// Gives a viscoelastic line at rest on its positions the slow strains that belong to them.
+    pub fn become_viscoelastic(&mut self, line: &Line) {
+        self.creep.clear();
+        if let Some(laws) = &line.segments.viscoelastic {
+            let chords = self
+                .position
+                .windows(2)
+                .map(|pair| (pair[1] - pair[0]).norm());
+            let strains = chords
+                .zip(&line.segments.length)
+                .map(|(l, l0)| l / l0 - 1.0);
+            self.creep.extend(
+                laws.iter()
+                    .zip(strains)
+                    .map(|(law, strain)| law.rest(strain)),
+            );
+        }
+    }
+
     /// At rest at the given node positions [m].
     pub fn at_rest(position: Vec<Vector3<f64>>) -> LineState {
         let zeros = vec![Vector3::zeros(); position.len()];
@@ -124,6 +147,8 @@ impl LineState {
             position,
             half_step: HalfStep::default(),
             closed_form: None,
+            creep: Vec::new(),
+            parted: [false; 2],
             beam: None,
         }
     }
@@ -156,6 +181,8 @@ clone_in_place!(LineState {
     acceleration,
     half_step,
     closed_form,
+    creep,
+    parted,
     beam
 });
 clone_in_place!(ClosedForm {

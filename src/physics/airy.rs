@@ -18,8 +18,9 @@
 //!
 //! Between two instants not further apart than [`Waves::interval`] velocity, acceleration and elevation follow cubics with the slopes
 //! that they have there, [`Orbit::between`]. By the error h⁴f⁗/384 of that cubic the interval h = (384·10⁻³ √Σ(aω²)²/√Σ(aω⁶)²)^¼ leaves
-//! an error of 10⁻³ of the acceleration, or less; h is also at most half of √Σ(aω)²/√Σ(aω²)², a twelfth of the period of a single wave, since
-//! places are foretold over that time by their velocities, and at most 0.5 s.
+//! an error of 10⁻³ of the acceleration, or less, beside what the stretching makes of the slopes, of the order of (ka)². h is also
+//! at most half of √Σ(aω)²/√Σ(aω²)², a twelfth of the period of a single wave, since places are foretold over that time by their
+//! velocities, and at most 0.5 s.
 //!
 //! Source: Airy (1845) as in Dean & Dalrymple (1991), Water Wave Mechanics for Engineers and Scientists, chapter 3; Wheeler (1970), J.
 //! Petroleum Technology 22(3), 359-367. Valid for ka ≪ 1. The dispersion relation is solved by Newton's method from the
@@ -609,7 +610,7 @@ mod tests {
 
     #[test]
     fn cubics_bridge_the_interval_to_a_thousandth_of_the_acceleration() {
-        let waves = storm(None);
+        let waves = sea(None);
         let place = Vector3::new(3.0, -7.0, -12.0);
         let (mut worst, mut square) = (0.0_f64, 0.0);
         let steps = 400;

@@ -13,4 +13,6 @@ pub mod section;
 pub mod spectrum;
 pub mod stretch;
 pub mod surface;
+pub mod tension_table;
+pub mod viscoelastic;
 pub mod weight;

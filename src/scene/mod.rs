@@ -22,6 +22,7 @@ mod places;
 mod read;
 mod rows;
 mod surface;
+mod tension_strain;
 mod time_function;
 mod units;
 mod water_file;
@@ -38,6 +39,7 @@ pub use notes::Note;
 pub use places::Places;
 use read::Reading;
 pub use read::{LoadedScene, Supplement, TOML, load, load_with};
+pub use tension_strain::TensionStrain;
 pub use time_function::{HarmonicMotion, MotionFile, MotionPath, MotionRow, TimeFunction};
 pub use waves::{RegularWave, Sea, SpectrumKind, WaveComponents, Waves};
 
@@ -176,7 +178,22 @@ pub struct LineType {
     /// Volume-equivalent diameter [m].
     pub diameter: Option<f64>,
     /// Axial stiffness EA [N].
-    pub axial_stiffness: f64,
+    pub axial_stiffness: Option<f64>,
+    /// Tension over strain [- and N], instead of `axial_stiffness`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tension_strain: Option<TensionStrain>,
+    /// Static stiffness EA_s of a viscoelastic rope [N], instead of `axial_stiffness`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub static_stiffness: Option<f64>,
+    /// Dynamic stiffness EA_d of a viscoelastic rope [N].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub dynamic_stiffness: Option<f64>,
+    /// Damping BA_s of the slow part of a viscoelastic rope [N s].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub static_damping: Option<f64>,
+    /// Damping BA_d of the fast part of a viscoelastic rope [N s].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub dynamic_damping: Option<f64>,
     /// Axial damping BA [N s].
     pub axial_damping: Option<f64>,
     /// Axial damping as a ratio of the critical damping of each segment [-]; instead of `axial_damping`.
@@ -385,6 +402,26 @@ pub struct Line {
     pub clamped_a: Option<[f64; 3]>,
     /// Direction of the line from A to B at end B [-], where that end is clamped; pinned where absent.
     pub clamped_b: Option<[f64; 3]>,
+    /// End that lets go of its point when the host's input `L.release` becomes true; there is no such input where absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub release: Option<channel::LineEnd>,
+    /// When the line parts from one of its points by itself.
+    #[serde(default, rename = "break", skip_serializing_if = "Option::is_none")]
+    pub parting: Option<Break>,
+}
+
+/// When a line breaks: `{ at = "b", tension = 4.0e6, time = 100.0 }`, at the first of both.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Break {
+    /// The end that parts from its point.
+    pub at: channel::LineEnd,
+    /// Tension of the end's segment that breaks it [N].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tension: Option<f64>,
+    /// Time at which it breaks [s].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub time: Option<f64>,
 }
 
 /// The shape of a line that is free of bending and torsion.
@@ -557,6 +594,8 @@ impl Line {
             rest_shape: RestShape::Straight,
             clamped_a: None,
             clamped_b: None,
+            release: None,
+            parting: None,
         }
     }
 }

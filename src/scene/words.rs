@@ -2,7 +2,9 @@
 
 mod beam;
 mod bending;
+mod parting;
 mod points;
+mod stretch;
 mod surroundings;
 mod vessels;
 
@@ -133,16 +135,7 @@ impl Scene {
         if let Some(diameter) = line_type.diameter {
             parts.push(format!("diameter {}", quantity(diameter, "m")));
         }
-        let ea = line_type.axial_stiffness; // EA [N]
-        parts.push(format!(
-            "EA {} on the {} strain",
-            quantity(ea, "N"),
-            strain_in_words(line_type.strain)
-        ));
-        parts.push(format!(
-            "axial waves at {} m/s",
-            significant((ea / mass).sqrt())
-        ));
+        parts.push(stretch::in_words(line_type, mass));
         let section = self.section_in_words(line_type);
         parts.extend(section.or_else(|| bending::stiffness_in_words(line_type)));
         parts.push(damping_in_words(line_type));
@@ -234,11 +227,12 @@ impl Scene {
         };
         let held = held.map_or(String::new(), |held| format!("; {held}"));
         format!(
-            "{}: from {} to {}, {}; {fit}; {start}{held}",
+            "{}: from {} to {}, {}; {fit}; {start}{held}{}",
             line.name,
             line.from,
             line.to,
-            sections.join(", ")
+            sections.join(", "),
+            parting::in_words(line)
         )
     }
 

@@ -21,7 +21,9 @@
 
 mod bending;
 mod contact;
+mod creep;
 mod line;
+mod parted;
 mod places;
 mod points;
 mod surface;
@@ -213,6 +215,9 @@ impl Workspace {
         for_free_points(model, network, |index, free| {
             let mut total = self.points[index].residual;
             for &(line, end) in &model.points[index].attached {
+                if self.lines[line].parted[usize::from(end == End::B)] {
+                    continue;
+                }
                 total += self.lines[line].residual[model.lines[line].end_node(end)];
             }
             for axis in 0..3 {
@@ -233,7 +238,11 @@ impl Workspace {
         for &index in &network.lines {
             let work = &mut self.lines[index];
             let [a, b] = model.lines[index].ends.map(|point| self.points[point].slot);
-            let Some(ends) = work.eliminate(a.is_some()) else {
+            let [a, b] = [a.filter(|_| !work.parted[0]), b.filter(|_| !work.parted[1])];
+            let Some(ends) = work.eliminate(a.is_some() || work.parted[0]) else {
+                return false;
+            };
+            let Some(ends) = work.eliminate_parted(ends) else {
                 return false;
             };
             if let Some(a) = a {
@@ -266,7 +275,7 @@ impl Workspace {
         }
         for &index in &network.lines {
             let [a, b] = model.lines[index].ends.map(|point| self.solution_at(point));
-            self.lines[index].substitute(a, b);
+            self.lines[index].substitute_all(a, b);
         }
         true
     }
@@ -303,6 +312,10 @@ impl Workspace {
     ) {
         for &index in &network.lines {
             self.lines[index].fade_dampers(&model.lines[index], &state.lines[index], dt);
+            self.lines[index].parted = state.lines[index].parted;
+            if let Some(creep) = &mut self.lines[index].creep {
+                creep.begin(&model.lines[index], &state.lines[index], dt);
+            }
         }
         for_free_points(model, network, |index, free| {
             if let Some(contact) = &free.contact {
@@ -311,6 +324,15 @@ impl Workspace {
                 self.points[index].reach = resting.max(moved);
             }
         });
+    }
+
+    /// Takes the memory of viscoelastic lines to the end of a step, where the nodes now are.
+    pub(crate) fn creep(&self, model: &Model, network: &Network, state: &mut State) {
+        for &index in &network.lines {
+            if let Some(creep) = &self.lines[index].creep {
+                creep.finish(&model.lines[index], &mut state.lines[index]);
+            }
+        }
     }
 
     /// Keeps the residual of the last assembly for the next step.

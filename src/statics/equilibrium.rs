@@ -600,7 +600,7 @@ impl<'a> Problem<'a> {
             .lines
             .iter()
             .flat_map(|&line| &self.model.lines[line].segments.law);
-        laws.copied().any(|law| law.limit_strain().is_some())
+        laws.into_iter().any(|law| law.limit_strain().is_some())
     }
 
     /// Whether the tangent of a converged state is positive definite.

@@ -107,6 +107,12 @@ fn part(name: &str, line_type: &LineType, law: &LineLaw) -> Result<Part, SceneEr
             "a beam has engineering strain only: leave `strain` out",
         ));
     }
+    if line_type.tension_strain.is_some() {
+        return Err(SceneError::new(
+            at("tension_strain"),
+            "a beam has one `axial_stiffness` [N], and no table",
+        ));
+    }
     let solid = line_type.solid_section.as_ref();
     let stiffness = |key: &str, given: Option<f64>, of: fn(&SolidSection) -> f64| {
         let missing = format!("a beam needs `{key}`, or `solid_section` to have it from");

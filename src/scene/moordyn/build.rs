@@ -7,7 +7,7 @@ use crate::scene::from_deck::{self, SEA_WATER, Vessels, bed, place_position};
 use crate::scene::rows::{Findings, Placed};
 use crate::scene::{
     self, Current, Output, Places, PointForce, PointKind, Scene, Sea, Section, Supplement,
-    TimeFunction, Water, Waves,
+    TensionStrain, TimeFunction, Water, Waves,
 };
 
 /// A deck on its way to a scene.
@@ -116,6 +116,11 @@ impl<'d> Builder<'d> {
         }
         let properties = [
             ("axial_stiffness", Some(&kind.stiffness), "EA"),
+            ("tension_strain", Some(&kind.stiffness), "EA"),
+            ("static_stiffness", Some(&kind.stiffness), "EA"),
+            ("dynamic_stiffness", Some(&kind.stiffness), "EA"),
+            ("static_damping", Some(&kind.damping), "BA/-zeta"),
+            ("dynamic_damping", Some(&kind.damping), "BA/-zeta"),
             ("axial_damping", Some(&kind.damping), "BA/-zeta"),
             ("damping_ratio", Some(&kind.damping), "BA/-zeta"),
             ("bending_stiffness", kind.bending.as_ref(), "EI"),
@@ -496,14 +501,36 @@ impl<'d> Builder<'d> {
     }
 }
 
+/// What resists the stretch of a line.
+fn stretch(kind: &LineType) -> scene::LineType {
+    let mut line_type = scene::LineType::default();
+    let (slow, damping) = match &kind.damping.value {
+        Property::Parts(parts) => (parts[0], parts[1]),
+        number => (plain(number), plain(number)),
+    };
+    match &kind.stiffness.value {
+        Property::Parts(parts) => {
+            line_type.static_stiffness = Some(parts[0]);
+            line_type.dynamic_stiffness = Some(parts[1]);
+            line_type.static_damping = Some(slow);
+            let both = matches!(kind.damping.value, Property::Parts(_));
+            let fast = if both { damping } else { 0.0 }; // MoorDyn's reading of one BA
+            line_type.dynamic_damping = (fast >= 0.0).then_some(fast);
+            line_type.damping_ratio = (fast < 0.0).then_some(-fast);
+            return line_type;
+        }
+        Property::Named(file) => line_type.tension_strain = Some(TensionStrain::from_file(file)),
+        Property::Number(stiffness) => line_type.axial_stiffness = Some(*stiffness),
+    }
+    line_type.axial_damping = (damping >= 0.0).then_some(damping);
+    line_type.damping_ratio = (damping < 0.0).then_some(-damping);
+    line_type
+}
+
 fn line_type(kind: &LineType) -> scene::LineType {
-    let damping = plain(&kind.damping.value);
     scene::LineType {
         mass: Some(kind.mass.value),
         diameter: Some(kind.diameter.value),
-        axial_stiffness: plain(&kind.stiffness.value),
-        axial_damping: (damping >= 0.0).then_some(damping),
-        damping_ratio: (damping < 0.0).then_some(-damping),
         bending_stiffness: kind
             .bending
             .as_ref()
@@ -512,7 +539,7 @@ fn line_type(kind: &LineType) -> scene::LineType {
         drag_tangential: given(kind.drag_tangential.value),
         added_mass_normal: given(kind.added_mass_normal.value),
         added_mass_tangential: given(kind.added_mass_tangential.value),
-        ..scene::LineType::default()
+        ..stretch(kind)
     }
 }
 

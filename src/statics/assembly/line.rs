@@ -3,6 +3,8 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::bending::Parts;
+use super::creep::CreepWork;
+use super::parted::Parted;
 use super::{BendingWork, StaticCase, Weights, surface};
 use crate::math::block_tridiagonal::Chain;
 use crate::model::{Dry, Line, LineState, Model, WaterAlong};
@@ -38,22 +40,29 @@ pub(crate) struct LineWork {
     pub dry: Vec<Dry>,
     /// Joints, where the line has bending stiffness.
     pub bending: Option<BendingWork>,
+    /// Memory of viscoelastic segments, where the line has any.
+    pub(super) creep: Option<CreepWork>,
+    /// Whether ends A and B have parted from their points.
+    pub(super) parted: [bool; 2],
+    /// What was eliminated of them last.
+    pub(super) loose: Option<Parted>,
     /// Elimination where nothing bends.
     pub(super) chain: Chain,
 }
+
 /// A segment as it lies.
-struct Geometry {
+pub(super) struct Geometry {
     /// Length [m].
     length: f64,
     /// Direction [-]; zero where both nodes coincide.
     direction: Vector3<f64>,
     /// l/l₀ − 1 [-], without the cancellation of the subtraction.
-    strain: f64,
+    pub(super) strain: f64,
 }
 
 impl Geometry {
     #[inline(always)]
-    fn new(a: Vector3<f64>, b: Vector3<f64>, unstretched: f64) -> Geometry {
+    pub(super) fn new(a: Vector3<f64>, b: Vector3<f64>, unstretched: f64) -> Geometry {
         let d = b - a;
         let square = d.norm_squared();
         let length = square.sqrt();
@@ -89,6 +98,9 @@ impl LineWork {
             load: vec![Vector3::zeros(); if line.drifts(model) { n + 1 } else { 0 }],
             dry: vec![Dry::default(); if line.surface.is_some() { n + 1 } else { 0 }],
             bending: line.bending.as_ref().map(|_| BendingWork::new(n + 1)),
+            creep: CreepWork::new(line),
+            parted: [false; 2],
+            loose: None,
             chain: Chain::new(n + 1),
         }
     }
@@ -246,7 +258,11 @@ impl LineWork {
         let g = Geometry::new(state.position[i], state.position[i + 1], unstretched);
         let rate = state.velocity[i + 1] - state.velocity[i]; // ġ [m/s]
         let stretch = line.segments.law[i].at(g.strain);
-        let elastic = ea * stretch.force;
+        let (mut elastic, mut tangent, mut ba) = (ea * stretch.force, ea * stretch.slope, ba);
+        if let Some(creep) = &self.creep {
+            let taken = creep.respond(line, state, i, g.strain, weights.predicted);
+            (elastic, tangent, ba) = (taken.elastic, taken.tangent, taken.damping);
+        }
         let total = elastic + ba * g.direction.dot(&rate) / unstretched;
         let predicted = weights.predicted && !negative_tension;
         let least = 0.0 - self.push[i];
@@ -263,11 +279,7 @@ impl LineWork {
         let mut stiffness = Matrix3::zeros();
         if TANGENT && g.length > 0.0 {
             let damps = taut || negative_tension;
-            let spring = if taut {
-                ea * stretch.slope / unstretched
-            } else {
-                0.0
-            };
+            let spring = if taut { tangent / unstretched } else { 0.0 };
             let damper = if damps { ba / unstretched } else { 0.0 };
             let along = weights.position * spring + weights.velocity * damper;
             let pull = if predicted { self.tension[i] } else { tension };

@@ -44,7 +44,9 @@ impl Place {
 pub(crate) fn place_ends(model: &Model, network: &Network, state: &mut State) {
     for &index in &network.lines {
         let line = &model.lines[index];
-        for (point, node) in line.ends.into_iter().zip([0, line.segment_count()]) {
+        let parted = state.lines[index].parted;
+        let ends = line.ends.into_iter().zip([0, line.segment_count()]);
+        for ((point, node), _) in ends.zip(parted).filter(|(_, parted)| !parted) {
             let (point, nodes) = (&state.points[point], &mut state.lines[index]);
             nodes.position[node] = point.position;
             nodes.velocity[node] = point.velocity;
@@ -62,6 +64,8 @@ pub(crate) fn copy_network(model: &Model, network: &Network, from: &State, to: &
         to_line
             .acceleration
             .copy_from_slice(&from_line.acceleration);
+        to_line.creep.clone_from(&from_line.creep);
+        to_line.parted = from_line.parted;
         to_line.beam.clone_from(&from_line.beam);
         for point in model.lines[index].ends {
             to.points[point] = from.points[point];
@@ -71,7 +75,11 @@ pub(crate) fn copy_network(model: &Model, network: &Network, from: &State, to: &
 
 /// A state of `model` with room for everything and nothing in place.
 pub(super) fn blank_state(model: &Model) -> State {
-    let line = |line: &Line| LineState::at_rest(vec![Vector3::zeros(); line.segment_count() + 1]);
+    let line = |line: &Line| {
+        let mut shape = LineState::at_rest(vec![Vector3::zeros(); line.segment_count() + 1]);
+        shape.become_viscoelastic(line);
+        shape
+    };
     State {
         time: 0.0,
         points: model
