@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::deck::{Attachment, Body, Deck, Line, LineEnd, LineType, Point, Property, Rod};
-use crate::scene::from_deck::{self, SEA_WATER, Vessels, bed, place_position};
+use crate::scene::from_deck::{self, SEA_WATER, Vessels, place_position};
 use crate::scene::rows::{Findings, Placed};
 use crate::scene::{
     self, Output, Places, PointForce, PointKind, Scene, Section, Supplement, TimeFunction, Water,
@@ -303,7 +303,7 @@ impl<'d> Builder<'d> {
         else {
             return;
         };
-        let mut seabed = bed(depth);
+        let mut seabed = Seabed::level(depth);
         if let Some(depth) = &options.depth {
             self.places
                 .put("seabed.depth", &depth.span, "OPTIONS, WtrDpth");
