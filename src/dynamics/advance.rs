@@ -12,6 +12,7 @@ use super::network::NetworkWork;
 use super::{Choice, StepError, quasi_static};
 use crate::model::{End, Kinematics, Model, Network, State};
 use crate::scene::Integrator;
+use crate::statics::assembly::rubbing::drop_anchors;
 use crate::statics::assembly::{self, copy_network};
 
 /// Spectral radius of the axial-implicit leapfrog where the scene gives none [-].
@@ -105,6 +106,7 @@ impl Workspace {
         held: &impl Fn(usize, f64) -> Kinematics,
     ) {
         let time = state.time;
+        drop_anchors(model, state);
         place_held(model, state, held);
         for (number, (_, solver)) in self.networks.iter().enumerate() {
             if matches!(solver, Solver::Implicit(_)) {

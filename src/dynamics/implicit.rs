@@ -341,6 +341,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
         work.fade_dampers(self.model, self.network, state, dt);
         work.assemble_dynamic::<false>(self.model, self.network, state, t0, &old);
         work.remember(self.network);
+        work.move_anchors(self.model, self.network, state);
         self.predict(state, dt);
         hold(self.model, self.network, state, self.held, t1);
         let (per_velocity, per_acceleration) = (gamma / (beta * dt), 1.0 / (beta * dt * dt));

@@ -3,13 +3,18 @@
 //! Node i and segment i, which lies between nodes i and i + 1, stand at index [`FIRST`] + i. Padding has no stiffness, no
 //! weight and no drag, so that it stays at rest and no loop has a remainder.
 
+use std::sync::Arc;
+
 use nalgebra::Vector3;
 use pulp::{Arch, NullaryFnOnce};
 
 use super::leapfrog::Step;
 use crate::math::lanes::{Components, LANES, Lanes, Vectors};
-use crate::model::{End, Line, LineState};
+use crate::model::{Contact, End, Line, LineState, Surface};
 use crate::physics::flow::{Profile, Stream};
+use crate::physics::friction::Friction;
+use crate::physics::ground::Touch;
+use crate::physics::seabed::ContactCoefficients;
 use crate::physics::stretch::StretchLaw;
 
 /// Index of node 0 and of segment 0.
@@ -68,12 +73,51 @@ impl CurrentNow {
     }
 }
 
-/// Lumped contact coefficients [N/m, N s/m] and the z [m] below which they push.
+/// Lumped contact coefficients [N/m, N s/m] and the z [m] below which they push; over a surface the height above it, along its normal.
 #[derive(Debug, Clone)]
 pub(super) struct ContactArrays {
     pub level: Vec<f64>,
     pub stiffness: Vec<f64>,
     pub damping: Vec<f64>,
+    /// Where the bed is more than a level plane without friction.
+    pub surface: Option<SurfaceArrays>,
+}
+
+/// A bed that slopes or rubs.
+#[derive(Debug, Clone)]
+pub(super) struct SurfaceArrays {
+    pub surface: Arc<Surface>,
+    /// Stiffness along the bed of a node that sticks [N/m]; 0 without friction.
+    pub stick: Vec<f64>,
+    /// Friction on the nodes in the last step [N].
+    pub rub: Components,
+}
+
+impl ContactArrays {
+    fn new(contact: &Contact, keep: impl Fn(&[f64]) -> Vec<f64>) -> ContactArrays {
+        let lifts = || (0..contact.level.len()).map(|i| contact.lift(i)).collect();
+        let surface = contact.surface.as_ref();
+        let level: Vec<f64> = surface.map_or_else(|| contact.level.clone(), |_| lifts());
+        let level = keep(&level);
+        ContactArrays {
+            surface: surface.map(|surface| SurfaceArrays {
+                surface: surface.clone(),
+                stick: keep(&contact.stick),
+                rub: Components::zeros(level.len()),
+            }),
+            level,
+            stiffness: keep(&contact.stiffness),
+            damping: keep(&contact.damping),
+        }
+    }
+
+    /// Spring and damper of the node at `at`.
+    pub fn coefficients(&self, at: usize) -> ContactCoefficients {
+        ContactCoefficients {
+            stiffness: self.stiffness[at],
+            damping: self.damping[at],
+        }
+    }
 }
 
 impl Layout {
@@ -107,11 +151,10 @@ impl Layout {
                     factor: 1.0,
                 }),
             mass_damping: nodes.mass_damping.as_ref().map(|damping| keep(damping)),
-            contact: nodes.contact.as_ref().map(|contact| ContactArrays {
-                level: keep(&contact.level),
-                stiffness: keep(&contact.stiffness),
-                damping: keep(&contact.damping),
-            }),
+            contact: nodes
+                .contact
+                .as_ref()
+                .map(|contact| ContactArrays::new(contact, keep)),
         })
     }
 
@@ -149,6 +192,48 @@ impl Layout {
             memory.velocity[i] = velocity;
             memory.velocity_before[i] = before;
         }
+        if let Some(surface) = self.surface() {
+            for (i, anchor) in state.anchor.iter_mut().enumerate() {
+                let rub = surface.rub.get(FIRST + i) / surface.stick[FIRST + i];
+                *anchor = state.position[i] + rub;
+            }
+        }
+    }
+
+    /// The bed, where it is more than a level plane without friction.
+    pub fn surface(&self) -> Option<&SurfaceArrays> {
+        self.contact.as_ref()?.surface.as_ref()
+    }
+
+    /// The contact with a bed that slopes or rubs, and its friction.
+    pub fn rubbing(&self) -> Option<(&ContactArrays, Option<&Friction>)> {
+        let contact = self.contact.as_ref()?;
+        let surface = contact.surface.as_ref()?;
+        Some((contact, surface.surface.friction.as_ref()))
+    }
+
+    /// Remembers the friction on a node [N].
+    pub fn set_rub(&mut self, at: usize, rub: Vector3<f64>) {
+        if let Some(contact) = &mut self.contact
+            && let Some(surface) = &mut contact.surface
+        {
+            surface.rub.set(at, rub);
+        }
+    }
+
+    /// How the node at `at` stands to the level from which the bed pushes it; without a bed it must not be asked.
+    pub fn touch(&self, at: usize) -> Touch {
+        let contact = self.contact.as_ref().expect("asked over a bed only");
+        let surface = contact.surface.as_ref().expect("asked over a surface only");
+        surface
+            .surface
+            .touch(self.position.get(at), contact.level[at])
+    }
+
+    /// Unit vector along the chord of the nodes beside the one at `at`, which is none of the ends.
+    pub fn tangent_of(&self, at: usize) -> Vector3<f64> {
+        let chord = self.position.get(at + 1) - self.position.get(at - 1);
+        chord.try_normalize(0.0).unwrap_or_else(Vector3::zeros)
     }
 
     /// Sets what multiplies the current at t_n [-].

@@ -25,12 +25,13 @@ use serde::{Deserialize, Serialize};
 use super::beam::{self, BeamView};
 use super::leapfrog::segment_tension;
 use crate::model::{
-    ClosedForm, End, FreePoint, Line, LineState, Model, Network, PointState, State, joint,
+    ClosedForm, End, FreePoint, Line, LineState, Model, Network, PointState, State, Surface, joint,
 };
 use crate::physics::flow::Stream;
 use crate::physics::morison::{DragCoefficients, drag};
 use crate::physics::seabed::{ContactCoefficients, normal_force};
 use crate::physics::stretch::total_tension;
+use crate::statics::assembly::rubbing::{resting_node, resting_point};
 use crate::statics::assembly::{end_moment, end_shear, joint_damping_power};
 use crate::statics::equilibrium::current::drag_at_rest;
 
@@ -335,7 +336,16 @@ pub fn work_at_rest(
             &line.nodes.contact,
             shapes.iter().any(|shape| shape.closed_form.is_none()),
         ) {
-            for i in 1..line.segment_count() {
+            let level = line.surface().is_none();
+            for i in (1..line.segment_count()).filter(|_| !level) {
+                let [low, high] = shapes.map(|shape| {
+                    let node = resting_node(line, shape, i, 0.0, 1.0).and_then(|node| node.push());
+                    node.map_or(Vector3::zeros(), |push| push.force)
+                });
+                let moved = shapes[1].position[i] - shapes[0].position[i];
+                flow.lost -= 0.5 * (low + high).dot(&moved);
+            }
+            for i in (1..line.segment_count()).filter(|_| level) {
                 let [z0, z1] = shapes.map(|shape| shape.position[i].z);
                 let push = |z: f64| contact.stiffness[i] * (contact.level[i] - z).max(0.0);
                 flow.lost -= 0.5 * (push(z0) + push(z1)) * (z1 - z0);
@@ -350,11 +360,18 @@ pub fn work_at_rest(
         if after.lines[line].closed_form.is_none()
             && let Some(free) = model.points[point].free()
         {
-            let push = |state: &State| {
-                let spring = free.bed_at_rest(state.points[point].position.z);
-                spring.map_or(0.0, |(_, force)| force)
+            let push = |state: &State| match model.surface.as_deref() {
+                None => {
+                    let spring = free.bed_at_rest(state.points[point].position.z);
+                    spring.map_or(Vector3::zeros(), |(_, force)| force * Vector3::z())
+                }
+                Some(surface) => {
+                    let resting = resting_point(free, surface, &state.points[point], 0.0, 1.0);
+                    let push = resting.and_then(|point| point.push());
+                    push.map_or(Vector3::zeros(), |push| push.force)
+                }
             };
-            flow.lost -= 0.5 * (push(before) + push(after)) * moved.z;
+            flow.lost -= 0.5 * (push(before) + push(after)).dot(&moved);
         }
     }
     flow
@@ -421,7 +438,8 @@ pub fn power(model: &Model, network: &Network, state: &State, t: f64) -> Flow {
         let velocity = &state.points[point].velocity;
         flow.given += model.points[point].load_at(t).dot(velocity);
         if let Some(free) = model.points[point].free() {
-            flow.add(point_power(free, &state.points[point], model.stream(t)));
+            let (surface, point) = (model.surface.as_deref(), &state.points[point]);
+            flow.add(point_power(free, surface, point, model.stream(t)));
         }
     }
     flow
@@ -429,7 +447,12 @@ pub fn power(model: &Model, network: &Network, state: &State, t: f64) -> Flow {
 
 /// Power that a current gives a free point, and that water and seabed take from it [W]; what joins the added mass where it dips in
 /// is negative.
-fn point_power(free: &FreePoint, state: &PointState, stream: Option<Stream>) -> Flow {
+fn point_power(
+    free: &FreePoint,
+    surface: Option<&Surface>,
+    state: &PointState,
+    stream: Option<Stream>,
+) -> Flow {
     let (z, velocity) = (state.position.z, state.velocity);
     let at = free.at(z);
     let water = stream.map_or(Vector3::zeros(), |stream| stream.velocity(z));
@@ -437,7 +460,10 @@ fn point_power(free: &FreePoint, state: &PointState, stream: Option<Stream>) -> 
     let drag = free.drag(at.wetted, past);
     let mut lost = -drag.dot(&past);
     lost -= 0.5 * at.mass_slope * velocity.z * velocity.norm_squared();
-    if let Some(contact) = &free.contact {
+    if let Some(surface) = surface {
+        let push = resting_point(free, surface, state, 0.0, 1.0).and_then(|point| point.push());
+        lost -= push.map_or(0.0, |push| push.force.dot(&velocity));
+    } else if let Some(contact) = &free.contact {
         let push = normal_force(contact.coefficients, contact.level - z, velocity.z);
         lost -= push * velocity.z;
     }
@@ -522,7 +548,10 @@ fn node_power(line: &Line, shape: &LineState, i: usize, stream: Option<Stream>) 
     if let Some(damping) = &nodes.mass_damping {
         lost += damping[i] * velocity.norm_squared();
     }
-    if let Some(contact) = &nodes.contact {
+    if line.surface().is_some() {
+        let push = resting_node(line, shape, i, 0.0, 1.0).and_then(|node| node.push());
+        lost -= push.map_or(0.0, |push| push.force.dot(&velocity));
+    } else if let Some(contact) = &nodes.contact {
         let k = ContactCoefficients {
             stiffness: contact.stiffness[i],
             damping: contact.damping[i],

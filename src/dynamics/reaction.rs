@@ -15,6 +15,7 @@ use super::beam::BeamView;
 use super::leapfrog::segment_tension;
 use crate::model::{End, Line, LineState, PointState};
 use crate::physics::flow::Stream;
+use crate::physics::ground::Touch;
 use crate::physics::morison::{self, DragCoefficients};
 use crate::physics::seabed::{self, ContactCoefficients};
 use crate::statics::assembly::end_shear;
@@ -89,8 +90,21 @@ pub fn end_force(
             stiffness: contact.stiffness[node],
             damping: contact.damping[node],
         };
-        let penetration = contact.level[node] - state.position[node].z;
-        force.z += seabed::normal_force(coefficients, penetration, velocity.z);
+        match &contact.surface {
+            None => {
+                let penetration = contact.level[node] - state.position[node].z;
+                force.z += seabed::normal_force(coefficients, penetration, velocity.z);
+            }
+            Some(surface) => {
+                let Touch {
+                    penetration,
+                    normal,
+                    ..
+                } = surface.touch(state.position[node], contact.lift(node));
+                let rise = normal.dot(&velocity);
+                force += seabed::normal_force(coefficients, penetration, rise) * normal;
+            }
+        }
     }
     force
 }

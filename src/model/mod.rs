@@ -10,7 +10,10 @@ mod initial;
 mod mesh;
 mod motion;
 mod state;
+mod surface;
 mod vessel;
+
+use std::sync::Arc;
 
 use nalgebra::Vector3;
 
@@ -24,6 +27,7 @@ pub use beam::{Beam, BeamElement, BeamState};
 pub use bending::{Bending, joint};
 pub use motion::{Kinematics, Motion, Pose};
 pub use state::{ClosedForm, LineState, PointState, State};
+pub use surface::Surface;
 pub use vessel::{Frame, Vessel};
 
 /// A scene made discrete. Immutable; shared by reference.
@@ -31,10 +35,12 @@ pub use vessel::{Frame, Vessel};
 pub struct Model {
     /// Gravitational acceleration [m/s²].
     pub gravity: f64,
-    /// z of the seabed [m].
+    /// z of the seabed [m]: of a level one; of others at the depth that the scene gives.
     pub bed: Option<f64>,
-    /// Coulomb friction of the seabed in the static catenary [-].
+    /// Coulomb friction of the seabed along a line [-].
     pub bed_friction: f64,
+    /// What the seabed is beside a level plane without friction.
+    pub surface: Option<Arc<Surface>>,
     /// The current, where the water flows.
     pub current: Option<Current>,
     /// Points in the order of the scene.
@@ -257,6 +263,10 @@ pub struct Contact {
     pub stiffness: Vec<f64>,
     /// Damping [N s/m].
     pub damping: Vec<f64>,
+    /// What the bed is beside a level plane without friction.
+    pub surface: Option<Arc<Surface>>,
+    /// Stiffness along the bed of a node that sticks [N/m]; empty without friction.
+    pub stick: Vec<f64>,
 }
 
 /// Lines that share free points.

@@ -31,6 +31,8 @@ pub struct PointState {
     pub spin: Vector3<f64>,
     /// Velocities half a step and one and a half steps before the time of the position [m/s], for the leapfrog.
     pub half_step: [Vector3<f64>; 2],
+    /// Where it would lie if friction let go of it [m], where there is friction.
+    pub anchor: Option<Vector3<f64>>,
 }
 
 /// State of a line: its nodes from end A to end B, ends included.
@@ -48,6 +50,8 @@ pub struct LineState {
     pub closed_form: Option<ClosedForm>,
     /// What the nodes of a beam have beside positions and velocities.
     pub beam: Option<BeamState>,
+    /// Where the nodes would lie if the friction of the bed let go of them [m]; empty without friction.
+    pub anchor: Vec<Vector3<f64>>,
 }
 
 /// What a closed-form catenary says that its nodes do not: their chords are shorter than the arcs between them, which on a stiff line
@@ -90,6 +94,7 @@ impl PointState {
             orientation: UnitQuaternion::identity(),
             spin: zero,
             half_step: [zero; 2],
+            anchor: None,
         }
     }
 }
@@ -123,6 +128,7 @@ impl LineState {
             half_step: HalfStep::default(),
             closed_form: None,
             beam: None,
+            anchor: Vec::new(),
         }
     }
 }
@@ -153,7 +159,8 @@ clone_in_place!(LineState {
     acceleration,
     half_step,
     closed_form,
-    beam
+    beam,
+    anchor
 });
 clone_in_place!(ClosedForm {
     tension,

@@ -98,14 +98,6 @@ impl Ground {
         Vector3::new(-hx, -hy, 1.0).normalize()
     }
 
-    /// The lowest point of the surface over a disc [m] around a place, or a bound below it.
-    pub fn lowest_near(&self, [x, y]: [f64; 2], radius: f64) -> f64 {
-        match self {
-            Ground::Plane { slope, .. } => self.height(x, y) - radius * slope[0].hypot(slope[1]),
-            Ground::Grid(grid) => grid.lowest(),
-        }
-    }
-
     fn relief(&self, x: f64, y: f64) -> Relief {
         match self {
             Ground::Plane { height, slope } => Relief {
@@ -147,20 +139,6 @@ impl Grid {
             y: y.to_vec(),
             nodes,
         })
-    }
-
-    /// A bound below all of the surface: a cubic between h₀ and h₁ goes no farther beyond them than a quarter of its slopes' reach.
-    fn lowest(&self) -> f64 {
-        let widest = |line: &[f64]| {
-            line.windows(2)
-                .map(|pair| pair[1] - pair[0])
-                .fold(0.0, f64::max)
-        };
-        let (wx, wy) = (widest(&self.x), widest(&self.y));
-        let low = |[h, hx, hy, hxy]: &[f64; 4]| {
-            h - 0.5 * (wx * hx.abs() + wy * hy.abs() + wx * wy * hxy.abs())
-        };
-        self.nodes.iter().map(low).fold(f64::INFINITY, f64::min)
     }
 
     fn relief(&self, x: f64, y: f64) -> Relief {
@@ -341,17 +319,6 @@ mod tests {
         for x in &X[1..3] {
             let (low, high) = (ground.normal(x - 1e-9, 12.0), ground.normal(x + 1e-9, 12.0));
             assert_relative_eq!(low, high, epsilon = 1e-8);
-        }
-    }
-
-    #[test]
-    fn the_bound_lies_below_all_of_the_surface() {
-        let ground = hilly();
-        let bound = ground.lowest_near([0.0; 2], 1.0);
-        for i in 0..50 {
-            for j in 0..35 {
-                assert!(ground.height(f64::from(i) - 10.0, f64::from(j) - 5.0) >= bound);
-            }
         }
     }
 

@@ -160,9 +160,18 @@ mod tests {
     fn what_is_wrong_is_said_with_its_line() {
         for (text, problem) in [
             ("", ": no soundings in it"),
-            ("y/x, 0, 1\n0, 5\n", ", line 2: expected y and 2 depths, found 2 numbers"),
-            ("y/x, 0, 1\n0, 5, NaN\n", ", line 2: expected a finite number [m], found \"NaN\""),
-            ("---\nnGridX 2\n3 nRows\n", ", line 3: expected `NGRIDY` and a whole number"),
+            (
+                "y/x, 0, 1\n0, 5\n",
+                ", line 2: expected y and 2 depths, found 2 numbers",
+            ),
+            (
+                "y/x, 0, 1\n0, 5, NaN\n",
+                ", line 2: expected a finite number [m], found \"NaN\"",
+            ),
+            (
+                "---\nnGridX 2\n3 nRows\n",
+                ", line 3: expected `NGRIDY` and a whole number",
+            ),
             (
                 "---\nnGridX 2\nnGridY 2\n0 1\n0 5 6\n",
                 ": nGridX and nGridY say 2 by 2, and 2 by 1 soundings are there",

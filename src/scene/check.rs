@@ -4,6 +4,7 @@ mod line_types;
 mod lines;
 mod points;
 mod settings;
+mod seabed;
 mod surroundings;
 mod time;
 

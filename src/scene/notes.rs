@@ -169,10 +169,12 @@ fn note_whole(scene: &Scene, notes: &mut Vec<Note>) {
     if scene.gravity == 0.0 {
         say(notes, "gravity", "0: lines and points are weightless");
     }
+    let beams = || scene.line_types.values().any(|kind| kind.model == LineModel::Beam);
     if let Some(seabed) = &scene.seabed
-        && seabed.friction > 0.0
+        && seabed.friction.acts()
+        && beams()
     {
-        let text = "the static catenary has friction, the dynamics have none";
+        let text = "beams lie on the bed without friction";
         say(notes, "seabed.friction", text);
     }
     let output = &scene.output;

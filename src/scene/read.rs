@@ -12,7 +12,10 @@ use toml::de::{DeTable, DeValue};
 use super::notes::Note;
 use super::places::Places;
 use super::rows::{Findings, MISTAKES_MAX};
-use super::{LoadError, MotionPath, Scene, SceneError, document, map, moordyn, motion_file, path};
+use super::{
+    LoadError, MotionPath, Scene, SceneError, bathymetry_file, document, map, moordyn, motion_file,
+    path,
+};
 
 /// Longest scene file that is read [bytes].
 const SIZE_MAX: u64 = 256 << 20;
@@ -108,7 +111,7 @@ pub fn load(path: &Path) -> Result<LoadedScene, LoadError> {
 pub fn load_with(path: &Path, supplement: &Supplement) -> Result<LoadedScene, LoadError> {
     let text = read_text(path)?;
     let loaded = match deck_of(&text) {
-        Some(read) => deck_scene(read(&text, supplement), &text),
+        Some(read) => deck_scene(read(&text, supplement), &text, folder_of(path)),
         None => scene_of(&text, path).map(|scene| {
             let notes = scene.notes();
             (scene, notes, TOML, Places::default())
@@ -149,7 +152,11 @@ fn deck_of(text: &str) -> Option<ReadDeck> {
 type Checked = (Scene, Vec<Note>, &'static str, Places);
 
 /// What a reader made of a deck, checked as every scene is.
-fn deck_scene(reading: Reading, text: &str) -> Result<Checked, Vec<SceneError>> {
+fn deck_scene(
+    reading: Reading,
+    text: &str,
+    folder: &Path,
+) -> Result<Checked, Vec<SceneError>> {
     let Reading {
         format,
         scene,
@@ -161,9 +168,12 @@ fn deck_scene(reading: Reading, text: &str) -> Result<Checked, Vec<SceneError>> 
         mistakes.truncate(MISTAKES_MAX);
         mistakes
     };
-    let Some(scene) = scene.filter(|_| findings.mistakes.is_empty()) else {
+    let Some(mut scene) = scene.filter(|_| findings.mistakes.is_empty()) else {
         return Err(in_order(findings.mistakes));
     };
+    if let Some(mistake) = read_soundings(&mut scene, folder) {
+        return Err(vec![places.locate(mistake)]);
+    }
     let mistakes: Vec<SceneError> = scene
         .mistakes()
         .into_iter()
@@ -181,8 +191,9 @@ fn deck_scene(reading: Reading, text: &str) -> Result<Checked, Vec<SceneError>> 
 fn scene_of(text: &str, path: &Path) -> Result<Scene, Vec<SceneError>> {
     let document = Document::parse(text).map_err(|mistake| vec![mistake])?;
     let mut scene = document.scene().map_err(|mistake| vec![mistake])?;
-    let folder = path.parent().unwrap_or(Path::new("."));
+    let folder = folder_of(path);
     let mut mistakes = read_motions(&mut scene, folder);
+    mistakes.extend(read_soundings(&mut scene, folder));
     for mistake in scene.mistakes() {
         if mistakes.iter().all(|known| known.at != mistake.at) {
             mistakes.push(mistake);
@@ -192,6 +203,26 @@ fn scene_of(text: &str, path: &Path) -> Result<Scene, Vec<SceneError>> {
         Ok(scene)
     } else {
         Err(document.place(mistakes))
+    }
+}
+
+fn folder_of(path: &Path) -> &Path {
+    path.parent().unwrap_or(Path::new("."))
+}
+
+/// Reads the soundings that the seabed names a file for; returns what is wrong with them.
+fn read_soundings(scene: &mut Scene, folder: &Path) -> Option<SceneError> {
+    let bed = scene.seabed.as_mut()?;
+    if bed.grid.is_some() {
+        return None; // two shapes: told by the checks
+    }
+    match bathymetry_file::read(&folder.join(bed.file.as_ref()?)) {
+        Ok(grid) => {
+            bed.grid = Some(grid);
+            bed.file = None;
+            None
+        }
+        Err(problem) => Some(SceneError::new("seabed.file", problem)),
     }
 }
 

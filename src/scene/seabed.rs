@@ -99,7 +99,9 @@ impl Seabed {
 
     /// Whether it is a horizontal plane.
     pub fn is_level(&self) -> bool {
-        self.grid.is_none() && self.file.is_none() && self.slope.is_none_or(|slope| slope == [0.0; 2])
+        self.grid.is_none()
+            && self.file.is_none()
+            && self.slope.is_none_or(|slope| slope == [0.0; 2])
     }
 
     /// Whether stiffness and damping are those of a scene that gives none.

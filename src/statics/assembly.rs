@@ -20,11 +20,14 @@
 //! shape is sought.
 
 mod bending;
+pub mod rubbing;
 
 use nalgebra::{Matrix3, Vector3};
 
 use crate::math::block_tridiagonal::{Chain, DenseSystem};
-use crate::model::{End, FreePoint, Line, LineState, Model, Network, Point, PointState, State};
+use crate::model::{
+    End, FreePoint, Line, LineState, Model, Network, Point, PointState, State, Surface,
+};
 use crate::physics::flow::Stream;
 use crate::physics::morison::{DragCoefficients, drag, drag_slope};
 use crate::physics::seabed::ContactCoefficients;
@@ -104,6 +107,8 @@ pub(crate) struct LineWork {
     pub load: Vec<Vector3<f64>>,
     /// Joints, where the line has bending stiffness.
     pub bending: Option<BendingWork>,
+    /// Friction of the bed at the last assembly, per node [N]; empty over a level bed without friction.
+    pub rubbed: Vec<Vector3<f64>>,
     /// Elimination where nothing bends.
     chain: Chain,
 }
@@ -125,6 +130,8 @@ pub(crate) struct PointWork {
     pub history: Vector3<f64>,
     /// Half the range of penetrations over which its seabed damper fades in [m].
     pub reach: f64,
+    /// Friction of the bed at the last assembly [N].
+    pub rubbed: Vector3<f64>,
 }
 
 impl Workspace {
@@ -145,6 +152,7 @@ impl Workspace {
                 push: vec![0.0; n],
                 load: vec![Vector3::zeros(); if line.drifts(model) { n + 1 } else { 0 }],
                 bending: line.bending.as_ref().map(|_| BendingWork::new(n + 1)),
+                rubbed: vec![Vector3::zeros(); line.surface().map_or(0, |_| n + 1)],
                 chain: Chain::new(n + 1),
             }
         };
@@ -156,6 +164,7 @@ impl Workspace {
             solution: Vector3::zeros(),
             history: Vector3::zeros(),
             reach: 0.0,
+            rubbed: Vector3::zeros(),
         };
         let mut points = vec![point; model.points.len()];
         for network in &model.networks {
@@ -200,6 +209,8 @@ pub(crate) struct StaticCase {
     pub predicted: bool,
     /// Whether lines with bending stiffness have it, and push.
     pub bends: bool,
+    /// Part of the bed's friction that acts, on nodes that have anchors [-].
+    pub friction: f64,
 }
 
 /// Weights of the parts of residual and tangent in a time step.
@@ -284,10 +295,11 @@ impl LineWork {
     fn assemble_static(
         &mut self,
         line: &Line,
-        position: &[Vector3<f64>],
+        state: &LineState,
         clamps: [Option<Vector3<f64>>; 2],
         case: &StaticCase,
     ) {
+        let position = &state.position;
         self.clear();
         self.set_push(line, case.bends);
         for i in 0..line.segment_count() {
@@ -297,6 +309,9 @@ impl LineWork {
             let parts = Parts::AT_REST;
             self.add_bending(bending, clamps, [position, &[]], &parts);
         }
+        if line.surface().is_some() {
+            self.add_static_surface(line, state, case);
+        }
         for (residual, load) in self.residual.iter_mut().zip(&self.load) {
             *residual -= case.load * load;
         }
@@ -305,7 +320,7 @@ impl LineWork {
             for axis in 0..3 {
                 self.diagonal[i][(axis, axis)] += case.anchoring;
             }
-            if let Some(contact) = &line.nodes.contact {
+            if let Some(contact) = line.level_bed() {
                 let penetration = contact.level[i] - r.z;
                 if penetration > 0.0 {
                     self.residual[i].z -= contact.stiffness[i] * penetration;
@@ -506,7 +521,11 @@ impl LineWork {
         };
         for (i, reach) in self.reach.iter_mut().enumerate() {
             let resting = damper_reach(contact.stiffness[i], line.nodes.weight[i]);
-            *reach = resting.max(state.velocity[i].z.abs() * dt);
+            let rise = match &contact.surface {
+                None => state.velocity[i].z,
+                Some(surface) => surface.rise(state.position[i], state.velocity[i]),
+            };
+            *reach = resting.max(rise.abs() * dt);
         }
     }
 
@@ -516,6 +535,9 @@ impl LineWork {
         state: &LineState,
         weights: &Weights,
     ) {
+        if line.surface().is_some() {
+            return self.add_surface::<TANGENT>(line, state, weights);
+        }
         let Some(contact) = &line.nodes.contact else {
             return;
         };
@@ -561,16 +583,13 @@ impl PointWork {
                 .set_column(2, &(self.diagonal.column(2) + case.load * by_height));
         }
         self.residual = -case.load * force;
-        if let Some((stiffness, push)) = free.bed_at_rest(z) {
-            self.residual.z -= push;
-            self.diagonal[(2, 2)] += stiffness;
-        }
     }
 
     /// Residual and, if TANGENT, tangent of a moving point under a `load` [N], without its lines.
     fn assemble_dynamic<const TANGENT: bool>(
         &mut self,
         free: &FreePoint,
+        surface: Option<&Surface>,
         state: &PointState,
         load: Vector3<f64>,
         stream: Option<Stream>,
@@ -595,7 +614,7 @@ impl PointWork {
                     .set_column(2, &(self.diagonal.column(2) + by_height));
             }
         }
-        if let Some(contact) = &free.contact
+        if let (Some(contact), None) = (&free.contact, surface)
             && let Some(bed) =
                 SmoothContact::new(contact.coefficients, contact.level - z, v.z, self.reach)
         {
@@ -606,6 +625,9 @@ impl PointWork {
             }
         }
         self.residual = weights.inertia * at.mass * a - weights.force * force;
+        if let Some(surface) = surface {
+            self.add_surface::<TANGENT>(free, surface, state, weights);
+        }
     }
 }
 
@@ -683,14 +705,20 @@ impl Workspace {
         case: &StaticCase,
     ) {
         for &index in &network.lines {
-            let (line, position) = (&model.lines[index], &state.lines[index].position);
-            self.lines[index].assemble_static(line, position, line.clamps(&state.points), case);
+            let (line, shape) = (&model.lines[index], &state.lines[index]);
+            self.lines[index].assemble_static(line, shape, line.clamps(&state.points), case);
         }
         let stream = model.stream(case.time);
         for_free_points(model, network, |index, free| {
             let point = &mut self.points[index];
             let (data, state) = (&model.points[index], &state.points[index]);
             point.assemble_static(data, free, state, stream, case);
+            if let Some(surface) = model.surface.as_deref() {
+                point.add_static_surface(free, surface, state, case);
+            } else if let Some((stiffness, push)) = free.bed_at_rest(state.position.z) {
+                point.residual.z -= push;
+                point.diagonal[(2, 2)] += stiffness;
+            }
         });
         self.gather(model, network);
     }
@@ -720,7 +748,8 @@ impl Workspace {
         for_free_points(model, network, |index, free| {
             let point = &mut self.points[index];
             let load = model.points[index].load_at(t);
-            point.assemble_dynamic::<TANGENT>(free, &state.points[index], load, stream, weights);
+            let (surface, state) = (model.surface.as_deref(), &state.points[index]);
+            point.assemble_dynamic::<TANGENT>(free, surface, state, load, stream, weights);
         });
         self.gather(model, network);
     }
@@ -824,10 +853,22 @@ impl Workspace {
         for_free_points(model, network, |index, free| {
             if let Some(contact) = &free.contact {
                 let resting = damper_reach(contact.coefficients.stiffness, free.weight);
-                let moved = state.points[index].velocity.z.abs() * dt;
+                let PointState { position, velocity, .. } = state.points[index];
+                let rise = match &model.surface {
+                    None => velocity.z,
+                    Some(surface) => surface.rise(position, velocity),
+                };
+                let moved = rise.abs() * dt;
                 self.points[index].reach = resting.max(moved);
             }
         });
+    }
+
+    /// Moves the anchors of nodes that slid along the bed, after an assembly of the state.
+    pub(crate) fn move_anchors(&self, model: &Model, network: &Network, state: &mut State) {
+        if model.friction().is_some() {
+            rubbing::move_anchors(model, network, state, self);
+        }
     }
 
     /// Keeps the residual of the last assembly for the next step.
@@ -972,6 +1013,7 @@ pub(crate) fn copy_network(model: &Model, network: &Network, from: &State, to: &
             .acceleration
             .copy_from_slice(&from_line.acceleration);
         to_line.beam.clone_from(&from_line.beam);
+        to_line.anchor.clone_from(&from_line.anchor);
         for point in model.lines[index].ends {
             to.points[point] = from.points[point];
         }
@@ -980,7 +1022,13 @@ pub(crate) fn copy_network(model: &Model, network: &Network, from: &State, to: &
 
 /// A state of `model` with room for everything and nothing in place.
 fn blank_state(model: &Model) -> State {
-    let line = |line: &Line| LineState::at_rest(vec![Vector3::zeros(); line.segment_count() + 1]);
+    let line = |line: &Line| {
+        let count = line.segment_count() + 1;
+        LineState {
+            anchor: Vec::with_capacity(line.friction().map_or(0, |_| count)),
+            ..LineState::at_rest(vec![Vector3::zeros(); count])
+        }
+    };
     State {
         time: 0.0,
         points: model

@@ -16,7 +16,7 @@
 //! its greatest force, the loads are applied little by little instead, and every step must lie close to the one before and
 //! have a positive definite tangent.
 //!
-//! Lines with bending stiffness are in `bending`, lines in a current in `current`.
+//! Lines with bending stiffness are in `bending`, lines in a current in `current`, the friction of the bed in `friction`.
 //!
 //! Accepted is a residual of at most 1e-11 of the greatest force in the network (tension, nodal weight or load) plus what
 //! rounding of the positions makes of the stiffest segment.
@@ -26,6 +26,7 @@
 
 mod bending;
 pub(crate) mod current;
+mod friction;
 
 use nalgebra::Vector3;
 
@@ -253,6 +254,7 @@ impl<'a> Problem<'a> {
             anchoring: 0.0,
             predicted: false,
             bends: self.bends,
+            friction: 1.0,
         }
     }
 
@@ -269,6 +271,10 @@ impl<'a> Problem<'a> {
 
     /// Equilibrium under weight, point loads and the drag that is held.
     fn solve_loaded(&self, state: &mut State, work: &mut Workspace) -> Result<(), StaticsError> {
+        let rubs = self.rubs();
+        if rubs {
+            self.let_go(state);
+        }
         let mut guess = std::mem::take(&mut work.saved);
         copy_network(self.model, self.network, state, &mut guess);
         let result = if self.bends {
@@ -277,7 +283,10 @@ impl<'a> Problem<'a> {
             self.solve_from(&guess, state, work)
         };
         work.saved = guess;
-        result
+        match result {
+            Ok(()) if rubs => self.rub(state, work),
+            result => result,
+        }
     }
 
     /// Newton's method alone; else, where the loads may be too much, little by little; else from a soft network.
@@ -415,7 +424,9 @@ impl<'a> Problem<'a> {
             .iter()
             .flat_map(|contact| &contact.stiffness)
             .copied();
+        let rub = line.nodes.contact.iter().flat_map(|contact| &contact.stick);
         let spring = bed
+            .chain(rub.copied())
             .chain(segments.map(|(ea, length)| ea.min(stiffness_max) / length))
             .fold(0.0, f64::max);
         if self.bends {

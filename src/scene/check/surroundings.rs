@@ -2,6 +2,7 @@
 
 use super::time::{Load, check_load_in_time};
 use super::{Bounds, Findings, quantity};
+use super::seabed::check_bed;
 use crate::scene::{Current, LineModel, Scene};
 
 pub(super) fn check(scene: &Scene, findings: &mut Findings) {
@@ -46,8 +47,7 @@ pub(super) fn check(scene: &Scene, findings: &mut Findings) {
         findings.number("seabed.stiffness", seabed.stiffness, stiff, "Pa/m");
         let damping = Bounds::NotNegative(1e12);
         findings.number("seabed.damping", seabed.damping, damping, "Pa s/m");
-        let friction = Bounds::NotNegative(10.0);
-        findings.number("seabed.friction", seabed.friction, friction, "-");
+        check_bed(scene, seabed, findings);
     }
 }
 

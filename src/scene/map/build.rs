@@ -6,7 +6,8 @@ use super::deck::{Coordinate, Deck, Kind, Node};
 use crate::scene::from_deck::{self, SEA_WATER, Vessels};
 use crate::scene::rows::{Findings, Placed, ROWS_MAX};
 use crate::scene::{
-    self, Places, Point, PointForce, PointKind, Scene, Section, Supplement, TimeFunction, Water,
+    self, Friction, Places, Point, PointForce, PointKind, Scene, Seabed, Section, Supplement,
+    TimeFunction, Water,
 };
 
 /// A deck on its way to a scene.

@@ -1,0 +1,316 @@
+//! What a bed that slopes or rubs does to the nodes of lines and to free points, and the exact tangent of it.
+//!
+//! The spring and the damper act along the normal n of the bed. Friction is a spring from the anchor a of a node, where the node would lie if the bed let
+//! go of it, to the node itself, in the plane of the bed, and gives way where it would leave the ellipse of Coulomb's law:
+//!
+//!   f* = k_t P (a − r),  P = I − n nᵀ,   f = the point of the ellipse of N closest to f*,   a ← r + f/k_t after every step.
+//!
+//! So a node at rest does not creep under any load inside the ellipse: it has moved by f/k_t and stays there. −∂f/∂r = k_t B S Bᵀ − B g ⊗ ∂N/∂r with the axes B of the
+//! plane, the slope S of f with f* and that of f with N, g = (f − S f*)/N, for f is homogeneous in f* and N.
+//!
+//! The tangent is exact on a plane, the direction of the line being frozen as for drag; on a curved bed it leaves out how the axes turn.
+//!
+//! Source: the return mapping of Coulomb friction, Wriggers (2006), Computational Contact Mechanics, 2nd ed., chapter 5.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::{LineWork, PointWork, SmoothContact, StaticCase, Weights, node_tangent};
+use crate::model::{FreePoint, Line, LineState, Model, Network, PointState, State, Surface};
+use crate::physics::friction::{Axes, Friction, held};
+use crate::physics::ground::Touch;
+use crate::physics::seabed::ContactCoefficients;
+
+/// Stiffness along the bed of a point that sticks, over its stiffness across it [-].
+const POINT_STICK: f64 = 1e3;
+
+/// A node, or a point, on the bed.
+#[derive(Debug, Clone, Copy)]
+pub struct Resting<'a> {
+    /// How it stands to the level from which the bed pushes.
+    pub touch: Touch,
+    /// Spring and damper.
+    pub coefficients: ContactCoefficients,
+    /// Half the range of penetrations over which the damper fades in [m].
+    pub reach: f64,
+    /// Place [m].
+    pub place: Vector3<f64>,
+    /// Velocity [m/s].
+    pub velocity: Vector3<f64>,
+    /// Friction and what it holds by, where there is any.
+    pub rub: Option<Rub<'a>>,
+}
+
+/// What friction holds a node by.
+#[derive(Debug, Clone, Copy)]
+pub struct Rub<'a> {
+    /// The law.
+    pub friction: &'a Friction,
+    /// Part of it that acts [-].
+    pub part: f64,
+    /// Direction of the line; any unit vector for a point.
+    pub tangent: Vector3<f64>,
+    /// Where the node would lie if it were let go [m].
+    pub anchor: Vector3<f64>,
+    /// k_t [N/m].
+    pub stick: f64,
+}
+
+/// What the bed does to a node.
+#[derive(Debug, Clone, Copy)]
+pub struct Push {
+    /// Force [N].
+    pub force: Vector3<f64>,
+    /// The part of it that friction has [N].
+    pub friction: Vector3<f64>,
+    /// −∂force/∂r [N/m].
+    stiffness: Matrix3<f64>,
+    /// −∂force/∂v [N s/m].
+    damping: Matrix3<f64>,
+}
+
+impl Resting<'_> {
+    /// What the bed does to it; `None` where it does nothing.
+    pub fn push(&self) -> Option<Push> {
+        let Touch {
+            penetration,
+            normal,
+            slope,
+            turning,
+        } = self.touch;
+        let rise = normal.dot(&self.velocity);
+        let bed = SmoothContact::new(self.coefficients, penetration, rise, self.reach)?;
+        let by_place = bed.stiffness * slope - bed.damping * turning.transpose() * self.velocity;
+        let by_velocity = -bed.damping * normal;
+        let mut push = Push {
+            force: bed.force * normal,
+            friction: Vector3::zeros(),
+            stiffness: -normal * by_place.transpose() - bed.force * turning,
+            damping: -normal * by_velocity.transpose(),
+        };
+        if let Some(rub) = &self.rub {
+            let axes = Axes::new(normal, rub.tangent);
+            let wanted = rub.stick * axes.components(&(rub.anchor - self.place));
+            let limits = rub.friction.limits(&axes, rub.part * bed.force);
+            let held = held(wanted, [1.0, 1.0].into(), limits);
+            let slope = held.slope(limits);
+            let grows = axes.vector(&(held.force - slope * wanted)) / bed.force;
+            let [along, across] = [axes.along, axes.across];
+            let sheared = along * (slope.m11 * along + slope.m12 * across).transpose()
+                + across * (slope.m21 * along + slope.m22 * across).transpose();
+            push.friction = axes.vector(&held.force);
+            push.force += push.friction;
+            push.stiffness += rub.stick * sheared - grows * by_place.transpose();
+            push.damping -= grows * by_velocity.transpose();
+        }
+        Some(push)
+    }
+}
+
+/// How a node of a line meets the bed; `part` of the friction acts.
+pub fn resting_node<'a>(
+    line: &'a Line,
+    state: &LineState,
+    i: usize,
+    reach: f64,
+    part: f64,
+) -> Option<Resting<'a>> {
+    let (contact, surface) = line.surface()?;
+    let place = state.position[i];
+    let friction = surface.friction.as_ref().zip(state.anchor.get(i));
+    Some(Resting {
+        touch: surface.touch(place, contact.lift(i)),
+        coefficients: contact.coefficients(i),
+        reach,
+        place,
+        velocity: state.velocity[i],
+        rub: friction.map(|(friction, anchor)| Rub {
+            friction,
+            part,
+            tangent: node_tangent(&state.position, i),
+            anchor: *anchor,
+            stick: contact.stick[i],
+        }),
+    })
+}
+
+/// How a free point meets the bed.
+pub fn resting_point<'a>(
+    free: &FreePoint,
+    surface: &'a Surface,
+    state: &PointState,
+    reach: f64,
+    part: f64,
+) -> Option<Resting<'a>> {
+    let contact = free.contact.as_ref()?;
+    let place = state.position;
+    let friction = surface.friction.as_ref().zip(state.anchor);
+    Some(Resting {
+        touch: surface.touch(place, contact.lift()),
+        coefficients: contact.coefficients,
+        reach,
+        place,
+        velocity: state.velocity,
+        rub: friction.map(|(friction, anchor)| Rub {
+            friction,
+            part,
+            tangent: Vector3::z(), // a point is across all around
+            anchor,
+            stick: POINT_STICK * contact.coefficients.stiffness,
+        }),
+    })
+}
+
+/// Stiffness along the bed of a free point that sticks [N/m].
+pub fn point_stick(free: &FreePoint) -> f64 {
+    free.contact
+        .map_or(0.0, |contact| POINT_STICK * contact.coefficients.stiffness)
+}
+
+impl LineWork {
+    /// The bed's springs and friction under a line at rest.
+    pub(super) fn add_static_surface(&mut self, line: &Line, state: &LineState, case: &StaticCase) {
+        for i in 0..state.position.len() {
+            let still = Vector3::zeros();
+            let push = resting_node(line, state, i, 0.0, case.friction)
+                .map(|node| Resting {
+                    velocity: still,
+                    ..node
+                })
+                .and_then(|node| node.push());
+            self.rubbed[i] = push.map_or(still, |push| push.friction);
+            if let Some(push) = push {
+                self.residual[i] -= push.force;
+                self.diagonal[i] += push.stiffness;
+            }
+        }
+    }
+
+    /// The bed under a moving line.
+    pub(super) fn add_surface<const TANGENT: bool>(
+        &mut self,
+        line: &Line,
+        state: &LineState,
+        weights: &Weights,
+    ) {
+        for i in 0..state.position.len() {
+            let push =
+                resting_node(line, state, i, self.reach[i], 1.0).and_then(|node| node.push());
+            self.rubbed[i] = push.map_or(Vector3::zeros(), |push| push.friction);
+            let Some(push) = push else { continue };
+            self.residual[i] -= weights.force * push.force;
+            if TANGENT {
+                self.diagonal[i] +=
+                    weights.position * push.stiffness + weights.velocity * push.damping;
+            }
+        }
+    }
+}
+
+impl PointWork {
+    /// The bed under a point at rest.
+    pub(super) fn add_static_surface(
+        &mut self,
+        free: &FreePoint,
+        surface: &Surface,
+        state: &PointState,
+        case: &StaticCase,
+    ) {
+        let push = resting_point(free, surface, state, 0.0, case.friction)
+            .map(|point| Resting {
+                velocity: Vector3::zeros(),
+                ..point
+            })
+            .and_then(|point| point.push());
+        self.rubbed = push.map_or(Vector3::zeros(), |push| push.friction);
+        if let Some(push) = push {
+            self.residual -= push.force;
+            self.diagonal += push.stiffness;
+        }
+    }
+
+    /// The bed under a moving point.
+    pub(super) fn add_surface<const TANGENT: bool>(
+        &mut self,
+        free: &FreePoint,
+        surface: &Surface,
+        state: &PointState,
+        weights: &Weights,
+    ) {
+        let push =
+            resting_point(free, surface, state, self.reach, 1.0).and_then(|point| point.push());
+        self.rubbed = push.map_or(Vector3::zeros(), |push| push.friction);
+        if let Some(push) = push {
+            self.residual -= weights.force * push.force;
+            if TANGENT {
+                self.diagonal +=
+                    weights.position * push.stiffness + weights.velocity * push.damping;
+            }
+        }
+    }
+}
+
+/// Moves the anchors of a network after the nodes that slid, as the last assembly found them.
+pub(super) fn move_anchors(
+    model: &Model,
+    network: &Network,
+    state: &mut State,
+    work: &super::Workspace,
+) {
+    for &index in &network.lines {
+        let (line, shape, work) = (
+            &model.lines[index],
+            &mut state.lines[index],
+            &work.lines[index],
+        );
+        if line.friction().is_none() {
+            continue;
+        }
+        let Some((contact, _)) = line.surface() else {
+            continue;
+        };
+        for (i, anchor) in shape.anchor.iter_mut().enumerate() {
+            *anchor = shape.position[i] + stretch(work.rubbed[i], contact.stick[i]);
+        }
+    }
+    super::for_free_points(model, network, |index, free| {
+        let point = &mut state.points[index];
+        if point.anchor.is_some() {
+            let held = stretch(work.points[index].rubbed, point_stick(free));
+            point.anchor = Some(point.position + held);
+        }
+    });
+}
+
+/// What a spring gives way under a force.
+fn stretch(force: Vector3<f64>, stiffness: f64) -> Vector3<f64> {
+    if stiffness > 0.0 {
+        force / stiffness
+    } else {
+        Vector3::zeros()
+    }
+}
+
+/// Gives every node and point that friction may hold an anchor where it lies, unless it has one.
+pub fn drop_anchors(model: &Model, state: &mut State) {
+    for (line, shape) in model.lines.iter().zip(&mut state.lines) {
+        if line.friction().is_some() && shape.anchor.len() != shape.position.len() {
+            shape.anchor.clone_from(&shape.position);
+        }
+    }
+    if model.friction().is_none() {
+        return;
+    }
+    for (point, state) in model.points.iter().zip(&mut state.points) {
+        if point.free().is_some_and(|free| free.contact.is_some()) {
+            state.anchor.get_or_insert(state.position);
+        }
+    }
+}
+
+/// Takes the anchors of a network away: nothing rubs.
+pub(crate) fn weigh_anchors(model: &Model, network: &Network, state: &mut State) {
+    for &index in &network.lines {
+        state.lines[index].anchor.clear();
+    }
+    super::for_free_points(model, network, |index, _| state.points[index].anchor = None);
+}
