@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 
 use super::check::{coefficients, number};
 use super::path::quoted;
-use super::{Integrator, Line, LineType, Point, PointKind, Scene};
+use super::{Integrator, Line, LineModel, LineType, Point, PointKind, Scene};
 use crate::math::attitude::Attitude;
 
 /// A remark on a scene that can be used as it is.

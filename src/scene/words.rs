@@ -3,6 +3,7 @@
 mod beam;
 mod bending;
 mod points;
+mod seabed;
 mod surroundings;
 mod vessels;
 

@@ -14,7 +14,8 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::{LineWork, PointWork, SmoothContact, StaticCase, Weights, node_tangent};
+use super::contact::SmoothContact;
+use super::{LineWork, PointWork, StaticCase, Weights, node_tangent};
 use crate::model::{FreePoint, Line, LineState, Model, Network, PointState, State, Surface};
 use crate::physics::friction::{Axes, Friction, held};
 use crate::physics::ground::Touch;

@@ -1,10 +1,12 @@
 //! The tangent is the slope of the residual, and forces are objective.
 
 use approx::assert_relative_eq;
-use nalgebra::{Rotation3, Unit};
+use nalgebra::{Matrix3, Rotation3, Unit};
 
+use super::contact::SmoothContact;
 use super::*;
-use crate::model::Bending;
+use crate::model::{Bending, LineState};
+use crate::physics::seabed::ContactCoefficients;
 use crate::scene::Scene;
 
 const FORCES: Weights = Weights {

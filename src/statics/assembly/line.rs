@@ -1,0 +1,347 @@
+//! A line in the assembled system: segments, weight, inertia and drag of its nodes.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::bending::Parts;
+use super::{BendingWork, StaticCase, Weights};
+use crate::math::block_tridiagonal::Chain;
+use crate::model::{Line, LineState, Model};
+use crate::physics::flow::Stream;
+use crate::physics::morison::{DragCoefficients, drag, drag_slope};
+use crate::physics::stretch::total_tension;
+
+/// Scratch of a line.
+#[derive(Debug, Clone)]
+pub(crate) struct LineWork {
+    /// R of every node, ends included [N].
+    pub residual: Vec<Vector3<f64>>,
+    /// J of every node on itself.
+    pub diagonal: Vec<Matrix3<f64>>,
+    /// J of neighbouring nodes on each other, per segment: −A.
+    pub coupling: Vec<Matrix3<f64>>,
+    /// Tension that the geometric stiffness is taken from, per segment [N]; statics predicts it.
+    pub tension: Vec<f64>,
+    /// Elastic and damping force of the segment at the last assembly [N], unclipped.
+    pub elastic: Vec<f64>,
+    /// Its slope dN/dl [N/m].
+    pub slope: Vec<f64>,
+    /// Its direction q [-].
+    pub direction: Vec<Vector3<f64>>,
+    /// What the time integrator carries over from the last step, per node [N].
+    pub history: Vec<Vector3<f64>>,
+    /// Half the range of penetrations over which the seabed damper fades in, per node [m].
+    pub reach: Vec<f64>,
+    /// Greatest push of the segments [N]; 0 in lines without bending stiffness.
+    pub push: Vec<f64>,
+    /// Drag of the current that statics holds for a while, per node [N]; empty where none acts.
+    pub load: Vec<Vector3<f64>>,
+    /// Joints, where the line has bending stiffness.
+    pub bending: Option<BendingWork>,
+    /// Friction of the bed at the last assembly, per node [N]; empty over a level bed without friction.
+    pub rubbed: Vec<Vector3<f64>>,
+    /// Elimination where nothing bends.
+    pub(super) chain: Chain,
+}
+/// A segment as it lies.
+struct Geometry {
+    /// Length [m].
+    length: f64,
+    /// Direction [-]; zero where both nodes coincide.
+    direction: Vector3<f64>,
+    /// l/l₀ − 1 [-], without the cancellation of the subtraction.
+    strain: f64,
+}
+
+impl Geometry {
+    #[inline(always)]
+    fn new(a: Vector3<f64>, b: Vector3<f64>, unstretched: f64) -> Geometry {
+        let d = b - a;
+        let square = d.norm_squared();
+        let length = square.sqrt();
+        Geometry {
+            length,
+            direction: if length > 0.0 { d / length } else { d },
+            strain: (square - unstretched * unstretched) / (unstretched * (length + unstretched)),
+        }
+    }
+
+    /// q qᵀ.
+    #[inline(always)]
+    fn along(&self) -> Matrix3<f64> {
+        self.direction * self.direction.transpose()
+    }
+}
+
+impl LineWork {
+    /// Scratch for a line of `model`.
+    pub(super) fn new(model: &Model, line: &Line) -> LineWork {
+        let n = line.segment_count();
+        LineWork {
+            residual: vec![Vector3::zeros(); n + 1],
+            diagonal: vec![Matrix3::zeros(); n + 1],
+            coupling: vec![Matrix3::zeros(); n],
+            tension: vec![0.0; n],
+            elastic: vec![0.0; n],
+            slope: vec![0.0; n],
+            direction: vec![Vector3::zeros(); n],
+            history: vec![Vector3::zeros(); n + 1],
+            reach: vec![0.0; n + 1],
+            push: vec![0.0; n],
+            load: vec![Vector3::zeros(); if line.drifts(model) { n + 1 } else { 0 }],
+            bending: line.bending.as_ref().map(|_| BendingWork::new(n + 1)),
+            rubbed: vec![Vector3::zeros(); line.surface().map_or(0, |_| n + 1)],
+            chain: Chain::new(n + 1),
+        }
+    }
+
+    /// How much the segments push: nothing unless the line `bends`.
+    fn set_push(&mut self, line: &Line, bends: bool) {
+        if let (Some(bending), Some(work)) = (&line.bending, &mut self.bending) {
+            work.active = bends;
+            for (push, most) in self.push.iter_mut().zip(&bending.compression_max) {
+                *push = if bends { *most } else { 0.0 };
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn clear(&mut self) {
+        self.residual.fill(Vector3::zeros());
+        self.diagonal.fill(Matrix3::zeros());
+    }
+
+    #[inline(always)]
+    fn add_segment(&mut self, i: usize, force: Vector3<f64>, stiffness: Matrix3<f64>) {
+        self.residual[i] -= force;
+        self.residual[i + 1] += force;
+        self.diagonal[i] += stiffness;
+        self.diagonal[i + 1] += stiffness;
+        self.coupling[i] = -stiffness;
+    }
+
+    /// Residual and tangent of a line at rest.
+    pub(super) fn assemble_static(
+        &mut self,
+        line: &Line,
+        state: &LineState,
+        clamps: [Option<Vector3<f64>>; 2],
+        case: &StaticCase,
+    ) {
+        let position = &state.position;
+        self.clear();
+        self.set_push(line, case.bends);
+        for i in 0..line.segment_count() {
+            self.add_static_segment(line, position, case, i);
+        }
+        if let (Some(bending), true) = (&line.bending, case.bends) {
+            let parts = Parts::AT_REST;
+            self.add_bending(bending, clamps, [position, &[]], &parts);
+        }
+        for (residual, load) in self.residual.iter_mut().zip(&self.load) {
+            *residual -= case.load * load;
+        }
+        for i in 0..position.len() {
+            self.residual[i].z += case.load * line.nodes.weight[i];
+            for axis in 0..3 {
+                self.diagonal[i][(axis, axis)] += case.anchoring;
+            }
+        }
+        match line.surface() {
+            None => self.add_bed_at_rest(line, position),
+            Some(_) => self.add_static_surface(line, state, case),
+        }
+    }
+
+    #[inline(always)]
+    fn add_static_segment(
+        &mut self,
+        line: &Line,
+        position: &[Vector3<f64>],
+        case: &StaticCase,
+        i: usize,
+    ) {
+        let unstretched = line.segments.length[i];
+        let g = Geometry::new(position[i], position[i + 1], unstretched);
+        let stretch = line.segments.law[i].at(g.strain);
+        let ea = line.segments.axial_stiffness[i].min(case.stiffness_max);
+        let (elastic, slope) = (ea * stretch.force, ea * stretch.slope / unstretched);
+        (self.elastic[i], self.slope[i], self.direction[i]) = (elastic, slope, g.direction);
+        let predicted = if case.predicted {
+            self.tension[i]
+        } else {
+            elastic
+        };
+        let least = 0.0 - self.push[i];
+        let (tension, slope) = if predicted > least || elastic > least {
+            (elastic, slope)
+        } else {
+            (least, 0.0)
+        };
+        // A segment folded to nothing has no direction to be stiff across.
+        let across = predicted.max(least + case.tension_min) / g.length.max(0.1 * unstretched);
+        let stiffness = Matrix3::from_diagonal_element(across) + (slope - across) * g.along();
+        self.add_segment(i, tension * g.direction, stiffness);
+    }
+
+    /// Residual and, if TANGENT, tangent of a moving line.
+    pub(super) fn assemble_dynamic<const TANGENT: bool>(
+        &mut self,
+        line: &Line,
+        state: &LineState,
+        clamps: [Option<Vector3<f64>>; 2],
+        stream: Option<Stream>,
+        weights: &Weights,
+        negative_tension: bool,
+    ) {
+        self.clear();
+        self.set_push(line, true);
+        for i in 0..line.segment_count() {
+            self.add_dynamic_segment::<TANGENT>(line, state, weights, negative_tension, i);
+        }
+        if let Some(bending) = &line.bending {
+            let parts = Parts::of_step(weights, TANGENT);
+            self.add_bending(bending, clamps, [&state.position, &state.velocity], &parts);
+        }
+        self.add_weight_and_inertia::<TANGENT>(line, state, weights);
+        if line.nodes.drag.is_some() {
+            self.add_drag::<TANGENT>(line, state, stream, weights);
+        }
+        if line.nodes.contact.is_some() {
+            self.add_contact::<TANGENT>(line, state, weights);
+        }
+        if let Some(damping) = &line.nodes.mass_damping {
+            for (i, damping) in damping.iter().enumerate() {
+                self.residual[i] += weights.force * damping * state.velocity[i];
+                if TANGENT {
+                    self.diagonal[i] += Matrix3::from_diagonal_element(weights.velocity * damping);
+                }
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn add_dynamic_segment<const TANGENT: bool>(
+        &mut self,
+        line: &Line,
+        state: &LineState,
+        weights: &Weights,
+        negative_tension: bool,
+        i: usize,
+    ) {
+        let unstretched = line.segments.length[i];
+        let (ea, ba) = (
+            line.segments.axial_stiffness[i],
+            line.segments.axial_damping[i],
+        );
+        let g = Geometry::new(state.position[i], state.position[i + 1], unstretched);
+        let rate = state.velocity[i + 1] - state.velocity[i]; // ġ [m/s]
+        let stretch = line.segments.law[i].at(g.strain);
+        let elastic = ea * stretch.force;
+        let total = elastic + ba * g.direction.dot(&rate) / unstretched;
+        let predicted = weights.predicted && !negative_tension;
+        let least = 0.0 - self.push[i];
+        let taut = match (negative_tension, predicted) {
+            (true, _) => elastic > least,
+            (_, true) => total > least || self.tension[i] > least,
+            _ => total > least,
+        };
+        let tension = match negative_tension {
+            true => total_tension(elastic, total - elastic, least, true),
+            false if taut => total,
+            false => least,
+        };
+        let mut stiffness = Matrix3::zeros();
+        if TANGENT && g.length > 0.0 {
+            let damps = taut || negative_tension;
+            let spring = if taut {
+                ea * stretch.slope / unstretched
+            } else {
+                0.0
+            };
+            let damper = if damps { ba / unstretched } else { 0.0 };
+            let along = weights.position * spring + weights.velocity * damper;
+            let pull = if predicted { self.tension[i] } else { tension };
+            let least = if weights.convex { 0.0 } else { least };
+            let across = weights.position * pull.max(least) / g.length;
+            stiffness = Matrix3::from_diagonal_element(across) + (along - across) * g.along();
+            if damps && ba > 0.0 {
+                let turning = rate - rate.dot(&g.direction) * g.direction; // P ġ
+                let coefficient = weights.position * damper / g.length;
+                stiffness += g.direction * (coefficient * turning).transpose();
+            }
+            self.slope[i] = along / weights.position;
+        } else {
+            self.tension[i] = tension;
+        }
+        (self.elastic[i], self.direction[i]) = (total, g.direction);
+        let force = weights.force * tension * g.direction;
+        self.add_segment(i, force, stiffness);
+    }
+
+    #[inline(always)]
+    fn add_weight_and_inertia<const TANGENT: bool>(
+        &mut self,
+        line: &Line,
+        state: &LineState,
+        weights: &Weights,
+    ) {
+        let nodes = &line.nodes;
+        for i in 0..nodes.weight.len() {
+            self.residual[i].z += weights.force * nodes.weight[i];
+            let (normal, tangent) = (nodes.mass_normal[i], nodes.mass_tangent[i]);
+            let a = state.acceleration[i];
+            let mut inertia = normal * a;
+            if TANGENT {
+                self.diagonal[i] += Matrix3::from_diagonal_element(weights.acceleration * normal);
+            }
+            if normal != tangent {
+                let t = node_tangent(&state.position, i);
+                inertia += (tangent - normal) * t.dot(&a) * t;
+                if TANGENT {
+                    self.diagonal[i] +=
+                        weights.acceleration * (tangent - normal) * t * t.transpose();
+                }
+            }
+            self.residual[i] += weights.inertia * inertia;
+        }
+    }
+
+    fn add_drag<const TANGENT: bool>(
+        &mut self,
+        line: &Line,
+        state: &LineState,
+        stream: Option<Stream>,
+        weights: &Weights,
+    ) {
+        let Some(coefficients) = &line.nodes.drag else {
+            return;
+        };
+        for i in 0..coefficients.normal.len() {
+            let k = DragCoefficients {
+                normal: coefficients.normal[i],
+                tangent: coefficients.tangent[i],
+            };
+            let (t, z) = (node_tangent(&state.position, i), state.position[i].z);
+            let flow = stream.map_or(Vector3::zeros(), |stream| stream.velocity(z));
+            let v = state.velocity[i] - flow;
+            self.residual[i] -= weights.force * drag(k, v, t);
+            if TANGENT {
+                let slope = drag_slope(k, v, t);
+                self.diagonal[i] += weights.velocity * slope;
+                if let Some(stream) = stream {
+                    let mut by_height = self.diagonal[i].column_mut(2);
+                    by_height -= weights.position * slope * stream.shear(z);
+                }
+            }
+        }
+    }
+}
+
+/// Unit tangent of a node: along its two neighbours, at an end along the segment.
+#[inline(always)]
+pub(crate) fn node_tangent(position: &[Vector3<f64>], i: usize) -> Vector3<f64> {
+    let (before, after) = (i.saturating_sub(1), (i + 1).min(position.len() - 1));
+    let chord = position[after] - position[before];
+    let length = chord.norm();
+    if length > 0.0 { chord / length } else { chord }
+}

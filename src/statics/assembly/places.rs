@@ -1,0 +1,91 @@
+//! Where the parts of a network are: names for messages, states to copy.
+
+use nalgebra::Vector3;
+
+use crate::model::{Line, LineState, Model, Network, PointState, State};
+
+/// A node between the ends of a line, or a free point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Place {
+    /// Node of a line, by their indices.
+    Node {
+        /// Index of the line.
+        line: usize,
+        /// Index of the node.
+        node: usize,
+    },
+    /// Free point, by its index.
+    Point(usize),
+}
+
+impl Place {
+    /// A line and a node there.
+    pub(crate) fn node(self, model: &Model) -> (usize, usize) {
+        match self {
+            Place::Node { line, node } => (line, node),
+            Place::Point(point) => {
+                let (line, end) = model.points[point].attached[0];
+                (line, model.lines[line].end_node(end))
+            }
+        }
+    }
+
+    /// In words.
+    pub(crate) fn name(self, model: &Model) -> String {
+        match self {
+            Place::Node { line, node } => {
+                format!("line \"{}\", node {node}", model.lines[line].name)
+            }
+            Place::Point(point) => format!("point \"{}\"", model.points[point].name),
+        }
+    }
+}
+/// Puts the end nodes of a network's lines where their points are, and moves them alike.
+pub(crate) fn place_ends(model: &Model, network: &Network, state: &mut State) {
+    for &index in &network.lines {
+        let line = &model.lines[index];
+        for (point, node) in line.ends.into_iter().zip([0, line.segment_count()]) {
+            let (point, nodes) = (&state.points[point], &mut state.lines[index]);
+            nodes.position[node] = point.position;
+            nodes.velocity[node] = point.velocity;
+            nodes.acceleration[node] = point.acceleration;
+        }
+    }
+}
+
+/// Copies a network's points and nodes from one state to another, without allocating.
+pub(crate) fn copy_network(model: &Model, network: &Network, from: &State, to: &mut State) {
+    for &index in &network.lines {
+        let (from_line, to_line) = (&from.lines[index], &mut to.lines[index]);
+        to_line.position.copy_from_slice(&from_line.position);
+        to_line.velocity.copy_from_slice(&from_line.velocity);
+        to_line
+            .acceleration
+            .copy_from_slice(&from_line.acceleration);
+        to_line.beam.clone_from(&from_line.beam);
+        to_line.anchor.clone_from(&from_line.anchor);
+        for point in model.lines[index].ends {
+            to.points[point] = from.points[point];
+        }
+    }
+}
+
+/// A state of `model` with room for everything and nothing in place.
+pub(super) fn blank_state(model: &Model) -> State {
+    let line = |line: &Line| {
+        let count = line.segment_count() + 1;
+        LineState {
+            anchor: Vec::with_capacity(line.friction().map_or(0, |_| count)),
+            ..LineState::at_rest(vec![Vector3::zeros(); count])
+        }
+    };
+    State {
+        time: 0.0,
+        points: model
+            .points
+            .iter()
+            .map(|point| PointState::at_rest(point.reference))
+            .collect(),
+        lines: model.lines.iter().map(line).collect(),
+    }
+}
