@@ -130,8 +130,8 @@ pub(crate) struct StaticCase {
     pub predicted: bool,
     /// Whether lines with bending stiffness have it, and push.
     pub bends: bool,
-    /// Part of the bed's friction that acts, on nodes that have anchors [-].
-    pub friction: f64,
+    /// Part of the stiffness that friction sticks with, on nodes that have anchors [-].
+    pub stick: f64,
 }
 
 /// Weights of the parts of residual and tangent in a time step.

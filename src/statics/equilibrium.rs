@@ -254,7 +254,7 @@ impl<'a> Problem<'a> {
             anchoring: 0.0,
             predicted: false,
             bends: self.bends,
-            friction: 1.0,
+            stick: 1.0,
         }
     }
 

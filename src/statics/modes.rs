@@ -43,7 +43,7 @@ impl Modes {
             anchoring: 0.0,
             predicted: false,
             bends: true,
-            friction: 1.0,
+            stick: 1.0,
         };
         work.assemble_static(model, network, state, &case);
         let mut stiffness = DMatrix::zeros(count, count);

@@ -270,7 +270,7 @@ impl Problem<'_> {
             anchoring: part * springs.fold(0.0, f64::max),
             predicted: false,
             bends: lines().any(|line| line.bending.is_some()),
-            friction: 1.0,
+            stick: 1.0,
         };
         work.assemble_static(self.model, self.network, self.state, &case);
         let at_rest = |(line, end): (usize, End)| {

@@ -46,8 +46,6 @@ pub struct Resting<'a> {
 pub struct Rub<'a> {
     /// The law.
     pub friction: &'a Friction,
-    /// Part of it that acts [-].
-    pub part: f64,
     /// Direction of the line; any unit vector for a point.
     pub tangent: Vector3<f64>,
     /// Where the node would lie if it were let go [m].
@@ -91,7 +89,7 @@ impl Resting<'_> {
         if let Some(rub) = &self.rub {
             let axes = Axes::new(normal, rub.tangent);
             let wanted = rub.stick * axes.components(&(rub.anchor - self.place));
-            let limits = rub.friction.limits(&axes, rub.part * bed.force);
+            let limits = rub.friction.limits(&axes, bed.force);
             let held = held(wanted, [1.0, 1.0].into(), limits);
             let slope = held.slope(limits);
             let grows = axes.vector(&(held.force - slope * wanted)) / bed.force;
@@ -107,7 +105,7 @@ impl Resting<'_> {
     }
 }
 
-/// How a node of a line meets the bed; `part` of the friction acts.
+/// How a node of a line meets the bed; it sticks with `part` of its stiffness.
 pub fn resting_node<'a>(
     line: &'a Line,
     state: &LineState,
@@ -126,15 +124,14 @@ pub fn resting_node<'a>(
         velocity: state.velocity[i],
         rub: friction.map(|(friction, anchor)| Rub {
             friction,
-            part,
             tangent: node_tangent(&state.position, i),
             anchor: *anchor,
-            stick: contact.stick[i],
+            stick: part * contact.stick[i],
         }),
     })
 }
 
-/// How a free point meets the bed.
+/// How a free point meets the bed; it sticks with `part` of its stiffness.
 pub fn resting_point<'a>(
     free: &FreePoint,
     surface: &'a Surface,
@@ -153,10 +150,9 @@ pub fn resting_point<'a>(
         velocity: state.velocity,
         rub: friction.map(|(friction, anchor)| Rub {
             friction,
-            part,
             tangent: Vector3::z(), // a point is across all around
             anchor,
-            stick: POINT_STICK * contact.coefficients.stiffness,
+            stick: part * POINT_STICK * contact.coefficients.stiffness,
         }),
     })
 }
@@ -172,7 +168,7 @@ impl LineWork {
     pub(super) fn add_static_surface(&mut self, line: &Line, state: &LineState, case: &StaticCase) {
         for i in 0..state.position.len() {
             let still = Vector3::zeros();
-            let push = resting_node(line, state, i, 0.0, case.friction)
+            let push = resting_node(line, state, i, 0.0, case.stick)
                 .map(|node| Resting {
                     velocity: still,
                     ..node
@@ -216,7 +212,7 @@ impl PointWork {
         state: &PointState,
         case: &StaticCase,
     ) {
-        let push = resting_point(free, surface, state, 0.0, case.friction)
+        let push = resting_point(free, surface, state, 0.0, case.stick)
             .map(|point| Resting {
                 velocity: Vector3::zeros(),
                 ..point

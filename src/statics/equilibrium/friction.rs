@@ -7,7 +7,7 @@
 //!   a_0 = r_0,   a_{i+1} = a_i + min(l_i, |r_{i+1} − r_i|) q_i,
 //!
 //! and friction then pulls it towards that anchor: fully where the line slid there, T falling by μw per metre towards A, and not at
-//! all beyond the point where no tension is left. Where that cannot be found at once the friction is raised in parts. Free
+//! all beyond the point where no tension is left. The stiffness of sticking is raised little by little on the way. Free
 //! points have their anchors where they rest without friction.
 //!
 //! Source: derived here; the path is that of Jonkman (2007), NREL/TP-500-41958, section 2.5.
@@ -17,8 +17,12 @@ use crate::model::State;
 use crate::statics::StaticsError;
 use crate::statics::assembly::{Workspace, copy_network, for_free_points, rubbing};
 
-/// Parts that friction is raised in: each of these is tried [-].
-const PARTS: [usize; 4] = [1, 4, 16, 64];
+/// Part of the stiffness of sticking that is tried first, and how fast it is raised: friction then grows from nothing to what the
+/// displacement mobilises, and no node that slides is ever without a taut neighbour to hold it [-].
+const SOFTEST: f64 = 1e-6;
+const GROWTH: f64 = 100.0;
+/// Least growth that is tried [-].
+const GROWTH_MIN: f64 = 1.1;
 
 impl Problem<'_> {
     /// Whether the bed may hold any of it by friction.
@@ -36,24 +40,29 @@ impl Problem<'_> {
     pub(super) fn rub(&self, state: &mut State, work: &mut Workspace) -> Result<(), StaticsError> {
         let start = work.counters.solves;
         self.lay(state);
-        let mut laid = std::mem::take(&mut work.trial);
-        copy_network(self.model, self.network, state, &mut laid);
-        let found = PARTS.into_iter().any(|parts| {
-            self.restart(&laid, state, work);
-            (1..=parts).all(|part| {
-                let case = StaticCase {
-                    friction: part as f64 / parts as f64,
-                    ..self.case(f64::INFINITY)
-                };
-                self.newton(state, work, case)
-            })
-        });
-        work.trial = laid;
-        if found {
-            Ok(())
-        } else {
-            Err(self.not_converged(state, work, start))
+        let mut found = std::mem::take(&mut work.trial);
+        copy_network(self.model, self.network, state, &mut found);
+        let (mut reached, mut growth) = (SOFTEST / GROWTH, GROWTH);
+        while reached < 1.0 && growth >= GROWTH_MIN {
+            let stick = (growth * reached).min(1.0);
+            let case = StaticCase {
+                stick,
+                ..self.case(f64::INFINITY)
+            };
+            if self.newton(state, work, case) {
+                reached = stick;
+                growth = (growth * growth).min(GROWTH);
+                copy_network(self.model, self.network, state, &mut found);
+            } else {
+                growth = growth.sqrt();
+                self.restart(&found, state, work);
+            }
         }
+        work.trial = found;
+        if reached < 1.0 {
+            return Err(self.not_converged(state, work, start));
+        }
+        Ok(())
     }
 
     /// Anchors of lines laid from end A on the path they lie on.
