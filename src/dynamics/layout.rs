@@ -13,7 +13,6 @@ use crate::math::lanes::{Components, LANES, Lanes, Vectors};
 use crate::model::{Contact, End, Line, LineState, Surface};
 use crate::physics::flow::{Profile, Stream};
 use crate::physics::friction::Friction;
-use crate::physics::ground::Touch;
 use crate::physics::seabed::ContactCoefficients;
 use crate::physics::stretch::StretchLaw;
 
@@ -221,13 +220,14 @@ impl Layout {
         }
     }
 
-    /// How the node at `at` stands to the level from which the bed pushes it; without a bed it must not be asked.
-    pub fn touch(&self, at: usize) -> Touch {
+    /// How far the node at `at` is below the level from which the bed pushes it [m], and the bed's normal there; it must lie over a bed that
+    /// slopes or rubs.
+    #[inline]
+    pub fn stand(&self, at: usize) -> (f64, Vector3<f64>) {
         let contact = self.contact.as_ref().expect("asked over a bed only");
         let surface = contact.surface.as_ref().expect("asked over a surface only");
-        surface
-            .surface
-            .touch(self.position.get(at), contact.level[at])
+        let (below, normal) = surface.surface.ground.stand(self.position.get(at));
+        (below + contact.level[at], normal)
     }
 
     /// Unit vector along the chord of the nodes beside the one at `at`, which is none of the ends.

@@ -433,9 +433,14 @@ impl LineWork {
             return;
         };
         for at in FIRST + 1..FIRST + line.segment_count {
+            let (penetration, normal) = line.stand(at);
+            let free = line.velocity.get(at);
+            if penetration <= step.drift * normal.dot(&free) {
+                line.set_rub(at, Vector3::zeros());
+                continue;
+            }
             let excess = self.water.as_ref().map_or(0.0, |w| w.inverse_mass_excess[at]);
             let inverse_mass = self.inverse_mass[at];
-            let touch = line.touch(at);
             let tangent = line.tangent_of(at);
             let Some((contact, friction)) = line.rubbing() else {
                 return;
@@ -443,12 +448,11 @@ impl LineWork {
             let node = Landing {
                 mass: [1.0 / inverse_mass, 1.0 / (inverse_mass + excess)],
                 tangent,
-                normal: touch.normal,
-                penetration: touch.penetration,
+                normal,
+                penetration,
                 coefficients: contact.coefficients(at),
                 steps: [step.kick, step.drift],
             };
-            let free = line.velocity.get(at);
             let Some(landed) = node.solve(free, friction) else {
                 line.set_rub(at, Vector3::zeros());
                 continue;

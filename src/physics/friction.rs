@@ -105,6 +105,14 @@ impl Friction {
 
 /// The friction at a node that `holding` [N] would hold, in the ellipse of the axes `limits` [N].
 pub fn held(holding: Vector2<f64>, compliance: Vector2<f64>, limits: Vector2<f64>) -> Held {
+    let border = (1.0 - BORDER) * (1.0 - BORDER);
+    let rough = limits.x > 0.0 && limits.y > 0.0;
+    if rough && holding.component_div(&limits).norm_squared() <= border {
+        return Held {
+            force: holding,
+            multiplier: None,
+        };
+    }
     let stiffness = compliance.component_mul(&limits.component_mul(&limits)); // W D²
     let scaled = holding.component_mul(&compliance).component_mul(&limits);
     let acts = |i: usize| limits[i] > 0.0 && scaled[i] != 0.0;
@@ -114,7 +122,6 @@ pub fn held(holding: Vector2<f64>, compliance: Vector2<f64>, limits: Vector2<f64
             .map(|i| scaled[i] * scaled[i] / (stiffness[i] + gamma).powi(power))
             .sum()
     };
-    let border = (1.0 - BORDER) * (1.0 - BORDER);
     let unlimited = (0..2).all(|i| limits[i] > 0.0 || holding[i] == 0.0);
     if sum(0.0, 2) <= border {
         let force = Vector2::from_fn(|i, _| if limits[i] > 0.0 { holding[i] } else { 0.0 });

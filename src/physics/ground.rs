@@ -87,6 +87,25 @@ impl Ground {
         }
     }
 
+    /// Penetration [m] and normal of [`Self::touch`] alone.
+    #[inline]
+    pub fn stand(&self, place: Vector3<f64>) -> (f64, Vector3<f64>) {
+        let (height, [hx, hy]) = match self {
+            Ground::Plane { height, slope } => {
+                (height + slope[0] * place.x + slope[1] * place.y, *slope)
+            }
+            Ground::Grid(grid) => {
+                let relief = grid.relief(place.x, place.y);
+                (relief.height, relief.slope)
+            }
+        };
+        let upright = 1.0 / (1.0 + hx * hx + hy * hy).sqrt(); // n_z
+        (
+            (height - place.z) * upright,
+            upright * Vector3::new(-hx, -hy, 1.0),
+        )
+    }
+
     /// Height of the surface at a place [m].
     pub fn height(&self, x: f64, y: f64) -> f64 {
         self.relief(x, y).height

@@ -84,7 +84,7 @@ mod tests {
 
     #[test]
     fn every_unit_said_in_a_message_stands_in_the_docs_of_its_key() {
-        let source = include_str!("mod.rs");
+        let source = concat!(include_str!("mod.rs"), include_str!("seabed.rs"));
         for (owner, key, unit) in UNITS {
             let Some(body) = body(source, owner) else {
                 let elsewhere = ["MotionText", "InitialShape", "Strain"];

@@ -98,14 +98,14 @@ impl AxialWork {
     /// Finds out how the nodes stand to the bed, and what they are first taken to do there.
     pub(super) fn meet_bed(&mut self, step: Step) {
         for at in self.inner_nodes() {
-            let touch = self.layout.touch(at);
+            let (penetration, normal) = self.layout.stand(at);
             let velocity = self.layout.velocity.get(at);
             let Some(rubbing) = &mut self.rubbing else {
                 return;
             };
             rubbing.mode[at] = Mode::Off;
-            rubbing.penetration[at] = touch.penetration;
-            rubbing.normal.set(at, touch.normal);
+            rubbing.penetration[at] = penetration;
+            rubbing.normal.set(at, normal);
             rubbing.across[at] = self.nodes.across[at];
             rubbing.excess[at] = self.nodes.excess[at];
             rubbing.rub.set(at, Vector3::zeros());

@@ -21,6 +21,10 @@ use crate::physics::friction::{Axes, Friction, held};
 use crate::physics::ground::Touch;
 use crate::physics::seabed::ContactCoefficients;
 
+/// Part of the limit that statics lets friction go to: nodes that slid to where they rest then stick in motion, and rounding does not free
+/// them one by one [-].
+const STATIC_LIMIT: f64 = 1.0 - 1e-6;
+
 /// Stiffness along the bed of a point that sticks, over its stiffness across it [-].
 const POINT_STICK: f64 = 1e3;
 
@@ -52,6 +56,8 @@ pub struct Rub<'a> {
     pub anchor: Vector3<f64>,
     /// k_t [N/m].
     pub stick: f64,
+    /// Part of the limit of friction that holds [-].
+    pub limit: f64,
 }
 
 /// What the bed does to a node.
@@ -67,7 +73,19 @@ pub struct Push {
     damping: Matrix3<f64>,
 }
 
-impl Resting<'_> {
+impl<'a> Resting<'a> {
+    /// Without velocity, and with the friction that statics has.
+    fn at_rest(self) -> Resting<'a> {
+        Resting {
+            velocity: Vector3::zeros(),
+            rub: self.rub.map(|rub| Rub {
+                limit: STATIC_LIMIT,
+                ..rub
+            }),
+            ..self
+        }
+    }
+
     /// What the bed does to it; `None` where it does nothing.
     pub fn push(&self) -> Option<Push> {
         let Touch {
@@ -89,7 +107,7 @@ impl Resting<'_> {
         if let Some(rub) = &self.rub {
             let axes = Axes::new(normal, rub.tangent);
             let wanted = rub.stick * axes.components(&(rub.anchor - self.place));
-            let limits = rub.friction.limits(&axes, bed.force);
+            let limits = rub.limit * rub.friction.limits(&axes, bed.force);
             let held = held(wanted, [1.0, 1.0].into(), limits);
             let slope = held.slope(limits);
             let grows = axes.vector(&(held.force - slope * wanted)) / bed.force;
@@ -127,6 +145,7 @@ pub fn resting_node<'a>(
             tangent: node_tangent(&state.position, i),
             anchor: *anchor,
             stick: part * contact.stick[i],
+            limit: 1.0,
         }),
     })
 }
@@ -153,6 +172,7 @@ pub fn resting_point<'a>(
             tangent: Vector3::z(), // a point is across all around
             anchor,
             stick: part * POINT_STICK * contact.coefficients.stiffness,
+            limit: 1.0,
         }),
     })
 }
@@ -169,10 +189,7 @@ impl LineWork {
         for i in 0..state.position.len() {
             let still = Vector3::zeros();
             let push = resting_node(line, state, i, 0.0, case.stick)
-                .map(|node| Resting {
-                    velocity: still,
-                    ..node
-                })
+                .map(Resting::at_rest)
                 .and_then(|node| node.push());
             self.rubbed[i] = push.map_or(still, |push| push.friction);
             if let Some(push) = push {
@@ -213,10 +230,7 @@ impl PointWork {
         case: &StaticCase,
     ) {
         let push = resting_point(free, surface, state, 0.0, case.stick)
-            .map(|point| Resting {
-                velocity: Vector3::zeros(),
-                ..point
-            })
+            .map(Resting::at_rest)
             .and_then(|point| point.push());
         self.rubbed = push.map_or(Vector3::zeros(), |push| push.friction);
         if let Some(push) = push {
@@ -310,4 +324,127 @@ pub(crate) fn weigh_anchors(model: &Model, network: &Network, state: &mut State)
         state.lines[index].anchor.clear();
     }
     super::for_free_points(model, network, |index, _| state.points[index].anchor = None);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::physics::ground::{Grid, Ground};
+    use approx::assert_relative_eq;
+
+    const ROUGH: Friction = Friction {
+        axial: 0.4,
+        transverse: 0.7,
+    };
+
+    fn surface(ground: Ground) -> Surface {
+        Surface {
+            ground,
+            level: false,
+            friction: Some(ROUGH),
+        }
+    }
+
+    fn slope() -> Surface {
+        surface(Ground::Plane {
+            height: -5.0,
+            slope: [0.3, -0.2],
+        })
+    }
+
+    fn hill() -> Surface {
+        let rows = vec![
+            vec![-5.0, -4.6, -5.3],
+            vec![-5.2, -4.2, -4.9],
+            vec![-5.0, -4.8, -5.1],
+        ];
+        let lines = [-2.0, 0.5, 2.0];
+        surface(Ground::Grid(Grid::new(&lines, &lines, &rows).unwrap()))
+    }
+
+    /// A node a little under the bed that moves, `slid` from its anchor.
+    fn resting(
+        surface: &Surface,
+        shift: Vector3<f64>,
+        velocity: Vector3<f64>,
+        slid: Option<Vector3<f64>>,
+    ) -> Resting<'_> {
+        let under = Vector3::new(0.2, -0.1, surface.ground.height(0.2, -0.1) - 0.01);
+        let place = under + shift;
+        Resting {
+            touch: surface.touch(place, 0.0),
+            coefficients: ContactCoefficients {
+                stiffness: 1e4,
+                damping: 50.0,
+            },
+            reach: 0.03,
+            place,
+            velocity,
+            rub: slid.map(|slid| Rub {
+                friction: &ROUGH,
+                tangent: Vector3::new(0.8, 0.5, 0.1).normalize(),
+                anchor: under - slid,
+                stick: 2e5,
+                limit: 1.0,
+            }),
+        }
+    }
+
+    fn assert_tangent(surface: &Surface, slid: Option<Vector3<f64>>) {
+        let (zero, velocity) = (Vector3::zeros(), Vector3::new(0.05, -0.1, -0.2));
+        let push = resting(surface, zero, velocity, slid).push().unwrap();
+        for axis in 0..3 {
+            let step = 1e-7 * Vector3::from_fn(|i, _| f64::from(u8::from(i == axis)));
+            let force = |shift, velocity| {
+                resting(surface, shift, velocity, slid)
+                    .push()
+                    .unwrap()
+                    .force
+            };
+            let by_place = (force(-step, velocity) - force(step, velocity)) / 2e-7;
+            let by_velocity = (force(zero, velocity - step) - force(zero, velocity + step)) / 2e-7;
+            let scale = push.stiffness.amax();
+            assert_relative_eq!(
+                push.stiffness.column(axis).into_owned(),
+                by_place,
+                epsilon = 1e-6 * scale
+            );
+            assert_relative_eq!(
+                push.damping.column(axis).into_owned(),
+                by_velocity,
+                epsilon = 1e-4
+            );
+        }
+    }
+
+    #[test]
+    fn the_tangent_of_contact_and_friction_on_a_slope_equals_central_differences() {
+        for slid in [
+            None,
+            Some([1e-5, 2e-5, 0.0]),
+            Some([0.1, 0.05, 0.03]),
+            Some([-0.02, 0.3, 0.0]),
+        ] {
+            assert_tangent(&slope(), slid.map(Vector3::from));
+        }
+    }
+
+    #[test]
+    fn the_tangent_of_contact_over_soundings_equals_central_differences() {
+        assert_tangent(&hill(), None);
+    }
+
+    #[test]
+    fn friction_pulls_towards_the_anchor_in_the_plane_of_the_bed_up_to_its_limit() {
+        let bed = slope();
+        let still = Vector3::zeros();
+        let slid = Vector3::new(0.4, -0.3, 0.1);
+        let node = resting(&bed, still, still, Some(slid));
+        let push = node.push().unwrap();
+        assert_relative_eq!(push.friction.dot(&node.touch.normal), 0.0, epsilon = 1e-10);
+        assert!(push.friction.dot(&slid) < 0.0);
+        let normal = (push.force - push.friction).norm();
+        let size = push.friction.norm();
+        assert!(size > 0.4 * normal && size < 0.7 * normal);
+    }
 }

@@ -20,7 +20,7 @@ use crate::statics::assembly::{Workspace, copy_network, for_free_points, rubbing
 /// Part of the stiffness of sticking that is tried first, and how fast it is raised: friction then grows from nothing to what the
 /// displacement mobilises, and no node that slides is ever without a taut neighbour to hold it [-].
 const SOFTEST: f64 = 1e-6;
-const GROWTH: f64 = 100.0;
+const GROWTH: f64 = 3.0;
 /// Least growth that is tried [-].
 const GROWTH_MIN: f64 = 1.1;
 
@@ -51,7 +51,7 @@ impl Problem<'_> {
             };
             if self.newton(state, work, case) {
                 reached = stick;
-                growth = (growth * growth).min(GROWTH);
+                growth = growth.powf(1.5).min(GROWTH);
                 copy_network(self.model, self.network, state, &mut found);
             } else {
                 growth = growth.sqrt();
