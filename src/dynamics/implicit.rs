@@ -101,6 +101,7 @@ pub fn start<K: Fn(usize, f64) -> Kinematics>(
     hold(model, network, state, held, t);
     let weights = Weights {
         force: 1.0,
+        friction: 1.0,
         inertia: 0.0,
         position: 0.0,
         velocity: 0.0,
@@ -331,6 +332,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
         let dt = t1 - t0;
         let old = Weights {
             force: alpha_f,
+            friction: 0.0,
             inertia: alpha_m,
             position: 0.0,
             velocity: 0.0,
@@ -347,6 +349,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
         let (per_velocity, per_acceleration) = (gamma / (beta * dt), 1.0 / (beta * dt * dt));
         let new = Weights {
             force: 1.0 - alpha_f,
+            friction: 1.0,
             inertia: 1.0 - alpha_m,
             position: 1.0 - alpha_f,
             velocity: (1.0 - alpha_f) * per_velocity,

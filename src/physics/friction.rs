@@ -41,8 +41,8 @@ pub struct Axes {
 
 /// Part of the tangent below which a line stands on the bed [-].
 const STANDING: f64 = 1e-9;
-/// Nodes closer to the ellipse than this slide [-].
-const BORDER: f64 = 1e-9;
+/// Nodes closer to the ellipse than this slide: rounding of their places must not decide [-].
+const BORDER: f64 = 1e-7;
 /// Iterations for γ.
 const ITERATIONS_MAX: usize = 30;
 

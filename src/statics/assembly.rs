@@ -139,6 +139,9 @@ pub(crate) struct StaticCase {
 pub(crate) struct Weights {
     /// Of all forces but inertia in R [-].
     pub force: f64,
+    /// Of the bed's friction in R [-], which is taken whole at the end of a step: forces that jump feed vibrations where a mean of old and
+    /// new ones is taken.
+    pub friction: f64,
     /// Of inertia in R [-].
     pub inertia: f64,
     /// c_k: of ∂R/∂r [-].
@@ -409,6 +412,7 @@ pub fn end_force(
 ) -> Vector3<f64> {
     let weights = Weights {
         force: 1.0,
+        friction: 1.0,
         inertia: 1.0,
         position: 0.0,
         velocity: 0.0,

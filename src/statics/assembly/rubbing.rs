@@ -23,7 +23,7 @@ use crate::physics::seabed::ContactCoefficients;
 
 /// Part of the limit that statics lets friction go to: nodes that slid to where they rest then stick in motion, and rounding does not free
 /// them one by one [-].
-const STATIC_LIMIT: f64 = 1.0 - 1e-6;
+const STATIC_LIMIT: f64 = 1.0 - 1e-5;
 
 /// Stiffness along the bed of a point that sticks, over its stiffness across it [-].
 const POINT_STICK: f64 = 1e3;
@@ -67,10 +67,10 @@ pub struct Push {
     pub force: Vector3<f64>,
     /// The part of it that friction has [N].
     pub friction: Vector3<f64>,
-    /// −∂force/∂r [N/m].
-    stiffness: Matrix3<f64>,
-    /// −∂force/∂v [N s/m].
-    damping: Matrix3<f64>,
+    /// Minus the slopes of the rest of the force and of the friction with place [N/m].
+    stiffness: [Matrix3<f64>; 2],
+    /// Minus their slopes with velocity [N s/m].
+    damping: [Matrix3<f64>; 2],
 }
 
 impl<'a> Resting<'a> {
@@ -101,8 +101,11 @@ impl<'a> Resting<'a> {
         let mut push = Push {
             force: bed.force * normal,
             friction: Vector3::zeros(),
-            stiffness: -normal * by_place.transpose() - bed.force * turning,
-            damping: -normal * by_velocity.transpose(),
+            stiffness: [
+                -normal * by_place.transpose() - bed.force * turning,
+                Matrix3::zeros(),
+            ],
+            damping: [-normal * by_velocity.transpose(), Matrix3::zeros()],
         };
         if let Some(rub) = &self.rub {
             let axes = Axes::new(normal, rub.tangent);
@@ -116,10 +119,22 @@ impl<'a> Resting<'a> {
                 + across * (slope.m21 * along + slope.m22 * across).transpose();
             push.friction = axes.vector(&held.force);
             push.force += push.friction;
-            push.stiffness += rub.stick * sheared - grows * by_place.transpose();
-            push.damping -= grows * by_velocity.transpose();
+            push.stiffness[1] = rub.stick * sheared - grows * by_place.transpose();
+            push.damping[1] = -grows * by_velocity.transpose();
         }
         Some(push)
+    }
+}
+
+impl Push {
+    fn weighted(&self, weights: &Weights) -> Vector3<f64> {
+        weights.force * (self.force - self.friction) + weights.friction * self.friction
+    }
+
+    fn tangent(&self, weights: &Weights) -> Matrix3<f64> {
+        let slope =
+            |i: usize| weights.position * self.stiffness[i] + weights.velocity * self.damping[i];
+        slope(0) + weights.friction / weights.force * slope(1)
     }
 }
 
@@ -194,7 +209,7 @@ impl LineWork {
             self.rubbed[i] = push.map_or(still, |push| push.friction);
             if let Some(push) = push {
                 self.residual[i] -= push.force;
-                self.diagonal[i] += push.stiffness;
+                self.diagonal[i] += push.stiffness[0] + push.stiffness[1];
             }
         }
     }
@@ -211,10 +226,9 @@ impl LineWork {
                 resting_node(line, state, i, self.reach[i], 1.0).and_then(|node| node.push());
             self.rubbed[i] = push.map_or(Vector3::zeros(), |push| push.friction);
             let Some(push) = push else { continue };
-            self.residual[i] -= weights.force * push.force;
+            self.residual[i] -= push.weighted(weights);
             if TANGENT {
-                self.diagonal[i] +=
-                    weights.position * push.stiffness + weights.velocity * push.damping;
+                self.diagonal[i] += push.tangent(weights);
             }
         }
     }
@@ -235,7 +249,7 @@ impl PointWork {
         self.rubbed = push.map_or(Vector3::zeros(), |push| push.friction);
         if let Some(push) = push {
             self.residual -= push.force;
-            self.diagonal += push.stiffness;
+            self.diagonal += push.stiffness[0] + push.stiffness[1];
         }
     }
 
@@ -251,10 +265,9 @@ impl PointWork {
             resting_point(free, surface, state, self.reach, 1.0).and_then(|point| point.push());
         self.rubbed = push.map_or(Vector3::zeros(), |push| push.friction);
         if let Some(push) = push {
-            self.residual -= weights.force * push.force;
+            self.residual -= push.weighted(weights);
             if TANGENT {
-                self.diagonal +=
-                    weights.position * push.stiffness + weights.velocity * push.damping;
+                self.diagonal += push.tangent(weights);
             }
         }
     }
@@ -403,14 +416,16 @@ mod tests {
             };
             let by_place = (force(-step, velocity) - force(step, velocity)) / 2e-7;
             let by_velocity = (force(zero, velocity - step) - force(zero, velocity + step)) / 2e-7;
-            let scale = push.stiffness.amax();
+            let stiffness = push.stiffness[0] + push.stiffness[1];
+            let damping = push.damping[0] + push.damping[1];
+            let scale = stiffness.amax();
             assert_relative_eq!(
-                push.stiffness.column(axis).into_owned(),
+                stiffness.column(axis).into_owned(),
                 by_place,
                 epsilon = 1e-6 * scale
             );
             assert_relative_eq!(
-                push.damping.column(axis).into_owned(),
+                damping.column(axis).into_owned(),
                 by_velocity,
                 epsilon = 1e-4
             );
