@@ -786,9 +786,9 @@ fn laid_length(line: &Line, state: &LineState) -> f64 {
         return 0.0;
     };
     let carried = |i: usize| {
-        let penetration = match &contact.surface {
+        let penetration = match &contact.bottom {
             None => contact.level[i] - state.position[i].z,
-            Some(surface) => surface.touch(state.position[i], contact.lift(i)).penetration,
+            Some(bottom) => bottom.touch(state.position[i], contact.lift(i)).penetration,
         };
         let weight = line.nodes.weight[i];
         if weight <= 0.0 {

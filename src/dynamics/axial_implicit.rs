@@ -151,7 +151,7 @@ impl AxialWork {
                 across: zeros.clone(),
                 along: zeros.clone(),
             }),
-            rubbing: layout.surface().map(|_| Rubbing::new(size)),
+            rubbing: layout.bottom().map(|_| Rubbing::new(size)),
             lost: Lanes::splat(0.0),
             given: 0.0,
             tension_peak: 0.0,

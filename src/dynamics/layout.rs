@@ -10,7 +10,7 @@ use pulp::{Arch, NullaryFnOnce};
 
 use super::leapfrog::Step;
 use crate::math::lanes::{Components, LANES, Lanes, Vectors};
-use crate::model::{Contact, End, Line, LineState, Surface};
+use crate::model::{Contact, End, Line, LineState, Bottom};
 use crate::physics::flow::{Profile, Stream};
 use crate::physics::friction::Friction;
 use crate::physics::seabed::ContactCoefficients;
@@ -72,20 +72,20 @@ impl CurrentNow {
     }
 }
 
-/// Lumped contact coefficients [N/m, N s/m] and the z [m] below which they push; over a surface the height above it, along its normal.
+/// Lumped contact coefficients [N/m, N s/m] and the z [m] below which they push; over a bed that slopes or rubs the height above it, along its normal.
 #[derive(Debug, Clone)]
 pub(super) struct ContactArrays {
     pub level: Vec<f64>,
     pub stiffness: Vec<f64>,
     pub damping: Vec<f64>,
     /// Where the bed is more than a level plane without friction.
-    pub surface: Option<SurfaceArrays>,
+    pub bottom: Option<BottomArrays>,
 }
 
 /// A bed that slopes or rubs.
 #[derive(Debug, Clone)]
-pub(super) struct SurfaceArrays {
-    pub surface: Arc<Surface>,
+pub(super) struct BottomArrays {
+    pub bottom: Arc<Bottom>,
     /// Stiffness along the bed of a node that sticks [N/m]; 0 without friction.
     pub stick: Vec<f64>,
     /// Friction on the nodes in the last step [N].
@@ -95,12 +95,12 @@ pub(super) struct SurfaceArrays {
 impl ContactArrays {
     fn new(contact: &Contact, keep: impl Fn(&[f64]) -> Vec<f64>) -> ContactArrays {
         let lifts = || (0..contact.level.len()).map(|i| contact.lift(i)).collect();
-        let surface = contact.surface.as_ref();
-        let level: Vec<f64> = surface.map_or_else(|| contact.level.clone(), |_| lifts());
+        let bottom = contact.bottom.as_ref();
+        let level: Vec<f64> = bottom.map_or_else(|| contact.level.clone(), |_| lifts());
         let level = keep(&level);
         ContactArrays {
-            surface: surface.map(|surface| SurfaceArrays {
-                surface: surface.clone(),
+            bottom: bottom.map(|bottom| BottomArrays {
+                bottom: bottom.clone(),
                 stick: keep(&contact.stick),
                 rub: Components::zeros(level.len()),
             }),
@@ -191,32 +191,32 @@ impl Layout {
             memory.velocity[i] = velocity;
             memory.velocity_before[i] = before;
         }
-        if let Some(surface) = self.surface() {
+        if let Some(bottom) = self.bottom() {
             for (i, anchor) in state.anchor.iter_mut().enumerate() {
-                let rub = surface.rub.get(FIRST + i) / surface.stick[FIRST + i];
+                let rub = bottom.rub.get(FIRST + i) / bottom.stick[FIRST + i];
                 *anchor = state.position[i] + rub;
             }
         }
     }
 
     /// The bed, where it is more than a level plane without friction.
-    pub fn surface(&self) -> Option<&SurfaceArrays> {
-        self.contact.as_ref()?.surface.as_ref()
+    pub fn bottom(&self) -> Option<&BottomArrays> {
+        self.contact.as_ref()?.bottom.as_ref()
     }
 
     /// The contact with a bed that slopes or rubs, and its friction.
     pub fn rubbing(&self) -> Option<(&ContactArrays, Option<&Friction>)> {
         let contact = self.contact.as_ref()?;
-        let surface = contact.surface.as_ref()?;
-        Some((contact, surface.surface.friction.as_ref()))
+        let bottom = contact.bottom.as_ref()?;
+        Some((contact, bottom.bottom.friction.as_ref()))
     }
 
     /// Remembers the friction on a node [N].
     pub fn set_rub(&mut self, at: usize, rub: Vector3<f64>) {
         if let Some(contact) = &mut self.contact
-            && let Some(surface) = &mut contact.surface
+            && let Some(bottom) = &mut contact.bottom
         {
-            surface.rub.set(at, rub);
+            bottom.rub.set(at, rub);
         }
     }
 
@@ -225,8 +225,8 @@ impl Layout {
     #[inline]
     pub fn stand(&self, at: usize) -> (f64, Vector3<f64>) {
         let contact = self.contact.as_ref().expect("asked over a bed only");
-        let surface = contact.surface.as_ref().expect("asked over a surface only");
-        let (below, normal) = surface.surface.ground.stand(self.position.get(at));
+        let bottom = contact.bottom.as_ref().expect("asked over a bed that slopes or rubs only");
+        let (below, normal) = bottom.bottom.ground.stand(self.position.get(at));
         (below + contact.level[at], normal)
     }
 

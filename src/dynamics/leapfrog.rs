@@ -59,7 +59,7 @@ mod bed {
     /// A level one without friction.
     pub const LEVEL: u8 = 1;
     /// One that slopes or rubs, whose nodes [`super::LineWork::settle`] looks after.
-    pub const SURFACE: u8 = 2;
+    pub const BOTTOM: u8 = 2;
 }
 
 /// What needs a node's tangent: drag, and a mass that differs along and across the line.
@@ -203,7 +203,7 @@ pub struct EndLoad {
     pub current_power: f64,
     /// Mass matrix of the half node [kg].
     pub mass: Matrix3<f64>,
-    /// Contact stiffness [N/m] and damping [N s/m] of the half node, and its force at z = 0, or at no height over a surface [N].
+    /// Contact stiffness [N/m] and damping [N s/m] of the half node, and its force at z = 0, or at no height over a bed that slopes or rubs [N].
     pub contact: [f64; 3],
 }
 
@@ -236,8 +236,8 @@ impl LineWork {
             lost: Lanes::splat(0.0),
             given: 0.0,
             given_by_current: Lanes::splat(0.0),
-            settling: layout.surface().map(|surface| Settling {
-                resistance: Components::zeros(surface.stick.len()),
+            settling: layout.bottom().map(|bottom| Settling {
+                resistance: Components::zeros(bottom.stick.len()),
                 lost: 0.0,
             }),
             layout,
@@ -336,7 +336,7 @@ impl LineWork {
         match (&self.layout.contact, self.settling.is_some()) {
             (None, _) => self.choose_damped_pass::<WATER, CURRENT, { bed::NONE }>(step),
             (Some(_), false) => self.choose_damped_pass::<WATER, CURRENT, { bed::LEVEL }>(step),
-            (Some(_), true) => self.choose_damped_pass::<WATER, CURRENT, { bed::SURFACE }>(step),
+            (Some(_), true) => self.choose_damped_pass::<WATER, CURRENT, { bed::BOTTOM }>(step),
         }
     }
 
@@ -418,7 +418,7 @@ impl LineWork {
                 self.given_by_current = self.given_by_current + given;
                 self.lost = self.lost + given;
             }
-            if let (bed::SURFACE, Some(settling)) = (BED, &mut self.settling) {
+            if let (bed::BOTTOM, Some(settling)) = (BED, &mut self.settling) {
                 settling.resistance.store(resistance, at);
             }
             line.velocity_before.store(kicked, at); // v_{n−3/2} has been read

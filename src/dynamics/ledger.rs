@@ -25,7 +25,7 @@ use serde::{Deserialize, Serialize};
 use super::beam::{self, BeamView};
 use super::leapfrog::segment_tension;
 use crate::model::{
-    ClosedForm, End, FreePoint, Line, LineState, Model, Network, PointState, State, Surface, joint,
+    ClosedForm, End, FreePoint, Line, LineState, Model, Network, PointState, State, Bottom, joint,
 };
 use crate::physics::flow::Stream;
 use crate::physics::morison::{DragCoefficients, drag};
@@ -336,7 +336,7 @@ pub fn work_at_rest(
             &line.nodes.contact,
             shapes.iter().any(|shape| shape.closed_form.is_none()),
         ) {
-            let level = line.surface().is_none();
+            let level = line.bottom().is_none();
             for i in (1..line.segment_count()).filter(|_| !level) {
                 let [low, high] = shapes.map(|shape| {
                     let node = resting_node(line, shape, i, 0.0, 1.0).and_then(|node| node.push());
@@ -360,13 +360,13 @@ pub fn work_at_rest(
         if after.lines[line].closed_form.is_none()
             && let Some(free) = model.points[point].free()
         {
-            let push = |state: &State| match model.surface.as_deref() {
+            let push = |state: &State| match model.bottom.as_deref() {
                 None => {
                     let spring = free.bed_at_rest(state.points[point].position.z);
                     spring.map_or(Vector3::zeros(), |(_, force)| force * Vector3::z())
                 }
-                Some(surface) => {
-                    let resting = resting_point(free, surface, &state.points[point], 0.0, 1.0);
+                Some(bottom) => {
+                    let resting = resting_point(free, bottom, &state.points[point], 0.0, 1.0);
                     let push = resting.and_then(|point| point.push());
                     push.map_or(Vector3::zeros(), |push| push.force)
                 }
@@ -438,8 +438,8 @@ pub fn power(model: &Model, network: &Network, state: &State, t: f64) -> Flow {
         let velocity = &state.points[point].velocity;
         flow.given += model.points[point].load_at(t).dot(velocity);
         if let Some(free) = model.points[point].free() {
-            let (surface, point) = (model.surface.as_deref(), &state.points[point]);
-            flow.add(point_power(free, surface, point, model.stream(t)));
+            let (bottom, point) = (model.bottom.as_deref(), &state.points[point]);
+            flow.add(point_power(free, bottom, point, model.stream(t)));
         }
     }
     flow
@@ -449,7 +449,7 @@ pub fn power(model: &Model, network: &Network, state: &State, t: f64) -> Flow {
 /// is negative.
 fn point_power(
     free: &FreePoint,
-    surface: Option<&Surface>,
+    bottom: Option<&Bottom>,
     state: &PointState,
     stream: Option<Stream>,
 ) -> Flow {
@@ -460,8 +460,8 @@ fn point_power(
     let drag = free.drag(at.wetted, past);
     let mut lost = -drag.dot(&past);
     lost -= 0.5 * at.mass_slope * velocity.z * velocity.norm_squared();
-    if let Some(surface) = surface {
-        let push = resting_point(free, surface, state, 0.0, 1.0).and_then(|point| point.push());
+    if let Some(bottom) = bottom {
+        let push = resting_point(free, bottom, state, 0.0, 1.0).and_then(|point| point.push());
         lost -= push.map_or(0.0, |push| push.force.dot(&velocity));
     } else if let Some(contact) = &free.contact {
         let push = normal_force(contact.coefficients, contact.level - z, velocity.z);
@@ -548,7 +548,7 @@ fn node_power(line: &Line, shape: &LineState, i: usize, stream: Option<Stream>) 
     if let Some(damping) = &nodes.mass_damping {
         lost += damping[i] * velocity.norm_squared();
     }
-    if line.surface().is_some() {
+    if line.bottom().is_some() {
         let push = resting_node(line, shape, i, 0.0, 1.0).and_then(|node| node.push());
         lost -= push.map_or(0.0, |push| push.force.dot(&velocity));
     } else if let Some(contact) = &nodes.contact {

@@ -204,7 +204,7 @@ impl NetworkWork {
                 mass: at.mass * Matrix3::identity(),
                 contact: law.contact.map_or([0.0; 3], |contact| {
                     let k = contact.coefficients;
-                    let level = if model.surface.is_some() {
+                    let level = if model.bottom.is_some() {
                         contact.lift()
                     } else {
                         contact.level
@@ -370,18 +370,18 @@ struct Bed<'a> {
 
 impl Bed<'_> {
     fn under(model: &Model, place: Vector3<f64>) -> Bed<'_> {
-        match model.surface.as_deref() {
+        match model.bottom.as_deref() {
             None => Bed {
                 height: place.z,
                 normal: Vector3::z(),
                 friction: None,
             },
-            Some(surface) => {
-                let touch = surface.ground.touch(place);
+            Some(bottom) => {
+                let touch = bottom.ground.touch(place);
                 Bed {
                     height: -touch.penetration,
                     normal: touch.normal,
-                    friction: surface.friction.as_ref(),
+                    friction: bottom.friction.as_ref(),
                 }
             }
         }

@@ -90,17 +90,17 @@ pub fn end_force(
             stiffness: contact.stiffness[node],
             damping: contact.damping[node],
         };
-        match &contact.surface {
+        match &contact.bottom {
             None => {
                 let penetration = contact.level[node] - state.position[node].z;
                 force.z += seabed::normal_force(coefficients, penetration, velocity.z);
             }
-            Some(surface) => {
+            Some(bottom) => {
                 let Touch {
                     penetration,
                     normal,
                     ..
-                } = surface.touch(state.position[node], contact.lift(node));
+                } = bottom.touch(state.position[node], contact.lift(node));
                 let rise = normal.dot(&velocity);
                 force += seabed::normal_force(coefficients, penetration, rise) * normal;
             }

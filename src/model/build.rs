@@ -8,7 +8,7 @@ use nalgebra::Vector3;
 
 use super::{
     Bending, Contact, Current, Drag, End, FreePoint, Line, Model, Motion, Network, Nodes, Point,
-    PointContact, Role, Section, Segments, Surface, Vessel, mesh,
+    PointContact, Role, Section, Segments, Bottom, Vessel, mesh,
 };
 use crate::physics::bending;
 use crate::physics::flow::Profile;
@@ -43,12 +43,12 @@ impl Model {
             .iter()
             .map(|point| build_point(scene, &vessels, point))
             .collect();
-        let surface = scene.seabed.as_ref().and_then(surface).map(Arc::new);
+        let bottom = scene.seabed.as_ref().and_then(bottom).map(Arc::new);
         let mut lines = Vec::with_capacity(scene.lines.len());
         for (index, line) in scene.lines.iter().enumerate() {
             let mut built = build_line(scene, index, line)?;
             rest_as_it_lies(&mut built, &points, line.rest_shape);
-            lay_on(&mut built, surface.as_ref());
+            lay_on(&mut built, bottom.as_ref());
             points[built.ends[0]].attached.push((index, End::A));
             points[built.ends[1]].attached.push((index, End::B));
             lines.push(built);
@@ -62,7 +62,7 @@ impl Model {
             gravity: scene.gravity,
             bed: scene.seabed.as_ref().map(|bed| -bed.depth),
             bed_friction: scene.seabed.as_ref().map_or(0.0, |bed| bed.friction.axial),
-            surface,
+            bottom,
             current: scene.water.as_ref().and_then(current),
             networks,
             points,
@@ -74,7 +74,7 @@ impl Model {
 }
 
 /// What the bed is beside a level plane without friction.
-fn surface(bed: &scene::Seabed) -> Option<Surface> {
+fn bottom(bed: &scene::Seabed) -> Option<Bottom> {
     let ground = match (&bed.grid, bed.slope) {
         (Some(grid), _) => {
             let heights = grid.depth.iter().map(|row| row.iter().map(|d| -d).collect());
@@ -90,7 +90,7 @@ fn surface(bed: &scene::Seabed) -> Option<Surface> {
         axial: bed.friction.axial,
         transverse: bed.friction.transverse,
     });
-    (!bed.is_level() || friction.is_some()).then_some(Surface {
+    (!bed.is_level() || friction.is_some()).then_some(Bottom {
         ground,
         level: bed.is_level(),
         friction,
@@ -102,7 +102,7 @@ fn surface(bed: &scene::Seabed) -> Option<Surface> {
 const STICK: f64 = 10.0;
 
 /// Gives a line the bed's surface.
-fn lay_on(line: &mut Line, surface: Option<&Arc<Surface>>) {
+fn lay_on(line: &mut Line, bottom: Option<&Arc<Bottom>>) {
     let springs: Vec<f64> = line
         .segments
         .axial_stiffness
@@ -113,9 +113,9 @@ fn lay_on(line: &mut Line, surface: Option<&Arc<Surface>>) {
     if line.beam.is_some() {
         return; // beams know a level bed without friction only
     }
-    if let (Some(contact), Some(surface)) = (&mut line.nodes.contact, surface) {
-        contact.surface = Some(surface.clone());
-        if surface.friction.is_some() {
+    if let (Some(contact), Some(bottom)) = (&mut line.nodes.contact, bottom) {
+        contact.bottom = Some(bottom.clone());
+        if bottom.friction.is_some() {
             let at = |i: usize| springs.get(i).copied().unwrap_or(0.0);
             let stick = |i: usize| STICK * at(i).max(at(i.wrapping_sub(1)));
             contact.stick = (0..=springs.len()).map(stick).collect();
@@ -526,7 +526,7 @@ fn contact(
         level,
         stiffness,
         damping,
-        surface: None,
+        bottom: None,
         stick: Vec::new(),
     }
 }

@@ -10,7 +10,7 @@ mod initial;
 mod mesh;
 mod motion;
 mod state;
-mod surface;
+mod bottom;
 mod vessel;
 
 use std::sync::Arc;
@@ -27,7 +27,7 @@ pub use beam::{Beam, BeamElement, BeamState};
 pub use bending::{Bending, joint};
 pub use motion::{Kinematics, Motion, Pose};
 pub use state::{ClosedForm, LineState, PointState, State};
-pub use surface::Surface;
+pub use bottom::Bottom;
 pub use vessel::{Frame, Vessel};
 
 /// A scene made discrete. Immutable; shared by reference.
@@ -40,7 +40,7 @@ pub struct Model {
     /// Coulomb friction of the seabed along a line [-].
     pub bed_friction: f64,
     /// What the seabed is beside a level plane without friction.
-    pub surface: Option<Arc<Surface>>,
+    pub bottom: Option<Arc<Bottom>>,
     /// The current, where the water flows.
     pub current: Option<Current>,
     /// Points in the order of the scene.
@@ -264,7 +264,7 @@ pub struct Contact {
     /// Damping [N s/m].
     pub damping: Vec<f64>,
     /// What the bed is beside a level plane without friction.
-    pub surface: Option<Arc<Surface>>,
+    pub bottom: Option<Arc<Bottom>>,
     /// Stiffness along the bed of a node that sticks [N/m]; empty without friction.
     pub stick: Vec<f64>,
 }

@@ -176,8 +176,8 @@ impl Workspace {
             let point = &mut self.points[index];
             let (data, state) = (&model.points[index], &state.points[index]);
             point.assemble_static(data, free, state, stream, case);
-            match model.surface.as_deref() {
-                Some(surface) => point.add_static_surface(free, surface, state, case),
+            match model.bottom.as_deref() {
+                Some(bottom) => point.add_static_bottom(free, bottom, state, case),
                 None => point.add_bed_at_rest(free, state.position.z),
             }
         });
@@ -209,8 +209,8 @@ impl Workspace {
         for_free_points(model, network, |index, free| {
             let point = &mut self.points[index];
             let load = model.points[index].load_at(t);
-            let (surface, state) = (model.surface.as_deref(), &state.points[index]);
-            point.assemble_dynamic::<TANGENT>(free, surface, state, load, stream, weights);
+            let (bottom, state) = (model.bottom.as_deref(), &state.points[index]);
+            point.assemble_dynamic::<TANGENT>(free, bottom, state, load, stream, weights);
         });
         self.gather(model, network);
     }
@@ -317,9 +317,9 @@ impl Workspace {
                 let PointState {
                     position, velocity, ..
                 } = state.points[index];
-                let rise = match &model.surface {
+                let rise = match &model.bottom {
                     None => velocity.z,
-                    Some(surface) => surface.rise(position, velocity),
+                    Some(bottom) => bottom.rise(position, velocity),
                 };
                 let moved = rise.abs() * dt;
                 self.points[index].reach = resting.max(moved);

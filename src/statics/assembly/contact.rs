@@ -82,9 +82,9 @@ impl LineWork {
         };
         for (i, reach) in self.reach.iter_mut().enumerate() {
             let resting = damper_reach(contact.stiffness[i], line.nodes.weight[i]);
-            let rise = match &contact.surface {
+            let rise = match &contact.bottom {
                 None => state.velocity[i].z,
-                Some(surface) => surface.rise(state.position[i], state.velocity[i]),
+                Some(bottom) => bottom.rise(state.position[i], state.velocity[i]),
             };
             *reach = resting.max(rise.abs() * dt);
         }
@@ -96,8 +96,8 @@ impl LineWork {
         state: &LineState,
         weights: &Weights,
     ) {
-        if line.surface().is_some() {
-            return self.add_surface::<TANGENT>(line, state, weights);
+        if line.bottom().is_some() {
+            return self.add_bottom::<TANGENT>(line, state, weights);
         }
         let Some(contact) = &line.nodes.contact else {
             return;

@@ -89,7 +89,7 @@ impl LineWork {
             push: vec![0.0; n],
             load: vec![Vector3::zeros(); if line.drifts(model) { n + 1 } else { 0 }],
             bending: line.bending.as_ref().map(|_| BendingWork::new(n + 1)),
-            rubbed: vec![Vector3::zeros(); line.surface().map_or(0, |_| n + 1)],
+            rubbed: vec![Vector3::zeros(); line.bottom().map_or(0, |_| n + 1)],
             chain: Chain::new(n + 1),
         }
     }
@@ -146,9 +146,9 @@ impl LineWork {
                 self.diagonal[i][(axis, axis)] += case.anchoring;
             }
         }
-        match line.surface() {
+        match line.bottom() {
             None => self.add_bed_at_rest(line, position),
-            Some(_) => self.add_static_surface(line, state, case),
+            Some(_) => self.add_static_bottom(line, state, case),
         }
     }
 

@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::contact::SmoothContact;
 use super::{StaticCase, Weights};
-use crate::model::{FreePoint, Model, Network, Point, PointState, Surface};
+use crate::model::{FreePoint, Model, Network, Point, PointState, Bottom};
 use crate::physics::flow::Stream;
 
 /// Scratch of a point.
@@ -78,7 +78,7 @@ impl PointWork {
     pub(super) fn assemble_dynamic<const TANGENT: bool>(
         &mut self,
         free: &FreePoint,
-        surface: Option<&Surface>,
+        bottom: Option<&Bottom>,
         state: &PointState,
         load: Vector3<f64>,
         stream: Option<Stream>,
@@ -103,7 +103,7 @@ impl PointWork {
                     .set_column(2, &(self.diagonal.column(2) + by_height));
             }
         }
-        if let (Some(contact), None) = (&free.contact, surface)
+        if let (Some(contact), None) = (&free.contact, bottom)
             && let Some(bed) =
                 SmoothContact::new(contact.coefficients, contact.level - z, v.z, self.reach)
         {
@@ -114,8 +114,8 @@ impl PointWork {
             }
         }
         self.residual = weights.inertia * at.mass * a - weights.force * force;
-        if let Some(surface) = surface {
-            self.add_surface::<TANGENT>(free, surface, state, weights);
+        if let Some(bottom) = bottom {
+            self.add_bottom::<TANGENT>(free, bottom, state, weights);
         }
     }
 }

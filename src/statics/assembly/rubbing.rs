@@ -16,7 +16,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::contact::SmoothContact;
 use super::{LineWork, PointWork, StaticCase, Weights, node_tangent};
-use crate::model::{FreePoint, Line, LineState, Model, Network, PointState, State, Surface};
+use crate::model::{FreePoint, Line, LineState, Model, Network, PointState, State, Bottom};
 use crate::physics::friction::{Axes, Friction, held};
 use crate::physics::ground::Touch;
 use crate::physics::seabed::ContactCoefficients;
@@ -146,11 +146,11 @@ pub fn resting_node<'a>(
     reach: f64,
     part: f64,
 ) -> Option<Resting<'a>> {
-    let (contact, surface) = line.surface()?;
+    let (contact, bottom) = line.bottom()?;
     let place = state.position[i];
-    let friction = surface.friction.as_ref().zip(state.anchor.get(i));
+    let friction = bottom.friction.as_ref().zip(state.anchor.get(i));
     Some(Resting {
-        touch: surface.touch(place, contact.lift(i)),
+        touch: bottom.touch(place, contact.lift(i)),
         coefficients: contact.coefficients(i),
         reach,
         place,
@@ -168,16 +168,16 @@ pub fn resting_node<'a>(
 /// How a free point meets the bed; it sticks with `part` of its stiffness.
 pub fn resting_point<'a>(
     free: &FreePoint,
-    surface: &'a Surface,
+    bottom: &'a Bottom,
     state: &PointState,
     reach: f64,
     part: f64,
 ) -> Option<Resting<'a>> {
     let contact = free.contact.as_ref()?;
     let place = state.position;
-    let friction = surface.friction.as_ref().zip(state.anchor);
+    let friction = bottom.friction.as_ref().zip(state.anchor);
     Some(Resting {
-        touch: surface.touch(place, contact.lift()),
+        touch: bottom.touch(place, contact.lift()),
         coefficients: contact.coefficients,
         reach,
         place,
@@ -200,7 +200,7 @@ pub fn point_stick(free: &FreePoint) -> f64 {
 
 impl LineWork {
     /// The bed's springs and friction under a line at rest.
-    pub(super) fn add_static_surface(&mut self, line: &Line, state: &LineState, case: &StaticCase) {
+    pub(super) fn add_static_bottom(&mut self, line: &Line, state: &LineState, case: &StaticCase) {
         for i in 0..state.position.len() {
             let still = Vector3::zeros();
             let push = resting_node(line, state, i, 0.0, case.stick)
@@ -215,7 +215,7 @@ impl LineWork {
     }
 
     /// The bed under a moving line.
-    pub(super) fn add_surface<const TANGENT: bool>(
+    pub(super) fn add_bottom<const TANGENT: bool>(
         &mut self,
         line: &Line,
         state: &LineState,
@@ -236,14 +236,14 @@ impl LineWork {
 
 impl PointWork {
     /// The bed under a point at rest.
-    pub(super) fn add_static_surface(
+    pub(super) fn add_static_bottom(
         &mut self,
         free: &FreePoint,
-        surface: &Surface,
+        bottom: &Bottom,
         state: &PointState,
         case: &StaticCase,
     ) {
-        let push = resting_point(free, surface, state, 0.0, case.stick)
+        let push = resting_point(free, bottom, state, 0.0, case.stick)
             .map(Resting::at_rest)
             .and_then(|point| point.push());
         self.rubbed = push.map_or(Vector3::zeros(), |push| push.friction);
@@ -254,15 +254,15 @@ impl PointWork {
     }
 
     /// The bed under a moving point.
-    pub(super) fn add_surface<const TANGENT: bool>(
+    pub(super) fn add_bottom<const TANGENT: bool>(
         &mut self,
         free: &FreePoint,
-        surface: &Surface,
+        bottom: &Bottom,
         state: &PointState,
         weights: &Weights,
     ) {
         let push =
-            resting_point(free, surface, state, self.reach, 1.0).and_then(|point| point.push());
+            resting_point(free, bottom, state, self.reach, 1.0).and_then(|point| point.push());
         self.rubbed = push.map_or(Vector3::zeros(), |push| push.friction);
         if let Some(push) = push {
             self.residual -= push.weighted(weights);
@@ -289,7 +289,7 @@ pub(super) fn move_anchors(
         if line.friction().is_none() {
             continue;
         }
-        let Some((contact, _)) = line.surface() else {
+        let Some((contact, _)) = line.bottom() else {
             continue;
         };
         for (i, anchor) in shape.anchor.iter_mut().enumerate() {
@@ -350,42 +350,42 @@ mod tests {
         transverse: 0.7,
     };
 
-    fn surface(ground: Ground) -> Surface {
-        Surface {
+    fn bottom(ground: Ground) -> Bottom {
+        Bottom {
             ground,
             level: false,
             friction: Some(ROUGH),
         }
     }
 
-    fn slope() -> Surface {
-        surface(Ground::Plane {
+    fn slope() -> Bottom {
+        bottom(Ground::Plane {
             height: -5.0,
             slope: [0.3, -0.2],
         })
     }
 
-    fn hill() -> Surface {
+    fn hill() -> Bottom {
         let rows = vec![
             vec![-5.0, -4.6, -5.3],
             vec![-5.2, -4.2, -4.9],
             vec![-5.0, -4.8, -5.1],
         ];
         let lines = [-2.0, 0.5, 2.0];
-        surface(Ground::Grid(Grid::new(&lines, &lines, &rows).unwrap()))
+        bottom(Ground::Grid(Grid::new(&lines, &lines, &rows).unwrap()))
     }
 
     /// A node a little under the bed that moves, `slid` from its anchor.
     fn resting(
-        surface: &Surface,
+        bottom: &Bottom,
         shift: Vector3<f64>,
         velocity: Vector3<f64>,
         slid: Option<Vector3<f64>>,
     ) -> Resting<'_> {
-        let under = Vector3::new(0.2, -0.1, surface.ground.height(0.2, -0.1) - 0.01);
+        let under = Vector3::new(0.2, -0.1, bottom.ground.height(0.2, -0.1) - 0.01);
         let place = under + shift;
         Resting {
-            touch: surface.touch(place, 0.0),
+            touch: bottom.touch(place, 0.0),
             coefficients: ContactCoefficients {
                 stiffness: 1e4,
                 damping: 50.0,
@@ -403,13 +403,13 @@ mod tests {
         }
     }
 
-    fn assert_tangent(surface: &Surface, slid: Option<Vector3<f64>>) {
+    fn assert_tangent(bottom: &Bottom, slid: Option<Vector3<f64>>) {
         let (zero, velocity) = (Vector3::zeros(), Vector3::new(0.05, -0.1, -0.2));
-        let push = resting(surface, zero, velocity, slid).push().unwrap();
+        let push = resting(bottom, zero, velocity, slid).push().unwrap();
         for axis in 0..3 {
             let step = 1e-7 * Vector3::from_fn(|i, _| f64::from(u8::from(i == axis)));
             let force = |shift, velocity| {
-                resting(surface, shift, velocity, slid)
+                resting(bottom, shift, velocity, slid)
                     .push()
                     .unwrap()
                     .force

@@ -9,7 +9,7 @@ use crate::physics::seabed::ContactCoefficients;
 
 /// Shape and friction of a seabed.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Surface {
+pub struct Bottom {
     /// Its shape.
     pub ground: Ground,
     /// Whether that is a level plane.
@@ -18,7 +18,7 @@ pub struct Surface {
     pub friction: Option<Friction>,
 }
 
-impl Surface {
+impl Bottom {
     /// How a node at a place [m] stands to the level from which the bed pushes it, `lift` [m] above the bed along its normal.
     pub fn touch(&self, place: Vector3<f64>, lift: f64) -> Touch {
         let touch = self.ground.touch(place);
@@ -50,8 +50,8 @@ impl Contact {
 
     /// z of the bed under a place [m].
     pub fn height_under(&self, place: Vector3<f64>) -> f64 {
-        match &self.surface {
-            Some(surface) if !surface.level => surface.ground.height(place.x, place.y),
+        match &self.bottom {
+            Some(bottom) if !bottom.level => bottom.ground.height(place.x, place.y),
             _ => self.bed,
         }
     }
@@ -66,31 +66,31 @@ impl PointContact {
 
 impl Line {
     /// The bed under the line, where it is more than a level plane without friction.
-    pub fn surface(&self) -> Option<(&Contact, &Surface)> {
+    pub fn bottom(&self) -> Option<(&Contact, &Bottom)> {
         let contact = self.nodes.contact.as_ref()?;
-        Some((contact, contact.surface.as_deref()?))
+        Some((contact, contact.bottom.as_deref()?))
     }
 
     /// The bed under the line, where it is a level plane without friction.
     pub fn level_bed(&self) -> Option<&Contact> {
         let contact = self.nodes.contact.as_ref()?;
-        contact.surface.is_none().then_some(contact)
+        contact.bottom.is_none().then_some(contact)
     }
 
     /// The friction under the line.
     pub fn friction(&self) -> Option<&Friction> {
-        self.surface()?.1.friction.as_ref()
+        self.bottom()?.1.friction.as_ref()
     }
 }
 
 impl Model {
     /// Whether the seabed, if there is one, is a level plane.
     pub fn bed_is_level(&self) -> bool {
-        self.surface.as_ref().is_none_or(|surface| surface.level)
+        self.bottom.as_ref().is_none_or(|bottom| bottom.level)
     }
 
     /// The friction of the seabed.
     pub fn friction(&self) -> Option<&Friction> {
-        self.surface.as_ref()?.friction.as_ref()
+        self.bottom.as_ref()?.friction.as_ref()
     }
 }
