@@ -1247,6 +1247,7 @@ fn notes_speak_of_what_is_unused_or_strange() {
         .replace("[[points]]\nname = \"buoy\"", "[line_types.spare]\nmass = 1.0\ndiameter = 0.1\naxial_stiffness = 1.0\n\n[[points]]\nname = \"buoy\"")
         .replace("length = 80.0", "length = 40.0")
         .replace("position = [0.0, 0.0, 0.0]", "position = [0.0, 0.0, 1.0]")
+        .replace("density = 1025.0", "density = 1025.0\nsurface = false")
         .replace("interval = 0.1", "interval = 0.7");
     let scene = Scene::from_toml(&text).unwrap();
     let notes: Vec<String> = scene.notes().iter().map(ToString::to_string).collect();

@@ -221,6 +221,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
                 Step::after(steps, drift),
                 self.held,
             );
+            work.meet_surface();
             for k in 0..count {
                 let t = self.start + k as f64 * drift;
                 work.step(model, network, t, Step::after(steps, drift), self.held);
@@ -265,6 +266,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
                 let k = (self.held)(point, self.start);
                 work.put_end(end, k.position, k.velocity - 0.5 * drift * k.acceleration);
             }
+            work.meet_surface(false);
             for k in 1..=count {
                 let t = self.start + k as f64 * drift;
                 if let Some(stream) = self.model.stream(t - drift) {

@@ -220,7 +220,7 @@ impl AxialWork {
     pub fn flow(&self) -> Flow {
         Flow {
             given: self.given,
-            lost: self.lost.sum(),
+            lost: self.lost.sum() - self.layout.joined(),
         }
     }
 
@@ -236,6 +236,23 @@ impl AxialWork {
         {
             kept.clear();
             kept.extend_from_slice(&history[own.clone()]);
+        }
+    }
+
+    /// Meets the water's surface as it is at t_n. Where that follows a step, `after_step`, what joined with the water is booked.
+    pub fn meet_surface(&mut self, after_step: bool) {
+        self.layout.find_surface();
+        let Some(surface) = &self.layout.surface else {
+            return;
+        };
+        for i in surface.crossed() {
+            let [across, along] = surface.node(i).masses;
+            self.nodes.mass_normal[FIRST + i] = across;
+            self.nodes.mass_tangent[FIRST + i] = along;
+        }
+        match after_step {
+            true => self.layout.book_surface([true; 2]),
+            false => self.layout.clear_surface(),
         }
     }
 
@@ -277,8 +294,8 @@ impl AxialWork {
             self.assemble_rows(step);
             let greatest = self.rows.solve(self.layout.segment_count);
             self.tension_peak = self.tension_peak.max(greatest);
-            let bed_holds = self.find_velocities(step)
-                && (self.rubbing.is_none() || self.check_bed(step));
+            let bed_holds =
+                self.find_velocities(step) && (self.rubbing.is_none() || self.check_bed(step));
             let slack_holds = self.check_segments(step, greatest);
             if bed_holds && slack_holds || passes == PASSES_MAX {
                 break;
@@ -297,6 +314,7 @@ impl AxialWork {
         self.layout
             .position
             .set(FIRST + self.layout.segment_count, ends[1]);
+        self.meet_surface(true);
         passes
     }
 
@@ -652,6 +670,7 @@ impl AxialWork {
             let pull = self.rows.tension[segment] * self.segments.direction.get(segment);
             let velocities = line.velocity.get(node) + line.velocity_before.get(node);
             self.given += sign * 0.5 * step.kick * pull.dot(&velocities);
+            self.given += 0.5 * step.kick * line.end_lack(end) * velocities.z;
         }
     }
 

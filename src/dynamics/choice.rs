@@ -5,7 +5,9 @@
 //! Networks joined at free points whose axial limit would need more than 25 steps for one of those are integrated fully
 //! implicitly, and so are lines that bend, mix strain measures or have nodes without mass. Beams have an integrator of their own.
 
-use super::limit::{axial_accuracy_step, explicit_step, free_point_step, transverse_step};
+use super::limit::{
+    axial_accuracy_step, explicit_step, free_point_step, heave_step, transverse_step,
+};
 use crate::model::{Line, Model, Network};
 use crate::scene::Integrator;
 
@@ -60,8 +62,10 @@ impl Choice {
         };
         let step_max = match integrator {
             Integrator::Leapfrog => explicit_limit,
-            Integrator::AxialImplicit if asked == Integrator::Auto => accurate,
-            Integrator::AxialImplicit => transverse_limit,
+            Integrator::AxialImplicit if asked == Integrator::Auto => {
+                accurate.min(least(&heave_step))
+            }
+            Integrator::AxialImplicit => transverse_limit.min(least(&heave_step)),
             _ => longest,
         };
         Choice {

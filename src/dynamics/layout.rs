@@ -9,8 +9,9 @@ use nalgebra::Vector3;
 use pulp::{Arch, NullaryFnOnce};
 
 use super::leapfrog::Step;
+use super::surface::SurfaceNow;
 use crate::math::lanes::{Components, LANES, Lanes, Vectors};
-use crate::model::{Contact, End, Line, LineState, Bottom};
+use crate::model::{Bottom, Contact, End, Line, LineState};
 use crate::physics::flow::{Profile, Stream};
 use crate::physics::friction::Friction;
 use crate::physics::seabed::ContactCoefficients;
@@ -46,6 +47,8 @@ pub(super) struct Layout {
     pub current: Option<CurrentNow>,
     pub mass_damping: Option<Vec<f64>>,
     pub contact: Option<ContactArrays>,
+    /// The water's surface, where the line may pierce it.
+    pub surface: Option<SurfaceNow>,
 }
 
 /// Lumped drag coefficients [N s²/m²].
@@ -154,6 +157,7 @@ impl Layout {
                 .contact
                 .as_ref()
                 .map(|contact| ContactArrays::new(contact, keep)),
+            surface: SurfaceNow::new(line),
         })
     }
 
@@ -225,7 +229,10 @@ impl Layout {
     #[inline]
     pub fn stand(&self, at: usize) -> (f64, Vector3<f64>) {
         let contact = self.contact.as_ref().expect("asked over a bed only");
-        let bottom = contact.bottom.as_ref().expect("asked over a bed that slopes or rubs only");
+        let bottom = contact
+            .bottom
+            .as_ref()
+            .expect("asked over a bed that slopes or rubs only");
         let (below, normal) = bottom.bottom.ground.stand(self.position.get(at));
         (below + contact.level[at], normal)
     }
@@ -234,6 +241,51 @@ impl Layout {
     pub fn tangent_of(&self, at: usize) -> Vector3<f64> {
         let chord = self.position.get(at + 1) - self.position.get(at - 1);
         chord.try_normalize(0.0).unwrap_or_else(Vector3::zeros)
+    }
+
+    /// Finds where the surface crosses the line, and sets the weights of the nodes it crosses.
+    pub fn find_surface(&mut self) {
+        let Some(surface) = &mut self.surface else {
+            return;
+        };
+        surface.find(&self.position.z);
+        for i in surface.crossed() {
+            let now = surface.node(i);
+            self.weight[FIRST + i] = now.weight;
+            if let Some(drag) = &mut self.drag {
+                [drag.normal[FIRST + i], drag.tangent[FIRST + i]] = now.drag;
+            }
+        }
+    }
+
+    /// Books what joined with the water, except at ends that are held.
+    pub fn book_surface(&mut self, held: [bool; 2]) {
+        let Some(surface) = &mut self.surface else {
+            return;
+        };
+        let [first, last] = held.map(usize::from);
+        for i in first..=self.segment_count - last {
+            surface.book(i, &self.velocity, &self.position);
+        }
+    }
+
+    /// Forgets what joined with the water.
+    pub fn clear_surface(&mut self) {
+        if let Some(surface) = &mut self.surface {
+            surface.joined = 0.0;
+        }
+    }
+
+    /// Buoyancy that an end lacks at t_n [N].
+    pub fn end_lack(&self, end: End) -> f64 {
+        let node = self.end_index(end) - FIRST;
+        let surface = self.surface.as_ref();
+        surface.map_or(0.0, |surface| surface.lack(node))
+    }
+
+    /// Energy of motion that joined with the water since the state was loaded [J].
+    pub fn joined(&self) -> f64 {
+        self.surface.as_ref().map_or(0.0, |surface| surface.joined)
     }
 
     /// Sets what multiplies the current at t_n [-].

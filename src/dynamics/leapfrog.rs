@@ -254,11 +254,33 @@ impl LineWork {
         }
     }
 
+    /// Meets the water's surface as it is at t_n. Where that follows a step, `after_step`, what joined with the water is booked.
+    pub fn meet_surface(&mut self, after_step: bool) {
+        self.layout.find_surface();
+        let Some(surface) = &self.layout.surface else {
+            return;
+        };
+        for i in surface.crossed() {
+            let (at, now) = (FIRST + i, surface.node(i));
+            let [across, along] = now.masses.map(|mass| 1.0 / mass);
+            self.inverse_mass[at] = across;
+            if let Some(water) = &mut self.water {
+                [water.drag_normal[at], water.drag_tangent[at]] = now.drag;
+                water.inverse_mass_excess[at] = along - across;
+            }
+        }
+        match after_step {
+            true => self.layout.book_surface(self.held),
+            false => self.layout.clear_surface(),
+        }
+    }
+
     /// Energy given by held ends and the current and lost between them since [`Self::load`].
     pub fn flow(&self) -> Flow {
         Flow {
             given: self.given + self.given_by_current.sum(),
-            lost: self.lost.sum() + self.settling.as_ref().map_or(0.0, |bed| bed.lost),
+            lost: self.lost.sum() + self.settling.as_ref().map_or(0.0, |bed| bed.lost)
+                - self.layout.joined(),
         }
     }
 
@@ -439,7 +461,10 @@ impl LineWork {
                 line.set_rub(at, Vector3::zeros());
                 continue;
             }
-            let excess = self.water.as_ref().map_or(0.0, |w| w.inverse_mass_excess[at]);
+            let excess = self
+                .water
+                .as_ref()
+                .map_or(0.0, |w| w.inverse_mass_excess[at]);
             let inverse_mass = self.inverse_mass[at];
             let tangent = line.tangent_of(at);
             let Some((contact, friction)) = line.rubbing() else {
@@ -484,6 +509,7 @@ impl LineWork {
             };
             let velocities = self.layout.velocity_before.get(at) + self.layout.velocity.get(at);
             self.given -= 0.5 * step.kick * pull.dot(&velocities);
+            self.given += 0.5 * step.kick * self.layout.end_lack(end) * velocities.z;
         }
     }
 

@@ -1,12 +1,12 @@
 //! The energy ledger: what a network holds, what it was given, and what it lost.
 //!
-//! Held:  E = Σ ½ vᵀM v + Σ EA·W(ε)·L + Σ ½B(|κb| − k₀)² + Σ w z  over free nodes, segments that carry force, joints and free
-//!        points, by kind in [`Energy`].
+//! Held:  E = Σ ½ vᵀM v + Σ EA·W(ε)·L + Σ ½B(|κb| − k₀)² + Σ w z + Σ C  over free nodes, segments that carry force, joints, free
+//!        points and segments out of the water, C being the energy of the buoyancy that these lack, by kind in [`Energy`].
 //! Given: the work of the held ends on the line, −∫ (T q + S)·V + M·Ω dt with the shear S of lines that bend and the moment M on
 //!        clamps that turn, and of point loads; the work Σ f·u dt of the drag f on the way of a current u.
 //! Lost:  drag at the velocity through the water, axial, bending and mass damping, and what the seabed takes (its springs give
-//!        some of it back). The added mass of a free point that dips into the water brings ½ v² of what joins it, which counts as a
-//!        negative loss.
+//!        some of it back). The added mass of a free point or node that dips into the water brings ½ v² of what joins it, which counts
+//!        as a negative loss.
 //!
 //! E − E₀ − given + lost is the error of the time integration: numerical dissipation shows up as a negative one.
 //!
@@ -25,7 +25,7 @@ use serde::{Deserialize, Serialize};
 use super::beam::{self, BeamView};
 use super::leapfrog::segment_tension;
 use crate::model::{
-    ClosedForm, End, FreePoint, Line, LineState, Model, Network, PointState, State, Bottom, joint,
+    Bottom, ClosedForm, End, FreePoint, Line, LineState, Model, Network, PointState, State, joint,
 };
 use crate::physics::flow::Stream;
 use crate::physics::morison::{DragCoefficients, drag};
@@ -171,13 +171,17 @@ fn line_energy(line: &Line, state: &State, shape: &LineState, model: &Model) -> 
         _ => true,
     };
     for i in (0..=n).filter(|&i| free(i)) {
-        let tangent = tangent(shape, i);
-        let along = velocity[i].dot(&tangent);
-        let across = velocity[i].norm_squared() - along * along;
-        let nodes = &line.nodes;
-        energy.kinetic +=
-            0.5 * (nodes.mass_normal[i] * across + nodes.mass_tangent[i] * along * along);
-        energy.gravitational += nodes.weight[i] * position(i).z;
+        let [across, along] = squares(shape, i, velocity[i]);
+        let [normal, tangent] = line.nodes.masses(i, dry_part(line, shape, i));
+        energy.kinetic += 0.5 * (normal * across + tangent * along);
+        energy.gravitational += line.nodes.weight[i] * position(i).z;
+    }
+    if let Some(surface) = &line.surface {
+        let lacking = (0..n).map(|i| {
+            let heights = [i, i + 1].map(|node| surface.height(&position(node)));
+            surface.energy(i, heights)
+        });
+        energy.gravitational += lacking.sum::<f64>();
     }
     if let Some(bending) = &line.bending {
         let clamps = line.clamps(&state.points);
@@ -188,6 +192,18 @@ fn line_energy(line: &Line, state: &State, shape: &LineState, model: &Model) -> 
             .sum();
     }
     energy
+}
+
+/// Squares of a velocity [m/s] of a node across and along the line [m²/s²].
+fn squares(shape: &LineState, i: usize, velocity: Vector3<f64>) -> [f64; 2] {
+    let along = velocity.dot(&tangent(shape, i));
+    [velocity.norm_squared() - along * along, along * along]
+}
+
+/// Part of a node that is out of the water [-].
+fn dry_part(line: &Line, shape: &LineState, i: usize) -> f64 {
+    let surface = line.surface.as_ref();
+    surface.map_or(0.0, |surface| surface.node(i, &shape.position).part)
 }
 
 /// Energy [J] of a segment at a strain [-]: that of its law while it pulls, and pushes no more than it can.
@@ -418,6 +434,9 @@ fn force_at_rest(line: &Line, shape: &LineState, end: End, point: &PointState) -
     let tension = segment_tension(line, segment, ends, still, false);
     let chord = (ends[1] - ends[0]).try_normalize(0.0);
     let mut force = sign * tension * chord.unwrap_or_else(Vector3::zeros);
+    if let Some(surface) = &line.surface {
+        force.z -= surface.node(line.end_node(end), &shape.position).weight;
+    }
     if line.bending.is_some() {
         force += end_shear(line, [&shape.position, &[]], end, point);
     }
@@ -523,6 +542,44 @@ fn line_power(line: &Line, shape: &LineState, model: &Model, stream: Option<Stre
     for i in usize::from(a)..=n - usize::from(b) {
         flow.add(node_power(line, shape, i, stream));
     }
+    if line.surface.is_some() {
+        flow.add(surface_power(line, shape, [a, b]));
+    }
+    flow
+}
+
+/// Power of held ends on the buoyancy that they lack, and minus that of the added mass which joins the nodes with the water [W].
+fn surface_power(line: &Line, shape: &LineState, held: [bool; 2]) -> Flow {
+    let (mut flow, nodes) = (Flow::default(), &line.nodes);
+    let Some(surface) = &line.surface else {
+        return flow;
+    };
+    let n = line.segment_count();
+    for node in [0, n]
+        .into_iter()
+        .zip(held)
+        .filter_map(|(i, held)| held.then_some(i))
+    {
+        flow.given += surface.node(node, &shape.position).weight * shape.velocity[node].z;
+    }
+    for i in 0..n {
+        let heights = [i, i + 1].map(|node| surface.height(&shape.position[node]));
+        let Some(at) = surface.segment(i, heights, 0.0) else {
+            continue;
+        };
+        for (end, node) in [i, i + 1].into_iter().enumerate() {
+            if (node == 0 && held[0]) || (node == n && held[1]) {
+                continue;
+            }
+            let drying =
+                at.slopes[end] * shape.velocity[i].z + at.slopes[end + 1] * shape.velocity[i + 1].z; // [1/s]
+            let [across, along] = squares(shape, node, shape.velocity[node]);
+            let air = nodes.mass[node];
+            let added =
+                (nodes.mass_normal[node] - air) * across + (nodes.mass_tangent[node] - air) * along;
+            flow.lost += 0.5 * surface.share[i][end] * drying * added;
+        }
+    }
     flow
 }
 
@@ -534,7 +591,8 @@ fn node_power(line: &Line, shape: &LineState, i: usize, stream: Option<Stream>) 
         let k = DragCoefficients {
             normal: coefficients.normal[i],
             tangent: coefficients.tangent[i],
-        };
+        }
+        .times(1.0 - dry_part(line, shape, i));
         let tangent = tangent(shape, i);
         match stream.map(|stream| stream.velocity(shape.position[i].z)) {
             None => lost -= drag(k, velocity, tangent).dot(&velocity),

@@ -7,7 +7,8 @@
 //! Δt_max = (2/ω)(√(1 + ζ²) − ζ).
 //!
 //! Transversely, waves of speed c = √(T/m) limit any variant, the axial-implicit one too: Δt < 0.6 h/c. Quadratic drag,
-//! taken explicitly, wants Δt ≤ M_n/(K_n |v|).
+//! taken explicitly, wants Δt ≤ M_n/(K_n |v|). Lines that may come out of the water are taken with the mass that
+//! they have in air, and with the stiffness of their waterplane.
 //!
 //! Source: Belytschko, Liu & Moran (2000), Nonlinear Finite Elements for Continua and Structures, section 6.2.6 (damped
 //! central differences with lagged velocity). Contact is implicit and sets no limit.
@@ -29,8 +30,7 @@ pub fn explicit_step(line: &Line) -> f64 {
     let mut limit = f64::INFINITY;
     for i in 1..line.segment_count() {
         let (left, right) = (stiffness(line, i - 1), stiffness(line, i));
-        let mass = line.nodes.mass_tangent[i].min(line.nodes.mass_normal[i]);
-        let omega = (2.0 * (left + right) / mass).sqrt();
+        let omega = ((2.0 * (left + right) + heave(line, i)) / line.least_mass(i)).sqrt();
         let lag = segments.axial_damping[i - 1] / segments.axial_stiffness[i - 1];
         let lag = lag.max(segments.axial_damping[i] / segments.axial_stiffness[i]); // BA/EA [s]
         limit = limit.min(damped_limit(omega, lag));
@@ -43,8 +43,8 @@ pub fn free_point_step(model: &Model, point: usize) -> f64 {
     let Some(free) = model.points[point].free() else {
         return f64::INFINITY;
     };
-    let heave = free.sphere.map_or(0.0, |sphere| sphere.stiffness_max());
-    let (mut mass, mut sum, mut lag) = (free.mass, 0.5 * heave, 0.0_f64);
+    let own = free.sphere.map_or(0.0, |sphere| sphere.stiffness_max());
+    let (mut mass, mut sum, mut lag) = (free.mass, 0.5 * own, 0.0_f64);
     for &(index, end) in &model.points[point].attached {
         let line = &model.lines[index];
         let node = line.end_node(end);
@@ -52,8 +52,8 @@ pub fn free_point_step(model: &Model, point: usize) -> f64 {
             End::A => 0,
             End::B => node - 1,
         };
-        mass += line.nodes.mass_tangent[node].min(line.nodes.mass_normal[node]);
-        sum += stiffness(line, segment);
+        mass += line.least_mass(node);
+        sum += stiffness(line, segment) + 0.5 * heave(line, node);
         lag =
             lag.max(line.segments.axial_damping[segment] / line.segments.axial_stiffness[segment]);
     }
@@ -86,12 +86,33 @@ pub fn axial_accuracy_step(line: &Line, tolerance: f64) -> f64 {
     4.0 * travel / STEPS_PER_AXIAL_PERIOD * (tolerance / 0.02).sqrt()
 }
 
+/// Greatest stiffness that the water's surface gives a node [N/m].
+fn heave(line: &Line, node: usize) -> f64 {
+    let surface = line.surface.as_ref();
+    surface.map_or(0.0, |surface| surface.stiffness_max(node))
+}
+
+/// Explicit step limit [s] of a line that floats, with safety; infinite where it does not meet the water's surface.
+pub fn heave_step(line: &Line) -> f64 {
+    let limit = |i: usize| damped_limit((heave(line, i) / line.least_mass(i)).sqrt(), 0.0);
+    let nodes = if line.surface.is_some() {
+        1..line.segment_count()
+    } else {
+        0..0
+    };
+    nodes.map(limit).fold(f64::INFINITY, f64::min)
+}
+
 /// Transverse step limit [s] of a line under a tension [N]; infinite without tension.
 pub fn transverse_step(line: &Line, tension: f64) -> f64 {
     let lengths = &line.segments.length;
     let mut limit = f64::INFINITY;
     for i in 1..line.segment_count() {
-        let density = line.nodes.mass_normal[i] / line.nodes.length[i]; // m + m_a [kg/m]
+        let mass = match &line.surface {
+            None => line.nodes.mass_normal[i],
+            Some(_) => line.nodes.mass[i],
+        };
+        let density = mass / line.nodes.length[i]; // m + m_a, in air m [kg/m]
         let speed = (tension.max(0.0) / density).sqrt();
         limit = limit.min(TRANSVERSE_COURANT * lengths[i - 1].min(lengths[i]) / speed);
     }

@@ -13,6 +13,7 @@ pub mod motion;
 pub mod network;
 pub mod quasi_static;
 pub mod reaction;
+mod surface;
 
 pub use choice::Choice;
 

@@ -137,7 +137,17 @@ impl NetworkWork {
             line.drift_nodes(step);
         }
         self.put_ends(model, network, t + step.drift, step, held);
-        self.lines.iter_mut().for_each(|line| line.book_ends(step));
+        for line in &mut self.lines {
+            line.book_ends(step);
+            line.meet_surface(true);
+        }
+    }
+
+    /// Meets the water's surface where the lines lie before the first step.
+    pub fn meet_surface(&mut self) {
+        self.lines
+            .iter_mut()
+            .for_each(|line| line.meet_surface(false));
     }
 
     /// Sets the current to that of `t` [s].
@@ -250,7 +260,7 @@ fn tied_mass(model: &Model, point: usize) -> f64 {
     let tied = point.attached.iter().map(|&(line, end)| {
         let line = &model.lines[line];
         let node = line.end_node(end);
-        line.nodes.mass_tangent[node].min(line.nodes.mass_normal[node])
+        line.least_mass(node)
     });
     point.free().map_or(0.0, |free| free.mass) + tied.sum::<f64>()
 }
@@ -332,7 +342,13 @@ impl EndLoad {
             for _ in 0..ROUNDS_MAX {
                 let before = push;
                 rub += sliding.rub(velocity + response * push, rub, friction.transverse * push);
-                push = pushed(velocity + inverse * rub.component_mul(&free), response, springs, bed, step);
+                push = pushed(
+                    velocity + inverse * rub.component_mul(&free),
+                    response,
+                    springs,
+                    bed,
+                    step,
+                );
                 if (push - before).abs() <= 4.0 * f64::EPSILON * scale {
                     break;
                 }
@@ -427,7 +443,8 @@ impl Sliding {
     fn new(normal: Vector3<f64>, inverse: &Matrix3<f64>, free: &Vector3<f64>) -> Sliding {
         let Axes { along, across, .. } = Axes::new(normal, normal);
         let axes = [along, across];
-        let mut yielding = Matrix2::from_fn(|i, j| axes[i].dot(&(inverse * axes[j].component_mul(free))));
+        let mut yielding =
+            Matrix2::from_fn(|i, j| axes[i].dot(&(inverse * axes[j].component_mul(free))));
         // A point on a rail yields along that alone: the rest is held, and must not be divided by.
         let least = 1e-12 * yielding.trace();
         yielding += Matrix2::from_diagonal_element(least);

@@ -13,7 +13,7 @@ use nalgebra::Vector3;
 
 use super::beam::BeamView;
 use super::leapfrog::segment_tension;
-use crate::model::{End, Line, LineState, PointState};
+use crate::model::{Dry, End, Line, LineState, PointState};
 use crate::physics::flow::Stream;
 use crate::physics::ground::Touch;
 use crate::physics::morison::{self, DragCoefficients};
@@ -66,11 +66,15 @@ pub fn end_force(
     let inward = chord.try_normalize(0.0).unwrap_or_else(Vector3::zeros);
     let nodes = &line.nodes;
     let (velocity, acceleration) = (point.velocity, point.acceleration);
+    let surface = line.surface.as_ref();
+    let dry = surface.map_or(Dry::default(), |surface| {
+        surface.node(node, &state.position)
+    });
     let along = acceleration.dot(&inward) * inward;
-    let inertia =
-        nodes.mass_normal[node] * (acceleration - along) + nodes.mass_tangent[node] * along;
+    let [mass_normal, mass_tangent] = nodes.masses(node, dry.part);
+    let inertia = mass_normal * (acceleration - along) + mass_tangent * along;
     let mut force = tension(line, state, segment, negative_tension) * inward - inertia;
-    force.z -= nodes.weight[node];
+    force.z -= nodes.weight[node] + dry.weight;
     if line.bending.is_some() {
         force += end_shear(line, [&state.position, &state.velocity], end, point);
     }
@@ -78,7 +82,8 @@ pub fn end_force(
         let coefficients = DragCoefficients {
             normal: drag.normal[node],
             tangent: drag.tangent[node],
-        };
+        }
+        .times(1.0 - dry.part);
         let flow = stream.map_or(Vector3::zeros(), |s| s.velocity(state.position[node].z));
         force += morison::drag(coefficients, velocity - flow, inward);
     }

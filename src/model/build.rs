@@ -7,8 +7,8 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 
 use super::{
-    Bending, Contact, Current, Drag, End, FreePoint, Line, Model, Motion, Network, Nodes, Point,
-    PointContact, Role, Section, Segments, Bottom, Vessel, mesh,
+    Bending, Bottom, Contact, Current, Drag, End, FreePoint, Line, Model, Motion, Network, Nodes,
+    Point, PointContact, Role, Section, Segments, Surface, Vessel, mesh,
 };
 use crate::physics::bending;
 use crate::physics::flow::Profile;
@@ -77,7 +77,10 @@ impl Model {
 fn bottom(bed: &scene::Seabed) -> Option<Bottom> {
     let ground = match (&bed.grid, bed.slope) {
         (Some(grid), _) => {
-            let heights = grid.depth.iter().map(|row| row.iter().map(|d| -d).collect());
+            let heights = grid
+                .depth
+                .iter()
+                .map(|row| row.iter().map(|d| -d).collect());
             let heights: Vec<Vec<f64>> = heights.collect();
             Ground::Grid(Grid::new(&grid.x, &grid.y, &heights)?)
         }
@@ -224,7 +227,7 @@ fn point_contact(
 }
 
 /// Properties of a line type in the scene's surroundings, per unstretched length.
-struct LineLaw {
+pub(super) struct LineLaw {
     law: StretchLaw,
     axial_stiffness: f64,                 // EA [N]
     axial_damping: f64,                   // BA [N s], without the damping ratio's part
@@ -233,6 +236,8 @@ struct LineLaw {
     added_normal: f64,                    // ρA·C_an [kg/m]
     added_tangent: f64,                   // ρA·C_at [kg/m]
     weight: f64,                          // w [N/m]
+    pub(super) diameter: Option<f64>,     // d [m]
+    pub(super) displaced_weight: f64,     // ρ g A [N/m]
     mass_damping: f64,                    // α [1/s]
     bending_stiffness: f64,               // EI [N m²]
     bending_damping: f64,                 // β [s]
@@ -314,6 +319,8 @@ fn line_law(scene: &Scene, line_type: &LineType) -> LineLaw {
         added_normal: displaced * line_type.added_mass_normal.unwrap_or(0.0),
         added_tangent: displaced * line_type.added_mass_tangential.unwrap_or(0.0),
         weight,
+        diameter: line_type.diameter,
+        displaced_weight: displaced * scene.gravity,
         mass_damping: rayleigh.map_or(0.0, |r| r.mass),
         bending_stiffness: bending_stiffness(line_type),
         bending_damping: rayleigh.map_or(0.0, |r| r.stiffness),
@@ -374,11 +381,15 @@ fn build_line(scene: &Scene, index: usize, line: &scene::Line) -> Result<Line, S
         segments: segments(&parts),
         nodes: nodes(scene, &parts, contact_in_reach(scene, ends, line)),
         bending: None,
+        surface: None,
         sections: sections.collect(),
         initial: line.initial.clone(),
         beam,
     };
     built.bending = line_bending(index, line, &parts, &built)?;
+    if scene.meets_surface(line) {
+        built.surface = Some(Surface::new(&parts, &built.nodes.length));
+    }
     Ok(built)
 }
 
@@ -422,9 +433,9 @@ fn rest_as_it_lies(line: &mut Line, points: &[Point], rest_shape: RestShape) {
 
 /// One segment and the law of its section.
 #[derive(Clone, Copy)]
-struct SegmentPart<'a> {
-    length: f64,
-    law: &'a LineLaw,
+pub(super) struct SegmentPart<'a> {
+    pub(super) length: f64,
+    pub(super) law: &'a LineLaw,
 }
 
 fn segments(parts: &[SegmentPart]) -> Segments {

@@ -5,12 +5,13 @@
 
 mod beam;
 mod bending;
+mod bottom;
 mod build;
 mod initial;
 mod mesh;
 mod motion;
 mod state;
-mod bottom;
+mod surface;
 mod vessel;
 
 use std::sync::Arc;
@@ -25,9 +26,10 @@ use crate::scene::{InitialShape, PointForce, PointMoment, Solver, TimeFunction};
 
 pub use beam::{Beam, BeamElement, BeamState};
 pub use bending::{Bending, joint};
+pub use bottom::Bottom;
 pub use motion::{Kinematics, Motion, Pose};
 pub use state::{ClosedForm, LineState, PointState, State};
-pub use bottom::Bottom;
+pub use surface::{Dry, Surface};
 pub use vessel::{Frame, Vessel};
 
 /// A scene made discrete. Immutable; shared by reference.
@@ -186,6 +188,8 @@ pub struct Line {
     pub nodes: Nodes,
     /// Bending stiffness, where a line type has it.
     pub bending: Option<Bending>,
+    /// The water's surface, where the line may pierce it.
+    pub surface: Option<Surface>,
     /// Sections as the closed-form catenary takes them.
     pub sections: Vec<Section>,
     /// Shape at the start.
@@ -312,6 +316,16 @@ impl Line {
         self.uniform_law().is_some()
             && self.bending.is_none()
             && self.nodes.mass_normal.iter().all(|mass| *mass > 0.0)
+            && (self.surface.is_none() || self.nodes.mass.iter().all(|mass| *mass > 0.0))
+    }
+
+    /// Least mass of a node along any direction [kg]: in air where the line may pierce the water's surface.
+    pub fn least_mass(&self, node: usize) -> f64 {
+        let nodes = &self.nodes;
+        match &self.surface {
+            None => nodes.mass_tangent[node].min(nodes.mass_normal[node]),
+            Some(_) => nodes.mass[node],
+        }
     }
 
     /// The strain measure, where all segments share one.

@@ -13,4 +13,5 @@ pub mod rayleigh;
 pub mod seabed;
 pub mod section;
 pub mod stretch;
+pub mod surface;
 pub mod weight;

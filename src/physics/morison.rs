@@ -20,6 +20,17 @@ pub struct DragCoefficients {
     pub tangent: f64,
 }
 
+impl DragCoefficients {
+    /// These coefficients times a factor [-].
+    #[inline]
+    pub fn times(self, factor: f64) -> DragCoefficients {
+        DragCoefficients {
+            normal: factor * self.normal,
+            tangent: factor * self.tangent,
+        }
+    }
+}
+
 /// Drag coefficients K_n, K_t per unstretched length [N s²/m³] of a line of diameter d [m] in water of density ρ [kg/m³].
 pub fn drag_per_length(
     density: f64,

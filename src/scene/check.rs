@@ -3,8 +3,8 @@
 mod line_types;
 mod lines;
 mod points;
-mod settings;
 mod seabed;
+mod settings;
 mod surroundings;
 mod time;
 

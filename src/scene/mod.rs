@@ -5,8 +5,8 @@
 //! surprise, [`Scene::in_words`] what is modelled.
 //! [`crate::model::Model::new`] is the one gate from here to the solver.
 
-pub mod channel;
 mod bathymetry_file;
+pub mod channel;
 mod check;
 mod commented;
 mod document;
@@ -22,6 +22,7 @@ mod places;
 mod read;
 mod rows;
 mod seabed;
+mod surface;
 mod time_function;
 mod units;
 mod words;
@@ -78,7 +79,7 @@ pub struct Scene {
     pub output: Output,
 }
 
-/// Water that fills all space below and above z = 0: lines are fully submerged.
+/// Water. Its surface is at z = 0 for free points and for lines that may come out of it; other lines are under water everywhere.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Water {
@@ -87,6 +88,10 @@ pub struct Water {
     /// How it flows; still where absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub current: Option<Current>,
+    /// Whether lines lose buoyancy, drag and added mass above z = 0. Where absent, those do that have an end above it, or could float
+    /// up to it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub surface: Option<bool>,
 }
 
 /// A current: `{ velocity = [vx, vy, vz] }`, alike at all heights, or `{ profile = [[z, vx, vy], …] }`, straight between the rows
@@ -111,6 +116,7 @@ impl Water {
         Water {
             density,
             current: None,
+            surface: None,
         }
     }
 }

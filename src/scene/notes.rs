@@ -91,7 +91,7 @@ fn note_line_type(scene: &Scene, name: &str, line_type: &LineType, notes: &mut V
 }
 
 /// Where a point is in the reference configuration, global axes [m]; `None` on a vessel that there is not.
-fn reference_position(scene: &Scene, point: &Point) -> Option<[f64; 3]> {
+pub(super) fn reference_position(scene: &Scene, point: &Point) -> Option<[f64; 3]> {
     let Some(carrier) = &point.on else {
         return Some(point.position);
     };
@@ -142,8 +142,12 @@ fn note_points(scene: &Scene, notes: &mut Vec<Note>) {
             say(notes, at.clone(), "no line ends at this point");
         }
         let above = reference_position(scene, point).is_some_and(|place| place[2] > 0.0);
-        if scene.water.is_some() && above {
-            let text = "above z = 0: the water is taken to fill all space, so lines there are submerged too";
+        let mut lines = scene.lines.iter();
+        let blind = lines.any(|line| {
+            (line.from == point.name || line.to == point.name) && !scene.meets_surface(line)
+        });
+        if scene.water.is_some() && above && blind {
+            let text = "above z = 0, but the water is taken to fill all space for its lines, so that they are submerged there too";
             say(notes, format!("{at}.position"), text);
         }
         if point.force.is_some() && point.kind != PointKind::Free {
@@ -169,7 +173,12 @@ fn note_whole(scene: &Scene, notes: &mut Vec<Note>) {
     if scene.gravity == 0.0 {
         say(notes, "gravity", "0: lines and points are weightless");
     }
-    let beams = || scene.line_types.values().any(|kind| kind.model == LineModel::Beam);
+    let beams = || {
+        scene
+            .line_types
+            .values()
+            .any(|kind| kind.model == LineModel::Beam)
+    };
     if let Some(seabed) = &scene.seabed
         && seabed.friction.acts()
         && beams()

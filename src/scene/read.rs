@@ -152,11 +152,7 @@ fn deck_of(text: &str) -> Option<ReadDeck> {
 type Checked = (Scene, Vec<Note>, &'static str, Places);
 
 /// What a reader made of a deck, checked as every scene is.
-fn deck_scene(
-    reading: Reading,
-    text: &str,
-    folder: &Path,
-) -> Result<Checked, Vec<SceneError>> {
+fn deck_scene(reading: Reading, text: &str, folder: &Path) -> Result<Checked, Vec<SceneError>> {
     let Reading {
         format,
         scene,

@@ -72,7 +72,7 @@ impl Scene {
     }
 
     /// Weight per unstretched length in the scene's surroundings [N/m].
-    pub(super) fn weight(&self, line_type: &LineType) -> f64 {
+    pub(in crate::scene) fn weight(&self, line_type: &LineType) -> f64 {
         let wet = || (self.mass(line_type) - self.displaced(line_type)) * self.gravity;
         line_type.weight.unwrap_or_else(wet)
     }
@@ -89,10 +89,11 @@ impl Scene {
         let water = match &self.water {
             Some(water) => {
                 let density = quantity(water.density, "kg/m³");
+                let surface = surroundings::surface_in_words(self);
                 match &water.current {
-                    None => format!("still water of {density} that fills all space"),
+                    None => format!("still water of {density} {surface}"),
                     Some(current) => format!(
-                        "water of {density} that fills all space, with a current: {}; the drag on lines follows their velocity through the \
+                        "water of {density} {surface}, with a current: {}; the drag on lines follows their velocity through the \
                          water, at rest too",
                         surroundings::current_in_words(current)
                     ),

@@ -17,7 +17,7 @@
 //! The geometric stiffness T/l P is never negative in a line that cannot push. A line with bending stiffness has the joints of
 //! `bending` at its nodes and pushes up to what its segments carry, T ≥ −P; its tangent is exact, or made such that it cannot be
 //! indefinite where `convex` is asked for. Statics keeps springs, weight and the drag of a current, whose forces are held while the
-//! shape is sought.
+//! shape is sought. A line that may pierce the water's surface lacks there what `surface` says.
 
 mod bending;
 mod contact;
@@ -25,6 +25,7 @@ mod line;
 mod places;
 mod points;
 pub mod rubbing;
+mod surface;
 
 use nalgebra::Vector3;
 
@@ -132,6 +133,8 @@ pub(crate) struct StaticCase {
     pub bends: bool,
     /// Part of the stiffness that friction sticks with, on nodes that have anchors [-].
     pub stick: f64,
+    /// Least radius with which lines pierce the water's surface [m].
+    pub breadth: f64,
 }
 
 /// Weights of the parts of residual and tangent in a time step.

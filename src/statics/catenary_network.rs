@@ -97,7 +97,7 @@ pub fn solve_posed(
 
 /// Moves the free points of a network from where they are in `state` to where they rest at time `t` [s], and puts its lines on
 /// their catenaries. Held points stay where they are. False, and the state as it was, where that is not possible: a line
-/// without a closed form, an end under the bed, or no rest found in a bounded number of steps.
+/// without a closed form, out of the water, or with an end under the bed, or no rest found in a bounded number of steps.
 pub fn solve_network(
     model: &Model,
     number: usize,
@@ -113,7 +113,7 @@ pub fn solve_network(
         work.saved.points[index] = state.points[index];
     }
     let problem = Problem::new(model, number, t);
-    if !problem.newton(state, work) {
+    if !problem.newton(state, work) || problem.is_pierced(state, work) {
         for &index in &network.free_points {
             state.points[index] = work.saved.points[index];
         }
@@ -559,6 +559,21 @@ impl<'a> Problem<'a> {
             by_height_b: slope(0.0, 0.0, step),
         };
         (slopes, 3)
+    }
+
+    /// Whether a line on its catenary comes out of the water, of which the closed form knows nothing.
+    fn is_pierced(&self, state: &State, work: &Workspace) -> bool {
+        self.network.lines.iter().any(|&index| {
+            let line = &self.model.lines[index];
+            let (Some(surface), Some(solved)) = (&line.surface, &work.catenaries[index]) else {
+                return false;
+            };
+            let a = state.points[line.ends[0]].position;
+            let nodes = line.nodes.arc.iter();
+            let shape: Vec<Vector3<f64>> =
+                nodes.map(|&s| a + solved.at(s).z * Vector3::z()).collect();
+            surface.is_pierced(&shape)
+        })
     }
 
     /// Moves the free points along the solution, as far as the power does not turn; whether that was all the way.

@@ -16,7 +16,8 @@
 //! its greatest force, the loads are applied little by little instead, and every step must lie close to the one before and
 //! have a positive definite tangent.
 //!
-//! Lines with bending stiffness are in `bending`, lines in a current in `current`, the friction of the bed in `friction`.
+//! Lines with bending stiffness are in `bending`, lines in a current in `current`, lines that float in `surface`, the friction of the
+//! bed in `friction`.
 //!
 //! Accepted is a residual of at most 1e-11 of the greatest force in the network (tension, nodal weight or load) plus what
 //! rounding of the positions makes of the stiffest segment.
@@ -27,6 +28,7 @@
 mod bending;
 pub(crate) mod current;
 mod friction;
+mod surface;
 
 use nalgebra::Vector3;
 
@@ -255,6 +257,7 @@ impl<'a> Problem<'a> {
             predicted: false,
             bends: self.bends,
             stick: 1.0,
+            breadth: 0.0,
         }
     }
 
@@ -310,6 +313,12 @@ impl<'a> Problem<'a> {
             }
             if let Some(error) = self.limit_load(state, reached) {
                 return Err(error);
+            }
+        }
+        if self.meets_surface() {
+            self.restart(guess, state, work);
+            if self.thin_gradually(state, work) && self.strain_over_limit(state).0 <= 1.0 {
+                return Ok(());
             }
         }
         self.restart(guess, state, work);
@@ -450,6 +459,11 @@ impl<'a> Problem<'a> {
                 force = force
                     .max(work.lines[index].elastic[i])
                     .max(line.nodes.weight[i].abs());
+            }
+            if let Some(surface) = &line.surface
+                && surface.is_pierced(&state.lines[index].position)
+            {
+                force = surface.buoyancy.iter().copied().fold(force, f64::max);
             }
             if let (Some(joints), true) = (&work.lines[index].bending, self.bends) {
                 force = force.max(joints.greatest);

@@ -35,7 +35,12 @@ pub(crate) fn hang(
         }
         None => hang_parabola(line, a, b, position, tension),
     }
-    if let Some(contact) = line.nodes.contact.as_ref().filter(|_| !model.bed_is_level()) {
+    if let Some(contact) = line
+        .nodes
+        .contact
+        .as_ref()
+        .filter(|_| !model.bed_is_level())
+    {
         for r in position.iter_mut() {
             r.z = r.z.max(contact.height_under(*r));
         }

@@ -44,6 +44,7 @@ impl Modes {
             predicted: false,
             bends: true,
             stick: 1.0,
+            breadth: 0.0,
         };
         work.assemble_static(model, network, state, &case);
         let mut stiffness = DMatrix::zeros(count, count);
@@ -176,7 +177,9 @@ fn add_second_neighbours(
 
 /// M_n I + (M_t − M_n) t tᵀ of a node [kg].
 fn node_mass(line: &Line, position: &[Vector3<f64>], i: usize) -> Matrix3<f64> {
-    let (normal, tangent) = (line.nodes.mass_normal[i], line.nodes.mass_tangent[i]);
+    let surface = line.surface.as_ref();
+    let dry = surface.map_or(0.0, |surface| surface.node(i, position).part);
+    let [normal, tangent] = line.nodes.masses(i, dry);
     let t = node_tangent(position, i);
     Matrix3::from_diagonal_element(normal) + (tangent - normal) * t * t.transpose()
 }

@@ -271,6 +271,7 @@ impl Problem<'_> {
             predicted: false,
             bends: lines().any(|line| line.bending.is_some()),
             stick: 1.0,
+            breadth: 0.0,
         };
         work.assemble_static(self.model, self.network, self.state, &case);
         let at_rest = |(line, end): (usize, End)| {

@@ -1,8 +1,8 @@
 //! Title, gravity, water, seabed.
 
+use super::seabed::check_bed;
 use super::time::{Load, check_load_in_time};
 use super::{Bounds, Findings, quantity};
-use super::seabed::check_bed;
 use crate::scene::{Current, LineModel, Scene};
 
 pub(super) fn check(scene: &Scene, findings: &mut Findings) {

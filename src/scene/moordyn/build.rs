@@ -352,7 +352,11 @@ impl<'d> Builder<'d> {
         let whole = coefficient("FrictionCoefficient");
         let across = coefficient("mu_kT").or(whole);
         let along = coefficient("mu_kA").or(whole);
-        for (key, at) in [("transverse", across), ("axial", along), ("", along.or(across))] {
+        for (key, at) in [
+            ("transverse", across),
+            ("axial", along),
+            ("", along.or(across)),
+        ] {
             if let Some((option, coefficient)) = at {
                 let at = match key {
                     "" => "seabed.friction".to_string(),

@@ -187,10 +187,12 @@ fn take(
             Err(problem) => findings.mistake(format!("OPTIONS, {key}"), value.span, problem),
         },
         // 0 asks for none.
-        Meaning::Surroundings | Meaning::Soundings if number(&value.value) == Ok(0.0) => options.unneeded.push(Placed {
-            value: key.to_string(),
-            span: value.span,
-        }),
+        Meaning::Surroundings | Meaning::Soundings if number(&value.value) == Ok(0.0) => {
+            options.unneeded.push(Placed {
+                value: key.to_string(),
+                span: value.span,
+            })
+        }
         Meaning::Soundings => options.soundings = Some(value),
         Meaning::Surroundings => options.surroundings.push((key.to_string(), value)),
     }

@@ -6,7 +6,7 @@ use crate::scene::{Integrator, Line, LineModel, LineType, PointMoment, RestShape
 
 impl Scene {
     /// Whether a line is a beam.
-    pub(super) fn is_beam(&self, line: &Line) -> bool {
+    pub(in crate::scene) fn is_beam(&self, line: &Line) -> bool {
         let mut sections = line.sections.iter();
         self.solver.integrator == Integrator::Beam
             || sections.any(|section| {

@@ -52,13 +52,48 @@ fn profile_in_words(rows: &[[f64; 3]]) -> String {
     )
 }
 
+/// "that fills all space", or which lines know its surface.
+pub(super) fn surface_in_words(scene: &Scene) -> String {
+    let named = |meet: bool| {
+        let lines = scene.lines.iter();
+        let lines = lines.filter(|line| scene.meets_surface(line) == meet);
+        lines.map(|line| line.name.as_str()).collect::<Vec<_>>()
+    };
+    let (piercing, submerged) = (named(true), named(false));
+    if piercing.is_empty() {
+        return "that fills all space".to_string();
+    }
+    let mut said = format!(
+        "with its surface at z = 0: above it {} no buoyancy, drag and added mass",
+        have(&piercing)
+    );
+    if !submerged.is_empty() {
+        said += &format!(", while {} them everywhere", have(&submerged));
+    }
+    said + "; closed-form catenaries take all of a line as under water"
+}
+
+/// "a, b and c have".
+fn have(names: &[&str]) -> String {
+    match names {
+        [] => String::new(),
+        [one] => format!("{one} has"),
+        [first @ .., last] => format!("{} and {last} have", first.join(", ")),
+    }
+}
+
 /// What the water of a scene does not do.
 pub(super) fn absence_in_words(scene: &Scene) -> &'static str {
     let flows = scene.water.as_ref().is_some_and(|w| w.current.is_some());
-    match (flows, scene.surface_matters()) {
-        (true, true) => "waves and the water's surface over lines",
-        (true, false) => "waves and the water's surface",
-        (false, true) => "current, waves and the water's surface over lines",
-        (false, false) => "current, waves and the water's surface",
+    let mut lines = scene.lines.iter();
+    let all = !scene.lines.is_empty() && lines.clone().all(|line| scene.meets_surface(line));
+    let any = lines.any(|line| scene.meets_surface(line)) || scene.surface_matters();
+    match (flows, all, any) {
+        (true, true, _) => "waves",
+        (true, _, true) => "waves and the water's surface over some lines",
+        (true, _, false) => "waves and the water's surface",
+        (false, true, _) => "current and waves",
+        (false, _, true) => "current, waves and the water's surface over some lines",
+        (false, _, false) => "current, waves and the water's surface",
     }
 }

@@ -3,9 +3,9 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::bending::Parts;
-use super::{BendingWork, StaticCase, Weights};
+use super::{BendingWork, StaticCase, Weights, surface};
 use crate::math::block_tridiagonal::Chain;
-use crate::model::{Line, LineState, Model};
+use crate::model::{Dry, Line, LineState, Model};
 use crate::physics::flow::Stream;
 use crate::physics::morison::{DragCoefficients, drag, drag_slope};
 use crate::physics::stretch::total_tension;
@@ -35,6 +35,8 @@ pub(crate) struct LineWork {
     pub push: Vec<f64>,
     /// Drag of the current that statics holds for a while, per node [N]; empty where none acts.
     pub load: Vec<Vector3<f64>>,
+    /// What the water's surface does to every node; empty where the line does not meet it.
+    pub dry: Vec<Dry>,
     /// Joints, where the line has bending stiffness.
     pub bending: Option<BendingWork>,
     /// Friction of the bed at the last assembly, per node [N]; empty over a level bed without friction.
@@ -88,6 +90,7 @@ impl LineWork {
             reach: vec![0.0; n + 1],
             push: vec![0.0; n],
             load: vec![Vector3::zeros(); if line.drifts(model) { n + 1 } else { 0 }],
+            dry: vec![Dry::default(); if line.surface.is_some() { n + 1 } else { 0 }],
             bending: line.bending.as_ref().map(|_| BendingWork::new(n + 1)),
             rubbed: vec![Vector3::zeros(); line.bottom().map_or(0, |_| n + 1)],
             chain: Chain::new(n + 1),
@@ -140,6 +143,7 @@ impl LineWork {
         for (residual, load) in self.residual.iter_mut().zip(&self.load) {
             *residual -= case.load * load;
         }
+        self.add_surface(line, position, [case.load; 2], case.breadth);
         for i in 0..position.len() {
             self.residual[i].z += case.load * line.nodes.weight[i];
             for axis in 0..3 {
@@ -202,6 +206,12 @@ impl LineWork {
             let parts = Parts::of_step(weights, TANGENT);
             self.add_bending(bending, clamps, [&state.position, &state.velocity], &parts);
         }
+        self.add_surface(
+            line,
+            &state.position,
+            [weights.force, weights.position],
+            0.0,
+        );
         self.add_weight_and_inertia::<TANGENT>(line, state, weights);
         if line.nodes.drag.is_some() {
             self.add_drag::<TANGENT>(line, state, stream, weights);
@@ -288,7 +298,8 @@ impl LineWork {
         let nodes = &line.nodes;
         for i in 0..nodes.weight.len() {
             self.residual[i].z += weights.force * nodes.weight[i];
-            let (normal, tangent) = (nodes.mass_normal[i], nodes.mass_tangent[i]);
+            let dry = self.dry(i);
+            let [normal, tangent] = nodes.masses(i, dry.part);
             let a = state.acceleration[i];
             let mut inertia = normal * a;
             if TANGENT {
@@ -301,6 +312,13 @@ impl LineWork {
                     self.diagonal[i] +=
                         weights.acceleration * (tangent - normal) * t * t.transpose();
                 }
+            }
+            if TANGENT && weights.position > 0.0 && dry.slope > 0.0 {
+                let (along, air) = (node_tangent(&state.position, i), nodes.mass[i]);
+                let along = along.dot(&a) * along;
+                let added = (nodes.mass_normal[i] - air) * (a - along)
+                    + (nodes.mass_tangent[i] - air) * along;
+                self.diagonal[i] += weights.inertia * surface::by_height(&dry, added);
             }
             self.residual[i] += weights.inertia * inertia;
         }
@@ -317,6 +335,7 @@ impl LineWork {
             return;
         };
         for i in 0..coefficients.normal.len() {
+            let dry = self.dry(i);
             let k = DragCoefficients {
                 normal: coefficients.normal[i],
                 tangent: coefficients.tangent[i],
@@ -324,6 +343,10 @@ impl LineWork {
             let (t, z) = (node_tangent(&state.position, i), state.position[i].z);
             let flow = stream.map_or(Vector3::zeros(), |stream| stream.velocity(z));
             let v = state.velocity[i] - flow;
+            if TANGENT && dry.slope > 0.0 {
+                self.diagonal[i] -= weights.position * surface::by_height(&dry, drag(k, v, t));
+            }
+            let k = k.times(1.0 - dry.part);
             self.residual[i] -= weights.force * drag(k, v, t);
             if TANGENT {
                 let slope = drag_slope(k, v, t);

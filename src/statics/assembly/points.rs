@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::contact::SmoothContact;
 use super::{StaticCase, Weights};
-use crate::model::{FreePoint, Model, Network, Point, PointState, Bottom};
+use crate::model::{Bottom, FreePoint, Model, Network, Point, PointState};
 use crate::physics::flow::Stream;
 
 /// Scratch of a point.

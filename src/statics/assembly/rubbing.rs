@@ -16,7 +16,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::contact::SmoothContact;
 use super::{LineWork, PointWork, StaticCase, Weights, node_tangent};
-use crate::model::{FreePoint, Line, LineState, Model, Network, PointState, State, Bottom};
+use crate::model::{Bottom, FreePoint, Line, LineState, Model, Network, PointState, State};
 use crate::physics::friction::{Axes, Friction, held};
 use crate::physics::ground::Touch;
 use crate::physics::seabed::ContactCoefficients;
@@ -408,12 +408,8 @@ mod tests {
         let push = resting(bottom, zero, velocity, slid).push().unwrap();
         for axis in 0..3 {
             let step = 1e-7 * Vector3::from_fn(|i, _| f64::from(u8::from(i == axis)));
-            let force = |shift, velocity| {
-                resting(bottom, shift, velocity, slid)
-                    .push()
-                    .unwrap()
-                    .force
-            };
+            let force =
+                |shift, velocity| resting(bottom, shift, velocity, slid).push().unwrap().force;
             let by_place = (force(-step, velocity) - force(step, velocity)) / 2e-7;
             let by_velocity = (force(zero, velocity - step) - force(zero, velocity + step)) / 2e-7;
             let stiffness = push.stiffness[0] + push.stiffness[1];

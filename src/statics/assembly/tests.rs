@@ -280,6 +280,66 @@ fn the_mass_is_the_slope_of_the_residual_with_unequal_added_mass() {
     assert_tangent(&model, &random_state(&model, 1.0), Varied::Acceleration);
 }
 
+/// Water whose surface, at z = 0, the lines of [`network`] cross.
+const SURFACE: &str = "[water]\ndensity = 1025.0\nsurface = true";
+
+#[test]
+fn the_stiffness_is_the_slope_of_the_residual_where_lines_pierce_the_surface() {
+    let model = network(SURFACE, "mass = 2.0\ndiameter = 0.2");
+    let mut state = random_state(&model, 1.0);
+    for nodes in &mut state.lines {
+        nodes.velocity.fill(Vector3::zeros());
+        nodes.acceleration.fill(Vector3::zeros());
+    }
+    assert_tangent(&model, &state, Varied::Position);
+    let mut work = Workspace::new(&model);
+    residual(&model, &state, &mut work);
+    let parts: Vec<f64> = work.lines[0].dry.iter().map(|dry| dry.part).collect();
+    assert!(
+        parts.iter().any(|part| (0.1..0.9).contains(part)),
+        "{parts:?}"
+    );
+}
+
+#[test]
+fn damping_and_mass_are_slopes_of_the_residual_where_lines_pierce_the_surface() {
+    let line_type = "mass = 2.0\ndiameter = 0.2\ndrag_normal = 1.2\ndrag_tangential = 0.3\n\
+                     added_mass_normal = 1.0\nadded_mass_tangential = 0.1";
+    let model = network(SURFACE, line_type);
+    assert_tangent(&model, &random_state(&model, 1.0), Varied::Velocity);
+    assert_tangent(&model, &random_state(&model, 1.0), Varied::Acceleration);
+}
+
+#[test]
+fn drag_and_added_mass_have_their_own_slope_with_a_nodes_height() {
+    // alike along and across, so that the frozen tangent of the line changes nothing
+    let line_type =
+        "mass = 2.0\ndiameter = 0.2\nadded_mass_normal = 1.0\nadded_mass_tangential = 1.0";
+    let model = network(SURFACE, line_type);
+    let mut state = random_state(&model, 1.0);
+    for nodes in &mut state.lines {
+        nodes.velocity.fill(Vector3::zeros());
+    }
+    let weights = Weights {
+        position: 1.0,
+        ..FORCES
+    };
+    let mut work = Workspace::new(&model);
+    work.assemble_dynamic::<true>(&model, &model.networks[0], &state, 0.0, &weights);
+    let tangent = work.lines[0].diagonal.clone();
+    let h = 1e-6;
+    for (node, tangent) in tangent.iter().enumerate() {
+        let mut moved = |step: f64| {
+            let mut state = state.clone();
+            state.lines[0].position[node].z += step;
+            work.assemble_dynamic::<false>(&model, &model.networks[0], &state, 0.0, &FORCES);
+            work.lines[0].residual[node]
+        };
+        let slope = (moved(h) - moved(-h)) / (2.0 * h);
+        assert_relative_eq!(tangent.column(2).into_owned(), slope, epsilon = 1e-3);
+    }
+}
+
 #[test]
 fn tensions_of_a_line_sum_to_zero() {
     let model = network("gravity = 0.0", "mass = 0.0");

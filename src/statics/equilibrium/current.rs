@@ -40,8 +40,10 @@ pub(crate) fn drag_at_rest(
         normal: coefficients.normal[i],
         tangent: coefficients.tangent[i],
     };
+    let surface = line.surface.as_ref();
+    let dry = surface.map_or(0.0, |surface| surface.node(i, position).part);
     let past = -stream.velocity(position[i].z);
-    drag(k, past, node_tangent(position, i))
+    drag(k.times(1.0 - dry), past, node_tangent(position, i))
 }
 
 impl Problem<'_> {

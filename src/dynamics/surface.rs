@@ -1,0 +1,107 @@
+//! The water's surface over the line of a leapfrog: between two steps, weight, drag and mass of the nodes that it crosses are set
+//! to what they are there, so that the kernels need not know of it.
+//!
+//! With the mass M_n of the positions at t_n, the velocities v_{n−½} have the kinetic energy ½ vᵀM_n v, and what joins or leaves with
+//! the water in a step brings or takes ½ vᵀ(M_{n+1} − M_n)v, which is booked here.
+
+use crate::math::lanes::Components;
+use crate::model::{Dry, Line, Nodes, Surface};
+
+use super::layout::FIRST;
+
+/// A line that may pierce the surface, as it lies at t_n.
+#[derive(Debug, Clone)]
+pub(super) struct SurfaceNow {
+    surface: Surface,
+    nodes: Nodes,
+    /// Height of the water at the nodes [m].
+    pub level: Vec<f64>,
+    dry: Vec<Dry>,
+    /// Dry parts at t_{n−1} [-].
+    before: Vec<f64>,
+    /// Energy of motion that joined with the water since it was last cleared [J].
+    pub joined: f64,
+}
+
+/// A node at t_n.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct NodeNow {
+    /// Weight less buoyancy [N].
+    pub weight: f64,
+    /// Mass across and along the line [kg].
+    pub masses: [f64; 2],
+    /// Drag coefficients across and along the line [N s²/m²].
+    pub drag: [f64; 2],
+}
+
+impl SurfaceNow {
+    /// Of a line; `None` where it does not meet the surface.
+    pub fn new(line: &Line) -> Option<SurfaceNow> {
+        let count = line.segment_count() + 1;
+        Some(SurfaceNow {
+            surface: line.surface.clone()?,
+            nodes: line.nodes.clone(),
+            level: vec![0.0; count],
+            dry: vec![Dry::default(); count],
+            before: vec![0.0; count],
+            joined: 0.0,
+        })
+    }
+
+    /// Finds what is dry of a line whose nodes, from [`FIRST`] on, are at the heights `z` [m].
+    pub fn find(&mut self, z: &[f64]) {
+        for (before, dry) in self.before.iter_mut().zip(&mut self.dry) {
+            *before = dry.part;
+            *dry = Dry::default();
+        }
+        for i in 0..self.surface.radius.len() {
+            let heights = [i, i + 1].map(|node| z[FIRST + node] - self.level[node]);
+            let Some(at) = self.surface.segment(i, heights, 0.0) else {
+                continue;
+            };
+            for end in 0..2 {
+                let dry = &mut self.dry[i + end];
+                dry.part += self.surface.share[i][end] * at.parts[end];
+                dry.weight += self.surface.buoyancy[i] * at.parts[end];
+            }
+        }
+    }
+
+    /// Nodes that are dry, or were before the last [`Self::find`].
+    pub fn crossed(&self) -> impl Iterator<Item = usize> + '_ {
+        let nodes = self.dry.iter().zip(&self.before).enumerate();
+        nodes.filter_map(|(i, (dry, before))| (dry.part > 0.0 || *before > 0.0).then_some(i))
+    }
+
+    /// A node as it is now.
+    pub fn node(&self, i: usize) -> NodeNow {
+        let (nodes, dry) = (&self.nodes, self.dry[i]);
+        let wet = 1.0 - dry.part;
+        let drag = nodes.drag.as_ref();
+        NodeNow {
+            weight: nodes.weight[i] + dry.weight,
+            masses: nodes.masses(i, dry.part),
+            drag: drag.map_or([0.0; 2], |drag| {
+                [wet * drag.normal[i], wet * drag.tangent[i]]
+            }),
+        }
+    }
+
+    /// Buoyancy that a node lacks [N].
+    pub fn lack(&self, i: usize) -> f64 {
+        self.dry[i].weight
+    }
+
+    /// Books what joined node `i` or left it since the [`Self::find`] before the last; `velocity` [m/s] and `position` [m] as laid out.
+    pub fn book(&mut self, i: usize, velocity: &Components, position: &Components) {
+        let wetter = self.before[i] - self.dry[i].part;
+        let (air, last) = (self.nodes.mass[i], self.dry.len() - 1);
+        let v = velocity.get(FIRST + i);
+        let (low, high) = (i.saturating_sub(1), (i + 1).min(last));
+        let chord = position.get(FIRST + high) - position.get(FIRST + low);
+        let along = chord.try_normalize(0.0).map_or(0.0, |t| v.dot(&t));
+        let across = v.norm_squared() - along * along;
+        let [normal, tangent] = [self.nodes.mass_normal[i], self.nodes.mass_tangent[i]];
+        self.joined += 0.5 * wetter * ((normal - air) * across + (tangent - air) * along * along);
+    }
+}

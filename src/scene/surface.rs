@@ -1,0 +1,104 @@
+//! Which lines may come out of the water.
+
+use super::notes::{length, reference_position};
+use super::{Line, Point, PointKind, Scene};
+
+impl Scene {
+    /// Whether a line knows the water's surface: as `water.surface` says; else where one of its ends lies above z = 0 in the reference
+    /// configuration, or where it is buoyant or hangs on a free point that floats, and long enough to come up. Beams never do.
+    pub fn meets_surface(&self, line: &Line) -> bool {
+        let Some(water) = &self.water else {
+            return false;
+        };
+        if self.is_beam(line) {
+            return false;
+        }
+        water.surface.unwrap_or_else(|| self.comes_up(line))
+    }
+
+    fn comes_up(&self, line: &Line) -> bool {
+        let end = |name: &str| {
+            let point = self.points.iter().find(|point| point.name == name)?;
+            Some((reference_position(self, point)?[2], self.floats(point)))
+        };
+        let (Some((a, a_floats)), Some((b, b_floats))) = (end(&line.from), end(&line.to)) else {
+            return false;
+        };
+        let length = length(line);
+        let mut sections = line.sections.iter();
+        let buoyant = sections.any(|section| {
+            let line_type = self.line_types.get(&section.line_type);
+            line_type.is_some_and(|line_type| self.weight(line_type) < 0.0)
+        });
+        // the highest that a line of this length could be pulled up
+        let highest = match (a_floats, b_floats) {
+            (true, true) => f64::INFINITY,
+            (true, false) => b + length,
+            (false, true) => a + length,
+            (false, false) if buoyant => 0.5 * (a + b + length),
+            (false, false) => a.max(b),
+        };
+        highest > 0.0
+    }
+
+    /// Whether a free point is lighter than the water it displaces.
+    fn floats(&self, point: &Point) -> bool {
+        let density = self.water.as_ref().map_or(0.0, |water| water.density);
+        let displaced = density * point.volume.unwrap_or(0.0);
+        point.kind == PointKind::Free && displaced > point.mass.unwrap_or(0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A line of 30 m between points at the given heights [m].
+    fn scene(water: &str, line_type: &str, heights: [f64; 2], end: &str) -> Scene {
+        let [a, b] = heights;
+        let text = format!(
+            r#"
+            water = {{ density = 1025.0{water} }}
+            line_types.rope = {{ diameter = 0.1, axial_stiffness = 1e6, {line_type} }}
+            points = [
+              {{ name = "a", position = [0.0, 0.0, {a}], kind = "fixed" }},
+              {{ name = "b", position = [10.0, 0.0, {b}], {end} }},
+            ]
+            lines = [{{ name = "line", from = "a", to = "b", sections = [{{ type = "rope", length = 30.0 }}] }}]
+            "#
+        );
+        Scene::from_toml(&text).unwrap()
+    }
+
+    fn knows(scene: &Scene) -> bool {
+        scene.meets_surface(&scene.lines[0])
+    }
+
+    #[test]
+    fn a_line_knows_the_surface_where_an_end_is_above_it_or_it_could_float_up() {
+        let held = "kind = \"fixed\"";
+        let (heavy, light) = ("mass = 20.0", "mass = 5.0");
+        assert!(knows(&scene("", heavy, [-20.0, 0.5], held)));
+        assert!(!knows(&scene("", heavy, [-20.0, 0.0], held)));
+        assert!(!knows(&scene("", heavy, [-10.0, -4.0], held)));
+        assert!(knows(&scene("", light, [-10.0, -4.0], held)));
+        assert!(!knows(&scene("", light, [-40.0, -4.0], held)));
+        let buoy = "kind = \"free\", mass = 10.0, volume = 1.0";
+        let clump = "kind = \"free\", mass = 1e4, volume = 1.0";
+        assert!(knows(&scene("", heavy, [-20.0, -5.0], buoy)));
+        assert!(!knows(&scene("", heavy, [-40.0, -5.0], buoy)));
+        assert!(!knows(&scene("", heavy, [-20.0, -5.0], clump)));
+    }
+
+    #[test]
+    fn the_scene_can_say_whether_lines_know_the_surface() {
+        let held = "kind = \"fixed\"";
+        let heavy = "mass = 20.0";
+        let told = |word: &str, z: f64| {
+            let water = format!(", surface = {word}");
+            knows(&scene(&water, heavy, [-20.0, z], held))
+        };
+        assert!(told("true", -19.0));
+        assert!(!told("false", 5.0));
+    }
+}

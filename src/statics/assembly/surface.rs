@@ -1,0 +1,55 @@
+//! The water's surface in the residual and tangent of a line: what its nodes lack where they are dry.
+//!
+//! The buoyancy that is lacking has an exact tangent, symmetric and never negative. Drag and added mass go with the wet part of a node;
+//! their slope with the node's own height is in the tangent, that with its neighbours' heights is not.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::LineWork;
+use crate::model::{Dry, Line};
+
+impl LineWork {
+    /// Finds what of a line that lies as `position` [m] says is dry, and adds the weight of that, times `force`, and its tangent,
+    /// times `stiffness`. Segments of a radius below `breadth` [m] are taken as that thick.
+    pub(super) fn add_surface(
+        &mut self,
+        line: &Line,
+        position: &[Vector3<f64>],
+        [force, stiffness]: [f64; 2],
+        breadth: f64,
+    ) {
+        let Some(surface) = &line.surface else {
+            return;
+        };
+        self.dry.fill(Dry::default());
+        for i in 0..line.segment_count() {
+            let heights = [i, i + 1].map(|node| surface.height(&position[node]));
+            let Some(at) = surface.segment(i, heights, breadth) else {
+                continue;
+            };
+            let buoyancy = surface.buoyancy[i];
+            for end in 0..2 {
+                let (node, share) = (i + end, surface.share[i][end]);
+                let dry = &mut self.dry[node];
+                dry.part += share * at.parts[end];
+                dry.slope += share * at.slopes[2 * end];
+                dry.weight += buoyancy * at.parts[end];
+                self.residual[node].z += force * buoyancy * at.parts[end];
+                self.diagonal[node][(2, 2)] += stiffness * buoyancy * at.slopes[2 * end];
+            }
+            self.coupling[i][(2, 2)] += stiffness * buoyancy * at.slopes[1];
+        }
+    }
+
+    /// What the surface does to a node; nothing where the line does not meet it.
+    #[inline(always)]
+    pub(super) fn dry(&self, node: usize) -> Dry {
+        self.dry.get(node).copied().unwrap_or_default()
+    }
+}
+
+/// Slope with the node's height of a force f(1 − p), p being the `dry` part: the third column of a tangent, for f [N].
+#[inline(always)]
+pub(super) fn by_height(dry: &Dry, force: Vector3<f64>) -> Matrix3<f64> {
+    force * (-dry.slope * Vector3::z()).transpose()
+}
