@@ -596,3 +596,21 @@ fn a_vessel_is_held_by_nodes_that_stick_and_let_go_by_nodes_that_slide() {
         smooth[0][0], rough[0][0]
     );
 }
+
+#[test]
+fn a_point_under_a_bed_that_is_not_level_is_told_of() {
+    for bed in [
+        "grid = { x = [-100.0, 900.0], y = [0.0], depth = [[95.0, 90.0]] }",
+        "slope = [0.01, 0.0]",
+    ] {
+        let mut scene = chain(bed, 560.0, 20);
+        scene.points[0].position = [10.0, 0.0, -100.0];
+        let notes: Vec<String> = scene.notes().iter().map(ToString::to_string).collect();
+        assert!(
+            notes
+                .iter()
+                .any(|note| note.contains("below the seabed there")),
+            "{notes:?}"
+        );
+    }
+}

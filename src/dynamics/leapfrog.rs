@@ -391,11 +391,12 @@ impl LineWork {
             let mut force = self.pull.load(at) - self.pull.load(at - 1);
             force.z = force.z - Lanes::load(&line.weight, at);
             let zero = Lanes::splat(0.0);
-            let mut resistance = Vectors {
+            let nothing = Vectors {
                 x: zero,
                 y: zero,
                 z: zero,
             };
+            let mut resistance = nothing;
             if MASS_DAMPING {
                 let damping = line.mass_damping.as_deref().unwrap_or_default();
                 resistance = velocity.scale(Lanes::load(damping, at));
@@ -412,14 +413,11 @@ impl LineWork {
                 water.inverted(at, inverse_mass, force, tangent)
             } else {
                 force = force - resistance;
-                (
-                    force.scale(inverse_mass),
-                    Vectors {
-                        x: zero,
-                        y: zero,
-                        z: inverse_mass,
-                    },
-                )
+                let response = Vectors {
+                    z: inverse_mass,
+                    ..nothing
+                };
+                (force.scale(inverse_mass), response)
             };
             let mut kicked = velocity + inverted.scale(kick);
             let mut given_away = zero; // twice the energy that leaves the nodes

@@ -15,9 +15,7 @@ use super::beam::BeamView;
 use super::leapfrog::segment_tension;
 use crate::model::{Dry, End, Line, LineState, PointState};
 use crate::physics::flow::Stream;
-use crate::physics::ground::Touch;
 use crate::physics::morison::{self, DragCoefficients};
-use crate::physics::seabed::{self, ContactCoefficients};
 use crate::statics::assembly::end_shear;
 
 /// Tension of segment `i` [N]; on a closed-form catenary the mean of its ends'.
@@ -91,25 +89,7 @@ pub fn end_force(
         force -= damping[node] * velocity;
     }
     if let Some(contact) = &nodes.contact {
-        let coefficients = ContactCoefficients {
-            stiffness: contact.stiffness[node],
-            damping: contact.damping[node],
-        };
-        match &contact.bottom {
-            None => {
-                let penetration = contact.level[node] - state.position[node].z;
-                force.z += seabed::normal_force(coefficients, penetration, velocity.z);
-            }
-            Some(bottom) => {
-                let Touch {
-                    penetration,
-                    normal,
-                    ..
-                } = bottom.touch(state.position[node], contact.lift(node));
-                let rise = normal.dot(&velocity);
-                force += seabed::normal_force(coefficients, penetration, rise) * normal;
-            }
-        }
+        force += contact.push(node, state.position[node], velocity);
     }
     force
 }

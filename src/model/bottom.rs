@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use super::{Contact, Line, Model, PointContact};
 use crate::physics::friction::Friction;
 use crate::physics::ground::{Ground, Touch};
-use crate::physics::seabed::ContactCoefficients;
+use crate::physics::seabed::{self, ContactCoefficients};
 
 /// Shape and friction of a seabed.
 #[derive(Debug, Clone, PartialEq)]
@@ -46,6 +46,19 @@ impl Contact {
             stiffness: self.stiffness[node],
             damping: self.damping[node],
         }
+    }
+
+    /// Force of spring and damper [N] on a node at a place [m] with a velocity [m/s]; friction is not in it.
+    pub fn push(&self, node: usize, place: Vector3<f64>, velocity: Vector3<f64>) -> Vector3<f64> {
+        let (penetration, normal) = match &self.bottom {
+            None => (self.level[node] - place.z, Vector3::z()),
+            Some(bottom) => {
+                let touch = bottom.touch(place, self.lift(node));
+                (touch.penetration, touch.normal)
+            }
+        };
+        let rise = normal.dot(&velocity);
+        seabed::normal_force(self.coefficients(node), penetration, rise) * normal
     }
 
     /// z of the bed under a place [m].

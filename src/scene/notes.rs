@@ -134,6 +134,9 @@ fn note_chord(scene: &Scene, line: &Line, at: &str, notes: &mut Vec<Note>) {
     }
 }
 
+/// Depth under a seabed that is no level plane from which a point is told of [m].
+const BURIED: f64 = 0.01;
+
 fn note_points(scene: &Scene, notes: &mut Vec<Note>) {
     for (i, point) in scene.points.iter().enumerate() {
         let at = format!("points[{i}]");
@@ -148,6 +151,16 @@ fn note_points(scene: &Scene, notes: &mut Vec<Note>) {
         });
         if scene.water.is_some() && above && blind {
             let text = "above z = 0, but the water is taken to fill all space for its lines, so that they are submerged there too";
+            say(notes, format!("{at}.position"), text);
+        }
+        let bed = scene.seabed.as_ref().filter(|bed| !bed.is_level());
+        if let (Some(bed), Some([x, y, z])) = (bed, reference_position(scene, point))
+            && z < bed.lowest_at([x, y]) - BURIED
+        {
+            let text = format!(
+                "lies {} m below the seabed there: nodes beside it are pushed up",
+                number(bed.lowest_at([x, y]) - z)
+            );
             say(notes, format!("{at}.position"), text);
         }
         if point.force.is_some() && point.kind != PointKind::Free {

@@ -104,6 +104,23 @@ impl Seabed {
             && self.slope.is_none_or(|slope| slope == [0.0; 2])
     }
 
+    /// z of the bed at a place [m]: of a plane as it is, between soundings the lowest of those around.
+    pub(super) fn lowest_at(&self, [x, y]: [f64; 2]) -> f64 {
+        let around = |line: &[f64], place: f64| {
+            let next = line.partition_point(|known| *known <= place);
+            [next.saturating_sub(1), next.min(line.len().saturating_sub(1))]
+        };
+        let Some(grid) = &self.grid else {
+            let [along_x, along_y] = self.slope.unwrap_or_default();
+            return along_x * x + along_y * y - self.depth;
+        };
+        let rows = around(&grid.y, y);
+        let depths = rows.into_iter().filter_map(|j| grid.depth.get(j));
+        let corners = around(&grid.x, x);
+        let deepest = depths.flat_map(|row| corners.into_iter().filter_map(|i| row.get(i)));
+        -deepest.copied().fold(f64::NEG_INFINITY, f64::max)
+    }
+
     /// Whether stiffness and damping are those of a scene that gives none.
     pub fn has_default_stiffness(&self) -> bool {
         self.stiffness == default_stiffness() && self.damping == default_damping()
