@@ -515,7 +515,7 @@ fn beds_that_make_no_sense_are_refused_with_their_key() {
         ),
         (
             "grid = { x = [0.0, 10.0], y = [0.0], depth = [[1.0, inf]] }",
-            "seabed.grid.depth[0][1]: inf m is not a finite number",
+            "seabed.grid.depth[0][1]: inf is not a finite number",
         ),
         (
             "grid = { x = [], y = [0.0], depth = [[]] }",

@@ -413,11 +413,8 @@ impl LineWork {
                 water.inverted(at, inverse_mass, force, tangent)
             } else {
                 force = force - resistance;
-                let response = Vectors {
-                    z: inverse_mass,
-                    ..nothing
-                };
-                (force.scale(inverse_mass), response)
+                let z = inverse_mass;
+                (force.scale(inverse_mass), Vectors { z, ..nothing })
             };
             let mut kicked = velocity + inverted.scale(kick);
             let mut given_away = zero; // twice the energy that leaves the nodes

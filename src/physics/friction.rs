@@ -68,12 +68,12 @@ impl Axes {
         }
     }
 
-    /// Components of a vector along the axes.
+    /// Components of a vector along the axes, in its unit [-].
     pub fn components(&self, vector: &Vector3<f64>) -> Vector2<f64> {
         Vector2::new(self.along.dot(vector), self.across.dot(vector))
     }
 
-    /// The vector of components along the axes.
+    /// The vector of components along the axes, in their unit [-].
     pub fn vector(&self, components: &Vector2<f64>) -> Vector3<f64> {
         components.x * self.along + components.y * self.across
     }

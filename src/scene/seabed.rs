@@ -108,7 +108,10 @@ impl Seabed {
     pub(super) fn lowest_at(&self, [x, y]: [f64; 2]) -> f64 {
         let around = |line: &[f64], place: f64| {
             let next = line.partition_point(|known| *known <= place);
-            [next.saturating_sub(1), next.min(line.len().saturating_sub(1))]
+            [
+                next.saturating_sub(1),
+                next.min(line.len().saturating_sub(1)),
+            ]
         };
         let Some(grid) = &self.grid else {
             let [along_x, along_y] = self.slope.unwrap_or_default();

@@ -133,6 +133,8 @@ pub(crate) struct StaticCase {
     pub bends: bool,
     /// Part of the stiffness that friction sticks with, on nodes that have anchors [-].
     pub stick: f64,
+    /// Part of the limit of friction that holds: [`rubbing::AT_REST`], or [`rubbing::SLIDING`] where nodes at rest at that limit are to slide on [-].
+    pub limit: f64,
     /// Least radius with which lines pierce the water's surface [m].
     pub breadth: f64,
 }

@@ -33,7 +33,7 @@ mod surface;
 use nalgebra::Vector3;
 
 use super::StaticsError;
-use super::assembly::{StaticCase, Workspace, copy_network, for_free_points, place_ends};
+use super::assembly::{StaticCase, Workspace, copy_network, for_free_points, place_ends, rubbing};
 use super::guess;
 use crate::model::{Kinematics, Line, LineState, Model, Network, PointState, State};
 
@@ -257,6 +257,7 @@ impl<'a> Problem<'a> {
             predicted: false,
             bends: self.bends,
             stick: 1.0,
+            limit: rubbing::AT_REST,
             breadth: 0.0,
         }
     }

@@ -23,7 +23,7 @@
 
 use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
 
-use super::assembly::{LineWork, StaticCase, Workspace};
+use super::assembly::{LineWork, StaticCase, Workspace, rubbing};
 use super::catenary_network::{self, HungNetwork};
 use crate::model::{Body, End, Line, Model, Network, State};
 use crate::physics::bending::{Direction, Hessian, Turn};
@@ -271,6 +271,7 @@ impl Problem<'_> {
             predicted: false,
             bends: lines().any(|line| line.bending.is_some()),
             stick: 1.0,
+            limit: rubbing::SLIDING,
             breadth: 0.0,
         };
         work.assemble_static(self.model, self.network, self.state, &case);

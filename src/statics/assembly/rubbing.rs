@@ -23,7 +23,9 @@ use crate::physics::seabed::ContactCoefficients;
 
 /// Part of the limit that statics lets friction go to: nodes that slid to where they rest then stick in motion, and rounding does not free
 /// them one by one [-].
-const STATIC_LIMIT: f64 = 1.0 - 1e-5;
+pub(crate) const AT_REST: f64 = 1.0 - 1e-5;
+/// Part of the limit that holds where nodes at [`AT_REST`] must be found to slide whatever the rounding [-].
+pub(crate) const SLIDING: f64 = 1.0 - 1e-3;
 
 /// Stiffness along the bed of a point that sticks, over its stiffness across it [-].
 const POINT_STICK: f64 = 1e3;
@@ -74,14 +76,11 @@ pub struct Push {
 }
 
 impl<'a> Resting<'a> {
-    /// Without velocity, and with the friction that statics has.
-    fn at_rest(self) -> Resting<'a> {
+    /// Without velocity, and with a part `limit` of the limit of friction.
+    fn at_rest(self, limit: f64) -> Resting<'a> {
         Resting {
             velocity: Vector3::zeros(),
-            rub: self.rub.map(|rub| Rub {
-                limit: STATIC_LIMIT,
-                ..rub
-            }),
+            rub: self.rub.map(|rub| Rub { limit, ..rub }),
             ..self
         }
     }
@@ -204,7 +203,7 @@ impl LineWork {
         for i in 0..state.position.len() {
             let still = Vector3::zeros();
             let push = resting_node(line, state, i, 0.0, case.stick)
-                .map(Resting::at_rest)
+                .map(|resting| resting.at_rest(case.limit))
                 .and_then(|node| node.push());
             self.rubbed[i] = push.map_or(still, |push| push.friction);
             if let Some(push) = push {
@@ -244,7 +243,7 @@ impl PointWork {
         case: &StaticCase,
     ) {
         let push = resting_point(free, bottom, state, 0.0, case.stick)
-            .map(Resting::at_rest)
+            .map(|resting| resting.at_rest(case.limit))
             .and_then(|point| point.push());
         self.rubbed = push.map_or(Vector3::zeros(), |push| push.friction);
         if let Some(push) = push {
