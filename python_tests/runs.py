@@ -8,10 +8,10 @@ import numpy as np
 from fmu_calls import Library, Slave, unpack
 
 
-def packaged(moorline, scene, version, folder):
+def packaged(moorline, scene, version, folder, *options):
     """Packages a file, a scene or a deck, and returns the path of the .fmu file."""
     fmu = folder / "scene.fmu"
-    done = moorline("fmu", scene, "-o", fmu, "--fmi", version)
+    done = moorline("fmu", scene, "-o", fmu, "--fmi", version, *options)
     assert done.returncode == 0, done.stderr
     return str(fmu)
 

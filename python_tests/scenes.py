@@ -217,3 +217,35 @@ FairTen1 FairTen3 AnchTen2 Point5Pz
 END
 ------------------------- need this line ------------------------------------
 """
+
+ROPE = """\
+title = "a viscoelastic rope in air that the host can let go"
+
+[line_types.rope]
+mass = 20.0
+static_stiffness = 4.0e7
+dynamic_stiffness = 9.0e7
+static_damping = 2.0e8
+dynamic_damping = 2.0e6
+
+[[points]]
+name = "anchor"
+position = [0.0, 0.0, -100.0]
+kind = "fixed"
+
+[[points]]
+name = "fairlead"
+position = [202.0, 0.0, -90.0]
+kind = "coupled"
+
+[[lines]]
+name = "line1"
+from = "anchor"
+to = "fairlead"
+release = "b"
+sections = [{ type = "rope", length = 200.0, elements = 20 }]
+
+[output]
+duration = 10.0
+interval = 0.05
+"""

@@ -4,8 +4,8 @@
 //! that they cannot drift apart. The value reference of a variable is its position in the table, counted from 1.
 //!
 //! The table holds, in this order: inputs and forces of every coupled point and of every vessel, outputs of every line, the
-//! solver's outputs, the calculated parameters, the parameters, and the profiles where the scene asks for them. Winches and
-//! releases get their rows between vessels and lines when a scene can describe them.
+//! solver's outputs, the calculated parameters, the parameters, and the profiles where the scene asks for them. Releases have
+//! their rows between vessels and lines.
 
 mod dependencies;
 mod parameters;
@@ -15,8 +15,9 @@ use std::collections::BTreeSet;
 
 use crate::model::{Body, Line, Model};
 use crate::physics::stretch::StretchLaw;
-use crate::scene::{Axis, PointKind, Scene, SceneError};
-use crate::simulation::{NodeBending, Simulation};
+use crate::scene::channel::LineEnd;
+use crate::scene::{self, Axis, PointKind, Scene, SceneError};
+use crate::simulation::{NodeBending, Simulation, reference_catenary};
 
 pub use parameters::Parameter;
 
@@ -155,6 +156,11 @@ pub enum Binding {
         body: Body,
         /// Its axis, 0 to 5.
         axis: usize,
+    },
+    /// Whether a line is to let go of a point.
+    Release {
+        /// The line.
+        line: usize,
     },
     /// A result of a line.
     Line {
@@ -298,6 +304,9 @@ impl Interface {
         }
         for (index, line) in scene.lines.iter().enumerate() {
             check_name(&line.name, &format!("lines[{index}].name"))?;
+            push_controls(&mut variables, index, line);
+        }
+        for (index, line) in scene.lines.iter().enumerate() {
             push_line(&mut variables, index, &line.name);
             if model.lines[index].bends() {
                 push_bending(&mut variables, index, &line.name);
@@ -369,6 +378,7 @@ impl Interface {
                     )
                 })?;
             }
+            Binding::Release { line } => values[0] = f64::from(u8::from(simulation.release(line))),
             Binding::Solver(result) => {
                 values[0] = match result {
                     SolverResult::Substeps => simulation.substeps() as f64,
@@ -424,7 +434,7 @@ fn bending_result(nodes: &[NodeBending], result: LineResult) -> f64 {
     }
 }
 
-/// Whether a line has a closed-form catenary: held ends and engineering strain.
+/// Whether a line has a closed-form catenary: held ends and engineering strain, and under water where there is any.
 fn has_closed_form(model: &Model, line: &Line) -> bool {
     line.ends
         .iter()
@@ -433,6 +443,7 @@ fn has_closed_form(model: &Model, line: &Line) -> bool {
             .sections
             .iter()
             .all(|section| section.law == StretchLaw::Engineering)
+        && (line.surface.is_none() || reference_catenary(model, line).is_some())
 }
 
 fn row(
@@ -535,6 +546,27 @@ fn push_vessel(variables: &mut Vec<Variable>, vessel: usize, name: &str) {
         let binding = Binding::EndForce { body, axis };
         let name = format!("{name}.{label}");
         variables.push(row(name, meaning, Causality::Output, unit, binding));
+    }
+}
+
+/// Inputs of lines that their scene declares.
+fn push_controls(variables: &mut Vec<Variable>, index: usize, line: &scene::Line) {
+    if let Some(end) = line.release {
+        let end = match end {
+            LineEnd::A => "A",
+            LineEnd::B => "B",
+        };
+        let name = &line.name;
+        let mut variable = row(
+            format!("{name}.release"),
+            format!("{name}: true lets end {end} go of its point, for good"),
+            Causality::Input,
+            Unit::ONE,
+            Binding::Release { line: index },
+        );
+        (variable.kind, variable.variability) = (Kind::Boolean, Variability::Discrete);
+        variable.start = Some(0.0);
+        variables.push(variable);
     }
 }
 

@@ -61,6 +61,7 @@
 //! ```
 #![forbid(unsafe_code)]
 
+pub mod accuracy;
 pub mod dynamics;
 pub mod interface;
 pub mod math;

@@ -4,6 +4,7 @@
 //! point to the next. Coupled points follow what [`Simulation::set_displacement`] says, or the scene's own motion after
 //! [`Simulation::follow_scene`].
 
+use std::cell::Cell;
 use std::sync::Arc;
 
 use nalgebra::{Matrix3, Vector3, Vector6};
@@ -11,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::dynamics::advance::{Counters, Workspace};
 use crate::dynamics::beam::{self, BeamView, Momentum};
-use crate::dynamics::ledger::{Energy, Ledger};
+use crate::dynamics::ledger::{self, Energy, Ledger};
 use crate::dynamics::motion::{AxisPath, HostPath, Sample, VesselPath};
 use crate::dynamics::{Choice, StepError, reaction};
 use crate::math::attitude::angle_rates;
@@ -40,6 +41,8 @@ pub enum Error {
 struct Inputs {
     points: Vec<PointInput>,
     vessels: Vec<VesselInput>,
+    /// Whether each line is to let go.
+    releases: Vec<bool>,
 }
 
 /// What a host has said about a point.
@@ -156,6 +159,7 @@ impl Simulation {
         let inputs = Inputs {
             points: vec![PointInput::default(); model.points.len()],
             vessels: vec![VesselInput::default(); model.vessels.len()],
+            releases: vec![false; model.lines.len()],
         };
         let (snapshot, work) = begin(&model, 0.0, inputs, false)?;
         Ok(Simulation {
@@ -270,6 +274,49 @@ impl Simulation {
         self.snapshot.inputs.vessels[vessel].velocity = velocity;
     }
 
+    /// Says whether a line is to let go of the point that its scene names; it does so at the next step, and for good.
+    pub fn set_release(&mut self, line: usize, release: bool) {
+        self.snapshot.inputs.releases[line] = release;
+    }
+
+    /// Whether a line is to let go, as set.
+    pub fn release(&self, line: usize) -> bool {
+        self.snapshot.inputs.releases[line]
+    }
+
+    /// Whether ends A and B of a line have parted from their points.
+    pub fn parted(&self, line: usize) -> [bool; 2] {
+        self.snapshot.state.lines[line].parted
+    }
+
+    /// Parts the lines from their points that are to let go, and books what their ends bring along; returns who was parted before.
+    fn let_go(&mut self) -> Option<(State, Ledger)> {
+        let model = &*self.model;
+        let lines = model.lines.iter().zip(&self.snapshot.inputs.releases);
+        let states = self.snapshot.state.lines.iter();
+        let released = |((line, release), shape): ((&Line, &bool), &LineState)| {
+            let partings = line.parting.filter(|_| *release);
+            let lets_go = |side: usize| partings.is_some_and(|p| p[side].on_release);
+            (0..2).any(|side| lets_go(side) && !shape.parted[side])
+        };
+        if !lines.clone().zip(states).any(released) {
+            return None;
+        }
+        let before = (self.snapshot.state.clone(), self.snapshot.ledger);
+        for ((line, release), shape) in lines.zip(&mut self.snapshot.state.lines) {
+            if let Some(partings) = line.parting.filter(|_| *release) {
+                for (parted, parting) in shape.parted.iter_mut().zip(partings) {
+                    *parted |= parting.on_release;
+                }
+            }
+        }
+        for network in &model.networks {
+            let states = [&before.0, &self.snapshot.state];
+            self.snapshot.ledger.flow.given += ledger::joined_energy(model, network, states);
+        }
+        Some(before)
+    }
+
     /// Which integrator serves each network, and its step limits.
     pub fn choices(&self) -> impl Iterator<Item = &Choice> {
         self.work.choices()
@@ -287,16 +334,17 @@ impl Simulation {
         if !self.snapshot.follows_scene {
             self.extend_paths(step);
         }
+        let before = self.let_go();
         let model = &*self.model;
-        let at = Held {
-            model,
-            paths: &self.paths,
-            follows_scene: self.snapshot.follows_scene,
-        };
+        let at = Held::new(model, &self.paths, self.snapshot.follows_scene);
         let held = |point: usize, t: f64| at.point(point, t);
-        let done = self
+        let advanced = self
             .work
-            .advance(model, &mut self.snapshot.state, step, &held)?;
+            .advance(model, &mut self.snapshot.state, step, &held);
+        if let (Err(_), Some((state, ledger))) = (&advanced, before) {
+            (self.snapshot.state, self.snapshot.ledger) = (state, ledger);
+        }
+        let done = advanced?;
         self.snapshot.counters = done.counters;
         self.snapshot.ledger.flow.add(done.flow);
         self.snapshot.paths.clone_from(&self.paths);
@@ -367,6 +415,7 @@ impl Simulation {
     /// on its elements this is the present force and stiffness.
     pub fn vessel_at_rest(&self, vessel: usize) -> ([f64; 6], Option<[[f64; 6]; 6]>) {
         let mut hung = self.clone();
+        hung.snapshot.state.waves = None;
         let (model, time) = (&*self.model, self.time());
         let mut work = assembly::Workspace::new(model);
         for number in 0..model.networks.len() {
@@ -378,11 +427,8 @@ impl Simulation {
 
     /// Where the origin of a vessel is now [m].
     fn vessel_origin(&self, vessel: usize) -> Vector3<f64> {
-        let at = Held {
-            model: &self.model,
-            paths: &self.snapshot.paths,
-            follows_scene: self.snapshot.follows_scene,
-        };
+        let snapshot = &self.snapshot;
+        let at = Held::new(&self.model, &snapshot.paths, snapshot.follows_scene);
         at.frame(vessel, self.time()).origin.position
     }
 
@@ -427,7 +473,7 @@ impl Simulation {
             &state.lines[line],
             end,
             &state.points[point],
-            model.stream(state.time),
+            model.water_along(state, line, state.time),
             negative,
         )
     }
@@ -603,9 +649,23 @@ struct Held<'a> {
     model: &'a Model,
     paths: &'a Paths,
     follows_scene: bool,
+    /// Vessels at times that were asked for: one line after the other asks for the same.
+    found: [Cell<Option<(usize, f64, Frame)>>; FOUND],
 }
 
-impl Held<'_> {
+/// Times that are kept; a power of two.
+const FOUND: usize = 64;
+
+impl<'a> Held<'a> {
+    fn new(model: &'a Model, paths: &'a Paths, follows_scene: bool) -> Held<'a> {
+        Held {
+            model,
+            paths,
+            follows_scene,
+            found: [const { Cell::new(None) }; FOUND],
+        }
+    }
+
     /// A point at time `t` [s].
     fn point(&self, point: usize, t: f64) -> Kinematics {
         let reference = self.model.points[point].reference;
@@ -628,6 +688,20 @@ impl Held<'_> {
 
     /// A vessel at time `t` [s].
     fn frame(&self, vessel: usize, t: f64) -> Frame {
+        // the upper bits of a product with an odd number tell neighbouring times apart
+        let mixed = (t.to_bits() ^ vessel as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        let place = &self.found[(mixed >> 32) as usize % FOUND];
+        match place.get() {
+            Some((known, time, frame)) if known == vessel && time == t => frame,
+            _ => {
+                let frame = self.frame_anew(vessel, t);
+                place.set(Some((vessel, t, frame)));
+                frame
+            }
+        }
+    }
+
+    fn frame_anew(&self, vessel: usize, t: f64) -> Frame {
         let body = &self.model.vessels[vessel];
         let pose = match &body.motion {
             Some(motion) if self.follows_scene => motion.pose(t),
@@ -655,16 +729,17 @@ fn begin(
             .map(|input| VesselPath::at_rest(time, input.pose))
             .collect(),
     };
-    let at = Held {
-        model,
-        paths: &paths,
-        follows_scene,
-    };
+    let at = Held::new(model, &paths, follows_scene);
     let held = |point: usize, t: f64| at.point(point, t);
     let places: Vec<PointState> = (0..model.points.len())
         .map(|point| PointState::held(&held(point, time)))
         .collect();
     let mut state = at_rest(model, time, &places)?;
+    if model.solver.integrator != Integrator::QuasiStatic {
+        for (line, shape) in model.lines.iter().zip(&mut state.lines) {
+            shape.become_viscoelastic(line);
+        }
+    }
     rest_beams(model, &mut state, time, |point| {
         beam::attitude(&held(point, time))
     })?;
@@ -698,6 +773,7 @@ fn at_rest(model: &Model, time: f64, places: &[PointState]) -> Result<State, Sta
             time,
             points: places.to_vec(),
             lines: shapes.into_iter().map(LineState::at_rest).collect(),
+            waves: None,
         });
     }
     let mut work = assembly::Workspace::new(model);
@@ -772,12 +848,19 @@ fn solve_catenary(
     catenary::solve(&sections, span, b.z - a.z, bed).ok()
 }
 
-fn reference_catenary(model: &Model, line: &Line) -> Option<Catenary> {
+/// The closed-form catenary of a line in its reference configuration; none where an end is free, or where it would come out of the
+/// water, of which the closed form knows nothing.
+pub(crate) fn reference_catenary(model: &Model, line: &Line) -> Option<Catenary> {
     let ends = line.ends.map(|point| &model.points[point]);
     if ends.iter().any(|point| point.free().is_some()) {
         return None;
     }
-    solve_catenary(model, line, ends[0].reference, ends[1].reference)
+    let [a, b] = ends.map(|point| point.reference);
+    let solved = solve_catenary(model, line, a, b)?;
+    let height = |&s: &f64| Vector3::new(0.0, 0.0, a.z + solved.at(s).z);
+    let shape = || line.nodes.arc.iter().map(height).collect::<Vec<_>>();
+    let surface = line.surface.as_ref();
+    (!surface.is_some_and(|surface| surface.is_pierced(&shape()))).then_some(solved)
 }
 
 /// Length whose weight the contact springs carry [m].

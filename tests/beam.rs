@@ -517,7 +517,7 @@ fn collar(elements: usize) -> Scene {
     wire.torsional_stiffness = Some(8.0);
     wire.shear_stiffness = Some(1e8);
     wire.rotary_inertia = Some(1e-5);
-    wire.axial_stiffness = 1e9;
+    wire.axial_stiffness = Some(1e9);
     scene.solver.integrator = Integrator::Beam;
     scene
 }

@@ -20,7 +20,7 @@ fn collar(bending_stiffness: f64, gravity: f64, elements: usize) -> Simulation {
     let mut collar = with_elements(shipped("collar"), elements);
     collar.gravity = gravity;
     for line_type in collar.line_types.values_mut() {
-        line_type.axial_stiffness = 1e10;
+        line_type.axial_stiffness = Some(1e10);
         line_type.bending_stiffness = Some(bending_stiffness);
     }
     drawn_out(&collar)
@@ -94,7 +94,7 @@ fn strands(fibres: usize, law: FibreLaw) -> [f64; 2] {
     let mut collar = with_elements(shipped("collar"), 400);
     collar.gravity = 9.80665;
     for line_type in collar.line_types.values_mut() {
-        line_type.axial_stiffness = 1e10;
+        line_type.axial_stiffness = Some(1e10);
         line_type.solid_section = Some(moorline::scene::SolidSection {
             diameter: 5.6955e-3,
             youngs_modulus: 2.1e11,
@@ -543,8 +543,8 @@ fn stiffness_from_a_millionth_to_a_hundred_million_times_a_wires_finds_rest() {
             let mut collar = with_elements(shipped("collar"), elements);
             for line_type in collar.line_types.values_mut() {
                 // a radius of gyration of 0.1 m at most
-                line_type.axial_stiffness =
-                    line_type.axial_stiffness.max(100.0 * bending_stiffness);
+                let stiffness = &mut line_type.axial_stiffness;
+                *stiffness = stiffness.map(|ea| ea.max(100.0 * bending_stiffness));
                 line_type.bending_stiffness = Some(bending_stiffness);
             }
             let [span, sag] = span_and_sag(&drawn_out(&collar));

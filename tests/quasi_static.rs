@@ -26,7 +26,7 @@ const HALF_WEIGHT: f64 = 19.62;
 fn drawn_out(elements: usize, axial_stiffness: f64) -> Simulation {
     let mut collar = with_elements(shipped("collar"), elements);
     for line_type in collar.line_types.values_mut() {
-        line_type.axial_stiffness = axial_stiffness;
+        line_type.axial_stiffness = Some(axial_stiffness);
     }
     let mut simulation = Simulation::new(&collar).unwrap();
     let mut solves = 0;

@@ -21,7 +21,8 @@ fn scale_stiffness(scene: &mut Scene, factor: f64) {
     scene
         .line_types
         .values_mut()
-        .for_each(|line_type| line_type.axial_stiffness *= factor);
+        .filter_map(|line_type| line_type.axial_stiffness.as_mut())
+        .for_each(|stiffness| *stiffness *= factor);
 }
 
 /// Multiplies the axial damping of all line types.

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 const FUNCTION_LINES_MAX: usize = 70;
 
 /// The layers from the ground up: each may use those before it.
-const LAYERS: [&str; 9] = [
+const LAYERS: [&str; 10] = [
     "math",
     "physics",
     "scene",
@@ -17,6 +17,7 @@ const LAYERS: [&str; 9] = [
     "statics",
     "dynamics",
     "simulation",
+    "accuracy",
     "interface",
     "output",
 ];

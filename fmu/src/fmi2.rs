@@ -229,6 +229,41 @@ unsafe extern "C" fn fmi2SetInteger(
     }
 }
 
+#[unsafe(no_mangle)]
+unsafe extern "C" fn fmi2GetBoolean(
+    c: fmi2Component,
+    vr: *const fmi2ValueReference,
+    nvr: usize,
+    value: *mut fmi2Boolean,
+) -> fmi2Status {
+    // SAFETY: the host's handle and arrays.
+    unsafe {
+        ffi::call(c, VERSION, "fmi2GetBoolean", |instance| {
+            let found = instance.get_booleans(ffi::slice(vr, nvr)?, nvr)?;
+            for (value, found) in ffi::slice_mut(value, nvr)?.iter_mut().zip(found) {
+                *value = fmi2Boolean::from(found);
+            }
+            Ok(())
+        })
+    }
+}
+
+#[unsafe(no_mangle)]
+unsafe extern "C" fn fmi2SetBoolean(
+    c: fmi2Component,
+    vr: *const fmi2ValueReference,
+    nvr: usize,
+    value: *const fmi2Boolean,
+) -> fmi2Status {
+    // SAFETY: the host's handle and arrays.
+    unsafe {
+        ffi::call(c, VERSION, "fmi2SetBoolean", |instance| {
+            let values = ffi::slice(value, nvr)?.iter().map(|value| *value != 0);
+            instance.set_booleans(ffi::slice(vr, nvr)?, values)
+        })
+    }
+}
+
 /// Access by types that no variable has.
 macro_rules! no_variables {
     ($($name:ident($values:ty): $kind:literal;)*) => {
@@ -252,8 +287,6 @@ macro_rules! no_variables {
 }
 
 no_variables! {
-    fmi2GetBoolean(*mut fmi2Boolean): "Boolean";
-    fmi2SetBoolean(*const fmi2Boolean): "Boolean";
     fmi2GetString(*mut fmi2String): "String";
     fmi2SetString(*const fmi2String): "String";
 }

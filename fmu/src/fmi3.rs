@@ -328,6 +328,46 @@ unsafe extern "C" fn fmi3SetInt32(
     }
 }
 
+#[unsafe(no_mangle)]
+unsafe extern "C" fn fmi3GetBoolean(
+    instance: fmi3Instance,
+    valueReferences: *const fmi3ValueReference,
+    nValueReferences: usize,
+    values: *mut fmi3Boolean,
+    nValues: usize,
+) -> fmi3Status {
+    // SAFETY: the host's handle and arrays.
+    unsafe {
+        ffi::call(instance, VERSION, "fmi3GetBoolean", |instance| {
+            let references = ffi::slice(valueReferences, nValueReferences)?;
+            let found = instance.get_booleans(references, nValues)?;
+            let bytes = ffi::slice_mut(values.cast::<u8>(), nValues)?;
+            for (byte, found) in bytes.iter_mut().zip(found) {
+                *byte = u8::from(found);
+            }
+            Ok(())
+        })
+    }
+}
+
+#[unsafe(no_mangle)]
+unsafe extern "C" fn fmi3SetBoolean(
+    instance: fmi3Instance,
+    valueReferences: *const fmi3ValueReference,
+    nValueReferences: usize,
+    values: *const fmi3Boolean,
+    nValues: usize,
+) -> fmi3Status {
+    // SAFETY: the host's handle and arrays; as bytes, of which any value may be read.
+    unsafe {
+        ffi::call(instance, VERSION, "fmi3SetBoolean", |instance| {
+            let references = ffi::slice(valueReferences, nValueReferences)?;
+            let bytes = ffi::slice(values.cast::<u8>(), nValues)?;
+            instance.set_booleans(references, bytes.iter().map(|byte| *byte != 0))
+        })
+    }
+}
+
 /// Access by types that no variable has; `rest` is what follows the references.
 macro_rules! no_variables {
     ($($name:ident($($rest:ty),*): $kind:literal;)*) => {
@@ -359,7 +399,6 @@ no_variables! {
     fmi3GetUInt32(*mut fmi3UInt32, usize): "UInt32";
     fmi3GetInt64(*mut fmi3Int64, usize): "Int64";
     fmi3GetUInt64(*mut fmi3UInt64, usize): "UInt64";
-    fmi3GetBoolean(*mut fmi3Boolean, usize): "Boolean";
     fmi3GetString(*mut fmi3String, usize): "String";
     fmi3GetBinary(*mut usize, *mut fmi3Binary, usize): "Binary";
     fmi3GetClock(*mut fmi3Clock): "Clock";
@@ -371,7 +410,6 @@ no_variables! {
     fmi3SetUInt32(*const fmi3UInt32, usize): "UInt32";
     fmi3SetInt64(*const fmi3Int64, usize): "Int64";
     fmi3SetUInt64(*const fmi3UInt64, usize): "UInt64";
-    fmi3SetBoolean(*const fmi3Boolean, usize): "Boolean";
     fmi3SetString(*const fmi3String, usize): "String";
     fmi3SetBinary(*const usize, *const fmi3Binary, usize): "Binary";
     fmi3SetClock(*const fmi3Clock): "Clock";

@@ -51,6 +51,8 @@ pub(crate) struct Instance {
     stop_time: Option<f64>,
     time: f64,
     inputs: Vec<BodyInput>,
+    /// Whether each line is to let go.
+    releases: Vec<bool>,
     /// Displacements at which the statics were solved last [m].
     start_displacements: Vec<[f64; 6]>,
     /// Statics with the present parameters and inputs, or where the last step ended; `None` while they are not known.
@@ -83,6 +85,7 @@ impl Instance {
             start_displacements: vec![[0.0; 6]; scene.points.len() + scene.vessels.len()],
             time_reference: (version == FmiVersion::Three)
                 .then(|| time_reference(&description.interface)),
+            releases: vec![false; scene.lines.len()],
             packaged: scene.clone(),
             scene,
             interface: description.interface,
@@ -198,6 +201,7 @@ impl Instance {
     pub(crate) fn reset(&mut self) -> Outcome {
         self.scene.clone_from(&self.packaged);
         self.inputs.fill(BodyInput::default());
+        self.releases.fill(false);
         self.phase = Phase::Instantiated;
         self.start_time = 0.0;
         self.stop_time = None;
@@ -259,6 +263,7 @@ impl Instance {
                 Binding::Velocity { body, axis } => {
                     own[0] = self.inputs[slot(&self.scene, *body)].velocity[*axis];
                 }
+                Binding::Release { line } => own[0] = f64::from(u8::from(self.releases[*line])),
                 Binding::Parameter(parameter) => {
                     own[0] = parameter
                         .value(&self.scene)
@@ -292,6 +297,27 @@ impl Instance {
     pub(crate) fn set_integers(&mut self, references: &[u32], values: &[i32]) -> Outcome {
         let numbers: Vec<f64> = values.iter().map(|&value| f64::from(value)).collect();
         self.set(Kind::Int32, references, &numbers)
+    }
+
+    /// Reads truth values.
+    pub(crate) fn get_booleans(
+        &mut self,
+        references: &[u32],
+        count: usize,
+    ) -> Result<Vec<bool>, Refusal> {
+        let mut numbers = vec![0.0; count];
+        self.get(Kind::Boolean, references, &mut numbers)?;
+        Ok(numbers.into_iter().map(|number| number != 0.0).collect())
+    }
+
+    /// Sets truth values.
+    pub(crate) fn set_booleans(
+        &mut self,
+        references: &[u32],
+        values: impl Iterator<Item = bool>,
+    ) -> Outcome {
+        let numbers: Vec<f64> = values.map(|value| f64::from(u8::from(value))).collect();
+        self.set(Kind::Boolean, references, &numbers)
     }
 
     fn asks_for_results(&self, references: &[u32]) -> bool {
@@ -382,6 +408,7 @@ impl Instance {
                     // Hosts write the start value 0 of every input: that is not yet a velocity.
                     input.has_velocity[axis] |= self.phase == Phase::Step || value != 0.0;
                 }
+                Binding::Release { line } => self.releases[line] = value != 0.0,
                 _ => {}
             }
         }
@@ -523,6 +550,9 @@ impl Instance {
             .as_mut()
             .expect("solved at the end of initialization");
         hand_over(&self.inputs, simulation);
+        for (line, &release) in self.releases.iter().enumerate() {
+            simulation.set_release(line, release);
+        }
         simulation.advance(step).map_err(|e| e.to_string())?;
         self.time = at + step; // the host's clock, so that rounding does not add up
         Ok(())
@@ -542,6 +572,7 @@ impl Instance {
             time: self.time,
             parameters: self.parameters(&self.scene),
             inputs: self.inputs.clone(),
+            releases: self.releases.clone(),
             start_displacements: self.start_displacements.clone(),
             solver: self.simulation.as_ref().map(|s| s.snapshot().clone()),
         }
@@ -606,6 +637,7 @@ impl Instance {
         self.stop_time = snapshot.stop_time;
         self.time = snapshot.time;
         self.inputs.clone_from(&snapshot.inputs);
+        self.releases.clone_from(&snapshot.releases);
         Ok(())
     }
 

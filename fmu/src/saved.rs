@@ -45,6 +45,8 @@ pub(crate) struct Snapshot {
     pub(crate) parameters: Vec<f64>,
     /// Inputs of every point of the scene, then of every vessel.
     pub(crate) inputs: Vec<BodyInput>,
+    /// Whether each line is to let go.
+    pub(crate) releases: Vec<bool>,
     /// Displacements of every body at which the statics were solved [m, rad]: what the solver decided there, such as its
     /// step limits, is not in its state and is decided again from them.
     pub(crate) start_displacements: Vec<[f64; 6]>,
@@ -102,6 +104,7 @@ mod tests {
             time: 1.0 / 3.0,
             parameters: vec![9.80665, -0.0],
             inputs: vec![BodyInput::default()],
+            releases: vec![true, false],
             start_displacements: vec![[0.0; 6]],
             solver: None,
         }

@@ -6,14 +6,14 @@ use std::path::Path;
 use moorline::interface::{Causality, Interface, Layout};
 use moorline::model::Model;
 use moorline::output::channels::Channels;
-use moorline::scene::{TOML, load};
+use moorline::scene::{Supplement, TOML, load_with};
 
 use super::failure::Failure;
 use super::print;
 
 /// Reads a scene, makes it discrete, and says what it models, what surprises, and which variables a host finds.
-pub fn check(path: &Path) -> Result<(), Failure> {
-    let loaded = load(path)?;
+pub fn check(path: &Path, supplement: &Supplement) -> Result<(), Failure> {
+    let loaded = load_with(path, supplement)?;
     let located = |mistake| Failure::of_scene(mistake, &loaded);
     let model = Model::new(&loaded.scene).map_err(located)?;
     let interface = Interface::new(&loaded.scene, &model, Layout::Arrays).map_err(located)?;
@@ -23,6 +23,10 @@ pub fn check(path: &Path) -> Result<(), Failure> {
         writeln!(text, "read as a {} file", loaded.format).expect("a string takes any text");
     }
     text.push_str(&loaded.scene.in_words());
+    text.push_str("elements\n");
+    for line in model.mesh_in_words(&loaded.scene) {
+        writeln!(text, "  {line}").expect("a string takes any text");
+    }
     text.push_str("\nvariables of the FMU\n");
     for (role, causality) in [
         ("in", Causality::Input),

@@ -5,15 +5,20 @@ use std::path::Path;
 
 use moorline::output::package::{PackageError, find_library, write_fmu};
 use moorline::output::replace_file;
-use moorline::scene::LoadedScene;
+use moorline::scene::{LoadedScene, Supplement};
 use moorline_host::FmiVersion;
 
 use super::failure::Failure;
 use super::{print, read_scene, simulate};
 
 /// Packages a scene for the FMI version "2" or "3".
-pub fn fmu(path: &Path, target: &Path, version: &str) -> Result<(), Failure> {
-    let loaded = read_scene(path)?;
+pub fn fmu(
+    path: &Path,
+    supplement: &Supplement,
+    target: &Path,
+    version: &str,
+) -> Result<(), Failure> {
+    let loaded = read_scene(path, supplement)?;
     check_target(target)?;
     // A scene without an equilibrium would make an FMU that no host can start.
     simulate(&loaded)?;

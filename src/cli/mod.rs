@@ -1,5 +1,6 @@
 //! The commands, and what they share.
 
+pub mod accuracy;
 pub mod check;
 pub mod convert;
 pub mod demo;
@@ -13,14 +14,14 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use indicatif::{ProgressBar, ProgressStyle};
-use moorline::scene::{LoadedScene, load};
+use moorline::scene::{LoadedScene, Supplement, load_with};
 use moorline::simulation::Simulation;
 
 use failure::Failure;
 
-/// Reads a scene file; remarks on it go to standard error.
-fn read_scene(path: &Path) -> Result<LoadedScene, Failure> {
-    let loaded = load(path)?;
+/// Reads a scene file with what a deck leaves to its host; remarks on it go to standard error.
+fn read_scene(path: &Path, supplement: &Supplement) -> Result<LoadedScene, Failure> {
+    let loaded = load_with(path, supplement)?;
     for note in &loaded.notes {
         // A remark that nobody can read is no reason to stop.
         let _ = writeln!(io::stderr(), "note: {}: {note}", path.display());

@@ -6,9 +6,10 @@ use std::time::{Duration, Instant};
 use moorline::interface::{Binding, Causality, Interface, Layout, Variable};
 use moorline::model::{Body, Model, Role};
 use moorline::output::channels::Channels;
+use moorline::output::figures::ELEVATION;
 use moorline::output::record::{Column, Record};
 use moorline::output::{collect, make_folder, write_run};
-use moorline::scene::Scene;
+use moorline::scene::{Drive, Scene, Supplement};
 use moorline::simulation::Simulation;
 
 use super::failure::Failure;
@@ -18,10 +19,10 @@ use super::{print, progress, read_scene, simulate};
 /// Shapes kept of a run whose scene does not ask for all of them [-].
 const FRAMES_MAX: usize = 240;
 
-/// Who moves the coupled points.
+/// How the motion reaches the mooring.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Drive {
-    /// The scene's own motion, exactly.
+pub enum Pace {
+    /// Exactly.
     Scene,
     /// The scene's motion as a host gives it, at communication points only.
     Host {
@@ -32,14 +33,23 @@ pub enum Drive {
     },
 }
 
-/// Runs a scene and writes everything that comes out into a folder.
-pub fn run(path: &Path, folder: &Path, drive: Drive) -> Result<(), Failure> {
-    let loaded = read_scene(path)?;
+/// Runs a scene, moved as it says itself or as is given beside it, and writes everything that comes out into a folder.
+pub fn run(
+    path: &Path,
+    supplement: &Supplement,
+    drive: &Drive,
+    folder: &Path,
+    pace: Pace,
+) -> Result<(), Failure> {
+    let mut loaded = read_scene(path, supplement)?;
+    if !drive.is_empty() {
+        loaded.scene.drive(drive).map_err(Failure::Argument)?;
+    }
     make_folder(folder)?;
     let mut simulation = simulate(&loaded)?;
-    let start = match drive {
-        Drive::Scene => simulation.follow_scene(),
-        Drive::Host { velocities, .. } => {
+    let start = match pace {
+        Pace::Scene => simulation.follow_scene(),
+        Pace::Host { velocities, .. } => {
             set_motion(&mut simulation, 0.0, velocities);
             simulation.restart(0.0)
         }
@@ -53,7 +63,7 @@ pub fn run(path: &Path, folder: &Path, drive: Drive) -> Result<(), Failure> {
         variables: recorded(&interface).collect(),
         channels,
     };
-    let record = step_through(&loaded.scene, &mut simulation, &recorder, drive)?;
+    let record = step_through(&loaded.scene, &mut simulation, &recorder, pace)?;
     write_run(
         &record,
         folder,
@@ -72,12 +82,12 @@ fn step_through(
     scene: &Scene,
     simulation: &mut Simulation,
     recorder: &Recorder<'_>,
-    drive: Drive,
+    pace: Pace,
 ) -> Result<Record, Failure> {
-    let mut record = collect::record(scene, simulation, recorder.columns());
-    let interval = match drive {
-        Drive::Scene => scene.output.interval,
-        Drive::Host { step, .. } => step,
+    let mut record = collect::record(scene, simulation, recorder.columns(simulation.model()));
+    let interval = match pace {
+        Pace::Scene => scene.output.interval,
+        Pace::Host { step, .. } => step,
     };
     let times = Times::new(scene.output.duration, interval);
     let stride = times.frame_stride(scene.output.profile);
@@ -87,7 +97,7 @@ fn step_through(
     let bar = progress(times.count as u64);
     let mut wall = Duration::ZERO;
     for index in 0..times.count {
-        if let Drive::Host { velocities, .. } = drive {
+        if let Pace::Host { velocities, .. } = pace {
             set_motion(simulation, times.at(index), velocities);
         }
         let before = Instant::now();
@@ -130,8 +140,13 @@ struct Recorder<'i> {
 }
 
 impl Recorder<'_> {
-    fn columns(&self) -> Vec<Column> {
+    fn columns(&self, model: &Model) -> Vec<Column> {
         let mut all = columns(&self.variables);
+        all.extend(model.waves.as_ref().map(|_| Column {
+            name: ELEVATION.to_string(),
+            unit: "m".to_string(),
+            description: "elevation of the surface at x = y = 0".to_string(),
+        }));
         all.extend(self.channels.columns());
         all
     }
@@ -140,6 +155,8 @@ impl Recorder<'_> {
     fn row(&self, simulation: &Simulation, time: f64) -> Vec<f64> {
         let variables = self.variables.iter();
         let mut row: Vec<f64> = variables.map(|v| value(v, simulation, time)).collect();
+        let waves = simulation.model().waves.as_ref();
+        row.extend(waves.map(|waves| waves.elevation(0.0, 0.0, time)));
         row.extend(self.channels.values(simulation));
         row
     }

@@ -4,14 +4,18 @@ use std::fmt::Write;
 use std::path::Path;
 
 use moorline::output::{collect, json};
+use moorline::scene::Supplement;
 
 use super::failure::Failure;
 use super::summary::{Table, static_table};
 use super::{print, read_scene, simulate};
 
 /// Solves the equilibrium and prints it.
-pub fn statics(path: &Path, as_json: bool) -> Result<(), Failure> {
-    let loaded = read_scene(path)?;
+pub fn statics(path: &Path, supplement: &Supplement, as_json: bool) -> Result<(), Failure> {
+    let mut loaded = read_scene(path, supplement)?;
+    if let Some(water) = &mut loaded.scene.water {
+        water.waves = None; // an equilibrium is that of the sea at rest
+    }
     let simulation = simulate(&loaded)?;
     let statics = collect::statics(&loaded.scene, &simulation);
     if as_json {

@@ -12,6 +12,8 @@ const DIGITS: usize = 7;
 #[derive(Debug)]
 pub struct Table {
     rows: Vec<Vec<String>>,
+    /// Whether words stand in the last column too.
+    ends_in_words: bool,
 }
 
 impl Table {
@@ -19,6 +21,15 @@ impl Table {
     pub fn new(head: &[&str]) -> Table {
         Table {
             rows: vec![head.iter().map(|cell| (*cell).to_string()).collect()],
+            ends_in_words: false,
+        }
+    }
+
+    /// The same with words in the last column.
+    pub fn ending_in_words(self) -> Table {
+        Table {
+            ends_in_words: true,
+            ..self
         }
     }
 
@@ -48,6 +59,7 @@ impl fmt::Display for Table {
             for (column, (cell, width)) in row.iter().zip(&widths).enumerate() {
                 line.push_str(&match column {
                     0 => format!("{cell:<width$}"),
+                    last if self.ends_in_words && last + 1 == columns => format!("  {cell}"),
                     _ => format!("  {cell:>width$}"),
                 });
             }

@@ -5,12 +5,15 @@ use serde::{Deserialize, Serialize};
 use super::axial_implicit::AxialWork;
 use super::beam::{self, BeamWork, Driven, Stuck, StuckReason};
 use super::implicit::{self, Scheme};
+use super::layout::Water;
 use super::leapfrog::Step;
 use super::ledger::{self, Energy, Flow};
 use super::limit::transverse_step;
 use super::network::NetworkWork;
+use super::sea::SeaWork;
 use super::{Choice, StepError, quasi_static};
 use crate::model::{End, Kinematics, Model, Network, State};
+use crate::physics::airy::Waves;
 use crate::scene::Integrator;
 use crate::statics::assembly::rubbing::drop_anchors;
 use crate::statics::assembly::{self, copy_network};
@@ -21,6 +24,8 @@ const AXIAL_SPECTRAL_RADIUS: f64 = 0.9;
 const SNAP_GROWTH: f64 = 1.5;
 /// Internal steps of a communication step, at most [-].
 const SUBSTEPS_MAX: f64 = 1e7;
+/// Rounding of times, over a step [-].
+const ROUNDING: f64 = 1e-9;
 /// A failed step is tried again with half the internal step, at most so often [-].
 const RETRIES_MAX: u32 = 6;
 
@@ -49,6 +54,9 @@ pub struct Workspace {
     networks: Vec<(Choice, Solver)>,
     implicit: assembly::Workspace,
     next: State,
+    sea: SeaWork,
+    /// The state before a step that is made in parts.
+    before: State,
 }
 
 #[derive(Debug, Clone)]
@@ -77,6 +85,8 @@ impl Workspace {
             networks,
             implicit: assembly::Workspace::new(model),
             next: state.clone(),
+            sea: SeaWork::new(),
+            before: State::default(),
         }
     }
 
@@ -108,6 +118,7 @@ impl Workspace {
         let time = state.time;
         drop_anchors(model, state);
         place_held(model, state, held);
+        self.sea.start(model, state);
         for (number, (_, solver)) in self.networks.iter().enumerate() {
             if matches!(solver, Solver::Implicit(_)) {
                 implicit::start(model, number, state, held, time, &mut self.implicit);
@@ -127,6 +138,62 @@ impl Workspace {
         length: f64,
         held: &impl Fn(usize, f64) -> Kinematics,
     ) -> Result<Done, StepError> {
+        match &model.waves {
+            None => self.pass(model, state, length, held),
+            Some(waves) => self.advance_in(waves, model, state, length, held),
+        }
+    }
+
+    /// [`Self::advance`] in waves: in parts where the step is longer than what waves do can be foretold for.
+    fn advance_in(
+        &mut self,
+        waves: &Waves,
+        model: &Model,
+        state: &mut State,
+        length: f64,
+        held: &impl Fn(usize, f64) -> Kinematics,
+    ) -> Result<Done, StepError> {
+        let mut part = self.sea.reach(waves, state, length);
+        if part == length {
+            let renewed = self.sea.renew(model, waves, state, length);
+            let done = self.pass(model, state, length, held);
+            if done.is_err() && renewed {
+                self.sea.undo(state);
+            }
+            return done;
+        }
+        let end = state.time + length;
+        let mut total = Done::default();
+        self.before.clone_from(state);
+        loop {
+            self.sea.renew(model, waves, state, part);
+            match self.pass(model, state, part, held) {
+                Ok(done) => total.add(done),
+                Err(error) => {
+                    state.clone_from(&self.before);
+                    return Err(error);
+                }
+            }
+            let left = end - state.time;
+            if left <= ROUNDING * length {
+                state.time = end;
+                return Ok(total);
+            }
+            part = self.sea.reach(waves, state, left);
+        }
+    }
+
+    /// Advances `state` by `length` [s], over which it knows what waves do.
+    fn pass(
+        &mut self,
+        model: &Model,
+        state: &mut State,
+        length: f64,
+        held: &impl Fn(usize, f64) -> Kinematics,
+    ) -> Result<Done, StepError> {
+        if self.networks.iter().any(|(_, solver)| solver.reads_next()) {
+            self.next.waves.clone_from(&state.waves);
+        }
         let step = Communication {
             model,
             state,
@@ -154,12 +221,27 @@ impl Workspace {
         }
         self.next.time = state.time + length;
         place_held(model, &mut self.next, held);
+        std::mem::swap(&mut state.waves, &mut self.next.waves);
         std::mem::swap(state, &mut self.next);
         Ok(total)
     }
 }
 
+impl Done {
+    /// Adds what a later part of the step did.
+    fn add(&mut self, other: Done) {
+        self.counters.substeps += other.counters.substeps;
+        self.counters.solves += other.counters.solves;
+        self.flow.add(other.flow);
+    }
+}
+
 impl Solver {
+    /// Whether it asks the state being built for what waves do.
+    fn reads_next(&self) -> bool {
+        matches!(self, Solver::Implicit(_))
+    }
+
     fn new(model: &Model, network: &Network, integrator: Integrator) -> Solver {
         let negative = model.solver.negative_tension;
         let kernel =
@@ -176,9 +258,8 @@ impl Solver {
                     .spectral_radius
                     .unwrap_or(AXIAL_SPECTRAL_RADIUS);
                 let line = &model.lines[network.lines[0]];
-                let profile = model.current.as_ref().map(|current| &current.profile);
                 kernel(
-                    AxialWork::new(line, profile, rho, negative)
+                    AxialWork::new(line, Water::around(model, line), rho, negative)
                         .map(|work| Solver::AxialImplicit(Box::new(work))),
                 )
             }
@@ -258,6 +339,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
         let step_max = step_max.min(transverse / (SNAP_GROWTH * tension_now).sqrt());
         for retry in 0..=RETRIES_MAX {
             work.load(&self.state.lines[index]);
+            work.load_waves(self.state.waves.as_ref(), index);
             let count = self.substeps(step_max, retry)?;
             let drift = self.length / count as f64;
             let mut steps = self.state.lines[index].half_step.steps;
@@ -266,13 +348,18 @@ impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
                 let k = (self.held)(point, self.start);
                 work.put_end(end, k.position, k.velocity - 0.5 * drift * k.acceleration);
             }
-            work.meet_surface(false);
+            work.set_time(self.start);
+            work.meet_surface(None);
             for k in 1..=count {
                 let t = self.start + k as f64 * drift;
                 if let Some(stream) = self.model.stream(t - drift) {
                     work.set_current(stream.factor);
                 }
+                work.set_time(t - drift);
                 let ends = line.ends.map(|point| (self.held)(point, t).position);
+                if let Some(partings) = &line.parting {
+                    work.part_ends(partings, t - drift, Step::after(steps, drift));
+                }
                 solves += work.step(Step::after(steps, drift), ends);
                 steps = [drift, steps[0]];
             }
@@ -309,7 +396,13 @@ impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
         let (model, network) = (self.model, &self.model.networks[number]);
         let (mut flow, mut last) = (Flow::default(), self.start);
         let mut before = ledger::power(model, network, self.state, self.start);
+        let mut parted = ledger::parted_ends(network, self.state);
         let count = |state: &State, t: f64| {
+            let now_parted = ledger::parted_ends(network, state);
+            if now_parted != parted {
+                flow.given += ledger::joined_energy(model, network, [self.state, state]);
+                parted = now_parted;
+            }
             let now = ledger::power(model, network, state, t);
             flow.add(before.times(0.5 * (t - last)));
             flow.add(now.times(0.5 * (t - last)));
@@ -419,8 +512,11 @@ fn place_held(model: &Model, state: &mut State, held: &impl Fn(usize, f64) -> Ki
         }
     }
     for (line, shape) in model.lines.iter().zip(&mut state.lines) {
-        for (node, point) in [0, line.segment_count()].into_iter().zip(line.ends) {
-            shape.velocity[node] = state.points[point].velocity;
+        let ends = [0, line.segment_count()].into_iter().zip(line.ends);
+        for ((node, point), parted) in ends.zip(shape.parted) {
+            if !parted {
+                shape.velocity[node] = state.points[point].velocity;
+            }
         }
     }
 }

@@ -22,12 +22,11 @@ mod rubbing;
 use nalgebra::Vector3;
 use pulp::NullaryFnOnce;
 
-use super::layout::{FIRST, Layout, interior, pad};
+use super::layout::{FIRST, Layout, Water, interior, pad};
 use super::leapfrog::Step;
 use super::ledger::Flow;
 use crate::math::lanes::{Components, Lanes, Vectors};
-use crate::model::{End, Line, LineState};
-use crate::physics::flow::Profile;
+use crate::model::{End, Line, LineState, Parting, WaveSpan};
 use crate::physics::stretch::StretchLaw;
 use rubbing::Rubbing;
 
@@ -59,12 +58,14 @@ pub struct AxialWork {
     segments: SegmentArrays,
     nodes: NodeArrays,
     rows: Rows,
-    /// The current at the nodes, where it acts on the line.
+    /// The moving water at the nodes, where it acts on the line.
     current: Option<CurrentArrays>,
     /// The bed under the nodes, where it is more than a level plane without friction.
     rubbing: Option<Rubbing>,
     /// 1 for nodes between the ends, 0 elsewhere.
     interior: Vec<f64>,
+    /// Whether ends A and B have parted from their points.
+    parted: [bool; 2],
     /// Energy lost and given since the state was loaded [J].
     lost: Lanes,
     given: f64,
@@ -121,6 +122,8 @@ struct CurrentArrays {
     /// Drag over relative velocity, across and along the line [N s/m].
     across: Vec<f64>,
     along: Vec<f64>,
+    /// Force of water that waves accelerate [N].
+    press: Components,
 }
 
 /// The tridiagonal system in T̄.
@@ -136,20 +139,22 @@ impl AxialWork {
     /// Scratch for a line; `None` where its sections have different strain measures, which the kernel does not mix.
     pub fn new(
         line: &Line,
-        profile: Option<&Profile>,
+        water: Water<'_>,
         rho: f64,
         negative_tension: bool,
     ) -> Option<AxialWork> {
-        let layout = Layout::new(line, profile, negative_tension)?;
+        let layout = Layout::new(line, water, negative_tension)?;
         let n = layout.segment_count;
         let size = layout.weight.len();
         let (zeros, vectors) = (vec![0.0; size], Components::zeros(size));
         Some(AxialWork {
             interior: interior(n),
-            current: layout.current.as_ref().map(|_| CurrentArrays {
+            parted: [false; 2],
+            current: layout.flows().then(|| CurrentArrays {
                 flow: vectors.clone(),
                 across: zeros.clone(),
                 along: zeros.clone(),
+                press: vectors.clone(),
             }),
             rubbing: layout.bottom().map(|_| Rubbing::new(size)),
             lost: Lanes::splat(0.0),
@@ -192,6 +197,11 @@ impl AxialWork {
     /// Takes over the state of a line.
     pub fn load(&mut self, state: &LineState) {
         self.layout.load(state);
+        self.parted = state.parted;
+        for end in [End::A, End::B] {
+            let at = self.layout.end_index(end);
+            self.interior[at] = f64::from(u8::from(self.parted[end as usize]));
+        }
         (self.lost, self.given, self.tension_peak) = (Lanes::splat(0.0), 0.0, 0.0);
         let count = self.layout.segment_count;
         if state.half_step.tension[0].len() == count {
@@ -207,8 +217,13 @@ impl AxialWork {
         }
         for at in self.layout.segment_blocks() {
             let (chord, inverse_l) = self.layout.chord(at);
-            let (force, _) = self.force_and_slope(at, chord.dot(chord) * inverse_l);
-            let tension = Lanes::load(&self.layout.axial_stiffness, at) * force.positive();
+            let tension = match &self.layout.creep {
+                None => {
+                    let (force, _) = self.force_and_slope(at, chord.dot(chord) * inverse_l);
+                    Lanes::load(&self.layout.axial_stiffness, at) * force.positive()
+                }
+                Some(creep) => creep.elastic(at, self.layout.strain(at)).positive(),
+            };
             self.segments
                 .history
                 .iter_mut()
@@ -219,13 +234,14 @@ impl AxialWork {
     /// Energy given by the held ends and lost between them since [`Self::load`].
     pub fn flow(&self) -> Flow {
         Flow {
-            given: self.given,
+            given: self.given + self.layout.lifted(),
             lost: self.lost.sum() - self.layout.joined(),
         }
     }
 
     /// Hands the state back after steps of `steps` [s].
     pub fn store(&self, state: &mut LineState, steps: [f64; 2]) {
+        state.parted = self.parted;
         self.layout.store(state, steps);
         let own = FIRST..FIRST + self.layout.segment_count;
         for (kept, history) in state
@@ -239,8 +255,17 @@ impl AxialWork {
         }
     }
 
-    /// Meets the water's surface as it is at t_n. Where that follows a step, `after_step`, what joined with the water is booked.
-    pub fn meet_surface(&mut self, after_step: bool) {
+    /// Takes over what waves do at the nodes of this line, by its number, over a span of time.
+    pub fn load_waves(&mut self, span: Option<&WaveSpan>, line: usize) {
+        self.layout.load_waves(span, line);
+    }
+
+    /// Meets the water's surface as it is at t_n. Where that is `after` a step, what joined with the water in it is booked.
+    pub fn meet_surface(&mut self, after: Option<Step>) {
+        if let Some(step) = after {
+            self.layout
+                .leave_surface(step, self.parted.map(|parted| !parted));
+        }
         self.layout.find_surface();
         let Some(surface) = &self.layout.surface else {
             return;
@@ -250,9 +275,9 @@ impl AxialWork {
             self.nodes.mass_normal[FIRST + i] = across;
             self.nodes.mass_tangent[FIRST + i] = along;
         }
-        match after_step {
-            true => self.layout.book_surface([true; 2]),
-            false => self.layout.clear_surface(),
+        match after {
+            Some(_) => self.layout.book_surface(self.parted.map(|parted| !parted)),
+            None => self.layout.clear_surface(),
         }
     }
 
@@ -261,9 +286,39 @@ impl AxialWork {
         self.layout.set_current(factor);
     }
 
+    /// Sets the waves to those of t_n [s].
+    pub fn set_time(&mut self, t: f64) {
+        self.layout.set_time(t);
+    }
+
     /// Puts an end at a position [m] with the velocity [m/s] that the next step takes as lagged.
     pub fn put_end(&mut self, end: End, position: Vector3<f64>, velocity: Vector3<f64>) {
-        self.layout.put_end(end, position, velocity);
+        if !self.parted[end as usize] {
+            self.layout.put_end(end, position, velocity);
+        }
+    }
+
+    /// Parts the ends from their points that the tensions of t_n, `t` [s], are too much for, or the time has come for.
+    pub fn part_ends(&mut self, partings: &[Parting; 2], t: f64, step: Step) {
+        for end in [End::A, End::B] {
+            let (side, at) = (end as usize, self.layout.end_index(end));
+            let tension = self.layout.end_tension(end, step);
+            if self.parted[side] || !partings[side].parts(tension, t) {
+                continue;
+            }
+            let masses = [self.nodes.mass_normal[at], self.nodes.mass_tangent[at]];
+            self.given += self.layout.joining_energy(end, masses, step);
+            self.parted[side] = true;
+            self.interior[at] = 1.0;
+        }
+    }
+
+    /// Ends that a point holds.
+    fn held_ends(&self) -> impl Iterator<Item = End> + use<> {
+        let parted = self.parted;
+        [End::A, End::B]
+            .into_iter()
+            .filter(move |&end| !parted[end as usize])
     }
 
     /// One step; `ends` are the positions [m] of both ends after it. Returns the passes it took.
@@ -282,7 +337,10 @@ impl AxialWork {
 
     #[inline(always)]
     fn step_vectors<const CURRENT: bool>(&mut self, step: Step, ends: [Vector3<f64>; 2]) -> usize {
-        self.prepare_segments(step);
+        match self.layout.creep {
+            None => self.prepare_segments::<false>(step),
+            Some(_) => self.prepare_segments::<true>(step),
+        }
         self.prepare_nodes::<CURRENT>(step);
         if self.rubbing.is_some() {
             self.meet_bed(step);
@@ -310,11 +368,12 @@ impl AxialWork {
         }
         std::mem::swap(&mut self.layout.velocity, &mut self.layout.velocity_before);
         self.layout.drift(step.drift);
-        self.layout.position.set(FIRST, ends[0]);
-        self.layout
-            .position
-            .set(FIRST + self.layout.segment_count, ends[1]);
-        self.meet_surface(true);
+        for end in self.held_ends() {
+            let at = self.layout.end_index(end);
+            self.layout.position.set(at, ends[end as usize]);
+        }
+        self.layout.creep(step.drift);
+        self.meet_surface(Some(step));
         passes
     }
 
@@ -323,7 +382,7 @@ impl AxialWork {
     fn force_and_slope(&self, at: usize, l: Lanes) -> (Lanes, Lanes) {
         let one = Lanes::splat(1.0);
         let strain = l * Lanes::load(&self.layout.inverse_length, at) - one;
-        match self.layout.law {
+        match &self.layout.law {
             StretchLaw::Engineering => (strain, one),
             law => (
                 strain.map(|e| law.at(e).force),
@@ -333,7 +392,7 @@ impl AxialWork {
     }
 
     #[inline(always)]
-    fn prepare_segments(&mut self, step: Step) {
+    fn prepare_segments<const CREEPS: bool>(&mut self, step: Step) {
         let [b1, h0, h1, h2] = self.weights.0.map(Lanes::splat);
         let drift = Lanes::splat(step.drift);
         for at in self.layout.segment_blocks() {
@@ -346,15 +405,22 @@ impl AxialWork {
             let along = direction.dot(relative);
             let (force, slope) = self.force_and_slope(at, l);
             let ea = Lanes::load(&line.axial_stiffness, at);
-            let tension = ea * force.positive();
+            let mut tension = ea * force.positive();
+            let (mut ahead, mut tangent) = (b1 * ea * force, b1 * ea * slope);
+            if CREEPS {
+                let (now, coming, stiffness) = self.creeping_forces(at, direction, step);
+                tension = now.positive();
+                (ahead, tangent) = (b1 * coming, b1 * stiffness);
+            }
+            let line = &self.layout;
             let segments = &mut self.segments;
             let [last, before] = &mut segments.history;
             let (t1, t2) = (Lanes::load(last, at), Lanes::load(before, at));
             tension.store(last, at);
             t1.store(before, at);
-            let elastic = b1 * ea * force + h0 * tension + h1 * t1 + h2 * t2;
+            let elastic = ahead + h0 * tension + h1 * t1 + h2 * t2;
             let damping = Lanes::splat(0.5) * Lanes::load(&line.axial_damping, at) * inverse_length;
-            let stiffness = b1 * ea * slope * drift * inverse_length;
+            let stiffness = tangent * drift * inverse_length;
             let bend = relative.dot(relative) - along * along;
             let curvature = Lanes::splat(0.5) * stiffness * drift * bend * inverse_l;
             let known = elastic + damping * Lanes::splat(1.0 - DAMPING_SHIFT) * along;
@@ -369,6 +435,28 @@ impl AxialWork {
                 .choose(Lanes::splat(1.0), Lanes::splat(-1.0))
                 .store(&mut segments.taut, at);
         }
+    }
+
+    /// Elastic force of viscoelastic segments now [N], after the step without further strain [N], and its slope with the strain then
+    /// [N]; books what is lost in the step.
+    #[inline(always)]
+    fn creeping_forces(
+        &mut self,
+        at: usize,
+        direction: Vectors,
+        step: Step,
+    ) -> (Lanes, Lanes, Lanes) {
+        let strain = self.layout.strain(at);
+        let rate = self.layout.strain_rate(at, direction, step);
+        let creep = self.layout.creep.as_mut().expect("this line creeps");
+        strain.store(&mut creep.strain, at);
+        let now = creep.elastic(at, strain);
+        let loss = creep.loss(at, strain, rate, now.positive());
+        let length = Lanes::load(&self.layout.inverse_length, at).recip();
+        self.lost = self.lost + loss * length * Lanes::splat(step.kick);
+        let creep = self.layout.creep.as_ref().expect("this line creeps");
+        let (coming, stiffness) = creep.ahead(at, strain, step.drift);
+        (now, coming, stiffness)
     }
 
     #[inline(always)]
@@ -396,7 +484,7 @@ impl AxialWork {
                     let current = self
                         .current
                         .as_mut()
-                        .expect("this kernel runs in a current");
+                        .expect("this kernel runs in moving water");
                     current.flow.store(flow, at);
                 }
                 let speed = now.dot(tangent);
@@ -412,10 +500,17 @@ impl AxialWork {
                     let current = self
                         .current
                         .as_mut()
-                        .expect("this kernel runs in a current");
+                        .expect("this kernel runs in moving water");
                     normal.store(&mut current.across, at);
                     along.store(&mut current.along, at);
                 }
+            }
+            if CURRENT && let Some(waves) = &line.waves {
+                let press = waves.press(at, tangent);
+                force = force + press;
+                let current = self.current.as_mut();
+                let current = current.expect("this kernel runs in moving water");
+                current.press.store(press, at);
             }
             if let Some(damping) = &line.mass_damping {
                 let damping = Lanes::load(damping, at);
@@ -465,8 +560,8 @@ impl AxialWork {
     /// Held ends move by the secant of their path and yield to no force.
     #[inline(always)]
     fn prepare_ends(&mut self, step: Step, ends: [Vector3<f64>; 2]) {
-        for (end, position) in [End::A, End::B].into_iter().zip(ends) {
-            let at = self.layout.end_index(end);
+        for end in self.held_ends() {
+            let (at, position) = (self.layout.end_index(end), ends[end as usize]);
             let secant = (position - self.layout.position.get(at)) / step.drift;
             let nodes = &mut self.nodes;
             (nodes.across[at], nodes.excess[at], nodes.held[at]) = (0.0, 0.0, 0.0);
@@ -664,7 +759,9 @@ impl AxialWork {
             let taken = (impulse - momentum).dot(old + new) * half;
             self.lost = self.lost + Lanes::load(&self.interior, at) * taken;
         }
-        for (end, sign) in [(End::A, -1.0), (End::B, 1.0)] {
+        for end in self.held_ends() {
+            let sign = if end == End::A { -1.0 } else { 1.0 };
+            let line = &self.layout;
             let node = line.end_index(end);
             let segment = if sign < 0.0 { node } else { node - 1 };
             let pull = self.rows.tension[segment] * self.segments.direction.get(segment);
@@ -674,13 +771,13 @@ impl AxialWork {
         }
     }
 
-    /// Books the work of the drag on the water's way, which [`Self::book`] took off what was lost.
+    /// Books the work of the drag on the water's way and that of the water's press, which [`Self::book`] took off what was lost.
     #[inline(always)]
     fn book_current(&mut self, step: Step) {
         let current = self
             .current
             .as_ref()
-            .expect("this kernel runs in a current");
+            .expect("this kernel runs in moving water");
         let half = Lanes::splat(0.5);
         let line = &self.layout;
         let mut sum = Lanes::splat(0.0);
@@ -691,7 +788,8 @@ impl AxialWork {
             let (past, across) = (flow - mean, Lanes::load(&current.across, at));
             let excess = Lanes::load(&current.along, at) - across;
             let power = across * past.dot(flow) + excess * past.dot(tangent) * flow.dot(tangent);
-            sum = sum + Lanes::load(&self.interior, at) * power;
+            let pressing = current.press.load(at).dot(mean);
+            sum = sum + Lanes::load(&self.interior, at) * (power + pressing);
         }
         let work = sum * Lanes::splat(step.kick);
         self.given += work.sum();

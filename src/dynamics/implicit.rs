@@ -6,7 +6,11 @@
 //!
 //! close the balance of weighted forces
 //!
-//!   (1 − α_m) M' a' + α_m M a = (1 − α_f) f(r', v', t') + α_f f(r, v, t).
+//!   (1 − α_f) M' b' + α_f M a = (1 − α_f) f(r', v', t') + α_f f(r, v, t),   (1 − α_f) b' = (1 − α_m) a' + (α_m − α_f) a.
+//!
+//! With a mass that does not change this is (1 − α_m) M a' + α_m M a on the left, as it is usually written. a is the acceleration at
+//! a time (α_f − α_m) Δt after that of r and v: with M' a' a mass that turns with its line, or that water joins, would be taken at the
+//! wrong time, and the scheme be of first order. b' is the acceleration at t'.
 //!
 //! * Generalised-α of spectral radius ρ at infinite frequency: α_m = (2ρ − 1)/(ρ + 1), α_f = ρ/(ρ + 1), γ = ½ − α_m + α_f,
 //!   β = ¼ (1 − α_m + α_f)².
@@ -23,7 +27,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::StepError;
+use super::{StepError, reaction};
 use crate::model::{Kinematics, Model, Network, PointState, State};
 use crate::scene::{Integrator, Solver};
 use crate::statics::assembly::{
@@ -284,8 +288,11 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
         while done < PARTS_MAX {
             copy_network(self.model, self.network, state, &mut before);
             let span = [at(done), at(done + parts)];
-            if self.step(span, state, work) {
+            if self.step(span, &before, state, work) {
                 observe(state, span[1]);
+                if self.part_ends(state, span[1]) {
+                    observe(state, span[1]);
+                }
                 work.counters.steps += 1;
                 done += parts;
                 if done % (2 * parts) == 0 && parts < PARTS_MAX {
@@ -305,6 +312,26 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
         result
     }
 
+    /// Parts the ends from their points that the tension at `t` [s] is too much for, or the time has come for; whether there were any.
+    fn part_ends(&self, state: &mut State, t: f64) -> bool {
+        let mut any = false;
+        for &index in &self.network.lines {
+            let (line, shape) = (&self.model.lines[index], &mut state.lines[index]);
+            let Some(partings) = &line.parting else {
+                continue;
+            };
+            for (side, segment) in [0, line.segment_count() - 1].into_iter().enumerate() {
+                let negative = self.model.solver.negative_tension;
+                let tension = reaction::tension(line, shape, segment, negative);
+                if !shape.parted[side] && partings[side].parts(tension, t) {
+                    shape.parted[side] = true;
+                    any = true;
+                }
+            }
+        }
+        any
+    }
+
     fn failure(&self, [t0, t1]: [f64; 2], work: &Workspace) -> StepError {
         let (residual, place) = work.greatest_residual(self.network);
         let (line, node) = place.node(self.model);
@@ -321,8 +348,14 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
         }
     }
 
-    /// One step; whether Newton's method converged. If not, the state is spoilt.
-    fn step(&self, [t0, t1]: [f64; 2], state: &mut State, work: &mut Workspace) -> bool {
+    /// One step from the state `before`; whether Newton's method converged. If not, the state is spoilt.
+    fn step(
+        &self,
+        [t0, t1]: [f64; 2],
+        before: &State,
+        state: &mut State,
+        work: &mut Workspace,
+    ) -> bool {
         let Scheme {
             alpha_m,
             alpha_f,
@@ -333,7 +366,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
         let old = Weights {
             force: alpha_f,
             friction: 0.0,
-            inertia: alpha_m,
+            inertia: alpha_f,
             position: 0.0,
             velocity: 0.0,
             acceleration: 0.0,
@@ -350,7 +383,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
         let new = Weights {
             force: 1.0 - alpha_f,
             friction: 1.0,
-            inertia: 1.0 - alpha_m,
+            inertia: 1.0 - alpha_f,
             position: 1.0 - alpha_f,
             velocity: (1.0 - alpha_f) * per_velocity,
             acceleration: (1.0 - alpha_m) * per_acceleration,
@@ -370,9 +403,12 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
             if !correction.is_finite() {
                 return false;
             }
-            self.correct(state, work, per_velocity, per_acceleration);
+            let now = (1.0 - alpha_m) / (1.0 - alpha_f) * per_acceleration;
+            self.correct(state, work, per_velocity, now);
             let consistent = work.predict_tensions(self.model, self.network, 1.0);
             if correction <= tolerance && consistent {
+                work.creep(self.model, self.network, state);
+                self.shift_accelerations(state, before);
                 return true;
             }
         }
@@ -422,6 +458,27 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
             point.position += dt * (point.velocity + 0.5 * dt * point.acceleration);
             point.velocity += dt * point.acceleration;
         }
+    }
+
+    /// From b' to a' = [(1 − α_f) b' + (α_f − α_m) a] / (1 − α_m), wherever forces move something.
+    fn shift_accelerations(&self, state: &mut State, before: &State) {
+        let Scheme {
+            alpha_m, alpha_f, ..
+        } = *self.scheme;
+        let of_new = (1.0 - alpha_f) / (1.0 - alpha_m);
+        let shifted = |new: Vector3<f64>, old: Vector3<f64>| of_new * new + (1.0 - of_new) * old;
+        for &index in &self.network.lines {
+            let (new, old) = (&mut state.lines[index], &before.lines[index]);
+            let last = new.acceleration.len() - 1;
+            for i in 1..last {
+                new.acceleration[i] = shifted(new.acceleration[i], old.acceleration[i]);
+            }
+        }
+        for &index in &self.network.free_points {
+            let new = &mut state.points[index].acceleration;
+            *new = shifted(*new, before.points[index].acceleration);
+        }
+        place_ends(self.model, self.network, state);
     }
 
     fn correct(

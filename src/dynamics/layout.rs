@@ -8,14 +8,17 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 use pulp::{Arch, NullaryFnOnce};
 
+use super::creep::CreepArrays;
 use super::leapfrog::Step;
 use super::surface::SurfaceNow;
+use crate::math::hermite::Hermite;
 use crate::math::lanes::{Components, LANES, Lanes, Vectors};
-use crate::model::{Bottom, Contact, End, Line, LineState};
+use crate::model::{Bottom, Contact, End, Line, LineState, Model, WaveSpan};
+use crate::physics::airy::{Orbit, cubics};
 use crate::physics::flow::{Profile, Stream};
 use crate::physics::friction::Friction;
 use crate::physics::seabed::ContactCoefficients;
-use crate::physics::stretch::StretchLaw;
+use crate::physics::stretch::{StretchLaw, total_tension};
 
 /// Index of node 0 and of segment 0.
 pub(super) const FIRST: usize = LANES;
@@ -45,8 +48,12 @@ pub(super) struct Layout {
     pub drag: Option<DragArrays>,
     /// The current, where it acts on the line.
     pub current: Option<CurrentNow>,
+    /// The waves, where they act on the line.
+    pub waves: Option<WaveArrays>,
     pub mass_damping: Option<Vec<f64>>,
     pub contact: Option<ContactArrays>,
+    /// Memory of viscoelastic segments, where the line has any.
+    pub creep: Option<CreepArrays>,
     /// The water's surface, where the line may pierce it.
     pub surface: Option<SurfaceNow>,
 }
@@ -56,6 +63,25 @@ pub(super) struct Layout {
 pub(super) struct DragArrays {
     pub normal: Vec<f64>,
     pub tangent: Vec<f64>,
+}
+
+/// What moves the water around a line.
+#[derive(Debug, Clone, Copy)]
+pub struct Water<'a> {
+    /// Shape of the current, where the water flows.
+    pub profile: Option<&'a Profile>,
+    /// Whether waves act on the line.
+    pub waves: bool,
+}
+
+impl<'a> Water<'a> {
+    /// Around a line of a model.
+    pub fn around(model: &'a Model, line: &Line) -> Water<'a> {
+        Water {
+            profile: model.current.as_ref().map(|current| &current.profile),
+            waves: line.heaves(model),
+        }
+    }
 }
 
 /// The current at t_n.
@@ -73,6 +99,98 @@ impl CurrentNow {
             factor: self.factor,
         }
     }
+}
+
+/// Motion of the water by waves over a span of time: coefficients of the powers of the part of the span that has passed.
+#[derive(Debug, Clone)]
+pub(super) struct WaveArrays {
+    /// Of the velocity [m/s].
+    velocity: [Components; 4],
+    /// Of the acceleration [m/s²].
+    acceleration: [Components; 4],
+    /// Mass of the water that presses, across and along the line [kg].
+    normal: Vec<f64>,
+    tangent: Vec<f64>,
+    /// Start and end of the span [s].
+    times: [f64; 2],
+    /// Part of the span that has passed at t_n [-].
+    passed: f64,
+    /// Elevation of the surface over the nodes, and its rate, at both ends of the span [m, m/s].
+    surface: Vec<[[f64; 2]; 2]>,
+}
+
+impl WaveArrays {
+    fn new(line: &Line) -> WaveArrays {
+        let n = line.segment_count();
+        let zeros = || Components::zeros(padded_size(n));
+        let pressed = line.nodes.pressed.as_ref();
+        let mass = |of: fn(&crate::model::Pressed) -> &Vec<f64>| match pressed {
+            Some(pressed) => pad(n, of(pressed), 0.0),
+            None => vec![0.0; padded_size(n)],
+        };
+        WaveArrays {
+            velocity: std::array::from_fn(|_| zeros()),
+            acceleration: std::array::from_fn(|_| zeros()),
+            normal: mass(|pressed| &pressed.normal),
+            tangent: mass(|pressed| &pressed.tangent),
+            times: [0.0; 2],
+            passed: 0.0,
+            surface: Vec::new(),
+        }
+    }
+
+    /// Goes on in time [s].
+    fn pass(&mut self, time: f64) {
+        let [t0, t1] = self.times;
+        if t1 > t0 {
+            self.passed += time / (t1 - t0);
+        }
+    }
+
+    /// Elevation of the surface over a node [m].
+    fn elevation(&self, node: usize) -> f64 {
+        let [[p0, m0], [p1, m1]] = self.surface[node];
+        let [t0, t1] = self.times;
+        if t1 <= t0 {
+            return p0;
+        }
+        let cubic = Hermite::new((t0, p0, m0), (t1, p1, m1));
+        cubic.at(t0 + self.passed * (t1 - t0)).value
+    }
+
+    /// Velocities of the water at the nodes at t_n [m/s].
+    #[inline(always)]
+    fn velocity(&self, at: usize) -> Vectors {
+        polynomial(&self.velocity, self.passed, at)
+    }
+
+    /// Forces of the accelerated water on nodes with these unit tangents [N].
+    #[inline(always)]
+    pub fn press(&self, at: usize, tangent: Vectors) -> Vectors {
+        let acceleration = polynomial(&self.acceleration, self.passed, at);
+        let normal = Lanes::load(&self.normal, at);
+        let excess = Lanes::load(&self.tangent, at) - normal;
+        acceleration.scale(normal) + tangent.scale(excess * acceleration.dot(tangent))
+    }
+
+    /// Force of the accelerated water on a node with this unit tangent [N].
+    pub fn press_of(&self, at: usize, tangent: Vector3<f64>) -> Vector3<f64> {
+        let acceleration = self.value(&self.acceleration, at);
+        let excess = self.tangent[at] - self.normal[at];
+        self.normal[at] * acceleration + excess * acceleration.dot(&tangent) * tangent
+    }
+
+    fn value(&self, powers: &[Components; 4], at: usize) -> Vector3<f64> {
+        let [p0, p1, p2, p3] = [0, 1, 2, 3].map(|power| powers[power].get(at));
+        p0 + self.passed * (p1 + self.passed * (p2 + self.passed * p3))
+    }
+}
+
+#[inline(always)]
+fn polynomial(powers: &[Components; 4], passed: f64, at: usize) -> Vectors {
+    let u = Lanes::splat(passed);
+    let [p0, p1, p2, p3] = powers;
+    p0.load(at) + (p1.load(at) + (p2.load(at) + p3.load(at).scale(u)).scale(u)).scale(u)
 }
 
 /// Lumped contact coefficients [N/m, N s/m] and the z [m] below which they push; over a bed that slopes or rubs the height above it, along its normal.
@@ -124,12 +242,20 @@ impl ContactArrays {
 
 impl Layout {
     /// Arrays for a line; `None` where its sections have different strain measures, which the kernels do not mix.
-    pub fn new(line: &Line, profile: Option<&Profile>, negative_tension: bool) -> Option<Layout> {
+    pub fn new(line: &Line, water: Water<'_>, negative_tension: bool) -> Option<Layout> {
         let n = line.segment_count();
         let size = padded_size(n);
         let keep = |values: &[f64]| pad(n, values, 0.0);
         let nodes = &line.nodes;
         let lengths = pad(n, &line.segments.length, 1.0);
+        let creep = CreepArrays::new(line);
+        let (stiffness, damping) = match &creep {
+            Some(creep) => (creep.stiffness.clone(), creep.damping.clone()),
+            None => (
+                keep(&line.segments.axial_stiffness),
+                keep(&line.segments.axial_damping),
+            ),
+        };
         Some(Layout {
             segment_count: n,
             vector_unit: Arch::new(),
@@ -139,14 +265,16 @@ impl Layout {
             velocity: Components::zeros(size),
             velocity_before: Components::zeros(size),
             inverse_length: lengths.iter().map(|length| 1.0 / length).collect(),
-            axial_stiffness: keep(&line.segments.axial_stiffness),
-            axial_damping: keep(&line.segments.axial_damping),
+            axial_stiffness: stiffness,
+            axial_damping: damping,
             weight: keep(&nodes.weight),
             drag: nodes.drag.as_ref().map(|drag| DragArrays {
                 normal: keep(&drag.normal),
                 tangent: keep(&drag.tangent),
             }),
-            current: profile
+            waves: water.waves.then(|| WaveArrays::new(line)),
+            current: water
+                .profile
                 .filter(|_| nodes.drag.is_some())
                 .map(|profile| CurrentNow {
                     profile: profile.clone(),
@@ -157,12 +285,16 @@ impl Layout {
                 .contact
                 .as_ref()
                 .map(|contact| ContactArrays::new(contact, keep)),
+            creep,
             surface: SurfaceNow::new(line),
         })
     }
 
     /// Takes over positions and velocities of a line.
     pub fn load(&mut self, state: &LineState) {
+        if let Some(creep) = &mut self.creep {
+            creep.load(&state.creep);
+        }
         let memory = &state.half_step;
         let fresh = memory.velocity.is_empty();
         for (i, position) in state.position.iter().enumerate() {
@@ -179,6 +311,9 @@ impl Layout {
 
     /// Hands them back after steps of `steps` [s], with velocities extrapolated to the time of the positions.
     pub fn store(&self, state: &mut LineState, steps: [f64; 2]) {
+        if let Some(creep) = &self.creep {
+            creep.store(&mut state.creep);
+        }
         let memory = &mut state.half_step;
         let count = state.position.len();
         memory.velocity.resize(count, Vector3::zeros());
@@ -237,9 +372,13 @@ impl Layout {
         (below + contact.level[at], normal)
     }
 
-    /// Unit vector along the chord of the nodes beside the one at `at`, which is none of the ends.
+    /// Unit vector along the chord of the nodes beside the one at `at`, at an end along the segment.
     pub fn tangent_of(&self, at: usize) -> Vector3<f64> {
-        let chord = self.position.get(at + 1) - self.position.get(at - 1);
+        let (before, after) = (
+            (at - 1).max(FIRST),
+            (at + 1).min(FIRST + self.segment_count),
+        );
+        let chord = self.position.get(after) - self.position.get(before);
         chord.try_normalize(0.0).unwrap_or_else(Vector3::zeros)
     }
 
@@ -248,10 +387,19 @@ impl Layout {
         let Some(surface) = &mut self.surface else {
             return;
         };
+        if let Some(waves) = &self.waves {
+            for (i, level) in surface.level.iter_mut().enumerate() {
+                *level = waves.elevation(i);
+            }
+            surface.find_calm(&self.position.z);
+        }
         surface.find(&self.position.z);
         for i in surface.crossed() {
             let now = surface.node(i);
             self.weight[FIRST + i] = now.weight;
+            if let Some(waves) = &mut self.waves {
+                [waves.normal[FIRST + i], waves.tangent[FIRST + i]] = now.pressed;
+            }
             if let Some(drag) = &mut self.drag {
                 [drag.normal[FIRST + i], drag.tangent[FIRST + i]] = now.drag;
             }
@@ -269,10 +417,28 @@ impl Layout {
         }
     }
 
+    /// Goes on to the end of a step, and books what waves did with the buoyancy in it, except at ends that are held.
+    pub fn leave_surface(&mut self, step: Step, held: [bool; 2]) {
+        let (Some(surface), Some(waves)) = (&mut self.surface, &mut self.waves) else {
+            return;
+        };
+        let [first, last] = held.map(usize::from);
+        for i in first..=self.segment_count - last {
+            let velocities = self.velocity.z[FIRST + i] + self.velocity_before.z[FIRST + i];
+            surface.book_lift(i, 0.5 * step.kick * velocities);
+        }
+        waves.pass(step.drift);
+    }
+
+    /// Work of waves on the buoyancy since the state was loaded [J].
+    pub fn lifted(&self) -> f64 {
+        self.surface.as_ref().map_or(0.0, |surface| surface.lifted)
+    }
+
     /// Forgets what joined with the water.
     pub fn clear_surface(&mut self) {
         if let Some(surface) = &mut self.surface {
-            surface.joined = 0.0;
+            (surface.joined, surface.lifted) = (0.0, 0.0);
         }
     }
 
@@ -280,7 +446,7 @@ impl Layout {
     pub fn end_lack(&self, end: End) -> f64 {
         let node = self.end_index(end) - FIRST;
         let surface = self.surface.as_ref();
-        surface.map_or(0.0, |surface| surface.lack(node))
+        surface.map_or(0.0, |surface| surface.lack(node, self.waves.is_some()))
     }
 
     /// Energy of motion that joined with the water since the state was loaded [J].
@@ -295,23 +461,71 @@ impl Layout {
         }
     }
 
-    /// Velocities of the water at the nodes [m/s]; the line must lie in a current.
+    /// Takes over what waves do at the nodes of line number `line` over a span of time.
+    pub fn load_waves(&mut self, span: Option<&WaveSpan>, line: usize) {
+        let (Some(waves), Some(span)) = (&mut self.waves, span) else {
+            return;
+        };
+        waves.times = span.times;
+        let [before, after] = &span.ends;
+        waves.surface.clear();
+        if self.surface.is_some() {
+            let of = |orbit: &Orbit| [orbit.elevation, orbit.rise];
+            let nodes = before.lines[line].iter().zip(&after.lines[line]);
+            waves.surface.extend(nodes.map(|(b, a)| [of(b), of(a)]));
+        }
+        let nodes = before.lines[line].iter().zip(&after.lines[line]);
+        for (i, (before, after)) in nodes.enumerate() {
+            let [velocity, acceleration] = cubics(before, after, span.times);
+            for power in 0..4 {
+                waves.velocity[power].set(FIRST + i, velocity[power]);
+                waves.acceleration[power].set(FIRST + i, acceleration[power]);
+            }
+        }
+    }
+
+    /// Sets the waves to those of t_n [s].
+    pub fn set_time(&mut self, t: f64) {
+        if let Some(waves) = &mut self.waves {
+            let [t0, t1] = waves.times;
+            waves.passed = if t1 > t0 { (t - t0) / (t1 - t0) } else { 0.0 };
+        }
+    }
+
+    /// Whether the water moves.
+    pub fn flows(&self) -> bool {
+        self.current.is_some() || self.waves.is_some()
+    }
+
+    /// Velocities of the water at the nodes [m/s].
     #[inline(always)]
     pub fn water_velocity(&self, at: usize) -> Vectors {
-        let current = self
-            .current
-            .as_ref()
-            .expect("this kernel runs in a current");
-        let z = Lanes::load(&self.position.z, at);
-        let shape = current.profile.velocities(z);
-        shape.scale(Lanes::splat(current.factor))
+        // closures would not be compiled for the vector unit of the kernel
+        let flow = match &self.current {
+            None => None,
+            Some(current) => {
+                let z = Lanes::load(&self.position.z, at);
+                let shape = current.profile.velocities(z);
+                Some(shape.scale(Lanes::splat(current.factor)))
+            }
+        };
+        match (flow, &self.waves) {
+            (Some(flow), None) => flow,
+            (Some(flow), Some(waves)) => flow + waves.velocity(at),
+            (None, Some(waves)) => waves.velocity(at),
+            (None, None) => Vectors::zero(),
+        }
     }
 
     /// Velocity of the water at a node [m/s].
     pub fn water_velocity_of(&self, at: usize) -> Vector3<f64> {
-        self.current.as_ref().map_or(Vector3::zeros(), |current| {
+        let flow = self.current.as_ref().map_or(Vector3::zeros(), |current| {
             current.stream().velocity(self.position.z[at])
-        })
+        });
+        match &self.waves {
+            None => flow,
+            Some(waves) => flow + waves.value(&waves.velocity, at),
+        }
     }
 
     /// Puts an end at a position [m] with the velocity [m/s] that the next step takes as lagged.
@@ -339,6 +553,80 @@ impl Layout {
     /// Starts of the vectors that cover all nodes.
     pub fn node_blocks(&self) -> impl Iterator<Item = usize> + use<> {
         (FIRST..=FIRST + self.segment_count).step_by(LANES)
+    }
+
+    /// Tension [N] of the segment at an end at t_n.
+    pub fn end_tension(&self, end: End, step: Step) -> f64 {
+        let at = match end {
+            End::A => FIRST,
+            End::B => FIRST + self.segment_count - 1,
+        };
+        let chord = self.position.get(at + 1) - self.position.get(at);
+        let relative = self.velocity.get(at + 1) - self.velocity.get(at);
+        let before = self.velocity_before.get(at + 1) - self.velocity_before.get(at);
+        let now = relative + step.extrapolation * (relative - before);
+        let (l, inverse) = (chord.norm(), self.inverse_length[at]);
+        let strain = l * inverse - 1.0;
+        let elastic = match &self.creep {
+            Some(creep) => creep.elastic_of(at, strain),
+            None => self.axial_stiffness[at] * self.law.at(strain).force,
+        };
+        let rate = if l > 0.0 {
+            chord.dot(&now) / l * inverse
+        } else {
+            0.0
+        };
+        total_tension(
+            elastic,
+            self.axial_damping[at] * rate,
+            0.0,
+            self.negative_tension,
+        )
+    }
+
+    /// Energy [J] that the half node at an end of masses across and along the line [kg] brings to the line when it parts from what held it
+    /// at t_n.
+    pub fn joining_energy(&self, end: End, [across, along]: [f64; 2], step: Step) -> f64 {
+        let at = self.end_index(end);
+        let velocity = self.velocity.get(at);
+        let other = if end == End::A { at + 1 } else { at - 1 };
+        let chord = self.position.get(other) - self.position.get(at);
+        let tangent = chord.try_normalize(0.0).unwrap_or_else(Vector3::zeros);
+        let lag = step.kick - 0.5 * step.drift; // from the velocities to the positions
+        let height = self.position.z[at] - lag * velocity.z;
+        let axial = velocity.dot(&tangent).powi(2);
+        let kinetic = 0.5 * (across * (velocity.norm_squared() - axial) + along * axial);
+        // the surface holds the energy of the buoyancy that is lacking by itself
+        let lack = self
+            .surface
+            .as_ref()
+            .map_or(0.0, |surface| surface.lack(at - FIRST, false));
+        kinetic + (self.weight[at] - lack) * height
+    }
+
+    /// Strain rate at t_n [1/s].
+    #[inline(always)]
+    pub fn strain_rate(&self, at: usize, direction: Vectors, step: Step) -> Lanes {
+        let relative = self.velocity_now(at + 1, step) - self.velocity_now(at, step);
+        direction.dot(relative) * Lanes::load(&self.inverse_length, at)
+    }
+
+    /// Strain of the segments [-].
+    #[inline(always)]
+    pub fn strain(&self, at: usize) -> Lanes {
+        let (chord, inverse_l) = self.chord(at);
+        let inverse_length = Lanes::load(&self.inverse_length, at);
+        chord.dot(chord) * inverse_l * inverse_length - Lanes::splat(1.0)
+    }
+
+    /// Takes the memory of viscoelastic segments from t_n to t_{n+1}, `drift` [s] later, where the nodes now are.
+    pub fn creep(&mut self, drift: f64) {
+        if let Some(mut creep) = self.creep.take() {
+            for at in self.segment_blocks() {
+                creep.advance(at, self.strain(at), drift);
+            }
+            self.creep = Some(creep);
+        }
     }
 
     /// Unit vectors along the chord of the neighbouring nodes.

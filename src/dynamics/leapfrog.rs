@@ -15,11 +15,10 @@
 use nalgebra::{Matrix3, Vector3};
 use pulp::NullaryFnOnce;
 
-use super::layout::{FIRST, Layout, interior, pad};
+use super::layout::{FIRST, Layout, Water, interior, pad};
 use super::ledger::Flow;
 use crate::math::lanes::{Components, Lanes, Vectors};
-use crate::model::{End, Line, LineState};
-use crate::physics::flow::Profile;
+use crate::model::{End, Line, LineState, Parting, WaveSpan};
 use crate::physics::friction_step::Landing;
 use crate::physics::morison::{self, DragCoefficients};
 use crate::physics::stretch::{StretchLaw, total_tension};
@@ -35,9 +34,11 @@ pub struct LineWork {
     water: Option<WaterWork>,
     /// 1 for nodes between the ends, 0 elsewhere.
     interior: Vec<f64>,
-    /// Whether ends A and B are held.
-    held: [bool; 2],
-    /// Energy lost, and given by held ends and by the current, since the state was loaded [J].
+    /// Whether ends A and B are held, were none parted.
+    tied: [bool; 2],
+    /// Whether they have parted from their points.
+    parted: [bool; 2],
+    /// Energy lost, and given by held ends and by moving water, since the state was loaded [J].
     lost: Lanes,
     given: f64,
     given_by_current: Lanes,
@@ -81,7 +82,9 @@ impl WaterWork {
             .zip(&nodes.mass_normal)
             .map(|(t, n)| 1.0 / t - 1.0 / n)
             .collect();
-        let wet = layout.drag.is_some() || excess.iter().any(|excess| *excess != 0.0);
+        let wet = layout.drag.is_some()
+            || layout.waves.is_some()
+            || excess.iter().any(|excess| *excess != 0.0);
         let drag = layout.drag.as_ref();
         wet.then(|| WaterWork {
             drag_normal: drag.map_or(zeros.clone(), |drag| drag.normal.clone()),
@@ -90,7 +93,7 @@ impl WaterWork {
         })
     }
 
-    /// What the water resists with at t_n, and the power of the drag on the water's way.
+    /// What the water resists with at t_n, what it presses with, and the power of the drag on the water's way.
     #[inline(always)]
     fn drag_now<const CURRENT: bool>(
         &self,
@@ -98,15 +101,19 @@ impl WaterWork {
         at: usize,
         tangent: Vectors,
         step: Step,
-    ) -> (Vectors, Lanes) {
+    ) -> (Vectors, Vectors, Lanes) {
         let velocity = line.velocity_now(at, step);
         let still = Lanes::splat(0.0);
         if CURRENT {
             let flow = line.water_velocity(at);
             let drag = self.drag(at, velocity - flow, tangent);
-            (drag, still - drag.dot(flow))
+            let press = match &line.waves {
+                Some(waves) => waves.press(at, tangent),
+                None => Vectors::zero(),
+            };
+            (drag, press, still - drag.dot(flow))
         } else {
-            (self.drag(at, velocity, tangent), still)
+            (self.drag(at, velocity, tangent), Vectors::zero(), still)
         }
     }
 
@@ -199,6 +206,8 @@ pub struct EndLoad {
     pub force: Vector3<f64>,
     /// The part of it that water and damping resist with [N].
     pub resistance: Vector3<f64>,
+    /// The part of it that accelerated water presses with [N].
+    pub press: Vector3<f64>,
     /// Power of the drag on the water's way [W].
     pub current_power: f64,
     /// Mass matrix of the half node [kg].
@@ -211,11 +220,11 @@ impl LineWork {
     /// Scratch for a line; `None` where its sections have different strain measures, which the kernel does not mix.
     pub fn new(
         line: &Line,
-        profile: Option<&Profile>,
+        water: Water<'_>,
         held: [bool; 2],
         negative_tension: bool,
     ) -> Option<LineWork> {
-        let layout = Layout::new(line, profile, negative_tension)?;
+        let layout = Layout::new(line, water, negative_tension)?;
         let inverse_mass: Vec<f64> = line
             .nodes
             .mass_normal
@@ -232,7 +241,8 @@ impl LineWork {
             inverse_mass: pad(layout.segment_count, &inverse_mass, 0.0),
             water: WaterWork::new(line, &layout),
             interior: interior(layout.segment_count),
-            held,
+            tied: held,
+            parted: [false; 2],
             lost: Lanes::splat(0.0),
             given: 0.0,
             given_by_current: Lanes::splat(0.0),
@@ -247,6 +257,11 @@ impl LineWork {
     /// Takes over the state of a line.
     pub fn load(&mut self, state: &LineState) {
         self.layout.load(state);
+        self.parted = state.parted;
+        for end in [End::A, End::B] {
+            let at = self.layout.end_index(end);
+            self.interior[at] = f64::from(u8::from(self.is_parted(end)));
+        }
         (self.lost, self.given) = (Lanes::splat(0.0), 0.0);
         self.given_by_current = Lanes::splat(0.0);
         if let Some(settling) = &mut self.settling {
@@ -254,8 +269,11 @@ impl LineWork {
         }
     }
 
-    /// Meets the water's surface as it is at t_n. Where that follows a step, `after_step`, what joined with the water is booked.
-    pub fn meet_surface(&mut self, after_step: bool) {
+    /// Meets the water's surface as it is at t_n. Where that is `after` a step, what joined with the water in it is booked.
+    pub fn meet_surface(&mut self, after: Option<Step>) {
+        if let Some(step) = after {
+            self.layout.leave_surface(step, self.held());
+        }
         self.layout.find_surface();
         let Some(surface) = &self.layout.surface else {
             return;
@@ -269,19 +287,24 @@ impl LineWork {
                 water.inverse_mass_excess[at] = along - across;
             }
         }
-        match after_step {
-            true => self.layout.book_surface(self.held),
-            false => self.layout.clear_surface(),
+        match after {
+            Some(_) => self.layout.book_surface(self.held()),
+            None => self.layout.clear_surface(),
         }
     }
 
     /// Energy given by held ends and the current and lost between them since [`Self::load`].
     pub fn flow(&self) -> Flow {
         Flow {
-            given: self.given + self.given_by_current.sum(),
+            given: self.given + self.given_by_current.sum() + self.layout.lifted(),
             lost: self.lost.sum() + self.settling.as_ref().map_or(0.0, |bed| bed.lost)
                 - self.layout.joined(),
         }
+    }
+
+    /// Takes over what waves do at the nodes of this line, by its number, over a span of time.
+    pub fn load_waves(&mut self, span: Option<&WaveSpan>, line: usize) {
+        self.layout.load_waves(span, line);
     }
 
     /// Sets what multiplies the current at t_n [-].
@@ -289,9 +312,48 @@ impl LineWork {
         self.layout.set_current(factor);
     }
 
+    /// Sets the waves to those of t_n [s].
+    pub fn set_time(&mut self, t: f64) {
+        self.layout.set_time(t);
+    }
+
     /// Hands the state back after steps of `steps` [s].
     pub fn store(&self, state: &mut LineState, steps: [f64; 2]) {
+        state.parted = self.parted;
         self.layout.store(state, steps);
+    }
+
+    /// Whether ends A and B are held.
+    fn held(&self) -> [bool; 2] {
+        [0, 1].map(|side| self.tied[side] && !self.parted[side])
+    }
+
+    /// Whether an end has parted from its point.
+    pub fn is_parted(&self, end: End) -> bool {
+        self.parted[end as usize]
+    }
+
+    /// Parts the ends from their points that the tensions of t_n, `t` [s], are too much for, or the time has come for.
+    pub fn part_ends(&mut self, partings: &[Parting; 2], t: f64, step: Step) {
+        for end in [End::A, End::B] {
+            let side = end as usize;
+            let layout = &self.layout;
+            if self.parted[side] || !partings[side].parts(layout.end_tension(end, step), t) {
+                continue;
+            }
+            let at = layout.end_index(end);
+            if self.tied[side] {
+                let excess = self
+                    .water
+                    .as_ref()
+                    .map_or(0.0, |w| w.inverse_mass_excess[at]);
+                let across = self.inverse_mass[at];
+                let masses = [1.0 / across, 1.0 / (across + excess)];
+                self.given += layout.joining_energy(end, masses, step);
+            }
+            self.parted[side] = true;
+            self.interior[at] = 1.0;
+        }
     }
 
     /// Step 1: tensions from positions at t_n and velocities at t_{n−½}.
@@ -301,10 +363,14 @@ impl LineWork {
 
     #[inline(always)]
     fn choose_segment_pass(&mut self, step: Step) {
-        match (self.layout.law, self.damped) {
+        match (&self.layout.law, self.damped) {
+            _ if self.layout.creep.is_some() => self.creeping_segment_pass(step),
             (StretchLaw::Engineering, false) => self.segment_pass::<false>(step, |strain| strain),
             (StretchLaw::Engineering, true) => self.segment_pass::<true>(step, |strain| strain),
-            (law, _) => self.segment_pass::<true>(step, |strain| strain.map(|e| law.at(e).force)),
+            (law, _) => {
+                let law = law.clone();
+                self.segment_pass::<true>(step, |strain| strain.map(|e| law.at(e).force));
+            }
         }
     }
 
@@ -335,6 +401,39 @@ impl LineWork {
         }
     }
 
+    /// [`LineWork::segment_pass`] of a line with viscoelastic segments.
+    #[inline(always)]
+    fn creeping_segment_pass(&mut self, step: Step) {
+        let mut creep = self.layout.creep.take().expect("this line creeps");
+        let line = &self.layout;
+        for at in line.segment_blocks() {
+            let (chord, inverse_l) = line.chord(at);
+            let direction = chord.scale(inverse_l);
+            let inverse_length = Lanes::load(&line.inverse_length, at);
+            let strain = line.strain(at);
+            strain.store(&mut creep.strain, at);
+            let relative = line.velocity.load(at + 1) - line.velocity.load(at);
+            let rate = direction.dot(relative) * inverse_length;
+            let elastic = creep.elastic(at, strain);
+            let damping = Lanes::load(&line.axial_damping, at) * rate;
+            let tension = if line.negative_tension {
+                elastic.positive() + damping
+            } else {
+                (elastic + damping).positive()
+            };
+            let now = line.strain_rate(at, direction, step);
+            let loss = creep.loss(at, strain, now, tension);
+            self.lost = self.lost + loss * Lanes::splat(step.kick) * inverse_length.recip();
+            self.pull.store(direction.scale(tension), at);
+        }
+        self.layout.creep = Some(creep);
+    }
+
+    /// After the ends were put where they are at t_{n+1}: takes the memory of viscoelastic segments there.
+    pub fn creep(&mut self, step: Step) {
+        self.layout.creep(step.drift);
+    }
+
     /// Step 2: velocities from t_{n−½} to t_{n+½}.
     pub fn kick_nodes(&mut self, step: Step) {
         self.layout.vector_unit.dispatch(KickNodes(self, step));
@@ -345,10 +444,10 @@ impl LineWork {
 
     #[inline(always)]
     fn choose_node_pass(&mut self, step: Step) {
-        match (&self.water, &self.layout.current) {
+        match (&self.water, self.layout.flows()) {
             (None, _) => self.choose_dry_pass::<false, false>(step),
-            (Some(_), None) => self.choose_dry_pass::<true, false>(step),
-            (Some(_), Some(_)) => self.choose_dry_pass::<true, true>(step),
+            (Some(_), false) => self.choose_dry_pass::<true, false>(step),
+            (Some(_), true) => self.choose_dry_pass::<true, true>(step),
         }
     }
 
@@ -391,30 +490,32 @@ impl LineWork {
             let mut force = self.pull.load(at) - self.pull.load(at - 1);
             force.z = force.z - Lanes::load(&line.weight, at);
             let zero = Lanes::splat(0.0);
-            let nothing = Vectors {
-                x: zero,
-                y: zero,
-                z: zero,
-            };
-            let mut resistance = nothing;
+            let mut resistance = Vectors::zero();
             if MASS_DAMPING {
                 let damping = line.mass_damping.as_deref().unwrap_or_default();
                 resistance = velocity.scale(Lanes::load(damping, at));
             }
-            let mut current_power = zero;
+            let (mut press, mut power) = (Vectors::zero(), zero);
             // M⁻¹f, and M⁻¹ẑ for the bed
             let (inverted, response) = if WATER {
                 let water = self.water.as_ref().expect("this kernel runs in water");
                 let tangent = line.tangent(at);
-                let (drag, power) = water.drag_now::<CURRENT>(line, at, tangent, step);
+                let drag;
+                (drag, press, power) = water.drag_now::<CURRENT>(line, at, tangent, step);
                 resistance = resistance + drag;
-                current_power = power;
                 force = force - resistance;
+                force = if CURRENT { force + press } else { force };
                 water.inverted(at, inverse_mass, force, tangent)
             } else {
                 force = force - resistance;
                 let z = inverse_mass;
-                (force.scale(inverse_mass), Vectors { z, ..nothing })
+                (
+                    force.scale(inverse_mass),
+                    Vectors {
+                        z,
+                        ..Vectors::zero()
+                    },
+                )
             };
             let mut kicked = velocity + inverted.scale(kick);
             let mut given_away = zero; // twice the energy that leaves the nodes
@@ -431,8 +532,10 @@ impl LineWork {
                 self.lost = self.lost + half * given_away;
             }
             if CURRENT {
-                let given = Lanes::load(&self.interior, at) * current_power * kick;
-                self.given_by_current = self.given_by_current + given;
+                let part = Lanes::load(&self.interior, at);
+                let by_press = part * press.dot(velocity + kicked) * kick * Lanes::splat(0.5);
+                let given = part * power * kick;
+                self.given_by_current = self.given_by_current + given + by_press;
                 self.lost = self.lost + given;
             }
             if let (bed::BOTTOM, Some(settling)) = (BED, &mut self.settling) {
@@ -449,7 +552,10 @@ impl LineWork {
         let Some(settling) = &mut self.settling else {
             return;
         };
-        for at in FIRST + 1..FIRST + line.segment_count {
+        for at in FIRST..=FIRST + line.segment_count {
+            if self.interior[at] == 0.0 {
+                continue; // tied to its point
+            }
             let (penetration, normal) = line.stand(at);
             let free = line.velocity.get(at);
             if penetration <= step.drift * normal.dot(&free) {
@@ -493,9 +599,10 @@ impl LineWork {
     /// Books the work of the ends in a step, after [`Self::put_end`] has told how they move on; ends at free points do no
     /// work that the line loses.
     pub fn book_ends(&mut self, step: Step) {
+        let held = self.held();
         for end in [End::A, End::B]
             .into_iter()
-            .filter(|&end| self.held[end as usize])
+            .filter(|&end| held[end as usize])
         {
             let at = self.layout.end_index(end);
             let pull = match end {
@@ -508,9 +615,11 @@ impl LineWork {
         }
     }
 
-    /// Puts an end at a position [m] with the velocity [m/s] that the next step takes as lagged.
+    /// Puts an end at a position [m] with the velocity [m/s] that the next step takes as lagged, unless it has parted from its point.
     pub fn put_end(&mut self, end: End, position: Vector3<f64>, velocity: Vector3<f64>) {
-        self.layout.put_end(end, position, velocity);
+        if !self.is_parted(end) {
+            self.layout.put_end(end, position, velocity);
+        }
     }
 
     /// What the end brings to a free point, after [`Self::pull_segments`]; `velocity` [m/s] is the point's at t_n.
@@ -539,6 +648,8 @@ impl LineWork {
         if let Some(damping) = &line.mass_damping {
             resistance -= damping[at] * velocity;
         }
+        let press = line.waves.as_ref();
+        let press = press.map_or(Vector3::zeros(), |waves| waves.press_of(at, tangent));
         let mass_normal = 1.0 / self.inverse_mass[at];
         let mass_tangent = 1.0 / (self.inverse_mass[at] + excess);
         let mass = mass_normal * Matrix3::identity()
@@ -551,8 +662,9 @@ impl LineWork {
             ]
         });
         EndLoad {
-            force: force + resistance,
+            force: force + resistance + press,
             resistance,
+            press,
             current_power,
             mass,
             contact,

@@ -3,16 +3,20 @@
 //! Held:  E = Σ ½ vᵀM v + Σ EA·W(ε)·L + Σ ½B(|κb| − k₀)² + Σ w z + Σ C  over free nodes, segments that carry force, joints, free
 //!        points and segments out of the water, C being the energy of the buoyancy that these lack, by kind in [`Energy`].
 //! Given: the work of the held ends on the line, −∫ (T q + S)·V + M·Ω dt with the shear S of lines that bend and the moment M on
-//!        clamps that turn, and of point loads; the work Σ f·u dt of the drag f on the way of a current u.
+//!        clamps that turn, and of point loads; the work Σ f·u dt of the drag f on the way of the water u; the work of the water that
+//!        waves accelerate, and of the buoyancy by which a wave exceeds the still water at a free point.
 //! Lost:  drag at the velocity through the water, axial, bending and mass damping, and what the seabed takes (its springs give
 //!        some of it back). The added mass of a free point or node that dips into the water brings ½ v² of what joins it, which counts
-//!        as a negative loss.
+//!        as a negative loss; so does ½ vᵀṀv of nodes whose added mass differs along and across the line, which turns.
+//!
+//! The springs of viscoelastic segments count as held, what their dampers take as lost. An end that parts from a held point brings the energy of
+//! its half node along, which counts as given.
 //!
 //! E − E₀ − given + lost is the error of the time integration: numerical dissipation shows up as a negative one.
 //!
 //! The leapfrogs sum the flows of every internal step, forces at t_n times the mean of the velocities around it; energy is then
 //! exact at t − Δt/2, where the velocities live, and so E is taken there. The implicit integrators use the trapezoidal
-//! rule over every internal step. Quasi-static networks hold no kinetic energy; the work of ends and loads is that of the mean of the
+//! rule over every internal step; the leapfrogs leave ½ vᵀṀv of turning nodes out. Quasi-static networks hold no kinetic energy; the work of ends and loads is that of the mean of the
 //! forces before and after a step. Where they are closed-form catenaries, the whole of these counts, held ends included:
 //!
 //! ∫ T²/(2EA) ds and ∫ w z ds, exact where the line hangs.
@@ -23,10 +27,13 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use super::beam::{self, BeamView};
+use super::creep::{Creeping, Stretching};
 use super::leapfrog::segment_tension;
 use crate::model::{
-    Bottom, ClosedForm, End, FreePoint, Line, LineState, Model, Network, PointState, State, joint,
+    Bottom, ClosedForm, End, FreePoint, Line, LineState, Model, Network, PointState, State,
+    WaterAlong, joint,
 };
+use crate::physics::airy::Orbit;
 use crate::physics::flow::Stream;
 use crate::physics::morison::{DragCoefficients, drag};
 use crate::physics::seabed::{ContactCoefficients, normal_force};
@@ -125,7 +132,7 @@ pub fn energy(model: &Model, network: &Network, state: &State) -> Energy {
         let (data, shape) = (&model.lines[line], &state.lines[line]);
         sum.add(match &shape.closed_form {
             Some(closed_form) => catenary_energy(data, shape, closed_form),
-            None => line_energy(data, state, shape, model),
+            None => line_energy(data, state, line, model),
         });
     }
     for &point in &network.free_points {
@@ -137,7 +144,9 @@ pub fn energy(model: &Model, network: &Network, state: &State) -> Energy {
             None => (at.velocity, 0.0),
         };
         let height = at.position.z - lag * velocity.z;
-        sum.kinetic += 0.5 * free.at(height).mass * velocity.norm_squared();
+        let waves = state.waves_at_point(point, state.time - lag);
+        let over = height - waves.map_or(0.0, |orbit| orbit.elevation);
+        sum.kinetic += 0.5 * free.at(over).mass * velocity.norm_squared();
         sum.gravitational += free.potential(height);
     }
     sum
@@ -149,7 +158,11 @@ fn half_step(state: &State, network: &Network) -> Option<f64> {
     (!memory.velocity.is_empty()).then(|| 0.5 * memory.steps[0])
 }
 
-fn line_energy(line: &Line, state: &State, shape: &LineState, model: &Model) -> Energy {
+fn line_energy(line: &Line, state: &State, index: usize, model: &Model) -> Energy {
+    let (shape, water) = (
+        &state.lines[index],
+        model.water_along(state, index, state.time),
+    );
     let memory = &shape.half_step;
     let (velocity, lag) = match memory.velocity.is_empty() {
         true => (&shape.velocity, 0.0),
@@ -163,16 +176,23 @@ fn line_energy(line: &Line, state: &State, shape: &LineState, model: &Model) -> 
     let mut energy = Energy::default();
     for i in 0..n {
         let strain = (position(i + 1) - position(i)).norm() / line.segments.length[i] - 1.0;
-        energy.axial += axial_energy(line, i, strain);
+        energy.axial += match Creeping::of(line, shape, i) {
+            None => axial_energy(line, i, strain),
+            Some(creep) => {
+                let pair = |values: &[Vector3<f64>]| [values[i], values[i + 1]];
+                let now = Stretching::of(line, i, pair(&shape.position), pair(&shape.velocity));
+                creep.energy(strain, now, lag) * line.segments.length[i]
+            }
+        };
     }
     let free = |i: usize| match i {
-        0 => model.points[line.ends[0]].free().is_some(),
-        i if i == n => model.points[line.ends[1]].free().is_some(),
+        0 => !line.is_held(model, shape, End::A),
+        i if i == n => !line.is_held(model, shape, End::B),
         _ => true,
     };
     for i in (0..=n).filter(|&i| free(i)) {
         let [across, along] = squares(shape, i, velocity[i]);
-        let [normal, tangent] = line.nodes.masses(i, dry_part(line, shape, i));
+        let [normal, tangent] = line.nodes.masses(i, dry_part(line, shape, i, water));
         energy.kinetic += 0.5 * (normal * across + tangent * along);
         energy.gravitational += line.nodes.weight[i] * position(i).z;
     }
@@ -201,9 +221,11 @@ fn squares(shape: &LineState, i: usize, velocity: Vector3<f64>) -> [f64; 2] {
 }
 
 /// Part of a node that is out of the water [-].
-fn dry_part(line: &Line, shape: &LineState, i: usize) -> f64 {
+fn dry_part(line: &Line, shape: &LineState, i: usize, water: WaterAlong) -> f64 {
     let surface = line.surface.as_ref();
-    surface.map_or(0.0, |surface| surface.node(i, &shape.position).part)
+    surface.map_or(0.0, |surface| {
+        surface.node_in(water, i, &shape.position).part
+    })
 }
 
 /// Energy [J] of a segment at a strain [-]: that of its law while it pulls, and pushes no more than it can.
@@ -218,9 +240,51 @@ fn axial_energy(line: &Line, i: usize, strain: f64) -> f64 {
     if strain > 0.0 || ea * law.force > -push {
         ea * law.energy * length
     } else {
-        let limit = -push / ea; // where the push stops growing, by the slope at no strain
+        let ea = ea * data.law[i].at(0.0).slope; // the push stops growing by the slope at no strain
+        let limit = -push / ea;
         (0.5 * push * push / ea + push * (limit - strain)) * length
     }
+}
+
+/// How many ends of a network's lines have parted from their points.
+pub fn parted_ends(network: &Network, state: &State) -> usize {
+    let ends = network
+        .lines
+        .iter()
+        .flat_map(|&line| state.lines[line].parted);
+    ends.filter(|parted| *parted).count()
+}
+
+/// Energy [J] that the half nodes bring to their lines which have parted from held points between two states.
+pub fn joined_energy(model: &Model, network: &Network, [before, after]: [&State; 2]) -> f64 {
+    let mut sum = 0.0;
+    for &index in &network.lines {
+        let (line, [old, new]) = (
+            &model.lines[index],
+            [before, after].map(|state| &state.lines[index]),
+        );
+        for end in [End::A, End::B] {
+            if line.is_held(model, old, end) && !line.is_held(model, new, end) {
+                sum += end_energy(model, after, index, end);
+            }
+        }
+    }
+    sum
+}
+
+/// Energy of motion and of weight of the half node at an end [J], when its velocity belongs to.
+fn end_energy(model: &Model, state: &State, index: usize, end: End) -> f64 {
+    let (line, shape) = (&model.lines[index], &state.lines[index]);
+    let water = model.water_along(state, index, state.time);
+    let (memory, i) = (&shape.half_step, line.end_node(end));
+    let (velocity, lag) = match memory.velocity.is_empty() {
+        true => (shape.velocity[i], 0.0),
+        false => (memory.velocity[i], 0.5 * memory.steps[0]),
+    };
+    let [across, along] = squares(shape, i, velocity);
+    let [normal, tangent] = line.nodes.masses(i, dry_part(line, shape, i, water));
+    0.5 * (normal * across + tangent * along)
+        + line.nodes.weight[i] * (shape.position[i].z - lag * velocity.z)
 }
 
 /// Energy of a whole line on its closed form.
@@ -448,7 +512,8 @@ pub fn power(model: &Model, network: &Network, state: &State, t: f64) -> Flow {
     let mut flow = Flow::default();
     for &index in &network.lines {
         let (line, shape) = (&model.lines[index], &state.lines[index]);
-        flow.add(line_power(line, shape, model, model.stream(t)));
+        let water = model.water_along(state, index, t);
+        flow.add(line_power(line, shape, model, water));
         if model.lines[index].bending.is_some() {
             flow.add(bending_power(model, &model.lines[index], state, index));
         }
@@ -457,28 +522,41 @@ pub fn power(model: &Model, network: &Network, state: &State, t: f64) -> Flow {
         let velocity = &state.points[point].velocity;
         flow.given += model.points[point].load_at(t).dot(velocity);
         if let Some(free) = model.points[point].free() {
-            let (bottom, point) = (model.bottom.as_deref(), &state.points[point]);
-            flow.add(point_power(free, bottom, point, model.stream(t)));
+            let waves = state.waves_at_point(point, t);
+            flow.add(point_power(
+                free,
+                model.bottom.as_deref(),
+                &state.points[point],
+                (model.stream(t), waves),
+            ));
         }
     }
     flow
 }
 
-/// Power that a current gives a free point, and that water and seabed take from it [W]; what joins the added mass where it dips in
+/// Power that moving water gives a free point, and that water and seabed take from it [W]; what joins the added mass where it dips in
 /// is negative.
 fn point_power(
     free: &FreePoint,
     bottom: Option<&Bottom>,
     state: &PointState,
-    stream: Option<Stream>,
+    (stream, waves): (Option<Stream>, Option<Orbit>),
 ) -> Flow {
     let (z, velocity) = (state.position.z, state.velocity);
-    let at = free.at(z);
-    let water = stream.map_or(Vector3::zeros(), |stream| stream.velocity(z));
+    let mut water = stream.map_or(Vector3::zeros(), |stream| stream.velocity(z));
+    let (mut at, mut given, mut sinks) = (free.at(z), 0.0, velocity.z);
+    if let Some(orbit) = &waves {
+        let still = at.weight;
+        at = free.at(z - orbit.elevation);
+        water += orbit.velocity;
+        sinks -= orbit.rise; // relative to the surface
+        given += free.pressed(at.wetted, orbit).dot(&velocity);
+        given += (still - at.weight) * velocity.z;
+    }
     let past = velocity - water;
     let drag = free.drag(at.wetted, past);
     let mut lost = -drag.dot(&past);
-    lost -= 0.5 * at.mass_slope * velocity.z * velocity.norm_squared();
+    lost -= 0.5 * at.mass_slope * sinks * velocity.norm_squared();
     if let Some(bottom) = bottom {
         let push = resting_point(free, bottom, state, 0.0, 1.0).and_then(|point| point.push());
         lost -= push.map_or(0.0, |push| push.force.dot(&velocity));
@@ -486,10 +564,8 @@ fn point_power(
         let push = normal_force(contact.coefficients, contact.level - z, velocity.z);
         lost -= push * velocity.z;
     }
-    Flow {
-        given: drag.dot(&water),
-        lost,
-    }
+    given += drag.dot(&water);
+    Flow { given, lost }
 }
 
 /// Power of the shear at held ends, and that of the joints' dampers [W].
@@ -512,10 +588,10 @@ fn bending_power(model: &Model, line: &Line, state: &State, index: usize) -> Flo
     }
 }
 
-fn line_power(line: &Line, shape: &LineState, model: &Model, stream: Option<Stream>) -> Flow {
+fn line_power(line: &Line, shape: &LineState, model: &Model, water: WaterAlong) -> Flow {
     let (n, negative) = (line.segment_count(), model.solver.negative_tension);
     let segments = &line.segments;
-    let [a, b] = line.ends.map(|point| model.points[point].free().is_none());
+    let [a, b] = [End::A, End::B].map(|end| line.is_held(model, shape, end));
     let mut flow = Flow::default();
     for i in 0..n {
         let chord = shape.position[i + 1] - shape.position[i];
@@ -526,10 +602,18 @@ fn line_power(line: &Line, shape: &LineState, model: &Model, stream: Option<Stre
         let direction = chord / length;
         let unstretched = segments.length[i];
         let stretch = segments.law[i].at(length / unstretched - 1.0);
-        let elastic = segments.axial_stiffness[i] * stretch.force;
+        let mut elastic = segments.axial_stiffness[i] * stretch.force;
         let stretching = direction.dot(&(shape.velocity[i + 1] - shape.velocity[i]));
-        let damping = segments.axial_damping[i] * stretching / unstretched;
+        let mut damping = segments.axial_damping[i] * stretching / unstretched;
         let least = 0.0 - line.compression_max(i);
+        if let Some(creep) = Creeping::of(line, shape, i) {
+            let now = Stretching {
+                strain: length / unstretched - 1.0,
+                rate: stretching / unstretched,
+            };
+            (elastic, damping) = creep.forces(now);
+            flow.lost += creep.loss(now, elastic.max(least)) * unstretched;
+        }
         let tension = total_tension(elastic, damping, least, negative);
         flow.lost += (tension - elastic.max(least)) * stretching;
         if i == 0 && a {
@@ -540,16 +624,34 @@ fn line_power(line: &Line, shape: &LineState, model: &Model, stream: Option<Stre
         }
     }
     for i in usize::from(a)..=n - usize::from(b) {
-        flow.add(node_power(line, shape, i, stream));
+        flow.add(node_power(line, shape, i, water));
     }
     if line.surface.is_some() {
-        flow.add(surface_power(line, shape, [a, b]));
+        flow.add(surface_power(line, shape, [a, b], water));
     }
     flow
 }
 
-/// Power of held ends on the buoyancy that they lack, and minus that of the added mass which joins the nodes with the water [W].
-fn surface_power(line: &Line, shape: &LineState, held: [bool; 2]) -> Flow {
+/// ½ vᵀṀv of a node whose added mass differs along and across the line, as that turns [W].
+fn turning_power(line: &Line, shape: &LineState, i: usize, water: WaterAlong) -> f64 {
+    let [normal, along] = line.nodes.masses(i, dry_part(line, shape, i, water));
+    if normal == along {
+        return 0.0;
+    }
+    let (low, high) = (i.saturating_sub(1), (i + 1).min(shape.position.len() - 1));
+    let length = (shape.position[high] - shape.position[low]).norm();
+    if length == 0.0 {
+        return 0.0;
+    }
+    let (tangent, velocity) = (tangent(shape, i), shape.velocity[i]);
+    let rate = (shape.velocity[high] - shape.velocity[low]) / length; // of the chord [1/s]
+    let turning = rate - rate.dot(&tangent) * tangent;
+    (along - normal) * velocity.dot(&tangent) * velocity.dot(&turning)
+}
+
+/// Power of held ends on the buoyancy that they lack in calm water, that of the buoyancy by which waves exceed it on the other nodes, and
+/// minus that of the added mass which joins the nodes with the water [W].
+fn surface_power(line: &Line, shape: &LineState, held: [bool; 2], water: WaterAlong) -> Flow {
     let (mut flow, nodes) = (Flow::default(), &line.nodes);
     let Some(surface) = &line.surface else {
         return flow;
@@ -560,10 +662,19 @@ fn surface_power(line: &Line, shape: &LineState, held: [bool; 2]) -> Flow {
         .zip(held)
         .filter_map(|(i, held)| held.then_some(i))
     {
-        flow.given += surface.node(node, &shape.position).weight * shape.velocity[node].z;
+        let calm = surface.node(node, &shape.position);
+        flow.given += calm.weight * shape.velocity[node].z;
     }
+    if water.waves.is_some() {
+        for i in usize::from(held[0])..=n - usize::from(held[1]) {
+            let calm = surface.node(i, &shape.position);
+            let now = surface.node_in(water, i, &shape.position);
+            flow.given += (calm.weight - now.weight) * shape.velocity[i].z;
+        }
+    }
+    let sinks = |node: usize| shape.velocity[node].z - water.rise(node);
     for i in 0..n {
-        let heights = [i, i + 1].map(|node| surface.height(&shape.position[node]));
+        let heights = surface.heights(i, &shape.position, water);
         let Some(at) = surface.segment(i, heights, 0.0) else {
             continue;
         };
@@ -571,8 +682,7 @@ fn surface_power(line: &Line, shape: &LineState, held: [bool; 2]) -> Flow {
             if (node == 0 && held[0]) || (node == n && held[1]) {
                 continue;
             }
-            let drying =
-                at.slopes[end] * shape.velocity[i].z + at.slopes[end + 1] * shape.velocity[i + 1].z; // [1/s]
+            let drying = at.slopes[end] * sinks(i) + at.slopes[end + 1] * sinks(i + 1); // [1/s]
             let [across, along] = squares(shape, node, shape.velocity[node]);
             let air = nodes.mass[node];
             let added =
@@ -583,25 +693,29 @@ fn surface_power(line: &Line, shape: &LineState, held: [bool; 2]) -> Flow {
     flow
 }
 
-/// Power that water, mass damping and seabed take from a node, and that a current gives it [W].
-fn node_power(line: &Line, shape: &LineState, i: usize, stream: Option<Stream>) -> Flow {
+/// Power that water, mass damping and seabed take from a node, and that moving water gives it [W].
+fn node_power(line: &Line, shape: &LineState, i: usize, water: WaterAlong) -> Flow {
     let (nodes, velocity) = (&line.nodes, shape.velocity[i]);
-    let (mut given, mut lost) = (0.0, 0.0);
+    let (mut given, mut lost) = (0.0, -turning_power(line, shape, i, water));
     if let Some(coefficients) = &nodes.drag {
         let k = DragCoefficients {
             normal: coefficients.normal[i],
             tangent: coefficients.tangent[i],
         }
-        .times(1.0 - dry_part(line, shape, i));
+        .times(1.0 - dry_part(line, shape, i, water));
         let tangent = tangent(shape, i);
-        match stream.map(|stream| stream.velocity(shape.position[i].z)) {
-            None => lost -= drag(k, velocity, tangent).dot(&velocity),
-            Some(water) => {
-                let force = drag(k, velocity - water, tangent);
-                given += force.dot(&water);
-                lost -= force.dot(&(velocity - water));
-            }
+        if water.is_still() {
+            lost -= drag(k, velocity, tangent).dot(&velocity);
+        } else {
+            let flow = water.velocity(i, shape.position[i].z);
+            let force = drag(k, velocity - flow, tangent);
+            given += force.dot(&flow);
+            lost -= force.dot(&(velocity - flow));
         }
+    }
+    if let (Some(pressed), Some(waves)) = (&nodes.pressed, &water.waves) {
+        let force = pressed.force(i, waves.at(i).acceleration, tangent(shape, i));
+        given += (1.0 - dry_part(line, shape, i, water)) * force.dot(&velocity);
     }
     if let Some(damping) = &nodes.mass_damping {
         lost += damping[i] * velocity.norm_squared();

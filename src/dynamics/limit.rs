@@ -13,7 +13,7 @@
 //! Source: Belytschko, Liu & Moran (2000), Nonlinear Finite Elements for Continua and Structures, section 6.2.6 (damped
 //! central differences with lagged velocity). Contact is implicit and sets no limit.
 
-use crate::model::{End, Line, Model};
+use crate::model::{End, Line, Model, Segments};
 
 /// Part of the closed-form limit that is used [-].
 const SAFETY: f64 = 0.9;
@@ -31,8 +31,7 @@ pub fn explicit_step(line: &Line) -> f64 {
     for i in 1..line.segment_count() {
         let (left, right) = (stiffness(line, i - 1), stiffness(line, i));
         let omega = ((2.0 * (left + right) + heave(line, i)) / line.least_mass(i)).sqrt();
-        let lag = segments.axial_damping[i - 1] / segments.axial_stiffness[i - 1];
-        let lag = lag.max(segments.axial_damping[i] / segments.axial_stiffness[i]); // BA/EA [s]
+        let lag = lag(segments, i - 1).max(lag(segments, i));
         limit = limit.min(damped_limit(omega, lag));
     }
     limit
@@ -44,7 +43,8 @@ pub fn free_point_step(model: &Model, point: usize) -> f64 {
         return f64::INFINITY;
     };
     let own = free.sphere.map_or(0.0, |sphere| sphere.stiffness_max());
-    let (mut mass, mut sum, mut lag) = (free.mass, 0.5 * own, 0.0_f64);
+    let mut alone = 0.0_f64; // greatest k/M of one line, should all others part
+    let (mut mass, mut sum, mut longest) = (free.mass, 0.5 * own, 0.0_f64);
     for &(index, end) in &model.points[point].attached {
         let line = &model.lines[index];
         let node = line.end_node(end);
@@ -54,17 +54,37 @@ pub fn free_point_step(model: &Model, point: usize) -> f64 {
         };
         mass += line.least_mass(node);
         sum += stiffness(line, segment) + 0.5 * heave(line, node);
-        lag =
-            lag.max(line.segments.axial_damping[segment] / line.segments.axial_stiffness[segment]);
+        if line.parting.is_some() {
+            alone = lone_rates(model, point);
+        }
+        longest = longest.max(lag(&line.segments, segment));
     }
-    damped_limit((2.0 * sum / mass).sqrt(), lag)
+    damped_limit((2.0 * (sum / mass).max(alone)).sqrt(), longest)
+}
+
+/// Greatest ratio of a segment's stiffness to the mass of its half node [1/s²] among the lines at a point.
+fn lone_rates(model: &Model, point: usize) -> f64 {
+    let attached = model.points[point].attached.iter();
+    let rate = |&(index, end): &(usize, End)| {
+        let line = &model.lines[index];
+        let node = line.end_node(end);
+        let spring = stiffness(line, if end == End::A { 0 } else { node - 1 });
+        (spring + 0.5 * heave(line, node)) / line.least_mass(node)
+    };
+    attached.map(rate).fold(0.0, f64::max)
 }
 
 /// k = EA/l of a segment [N/m], at the greatest slope expected of its strain measure.
 fn stiffness(line: &Line, i: usize) -> f64 {
     let segments = &line.segments;
     let slope = segments.law[i].at(STRAIN_EXPECTED).slope.max(1.0);
-    segments.axial_stiffness[i] * slope / segments.length[i]
+    segments.in_motion(i).0 * slope / segments.length[i]
+}
+
+/// BA/EA of a segment [s].
+fn lag(segments: &Segments, i: usize) -> f64 {
+    let (stiffness, damping) = segments.in_motion(i);
+    damping / stiffness
 }
 
 /// Limit for a circular frequency ω [rad/s] and BA/EA [s], with safety.
@@ -80,7 +100,7 @@ pub fn axial_accuracy_step(line: &Line, tolerance: f64) -> f64 {
         .map(|i| {
             let mass = line.nodes.mass_tangent[i] + line.nodes.mass_tangent[i + 1];
             let length = line.nodes.length[i] + line.nodes.length[i + 1];
-            segments.length[i] * (mass / length / segments.axial_stiffness[i]).sqrt()
+            segments.length[i] * (mass / length / segments.in_motion(i).0).sqrt()
         })
         .sum();
     4.0 * travel / STEPS_PER_AXIAL_PERIOD * (tolerance / 0.02).sqrt()

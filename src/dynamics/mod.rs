@@ -4,6 +4,7 @@ pub mod advance;
 pub mod axial_implicit;
 pub mod beam;
 mod choice;
+mod creep;
 pub mod implicit;
 mod layout;
 pub mod leapfrog;
@@ -13,6 +14,7 @@ pub mod motion;
 pub mod network;
 pub mod quasi_static;
 pub mod reaction;
+mod sea;
 mod surface;
 
 pub use choice::Choice;

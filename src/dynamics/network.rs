@@ -2,9 +2,11 @@
 
 use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 
+use super::layout::Water;
 use super::leapfrog::{EndLoad, LineWork, Step};
 use super::ledger::Flow;
 use crate::model::{End, FreePoint, Kinematics, Model, Network, PointAtHeight, PointState, State};
+use crate::physics::airy::Orbit;
 use crate::physics::friction::{Axes, Friction};
 use crate::statics::assembly::rubbing::point_stick;
 
@@ -14,6 +16,9 @@ pub struct NetworkWork {
     /// Lines, in the order of the network.
     pub lines: Vec<LineWork>,
     points: Vec<PointState>,
+    /// What waves do at the free points at both ends of a span of time [s], where there are waves.
+    waves: Vec<[Orbit; 2]>,
+    times: [f64; 2],
     /// Springs of the bed under the point that is stepped.
     springs: Vec<Spring>,
     /// Energy given to and lost by the free points since the state was loaded [J].
@@ -41,13 +46,9 @@ impl NetworkWork {
                 let held = model.lines[line]
                     .ends
                     .map(|point| model.points[point].free().is_none());
-                let profile = model.current.as_ref().map(|current| &current.profile);
-                LineWork::new(
-                    &model.lines[line],
-                    profile,
-                    held,
-                    model.solver.negative_tension,
-                )
+                let data = &model.lines[line];
+                let water = Water::around(model, data);
+                LineWork::new(data, water, held, model.solver.negative_tension)
             })
             .collect::<Option<Vec<LineWork>>>()?;
         let points = vec![PointState::at_rest(Vector3::zeros()); network.free_points.len()];
@@ -59,6 +60,8 @@ impl NetworkWork {
         Some(NetworkWork {
             lines,
             points,
+            waves: Vec::with_capacity(network.free_points.len()),
+            times: [0.0; 2],
             springs: Vec::with_capacity(springs.unwrap_or(0)),
             point_flow: Flow::default(),
         })
@@ -68,6 +71,16 @@ impl NetworkWork {
     pub fn load(&mut self, network: &Network, state: &State) {
         for (work, &line) in self.lines.iter_mut().zip(&network.lines) {
             work.load(&state.lines[line]);
+        }
+        for (work, &line) in self.lines.iter_mut().zip(&network.lines) {
+            work.load_waves(state.waves.as_ref(), line);
+        }
+        self.waves.clear();
+        if let Some(span) = &state.waves {
+            self.times = span.times;
+            let points = network.free_points.iter();
+            let ends = points.map(|&point| [0, 1].map(|end| span.ends[end].points[point]));
+            self.waves.extend(ends);
         }
         self.point_flow = Flow::default();
         for (point, &index) in self.points.iter_mut().zip(&network.free_points) {
@@ -128,9 +141,12 @@ impl NetworkWork {
         held: &impl Fn(usize, f64) -> Kinematics,
     ) {
         self.set_current(model, t);
-        self.lines
-            .iter_mut()
-            .for_each(|line| line.pull_segments(step));
+        for (work, &line) in self.lines.iter_mut().zip(&network.lines) {
+            if let Some(partings) = &model.lines[line].parting {
+                work.part_ends(partings, t, step);
+            }
+            work.pull_segments(step);
+        }
         self.step_points(model, network, t, step);
         for line in &mut self.lines {
             line.kick_nodes(step);
@@ -138,8 +154,9 @@ impl NetworkWork {
         }
         self.put_ends(model, network, t + step.drift, step, held);
         for line in &mut self.lines {
+            line.creep(step);
             line.book_ends(step);
-            line.meet_surface(true);
+            line.meet_surface(Some(step));
         }
     }
 
@@ -147,11 +164,14 @@ impl NetworkWork {
     pub fn meet_surface(&mut self) {
         self.lines
             .iter_mut()
-            .for_each(|line| line.meet_surface(false));
+            .for_each(|line| line.meet_surface(None));
     }
 
-    /// Sets the current to that of `t` [s].
+    /// Sets current and waves to those of `t` [s].
     pub fn set_current(&mut self, model: &Model, t: f64) {
+        if model.waves.is_some() {
+            self.lines.iter_mut().for_each(|line| line.set_time(t));
+        }
         if let Some(stream) = model.stream(t) {
             self.lines
                 .iter_mut()
@@ -195,6 +215,12 @@ impl NetworkWork {
         }
     }
 
+    /// Motion of the water by waves at a free point, by its place in the network, at `t` [s].
+    fn waves_at(&self, free: usize, t: f64) -> Option<Orbit> {
+        let [before, after] = self.waves.get(free)?;
+        Some(Orbit::between(before, after, self.times, t))
+    }
+
     fn step_points(&mut self, model: &Model, network: &Network, t: f64, step: Step) {
         for (free, &index) in network.free_points.iter().enumerate() {
             let [last, before] = self.points[free].half_step;
@@ -203,25 +229,8 @@ impl NetworkWork {
             let Some(law) = point.free() else { continue };
             let height = self.points[free].position.z;
             let bed = Bed::under(model, self.points[free].position);
-            let at = law.at(height);
-            let stream = model.stream(t);
-            let water = stream.map_or(Vector3::zeros(), |stream| stream.velocity(height));
-            let drag = law.drag(at.wetted, now - water);
-            let mut load = EndLoad {
-                force: point.load_at(t) - at.weight * Vector3::z() + drag,
-                resistance: drag,
-                current_power: drag.dot(&water),
-                mass: at.mass * Matrix3::identity(),
-                contact: law.contact.map_or([0.0; 3], |contact| {
-                    let k = contact.coefficients;
-                    let level = if model.bottom.is_some() {
-                        contact.lift()
-                    } else {
-                        contact.level
-                    };
-                    [k.stiffness, k.damping, k.stiffness * level]
-                }),
-            };
+            let waves = self.waves_at(free, t);
+            let (at, mut load) = load_in_water(model, index, law, [height, t], now, waves);
             self.springs.clear();
             self.springs
                 .extend(Spring::new(load.contact, bed.height, step));
@@ -229,6 +238,9 @@ impl NetworkWork {
                 let Some(at) = network.lines.iter().position(|&l| l == line) else {
                     continue;
                 };
+                if self.lines[at].is_parted(end) {
+                    continue;
+                }
                 let brought = self.lines[at].end_load(end, now);
                 load.add(&brought);
                 self.springs
@@ -241,7 +253,18 @@ impl NetworkWork {
             self.point_flow.given += step.kick * point.load_at(t).dot(&mean) + by_current;
             self.point_flow.lost -=
                 step.kick * load.resistance.dot(&mean) + kicked.impulse.dot(&mean) - by_current;
-            self.point_flow.lost -= mass_work(law, at, height, [last, velocity], step);
+            self.point_flow.given += step.kick * load.press.dot(&mean);
+            let surface = |t: f64| self.waves_at(free, t).map_or(0.0, |w| w.elevation);
+            let before = t - 0.5 * (2.0 * step.kick - step.drift);
+            let surfaces = [before, t + 0.5 * step.drift].map(surface);
+            let brought = mass_work(
+                law,
+                at,
+                [height, surfaces[0], surfaces[1]],
+                [last, velocity],
+                step,
+            );
+            self.point_flow.lost -= brought;
             let state = &mut self.points[free];
             state.half_step = [velocity, last];
             state.acceleration = (velocity - last) / step.kick;
@@ -252,6 +275,46 @@ impl NetworkWork {
             }
         }
     }
+}
+
+/// What weight, load and water bring to a free point at a height [m] and a time [s] that moves at `now` [m/s], without lines and bed; and
+/// what it is there. Its buoyancy beside that under still water counts as pressed by the waves.
+fn load_in_water(
+    model: &Model,
+    index: usize,
+    law: &FreePoint,
+    [height, t]: [f64; 2],
+    now: Vector3<f64>,
+    waves: Option<Orbit>,
+) -> (PointAtHeight, EndLoad) {
+    let point = &model.points[index];
+    let surface = waves.map_or(0.0, |orbit| orbit.elevation);
+    let at = law.at(height - surface);
+    let stream = model.stream(t);
+    let mut water = stream.map_or(Vector3::zeros(), |stream| stream.velocity(height));
+    let (mut press, mut weight) = (Vector3::zeros(), at.weight);
+    if let Some(orbit) = &waves {
+        water += orbit.velocity;
+        weight = law.at(height).weight;
+        press = law.pressed(at.wetted, orbit) + (weight - at.weight) * Vector3::z();
+    }
+    let drag = law.drag(at.wetted, now - water);
+    let load = EndLoad {
+        force: point.load_at(t) - weight * Vector3::z() + drag + press,
+        resistance: drag,
+        press,
+        current_power: drag.dot(&water),
+        mass: at.mass * Matrix3::identity(),
+        contact: law.contact.map_or([0.0; 3], |contact| {
+            let k = contact.coefficients;
+            let level = match model.bottom {
+                Some(_) => contact.lift(),
+                None => contact.level,
+            };
+            [k.stiffness, k.damping, k.stiffness * level]
+        }),
+    };
+    (at, load)
 }
 
 /// Mass of a free point and of the half nodes tied to it, at least [kg].
@@ -266,17 +329,17 @@ fn tied_mass(model: &Model, point: usize) -> f64 {
 }
 
 /// Energy of motion [J] that a point has from the water which joins it, or that leaves with the water, between the half steps around t_n;
-/// `at` is what it is at t_n.
+/// `at` is what it is at t_n at a height [m], the surface being at two elevations [m] at the half steps.
 fn mass_work(
     law: &FreePoint,
     at: PointAtHeight,
-    height: f64,
+    [height, before, after]: [f64; 3],
     [last, velocity]: [Vector3<f64>; 2],
     step: Step,
 ) -> f64 {
     let last_drift = 2.0 * step.kick - step.drift;
-    let low = height - 0.5 * last_drift * last.z;
-    let high = height + 0.5 * step.drift * velocity.z;
+    let low = height - 0.5 * last_drift * last.z - before;
+    let high = height + 0.5 * step.drift * velocity.z - after;
     let [low, high] = [low, high].map(|z| law.at(z).mass);
     0.5 * (at.mass - low) * last.norm_squared() + 0.5 * (high - at.mass) * velocity.norm_squared()
 }
@@ -305,6 +368,7 @@ impl EndLoad {
     fn add(&mut self, other: &EndLoad) {
         self.force += other.force;
         self.resistance += other.resistance;
+        self.press += other.press;
         self.current_power += other.current_power;
         self.mass += other.mass;
     }

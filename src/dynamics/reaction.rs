@@ -2,7 +2,7 @@
 //!
 //! The end's half node belongs to the line, so that what the vessel feels is
 //!
-//! F = T q + S − [M(t) a + w ẑ − f_drag − f_bed],
+//! F = T q + S − [M(t) a + w ẑ − f_drag − f_waves − f_bed],
 //!
 //! T q pointing into the line, S the shear of a line with bending stiffness, v and a those of the point. Leaving the half node out would make the end force first order in
 //! the segment length. A line on its closed-form catenary brings the forces of that.
@@ -12,9 +12,9 @@
 use nalgebra::Vector3;
 
 use super::beam::BeamView;
+use super::creep::{Creeping, Stretching};
 use super::leapfrog::segment_tension;
-use crate::model::{Dry, End, Line, LineState, PointState};
-use crate::physics::flow::Stream;
+use crate::model::{Dry, End, Line, LineState, PointState, WaterAlong};
 use crate::physics::morison::{self, DragCoefficients};
 use crate::statics::assembly::end_shear;
 
@@ -27,6 +27,10 @@ pub fn tension(line: &Line, state: &LineState, i: usize, negative_tension: bool)
         return 0.5 * (closed_form.tension[i] + closed_form.tension[i + 1]);
     }
     let pair = |values: &[Vector3<f64>]| [values[i], values[i + 1]];
+    if let Some(creep) = Creeping::of(line, state, i) {
+        let strain = Stretching::of(line, i, pair(&state.position), pair(&state.velocity));
+        return creep.tension(strain, line.compression_max(i), negative_tension);
+    }
     segment_tension(
         line,
         i,
@@ -36,15 +40,18 @@ pub fn tension(line: &Line, state: &LineState, i: usize, negative_tension: bool)
     )
 }
 
-/// Force [N] of the line on the point at one of its ends, in a current or still water.
+/// Force [N] of the line on the point at one of its ends, in water that moves or rests.
 pub fn end_force(
     line: &Line,
     state: &LineState,
     end: End,
     point: &PointState,
-    stream: Option<Stream>,
+    water: WaterAlong,
     negative_tension: bool,
 ) -> Vector3<f64> {
+    if state.parted[usize::from(end == End::B)] {
+        return Vector3::zeros();
+    }
     if let Some(view) = BeamView::of(line, state) {
         return view.end_action(end, point).0;
     }
@@ -66,7 +73,7 @@ pub fn end_force(
     let (velocity, acceleration) = (point.velocity, point.acceleration);
     let surface = line.surface.as_ref();
     let dry = surface.map_or(Dry::default(), |surface| {
-        surface.node(node, &state.position)
+        surface.node_in(water, node, &state.position)
     });
     let along = acceleration.dot(&inward) * inward;
     let [mass_normal, mass_tangent] = nodes.masses(node, dry.part);
@@ -82,8 +89,12 @@ pub fn end_force(
             tangent: drag.tangent[node],
         }
         .times(1.0 - dry.part);
-        let flow = stream.map_or(Vector3::zeros(), |s| s.velocity(state.position[node].z));
+        let flow = water.velocity(node, state.position[node].z);
         force += morison::drag(coefficients, velocity - flow, inward);
+    }
+    if let (Some(pressed), Some(waves)) = (&nodes.pressed, &water.waves) {
+        let wet = 1.0 - dry.part;
+        force += wet * pressed.force(node, waves.at(node).acceleration, inward);
     }
     if let Some(damping) = &nodes.mass_damping {
         force -= damping[node] * velocity;

@@ -17,6 +17,10 @@ pub(super) struct SurfaceNow {
     /// Height of the water at the nodes [m].
     pub level: Vec<f64>,
     dry: Vec<Dry>,
+    /// Buoyancy that the nodes would lack in calm water [N], where there are waves.
+    calm: Vec<f64>,
+    /// Work of the buoyancy by which waves exceed that of calm water, since it was last cleared [J].
+    pub lifted: f64,
     /// Dry parts at t_{n−1} [-].
     before: Vec<f64>,
     /// Energy of motion that joined with the water since it was last cleared [J].
@@ -32,6 +36,8 @@ pub(super) struct NodeNow {
     pub masses: [f64; 2],
     /// Drag coefficients across and along the line [N s²/m²].
     pub drag: [f64; 2],
+    /// Mass of the water that presses, across and along the line [kg].
+    pub pressed: [f64; 2],
 }
 
 impl SurfaceNow {
@@ -44,6 +50,8 @@ impl SurfaceNow {
             level: vec![0.0; count],
             dry: vec![Dry::default(); count],
             before: vec![0.0; count],
+            calm: vec![0.0; count],
+            lifted: 0.0,
             joined: 0.0,
         })
     }
@@ -67,6 +75,24 @@ impl SurfaceNow {
         }
     }
 
+    /// Finds what nodes at the heights `z` [m] would lack in calm water.
+    pub fn find_calm(&mut self, z: &[f64]) {
+        self.calm.fill(0.0);
+        for i in 0..self.surface.radius.len() {
+            let heights = [i, i + 1].map(|node| z[FIRST + node]);
+            if let Some(at) = self.surface.segment(i, heights, 0.0) {
+                for end in 0..2 {
+                    self.calm[i + end] += self.surface.buoyancy[i] * at.parts[end];
+                }
+            }
+        }
+    }
+
+    /// Books the work on node `i` [J] of what it has more buoyancy than in calm water, on its way up by `way` [m].
+    pub fn book_lift(&mut self, i: usize, way: f64) {
+        self.lifted += (self.calm[i] - self.dry[i].weight) * way;
+    }
+
     /// Nodes that are dry, or were before the last [`Self::find`].
     pub fn crossed(&self) -> impl Iterator<Item = usize> + '_ {
         let nodes = self.dry.iter().zip(&self.before).enumerate();
@@ -84,12 +110,20 @@ impl SurfaceNow {
             drag: drag.map_or([0.0; 2], |drag| {
                 [wet * drag.normal[i], wet * drag.tangent[i]]
             }),
+            pressed: nodes
+                .pressed
+                .as_ref()
+                .map_or([0.0; 2], |pressed| pressed.masses(i, dry.part)),
         }
     }
 
-    /// Buoyancy that a node lacks [N].
-    pub fn lack(&self, i: usize) -> f64 {
-        self.dry[i].weight
+    /// Buoyancy that a node lacks, in calm water where there are waves [N].
+    pub fn lack(&self, i: usize, waves: bool) -> f64 {
+        if waves {
+            self.calm[i]
+        } else {
+            self.dry[i].weight
+        }
     }
 
     /// Books what joined node `i` or left it since the [`Self::find`] before the last; `velocity` [m/s] and `position` [m] as laid out.

@@ -117,6 +117,7 @@ impl Scope<'_> {
             Parameter::Gravity => {
                 self.types()
                     .any(|name| scene.line_types[name].weight.is_none())
+                    || self.emerges()
                     || self
                         .free_points()
                         .any(|point| point.mass.is_some() || point.volume.is_some())
@@ -134,7 +135,7 @@ impl Scope<'_> {
 
     fn depends_on_property(&self, name: &str, property: Property) -> bool {
         match property {
-            Property::AxialStiffness | Property::Weight => true,
+            Property::AxialStiffness | Property::StaticStiffness | Property::Weight => true,
             Property::Mass => self.scene.line_types[name].weight.is_none(),
             Property::Diameter => {
                 self.is_buoyant(name) || (self.scene.seabed.is_some() && !self.closed_form)
@@ -143,6 +144,9 @@ impl Scope<'_> {
             | Property::ShearStiffness
             | Property::TorsionalStiffness => !self.closed_form,
             Property::RotaryInertia
+            | Property::DynamicStiffness
+            | Property::StaticDamping
+            | Property::DynamicDamping
             | Property::AxialDamping
             | Property::DampingRatio
             | Property::DragNormal
@@ -152,10 +156,18 @@ impl Scope<'_> {
         }
     }
 
-    /// Whether buoyancy is subtracted from the weight of a line type.
+    /// Whether buoyancy is subtracted from the weight of a line type, under water or where it comes out.
     fn is_buoyant(&self, name: &str) -> bool {
         let line_type = &self.scene.line_types[name];
-        self.scene.water.is_some() && line_type.weight.is_none() && line_type.diameter.is_some()
+        self.scene.water.is_some()
+            && line_type.diameter.is_some()
+            && (line_type.weight.is_none() || self.emerges())
+    }
+
+    /// Whether a line may come out of the water, which closed forms never do.
+    fn emerges(&self) -> bool {
+        let mut lines = self.lines.iter();
+        !self.closed_form && lines.any(|&line| self.model.lines[line].surface.is_some())
     }
 
     /// Line types that the lines use.

@@ -51,6 +51,14 @@ pub enum Property {
     TorsionalStiffness,
     /// Rotary inertia of a beam's section per length [kg m].
     RotaryInertia,
+    /// Static stiffness EA_s of a viscoelastic rope [N].
+    StaticStiffness,
+    /// Dynamic stiffness EA_d of a viscoelastic rope [N].
+    DynamicStiffness,
+    /// Damping BA_s of the slow part of a viscoelastic rope [N s].
+    StaticDamping,
+    /// Damping BA_d of the fast part of a viscoelastic rope [N s].
+    DynamicDamping,
     /// Axial damping BA [N s].
     AxialDamping,
     /// Axial damping as a ratio of the critical [-].
@@ -66,12 +74,36 @@ pub enum Property {
 }
 
 /// Properties with key, unit and meaning.
-const PROPERTIES: [(Property, &str, Unit, &str); 14] = [
+const PROPERTIES: [(Property, &str, Unit, &str); 18] = [
     (
         Property::AxialStiffness,
         "axial_stiffness",
         Unit::NEWTON,
         "axial stiffness EA",
+    ),
+    (
+        Property::StaticStiffness,
+        "static_stiffness",
+        Unit::NEWTON,
+        "static stiffness of a viscoelastic rope",
+    ),
+    (
+        Property::DynamicStiffness,
+        "dynamic_stiffness",
+        Unit::NEWTON,
+        "dynamic stiffness of a viscoelastic rope",
+    ),
+    (
+        Property::StaticDamping,
+        "static_damping",
+        Unit::NEWTON_SECOND,
+        "damping of the slow part of a viscoelastic rope",
+    ),
+    (
+        Property::DynamicDamping,
+        "dynamic_damping",
+        Unit::NEWTON_SECOND,
+        "damping of the fast part of a viscoelastic rope",
     ),
     (
         Property::BendingStiffness,
@@ -159,11 +191,15 @@ impl Property {
             Property::Mass => line_type.mass,
             Property::Weight => line_type.weight,
             Property::Diameter => line_type.diameter,
-            Property::AxialStiffness => Some(line_type.axial_stiffness),
+            Property::AxialStiffness => line_type.axial_stiffness,
             Property::BendingStiffness => line_type.bending_stiffness,
             Property::ShearStiffness => line_type.shear_stiffness,
             Property::TorsionalStiffness => line_type.torsional_stiffness,
             Property::RotaryInertia => line_type.rotary_inertia,
+            Property::StaticStiffness => line_type.static_stiffness,
+            Property::DynamicStiffness => line_type.dynamic_stiffness,
+            Property::StaticDamping => line_type.static_damping,
+            Property::DynamicDamping => line_type.dynamic_damping,
             Property::AxialDamping => line_type.axial_damping,
             Property::DampingRatio => line_type.damping_ratio,
             Property::DragNormal => line_type.drag_normal,
@@ -175,10 +211,7 @@ impl Property {
 
     fn set(self, line_type: &mut LineType, value: f64) {
         let target = match self {
-            Property::AxialStiffness => {
-                line_type.axial_stiffness = value;
-                return;
-            }
+            Property::AxialStiffness => &mut line_type.axial_stiffness,
             Property::Mass => &mut line_type.mass,
             Property::Weight => &mut line_type.weight,
             Property::Diameter => &mut line_type.diameter,
@@ -186,6 +219,10 @@ impl Property {
             Property::ShearStiffness => &mut line_type.shear_stiffness,
             Property::TorsionalStiffness => &mut line_type.torsional_stiffness,
             Property::RotaryInertia => &mut line_type.rotary_inertia,
+            Property::StaticStiffness => &mut line_type.static_stiffness,
+            Property::DynamicStiffness => &mut line_type.dynamic_stiffness,
+            Property::StaticDamping => &mut line_type.static_damping,
+            Property::DynamicDamping => &mut line_type.dynamic_damping,
             Property::AxialDamping => &mut line_type.axial_damping,
             Property::DampingRatio => &mut line_type.damping_ratio,
             Property::DragNormal => &mut line_type.drag_normal,

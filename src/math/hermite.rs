@@ -35,6 +35,11 @@ impl Hermite {
         }
     }
 
+    /// Coefficients of powers of the part of its span that is passed.
+    pub fn powers(&self) -> [f64; 4] {
+        self.powers
+    }
+
     /// Value and derivatives at time `t`.
     pub fn at(&self, t: f64) -> Sample {
         let u = (t - self.start) / self.span;

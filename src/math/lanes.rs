@@ -96,6 +96,24 @@ impl Lanes {
         Lanes(self.0.map(f))
     }
 
+    /// The bits of every lane, a whole number added and shifted to the left.
+    #[inline(always)]
+    pub fn shifted_bits(self, add: u64, left: u32) -> [u64; LANES] {
+        from_fn(|i| self.0[i].to_bits().wrapping_add(add) << left)
+    }
+
+    /// The numbers that have these bits.
+    #[inline(always)]
+    pub fn from_bits(bits: [u64; LANES]) -> Lanes {
+        Lanes(from_fn(|i| f64::from_bits(bits[i])))
+    }
+
+    /// Changes the sign of the lanes whose highest bit is set in `signs`, of which all other bits are 0.
+    #[inline(always)]
+    pub fn flip_signs(self, signs: [u64; LANES]) -> Lanes {
+        Lanes(from_fn(|i| f64::from_bits(self.0[i].to_bits() ^ signs[i])))
+    }
+
     /// Sum of the lanes.
     #[inline(always)]
     pub fn sum(self) -> f64 {
@@ -139,6 +157,17 @@ pub struct Vectors {
 }
 
 impl Vectors {
+    /// Zero vectors.
+    #[inline(always)]
+    pub fn zero() -> Vectors {
+        let zero = Lanes::splat(0.0);
+        Vectors {
+            x: zero,
+            y: zero,
+            z: zero,
+        }
+    }
+
     /// Scalar products.
     #[inline(always)]
     pub fn dot(self, other: Vectors) -> Lanes {

@@ -1,6 +1,8 @@
 //! Scene -> Model.
 
 mod beam;
+mod spacing;
+mod waves;
 
 use std::sync::Arc;
 
@@ -8,7 +10,7 @@ use nalgebra::Vector3;
 
 use super::{
     Bending, Bottom, Contact, Current, Drag, End, FreePoint, Line, Model, Motion, Network, Nodes,
-    Point, PointContact, Role, Section, Segments, Surface, Vessel, mesh,
+    Parting, Point, PointContact, Pressed, Role, Section, Segments, Surface, Vessel, mesh,
 };
 use crate::physics::bending;
 use crate::physics::flow::Profile;
@@ -19,7 +21,10 @@ use crate::physics::point::Sphere;
 use crate::physics::rayleigh;
 use crate::physics::seabed::{ContactCoefficients, regularised, under_point};
 use crate::physics::stretch::StretchLaw;
+use crate::physics::tension_table::TensionTable;
+use crate::physics::viscoelastic::Viscoelastic;
 use crate::physics::weight::{cross_section, submerged_weight};
+use crate::scene::channel::LineEnd;
 use crate::scene::{
     self, Axis, ContactLaw, FibreLaw, Integrator, LineModel, LineType, PointKind, RestShape, Scene,
     SceneError, Strain,
@@ -45,8 +50,9 @@ impl Model {
             .collect();
         let bottom = scene.seabed.as_ref().and_then(bottom).map(Arc::new);
         let mut lines = Vec::with_capacity(scene.lines.len());
+        let elements = spacing::elements(scene);
         for (index, line) in scene.lines.iter().enumerate() {
-            let mut built = build_line(scene, index, line)?;
+            let mut built = build_line(scene, index, line, (&points, &vessels), elements[index])?;
             rest_as_it_lies(&mut built, &points, line.rest_shape);
             lay_on(&mut built, bottom.as_ref());
             points[built.ends[0]].attached.push((index, End::A));
@@ -64,12 +70,18 @@ impl Model {
             bed_friction: scene.seabed.as_ref().map_or(0.0, |bed| bed.friction.axial),
             bottom,
             current: scene.water.as_ref().and_then(current),
+            waves: waves::waves(scene),
             networks,
             points,
             lines,
             vessels,
             solver: scene.solver.clone(),
         })
+    }
+
+    /// How many elements of which lengths [m] the lines have, and why, where this is the model of that scene: one sentence a line.
+    pub fn mesh_in_words(&self, scene: &Scene) -> Vec<String> {
+        spacing::in_words(scene, self)
     }
 }
 
@@ -229,10 +241,12 @@ fn point_contact(
 /// Properties of a line type in the scene's surroundings, per unstretched length.
 pub(super) struct LineLaw {
     law: StretchLaw,
-    axial_stiffness: f64,                 // EA [N]
+    axial_stiffness: f64,                 // EA [N], at rest
+    viscoelastic: Option<[f64; 2]>,       // EA_d [N], BA_s [N s]
     axial_damping: f64,                   // BA [N s], without the damping ratio's part
     damping_ratio: f64,                   // ζ [-]
     mass: f64,                            // m [kg/m]
+    displaced: f64,                       // ρA [kg/m]
     added_normal: f64,                    // ρA·C_an [kg/m]
     added_tangent: f64,                   // ρA·C_at [kg/m]
     weight: f64,                          // w [N/m]
@@ -247,7 +261,9 @@ pub(super) struct LineLaw {
 
 /// ζ as given; the numerical one where the line type says nothing of axial damping.
 fn damping_ratio(line_type: &LineType) -> f64 {
-    let silent = line_type.axial_damping.is_none() && line_type.rayleigh.is_none();
+    let silent = line_type.axial_damping.is_none()
+        && line_type.dynamic_damping.is_none()
+        && line_type.rayleigh.is_none();
     line_type
         .damping_ratio
         .unwrap_or(if silent { NUMERICAL_DAMPING_RATIO } else { 0.0 })
@@ -272,6 +288,21 @@ fn bending_stiffness(line_type: &LineType) -> f64 {
     bending::of_strands(solid.unwrap_or(0.0), strands, power)
 }
 
+/// The law of the axial force and its EA [N].
+fn stretch_law(line_type: &LineType) -> (StretchLaw, f64) {
+    if let Some(table) = &line_type.tension_strain {
+        let (table, ea) = TensionTable::through(&table.rows);
+        return (StretchLaw::Tabulated(table), ea);
+    }
+    let law = match line_type.strain {
+        Strain::Engineering => StretchLaw::Engineering,
+        Strain::Green => StretchLaw::Green,
+        Strain::Logarithmic(poisson) => StretchLaw::Logarithmic { poisson },
+    };
+    let stiffness = line_type.axial_stiffness.or(line_type.static_stiffness);
+    (law, stiffness.unwrap_or(0.0))
+}
+
 fn line_law(scene: &Scene, line_type: &LineType) -> LineLaw {
     let density = scene.water.as_ref().map_or(0.0, |water| water.density);
     let displaced = line_type
@@ -286,7 +317,7 @@ fn line_law(scene: &Scene, line_type: &LineType) -> LineLaw {
     let rayleigh = line_type
         .rayleigh
         .map(|r| rayleigh::coefficients(r.ratios, r.frequencies));
-    let ea = line_type.axial_stiffness;
+    let (law, ea) = stretch_law(line_type);
     let drag = line_type.diameter.and_then(|diameter| {
         let (normal, tangent) = (
             line_type.drag_normal.unwrap_or(0.0),
@@ -306,16 +337,20 @@ fn line_law(scene: &Scene, line_type: &LineType) -> LineLaw {
             })
         });
     LineLaw {
-        law: match line_type.strain {
-            Strain::Engineering => StretchLaw::Engineering,
-            Strain::Green => StretchLaw::Green,
-            Strain::Logarithmic(poisson) => StretchLaw::Logarithmic { poisson },
-        },
+        law,
         axial_stiffness: ea,
-        axial_damping: line_type.axial_damping.unwrap_or(0.0)
+        viscoelastic: line_type
+            .dynamic_stiffness
+            .zip(line_type.static_damping)
+            .map(<[f64; 2]>::from),
+        axial_damping: line_type
+            .axial_damping
+            .or(line_type.dynamic_damping)
+            .unwrap_or(0.0)
             + rayleigh.map_or(0.0, |r| r.stiffness * ea),
         damping_ratio: damping_ratio(line_type),
         mass,
+        displaced,
         added_normal: displaced * line_type.added_mass_normal.unwrap_or(0.0),
         added_tangent: displaced * line_type.added_mass_tangential.unwrap_or(0.0),
         weight,
@@ -329,7 +364,14 @@ fn line_law(scene: &Scene, line_type: &LineType) -> LineLaw {
     }
 }
 
-fn build_line(scene: &Scene, index: usize, line: &scene::Line) -> Result<Line, SceneError> {
+/// A line of the scene that is to have so many elements [-] where the scene leaves them open.
+fn build_line(
+    scene: &Scene,
+    index: usize,
+    line: &scene::Line,
+    (points, vessels): (&[Point], &[Vessel]),
+    elements: f64,
+) -> Result<Line, SceneError> {
     let point = |key: &str, name: &str| {
         scene
             .points
@@ -353,16 +395,17 @@ fn build_line(scene: &Scene, index: usize, line: &scene::Line) -> Result<Line, S
         })?;
         laws.push(line_law(scene, line_type));
     }
-    let elements = mesh::section_elements(line, scene.solver.tolerance);
-    let beam = beam::build(scene, index, line, &laws, &elements)?;
-    let parts: Vec<SegmentPart> = line
-        .sections
+    check_mixture(index, &laws)?;
+    let wanted = spacing::refinements(scene, line, ends.map(|end| &points[end]), vessels, &laws);
+    let lengths = mesh::lengths(&pieces(line), elements, &wanted);
+    let beam = beam::build(scene, index, line, &laws, &lengths)?;
+    let parts: Vec<SegmentPart> = laws
         .iter()
-        .zip(&laws)
-        .zip(&elements)
-        .flat_map(|((section, law), &count)| {
-            let length = section.length / count as f64;
-            std::iter::repeat_n(SegmentPart { length, law }, count)
+        .zip(&lengths)
+        .flat_map(|(law, lengths)| {
+            lengths
+                .iter()
+                .map(move |&length| SegmentPart { length, law })
         })
         .collect();
     let sections = line
@@ -373,7 +416,7 @@ fn build_line(scene: &Scene, index: usize, line: &scene::Line) -> Result<Line, S
             length: section.length,
             weight: law.weight,
             axial_stiffness: law.axial_stiffness,
-            law: law.law,
+            law: law.law.clone(),
         });
     let mut built = Line {
         name: line.name.clone(),
@@ -385,12 +428,48 @@ fn build_line(scene: &Scene, index: usize, line: &scene::Line) -> Result<Line, S
         sections: sections.collect(),
         initial: line.initial.clone(),
         beam,
+        parting: partings(line),
     };
     built.bending = line_bending(index, line, &parts, &built)?;
     if scene.meets_surface(line) {
         built.surface = Some(Surface::new(&parts, &built.nodes.length));
     }
     Ok(built)
+}
+
+/// When the ends of a line part from their points.
+fn partings(line: &scene::Line) -> Option<[Parting; 2]> {
+    let mut partings = [Parting::default(); 2];
+    let side = |end: LineEnd| usize::from(end == LineEnd::B);
+    if let Some(end) = line.release {
+        partings[side(end)].on_release = true;
+    }
+    if let Some(parting) = &line.parting {
+        let end = &mut partings[side(parting.at)];
+        (end.tension, end.time) = (parting.tension, parting.time);
+    }
+    (line.release.is_some() || line.parting.is_some()).then_some(partings)
+}
+
+/// Refuses a viscoelastic section beside one of another strain measure.
+fn check_mixture(index: usize, laws: &[LineLaw]) -> Result<(), SceneError> {
+    let viscoelastic = laws.iter().any(|law| law.viscoelastic.is_some());
+    if viscoelastic && laws.iter().any(|law| law.law != StretchLaw::Engineering) {
+        return Err(SceneError::new(
+            format!("lines[{index}].sections"),
+            "a viscoelastic section stands beside sections of engineering strain only, without a table",
+        ));
+    }
+    Ok(())
+}
+
+/// Sections as the mesher sees them.
+fn pieces(line: &scene::Line) -> Vec<mesh::Piece> {
+    let piece = |section: &scene::Section| mesh::Piece {
+        length: section.length,
+        elements: section.elements,
+    };
+    line.sections.iter().map(piece).collect()
 }
 
 /// Joints and clamps of a line, where any of its sections has bending stiffness.
@@ -445,15 +524,28 @@ fn segments(parts: &[SegmentPart]) -> Segments {
             axial_damping,
             damping_ratio,
             mass,
+            viscoelastic,
             ..
         } = part.law;
+        let ea = viscoelastic.map_or(*ea, |[fast, _]| fast);
         axial_damping + damping_ratio * part.length * (ea * mass).sqrt()
     };
+    let axial_damping: Vec<f64> = parts.iter().map(damping).collect();
+    let viscoelastic = |(part, damping): (&SegmentPart, &f64)| match part.law.viscoelastic {
+        Some([fast, slow_damping]) => {
+            Viscoelastic::new([part.law.axial_stiffness, fast], [slow_damping, *damping])
+        }
+        None => Viscoelastic::plain(part.law.axial_stiffness, *damping),
+    };
     Segments {
+        viscoelastic: parts
+            .iter()
+            .any(|part| part.law.viscoelastic.is_some())
+            .then(|| parts.iter().zip(&axial_damping).map(viscoelastic).collect()),
         length: parts.iter().map(|part| part.length).collect(),
         axial_stiffness: parts.iter().map(|part| part.law.axial_stiffness).collect(),
-        axial_damping: parts.iter().map(damping).collect(),
-        law: parts.iter().map(|part| part.law.law).collect(),
+        axial_damping,
+        law: parts.iter().map(|part| part.law.law.clone()).collect(),
     }
 }
 
@@ -465,6 +557,11 @@ fn nodes(scene: &Scene, parts: &[SegmentPart], contact_in_reach: bool) -> Nodes 
     let drag = any(&|law| law.drag.is_some()).then(|| Drag {
         normal: lump(&|law| law.drag.map_or(0.0, |drag| drag.normal)),
         tangent: lump(&|law| law.drag.map_or(0.0, |drag| drag.tangent)),
+    });
+    let waves = scene.water.as_ref().is_some_and(|w| w.waves.is_some());
+    let pressed = (waves && any(&|law| law.displaced > 0.0)).then(|| Pressed {
+        normal: lump(&|law| law.displaced + law.added_normal),
+        tangent: lump(&|law| law.displaced + law.added_tangent),
     });
     let contact = (contact_in_reach && any(&|law| law.contact.is_some())).then(|| {
         let stiffness = lump(&|law| law.contact.map_or(0.0, |contact| contact.stiffness));
@@ -486,6 +583,7 @@ fn nodes(scene: &Scene, parts: &[SegmentPart], contact_in_reach: bool) -> Nodes 
         length,
         weight,
         drag,
+        pressed,
         contact,
     }
 }

@@ -10,6 +10,7 @@ mod build;
 mod initial;
 mod mesh;
 mod motion;
+mod sea;
 mod state;
 mod surface;
 mod vessel;
@@ -18,16 +19,19 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 
+use crate::physics::airy::{Orbit, Waves};
 use crate::physics::flow::{Profile, Stream};
 use crate::physics::point::{Sphere, Wetted};
 use crate::physics::seabed::ContactCoefficients;
 use crate::physics::stretch::StretchLaw;
+use crate::physics::viscoelastic::Viscoelastic;
 use crate::scene::{InitialShape, PointForce, PointMoment, Solver, TimeFunction};
 
 pub use beam::{Beam, BeamElement, BeamState};
 pub use bending::{Bending, joint};
 pub use bottom::Bottom;
 pub use motion::{Kinematics, Motion, Pose};
+pub use sea::{WaterAlong, WaveSpan, WavesAlong, WavesAt};
 pub use state::{ClosedForm, LineState, PointState, State};
 pub use surface::{Dry, Surface};
 pub use vessel::{Frame, Vessel};
@@ -45,6 +49,8 @@ pub struct Model {
     pub bottom: Option<Arc<Bottom>>,
     /// The current, where the water flows.
     pub current: Option<Current>,
+    /// The waves, where there are some.
+    pub waves: Option<Waves>,
     /// Points in the order of the scene.
     pub points: Vec<Point>,
     /// Lines in the order of the scene.
@@ -196,10 +202,30 @@ pub struct Line {
     pub initial: InitialShape,
     /// What makes it a beam, where it is one.
     pub beam: Option<Beam>,
+    /// When ends A and B part from their points, where one of them may.
+    pub parting: Option<[Parting; 2]>,
+}
+
+/// When an end of a line parts from its point.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Parting {
+    /// Tension of the end's segment that parts it [N].
+    pub tension: Option<f64>,
+    /// Time from which on it is parted [s].
+    pub time: Option<f64>,
+    /// Whether the host's input parts it.
+    pub on_release: bool,
+}
+
+impl Parting {
+    /// Whether an end under a tension [N] at time `t` [s] parts by itself.
+    pub fn parts(&self, tension: f64, t: f64) -> bool {
+        self.tension.is_some_and(|most| tension >= most) || self.time.is_some_and(|time| t >= time)
+    }
 }
 
 /// A section as the closed-form catenary takes it.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Section {
     /// Unstretched length [m].
     pub length: f64,
@@ -222,6 +248,8 @@ pub struct Segments {
     pub axial_damping: Vec<f64>,
     /// Strain measure.
     pub law: Vec<StretchLaw>,
+    /// What replaces stiffness and damping in motion, where the line has a viscoelastic section; EA is then the static one.
+    pub viscoelastic: Option<Vec<Viscoelastic>>,
 }
 
 /// Lumped properties of the nodes: per-length properties times half of each neighbouring segment.
@@ -241,6 +269,8 @@ pub struct Nodes {
     pub weight: Vec<f64>,
     /// Drag, where there is water and a coefficient.
     pub drag: Option<Drag>,
+    /// What the water presses with where waves accelerate it.
+    pub pressed: Option<Pressed>,
     /// Contact, where there is a seabed in reach.
     pub contact: Option<Contact>,
     /// Mass-proportional damping α·m [N s/m], where a line type has it.
@@ -254,6 +284,39 @@ pub struct Drag {
     pub normal: Vec<f64>,
     /// Along the line [N s²/m²].
     pub tangent: Vec<f64>,
+}
+
+/// Mass of the water whose acceleration a node feels: that of the displaced water, by the pressure of the undisturbed wave (Froude and
+/// Krylov), and the added mass. Across the line ρA(1 + C_an)l, along it ρA(1 + C_at)l, since the pressure that the effective tension leaves
+/// out acts along the line too.
+#[derive(Debug, Clone)]
+pub struct Pressed {
+    /// Across the line [kg].
+    pub normal: Vec<f64>,
+    /// Along the line [kg].
+    pub tangent: Vec<f64>,
+}
+
+impl Pressed {
+    /// Force [N] on a node whose unit tangent is `tangent` [-], by water of an acceleration [m/s²].
+    #[inline]
+    pub fn force(
+        &self,
+        node: usize,
+        acceleration: Vector3<f64>,
+        tangent: Vector3<f64>,
+    ) -> Vector3<f64> {
+        let excess = self.tangent[node] - self.normal[node];
+        self.normal[node] * acceleration + excess * acceleration.dot(&tangent) * tangent
+    }
+}
+
+impl Pressed {
+    /// This node as it is where a `dry` part of it [-] is out of the water: mass across and along the line [kg].
+    #[inline]
+    pub fn masses(&self, node: usize, dry: f64) -> [f64; 2] {
+        [&self.normal, &self.tangent].map(|masses| (1.0 - dry) * masses[node])
+    }
 }
 
 /// Lumped contact coefficients of the nodes.
@@ -282,6 +345,16 @@ pub struct Network {
     pub free_points: Vec<usize>,
 }
 
+impl Segments {
+    /// Stiffness [N] and damping [N s] that a segment has in fast motion.
+    pub fn in_motion(&self, i: usize) -> (f64, f64) {
+        match &self.viscoelastic {
+            Some(laws) => (laws[i].fast, laws[i].damping),
+            None => (self.axial_stiffness[i], self.axial_damping[i]),
+        }
+    }
+}
+
 impl Line {
     /// Number of segments n.
     pub fn segment_count(&self) -> usize {
@@ -301,6 +374,17 @@ impl Line {
     /// Whether a current acts on it.
     pub fn drifts(&self, model: &Model) -> bool {
         self.nodes.drag.is_some() && model.current.is_some()
+    }
+
+    /// Whether an end is held: by a point that forces do not move, and that it has not parted from.
+    pub fn is_held(&self, model: &Model, state: &LineState, end: End) -> bool {
+        let side = usize::from(end == End::B);
+        model.points[self.ends[side]].free().is_none() && !state.parted[side]
+    }
+
+    /// Whether waves act on it.
+    pub fn heaves(&self, model: &Model) -> bool {
+        model.waves.is_some() && (self.nodes.drag.is_some() || self.nodes.pressed.is_some())
     }
 
     /// Index of the node at an end.
@@ -330,12 +414,12 @@ impl Line {
 
     /// The strain measure, where all segments share one.
     pub fn uniform_law(&self) -> Option<StretchLaw> {
-        let first = self.segments.law[0];
+        let first = &self.segments.law[0];
         self.segments
             .law
             .iter()
-            .all(|law| *law == first)
-            .then_some(first)
+            .all(|law| law == first)
+            .then(|| first.clone())
     }
 }
 
@@ -371,6 +455,14 @@ impl FreePoint {
     pub fn drag(&self, wetted: Wetted, velocity: Vector3<f64>) -> Vector3<f64> {
         let sphere = self.sphere.as_ref();
         sphere.map_or(Vector3::zeros(), |sphere| sphere.drag(wetted, velocity))
+    }
+
+    /// Force [N] of the water that waves accelerate, where it is wet.
+    #[inline]
+    pub fn pressed(&self, wetted: Wetted, orbit: &Orbit) -> Vector3<f64> {
+        let sphere = self.sphere.as_ref();
+        let mass = sphere.map_or(0.0, |sphere| sphere.displaced + sphere.added_mass);
+        mass * wetted.part * orbit.acceleration
     }
 
     /// Energy of weight and buoyancy at a height z [m], in [J].

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
 
-use super::{BeamState, Kinematics, Line};
+use super::{BeamState, Kinematics, Line, WaveSpan};
 
 /// State of a whole model at one time.
 #[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -14,6 +14,8 @@ pub struct State {
     pub points: Vec<PointState>,
     /// Lines, in the order of the model.
     pub lines: Vec<LineState>,
+    /// What waves do at the nodes around this time, where there are waves.
+    pub waves: Option<WaveSpan>,
 }
 
 /// State of a point.
@@ -48,6 +50,10 @@ pub struct LineState {
     pub half_step: HalfStep,
     /// The rest of the closed-form catenary that the nodes lie on; kept by quasi-static networks only.
     pub closed_form: Option<ClosedForm>,
+    /// Strain of the slow part of every segment [-]; empty unless the line is viscoelastic and in motion.
+    pub creep: Vec<f64>,
+    /// Whether ends A and B have parted from their points.
+    pub parted: [bool; 2],
     /// What the nodes of a beam have beside positions and velocities.
     pub beam: Option<BeamState>,
     /// Where the nodes would lie if the friction of the bed let go of them [m]; empty without friction.
@@ -118,6 +124,25 @@ impl LineState {
             .map(|beam| BeamState::at_rest(beam, &self.position, attitude));
     }
 
+    /// Gives a viscoelastic line at rest on its positions the slow strains that belong to them.
+    pub fn become_viscoelastic(&mut self, line: &Line) {
+        self.creep.clear();
+        if let Some(laws) = &line.segments.viscoelastic {
+            let chords = self
+                .position
+                .windows(2)
+                .map(|pair| (pair[1] - pair[0]).norm());
+            let strains = chords
+                .zip(&line.segments.length)
+                .map(|(l, l0)| l / l0 - 1.0);
+            self.creep.extend(
+                laws.iter()
+                    .zip(strains)
+                    .map(|(law, strain)| law.rest(strain)),
+            );
+        }
+    }
+
     /// At rest at the given node positions [m].
     pub fn at_rest(position: Vec<Vector3<f64>>) -> LineState {
         let zeros = vec![Vector3::zeros(); position.len()];
@@ -127,6 +152,8 @@ impl LineState {
             position,
             half_step: HalfStep::default(),
             closed_form: None,
+            creep: Vec::new(),
+            parted: [false; 2],
             beam: None,
             anchor: Vec::new(),
         }
@@ -151,7 +178,8 @@ macro_rules! clone_in_place {
 clone_in_place!(State {
     time,
     points,
-    lines
+    lines,
+    waves
 });
 clone_in_place!(LineState {
     position,
@@ -159,6 +187,8 @@ clone_in_place!(LineState {
     acceleration,
     half_step,
     closed_form,
+    creep,
+    parted,
     beam,
     anchor
 });

@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 
-use super::Nodes;
 use super::build::SegmentPart;
+use super::{Nodes, WaterAlong};
 use crate::physics::surface::{self, Emerged, slope_max};
 
 /// Radius [m] of a part without a diameter, on which the water does not act: it only tells a neighbouring part where the surface is.
@@ -52,10 +52,16 @@ impl Surface {
         }
     }
 
-    /// Height of a node at `position` [m] over the water [m].
+    /// Height of a node at `position` [m] over the water at rest [m].
     #[inline]
     pub fn height(&self, position: &Vector3<f64>) -> f64 {
         position.z
+    }
+
+    /// Heights of the nodes of segment `i` over the water [m].
+    #[inline]
+    pub fn heights(&self, i: usize, position: &[Vector3<f64>], water: WaterAlong) -> [f64; 2] {
+        [i, i + 1].map(|node| self.height(&position[node]) - water.elevation(node))
     }
 
     /// How much of segment `i`, taken as having a radius of at least `breadth` [m], is dry between ends at `heights` [m] over the water;
@@ -70,11 +76,16 @@ impl Surface {
         2.0 * self.buoyancy[i] * surface::energy(self.radius[i], heights)
     }
 
-    /// Node `i` of a line that lies as `position` [m] says.
+    /// Node `i` of a line that lies in calm water as `position` [m] says.
     pub fn node(&self, i: usize, position: &[Vector3<f64>]) -> Dry {
+        self.node_in(WaterAlong::default(), i, position)
+    }
+
+    /// Node `i` of a line that lies in the `water` as `position` [m] says.
+    pub fn node_in(&self, water: WaterAlong, i: usize, position: &[Vector3<f64>]) -> Dry {
         let mut dry = Dry::default();
         let mut add = |segment: usize, end: usize| {
-            let heights = [segment, segment + 1].map(|node| self.height(&position[node]));
+            let heights = self.heights(segment, position, water);
             if let Some(at) = self.segment(segment, heights, 0.0) {
                 let share = self.share[segment][end];
                 dry.part += share * at.parts[end];

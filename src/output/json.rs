@@ -16,7 +16,7 @@
 //! | `lines[].laid_length` | m | unstretched length that lies on the seabed |
 //! | `lines[].stretched_length` | m | length of the line under tension |
 //! | `lines[].sag` | m | greatest vertical distance below the chord between the two ends |
-//! | `lines[].catenary` | | closed-form elastic catenary of the line with bed friction, beside the above; `null` where it has none: an end is free, or the strain is not engineering strain |
+//! | `lines[].catenary` | | closed-form elastic catenary of the line with bed friction, beside the above; `null` where it has none: an end is free, the strain is not engineering strain, or the line comes out of the water |
 //! | `….tension_a`, `tension_b` | N | axial tension at its ends |
 //! | `….horizontal`, `vertical`, `laid_length`, `sag` | N, m | as of the line |
 //! | `lines[].profile[]` | | nodes from end A to end B |

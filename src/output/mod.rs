@@ -3,6 +3,7 @@
 //! All of it is written from plain numbers: a [`record::Record`] of a run, a [`json::Statics`] of an equilibrium. Nothing here
 //! prints. A file appears under its name only when it is whole ([`write_file`]).
 
+pub mod accuracy;
 pub mod channels;
 pub mod collect;
 pub mod csv;

@@ -7,21 +7,46 @@
 //!
 //! u along θ, w upwards; the accelerations are ∂/∂t of these, as the theory is linear. Above and below z = 0 the
 //! argument is stretched as Wheeler does, z' = h (z − η)/(h + η) with the elevation η of all components (deep water: z − η), so that the water
-//! moves at the surface as the linear theory says of z = 0; there is no water above η. The ramp ½(1 − cos πt/t_r) multiplies
-//! the amplitudes up to the time t_r; its own rate is left out of the acceleration.
+//! moves at the surface as the linear theory says of z = 0. What is above η moves as the water at η does. The ramp ½(1 − cos πt/t_r)
+//! multiplies the amplitudes up to the time t_r; its rate is a part of the accelerations.
+//!
+//! A place is moved only by components that reach it: with A = a ω² e^{kz} the acceleration that a component would have there in deep
+//! water and R = √Σ(aω²)², those of the highest frequencies are left out that all have A < 10⁻⁴ R/√N. They add up to less than 10⁻⁴ of the
+//! acceleration at the surface. z is taken three standard deviations of the elevation too high for that, for the troughs. From the
+//! elevation that stretches z those of the highest frequencies are left out whose √Σa² times √Σ(k aω² e^{kz})² is below 10⁻⁴ R; near the
+//! surface that is none.
+//!
+//! Between two instants not further apart than [`Waves::interval`] velocity, acceleration and elevation follow cubics with the slopes
+//! that they have there, [`Orbit::between`]. By the error h⁴f⁗/384 of that cubic the interval h = (384·10⁻³ √Σ(aω²)²/√Σ(aω⁶)²)^¼ leaves
+//! an error of 10⁻³ of the acceleration, or less, beside what the stretching makes of the slopes, of the order of (ka)². h is also
+//! at most half of √Σ(aω)²/√Σ(aω²)², a twelfth of the period of a single wave, since places are foretold over that time by their
+//! velocities, and at most 0.5 s.
 //!
 //! Source: Airy (1845) as in Dean & Dalrymple (1991), Water Wave Mechanics for Engineers and Scientists, chapter 3; Wheeler (1970), J.
 //! Petroleum Technology 22(3), 359-367. Valid for ka ≪ 1. The dispersion relation is solved by Newton's method from the
 //! guess k = ω²/g · (1 − exp(−(ω²h/g)^(5/4)))^(−2/5) (Guo, 2002, Coastal Engineering 45, 71-74), which is right to 0.75 %.
 
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
 use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
+
+use crate::math::elementary::{exp, sin_cos};
+use crate::math::hermite::Hermite;
+use crate::math::lanes::{LANES, Lanes};
 
 /// Newton steps of the dispersion relation, at most [-]; from a guess right to 1 % three are enough.
 const NEWTON_STEPS_MAX: usize = 20;
-/// kh above which cosh and sinh are exponentials to rounding [-].
-const DEEP: f64 = 20.0;
+/// Part of the surface's acceleration that components left out may have together [-].
+const REACH: f64 = 1e-4;
+/// Standard deviations of the elevation that the surface may be lowered by where components are left out [-].
+const TROUGH: f64 = 3.0;
+/// Error of the cubics between two instants, over the acceleration [-].
+const BETWEEN: f64 = 1e-3;
+/// Longest time between two instants [s].
+const INTERVAL_MAX: f64 = 0.5;
+/// Deepest trough, over the depth [-]: the bed does not fall dry.
+const TROUGH_MAX: f64 = 0.9;
 
 /// One wave train.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -36,21 +61,105 @@ pub struct Component {
     pub phase: f64,
 }
 
-/// Motion of the water at a place.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+/// Motion of the water at a place by the waves.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Orbit {
     /// Velocity [m/s].
     pub velocity: Vector3<f64>,
     /// Acceleration ∂u/∂t [m/s²].
     pub acceleration: Vector3<f64>,
+    /// Rate of the acceleration ∂²u/∂t² [m/s³].
+    pub jerk: Vector3<f64>,
+    /// Elevation of the surface above or below the place, by the components that stretch the place, all of them near the surface [m].
+    pub elevation: f64,
+    /// Its rate by the components that reach the place, all of them near the surface [m/s].
+    pub rise: f64,
+}
+
+impl Orbit {
+    /// The motion at time `t` [s] between two instants `t0` and `t1` [s], by cubics with the slopes at both; `before` where they are one.
+    pub fn between(before: &Orbit, after: &Orbit, [t0, t1]: [f64; 2], t: f64) -> Orbit {
+        if t1 <= t0 {
+            return *before;
+        }
+        let cubic = |p0, m0, p1, m1| Hermite::new((t0, p0, m0), (t1, p1, m1)).at(t);
+        let mut orbit = Orbit::default();
+        for i in 0..3 {
+            let [a0, a1] = [before.acceleration[i], after.acceleration[i]];
+            orbit.velocity[i] = cubic(before.velocity[i], a0, after.velocity[i], a1).value;
+            let acceleration = cubic(a0, before.jerk[i], a1, after.jerk[i]);
+            (orbit.acceleration[i], orbit.jerk[i]) = (acceleration.value, acceleration.slope);
+        }
+        let surface = cubic(before.elevation, before.rise, after.elevation, after.rise);
+        (orbit.elevation, orbit.rise) = (surface.value, surface.slope);
+        orbit
+    }
+}
+
+/// Coefficients of the powers of u = (t − t₀)/(t₁ − t₀) in the velocity [m/s] and the acceleration [m/s²] between two instants.
+pub fn cubics(before: &Orbit, after: &Orbit, [t0, t1]: [f64; 2]) -> [[Vector3<f64>; 4]; 2] {
+    let cubic = |[p0, m0]: [Vector3<f64>; 2], [p1, m1]: [Vector3<f64>; 2]| {
+        let (m0, m1, rise) = ((t1 - t0) * m0, (t1 - t0) * m1, p1 - p0);
+        [p0, m0, 3.0 * rise - 2.0 * m0 - m1, m0 + m1 - 2.0 * rise]
+    };
+    [
+        cubic(
+            [before.velocity, before.acceleration],
+            [after.velocity, after.acceleration],
+        ),
+        cubic(
+            [before.acceleration, before.jerk],
+            [after.acceleration, after.jerk],
+        ),
+    ]
 }
 
 /// A sum of wave trains.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Waves {
-    trains: Vec<(Component, f64)>,
+    /// By frequency, the lowest first.
+    components: Vec<Component>,
+    table: Table,
+    /// For every component, the height below which no place is moved by it or by those after it [m].
+    reach: Vec<f64>,
+    /// For every component, the height below which its elevation, and that of those after it, stretches no place [m].
+    stretch: Vec<f64>,
     depth: Option<f64>,
     ramp: Option<f64>,
+    interval: f64,
+}
+
+/// The components for the kernels: four side by side, padded with components of no amplitude.
+#[derive(Debug, Clone, PartialEq, Default)]
+struct Table {
+    amplitude: Vec<f64>,
+    frequency: Vec<f64>,
+    wave_number: Vec<f64>,
+    /// cos θ and sin θ [-].
+    heading: [Vec<f64>; 2],
+    /// q = e^{−2kh} [-], 0 in deep water.
+    bed: Vec<f64>,
+    /// 1/(1 − q) [-].
+    whole: Vec<f64>,
+}
+
+impl Table {
+    #[inline(always)]
+    fn headings(&self, at: usize) -> (Lanes, Lanes) {
+        let [east, north] = &self.heading;
+        (Lanes::load(east, at), Lanes::load(north, at))
+    }
+}
+
+/// The waves at one time: what every place needs of it. Also the scratch of the places.
+#[derive(Debug, Clone, Default)]
+pub struct Instant {
+    /// −ωt + φ of the components, within a turn [rad].
+    turn: Vec<f64>,
+    /// Growth of the ramp [-], with its rate [1/s] and the rate of that [1/s²].
+    growth: [f64; 3],
+    sine: Vec<f64>,
+    cosine: Vec<f64>,
 }
 
 /// Wave number k [1/m] of a circular frequency ω > 0 [rad/s] over a depth [m], deep water where none, under gravity [m/s²].
@@ -78,73 +187,275 @@ impl Waves {
         ramp: Option<f64>,
         gravity: f64,
     ) -> Waves {
-        let train = |c: &Component| (*c, wave_number(c.frequency, depth, gravity));
+        let mut components = components.to_vec();
+        components.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
+        let number = |c: &Component| wave_number(c.frequency, depth, gravity);
+        let numbers: Vec<f64> = components.iter().map(number).collect();
+        let column = |value: &dyn Fn(&Component, f64) -> f64| {
+            let mut column: Vec<f64> = components
+                .iter()
+                .zip(&numbers)
+                .map(|(c, k)| value(c, *k))
+                .collect();
+            column.resize(components.len().next_multiple_of(LANES), 0.0);
+            column
+        };
         Waves {
-            trains: components.iter().map(train).collect(),
+            table: Table {
+                amplitude: column(&|c, _| c.amplitude),
+                frequency: column(&|c, _| c.frequency),
+                wave_number: column(&|_, k| k),
+                heading: [
+                    column(&|c, _| c.direction.cos()),
+                    column(&|c, _| c.direction.sin()),
+                ],
+                bed: column(&|_, k| depth.map_or(0.0, |h| (-2.0 * k * h).exp())),
+                whole: column(&|_, k| depth.map_or(1.0, |h| -1.0 / (-2.0 * k * h).exp_m1())),
+            },
+            reach: reach(&components, &numbers),
+            stretch: stretch(&components, &numbers),
+            interval: interval(&components),
+            components,
             depth,
             ramp,
         }
     }
 
+    /// The components, the lowest frequency first.
+    pub fn components(&self) -> &[Component] {
+        &self.components
+    }
+
+    /// Longest time between two instants that cubics may bridge [s].
+    pub fn interval(&self) -> f64 {
+        self.interval
+    }
+
+    /// Standard deviation of the elevation once the ramp has passed [m].
+    pub fn deviation(&self) -> f64 {
+        deviation(&self.components)
+    }
+
+    /// Height below which nothing moves [m].
+    pub fn lowest_reach(&self) -> f64 {
+        self.reach.first().copied().unwrap_or(0.0)
+    }
+
+    /// How many components, of the lowest frequencies, move the water at a height [m].
+    pub fn reaching(&self, z: f64) -> usize {
+        self.reach.partition_point(|reach| *reach <= z)
+    }
+
+    /// Turns the instant to a time [s].
+    pub fn turn_to(&self, t: f64, instant: &mut Instant) {
+        let size = self.table.amplitude.len();
+        let turn = |c: &Component| (c.phase - c.frequency * t).rem_euclid(TAU);
+        instant.turn.clear();
+        instant.turn.extend(self.components.iter().map(turn));
+        instant.turn.resize(size, 0.0);
+        instant.sine.resize(size, 0.0);
+        instant.cosine.resize(size, 0.0);
+        instant.growth = self.growth(t);
+    }
+
     /// Elevation of the surface at x, y [m] and time t [s], in [m].
     pub fn elevation(&self, x: f64, y: f64, t: f64) -> f64 {
-        let sum: f64 = self
-            .trains
-            .iter()
-            .map(|(c, k)| c.amplitude * c.angle(*k, x, y, t).cos())
-            .sum();
-        self.growth(t) * sum
+        let mut instant = Instant::default();
+        self.turn_to(t, &mut instant);
+        let all = self.table.amplitude.len();
+        instant.growth[0] * self.raised(x, y, [0, all], &mut instant)
     }
 
-    /// Motion of the water at a place [m] and time t [s]; none above the surface.
-    pub fn orbit(&self, place: Vector3<f64>, t: f64) -> Option<Orbit> {
-        let elevation = self.elevation(place.x, place.y, t);
-        if place.z > elevation {
-            return None;
-        }
-        let stretched = match self.depth {
-            Some(h) => h * (place.z - elevation) / (h + elevation),
-            None => place.z - elevation,
-        };
-        let growth = self.growth(t);
-        let mut orbit = Orbit::default();
-        for (c, k) in &self.trains {
-            let [level, upward] = self.decay(*k, stretched);
-            let (sin, cos) = c.angle(*k, place.x, place.y, t).sin_cos();
-            let speed = growth * c.amplitude * c.frequency;
-            let along = Vector3::new(c.direction.cos(), c.direction.sin(), 0.0);
-            orbit.velocity += speed * (level * cos * along + upward * sin * Vector3::z());
-            orbit.acceleration +=
-                speed * c.frequency * (level * sin * along - upward * cos * Vector3::z());
-        }
-        Some(orbit)
-    }
-
-    /// cosh k(z + h)/sinh kh and sinh k(z + h)/sinh kh [-].
-    fn decay(&self, k: f64, z: f64) -> [f64; 2] {
-        match self.depth {
-            Some(h) if k * h < DEEP => {
-                let (argument, sinh) = (k * (z + h).max(0.0), (k * h).sinh());
-                [argument.cosh() / sinh, argument.sinh() / sinh]
+    /// Motion of the water at a place [m] and an instant; above the surface that of the surface.
+    #[inline(always)]
+    pub fn orbit(&self, place: Vector3<f64>, instant: &mut Instant) -> Orbit {
+        let count = self.reaching(place.z).next_multiple_of(LANES);
+        let [growth, rate, bend] = instant.growth;
+        let stretched = self.stretch.partition_point(|height| *height <= place.z);
+        let stretched = stretched.next_multiple_of(LANES).max(count);
+        let raised = self.raised(place.x, place.y, [count, stretched], instant);
+        let elevation = growth * raised;
+        let z = match self.depth {
+            Some(h) => {
+                let surface = elevation.max(-TROUGH_MAX * h);
+                (h * (place.z - surface) / (h + surface)).clamp(-h, 0.0)
             }
-            _ => [(k * z).exp(); 2],
+            None => (place.z - elevation).min(0.0),
+        };
+        let Sums {
+            velocity,
+            acceleration,
+            jerk,
+            rise,
+        } = self.sums(z, count, instant);
+        Orbit {
+            velocity: growth * velocity,
+            acceleration: growth * acceleration + rate * velocity,
+            jerk: growth * jerk + 2.0 * rate * acceleration + bend * velocity,
+            elevation,
+            rise: growth * rise + rate * raised,
         }
     }
 
-    fn growth(&self, t: f64) -> f64 {
+    /// Elevation of the first `stretched` components without the ramp [m]; leaves the sines and cosines of the first `count` in the instant.
+    #[inline(always)]
+    fn raised(&self, x: f64, y: f64, [count, stretched]: [usize; 2], instant: &mut Instant) -> f64 {
+        let table = &self.table;
+        let (x, y) = (Lanes::splat(x), Lanes::splat(y));
+        let mut sum = Lanes::splat(0.0);
+        for at in (0..stretched).step_by(LANES) {
+            let (east, north) = table.headings(at);
+            let way = x * east + y * north;
+            let angle = Lanes::load(&table.wave_number, at) * way + Lanes::load(&instant.turn, at);
+            let (sine, cosine) = sin_cos(angle);
+            sum = sum + Lanes::load(&table.amplitude, at) * cosine;
+            if at < count {
+                sine.store(&mut instant.sine, at);
+                cosine.store(&mut instant.cosine, at);
+            }
+        }
+        sum.sum()
+    }
+
+    /// Sums over the first `count` components at a stretched height [m], without the ramp.
+    #[inline(always)]
+    fn sums(&self, z: f64, count: usize, instant: &Instant) -> Sums {
+        let table = &self.table;
+        let mut sums = [Lanes::splat(0.0); 10];
+        for at in (0..count).step_by(LANES) {
+            let frequency = Lanes::load(&table.frequency, at);
+            let sine = Lanes::load(&instant.sine, at);
+            let cosine = Lanes::load(&instant.cosine, at);
+            let speed = Lanes::load(&table.amplitude, at) * frequency;
+            let [level, upward] = self.decay(at, z);
+            let (level, upward) = (speed * level, speed * upward);
+            // u ~ cos ψ, ∂u/∂t ~ ω sin ψ, ∂²u/∂t² ~ −ω² cos ψ; w ~ sin ψ, −ω cos ψ, −ω² sin ψ
+            let along = [cosine, frequency * sine, frequency * frequency * cosine];
+            let across = [sine, frequency * cosine, frequency * frequency * sine];
+            let (east, north) = table.headings(at);
+            let (east, north) = (level * east, level * north);
+            for order in 0..3 {
+                sums[3 * order] = sums[3 * order] + east * along[order];
+                sums[3 * order + 1] = sums[3 * order + 1] + north * along[order];
+                sums[3 * order + 2] = sums[3 * order + 2] + upward * across[order];
+            }
+            sums[9] = sums[9] + speed * sine;
+        }
+        let [vx, vy, vz, ax, ay, az, jx, jy, jz, rise] = sums;
+        Sums {
+            velocity: Vector3::new(vx.sum(), vy.sum(), vz.sum()),
+            acceleration: Vector3::new(ax.sum(), ay.sum(), -az.sum()),
+            jerk: -Vector3::new(jx.sum(), jy.sum(), jz.sum()),
+            rise: rise.sum(),
+        }
+    }
+
+    /// cosh k(z + h)/sinh kh and sinh k(z + h)/sinh kh [-] of four components: (E ± q/E)/(1 − q) with E = e^{kz}, q = e^{−2kh}.
+    #[inline(always)]
+    fn decay(&self, at: usize, z: f64) -> [Lanes; 2] {
+        let grown = exp(Lanes::load(&self.table.wave_number, at) * Lanes::splat(z));
+        if self.depth.is_none() {
+            return [grown; 2];
+        }
+        let mirrored = Lanes::load(&self.table.bed, at) * grown.recip();
+        let whole = Lanes::load(&self.table.whole, at);
+        [(grown + mirrored) * whole, (grown - mirrored) * whole]
+    }
+
+    /// ½(1 − cos πt/t_r), with its first two rates.
+    fn growth(&self, t: f64) -> [f64; 3] {
         match self.ramp {
-            Some(ramp) if t < ramp => 0.5 * (1.0 - (PI * (t / ramp).max(0.0)).cos()),
-            _ => 1.0,
+            Some(ramp) if t < ramp => {
+                let speed = PI / ramp;
+                let (sin, cos) = (speed * t.max(0.0)).sin_cos();
+                [
+                    0.5 * (1.0 - cos),
+                    0.5 * speed * sin,
+                    0.5 * speed * speed * cos,
+                ]
+            }
+            _ => [1.0, 0.0, 0.0],
         }
     }
 }
 
-impl Component {
-    /// ψ [rad].
-    fn angle(&self, k: f64, x: f64, y: f64, t: f64) -> f64 {
-        let (sin, cos) = self.direction.sin_cos();
-        k * (x * cos + y * sin) - self.frequency * t + self.phase
+/// Sums over components.
+struct Sums {
+    velocity: Vector3<f64>,
+    acceleration: Vector3<f64>,
+    jerk: Vector3<f64>,
+    rise: f64,
+}
+
+/// √Σ(aωⁿ)², √2 times a standard deviation.
+fn root(components: &[Component], power: i32) -> f64 {
+    let square = |c: &Component| (c.amplitude * c.frequency.powi(power)).powi(2);
+    components.iter().map(square).sum::<f64>().sqrt()
+}
+
+/// Standard deviation of the elevation [m].
+fn deviation(components: &[Component]) -> f64 {
+    root(components, 0) / 2.0_f64.sqrt()
+}
+
+fn interval(components: &[Component]) -> f64 {
+    let acceleration = root(components, 2);
+    if acceleration == 0.0 {
+        return INTERVAL_MAX;
     }
+    let smooth = (384.0 * BETWEEN * acceleration / root(components, 6)).powf(0.25);
+    let near = 0.5 * root(components, 1) / acceleration;
+    smooth.min(near).min(INTERVAL_MAX)
+}
+
+/// For every component, the height below which it and those after it move nothing [m].
+fn reach(components: &[Component], numbers: &[f64]) -> Vec<f64> {
+    let least = REACH * root(components, 2) / (components.len() as f64).sqrt();
+    let margin = TROUGH * deviation(components);
+    let of = |(c, k): (&Component, &f64)| {
+        let most = c.amplitude.abs() * c.frequency * c.frequency;
+        match most > 0.0 {
+            true => ((least / most).ln() / k - margin).min(0.0),
+            false => 0.0,
+        }
+    };
+    let mut heights: Vec<f64> = components.iter().zip(numbers).map(of).collect();
+    for j in (1..heights.len()).rev() {
+        heights[j - 1] = heights[j - 1].min(heights[j]);
+    }
+    heights
+}
+
+/// Heights that are tried for the elevation that stretches: each is deeper than the one before by this factor [-].
+const DEEPER: f64 = 1.15;
+/// Their number; the deepest is 2e5 times as deep as the first.
+const HEIGHTS: usize = 88;
+
+/// For every component, the height below which the elevation of it and of those after it is left out [m].
+fn stretch(components: &[Component], numbers: &[f64]) -> Vec<f64> {
+    let least = REACH * root(components, 2);
+    let margin = TROUGH * deviation(components);
+    let Some(longest) = numbers.first() else {
+        return Vec::new();
+    };
+    let first = 1e-4 / longest;
+    let mut slopes = Vec::with_capacity(HEIGHTS); // √Σ(k aω² e^{kz})², falling [1/s²]
+    for height in 0..HEIGHTS {
+        let z = -first * DEEPER.powi(height as i32);
+        let square = |(c, k): (&Component, &f64)| {
+            (k * c.amplitude * c.frequency.powi(2) * (k * z).exp()).powi(2)
+        };
+        let squares = components.iter().zip(numbers).map(square);
+        slopes.push((z - margin, squares.sum::<f64>().sqrt()));
+    }
+    let mut heights = vec![0.0; components.len()];
+    let mut tail = 0.0;
+    for (height, component) in heights.iter_mut().zip(components).rev() {
+        tail += component.amplitude.powi(2);
+        let deep = slopes.partition_point(|(_, slope)| slope * f64::sqrt(tail) > least);
+        *height = slopes.get(deep).map_or(f64::NEG_INFINITY, |(z, _)| *z);
+    }
+    heights
 }
 
 #[cfg(test)]
@@ -183,6 +494,71 @@ mod tests {
         assert_relative_eq!(wave_number(2.0, None, GRAVITY), 4.0 / GRAVITY);
     }
 
+    fn orbit(waves: &Waves, place: Vector3<f64>, t: f64) -> Orbit {
+        let mut instant = Instant::default();
+        waves.turn_to(t, &mut instant);
+        waves.orbit(place, &mut instant)
+    }
+
+    /// Velocity as the equations say it, component by component.
+    fn written_out(waves: &Waves, place: Vector3<f64>, t: f64) -> Vector3<f64> {
+        let angle = |c: &Component, k: f64| {
+            let way = place.x * c.direction.cos() + place.y * c.direction.sin();
+            k * way - c.frequency * t + c.phase
+        };
+        let trains: Vec<(Component, f64)> = waves
+            .components
+            .iter()
+            .map(|c| (*c, wave_number(c.frequency, waves.depth, GRAVITY)))
+            .collect();
+        let elevation: f64 = trains
+            .iter()
+            .map(|(c, k)| c.amplitude * angle(c, *k).cos())
+            .sum();
+        let h = waves.depth.unwrap_or(1e4);
+        let z = h * (place.z - elevation) / (h + elevation);
+        let velocity = |(c, k): &(Component, f64)| {
+            let decay = |f: fn(f64) -> f64| f(k * (z + h)) / (k * h).sinh();
+            let [level, upward] = match k * h < 20.0 {
+                true => [decay(f64::cosh), decay(f64::sinh)],
+                false => [(k * z).exp(); 2],
+            };
+            let along = Vector3::new(c.direction.cos(), c.direction.sin(), 0.0);
+            let (sin, cos) = angle(c, *k).sin_cos();
+            c.amplitude * c.frequency * (level * cos * along + upward * sin * Vector3::z())
+        };
+        trains.iter().map(velocity).sum()
+    }
+
+    /// A sea of many components of a height that matters.
+    fn storm(depth: Option<f64>) -> Waves {
+        let component = |i: u32| Component {
+            amplitude: 0.4,
+            frequency: 0.3 + 0.05 * f64::from(i),
+            direction: 0.1 * f64::from(i),
+            phase: f64::from(i * i),
+        };
+        let components: Vec<Component> = (0..30).map(component).collect();
+        Waves::new(&components, depth, None, GRAVITY)
+    }
+
+    #[test]
+    fn the_water_moves_as_the_sum_of_the_components_says() {
+        for depth in [Some(12.0), Some(60.0), None] {
+            let waves = storm(depth);
+            for (x, z, t) in [(0.0, -1.0, 0.0), (40.0, -5.0, 13.0), (-300.0, -11.9, 777.0)] {
+                let place = Vector3::new(x, 0.7 * x, z);
+                let expected = written_out(&waves, place, t);
+                let found = orbit(&waves, place, t).velocity;
+                let error = (found - expected).norm();
+                assert!(
+                    error < 1e-4 * expected.norm(),
+                    "{depth:?}, z = {z} m: {error:e}"
+                );
+            }
+        }
+    }
+
     #[test]
     fn small_waves_keep_the_volume_of_the_water_and_do_not_turn_it() {
         for depth in [Some(30.0), None] {
@@ -190,7 +566,7 @@ mod tests {
             let slope = |axis: usize| {
                 let mut step = Vector3::zeros();
                 step[axis] = d;
-                let at = |r| waves.orbit(r, t).unwrap().velocity;
+                let at = |r| orbit(&waves, r, t).velocity;
                 (at(place + step) - at(place - step)) / (2.0 * d)
             };
             let [x, y, z] = [slope(0), slope(1), slope(2)];
@@ -206,19 +582,85 @@ mod tests {
         let (x, y, t, d) = (5.0, 2.0, 7.0, 1e-3);
         let surface = waves.elevation(x, y, t);
         let rise = (waves.elevation(x, y, t + d) - waves.elevation(x, y, t - d)) / (2.0 * d);
-        let water = waves.orbit(Vector3::new(x, y, surface), t).unwrap();
+        let water = orbit(&waves, Vector3::new(x, y, surface), t);
         assert_relative_eq!(water.velocity.z, rise, max_relative = 1e-6);
-        let bed = waves.orbit(Vector3::new(x, y, -30.0), t).unwrap();
+        assert_relative_eq!(water.rise, rise, max_relative = 1e-6);
+        assert_eq!(water.elevation, surface);
+        let bed = orbit(&waves, Vector3::new(x, y, -30.0), t);
         assert!(bed.velocity.z.abs() < 1e-18 && bed.velocity.x != 0.0);
-        assert!(waves.orbit(Vector3::new(x, y, surface + 1e-9), t).is_none());
+        let above = orbit(&waves, Vector3::new(x, y, surface + 9.0), t);
+        assert_eq!(above, water);
     }
 
     #[test]
-    fn the_acceleration_is_the_rate_of_the_velocity() {
-        let (waves, place, t, d) = (sea(None), Vector3::new(3.0, -7.0, -8.0), 4.0, 1e-3);
-        let at = |t| waves.orbit(place, t).unwrap();
-        let rate = (at(t + d).velocity - at(t - d).velocity) / (2.0 * d);
-        assert!((rate - at(t).acceleration).norm() < 1e-4 * rate.norm());
+    fn the_acceleration_is_the_rate_of_the_velocity_and_the_jerk_that_of_the_acceleration() {
+        for ramp in [None, Some(9.0)] {
+            let (mut waves, d) = (sea(None), 1e-3);
+            waves.ramp = ramp;
+            let at = |t| orbit(&waves, Vector3::new(3.0, -7.0, -8.0), t);
+            let (before, now, after) = (at(4.0 - d), at(4.0), at(4.0 + d));
+            let rate = (after.velocity - before.velocity) / (2.0 * d);
+            assert!((rate - now.acceleration).norm() < 1e-4 * rate.norm());
+            let rate = (after.acceleration - before.acceleration) / (2.0 * d);
+            assert!((rate - now.jerk).norm() < 1e-4 * rate.norm());
+            let rise = (after.elevation - before.elevation) / (2.0 * d);
+            assert_relative_eq!(rise, now.rise, max_relative = 1e-4);
+        }
+    }
+
+    #[test]
+    fn cubics_bridge_the_interval_to_a_thousandth_of_the_acceleration() {
+        let waves = sea(None);
+        let place = Vector3::new(3.0, -7.0, -12.0);
+        let (mut worst, mut square) = (0.0_f64, 0.0);
+        let steps = 400;
+        for step in 0..steps {
+            let [t0, t1] = [0, 1].map(|k| f64::from(step + k) * waves.interval());
+            let (before, after) = (orbit(&waves, place, t0), orbit(&waves, place, t1));
+            let middle = 0.5 * (t0 + t1);
+            let exact = orbit(&waves, place, middle);
+            let found = Orbit::between(&before, &after, [t0, t1], middle);
+            worst = worst.max((found.acceleration - exact.acceleration).norm_squared());
+            square += exact.acceleration.norm_squared();
+            let start = Orbit::between(&before, &after, [t0, t1], t0);
+            assert_eq!(start.velocity, before.velocity);
+            assert_eq!(start.acceleration, before.acceleration);
+        }
+        assert!(worst.sqrt() < 4e-3 * (square / f64::from(steps)).sqrt());
+    }
+
+    #[test]
+    fn components_left_out_at_a_depth_would_move_it_by_a_ten_thousandth() {
+        let waves = storm(None);
+        let surface = root(&waves.components, 2);
+        for z in [-2.0, -10.0, -40.0, -150.0] {
+            let rest = &waves.components[waves.reaching(z)..];
+            let left_out = rest.iter().map(|c| {
+                let k = wave_number(c.frequency, None, GRAVITY);
+                (c.amplitude * c.frequency.powi(2) * (k * z).exp()).powi(2)
+            });
+            assert!(left_out.sum::<f64>().sqrt() < 1e-4 * surface, "z = {z} m");
+        }
+        assert_eq!(waves.reaching(0.0), 30);
+        assert!((1..15).contains(&waves.reaching(-150.0)));
+        let still = orbit(&waves, Vector3::new(0.0, 0.0, -5000.0), 3.0);
+        assert_eq!(still.acceleration, Vector3::zeros());
+    }
+
+    #[test]
+    fn elevations_left_out_of_the_stretching_move_a_place_by_a_ten_thousandth() {
+        let mut waves = storm(None);
+        let surface = root(&waves.components, 2);
+        let places = [-1.0, -5.0, -20.0, -60.0, -140.0].map(|z| Vector3::new(12.0, 5.0, z));
+        let found = places.map(|place| orbit(&waves, place, 8.0).acceleration);
+        let felt = |z: f64| waves.stretch.partition_point(|height| *height <= z);
+        assert!((1..400).any(|depth| (1..30).contains(&felt(f64::from(-depth)))));
+        assert!(waves.stretch.iter().all(|height| *height < -1.0));
+        waves.stretch.fill(f64::NEG_INFINITY);
+        for (place, found) in places.into_iter().zip(found) {
+            let all = orbit(&waves, place, 8.0).acceleration;
+            assert!((all - found).norm() < 1e-4 * surface, "z = {} m", place.z);
+        }
     }
 
     #[test]
@@ -228,6 +670,6 @@ mod tests {
         waves.ramp = Some(20.0);
         assert_eq!(waves.elevation(1.0, 2.0, 0.0), 0.0);
         assert_eq!(waves.elevation(1.0, 2.0, 50.0), full);
-        assert_relative_eq!(waves.growth(10.0), 0.5);
+        assert_relative_eq!(waves.growth(10.0)[0], 0.5);
     }
 }

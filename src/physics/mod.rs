@@ -2,6 +2,7 @@
 
 pub mod airy;
 pub mod bending;
+pub mod catenary;
 pub mod contact_step;
 pub mod flow;
 pub mod friction;
@@ -12,6 +13,9 @@ pub mod point;
 pub mod rayleigh;
 pub mod seabed;
 pub mod section;
+pub mod spectrum;
 pub mod stretch;
 pub mod surface;
+pub mod tension_table;
+pub mod viscoelastic;
 pub mod weight;

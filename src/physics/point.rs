@@ -6,6 +6,9 @@
 //!   B = ρ g V s,      ∫ B dz = −2R ρ g V (u³ − u⁴/2)        buoyancy, and its potential
 //!   f = −½ ρ CdA s |v| v,   M = ρ V Ca s I                  v the velocity relative to the water
 //!
+//! In waves the height is over the elevation of the surface, v is relative to the moving water and f has ρ V (1 + Ca) s ∂u/∂t besides, of
+//! Froude, Krylov and the added mass.
+//!
 //! s is exact: it is the volume of a spherical cap. Drag and added mass are taken in proportion to it. A point with a drag area and
 //! no volume is wetted as the sphere whose cross-section that area is.
 //!
@@ -25,6 +28,8 @@ use nalgebra::{Matrix3, Vector3};
 pub struct Sphere {
     /// Radius R [m], positive.
     pub radius: f64,
+    /// Mass ρ V of the water that the whole sphere displaces [kg].
+    pub displaced: f64,
     /// Buoyancy ρ g V of the whole sphere [N].
     pub buoyancy: f64,
     /// Added mass ρ V Ca of the whole sphere [kg].
@@ -58,6 +63,7 @@ impl Sphere {
         let displaced = density * volume;
         (density > 0.0 && radius > 0.0).then_some(Sphere {
             radius,
+            displaced,
             buoyancy: displaced * gravity,
             added_mass: displaced * added_mass,
             drag: 0.5 * density * drag_area,

@@ -5,6 +5,7 @@
 //! * engineering: N = EA·ε
 //! * Green-Lagrange: N = EA·λ·(λ² − 1)/2 (second Piola-Kirchhoff stress proportional to the Green strain)
 //! * logarithmic: N = EA·ln λ·λ^(−2ν) (Cauchy stress proportional to ln λ, on the contracted area A·λ^(−2ν))
+//! * tabulated: N given at some ε, see [`super::tension_table`]; EA is then its steepest slope
 //!
 //! Source: derived here from W(λ) per unstretched length, N = dW/dλ; the Green and logarithmic forms are those of
 //! Crisfield (1991), Non-linear Finite Element Analysis of Solids and Structures, vol. 1, section 3.1-3.2.
@@ -12,8 +13,10 @@
 //!
 //! A cable does not push, unless it has bending stiffness: the total tension is clipped, see [`total_tension`].
 
+use super::tension_table::TensionTable;
+
 /// Strain measure with its parameters.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum StretchLaw {
     /// ε = λ − 1.
     Engineering,
@@ -24,6 +27,8 @@ pub enum StretchLaw {
         /// Poisson's ratio ν [-].
         poisson: f64,
     },
+    /// Tension given at some ε = λ − 1.
+    Tabulated(TensionTable),
 }
 
 /// Value, slope and energy of N(ε)/EA.
@@ -40,9 +45,9 @@ pub struct Stretch {
 impl StretchLaw {
     /// Evaluates the law at the strain ε = λ − 1 [-].
     #[inline(always)]
-    pub fn at(self, strain: f64) -> Stretch {
+    pub fn at(&self, strain: f64) -> Stretch {
         let stretch = 1.0 + strain; // λ
-        match self {
+        match *self {
             StretchLaw::Engineering => Stretch {
                 force: strain,
                 slope: 1.0,
@@ -65,12 +70,13 @@ impl StretchLaw {
                     energy: logarithmic_energy(log, 1.0 - 2.0 * poisson),
                 }
             }
+            StretchLaw::Tabulated(ref table) => table.at(strain),
         }
     }
 
     /// The strain [-] at which the force is greatest, if there is one: N' = 0 at ln λ = 1/(2ν).
-    pub fn limit_strain(self) -> Option<f64> {
-        match self {
+    pub fn limit_strain(&self) -> Option<f64> {
+        match *self {
             StretchLaw::Logarithmic { poisson } if poisson > 0.0 => Some((0.5 / poisson).exp_m1()),
             _ => None,
         }

@@ -2,6 +2,8 @@
 //!
 //! Numbers are those of a deck: `1` of a line stands for the scene's `line1`, of a point for `point1`. Capitals do not count.
 
+use serde::{Deserialize, Serialize};
+
 use super::Scene;
 
 /// What a channel writes.
@@ -33,7 +35,8 @@ pub enum Channel {
 }
 
 /// An end of a line.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum LineEnd {
     /// End A, the anchor's.
     A,

@@ -7,6 +7,7 @@ mod seabed;
 mod settings;
 mod surroundings;
 mod time;
+mod waves;
 
 use std::collections::BTreeMap;
 
@@ -15,6 +16,7 @@ use super::{Scene, SceneError};
 
 pub(super) use line_types::coefficients;
 pub(super) use settings::integrator_name;
+pub(super) use waves::breaking;
 
 impl Scene {
     /// Finds the first mistake.
@@ -71,10 +73,13 @@ impl Findings {
     }
 }
 
-/// What a number may be. Upper limits are far beyond any mooring: they catch slips of units and powers of ten.
+/// Least positive number that stands for anything in a mooring, in any unit: squares and products of a few of them are numbers still.
+const POSITIVE_MIN: f64 = 1e-15;
+
+/// What a number may be. Limits are far beyond any mooring: they catch slips of units and powers of ten.
 #[derive(Clone, Copy)]
 enum Bounds {
-    /// Above zero, up to a limit.
+    /// From [`POSITIVE_MIN`] up to a limit.
     Positive(f64),
     /// Zero or more, up to a limit.
     NotNegative(f64),
@@ -94,6 +99,12 @@ impl Bounds {
         let upper = match self {
             Bounds::Positive(_) if value <= 0.0 => {
                 return Some(format!("{value_said} is not positive"));
+            }
+            Bounds::Positive(_) if value < POSITIVE_MIN => {
+                return Some(format!(
+                    "{value_said} is below the limit of {}: is the unit or the power of ten right?",
+                    quantity(POSITIVE_MIN, unit)
+                ));
             }
             Bounds::NotNegative(_) if value < 0.0 => {
                 return Some(format!("{value_said} is negative"));

@@ -10,6 +10,7 @@ pub mod channel;
 mod check;
 mod commented;
 mod document;
+mod drive;
 mod error;
 mod from_deck;
 mod map;
@@ -23,21 +24,27 @@ mod read;
 mod rows;
 mod seabed;
 mod surface;
+mod tension_strain;
 mod time_function;
 mod units;
+mod water_file;
+mod waves;
 mod words;
 
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+pub use drive::{Drive, RegularMotion};
 pub use error::{LoadError, SceneError};
 pub use notes::Note;
 pub use places::Places;
 use read::Reading;
 pub use read::{LoadedScene, Supplement, TOML, load, load_with};
 pub use seabed::{ContactLaw, DepthGrid, Friction, Seabed};
+pub use tension_strain::TensionStrain;
 pub use time_function::{HarmonicMotion, MotionFile, MotionPath, MotionRow, TimeFunction};
+pub use waves::{RegularWave, Sea, SpectrumKind, WaveComponents, Waves};
 
 /// Standard gravity [m/s²], the default of [`Scene::gravity`].
 pub const STANDARD_GRAVITY: f64 = 9.80665;
@@ -88,6 +95,9 @@ pub struct Water {
     /// How it flows; still where absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub current: Option<Current>,
+    /// Its waves; none where absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub waves: Option<Waves>,
     /// Whether lines lose buoyancy, drag and added mass above z = 0. Where absent, those do that have an end above it, or could float
     /// up to it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -102,6 +112,9 @@ pub struct Current {
     /// Velocity at all heights [m/s].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub velocity: Option<[f64; 3]>,
+    /// A file of MoorDyn's format that the profile stands in: below three lines of headings, rows of z [m] and vx, vy, vz [m/s].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub file: Option<String>,
     /// Rows of height z [m] and horizontal velocity vx, vy [m/s], no two at one height.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub profile: Option<Vec<[f64; 3]>>,
@@ -116,6 +129,7 @@ impl Water {
         Water {
             density,
             current: None,
+            waves: None,
             surface: None,
         }
     }
@@ -135,7 +149,22 @@ pub struct LineType {
     /// Volume-equivalent diameter [m].
     pub diameter: Option<f64>,
     /// Axial stiffness EA [N].
-    pub axial_stiffness: f64,
+    pub axial_stiffness: Option<f64>,
+    /// Tension over strain [- and N], instead of `axial_stiffness`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tension_strain: Option<TensionStrain>,
+    /// Static stiffness EA_s of a viscoelastic rope [N], instead of `axial_stiffness`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub static_stiffness: Option<f64>,
+    /// Dynamic stiffness EA_d of a viscoelastic rope [N].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub dynamic_stiffness: Option<f64>,
+    /// Damping BA_s of the slow part of a viscoelastic rope [N s].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub static_damping: Option<f64>,
+    /// Damping BA_d of the fast part of a viscoelastic rope [N s].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub dynamic_damping: Option<f64>,
     /// Axial damping BA [N s].
     pub axial_damping: Option<f64>,
     /// Axial damping as a ratio of the critical damping of each segment [-]; instead of `axial_damping`.
@@ -344,6 +373,26 @@ pub struct Line {
     pub clamped_a: Option<[f64; 3]>,
     /// Direction of the line from A to B at end B [-], where that end is clamped; pinned where absent.
     pub clamped_b: Option<[f64; 3]>,
+    /// End that lets go of its point when the host's input `L.release` becomes true; there is no such input where absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub release: Option<channel::LineEnd>,
+    /// When the line parts from one of its points by itself.
+    #[serde(default, rename = "break", skip_serializing_if = "Option::is_none")]
+    pub parting: Option<Break>,
+}
+
+/// When a line breaks: `{ at = "b", tension = 4.0e6, time = 100.0 }`, at the first of both.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Break {
+    /// The end that parts from its point.
+    pub at: channel::LineEnd,
+    /// Tension of the end's segment that breaks it [N].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tension: Option<f64>,
+    /// Time at which it breaks [s].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub time: Option<f64>,
 }
 
 /// The shape of a line that is free of bending and torsion.
@@ -516,6 +565,8 @@ impl Line {
             rest_shape: RestShape::Straight,
             clamped_a: None,
             clamped_b: None,
+            release: None,
+            parting: None,
         }
     }
 }

@@ -4,9 +4,9 @@ use std::fmt;
 
 use nalgebra::Vector3;
 
-use super::check::{coefficients, number};
+use super::check::{breaking, coefficients, number, quantity};
 use super::path::quoted;
-use super::{Integrator, Line, LineModel, LineType, Point, PointKind, Scene};
+use super::{Integrator, Line, LineModel, LineType, Point, PointKind, Scene, Waves};
 use crate::math::attitude::Attitude;
 
 /// A remark on a scene that can be used as it is.
@@ -38,6 +38,9 @@ impl Scene {
             note_chord(self, line, &format!("lines[{i}]"), &mut notes);
         }
         note_points(self, &mut notes);
+        if let Some(waves) = self.water.as_ref().and_then(|water| water.waves.as_ref()) {
+            note_waves(self, waves, &mut notes);
+        }
         note_whole(self, &mut notes);
         notes
     }
@@ -67,7 +70,10 @@ fn note_line_type(scene: &Scene, name: &str, line_type: &LineType, notes: &mut V
     }
     if scene.water.is_some() && line_type.drag_normal.is_none() {
         let flows = scene.water.as_ref().is_some_and(|w| w.current.is_some());
-        let text = if flows {
+        let waves = scene.water.as_ref().is_some_and(|w| w.waves.is_some());
+        let text = if waves {
+            "no `drag_normal`: the waves drag no line across itself, and the water does not damp it"
+        } else if flows {
             "no `drag_normal`: the current does not push the line across itself, and the water does not damp it"
         } else {
             "no `drag_normal`: the water does not damp the line's motion across itself"
@@ -179,6 +185,34 @@ fn note_points(scene: &Scene, notes: &mut Vec<Note>) {
             let text = "without a volume, an added mass is none: it is a part of the mass of displaced water";
             say(notes, format!("{at}.added_mass"), text);
         }
+    }
+}
+
+fn note_waves(scene: &Scene, waves: &Waves, notes: &mut Vec<Note>) {
+    let at = "water.waves";
+    for sea in &waves.seas {
+        let regular = sea.regular.as_ref().and_then(|wave| {
+            let height = 2.0 * wave.half_height()?;
+            breaking(scene, height, wave.period)
+        });
+        let spectrum = sea.significant_height.zip(sea.peak_period);
+        let spectrum = spectrum.and_then(|(height, period)| breaking(scene, height, period));
+        if let Some(text) = regular.or(spectrum) {
+            say(notes, at, text);
+        }
+    }
+    if waves.ramp().is_none() {
+        let text = "no `ramp`: lines at rest are in the full sea from the start, and swing in";
+        say(notes, at, text);
+    }
+    let bare = |line_type: &LineType| line_type.diameter.is_none();
+    for (name, _) in scene.line_types.iter().filter(|(_, kind)| bare(kind)) {
+        let at = format!("line_types.{}", quoted(name));
+        say(notes, at, "no `diameter`: the waves do nothing to it");
+    }
+    if let Some(ramp) = waves.ramp().filter(|ramp| *ramp > scene.output.duration) {
+        let text = format!("the ramp of {} is longer than the run", quantity(ramp, "s"));
+        say(notes, at, text);
     }
 }
 

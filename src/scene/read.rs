@@ -13,8 +13,8 @@ use super::notes::Note;
 use super::places::Places;
 use super::rows::{Findings, MISTAKES_MAX};
 use super::{
-    LoadError, MotionPath, Scene, SceneError, bathymetry_file, document, map, moordyn, motion_file,
-    path,
+    LoadError, MotionPath, Scene, SceneError, WaveComponents, bathymetry_file, document, map,
+    moordyn, motion_file, path, tension_strain, water_file,
 };
 
 /// Longest scene file that is read [bytes].
@@ -167,11 +167,11 @@ fn deck_scene(reading: Reading, text: &str, folder: &Path) -> Result<Checked, Ve
     let Some(mut scene) = scene.filter(|_| findings.mistakes.is_empty()) else {
         return Err(in_order(findings.mistakes));
     };
-    if let Some(mistake) = read_soundings(&mut scene, folder) {
-        return Err(vec![places.locate(mistake)]);
-    }
-    let mistakes: Vec<SceneError> = scene
-        .mistakes()
+    let mut of_files = read_water(&mut scene, folder);
+    of_files.extend(read_tables(&mut scene, folder));
+    of_files.extend(read_soundings(&mut scene, folder));
+    let mistakes = all_mistakes(&scene, of_files);
+    let mistakes: Vec<SceneError> = mistakes
         .into_iter()
         .map(|mistake| places.locate(mistake))
         .collect();
@@ -188,13 +188,11 @@ fn scene_of(text: &str, path: &Path) -> Result<Scene, Vec<SceneError>> {
     let document = Document::parse(text).map_err(|mistake| vec![mistake])?;
     let mut scene = document.scene().map_err(|mistake| vec![mistake])?;
     let folder = folder_of(path);
-    let mut mistakes = read_motions(&mut scene, folder);
-    mistakes.extend(read_soundings(&mut scene, folder));
-    for mistake in scene.mistakes() {
-        if mistakes.iter().all(|known| known.at != mistake.at) {
-            mistakes.push(mistake);
-        }
-    }
+    let mut of_files = read_motions(&mut scene, folder);
+    of_files.extend(read_water(&mut scene, folder));
+    of_files.extend(read_tables(&mut scene, folder));
+    of_files.extend(read_soundings(&mut scene, folder));
+    let mistakes = all_mistakes(&scene, of_files);
     if mistakes.is_empty() {
         Ok(scene)
     } else {
@@ -202,6 +200,7 @@ fn scene_of(text: &str, path: &Path) -> Result<Scene, Vec<SceneError>> {
     }
 }
 
+/// The folder that a scene's files stand in.
 fn folder_of(path: &Path) -> &Path {
     path.parent().unwrap_or(Path::new("."))
 }
@@ -220,6 +219,73 @@ fn read_soundings(scene: &mut Scene, folder: &Path) -> Option<SceneError> {
         }
         Err(problem) => Some(SceneError::new("seabed.file", problem)),
     }
+}
+
+/// What is wrong with the files of a scene, and what else is wrong with it.
+fn all_mistakes(scene: &Scene, mut of_files: Vec<SceneError>) -> Vec<SceneError> {
+    for mistake in scene.mistakes() {
+        if of_files.iter().all(|known| known.at != mistake.at) {
+            of_files.push(mistake);
+        }
+    }
+    of_files
+}
+
+/// Reads every table of tension over strain that stands in a file; returns what is wrong with them.
+fn read_tables(scene: &mut Scene, folder: &Path) -> Vec<SceneError> {
+    let mut mistakes = Vec::new();
+    for (name, line_type) in &mut scene.line_types {
+        let Some(table) = &mut line_type.tension_strain else {
+            continue;
+        };
+        if let Some(file) = &table.file {
+            match tension_strain::read(&folder.join(file)) {
+                Ok(rows) => table.rows = rows,
+                Err(problem) => {
+                    let at = format!("line_types.{}.tension_strain", path::quoted(name));
+                    mistakes.push(SceneError::new(at, problem));
+                }
+            }
+        }
+    }
+    mistakes
+}
+
+/// Reads the files of waves and current, whose rows take their place; returns what is wrong with them.
+fn read_water(scene: &mut Scene, folder: &Path) -> Vec<SceneError> {
+    let mut mistakes = Vec::new();
+    let Some(water) = &mut scene.water else {
+        return mistakes;
+    };
+    if let Some(current) = &mut water.current
+        && current.profile.is_none()
+        && let Some(file) = &current.file
+    {
+        match water_file::profile(&folder.join(file)) {
+            Ok(rows) => (current.profile, current.file) = (Some(rows), None),
+            Err(problem) => mistakes.push(SceneError::new("water.current.file", problem)),
+        }
+    }
+    let Some(waves) = &mut water.waves else {
+        return mistakes;
+    };
+    let count = waves.seas.len();
+    for (i, sea) in waves.seas.iter_mut().enumerate() {
+        let Some(file) = sea.file.as_ref().filter(|_| sea.components.is_none()) else {
+            continue;
+        };
+        match water_file::components(&folder.join(file)) {
+            Ok(rows) => (sea.components, sea.file) = (Some(WaveComponents::Rows(rows)), None),
+            Err(problem) => {
+                let at = match count {
+                    1 => "water.waves.file".to_string(),
+                    _ => format!("water.waves[{i}].file"),
+                };
+                mistakes.push(SceneError::new(at, problem));
+            }
+        }
+    }
+    mistakes
 }
 
 /// Reads every motion file of the scene; returns what is wrong with them.

@@ -3,8 +3,11 @@
 use super::notes::{length, reference_position};
 use super::{Line, Point, PointKind, Scene};
 
+/// Standard deviations of the elevation that a trough of waves is deep [-].
+const TROUGH: f64 = 3.0;
+
 impl Scene {
-    /// Whether a line knows the water's surface: as `water.surface` says; else where one of its ends lies above z = 0 in the reference
+    /// Whether a line knows the water's surface: as `water.surface` says; else where one of its ends lies above z = 0, or above the troughs of waves, in the reference
     /// configuration, or where it is buoyant or hangs on a free point that floats, and long enough to come up. Beams never do.
     pub fn meets_surface(&self, line: &Line) -> bool {
         let Some(water) = &self.water else {
@@ -38,7 +41,9 @@ impl Scene {
             (false, false) if buoyant => 0.5 * (a + b + length),
             (false, false) => a.max(b),
         };
-        highest > 0.0
+        let waves = self.water.as_ref().and_then(|water| water.waves.as_ref());
+        let trough = waves.map_or(0.0, |waves| -TROUGH * waves.deviation());
+        highest > trough
     }
 
     /// Whether a free point is lighter than the water it displaces.

@@ -5,6 +5,18 @@ const UNITS: &[(&str, &str, &str)] = &[
     ("Scene", "gravity", "m/s²"),
     ("Water", "density", "kg/m³"),
     ("Current", "velocity", "m/s"),
+    ("Sea", "significant_height", "m"),
+    ("Sea", "peak_period", "s"),
+    ("Sea", "peakedness", "-"),
+    ("Sea", "direction", "rad"),
+    ("Sea", "spreading", "-"),
+    ("Sea", "seed", "-"),
+    ("Sea", "ramp", "s"),
+    ("RegularWave", "height", "m"),
+    ("RegularWave", "amplitude", "m"),
+    ("RegularWave", "period", "s"),
+    ("RegularWave", "direction", "rad"),
+    ("RegularWave", "phase", "rad"),
     ("Seabed", "depth", "m"),
     ("Seabed", "stiffness", "Pa/m"),
     ("Seabed", "damping", "Pa s/m"),
@@ -19,7 +31,12 @@ const UNITS: &[(&str, &str, &str)] = &[
     ("LineType", "weight", "N/m"),
     ("LineType", "diameter", "m"),
     ("LineType", "axial_stiffness", "N"),
+    ("LineType", "tension_strain", "- and N"),
     ("LineType", "axial_damping", "N s"),
+    ("LineType", "static_stiffness", "N"),
+    ("LineType", "dynamic_stiffness", "N"),
+    ("LineType", "static_damping", "N s"),
+    ("LineType", "dynamic_damping", "N s"),
     ("LineType", "damping_ratio", "-"),
     ("LineType", "drag_normal", "-"),
     ("LineType", "drag_tangential", "-"),
@@ -50,6 +67,8 @@ const UNITS: &[(&str, &str, &str)] = &[
     ("Vessel", "attitude", "rad"),
     ("Line", "clamped_a", "-"),
     ("Line", "clamped_b", "-"),
+    ("Break", "tension", "N"),
+    ("Break", "time", "s"),
     ("InitialShape", "parabola", "m"),
     ("InitialShape", "nodes", "m"),
     ("Strain", "logarithmic", "-"),
@@ -84,7 +103,11 @@ mod tests {
 
     #[test]
     fn every_unit_said_in_a_message_stands_in_the_docs_of_its_key() {
-        let source = concat!(include_str!("mod.rs"), include_str!("seabed.rs"));
+        let source = concat!(
+            include_str!("mod.rs"),
+            include_str!("waves.rs"),
+            include_str!("seabed.rs")
+        );
         for (owner, key, unit) in UNITS {
             let Some(body) = body(source, owner) else {
                 let elsewhere = ["MotionText", "InitialShape", "Strain"];

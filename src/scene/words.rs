@@ -2,8 +2,10 @@
 
 mod beam;
 mod bending;
+mod parting;
 mod points;
 mod seabed;
+mod stretch;
 mod surroundings;
 mod vessels;
 
@@ -87,18 +89,7 @@ impl Scene {
             )
         };
         let water = match &self.water {
-            Some(water) => {
-                let density = quantity(water.density, "kg/m³");
-                let surface = surroundings::surface_in_words(self);
-                match &water.current {
-                    None => format!("still water of {density} {surface}"),
-                    Some(current) => format!(
-                        "water of {density} {surface}, with a current: {}; the drag on lines follows their velocity through the \
-                         water, at rest too",
-                        surroundings::current_in_words(current)
-                    ),
-                }
-            }
+            Some(water) => surroundings::water_in_words(self, water),
             None => "no water".to_string(),
         };
         vec![gravity, water, self.seabed_in_words()]
@@ -142,16 +133,7 @@ impl Scene {
         if let Some(diameter) = line_type.diameter {
             parts.push(format!("diameter {}", quantity(diameter, "m")));
         }
-        let ea = line_type.axial_stiffness; // EA [N]
-        parts.push(format!(
-            "EA {} on the {} strain",
-            quantity(ea, "N"),
-            strain_in_words(line_type.strain)
-        ));
-        parts.push(format!(
-            "axial waves at {} m/s",
-            significant((ea / mass).sqrt())
-        ));
+        parts.push(stretch::in_words(line_type, mass));
         let section = self.section_in_words(line_type);
         parts.extend(section.or_else(|| bending::stiffness_in_words(line_type)));
         parts.push(damping_in_words(line_type));
@@ -243,11 +225,12 @@ impl Scene {
         };
         let held = held.map_or(String::new(), |held| format!("; {held}"));
         format!(
-            "{}: from {} to {}, {}; {fit}; {start}{held}",
+            "{}: from {} to {}, {}; {fit}; {start}{held}{}",
             line.name,
             line.from,
             line.to,
-            sections.join(", ")
+            sections.join(", "),
+            parting::in_words(line)
         )
     }
 

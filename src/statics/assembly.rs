@@ -21,7 +21,9 @@
 
 mod bending;
 mod contact;
+mod creep;
 mod line;
+mod parted;
 mod places;
 mod points;
 pub mod rubbing;
@@ -206,7 +208,7 @@ impl Workspace {
                 line,
                 line_state,
                 line.clamps(&state.points),
-                stream,
+                model.water_along(state, index, t),
                 weights,
                 negative_tension,
             );
@@ -214,8 +216,9 @@ impl Workspace {
         for_free_points(model, network, |index, free| {
             let point = &mut self.points[index];
             let load = model.points[index].load_at(t);
-            let (bottom, state) = (model.bottom.as_deref(), &state.points[index]);
-            point.assemble_dynamic::<TANGENT>(free, bottom, state, load, stream, weights);
+            let (bottom, state_of) = (model.bottom.as_deref(), &state.points[index]);
+            let water = (stream, state.waves_at_point(index, t));
+            point.assemble_dynamic::<TANGENT>(free, bottom, state_of, load, water, weights);
         });
         self.gather(model, network);
     }
@@ -225,6 +228,9 @@ impl Workspace {
         for_free_points(model, network, |index, free| {
             let mut total = self.points[index].residual;
             for &(line, end) in &model.points[index].attached {
+                if self.lines[line].parted[usize::from(end == End::B)] {
+                    continue;
+                }
                 total += self.lines[line].residual[model.lines[line].end_node(end)];
             }
             for axis in 0..3 {
@@ -245,7 +251,11 @@ impl Workspace {
         for &index in &network.lines {
             let work = &mut self.lines[index];
             let [a, b] = model.lines[index].ends.map(|point| self.points[point].slot);
-            let Some(ends) = work.eliminate(a.is_some()) else {
+            let [a, b] = [a.filter(|_| !work.parted[0]), b.filter(|_| !work.parted[1])];
+            let Some(ends) = work.eliminate(a.is_some() || work.parted[0]) else {
+                return false;
+            };
+            let Some(ends) = work.eliminate_parted(ends) else {
                 return false;
             };
             if let Some(a) = a {
@@ -278,7 +288,7 @@ impl Workspace {
         }
         for &index in &network.lines {
             let [a, b] = model.lines[index].ends.map(|point| self.solution_at(point));
-            self.lines[index].substitute(a, b);
+            self.lines[index].substitute_all(a, b);
         }
         true
     }
@@ -315,6 +325,10 @@ impl Workspace {
     ) {
         for &index in &network.lines {
             self.lines[index].fade_dampers(&model.lines[index], &state.lines[index], dt);
+            self.lines[index].parted = state.lines[index].parted;
+            if let Some(creep) = &mut self.lines[index].creep {
+                creep.begin(&model.lines[index], &state.lines[index], dt);
+            }
         }
         for_free_points(model, network, |index, free| {
             if let Some(contact) = &free.contact {
@@ -336,6 +350,15 @@ impl Workspace {
     pub(crate) fn move_anchors(&self, model: &Model, network: &Network, state: &mut State) {
         if model.friction().is_some() {
             rubbing::move_anchors(model, network, state, self);
+        }
+    }
+
+    /// Takes the memory of viscoelastic lines to the end of a step, where the nodes now are.
+    pub(crate) fn creep(&self, model: &Model, network: &Network, state: &mut State) {
+        for &index in &network.lines {
+            if let Some(creep) = &self.lines[index].creep {
+                creep.finish(&model.lines[index], &mut state.lines[index]);
+            }
         }
     }
 
@@ -433,12 +456,12 @@ pub fn end_force(
         &mut work.lines[line],
     );
     line_work.fade_dampers(line_model, line_state, 0.0);
-    let stream = model.stream(state.time);
+    let water = model.water_along(state, line, state.time);
     line_work.assemble_dynamic::<false>(
         line_model,
         line_state,
         clamps,
-        stream,
+        water,
         &weights,
         negative_tension,
     );

@@ -84,6 +84,7 @@ pub fn solve_posed(
         time: t,
         points: points.to_vec(),
         lines: model.lines.iter().map(blank).collect(),
+        waves: None,
     };
     if (0..model.networks.len()).all(|number| solve_network(model, number, &mut state, t, work)) {
         return Ok(state);

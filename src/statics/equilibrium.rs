@@ -93,6 +93,7 @@ pub fn solve_posed(
         time: t,
         points: points.to_vec(),
         lines: Vec::with_capacity(model.lines.len()),
+        waves: None,
     };
     for (line, work) in model.lines.iter().zip(&mut work.lines) {
         let [a, b] = line.ends.map(|point| places[point]);
@@ -612,7 +613,7 @@ impl<'a> Problem<'a> {
             .lines
             .iter()
             .flat_map(|&line| &self.model.lines[line].segments.law);
-        laws.copied().any(|law| law.limit_strain().is_some())
+        laws.into_iter().any(|law| law.limit_strain().is_some())
     }
 
     /// Whether the tangent of a converged state is positive definite.

@@ -2,7 +2,7 @@
 
 pub mod assembly;
 pub mod beam;
-pub mod catenary;
+pub use crate::physics::catenary;
 pub mod catenary_network;
 pub mod equilibrium;
 mod guess;

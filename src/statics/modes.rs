@@ -247,6 +247,7 @@ mod tests {
             time: 0.0,
             points,
             lines,
+            waves: None,
         };
         Modes::new(model, 0, &state, &mut Workspace::new(model))
     }

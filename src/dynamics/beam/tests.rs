@@ -52,6 +52,7 @@ fn beam(n: usize, a: Vector3<f64>, b: Vector3<f64>, law: SectionLaw) -> (Beam, N
         weight: vec![0.0; n + 1],
         length: lengths,
         drag: None,
+        pressed: None,
         contact: None,
         mass_damping: None,
     };

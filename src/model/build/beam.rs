@@ -28,13 +28,13 @@ struct Part {
     rotary_inertia: Vector3<f64>, // about the three directors [kg m]
 }
 
-/// What makes line `index` a beam; `None` where it is a cable. `laws` and `elements` are those of its sections.
+/// What makes line `index` a beam; `None` where it is a cable. `laws` and the `lengths` of elements [m] are those of its sections.
 pub(super) fn build(
     scene: &Scene,
     index: usize,
     line: &Line,
     laws: &[LineLaw],
-    elements: &[usize],
+    lengths: &[Vec<f64>],
 ) -> Result<Option<Beam>, SceneError> {
     let types = || {
         line.sections
@@ -65,10 +65,10 @@ pub(super) fn build(
         .zip(laws)
         .map(|((name, line_type), law)| part(name, line_type, law))
         .collect::<Result<Vec<Part>, SceneError>>()?;
-    Ok(Some(assemble(line, &parts, elements)))
+    Ok(Some(assemble(line, &parts, lengths)))
 }
 
-fn assemble(line: &Line, parts: &[Part], elements: &[usize]) -> Beam {
+fn assemble(line: &Line, parts: &[Part], lengths: &[Vec<f64>]) -> Beam {
     let mut beam = Beam {
         elements: Vec::new(),
         rotary_inertia: vec![Vector3::zeros()],
@@ -78,10 +78,9 @@ fn assemble(line: &Line, parts: &[Part], elements: &[usize]) -> Beam {
         rests_as_it_starts: line.rest_shape == RestShape::Initial
             && line.initial != InitialShape::Static,
     };
-    for ((section, part), &count) in line.sections.iter().zip(parts).zip(elements) {
-        let length = section.length / count as f64;
-        let axial = part.damping_ratio * length * (part.law.axial * part.mass).sqrt();
-        for _ in 0..count {
+    for (part, lengths) in parts.iter().zip(lengths) {
+        for &length in lengths {
+            let axial = part.damping_ratio * length * (part.law.axial * part.mass).sqrt();
             beam.elements.push(BeamElement {
                 length,
                 law: part.law,
@@ -106,6 +105,12 @@ fn part(name: &str, line_type: &LineType, law: &LineLaw) -> Result<Part, SceneEr
         return Err(SceneError::new(
             at("strain"),
             "a beam has engineering strain only: leave `strain` out",
+        ));
+    }
+    if line_type.tension_strain.is_some() {
+        return Err(SceneError::new(
+            at("tension_strain"),
+            "a beam has one `axial_stiffness` [N], and no table",
         ));
     }
     let solid = line_type.solid_section.as_ref();

@@ -9,11 +9,23 @@ const TICKS: f64 = 7.0;
 /// A range narrower than this part of its values is drawn as flat: it is round-off or convergence, not motion.
 const FLAT: f64 = 1e-5;
 
+/// How values stand on an axis.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Scale {
+    /// In proportion.
+    #[default]
+    Linear,
+    /// By their decimal logarithm, which the curves already hold.
+    Decades,
+}
+
 /// An axis of a chart.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axis {
     /// Name and unit.
     pub label: String,
+    /// How values stand on it.
+    pub scale: Scale,
     /// Lower end, in the label's unit.
     pub min: f64,
     /// Upper end, in the label's unit.
@@ -40,7 +52,12 @@ impl Axis {
             let margin = if size > 0.0 { 0.01 * size } else { 1.0 };
             (min, max) = (min - margin, max + margin);
         }
-        Axis { label, min, max }
+        Axis {
+            label,
+            scale: Scale::Linear,
+            min,
+            max,
+        }
     }
 
     /// As [`Axis::fitting`], with a margin on both sides.
@@ -54,6 +71,14 @@ impl Axis {
         }
     }
 
+    /// As [`Axis::around`], for curves that hold decimal logarithms.
+    pub fn decades(curves: &[Curve], component: usize, label: String) -> Axis {
+        Axis {
+            scale: Scale::Decades,
+            ..Axis::around(curves, component, label)
+        }
+    }
+
     /// Widens the axis about its middle to this length, in the label's unit.
     pub fn widen(&mut self, length: f64) {
         let missing = 0.5 * (length - (self.max - self.min)).max(0.0);
@@ -63,6 +88,9 @@ impl Axis {
 
     /// Round values on the axis, and the digits behind the point that tell them apart.
     pub fn ticks(&self) -> (Vec<f64>, usize) {
+        if self.scale == Scale::Decades {
+            return (decade_ticks(self.min, self.max), 0);
+        }
         let wanted = (self.max - self.min) / TICKS;
         let decade = 10.0_f64.powi(wanted.log10().floor() as i32);
         let step = [1.0, 2.0, 2.5, 5.0, 10.0]
@@ -103,7 +131,48 @@ impl Ranged for Axis {
 
 impl ValueFormatter<f64> for Axis {
     fn format_ext(&self, value: &f64) -> String {
-        label(*value, self.ticks().1)
+        match self.scale {
+            Scale::Linear => label(*value, self.ticks().1),
+            Scale::Decades => power_of_ten(*value),
+        }
+    }
+}
+
+/// Logarithms of the powers of ten from `min` to `max`, and of twice and five times them where these are few.
+fn decade_ticks(min: f64, max: f64) -> Vec<f64> {
+    let within: &[f64] = if max - min > 3.0 {
+        &[1.0]
+    } else {
+        &[1.0, 2.0, 5.0]
+    };
+    let decades = min.floor() as i32..=max.ceil() as i32;
+    let ticks =
+        decades.flat_map(|decade| within.iter().map(move |m| m.log10() + f64::from(decade)));
+    ticks.filter(|tick| (min..=max).contains(tick)).collect()
+}
+
+/// Text of 10^x: plain from 10⁻³ to 10³, beyond as a power.
+fn power_of_ten(x: f64) -> String {
+    let value = 10.0_f64.powf(x);
+    let decade = (x + 1e-9).floor();
+    let digits = (-decade).max(0.0) as usize;
+    if decade.abs() <= 3.0 {
+        return format!("{value:.digits$}");
+    }
+    let factor = (value / 10.0_f64.powf(decade)).round();
+    let power: String = format!("{decade}")
+        .chars()
+        .map(|c| match c {
+            '-' => '⁻',
+            digit => {
+                ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'][digit as usize - '0' as usize]
+            }
+        })
+        .collect();
+    if factor == 1.0 {
+        format!("10{power}")
+    } else {
+        format!("{factor}·10{power}")
     }
 }
 
@@ -153,9 +222,31 @@ mod tests {
     fn axis(min: f64, max: f64) -> Axis {
         Axis {
             label: String::new(),
+            scale: Scale::Linear,
             min,
             max,
         }
+    }
+
+    #[test]
+    fn ticks_of_decades_are_powers_and_few() {
+        let axis = Axis {
+            scale: Scale::Decades,
+            ..axis(-5.2, 0.3)
+        };
+        let texts: Vec<String> = axis
+            .ticks()
+            .0
+            .iter()
+            .map(|tick| power_of_ten(*tick))
+            .collect();
+        assert_eq!(texts, ["10⁻⁵", "10⁻⁴", "0.001", "0.01", "0.1", "1"]);
+        let texts: Vec<String> = decade_ticks(-0.4, 1.1)
+            .into_iter()
+            .map(power_of_ten)
+            .collect();
+        assert_eq!(texts, ["0.5", "1", "2", "5", "10"]);
+        assert_eq!(power_of_ten(-4.0 + 5.0_f64.log10()), "5·10⁻⁴");
     }
 
     #[test]

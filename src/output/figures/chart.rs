@@ -49,8 +49,10 @@ pub enum Stroke {
     Faint,
     /// A straight level: still water, seabed.
     Level,
-    /// Rings at the points.
+    /// Small rings at the points.
     Nodes,
+    /// Discs at the points.
+    Marks,
 }
 
 /// A curve of a chart.
@@ -92,6 +94,7 @@ impl Curve {
             Stroke::Faint => (0.22, 1.0),
             Stroke::Level => (1.0, 1.4),
             Stroke::Nodes => (0.75, 1.0),
+            Stroke::Marks => (0.85, 1.0),
         };
         RGBColor(r, g, b).mix(opacity).stroke_width(fine_f(width))
     }
@@ -236,6 +239,10 @@ impl Chart {
                 Stroke::Nodes => {
                     chart.draw_series(points().map(|p| Circle::new(p, fine_f(2.2), style)))?;
                 }
+                Stroke::Marks => {
+                    let disc = |p| Circle::new(p, fine_f(3.4), style.filled());
+                    chart.draw_series(points().map(disc))?;
+                }
             };
         }
         Ok(())
@@ -285,6 +292,10 @@ fn draw_entry(area: &Area, curve: &Curve, left: u32, middle: u32) -> DrawResult 
         Stroke::Nodes => {
             area.draw(&Circle::new(((x0 + x1) / 2, y), fine_f(2.6), style))?;
         }
+        Stroke::Marks => {
+            let disc = Circle::new(((x0 + x1) / 2, y), fine_f(3.4), style.filled());
+            area.draw(&disc)?;
+        }
     }
     let text = text_style(f64::from(TEXT))
         .color(&RGBColor(40, 40, 40))
@@ -327,6 +338,7 @@ fn draw_stack(svg: &mut String, charts: &[Chart], width: u32, height: u32) -> Dr
 
 #[cfg(test)]
 mod tests {
+    use super::super::axis::Scale;
     use super::*;
 
     #[test]
@@ -346,6 +358,7 @@ mod tests {
     fn a_chart_to_scale_has_one_scale() {
         let axis = |min, max| Axis {
             label: String::new(),
+            scale: Scale::Linear,
             min,
             max,
         };

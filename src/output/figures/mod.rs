@@ -3,9 +3,11 @@
 //!
 //! Text is left to the viewer's sans-serif font: no font files are needed to draw.
 
+pub mod agreement;
 mod axis;
 mod chart;
 mod flight;
+pub mod frontier;
 
 use axis::{Axis, force_unit};
 use chart::{Chart, Curve, Stroke};
@@ -57,6 +59,7 @@ pub fn all(record: &Record) -> Vec<(&'static str, String)> {
         ("tension", tension(record)),
         ("force", force(record)),
         ("bending", bending(record)),
+        ("waves", waves(record)),
     ])
 }
 
@@ -172,6 +175,17 @@ pub fn bending(record: &Record) -> Option<String> {
     let title = "Greatest bending moment".to_string();
     let moment = moment_chart(title, histories("moment_max"))?;
     Some(chart::stacked_svg(&[curvature, moment]))
+}
+
+/// Column of the surface's elevation [m].
+pub const ELEVATION: &str = "waves.elevation";
+
+/// Elevation of the surface in time. `None` without waves.
+pub fn waves(record: &Record) -> Option<String> {
+    let history = record.history(ELEVATION)?;
+    let curves = vec![Curve::new(history, WATER, Stroke::Bold)];
+    let title = with_title("Surface at x = y = 0", record);
+    Some(in_time(title, "elevation [m]".to_string(), curves).svg())
 }
 
 fn history_chart(title: String, quantity: &str, curves: Vec<Curve>) -> Option<String> {
@@ -374,6 +388,21 @@ mod tests {
         for label in ["curvature [1/m]", "moment [kN m]", "line1"] {
             assert!(labels.iter().any(|t| t == label), "{label} in {labels:?}");
         }
+    }
+
+    #[test]
+    fn waves_have_a_figure_and_still_water_has_none() {
+        assert_eq!(waves(&sample::record()), None);
+        let column = Column {
+            name: ELEVATION.to_string(),
+            unit: "m".to_string(),
+            description: String::new(),
+        };
+        let mut record = Record::new("", vec![column]);
+        record.add_row(0.0, [1.5]);
+        record.add_row(1.0, [-0.5]);
+        let labels = texts(&waves(&record).unwrap());
+        assert!(labels.iter().any(|t| t == "elevation [m]"), "{labels:?}");
     }
 
     #[test]

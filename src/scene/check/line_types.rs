@@ -2,7 +2,9 @@
 
 use super::{Bounds, Findings, check_name, quantity};
 use crate::scene::path::quoted;
-use crate::scene::{Integrator, LineModel, LineType, Rayleigh, Scene, SolidSection, Strain};
+use crate::scene::{
+    Integrator, LineModel, LineType, Rayleigh, Scene, SolidSection, Strain, TensionStrain,
+};
 
 pub(super) fn check(scene: &Scene, findings: &mut Findings) {
     for (name, line_type) in &scene.line_types {
@@ -24,7 +26,7 @@ fn check_numbers(findings: &mut Findings, at: &str, line_type: &LineType) {
         ("diameter", line_type.diameter, Bounds::Positive(100.0), "m"),
         (
             "axial_stiffness",
-            Some(line_type.axial_stiffness),
+            line_type.axial_stiffness,
             Bounds::Positive(1e15),
             "N",
         ),
@@ -131,7 +133,137 @@ pub(in crate::scene) fn coefficients(line_type: &LineType) -> [(&'static str, Op
     ]
 }
 
+/// What the axial force follows from: a stiffness, a table, or two stiffnesses with dampers.
+fn check_axial(findings: &mut Findings, at: &str, line_type: &LineType) {
+    if viscoelastic(line_type)
+        .iter()
+        .any(|(_, value)| value.is_some())
+    {
+        check_viscoelastic(findings, at, line_type);
+        return;
+    }
+    let Some(table) = &line_type.tension_strain else {
+        if line_type.axial_stiffness.is_none() {
+            findings.say(
+                at,
+                "missing key `axial_stiffness` [N], or `tension_strain`, a table of strain [-] and tension [N]",
+            );
+        }
+        return;
+    };
+    let at_table = format!("{at}.tension_strain");
+    if line_type.axial_stiffness.is_some() {
+        findings.say(
+            format!("{at}.axial_stiffness"),
+            "`tension_strain` is given too: give one of them",
+        );
+    }
+    if line_type.strain != Strain::Engineering {
+        findings.say(
+            format!("{at}.strain"),
+            "a table has its own strain, the stretched length over the unstretched one less 1: leave `strain` out",
+        );
+    }
+    if line_type.model == LineModel::Beam {
+        findings.say(
+            &at_table,
+            "a beam has one `axial_stiffness` [N], and no table",
+        );
+    }
+    check_table(findings, &at_table, table);
+}
+
+/// The keys of a viscoelastic rope.
+fn viscoelastic(line_type: &LineType) -> [(&'static str, Option<f64>); 4] {
+    [
+        ("static_stiffness", line_type.static_stiffness),
+        ("dynamic_stiffness", line_type.dynamic_stiffness),
+        ("static_damping", line_type.static_damping),
+        ("dynamic_damping", line_type.dynamic_damping),
+    ]
+}
+
+/// A viscoelastic rope has two stiffnesses and two dampings, and nothing else that resists stretch.
+fn check_viscoelastic(findings: &mut Findings, at: &str, line_type: &LineType) {
+    for (key, value) in viscoelastic(line_type) {
+        let unit = if key.ends_with("stiffness") {
+            "N"
+        } else {
+            "N s"
+        };
+        let bounds = match key {
+            "dynamic_damping" => Bounds::NotNegative(1e15),
+            _ => Bounds::Positive(1e15),
+        };
+        findings.number_if(format!("{at}.{key}"), value, bounds, unit);
+        if value.is_none() && key != "dynamic_damping" {
+            findings.say(
+                at,
+                format!("missing key `{key}` [{unit}] of a viscoelastic rope"),
+            );
+        }
+    }
+    if let (Some(slow), Some(fast)) = (line_type.static_stiffness, line_type.dynamic_stiffness)
+        && fast <= slow
+    {
+        let problem = format!(
+            "{} is not above the static stiffness of {}: a rope is stiffer in fast motion",
+            quantity(fast, "N"),
+            quantity(slow, "N")
+        );
+        findings.say(format!("{at}.dynamic_stiffness"), problem);
+    }
+    let others = [
+        ("axial_stiffness", line_type.axial_stiffness.is_some()),
+        ("tension_strain", line_type.tension_strain.is_some()),
+        ("axial_damping", line_type.axial_damping.is_some()),
+        ("rayleigh", line_type.rayleigh.is_some()),
+        ("strain", line_type.strain != Strain::Engineering),
+        ("model", line_type.model == LineModel::Beam),
+    ];
+    for (key, _) in others.iter().filter(|(_, given)| *given) {
+        let problem = "a viscoelastic rope stretches by `static_stiffness`, `dynamic_stiffness` and the damping of each: \
+                       leave this out";
+        findings.say(format!("{at}.{key}"), problem);
+    }
+    if line_type.dynamic_damping.is_some() && line_type.damping_ratio.is_some() {
+        let problem = "`dynamic_damping` is given too: give one of them";
+        findings.say(format!("{at}.damping_ratio"), problem);
+    }
+}
+
+/// Rows of a table of strain and tension.
+fn check_table(findings: &mut Findings, at: &str, table: &TensionStrain) {
+    for (number, row) in table.rows.iter().enumerate() {
+        let at = format!("{at}[{number}]");
+        let strain = findings.number(&at, row[0], Bounds::Magnitude(10.0), "-");
+        let tension = findings.number(&at, row[1], Bounds::Magnitude(1e15), "N");
+        if !strain || !tension {
+            return;
+        }
+        let before = number.checked_sub(1).map(|before| table.rows[before]);
+        let problem = match before {
+            None if *row != [0.0, 0.0] => "a table begins with no tension at no strain: [0.0, 0.0]",
+            Some([strain, _]) if row[0] <= strain => "strain must rise from row to row",
+            Some([_, tension]) if row[1] <= tension => "tension must rise with strain",
+            _ => continue,
+        };
+        findings.say(at, problem);
+        return;
+    }
+    if table.rows.len() < 2 {
+        let problem = match &table.file {
+            Some(file) if table.rows.is_empty() => {
+                format!("{file} was not read: write its rows here")
+            }
+            _ => "a table has two rows [strain, tension] or more".to_string(),
+        };
+        findings.say(at, problem);
+    }
+}
+
 fn check_stretch(findings: &mut Findings, at: &str, line_type: &LineType) {
+    check_axial(findings, at, line_type);
     if line_type.axial_damping.is_some() && line_type.damping_ratio.is_some() {
         findings.say(
             format!("{at}.damping_ratio"),

@@ -1,7 +1,7 @@
 //! Lines, their sections, their start, and whether anything holds them.
 
 use super::{Bounds, Findings, quantity, unknown};
-use crate::scene::{InitialShape, Integrator, Line, LineModel, PointKind, Scene};
+use crate::scene::{InitialShape, Integrator, Line, LineModel, PointKind, Scene, Section};
 
 /// Most elements of a section.
 const ELEMENTS_MAX: usize = 100_000;
@@ -16,6 +16,7 @@ pub(super) fn check(scene: &Scene, findings: &mut Findings) {
         check_sections(findings, &at, line, scene);
         check_start(findings, &format!("{at}.initial"), line, scene);
         check_clamps(findings, &at, line, scene);
+        check_parting(findings, &at, line, scene);
     }
     check_held(scene, findings);
 }
@@ -62,6 +63,55 @@ fn check_sections(findings: &mut Findings, at: &str, line: &Line, scene: &Scene)
             ),
             _ => {}
         }
+    }
+}
+
+/// Lines that part from their points.
+fn check_parting(findings: &mut Findings, at: &str, line: &Line, scene: &Scene) {
+    if let Some(parting) = &line.parting {
+        let at = format!("{at}.break");
+        let bounds = Bounds::Positive(1e15);
+        findings.number_if(format!("{at}.tension"), parting.tension, bounds, "N");
+        findings.number_if(
+            format!("{at}.time"),
+            parting.time,
+            Bounds::NotNegative(1e9),
+            "s",
+        );
+        if parting.tension.is_none() && parting.time.is_none() {
+            findings.say(
+                &at,
+                "nothing breaks the line: give `tension` [N], `time` [s] or both",
+            );
+        }
+    }
+    if line.parting.is_none() && line.release.is_none() {
+        return;
+    }
+    let at = match line.parting {
+        Some(_) => format!("{at}.break"),
+        None => format!("{at}.release"),
+    };
+    if matches!(
+        scene.solver.integrator,
+        Integrator::QuasiStatic | Integrator::Beam
+    ) {
+        let problem = "a line that lets go falls: use a dynamic integrator of cables, or \"auto\"";
+        findings.say(&at, problem);
+    }
+    let bends = |section: &Section| {
+        let line_type = scene.line_types.get(&section.line_type);
+        line_type.is_some_and(|kind| {
+            kind.model == LineModel::Beam
+                || kind.solid_section.is_some()
+                || kind.bending_stiffness > Some(0.0)
+        })
+    };
+    if line.sections.iter().any(bends) {
+        findings.say(
+            at,
+            "lines with bending stiffness do not let go: leave it out, or the bending stiffness",
+        );
     }
 }
 

@@ -32,6 +32,9 @@ pub(super) fn check(scene: &Scene, findings: &mut Findings) {
         if let Some(current) = &water.current {
             check_current(scene, current, findings);
         }
+        if let Some(waves) = &water.waves {
+            super::waves::check(scene, waves, findings);
+        }
     }
     if let Some(seabed) = &scene.seabed {
         if seabed.depth < 0.0 {
@@ -56,6 +59,10 @@ const SPEED: Bounds = Bounds::Magnitude(100.0);
 
 fn check_current(scene: &Scene, current: &Current, findings: &mut Findings) {
     let at = "water.current";
+    if current.file.is_some() {
+        let problem = "a scene that comes as text cannot read files: write the rows as `profile`";
+        return findings.say(format!("{at}.file"), problem);
+    }
     match (&current.velocity, &current.profile) {
         (None, None) => findings.say(
             at,

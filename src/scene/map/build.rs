@@ -103,7 +103,7 @@ impl Builder<'_> {
             let line_type = scene::LineType {
                 mass: Some(kind.mass.value),
                 diameter: Some(kind.diameter.value),
-                axial_stiffness: kind.stiffness.value,
+                axial_stiffness: Some(kind.stiffness.value),
                 ..scene::LineType::default()
             };
             self.scene.line_types.insert(name, line_type);

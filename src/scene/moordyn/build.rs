@@ -6,8 +6,8 @@ use super::deck::{Attachment, Body, Deck, Line, LineEnd, LineType, Point, Proper
 use crate::scene::from_deck::{self, SEA_WATER, Vessels, place_position};
 use crate::scene::rows::{Findings, Placed};
 use crate::scene::{
-    self, Friction, Output, Places, PointForce, PointKind, Scene, Seabed, Section, Supplement,
-    TimeFunction, Water,
+    self, Current, Friction, Output, Places, PointForce, PointKind, Scene, Sea, Seabed, Section,
+    Supplement, TensionStrain, TimeFunction, Water, Waves,
 };
 
 /// A deck on its way to a scene.
@@ -68,6 +68,20 @@ fn given(value: f64) -> Option<f64> {
     (value != 0.0).then_some(value)
 }
 
+/// File of the components of waves.
+const WAVES_FILE: &str = "wave_frequencies.txt";
+/// File of a steady current.
+const CURRENT_FILE: &str = "current_profile.txt";
+
+/// The file beside a deck that an option asks for: of waves by components (7), or of a steady current (1); `None` of other options.
+pub(super) fn water_file(key: &str, value: &str) -> Option<&'static str> {
+    match (key.to_uppercase().as_str(), value) {
+        ("WAVEKIN", "7") => Some(WAVES_FILE),
+        ("CURRENTS" | "CURRENT", "1") => Some(CURRENT_FILE),
+        _ => None,
+    }
+}
+
 impl<'d> Builder<'d> {
     fn line_types(&mut self) {
         let mut taken = BTreeSet::new();
@@ -102,6 +116,11 @@ impl<'d> Builder<'d> {
         }
         let properties = [
             ("axial_stiffness", Some(&kind.stiffness), "EA"),
+            ("tension_strain", Some(&kind.stiffness), "EA"),
+            ("static_stiffness", Some(&kind.stiffness), "EA"),
+            ("dynamic_stiffness", Some(&kind.stiffness), "EA"),
+            ("static_damping", Some(&kind.damping), "BA/-zeta"),
+            ("dynamic_damping", Some(&kind.damping), "BA/-zeta"),
             ("axial_damping", Some(&kind.damping), "BA/-zeta"),
             ("damping_ratio", Some(&kind.damping), "BA/-zeta"),
             ("bending_stiffness", kind.bending.as_ref(), "EI"),
@@ -294,7 +313,9 @@ impl<'d> Builder<'d> {
             .density
             .as_ref()
             .map_or(SEA_WATER, |density| density.value);
-        self.scene.water = Some(Water::still(density));
+        let mut water = Water::still(density);
+        self.moving_water(&mut water);
+        self.scene.water = Some(water);
         if let Some(density) = &options.density {
             self.places
                 .put("water.density", &density.span, "OPTIONS, rho");
@@ -325,6 +346,32 @@ impl<'d> Builder<'d> {
         seabed.friction = self.friction();
         seabed.file = self.soundings();
         self.scene.seabed = Some(seabed);
+    }
+
+    /// Waves and current in files beside the deck.
+    fn moving_water(&mut self, water: &mut Water) {
+        for (key, value) in &self.deck.options.surroundings {
+            let words = format!("OPTIONS, {key}");
+            let Some(file) = water_file(key, &value.value) else {
+                continue;
+            };
+            let text = format!("{key} {}: read from {file} beside this file", value.value);
+            self.findings.remark(value.span.start, text);
+            if file == WAVES_FILE {
+                self.places.put("water.waves.file", &value.span, words);
+                let sea = Sea {
+                    file: Some(file.to_string()),
+                    ..Sea::default()
+                };
+                water.waves = Some(Waves { seas: vec![sea] });
+            } else {
+                self.places.put("water.current.file", &value.span, words);
+                water.current = Some(Current {
+                    file: Some(file.to_string()),
+                    ..Current::default()
+                });
+            }
+        }
     }
 
     /// The file of the bed's depths, named in the place of the depth or by itself.
@@ -480,14 +527,36 @@ impl<'d> Builder<'d> {
     }
 }
 
+/// What resists the stretch of a line.
+fn stretch(kind: &LineType) -> scene::LineType {
+    let mut line_type = scene::LineType::default();
+    let (slow, damping) = match &kind.damping.value {
+        Property::Parts(parts) => (parts[0], parts[1]),
+        number => (plain(number), plain(number)),
+    };
+    match &kind.stiffness.value {
+        Property::Parts(parts) => {
+            line_type.static_stiffness = Some(parts[0]);
+            line_type.dynamic_stiffness = Some(parts[1]);
+            line_type.static_damping = Some(slow);
+            let both = matches!(kind.damping.value, Property::Parts(_));
+            let fast = if both { damping } else { 0.0 }; // MoorDyn's reading of one BA
+            line_type.dynamic_damping = (fast >= 0.0).then_some(fast);
+            line_type.damping_ratio = (fast < 0.0).then_some(-fast);
+            return line_type;
+        }
+        Property::Named(file) => line_type.tension_strain = Some(TensionStrain::from_file(file)),
+        Property::Number(stiffness) => line_type.axial_stiffness = Some(*stiffness),
+    }
+    line_type.axial_damping = (damping >= 0.0).then_some(damping);
+    line_type.damping_ratio = (damping < 0.0).then_some(-damping);
+    line_type
+}
+
 fn line_type(kind: &LineType) -> scene::LineType {
-    let damping = plain(&kind.damping.value);
     scene::LineType {
         mass: Some(kind.mass.value),
         diameter: Some(kind.diameter.value),
-        axial_stiffness: plain(&kind.stiffness.value),
-        axial_damping: (damping >= 0.0).then_some(damping),
-        damping_ratio: (damping < 0.0).then_some(-damping),
         bending_stiffness: kind
             .bending
             .as_ref()
@@ -496,7 +565,7 @@ fn line_type(kind: &LineType) -> scene::LineType {
         drag_tangential: given(kind.drag_tangential.value),
         added_mass_normal: given(kind.added_mass_normal.value),
         added_mass_tangential: given(kind.added_mass_tangential.value),
-        ..scene::LineType::default()
+        ..stretch(kind)
     }
 }
 

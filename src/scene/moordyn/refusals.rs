@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::build::water_file;
 use super::deck::{Attachment, Deck, Property};
 use crate::scene::rows::{Findings, Placed, shown};
 
@@ -25,20 +26,17 @@ fn refuse(findings: &mut Findings, at: impl Into<String>, span: &Range<usize>, p
     findings.mistake(at, span.clone(), problem);
 }
 
-/// EA from a table, viscoelastic EA.
+/// Viscoelastic EA that depends on the load.
 fn stiffness_laws(deck: &Deck, findings: &mut Findings) {
     for kind in &deck.line_types {
         let problem = match &kind.stiffness.value {
-            Property::Number(_) => continue,
+            Property::Number(_) | Property::Named(_) => continue,
+            Property::Parts(parts) if parts.len() == 2 => continue,
             Property::Parts(_) => {
-                "a static and a dynamic stiffness are not modelled: write one EA [N], the dynamic one for motions in \
-                 waves, the static one for slow offsets"
+                "a dynamic stiffness that grows with the mean tension (static|alpha|beta) is not modelled: write \
+                 static|dynamic [N], the dynamic one at the mean tension expected"
                     .to_string()
             }
-            Property::Named(name) => format!(
-                "a stiffness from {} is not modelled: write EA [N] as a number, the slope of the table at the mean tension",
-                shown(name)
-            ),
         };
         refuse(
             findings,
@@ -49,14 +47,20 @@ fn stiffness_laws(deck: &Deck, findings: &mut Findings) {
     }
 }
 
-/// BA from a table, viscoelastic BA.
+/// BA from a table, viscoelastic BA beside one EA.
 fn damping_laws(deck: &Deck, findings: &mut Findings) {
     for kind in &deck.line_types {
+        let visco = matches!(kind.stiffness.value, Property::Parts(_));
         let problem = match &kind.damping.value {
+            Property::Number(value) if *value < 0.0 && visco => {
+                "a damping ratio has no meaning for the slow part of a viscoelastic line: write static|dynamic [N s]"
+                    .to_string()
+            }
             Property::Number(_) => continue,
+            Property::Parts(parts) if parts.len() == 2 && visco && parts[0] > 0.0 => continue,
             Property::Parts(_) => {
-                "two dampings belong to a viscoelastic line, which is not modelled: write one BA [N s], or a ratio with \
-                 a minus sign"
+                "two dampings belong to a viscoelastic line: write BA as static|dynamic [N s], the first above 0, beside EA as \
+                 static|dynamic [N]"
                     .to_string()
             }
             Property::Named(name) => format!(
@@ -231,7 +235,11 @@ fn carried(segments: usize) -> Option<String> {
 /// Waves and currents from options and files.
 fn waves_and_currents(deck: &Deck, findings: &mut Findings) {
     for (key, value) in &deck.options.surroundings {
-        let what = "waves and currents of a deck are not read: write 0, and give them in the scene or the host";
+        if water_file(key, &value.value).is_some() {
+            continue;
+        }
+        let what = "only WaveKin 7 (components of wave_frequencies.txt) and Currents 1 (steady, current_profile.txt) are read of a deck: \
+                    write one of them or 0, and give other waves and currents in the scene";
         refuse(
             findings,
             format!("OPTIONS, {key}"),
@@ -243,7 +251,9 @@ fn waves_and_currents(deck: &Deck, findings: &mut Findings) {
 
 fn line_failures(deck: &Deck, findings: &mut Findings) {
     for row in &deck.failures {
-        let problem = "lines that break are not modelled: take the section FAILURE out".to_string();
+        let problem = "breaks are not read from decks: take the section FAILURE out, and write `break = { at = …, tension = …, time = … }` \
+                       to the lines of the scene that `moorline convert` makes"
+            .to_string();
         refuse(findings, "FAILURE", &row.span, problem);
     }
 }

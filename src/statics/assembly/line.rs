@@ -3,10 +3,11 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::bending::Parts;
+use super::creep::CreepWork;
+use super::parted::Parted;
 use super::{BendingWork, StaticCase, Weights, surface};
 use crate::math::block_tridiagonal::Chain;
-use crate::model::{Dry, Line, LineState, Model};
-use crate::physics::flow::Stream;
+use crate::model::{Dry, Line, LineState, Model, WaterAlong};
 use crate::physics::morison::{DragCoefficients, drag, drag_slope};
 use crate::physics::stretch::total_tension;
 
@@ -41,22 +42,29 @@ pub(crate) struct LineWork {
     pub bending: Option<BendingWork>,
     /// Friction of the bed at the last assembly, per node [N]; empty over a level bed without friction.
     pub rubbed: Vec<Vector3<f64>>,
+    /// Memory of viscoelastic segments, where the line has any.
+    pub(super) creep: Option<CreepWork>,
+    /// Whether ends A and B have parted from their points.
+    pub(super) parted: [bool; 2],
+    /// What was eliminated of them last.
+    pub(super) loose: Option<Parted>,
     /// Elimination where nothing bends.
     pub(super) chain: Chain,
 }
+
 /// A segment as it lies.
-struct Geometry {
+pub(super) struct Geometry {
     /// Length [m].
     length: f64,
     /// Direction [-]; zero where both nodes coincide.
     direction: Vector3<f64>,
     /// l/l₀ − 1 [-], without the cancellation of the subtraction.
-    strain: f64,
+    pub(super) strain: f64,
 }
 
 impl Geometry {
     #[inline(always)]
-    fn new(a: Vector3<f64>, b: Vector3<f64>, unstretched: f64) -> Geometry {
+    pub(super) fn new(a: Vector3<f64>, b: Vector3<f64>, unstretched: f64) -> Geometry {
         let d = b - a;
         let square = d.norm_squared();
         let length = square.sqrt();
@@ -93,6 +101,9 @@ impl LineWork {
             dry: vec![Dry::default(); if line.surface.is_some() { n + 1 } else { 0 }],
             bending: line.bending.as_ref().map(|_| BendingWork::new(n + 1)),
             rubbed: vec![Vector3::zeros(); line.bottom().map_or(0, |_| n + 1)],
+            creep: CreepWork::new(line),
+            parted: [false; 2],
+            loose: None,
             chain: Chain::new(n + 1),
         }
     }
@@ -143,7 +154,13 @@ impl LineWork {
         for (residual, load) in self.residual.iter_mut().zip(&self.load) {
             *residual -= case.load * load;
         }
-        self.add_surface(line, position, [case.load; 2], case.breadth);
+        self.add_surface(
+            line,
+            position,
+            WaterAlong::default(),
+            [case.load; 2],
+            case.breadth,
+        );
         for i in 0..position.len() {
             self.residual[i].z += case.load * line.nodes.weight[i];
             for axis in 0..3 {
@@ -193,7 +210,7 @@ impl LineWork {
         line: &Line,
         state: &LineState,
         clamps: [Option<Vector3<f64>>; 2],
-        stream: Option<Stream>,
+        water: WaterAlong,
         weights: &Weights,
         negative_tension: bool,
     ) {
@@ -209,13 +226,15 @@ impl LineWork {
         self.add_surface(
             line,
             &state.position,
+            water,
             [weights.force, weights.position],
             0.0,
         );
         self.add_weight_and_inertia::<TANGENT>(line, state, weights);
         if line.nodes.drag.is_some() {
-            self.add_drag::<TANGENT>(line, state, stream, weights);
+            self.add_drag::<TANGENT>(line, state, water, weights);
         }
+        self.add_press(line, state, water, weights);
         if line.nodes.contact.is_some() {
             self.add_contact::<TANGENT>(line, state, weights);
         }
@@ -246,7 +265,11 @@ impl LineWork {
         let g = Geometry::new(state.position[i], state.position[i + 1], unstretched);
         let rate = state.velocity[i + 1] - state.velocity[i]; // ġ [m/s]
         let stretch = line.segments.law[i].at(g.strain);
-        let elastic = ea * stretch.force;
+        let (mut elastic, mut tangent, mut ba) = (ea * stretch.force, ea * stretch.slope, ba);
+        if let Some(creep) = &self.creep {
+            let taken = creep.respond(line, state, i, g.strain, weights.predicted);
+            (elastic, tangent, ba) = (taken.elastic, taken.tangent, taken.damping);
+        }
         let total = elastic + ba * g.direction.dot(&rate) / unstretched;
         let predicted = weights.predicted && !negative_tension;
         let least = 0.0 - self.push[i];
@@ -263,11 +286,7 @@ impl LineWork {
         let mut stiffness = Matrix3::zeros();
         if TANGENT && g.length > 0.0 {
             let damps = taut || negative_tension;
-            let spring = if taut {
-                ea * stretch.slope / unstretched
-            } else {
-                0.0
-            };
+            let spring = if taut { tangent / unstretched } else { 0.0 };
             let damper = if damps { ba / unstretched } else { 0.0 };
             let along = weights.position * spring + weights.velocity * damper;
             let pull = if predicted { self.tension[i] } else { tension };
@@ -324,11 +343,24 @@ impl LineWork {
         }
     }
 
+    /// Force of water that waves accelerate; it does not depend on the state but by the tangent, which is frozen.
+    fn add_press(&mut self, line: &Line, state: &LineState, water: WaterAlong, weights: &Weights) {
+        let (Some(pressed), Some(waves)) = (&line.nodes.pressed, &water.waves) else {
+            return;
+        };
+        for i in 0..self.residual.len() {
+            let tangent = node_tangent(&state.position, i);
+            let wet = 1.0 - self.dry(i).part;
+            let force = pressed.force(i, waves.at(i).acceleration, tangent);
+            self.residual[i] -= weights.force * wet * force;
+        }
+    }
+
     fn add_drag<const TANGENT: bool>(
         &mut self,
         line: &Line,
         state: &LineState,
-        stream: Option<Stream>,
+        water: WaterAlong,
         weights: &Weights,
     ) {
         let Some(coefficients) = &line.nodes.drag else {
@@ -341,8 +373,7 @@ impl LineWork {
                 tangent: coefficients.tangent[i],
             };
             let (t, z) = (node_tangent(&state.position, i), state.position[i].z);
-            let flow = stream.map_or(Vector3::zeros(), |stream| stream.velocity(z));
-            let v = state.velocity[i] - flow;
+            let v = state.velocity[i] - water.velocity(i, z);
             if TANGENT && dry.slope > 0.0 {
                 self.diagonal[i] -= weights.position * surface::by_height(&dry, drag(k, v, t));
             }
@@ -351,7 +382,7 @@ impl LineWork {
             if TANGENT {
                 let slope = drag_slope(k, v, t);
                 self.diagonal[i] += weights.velocity * slope;
-                if let Some(stream) = stream {
+                if let Some(stream) = water.stream {
                     let mut by_height = self.diagonal[i].column_mut(2);
                     by_height -= weights.position * slope * stream.shear(z);
                 }

@@ -44,7 +44,9 @@ impl Place {
 pub(crate) fn place_ends(model: &Model, network: &Network, state: &mut State) {
     for &index in &network.lines {
         let line = &model.lines[index];
-        for (point, node) in line.ends.into_iter().zip([0, line.segment_count()]) {
+        let parted = state.lines[index].parted;
+        let ends = line.ends.into_iter().zip([0, line.segment_count()]);
+        for ((point, node), _) in ends.zip(parted).filter(|(_, parted)| !parted) {
             let (point, nodes) = (&state.points[point], &mut state.lines[index]);
             nodes.position[node] = point.position;
             nodes.velocity[node] = point.velocity;
@@ -62,6 +64,8 @@ pub(crate) fn copy_network(model: &Model, network: &Network, from: &State, to: &
         to_line
             .acceleration
             .copy_from_slice(&from_line.acceleration);
+        to_line.creep.clone_from(&from_line.creep);
+        to_line.parted = from_line.parted;
         to_line.beam.clone_from(&from_line.beam);
         to_line.anchor.clone_from(&from_line.anchor);
         for point in model.lines[index].ends {
@@ -74,10 +78,10 @@ pub(crate) fn copy_network(model: &Model, network: &Network, from: &State, to: &
 pub(super) fn blank_state(model: &Model) -> State {
     let line = |line: &Line| {
         let count = line.segment_count() + 1;
-        LineState {
-            anchor: Vec::with_capacity(line.friction().map_or(0, |_| count)),
-            ..LineState::at_rest(vec![Vector3::zeros(); count])
-        }
+        let mut shape = LineState::at_rest(vec![Vector3::zeros(); count]);
+        shape.become_viscoelastic(line);
+        shape.anchor = Vec::with_capacity(line.friction().map_or(0, |_| count));
+        shape
     };
     State {
         time: 0.0,
@@ -87,5 +91,6 @@ pub(super) fn blank_state(model: &Model) -> State {
             .map(|point| PointState::at_rest(point.reference))
             .collect(),
         lines: model.lines.iter().map(line).collect(),
+        waves: None,
     }
 }

@@ -5,6 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::contact::SmoothContact;
 use super::{StaticCase, Weights};
 use crate::model::{Bottom, FreePoint, Model, Network, Point, PointState};
+use crate::physics::airy::Orbit;
 use crate::physics::flow::Stream;
 
 /// Scratch of a point.
@@ -81,14 +82,19 @@ impl PointWork {
         bottom: Option<&Bottom>,
         state: &PointState,
         load: Vector3<f64>,
-        stream: Option<Stream>,
+        water: (Option<Stream>, Option<Orbit>),
         weights: &Weights,
     ) {
         let (z, a) = (state.position.z, state.acceleration);
         let v = state.velocity;
-        let past = v - stream.map_or(Vector3::zeros(), |stream| stream.velocity(z));
-        let at = free.at(z);
+        let (stream, waves) = water;
+        let mut past = v - stream.map_or(Vector3::zeros(), |stream| stream.velocity(z));
+        let at = free.at(z - waves.map_or(0.0, |orbit| orbit.elevation));
         let mut force = load - at.weight * Vector3::z();
+        if let Some(orbit) = &waves {
+            past -= orbit.velocity;
+            force += free.pressed(at.wetted, orbit);
+        }
         self.diagonal = Matrix3::from_diagonal_element(weights.acceleration * at.mass);
         if let Some(sphere) = &free.sphere {
             force += sphere.drag(at.wetted, past);
@@ -128,6 +134,134 @@ pub(crate) fn for_free_points(
     for &index in &network.free_points {
         if let Some(free) = model.points[index].free() {
             visit(index, free);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Scene;
+    use approx::assert_relative_eq;
+
+    /// A buoy on a line, over a bed of its own and in a sheared current, which may pierce the surface and touch the bed at once.
+    fn model() -> Model {
+        let text = r#"
+            water = { density = 1025.0, current = { profile = [[1.0, 0.9, -0.4], [-3.0, 0.1, 0.3]], factor = 1.3 } }
+            seabed = { depth = 1.0, stiffness = 2e4, damping = 900.0 }
+            line_types.rope = { mass = 2.0, diameter = 0.05, axial_stiffness = 4e4 }
+            points = [
+              { name = "anchor", position = [0.0, 0.0, -1.0], kind = "fixed" },
+              { name = "buoy", position = [0.3, 0.0, 0.2], kind = "free", mass = 300.0, volume = 1.5, drag_area = 1.2, added_mass = 0.5 },
+            ]
+            lines = [{ name = "rope", from = "anchor", to = "buoy", sections = [{ type = "rope", length = 3.0, elements = 4 }] }]
+        "#;
+        Model::new(&Scene::from_toml(text).unwrap()).unwrap()
+    }
+
+    fn at(z: f64) -> PointState {
+        let mut state = PointState::at_rest(Vector3::new(0.3, -0.1, z));
+        state.velocity = Vector3::new(0.4, -1.1, -0.7);
+        state.acceleration = Vector3::new(-0.6, 0.2, 1.3);
+        state
+    }
+
+    /// Compares the columns of J with central differences of R as position, velocity and acceleration move together.
+    fn assert_columns(
+        residual: impl Fn(&PointState) -> (Vector3<f64>, Matrix3<f64>),
+        state: &PointState,
+        [by_position, by_velocity, by_acceleration]: [f64; 3],
+    ) {
+        let (_, tangent) = residual(state);
+        let step = 1e-6;
+        for axis in 0..3 {
+            let moved = |h: f64| {
+                let mut moved = *state;
+                moved.position[axis] += by_position * h;
+                moved.velocity[axis] += by_velocity * h;
+                moved.acceleration[axis] += by_acceleration * h;
+                residual(&moved).0
+            };
+            let slope = (moved(step) - moved(-step)) / (2.0 * step);
+            let column = tangent.column(axis).into_owned();
+            assert_relative_eq!(column, slope, epsilon = 1e-6 * tangent.amax());
+        }
+    }
+
+    /// Deep, touching the bed, half in the water, touching the surface from below and out of it; no kink nearby.
+    const HEIGHTS: [f64; 5] = [-0.995, -0.9, 0.1, 0.6, 2.0];
+
+    #[test]
+    fn the_tangent_of_a_point_at_rest_is_the_slope_of_its_residual() {
+        let model = model();
+        let (point, free) = (&model.points[1], model.points[1].free().unwrap());
+        assert!(free.contact.is_some());
+        let case = StaticCase {
+            time: 0.0,
+            load: 0.7,
+            stiffness_max: f64::INFINITY,
+            tension_min: 0.0,
+            anchoring: 0.0,
+            predicted: false,
+            bends: false,
+            breadth: 0.0,
+            stick: 1.0,
+            limit: 1.0,
+        };
+        for z in HEIGHTS {
+            let residual = |state: &PointState| {
+                let mut work = PointWork::new();
+                work.assemble_static(point, free, state, model.stream(0.0), &case);
+                (work.residual, work.diagonal)
+            };
+            assert_columns(residual, &at(z), [1.0, 0.0, 0.0]);
+        }
+    }
+
+    #[test]
+    fn the_tangent_of_a_moving_point_is_the_slope_of_its_residual_alone_and_as_an_implicit_step_moves_it()
+     {
+        let model = model();
+        let free = model.points[1].free().unwrap();
+        let load = Vector3::new(30.0, -20.0, 10.0);
+        for moves in [
+            [1.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0],
+            [0.0, 0.0, 1.0],
+            [1.0, 40.0, 900.0],
+        ] {
+            let weights = Weights {
+                friction: 1.0,
+                force: 0.8,
+                inertia: 0.8,
+                position: 0.8 * moves[0],
+                velocity: 0.8 * moves[1],
+                acceleration: 0.8 * moves[2],
+                predicted: true,
+                convex: false,
+            };
+            for z in HEIGHTS {
+                let residual = |state: &PointState| {
+                    let mut work = PointWork::new();
+                    work.reach = 0.05;
+                    let stream = model.stream(0.0);
+                    work.assemble_dynamic::<true>(
+                        free,
+                        None,
+                        state,
+                        load,
+                        (stream, None),
+                        &weights,
+                    );
+                    (work.residual, work.diagonal)
+                };
+                // where only the velocity moves, what depends on height stays in J and so must not be asked for
+                let mut state = at(z);
+                if moves[0] == 0.0 {
+                    state.acceleration = Vector3::zeros();
+                }
+                assert_columns(residual, &state, moves);
+            }
         }
     }
 }

@@ -6,15 +6,16 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::LineWork;
-use crate::model::{Dry, Line};
+use crate::model::{Dry, Line, WaterAlong};
 
 impl LineWork {
-    /// Finds what of a line that lies as `position` [m] says is dry, and adds the weight of that, times `force`, and its tangent,
+    /// Finds what of a line that lies in the `water` as `position` [m] says is dry, and adds the weight of that, times `force`, and its tangent,
     /// times `stiffness`. Segments of a radius below `breadth` [m] are taken as that thick.
     pub(super) fn add_surface(
         &mut self,
         line: &Line,
         position: &[Vector3<f64>],
+        water: WaterAlong,
         [force, stiffness]: [f64; 2],
         breadth: f64,
     ) {
@@ -23,7 +24,7 @@ impl LineWork {
         };
         self.dry.fill(Dry::default());
         for i in 0..line.segment_count() {
-            let heights = [i, i + 1].map(|node| surface.height(&position[node]));
+            let heights = surface.heights(i, position, water);
             let Some(at) = surface.segment(i, heights, breadth) else {
                 continue;
             };

@@ -65,6 +65,7 @@ fn bench(sections: Vec<Section>, length: f64, law: SectionLaw, rests: bool) -> B
             mass_tangent: zeros(),
             weight: zeros(),
             drag: None,
+            pressed: None,
             contact: None,
             mass_damping: None,
         },

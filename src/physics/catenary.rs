@@ -48,14 +48,14 @@
 //! stiffness, a flat bed that does not yield.
 //!
 //! ```
-//! use moorline::statics::catenary::{Bed, Section, solve};
+//! use moorline::physics::catenary::{Bed, Section, solve};
 //!
 //! let chain = Section { length: 902.2, weight: 698.094, axial_stiffness: 384.243e6 };
 //! let bed = Bed { height: 0.0, friction: 0.0 };
 //! let line = solve(&[chain], 848.67, 250.0, Some(bed))?;
 //! assert!((line.tension_b() - 911_088.36).abs() < 0.01);
 //! assert!((line.laid_length() - 134.7855).abs() < 1e-4);
-//! # Ok::<(), moorline::statics::catenary::CatenaryError>(())
+//! # Ok::<(), moorline::physics::catenary::CatenaryError>(())
 //! ```
 
 mod flight;

@@ -1,0 +1,48 @@
+"""Line laws through the FMU: viscoelastic ropes, and lines that let go, for both FMI versions."""
+
+import fmpy
+import numpy as np
+
+TIME = np.arange(0.0, 10.001, 0.05)
+
+
+def sway(amplitude, period, release_at=None):
+    """Inputs of a fairlead that sways along x, and lets go at a time [s]."""
+    names = [("time", "f8"), ("fairlead.x", "f8"), ("line1.release", "?")]
+    signals = np.zeros(TIME.size, dtype=names)
+    signals["time"] = TIME
+    signals["fairlead.x"] = amplitude * np.sin(2 * np.pi * TIME / period) * np.minimum(TIME / period, 1.0)
+    if release_at is not None:
+        signals["line1.release"] = TIME >= release_at
+    return signals
+
+
+def simulate(fmu, signals):
+    return fmpy.simulate_fmu(str(fmu), stop_time=TIME[-1], output_interval=0.05, input=signals,
+                             output=["line1.tension_b", "fairlead.fx", "solver.energy_error"])
+
+
+def test_a_line_that_is_told_to_lets_go_and_the_fairlead_feels_nothing_more(package, version):
+    found = simulate(package("ROPE", version), sway(0.3, 4.0, release_at=6.0))
+    held, gone = found["time"] < 6.0, found["time"] > 6.1
+    assert (found["line1.tension_b"][held] > 1e4).all()
+    assert (found["line1.tension_b"][gone] == 0.0).all() and (found["fairlead.fx"][gone] == 0.0).all()
+    assert np.isfinite(found["solver.energy_error"]).all()
+
+
+def test_the_release_is_a_truth_value_that_is_false_at_first(library, version):
+    variable = library("ROPE", version).description.variables["line1.release"]
+    assert variable["causality"] == "input" and variable["type"] == "Boolean"
+    assert variable["start"] == "false"
+
+
+def test_a_fast_sway_meets_the_dynamic_stiffness(package, version):
+    """Amplitudes of tension in motions far slower and far faster than the rope's own time of 1.4 s."""
+    fast = simulate(package("ROPE", version), sway(0.2, 1.0))["line1.tension_b"][-40:]
+    stiffness = 0.5 * np.ptp(fast) / 0.2 * 200.0
+    assert 7.5e7 < stiffness < 1.1e8
+
+
+def test_the_parameters_of_a_viscoelastic_rope_are_variables(library, version):
+    names = library("ROPE", version).description.names("parameter")
+    assert {f"rope.{key}_{of}" for key in ("static", "dynamic") for of in ("stiffness", "damping")} <= set(names)

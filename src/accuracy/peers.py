@@ -1,0 +1,597 @@
+#!/usr/bin/env python3
+"""Run MoorDyn and CableDyn over one scene at their own best settings, for `moorline accuracy --peers`.
+
+One JSON document on standard input describes a scene of one line whose upper end is driven; one JSON object a line on
+standard output answers, a run each, and `{"done": true}` at the end. Everything else goes to standard error.
+
+Input (SI units)
+    name, gravity [m/s²], density [kg/m³], depth [m] or null, bed {stiffness [Pa/m], damping [Pa·s/m]} or null,
+    line {length [m], mass [kg/m], diameter [m], axial_stiffness [N], axial_damping [N·s], drag_normal, drag_tangential,
+    added_mass_normal, added_mass_tangential [-]}, anchor [m], fairlead [m],
+    harmonics {x, y, z: [[amplitude [m], period [s], phase [rad]], ...], ramp [s]} or else
+    motion {times [s], position [m], velocity [m/s]}, duration [s], interval [s], elements [-], and
+    time_limit_seconds [s], the CPU time that all passes of a run may take. The last two have defaults, and a
+    density of null is a line in air.
+Output, per run
+    peer, label, elements [-], and either cpu_seconds [s], tension [N] at the fairlead and mid [m], the position at
+    s = L/2, both at interval, 2·interval, ...; or failed, the reason.
+
+What a run costs
+    CPU time of the time loop alone: reading the deck, the initial equilibrium and the reading of results are not
+    charged. A first pass reads the results as it goes and is not timed; further passes repeat the same steps
+    without reading anything and are timed, their median counts. The price of calling from Python, measured on
+    calls that do no work, is taken off. Each run has its own process, on whatever core the parent is bound to.
+
+MoorDyn's settings
+    Schemes: RK2, RK4 and Midpoint2 (one fixed-point correction), whichever costs least per second at its stability
+    limit, at 0.9 and 0.6 of that limit. The limit comes from the scheme's amplification factor on the axial waves of
+    the mesh, on slack segments and on the seabed's spring and damper; MoorDyn's own CFL option knows the undamped
+    axial wave only. The rest did not pay: Euler and Heun (one evaluation) need steps 3 to 10 times smaller for the
+    same error, AB2 to AB4 do not converge, Midpoint and backward Euler with more iterations, Wilson and ACA cost more
+    for the same answer.
+    Host step: the path goes in as straight pieces with the secant velocity, so that it has no jumps in position
+    (given the velocity at the start of the step the fairlead jumps by ah²/2), in steps of one to eight internal ones
+    and at most 1/200 of the motion's period, or of one internal step where that is longer. A host step costs 0.4 µs
+    more than its internal ones.
+    Tension: the force at the fairlead's node (last segment, drag and weight of its half) less the node's mass times
+    its known acceleration. MoorDyn returns the force without the inertia, which is some 1 % of the tension's deviation
+    on a coarse taut line. RK2 and Midpoint leave that force at the middle of the last internal step; it is given the
+    time it belongs to.
+
+CableDyn's settings
+    Two-node elements, generalised-α in process. A relative tolerance of 1e-2 in Newton's iteration is enough (the
+    default 1e-8 costs up to twice as much for the same errors). Where the line meets the bed: ρ∞ = 0.4 with 1/360 of
+    the motion's period, best for tension, and ρ∞ = 0 with 1/180 and 1/90, best for position. Where it does not:
+    ρ∞ = 0.9 and reused tangents with 1/30 and 1/20 of the period. The cubic element with a token bending stiffness
+    reaches the position error of 28 two-node elements with 8, at the same cost, and diverges with 6; where the line
+    meets the bed it costs several times more. It is left out.
+    Tension: CalcOutput, which has the end's inertia in it (FairTen has not).
+
+Both get a water depth (CableDyn drops drag and added mass without one) that a scene without a seabed never reaches,
+and where the motion reaches z = 0 the whole scene is lowered by 10 m (MoorDyn drops the water above), which changes
+nothing in still water.
+"""
+
+import cmath
+import ctypes
+import json
+import math
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+import numpy as np
+
+try:
+    import resource
+except ImportError:  # Windows has no such limits; there the clock on the wall ends a run
+    resource = None
+
+# Segments of a ladder when the scene names none [-]; a line on the bed is far out with fewer than 8.
+ELEMENTS = (4, 6, 8, 10, 14, 20, 28, 40, 56, 80)
+ELEMENTS_ON_BED = ELEMENTS[2:]
+# CPU time of a run when the scene names none [s], and how much longer the clock on the wall may take [-].
+TIME_LIMIT, WALL = 60.0, 20.0
+# Depth by which a scene is lowered where its motion reaches the surface [m].
+LOWERED = 10.0
+# What stands for air's density where CableDyn wants a positive one [kg/m³].
+AIR = 1e-6
+# A line shorter than this part [-] of one that just leaves the bed at its anchor is taken to hang free.
+HANGS_FREE = 0.97
+# Timed passes of a run: at most this many, until they add up to this much CPU time [s].
+PASSES, PASSES_CPU = 9, 0.4
+
+
+class Path:
+    """The fairlead's prescribed motion: position [m], velocity [m/s] and acceleration [m/s²] at any time."""
+
+    def __init__(self, scene):
+        """Take the harmonics where the scene has them, its samples where not."""
+        self.start = np.array(scene["fairlead"], float)
+        self.harmonics = scene.get("harmonics")
+        if self.harmonics is None:
+            motion = scene["motion"]
+            self.times, self.position, self.velocity = (
+                np.array(motion[key], float) for key in ("times", "position", "velocity")
+            )
+
+    def at(self, times):
+        """Return position [m], velocity [m/s] and acceleration [m/s²] at `times` [s], one row each."""
+        times = np.asarray(times, float)
+        return self._sampled(times) if self.harmonics is None else self._harmonic(times)
+
+    def period(self, duration):
+        """Return the period [s] of the harmonic motion with the same mean squares of velocity and acceleration."""
+        _, velocity, acceleration = self.at(np.linspace(0.0, duration, 4001))
+        squares = (velocity**2).mean(), (acceleration**2).mean()
+        return 2.0 * math.pi * math.sqrt(squares[0] / squares[1]) if squares[1] > 0.0 else duration
+
+    def _harmonic(self, times):
+        waves = np.zeros((3, len(times), 3))
+        for axis, name in enumerate("xyz"):
+            for amplitude, period, *phase in self.harmonics.get(name, []):
+                omega = 2.0 * math.pi / period
+                angle = omega * times + (phase[0] if phase else 0.0)
+                waves[0, :, axis] += amplitude * np.sin(angle)
+                waves[1, :, axis] += amplitude * omega * np.cos(angle)
+                waves[2, :, axis] -= amplitude * omega**2 * np.sin(angle)
+        rise = self.harmonics.get("ramp") or 0.0
+        ramp = np.stack([np.ones_like(times), np.zeros_like(times), np.zeros_like(times)])
+        if rise > 0.0:
+            early, rate = times < rise, math.pi / rise
+            ramp[0, early] = 0.5 * (1.0 - np.cos(rate * times[early]))
+            ramp[1, early] = 0.5 * rate * np.sin(rate * times[early])
+            ramp[2, early] = 0.5 * rate**2 * np.cos(rate * times[early])
+        value, slope, bend = ramp[:, :, None]
+        return (
+            self.start + value * waves[0],
+            slope * waves[0] + value * waves[1],
+            bend * waves[0] + 2.0 * slope * waves[1] + value * waves[2],
+        )
+
+    def _sampled(self, times):
+        """Cubic Hermite between the samples; the last sample's position holds beyond them."""
+        last = len(self.times) - 2
+        at = np.clip(np.searchsorted(self.times, times, side="right") - 1, 0, last)
+        span = (self.times[at + 1] - self.times[at])[:, None]
+        u = np.clip((times[:, None] - self.times[at][:, None]) / span, 0.0, 1.0)
+        r0, r1 = self.position[at], self.position[at + 1]
+        v0, v1 = self.velocity[at] * span, self.velocity[at + 1] * span
+        a, b = 2.0 * (r0 - r1) + v0 + v1, 3.0 * (r1 - r0) - 2.0 * v0 - v1
+        return (
+            ((a * u + b) * u + v0) * u + r0,
+            ((3.0 * a * u + 2.0 * b) * u + v0) / span,
+            (6.0 * a * u + 2.0 * b) / span**2,
+        )
+
+
+class Site:
+    """A scene as both peers need it: everything below z = 0, and a depth [m] in any case."""
+
+    def __init__(self, scene):
+        """Lower the scene where its motion reaches the surface, and give deep water where it has no seabed."""
+        self.path = Path(scene)
+        highest = self.path.at(np.linspace(0.0, scene["duration"], 4001))[0][:, 2].max()
+        self.lowered = LOWERED if max(highest, scene["anchor"][2]) >= 0.0 else 0.0
+        down = np.array([0.0, 0.0, self.lowered])
+        self.anchor, self.fairlead = np.array(scene["anchor"]) - down, np.array(scene["fairlead"]) - down
+        bed = scene.get("bed")
+        if bed and scene.get("depth") is not None:
+            self.depth = scene["depth"] + self.lowered
+            self.stiffness, self.damping = bed["stiffness"], bed["damping"]
+        else:
+            self.depth = scene["line"]["length"] - min(self.anchor[2], self.fairlead[2])
+            self.stiffness, self.damping = 1.0e3, 0.0
+
+    def host(self, step, duration):
+        """Return times [s] from 0 to at least `duration` every `step` [s], and the lowered path there."""
+        times = step * np.arange(math.ceil(duration / step - 1e-9) + 1)
+        position, velocity, acceleration = self.path.at(times)
+        position[:, 2] -= self.lowered
+        return times, position, velocity, acceleration
+
+
+def lies_on_bed(scene, path):
+    """Return whether the line reaches the bed, by the inextensible catenary that leaves it at the anchor.
+
+    Its parameter a [m] satisfies X = a·acosh(1 + Z/a), its length is √(Z² + 2Za). This chooses settings only: the bed
+    stays in the decks.
+    """
+    if not scene.get("bed") or scene.get("depth") is None:
+        return False
+    position = path.at(np.linspace(0.0, scene["duration"], 4001))[0]
+    across = np.hypot(*(position - np.array(scene["anchor"]))[:, :2].T).min()
+    above = (position[:, 2] - scene["anchor"][2]).min()
+    if above <= 0.0 or across <= 0.0:
+        return True
+    lower, upper = 1e-6 * above, 1e9 * (above + across)
+    for _ in range(200):
+        middle = math.sqrt(lower * upper)
+        if middle * math.acosh(1.0 + above / middle) < across:
+            lower = middle
+        else:
+            upper = middle
+    return scene["line"]["length"] > HANGS_FREE * math.sqrt(above**2 + 2.0 * above * lower)
+
+
+def resampled(times, values, wanted):
+    """Return `values` given at evenly spaced `times` [s] at the times `wanted` [s], by cubics through four points."""
+    step = times[1] - times[0]
+    at = np.clip(np.floor((wanted - times[0]) / step).astype(int) - 1, 0, len(times) - 4)
+    u = ((wanted - times[at]) / step).reshape((-1,) + (1,) * (values.ndim - 1))
+    weights = (
+        -(u - 1.0) * (u - 2.0) * (u - 3.0) / 6.0,
+        u * (u - 2.0) * (u - 3.0) / 2.0,
+        -u * (u - 1.0) * (u - 3.0) / 2.0,
+        u * (u - 1.0) * (u - 2.0) / 6.0,
+    )
+    return sum(weight * values[at + point] for point, weight in enumerate(weights))
+
+
+def median_cpu(timed_pass):
+    """Return the median CPU time [s] of a few passes; `timed_pass` returns one pass's.
+
+    Not the least: on a shared virtual machine the CPU clock now and then jumps by a tick of 4 ms either way, which is
+    more than a cheap pass takes. The thread's clock, because the process's counts in such ticks under a CPU limit.
+    """
+    costs = [timed_pass()]
+    while sum(costs) < PASSES_CPU and len(costs) < PASSES:
+        costs.append(timed_pass())
+    return max(float(np.median(costs)), 0.0)
+
+
+def host_step(wanted, interval):
+    """Return the largest step [s] not above `wanted` [s] that divides `interval` [s] or is a multiple of it."""
+    if wanted >= interval:
+        return interval * math.floor(wanted / interval + 1e-9)
+    return interval / math.ceil(interval / wanted - 1e-9)
+
+
+# MoorDyn
+
+
+def growth(scheme, z):
+    """Return by how much `scheme` multiplies a mode in a step [-], z = λΔt [-] with λ the mode's eigenvalue.
+
+    Midpoint2 corrects once and mixes 0.45 of the last step's slope into the first estimate (MoorDyn's relaxation).
+    """
+    if scheme == "RK2":
+        return abs(1.0 + z + z * z / 2.0)
+    if scheme == "RK4":
+        return abs(1.0 + z * (1.0 + z / 2.0 * (1.0 + z / 3.0 * (1.0 + z / 4.0))))
+    # On the state and the last slope over λ: g = 0.55 (x + z y/2) + 0.45 y, y' = x + z g/2, x' = x + z y'.
+    last = 0.55 * z / 2.0 + 0.45
+    slope = np.array([1.0 + 0.55 * z / 2.0, z / 2.0 * last])
+    return abs(np.linalg.eigvals(np.array([[1.0 + z * slope[0], z * slope[1]], slope]))).max()
+
+
+def eigenvalues(scene, elements, bedded):
+    """Return the fast modes' eigenvalues λ [1/s] of a lumped line.
+
+    Axial waves of the mesh; the same segments slack, when their damping acts without their stiffness; where
+    `bedded`, contact with the bed.
+    """
+    line, density = scene["line"], scene["density"]
+    displaced = density * math.pi / 4.0 * line["diameter"] ** 2  # ρA [kg/m]
+    mass_tangential = line["mass"] + displaced * line["added_mass_tangential"]
+    mass_normal = line["mass"] + displaced * line["added_mass_normal"]
+    wave = math.sqrt(line["axial_stiffness"] / mass_tangential)
+    modes = []
+    for part in (1.0, 0.75, 0.5, 0.25, 0.1):
+        omega = part * 2.0 * wave * elements / line["length"]
+        modes.append((omega, omega * line["axial_damping"] / (2.0 * line["axial_stiffness"])))
+    bed = scene.get("bed")
+    if bedded and bed["stiffness"] > 0.0:
+        omega = math.sqrt(bed["stiffness"] * line["diameter"] / mass_normal)
+        modes.append((omega, bed["damping"] * line["diameter"] / (2.0 * omega * mass_normal)))
+    slack = -2.0 * modes[0][1] * modes[0][0]
+    pairs = [(omega * -ratio, omega * cmath.sqrt(ratio**2 - 1.0)) for omega, ratio in modes]
+    return [slack] + [centre + sign * half for centre, half in pairs for sign in (1.0, -1.0)]
+
+
+def stable_step(scheme, modes):
+    """Return the largest step [s] at which no mode of eigenvalues `modes` [1/s] grows by more than 0.2 % a step."""
+    step = 0.01 / max(abs(mode) for mode in modes)
+    while all(growth(scheme, mode * 1.02 * step) <= 1.002 for mode in modes):
+        step *= 1.02
+    return step
+
+
+def moordyn_deck(scene, site, elements, scheme, step):
+    """Return MoorDyn's input for one line of `elements` segments and an internal step of `step` [s].
+
+    The step is written a little too long, and MoorDyn shortens it to fit: written to the last digit, rounding leaves
+    a splinter of a step at the end of some host steps, and the force then belongs to another time.
+    """
+    line = scene["line"]
+    kind = ("diameter", "mass", "axial_stiffness", "axial_damping")
+    water = ("drag_normal", "added_mass_normal", "drag_tangential", "added_mass_tangential")
+    row = [line[key] for key in kind] + [0.0] + [line[key] for key in water]
+    points = [" ".join(f"{value:.17g}" for value in point) for point in (site.anchor, site.fairlead)]
+    return f"""--- LINE TYPES ---
+Name Diam Mass EA BA EI Cd Ca CdAx CaAx
+(-) (m) (kg/m) (N) (N-s) (N-m2) (-) (-) (-) (-)
+line {" ".join(f"{value:.17g}" for value in row)}
+--- POINTS ---
+ID Type X Y Z Mass Vol CdA Ca
+(#) (-) (m) (m) (m) (kg) (m3) (m2) (-)
+1 Fixed {points[0]} 0 0 0 0
+2 Coupled {points[1]} 0 0 0 0
+--- LINES ---
+ID LineType AttachA AttachB UnstrLen NumSegs Outputs
+(#) (-) (#) (#) (m) (-) (-)
+1 line 1 2 {line["length"]:.17g} {elements} -
+--- OPTIONS ---
+0 writeLog
+{scene["gravity"]:.17g} g
+{scene["density"]:.17g} rho
+{site.depth:.17g} WtrDpth
+{site.stiffness:.17g} kBot
+{site.damping:.17g} cBot
+{1.000001 * step:.17g} dtM
+{scheme} tScheme
+1 disableOutput
+1 disableOutTime
+--- OUTPUTS ---
+--- need this line ---
+"""
+
+
+class MoorDyn:
+    """One MoorDyn run, in this process and the current directory."""
+
+    def __init__(self, scene, run):
+        """Write the deck and lay out the host's steps."""
+        import cmoordyn
+
+        self.library, self.scene, self.run = cmoordyn, scene, run
+        self.site = Site(scene)
+        times, position, _, self.acceleration = self.site.host(run["host"], scene["duration"])
+        self.times, self.count = times, len(times) - 1
+        secant = np.diff(position, axis=0) / run["host"]
+        self.steps = list(zip(position[:-1].tolist(), secant.tolist(), times[:-1].tolist()))
+        with open("deck.txt", "w", encoding="ascii") as deck:
+            deck.write(moordyn_deck(scene, self.site, run["elements"], run["scheme"], run["step"]))
+
+    def open(self):
+        """Return a system in its initial equilibrium."""
+        system = self.library.create("deck.txt")
+        self.library.set_verbosity(system, 4096)
+        self.library.init(system, self.site.fairlead.tolist(), [0.0, 0.0, 0.0], 0)
+        return system
+
+    def read(self):
+        """Run once, and return times [s] and values of tension [N] and mid-position [m]."""
+        system, library = self.open(), self.library
+        line, nodes, host = library.get_line(system, 1), self.run["elements"], self.run["host"]
+        forces, masses, mids = [], [], []
+        for position, velocity, start in self.steps:
+            forces.append(library.step(system, position, velocity, start, host))
+            masses.append(library.line_get_node_m(line, nodes))
+            ends = [library.line_get_node_pos(line, node) for node in {nodes // 2, (nodes + 1) // 2}]
+            mids.append(np.mean(ends, axis=0))
+        library.close(system)
+        late = 0.0 if self.run["scheme"] == "RK4" else 0.5 * self.run["step"]
+        acceleration = self.site.path.at(self.times[1:] - late)[2]
+        inertia = np.einsum("tij,tj->ti", np.array(masses), acceleration)
+        tension = np.linalg.norm(np.array(forces) - inertia, axis=1)
+        return (self.times[1:] - late, tension), (self.times[1:], np.array(mids))
+
+    def timed(self):
+        """Run once without reading anything, and return the CPU time [s] less that of as many empty calls."""
+        system, step, host = self.open(), self.library.step, self.run["host"]
+        begin = time.thread_time()
+        for position, velocity, start in self.steps:
+            step(system, position, velocity, start, host)
+        solved = time.thread_time()
+        empty = self.library.get_dt
+        for _position, _velocity, _start in self.steps:
+            empty(system)
+        ended = time.thread_time()
+        self.library.close(system)
+        return (solved - begin) - (ended - solved)
+
+
+def moordyn_steps(limit, period, interval):
+    """Return the host step and the internal step [s], the cheapest with an internal step of at most `limit` [s].
+
+    The internal step divides the host's, and the host's divides `interval` [s], so some waste is left to choose by.
+    """
+    if limit >= interval:
+        host = host_step(limit, interval)
+        return host, host
+    longest = max(limit, min(period / 200.0, 8.0 * limit))
+    hosts = [interval / parts for parts in range(1, math.ceil(interval / limit) + 1)]
+    steps = [(host, host / math.ceil(host / limit - 1e-9)) for host in hosts if host <= longest * (1.0 + 1e-9)]
+    if not steps:
+        host = host_step(longest, interval)
+        steps = [(host, host)]
+    return min(steps, key=lambda pair: 1.0 / pair[1] + 0.1 / pair[0])
+
+
+def moordyn_runs(scene, elements, period, bedded):
+    """Return the runs of MoorDyn's ladder; `period` [s] is the motion's, `bedded` whether the line meets the bed."""
+    runs = []
+    for count in elements:
+        modes = eigenvalues(scene, count, bedded)
+        limits = {scheme: stable_step(scheme, modes) for scheme in ("RK2", "RK4", "Midpoint2")}
+        scheme = min(limits, key=lambda name: (4 if name == "RK4" else 2) / limits[name])
+        for part in (0.9, 0.6):
+            limit = min(part * limits[scheme], period / 20.0)
+            host, step = moordyn_steps(limit, period, scene["interval"])
+            label = f"n = {count}, {scheme}, dtM {step:.3g} s, host step {host:.3g} s"
+            runs.append(
+                {"peer": "MoorDyn", "label": label, "elements": count, "scheme": scheme, "step": step, "host": host}
+            )
+    return runs
+
+
+# CableDyn
+
+
+def cabledyn_deck(scene, site, run):
+    """Return CableDyn's input; its end A is the fairlead."""
+    line = scene["line"]
+    kind = ("diameter", "mass", "axial_stiffness", "axial_damping")
+    water = ("drag_normal", "drag_tangential", "added_mass_normal", "added_mass_tangential")
+    row = [line[key] for key in kind] + [0.0] + [line[key] for key in water]
+    points = [" ".join(f"{value:.17g}" for value in point) for point in (site.fairlead, site.anchor)]
+    return f"""--- LINE TYPES ---
+Name Diam Mass EA BA EI Cdn Cdt Can Cat
+(-) (m) (kg/m) (N) (N-s) (N-m^2) (-) (-) (-) (-)
+line {" ".join(f"{value:.17g}" for value in row)}
+--- POINTS ---
+ID Type X Y Z
+(-) (-) (m) (m) (m)
+1 Coupled {points[0]}
+2 Fixed {points[1]}
+--- LINES ---
+ID NodeA NodeB Outputs
+(-) (-) (-) (-)
+1 1 2 -
+--- SECTIONS ---
+LineID LineType Length NumSegs
+(-) (-) (m) (-)
+1 line {line["length"]:.17g} {run["elements"]}
+--- OPTIONS ---
+dynamic_solver {run["tolerance"]:g} 1e-14 30 12
+{scene["gravity"]:.17g} g
+{scene["density"]:.17g} rhoW
+{site.depth:.17g} WtrDpth
+{site.stiffness:.17g} kBot
+{site.damping:.17g} cBot
+{run["radius"]:g} rhoInf
+{run["reuse"]} modified_newton
+--- need this line ---
+"""
+
+
+class CableDyn:
+    """One CableDyn run, in this process and the current directory."""
+
+    def __init__(self, scene, run):
+        """Write the deck and lay out the steps; the C interface is called without the Python layer's checks."""
+        import cabledyn
+        from cabledyn._lib import _lib
+
+        self.create, self.library, self.scene, self.run = cabledyn.CableDyn, _lib, scene, run
+        self.site = Site(scene)
+        with open("deck.dat", "w", encoding="ascii") as deck:
+            deck.write(cabledyn_deck(scene, self.site, run))
+        self.times, *path = self.site.host(run["step"], scene["duration"])
+        with self.create("deck.dat") as model:
+            self.size, self.driven = model.n_coupled_dof, model.host_dofs()
+            rest = np.asarray(model.get_coupled_motion()[0], float)
+        self.history = []
+        for order, values in enumerate(path):
+            full = np.tile(rest if order == 0 else np.zeros(self.size), (len(self.times), 1))
+            full[:, self.driven] = values
+            self.history.append(full)
+        self.flags = ctypes.c_bool(), ctypes.c_bool(), ctypes.c_int(), ctypes.c_int()
+        self.replies = tuple(ctypes.byref(flag) for flag in self.flags)
+
+    def calls(self):
+        """Return the pointers to position, velocity and acceleration of every step, made beforehand."""
+        double, width = ctypes.POINTER(ctypes.c_double), 8 * self.size
+        return [
+            tuple(ctypes.cast(values.ctypes.data + width * index, double) for values in self.history)
+            for index in range(1, len(self.times))
+        ]
+
+    def read(self):
+        """Run once, and return times [s] and values of tension [N] and mid-position [m]."""
+        step, length = self.library.CableDyn_Step, ctypes.c_double(self.run["step"])
+        nodes, forces, mids = self.run["elements"], [], []
+        every = max(1, round(self.scene["interval"] / self.run["step"]))
+        with self.create("deck.dat") as model:
+            line = model.lines[0]
+            for index, arguments in enumerate(self.calls(), 1):
+                step(model._handle, length, *arguments, self.size, *self.replies)
+                if self.flags[3].value != 0:
+                    raise RuntimeError(f"step to {self.times[index]:g} s failed with status {self.flags[3].value}")
+                if index % every != 0:
+                    continue
+                forces.append(model.calc_output()[self.driven])
+                position = line.node_positions()
+                mids.append(0.5 * (position[nodes // 2] + position[(nodes + 1) // 2]))
+        times, tension = self.times[every::every], np.linalg.norm(np.array(forces), axis=1)
+        return (times, tension), (times, np.array(mids))
+
+    def timed(self):
+        """Run once without reading anything, and return the CPU time [s] less that of as many refused calls."""
+        step, length, calls = self.library.CableDyn_Step, ctypes.c_double(self.run["step"]), self.calls()
+        size, replies, nothing = self.size, self.replies, ctypes.c_void_p()
+        with self.create("deck.dat") as model:
+            handle = model._handle
+            begin = time.thread_time()
+            for position, velocity, acceleration in calls:
+                step(handle, length, position, velocity, acceleration, size, *replies)
+            solved = time.thread_time()
+            for position, velocity, acceleration in calls:
+                step(nothing, length, position, velocity, acceleration, size, *replies)
+            return (solved - begin) - (time.thread_time() - solved)
+
+
+def cabledyn_runs(scene, elements, period, bedded):
+    """Return the runs of CableDyn's ladder; `period` [s] is the motion's, `bedded` whether the line meets the bed."""
+    landing = [(360.0, 0.4, False), (180.0, 0.0, False), (90.0, 0.0, False)]
+    free = [(30.0, 0.9, True), (20.0, 0.9, True)]
+    runs = []
+    for count in elements:
+        for parts, radius, reuse in landing if bedded else free:
+            step = host_step(period / parts, scene["interval"])
+            label = f"n = {count}, dt {step:.3g} s, rhoInf {radius:g}" + (", modified Newton" if reuse else "")
+            run = {"peer": "CableDyn", "label": label, "elements": count, "step": step}
+            runs.append(run | {"radius": radius, "reuse": reuse, "tolerance": 1e-2})
+    return runs
+
+
+# One process a run
+
+
+def single(scene, run, limit):
+    """Run one rung here in at most `limit` [s] of CPU, and return its answer; a peer that fails says why."""
+    if resource is not None:
+        _, hard = resource.getrlimit(resource.RLIMIT_CPU)
+        resource.setrlimit(resource.RLIMIT_CPU, (math.ceil(limit), hard))
+    answer = {key: run[key] for key in ("peer", "label", "elements")}
+    wanted = scene["interval"] * np.arange(1, round(scene["duration"] / scene["interval"]) + 1)
+    with tempfile.TemporaryDirectory() as directory:
+        os.chdir(directory)
+        try:
+            peer = {"MoorDyn": MoorDyn, "CableDyn": CableDyn}[run["peer"]](scene, run)
+            tension, mid = (resampled(*series, wanted) for series in peer.read())
+            if not (np.isfinite(tension).all() and np.isfinite(mid).all()):
+                raise RuntimeError("the results are not finite")
+            mid[:, 2] += peer.site.lowered
+            answer |= {"cpu_seconds": median_cpu(peer.timed), "tension": tension.tolist(), "mid": mid.tolist()}
+        except Exception as error:  # whatever a peer raises is the answer
+            answer["failed"] = f"{type(error).__name__}: {error}"
+        os.chdir(os.path.dirname(directory))
+    return answer
+
+
+def in_own_process(scene, run, limit):
+    """Run one rung in a process of its own, for at most `limit` [s] of CPU; a crash or a timeout is an answer too."""
+    answer = {key: run[key] for key in ("peer", "label", "elements")}
+    command = [sys.executable, os.path.abspath(__file__), "--single"]
+    question = json.dumps([scene, run, limit])
+    try:
+        done = subprocess.run(
+            command, input=question, stdout=subprocess.PIPE, text=True, timeout=WALL * limit, check=False
+        )
+    except subprocess.TimeoutExpired:
+        return answer | {"failed": f"not done in {WALL * limit:g} s"}
+    try:
+        return json.loads(done.stdout)
+    except json.JSONDecodeError:
+        if hasattr(signal, "SIGXCPU") and done.returncode == -signal.SIGXCPU:
+            return answer | {"failed": f"not done in {limit:g} s of CPU time"}
+        return answer | {"failed": f"ended with exit code {done.returncode}"}
+
+
+def main():
+    """Read a scene, run both ladders and print an answer a line; with `--single`, one rung."""
+    answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
+    os.dup2(2, 1)  # the peers print, and standard output is for answers only
+    if "--single" in sys.argv[1:]:
+        json.dump(single(*json.load(sys.stdin)), answers)
+        answers.close()
+        return
+    scene = json.load(sys.stdin)
+    scene["density"] = scene.get("density") or AIR
+    path = Path(scene)
+    period, bedded = path.period(scene["duration"]), lies_on_bed(scene, path)
+    elements = scene.get("elements") or (ELEMENTS_ON_BED if bedded else ELEMENTS)
+    settings = elements, period, bedded
+    for run in moordyn_runs(scene, *settings) + cabledyn_runs(scene, *settings):
+        answer = in_own_process(scene, run, scene.get("time_limit_seconds") or TIME_LIMIT)
+        print(json.dumps(answer), file=answers, flush=True)
+    print(json.dumps({"done": True}), file=answers, flush=True)
+
+
+if __name__ == "__main__":
+    main()

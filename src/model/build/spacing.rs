@@ -1,0 +1,265 @@
+//! What the mesh of a line depends on: the lines it is joined to, its clamps, and where it touches down as its ends move.
+
+use nalgebra::Vector3;
+
+use super::{LineLaw, line_law};
+use crate::model::mesh::{Place, Refinement, line_elements};
+use crate::model::{Line, Model, Point, Role, Vessel};
+use crate::physics::catenary::{self, Bed, Catenary};
+use crate::scene::{self, PointKind, Scene};
+
+/// Elements over √(EI/T) [-].
+const ELEMENTS_PER_BEND: f64 = 2.0;
+/// Length that is finely meshed at a clamp and around the touchdown, over √(EI/T) [-].
+const BENDS: f64 = 2.0;
+/// Way of the touchdown to both sides where the motion of the ends is not known, over the length of the line [-].
+const TOUCHDOWN_SHARE: f64 = 0.025;
+/// Moments at which a known motion is looked at [-].
+const MOMENTS: usize = 400;
+
+/// Parts of the length of a line below which two arc lengths are one [-].
+const ROUNDING: f64 = 1e-9;
+
+/// Elements that every line is to have [-]: those of a line alone for the longest of lines that meet at free points, shares by length
+/// for the others.
+pub(super) fn elements(scene: &Scene) -> Vec<f64> {
+    let length = |line: &scene::Line| line.sections.iter().map(|s| s.length).sum::<f64>();
+    let lengths: Vec<f64> = scene.lines.iter().map(length).collect();
+    let mut longest = lengths.clone();
+    let free: Vec<Vec<usize>> = scene
+        .points
+        .iter()
+        .filter(|point| point.kind == PointKind::Free)
+        .map(|point| {
+            let lines = scene.lines.iter().enumerate();
+            let tied = lines.filter(|(_, line)| line.from == point.name || line.to == point.name);
+            tied.map(|(index, _)| index).collect()
+        })
+        .collect();
+    for _ in 0..scene.lines.len() {
+        let before = longest.clone();
+        for tied in &free {
+            let most = tied.iter().map(|&line| longest[line]).fold(0.0, f64::max);
+            tied.iter().for_each(|&line| longest[line] = most);
+        }
+        if longest == before {
+            break;
+        }
+    }
+    let alone = line_elements(scene.solver.tolerance);
+    let pairs = lengths.iter().zip(&longest);
+    pairs.map(|(own, longest)| alone * own / longest).collect()
+}
+
+/// Where a line that bends needs short elements, as far as its closed-form catenary tells.
+pub(super) fn refinements(
+    scene: &Scene,
+    line: &scene::Line,
+    ends: [&Point; 2],
+    vessels: &[Vessel],
+    laws: &[LineLaw],
+) -> Vec<Refinement> {
+    if laws.iter().all(|law| law.bending_stiffness == 0.0) {
+        return Vec::new();
+    }
+    let paths = ends.map(|point| path(scene, vessels, point));
+    let [a, b] = ends.map(|point| point.reference);
+    let known = paths.iter().any(|path| path.len() > 1);
+    let mut shapes = vec![hang(scene, line, laws, a, b)];
+    for k in 0..if known { MOMENTS } else { 0 } {
+        let [a, b] = [0, 1].map(|end| paths[end][k.min(paths[end].len() - 1)]);
+        shapes.push(hang(scene, line, laws, a, b));
+    }
+    let shapes: Vec<Catenary> = shapes.into_iter().flatten().collect();
+    let total: f64 = line.sections.iter().map(|section| section.length).sum();
+    let mut wanted = Vec::new();
+    let bend = |stiffness: f64, tension: f64| (stiffness / tension).sqrt();
+    let greatest = |of: fn(&Catenary) -> f64| shapes.iter().map(of).fold(0.0, f64::max);
+    let clamps = [
+        (
+            line.clamped_a,
+            Place::ClampA,
+            laws.first(),
+            greatest(Catenary::tension_a),
+        ),
+        (
+            line.clamped_b,
+            Place::ClampB,
+            laws.last(),
+            greatest(Catenary::tension_b),
+        ),
+    ];
+    for (clamp, place, law, tension) in clamps {
+        let stiffness = law.map_or(0.0, |law| law.bending_stiffness);
+        if clamp.is_none() || stiffness == 0.0 || tension == 0.0 {
+            continue;
+        }
+        let bend = bend(stiffness, tension);
+        let reach = (BENDS * bend).min(total);
+        let (from, to) = match place {
+            Place::ClampA => (0.0, reach),
+            _ => (total - reach, total),
+        };
+        wanted.push(Refinement {
+            from,
+            to,
+            size: bend / ELEMENTS_PER_BEND,
+            place,
+        });
+    }
+    let spread = if known { 0.0 } else { TOUCHDOWN_SHARE * total };
+    for [from, to] in touchdowns(&shapes, total) {
+        let stiffness = section_at(line, laws, 0.5 * (from + to)).bending_stiffness;
+        let tension = greatest(Catenary::horizontal);
+        if stiffness > 0.0 && tension > 0.0 {
+            let bend = bend(stiffness, tension);
+            wanted.push(Refinement {
+                from: (from - spread - BENDS * bend).max(0.0),
+                to: (to + spread + BENDS * bend).min(total),
+                size: bend / ELEMENTS_PER_BEND,
+                place: Place::Touchdown,
+            });
+        }
+    }
+    wanted
+}
+
+/// Places of a point [m] in the course of the scene's motion; only its reference where none is known.
+fn path(scene: &Scene, vessels: &[Vessel], point: &Point) -> Vec<Vector3<f64>> {
+    let place = |t: f64| match &point.role {
+        Role::Coupled {
+            motion: Some(motion),
+        }
+        | Role::Prescribed(motion) => Some(point.reference + motion.at(t).position),
+        Role::Carried { vessel, arm } => {
+            let vessel = &vessels[*vessel];
+            let pose = vessel.motion.as_ref()?.pose(t);
+            Some(vessel.carry(&vessel.frame(&pose), *arm).position)
+        }
+        _ => None,
+    };
+    let step = scene.output.duration / MOMENTS as f64;
+    let places: Option<Vec<_>> = (1..=MOMENTS).map(|k| place(step * k as f64)).collect();
+    places.unwrap_or_else(|| vec![point.reference])
+}
+
+/// The closed-form catenary of a line between two places [m], where it has one.
+fn hang(
+    scene: &Scene,
+    line: &scene::Line,
+    laws: &[LineLaw],
+    a: Vector3<f64>,
+    b: Vector3<f64>,
+) -> Option<Catenary> {
+    let sections: Vec<catenary::Section> = line
+        .sections
+        .iter()
+        .zip(laws)
+        .map(|(section, law)| catenary::Section {
+            length: section.length,
+            weight: law.weight,
+            axial_stiffness: law.axial_stiffness,
+        })
+        .collect();
+    let bed = scene.seabed.as_ref().map(|bed| Bed {
+        height: -bed.depth - a.z,
+        friction: bed.friction.axial,
+    });
+    catenary::solve(&sections, (b - a).xy().norm(), b.z - a.z, bed).ok()
+}
+
+/// Ranges of arc length [m] over which the ends of what lies on the bed wander; the ends of the line are none.
+fn touchdowns(shapes: &[Catenary], total: f64) -> Vec<[f64; 2]> {
+    let mut ranges: Vec<[f64; 2]> = Vec::new();
+    for shape in shapes {
+        let mut ends: Vec<f64> = Vec::new();
+        for (from, to) in shape.laid() {
+            match ends.last_mut() {
+                Some(last) if from <= *last + ROUNDING * total => *last = to,
+                _ => ends.extend([from, to]),
+            }
+        }
+        ends.retain(|s| (ROUNDING * total..=(1.0 - ROUNDING) * total).contains(s));
+        ranges.extend(ends.iter().skip(ranges.len()).map(|&s| [s, s]));
+        for (range, s) in ranges.iter_mut().zip(ends) {
+            *range = [range[0].min(s), range[1].max(s)];
+        }
+    }
+    ranges
+}
+
+/// Properties of a line at an arc length [m].
+fn section_at<'a>(line: &scene::Line, laws: &'a [LineLaw], s: f64) -> &'a LineLaw {
+    let mut end = 0.0;
+    let at = line.sections.iter().position(|section| {
+        end += section.length;
+        s <= end
+    });
+    &laws[at.unwrap_or(laws.len() - 1)]
+}
+
+/// How many elements of which lengths the lines of a scene have, and why: one sentence a line.
+pub(super) fn in_words(scene: &Scene, model: &Model) -> Vec<String> {
+    let shares = elements(scene);
+    let lines = scene.lines.iter().zip(&model.lines).zip(shares);
+    lines
+        .map(|((line, built), share)| {
+            let lengths = &built.segments.length;
+            let least = lengths.iter().copied().fold(f64::INFINITY, f64::min);
+            let most = lengths.iter().copied().fold(0.0, f64::max);
+            let range = if most - least <= 1e-6 * most {
+                format!("{least:.4} m")
+            } else {
+                format!("{least:.4} to {most:.4} m")
+            };
+            let plural = if lengths.len() == 1 { "" } else { "s" };
+            let reasons = reasons(scene, model, line, built, share);
+            format!(
+                "{}: {} element{plural} of {range}, {reasons}",
+                line.name,
+                lengths.len()
+            )
+        })
+        .collect()
+}
+
+fn reasons(scene: &Scene, model: &Model, line: &scene::Line, built: &Line, share: f64) -> String {
+    if line
+        .sections
+        .iter()
+        .all(|section| section.elements.is_some())
+    {
+        return "as given".to_string();
+    }
+    let percent = 100.0 * scene.solver.tolerance;
+    let mut reasons = format!("for the target error of {percent} %");
+    if share < line_elements(scene.solver.tolerance) {
+        reasons += ", in proportion to the longest line it is tied to";
+    }
+    let types = line
+        .sections
+        .iter()
+        .map(|section| scene.line_types.get(&section.line_type));
+    let laws: Vec<LineLaw> = types.flatten().map(|kind| line_law(scene, kind)).collect();
+    if laws.len() < line.sections.len() || built.beam.is_some() {
+        return reasons;
+    }
+    let ends = built.ends.map(|end| &model.points[end]);
+    for wanted in refinements(scene, line, ends, &model.vessels, &laws) {
+        let place = match wanted.place {
+            Place::ClampA => "the clamp at end A",
+            Place::ClampB => "the clamp at end B",
+            Place::Touchdown => "the touchdown",
+        };
+        let (arc, lengths) = (&built.nodes.arc, &built.segments.length);
+        let inside = arc.windows(2).zip(lengths);
+        let inside = inside.filter(|(arc, _)| arc[1] > wanted.from && arc[0] < wanted.to);
+        let found = inside.map(|(_, length)| *length).fold(0.0, f64::max);
+        let bend = ELEMENTS_PER_BEND * wanted.size;
+        reasons += &format!(", {found:.4} m at {place}, where it bends over {bend:.4} m");
+        if found > bend {
+            reasons += ": too long to resolve that";
+        }
+    }
+    reasons
+}

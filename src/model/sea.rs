@@ -1,0 +1,152 @@
+//! The water around lines and points at a time: the current by its profile, the waves by what they do at the nodes.
+//!
+//! What waves do at the nodes is known at both ends of a span of time, at the places where the nodes were then foretold to be, and follows
+//! cubics in between ([`Orbit::between`]). It is part of the state: a state that is put back goes on to the last bit.
+
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
+
+use super::{Model, State};
+use crate::physics::airy::Orbit;
+use crate::physics::flow::Stream;
+
+/// Motion of the water by waves over a span of time.
+#[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct WaveSpan {
+    /// Start and end [s].
+    pub times: [f64; 2],
+    /// At both times.
+    pub ends: [WavesAt; 2],
+}
+
+/// Motion of the water by waves at one time.
+#[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct WavesAt {
+    /// At the nodes of every line, in the order of the model; empty for lines that waves do nothing to.
+    pub lines: Vec<Vec<Orbit>>,
+    /// At every point, in the order of the model; only free points in the water need it.
+    pub points: Vec<Orbit>,
+}
+
+impl Clone for WavesAt {
+    fn clone(&self) -> Self {
+        WavesAt {
+            lines: self.lines.clone(),
+            points: self.points.clone(),
+        }
+    }
+
+    fn clone_from(&mut self, source: &Self) {
+        self.lines.clone_from(&source.lines);
+        self.points.clone_from(&source.points);
+    }
+}
+
+impl Clone for WaveSpan {
+    fn clone(&self) -> Self {
+        WaveSpan {
+            times: self.times,
+            ends: self.ends.clone(),
+        }
+    }
+
+    fn clone_from(&mut self, source: &Self) {
+        self.times = source.times;
+        self.ends.clone_from(&source.ends);
+    }
+}
+
+impl WaveSpan {
+    /// Motion at the nodes of a line at time `t` [s]; `None` where waves do nothing to the line.
+    pub fn along(&self, line: usize, t: f64) -> Option<WavesAlong<'_>> {
+        let [before, after] = &self.ends;
+        let (before, after) = (before.lines.get(line)?, after.lines.get(line)?);
+        (!before.is_empty()).then_some(WavesAlong {
+            ends: [before, after],
+            times: self.times,
+            time: t,
+        })
+    }
+
+    /// Motion at a point at time `t` [s].
+    pub fn at_point(&self, point: usize, t: f64) -> Orbit {
+        let [before, after] = &self.ends;
+        Orbit::between(&before.points[point], &after.points[point], self.times, t)
+    }
+}
+
+/// What waves do along a line at one time.
+#[derive(Debug, Clone, Copy)]
+pub struct WavesAlong<'a> {
+    ends: [&'a [Orbit]; 2],
+    times: [f64; 2],
+    /// [s]
+    time: f64,
+}
+
+impl WavesAlong<'_> {
+    /// Motion at a node.
+    pub fn at(&self, node: usize) -> Orbit {
+        let [before, after] = self.ends;
+        Orbit::between(&before[node], &after[node], self.times, self.time)
+    }
+}
+
+/// The water along a line at one time.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct WaterAlong<'a> {
+    /// The current, where the water flows.
+    pub stream: Option<Stream<'a>>,
+    /// What waves do, where they do something to the line.
+    pub waves: Option<WavesAlong<'a>>,
+}
+
+impl WaterAlong<'_> {
+    /// Whether the water rests.
+    pub fn is_still(&self) -> bool {
+        self.stream.is_none() && self.waves.is_none()
+    }
+
+    /// Elevation of the surface over a node [m].
+    #[inline]
+    pub fn elevation(&self, node: usize) -> f64 {
+        self.waves
+            .as_ref()
+            .map_or(0.0, |waves| waves.at(node).elevation)
+    }
+
+    /// How fast the surface rises over a node [m/s].
+    #[inline]
+    pub fn rise(&self, node: usize) -> f64 {
+        self.waves.as_ref().map_or(0.0, |waves| waves.at(node).rise)
+    }
+
+    /// Velocity of the water at a node that is at the height z [m], in [m/s].
+    #[inline]
+    pub fn velocity(&self, node: usize, z: f64) -> Vector3<f64> {
+        let flow = self
+            .stream
+            .map_or(Vector3::zeros(), |stream| stream.velocity(z));
+        match &self.waves {
+            None => flow,
+            Some(waves) => flow + waves.at(node).velocity,
+        }
+    }
+}
+
+impl Model {
+    /// The water along a line at time `t` [s].
+    pub fn water_along<'a>(&'a self, state: &'a State, line: usize, t: f64) -> WaterAlong<'a> {
+        WaterAlong {
+            stream: self.stream(t),
+            waves: state.waves.as_ref().and_then(|waves| waves.along(line, t)),
+        }
+    }
+}
+
+impl State {
+    /// Motion of the water by waves at a free point at time `t` [s], where there are waves.
+    pub fn waves_at_point(&self, point: usize, t: f64) -> Option<Orbit> {
+        self.waves.as_ref().map(|waves| waves.at_point(point, t))
+    }
+}

@@ -1,0 +1,235 @@
+//! Tension of a line given at some strains: a monotone curve through the rows of a table.
+//!
+//! Between two rows the tension is the cubic Hermite polynomial with slopes m_k at the rows. With the secants δ_k over the spans h_k,
+//!
+//!   m_k = (w₁ + w₂)/(w₁/δ_{k−1} + w₂/δ_k),  w₁ = 2h_k + h_{k−1},  w₂ = h_k + 2h_{k−1},
+//!
+//! and at the ends the slope of the parabola through three rows, kept between δ/10 and 3δ: the least such slope lets a line at rest resist
+//! the first pull. The curve is continuous with its slope, rises wherever the table rises, and goes on beyond the last row with the last slope. Below
+//! zero strain it goes on with the first one, which a line that cannot push does not feel. Its energy is the exact integral.
+//!
+//! Source: Fritsch & Carlson (1980), SIAM J. Numer. Anal. 17, 238-246, condition 0 ≤ m ≤ 3δ for a monotone cubic; slopes by Fritsch &
+//! Butland (1984), SIAM J. Sci. Stat. Comput. 5, 300-304. Valid for rows that begin at (0, 0) and rise in strain and in tension.
+
+use std::sync::Arc;
+
+use super::stretch::Stretch;
+use crate::math::hermite::Hermite;
+
+/// Least slope at the ends of the table, over the secant there [-].
+const END_SLOPE_MIN: f64 = 0.1;
+/// Greatest slope of a monotone cubic at its ends, over its secant [-].
+const END_SLOPE_MAX: f64 = 3.0;
+
+/// The curve through a table, over its steepest slope EA.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TensionTable {
+    pieces: Arc<[Piece]>,
+}
+
+/// The curve from one row to the next; everything over EA.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Piece {
+    /// Strain at its start [-].
+    start: f64,
+    /// Its length in strain [-]; infinite behind the last row.
+    span: f64,
+    /// Energy per unstretched length at its start [-].
+    energy: f64,
+    /// Coefficients of powers of the strain from its start.
+    powers: [f64; 4],
+}
+
+impl TensionTable {
+    /// Through rows of strain [-] and tension [N]; with it the steepest slope EA [N], which its values are divided by.
+    pub fn through(rows: &[[f64; 2]]) -> (TensionTable, f64) {
+        assert!(rows.len() > 1, "a curve goes through two rows at least");
+        let slopes = slopes(rows);
+        let mut pieces: Vec<Piece> = rows
+            .windows(2)
+            .zip(slopes.windows(2))
+            .map(|(pair, slopes)| Piece::between([pair[0], pair[1]], [slopes[0], slopes[1]]))
+            .collect();
+        let ([strain, tension], slope) = (rows[rows.len() - 1], slopes[slopes.len() - 1]);
+        pieces.push(Piece {
+            start: strain,
+            span: f64::INFINITY,
+            energy: 0.0,
+            powers: [tension, slope, 0.0, 0.0],
+        });
+        let steepest = pieces.iter().map(Piece::steepest).fold(0.0, f64::max);
+        let mut energy = 0.0;
+        for piece in &mut pieces {
+            piece.powers = piece.powers.map(|power| power / steepest);
+            piece.energy = energy;
+            if piece.span.is_finite() {
+                energy = piece.at(piece.start + piece.span).energy;
+            }
+        }
+        let pieces = pieces.into();
+        (TensionTable { pieces }, steepest)
+    }
+
+    /// Value, slope and energy at a strain [-], over EA.
+    #[inline]
+    pub fn at(&self, strain: f64) -> Stretch {
+        let (first, later) = (&self.pieces[0], &self.pieces[1..]);
+        if strain < first.start {
+            let slope = first.powers[1];
+            return Stretch {
+                force: slope * strain,
+                slope,
+                energy: 0.5 * slope * strain * strain,
+            };
+        }
+        let piece = later.iter().take_while(|piece| strain >= piece.start);
+        piece.last().unwrap_or(first).at(strain)
+    }
+}
+
+impl Piece {
+    /// The cubic through two rows with the slopes there.
+    fn between([low, high]: [[f64; 2]; 2], [start, end]: [f64; 2]) -> Piece {
+        let span = high[0] - low[0];
+        let cubic = Hermite::new((low[0], low[1], start), (high[0], high[1], end));
+        let [a, b, c, d] = cubic.powers();
+        Piece {
+            start: low[0],
+            span,
+            energy: 0.0,
+            powers: [a, b / span, c / (span * span), d / (span * span * span)],
+        }
+    }
+
+    fn at(&self, strain: f64) -> Stretch {
+        let [a, b, c, d] = self.powers;
+        let u = strain - self.start;
+        Stretch {
+            force: a + u * (b + u * (c + u * d)),
+            slope: b + u * (2.0 * c + 3.0 * u * d),
+            energy: self.energy + u * (a + u * (b / 2.0 + u * (c / 3.0 + u * d / 4.0))),
+        }
+    }
+
+    /// Its greatest slope: at one of its ends, or where the slope of the slope is zero.
+    fn steepest(&self) -> f64 {
+        let [_, b, c, d] = self.powers;
+        if !self.span.is_finite() {
+            return b;
+        }
+        let slope = |u: f64| b + u * (2.0 * c + 3.0 * u * d);
+        let vertex = -c / (3.0 * d);
+        let within = (0.0..=self.span).contains(&vertex);
+        let ends = slope(0.0).max(slope(self.span));
+        if within {
+            ends.max(slope(vertex))
+        } else {
+            ends
+        }
+    }
+}
+
+/// Slopes of the curve at the rows [N].
+fn slopes(rows: &[[f64; 2]]) -> Vec<f64> {
+    let spans: Vec<f64> = rows
+        .windows(2)
+        .map(|pair| pair[1][0] - pair[0][0])
+        .collect();
+    let rises = rows.windows(2).map(|pair| pair[1][1] - pair[0][1]);
+    let secants: Vec<f64> = rises.zip(&spans).map(|(rise, span)| rise / span).collect();
+    let last = secants.len() - 1;
+    let end = |near: usize, next: usize| {
+        if last == 0 {
+            return secants[0];
+        }
+        let (h, secant) = (spans[near], secants[near]);
+        let parabola = secant + h / (h + spans[next]) * (secant - secants[next]);
+        parabola.clamp(END_SLOPE_MIN * secant, END_SLOPE_MAX * secant)
+    };
+    let between = |k: usize| {
+        let (before, after) = (spans[k - 1], spans[k]);
+        let weights = [2.0 * after + before, after + 2.0 * before];
+        (weights[0] + weights[1]) / (weights[0] / secants[k - 1] + weights[1] / secants[k])
+    };
+    let inner = (1..=last).map(between);
+    std::iter::once(end(0, 1.min(last)))
+        .chain(inner)
+        .chain([end(last, last.saturating_sub(1))])
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    /// Strain [-] and tension [N] of a rope that stiffens, yields and stiffens.
+    const ROPE: [[f64; 2]; 6] = [
+        [0.0, 0.0],
+        [0.01, 2.0e4],
+        [0.03, 3.0e5],
+        [0.05, 3.6e5],
+        [0.1, 4.0e5],
+        [0.12, 1.5e6],
+    ];
+
+    #[test]
+    fn the_curve_goes_through_its_rows() {
+        let (table, ea) = TensionTable::through(&ROPE);
+        for [strain, tension] in ROPE {
+            assert_relative_eq!(ea * table.at(strain).force, tension, max_relative = 1e-13);
+        }
+    }
+
+    #[test]
+    fn tension_is_the_slope_of_the_energy_and_slope_that_of_the_tension() {
+        let (table, _) = TensionTable::through(&ROPE);
+        for i in -20..300 {
+            let (strain, h) = (0.0005 * f64::from(i) + 0.00021, 1e-6);
+            let (low, at, high) = (table.at(strain - h), table.at(strain), table.at(strain + h));
+            let (force, slope) = (high.energy - low.energy, high.force - low.force);
+            assert_relative_eq!(
+                force / (2.0 * h),
+                at.force,
+                max_relative = 1e-6,
+                epsilon = 1e-9
+            );
+            assert_relative_eq!(
+                slope / (2.0 * h),
+                at.slope,
+                max_relative = 1e-5,
+                epsilon = 1e-6
+            );
+        }
+    }
+
+    #[test]
+    fn the_curve_rises_wherever_its_table_does_and_nowhere_faster_than_its_greatest_slope() {
+        let (table, _) = TensionTable::through(&ROPE);
+        let slopes = (0..20_000).map(|i| table.at(1e-5 * f64::from(i)).slope);
+        let (least, greatest) = slopes.fold((f64::INFINITY, 0.0_f64), |(least, most), slope| {
+            (least.min(slope), most.max(slope))
+        });
+        assert!(least > 0.0, "{least}");
+        assert_relative_eq!(greatest, 1.0, max_relative = 1e-5);
+    }
+
+    #[test]
+    fn the_curve_goes_on_straight_beyond_its_rows() {
+        let (table, _) = TensionTable::through(&ROPE);
+        let (first, last) = (table.at(0.0).slope, table.at(0.12).slope);
+        for beyond in [0.01, 0.5] {
+            assert_relative_eq!(table.at(0.12 + beyond).slope, last);
+            assert_relative_eq!(table.at(-beyond).slope, first);
+        }
+    }
+
+    #[test]
+    fn two_rows_are_a_straight_line() {
+        let (table, ea) = TensionTable::through(&[[0.0, 0.0], [0.02, 5.0e5]]);
+        assert_relative_eq!(ea, 2.5e7, max_relative = 1e-14);
+        for strain in [1e-3, 0.02, 0.3] {
+            assert_relative_eq!(table.at(strain).force, strain, max_relative = 1e-14);
+        }
+    }
+}

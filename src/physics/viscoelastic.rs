@@ -1,0 +1,284 @@
+//! Viscoelastic stretch of fibre ropes: a slow spring and damper in series with a fast spring and damper.
+//!
+//! The slow part takes the strain ε₁ and the fast one the rest, under one tension T:
+//!
+//!   T = EA₁ ε₁ + BA_s ε̇₁ = EA_d (ε − ε₁) + BA_d (ε̇ − ε̇₁),   1/EA_s = 1/EA₁ + 1/EA_d,
+//!
+//! so that a slow motion meets EA_s, a fast one EA_d. With B = BA_s + BA_d the tension is linear in ε, ε̇ and the memory ε₁,
+//!
+//!   T = K ε + C ε̇ + G ε₁,  K = BA_s EA_d/B,  C = BA_s BA_d/B,  G = (BA_d EA₁ − BA_s EA_d)/B,
+//!   B ε̇₁ = EA_d (ε − ε₁) − EA₁ ε₁ + BA_d ε̇.
+//!
+//! The trapezoidal rule closes a step Δt: ε₁' = ε₁ + [Δt (EA_d ε̄ − (EA_d + EA₁) ε₁) + BA_d Δε]/(B + ½Δt (EA_d + EA₁)), ε̄ the mean strain. A rope
+//! that would push carries nothing, and its slow part contracts by itself, BA_s ε̇₁ = −EA₁ ε₁. For BA_d = 0 this is the standard linear
+//! solid: storage EA_d − (EA_d − EA_s)/(1 + ω²τ²) and loss (EA_d − EA_s) ωτ/(1 + ω²τ²) at the circular frequency ω, τ = BA_s/(EA_d + EA₁).
+//!
+//! The slow spring holds ½EA₁ ε₁², the fast one ½EA_d (ε − ε₁)² while it is stretched; what work goes beyond that is lost.
+//!
+//! Source: the law of MoorDyn's `EA_s|EA_d`, `BA_s|BA_d` line types, `source/Line.cpp` of MoorDyn-C, after Hall, Duong & Lozon (2023), IOWTC2023, on
+//! semi-taut moorings with polyester ropes; closed forms derived here. Valid for small strain and EA_d > EA_s > 0, BA_s > 0.
+
+/// The law of a segment.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Viscoelastic {
+    /// Stiffness K of the strain at a given memory [N].
+    pub stiffness: f64,
+    /// Damping C of the strain rate at a given memory [N s].
+    pub damping: f64,
+    /// Stiffness G of the memory [N].
+    pub memory: f64,
+    /// Slow spring EA₁ [N].
+    pub slow: f64,
+    /// Fast spring EA_d [N].
+    pub fast: f64,
+    /// Fast damper BA_d [N s].
+    pub fast_damping: f64,
+    /// 1/B [1/(N s)]; 0 of a segment without memory.
+    pub yielding: f64,
+    /// Rate EA₁/BA_s at which the slow part contracts in a slack rope [1/s].
+    pub contraction: f64,
+}
+
+/// What a step leaves behind.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Creep {
+    /// Slow strain ε₁ at its end [-].
+    pub slow: f64,
+    /// Its slope with the strain at the end of the step [-].
+    pub slope: f64,
+}
+
+impl Viscoelastic {
+    /// From static and dynamic stiffness [N] and the damping of each [N s].
+    pub fn new([static_ea, dynamic_ea]: [f64; 2], [slow_damping, fast_damping]: [f64; 2]) -> Self {
+        let slow = dynamic_ea * static_ea / (dynamic_ea - static_ea);
+        let yielding = 1.0 / (slow_damping + fast_damping);
+        Viscoelastic {
+            stiffness: slow_damping * dynamic_ea * yielding,
+            damping: slow_damping * fast_damping * yielding,
+            memory: (fast_damping * slow - slow_damping * dynamic_ea) * yielding,
+            slow,
+            fast: dynamic_ea,
+            fast_damping,
+            yielding,
+            contraction: slow / slow_damping,
+        }
+    }
+
+    /// A segment without memory, of stiffness EA [N] and damping BA [N s].
+    pub fn plain(stiffness: f64, damping: f64) -> Self {
+        Viscoelastic {
+            stiffness,
+            damping,
+            memory: 0.0,
+            slow: 0.0,
+            fast: stiffness,
+            fast_damping: damping,
+            yielding: 0.0,
+            contraction: 0.0,
+        }
+    }
+
+    /// Slow strain [-] of a segment at rest at a strain [-].
+    pub fn rest(&self, strain: f64) -> f64 {
+        if self.yielding == 0.0 {
+            return 0.0;
+        }
+        strain.max(0.0) * self.fast / (self.fast + self.slow)
+    }
+
+    /// Tension without the damper C, before it is cut at zero [N].
+    #[inline(always)]
+    pub fn elastic(&self, strain: f64, slow: f64) -> f64 {
+        self.stiffness * strain + self.memory * slow
+    }
+
+    /// Rate of the slow strain [1/s] at a strain [-] that changes at a rate [1/s].
+    #[inline(always)]
+    pub fn creep_rate(&self, strain: f64, rate: f64, slow: f64) -> f64 {
+        if self.elastic(strain, slow) + self.damping * rate > 0.0 {
+            let pull = self.fast * (strain - slow) - self.slow * slow;
+            self.yielding * (pull + self.fast_damping * rate)
+        } else {
+            -self.contraction * slow
+        }
+    }
+
+    /// The slow strain after a step of `dt` [s] between two strains [-].
+    #[inline(always)]
+    pub fn creep(&self, [before, now]: [f64; 2], slow: f64, dt: f64) -> Creep {
+        let (mean, change) = (0.5 * (before + now), now - before);
+        let share = self.yielding / (1.0 + 0.5 * dt * (self.fast + self.slow) * self.yielding);
+        let pull = self.fast * mean - (self.fast + self.slow) * slow;
+        let crept = slow + share * (dt * pull + self.fast_damping * change);
+        let impulse = dt * self.elastic(mean, 0.5 * (slow + crept)) + self.damping * change;
+        if impulse > 0.0 {
+            return Creep {
+                slow: crept,
+                slope: share * (0.5 * dt * self.fast + self.fast_damping),
+            };
+        }
+        let half = 0.5 * dt * self.contraction;
+        Creep {
+            slow: (slow * (1.0 - half) / (1.0 + half)).max(0.0),
+            slope: 0.0,
+        }
+    }
+
+    /// Energy held per unstretched length [N].
+    #[inline(always)]
+    pub fn energy(&self, strain: f64, slow: f64) -> f64 {
+        let fast = (strain - slow).max(0.0);
+        0.5 * (self.slow * slow * slow + self.fast * fast * fast)
+    }
+
+    /// Power per unstretched length [N/s] that a tension [N] gives and the springs do not keep.
+    #[inline(always)]
+    pub fn loss(&self, strain: f64, rate: f64, slow: f64, tension: f64) -> f64 {
+        let creep = self.creep_rate(strain, rate, slow);
+        let fast = (strain - slow).max(0.0);
+        tension * rate - self.slow * slow * creep - self.fast * fast * (rate - creep)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    /// The polyester of a public semi-taut mooring.
+    fn rope(fast_damping: f64) -> Viscoelastic {
+        Viscoelastic::new([1.424e8, 1.586e8], [4.0e9, fast_damping])
+    }
+
+    /// Complex modulus (storage, loss) [N] at the circular frequency ω [rad/s]: both parts in series.
+    fn modulus([slow, fast]: [[f64; 2]; 2], omega: f64) -> [f64; 2] {
+        let compliance = |[ea, ba]: [f64; 2]| {
+            let imaginary = omega * ba;
+            let square = ea * ea + imaginary * imaginary;
+            [ea / square, -imaginary / square]
+        };
+        let ([a, b], [c, d]) = (compliance(slow), compliance(fast));
+        let (real, imaginary) = (a + c, b + d);
+        let square = real * real + imaginary * imaginary;
+        [real / square, -imaginary / square]
+    }
+
+    /// Storage and loss modulus [N] of a rope in a steady sine of `steps` steps a period.
+    fn measured(law: &Viscoelastic, omega: f64, steps: usize) -> [f64; 2] {
+        let period = 2.0 * std::f64::consts::PI / omega;
+        let dt = period / steps as f64;
+        let (mean, amplitude) = (0.02, 0.005);
+        let strain = |k: usize| mean + amplitude * (omega * k as f64 * dt).sin();
+        let mut slow = law.rest(mean);
+        let [mut storage, mut loss] = [0.0; 2];
+        let settled = (40.0 / (omega * 2.0)).ceil() as usize + 3;
+        for k in 0..(settled + 1) * steps {
+            let crept = law.creep([strain(k), strain(k + 1)], slow, dt).slow;
+            let rate = (strain(k + 1) - strain(k)) / dt;
+            let tension = law.elastic(0.5 * (strain(k) + strain(k + 1)), 0.5 * (slow + crept))
+                + law.damping * rate;
+            if k >= settled * steps {
+                let phase = omega * (k as f64 + 0.5) * dt;
+                storage += 2.0 / steps as f64 / amplitude * tension * phase.sin();
+                loss += 2.0 / steps as f64 / amplitude * tension * phase.cos();
+            }
+            slow = crept;
+        }
+        [storage, loss]
+    }
+
+    #[test]
+    fn storage_and_loss_are_those_of_two_parts_in_series_to_second_order() {
+        for fast_damping in [0.0, 1.1e7, 4.0e8] {
+            let law = rope(fast_damping);
+            let parts = [[law.slow, 4.0e9], [law.fast, fast_damping]];
+            for omega in [0.03, 0.2, 0.5, 1.5] {
+                let exact = modulus(parts, omega);
+                let [coarse, fine] = [60, 240].map(|steps| measured(&law, omega, steps));
+                for part in 0..2 {
+                    let scale = exact[part];
+                    let (first, last) = (coarse[part] - exact[part], fine[part] - exact[part]);
+                    assert!(
+                        last.abs() < 1e-3 * scale,
+                        "{part} {omega}: {fine:?} {exact:?}"
+                    );
+                    let order = (first / last).abs().ln() / 4.0_f64.ln();
+                    assert!(
+                        (order - 2.0).abs() < 0.1 || last.abs() < 1e-7 * scale,
+                        "{order}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn at_rest_the_tension_is_that_of_the_static_stiffness() {
+        let law = rope(1.1e7);
+        assert_relative_eq!(
+            law.elastic(0.02, law.rest(0.02)),
+            0.02 * 1.424e8,
+            max_relative = 1e-12
+        );
+        assert_relative_eq!(
+            law.creep_rate(0.02, 0.0, law.rest(0.02)),
+            0.0,
+            epsilon = 1e-12
+        );
+    }
+
+    #[test]
+    fn a_held_stretch_relaxes_exponentially_from_the_dynamic_to_the_static_stiffness() {
+        let law = rope(0.0);
+        let (strain, dt) = (0.01, 0.01);
+        let tau = 4.0e9 / (law.fast + law.slow);
+        let mut slow = 0.0;
+        assert_relative_eq!(
+            law.elastic(strain, slow),
+            0.01 * 1.586e8,
+            max_relative = 1e-12
+        );
+        for k in 1..=2000 {
+            slow = law.creep([strain, strain], slow, dt).slow;
+            let fading = (-(k as f64) * dt / tau).exp();
+            let exact = strain * (1.424e8 + (1.586e8 - 1.424e8) * fading);
+            assert_relative_eq!(law.elastic(strain, slow), exact, max_relative = 1e-6);
+        }
+    }
+
+    #[test]
+    fn what_is_lost_is_what_both_dampers_take_and_never_negative() {
+        let law = rope(1.1e7);
+        for (strain, rate, slow) in [(0.01, 0.02, 0.0), (0.02, -0.001, 0.0015), (0.001, 0.1, 0.0)] {
+            let tension = law.elastic(strain, slow) + law.damping * rate;
+            assert!(tension > 0.0);
+            let creep = law.creep_rate(strain, rate, slow);
+            let dampers = 4.0e9 * creep * creep + 1.1e7 * (rate - creep) * (rate - creep);
+            assert_relative_eq!(
+                law.loss(strain, rate, slow, tension),
+                dampers,
+                max_relative = 1e-9
+            );
+        }
+        assert!(law.loss(-0.01, -0.1, 0.002, 0.0) > 0.0);
+    }
+
+    #[test]
+    fn a_slack_rope_contracts_by_itself() {
+        let law = rope(1.1e7);
+        let mut slow = 0.001;
+        for _ in 0..100 {
+            slow = law.creep([-0.01, -0.01], slow, 0.01).slow;
+        }
+        let exact = 0.001 * (-law.slow / 4.0e9_f64).exp();
+        assert_relative_eq!(slow, exact, max_relative = 1e-5);
+    }
+
+    #[test]
+    fn a_segment_without_memory_is_a_spring_and_a_damper() {
+        let law = Viscoelastic::plain(1.0e8, 1.0e5);
+        assert_eq!(law.creep([0.01, 0.02], 0.0, 0.1).slow, 0.0);
+        assert_eq!(law.elastic(0.01, law.rest(0.01)), 1.0e6);
+    }
+}

@@ -1,0 +1,220 @@
+//! What moves a scene in a run and is given beside it: a motion file, regular motions, a ramp, a duration.
+
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use super::motion_file::{Moves, axis_number, read_moves};
+use super::{HarmonicMotion, MotionPath, MotionRow, PointKind, Scene};
+
+/// Motions of a run, beside those of its scene. A body that moves here does not move as its scene says.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Drive {
+    /// A CSV file. With the columns time [s], x, y, z [m] and perhaps roll, pitch, yaw [rad] it moves the scene's one vessel, or
+    /// without vessels all coupled points alike; with columns such as `platform.x` what they name.
+    pub file: Option<PathBuf>,
+    /// Regular motions.
+    pub regular: Vec<RegularMotion>,
+    /// Duration of the cosine ramp of the regular motions [s]; none where absent.
+    pub ramp: Option<f64>,
+    /// Duration of the run [s]; where absent, that of the motion file, else that of the scene.
+    pub duration: Option<f64>,
+}
+
+/// amplitude·sin(2π t/period + phase) along or about an axis of a body.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RegularMotion {
+    /// Name of a vessel or coupled point.
+    pub body: String,
+    /// 0 to 5: x, y, z, roll, pitch, yaw [-].
+    pub axis: usize,
+    /// Amplitude [m] or [rad].
+    pub amplitude: f64,
+    /// Period [s].
+    pub period: f64,
+    /// Phase [rad].
+    pub phase: f64,
+}
+
+impl FromStr for RegularMotion {
+    type Err = String;
+
+    /// Reads `BODY.AXIS=AMPLITUDE,PERIOD` or `BODY.AXIS=AMPLITUDE,PERIOD,PHASE`.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let wanted =
+            "must be BODY.AXIS=AMPLITUDE,PERIOD[,PHASE] in m, rad and s, such as platform.x=2.5,12";
+        let (variable, numbers) = text.split_once('=').ok_or(wanted)?;
+        let (body, axis) = variable.trim().rsplit_once('.').ok_or(wanted)?;
+        let numbers: Vec<f64> = numbers
+            .split(',')
+            .map(|number| number.trim().parse::<f64>().map_err(|_| wanted))
+            .collect::<Result<_, _>>()?;
+        let (amplitude, period, phase) = match numbers[..] {
+            [amplitude, period] => (amplitude, period, 0.0),
+            [amplitude, period, phase] => (amplitude, period, phase),
+            _ => return Err(wanted.into()),
+        };
+        if !(amplitude.is_finite() && phase.is_finite() && period > 0.0 && period.is_finite()) {
+            return Err(format!(
+                "{wanted}; the period is positive and all are finite"
+            ));
+        }
+        Ok(RegularMotion {
+            body: body.to_string(),
+            axis: axis_number(axis).ok_or(wanted)?,
+            amplitude,
+            period,
+            phase,
+        })
+    }
+}
+
+impl Drive {
+    /// Whether nothing is given.
+    pub fn is_empty(&self) -> bool {
+        *self == Drive::default()
+    }
+}
+
+impl Scene {
+    /// Takes motions and the duration from a drive.
+    ///
+    /// # Errors
+    /// The file and line, or the body, and what would be right.
+    pub fn drive(&mut self, drive: &Drive) -> Result<(), String> {
+        let mut end = None;
+        let mut taken: Vec<String> = Vec::new();
+        if let Some(file) = &drive.file {
+            for (body, rows) in self.bodies_of(read_moves(file)?, &file.display().to_string())? {
+                end = rows.last().map(|row| row[0]);
+                self.motion.insert(body.clone(), MotionPath::Table(rows));
+                taken.push(body);
+            }
+        }
+        for body in drive.regular.iter().map(|regular| &regular.body) {
+            self.must_move(body)?;
+            if taken.contains(body) {
+                return Err(format!(
+                    "`{body}` moves by the file already: it cannot move regularly too"
+                ));
+            }
+            let motion = harmonic(&drive.regular, body, drive.ramp);
+            self.motion
+                .insert(body.clone(), MotionPath::Harmonic(motion));
+        }
+        if let Some(duration) = drive.duration.or(end.filter(|end| *end > 0.0)) {
+            self.output.duration = duration;
+        }
+        match self.mistakes().into_iter().next() {
+            Some(mistake) => Err(format!("{}: {}", mistake.at, mistake.problem)),
+            None => Ok(()),
+        }
+    }
+
+    /// What a motion file moves, by name.
+    fn bodies_of(&self, moves: Moves, file: &str) -> Result<Vec<(String, Vec<MotionRow>)>, String> {
+        let known = self.moved_by_a_host();
+        match moves {
+            Moves::Named(bodies) => {
+                for (body, _) in &bodies {
+                    self.must_move(body)
+                        .map_err(|problem| format!("{file}, line 1: {problem}"))?;
+                }
+                Ok(bodies)
+            }
+            Moves::One { rows, turns } => {
+                let alike = known.len() == 1 || self.vessels.is_empty();
+                if !alike || known.is_empty() {
+                    return Err(format!(
+                        "{file}, line 1: {}: the columns must name what moves, such as {}.x",
+                        self.movable_in_words(),
+                        known.first().copied().unwrap_or("platform")
+                    ));
+                }
+                if turns && self.vessels.is_empty() {
+                    return Err(format!(
+                        "{file}, line 1: points do not turn: the header must be \"time,x,y,z\""
+                    ));
+                }
+                let bodies = known.iter().map(|body| (body.to_string(), rows.clone()));
+                Ok(bodies.collect())
+            }
+        }
+    }
+
+    /// Vessels and coupled points that do not ride on one.
+    fn moved_by_a_host(&self) -> Vec<&str> {
+        let vessels = self.vessels.iter().map(|vessel| vessel.name.as_str());
+        let points = self
+            .points
+            .iter()
+            .filter(|point| point.kind == PointKind::Coupled && point.on.is_none());
+        vessels
+            .chain(points.map(|point| point.name.as_str()))
+            .collect()
+    }
+
+    fn must_move(&self, body: &str) -> Result<(), String> {
+        if self.moved_by_a_host().contains(&body) {
+            return Ok(());
+        }
+        Err(format!(
+            "`{body}` is no vessel or coupled point: {}",
+            self.movable_in_words()
+        ))
+    }
+
+    fn movable_in_words(&self) -> String {
+        match self.moved_by_a_host()[..] {
+            [] => "nothing in the scene moves as a host wants".to_string(),
+            [one] => format!("what moves is {one}"),
+            ref all => format!("what moves are {}", all.join(", ")),
+        }
+    }
+}
+
+/// The regular motions of one body as a scene has them.
+fn harmonic(all: &[RegularMotion], body: &str, ramp: Option<f64>) -> HarmonicMotion {
+    let mut motion = HarmonicMotion {
+        ramp,
+        ..HarmonicMotion::default()
+    };
+    for regular in all.iter().filter(|regular| regular.body == body) {
+        let axis = match regular.axis {
+            0 => &mut motion.x,
+            1 => &mut motion.y,
+            2 => &mut motion.z,
+            3 => &mut motion.roll,
+            4 => &mut motion.pitch,
+            _ => &mut motion.yaw,
+        };
+        axis.push(vec![regular.amplitude, regular.period, regular.phase]);
+    }
+    motion
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_regular_motion_is_an_axis_an_amplitude_a_period_and_perhaps_a_phase() {
+        let read: RegularMotion = "my.barge.pitch=0.05,10,1.5".parse().unwrap();
+        assert_eq!((read.body.as_str(), read.axis), ("my.barge", 4));
+        assert_eq!((read.amplitude, read.period, read.phase), (0.05, 10.0, 1.5));
+        let plain: RegularMotion = "fairlead.x=2,12".parse().unwrap();
+        assert_eq!(plain.phase, 0.0);
+        for wrong in [
+            "fairlead.x",
+            "fairlead=1,2",
+            "fairlead.u=1,2",
+            "fairlead.x=1",
+            "fairlead.x=1,0",
+            "fairlead.x=1,-2",
+            "fairlead.x=nan,2",
+            "fairlead.x=1,2,3,4",
+            "",
+        ] {
+            assert!(wrong.parse::<RegularMotion>().is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,146 @@
+//! Tables of tension over strain: rows in a scene, or a file of two columns.
+
+use std::fmt;
+use std::path::Path;
+
+use serde::de::{self, Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
+use serde::ser::SerializeMap;
+use serde::{Serialize, Serializer};
+
+use super::rows::{Row, number, shown};
+
+/// Most bytes of a table's file.
+const SIZE_MAX: u64 = 1 << 20;
+
+/// Tension over strain: `[[strain, tension], …]` or `{ file = "rope.csv" }`, which stands relative to the scene's folder.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TensionStrain {
+    /// Path of the file, where there is one.
+    pub file: Option<String>,
+    /// Rows of strain [-] and tension [N]; those of a file are filled in by the reader.
+    pub rows: Vec<[f64; 2]>,
+}
+
+impl TensionStrain {
+    /// A table whose rows stand in a file that has not been read.
+    pub fn from_file(file: &str) -> TensionStrain {
+        TensionStrain {
+            file: Some(file.to_string()),
+            rows: Vec::new(),
+        }
+    }
+}
+
+impl Serialize for TensionStrain {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match &self.file {
+            Some(file) if self.rows.is_empty() => {
+                let mut map = serializer.serialize_map(Some(1))?;
+                map.serialize_entry("file", file)?;
+                map.end()
+            }
+            _ => self.rows.serialize(serializer),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for TensionStrain {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(TableVisitor)
+    }
+}
+
+struct TableVisitor;
+
+impl<'de> Visitor<'de> for TableVisitor {
+    type Value = TensionStrain;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("[[strain, tension], …] or { file = \"…\" }")
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<TensionStrain, A::Error> {
+        let mut rows = Vec::new();
+        while let Some(row) = seq.next_element()? {
+            rows.push(row);
+        }
+        Ok(TensionStrain { file: None, rows })
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<TensionStrain, A::Error> {
+        let mut file: Option<String> = None;
+        while let Some(key) = map.next_key::<String>()? {
+            match key.as_str() {
+                "file" => file = Some(map.next_value()?),
+                unknown => return Err(de::Error::unknown_field(unknown, &["file"])),
+            }
+        }
+        match file {
+            Some(file) => Ok(TensionStrain::from_file(&file)),
+            None => Err(de::Error::missing_field("file")),
+        }
+    }
+}
+
+/// Rows of strain [-] and tension [N] of a file: two columns between blanks or commas, below any lines that begin with no number.
+///
+/// # Errors
+/// The file, the line and what would be right.
+pub(super) fn read(path: &Path) -> Result<Vec<[f64; 2]>, String> {
+    let name = path.display();
+    let metadata = std::fs::metadata(path).map_err(|error| match error.kind() {
+        std::io::ErrorKind::NotFound => {
+            format!(
+                "{name}: no such file (it is looked for beside the file that names it); it must hold two columns, strain [-] and \
+                 tension [N]"
+            )
+        }
+        _ => format!("{name} cannot be opened: {error}"),
+    })?;
+    if !metadata.is_file() || metadata.len() > SIZE_MAX {
+        return Err(format!("{name} is no table of strain and tension"));
+    }
+    let bytes = std::fs::read(path).map_err(|error| format!("{name} cannot be read: {error}"))?;
+    let text = String::from_utf8_lossy(&bytes);
+    let mut rows: Vec<[f64; 2]> = Vec::new();
+    for row in Row::all(&text) {
+        let line = text[..row.span().start].matches('\n').count() + 1;
+        let row = row.before('#');
+        let cells = row.split(|c| c.is_whitespace() || c == ',' || c == ';');
+        let numbers: Vec<Result<f64, String>> =
+            cells.iter().map(|cell| number(cell.text)).collect();
+        match numbers.as_slice() {
+            [] => {}
+            [Ok(strain), Ok(tension)] => rows.push([*strain, *tension]),
+            [Err(_), ..] if rows.is_empty() => {}
+            _ => {
+                return Err(format!(
+                    "{name}, line {line}: {} is no row of strain [-] and tension [N]",
+                    shown(row.text)
+                ));
+            }
+        }
+    }
+    if rows.is_empty() {
+        return Err(format!("{name}: no rows of strain [-] and tension [N]"));
+    }
+    Ok(rows)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_table_is_read_below_its_headings() {
+        let path = std::env::temp_dir().join(format!("tension-strain-{}.txt", std::process::id()));
+        let text = "----Polyester----\nStrain Tension\n(-) (N)\n0.0 0.0\n1.0D-2, 4e5 # first\n\n0.02\t9e5\n";
+        std::fs::write(&path, text).unwrap();
+        assert_eq!(read(&path).unwrap(), [[0.0, 0.0], [0.01, 4e5], [0.02, 9e5]]);
+        std::fs::write(&path, "0 0\n0.1 five\n").unwrap();
+        let problem = read(&path).unwrap_err();
+        std::fs::remove_file(&path).unwrap();
+        assert!(problem.contains("line 2"), "{problem}");
+        assert!(read(&path).unwrap_err().contains("no such file"));
+    }
+}

@@ -1,0 +1,174 @@
+//! Files of waves and currents in the formats of MoorDyn: rows of numbers between blanks.
+
+use std::f64::consts::{FRAC_PI_2, TAU};
+use std::path::Path;
+
+/// Most rows that are read.
+const ROWS_MAX: usize = 100_000;
+/// Lines above the rows of a current, which are not read.
+const CURRENT_HEAD: usize = 3;
+
+/// Rows of amplitude [m], period [s], direction [rad] and phase [rad] from rows of frequency ω [rad/s], real and imaginary part of the
+/// amplitude A [m] and, where it is not 0, direction β [rad]: Σ |A| sin(ωt − kx + arg A), as MoorDyn adds components up.
+///
+/// # Errors
+/// The file, the line and what would be right.
+pub(super) fn components(path: &Path) -> Result<Vec<[f64; 4]>, String> {
+    let mut components = Vec::new();
+    for (line, row) in rows(path, 0)? {
+        let wrong = |problem: &str| format!("{}, line {line}: {problem}", path.display());
+        let (frequency, real, imaginary, direction) = match row.as_slice() {
+            [frequency, real, imaginary] => (*frequency, *real, *imaginary, 0.0),
+            [frequency, real, imaginary, direction] => (*frequency, *real, *imaginary, *direction),
+            _ => {
+                return Err(wrong(
+                    "expected 3 or 4 numbers: ω [rad/s], real and imaginary part [m], direction [rad]",
+                ));
+            }
+        };
+        let amplitude = real.hypot(imaginary);
+        if amplitude == 0.0 {
+            continue;
+        }
+        if frequency <= 0.0 {
+            return Err(wrong(
+                "an elevation that does not change, or a negative frequency, is no wave: write amplitude 0 there",
+            ));
+        }
+        let phase = FRAC_PI_2 - imaginary.atan2(real); // sin(a) = cos(½π − a)
+        components.push([amplitude, TAU / frequency, direction, phase]);
+    }
+    if components.is_empty() {
+        return Err(format!("{}: all amplitudes are 0", path.display()));
+    }
+    Ok(components)
+}
+
+/// Rows of height z [m] and velocity vx, vy [m/s] from rows that have vz besides, below three lines of headings.
+///
+/// # Errors
+/// The file, the line and what would be right.
+pub(super) fn profile(path: &Path) -> Result<Vec<[f64; 3]>, String> {
+    let mut profile = Vec::new();
+    for (line, row) in rows(path, CURRENT_HEAD)? {
+        let wrong = |problem: &str| format!("{}, line {line}: {problem}", path.display());
+        match row.as_slice() {
+            [z, x, y, 0.0] => profile.push([*z, *x, *y]),
+            [_, _, _, _] => {
+                return Err(wrong(
+                    "a profile that flows up or down is not modelled: write vz 0",
+                ));
+            }
+            _ => return Err(wrong("expected 4 numbers: z [m], vx, vy, vz [m/s]")),
+        }
+    }
+    if profile.is_empty() {
+        let head = "there are no rows below the three lines of headings";
+        return Err(format!("{}: {head}", path.display()));
+    }
+    Ok(profile)
+}
+
+/// Numbers of every line that has some, with the number of the line; the first `head` lines are skipped.
+fn rows(path: &Path, head: usize) -> Result<Vec<(usize, Vec<f64>)>, String> {
+    let name = path.display();
+    let bytes = std::fs::read(path).map_err(|error| match error.kind() {
+        std::io::ErrorKind::NotFound => {
+            format!("{name}: no such file (it is looked for beside the scene)")
+        }
+        _ => format!("{name} cannot be read: {error}"),
+    })?;
+    let text = String::from_utf8_lossy(&bytes);
+    let mut rows = Vec::new();
+    for (index, line) in text.lines().enumerate().skip(head) {
+        let content = line.split('#').next().unwrap_or_default();
+        let mut numbers = Vec::new();
+        for word in content.split_whitespace() {
+            match word.parse::<f64>() {
+                Ok(number) if number.is_finite() => numbers.push(number),
+                _ => {
+                    let shown: String = word.chars().take(40).collect();
+                    return Err(format!(
+                        "{name}, line {}: {shown:?} is no number",
+                        index + 1
+                    ));
+                }
+            }
+        }
+        if rows.len() == ROWS_MAX {
+            return Err(format!("{name}: more than {ROWS_MAX} rows"));
+        }
+        if !numbers.is_empty() {
+            rows.push((index + 1, numbers));
+        }
+    }
+    Ok(rows)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+    use std::fs;
+
+    fn of<T>(text: &str, read: fn(&Path) -> Result<T, String>) -> Result<T, String> {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("water.txt");
+        fs::write(&path, text).unwrap();
+        read(&path)
+    }
+
+    #[test]
+    fn components_add_up_to_the_elevation_that_their_amplitudes_say() {
+        let rows = of(
+            "0.0 0.0 0.0\n0.5 1.0 -2.0\n0.9 0.0 0.5 0.3 # wind sea\n",
+            components,
+        )
+        .unwrap();
+        assert_eq!(rows.len(), 2);
+        for t in [0.0, 1.3, 17.0] {
+            let found: f64 = rows
+                .iter()
+                .map(|[a, period, _, phase]| a * (phase - TAU / period * t).cos())
+                .sum();
+            let sine = |a: f64, w: f64, phase: f64| a * (w * t + phase).sin();
+            let expected =
+                sine(5.0_f64.sqrt(), 0.5, f64::atan2(-2.0, 1.0)) + sine(0.5, 0.9, FRAC_PI_2);
+            assert_relative_eq!(found, expected, epsilon = 1e-12);
+        }
+        assert_eq!(rows[1][2], 0.3);
+    }
+
+    #[test]
+    fn a_current_stands_below_three_lines_of_headings() {
+        let head = "--- currents ---\nz ux uy uz\n(m) (m/s) (m/s) (m/s)\n";
+        let text = format!("{head}-50.0 0.1 0.2 0\n0.0 1.0 0 0\n");
+        let rows = of(&text, profile).unwrap();
+        assert_eq!(rows, vec![[-50.0, 0.1, 0.2], [0.0, 1.0, 0.0]]);
+        let rising = of(&format!("{head}0 1 0 0.5\n"), profile).unwrap_err();
+        assert!(
+            rising.contains("line 4") && rising.contains("up or down"),
+            "{rising}"
+        );
+    }
+
+    #[test]
+    fn what_cannot_be_read_is_refused_with_file_and_line() {
+        for (text, said) in [
+            ("", "all amplitudes are 0"),
+            ("0.5 1.0\n", "line 1: expected 3 or 4 numbers"),
+            ("0.5 1.0 x\n", "line 1: \"x\" is no number"),
+            ("0.5 nan 0\n", "is no number"),
+            ("0.0 1.0 0.0\n", "is no wave"),
+        ] {
+            let problem = of(text, components).unwrap_err();
+            assert!(
+                problem.contains("water.txt") && problem.contains(said),
+                "{problem}"
+            );
+        }
+        assert!(of("", profile).unwrap_err().contains("no rows"));
+        let missing = components(Path::new("/no/such/file.txt")).unwrap_err();
+        assert!(missing.contains("no such file"), "{missing}");
+    }
+}

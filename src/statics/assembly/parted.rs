@@ -1,0 +1,59 @@
+//! Ends that have parted from their points: unknowns of their own line, solved with it.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::LineWork;
+use crate::math::block_tridiagonal::Ends;
+
+/// What is left of a line's equations on its ends, for the parted of them.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Parted {
+    ends: Ends,
+    /// (aa)⁻¹ and (bb)⁻¹ of the ends as they are eliminated.
+    inverse: [Matrix3<f64>; 2],
+}
+
+impl LineWork {
+    /// Removes parted ends from what remains of the line; `None` if a block cannot be inverted.
+    pub(super) fn eliminate_parted(&mut self, mut ends: Ends) -> Option<Ends> {
+        if self.parted == [false; 2] {
+            return Some(ends);
+        }
+        let mut inverse = [Matrix3::zeros(); 2];
+        if self.parted[1] {
+            inverse[1] = ends.bb.try_inverse()?;
+            ends.aa -= ends.ab * inverse[1] * ends.ba;
+            ends.a -= ends.ab * inverse[1] * ends.b;
+        }
+        if self.parted[0] {
+            inverse[0] = ends.aa.try_inverse()?;
+            if !self.parted[1] {
+                ends.bb -= ends.ba * inverse[0] * ends.ab;
+                ends.b -= ends.ba * inverse[0] * ends.a;
+            }
+        }
+        self.loose = Some(Parted { ends, inverse });
+        Some(ends)
+    }
+
+    /// The whole solution from that of the points at the ends.
+    pub(super) fn substitute_all(&mut self, a: Vector3<f64>, b: Vector3<f64>) {
+        let (mut a, mut b) = (a, b);
+        if let (Some(Parted { ends, inverse }), true) = (self.loose, self.parted != [false; 2]) {
+            if self.parted[0] {
+                let tied = if self.parted[1] { Vector3::zeros() } else { b };
+                a = inverse[0] * (ends.a - ends.ab * tied);
+            }
+            if self.parted[1] {
+                // without an unknown at end A its blocks mean nothing
+                let pull = if a == Vector3::zeros() {
+                    a
+                } else {
+                    ends.ba * a
+                };
+                b = inverse[1] * (ends.b - pull);
+            }
+        }
+        self.substitute(a, b);
+    }
+}

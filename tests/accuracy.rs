@@ -1,0 +1,111 @@
+//! Speed against error: what a study says of a short scene.
+//!
+//! claim: errors fall with the mesh, the frontier goes down in error and up in cost, and nothing is said of a scene at rest.
+
+use std::path::Path;
+
+use moorline::accuracy::{Code, Metric, PeerError, Peers, Study, StudyError, study};
+use moorline::scene::{Integrator, Scene};
+
+/// A taut rope of 100 m that its upper end pulls with a period of 2 s.
+const ROPE: &str = r#"
+title = "a taut rope, pulled"
+
+[water]
+density = 1025.0
+
+[line_types.rope]
+mass = 20.0
+diameter = 0.15
+axial_stiffness = 5.0e6
+axial_damping = 2.0e3
+drag_normal = 1.2
+added_mass_normal = 1.0
+
+[[points]]
+name = "anchor"
+position = [80.0, 0.0, -70.0]
+kind = "fixed"
+
+[[points]]
+name = "fairlead"
+position = [0.0, 0.0, -10.0]
+kind = "coupled"
+
+[[lines]]
+name = "rope"
+from = "anchor"
+to = "fairlead"
+sections = [{ type = "rope", length = 99.5 }]
+
+[motion]
+fairlead = { x = [[-0.1, 2.0]], z = [[0.05, 2.0]], ramp = 1.0 }
+
+[output]
+duration = 4.0
+interval = 0.05
+"#;
+
+fn studied() -> Study {
+    let scene = Scene::from_toml(ROPE).unwrap();
+    let mut told = Vec::new();
+    let study = study("rope", &scene, None, &mut |done, total| {
+        told.push((done, total));
+    });
+    assert!(told.is_sorted() && told.last().is_some_and(|(done, total)| done == total));
+    study.unwrap()
+}
+
+#[test]
+fn a_study_of_a_rope_says_what_each_error_costs() {
+    let study = studied();
+    let rms = |run: &moorline::accuracy::Run| run.errors.of(Metric::Rms);
+    let leapfrog = |code: &Code| *code == Code::Own(Integrator::Leapfrog);
+    let runs: Vec<_> = study
+        .runs
+        .iter()
+        .filter(|run| leapfrog(&run.code))
+        .collect();
+    assert!(runs.len() >= 10);
+    // The ladder goes from coarse to fine: second order over a factor of 80 in the mesh.
+    assert!(rms(runs[runs.len() - 1]) < 0.01 * rms(runs[0]));
+    assert!(study.uncertainty.of(Metric::Rms) < 0.2 * rms(runs[8]));
+    let chosen = study.runs.iter().filter(|run| run.code == Code::Chosen);
+    assert_eq!(chosen.count(), 4);
+    for metric in Metric::ALL {
+        let frontier = study.frontier(metric, Code::is_own);
+        assert!(frontier.is_sorted_by(|a, b| a.cost <= b.cost));
+        assert!(frontier.is_sorted_by(|a, b| a.errors.of(metric) > b.errors.of(metric)));
+        let best = study.cheapest(metric, 0.05, Code::is_own).unwrap();
+        assert!(best.errors.of(metric) <= 0.05);
+        let cheaper = study.runs.iter().filter(|run| run.cost < best.cost);
+        assert!(
+            cheaper
+                .map(|run| run.errors.of(metric))
+                .all(|error| error > 0.05)
+        );
+    }
+    assert!(
+        study
+            .runs
+            .iter()
+            .all(|run| run.cost > 0.0 && run.cost.is_finite())
+    );
+}
+
+#[test]
+fn nothing_is_said_of_a_scene_at_rest() {
+    let mut scene = Scene::from_toml(ROPE).unwrap();
+    scene.motion.clear();
+    scene.output.duration = 0.5;
+    let error = study("rope", &scene, None, &mut |_, _| ()).unwrap_err();
+    assert!(matches!(error, StudyError::AtRest { .. }), "{error}");
+}
+
+#[test]
+fn an_interpreter_that_is_not_there_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let missing = Path::new("no-such-python");
+    let error = Peers::find(missing, folder.path()).unwrap_err();
+    assert!(matches!(&error, PeerError::NoPython(named) if named == missing));
+}

@@ -1,0 +1,87 @@
+//! The elements that lines get where a scene leaves them open.
+
+mod common;
+
+use common::*;
+use moorline::model::Model;
+use moorline::scene::Scene;
+use moorline::simulation::Simulation;
+
+fn open(mut scene: Scene) -> Scene {
+    for section in scene.lines.iter_mut().flat_map(|line| &mut line.sections) {
+        section.elements = None;
+    }
+    scene
+}
+
+#[test]
+fn lines_that_meet_share_elements_by_length_and_lines_alone_have_all_of_them() {
+    let counts = |name: &str| -> Vec<usize> {
+        let model = Model::new(&open(shipped(name))).unwrap();
+        model
+            .lines
+            .iter()
+            .map(|line| line.segment_count())
+            .collect()
+    };
+    assert_eq!(counts("bridle"), [3, 3, 40]);
+    assert_eq!(counts("clump_weight"), [40, 21]);
+    assert_eq!(counts("oc3_catenary"), [40]);
+}
+
+/// The power cable held to a direction at its hang-off that it does not hang in.
+fn bent_cable() -> Scene {
+    let mut scene = shipped("power_cable");
+    scene.lines[0].clamped_b = Some([-0.5, 0.0, 0.866]);
+    scene
+}
+
+/// Greatest curvature [1/m] of a cable at rest, and its number of elements.
+fn curvature(scene: &Scene) -> (f64, usize) {
+    let simulation = Simulation::new(scene).unwrap();
+    let nodes = simulation.bending(0).unwrap();
+    let greatest = nodes.iter().map(|node| node.curvature).fold(0.0, f64::max);
+    (greatest, simulation.model().lines[0].segment_count())
+}
+
+#[test]
+fn elements_that_are_short_where_a_cable_bends_find_its_curvature_with_few_of_them() {
+    let mut fine = bent_cable();
+    for (section, count) in fine.lines[0].sections.iter_mut().zip([400, 200, 1440]) {
+        section.elements = Some(count);
+    }
+    let (exact, _) = curvature(&fine);
+    let (found, count) = curvature(&open(bent_cable()));
+    println!("{found} with {count} elements, {exact}");
+    assert!((found / exact - 1.0).abs() < 0.03 && count < 204);
+    let mut uniform = open(bent_cable());
+    for section in &mut uniform.lines[0].sections {
+        section.elements = Some((section.length / 240.0 * count as f64).round() as usize);
+    }
+    let (equal, _) = curvature(&uniform);
+    assert!(
+        (equal / exact - 1.0).abs() > 3.0 * (found / exact - 1.0).abs(),
+        "{equal}"
+    );
+}
+
+#[test]
+fn the_mesh_is_told_with_its_reasons() {
+    let words = |scene: &Scene| Model::new(scene).unwrap().mesh_in_words(scene);
+    assert_eq!(
+        words(&shipped("oc3_catenary")),
+        ["line1: 40 elements of 22.5550 m, as given"]
+    );
+    let bridle = words(&shipped("bridle"));
+    assert_eq!(
+        bridle[0],
+        "leg_port: 3 elements of 8.3333 m, for the target error of 2 %, in proportion to the longest line it is tied to"
+    );
+    let cable = &words(&open(bent_cable()))[0];
+    println!("{cable}");
+    assert!(
+        cable.contains("at the clamp at end B, where it bends over"),
+        "{cable}"
+    );
+    assert!(cable.contains("at the touchdown"), "{cable}");
+}

@@ -1,0 +1,251 @@
+//! Lines that let go of a point: by the host's word, under too much tension, or at a time.
+//!
+//! Claims: a light straight line under tension snaps back as a bar does; a hanging chain falls freely, its middle with g; the point feels nothing of it
+//! any more; the ledger balances through it; a snapshot replays it.
+
+mod common;
+
+use approx::assert_relative_eq;
+use common::*;
+use moorline::model::End;
+use moorline::scene::{Integrator, Scene};
+use moorline::simulation::Simulation;
+
+const INTEGRATORS: [Integrator; 3] = [
+    Integrator::Leapfrog,
+    Integrator::AxialImplicit,
+    Integrator::GeneralisedAlpha,
+];
+
+/// A chain of 100 m over a span of 60 m between points 20 m apart in height, dry, with these keys of the line.
+fn chain(keys: &str, surroundings: &str) -> Scene {
+    scene(&format!(
+        r#"
+        {surroundings}
+        [line_types.chain]
+        mass = 20.0
+        diameter = 0.05
+        axial_stiffness = 1.0e6
+        drag_normal = 1.2
+        drag_tangential = 0.1
+        [[points]]
+        name = "anchor"
+        position = [0.0, 0.0, -60.0]
+        kind = "fixed"
+        [[points]]
+        name = "fairlead"
+        position = [60.0, 0.0, -40.0]
+        kind = "coupled"
+        [[lines]]
+        name = "line1"
+        from = "anchor"
+        to = "fairlead"
+        sections = [{{ type = "chain", length = 100.0, elements = 25 }}]
+        {keys}
+        "#
+    ))
+}
+
+#[test]
+fn a_chain_that_lets_go_at_both_ends_falls_freely() {
+    let keys = "release = \"b\"\nbreak = { at = \"a\", time = 0.0 }";
+    for integrator in INTEGRATORS {
+        let scene = with_integrator(chain(keys, ""), integrator, 1e-3);
+        let mut simulation = Simulation::new(&scene).unwrap();
+        let model = simulation.model().lines[0].clone();
+        let centre = |simulation: &Simulation| {
+            let nodes = simulation.state().lines[0].position.iter();
+            let moment: f64 = nodes.zip(&model.nodes.mass).map(|(r, m)| r.z * m).sum();
+            moment / model.nodes.mass.iter().sum::<f64>()
+        };
+        let start = centre(&simulation);
+        simulation.set_release(0, true);
+        for _ in 0..20 {
+            simulation.advance(0.05).unwrap();
+        }
+        assert_eq!(simulation.parted(0), [true, true]);
+        let fallen = start - centre(&simulation);
+        assert_relative_eq!(fallen, 0.5 * 9.80665, max_relative = 4e-3);
+        let error = simulation.energy_error().abs();
+        let kinetic = simulation.energy().kinetic;
+        assert!(
+            error < 2e-2 * kinetic,
+            "{integrator:?}: {error} of {kinetic}"
+        );
+    }
+}
+
+#[test]
+fn a_point_feels_nothing_of_a_line_that_let_go() {
+    for integrator in INTEGRATORS {
+        let scene = with_integrator(chain("release = \"b\"", ""), integrator, 1e-3);
+        let mut simulation = Simulation::new(&scene).unwrap();
+        assert!(simulation.tension_b(0) > 1e3);
+        simulation.advance(0.1).unwrap();
+        assert_eq!(simulation.parted(0), [false, false]);
+        simulation.set_release(0, true);
+        simulation.advance(0.1).unwrap();
+        assert_eq!(simulation.end_force(1), [0.0; 3]);
+        assert!(simulation.line_end_force(0, End::A).norm() > 100.0);
+        simulation.set_release(0, false);
+        simulation.advance(0.1).unwrap();
+        assert_eq!(simulation.parted(0), [false, true], "for good");
+    }
+}
+
+#[test]
+fn the_ledger_balances_through_a_break() {
+    let surroundings = "[water]\ndensity = 1025.0\n[seabed]\ndepth = 60.0\n[motion]\n\
+                        fairlead = { x = [[2.0, 6.0]], z = [[2.0, 5.0]] }";
+    let keys = "break = { at = \"b\", time = 2.0 }";
+    for integrator in INTEGRATORS {
+        let scene = with_integrator(chain(keys, surroundings), integrator, 1e-3);
+        let mut simulation = following(&scene);
+        let mut errors = Vec::new();
+        for _ in 0..120 {
+            simulation.advance(0.05).unwrap();
+            errors.push(simulation.energy_error());
+        }
+        let lost = simulation.ledger().flow.lost;
+        let jump = (errors[41] - errors[38]).abs();
+        println!(
+            "{integrator:?}: jump {jump:.3e}, error {:.3e}, lost {lost:.3e}",
+            errors[119]
+        );
+        assert_eq!(simulation.parted(0), [false, true]);
+        assert!(jump < 5e-3 * lost, "{integrator:?}: {jump} of {lost}");
+        assert!(
+            errors[119].abs() < 2e-2 * lost,
+            "{integrator:?}: {} of {lost}",
+            errors[119]
+        );
+    }
+}
+
+#[test]
+fn a_line_breaks_when_its_end_carries_too_much() {
+    for integrator in INTEGRATORS {
+        let whole = with_integrator(chain("", ""), integrator, 2e-3);
+        let still = Simulation::new(&whole).unwrap().tension_b(0);
+        let keys = format!("break = {{ at = \"b\", tension = {} }}", 1.5 * still);
+        let scene = with_integrator(chain(&keys, ""), integrator, 2e-3);
+        let mut simulation = Simulation::new(&scene).unwrap();
+        let (mut step, mut before) = (0, 0.0);
+        while simulation.parted(0) == [false; 2] {
+            step += 1;
+            before = simulation.tension_b(0);
+            let t = 0.05 * f64::from(step);
+            simulation.set_displacement(1, [0.5 * t * t, 0.0, 0.0]);
+            simulation.advance(0.05).unwrap();
+            assert!(step < 400);
+        }
+        assert!(step > 10 && before < 1.6 * still, "{step} {before} {still}");
+        assert_eq!(simulation.tension_b(0), 0.0);
+        assert_eq!(simulation.parted(0), [false, true]);
+    }
+}
+
+#[test]
+fn a_taut_bar_snaps_back_behind_the_front_of_a_wave() {
+    // until the front arrives, the wall pulls as before: momentum grows by EA ε t, and what lies ahead of the front is at rest
+    let scene = scene(
+        r#"
+        gravity = 0.0
+        line_types.bar = { mass = 10.0, axial_stiffness = 1.0e6, axial_damping = 0.0 }
+        points = [
+          { name = "wall", position = [0.0, 0.0, 0.0], kind = "fixed" },
+          { name = "tip", position = [101.0, 0.0, 0.0], kind = "coupled" },
+        ]
+        lines = [{ name = "bar", from = "wall", to = "tip", release = "b", sections = [{ type = "bar", length = 100.0, elements = 200 }] }]
+        "#,
+    );
+    let (c, strain) = ((1.0e6_f64 / 10.0).sqrt(), 0.01);
+    for integrator in INTEGRATORS {
+        let scene = with_integrator(scene.clone(), integrator, 2e-4);
+        let mut simulation = Simulation::new(&scene).unwrap();
+        simulation.set_release(0, true);
+        simulation.advance(0.5 * 100.0 / c).unwrap();
+        let mass = &simulation.model().lines[0].nodes.mass;
+        let nodes = simulation.state().lines[0].velocity.iter().zip(mass);
+        let momentum: f64 = nodes.map(|(v, m)| v.x * m).sum();
+        assert_relative_eq!(momentum, -1.0e6 * strain * 50.0 / c, max_relative = 5e-3);
+        let still = simulation.state().lines[0].position[40].x;
+        assert_relative_eq!(still, 20.2, epsilon = 1e-3);
+    }
+}
+
+#[test]
+fn one_of_two_lines_at_a_free_point_lets_go_and_the_other_carries_on() {
+    for integrator in [Integrator::Leapfrog, Integrator::GeneralisedAlpha] {
+        let scene = scene(
+            r#"
+            line_types.rope = { mass = 5.0, axial_stiffness = 1.0e5 }
+            points = [
+              { name = "left", position = [-30.0, 0.0, 0.0], kind = "fixed" },
+              { name = "right", position = [30.0, 0.0, 0.0], kind = "fixed" },
+              { name = "clump", position = [0.0, 0.0, -10.0], kind = "free", mass = 200.0 },
+            ]
+            lines = [
+              { name = "l", from = "left", to = "clump", sections = [{ type = "rope", length = 35.0, elements = 8 }] },
+              { name = "r", from = "clump", to = "right", break = { at = "a", time = 1.0 }, sections = [{ type = "rope", length = 35.0, elements = 8 }] },
+            ]
+            "#,
+        );
+        let mut simulation = Simulation::new(&with_integrator(scene, integrator, 1e-3)).unwrap();
+        (0..40).for_each(|_| simulation.advance(0.05).unwrap());
+        assert_eq!(simulation.parted(1), [true, false]);
+        let clump = simulation.state().points[2].position;
+        let (of_left, of_right) = (
+            simulation.state().lines[0].position[8],
+            simulation.state().lines[1].position[0],
+        );
+        assert!((clump - of_left).norm() < 1e-9 && (clump - of_right).norm() > 1.0);
+        let (error, kinetic) = (simulation.energy_error().abs(), simulation.energy().kinetic);
+        assert!(
+            error < 2e-2 * kinetic,
+            "{integrator:?}: {error} of {kinetic}"
+        );
+    }
+}
+
+#[test]
+fn a_release_replays_bit_for_bit_from_a_snapshot() {
+    for integrator in INTEGRATORS {
+        let keys = "release = \"b\"\nbreak = { at = \"a\", time = 0.6 }";
+        let scene = with_integrator(chain(keys, ""), integrator, 5e-3);
+        let mut simulation = Simulation::new(&scene).unwrap();
+        simulation.advance(0.1).unwrap();
+        simulation.set_release(0, true);
+        (0..4).for_each(|_| simulation.advance(0.1).unwrap());
+        let bytes = postcard::to_stdvec(simulation.snapshot()).unwrap();
+        let run = |simulation: &mut Simulation| {
+            (0..5).for_each(|_| simulation.advance(0.1).unwrap());
+            simulation.state().clone()
+        };
+        let first = run(&mut simulation);
+        simulation.restore(postcard::from_bytes(&bytes).unwrap());
+        assert_eq!(run(&mut simulation), first);
+    }
+}
+
+#[test]
+fn lines_that_cannot_let_go_are_refused() {
+    let refused = |text: &str, said: &str| {
+        let mistake = Scene::from_toml(text).unwrap_err();
+        assert!(mistake.problem.contains(said), "{mistake}");
+    };
+    let text = chain("release = \"b\"", "").to_toml();
+    refused(
+        &text.replace("mass = 20.0", "mass = 20.0\nbending_stiffness = 10.0"),
+        "bending",
+    );
+    let quasi_static =
+        format!("{text}\n").replace("integrator = \"auto\"", "integrator = \"quasi_static\"");
+    refused(&quasi_static, "falls");
+    refused(
+        &chain("break = { at = \"a\", time = 1.0 }", "")
+            .to_toml()
+            .replace("time = 1.0\n", ""),
+        "nothing breaks",
+    );
+}
