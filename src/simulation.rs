@@ -814,7 +814,7 @@ fn static_tension(model: &Model, state: &State, line: usize) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// The closed-form catenary between two places, where it applies: engineering strain.
+/// The closed-form catenary between two places, where it applies: engineering strain, and a level bed if any is in reach.
 fn solve_catenary(
     model: &Model,
     line: &Line,
@@ -826,6 +826,9 @@ fn solve_catenary(
         .iter()
         .any(|section| section.law != StretchLaw::Engineering)
     {
+        return None;
+    }
+    if line.nodes.contact.is_some() && !model.bed_is_level() {
         return None;
     }
     let sections: Vec<catenary::Section> = line
@@ -866,7 +869,10 @@ fn laid_length(line: &Line, state: &LineState) -> f64 {
         return 0.0;
     };
     let carried = |i: usize| {
-        let penetration = contact.level[i] - state.position[i].z;
+        let penetration = match &contact.bottom {
+            None => contact.level[i] - state.position[i].z,
+            Some(bottom) => bottom.touch(state.position[i], contact.lift(i)).penetration,
+        };
         let weight = line.nodes.weight[i];
         if weight <= 0.0 {
             0.0

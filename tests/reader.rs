@@ -6,7 +6,7 @@ use std::process::Command;
 
 use moorline::model::Model;
 use moorline::scene::{
-    LoadError, LoadedScene, PointKind, Scene, Supplement, TimeFunction, load, load_with,
+    Friction, LoadError, LoadedScene, PointKind, Scene, Supplement, TimeFunction, load, load_with,
 };
 use moorline::simulation::Simulation;
 
@@ -230,7 +230,10 @@ fn a_deck_in_the_style_of_moordyn_c_is_read_with_its_body_rod_and_coupled_point(
         (scene.gravity, scene.water.as_ref().unwrap().density),
         (9.81, 1028.0)
     );
-    assert_eq!(scene.seabed.as_ref().unwrap().friction, 0.4);
+    assert_eq!(
+        scene.seabed.as_ref().unwrap().friction,
+        Friction::isotropic(0.4)
+    );
     let body = &scene.vessels[0];
     assert_eq!(
         (body.name.as_str(), body.position),
@@ -344,7 +347,7 @@ fn a_map_deck_repeats_its_lines_and_has_the_published_tension_of_oc3() {
     let turned = point(scene, "point3").position;
     assert!((turned[0] + 0.5 * 853.87).abs() < 1e-9 && turned[2] == -320.0);
     assert_eq!(point(scene, "point6").on.as_deref(), Some("vessel"));
-    assert_eq!(scene.seabed.as_ref().unwrap().friction, 0.001);
+    assert_eq!(scene.seabed.as_ref().unwrap().friction.axial, 0.001);
     let simulation = Simulation::new(scene).unwrap();
     for line in 0..3 {
         let tension = simulation.catenary(line).unwrap().tension_b();
@@ -655,12 +658,12 @@ const REFUSALS: &[(&str, &str, &str)] = &[
     (
         "2.0e6    kbot",
         "bed.txt WtrDpth",
-        "input:26:1: OPTIONS, WtrDpth: a bathymetry from \"bed.txt\" is not modelled",
+        "input:26:1: OPTIONS, bathymetry: ",
     ),
     (
         "2.0e6    kbot",
         "bed.txt SeafloorFile",
-        "input:26:1: OPTIONS, SeafloorFile: a seabed from a file",
+        "input:26:1: OPTIONS, bathymetry: ",
     ),
     (
         "2.0e6    kbot",

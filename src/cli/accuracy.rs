@@ -73,7 +73,10 @@ fn scenes(paths: &[PathBuf]) -> Result<Vec<(String, Scene)>, Failure> {
     }
     let read = |path: &PathBuf| {
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
-        Ok((name.into_owned(), read_scene(path, &Supplement::default())?.scene))
+        Ok((
+            name.into_owned(),
+            read_scene(path, &Supplement::default())?.scene,
+        ))
     };
     paths.iter().map(read).collect()
 }

@@ -15,6 +15,7 @@ use super::{Choice, StepError, quasi_static};
 use crate::model::{End, Kinematics, Model, Network, State};
 use crate::physics::airy::Waves;
 use crate::scene::Integrator;
+use crate::statics::assembly::rubbing::drop_anchors;
 use crate::statics::assembly::{self, copy_network};
 
 /// Spectral radius of the axial-implicit leapfrog where the scene gives none [-].
@@ -115,6 +116,7 @@ impl Workspace {
         held: &impl Fn(usize, f64) -> Kinematics,
     ) {
         let time = state.time;
+        drop_anchors(model, state);
         place_held(model, state, held);
         self.sea.start(model, state);
         for (number, (_, solver)) in self.networks.iter().enumerate() {

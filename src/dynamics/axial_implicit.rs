@@ -17,6 +17,8 @@
 //! Model. Simul. 7, 1779-1794, with controllable dissipation added. The limit left is transverse:
 //! [`super::limit::transverse_step`].
 
+mod rubbing;
+
 use nalgebra::Vector3;
 use pulp::NullaryFnOnce;
 
@@ -26,6 +28,7 @@ use super::ledger::Flow;
 use crate::math::lanes::{Components, Lanes, Vectors};
 use crate::model::{End, Line, LineState, Parting, WaveSpan};
 use crate::physics::stretch::StretchLaw;
+use rubbing::Rubbing;
 
 /// Passes over slack and contact flags, at most [-].
 const PASSES_MAX: usize = 8;
@@ -57,6 +60,8 @@ pub struct AxialWork {
     rows: Rows,
     /// The moving water at the nodes, where it acts on the line.
     current: Option<CurrentArrays>,
+    /// The bed under the nodes, where it is more than a level plane without friction.
+    rubbing: Option<Rubbing>,
     /// 1 for nodes between the ends, 0 elsewhere.
     interior: Vec<f64>,
     /// Whether ends A and B have parted from their points.
@@ -151,6 +156,7 @@ impl AxialWork {
                 along: zeros.clone(),
                 press: vectors.clone(),
             }),
+            rubbing: layout.bottom().map(|_| Rubbing::new(size)),
             lost: Lanes::splat(0.0),
             given: 0.0,
             tension_peak: 0.0,
@@ -336,6 +342,9 @@ impl AxialWork {
             Some(_) => self.prepare_segments::<true>(step),
         }
         self.prepare_nodes::<CURRENT>(step);
+        if self.rubbing.is_some() {
+            self.meet_bed(step);
+        }
         self.prepare_ends(step, ends);
         let mut passes = 0;
         loop {
@@ -343,11 +352,15 @@ impl AxialWork {
             self.assemble_rows(step);
             let greatest = self.rows.solve(self.layout.segment_count);
             self.tension_peak = self.tension_peak.max(greatest);
-            let bed_holds = self.find_velocities(step);
+            let bed_holds =
+                self.find_velocities(step) && (self.rubbing.is_none() || self.check_bed(step));
             let slack_holds = self.check_segments(step, greatest);
             if bed_holds && slack_holds || passes == PASSES_MAX {
                 break;
             }
+        }
+        if self.rubbing.is_some() {
+            self.keep_rub(step);
         }
         self.book(step);
         if CURRENT {
@@ -506,7 +519,7 @@ impl AxialWork {
                 force = force - velocity.scale(damping);
             }
             self.invert_mass(at, tangent, [mass_normal, mass_tangent], force, kick);
-            if self.layout.contact.is_some() {
+            if self.layout.contact.is_some() && self.rubbing.is_none() {
                 self.touches(at, velocity.z, step)
                     .store(&mut self.nodes.touches, at);
                 self.settle(at, step);
@@ -652,7 +665,7 @@ impl AxialWork {
                 .scale(kick);
             let velocity = self.nodes.loose.load(at) + moved;
             self.layout.velocity_before.store(velocity, at);
-            if self.layout.contact.is_some() {
+            if self.layout.contact.is_some() && self.rubbing.is_none() {
                 let touches = self.touches(at, velocity.z, step);
                 let assumed = Lanes::load(&self.nodes.touches, at);
                 let changed = Lanes::splat(0.0) - touches * assumed;

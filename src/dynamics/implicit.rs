@@ -105,6 +105,7 @@ pub fn start<K: Fn(usize, f64) -> Kinematics>(
     hold(model, network, state, held, t);
     let weights = Weights {
         force: 1.0,
+        friction: 1.0,
         inertia: 0.0,
         position: 0.0,
         velocity: 0.0,
@@ -364,6 +365,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
         let dt = t1 - t0;
         let old = Weights {
             force: alpha_f,
+            friction: 0.0,
             inertia: alpha_f,
             position: 0.0,
             velocity: 0.0,
@@ -374,11 +376,13 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
         work.fade_dampers(self.model, self.network, state, dt);
         work.assemble_dynamic::<false>(self.model, self.network, state, t0, &old);
         work.remember(self.network);
+        work.move_anchors(self.model, self.network, state);
         self.predict(state, dt);
         hold(self.model, self.network, state, self.held, t1);
         let (per_velocity, per_acceleration) = (gamma / (beta * dt), 1.0 / (beta * dt * dt));
         let new = Weights {
             force: 1.0 - alpha_f,
+            friction: 1.0,
             inertia: 1.0 - alpha_f,
             position: 1.0 - alpha_f,
             velocity: (1.0 - alpha_f) * per_velocity,

@@ -3,6 +3,8 @@
 //! Node i and segment i, which lies between nodes i and i + 1, stand at index [`FIRST`] + i. Padding has no stiffness, no
 //! weight and no drag, so that it stays at rest and no loop has a remainder.
 
+use std::sync::Arc;
+
 use nalgebra::Vector3;
 use pulp::{Arch, NullaryFnOnce};
 
@@ -11,9 +13,11 @@ use super::leapfrog::Step;
 use super::surface::SurfaceNow;
 use crate::math::hermite::Hermite;
 use crate::math::lanes::{Components, LANES, Lanes, Vectors};
-use crate::model::{End, Line, LineState, Model, WaveSpan};
+use crate::model::{Bottom, Contact, End, Line, LineState, Model, WaveSpan};
 use crate::physics::airy::{Orbit, cubics};
 use crate::physics::flow::{Profile, Stream};
+use crate::physics::friction::Friction;
+use crate::physics::seabed::ContactCoefficients;
 use crate::physics::stretch::{StretchLaw, total_tension};
 
 /// Index of node 0 and of segment 0.
@@ -189,12 +193,51 @@ fn polynomial(powers: &[Components; 4], passed: f64, at: usize) -> Vectors {
     p0.load(at) + (p1.load(at) + (p2.load(at) + p3.load(at).scale(u)).scale(u)).scale(u)
 }
 
-/// Lumped contact coefficients [N/m, N s/m] and the z [m] below which they push.
+/// Lumped contact coefficients [N/m, N s/m] and the z [m] below which they push; over a bed that slopes or rubs the height above it, along its normal.
 #[derive(Debug, Clone)]
 pub(super) struct ContactArrays {
     pub level: Vec<f64>,
     pub stiffness: Vec<f64>,
     pub damping: Vec<f64>,
+    /// Where the bed is more than a level plane without friction.
+    pub bottom: Option<BottomArrays>,
+}
+
+/// A bed that slopes or rubs.
+#[derive(Debug, Clone)]
+pub(super) struct BottomArrays {
+    pub bottom: Arc<Bottom>,
+    /// Stiffness along the bed of a node that sticks [N/m]; 0 without friction.
+    pub stick: Vec<f64>,
+    /// Friction on the nodes in the last step [N].
+    pub rub: Components,
+}
+
+impl ContactArrays {
+    fn new(contact: &Contact, keep: impl Fn(&[f64]) -> Vec<f64>) -> ContactArrays {
+        let lifts = || (0..contact.level.len()).map(|i| contact.lift(i)).collect();
+        let bottom = contact.bottom.as_ref();
+        let level: Vec<f64> = bottom.map_or_else(|| contact.level.clone(), |_| lifts());
+        let level = keep(&level);
+        ContactArrays {
+            bottom: bottom.map(|bottom| BottomArrays {
+                bottom: bottom.clone(),
+                stick: keep(&contact.stick),
+                rub: Components::zeros(level.len()),
+            }),
+            level,
+            stiffness: keep(&contact.stiffness),
+            damping: keep(&contact.damping),
+        }
+    }
+
+    /// Spring and damper of the node at `at`.
+    pub fn coefficients(&self, at: usize) -> ContactCoefficients {
+        ContactCoefficients {
+            stiffness: self.stiffness[at],
+            damping: self.damping[at],
+        }
+    }
 }
 
 impl Layout {
@@ -238,11 +281,10 @@ impl Layout {
                     factor: 1.0,
                 }),
             mass_damping: nodes.mass_damping.as_ref().map(|damping| keep(damping)),
-            contact: nodes.contact.as_ref().map(|contact| ContactArrays {
-                level: keep(&contact.level),
-                stiffness: keep(&contact.stiffness),
-                damping: keep(&contact.damping),
-            }),
+            contact: nodes
+                .contact
+                .as_ref()
+                .map(|contact| ContactArrays::new(contact, keep)),
             creep,
             surface: SurfaceNow::new(line),
         })
@@ -288,6 +330,56 @@ impl Layout {
             memory.velocity[i] = velocity;
             memory.velocity_before[i] = before;
         }
+        if let Some(bottom) = self.bottom() {
+            for (i, anchor) in state.anchor.iter_mut().enumerate() {
+                let rub = bottom.rub.get(FIRST + i) / bottom.stick[FIRST + i];
+                *anchor = state.position[i] + rub;
+            }
+        }
+    }
+
+    /// The bed, where it is more than a level plane without friction.
+    pub fn bottom(&self) -> Option<&BottomArrays> {
+        self.contact.as_ref()?.bottom.as_ref()
+    }
+
+    /// The contact with a bed that slopes or rubs, and its friction.
+    pub fn rubbing(&self) -> Option<(&ContactArrays, Option<&Friction>)> {
+        let contact = self.contact.as_ref()?;
+        let bottom = contact.bottom.as_ref()?;
+        Some((contact, bottom.bottom.friction.as_ref()))
+    }
+
+    /// Remembers the friction on a node [N].
+    pub fn set_rub(&mut self, at: usize, rub: Vector3<f64>) {
+        if let Some(contact) = &mut self.contact
+            && let Some(bottom) = &mut contact.bottom
+        {
+            bottom.rub.set(at, rub);
+        }
+    }
+
+    /// How far the node at `at` is below the level from which the bed pushes it [m], and the bed's normal there; it must lie over a bed that
+    /// slopes or rubs.
+    #[inline]
+    pub fn stand(&self, at: usize) -> (f64, Vector3<f64>) {
+        let contact = self.contact.as_ref().expect("asked over a bed only");
+        let bottom = contact
+            .bottom
+            .as_ref()
+            .expect("asked over a bed that slopes or rubs only");
+        let (below, normal) = bottom.bottom.ground.stand(self.position.get(at));
+        (below + contact.level[at], normal)
+    }
+
+    /// Unit vector along the chord of the nodes beside the one at `at`, at an end along the segment.
+    pub fn tangent_of(&self, at: usize) -> Vector3<f64> {
+        let (before, after) = (
+            (at - 1).max(FIRST),
+            (at + 1).min(FIRST + self.segment_count),
+        );
+        let chord = self.position.get(after) - self.position.get(before);
+        chord.try_normalize(0.0).unwrap_or_else(Vector3::zeros)
     }
 
     /// Finds where the surface crosses the line, and sets the weights of the nodes it crosses.

@@ -19,6 +19,7 @@ use super::layout::{FIRST, Layout, Water, interior, pad};
 use super::ledger::Flow;
 use crate::math::lanes::{Components, Lanes, Vectors};
 use crate::model::{End, Line, LineState, Parting, WaveSpan};
+use crate::physics::friction_step::Landing;
 use crate::physics::morison::{self, DragCoefficients};
 use crate::physics::stretch::{StretchLaw, total_tension};
 
@@ -41,6 +42,25 @@ pub struct LineWork {
     lost: Lanes,
     given: f64,
     given_by_current: Lanes,
+    /// Force of water and damping on the nodes at t_n [N], and the energy lost to the bed [J], over a bed that slopes or rubs.
+    settling: Option<Settling>,
+}
+
+/// What a bed that slopes or rubs is worked out with, node by node.
+#[derive(Debug, Clone)]
+struct Settling {
+    resistance: Components,
+    lost: f64,
+}
+
+/// Whether the kernel knows a bed.
+mod bed {
+    /// None.
+    pub const NONE: u8 = 0;
+    /// A level one without friction.
+    pub const LEVEL: u8 = 1;
+    /// One that slopes or rubs, whose nodes [`super::LineWork::settle`] looks after.
+    pub const BOTTOM: u8 = 2;
 }
 
 /// What needs a node's tangent: drag, and a mass that differs along and across the line.
@@ -192,7 +212,7 @@ pub struct EndLoad {
     pub current_power: f64,
     /// Mass matrix of the half node [kg].
     pub mass: Matrix3<f64>,
-    /// Contact stiffness [N/m] and damping [N s/m] of the half node, and its force at z = 0 [N].
+    /// Contact stiffness [N/m] and damping [N s/m] of the half node, and its force at z = 0, or at no height over a bed that slopes or rubs [N].
     pub contact: [f64; 3],
 }
 
@@ -226,6 +246,10 @@ impl LineWork {
             lost: Lanes::splat(0.0),
             given: 0.0,
             given_by_current: Lanes::splat(0.0),
+            settling: layout.bottom().map(|bottom| Settling {
+                resistance: Components::zeros(bottom.stick.len()),
+                lost: 0.0,
+            }),
             layout,
         })
     }
@@ -240,6 +264,9 @@ impl LineWork {
         }
         (self.lost, self.given) = (Lanes::splat(0.0), 0.0);
         self.given_by_current = Lanes::splat(0.0);
+        if let Some(settling) = &mut self.settling {
+            settling.lost = 0.0;
+        }
     }
 
     /// Meets the water's surface as it is at t_n. Where that is `after` a step, what joined with the water in it is booked.
@@ -270,7 +297,8 @@ impl LineWork {
     pub fn flow(&self) -> Flow {
         Flow {
             given: self.given + self.given_by_current.sum() + self.layout.lifted(),
-            lost: self.lost.sum() - self.layout.joined(),
+            lost: self.lost.sum() + self.settling.as_ref().map_or(0.0, |bed| bed.lost)
+                - self.layout.joined(),
         }
     }
 
@@ -409,6 +437,9 @@ impl LineWork {
     /// Step 2: velocities from t_{n−½} to t_{n+½}.
     pub fn kick_nodes(&mut self, step: Step) {
         self.layout.vector_unit.dispatch(KickNodes(self, step));
+        if self.settling.is_some() {
+            self.settle(step);
+        }
     }
 
     #[inline(always)]
@@ -423,14 +454,21 @@ impl LineWork {
     /// What is chosen beside the water.
     #[inline(always)]
     fn choose_dry_pass<const WATER: bool, const CURRENT: bool>(&mut self, step: Step) {
-        match (
-            self.layout.contact.is_some(),
-            self.layout.mass_damping.is_some(),
-        ) {
-            (false, false) => self.node_pass::<WATER, CURRENT, false, false>(step),
-            (false, true) => self.node_pass::<WATER, CURRENT, false, true>(step),
-            (true, false) => self.node_pass::<WATER, CURRENT, true, false>(step),
-            (true, true) => self.node_pass::<WATER, CURRENT, true, true>(step),
+        match (&self.layout.contact, self.settling.is_some()) {
+            (None, _) => self.choose_damped_pass::<WATER, CURRENT, { bed::NONE }>(step),
+            (Some(_), false) => self.choose_damped_pass::<WATER, CURRENT, { bed::LEVEL }>(step),
+            (Some(_), true) => self.choose_damped_pass::<WATER, CURRENT, { bed::BOTTOM }>(step),
+        }
+    }
+
+    #[inline(always)]
+    fn choose_damped_pass<const WATER: bool, const CURRENT: bool, const BED: u8>(
+        &mut self,
+        step: Step,
+    ) {
+        match self.layout.mass_damping {
+            None => self.node_pass::<WATER, CURRENT, BED, false>(step),
+            Some(_) => self.node_pass::<WATER, CURRENT, BED, true>(step),
         }
     }
 
@@ -438,7 +476,7 @@ impl LineWork {
     fn node_pass<
         const WATER: bool,
         const CURRENT: bool,
-        const BED: bool,
+        const BED: u8,
         const MASS_DAMPING: bool,
     >(
         &mut self,
@@ -470,18 +508,18 @@ impl LineWork {
                 water.inverted(at, inverse_mass, force, tangent)
             } else {
                 force = force - resistance;
+                let z = inverse_mass;
                 (
                     force.scale(inverse_mass),
                     Vectors {
-                        x: zero,
-                        y: zero,
-                        z: inverse_mass,
+                        z,
+                        ..Vectors::zero()
                     },
                 )
             };
             let mut kicked = velocity + inverted.scale(kick);
             let mut given_away = zero; // twice the energy that leaves the nodes
-            if BED {
+            if BED == bed::LEVEL {
                 let impulse = contact_impulse(line, at, kicked.z, response.z, step);
                 kicked = kicked + response.scale(impulse);
                 given_away = given_away - impulse * (velocity.z + kicked.z);
@@ -489,7 +527,7 @@ impl LineWork {
             if WATER || MASS_DAMPING {
                 given_away = given_away + resistance.dot(velocity + kicked) * kick;
             }
-            if WATER || MASS_DAMPING || BED {
+            if WATER || MASS_DAMPING || BED == bed::LEVEL {
                 let half = Lanes::splat(0.5) * Lanes::load(&self.interior, at);
                 self.lost = self.lost + half * given_away;
             }
@@ -500,9 +538,57 @@ impl LineWork {
                 self.given_by_current = self.given_by_current + given + by_press;
                 self.lost = self.lost + given;
             }
+            if let (bed::BOTTOM, Some(settling)) = (BED, &mut self.settling) {
+                settling.resistance.store(resistance, at);
+            }
             line.velocity_before.store(kicked, at); // v_{n−3/2} has been read
         }
         std::mem::swap(&mut line.velocity, &mut line.velocity_before);
+    }
+
+    /// What a bed that slopes or rubs makes of the velocities at t_{n+½}.
+    fn settle(&mut self, step: Step) {
+        let line = &mut self.layout;
+        let Some(settling) = &mut self.settling else {
+            return;
+        };
+        for at in FIRST..=FIRST + line.segment_count {
+            if self.interior[at] == 0.0 {
+                continue; // tied to its point
+            }
+            let (penetration, normal) = line.stand(at);
+            let free = line.velocity.get(at);
+            if penetration <= step.drift * normal.dot(&free) {
+                line.set_rub(at, Vector3::zeros());
+                continue;
+            }
+            let excess = self
+                .water
+                .as_ref()
+                .map_or(0.0, |w| w.inverse_mass_excess[at]);
+            let inverse_mass = self.inverse_mass[at];
+            let tangent = line.tangent_of(at);
+            let Some((contact, friction)) = line.rubbing() else {
+                return;
+            };
+            let node = Landing {
+                mass: [1.0 / inverse_mass, 1.0 / (inverse_mass + excess)],
+                tangent,
+                normal,
+                penetration,
+                coefficients: contact.coefficients(at),
+                steps: [step.kick, step.drift],
+            };
+            let Some(landed) = node.solve(free, friction) else {
+                line.set_rub(at, Vector3::zeros());
+                continue;
+            };
+            let passed = line.velocity_before.get(at) + landed.velocity;
+            let resisted = settling.resistance.get(at).dot(&(landed.velocity - free));
+            settling.lost += 0.5 * (step.kick * resisted - landed.impulse.dot(&passed));
+            line.velocity.set(at, landed.velocity);
+            line.set_rub(at, landed.rub / step.kick);
+        }
     }
 
     /// Step 3: positions from t_n to t_{n+1}.

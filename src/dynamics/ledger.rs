@@ -30,14 +30,15 @@ use super::beam::{self, BeamView};
 use super::creep::{Creeping, Stretching};
 use super::leapfrog::segment_tension;
 use crate::model::{
-    ClosedForm, End, FreePoint, Line, LineState, Model, Network, PointState, State, WaterAlong,
-    joint,
+    Bottom, ClosedForm, End, FreePoint, Line, LineState, Model, Network, PointState, State,
+    WaterAlong, joint,
 };
 use crate::physics::airy::Orbit;
 use crate::physics::flow::Stream;
 use crate::physics::morison::{DragCoefficients, drag};
 use crate::physics::seabed::{ContactCoefficients, normal_force};
 use crate::physics::stretch::total_tension;
+use crate::statics::assembly::rubbing::{resting_node, resting_point};
 use crate::statics::assembly::{end_moment, end_shear, joint_damping_power};
 use crate::statics::equilibrium::current::drag_at_rest;
 
@@ -415,7 +416,16 @@ pub fn work_at_rest(
             &line.nodes.contact,
             shapes.iter().any(|shape| shape.closed_form.is_none()),
         ) {
-            for i in 1..line.segment_count() {
+            let level = line.bottom().is_none();
+            for i in (1..line.segment_count()).filter(|_| !level) {
+                let [low, high] = shapes.map(|shape| {
+                    let node = resting_node(line, shape, i, 0.0, 1.0).and_then(|node| node.push());
+                    node.map_or(Vector3::zeros(), |push| push.force)
+                });
+                let moved = shapes[1].position[i] - shapes[0].position[i];
+                flow.lost -= 0.5 * (low + high).dot(&moved);
+            }
+            for i in (1..line.segment_count()).filter(|_| level) {
                 let [z0, z1] = shapes.map(|shape| shape.position[i].z);
                 let push = |z: f64| contact.stiffness[i] * (contact.level[i] - z).max(0.0);
                 flow.lost -= 0.5 * (push(z0) + push(z1)) * (z1 - z0);
@@ -430,11 +440,18 @@ pub fn work_at_rest(
         if after.lines[line].closed_form.is_none()
             && let Some(free) = model.points[point].free()
         {
-            let push = |state: &State| {
-                let spring = free.bed_at_rest(state.points[point].position.z);
-                spring.map_or(0.0, |(_, force)| force)
+            let push = |state: &State| match model.bottom.as_deref() {
+                None => {
+                    let spring = free.bed_at_rest(state.points[point].position.z);
+                    spring.map_or(Vector3::zeros(), |(_, force)| force * Vector3::z())
+                }
+                Some(bottom) => {
+                    let resting = resting_point(free, bottom, &state.points[point], 0.0, 1.0);
+                    let push = resting.and_then(|point| point.push());
+                    push.map_or(Vector3::zeros(), |push| push.force)
+                }
             };
-            flow.lost -= 0.5 * (push(before) + push(after)) * moved.z;
+            flow.lost -= 0.5 * (push(before) + push(after)).dot(&moved);
         }
     }
     flow
@@ -508,9 +525,9 @@ pub fn power(model: &Model, network: &Network, state: &State, t: f64) -> Flow {
             let waves = state.waves_at_point(point, t);
             flow.add(point_power(
                 free,
+                model.bottom.as_deref(),
                 &state.points[point],
-                model.stream(t),
-                waves,
+                (model.stream(t), waves),
             ));
         }
     }
@@ -521,9 +538,9 @@ pub fn power(model: &Model, network: &Network, state: &State, t: f64) -> Flow {
 /// is negative.
 fn point_power(
     free: &FreePoint,
+    bottom: Option<&Bottom>,
     state: &PointState,
-    stream: Option<Stream>,
-    waves: Option<Orbit>,
+    (stream, waves): (Option<Stream>, Option<Orbit>),
 ) -> Flow {
     let (z, velocity) = (state.position.z, state.velocity);
     let mut water = stream.map_or(Vector3::zeros(), |stream| stream.velocity(z));
@@ -540,7 +557,10 @@ fn point_power(
     let drag = free.drag(at.wetted, past);
     let mut lost = -drag.dot(&past);
     lost -= 0.5 * at.mass_slope * sinks * velocity.norm_squared();
-    if let Some(contact) = &free.contact {
+    if let Some(bottom) = bottom {
+        let push = resting_point(free, bottom, state, 0.0, 1.0).and_then(|point| point.push());
+        lost -= push.map_or(0.0, |push| push.force.dot(&velocity));
+    } else if let Some(contact) = &free.contact {
         let push = normal_force(contact.coefficients, contact.level - z, velocity.z);
         lost -= push * velocity.z;
     }
@@ -700,7 +720,10 @@ fn node_power(line: &Line, shape: &LineState, i: usize, water: WaterAlong) -> Fl
     if let Some(damping) = &nodes.mass_damping {
         lost += damping[i] * velocity.norm_squared();
     }
-    if let Some(contact) = &nodes.contact {
+    if line.bottom().is_some() {
+        let push = resting_node(line, shape, i, 0.0, 1.0).and_then(|node| node.push());
+        lost -= push.map_or(0.0, |push| push.force.dot(&velocity));
+    } else if let Some(contact) = &nodes.contact {
         let k = ContactCoefficients {
             stiffness: contact.stiffness[i],
             damping: contact.damping[i],

@@ -1,12 +1,14 @@
 //! A network of lines advanced by the explicit leapfrog: its lines, and the free points that join them.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 
 use super::layout::Water;
 use super::leapfrog::{EndLoad, LineWork, Step};
 use super::ledger::Flow;
 use crate::model::{End, FreePoint, Kinematics, Model, Network, PointAtHeight, PointState, State};
 use crate::physics::airy::Orbit;
+use crate::physics::friction::{Axes, Friction};
+use crate::statics::assembly::rubbing::point_stick;
 
 /// Scratch of a network: its lines laid out for the kernels, and its free points.
 #[derive(Debug, Clone)]
@@ -226,10 +228,12 @@ impl NetworkWork {
             let point = &model.points[index];
             let Some(law) = point.free() else { continue };
             let height = self.points[free].position.z;
+            let bed = Bed::under(model, self.points[free].position);
             let waves = self.waves_at(free, t);
             let (at, mut load) = load_in_water(model, index, law, [height, t], now, waves);
             self.springs.clear();
-            self.springs.extend(Spring::new(load.contact, height, step));
+            self.springs
+                .extend(Spring::new(load.contact, bed.height, step));
             for &(line, end) in &point.attached {
                 let Some(at) = network.lines.iter().position(|&l| l == line) else {
                     continue;
@@ -240,14 +244,15 @@ impl NetworkWork {
                 let brought = self.lines[at].end_load(end, now);
                 load.add(&brought);
                 self.springs
-                    .extend(Spring::new(brought.contact, height, step));
+                    .extend(Spring::new(brought.contact, bed.height, step));
             }
-            let (velocity, impulse) = load.kicked(last, law.axes, &self.springs, step);
+            let kicked = load.kicked(last, law.axes, &self.springs, &bed, step);
+            let Kicked { velocity, .. } = kicked;
             let mean = 0.5 * (last + velocity);
             let by_current = step.kick * load.current_power;
             self.point_flow.given += step.kick * point.load_at(t).dot(&mean) + by_current;
             self.point_flow.lost -=
-                step.kick * load.resistance.dot(&mean) + impulse * mean.z - by_current;
+                step.kick * load.resistance.dot(&mean) + kicked.impulse.dot(&mean) - by_current;
             self.point_flow.given += step.kick * load.press.dot(&mean);
             let surface = |t: f64| self.waves_at(free, t).map_or(0.0, |w| w.elevation);
             let before = t - 0.5 * (2.0 * step.kick - step.drift);
@@ -264,6 +269,10 @@ impl NetworkWork {
             state.half_step = [velocity, last];
             state.acceleration = (velocity - last) / step.kick;
             state.position += step.drift * velocity;
+            if state.anchor.is_some() {
+                let held = kicked.rub / (step.kick * point_stick(law));
+                state.anchor = Some(state.position + held);
+            }
         }
     }
 }
@@ -298,7 +307,11 @@ fn load_in_water(
         mass: at.mass * Matrix3::identity(),
         contact: law.contact.map_or([0.0; 3], |contact| {
             let k = contact.coefficients;
-            [k.stiffness, k.damping, k.stiffness * contact.level]
+            let level = match model.bottom {
+                Some(_) => contact.lift(),
+                None => contact.level,
+            };
+            [k.stiffness, k.damping, k.stiffness * level]
         }),
     };
     (at, load)
@@ -332,7 +345,7 @@ fn mass_work(
 }
 
 impl Spring {
-    /// The spring of stiffness, damping and force at z = 0 under a point at `height` [m]; `None` where there is none.
+    /// The spring of stiffness, damping and force at no height under a point at `height` [m]; `None` where there is none.
     fn new(
         [stiffness, damping, force_at_zero]: [f64; 3],
         height: f64,
@@ -360,42 +373,157 @@ impl EndLoad {
         self.mass += other.mass;
     }
 
-    /// v_{n+½} of a point that moves along `axes` only, and the impulse of the bed [N s], which is implicit: the sum of springs that
-    /// only push is convex in the velocity, so that Newton's method from above finds it in as many iterations as there are springs.
+    /// v_{n+½} of a point that moves along `axes` only, and the impulse of the bed, which is implicit: friction is sought that agrees with
+    /// the push of the springs, and a push that agrees with the friction.
     fn kicked(
         &self,
         last: Vector3<f64>,
         axes: [bool; 3],
         springs: &[Spring],
+        bed: &Bed,
         step: Step,
-    ) -> (Vector3<f64>, f64) {
+    ) -> Kicked {
+        let zero = Vector3::zeros();
         let free = Vector3::from(axes.map(|free| f64::from(u8::from(free))));
         let mut mass = self.mass.component_mul(&(free * free.transpose()));
         for axis in (0..3).filter(|&axis| !axes[axis]) {
             mass[(axis, axis)] = 1.0;
         }
         let Some(inverse) = mass.try_inverse() else {
-            return (last, 0.0);
+            return Kicked {
+                velocity: last,
+                impulse: zero,
+                rub: zero,
+            };
         };
         let velocity = last + step.kick * inverse * self.force.component_mul(&free);
-        let response = inverse * Vector3::z() * free.z;
-        let mut impulse = 0.0;
-        for _ in 0..springs.len() {
-            let z = velocity.z + response.z * impulse;
-            let (mut push, mut resistance) = (0.0, 0.0);
-            for spring in springs
-                .iter()
-                .filter(|spring| spring.lands(velocity.z, step))
-            {
-                let force = spring.push - spring.resistance * z;
-                if force > 0.0 {
-                    push += force;
-                    resistance += spring.resistance;
+        let response = inverse * bed.normal.component_mul(&free);
+        let mut push = pushed(velocity, response, springs, bed, step);
+        let mut rub = zero;
+        if let (Some(friction), true) = (bed.friction, push > 0.0) {
+            let sliding = Sliding::new(bed.normal, &inverse, &free);
+            let scale = push;
+            for _ in 0..ROUNDS_MAX {
+                let before = push;
+                rub += sliding.rub(velocity + response * push, rub, friction.transverse * push);
+                push = pushed(
+                    velocity + inverse * rub.component_mul(&free),
+                    response,
+                    springs,
+                    bed,
+                    step,
+                );
+                if (push - before).abs() <= 4.0 * f64::EPSILON * scale {
+                    break;
                 }
             }
-            let excess = step.kick * push - impulse;
-            impulse += excess / (1.0 + response.z * step.kick * resistance);
         }
-        (velocity + response * impulse, impulse)
+        Kicked {
+            velocity: velocity + response * push + inverse * rub.component_mul(&free),
+            impulse: push * bed.normal + rub,
+            rub,
+        }
+    }
+}
+
+/// Rounds of push and friction on a point in a step.
+const ROUNDS_MAX: usize = 50;
+
+/// What a point leaves a step with.
+struct Kicked {
+    /// v_{n+½} [m/s].
+    velocity: Vector3<f64>,
+    /// Impulse of the bed [N s].
+    impulse: Vector3<f64>,
+    /// The part of it that friction has [N s].
+    rub: Vector3<f64>,
+}
+
+/// The bed under a point.
+struct Bed<'a> {
+    /// Height of the point over z = 0; over a bed that slopes or rubs, over that along its normal [m].
+    height: f64,
+    /// Unit normal of the bed, upwards.
+    normal: Vector3<f64>,
+    friction: Option<&'a Friction>,
+}
+
+impl Bed<'_> {
+    fn under(model: &Model, place: Vector3<f64>) -> Bed<'_> {
+        match model.bottom.as_deref() {
+            None => Bed {
+                height: place.z,
+                normal: Vector3::z(),
+                friction: None,
+            },
+            Some(bottom) => {
+                let touch = bottom.ground.touch(place);
+                Bed {
+                    height: -touch.penetration,
+                    normal: touch.normal,
+                    friction: bottom.friction.as_ref(),
+                }
+            }
+        }
+    }
+}
+
+/// Impulse of the springs on a point that would have the velocity `velocity` [m/s] without it. The sum of springs that
+/// only push is convex in the velocity, so that Newton's method from above finds it in as many iterations as there are springs.
+fn pushed(
+    velocity: Vector3<f64>,
+    response: Vector3<f64>,
+    springs: &[Spring],
+    bed: &Bed,
+    step: Step,
+) -> f64 {
+    let (rise, yielding) = (bed.normal.dot(&velocity), bed.normal.dot(&response));
+    let mut impulse = 0.0;
+    for _ in 0..springs.len() {
+        let rising = rise + yielding * impulse;
+        let (mut push, mut resistance) = (0.0, 0.0);
+        for spring in springs.iter().filter(|spring| spring.lands(rise, step)) {
+            let force = spring.push - spring.resistance * rising;
+            if force > 0.0 {
+                push += force;
+                resistance += spring.resistance;
+            }
+        }
+        let excess = step.kick * push - impulse;
+        impulse += excess / (1.0 + yielding * step.kick * resistance);
+    }
+    impulse
+}
+
+/// How a point slides along the bed.
+struct Sliding {
+    /// Axes of the plane of the bed, along those of the point that are free.
+    axes: [Vector3<f64>; 2],
+    /// Inverse of what the point yields by in the plane [kg].
+    mass: Matrix2<f64>,
+}
+
+impl Sliding {
+    fn new(normal: Vector3<f64>, inverse: &Matrix3<f64>, free: &Vector3<f64>) -> Sliding {
+        let Axes { along, across, .. } = Axes::new(normal, normal);
+        let axes = [along, across];
+        let mut yielding =
+            Matrix2::from_fn(|i, j| axes[i].dot(&(inverse * axes[j].component_mul(free))));
+        // A point on a rail yields along that alone: the rest is held, and must not be divided by.
+        let least = 1e-12 * yielding.trace();
+        yielding += Matrix2::from_diagonal_element(least);
+        Sliding {
+            axes,
+            mass: yielding.try_inverse().unwrap_or_else(Matrix2::zeros),
+        }
+    }
+
+    /// What must be added to the impulse `rub` so that the point stops, or the impulse is at its limit [N s]; `velocity` [m/s] is without any.
+    fn rub(&self, velocity: Vector3<f64>, rub: Vector3<f64>, limit: f64) -> Vector3<f64> {
+        let slides = Vector2::from_fn(|i, _| self.axes[i].dot(&velocity));
+        let wanted = -self.mass * slides;
+        let size = wanted.norm();
+        let part = if size > limit { limit / size } else { 1.0 };
+        part * (wanted.x * self.axes[0] + wanted.y * self.axes[1]) - rub
     }
 }

@@ -16,7 +16,6 @@ use super::creep::{Creeping, Stretching};
 use super::leapfrog::segment_tension;
 use crate::model::{Dry, End, Line, LineState, PointState, WaterAlong};
 use crate::physics::morison::{self, DragCoefficients};
-use crate::physics::seabed::{self, ContactCoefficients};
 use crate::statics::assembly::end_shear;
 
 /// Tension of segment `i` [N]; on a closed-form catenary the mean of its ends'.
@@ -101,12 +100,7 @@ pub fn end_force(
         force -= damping[node] * velocity;
     }
     if let Some(contact) = &nodes.contact {
-        let coefficients = ContactCoefficients {
-            stiffness: contact.stiffness[node],
-            damping: contact.damping[node],
-        };
-        let penetration = contact.level[node] - state.position[node].z;
-        force.z += seabed::normal_force(coefficients, penetration, velocity.z);
+        force += contact.push(node, state.position[node], velocity);
     }
     force
 }

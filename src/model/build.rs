@@ -4,14 +4,18 @@ mod beam;
 mod spacing;
 mod waves;
 
+use std::sync::Arc;
+
 use nalgebra::Vector3;
 
 use super::{
-    Bending, Contact, Current, Drag, End, FreePoint, Line, Model, Motion, Network, Nodes, Parting,
-    Point, PointContact, Pressed, Role, Section, Segments, Surface, Vessel, mesh,
+    Bending, Bottom, Contact, Current, Drag, End, FreePoint, Line, Model, Motion, Network, Nodes,
+    Parting, Point, PointContact, Pressed, Role, Section, Segments, Surface, Vessel, mesh,
 };
 use crate::physics::bending;
 use crate::physics::flow::Profile;
+use crate::physics::friction::Friction;
+use crate::physics::ground::{Grid, Ground};
 use crate::physics::morison::{DragCoefficients, drag_per_length};
 use crate::physics::point::Sphere;
 use crate::physics::rayleigh;
@@ -44,11 +48,13 @@ impl Model {
             .iter()
             .map(|point| build_point(scene, &vessels, point))
             .collect();
+        let bottom = scene.seabed.as_ref().and_then(bottom).map(Arc::new);
         let mut lines = Vec::with_capacity(scene.lines.len());
         let elements = spacing::elements(scene);
         for (index, line) in scene.lines.iter().enumerate() {
             let mut built = build_line(scene, index, line, (&points, &vessels), elements[index])?;
             rest_as_it_lies(&mut built, &points, line.rest_shape);
+            lay_on(&mut built, bottom.as_ref());
             points[built.ends[0]].attached.push((index, End::A));
             points[built.ends[1]].attached.push((index, End::B));
             lines.push(built);
@@ -61,7 +67,8 @@ impl Model {
         Ok(Model {
             gravity: scene.gravity,
             bed: scene.seabed.as_ref().map(|bed| -bed.depth),
-            bed_friction: scene.seabed.as_ref().map_or(0.0, |bed| bed.friction),
+            bed_friction: scene.seabed.as_ref().map_or(0.0, |bed| bed.friction.axial),
+            bottom,
             current: scene.water.as_ref().and_then(current),
             waves: waves::waves(scene),
             networks,
@@ -75,6 +82,59 @@ impl Model {
     /// How many elements of which lengths [m] the lines have, and why, where this is the model of that scene: one sentence a line.
     pub fn mesh_in_words(&self, scene: &Scene) -> Vec<String> {
         spacing::in_words(scene, self)
+    }
+}
+
+/// What the bed is beside a level plane without friction.
+fn bottom(bed: &scene::Seabed) -> Option<Bottom> {
+    let ground = match (&bed.grid, bed.slope) {
+        (Some(grid), _) => {
+            let heights = grid
+                .depth
+                .iter()
+                .map(|row| row.iter().map(|d| -d).collect());
+            let heights: Vec<Vec<f64>> = heights.collect();
+            Ground::Grid(Grid::new(&grid.x, &grid.y, &heights)?)
+        }
+        (None, slope) => Ground::Plane {
+            height: -bed.depth,
+            slope: slope.unwrap_or_default(),
+        },
+    };
+    let friction = bed.friction.acts().then_some(Friction {
+        axial: bed.friction.axial,
+        transverse: bed.friction.transverse,
+    });
+    (!bed.is_level() || friction.is_some()).then_some(Bottom {
+        ground,
+        level: bed.is_level(),
+        friction,
+    })
+}
+
+/// Stiffness along the bed of a node that sticks, over the greatest axial stiffness of its segments [-]: what friction gives way before it
+/// slides is then a small part of what the line stretches by between two nodes.
+const STICK: f64 = 10.0;
+
+/// Gives a line the bed's surface.
+fn lay_on(line: &mut Line, bottom: Option<&Arc<Bottom>>) {
+    let springs: Vec<f64> = line
+        .segments
+        .axial_stiffness
+        .iter()
+        .zip(&line.segments.length)
+        .map(|(ea, length)| ea / length)
+        .collect();
+    if line.beam.is_some() {
+        return; // beams know a level bed without friction only
+    }
+    if let (Some(contact), Some(bottom)) = (&mut line.nodes.contact, bottom) {
+        contact.bottom = Some(bottom.clone());
+        if bottom.friction.is_some() {
+            let at = |i: usize| springs.get(i).copied().unwrap_or(0.0);
+            let stick = |i: usize| STICK * at(i).max(at(i.wrapping_sub(1)));
+            contact.stick = (0..=springs.len()).map(stick).collect();
+        }
     }
 }
 
@@ -576,6 +636,8 @@ fn contact(
         level,
         stiffness,
         damping,
+        bottom: None,
+        stick: Vec::new(),
     }
 }
 
@@ -584,6 +646,9 @@ fn contact_in_reach(scene: &Scene, ends: [usize; 2], line: &scene::Line) -> bool
     let Some(bed) = &scene.seabed else {
         return false;
     };
+    if !bed.is_level() {
+        return true;
+    }
     let length: f64 = line.sections.iter().map(|section| section.length).sum();
     let lowest_end = ends.map(|end| scene.points[end].position[2]);
     lowest_end[0].min(lowest_end[1]) - 1.5 * length <= -bed.depth

@@ -5,6 +5,7 @@
 
 mod beam;
 mod bending;
+mod bottom;
 mod build;
 mod initial;
 mod mesh;
@@ -13,6 +14,8 @@ mod sea;
 mod state;
 mod surface;
 mod vessel;
+
+use std::sync::Arc;
 
 use nalgebra::Vector3;
 
@@ -26,6 +29,7 @@ use crate::scene::{InitialShape, PointForce, PointMoment, Solver, TimeFunction};
 
 pub use beam::{Beam, BeamElement, BeamState};
 pub use bending::{Bending, joint};
+pub use bottom::Bottom;
 pub use motion::{Kinematics, Motion, Pose};
 pub use sea::{WaterAlong, WaveSpan, WavesAlong, WavesAt};
 pub use state::{ClosedForm, LineState, PointState, State};
@@ -37,10 +41,12 @@ pub use vessel::{Frame, Vessel};
 pub struct Model {
     /// Gravitational acceleration [m/s²].
     pub gravity: f64,
-    /// z of the seabed [m].
+    /// z of the seabed [m]: of a level one; of others at the depth that the scene gives.
     pub bed: Option<f64>,
-    /// Coulomb friction of the seabed in the static catenary [-].
+    /// Coulomb friction of the seabed along a line [-].
     pub bed_friction: f64,
+    /// What the seabed is beside a level plane without friction.
+    pub bottom: Option<Arc<Bottom>>,
     /// The current, where the water flows.
     pub current: Option<Current>,
     /// The waves, where there are some.
@@ -324,6 +330,10 @@ pub struct Contact {
     pub stiffness: Vec<f64>,
     /// Damping [N s/m].
     pub damping: Vec<f64>,
+    /// What the bed is beside a level plane without friction.
+    pub bottom: Option<Arc<Bottom>>,
+    /// Stiffness along the bed of a node that sticks [N/m]; empty without friction.
+    pub stick: Vec<f64>,
 }
 
 /// Lines that share free points.

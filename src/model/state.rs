@@ -33,6 +33,8 @@ pub struct PointState {
     pub spin: Vector3<f64>,
     /// Velocities half a step and one and a half steps before the time of the position [m/s], for the leapfrog.
     pub half_step: [Vector3<f64>; 2],
+    /// Where it would lie if friction let go of it [m], where there is friction.
+    pub anchor: Option<Vector3<f64>>,
 }
 
 /// State of a line: its nodes from end A to end B, ends included.
@@ -54,6 +56,8 @@ pub struct LineState {
     pub parted: [bool; 2],
     /// What the nodes of a beam have beside positions and velocities.
     pub beam: Option<BeamState>,
+    /// Where the nodes would lie if the friction of the bed let go of them [m]; empty without friction.
+    pub anchor: Vec<Vector3<f64>>,
 }
 
 /// What a closed-form catenary says that its nodes do not: their chords are shorter than the arcs between them, which on a stiff line
@@ -96,6 +100,7 @@ impl PointState {
             orientation: UnitQuaternion::identity(),
             spin: zero,
             half_step: [zero; 2],
+            anchor: None,
         }
     }
 }
@@ -150,6 +155,7 @@ impl LineState {
             creep: Vec::new(),
             parted: [false; 2],
             beam: None,
+            anchor: Vec::new(),
         }
     }
 }
@@ -183,7 +189,8 @@ clone_in_place!(LineState {
     closed_form,
     creep,
     parted,
-    beam
+    beam,
+    anchor
 });
 clone_in_place!(ClosedForm {
     tension,

@@ -29,7 +29,7 @@ pub fn record(scene: &Scene, simulation: &Simulation, columns: Vec<Column>) -> R
         .collect();
     record.surroundings = Surroundings {
         water: scene.water.is_some(),
-        seabed: model.bed,
+        seabed: model.bed.filter(|_| model.bed_is_level()),
     };
     record
 }

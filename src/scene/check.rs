@@ -3,6 +3,7 @@
 mod line_types;
 mod lines;
 mod points;
+mod seabed;
 mod settings;
 mod surroundings;
 mod time;

@@ -86,6 +86,8 @@ fn owner(table: &str) -> Option<&'static str> {
         ("", _) => "Scene",
         ("water", None) => "Water",
         ("seabed", None) => "Seabed",
+        ("seabed", Some("grid")) => "DepthGrid",
+        ("seabed", Some("friction")) => "Friction",
         ("line_types", Some("rayleigh")) => "Rayleigh",
         ("line_types", Some(_)) => "LineType",
         ("points", None) => "Point",

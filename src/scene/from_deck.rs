@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::rows::{Findings, Placed};
-use super::{Places, Point, PointKind, Scene, Seabed, Supplement, Vessel};
+use super::{Places, Point, PointKind, Scene, Supplement, Vessel};
 
 /// Density of sea water [kg/m³] of a deck that gives none.
 pub(super) const SEA_WATER: f64 = 1025.0;
@@ -71,17 +71,6 @@ pub(super) fn depth(
     findings
         .remark_on_all("no water depth in the file, and no fixed point below the water: no seabed");
     None
-}
-
-/// A bed at a depth [m] with the stiffness and damping that scenes have by default.
-pub(super) fn bed(depth: f64) -> Seabed {
-    Seabed {
-        depth,
-        stiffness: super::seabed_stiffness(),
-        damping: super::seabed_damping(),
-        friction: 0.0,
-        contact: Default::default(),
-    }
 }
 
 /// Puts vessels into a scene, each once, where the supplement or else the deck has them.

@@ -5,6 +5,7 @@
 //! surprise, [`Scene::in_words`] what is modelled.
 //! [`crate::model::Model::new`] is the one gate from here to the solver.
 
+mod bathymetry_file;
 pub mod channel;
 mod check;
 mod commented;
@@ -21,6 +22,7 @@ mod path;
 mod places;
 mod read;
 mod rows;
+mod seabed;
 mod surface;
 mod tension_strain;
 mod time_function;
@@ -39,6 +41,7 @@ pub use notes::Note;
 pub use places::Places;
 use read::Reading;
 pub use read::{LoadedScene, Supplement, TOML, load, load_with};
+pub use seabed::{ContactLaw, DepthGrid, Friction, Seabed};
 pub use tension_strain::TensionStrain;
 pub use time_function::{HarmonicMotion, MotionFile, MotionPath, MotionRow, TimeFunction};
 pub use waves::{RegularWave, Sea, SpectrumKind, WaveComponents, Waves};
@@ -130,38 +133,6 @@ impl Water {
             surface: None,
         }
     }
-}
-
-/// A horizontal seabed at z = −depth.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Seabed {
-    /// Depth below z = 0 [m].
-    pub depth: f64,
-    /// Normal stiffness kbot [Pa/m], per metre of line and metre of diameter.
-    #[serde(default = "seabed_stiffness")]
-    pub stiffness: f64,
-    /// Normal damping cbot [Pa s/m], per metre of line and metre of diameter.
-    #[serde(default = "seabed_damping")]
-    pub damping: f64,
-    /// Coulomb friction coefficient of the bed in the static catenary [-].
-    #[serde(default)]
-    pub friction: f64,
-    /// How stiffness and damping are used.
-    #[serde(default)]
-    pub contact: ContactLaw,
-}
-
-/// How seabed stiffness and damping reach the nodes.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum ContactLaw {
-    /// Softened together until a resting node compresses its spring by a small part of its segment length; the spring begins
-    /// that much above the bed, so that the node lies on it.
-    #[default]
-    Regularised,
-    /// Exactly the given coefficients.
-    AsGiven,
 }
 
 /// Properties of a line per unstretched length. Give `mass` or `weight`, and `diameter` where there is water.
@@ -606,14 +577,6 @@ fn standard_gravity() -> f64 {
 
 fn steel_poisson() -> f64 {
     0.3
-}
-
-fn seabed_stiffness() -> f64 {
-    3.0e6
-}
-
-fn seabed_damping() -> f64 {
-    3.0e5
 }
 
 impl Default for Solver {

@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 
 use super::check::{breaking, coefficients, number, quantity};
 use super::path::quoted;
-use super::{Integrator, Line, LineType, Point, PointKind, Scene, Waves};
+use super::{Integrator, Line, LineModel, LineType, Point, PointKind, Scene, Waves};
 use crate::math::attitude::Attitude;
 
 /// A remark on a scene that can be used as it is.
@@ -140,6 +140,9 @@ fn note_chord(scene: &Scene, line: &Line, at: &str, notes: &mut Vec<Note>) {
     }
 }
 
+/// Depth under a seabed that is no level plane from which a point is told of [m].
+const BURIED: f64 = 0.01;
+
 fn note_points(scene: &Scene, notes: &mut Vec<Note>) {
     for (i, point) in scene.points.iter().enumerate() {
         let at = format!("points[{i}]");
@@ -154,6 +157,16 @@ fn note_points(scene: &Scene, notes: &mut Vec<Note>) {
         });
         if scene.water.is_some() && above && blind {
             let text = "above z = 0, but the water is taken to fill all space for its lines, so that they are submerged there too";
+            say(notes, format!("{at}.position"), text);
+        }
+        let bed = scene.seabed.as_ref().filter(|bed| !bed.is_level());
+        if let (Some(bed), Some([x, y, z])) = (bed, reference_position(scene, point))
+            && z < bed.lowest_at([x, y]) - BURIED
+        {
+            let text = format!(
+                "lies {} m below the seabed there: nodes beside it are pushed up",
+                number(bed.lowest_at([x, y]) - z)
+            );
             say(notes, format!("{at}.position"), text);
         }
         if point.force.is_some() && point.kind != PointKind::Free {
@@ -207,10 +220,17 @@ fn note_whole(scene: &Scene, notes: &mut Vec<Note>) {
     if scene.gravity == 0.0 {
         say(notes, "gravity", "0: lines and points are weightless");
     }
+    let beams = || {
+        scene
+            .line_types
+            .values()
+            .any(|kind| kind.model == LineModel::Beam)
+    };
     if let Some(seabed) = &scene.seabed
-        && seabed.friction > 0.0
+        && seabed.friction.acts()
+        && beams()
     {
-        let text = "the static catenary has friction, the dynamics have none";
+        let text = "beams lie on the bed without friction";
         say(notes, "seabed.friction", text);
     }
     let output = &scene.output;

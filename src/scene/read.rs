@@ -13,8 +13,8 @@ use super::notes::Note;
 use super::places::Places;
 use super::rows::{Findings, MISTAKES_MAX};
 use super::{
-    LoadError, MotionPath, Scene, SceneError, WaveComponents, document, map, moordyn, motion_file,
-    path, tension_strain, water_file,
+    LoadError, MotionPath, Scene, SceneError, WaveComponents, bathymetry_file, document, map,
+    moordyn, motion_file, path, tension_strain, water_file,
 };
 
 /// Longest scene file that is read [bytes].
@@ -169,6 +169,7 @@ fn deck_scene(reading: Reading, text: &str, folder: &Path) -> Result<Checked, Ve
     };
     let mut of_files = read_water(&mut scene, folder);
     of_files.extend(read_tables(&mut scene, folder));
+    of_files.extend(read_soundings(&mut scene, folder));
     let mistakes = all_mistakes(&scene, of_files);
     let mistakes: Vec<SceneError> = mistakes
         .into_iter()
@@ -190,6 +191,7 @@ fn scene_of(text: &str, path: &Path) -> Result<Scene, Vec<SceneError>> {
     let mut of_files = read_motions(&mut scene, folder);
     of_files.extend(read_water(&mut scene, folder));
     of_files.extend(read_tables(&mut scene, folder));
+    of_files.extend(read_soundings(&mut scene, folder));
     let mistakes = all_mistakes(&scene, of_files);
     if mistakes.is_empty() {
         Ok(scene)
@@ -201,6 +203,22 @@ fn scene_of(text: &str, path: &Path) -> Result<Scene, Vec<SceneError>> {
 /// The folder that a scene's files stand in.
 fn folder_of(path: &Path) -> &Path {
     path.parent().unwrap_or(Path::new("."))
+}
+
+/// Reads the soundings that the seabed names a file for; returns what is wrong with them.
+fn read_soundings(scene: &mut Scene, folder: &Path) -> Option<SceneError> {
+    let bed = scene.seabed.as_mut()?;
+    if bed.grid.is_some() {
+        return None; // two shapes: told by the checks
+    }
+    match bathymetry_file::read(&folder.join(bed.file.as_ref()?)) {
+        Ok(grid) => {
+            bed.grid = Some(grid);
+            bed.file = None;
+            None
+        }
+        Err(problem) => Some(SceneError::new("seabed.file", problem)),
+    }
 }
 
 /// What is wrong with the files of a scene, and what else is wrong with it.

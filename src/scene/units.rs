@@ -21,6 +21,12 @@ const UNITS: &[(&str, &str, &str)] = &[
     ("Seabed", "stiffness", "Pa/m"),
     ("Seabed", "damping", "Pa s/m"),
     ("Seabed", "friction", "-"),
+    ("Seabed", "slope", "-"),
+    ("DepthGrid", "x", "m"),
+    ("DepthGrid", "y", "m"),
+    ("DepthGrid", "depth", "m"),
+    ("Friction", "transverse", "-"),
+    ("Friction", "axial", "-"),
     ("LineType", "mass", "kg/m"),
     ("LineType", "weight", "N/m"),
     ("LineType", "diameter", "m"),
@@ -97,7 +103,11 @@ mod tests {
 
     #[test]
     fn every_unit_said_in_a_message_stands_in_the_docs_of_its_key() {
-        let source = concat!(include_str!("mod.rs"), include_str!("waves.rs"));
+        let source = concat!(
+            include_str!("mod.rs"),
+            include_str!("waves.rs"),
+            include_str!("seabed.rs")
+        );
         for (owner, key, unit) in UNITS {
             let Some(body) = body(source, owner) else {
                 let elsewhere = ["MotionText", "InitialShape", "Strain"];

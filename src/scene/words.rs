@@ -4,6 +4,7 @@ mod beam;
 mod bending;
 mod parting;
 mod points;
+mod seabed;
 mod stretch;
 mod surroundings;
 mod vessels;
@@ -104,19 +105,16 @@ impl Scene {
             }
             ContactLaw::AsGiven => "exactly as given",
         };
-        let friction = if seabed.friction > 0.0 {
-            format!(
-                "friction coefficient {} in the static catenary only",
-                number(seabed.friction)
-            )
-        } else {
-            "no friction".to_string()
+        let chosen = match seabed.has_default_stiffness() {
+            true => " (moorline's own choice)",
+            false => "",
         };
         format!(
-            "flat seabed at z = {}: normal spring of {} and damper of {} per metre of line and of diameter, {law}; {friction}",
-            quantity(-seabed.depth, "m"),
+            "{}: normal spring of {} and damper of {}{chosen} per metre of line and of diameter, {law}; {}",
+            seabed::shape_in_words(seabed),
             quantity(seabed.stiffness, "Pa/m"),
             quantity(seabed.damping, "Pa s/m"),
+            seabed::friction_in_words(seabed),
         )
     }
 
@@ -295,9 +293,7 @@ impl Scene {
             absent.push("buoyancy, drag and added mass");
         }
         match &self.seabed {
-            Some(seabed) if seabed.friction > 0.0 => {
-                absent.push("friction on the seabed in motion")
-            }
+            Some(seabed) if seabed.friction.acts() => {}
             Some(_) => absent.push("friction on the seabed"),
             None => absent.push("contact with a seabed"),
         }

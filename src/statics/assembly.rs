@@ -26,12 +26,13 @@ mod line;
 mod parted;
 mod places;
 mod points;
+pub mod rubbing;
 mod surface;
 
 use nalgebra::Vector3;
 
 use crate::math::block_tridiagonal::DenseSystem;
-use crate::model::{End, Model, Network, State};
+use crate::model::{End, Model, Network, PointState, State};
 use crate::statics::catenary::Catenary;
 
 pub(crate) use bending::BendingWork;
@@ -132,6 +133,10 @@ pub(crate) struct StaticCase {
     pub predicted: bool,
     /// Whether lines with bending stiffness have it, and push.
     pub bends: bool,
+    /// Part of the stiffness that friction sticks with, on nodes that have anchors [-].
+    pub stick: f64,
+    /// Part of the limit of friction that holds: [`rubbing::AT_REST`], or [`rubbing::SLIDING`] where nodes at rest at that limit are to slide on [-].
+    pub limit: f64,
     /// Least radius with which lines pierce the water's surface [m].
     pub breadth: f64,
 }
@@ -141,6 +146,9 @@ pub(crate) struct StaticCase {
 pub(crate) struct Weights {
     /// Of all forces but inertia in R [-].
     pub force: f64,
+    /// Of the bed's friction in R [-], which is taken whole at the end of a step: forces that jump feed vibrations where a mean of old and
+    /// new ones is taken.
+    pub friction: f64,
     /// Of inertia in R [-].
     pub inertia: f64,
     /// c_k: of ∂R/∂r [-].
@@ -167,14 +175,18 @@ impl Workspace {
         case: &StaticCase,
     ) {
         for &index in &network.lines {
-            let (line, position) = (&model.lines[index], &state.lines[index].position);
-            self.lines[index].assemble_static(line, position, line.clamps(&state.points), case);
+            let (line, shape) = (&model.lines[index], &state.lines[index]);
+            self.lines[index].assemble_static(line, shape, line.clamps(&state.points), case);
         }
         let stream = model.stream(case.time);
         for_free_points(model, network, |index, free| {
             let point = &mut self.points[index];
             let (data, state) = (&model.points[index], &state.points[index]);
             point.assemble_static(data, free, state, stream, case);
+            match model.bottom.as_deref() {
+                Some(bottom) => point.add_static_bottom(free, bottom, state, case),
+                None => point.add_bed_at_rest(free, state.position.z),
+            }
         });
         self.gather(model, network);
     }
@@ -204,8 +216,9 @@ impl Workspace {
         for_free_points(model, network, |index, free| {
             let point = &mut self.points[index];
             let load = model.points[index].load_at(t);
+            let (bottom, state_of) = (model.bottom.as_deref(), &state.points[index]);
             let water = (stream, state.waves_at_point(index, t));
-            point.assemble_dynamic::<TANGENT>(free, &state.points[index], load, water, weights);
+            point.assemble_dynamic::<TANGENT>(free, bottom, state_of, load, water, weights);
         });
         self.gather(model, network);
     }
@@ -320,10 +333,24 @@ impl Workspace {
         for_free_points(model, network, |index, free| {
             if let Some(contact) = &free.contact {
                 let resting = damper_reach(contact.coefficients.stiffness, free.weight);
-                let moved = state.points[index].velocity.z.abs() * dt;
+                let PointState {
+                    position, velocity, ..
+                } = state.points[index];
+                let rise = match &model.bottom {
+                    None => velocity.z,
+                    Some(bottom) => bottom.rise(position, velocity),
+                };
+                let moved = rise.abs() * dt;
                 self.points[index].reach = resting.max(moved);
             }
         });
+    }
+
+    /// Moves the anchors of nodes that slid along the bed, after an assembly of the state.
+    pub(crate) fn move_anchors(&self, model: &Model, network: &Network, state: &mut State) {
+        if model.friction().is_some() {
+            rubbing::move_anchors(model, network, state, self);
+        }
     }
 
     /// Takes the memory of viscoelastic lines to the end of a step, where the nodes now are.
@@ -413,6 +440,7 @@ pub fn end_force(
 ) -> Vector3<f64> {
     let weights = Weights {
         force: 1.0,
+        friction: 1.0,
         inertia: 1.0,
         position: 0.0,
         velocity: 0.0,

@@ -50,6 +50,7 @@ pub fn serves(model: &Model, network: &Network) -> bool {
         line.bending.is_none()
             && !line.drifts(model)
             && sections.all(|section| section.law == StretchLaw::Engineering)
+            && (model.bed_is_level() || line.nodes.contact.is_none())
     })
 }
 

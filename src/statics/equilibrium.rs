@@ -16,7 +16,8 @@
 //! its greatest force, the loads are applied little by little instead, and every step must lie close to the one before and
 //! have a positive definite tangent.
 //!
-//! Lines with bending stiffness are in `bending`, lines in a current in `current`, lines that float in `surface`.
+//! Lines with bending stiffness are in `bending`, lines in a current in `current`, lines that float in `surface`, the friction of the
+//! bed in `friction`.
 //!
 //! Accepted is a residual of at most 1e-11 of the greatest force in the network (tension, nodal weight or load) plus what
 //! rounding of the positions makes of the stiffest segment.
@@ -26,12 +27,13 @@
 
 mod bending;
 pub(crate) mod current;
+mod friction;
 mod surface;
 
 use nalgebra::Vector3;
 
 use super::StaticsError;
-use super::assembly::{StaticCase, Workspace, copy_network, for_free_points, place_ends};
+use super::assembly::{StaticCase, Workspace, copy_network, for_free_points, place_ends, rubbing};
 use super::guess;
 use crate::model::{Kinematics, Line, LineState, Model, Network, PointState, State};
 
@@ -255,6 +257,8 @@ impl<'a> Problem<'a> {
             anchoring: 0.0,
             predicted: false,
             bends: self.bends,
+            stick: 1.0,
+            limit: rubbing::AT_REST,
             breadth: 0.0,
         }
     }
@@ -272,6 +276,10 @@ impl<'a> Problem<'a> {
 
     /// Equilibrium under weight, point loads and the drag that is held.
     fn solve_loaded(&self, state: &mut State, work: &mut Workspace) -> Result<(), StaticsError> {
+        let rubs = self.rubs();
+        if rubs {
+            self.let_go(state);
+        }
         let mut guess = std::mem::take(&mut work.saved);
         copy_network(self.model, self.network, state, &mut guess);
         let result = if self.bends {
@@ -280,7 +288,10 @@ impl<'a> Problem<'a> {
             self.solve_from(&guess, state, work)
         };
         work.saved = guess;
-        result
+        match result {
+            Ok(()) if rubs => self.rub(state, work),
+            result => result,
+        }
     }
 
     /// Newton's method alone; else, where the loads may be too much, little by little; else from a soft network.
@@ -424,7 +435,9 @@ impl<'a> Problem<'a> {
             .iter()
             .flat_map(|contact| &contact.stiffness)
             .copied();
+        let rub = line.nodes.contact.iter().flat_map(|contact| &contact.stick);
         let spring = bed
+            .chain(rub.copied())
             .chain(segments.map(|(ea, length)| ea.min(stiffness_max) / length))
             .fold(0.0, f64::max);
         if self.bends {

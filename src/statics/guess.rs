@@ -35,6 +35,16 @@ pub(crate) fn hang(
         }
         None => hang_parabola(line, a, b, position, tension),
     }
+    if let Some(contact) = line
+        .nodes
+        .contact
+        .as_ref()
+        .filter(|_| !model.bed_is_level())
+    {
+        for r in position.iter_mut() {
+            r.z = r.z.max(contact.height_under(*r));
+        }
+    }
     let last = position.len() - 1;
     (position[0], position[last]) = (a, b);
 }
@@ -48,7 +58,7 @@ pub(crate) fn closed_form(
     rise: f64,
 ) -> Option<Catenary> {
     let bed = line.nodes.contact.as_ref().map(|contact| Bed {
-        height: contact.bed - a.z,
+        height: contact.height_under(a) - a.z,
         friction: model.bed_friction,
     });
     let section = |section: &crate::model::Section| Section {
@@ -76,7 +86,7 @@ fn hang_parabola(
         .nodes
         .contact
         .as_ref()
-        .map_or(f64::NEG_INFINITY, |contact| contact.bed);
+        .map_or(f64::NEG_INFINITY, |contact| contact.height_under(a));
     for (r, arc) in position.iter_mut().zip(&line.nodes.arc) {
         let u = arc / length;
         *r = a + u * (b - a) - 4.0 * sag * u * (1.0 - u) * Vector3::z();

@@ -11,7 +11,7 @@
 
 use nalgebra::{Cholesky, DMatrix, Dyn, Matrix3, SymmetricEigen, Vector3};
 
-use super::assembly::{BendingWork, StaticCase, Workspace, node_tangent};
+use super::assembly::{BendingWork, StaticCase, Workspace, node_tangent, rubbing};
 use crate::model::{Line, Model, Network, State};
 
 /// The modes of a network, lowest first.
@@ -43,6 +43,8 @@ impl Modes {
             anchoring: 0.0,
             predicted: false,
             bends: true,
+            stick: 1.0,
+            limit: rubbing::AT_REST,
             breadth: 0.0,
         };
         work.assemble_static(model, network, state, &case);

@@ -14,7 +14,7 @@
 //! joint with d, and −δm = (ω × d) × g + d × δg.
 //!
 //! A network whose lines lie on closed-form catenaries takes the stiffness of those, bed friction included, in place of J; others
-//! have that of their elements: springs, weight, bending and the springs of the bed. Drag, inertia and dampers are not in it.
+//! have that of their elements: springs, weight, bending and the springs of the bed; nodes that stick to it hold by their friction, those that slide go on sliding. Drag, inertia and dampers are not in it.
 //! Without friction the mooring is conservative: the parts of K that concern displacements are symmetric, and K − Kᵀ of the rotations is ω ↦ M × ω,
 //! for finite rotations do not commute.
 //!
@@ -23,7 +23,7 @@
 
 use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
 
-use super::assembly::{LineWork, StaticCase, Workspace};
+use super::assembly::{LineWork, StaticCase, Workspace, rubbing};
 use super::catenary_network::{self, HungNetwork};
 use crate::model::{Body, End, Line, Model, Network, State};
 use crate::physics::bending::{Direction, Hessian, Turn};
@@ -272,6 +272,8 @@ impl Problem<'_> {
             anchoring: part * springs.fold(0.0, f64::max),
             predicted: false,
             bends: lines().any(|line| line.bending.is_some()),
+            stick: 1.0,
+            limit: rubbing::SLIDING,
             breadth: 0.0,
         };
         work.assemble_static(self.model, self.network, self.state, &case);

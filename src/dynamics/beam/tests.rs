@@ -191,6 +191,8 @@ fn dragged(n: usize) -> (Flight, impl Fn(f64) -> Section) {
         level: vec![-0.2; count],
         stiffness: vec![200.0; count],
         damping: vec![5.0; count],
+        bottom: None,
+        stick: Vec::new(),
     });
     for element in &mut flight.beam.elements {
         element.damping = SectionLaw {

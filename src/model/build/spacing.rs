@@ -173,7 +173,7 @@ fn hang(
         .collect();
     let bed = scene.seabed.as_ref().map(|bed| Bed {
         height: -bed.depth - a.z,
-        friction: bed.friction,
+        friction: bed.friction.axial,
     });
     catenary::solve(&sections, (b - a).xy().norm(), b.z - a.z, bed).ok()
 }

@@ -42,7 +42,7 @@ fn check_place(findings: &mut Findings, at: &str, point: &Point, scene: &Scene) 
     let z = point.position[2];
     // Positions typed with few digits may miss the bed by a rounding.
     let rounding = 1e-9 * seabed.depth.abs().max(1.0);
-    if right && seabed.depth >= 0.0 && z < -seabed.depth - rounding {
+    if right && seabed.is_level() && seabed.depth >= 0.0 && z < -seabed.depth - rounding {
         let problem = format!(
             "z = {} lies below the seabed at z = {}",
             quantity(z, "m"),

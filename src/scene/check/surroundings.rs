@@ -1,5 +1,6 @@
 //! Title, gravity, water, seabed.
 
+use super::seabed::check_bed;
 use super::time::{Load, check_load_in_time};
 use super::{Bounds, Findings, quantity};
 use crate::scene::{Current, LineModel, Scene};
@@ -49,8 +50,7 @@ pub(super) fn check(scene: &Scene, findings: &mut Findings) {
         findings.number("seabed.stiffness", seabed.stiffness, stiff, "Pa/m");
         let damping = Bounds::NotNegative(1e12);
         findings.number("seabed.damping", seabed.damping, damping, "Pa s/m");
-        let friction = Bounds::NotNegative(10.0);
-        findings.number("seabed.friction", seabed.friction, friction, "-");
+        check_bed(scene, seabed, findings);
     }
 }
 

@@ -3,10 +3,11 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::deck::{Coordinate, Deck, Kind, Node};
-use crate::scene::from_deck::{self, SEA_WATER, Vessels, bed};
+use crate::scene::from_deck::{self, SEA_WATER, Vessels};
 use crate::scene::rows::{Findings, Placed, ROWS_MAX};
 use crate::scene::{
-    self, Places, Point, PointForce, PointKind, Scene, Section, Supplement, TimeFunction, Water,
+    self, Friction, Places, Point, PointForce, PointKind, Scene, Seabed, Section, Supplement,
+    TimeFunction, Water,
 };
 
 /// A deck on its way to a scene.
@@ -231,10 +232,10 @@ impl Builder<'_> {
             None => {
                 let supplement = self.vessels.supplement;
                 let depth = from_deck::depth(None, supplement, &self.scene.points, self.findings);
-                self.scene.seabed = depth.map(bed);
+                self.scene.seabed = depth.map(Seabed::level);
                 let friction = self.friction();
                 if let Some(seabed) = &mut self.scene.seabed {
-                    seabed.friction = friction;
+                    seabed.friction = Friction::isotropic(friction);
                 }
             }
         }

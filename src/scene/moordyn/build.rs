@@ -3,11 +3,11 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::deck::{Attachment, Body, Deck, Line, LineEnd, LineType, Point, Property, Rod};
-use crate::scene::from_deck::{self, SEA_WATER, Vessels, bed, place_position};
+use crate::scene::from_deck::{self, SEA_WATER, Vessels, place_position};
 use crate::scene::rows::{Findings, Placed};
 use crate::scene::{
-    self, Current, Output, Places, PointForce, PointKind, Scene, Sea, Section, Supplement,
-    TensionStrain, TimeFunction, Water, Waves,
+    self, Current, Friction, Output, Places, PointForce, PointKind, Scene, Sea, Seabed, Section,
+    Supplement, TensionStrain, TimeFunction, Water, Waves,
 };
 
 /// A deck on its way to a scene.
@@ -320,12 +320,15 @@ impl<'d> Builder<'d> {
             self.places
                 .put("water.density", &density.span, "OPTIONS, rho");
         }
-        let given = options.depth.as_ref().map(|depth| plain(&depth.value));
+        let given = options.depth.as_ref().and_then(|depth| match depth.value {
+            Property::Named(_) => None,
+            _ => Some(plain(&depth.value)),
+        });
         let Some(depth) = from_deck::depth(given, supplement, &self.scene.points, self.findings)
         else {
             return;
         };
-        let mut seabed = bed(depth);
+        let mut seabed = Seabed::level(depth);
         if let Some(depth) = &options.depth {
             self.places
                 .put("seabed.depth", &depth.span, "OPTIONS, WtrDpth");
@@ -341,6 +344,7 @@ impl<'d> Builder<'d> {
                 .put("seabed.damping", &damping.span, "OPTIONS, cBot");
         }
         seabed.friction = self.friction();
+        seabed.file = self.soundings();
         self.scene.seabed = Some(seabed);
     }
 
@@ -370,28 +374,50 @@ impl<'d> Builder<'d> {
         }
     }
 
-    /// Friction coefficient of the bed [-]: the only one, or that along the line where there are two.
-    fn friction(&mut self) -> f64 {
-        let coefficients = &self.deck.options.friction;
-        let along = coefficients
-            .iter()
-            .find(|(key, _)| key.eq_ignore_ascii_case("mu_kA"));
-        let Some((key, coefficient)) = along.or(coefficients.first()) else {
-            return 0.0;
+    /// The file of the bed's depths, named in the place of the depth or by itself.
+    fn soundings(&mut self) -> Option<String> {
+        let options = &self.deck.options;
+        let named = match &options.depth {
+            Some(depth) => match &depth.value {
+                Property::Named(name) => Some((name.clone(), &depth.span)),
+                _ => None,
+            },
+            None => None,
         };
-        let words = format!("OPTIONS, {key}");
-        self.places.put("seabed.friction", &coefficient.span, words);
-        let others = coefficients.iter().filter(|(other, _)| other != key);
-        for (other, other_coefficient) in others {
-            if other_coefficient.value != coefficient.value {
-                let text = format!(
-                    "{other} {} is not modelled: {key} {} counts in all directions",
-                    other_coefficient.value, coefficient.value
-                );
-                self.findings.remark(other_coefficient.span.start, text);
+        let given = options.soundings.as_ref();
+        let (name, span) = named.or(given.map(|file| (file.value.clone(), &file.span)))?;
+        self.places.put("seabed.file", span, "OPTIONS, bathymetry");
+        Some(name.trim_matches('"').to_string())
+    }
+
+    /// Friction of the bed: the coefficient for all directions, or those across and along the line.
+    fn friction(&mut self) -> Friction {
+        let coefficient = |key: &str| {
+            let mut all = self.deck.options.friction.iter();
+            all.find(|(other, _)| other.eq_ignore_ascii_case(key))
+        };
+        let whole = coefficient("FrictionCoefficient");
+        let across = coefficient("mu_kT").or(whole);
+        let along = coefficient("mu_kA").or(whole);
+        for (key, at) in [
+            ("transverse", across),
+            ("axial", along),
+            ("", along.or(across)),
+        ] {
+            if let Some((option, coefficient)) = at {
+                let at = match key {
+                    "" => "seabed.friction".to_string(),
+                    key => format!("seabed.friction.{key}"),
+                };
+                let words = format!("OPTIONS, {option}");
+                self.places.put(&at, &coefficient.span, words);
             }
         }
-        coefficient.value
+        let value = |at: Option<&(String, Placed<f64>)>| at.map_or(0.0, |(_, c)| c.value);
+        Friction {
+            transverse: value(across),
+            axial: value(along),
+        }
     }
 
     fn lines(&mut self) {

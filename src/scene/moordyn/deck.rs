@@ -191,9 +191,15 @@ pub(super) struct Options {
     pub bed_damping: Option<Placed<f64>>,
     /// Friction coefficients of the bed [-], with their keys.
     pub friction: Vec<(String, Placed<f64>)>,
+    /// Slope of friction with velocity, where MoorDyn's fades in [N s/m or -].
+    pub friction_damping: Option<Placed<f64>>,
+    /// Static over kinetic friction [-].
+    pub static_friction: Option<Placed<f64>>,
+    /// File of the bed's depths.
+    pub soundings: Option<Placed<String>>,
     /// dtOut [s].
     pub output_interval: Option<Placed<f64>>,
-    /// Waves, currents and the shape of the bed, where asked for: key and value.
+    /// Waves and currents, where asked for: key and value.
     pub surroundings: Vec<(String, Placed<String>)>,
     /// Keys that need nothing here.
     pub unneeded: Vec<Placed<String>>,

@@ -32,10 +32,6 @@ const UNNEEDED: &[&str] = &[
     "DTWAVE",
     "UNIFYCURRENTGRID",
     "DTOUTSNAP",
-    "FRICDAMP",
-    "STATDYNFRICSCALE",
-    "MC",
-    "CV",
 ];
 
 /// Keys that say something, with what they mean.
@@ -55,14 +51,18 @@ const NEEDED: &[(&str, Meaning)] = &[
     ("FRICTIONCOEFFICIENT", Meaning::Friction),
     ("MU_KT", Meaning::Friction),
     ("MU_KA", Meaning::Friction),
+    ("FRICDAMP", Meaning::FrictionDamping),
+    ("CV", Meaning::FrictionDamping),
+    ("STATDYNFRICSCALE", Meaning::StaticFriction),
+    ("MC", Meaning::StaticFriction),
     ("DTOUT", Meaning::OutputInterval),
     ("WAVEKIN", Meaning::Surroundings),
     ("WATERKIN", Meaning::Surroundings),
     ("CURRENTS", Meaning::Surroundings),
     ("CURRENT", Meaning::Surroundings),
-    ("SEAFLOORFILE", Meaning::Surroundings),
-    ("BATHYMETRYFILE", Meaning::Surroundings),
-    ("BATHFILE", Meaning::Surroundings),
+    ("SEAFLOORFILE", Meaning::Soundings),
+    ("BATHYMETRYFILE", Meaning::Soundings),
+    ("BATHFILE", Meaning::Soundings),
 ];
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -73,7 +73,10 @@ enum Meaning {
     BedStiffness,
     BedDamping,
     Friction,
+    FrictionDamping,
+    StaticFriction,
     OutputInterval,
+    Soundings,
     Surroundings,
 }
 
@@ -172,6 +175,8 @@ fn take(
                 .friction
                 .extend(coefficient.map(|c| (key.to_string(), c)));
         }
+        Meaning::FrictionDamping => options.friction_damping = placed(),
+        Meaning::StaticFriction => options.static_friction = placed(),
         Meaning::Depth => match word_property(&value.value) {
             Ok(depth) => {
                 options.depth = Some(Placed {
@@ -182,10 +187,13 @@ fn take(
             Err(problem) => findings.mistake(format!("OPTIONS, {key}"), value.span, problem),
         },
         // 0 asks for none.
-        Meaning::Surroundings if number(&value.value) == Ok(0.0) => options.unneeded.push(Placed {
-            value: key.to_string(),
-            span: value.span,
-        }),
+        Meaning::Surroundings | Meaning::Soundings if number(&value.value) == Ok(0.0) => {
+            options.unneeded.push(Placed {
+                value: key.to_string(),
+                span: value.span,
+            })
+        }
+        Meaning::Soundings => options.soundings = Some(value),
         Meaning::Surroundings => options.surroundings.push((key.to_string(), value)),
     }
     if meaning == Meaning::Depth

@@ -16,8 +16,7 @@ pub(super) fn check(deck: &Deck, findings: &mut Findings) {
     bodies_with_mass(deck, findings);
     points_that_turn(deck, findings);
     rods(deck, findings);
-    waves_currents_and_beds(deck, findings);
-    bathymetry(deck, findings);
+    waves_and_currents(deck, findings);
     line_failures(deck, findings);
     controlled_lengths(deck, findings);
     external_loads(deck, findings);
@@ -234,39 +233,19 @@ fn carried(segments: usize) -> Option<String> {
 }
 
 /// Waves and currents from options and files.
-fn waves_currents_and_beds(deck: &Deck, findings: &mut Findings) {
+fn waves_and_currents(deck: &Deck, findings: &mut Findings) {
     for (key, value) in &deck.options.surroundings {
         if water_file(key, &value.value).is_some() {
             continue;
         }
-        let what = match key.to_uppercase().as_str() {
-            "SEAFLOORFILE" | "BATHYMETRYFILE" | "BATHFILE" => {
-                "a seabed from a file is not modelled: give one depth with WtrDpth [m]"
-            }
-            _ => {
-                "only WaveKin 7 (components of wave_frequencies.txt) and Currents 1 (steady, current_profile.txt) are read of a deck: \
-                 write one of them or 0, and give other waves and currents in the scene"
-            }
-        };
+        let what = "only WaveKin 7 (components of wave_frequencies.txt) and Currents 1 (steady, current_profile.txt) are read of a deck: \
+                    write one of them or 0, and give other waves and currents in the scene";
         refuse(
             findings,
             format!("OPTIONS, {key}"),
             &value.span,
             what.to_string(),
         );
-    }
-}
-
-/// A depth from a file.
-fn bathymetry(deck: &Deck, findings: &mut Findings) {
-    if let Some(depth) = &deck.options.depth
-        && let Property::Named(name) = &depth.value
-    {
-        let problem = format!(
-            "a bathymetry from {} is not modelled: give one depth [m] as a number",
-            shown(name)
-        );
-        refuse(findings, "OPTIONS, WtrDpth", &depth.span, problem);
     }
 }
 

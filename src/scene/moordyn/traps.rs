@@ -34,6 +34,7 @@ pub(super) fn remark(deck: &Deck, sections: &Sections<'_>, findings: &mut Findin
          carries nothing, and `negative_tension = true` in [solver] gives MoorDyn's law",
     );
     unneeded_options(deck, findings);
+    friction(deck, findings);
     line_files(deck, findings);
     masses_of_held_points(deck, findings);
 }
@@ -115,6 +116,22 @@ fn unneeded_options(deck: &Deck, findings: &mut Findings) {
             keys.join(", ")
         );
         findings.remark(first.span.start, text);
+    }
+}
+
+fn friction(deck: &Deck, findings: &mut Findings) {
+    if let Some(damping) = &deck.options.friction_damping {
+        let text = "friction here sticks and lets go at its limit: it needs no damping to fade in with, which in MoorDyn lets a line at rest creep";
+        findings.remark(damping.span.start, text);
+    }
+    if let Some(scale) = &deck.options.static_friction
+        && scale.value != 1.0
+    {
+        let text = format!(
+            "static friction of {} times the kinetic is not modelled: one coefficient holds and brakes",
+            scale.value
+        );
+        findings.remark(scale.span.start, text);
     }
 }
 

@@ -82,7 +82,11 @@ impl LineWork {
         };
         for (i, reach) in self.reach.iter_mut().enumerate() {
             let resting = damper_reach(contact.stiffness[i], line.nodes.weight[i]);
-            *reach = resting.max(state.velocity[i].z.abs() * dt);
+            let rise = match &contact.bottom {
+                None => state.velocity[i].z,
+                Some(bottom) => bottom.rise(state.position[i], state.velocity[i]),
+            };
+            *reach = resting.max(rise.abs() * dt);
         }
     }
 
@@ -92,6 +96,9 @@ impl LineWork {
         state: &LineState,
         weights: &Weights,
     ) {
+        if line.bottom().is_some() {
+            return self.add_bottom::<TANGENT>(line, state, weights);
+        }
         let Some(contact) = &line.nodes.contact else {
             return;
         };

@@ -40,6 +40,8 @@ pub(crate) struct LineWork {
     pub dry: Vec<Dry>,
     /// Joints, where the line has bending stiffness.
     pub bending: Option<BendingWork>,
+    /// Friction of the bed at the last assembly, per node [N]; empty over a level bed without friction.
+    pub rubbed: Vec<Vector3<f64>>,
     /// Memory of viscoelastic segments, where the line has any.
     pub(super) creep: Option<CreepWork>,
     /// Whether ends A and B have parted from their points.
@@ -98,6 +100,7 @@ impl LineWork {
             load: vec![Vector3::zeros(); if line.drifts(model) { n + 1 } else { 0 }],
             dry: vec![Dry::default(); if line.surface.is_some() { n + 1 } else { 0 }],
             bending: line.bending.as_ref().map(|_| BendingWork::new(n + 1)),
+            rubbed: vec![Vector3::zeros(); line.bottom().map_or(0, |_| n + 1)],
             creep: CreepWork::new(line),
             parted: [false; 2],
             loose: None,
@@ -134,10 +137,11 @@ impl LineWork {
     pub(super) fn assemble_static(
         &mut self,
         line: &Line,
-        position: &[Vector3<f64>],
+        state: &LineState,
         clamps: [Option<Vector3<f64>>; 2],
         case: &StaticCase,
     ) {
+        let position = &state.position;
         self.clear();
         self.set_push(line, case.bends);
         for i in 0..line.segment_count() {
@@ -163,7 +167,10 @@ impl LineWork {
                 self.diagonal[i][(axis, axis)] += case.anchoring;
             }
         }
-        self.add_bed_at_rest(line, position);
+        match line.bottom() {
+            None => self.add_bed_at_rest(line, position),
+            Some(_) => self.add_static_bottom(line, state, case),
+        }
     }
 
     #[inline(always)]

@@ -67,6 +67,7 @@ pub(crate) fn copy_network(model: &Model, network: &Network, from: &State, to: &
         to_line.creep.clone_from(&from_line.creep);
         to_line.parted = from_line.parted;
         to_line.beam.clone_from(&from_line.beam);
+        to_line.anchor.clone_from(&from_line.anchor);
         for point in model.lines[index].ends {
             to.points[point] = from.points[point];
         }
@@ -76,8 +77,10 @@ pub(crate) fn copy_network(model: &Model, network: &Network, from: &State, to: &
 /// A state of `model` with room for everything and nothing in place.
 pub(super) fn blank_state(model: &Model) -> State {
     let line = |line: &Line| {
-        let mut shape = LineState::at_rest(vec![Vector3::zeros(); line.segment_count() + 1]);
+        let count = line.segment_count() + 1;
+        let mut shape = LineState::at_rest(vec![Vector3::zeros(); count]);
         shape.become_viscoelastic(line);
+        shape.anchor = Vec::with_capacity(line.friction().map_or(0, |_| count));
         shape
     };
     State {

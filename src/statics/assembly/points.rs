@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::contact::SmoothContact;
 use super::{StaticCase, Weights};
-use crate::model::{FreePoint, Model, Network, Point, PointState};
+use crate::model::{Bottom, FreePoint, Model, Network, Point, PointState};
 use crate::physics::airy::Orbit;
 use crate::physics::flow::Stream;
 
@@ -25,6 +25,8 @@ pub(crate) struct PointWork {
     pub history: Vector3<f64>,
     /// Half the range of penetrations over which its seabed damper fades in [m].
     pub reach: f64,
+    /// Friction of the bed at the last assembly [N].
+    pub rubbed: Vector3<f64>,
 }
 impl PointWork {
     /// Scratch of a point that is held, until it gets a slot.
@@ -37,6 +39,7 @@ impl PointWork {
             solution: Vector3::zeros(),
             history: Vector3::zeros(),
             reach: 0.0,
+            rubbed: Vector3::zeros(),
         }
     }
 
@@ -62,6 +65,10 @@ impl PointWork {
                 .set_column(2, &(self.diagonal.column(2) + case.load * by_height));
         }
         self.residual = -case.load * force;
+    }
+
+    /// A level bed without friction under a point at rest at a height `z` [m].
+    pub(super) fn add_bed_at_rest(&mut self, free: &FreePoint, z: f64) {
         if let Some((stiffness, push)) = free.bed_at_rest(z) {
             self.residual.z -= push;
             self.diagonal[(2, 2)] += stiffness;
@@ -72,6 +79,7 @@ impl PointWork {
     pub(super) fn assemble_dynamic<const TANGENT: bool>(
         &mut self,
         free: &FreePoint,
+        bottom: Option<&Bottom>,
         state: &PointState,
         load: Vector3<f64>,
         water: (Option<Stream>, Option<Orbit>),
@@ -101,7 +109,7 @@ impl PointWork {
                     .set_column(2, &(self.diagonal.column(2) + by_height));
             }
         }
-        if let Some(contact) = &free.contact
+        if let (Some(contact), None) = (&free.contact, bottom)
             && let Some(bed) =
                 SmoothContact::new(contact.coefficients, contact.level - z, v.z, self.reach)
         {
@@ -112,6 +120,9 @@ impl PointWork {
             }
         }
         self.residual = weights.inertia * at.mass * a - weights.force * force;
+        if let Some(bottom) = bottom {
+            self.add_bottom::<TANGENT>(free, bottom, state, weights);
+        }
     }
 }
 /// Visits the free points of a network.
@@ -194,6 +205,8 @@ mod tests {
             predicted: false,
             bends: false,
             breadth: 0.0,
+            stick: 1.0,
+            limit: 1.0,
         };
         for z in HEIGHTS {
             let residual = |state: &PointState| {
@@ -218,6 +231,7 @@ mod tests {
             [1.0, 40.0, 900.0],
         ] {
             let weights = Weights {
+                friction: 1.0,
                 force: 0.8,
                 inertia: 0.8,
                 position: 0.8 * moves[0],
@@ -231,7 +245,14 @@ mod tests {
                     let mut work = PointWork::new();
                     work.reach = 0.05;
                     let stream = model.stream(0.0);
-                    work.assemble_dynamic::<true>(free, state, load, (stream, None), &weights);
+                    work.assemble_dynamic::<true>(
+                        free,
+                        None,
+                        state,
+                        load,
+                        (stream, None),
+                        &weights,
+                    );
                     (work.residual, work.diagonal)
                 };
                 // where only the velocity moves, what depends on height stays in J and so must not be asked for

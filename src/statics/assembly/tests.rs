@@ -11,6 +11,7 @@ use crate::scene::Scene;
 
 const FORCES: Weights = Weights {
     force: 1.0,
+    friction: 1.0,
     inertia: 1.0,
     position: 0.0,
     velocity: 0.0,

@@ -1,0 +1,183 @@
+//! Soundings from a file: a table in CSV, or a bathymetry of the kind that MoorDyn and MoorPy read.
+//!
+//! ```text
+//! CSV:  y/x, x₁, x₂, …          MoorDyn:  --- MoorPy Bathymetry Input File ---
+//!       y₁,  d₁₁, d₁₂, …                  nGridX 3
+//!       y₂,  d₂₁, d₂₂, …                  nGridY 2
+//!                                         x₁  x₂  x₃
+//!                                         y₁  d₁₁ d₁₂ d₁₃
+//!                                         y₂  d₂₁ d₂₂ d₂₃
+//! ```
+//!
+//! Both are the same table of depths, positive downwards [m]; what stands in the first corner of the CSV does not count. Lines that are blank or begin with # are
+//! skipped.
+//! Source of the second: documentation of MoorDyn, "Seafloor/Bathymetry File", and the reader of MoorPy.
+
+use std::fs::File;
+use std::io::{ErrorKind, Read};
+use std::path::Path;
+
+use super::DepthGrid;
+
+/// Longest file that is read [bytes].
+const SIZE_MAX: u64 = 64 << 20;
+/// Words that name the sizes in a file of MoorDyn's kind, in capitals.
+const SIZES: [&str; 2] = ["NGRIDX", "NGRIDY"];
+
+/// The soundings in a file.
+///
+/// # Errors
+/// The file, the line and what would be right.
+pub(super) fn read(path: &Path) -> Result<DepthGrid, String> {
+    let name = path.display();
+    if path.is_dir() {
+        return Err(format!("{name} is a folder, not a file of soundings"));
+    }
+    let file = File::open(path).map_err(|error| match error.kind() {
+        ErrorKind::NotFound => {
+            format!("{name}: no such file (it is looked for beside the scene)")
+        }
+        _ => format!("{name} cannot be opened: {error}"),
+    })?;
+    let mut text = String::new();
+    let read = file.take(SIZE_MAX + 1).read_to_string(&mut text);
+    let size = read.map_err(|error| format!("{name} cannot be read as text: {error}"))?;
+    if size as u64 > SIZE_MAX {
+        return Err(format!("{name}: longer than {} MiB", SIZE_MAX >> 20));
+    }
+    parse(&text).map_err(|problem| format!("{name}{problem}"))
+}
+
+/// The soundings in a text; problems begin with a comma and a line, or a colon.
+fn parse(text: &str) -> Result<DepthGrid, String> {
+    let rows: Vec<(usize, Vec<&str>)> = text
+        .trim_start_matches('\u{feff}')
+        .lines()
+        .enumerate()
+        .map(|(i, line)| (i + 1, line.trim()))
+        .filter(|(_, line)| !line.is_empty() && !line.starts_with('#'))
+        .map(|(number, line)| (number, words(line)))
+        .collect();
+    let first = rows.first().ok_or(": no soundings in it")?;
+    if first.1[0].starts_with("---") {
+        moordyn_table(&rows)
+    } else {
+        table(&rows[0], &rows[1..], 1)
+    }
+}
+
+fn words(line: &str) -> Vec<&str> {
+    if line.contains([',', ';']) {
+        line.split([',', ';']).map(str::trim).collect()
+    } else {
+        line.split_whitespace().collect()
+    }
+}
+
+/// Below the sizes of the grid.
+fn moordyn_table(rows: &[(usize, Vec<&str>)]) -> Result<DepthGrid, String> {
+    let mut sizes = [0; 2];
+    for (size, (row, key)) in sizes.iter_mut().zip(rows[1..].iter().zip(SIZES)) {
+        let is_size = |word: &&str| word.to_uppercase() == key;
+        let number = row.1.iter().find_map(|word| word.parse::<usize>().ok());
+        *size = number
+            .filter(|_| row.1.iter().any(is_size))
+            .ok_or_else(|| format!(", line {}: expected `{key}` and a whole number", row.0))?;
+    }
+    let Some(header) = rows.get(3) else {
+        return Err(": no row of x below nGridY".into());
+    };
+    let grid = table(header, &rows[4..], 0)?;
+    if [grid.x.len(), grid.y.len()] != sizes {
+        return Err(format!(
+            ": nGridX and nGridY say {} by {}, and {} by {} soundings are there",
+            sizes[0],
+            sizes[1],
+            grid.x.len(),
+            grid.y.len()
+        ));
+    }
+    Ok(grid)
+}
+
+/// A row of x behind `skipped` words, and rows of y with its depths.
+fn table(
+    header: &(usize, Vec<&str>),
+    rows: &[(usize, Vec<&str>)],
+    skipped: usize,
+) -> Result<DepthGrid, String> {
+    let numbers = |line: usize, words: &[&str]| -> Result<Vec<f64>, String> {
+        let number = |word: &&str| match word.parse::<f64>() {
+            Ok(value) if value.is_finite() => Ok(value),
+            _ => Err(format!(
+                ", line {line}: expected a finite number [m], found {word:?}"
+            )),
+        };
+        words.iter().map(number).collect()
+    };
+    let x = numbers(header.0, &header.1[skipped..])?;
+    let (mut y, mut depth) = (Vec::new(), Vec::new());
+    for (line, words) in rows {
+        let row = numbers(*line, words)?;
+        if row.len() != x.len() + 1 {
+            return Err(format!(
+                ", line {line}: expected y and {} depths, found {} numbers",
+                x.len(),
+                row.len()
+            ));
+        }
+        y.push(row[0]);
+        depth.push(row[1..].to_vec());
+    }
+    if x.is_empty() || y.is_empty() {
+        return Err(": no soundings in it".into());
+    }
+    Ok(DepthGrid { x, y, depth })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn grid() -> DepthGrid {
+        DepthGrid {
+            x: vec![-100.0, 0.0, 250.0],
+            y: vec![-50.0, 50.0],
+            depth: vec![vec![90.0, 95.0, 100.0], vec![91.0, 96.0, 104.5]],
+        }
+    }
+
+    #[test]
+    fn a_table_in_csv_and_a_file_of_moordyns_kind_hold_the_same_soundings() {
+        let csv = "# survey\ny/x, -100, 0, 250\n-50, 90, 95, 100\n\n50, 91, 96, 104.5\n";
+        let moordyn = "--- MoorPy Bathymetry Input File v1.0 ---\nnGridX 3\nnGridY 2\n-100 0 250\n\
+                       -50 90 95 100\n50 91 96 104.5\n";
+        assert_eq!(parse(csv), Ok(grid()));
+        assert_eq!(parse(moordyn), Ok(grid()));
+    }
+
+    #[test]
+    fn what_is_wrong_is_said_with_its_line() {
+        for (text, problem) in [
+            ("", ": no soundings in it"),
+            (
+                "y/x, 0, 1\n0, 5\n",
+                ", line 2: expected y and 2 depths, found 2 numbers",
+            ),
+            (
+                "y/x, 0, 1\n0, 5, NaN\n",
+                ", line 2: expected a finite number [m], found \"NaN\"",
+            ),
+            (
+                "---\nnGridX 2\n3 nRows\n",
+                ", line 3: expected `NGRIDY` and a whole number",
+            ),
+            (
+                "---\nnGridX 2\nnGridY 2\n0 1\n0 5 6\n",
+                ": nGridX and nGridY say 2 by 2, and 2 by 1 soundings are there",
+            ),
+        ] {
+            assert_eq!(parse(text), Err(problem.to_string()));
+        }
+    }
+}

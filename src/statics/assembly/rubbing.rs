@@ -1,0 +1,460 @@
+//! What a bed that slopes or rubs does to the nodes of lines and to free points, and the exact tangent of it.
+//!
+//! The spring and the damper act along the normal n of the bed. Friction is a spring from the anchor a of a node, where the node would lie if the bed let
+//! go of it, to the node itself, in the plane of the bed, and gives way where it would leave the ellipse of Coulomb's law:
+//!
+//!   f* = k_t P (a − r),  P = I − n nᵀ,   f = the point of the ellipse of N closest to f*,   a ← r + f/k_t after every step.
+//!
+//! So a node at rest does not creep under any load inside the ellipse: it has moved by f/k_t and stays there. −∂f/∂r = k_t B S Bᵀ − B g ⊗ ∂N/∂r with the axes B of the
+//! plane, the slope S of f with f* and that of f with N, g = (f − S f*)/N, for f is homogeneous in f* and N.
+//!
+//! The tangent is exact on a plane, the direction of the line being frozen as for drag; on a curved bed it leaves out how the axes turn.
+//!
+//! Source: the return mapping of Coulomb friction, Wriggers (2006), Computational Contact Mechanics, 2nd ed., chapter 5.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::contact::SmoothContact;
+use super::{LineWork, PointWork, StaticCase, Weights, node_tangent};
+use crate::model::{Bottom, FreePoint, Line, LineState, Model, Network, PointState, State};
+use crate::physics::friction::{Axes, Friction, held};
+use crate::physics::ground::Touch;
+use crate::physics::seabed::ContactCoefficients;
+
+/// Part of the limit that statics lets friction go to: nodes that slid to where they rest then stick in motion, and rounding does not free
+/// them one by one [-].
+pub(crate) const AT_REST: f64 = 1.0 - 1e-5;
+/// Part of the limit that holds where nodes at [`AT_REST`] must be found to slide whatever the rounding [-].
+pub(crate) const SLIDING: f64 = 1.0 - 1e-3;
+
+/// Stiffness along the bed of a point that sticks, over its stiffness across it [-].
+const POINT_STICK: f64 = 1e3;
+
+/// A node, or a point, on the bed.
+#[derive(Debug, Clone, Copy)]
+pub struct Resting<'a> {
+    /// How it stands to the level from which the bed pushes.
+    pub touch: Touch,
+    /// Spring and damper.
+    pub coefficients: ContactCoefficients,
+    /// Half the range of penetrations over which the damper fades in [m].
+    pub reach: f64,
+    /// Place [m].
+    pub place: Vector3<f64>,
+    /// Velocity [m/s].
+    pub velocity: Vector3<f64>,
+    /// Friction and what it holds by, where there is any.
+    pub rub: Option<Rub<'a>>,
+}
+
+/// What friction holds a node by.
+#[derive(Debug, Clone, Copy)]
+pub struct Rub<'a> {
+    /// The law.
+    pub friction: &'a Friction,
+    /// Direction of the line; any unit vector for a point.
+    pub tangent: Vector3<f64>,
+    /// Where the node would lie if it were let go [m].
+    pub anchor: Vector3<f64>,
+    /// k_t [N/m].
+    pub stick: f64,
+    /// Part of the limit of friction that holds [-].
+    pub limit: f64,
+}
+
+/// What the bed does to a node.
+#[derive(Debug, Clone, Copy)]
+pub struct Push {
+    /// Force [N].
+    pub force: Vector3<f64>,
+    /// The part of it that friction has [N].
+    pub friction: Vector3<f64>,
+    /// Minus the slopes of the rest of the force and of the friction with place [N/m].
+    stiffness: [Matrix3<f64>; 2],
+    /// Minus their slopes with velocity [N s/m].
+    damping: [Matrix3<f64>; 2],
+}
+
+impl<'a> Resting<'a> {
+    /// Without velocity, and with a part `limit` of the limit of friction.
+    fn at_rest(self, limit: f64) -> Resting<'a> {
+        Resting {
+            velocity: Vector3::zeros(),
+            rub: self.rub.map(|rub| Rub { limit, ..rub }),
+            ..self
+        }
+    }
+
+    /// What the bed does to it; `None` where it does nothing.
+    pub fn push(&self) -> Option<Push> {
+        let Touch {
+            penetration,
+            normal,
+            slope,
+            turning,
+        } = self.touch;
+        let rise = normal.dot(&self.velocity);
+        let bed = SmoothContact::new(self.coefficients, penetration, rise, self.reach)?;
+        let by_place = bed.stiffness * slope - bed.damping * turning.transpose() * self.velocity;
+        let by_velocity = -bed.damping * normal;
+        let mut push = Push {
+            force: bed.force * normal,
+            friction: Vector3::zeros(),
+            stiffness: [
+                -normal * by_place.transpose() - bed.force * turning,
+                Matrix3::zeros(),
+            ],
+            damping: [-normal * by_velocity.transpose(), Matrix3::zeros()],
+        };
+        if let Some(rub) = &self.rub {
+            let axes = Axes::new(normal, rub.tangent);
+            let wanted = rub.stick * axes.components(&(rub.anchor - self.place));
+            let limits = rub.limit * rub.friction.limits(&axes, bed.force);
+            let held = held(wanted, [1.0, 1.0].into(), limits);
+            let slope = held.slope(limits);
+            let grows = axes.vector(&(held.force - slope * wanted)) / bed.force;
+            let [along, across] = [axes.along, axes.across];
+            let sheared = along * (slope.m11 * along + slope.m12 * across).transpose()
+                + across * (slope.m21 * along + slope.m22 * across).transpose();
+            push.friction = axes.vector(&held.force);
+            push.force += push.friction;
+            push.stiffness[1] = rub.stick * sheared - grows * by_place.transpose();
+            push.damping[1] = -grows * by_velocity.transpose();
+        }
+        Some(push)
+    }
+}
+
+impl Push {
+    fn weighted(&self, weights: &Weights) -> Vector3<f64> {
+        weights.force * (self.force - self.friction) + weights.friction * self.friction
+    }
+
+    fn tangent(&self, weights: &Weights) -> Matrix3<f64> {
+        let slope =
+            |i: usize| weights.position * self.stiffness[i] + weights.velocity * self.damping[i];
+        slope(0) + weights.friction / weights.force * slope(1)
+    }
+}
+
+/// How a node of a line meets the bed; it sticks with `part` of its stiffness.
+pub fn resting_node<'a>(
+    line: &'a Line,
+    state: &LineState,
+    i: usize,
+    reach: f64,
+    part: f64,
+) -> Option<Resting<'a>> {
+    let (contact, bottom) = line.bottom()?;
+    let place = state.position[i];
+    let friction = bottom.friction.as_ref().zip(state.anchor.get(i));
+    Some(Resting {
+        touch: bottom.touch(place, contact.lift(i)),
+        coefficients: contact.coefficients(i),
+        reach,
+        place,
+        velocity: state.velocity[i],
+        rub: friction.map(|(friction, anchor)| Rub {
+            friction,
+            tangent: node_tangent(&state.position, i),
+            anchor: *anchor,
+            stick: part * contact.stick[i],
+            limit: 1.0,
+        }),
+    })
+}
+
+/// How a free point meets the bed; it sticks with `part` of its stiffness.
+pub fn resting_point<'a>(
+    free: &FreePoint,
+    bottom: &'a Bottom,
+    state: &PointState,
+    reach: f64,
+    part: f64,
+) -> Option<Resting<'a>> {
+    let contact = free.contact.as_ref()?;
+    let place = state.position;
+    let friction = bottom.friction.as_ref().zip(state.anchor);
+    Some(Resting {
+        touch: bottom.touch(place, contact.lift()),
+        coefficients: contact.coefficients,
+        reach,
+        place,
+        velocity: state.velocity,
+        rub: friction.map(|(friction, anchor)| Rub {
+            friction,
+            tangent: Vector3::z(), // a point is across all around
+            anchor,
+            stick: part * POINT_STICK * contact.coefficients.stiffness,
+            limit: 1.0,
+        }),
+    })
+}
+
+/// Stiffness along the bed of a free point that sticks [N/m].
+pub fn point_stick(free: &FreePoint) -> f64 {
+    free.contact
+        .map_or(0.0, |contact| POINT_STICK * contact.coefficients.stiffness)
+}
+
+impl LineWork {
+    /// The bed's springs and friction under a line at rest.
+    pub(super) fn add_static_bottom(&mut self, line: &Line, state: &LineState, case: &StaticCase) {
+        for i in 0..state.position.len() {
+            let still = Vector3::zeros();
+            let push = resting_node(line, state, i, 0.0, case.stick)
+                .map(|resting| resting.at_rest(case.limit))
+                .and_then(|node| node.push());
+            self.rubbed[i] = push.map_or(still, |push| push.friction);
+            if let Some(push) = push {
+                self.residual[i] -= push.force;
+                self.diagonal[i] += push.stiffness[0] + push.stiffness[1];
+            }
+        }
+    }
+
+    /// The bed under a moving line.
+    pub(super) fn add_bottom<const TANGENT: bool>(
+        &mut self,
+        line: &Line,
+        state: &LineState,
+        weights: &Weights,
+    ) {
+        for i in 0..state.position.len() {
+            let push =
+                resting_node(line, state, i, self.reach[i], 1.0).and_then(|node| node.push());
+            self.rubbed[i] = push.map_or(Vector3::zeros(), |push| push.friction);
+            let Some(push) = push else { continue };
+            self.residual[i] -= push.weighted(weights);
+            if TANGENT {
+                self.diagonal[i] += push.tangent(weights);
+            }
+        }
+    }
+}
+
+impl PointWork {
+    /// The bed under a point at rest.
+    pub(super) fn add_static_bottom(
+        &mut self,
+        free: &FreePoint,
+        bottom: &Bottom,
+        state: &PointState,
+        case: &StaticCase,
+    ) {
+        let push = resting_point(free, bottom, state, 0.0, case.stick)
+            .map(|resting| resting.at_rest(case.limit))
+            .and_then(|point| point.push());
+        self.rubbed = push.map_or(Vector3::zeros(), |push| push.friction);
+        if let Some(push) = push {
+            self.residual -= push.force;
+            self.diagonal += push.stiffness[0] + push.stiffness[1];
+        }
+    }
+
+    /// The bed under a moving point.
+    pub(super) fn add_bottom<const TANGENT: bool>(
+        &mut self,
+        free: &FreePoint,
+        bottom: &Bottom,
+        state: &PointState,
+        weights: &Weights,
+    ) {
+        let push =
+            resting_point(free, bottom, state, self.reach, 1.0).and_then(|point| point.push());
+        self.rubbed = push.map_or(Vector3::zeros(), |push| push.friction);
+        if let Some(push) = push {
+            self.residual -= push.weighted(weights);
+            if TANGENT {
+                self.diagonal += push.tangent(weights);
+            }
+        }
+    }
+}
+
+/// Moves the anchors of a network after the nodes that slid, as the last assembly found them.
+pub(super) fn move_anchors(
+    model: &Model,
+    network: &Network,
+    state: &mut State,
+    work: &super::Workspace,
+) {
+    for &index in &network.lines {
+        let (line, shape, work) = (
+            &model.lines[index],
+            &mut state.lines[index],
+            &work.lines[index],
+        );
+        if line.friction().is_none() {
+            continue;
+        }
+        let Some((contact, _)) = line.bottom() else {
+            continue;
+        };
+        for (i, anchor) in shape.anchor.iter_mut().enumerate() {
+            *anchor = shape.position[i] + stretch(work.rubbed[i], contact.stick[i]);
+        }
+    }
+    super::for_free_points(model, network, |index, free| {
+        let point = &mut state.points[index];
+        if point.anchor.is_some() {
+            let held = stretch(work.points[index].rubbed, point_stick(free));
+            point.anchor = Some(point.position + held);
+        }
+    });
+}
+
+/// What a spring gives way under a force.
+fn stretch(force: Vector3<f64>, stiffness: f64) -> Vector3<f64> {
+    if stiffness > 0.0 {
+        force / stiffness
+    } else {
+        Vector3::zeros()
+    }
+}
+
+/// Gives every node and point that friction may hold an anchor where it lies, unless it has one.
+pub fn drop_anchors(model: &Model, state: &mut State) {
+    for (line, shape) in model.lines.iter().zip(&mut state.lines) {
+        if line.friction().is_some() && shape.anchor.len() != shape.position.len() {
+            shape.anchor.clone_from(&shape.position);
+        }
+    }
+    if model.friction().is_none() {
+        return;
+    }
+    for (point, state) in model.points.iter().zip(&mut state.points) {
+        if point.free().is_some_and(|free| free.contact.is_some()) {
+            state.anchor.get_or_insert(state.position);
+        }
+    }
+}
+
+/// Takes the anchors of a network away: nothing rubs.
+pub(crate) fn weigh_anchors(model: &Model, network: &Network, state: &mut State) {
+    for &index in &network.lines {
+        state.lines[index].anchor.clear();
+    }
+    super::for_free_points(model, network, |index, _| state.points[index].anchor = None);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::physics::ground::{Grid, Ground};
+    use approx::assert_relative_eq;
+
+    const ROUGH: Friction = Friction {
+        axial: 0.4,
+        transverse: 0.7,
+    };
+
+    fn bottom(ground: Ground) -> Bottom {
+        Bottom {
+            ground,
+            level: false,
+            friction: Some(ROUGH),
+        }
+    }
+
+    fn slope() -> Bottom {
+        bottom(Ground::Plane {
+            height: -5.0,
+            slope: [0.3, -0.2],
+        })
+    }
+
+    fn hill() -> Bottom {
+        let rows = vec![
+            vec![-5.0, -4.6, -5.3],
+            vec![-5.2, -4.2, -4.9],
+            vec![-5.0, -4.8, -5.1],
+        ];
+        let lines = [-2.0, 0.5, 2.0];
+        bottom(Ground::Grid(Grid::new(&lines, &lines, &rows).unwrap()))
+    }
+
+    /// A node a little under the bed that moves, `slid` from its anchor.
+    fn resting(
+        bottom: &Bottom,
+        shift: Vector3<f64>,
+        velocity: Vector3<f64>,
+        slid: Option<Vector3<f64>>,
+    ) -> Resting<'_> {
+        let under = Vector3::new(0.2, -0.1, bottom.ground.height(0.2, -0.1) - 0.01);
+        let place = under + shift;
+        Resting {
+            touch: bottom.touch(place, 0.0),
+            coefficients: ContactCoefficients {
+                stiffness: 1e4,
+                damping: 50.0,
+            },
+            reach: 0.03,
+            place,
+            velocity,
+            rub: slid.map(|slid| Rub {
+                friction: &ROUGH,
+                tangent: Vector3::new(0.8, 0.5, 0.1).normalize(),
+                anchor: under - slid,
+                stick: 2e5,
+                limit: 1.0,
+            }),
+        }
+    }
+
+    fn assert_tangent(bottom: &Bottom, slid: Option<Vector3<f64>>) {
+        let (zero, velocity) = (Vector3::zeros(), Vector3::new(0.05, -0.1, -0.2));
+        let push = resting(bottom, zero, velocity, slid).push().unwrap();
+        for axis in 0..3 {
+            let step = 1e-7 * Vector3::from_fn(|i, _| f64::from(u8::from(i == axis)));
+            let force =
+                |shift, velocity| resting(bottom, shift, velocity, slid).push().unwrap().force;
+            let by_place = (force(-step, velocity) - force(step, velocity)) / 2e-7;
+            let by_velocity = (force(zero, velocity - step) - force(zero, velocity + step)) / 2e-7;
+            let stiffness = push.stiffness[0] + push.stiffness[1];
+            let damping = push.damping[0] + push.damping[1];
+            let scale = stiffness.amax();
+            assert_relative_eq!(
+                stiffness.column(axis).into_owned(),
+                by_place,
+                epsilon = 1e-6 * scale
+            );
+            assert_relative_eq!(
+                damping.column(axis).into_owned(),
+                by_velocity,
+                epsilon = 1e-4
+            );
+        }
+    }
+
+    #[test]
+    fn the_tangent_of_contact_and_friction_on_a_slope_equals_central_differences() {
+        for slid in [
+            None,
+            Some([1e-5, 2e-5, 0.0]),
+            Some([0.1, 0.05, 0.03]),
+            Some([-0.02, 0.3, 0.0]),
+        ] {
+            assert_tangent(&slope(), slid.map(Vector3::from));
+        }
+    }
+
+    #[test]
+    fn the_tangent_of_contact_over_soundings_equals_central_differences() {
+        assert_tangent(&hill(), None);
+    }
+
+    #[test]
+    fn friction_pulls_towards_the_anchor_in_the_plane_of_the_bed_up_to_its_limit() {
+        let bed = slope();
+        let still = Vector3::zeros();
+        let slid = Vector3::new(0.4, -0.3, 0.1);
+        let node = resting(&bed, still, still, Some(slid));
+        let push = node.push().unwrap();
+        assert_relative_eq!(push.friction.dot(&node.touch.normal), 0.0, epsilon = 1e-10);
+        assert!(push.friction.dot(&slid) < 0.0);
+        let normal = (push.force - push.friction).norm();
+        let size = push.friction.norm();
+        assert!(size > 0.4 * normal && size < 0.7 * normal);
+    }
+}

@@ -1,0 +1,92 @@
+//! Equilibrium with the friction of the bed.
+//!
+//! How far friction holds a line depends on how it came to lie. As the closed-form catenary does, this takes every line as laid from end A without tension and hauled at
+//! end B: the network first finds its equilibrium without friction; there every node gets an anchor, where it would lie if the line
+//! lay on the same path without stretch,
+//!
+//!   a_0 = r_0,   a_{i+1} = a_i + min(l_i, |r_{i+1} − r_i|) q_i,
+//!
+//! and friction then pulls it towards that anchor: fully where the line slid there, T falling by μw per metre towards A, and not at
+//! all beyond the point where no tension is left. The stiffness of sticking is raised little by little on the way. Free
+//! points have their anchors where they rest without friction.
+//!
+//! Source: derived here; the path is that of Jonkman (2007), NREL/TP-500-41958, section 2.5.
+
+use super::{Problem, StaticCase};
+use crate::model::State;
+use crate::statics::StaticsError;
+use crate::statics::assembly::{Workspace, copy_network, for_free_points, rubbing};
+
+/// Part of the stiffness of sticking that is tried first, and how fast it is raised: friction then grows from nothing to what the
+/// displacement mobilises, and no node that slides is ever without a taut neighbour to hold it [-].
+const SOFTEST: f64 = 1e-6;
+const GROWTH: f64 = 3.0;
+/// Least growth that is tried [-].
+const GROWTH_MIN: f64 = 1.1;
+
+impl Problem<'_> {
+    /// Whether the bed may hold any of it by friction.
+    pub(super) fn rubs(&self) -> bool {
+        let mut lines = self.network.lines.iter();
+        lines.any(|&line| self.model.lines[line].friction().is_some())
+    }
+
+    /// Takes friction away before the equilibrium without it is sought.
+    pub(super) fn let_go(&self, state: &mut State) {
+        rubbing::weigh_anchors(self.model, self.network, state);
+    }
+
+    /// From the equilibrium without friction to that with it.
+    pub(super) fn rub(&self, state: &mut State, work: &mut Workspace) -> Result<(), StaticsError> {
+        let start = work.counters.solves;
+        self.lay(state);
+        let mut found = std::mem::take(&mut work.trial);
+        copy_network(self.model, self.network, state, &mut found);
+        let (mut reached, mut growth) = (SOFTEST / GROWTH, GROWTH);
+        while reached < 1.0 && growth >= GROWTH_MIN {
+            let stick = (growth * reached).min(1.0);
+            let case = StaticCase {
+                stick,
+                ..self.case(f64::INFINITY)
+            };
+            if self.newton(state, work, case) {
+                reached = stick;
+                growth = growth.powf(1.5).min(GROWTH);
+                copy_network(self.model, self.network, state, &mut found);
+            } else {
+                growth = growth.sqrt();
+                self.restart(&found, state, work);
+            }
+        }
+        work.trial = found;
+        if reached < 1.0 {
+            return Err(self.not_converged(state, work, start));
+        }
+        work.move_anchors(self.model, self.network, state); // so that motion finds every node within its limit
+        Ok(())
+    }
+
+    /// Anchors of lines laid from end A on the path they lie on.
+    fn lay(&self, state: &mut State) {
+        for &index in &self.network.lines {
+            let line = &self.model.lines[index];
+            if line.friction().is_none() {
+                continue;
+            }
+            let shape = &mut state.lines[index];
+            shape.anchor.clear();
+            let mut place = shape.position[0];
+            shape.anchor.push(place);
+            for (pair, length) in shape.position.windows(2).zip(&line.segments.length) {
+                let step = pair[1] - pair[0];
+                let stretched = step.norm();
+                place += step * (length / stretched).min(1.0);
+                shape.anchor.push(place);
+            }
+        }
+        for_free_points(self.model, self.network, |index, free| {
+            let point = &mut state.points[index];
+            point.anchor = free.contact.map(|_| point.position);
+        });
+    }
+}
