@@ -40,6 +40,13 @@ gravity = 9.81
 [water]
 density = 1025.0
 
+[water.waves]
+spectrum = "jonswap"
+significant_height = 4.0
+peak_period = 9.0
+seed = 3
+components = 20
+
 [seabed]
 depth = 100.0
 stiffness = 3.0e6
@@ -456,25 +463,25 @@ fn what_hands_do_wrong_most_is_refused_at_its_line() {
         (
             "diameter = 0.0766",
             "diameter = -0.0766",
-            14,
+            21,
             "not positive",
         ),
-        ("mass = 113.35", "mass = nan", 13, "not a finite number"),
-        ("to = \"clump\"", "to = \"clamp\"", 68, "clump"),
-        ("to = \"clump\"", "to = \"anchor1\"", 68, "both ends"),
-        ("elements = 12 }]", "elements = 0 }]", 69, "elements"),
+        ("mass = 113.35", "mass = nan", 20, "not a finite number"),
+        ("to = \"clump\"", "to = \"clamp\"", 75, "clump"),
+        ("to = \"clump\"", "to = \"anchor1\"", 75, "both ends"),
+        ("elements = 12 }]", "elements = 0 }]", 76, "elements"),
         (
             "elements = 12 }]",
             "elements = 100000000 }]",
-            69,
+            76,
             "more than",
         ),
-        ("length = 190.0", "length = 1e300", 69, "beyond the limit"),
-        ("type = \"wire\"", "type = \"rope\"", 75, "rope"),
-        ("kind = \"fixed\"", "kind = \"nailed\"", 37, "nailed"),
-        ("on = \"barge\"", "on = \"ship\"", 52, "ship"),
-        ("depth = 100.0", "depht = 100.0", 8, "depth"),
-        ("interval = 0.1", "interval = 1e-12", 92, "steps"),
+        ("length = 190.0", "length = 1e300", 76, "beyond the limit"),
+        ("type = \"wire\"", "type = \"rope\"", 82, "rope"),
+        ("kind = \"fixed\"", "kind = \"nailed\"", 44, "nailed"),
+        ("on = \"barge\"", "on = \"ship\"", 59, "ship"),
+        ("depth = 100.0", "depht = 100.0", 15, "depth"),
+        ("interval = 0.1", "interval = 1e-12", 99, "steps"),
     ];
     for (old, new, line, word) in cases {
         let folder = tempfile::tempdir().unwrap();

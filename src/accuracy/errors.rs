@@ -153,7 +153,7 @@ fn worst(errors: impl Iterator<Item = f64>) -> f64 {
 mod tests {
     use super::*;
     use approx::assert_relative_eq;
-    use std::f64::consts::{SQRT_2, TAU};
+    use std::f64::consts::TAU;
 
     const JUDGE: Judge = Judge {
         interval: 0.1,
@@ -189,7 +189,8 @@ mod tests {
     fn a_fast_ripple_counts_in_the_raw_tension_only() {
         let errors = JUDGE.errors(&histories(1.0, 0.1), &histories(1.0, 0.0));
         assert_relative_eq!(errors.of(Metric::Rms), 0.1, max_relative = 1e-6);
-        assert!(errors.of(Metric::LowPassed) < 2e-4 * SQRT_2);
+        // Its gain is 1/626; the filter starts at the end of the record.
+        assert!(errors.of(Metric::LowPassed) < 2e-3);
     }
 
     #[test]

@@ -25,9 +25,11 @@ use crate::scene::Reconstruction;
 const DEGREE_MAX: usize = 3;
 /// Samples that a degree is judged by: one alone can be met by chance, where the motion inflects.
 const JUDGED: usize = 2;
-/// Errors of another degree over those of the present one, below which it takes over [-]. On harmonic motions anything from 0.3 to 0.9
-/// but ½, which symmetry makes exact, tells rounding from motion; 0.45 predicts them best, and noise as well as choosing anew does.
-const CLEARLY_BETTER: f64 = 0.45;
+/// Error of another degree over that of the present one, below which it takes over [-]. On harmonic motions anything from 0.3 to 0.9 but
+/// ½, which symmetry makes exact, tells rounding from motion; 0.45 predicts them best.
+const BETTER: f64 = 0.45;
+/// The same to and from degree 0, so that what comes to rest, jumps or sets out is followed at once [-].
+const BETTER_AT_REST: f64 = 0.9;
 /// Samples kept.
 const SAMPLES_MAX: usize = DEGREE_MAX + 1 + JUDGED;
 /// Samples closer together than the coming step over this are passed over [-].
@@ -257,15 +259,19 @@ impl Polynomial {
             newest.map(|newest| miss(degree, newest)).sum()
         };
         let highest = DEGREE_MAX.min(known - 1 - judged);
-        let (mut best, mut least) = match *degree {
-            kept if kept <= highest => (kept, CLEARLY_BETTER * error(kept)),
-            _ => (0, f64::INFINITY),
+        let (kept, mut best, mut least) = match *degree {
+            kept if kept <= highest => (kept, kept, error(kept)),
+            _ => (0, 0, f64::INFINITY),
         };
         for other in 0..=highest {
-            let error = error(other);
+            let factor = match (kept, other) {
+                (0, _) | (_, 0) => BETTER_AT_REST,
+                _ => BETTER,
+            };
+            let handicapped = error(other) / factor;
             // what rests has no degree to keep
-            if error < least || (other == 0 && error == 0.0) {
-                (best, least) = (other, error);
+            if handicapped < least || (other == 0 && handicapped == 0.0) {
+                (best, least) = (other, handicapped);
             }
         }
         *degree = best;

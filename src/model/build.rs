@@ -399,15 +399,7 @@ fn build_line(
     let wanted = spacing::refinements(scene, line, ends.map(|end| &points[end]), vessels, &laws);
     let lengths = mesh::lengths(&pieces(line), elements, &wanted);
     let beam = beam::build(scene, index, line, &laws, &lengths)?;
-    let parts: Vec<SegmentPart> = laws
-        .iter()
-        .zip(&lengths)
-        .flat_map(|(law, lengths)| {
-            lengths
-                .iter()
-                .map(move |&length| SegmentPart { length, law })
-        })
-        .collect();
+    let parts = segment_parts(&laws, &lengths);
     let sections = line
         .sections
         .iter()
@@ -435,6 +427,15 @@ fn build_line(
         built.surface = Some(Surface::new(&parts, &built.nodes.length));
     }
     Ok(built)
+}
+
+/// The segments of a line from the laws of its sections and the lengths [m] of their elements.
+fn segment_parts<'a>(laws: &'a [LineLaw], lengths: &[Vec<f64>]) -> Vec<SegmentPart<'a>> {
+    let of_section = |(law, lengths): (&'a LineLaw, &Vec<f64>)| -> Vec<SegmentPart<'a>> {
+        let part = |&length: &f64| SegmentPart { length, law };
+        lengths.iter().map(part).collect()
+    };
+    laws.iter().zip(lengths).flat_map(of_section).collect()
 }
 
 /// When the ends of a line part from their points.

@@ -62,18 +62,9 @@ pub(super) fn refinements(
     if laws.iter().all(|law| law.bending_stiffness == 0.0) {
         return Vec::new();
     }
-    let paths = ends.map(|point| path(scene, vessels, point));
-    let [a, b] = ends.map(|point| point.reference);
-    let known = paths.iter().any(|path| path.len() > 1);
-    let mut shapes = vec![hang(scene, line, laws, a, b)];
-    for k in 0..if known { MOMENTS } else { 0 } {
-        let [a, b] = [0, 1].map(|end| paths[end][k.min(paths[end].len() - 1)]);
-        shapes.push(hang(scene, line, laws, a, b));
-    }
-    let shapes: Vec<Catenary> = shapes.into_iter().flatten().collect();
+    let (shapes, known) = shapes(scene, line, ends, vessels, laws);
     let total: f64 = line.sections.iter().map(|section| section.length).sum();
     let mut wanted = Vec::new();
-    let bend = |stiffness: f64, tension: f64| (stiffness / tension).sqrt();
     let greatest = |of: fn(&Catenary) -> f64| shapes.iter().map(of).fold(0.0, f64::max);
     let clamps = [
         (
@@ -94,7 +85,7 @@ pub(super) fn refinements(
         if clamp.is_none() || stiffness == 0.0 || tension == 0.0 {
             continue;
         }
-        let bend = bend(stiffness, tension);
+        let bend = (stiffness / tension).sqrt();
         let reach = (BENDS * bend).min(total);
         let (from, to) = match place {
             Place::ClampA => (0.0, reach),
@@ -112,7 +103,7 @@ pub(super) fn refinements(
         let stiffness = section_at(line, laws, 0.5 * (from + to)).bending_stiffness;
         let tension = greatest(Catenary::horizontal);
         if stiffness > 0.0 && tension > 0.0 {
-            let bend = bend(stiffness, tension);
+            let bend = (stiffness / tension).sqrt();
             wanted.push(Refinement {
                 from: (from - spread - BENDS * bend).max(0.0),
                 to: (to + spread + BENDS * bend).min(total),
@@ -122,6 +113,25 @@ pub(super) fn refinements(
         }
     }
     wanted
+}
+
+/// The line's closed-form catenaries at the reference and in the course of the scene's motion, and whether that is known.
+fn shapes(
+    scene: &Scene,
+    line: &scene::Line,
+    ends: [&Point; 2],
+    vessels: &[Vessel],
+    laws: &[LineLaw],
+) -> (Vec<Catenary>, bool) {
+    let paths = ends.map(|point| path(scene, vessels, point));
+    let [a, b] = ends.map(|point| point.reference);
+    let known = paths.iter().any(|path| path.len() > 1);
+    let mut shapes = vec![hang(scene, line, laws, a, b)];
+    for k in 0..if known { MOMENTS } else { 0 } {
+        let [a, b] = [0, 1].map(|end| paths[end][k.min(paths[end].len() - 1)]);
+        shapes.push(hang(scene, line, laws, a, b));
+    }
+    (shapes.into_iter().flatten().collect(), known)
 }
 
 /// Places of a point [m] in the course of the scene's motion; only its reference where none is known.

@@ -12,7 +12,7 @@ const STEPS_DOWN_MAX: usize = 4;
 /// A root and what it cost.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Root {
-    /// Where the function is zero.
+    /// Where the function is zero, in the unit of its argument [-].
     pub at: f64,
     /// Evaluations of the function [-].
     pub steps: usize,

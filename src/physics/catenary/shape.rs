@@ -55,6 +55,7 @@ impl Piece {
         )
     }
 
+    /// Stretched less unstretched length [m].
     pub fn elongation(&self) -> f64 {
         match self.kind {
             Kind::Flight(flight) => flight.elongation(),
