@@ -145,7 +145,9 @@ fn weight(simulation: &Simulation) -> f64 {
 
 #[test]
 fn tension_falls_by_mu_w_along_the_bed_and_there_is_none_beyond() {
-    let simulation = Simulation::new(&chain("friction = 0.5", 560.0, 60)).unwrap();
+    // on a bed that gives way by micrometres all that lies there lies at one height
+    let bed = "friction = 0.5, contact = \"as_given\"";
+    let simulation = Simulation::new(&chain(bed, 560.0, 60)).unwrap();
     let (w, l) = (weight(&simulation), 10.0);
     let nodes = &simulation.state().lines[0].position;
     let tension = simulation.model().lines[0].segment_count();
@@ -155,8 +157,7 @@ fn tension_falls_by_mu_w_along_the_bed_and_there_is_none_beyond() {
     for i in 1..laid {
         let fall = tension[i] - tension[i - 1];
         if tension[i - 1] > w * l {
-            // nodes press a little more or less than their weight where the line comes up to the anchor
-            assert_relative_eq!(fall, 0.5 * w * l, max_relative = 3e-3);
+            assert_relative_eq!(fall, 0.5 * w * l, max_relative = 1e-4);
             slid += 1;
         }
     }
