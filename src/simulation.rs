@@ -627,12 +627,12 @@ impl Simulation {
         Some((0..nodes.len()).map(at).collect())
     }
 
-    /// Nodes of a line with their tensions, from end A to end B.
+    /// Nodes of a line with their tensions, from end A to end B; those that a winch has not paid out are at the winch.
     pub fn profile(&self, line: usize) -> Vec<ProfileNode> {
         let bending = self.bending(line);
         let arcs = &self.model.lines[line].nodes.arc;
         let nodes = arcs.iter().zip(&self.snapshot.state.lines[line].position);
-        nodes
+        let mut profile: Vec<ProfileNode> = nodes
             .zip(self.tensions(line))
             .enumerate()
             .map(|(node, ((s, r), tension))| ProfileNode {
@@ -643,7 +643,11 @@ impl Simulation {
                 tension,
                 bending: bending.as_ref().map(|nodes| nodes[node]),
             })
-            .collect()
+            .collect();
+        if let Some(&end) = profile.last() {
+            profile.resize(self.model.lines[line].nodes_max(), end);
+        }
+        profile
     }
 
     /// Momenta of all beams.
@@ -788,8 +792,9 @@ fn begin(
         .map(|point| PointState::held(&held(point, time)))
         .collect();
     let mut state = at_rest(model, time, &places)?;
-    for (shape, reel) in state.lines.iter_mut().zip(&paths.reels) {
-        shape.reel = Some(Reel::at_rest(reel.path.at(time).value));
+    for ((line, shape), reel) in model.lines.iter().zip(&mut state.lines).zip(&paths.reels) {
+        let change = reel.path.at(time).value;
+        shape.reel = line.winch.as_ref().map(|_| Reel::at_rest(change));
     }
     if model.solver.integrator != Integrator::QuasiStatic {
         for (line, shape) in model.lines.iter().zip(&mut state.lines) {

@@ -83,7 +83,9 @@ pub(super) fn paths(model: &Model, told: &[f64], time: f64, follows_scene: bool)
     let lines = model.lines.iter().zip(told);
     let path = |(line, told): (&Line, &f64)| {
         let winch = line.winch.as_ref();
-        let change = winch.map_or(0.0, |winch| start(winch, *told, follows_scene.then_some(time)));
+        let change = winch.map_or(0.0, |winch| {
+            start(winch, *told, follows_scene.then_some(time))
+        });
         ReelPath {
             path: AxisPath::at_rest(time, change),
             told: [time, change],

@@ -156,10 +156,7 @@ impl LineWork {
         let Some(winch) = &mut self.winch else {
             return;
         };
-        let (at, i) = (
-            self.layout.end_index(End::B),
-            self.layout.segment_count - 1,
-        );
+        let (at, i) = (self.layout.end_index(End::B), self.layout.segment_count - 1);
         let length = winch.line.segments.length[i];
         let chord = self.layout.position.get(at) - self.layout.position.get(at - 1);
         winch.density = axial_energy(&winch.line, i, chord.norm() / length - 1.0) / length;
@@ -291,7 +288,8 @@ impl LineWork {
             axial_energy(line, i, strain)
         };
         let carried = |i: usize| {
-            let (velocity, tangent) = (layout.velocity.get(FIRST + i), layout.tangent_of(FIRST + i));
+            let (velocity, tangent) =
+                (layout.velocity.get(FIRST + i), layout.tangent_of(FIRST + i));
             let along = velocity.dot(&tangent).powi(2);
             let across = velocity.norm_squared() - along;
             let nodes = &line.nodes;
@@ -309,11 +307,35 @@ impl LineWork {
         let (layout, segments, nodes) = (&mut self.layout, &winch.line.segments, &winch.line.nodes);
         let n = winch.line.segment_count();
         layout.segment_count = n;
-        put(&mut layout.axial_stiffness, from, n, |i| segments.axial_stiffness[i], 0.0);
-        put(&mut layout.axial_damping, from, n, |i| segments.axial_damping[i], 0.0);
-        put(&mut layout.inverse_length, from, n, |i| 1.0 / segments.length[i], 1.0);
+        put(
+            &mut layout.axial_stiffness,
+            from,
+            n,
+            |i| segments.axial_stiffness[i],
+            0.0,
+        );
+        put(
+            &mut layout.axial_damping,
+            from,
+            n,
+            |i| segments.axial_damping[i],
+            0.0,
+        );
+        put(
+            &mut layout.inverse_length,
+            from,
+            n,
+            |i| 1.0 / segments.length[i],
+            1.0,
+        );
         put(&mut layout.weight, from, n + 1, |i| nodes.weight[i], 0.0);
-        put(&mut self.inverse_mass, from, n + 1, |i| 1.0 / nodes.mass_normal[i], 0.0);
+        put(
+            &mut self.inverse_mass,
+            from,
+            n + 1,
+            |i| 1.0 / nodes.mass_normal[i],
+            0.0,
+        );
         put(&mut self.interior, from.max(1), n, |_| 1.0, 0.0);
         if let (Some(into), Some(values)) = (&mut layout.mass_damping, &nodes.mass_damping) {
             put(into, from, n + 1, |i| values[i], 0.0);
@@ -324,7 +346,13 @@ impl LineWork {
                 None => contact.level[i],
             };
             put(&mut into.level, from, n + 1, level, 0.0);
-            put(&mut into.stiffness, from, n + 1, |i| contact.stiffness[i], 0.0);
+            put(
+                &mut into.stiffness,
+                from,
+                n + 1,
+                |i| contact.stiffness[i],
+                0.0,
+            );
             put(&mut into.damping, from, n + 1, |i| contact.damping[i], 0.0);
             if let (Some(bottom), false) = (&mut into.bottom, contact.stick.is_empty()) {
                 put(&mut bottom.stick, from, n + 1, |i| contact.stick[i], 0.0);
@@ -333,7 +361,13 @@ impl LineWork {
         if let Some(water) = &mut self.water {
             if let Some(drag) = &nodes.drag {
                 put(&mut water.drag_normal, from, n + 1, |i| drag.normal[i], 0.0);
-                put(&mut water.drag_tangent, from, n + 1, |i| drag.tangent[i], 0.0);
+                put(
+                    &mut water.drag_tangent,
+                    from,
+                    n + 1,
+                    |i| drag.tangent[i],
+                    0.0,
+                );
             }
             let excess = |i: usize| 1.0 / nodes.mass_tangent[i] - 1.0 / nodes.mass_normal[i];
             put(&mut water.inverse_mass_excess, from, n + 1, excess, 0.0);
@@ -378,4 +412,100 @@ fn merge(velocity: &mut Components, end: usize, old: [f64; 3], new: [f64; 3]) {
     let momentum = old[0] * before + old[1] * near + (old[2] - new[1]) * far;
     velocity.set(end - 2, momentum / new[0]);
     velocity.set(end - 1, far);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dynamics::layout::Water;
+    use crate::model::Model;
+    use crate::scene::Scene;
+    use approx::assert_relative_eq;
+
+    const SCENE: &str = r#"
+        line_types.rope = { mass = 20.0, axial_stiffness = 1.0e6 }
+        points = [
+          { name = "low", position = [0.0, 0.0, -20.0], kind = "fixed" },
+          { name = "high", position = [30.0, 0.0, 0.0], kind = "fixed" },
+        ]
+        lines = [{ name = "rope", from = "low", to = "high", winch = { end = "b", length_max = 20.0 }, sections = [{ type = "rope", length = 40.0, elements = 10 }] }]
+    "#;
+
+    /// The line with 6.2 m of end segment, in wild motion.
+    fn work() -> LineWork {
+        let model = Model::new(&Scene::from_toml(SCENE).unwrap()).unwrap();
+        let line = &model.lines[0];
+        let water = Water::around(&model, line);
+        let mut work = LineWork::new(line, water, [true; 2], false).unwrap();
+        let wild = |i: usize, k: f64| {
+            let i = i as f64;
+            Vector3::new(
+                (3.0 * i + k).sin(),
+                (5.0 * i * k).cos(),
+                (i + 2.0 * k).sin(),
+            )
+        };
+        let mut state = LineState::at_rest(
+            (0..=10)
+                .map(|i| 4.0 * i as f64 * Vector3::x() + wild(i, 0.1))
+                .collect(),
+        );
+        state.half_step.velocity = (0..=10).map(|i| wild(i, 1.0)).collect();
+        state.half_step.velocity_before = (0..=10).map(|i| wild(i, 2.0)).collect();
+        state.reel = Some(Reel {
+            change: 2.2,
+            rate: 0.7,
+            acceleration: 0.0,
+            half_step: [2.2, 0.7],
+        });
+        work.load(&state);
+        work
+    }
+
+    /// Mass [kg] and momenta [kg m/s] of all nodes, that of the half node at the winch counted in.
+    fn content(work: &LineWork) -> (f64, [Vector3<f64>; 2]) {
+        let nodes = &work.winch.as_ref().unwrap().line.nodes;
+        let motions = [&work.layout.velocity, &work.layout.velocity_before];
+        let momenta = motions.map(|motion| {
+            let nodes = nodes.mass.iter().enumerate();
+            nodes.map(|(i, mass)| *mass * motion.get(FIRST + i)).sum()
+        });
+        (nodes.mass.iter().sum(), momenta)
+    }
+
+    #[test]
+    fn a_split_and_a_merge_keep_mass_and_momentum() {
+        let mut work = work();
+        let (mass, momenta) = content(&work);
+        assert_relative_eq!(mass, 20.0 * 42.2, max_relative = 1e-14);
+        let motion = [
+            work.layout.velocity.clone(),
+            work.layout.velocity_before.clone(),
+        ];
+        for passage in [
+            Passage::Split,
+            Passage::Merge,
+            Passage::Merge,
+            Passage::Merge,
+        ] {
+            work.pass(passage, 1e-3);
+            let (kept_mass, kept) = content(&work);
+            assert_relative_eq!(kept_mass, mass, max_relative = 1e-14);
+            for (kept, was) in kept.iter().zip(&momenta) {
+                assert_relative_eq!(*kept, *was, epsilon = 1e-11);
+            }
+        }
+        assert_eq!(work.layout.segment_count, 8);
+        let mut again = self::work();
+        again.pass(Passage::Split, 1e-3);
+        again.pass(Passage::Merge, 1e-3);
+        for (motion, was) in [&again.layout.velocity, &again.layout.velocity_before]
+            .iter()
+            .zip(&motion)
+        {
+            for i in 0..=10 {
+                assert_relative_eq!(motion.get(FIRST + i), was.get(FIRST + i), epsilon = 1e-12);
+            }
+        }
+    }
 }

@@ -69,8 +69,9 @@ fn misplaced(line: &Line, scene: &Scene) -> Option<&'static str> {
         .parting
         .as_ref()
         .is_some_and(|parting| parting.at == LineEnd::B);
-    (parts || line.release == Some(LineEnd::B))
-        .then_some("end B is on the winch, so that it neither breaks off nor lets go: leave one of them out")
+    (parts || line.release == Some(LineEnd::B)).then_some(
+        "end B is on the winch, so that it neither breaks off nor lets go: leave one of them out",
+    )
 }
 
 /// What the winch cannot be combined with.
@@ -81,7 +82,11 @@ fn unserved(line: &Line, scene: &Scene) -> Option<&'static str> {
     ) {
         return Some("winches are served by the integrators \"leapfrog\" and \"auto\"");
     }
-    if scene.water.as_ref().is_some_and(|water| water.waves.is_some()) {
+    if scene
+        .water
+        .as_ref()
+        .is_some_and(|water| water.waves.is_some())
+    {
         return Some("a line on a winch knows no waves yet: leave out one of them");
     }
     if scene.meets_surface(line) {
