@@ -195,8 +195,14 @@ fn assert_is_slope(scene: &Scene, step: f64, tolerance: f64) {
 
 #[test]
 fn the_stiffness_of_elements_is_the_slope_of_their_force() {
-    assert_is_slope(&OC3.scene(20, ""), 1e-4, 1e-5);
+    let smooth = Deck {
+        friction: 0.0,
+        ..OC3
+    };
+    assert_is_slope(&smooth.scene(20, ""), 1e-4, 1e-5);
     assert_is_slope(&bridle(""), 1e-4, 1e-5);
+    // Every equilibrium lays the lines anew on a bed with friction, whose nodes the stiffness holds where they lie: 1.9e-4.
+    assert_is_slope(&OC3.scene(20, ""), 1e-4, 1e-3);
 }
 
 #[test]

@@ -16,7 +16,7 @@ use super::{Choice, StepError, quasi_static};
 use crate::model::{End, Kinematics, Model, Network, State};
 use crate::physics::airy::Waves;
 use crate::scene::Integrator;
-use crate::statics::assembly::rubbing::drop_anchors;
+use crate::statics::assembly::rubbing::{drop_anchors, hold_at_rest};
 use crate::statics::assembly::{self, copy_network};
 
 /// Spectral radius of the axial-implicit leapfrog where the scene gives none [-].
@@ -131,6 +131,8 @@ impl Workspace {
         self.sea.start(model, state);
         for (number, (_, solver)) in self.networks.iter().enumerate() {
             if matches!(solver, Solver::Implicit(_)) {
+                let network = &model.networks[number];
+                hold_at_rest(model, network, state, time, &mut self.implicit);
                 implicit::start(model, number, state, held, time, &mut self.implicit);
             }
         }

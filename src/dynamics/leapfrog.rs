@@ -521,14 +521,9 @@ impl LineWork {
                 water.inverted(at, inverse_mass, force, tangent)
             } else {
                 force = force - resistance;
-                let z = inverse_mass;
-                (
-                    force.scale(inverse_mass),
-                    Vectors {
-                        z,
-                        ..Vectors::zero()
-                    },
-                )
+                let mut response = Vectors::zero();
+                response.z = inverse_mass;
+                (force.scale(inverse_mass), response)
             };
             let mut kicked = velocity + inverted.scale(kick);
             let mut given_away = zero; // twice the energy that leaves the nodes

@@ -84,7 +84,7 @@ impl Axes {
 pub struct Held {
     /// Along and across the line [N].
     pub force: Vector2<f64>,
-    /// γ [N² times the unit of the compliance]; `None` where the node sticks.
+    /// γ, in the unit of W D² [N² m/N, N² m/(N s)]; `None` where the node sticks.
     pub multiplier: Option<f64>,
 }
 

@@ -219,7 +219,7 @@ impl Cell {
             next: at,
             weights: [[[1.0, 0.0], none, none], [none; 3]],
         };
-        if !(place >= first) || line.len() == 1 {
+        if place.is_nan() || place < first || line.len() == 1 {
             return still(0);
         }
         if place > last {

@@ -304,6 +304,33 @@ pub(super) fn move_anchors(
     });
 }
 
+/// Moves the anchors of a network at rest at time `t` [s] to where motion finds every node within its limit.
+pub(crate) fn hold_at_rest(
+    model: &Model,
+    network: &Network,
+    state: &mut State,
+    t: f64,
+    work: &mut super::Workspace,
+) {
+    if model.friction().is_none() {
+        return;
+    }
+    let case = StaticCase {
+        time: t,
+        load: 1.0,
+        stiffness_max: f64::INFINITY,
+        tension_min: 0.0,
+        anchoring: 0.0,
+        predicted: false,
+        bends: true,
+        breadth: 0.0,
+        stick: 1.0,
+        limit: AT_REST,
+    };
+    work.assemble_static(model, network, state, &case);
+    work.move_anchors(model, network, state);
+}
+
 /// What a spring gives way under a force.
 fn stretch(force: Vector3<f64>, stiffness: f64) -> Vector3<f64> {
     if stiffness > 0.0 {

@@ -62,7 +62,6 @@ impl Problem<'_> {
         if reached < 1.0 {
             return Err(self.not_converged(state, work, start));
         }
-        work.move_anchors(self.model, self.network, state); // so that motion finds every node within its limit
         Ok(())
     }
 
