@@ -19,8 +19,8 @@ use crate::dynamics::motion::{AxisPath, HostPath, Sample, VesselPath};
 use crate::dynamics::{Choice, StepError, reaction};
 use crate::math::attitude::angle_rates;
 use crate::model::{
-    Body, ClosedForm, End, Frame, Kinematics, Line, LineState, Model, PointState, Reel, Role, State,
-    joint,
+    Body, ClosedForm, End, Frame, Kinematics, Line, LineState, Model, PointState, Reel, Role,
+    State, joint,
 };
 use crate::physics::stretch::StretchLaw;
 use crate::scene::{InitialShape, Integrator, Scene, SceneError};
@@ -204,7 +204,11 @@ impl Simulation {
     fn begin(&mut self, time: f64, follows_scene: bool) -> Result<(), Error> {
         let inputs = self.snapshot.inputs.clone();
         let mut model = self.model.clone();
-        winches::lay_out(&mut model, &inputs.length_changes, follows_scene.then_some(time))?;
+        winches::lay_out(
+            &mut model,
+            &inputs.length_changes,
+            follows_scene.then_some(time),
+        )?;
         (self.snapshot, self.work) = begin(&model, time, inputs, follows_scene)?;
         self.model = model;
         Ok(())
@@ -395,11 +399,17 @@ impl Simulation {
                         advice: "keep its length_change within the bounds",
                     })?;
                     let reconstruction = self.model.solver.input_reconstruction;
-                    reel.extend(winch.speed_max, [time, changes[index]], step, reconstruction);
+                    reel.extend(
+                        winch.speed_max,
+                        [time, changes[index]],
+                        step,
+                        reconstruction,
+                    );
                 }
             }
         }
-        self.work.set_reels(self.paths.reels.iter().map(|reel| reel.path));
+        self.work
+            .set_reels(self.paths.reels.iter().map(|reel| reel.path));
         Ok(())
     }
 

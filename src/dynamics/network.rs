@@ -165,7 +165,13 @@ impl NetworkWork {
     }
 
     /// Sets the paths of the winches, by the line they pay out, from `t` [s] on; after [`Self::put_ends`].
-    pub fn start_reels(&mut self, network: &Network, state: &State, paths: &[AxisPath], step: Step) {
+    pub fn start_reels(
+        &mut self,
+        network: &Network,
+        state: &State,
+        paths: &[AxisPath],
+        step: Step,
+    ) {
         for (work, &line) in self.lines.iter_mut().zip(&network.lines) {
             let fresh = state.lines[line].half_step.velocity.is_empty();
             work.start_reel(paths.get(line), state.time, fresh, step);

@@ -19,9 +19,7 @@ pub(super) fn fill(variables: &mut [Variable], scene: &Scene, model: &Model) {
         .filter(|(_, variable)| {
             matches!(
                 variable.binding,
-                Binding::Displacement { .. }
-                    | Binding::LengthChange { .. }
-                    | Binding::Parameter(_)
+                Binding::Displacement { .. } | Binding::LengthChange { .. } | Binding::Parameter(_)
             )
         })
         .map(|(index, variable)| (Interface::reference(index), variable.binding.clone()))

@@ -103,7 +103,7 @@ impl TimeFunction {
         }
     }
 
-    /// Values at its corners, in the unit of its numbers: it has no greater and no smaller ones.
+    /// Values at its corners, in the unit of its numbers, such as [m] of a length: it has no greater and no smaller ones.
     pub fn corners(&self) -> Vec<f64> {
         match self {
             TimeFunction::Constant(value) => vec![*value],
@@ -114,7 +114,7 @@ impl TimeFunction {
         }
     }
 
-    /// Greatest rate, in the unit of its numbers per second; infinite where it jumps.
+    /// Greatest rate, in the unit of its numbers per second, such as [m/s] of a length; infinite where it jumps.
     pub fn rate_max(&self) -> f64 {
         let rise = |f0: f64, f1: f64, time: f64| match f1 - f0 {
             0.0 => 0.0,

@@ -358,20 +358,6 @@ impl LineWork {
                 put(&mut bottom.stick, from, n + 1, |i| contact.stick[i], 0.0);
             }
         }
-        if let Some(water) = &mut self.water {
-            if let Some(drag) = &nodes.drag {
-                put(&mut water.drag_normal, from, n + 1, |i| drag.normal[i], 0.0);
-                put(
-                    &mut water.drag_tangent,
-                    from,
-                    n + 1,
-                    |i| drag.tangent[i],
-                    0.0,
-                );
-            }
-            let excess = |i: usize| 1.0 / nodes.mass_tangent[i] - 1.0 / nodes.mass_normal[i];
-            put(&mut water.inverse_mass_excess, from, n + 1, excess, 0.0);
-        }
         for (motion, used) in [
             (&mut self.pull, n),
             (&mut layout.velocity, n + 1),
@@ -381,6 +367,27 @@ impl LineWork {
                 put(values, used, used, |_| 0.0, 0.0);
             }
         }
+        self.lay_out_water(from);
+    }
+
+    /// Writes what the water does to the nodes from `from` on.
+    fn lay_out_water(&mut self, from: usize) {
+        let (Some(winch), Some(water)) = (&self.winch, &mut self.water) else {
+            return;
+        };
+        let (nodes, n) = (&winch.line.nodes, winch.line.segment_count());
+        if let Some(drag) = &nodes.drag {
+            put(&mut water.drag_normal, from, n + 1, |i| drag.normal[i], 0.0);
+            put(
+                &mut water.drag_tangent,
+                from,
+                n + 1,
+                |i| drag.tangent[i],
+                0.0,
+            );
+        }
+        let excess = |i: usize| 1.0 / nodes.mass_tangent[i] - 1.0 / nodes.mass_normal[i];
+        put(&mut water.inverse_mass_excess, from, n + 1, excess, 0.0);
     }
 }
 
