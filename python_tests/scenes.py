@@ -218,6 +218,44 @@ END
 ------------------------- need this line ------------------------------------
 """
 
+WINCH = """\
+title = "a chain on a winch above a bed"
+
+[water]
+density = 1025.0
+
+[seabed]
+depth = 60.0
+
+[line_types.chain]
+mass = 20.0
+diameter = 0.05
+axial_stiffness = 1.0e6
+drag_normal = 1.2
+
+[[points]]
+name = "anchor"
+position = [0.0, 0.0, -60.0]
+kind = "fixed"
+
+[[points]]
+name = "fairlead"
+position = [60.0, 0.0, -20.0]
+kind = "coupled"
+
+[[lines]]
+name = "line1"
+from = "anchor"
+to = "fairlead"
+sections = [{ type = "chain", length = 100.0, elements = 25 }]
+winch = { end = "b", length_max = 30.0 }
+
+[output]
+duration = 10.0
+interval = 0.05
+profile = true
+"""
+
 ROPE = """\
 title = "a viscoelastic rope in air that the host can let go"
 

@@ -1,4 +1,4 @@
-"""Line laws through the FMU: viscoelastic ropes, and lines that let go, for both FMI versions."""
+"""Line laws through the FMU: viscoelastic ropes, lines that let go, and winches, for both FMI versions."""
 
 import fmpy
 import numpy as np
@@ -46,3 +46,31 @@ def test_a_fast_sway_meets_the_dynamic_stiffness(package, version):
 def test_the_parameters_of_a_viscoelastic_rope_are_variables(library, version):
     names = library("ROPE", version).description.names("parameter")
     assert {f"rope.{key}_{of}" for key in ("static", "dynamic") for of in ("stiffness", "damping")} <= set(names)
+
+
+def test_a_winch_hauls_in_and_the_tension_rises_to_that_of_the_shorter_line(package, library, version):
+    """Smoothly from 0 to -8 m; a host that starts at -8 m has the tension that it ends near."""
+    signals = np.zeros(TIME.size, dtype=[("time", "f8"), ("line1.length_change", "f8")])
+    signals["time"] = TIME
+    part = np.clip(TIME / 6.0, 0.0, 1.0)
+    signals["line1.length_change"] = -8.0 * part * part * (3.0 - 2.0 * part)
+    found = simulate(package("WINCH", version), signals)["line1.tension_b"]
+    signals["line1.length_change"] = -8.0
+    there = simulate(package("WINCH", version), signals)["line1.tension_b"]
+    assert found[0] < 0.95 * there[0]
+    assert abs(found[-20:].mean() / there[0] - 1.0) < 0.02
+    assert np.ptp(there) < 1e-3 * there[0]
+    variable = library("WINCH", version).description.variables["line1.length_change"]
+    assert variable["causality"] == "input" and variable["variability"] == "continuous"
+
+
+def test_a_winch_that_is_asked_for_more_than_it_has_stops_the_host(package, version):
+    signals = np.zeros(TIME.size, dtype=[("time", "f8"), ("line1.length_change", "f8")])
+    signals["time"] = TIME
+    signals["line1.length_change"] = 20.0 * TIME
+    try:
+        simulate(package("WINCH", version), signals)
+    except Exception as error:
+        assert "fmi" in str(error).lower()
+    else:
+        raise AssertionError("a length that the winch does not have was taken")

@@ -4,8 +4,8 @@
 //! that they cannot drift apart. The value reference of a variable is its position in the table, counted from 1.
 //!
 //! The table holds, in this order: inputs and forces of every coupled point and of every vessel, outputs of every line, the
-//! solver's outputs, the calculated parameters, the parameters, and the profiles where the scene asks for them. Releases have
-//! their rows between vessels and lines.
+//! solver's outputs, the calculated parameters, the parameters, and the profiles where the scene asks for them. Releases and
+//! winches have their rows between vessels and lines.
 
 mod dependencies;
 mod parameters;
@@ -162,6 +162,11 @@ pub enum Binding {
         /// The line.
         line: usize,
     },
+    /// Length that the winch of a line is to have paid out [m].
+    LengthChange {
+        /// The line.
+        line: usize,
+    },
     /// A result of a line.
     Line {
         /// The line.
@@ -305,6 +310,7 @@ impl Interface {
         for (index, line) in scene.lines.iter().enumerate() {
             check_name(&line.name, &format!("lines[{index}].name"))?;
             push_controls(&mut variables, index, line);
+            push_winch(&mut variables, index, line);
         }
         for (index, line) in scene.lines.iter().enumerate() {
             push_line(&mut variables, index, &line.name);
@@ -379,6 +385,7 @@ impl Interface {
                 })?;
             }
             Binding::Release { line } => values[0] = f64::from(u8::from(simulation.release(line))),
+            Binding::LengthChange { line } => values[0] = simulation.length_change(line),
             Binding::Solver(result) => {
                 values[0] = match result {
                     SolverResult::Substeps => simulation.substeps() as f64,
@@ -567,6 +574,20 @@ fn push_controls(variables: &mut Vec<Variable>, index: usize, line: &scene::Line
         (variable.kind, variable.variability) = (Kind::Boolean, Variability::Discrete);
         variable.start = Some(0.0);
         variables.push(variable);
+    }
+}
+
+/// What the host says to the winch of a line.
+fn push_winch(variables: &mut Vec<Variable>, index: usize, line: &scene::Line) {
+    if line.winch.is_some() {
+        let name = &line.name;
+        variables.push(row(
+            format!("{name}.length_change"),
+            format!("{name}: length that the winch at end B has paid out, negative where it has hauled in"),
+            Causality::Input,
+            Unit::METRE,
+            Binding::LengthChange { line: index },
+        ));
     }
 }
 

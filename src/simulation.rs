@@ -4,6 +4,8 @@
 //! point to the next. Coupled points follow what [`Simulation::set_displacement`] says, or the scene's own motion after
 //! [`Simulation::follow_scene`].
 
+mod winches;
+
 use std::cell::Cell;
 use std::sync::Arc;
 
@@ -17,13 +19,14 @@ use crate::dynamics::motion::{AxisPath, HostPath, Sample, VesselPath};
 use crate::dynamics::{Choice, StepError, reaction};
 use crate::math::attitude::angle_rates;
 use crate::model::{
-    Body, ClosedForm, End, Frame, Kinematics, Line, LineState, Model, PointState, Role, State,
-    joint,
+    Body, ClosedForm, End, Frame, Kinematics, Line, LineState, Model, PointState, Reel, Role,
+    State, joint,
 };
 use crate::physics::stretch::StretchLaw;
 use crate::scene::{InitialShape, Integrator, Scene, SceneError};
 use crate::statics::catenary::{self, Bed, Catenary};
 use crate::statics::{self, StaticsError, assembly, catenary_network, equilibrium};
+use winches::ReelPath;
 
 /// Why a simulation could not be made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -43,6 +46,8 @@ struct Inputs {
     vessels: Vec<VesselInput>,
     /// Whether each line is to let go.
     releases: Vec<bool>,
+    /// What the winches are to have paid out, by line [m].
+    length_changes: Vec<f64>,
 }
 
 /// What a host has said about a point.
@@ -85,6 +90,8 @@ impl VesselInput {
 struct Paths {
     points: Vec<HostPath>,
     vessels: Vec<VesselPath>,
+    /// Lengths that the winches pay out, by line; empty where there are none.
+    reels: Vec<ReelPath>,
 }
 
 impl Clone for Paths {
@@ -92,12 +99,14 @@ impl Clone for Paths {
         Paths {
             points: self.points.clone(),
             vessels: self.vessels.clone(),
+            reels: self.reels.clone(),
         }
     }
 
     fn clone_from(&mut self, source: &Self) {
         self.points.clone_from(&source.points);
         self.vessels.clone_from(&source.vessels);
+        self.reels.clone_from(&source.reels);
     }
 }
 
@@ -160,6 +169,7 @@ impl Simulation {
             points: vec![PointInput::default(); model.points.len()],
             vessels: vec![VesselInput::default(); model.vessels.len()],
             releases: vec![false; model.lines.len()],
+            length_changes: vec![0.0; model.lines.len()],
         };
         let (snapshot, work) = begin(&model, 0.0, inputs, false)?;
         Ok(Simulation {
@@ -193,7 +203,14 @@ impl Simulation {
 
     fn begin(&mut self, time: f64, follows_scene: bool) -> Result<(), Error> {
         let inputs = self.snapshot.inputs.clone();
-        (self.snapshot, self.work) = begin(&self.model, time, inputs, follows_scene)?;
+        let mut model = self.model.clone();
+        winches::lay_out(
+            &mut model,
+            &inputs.length_changes,
+            follows_scene.then_some(time),
+        )?;
+        (self.snapshot, self.work) = begin(&model, time, inputs, follows_scene)?;
+        self.model = model;
         Ok(())
     }
 
@@ -220,6 +237,7 @@ impl Simulation {
     /// Puts back what [`Simulation::snapshot`] gave.
     pub fn restore(&mut self, snapshot: Snapshot) {
         self.snapshot = snapshot;
+        winches::follow(&mut self.model, &self.snapshot.state);
     }
 
     /// Sets where a coupled point is now, from its reference position [m].
@@ -289,6 +307,16 @@ impl Simulation {
         self.snapshot.state.lines[line].parted
     }
 
+    /// Sets the length that the winch of a line is to have paid out now beyond that of the scene [m], negative where it is to have hauled in.
+    pub fn set_length_change(&mut self, line: usize, change: f64) {
+        self.snapshot.inputs.length_changes[line] = change;
+    }
+
+    /// Length that the winch of a line is to have paid out, as set [m].
+    pub fn length_change(&self, line: usize) -> f64 {
+        self.snapshot.inputs.length_changes[line]
+    }
+
     /// Parts the lines from their points that are to let go, and books what their ends bring along; returns who was parted before.
     fn let_go(&mut self) -> Option<(State, Ledger)> {
         let model = &*self.model;
@@ -334,6 +362,7 @@ impl Simulation {
         if !self.snapshot.follows_scene {
             self.extend_paths(step);
         }
+        self.extend_reels(step)?;
         let before = self.let_go();
         let model = &*self.model;
         let at = Held::new(model, &self.paths, self.snapshot.follows_scene);
@@ -348,6 +377,39 @@ impl Simulation {
         self.snapshot.counters = done.counters;
         self.snapshot.ledger.flow.add(done.flow);
         self.snapshot.paths.clone_from(&self.paths);
+        winches::follow(&mut self.model, &self.snapshot.state);
+        Ok(())
+    }
+
+    /// Continues the paths of the winches by a communication step [s].
+    fn extend_reels(&mut self, step: f64) -> Result<(), StepError> {
+        let snapshot = &self.snapshot;
+        let (time, changes) = (snapshot.state.time, &snapshot.inputs.length_changes);
+        for (index, reel) in self.paths.reels.iter_mut().enumerate() {
+            let line = &self.model.lines[index];
+            let Some(winch) = &line.winch else { continue };
+            match (snapshot.follows_scene, &winch.path) {
+                (true, Some(path)) => reel.follow(path, time, step),
+                _ => {
+                    winches::check(line, changes[index]).map_err(|reason| StepError {
+                        time,
+                        line: line.name.clone(),
+                        node: line.segment_count(),
+                        reason,
+                        advice: "keep its length_change within the bounds",
+                    })?;
+                    let reconstruction = self.model.solver.input_reconstruction;
+                    reel.extend(
+                        winch.speed_max,
+                        [time, changes[index]],
+                        step,
+                        reconstruction,
+                    );
+                }
+            }
+        }
+        self.work
+            .set_reels(self.paths.reels.iter().map(|reel| reel.path));
         Ok(())
     }
 
@@ -575,12 +637,12 @@ impl Simulation {
         Some((0..nodes.len()).map(at).collect())
     }
 
-    /// Nodes of a line with their tensions, from end A to end B.
+    /// Nodes of a line with their tensions, from end A to end B; those that a winch has not paid out are at the winch.
     pub fn profile(&self, line: usize) -> Vec<ProfileNode> {
         let bending = self.bending(line);
         let arcs = &self.model.lines[line].nodes.arc;
         let nodes = arcs.iter().zip(&self.snapshot.state.lines[line].position);
-        nodes
+        let mut profile: Vec<ProfileNode> = nodes
             .zip(self.tensions(line))
             .enumerate()
             .map(|(node, ((s, r), tension))| ProfileNode {
@@ -591,7 +653,11 @@ impl Simulation {
                 tension,
                 bending: bending.as_ref().map(|nodes| nodes[node]),
             })
-            .collect()
+            .collect();
+        if let Some(&end) = profile.last() {
+            profile.resize(self.model.lines[line].nodes_max(), end);
+        }
+        profile
     }
 
     /// Momenta of all beams.
@@ -728,6 +794,7 @@ fn begin(
         vessels: vessels
             .map(|input| VesselPath::at_rest(time, input.pose))
             .collect(),
+        reels: winches::paths(model, &inputs.length_changes, time, follows_scene),
     };
     let at = Held::new(model, &paths, follows_scene);
     let held = |point: usize, t: f64| at.point(point, t);
@@ -735,6 +802,10 @@ fn begin(
         .map(|point| PointState::held(&held(point, time)))
         .collect();
     let mut state = at_rest(model, time, &places)?;
+    for ((line, shape), reel) in model.lines.iter().zip(&mut state.lines).zip(&paths.reels) {
+        let change = reel.path.at(time).value;
+        shape.reel = line.winch.as_ref().map(|_| Reel::at_rest(change));
+    }
     if model.solver.integrator != Integrator::QuasiStatic {
         for (line, shape) in model.lines.iter().zip(&mut state.lines) {
             shape.become_viscoelastic(line);

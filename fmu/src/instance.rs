@@ -53,8 +53,12 @@ pub(crate) struct Instance {
     inputs: Vec<BodyInput>,
     /// Whether each line is to let go.
     releases: Vec<bool>,
+    /// What the winches are to have paid out, by line [m].
+    length_changes: Vec<f64>,
     /// Displacements at which the statics were solved last [m].
     start_displacements: Vec<[f64; 6]>,
+    /// What the winches had paid out then, by line [m].
+    start_length_changes: Vec<f64>,
     /// Statics with the present parameters and inputs, or where the last step ended; `None` while they are not known.
     simulation: Option<Simulation>,
     has_warned_of_time: bool,
@@ -86,6 +90,8 @@ impl Instance {
             time_reference: (version == FmiVersion::Three)
                 .then(|| time_reference(&description.interface)),
             releases: vec![false; scene.lines.len()],
+            length_changes: vec![0.0; scene.lines.len()],
+            start_length_changes: vec![0.0; scene.lines.len()],
             packaged: scene.clone(),
             scene,
             interface: description.interface,
@@ -202,6 +208,7 @@ impl Instance {
         self.scene.clone_from(&self.packaged);
         self.inputs.fill(BodyInput::default());
         self.releases.fill(false);
+        self.length_changes.fill(0.0);
         self.phase = Phase::Instantiated;
         self.start_time = 0.0;
         self.stop_time = None;
@@ -218,10 +225,12 @@ impl Instance {
         if self.simulation.is_none() {
             let places = self.inputs.iter().map(|input| input.displacement);
             self.start_displacements = places.collect();
+            self.start_length_changes.clone_from(&self.length_changes);
             self.simulation = Some(statics(
                 &self.scene,
                 self.start_time,
                 &self.start_displacements,
+                &self.start_length_changes,
             )?);
         }
         Ok(self
@@ -264,6 +273,7 @@ impl Instance {
                     own[0] = self.inputs[slot(&self.scene, *body)].velocity[*axis];
                 }
                 Binding::Release { line } => own[0] = f64::from(u8::from(self.releases[*line])),
+                Binding::LengthChange { line } => own[0] = self.length_changes[*line],
                 Binding::Parameter(parameter) => {
                     own[0] = parameter
                         .value(&self.scene)
@@ -409,6 +419,12 @@ impl Instance {
                     input.has_velocity[axis] |= self.phase == Phase::Step || value != 0.0;
                 }
                 Binding::Release { line } => self.releases[line] = value != 0.0,
+                Binding::LengthChange { line } => {
+                    self.length_changes[line] = value;
+                    if self.phase == Phase::Initialization {
+                        self.simulation = None;
+                    }
+                }
                 _ => {}
             }
         }
@@ -440,7 +456,7 @@ impl Instance {
         let model = Model::new(scene).map_err(|e| e.to_string())?;
         for variable in self.interface.variables() {
             if let Binding::Profile { line, node, .. } = variable.binding {
-                let nodes = model.lines[line].nodes.arc.len();
+                let nodes = model.lines[line].nodes_max();
                 if variable.dimension.is_some_and(|length| length != nodes)
                     || node.is_some_and(|node| node >= nodes)
                 {
@@ -553,6 +569,9 @@ impl Instance {
         for (line, &release) in self.releases.iter().enumerate() {
             simulation.set_release(line, release);
         }
+        for (line, &change) in self.length_changes.iter().enumerate() {
+            simulation.set_length_change(line, change);
+        }
         simulation.advance(step).map_err(|e| e.to_string())?;
         self.time = at + step; // the host's clock, so that rounding does not add up
         Ok(())
@@ -573,7 +592,9 @@ impl Instance {
             parameters: self.parameters(&self.scene),
             inputs: self.inputs.clone(),
             releases: self.releases.clone(),
+            length_changes: self.length_changes.clone(),
             start_displacements: self.start_displacements.clone(),
+            start_length_changes: self.start_length_changes.clone(),
             solver: self.simulation.as_ref().map(|s| s.snapshot().clone()),
         }
     }
@@ -598,7 +619,8 @@ impl Instance {
             && same_bits(
                 self.start_displacements.as_flattened(),
                 snapshot.start_displacements.as_flattened(),
-            );
+            )
+            && same_bits(&self.start_length_changes, &snapshot.start_length_changes);
         let mut scene = self.scene.clone();
         if !same_scene {
             let rows = self.interface.variables().iter();
@@ -615,6 +637,7 @@ impl Instance {
                 &scene,
                 snapshot.start_time,
                 &snapshot.start_displacements,
+                &snapshot.start_length_changes,
             )?),
             _ => None,
         };
@@ -631,6 +654,8 @@ impl Instance {
                 });
         self.start_displacements
             .clone_from(&snapshot.start_displacements);
+        self.start_length_changes
+            .clone_from(&snapshot.start_length_changes);
         self.scene = scene;
         self.phase = snapshot.phase;
         self.start_time = snapshot.start_time;
@@ -638,6 +663,7 @@ impl Instance {
         self.time = snapshot.time;
         self.inputs.clone_from(&snapshot.inputs);
         self.releases.clone_from(&snapshot.releases);
+        self.length_changes.clone_from(&snapshot.length_changes);
         Ok(())
     }
 
@@ -659,11 +685,19 @@ fn slot(scene: &Scene, body: Body) -> usize {
 }
 
 /// Static equilibrium at the given displacements of the bodies [m, rad], always from the same first guess.
-fn statics(scene: &Scene, start: f64, displacements: &[[f64; 6]]) -> Result<Simulation, Refusal> {
+fn statics(
+    scene: &Scene,
+    start: f64,
+    displacements: &[[f64; 6]],
+    length_changes: &[f64],
+) -> Result<Simulation, Refusal> {
     let mut simulation = Simulation::new(scene).map_err(|e| e.to_string())?;
     let bodies: Vec<Body> = simulation.model().bodies().collect();
     for (body, displacement) in bodies.into_iter().zip(displacements) {
         simulation.set_body(body, *displacement, [None; 6]);
+    }
+    for (line, &change) in length_changes.iter().enumerate() {
+        simulation.set_length_change(line, change);
     }
     simulation.restart(start).map_err(|e| e.to_string())?;
     Ok(simulation)

@@ -47,9 +47,13 @@ pub(crate) struct Snapshot {
     pub(crate) inputs: Vec<BodyInput>,
     /// Whether each line is to let go.
     pub(crate) releases: Vec<bool>,
+    /// What the winches are to have paid out, by line [m].
+    pub(crate) length_changes: Vec<f64>,
     /// Displacements of every body at which the statics were solved [m, rad]: what the solver decided there, such as its
     /// step limits, is not in its state and is decided again from them.
     pub(crate) start_displacements: Vec<[f64; 6]>,
+    /// What the winches had paid out then, by line [m].
+    pub(crate) start_length_changes: Vec<f64>,
     /// The solver's state, once there is one.
     pub(crate) solver: Option<simulation::Snapshot>,
 }
@@ -105,7 +109,9 @@ mod tests {
             parameters: vec![9.80665, -0.0],
             inputs: vec![BodyInput::default()],
             releases: vec![true, false],
+            length_changes: vec![0.0, 2.5],
             start_displacements: vec![[0.0; 6]],
+            start_length_changes: vec![0.0; 2],
             solver: None,
         }
     }

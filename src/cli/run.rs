@@ -257,6 +257,11 @@ pub fn scene_input(variable: &Variable, model: &Model, time: f64) -> Option<f64>
     match variable.binding {
         Binding::Displacement { body, axis } => of(body, |moving| moving.pose, axis),
         Binding::Velocity { body, axis } => of(body, |moving| moving.velocity, axis),
+        Binding::LengthChange { line } => {
+            let winch = model.lines[line].winch.as_ref();
+            let path = winch.and_then(|winch| winch.path.as_ref());
+            Some(path.map_or(0.0, |path| path.at(time)))
+        }
         _ => None,
     }
 }

@@ -9,6 +9,7 @@ use super::layout::Water;
 use super::leapfrog::Step;
 use super::ledger::{self, Energy, Flow};
 use super::limit::transverse_step;
+use super::motion::AxisPath;
 use super::network::NetworkWork;
 use super::sea::SeaWork;
 use super::{Choice, StepError, quasi_static};
@@ -57,6 +58,8 @@ pub struct Workspace {
     sea: SeaWork,
     /// The state before a step that is made in parts.
     before: State,
+    /// How the winches pay out, by line; empty where there are none.
+    reels: Vec<AxisPath>,
 }
 
 #[derive(Debug, Clone)]
@@ -87,7 +90,14 @@ impl Workspace {
             next: state.clone(),
             sea: SeaWork::new(),
             before: State::default(),
+            reels: Vec::new(),
         }
+    }
+
+    /// Sets how the winches pay out in the next step, by line.
+    pub fn set_reels(&mut self, paths: impl Iterator<Item = AxisPath>) {
+        self.reels.clear();
+        self.reels.extend(paths);
     }
 
     /// What was chosen, by network.
@@ -202,6 +212,7 @@ impl Workspace {
             start: state.time,
             length,
             held,
+            reels: &self.reels,
         };
         let mut total = Done::default();
         for (number, (choice, solver)) in self.networks.iter_mut().enumerate() {
@@ -280,6 +291,8 @@ struct Communication<'a, K> {
     /// [s]
     length: f64,
     held: &'a K,
+    /// How the winches pay out, by line; empty where there are none.
+    reels: &'a [AxisPath],
 }
 
 impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
@@ -304,6 +317,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
                 Step::after(steps, drift),
                 self.held,
             );
+            work.start_reels(network, self.state, self.reels, Step::after(steps, drift));
             work.meet_surface();
             for k in 0..count {
                 let t = self.start + k as f64 * drift;
@@ -514,11 +528,17 @@ fn place_held(model: &Model, state: &mut State, held: &impl Fn(usize, f64) -> Ki
         }
     }
     for (line, shape) in model.lines.iter().zip(&mut state.lines) {
-        let ends = [0, line.segment_count()].into_iter().zip(line.ends);
+        let last = shape.position.len() - 1;
+        let ends = [0, last].into_iter().zip(line.ends);
         for ((node, point), parted) in ends.zip(shape.parted) {
             if !parted {
                 shape.velocity[node] = state.points[point].velocity;
             }
+        }
+        if let (Some(winch), Some(reel)) = (&line.winch, shape.reel) {
+            let chord = shape.position[last] - shape.position[last - 1];
+            let length = winch.end_length(last, reel.change);
+            shape.velocity[last] -= reel.rate / length * chord; // that of the material
         }
     }
 }

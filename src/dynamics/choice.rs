@@ -85,6 +85,9 @@ fn choose(model: &Model, network: &Network, explicit: f64, accurate: f64) -> Int
     if lines().any(|line| !line.serves_leapfrog()) {
         return Integrator::GeneralisedAlpha;
     }
+    if lines().any(|line| line.winch.is_some()) {
+        return Integrator::Leapfrog;
+    }
     let steps = accurate / explicit;
     if network.free_points.is_empty() && steps > AXIAL_IMPLICIT_COST {
         Integrator::AxialImplicit

@@ -12,6 +12,8 @@
 //! Source: Verlet's scheme as in Hairer, Lubich & Wanner (2003), Acta Numerica 12, 399-450; the inverse of
 //! M_n I + (M_t − M_n) t tᵀ by Sherman & Morrison (1950); contact: backward Euler on the penetrating spring and damper.
 //!
+mod winch;
+
 use nalgebra::{Matrix3, Vector3};
 use pulp::NullaryFnOnce;
 
@@ -22,6 +24,7 @@ use crate::model::{End, Line, LineState, Parting, WaveSpan};
 use crate::physics::friction_step::Landing;
 use crate::physics::morison::{self, DragCoefficients};
 use crate::physics::stretch::{StretchLaw, total_tension};
+use winch::WinchWork;
 
 /// A line and the scratch of its steps.
 #[derive(Debug, Clone)]
@@ -44,6 +47,8 @@ pub struct LineWork {
     given_by_current: Lanes,
     /// Force of water and damping on the nodes at t_n [N], and the energy lost to the bed [J], over a bed that slopes or rubs.
     settling: Option<Settling>,
+    /// The winch at end B, where the line is on one.
+    winch: Option<Box<WinchWork>>,
 }
 
 /// What a bed that slopes or rubs is worked out with, node by node.
@@ -224,6 +229,8 @@ impl LineWork {
         held: [bool; 2],
         negative_tension: bool,
     ) -> Option<LineWork> {
+        let winch = WinchWork::new(line);
+        let line = line.winch.as_ref().map_or(line, |winch| winch.reel());
         let layout = Layout::new(line, water, negative_tension)?;
         let inverse_mass: Vec<f64> = line
             .nodes
@@ -251,11 +258,13 @@ impl LineWork {
                 lost: 0.0,
             }),
             layout,
+            winch,
         })
     }
 
     /// Takes over the state of a line.
     pub fn load(&mut self, state: &LineState) {
+        self.load_reel(state);
         self.layout.load(state);
         self.parted = state.parted;
         for end in [End::A, End::B] {
@@ -296,7 +305,10 @@ impl LineWork {
     /// Energy given by held ends and the current and lost between them since [`Self::load`].
     pub fn flow(&self) -> Flow {
         Flow {
-            given: self.given + self.given_by_current.sum() + self.layout.lifted(),
+            given: self.given
+                + self.given_by_current.sum()
+                + self.layout.lifted()
+                + self.winch.as_ref().map_or(0.0, |winch| winch.given()),
             lost: self.lost.sum() + self.settling.as_ref().map_or(0.0, |bed| bed.lost)
                 - self.layout.joined(),
         }
@@ -320,6 +332,7 @@ impl LineWork {
     /// Hands the state back after steps of `steps` [s].
     pub fn store(&self, state: &mut LineState, steps: [f64; 2]) {
         state.parted = self.parted;
+        self.store_reel(state);
         self.layout.store(state, steps);
     }
 

@@ -30,7 +30,7 @@ use super::beam::{self, BeamView};
 use super::creep::{Creeping, Stretching};
 use super::leapfrog::segment_tension;
 use crate::model::{
-    Bottom, ClosedForm, End, FreePoint, Line, LineState, Model, Network, PointState, State,
+    Bottom, ClosedForm, End, FreePoint, Line, LineState, Model, Network, PointState, Reel, State,
     WaterAlong, joint,
 };
 use crate::physics::airy::Orbit;
@@ -168,7 +168,17 @@ fn line_energy(line: &Line, state: &State, index: usize, model: &Model) -> Energ
         true => (&shape.velocity, 0.0),
         false => (&memory.velocity, 0.5 * memory.steps[0]),
     };
-    let position = |i: usize| shape.position[i] - lag * velocity[i];
+    let then = shape.reel.map(|reel| line_before(line, shape, reel, lag));
+    let line = then.as_ref().unwrap_or(line);
+    let passing = passing(line, shape, lag);
+    let position = |i: usize| {
+        let place = shape.position[i] - lag * velocity[i];
+        if i + 1 == shape.position.len() {
+            place - passing
+        } else {
+            place
+        }
+    };
     if let Some(view) = BeamView::of(line, shape) {
         return view.energy(beam::held(model, line));
     }
@@ -214,6 +224,25 @@ fn line_energy(line: &Line, state: &State, index: usize, model: &Model) -> Energ
     energy
 }
 
+/// A line on a winch as it was laid out `lag` [s] ago, when the leapfrog has its velocities.
+fn line_before(line: &Line, shape: &LineState, reel: Reel, lag: f64) -> Line {
+    let mut then = line.clone();
+    if lag > 0.0 {
+        then.pay_out(shape.position.len() - 1, reel.half_step[0]);
+    }
+    then
+}
+
+/// How far the material at a winch has gone beyond the winch in `lag` [s], by which its velocity misses the winch's own place [m].
+fn passing(line: &Line, shape: &LineState, lag: f64) -> Vector3<f64> {
+    let Some(reel) = shape.reel else {
+        return Vector3::zeros();
+    };
+    let last = line.segment_count();
+    let chord = shape.position[last] - shape.position[last - 1];
+    lag * reel.half_step[1] / line.segments.length[last - 1] * chord
+}
+
 /// Squares of a velocity [m/s] of a node across and along the line [m²/s²].
 fn squares(shape: &LineState, i: usize, velocity: Vector3<f64>) -> [f64; 2] {
     let along = velocity.dot(&tangent(shape, i));
@@ -229,7 +258,7 @@ fn dry_part(line: &Line, shape: &LineState, i: usize, water: WaterAlong) -> f64 
 }
 
 /// Energy [J] of a segment at a strain [-]: that of its law while it pulls, and pushes no more than it can.
-fn axial_energy(line: &Line, i: usize, strain: f64) -> f64 {
+pub(super) fn axial_energy(line: &Line, i: usize, strain: f64) -> f64 {
     let data = &line.segments;
     let (ea, length, push) = (
         data.axial_stiffness[i],

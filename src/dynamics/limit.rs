@@ -13,7 +13,7 @@
 //! Source: Belytschko, Liu & Moran (2000), Nonlinear Finite Elements for Continua and Structures, section 6.2.6 (damped
 //! central differences with lagged velocity). Contact is implicit and sets no limit.
 
-use crate::model::{End, Line, Model, Segments};
+use crate::model::{End, Line, Model, SHORTEST, Segments};
 
 /// Part of the closed-form limit that is used [-].
 const SAFETY: f64 = 0.9;
@@ -26,6 +26,9 @@ const TRANSVERSE_COURANT: f64 = 0.6;
 
 /// Explicit axial step limit [s] of a line, with safety; infinite for a line without interior nodes.
 pub fn explicit_step(line: &Line) -> f64 {
+    if let Some(winch) = &line.winch {
+        return explicit_step(winch.reel()).min(reeled_step(winch.reel()));
+    }
     let segments = &line.segments;
     let mut limit = f64::INFINITY;
     for i in 1..line.segment_count() {
@@ -35,6 +38,18 @@ pub fn explicit_step(line: &Line) -> f64 {
         limit = limit.min(damped_limit(omega, lag));
     }
     limit
+}
+
+/// Explicit step limit [s] of the node before the end segment of a line on a winch when that is shortest, wherever it may be.
+fn reeled_step(reel: &Line) -> f64 {
+    let limit = |i: usize| {
+        let (left, right) = (stiffness(reel, i - 1), stiffness(reel, i) / SHORTEST);
+        let mass = 0.5 * (1.0 + SHORTEST) * reel.least_mass(i);
+        let lag = lag(&reel.segments, i - 1).max(lag(&reel.segments, i));
+        damped_limit((2.0 * (left + right) / mass).sqrt(), lag)
+    };
+    let nodes = 1..reel.segment_count();
+    nodes.map(limit).fold(f64::INFINITY, f64::min)
 }
 
 /// Explicit step limit [s] of a free point with all that is tied to it, with safety; infinite without a line.

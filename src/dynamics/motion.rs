@@ -107,6 +107,12 @@ impl AxisPath {
         };
     }
 
+    /// Continues the path to a place that is known.
+    pub fn follow(&mut self, to: Sample) {
+        self.from = self.to;
+        self.to = to;
+    }
+
     /// Position, velocity and acceleration at time `t` [s] of the present segment.
     pub fn at(&self, t: f64) -> hermite::Sample {
         let knot = |s: &Sample| (s.time, s.position, s.velocity.unwrap_or(0.0));

@@ -5,6 +5,7 @@ use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 use super::layout::Water;
 use super::leapfrog::{EndLoad, LineWork, Step};
 use super::ledger::Flow;
+use super::motion::AxisPath;
 use crate::model::{End, FreePoint, Kinematics, Model, Network, PointAtHeight, PointState, State};
 use crate::physics::airy::Orbit;
 use crate::physics::friction::{Axes, Friction};
@@ -146,6 +147,7 @@ impl NetworkWork {
                 work.part_ends(partings, t, step);
             }
             work.pull_segments(step);
+            work.weigh_reel();
         }
         self.step_points(model, network, t, step);
         for line in &mut self.lines {
@@ -154,9 +156,25 @@ impl NetworkWork {
         }
         self.put_ends(model, network, t + step.drift, step, held);
         for line in &mut self.lines {
+            line.wind(t + step.drift, step);
             line.creep(step);
             line.book_ends(step);
             line.meet_surface(Some(step));
+            line.renew_reel(step);
+        }
+    }
+
+    /// Sets the paths of the winches, by the line they pay out, from `t` [s] on; after [`Self::put_ends`].
+    pub fn start_reels(
+        &mut self,
+        network: &Network,
+        state: &State,
+        paths: &[AxisPath],
+        step: Step,
+    ) {
+        for (work, &line) in self.lines.iter_mut().zip(&network.lines) {
+            let fresh = state.lines[line].half_step.velocity.is_empty();
+            work.start_reel(paths.get(line), state.time, fresh, step);
         }
     }
 

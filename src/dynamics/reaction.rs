@@ -14,7 +14,7 @@ use nalgebra::Vector3;
 use super::beam::BeamView;
 use super::creep::{Creeping, Stretching};
 use super::leapfrog::segment_tension;
-use crate::model::{Dry, End, Line, LineState, PointState, WaterAlong};
+use crate::model::{Dry, End, Line, LineState, PointState, Reel, WaterAlong};
 use crate::physics::morison::{self, DragCoefficients};
 use crate::statics::assembly::end_shear;
 
@@ -38,6 +38,13 @@ pub fn tension(line: &Line, state: &LineState, i: usize, negative_tension: bool)
         pair(&state.velocity),
         negative_tension,
     )
+}
+
+/// What the winch feels of the material that it speeds up and that its half node holds, over −λq [N]: m ℓ̇² + M ℓ̈.
+fn passing(line: &Line, reel: Reel) -> f64 {
+    let (node, nodes) = (line.segment_count(), &line.nodes);
+    let density = nodes.mass[node] / nodes.length[node]; // [kg/m]
+    density * reel.rate.powi(2) + nodes.mass_tangent[node] * reel.acceleration
 }
 
 /// Force [N] of the line on the point at one of its ends, in water that moves or rests.
@@ -79,6 +86,9 @@ pub fn end_force(
     let [mass_normal, mass_tangent] = nodes.masses(node, dry.part);
     let inertia = mass_normal * (acceleration - along) + mass_tangent * along;
     let mut force = tension(line, state, segment, negative_tension) * inward - inertia;
+    if let (Some(reel), End::B) = (state.reel, end) {
+        force -= passing(line, reel) * chord / line.segments.length[segment];
+    }
     force.z -= nodes.weight[node] + dry.weight;
     if line.bending.is_some() {
         force += end_shear(line, [&state.position, &state.velocity], end, point);

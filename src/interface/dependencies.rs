@@ -19,7 +19,7 @@ pub(super) fn fill(variables: &mut [Variable], scene: &Scene, model: &Model) {
         .filter(|(_, variable)| {
             matches!(
                 variable.binding,
-                Binding::Displacement { .. } | Binding::Parameter(_)
+                Binding::Displacement { .. } | Binding::LengthChange { .. } | Binding::Parameter(_)
             )
         })
         .map(|(index, variable)| (Interface::reference(index), variable.binding.clone()))
@@ -97,6 +97,7 @@ impl Scope<'_> {
                 let mut attached = moved.flat_map(|point| &points[point].attached);
                 !self.closed_form && attached.any(|(line, _)| self.lines.contains(line))
             }
+            Binding::LengthChange { line } => !self.closed_form && self.lines.contains(line),
             Binding::Parameter(parameter) => self.depends_on_parameter(parameter),
             _ => false,
         }

@@ -8,7 +8,7 @@ use crate::simulation::Simulation;
 /// Rows of the profiles of all lines.
 pub(super) fn push(variables: &mut Vec<Variable>, model: &Model, layout: Layout) {
     for (line, built) in model.lines.iter().enumerate() {
-        let nodes = built.nodes.arc.len();
+        let nodes = built.nodes_max();
         let mut push = |label: &str, meaning: &str, unit: Unit, quantity: ProfileQuantity| {
             let name = format!("{}.profile.{label}", built.name);
             let description = format!("{}: {meaning} at the nodes from end A to end B", built.name);
@@ -65,7 +65,7 @@ pub(super) fn push(variables: &mut Vec<Variable>, model: &Model, layout: Layout)
     }
 }
 
-/// Writes the values of a profile variable.
+/// Writes the values of a profile variable; nodes that a winch has not paid out are at the winch.
 pub(super) fn read(
     simulation: &Simulation,
     line: usize,
@@ -77,13 +77,16 @@ pub(super) fn read(
     match quantity {
         ProfileQuantity::Position(axis) => {
             let axis = axis as usize;
-            let positions = &simulation.state().lines[line].position[range];
-            for (value, position) in values.iter_mut().zip(positions) {
-                *value = position[axis];
+            let positions = &simulation.state().lines[line].position;
+            for (value, node) in values.iter_mut().zip(range) {
+                *value = positions[node.min(positions.len() - 1)][axis];
             }
         }
         ProfileQuantity::Tension => {
-            values.copy_from_slice(&simulation.tensions(line)[range]);
+            let tensions = simulation.tensions(line);
+            for (value, node) in values.iter_mut().zip(range) {
+                *value = tensions[node.min(tensions.len() - 1)];
+            }
         }
         ProfileQuantity::Curvature | ProfileQuantity::Moment => {
             let nodes = simulation.bending(line).unwrap_or_default();

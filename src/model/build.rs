@@ -11,7 +11,7 @@ use nalgebra::Vector3;
 
 use super::{
     Bending, Bottom, Contact, Current, Drag, End, FreePoint, Line, Model, Motion, Network, Nodes,
-    Parting, Point, PointContact, Pressed, Role, Section, Segments, Surface, Vessel, mesh,
+    Parting, Point, PointContact, Pressed, Role, Section, Segments, Surface, Vessel, Winch, mesh,
 };
 use crate::physics::bending;
 use crate::physics::flow::Profile;
@@ -35,6 +35,9 @@ use crate::scene::{
 /// without any is driven by the kink of its own tension law when the step is explicit; codes of that kind damp the
 /// highest axial frequencies, which no mesh resolves, by as much (linear bulk viscosity).
 pub const NUMERICAL_DAMPING_RATIO: f64 = 0.02;
+
+/// Segments that a winch pays out, at most.
+const REEL_SEGMENTS_MAX: f64 = 1e5;
 
 impl Model {
     /// Makes a scene discrete.
@@ -399,7 +402,8 @@ fn build_line(
     }
     check_mixture(index, &laws)?;
     let wanted = spacing::refinements(scene, line, ends.map(|end| &points[end]), vessels, &laws);
-    let lengths = mesh::lengths(&pieces(line), elements, &wanted);
+    let mut lengths = mesh::lengths(&pieces(line), elements, &wanted);
+    let reeled = reel(index, line, &mut lengths)?;
     let beam = beam::build(scene, index, line, &laws, &lengths)?;
     let parts = segment_parts(&laws, &lengths);
     let sections = line
@@ -423,12 +427,67 @@ fn build_line(
         initial: line.initial.clone(),
         beam,
         parting: partings(line),
+        winch: None,
     };
+    if let (Some(winch), Some(segments)) = (&line.winch, reeled) {
+        return on_winch(index, built, segments, winch);
+    }
     built.bending = line_bending(index, line, &parts, &built)?;
     if scene.meets_surface(line) {
         built.surface = Some(Surface::new(&parts, &built.nodes.length));
     }
     Ok(built)
+}
+
+/// Lengthens the mesh of a line on a winch by all that can be paid out, and a segment more for paths that overshoot. Returns the first
+/// segment of the last section, and how many segments the line has at no change.
+fn reel(
+    index: usize,
+    line: &scene::Line,
+    lengths: &mut [Vec<f64>],
+) -> Result<Option<[usize; 2]>, SceneError> {
+    let Some((winch, last)) = line.winch.as_ref().zip(lengths.last_mut()) else {
+        return Ok(None);
+    };
+    let (within, length) = (last.len(), last.last().copied().unwrap_or(1.0));
+    let more = (winch.length_max / length).ceil() + 1.0;
+    if more > REEL_SEGMENTS_MAX {
+        return Err(SceneError::new(
+            format!("lines[{index}].winch.length_max"),
+            format!(
+                "{} m would be {more} elements of {length} m: give the section at the winch longer elements",
+                winch.length_max
+            ),
+        ));
+    }
+    last.resize(within + more as usize, length);
+    let before: usize = lengths.iter().rev().skip(1).map(Vec::len).sum();
+    Ok(Some([before, before + within]))
+}
+
+/// A line on a winch as it is at no change of its length, out of the line with all that can be paid out.
+fn on_winch(
+    index: usize,
+    reel: Line,
+    segments: [usize; 2],
+    winch: &scene::Winch,
+) -> Result<Line, SceneError> {
+    if reel.uniform_law().is_none() {
+        return Err(SceneError::new(
+            format!("lines[{index}].winch"),
+            "a line on a winch has one strain measure all along",
+        ));
+    }
+    if segments[1] < 2 {
+        return Err(SceneError::new(
+            format!("lines[{index}].sections"),
+            "a line on a winch needs at least 2 elements",
+        ));
+    }
+    let mut line = reel.clone();
+    line.winch = Some(Winch::new(reel, segments, winch));
+    line.pay_out(segments[1], 0.0);
+    Ok(line)
 }
 
 /// The segments of a line from the laws of its sections and the lengths [m] of their elements.

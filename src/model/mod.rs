@@ -14,6 +14,7 @@ mod sea;
 mod state;
 mod surface;
 mod vessel;
+mod winch;
 
 use std::sync::Arc;
 
@@ -32,9 +33,10 @@ pub use bending::{Bending, joint};
 pub use bottom::Bottom;
 pub use motion::{Kinematics, Motion, Pose};
 pub use sea::{WaterAlong, WaveSpan, WavesAlong, WavesAt};
-pub use state::{ClosedForm, LineState, PointState, State};
+pub use state::{ClosedForm, LineState, PointState, Reel, State};
 pub use surface::{Dry, Surface};
 pub use vessel::{Frame, Vessel};
+pub use winch::{LONGEST, Passage, SHORTEST, Winch};
 
 /// A scene made discrete. Immutable; shared by reference.
 #[derive(Debug, Clone)]
@@ -204,6 +206,8 @@ pub struct Line {
     pub beam: Option<Beam>,
     /// When ends A and B part from their points, where one of them may.
     pub parting: Option<[Parting; 2]>,
+    /// The winch at end B, where it is on one; the line is then laid out as it is at present.
+    pub winch: Option<Winch>,
 }
 
 /// When an end of a line parts from its point.

@@ -58,6 +58,33 @@ pub struct LineState {
     pub beam: Option<BeamState>,
     /// Where the nodes would lie if the friction of the bed let go of them [m]; empty without friction.
     pub anchor: Vec<Vector3<f64>>,
+    /// How far its winch is, where it is on one.
+    pub reel: Option<Reel>,
+}
+
+/// How far the winch of a line is.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Reel {
+    /// Length paid out beyond that at no change [m].
+    pub change: f64,
+    /// Its rate [m/s].
+    pub rate: f64,
+    /// Its acceleration [m/s²].
+    pub acceleration: f64,
+    /// Length change [m] and rate [m/s] half a step before, for the leapfrog.
+    pub half_step: [f64; 2],
+}
+
+impl Reel {
+    /// At rest at a length change [m].
+    pub fn at_rest(change: f64) -> Reel {
+        Reel {
+            change,
+            rate: 0.0,
+            acceleration: 0.0,
+            half_step: [change, 0.0],
+        }
+    }
 }
 
 /// What a closed-form catenary says that its nodes do not: their chords are shorter than the arcs between them, which on a stiff line
@@ -156,6 +183,7 @@ impl LineState {
             parted: [false; 2],
             beam: None,
             anchor: Vec::new(),
+            reel: None,
         }
     }
 }
@@ -190,7 +218,8 @@ clone_in_place!(LineState {
     creep,
     parted,
     beam,
-    anchor
+    anchor,
+    reel
 });
 clone_in_place!(ClosedForm {
     tension,

@@ -76,7 +76,7 @@ fn source(channel: &Channel, model: &Model) -> Result<Source, String> {
     };
     let end_node = |line: usize, end: LineEnd| match end {
         LineEnd::A => 0,
-        LineEnd::B => model.lines[line].segment_count(),
+        LineEnd::B => model.lines[line].nodes_max() - 1,
     };
     Ok(match channel {
         Channel::EndTension { line, end } => {
@@ -95,7 +95,7 @@ fn source(channel: &Channel, model: &Model) -> Result<Source, String> {
             let line = line_of(line)?;
             let node = match *node {
                 NodePlace::Number(node) => {
-                    check_node(node, model.lines[line].segment_count())?;
+                    check_node(node, model.lines[line].nodes_max() - 1)?;
                     node
                 }
                 NodePlace::End(end) => end_node(line, end),
@@ -151,11 +151,15 @@ fn value(source: Source, simulation: &Simulation) -> f64 {
             line,
             node,
             quantity,
-        } => match quantity {
-            Quantity::Position(axis) => state.lines[line].position[node][axis],
-            Quantity::Velocity(axis) => state.lines[line].velocity[node][axis],
-            Quantity::Tension | Quantity::Force(_) => simulation.tensions(line)[node],
-        },
+        } => {
+            let shape = &state.lines[line];
+            let node = node.min(shape.position.len() - 1); // nodes that a winch has not paid out are at the winch
+            match quantity {
+                Quantity::Position(axis) => shape.position[node][axis],
+                Quantity::Velocity(axis) => shape.velocity[node][axis],
+                Quantity::Tension | Quantity::Force(_) => simulation.tensions(line)[node],
+            }
+        }
         Source::Point { point, quantity } => match quantity {
             Quantity::Position(axis) => state.points[point].position[axis],
             Quantity::Velocity(axis) => state.points[point].velocity[axis],

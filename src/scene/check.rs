@@ -8,6 +8,7 @@ mod settings;
 mod surroundings;
 mod time;
 mod waves;
+mod winch;
 
 use std::collections::BTreeMap;
 

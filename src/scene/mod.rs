@@ -379,6 +379,25 @@ pub struct Line {
     /// When the line parts from one of its points by itself.
     #[serde(default, rename = "break", skip_serializing_if = "Option::is_none")]
     pub parting: Option<Break>,
+    /// What pays out and hauls in the line at one of its ends.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub winch: Option<Winch>,
+}
+
+/// A winch: `{ end = "b", length_max = 40.0, speed_max = 0.5, path = { ramp = [10.0, 0.0, 60.0, 20.0] } }`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Winch {
+    /// The end of the line that is on the winch.
+    pub end: channel::LineEnd,
+    /// Greatest length that it pays out beyond the length of the section at its end [m].
+    pub length_max: f64,
+    /// Greatest speed [m/s]; where a host asks for more, the winch lags behind. No limit where absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub speed_max: Option<f64>,
+    /// Length paid out in time [m], negative where it is hauled in, where the scene's own motion is followed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub path: Option<TimeFunction>,
 }
 
 /// When a line breaks: `{ at = "b", tension = 4.0e6, time = 100.0 }`, at the first of both.
@@ -567,6 +586,7 @@ impl Line {
             clamped_b: None,
             release: None,
             parting: None,
+            winch: None,
         }
     }
 }

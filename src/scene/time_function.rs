@@ -103,6 +103,36 @@ impl TimeFunction {
         }
     }
 
+    /// Values at its corners, in the unit of its numbers, such as [m] of a length: it has no greater and no smaller ones.
+    pub fn corners(&self) -> Vec<f64> {
+        match self {
+            TimeFunction::Constant(value) => vec![*value],
+            TimeFunction::Step([_, f0, _, f1]) | TimeFunction::Ramp([_, f0, _, f1]) => {
+                vec![*f0, *f1]
+            }
+            TimeFunction::Table(pairs) => pairs.iter().map(|[_, f]| *f).collect(),
+        }
+    }
+
+    /// Greatest rate, in the unit of its numbers per second, such as [m/s] of a length; infinite where it jumps.
+    pub fn rate_max(&self) -> f64 {
+        let rise = |f0: f64, f1: f64, time: f64| match f1 - f0 {
+            0.0 => 0.0,
+            rise => (rise / time).abs(),
+        };
+        match self {
+            TimeFunction::Constant(_) => 0.0,
+            TimeFunction::Step([t0, f0, t1, f1]) => 1.5 * rise(*f0, *f1, t1 - t0),
+            TimeFunction::Ramp([t0, f0, t1, f1]) => rise(*f0, *f1, t1 - t0),
+            TimeFunction::Table(pairs) => {
+                let rises = pairs
+                    .windows(2)
+                    .map(|pair| rise(pair[0][1], pair[1][1], pair[1][0] - pair[0][0]));
+                rises.fold(0.0, f64::max)
+            }
+        }
+    }
+
     /// Mean from `from` to `to` [s], in the unit of its numbers; exact, jumps and kinks included.
     pub fn mean(&self, from: f64, to: f64) -> f64 {
         if to <= from {

@@ -8,6 +8,7 @@ mod seabed;
 mod stretch;
 mod surroundings;
 mod vessels;
+mod winch;
 
 use std::f64::consts::PI;
 use std::fmt::Write;
@@ -230,7 +231,7 @@ impl Scene {
             line.from,
             line.to,
             sections.join(", "),
-            parting::in_words(line)
+            parting::in_words(line) + &winch::in_words(line)
         )
     }
 

@@ -17,6 +17,7 @@ pub(super) fn check(scene: &Scene, findings: &mut Findings) {
         check_start(findings, &format!("{at}.initial"), line, scene);
         check_clamps(findings, &at, line, scene);
         check_parting(findings, &at, line, scene);
+        super::winch::check(findings, &at, line, scene);
     }
     check_held(scene, findings);
 }

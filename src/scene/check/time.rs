@@ -29,6 +29,10 @@ impl Load {
         unit: "-",
         preposition: "factor of",
     };
+    pub(super) const LENGTH: Load = Load {
+        unit: "m",
+        preposition: "length paid out at",
+    };
     pub(super) const MOMENT: Load = Load {
         unit: "N m",
         preposition: "moment about",

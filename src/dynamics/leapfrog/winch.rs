@@ -1,0 +1,518 @@
+//! A line on a winch: the length of its end segment changes in time.
+//!
+//! The winch stands at end B, x_B, and prescribes the length ℓ(t) that is paid out. The unstretched length e of the end segment changes as
+//! ℓ does, and with it what its two nodes carry. With the stretch λ = l/e and the direction q, the material that passes the winch moves at
+//!
+//!   V_B = ẋ_B − ℓ̇ λ q,      so that      λ̇ e = q·(V_B − v) = q·(ẋ_B − v) − λ ℓ̇,
+//!
+//! v being the velocity of the neighbour. The end node carries the velocity V_B, which gives the rate of strain of the end segment and the
+//! velocity of a node that appears in it. The neighbour takes up mass that moves with it: M v̇ = f with M growing.
+//!
+//! Beyond the lengths that [`Winch::passage`](crate::model::Winch::passage) names the end segment splits in two, or merges with its
+//! neighbour. A split interpolates position and velocity linearly. Lumped masses are linear in the lengths beside them, so that mass and
+//! momentum stay what they were, the half node at the winch counted in, which moves at V_B. A merge gives the neighbour what is left of the
+//! momentum; it undoes a split exactly. The energy that either makes or takes counts as the winch's.
+//!
+//! The winch gives the line (W − T λ)·ℓ̇, W being the energy per unstretched length of the end segment, and the energy of motion and of
+//! height of the mass that the neighbour takes up. The end's force times V_B holds the second part.
+//!
+//! Derivation: dE/dt of the segment energy e·W(λ − 1) with e(t) and l(t), W′ = T.
+//! Valid for winches that are slow beside axial waves. Bends of the line within the merged segments are lost to their chord: a relative error
+//! of tension of about (e κ)²/8 · EA/T at a curvature κ, once at every merge.
+
+use nalgebra::Vector3;
+
+use super::{LineWork, Step};
+use crate::dynamics::layout::FIRST;
+use crate::dynamics::ledger::axial_energy;
+use crate::dynamics::motion::AxisPath;
+use crate::math::lanes::{Components, LANES};
+use crate::model::{End, Line, LineState, Passage, Reel, Winch};
+
+/// Segments from the winch on whose energy a split or a merge can change.
+const CHANGED: usize = 3;
+
+/// What a line on a winch is worked out with.
+#[derive(Debug, Clone)]
+pub(super) struct WinchWork {
+    /// The line as it is at t_n.
+    line: Line,
+    /// Length paid out in time [m].
+    path: AxisPath,
+    reel: Reel,
+    /// The reel at t_{n+1}, while a step is booked.
+    next: Reel,
+    /// Energy of the end segment at t_n per unstretched length [N].
+    density: f64,
+    /// Energy given since the state was loaded [J].
+    given: f64,
+}
+
+impl WinchWork {
+    /// For a line on a winch.
+    pub fn new(line: &Line) -> Option<Box<WinchWork>> {
+        line.winch.as_ref()?;
+        Some(Box::new(WinchWork {
+            line: line.clone(),
+            path: AxisPath::at_rest(0.0, 0.0),
+            reel: Reel::at_rest(0.0),
+            next: Reel::at_rest(0.0),
+            density: 0.0,
+            given: 0.0,
+        }))
+    }
+
+    /// Energy given since the state was loaded [J].
+    pub fn given(&self) -> f64 {
+        self.given
+    }
+
+    fn winch(&self) -> &Winch {
+        let winch = self.line.winch.as_ref();
+        winch.expect("made for a line on a winch")
+    }
+
+    /// Length of the end segment at a length change [m].
+    fn end_length(&self, change: f64) -> f64 {
+        self.winch().end_length(self.line.segment_count(), change)
+    }
+
+    /// What the neighbour of the end takes up between t_{n−½} and t_{n+½}: energy of motion and of height [J], from its velocities [m/s] and
+    /// heights [m] then.
+    fn taken_up(&self, halves: [f64; 2], moving: [[f64; 2]; 2], heights: [f64; 2]) -> f64 {
+        let (n, nodes) = (self.line.segment_count(), &self.line.nodes);
+        let per_length = |values: &[f64]| 0.5 * values[n] / nodes.length[n];
+        let masses = [&nodes.mass_normal, &nodes.mass_tangent].map(|mass| per_length(mass));
+        let weight = per_length(&nodes.weight);
+        let grown = [self.reel.change - halves[0], halves[1] - self.reel.change];
+        let energy = |side: usize| {
+            let [across, along] = moving[side];
+            let motion = 0.5 * (masses[0] * across + masses[1] * along);
+            grown[side] * (motion + weight * heights[side])
+        };
+        energy(0) + energy(1)
+    }
+}
+
+impl LineWork {
+    /// Takes over how far the winch is, and lays out the line accordingly.
+    pub(super) fn load_reel(&mut self, state: &LineState) {
+        let Some(winch) = &mut self.winch else {
+            return;
+        };
+        winch.given = 0.0;
+        winch.reel = state.reel.unwrap_or(Reel::at_rest(0.0));
+        let count = state.position.len() - 1;
+        winch.line.pay_out(count, winch.reel.change);
+        self.lay_out(0);
+    }
+
+    /// Hands back how far the winch is, with room for the nodes.
+    pub(super) fn store_reel(&self, state: &mut LineState) {
+        if let Some(winch) = &self.winch {
+            let nodes = self.layout.segment_count + 1;
+            state.reel = Some(winch.reel);
+            for values in [
+                &mut state.position,
+                &mut state.velocity,
+                &mut state.acceleration,
+            ] {
+                values.resize(nodes, Vector3::zeros());
+            }
+            if !state.anchor.is_empty() {
+                state.anchor.resize(nodes, Vector3::zeros());
+            }
+        }
+    }
+
+    /// Sets the path of the winch from `t` [s] on, after the end was put where it is then; `fresh` before the first step from rest.
+    pub fn start_reel(&mut self, path: Option<&AxisPath>, t: f64, fresh: bool, step: Step) {
+        let (Some(winch), Some(path)) = (&mut self.winch, path) else {
+            return;
+        };
+        winch.path = *path;
+        if fresh {
+            winch.reel.half_step = [winch.reel.change, path.at(t).slope];
+        }
+        let reel = winch.reel;
+        self.transport(reel, step.kick - 0.5 * step.drift);
+    }
+
+    /// Gives the end the velocity of its material half a step, `lag` [s], before the time of the positions.
+    fn transport(&mut self, reel: Reel, lag: f64) {
+        let Some(winch) = &self.winch else {
+            return;
+        };
+        let [change, rate] = reel.half_step;
+        let at = self.layout.end_index(End::B);
+        let place = |at: usize| self.layout.position.get(at) - lag * self.layout.velocity.get(at);
+        let stretch = (place(at) - place(at - 1)) / winch.end_length(change); // λ q
+        let velocity = self.layout.velocity.get(at) - rate * stretch;
+        self.layout.velocity.set(at, velocity);
+    }
+
+    /// After the tensions of t_n: what a length of the end segment holds.
+    pub fn weigh_reel(&mut self) {
+        let Some(winch) = &mut self.winch else {
+            return;
+        };
+        let (at, i) = (self.layout.end_index(End::B), self.layout.segment_count - 1);
+        let length = winch.line.segments.length[i];
+        let chord = self.layout.position.get(at) - self.layout.position.get(at - 1);
+        winch.density = axial_energy(&winch.line, i, chord.norm() / length - 1.0) / length;
+    }
+
+    /// Winds on to `t` [s], the end of a step, after the end was put where it is then: books what the winch gives, and gives the end the
+    /// velocity of its material.
+    pub fn wind(&mut self, t: f64, step: Step) {
+        let Some(winch) = &mut self.winch else {
+            return;
+        };
+        let (now, path) = (winch.reel, winch.path.at(t));
+        winch.next = Reel {
+            change: path.value,
+            rate: path.slope,
+            acceleration: path.curvature,
+            half_step: [
+                0.5 * (now.change + path.value),
+                (path.value - now.change) / step.drift,
+            ],
+        };
+        let halves = [now.half_step[0], winch.next.half_step[0]];
+        let (layout, at) = (&self.layout, self.layout.end_index(End::B) - 1);
+        let tangent = layout.tangent_of(at);
+        let velocities = [layout.velocity_before.get(at), layout.velocity.get(at)];
+        let moving = velocities.map(|velocity| {
+            let along = velocity.dot(&tangent).powi(2);
+            [velocity.norm_squared() - along, along]
+        });
+        let [before, after] = velocities.map(|velocity| velocity.z);
+        let height = layout.position.z[at] - step.drift * after; // at t_n
+        let lag = step.kick - 0.5 * step.drift;
+        let heights = [height - lag * before, height + 0.5 * step.drift * after];
+        winch.given += winch.density * (halves[1] - halves[0]);
+        winch.given += winch.taken_up(halves, moving, heights);
+        let next = winch.next;
+        self.transport(next, 0.5 * step.drift);
+    }
+
+    /// After the work of the ends was booked: lays out the end segment at its new length, and splits or merges it.
+    pub fn renew_reel(&mut self, step: Step) {
+        let Some(winch) = &mut self.winch else {
+            return;
+        };
+        winch.reel = winch.next;
+        let change = winch.reel.change;
+        let passage = |work: &WinchWork| {
+            let count = work.line.segment_count();
+            work.winch().passage(count, change)
+        };
+        if passage(winch).is_none() {
+            winch.line.set_length_change(change);
+            let last = self.layout.segment_count - 1;
+            return self.lay_out(last);
+        }
+        while let Some(passage) = self.winch.as_deref().and_then(passage) {
+            self.pass(passage, 0.5 * step.drift);
+        }
+        if let Some(winch) = &mut self.winch {
+            winch.line.set_length_change(change);
+        }
+        self.lay_out(0);
+    }
+
+    /// Splits the end segment or merges it; the velocities are those of a time `lag` [s] before the positions.
+    fn pass(&mut self, passage: Passage, lag: f64) {
+        let Some(winch) = &mut self.winch else {
+            return;
+        };
+        let (n, reel) = (self.layout.segment_count, winch.reel);
+        let first = n.saturating_sub(CHANGED);
+        winch.line.set_length_change(reel.half_step[0]); // the time of the energies
+        let before = self.energy_from(first, lag);
+        let layout = &mut self.layout;
+        let Some(winch) = &mut self.winch else {
+            return;
+        };
+        let motions = [
+            &mut layout.position,
+            &mut layout.velocity,
+            &mut layout.velocity_before,
+        ];
+        let count = match passage {
+            Passage::Split => {
+                let nominal = winch.winch().reel().segments.length[n - 1];
+                let part = nominal / winch.end_length(reel.change);
+                for motion in motions {
+                    split(motion, FIRST + n, part);
+                }
+                n + 1
+            }
+            Passage::Merge => {
+                let [place, velocity, velocity_before] = motions;
+                let old = last_masses(&winch.line, n - 2);
+                winch.line.pay_out(n - 1, reel.half_step[0]);
+                let new = last_masses(&winch.line, n - 2);
+                for motion in [velocity, velocity_before] {
+                    merge(motion, FIRST + n, old, new);
+                }
+                place.set(FIRST + n - 1, place.get(FIRST + n));
+                n - 1
+            }
+        };
+        winch.line.pay_out(count, reel.half_step[0]);
+        layout.segment_count = count;
+        let after = self.energy_from(first, lag);
+        if let Some(winch) = &mut self.winch {
+            winch.given += after - before;
+        }
+    }
+
+    /// Energy [J] of the segments from `first` on and of the nodes between them, at the time of the velocities, `lag` [s] before the positions.
+    fn energy_from(&self, first: usize, lag: f64) -> f64 {
+        let Some(winch) = &self.winch else {
+            return 0.0;
+        };
+        let (layout, line) = (&self.layout, &winch.line);
+        let n = layout.segment_count;
+        let last = |i: usize| layout.position.get(FIRST + i) - layout.position.get(FIRST + i - 1);
+        let [_, rate] = winch.reel.half_step;
+        let stretch = last(n) / winch.end_length(winch.reel.change);
+        let place = |i: usize| {
+            let transport = if i == n { rate } else { 0.0 };
+            let velocity = layout.velocity.get(FIRST + i) + transport * stretch;
+            layout.position.get(FIRST + i) - lag * velocity
+        };
+        let axial = |i: usize| {
+            let strain = (place(i + 1) - place(i)).norm() / line.segments.length[i] - 1.0;
+            axial_energy(line, i, strain)
+        };
+        let carried = |i: usize| {
+            let (velocity, tangent) =
+                (layout.velocity.get(FIRST + i), layout.tangent_of(FIRST + i));
+            let along = velocity.dot(&tangent).powi(2);
+            let across = velocity.norm_squared() - along;
+            let nodes = &line.nodes;
+            0.5 * (nodes.mass_normal[i] * across + nodes.mass_tangent[i] * along)
+                + nodes.weight[i] * place(i).z
+        };
+        (first..n).map(axial).sum::<f64>() + (first + 1..n).map(carried).sum::<f64>()
+    }
+
+    /// Writes segments and nodes from `from` on into the arrays of the kernel, with padding behind them.
+    fn lay_out(&mut self, from: usize) {
+        let Some(winch) = &self.winch else {
+            return;
+        };
+        let (layout, segments, nodes) = (&mut self.layout, &winch.line.segments, &winch.line.nodes);
+        let n = winch.line.segment_count();
+        layout.segment_count = n;
+        put(
+            &mut layout.axial_stiffness,
+            from,
+            n,
+            |i| segments.axial_stiffness[i],
+            0.0,
+        );
+        put(
+            &mut layout.axial_damping,
+            from,
+            n,
+            |i| segments.axial_damping[i],
+            0.0,
+        );
+        put(
+            &mut layout.inverse_length,
+            from,
+            n,
+            |i| 1.0 / segments.length[i],
+            1.0,
+        );
+        put(&mut layout.weight, from, n + 1, |i| nodes.weight[i], 0.0);
+        put(
+            &mut self.inverse_mass,
+            from,
+            n + 1,
+            |i| 1.0 / nodes.mass_normal[i],
+            0.0,
+        );
+        put(&mut self.interior, from.max(1), n, |_| 1.0, 0.0);
+        if let (Some(into), Some(values)) = (&mut layout.mass_damping, &nodes.mass_damping) {
+            put(into, from, n + 1, |i| values[i], 0.0);
+        }
+        if let (Some(into), Some(contact)) = (&mut layout.contact, &nodes.contact) {
+            let level = |i: usize| match contact.bottom {
+                Some(_) => contact.lift(i),
+                None => contact.level[i],
+            };
+            put(&mut into.level, from, n + 1, level, 0.0);
+            put(
+                &mut into.stiffness,
+                from,
+                n + 1,
+                |i| contact.stiffness[i],
+                0.0,
+            );
+            put(&mut into.damping, from, n + 1, |i| contact.damping[i], 0.0);
+            if let (Some(bottom), false) = (&mut into.bottom, contact.stick.is_empty()) {
+                put(&mut bottom.stick, from, n + 1, |i| contact.stick[i], 0.0);
+            }
+        }
+        for (motion, used) in [
+            (&mut self.pull, n),
+            (&mut layout.velocity, n + 1),
+            (&mut layout.velocity_before, n + 1),
+        ] {
+            for values in [&mut motion.x, &mut motion.y, &mut motion.z] {
+                put(values, used, used, |_| 0.0, 0.0);
+            }
+        }
+        self.lay_out_water(from);
+    }
+
+    /// Writes what the water does to the nodes from `from` on.
+    fn lay_out_water(&mut self, from: usize) {
+        let (Some(winch), Some(water)) = (&self.winch, &mut self.water) else {
+            return;
+        };
+        let (nodes, n) = (&winch.line.nodes, winch.line.segment_count());
+        if let Some(drag) = &nodes.drag {
+            put(&mut water.drag_normal, from, n + 1, |i| drag.normal[i], 0.0);
+            put(
+                &mut water.drag_tangent,
+                from,
+                n + 1,
+                |i| drag.tangent[i],
+                0.0,
+            );
+        }
+        let excess = |i: usize| 1.0 / nodes.mass_tangent[i] - 1.0 / nodes.mass_normal[i];
+        put(&mut water.inverse_mass_excess, from, n + 1, excess, 0.0);
+    }
+}
+
+/// Masses [kg] of up to three nodes from `first` on.
+fn last_masses(line: &Line, first: usize) -> [f64; 3] {
+    let masses = &line.nodes.mass_normal;
+    [0, 1, 2].map(|k| masses.get(first + k).copied().unwrap_or(0.0))
+}
+
+/// Writes `count` values, from number `from` on, and padding behind them as far as a kernel reads.
+fn put(into: &mut [f64], from: usize, count: usize, value: impl Fn(usize) -> f64, padding: f64) {
+    for i in from..count {
+        into[FIRST + i] = value(i);
+    }
+    let end = (FIRST + count + 2 * LANES).min(into.len());
+    into[FIRST + count..end].fill(padding);
+}
+
+/// Puts a node into the last segment, which ends at `end`, at a part [-] of it.
+fn split(motion: &mut Components, end: usize, part: f64) {
+    let (near, far) = (motion.get(end - 1), motion.get(end));
+    motion.set(end, near + part * (far - near));
+    motion.set(end + 1, far);
+}
+
+/// Takes out the neighbour of the end, so that momentum stays: of masses `old` of the three last nodes and `new` of the two that are left and none [kg].
+fn merge(velocity: &mut Components, end: usize, old: [f64; 3], new: [f64; 3]) {
+    let [before, near, far] = [end - 2, end - 1, end].map(|at| velocity.get(at));
+    let momentum = old[0] * before + old[1] * near + (old[2] - new[1]) * far;
+    velocity.set(end - 2, momentum / new[0]);
+    velocity.set(end - 1, far);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dynamics::layout::Water;
+    use crate::model::Model;
+    use crate::scene::Scene;
+    use approx::assert_relative_eq;
+
+    const SCENE: &str = r#"
+        line_types.rope = { mass = 20.0, axial_stiffness = 1.0e6 }
+        points = [
+          { name = "low", position = [0.0, 0.0, -20.0], kind = "fixed" },
+          { name = "high", position = [30.0, 0.0, 0.0], kind = "fixed" },
+        ]
+        lines = [{ name = "rope", from = "low", to = "high", winch = { end = "b", length_max = 20.0 }, sections = [{ type = "rope", length = 40.0, elements = 10 }] }]
+    "#;
+
+    /// The line with 6.2 m of end segment, in wild motion.
+    fn work() -> LineWork {
+        let model = Model::new(&Scene::from_toml(SCENE).unwrap()).unwrap();
+        let line = &model.lines[0];
+        let water = Water::around(&model, line);
+        let mut work = LineWork::new(line, water, [true; 2], false).unwrap();
+        let wild = |i: usize, k: f64| {
+            let i = i as f64;
+            Vector3::new(
+                (3.0 * i + k).sin(),
+                (5.0 * i * k).cos(),
+                (i + 2.0 * k).sin(),
+            )
+        };
+        let mut state = LineState::at_rest(
+            (0..=10)
+                .map(|i| 4.0 * i as f64 * Vector3::x() + wild(i, 0.1))
+                .collect(),
+        );
+        state.half_step.velocity = (0..=10).map(|i| wild(i, 1.0)).collect();
+        state.half_step.velocity_before = (0..=10).map(|i| wild(i, 2.0)).collect();
+        state.reel = Some(Reel {
+            change: 2.2,
+            rate: 0.7,
+            acceleration: 0.0,
+            half_step: [2.2, 0.7],
+        });
+        work.load(&state);
+        work
+    }
+
+    /// Mass [kg] and momenta [kg m/s] of all nodes, that of the half node at the winch counted in.
+    fn content(work: &LineWork) -> (f64, [Vector3<f64>; 2]) {
+        let nodes = &work.winch.as_ref().unwrap().line.nodes;
+        let motions = [&work.layout.velocity, &work.layout.velocity_before];
+        let momenta = motions.map(|motion| {
+            let nodes = nodes.mass.iter().enumerate();
+            nodes.map(|(i, mass)| *mass * motion.get(FIRST + i)).sum()
+        });
+        (nodes.mass.iter().sum(), momenta)
+    }
+
+    #[test]
+    fn a_split_and_a_merge_keep_mass_and_momentum() {
+        let mut work = work();
+        let (mass, momenta) = content(&work);
+        assert_relative_eq!(mass, 20.0 * 42.2, max_relative = 1e-14);
+        let motion = [
+            work.layout.velocity.clone(),
+            work.layout.velocity_before.clone(),
+        ];
+        for passage in [
+            Passage::Split,
+            Passage::Merge,
+            Passage::Merge,
+            Passage::Merge,
+        ] {
+            work.pass(passage, 1e-3);
+            let (kept_mass, kept) = content(&work);
+            assert_relative_eq!(kept_mass, mass, max_relative = 1e-14);
+            for (kept, was) in kept.iter().zip(&momenta) {
+                assert_relative_eq!(*kept, *was, epsilon = 1e-11);
+            }
+        }
+        assert_eq!(work.layout.segment_count, 8);
+        let mut again = self::work();
+        again.pass(Passage::Split, 1e-3);
+        again.pass(Passage::Merge, 1e-3);
+        for (motion, was) in [&again.layout.velocity, &again.layout.velocity_before]
+            .iter()
+            .zip(&motion)
+        {
+            for i in 0..=10 {
+                assert_relative_eq!(motion.get(FIRST + i), was.get(FIRST + i), epsilon = 1e-12);
+            }
+        }
+    }
+}

@@ -1,0 +1,202 @@
+//! Lines whose end B is on a winch: how they are laid out at any length paid out.
+//!
+//! The reel is the line with all that can be paid out, in segments of nominal lengths l_i. With n segments out, the last one has the length
+//!
+//!   e = S + ΔL − Σ_{i<n−1} l_i,
+//!
+//! S being the length of the line at no change ΔL, and all others their nominal ones. Paid out beyond [`LONGEST`]·l it splits in two, of
+//! which the first has its nominal length; hauled in below [`SHORTEST`]·l it merges with its neighbour. The range exceeds l, so that a winch
+//! that rocks to and fro does not split and merge all the time.
+//!
+//! What the nodes carry is linear in the lengths beside them. Contact keeps the depth into which a node of nominal length sinks.
+
+use super::{Line, Nodes};
+use crate::scene::TimeFunction;
+
+/// Length of the end segment above which it splits, over its nominal one [-].
+pub const LONGEST: f64 = 1.5;
+/// Length of the end segment below which it merges with its neighbour, over its nominal one [-].
+pub const SHORTEST: f64 = 0.4;
+/// Least length of the end segment where nothing is left to merge with, over its nominal one [-].
+const LAST: f64 = 0.1;
+/// Segments of a line, at least.
+const SEGMENTS_MIN: usize = 2;
+
+/// The winch at end B of a line.
+#[derive(Debug, Clone)]
+pub struct Winch {
+    /// The line with all that can be paid out.
+    reel: Box<Line>,
+    /// Unstretched length at no change [m].
+    length: f64,
+    /// Segments at no change.
+    nominal: usize,
+    /// Segments that cannot be hauled in.
+    least: usize,
+    /// Greatest length that is paid out [m].
+    pub length_max: f64,
+    /// Greatest speed [m/s].
+    pub speed_max: Option<f64>,
+    /// Length paid out in time [m] where the scene's own motion is followed.
+    pub path: Option<TimeFunction>,
+}
+
+/// What happens to the end segment.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Passage {
+    /// It splits in two.
+    Split,
+    /// It merges with its neighbour.
+    Merge,
+}
+
+impl Winch {
+    /// On the line `reel` that has all that can be paid out, of whose segments `nominal` are out at no change; the last section begins at
+    /// segment `first`.
+    pub(super) fn new(
+        reel: Line,
+        [first, nominal]: [usize; 2],
+        winch: &crate::scene::Winch,
+    ) -> Winch {
+        Winch {
+            length: reel.nodes.arc[nominal],
+            reel: Box::new(reel),
+            nominal,
+            least: SEGMENTS_MIN.max(first + 1),
+            length_max: winch.length_max,
+            speed_max: winch.speed_max,
+            path: winch.path.clone(),
+        }
+    }
+
+    /// The line with all that can be paid out.
+    pub fn reel(&self) -> &Line {
+        &self.reel
+    }
+
+    /// Length change [m] at which nothing more can be hauled in.
+    pub fn length_min(&self) -> f64 {
+        let end = self.reel.segments.length[self.least - 1];
+        self.reel.nodes.arc[self.least - 1] + SHORTEST * end - self.length
+    }
+
+    /// Length [m] of the last of `count` segments at a length change [m].
+    pub fn end_length(&self, count: usize, change: f64) -> f64 {
+        let left = self.length + change - self.reel.nodes.arc[count - 1];
+        left.max(LAST * self.reel.segments.length[count - 1])
+    }
+
+    /// What becomes of the last of `count` segments at a length change [m].
+    pub fn passage(&self, count: usize, change: f64) -> Option<Passage> {
+        let part = self.end_length(count, change) / self.reel.segments.length[count - 1];
+        if part > LONGEST && count < self.reel.segment_count() {
+            Some(Passage::Split)
+        } else if part < SHORTEST && count > self.least {
+            Some(Passage::Merge)
+        } else {
+            None
+        }
+    }
+
+    /// Segments of a line that is laid out anew at a length change [m].
+    pub fn segments_at(&self, change: f64) -> usize {
+        let mut count = self.nominal;
+        while let Some(passage) = self.passage(count, change) {
+            match passage {
+                Passage::Split => count += 1,
+                Passage::Merge => count -= 1,
+            }
+        }
+        count
+    }
+}
+
+impl Line {
+    /// Most nodes that it ever has.
+    pub fn nodes_max(&self) -> usize {
+        let winch = self.winch.as_ref();
+        winch.map_or(self.nodes.arc.len(), |winch| winch.reel.nodes.arc.len())
+    }
+
+    /// Lays out a line on a winch with so many segments at a length change [m].
+    pub fn pay_out(&mut self, count: usize, change: f64) {
+        let Some(winch) = self.winch.take() else {
+            return;
+        };
+        let reel = winch.reel();
+        let keep = |values: &mut Vec<f64>, of: &[f64], count: usize| {
+            values.clear();
+            values.extend_from_slice(&of[..count]);
+        };
+        let (segments, full) = (&mut self.segments, &reel.segments);
+        keep(&mut segments.length, &full.length, count);
+        keep(&mut segments.axial_stiffness, &full.axial_stiffness, count);
+        keep(&mut segments.axial_damping, &full.axial_damping, count);
+        segments.law.clone_from(&full.law);
+        segments.law.truncate(count);
+        keep(&mut self.nodes.arc, &reel.nodes.arc, count + 1);
+        for (values, of) in extensive(&mut self.nodes, &reel.nodes) {
+            keep(values, of, count + 1);
+        }
+        if let (Some(contact), Some(full)) = (&mut self.nodes.contact, &reel.nodes.contact) {
+            keep(&mut contact.level, &full.level, count + 1);
+            contact.level[count] = full.level[reel.segment_count()];
+        }
+        self.winch = Some(winch);
+        self.set_length_change(change);
+    }
+
+    /// Sets the length of the last segment by the length change of a winch [m].
+    pub fn set_length_change(&mut self, change: f64) {
+        let Some(winch) = self.winch.take() else {
+            return;
+        };
+        let (count, reel) = (self.segment_count(), winch.reel());
+        let end = winch.end_length(count, change);
+        let (last, nominal) = (reel.segment_count(), reel.segments.length[count - 1]);
+        self.segments.length[count - 1] = end;
+        self.nodes.arc[count] = self.nodes.arc[count - 1] + end;
+        for (values, of) in extensive(&mut self.nodes, &reel.nodes) {
+            let density = of[last] / reel.nodes.length[last]; // the reel's end is half a segment of the section at the winch
+            values[count - 1] = of[count - 1] + 0.5 * (end - nominal) * density;
+            values[count] = 0.5 * end * density;
+        }
+        let before: f64 = self.sections.iter().rev().skip(1).map(|s| s.length).sum();
+        if let Some(section) = self.sections.last_mut() {
+            section.length = self.nodes.arc[count] - before;
+        }
+        self.winch = Some(winch);
+    }
+}
+
+/// What is proportional to the length that a node stands for, with that of the reel.
+fn extensive<'a>(
+    nodes: &'a mut Nodes,
+    reel: &'a Nodes,
+) -> impl Iterator<Item = (&'a mut Vec<f64>, &'a Vec<f64>)> {
+    let (drag, pressed) = (&mut nodes.drag, &mut nodes.pressed);
+    let drag = drag.as_mut().zip(reel.drag.as_ref());
+    let pressed = pressed.as_mut().zip(reel.pressed.as_ref());
+    let contact = nodes.contact.as_mut().zip(reel.contact.as_ref());
+    let always = [
+        (&mut nodes.length, &reel.length),
+        (&mut nodes.mass, &reel.mass),
+        (&mut nodes.mass_normal, &reel.mass_normal),
+        (&mut nodes.mass_tangent, &reel.mass_tangent),
+        (&mut nodes.weight, &reel.weight),
+    ];
+    let drag = drag.map(|(a, b)| [(&mut a.normal, &b.normal), (&mut a.tangent, &b.tangent)]);
+    let pressed = pressed.map(|(a, b)| [(&mut a.normal, &b.normal), (&mut a.tangent, &b.tangent)]);
+    let contact = contact.map(|(a, b)| {
+        [
+            (&mut a.stiffness, &b.stiffness),
+            (&mut a.damping, &b.damping),
+            (&mut a.stick, &b.stick),
+        ]
+    });
+    let damping = nodes.mass_damping.as_mut().zip(reel.mass_damping.as_ref());
+    let pairs = drag.into_iter().chain(pressed).flatten();
+    let bed = contact.into_iter().flatten();
+    let all = always.into_iter().chain(pairs).chain(bed).chain(damping);
+    all.filter(|(_, of)| !of.is_empty()) // no stick without friction
+}

@@ -1,0 +1,127 @@
+//! How far the winches are: their paths between communication points, and lines laid out as long as they are.
+
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use crate::dynamics::motion::{AxisPath, Sample};
+use crate::model::{Line, Model, State, Winch};
+use crate::scene::{Reconstruction, SceneError, TimeFunction};
+
+/// The length that a winch pays out.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub(super) struct ReelPath {
+    /// Length change [m] in time.
+    pub path: AxisPath,
+    /// When the winch was told last [s], and what, within its speed [m].
+    told: [f64; 2],
+}
+
+impl ReelPath {
+    /// Continues by a communication step [s] from what a host says at a time [s] of the length change [m]; a winch that has a greatest speed
+    /// [m/s] lags behind what is faster.
+    pub fn extend(
+        &mut self,
+        speed_max: Option<f64>,
+        [time, wanted]: [f64; 2],
+        step: f64,
+        reconstruction: Reconstruction,
+    ) {
+        let [last, before] = self.told;
+        let reach = speed_max.map_or(f64::INFINITY, |speed| speed * (time - last).max(0.0));
+        let position = wanted.clamp(before - reach, before + reach);
+        self.told = [time, position];
+        let sample = Sample {
+            time,
+            position,
+            velocity: None,
+        };
+        self.path.extend(sample, step, reconstruction);
+    }
+
+    /// Continues along the scene's own path from a time [s] by a communication step [s]: through its value there, at its mean rate around it.
+    pub fn follow(&mut self, path: &TimeFunction, time: f64, step: f64) {
+        let end = time + step;
+        let to = Sample {
+            time: end,
+            position: path.at(end),
+            velocity: Some((path.at(end + step) - path.at(time)) / (2.0 * step)),
+        };
+        self.path.follow(to);
+    }
+}
+
+/// Length change [m] of a winch where the scene's own motion is followed from a time on [s], if it is.
+fn start(winch: &Winch, told: f64, follows: Option<f64>) -> f64 {
+    match (follows, &winch.path) {
+        (Some(time), Some(path)) => path.at(time),
+        _ => told,
+    }
+}
+
+/// What is wrong with a length change [m], where something is.
+pub(super) fn check(line: &Line, change: f64) -> Result<(), String> {
+    let Some(winch) = &line.winch else {
+        return Ok(());
+    };
+    let (least, most) = (winch.length_min(), winch.length_max);
+    // a host's sum may round beyond the bounds
+    let rounding = 1e-9 * (most - least);
+    if change >= least - rounding && change <= most + rounding {
+        return Ok(());
+    }
+    Err(format!(
+        "the winch is to have paid out {change} m, and can from {least} to {most} m"
+    ))
+}
+
+/// Paths at rest from a time on [s], by line; none where there is no winch.
+pub(super) fn paths(model: &Model, told: &[f64], time: f64, follows_scene: bool) -> Vec<ReelPath> {
+    if model.lines.iter().all(|line| line.winch.is_none()) {
+        return Vec::new();
+    }
+    let lines = model.lines.iter().zip(told);
+    let path = |(line, told): (&Line, &f64)| {
+        let winch = line.winch.as_ref();
+        let change = winch.map_or(0.0, |winch| {
+            start(winch, *told, follows_scene.then_some(time))
+        });
+        ReelPath {
+            path: AxisPath::at_rest(time, change),
+            told: [time, change],
+        }
+    };
+    lines.map(path).collect()
+}
+
+/// Lays out the lines on winches at the lengths that they start with.
+///
+/// # Errors
+/// Lengths that a winch cannot pay out.
+pub(super) fn lay_out(
+    model: &mut Arc<Model>,
+    told: &[f64],
+    follows: Option<f64>,
+) -> Result<(), SceneError> {
+    for (index, &told) in told.iter().enumerate() {
+        let Some(winch) = &model.lines[index].winch else {
+            continue;
+        };
+        let change = start(winch, told, follows);
+        check(&model.lines[index], change)
+            .map_err(|problem| SceneError::new(format!("lines[{index}].winch"), problem))?;
+        let count = winch.segments_at(change);
+        Arc::make_mut(model).lines[index].pay_out(count, change);
+    }
+    Ok(())
+}
+
+/// Lays out the lines on winches as a state has them.
+pub(super) fn follow(model: &mut Arc<Model>, state: &State) {
+    for (index, shape) in state.lines.iter().enumerate() {
+        if let (Some(reel), Some(_)) = (shape.reel, &model.lines[index].winch) {
+            let line = &mut Arc::make_mut(model).lines[index];
+            line.pay_out(shape.position.len() - 1, reel.change);
+        }
+    }
+}
