@@ -152,7 +152,8 @@ fn tension_falls_by_mu_w_along_the_bed_and_there_is_none_beyond() {
     let nodes = &simulation.state().lines[0].position;
     let tension = simulation.model().lines[0].segment_count();
     let tension: Vec<f64> = (0..tension).map(|i| segment(&simulation, i)).collect();
-    let laid = nodes.iter().take_while(|r| r.z < -100.0 + 1e-6).count() - 1;
+    let at_rest = nodes[2].z + 1e-6; // where the spring carries all of a node
+    let laid = nodes.iter().rposition(|r| r.z < at_rest).unwrap();
     let mut slid = 0;
     for i in 1..laid {
         let fall = tension[i] - tension[i - 1];
@@ -638,7 +639,7 @@ fn what_hangs_from_a_softened_bed_pulls_as_over_a_rigid_one() {
                     "{name}, {elements}, {shift}: {lifts:e} at the anchor"
                 );
                 let laid = simulation.laid_length(0) - rigid.laid_length();
-                assert!(laid.abs() < 0.2 * 900.0 / elements as f64, "{laid} m");
+                assert!(laid.abs() < 225.0 / elements as f64, "{laid} m"); // a quarter of an element
             }
         }
     }

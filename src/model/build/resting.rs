@@ -7,8 +7,8 @@
 //!
 //! the catenary over a rigid bed that lies δ/2 above the line at rest. So a line rests δ/2 deep, and what hangs from the bed is right to
 //! the next order in the mesh; a line that rests on the bed hangs δ/2 too high, which costs 0.2 % of tension with 40 elements.
-//! Towards an end that is held on the bed the line comes up to it, over a length R = 4√(δa) for a = H/w = 2L, so that the end is not pulled
-//! down.
+//! Towards an end that is held on the bed the line comes up to it, over a length R of a few elements, so that the end is not pulled
+//! down: the line follows a smooth step as long as R > √3 λ, and λ is an element or less of the meshes in use.
 //!
 //! Source: beam without bending stiffness on Winkler's foundation, here solved for the level; the tests below and
 //! `tests/equilibrium.rs` hold the gain against the elastic catenary.
@@ -18,24 +18,20 @@ use crate::physics::seabed::REGULARISED_PENETRATION;
 
 /// Static compression that the line rests in the bed by [-].
 const SUNK: f64 = 0.5;
-/// H/w over the length of the line, for the length over which the line comes up to a held end [-].
-const FLATNESS: f64 = 2.0;
-/// That length over λ [-]: the line follows a smooth step of this length without leaving it.
-const RISE: f64 = 4.0;
+/// Elements over which the line comes up to a held end [-].
+const RISE: f64 = 5.0;
 
 /// Lowers the level from which softened contact pushes, from where a line would rest on the bed to where what hangs is right.
 pub(super) fn sink(line: &mut Line, points: &[Point]) {
-    let arc = &line.nodes.arc;
-    let (length, last) = (arc[arc.len() - 1], arc.len() - 1);
+    let length = line.unstretched_length();
     let Some(contact) = &mut line.nodes.contact else {
         return;
     };
-    let lies = line
-        .ends
-        .map(|end| lies_on(contact, &points[end], line.nodes.length[0]));
-    for i in 0..=last {
-        let compression = contact.level[i] - contact.bed; // δ
-        let rise = RISE * (compression * FLATNESS * length).sqrt(); // R
+    let spacing = line.nodes.length[0];
+    let lies = line.ends.map(|end| lies_on(contact, &points[end], spacing));
+    for (arc, level) in line.nodes.arc.iter().zip(&mut contact.level) {
+        let compression = *level - contact.bed; // δ
+        let rise = RISE * compression / REGULARISED_PENETRATION; // R
         let near = |distance: f64| {
             if rise > 0.0 {
                 step(1.0 - distance / rise)
@@ -43,11 +39,11 @@ pub(super) fn sink(line: &mut Line, points: &[Point]) {
                 0.0
             }
         };
-        let from_ends = [arc[i], length - arc[i]];
-        let near = (0..2)
-            .filter(|&end| lies[end])
-            .map(|end| near(from_ends[end]));
-        contact.level[i] -= SUNK * compression * (1.0 - near.fold(0.0, f64::max));
+        let from_ends = [*arc, length - arc].into_iter().zip(lies);
+        let near = from_ends
+            .filter(|(_, lies)| *lies)
+            .map(|(distance, _)| near(distance));
+        *level -= SUNK * compression * (1.0 - near.fold(0.0, f64::max));
     }
 }
 
