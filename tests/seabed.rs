@@ -145,7 +145,9 @@ fn weight(simulation: &Simulation) -> f64 {
 
 #[test]
 fn tension_falls_by_mu_w_along_the_bed_and_there_is_none_beyond() {
-    let simulation = Simulation::new(&chain("friction = 0.5", 560.0, 60)).unwrap();
+    // on a bed that gives way by micrometres all that lies there lies at one height
+    let bed = "friction = 0.5, contact = \"as_given\"";
+    let simulation = Simulation::new(&chain(bed, 560.0, 60)).unwrap();
     let (w, l) = (weight(&simulation), 10.0);
     let nodes = &simulation.state().lines[0].position;
     let tension = simulation.model().lines[0].segment_count();
@@ -612,5 +614,32 @@ fn a_point_under_a_bed_that_is_not_level_is_told_of() {
                 .any(|note| note.contains("below the seabed there")),
             "{notes:?}"
         );
+    }
+}
+
+#[test]
+fn what_hangs_from_a_softened_bed_pulls_as_over_a_rigid_one() {
+    // at 20 elements the length of an element itself decides, where the line leaves the bed
+    for (elements, bar) in [(20, 2.5e-3), (40, 6e-4), (80, 2e-4)] {
+        for (name, shifts) in [
+            ("oc3_catenary", [0.0, -3.0, 5.0]),
+            ("oc4_chain", [0.0, -3.0, 5.0]),
+        ] {
+            for shift in shifts {
+                let mut scene = common::with_elements(common::shipped(name), elements);
+                scene.points[1].position[0] += shift;
+                let simulation = Simulation::new(&scene).unwrap();
+                let rigid = simulation.catenary(0).unwrap();
+                let error = simulation.tension_b(0) / rigid.tension_b() - 1.0;
+                assert!(error.abs() < bar, "{name}, {elements}, {shift}: {error:e}");
+                let lifts = simulation.line_end_force(0, End::A).z.abs() / rigid.horizontal();
+                assert!(
+                    lifts < 3e-3,
+                    "{name}, {elements}, {shift}: {lifts:e} at the anchor"
+                );
+                let laid = simulation.laid_length(0) - rigid.laid_length();
+                assert!(laid.abs() < 0.2 * 900.0 / elements as f64, "{laid} m");
+            }
+        }
     }
 }

@@ -1,6 +1,7 @@
 //! Scene -> Model.
 
 mod beam;
+mod resting;
 mod spacing;
 mod waves;
 
@@ -58,6 +59,7 @@ impl Model {
             let mut built = build_line(scene, index, line, (&points, &vessels), elements[index])?;
             rest_as_it_lies(&mut built, &points, line.rest_shape);
             lay_on(&mut built, bottom.as_ref());
+            resting::sink(&mut built, &points);
             points[built.ends[0]].attached.push((index, End::A));
             points[built.ends[1]].attached.push((index, End::B));
             lines.push(built);
@@ -688,7 +690,7 @@ fn contact(
             };
             let soft = regularised(given, weight[i], spacing);
             if soft.stiffness < given.stiffness {
-                level[i] += weight[i] / soft.stiffness; // so that a resting node lies on the bed, not in it
+                level[i] += weight[i] / soft.stiffness; // so that a resting node lies on the bed; see also `resting`
             }
             (stiffness[i], damping[i]) = (soft.stiffness, soft.damping);
         }

@@ -4,7 +4,8 @@
 //!
 //! k = kbot·d and c = cbot·d per unstretched length. Regularised contact softens both together,
 //! k_eff = min(k, w/(δ d h)·d), c_eff = c·k_eff/k, so that a node at rest is pressed in by δ times the segment length h: with the usual
-//! kbot of 3 MPa/m the static penetration would be micrometres and every node that lands would ring.
+//! kbot of 3 MPa/m the static penetration would be micrometres and every node that lands would ring. At what level that begins so that what
+//! hangs from the bed is right: `model/build/resting.rs`.
 //!
 //! Source: the spring and damper of Hall & Goupee (2015), Ocean Engineering 104, eq. 13, made unilateral (their damper
 //! pulls on a rising node); the regularisation and its δ were chosen by the convergence study told in the README.
