@@ -340,3 +340,22 @@ fn what_a_winch_cannot_serve_is_refused() {
     );
     refused(&implicit, "leapfrog");
 }
+
+#[test]
+fn a_line_on_a_rough_bed_stays_at_rest_and_pays_out_as_on_a_smooth_one() {
+    let text = chain(100.0, 25, WINCH).to_toml();
+    let text = text.replace("\nfriction = 0.0", "");
+    let rough = Scene::from_toml(&text.replace("[seabed]", "[seabed]\nfriction = 0.5")).unwrap();
+    let mut simulation =
+        Simulation::new(&with_integrator(rough, Integrator::Leapfrog, 2e-3)).unwrap();
+    let start = simulation.tension_b(0);
+    (0..50).for_each(|_| simulation.advance(0.1).unwrap());
+    assert_relative_eq!(simulation.tension_b(0), start, max_relative = 1e-9);
+    for step in 0..300 {
+        simulation.set_length_change(0, 0.02 * f64::from(step));
+        simulation.advance(0.1).unwrap();
+    }
+    let nodes = &simulation.state().lines[0];
+    assert_eq!(nodes.anchor.len(), nodes.position.len());
+    assert_relative_eq!(simulation.tension_b(0), start, max_relative = 0.1);
+}

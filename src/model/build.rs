@@ -123,6 +123,9 @@ const STICK: f64 = 10.0;
 
 /// Gives a line the bed's surface.
 fn lay_on(line: &mut Line, bottom: Option<&Arc<Bottom>>) {
+    if let Some(winch) = &mut line.winch {
+        lay_on(winch.reel_mut(), bottom);
+    }
     let springs: Vec<f64> = line
         .segments
         .axial_stiffness

@@ -74,6 +74,11 @@ impl Winch {
         &self.reel
     }
 
+    /// The same, to be completed.
+    pub(super) fn reel_mut(&mut self) -> &mut Line {
+        &mut self.reel
+    }
+
     /// Length change [m] at which nothing more can be hauled in.
     pub fn length_min(&self) -> f64 {
         let end = self.reel.segments.length[self.least - 1];
@@ -141,6 +146,11 @@ impl Line {
         if let (Some(contact), Some(full)) = (&mut self.nodes.contact, &reel.nodes.contact) {
             keep(&mut contact.level, &full.level, count + 1);
             contact.level[count] = full.level[reel.segment_count()];
+            keep(
+                &mut contact.stick,
+                &full.stick,
+                full.stick.len().min(count + 1),
+            );
         }
         self.winch = Some(winch);
         self.set_length_change(change);
@@ -191,12 +201,10 @@ fn extensive<'a>(
         [
             (&mut a.stiffness, &b.stiffness),
             (&mut a.damping, &b.damping),
-            (&mut a.stick, &b.stick),
         ]
     });
     let damping = nodes.mass_damping.as_mut().zip(reel.mass_damping.as_ref());
     let pairs = drag.into_iter().chain(pressed).flatten();
     let bed = contact.into_iter().flatten();
-    let all = always.into_iter().chain(pairs).chain(bed).chain(damping);
-    all.filter(|(_, of)| !of.is_empty()) // no stick without friction
+    always.into_iter().chain(pairs).chain(bed).chain(damping)
 }
