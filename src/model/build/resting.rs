@@ -23,6 +23,9 @@ const RISE: f64 = 5.0;
 
 /// Lowers the level from which softened contact pushes, from where a line would rest on the bed to where what hangs is right.
 pub(super) fn sink(line: &mut Line, points: &[Point]) {
+    if let Some(winch) = &mut line.winch {
+        sink(winch.reel_mut(), points);
+    }
     let length = line.unstretched_length();
     let Some(contact) = &mut line.nodes.contact else {
         return;
