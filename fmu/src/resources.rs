@@ -119,18 +119,18 @@ mod tests {
     #[test]
     fn every_form_of_a_location_that_hosts_use_is_understood() {
         for (location, path) in [
-            ("file:///tmp/a/resources", "/tmp/a/resources"),
-            ("file:/tmp/a/resources", "/tmp/a/resources"),
-            ("file://localhost/tmp/a", "/tmp/a"),
-            ("FILE:////tmp/a", "/tmp/a"),
+            ("file:///data/a/resources", "/data/a/resources"),
+            ("file:/data/a/resources", "/data/a/resources"),
+            ("file://localhost/data/a", "/data/a"),
+            ("FILE:////data/a", "/data/a"),
             (
-                "file:///tmp/sp%20dir%20%C3%B8%20%7Bx%7D",
-                "/tmp/sp dir ø {x}",
+                "file:///data/sp%20dir%20%C3%B8%20%7Bx%7D",
+                "/data/sp dir ø {x}",
             ),
-            ("file:///tmp/sp dir ø {x}", "/tmp/sp dir ø {x}"),
-            ("file:///tmp/100%/a", "/tmp/100%/a"),
-            ("/tmp/a/resources/", "/tmp/a/resources/"),
-            ("/tmp/a%20b", "/tmp/a%20b"),
+            ("file:///data/sp dir ø {x}", "/data/sp dir ø {x}"),
+            ("file:///data/100%/a", "/data/100%/a"),
+            ("/data/a/resources/", "/data/a/resources/"),
+            ("/data/a%20b", "/data/a%20b"),
             ("res", "res"),
         ] {
             assert_eq!(first(location, false), path, "{location}");
@@ -153,8 +153,8 @@ mod tests {
     #[test]
     fn a_folder_with_an_unescaped_per_cent_sign_is_the_second_choice() {
         assert_eq!(
-            candidates("file:///tmp/50%25", false).unwrap(),
-            ["/tmp/50%", "/tmp/50%25"]
+            candidates("file:///data/50%25", false).unwrap(),
+            ["/data/50%", "/data/50%25"]
         );
     }
 

@@ -102,12 +102,15 @@ pub(super) struct CreepArrays {
 impl CreepArrays {
     /// For a line; `None` where it is not viscoelastic.
     pub fn new(line: &Line) -> Option<CreepArrays> {
-        let laws = line.segments.viscoelastic.as_ref()?;
+        line.segments.viscoelastic.as_deref().map(CreepArrays::of)
+    }
+
+    fn of(laws: &[Viscoelastic]) -> CreepArrays {
         let each = |value: fn(&Viscoelastic) -> f64| {
             let values: Vec<f64> = laws.iter().map(value).collect();
             pad(laws.len(), &values, 0.0)
         };
-        Some(CreepArrays {
+        CreepArrays {
             count: laws.len(),
             stiffness: each(|law| law.stiffness),
             damping: each(|law| law.damping),
@@ -119,7 +122,7 @@ impl CreepArrays {
             contraction: each(|law| law.contraction),
             strain: each(|_| 0.0),
             slow: each(|_| 0.0),
-        })
+        }
     }
 
     /// Takes over the slow strains of a line.
@@ -217,24 +220,9 @@ mod tests {
             Viscoelastic::plain(1.0e8, 1.0e5),
             Viscoelastic::new([1.0e8, 3.0e8], [1.0e8, 0.0]),
         ];
-        let each = |value: fn(&Viscoelastic) -> f64| {
-            let values: Vec<f64> = laws.iter().map(value).collect();
-            pad(laws.len(), &values, 0.0)
-        };
         for (before, now, rate) in [(0.01, 0.012, 0.1), (0.01, -0.02, -0.5), (0.0, 0.01, 0.0)] {
-            let mut arrays = CreepArrays {
-                count: 3,
-                stiffness: each(|law| law.stiffness),
-                damping: each(|law| law.damping),
-                memory: each(|law| law.memory),
-                slow_stiffness: each(|law| law.slow),
-                fast_stiffness: each(|law| law.fast),
-                fast_damping: each(|law| law.fast_damping),
-                yielding: each(|law| law.yielding),
-                contraction: each(|law| law.contraction),
-                strain: vec![before; 2 * FIRST + 4],
-                slow: vec![0.0; 2 * FIRST + 4],
-            };
+            let mut arrays = CreepArrays::of(&laws);
+            arrays.strain.fill(before);
             let slow = [0.002, 0.0, 0.001];
             arrays.load(&slow);
             let (now_lanes, rate_lanes) = (Lanes::splat(now), Lanes::splat(rate));
