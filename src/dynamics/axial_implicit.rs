@@ -70,6 +70,8 @@ pub struct AxialWork {
     lost: Lanes,
     given: f64,
     tension_peak: f64,
+    /// Whether the flags and the true stretch of all steps since then were found.
+    settled: bool,
 }
 
 /// What a step knows of the segments before it is solved.
@@ -160,6 +162,7 @@ impl AxialWork {
             lost: Lanes::splat(0.0),
             given: 0.0,
             tension_peak: 0.0,
+            settled: true,
             layout,
             weights: Weights::new(rho),
             segments: SegmentArrays {
@@ -203,6 +206,7 @@ impl AxialWork {
             self.interior[at] = f64::from(u8::from(self.parted[end as usize]));
         }
         (self.lost, self.given, self.tension_peak) = (Lanes::splat(0.0), 0.0, 0.0);
+        self.settled = true;
         let count = self.layout.segment_count;
         if state.half_step.tension[0].len() == count {
             for (own, kept) in self
@@ -237,6 +241,12 @@ impl AxialWork {
             given: self.given + self.layout.lifted(),
             lost: self.lost.sum() - self.layout.joined(),
         }
+    }
+
+    /// Whether every step since [`Self::load`] found which segments are slack, where the bed pushes and how far stiff segments stretch.
+    /// Where one did not, its tension is wrong by more than the tolerance: the steps were too long.
+    pub fn is_settled(&self) -> bool {
+        self.settled
     }
 
     /// Hands the state back after steps of `steps` [s].
@@ -356,6 +366,7 @@ impl AxialWork {
                 self.find_velocities(step) && (self.rubbing.is_none() || self.check_bed(step));
             let slack_holds = self.check_segments(step, greatest);
             if bed_holds && slack_holds || passes == PASSES_MAX {
+                self.settled &= bed_holds && slack_holds;
                 break;
             }
         }
