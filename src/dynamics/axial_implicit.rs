@@ -10,7 +10,8 @@
 //! T̄ − k q·G(v) = EA b₁(ε^n + κ) + H + ½BA(1−θ) q·G(v⁻),  k = EA b₁Δt + ½BA(1+θ),  b₁ = 1/N,
 //!
 //! with the history terms H and θ = 0.2. A row is off where the total would be negative. Eliminating v by the nodes'
-//! momentum leaves one scalar tridiagonal system in T̄. Drag is trapezoidal and folded into the node's mass, the seabed
+//! momentum leaves one scalar tridiagonal system in T̄. Drag C v is folded into the node's mass by θΔt C, θ = max(½, 1 − M/(Δt C)): trapezoidal,
+//! but where it outweighs inertia no more than that no velocity changes its sign by it, which would go on for ever. The seabed is folded in
 //! too; flags of slack and contact are checked after the solve and the step repeated until they hold.
 //!
 //! Source: Stern & Grinspun (2009), Implicit-explicit variational integration of highly oscillatory problems, Multiscale
@@ -502,8 +503,8 @@ impl AxialWork {
                 let across = now - tangent.scale(speed);
                 let normal = Lanes::load(&drag.normal, at) * across.dot(across).sqrt();
                 let along = Lanes::load(&drag.tangent, at) * speed.abs();
-                mass_normal = mass_normal + half * normal;
-                mass_tangent = mass_tangent + half * along;
+                mass_normal = mass_normal + (half * normal).max(kick * normal - mass_normal);
+                mass_tangent = mass_tangent + (half * along).max(kick * along - mass_tangent);
                 force = force
                     - last.scale(normal)
                     - tangent.scale((along - normal) * last.dot(tangent));
