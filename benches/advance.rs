@@ -142,7 +142,10 @@ fn semi(waves: bool) -> Scene {
 }
 
 fn main() {
-    let pick: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with('-')).collect();
+    let pick: Vec<String> = std::env::args()
+        .skip(1)
+        .filter(|a| !a.starts_with('-'))
+        .collect();
     let wanted = |part: &str| pick.is_empty() || pick.iter().any(|name| name == part);
     println!(
         "{:<16} {:>4} {:<14} {:>10} {:>12} {:>12}",
