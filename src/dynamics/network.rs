@@ -253,6 +253,7 @@ impl NetworkWork {
                     }
                 }
             }
+            work.renew_ghosts();
         }
     }
 
