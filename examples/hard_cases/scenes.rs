@@ -317,6 +317,27 @@ pub fn clump(elements: usize, lift: f64, angle: f64) -> Scene {
     scene
 }
 
+/// Pull of the rope at the bottom of the swing of [`clump`] let go at `angle` [rad] [N]: T = m (g + v²/l), where the rope's length l and what it
+/// holds, T²L/(2EA), go with its tension.
+pub fn swing_pull(angle: f64) -> f64 {
+    let length = |tension: f64| ROPE * (1.0 + tension / ROPE_STIFFNESS);
+    let held = |tension: f64| 0.5 * tension * tension * ROPE / ROPE_STIFFNESS;
+    let start = CLUMP * G * angle.cos();
+    let mut pull = 3.0 * CLUMP * G;
+    for _ in 0..50 {
+        let fall = length(pull) - length(start) * angle.cos();
+        let kinetic = CLUMP * G * fall - held(pull) + held(start);
+        pull = CLUMP * G + 2.0 * kinetic / length(pull);
+    }
+    pull
+}
+
+/// Pull of the rope that catches [`clump`] dropped by `lift` [m] [N]: m g (h + δ) = EA δ²/2L.
+pub fn caught_pull(lift: f64) -> f64 {
+    let weight = CLUMP * G;
+    weight * (1.0 + (1.0 + 2.0 * lift * ROPE_STIFFNESS / (weight * ROPE)).sqrt())
+}
+
 /// A taut line of 100 m of `mass` [kg/m], EA 1 MN, strained by 1 %, in water or in air, driven along and across itself.
 pub fn nearly_massless(mass: f64, wet: bool) -> Scene {
     let water = if wet {

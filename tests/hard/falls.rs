@@ -86,6 +86,7 @@ fn a_line_let_go_in_full_swing_whips_and_keeps_its_momenta() {
         let (start, flight) = (run(LET_GO + 0.1), run(LET_GO + 4.1));
         let what = format!("let go in full swing, {integrator:?}");
         sound(&what, &flight, 0.05, 800.0);
+        println!("momenta {:?} {:?}", momenta(&start.end), momenta(&flight.end));
         let mass: f64 = flight.end.model().lines[0].nodes.mass.iter().sum();
         let [before, after] = [&start, &flight].map(|run| momenta(&run.end));
         let fallen = Vector3::new(0.0, 0.0, -4.0 * mass * G);

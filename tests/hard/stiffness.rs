@@ -70,6 +70,9 @@ fn a_segment_1000_times_shorter_than_its_neighbours_changes_nothing_but_the_step
         Run::of(&by(short_segment(ratio), integrator, 0.01), 30.0, 0.05)
     };
     let plain = run(0.0, Integrator::Leapfrog);
+    let fine = Run::of(&with_elements(short_segment(0.0), 240), 30.0, 0.05);
+    at_most(1.0, "plain mesh from a converged run", plain.tension_error(&fine, 10.0));
+    at_most(1.0, "plain mesh from a converged run, slow", plain.slow_tension_error(&fine, 10.0, 0.5));
     for (integrator, steps) in [
         (Integrator::Leapfrog, 19_000.0),
         (Integrator::AxialImplicit, 500.0),
@@ -79,7 +82,10 @@ fn a_segment_1000_times_shorter_than_its_neighbours_changes_nothing_but_the_step
         let graded = run(1000.0, integrator);
         let what = format!("segment of 5 mm, {integrator:?}");
         sound(&what, &graded, 5e-3, steps);
-        at_most(0.02, &format!("{what}, tension"), graded.tension_error(&plain, 10.0));
+        at_most(0.02, &format!("{what}, from fine"), graded.tension_error(&fine, 10.0));
+        at_most(0.02, &format!("{what}, slow from fine"), graded.slow_tension_error(&fine, 10.0, 0.5));
+        at_most(0.02, &format!("{what}, slow from plain"), graded.slow_tension_error(&plain, 10.0, 0.5));
+        println!("peaks {} {} {}", graded.peak(), plain.peak(), fine.peak());
     }
 }
 
@@ -97,8 +103,7 @@ fn a_tonne_on_a_light_rope_swings_as_a_pendulum() {
         let run = Run::of(&by(clump(10, 0.0, angle), integrator, 0.005), 20.0, 0.01);
         let what = format!("pendulum, {integrator:?}");
         sound(&what, &run, 1e-3, 5000.0);
-        // at the bottom T = m g (3 − 2 cos θ₀), and a little for the rope's own mass
-        let exact = CLUMP * G * (3.0 - 2.0 * angle.cos());
+        let exact = swing_pull(angle);
         at_most(5e-3, &format!("{what}, tension at the bottom"), (run.peak() / exact - 1.0).abs());
     }
 }
@@ -106,9 +111,7 @@ fn a_tonne_on_a_light_rope_swings_as_a_pendulum() {
 #[test]
 fn a_tonne_dropped_into_a_light_rope_is_caught_with_its_energy() {
     let fall = 1.0;
-    let weight = CLUMP * G;
-    // m g (h + δ) = EA δ²/2L
-    let exact = weight * (1.0 + (1.0 + 2.0 * fall * ROPE_STIFFNESS / (weight * ROPE)).sqrt());
+    let exact = caught_pull(fall);
     for integrator in JOINED {
         let run = Run::of(&by(clump(10, fall, 0.0), integrator, 0.001), 2.0, 0.01);
         let what = format!("dropped clump, {integrator:?}");
