@@ -1,5 +1,7 @@
 //! A run of a hard case, and what is measured on it.
 
+use std::cell::RefCell;
+
 use moorline::math::low_pass::low_pass;
 use moorline::scene::{Integrator, Scene};
 use moorline::simulation::Simulation;
@@ -52,6 +54,22 @@ impl Run {
         Run::driven(begun(scene), steps, say)
     }
 
+    /// A scene that follows its own motion to these times [s], one communication step to each, and what is seen of it there.
+    pub fn watched(
+        scene: &Scene,
+        times: &[f64],
+        see: impl Fn(&Simulation) -> f64,
+    ) -> (Run, Vec<f64>) {
+        let starts = std::iter::once(0.0).chain(times.iter().copied());
+        let steps = starts.zip(times).map(|(from, to)| to - from);
+        let seen = RefCell::new(Vec::new());
+        let run = Run::hosted(scene, steps, |now| seen.borrow_mut().push(see(now)));
+        let mut seen = seen.into_inner();
+        seen.push(see(&run.end));
+        seen.remove(0); // the start
+        (run, seen)
+    }
+
     fn driven(
         simulation: Simulation,
         steps: impl Iterator<Item = f64>,
@@ -100,7 +118,12 @@ impl Run {
 
     /// Whether every node is at a finite place and every tension finite.
     pub fn is_finite(&self) -> bool {
-        let nodes = self.end.state().lines.iter().flat_map(|line| &line.position);
+        let nodes = self
+            .end
+            .state()
+            .lines
+            .iter()
+            .flat_map(|line| &line.position);
         self.tension.iter().all(|tension| tension.is_finite())
             && nodes.flat_map(|r| r.iter()).all(|x| x.is_finite())
     }
@@ -125,6 +148,14 @@ impl Run {
     /// Greatest energy held beyond what was given, over the energy that flowed [-].
     pub fn energy_gain(&self) -> f64 {
         self.gained.iter().copied().fold(0.0, f64::max) / self.flowed
+    }
+
+    /// Half of what lies between the greatest and the least tension of the last 400 samples [N].
+    pub fn last_amplitude(&self) -> f64 {
+        let last = &self.tension[self.tension.len() - 400..];
+        let greatest = last.iter().copied().fold(0.0, f64::max);
+        let least = last.iter().copied().fold(f64::INFINITY, f64::min);
+        0.5 * (greatest - least)
     }
 
     /// Internal steps for one second [1/s].

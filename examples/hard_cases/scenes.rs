@@ -7,7 +7,9 @@ use std::f64::consts::{PI, TAU};
 use moorline::math::random::Random;
 use moorline::physics::spectrum::Spectrum;
 use moorline::scene::channel::LineEnd;
-use moorline::scene::{Break, Friction, HarmonicMotion, InitialShape, Integrator, MotionPath, Scene};
+use moorline::scene::{
+    Break, Friction, HarmonicMotion, InitialShape, Integrator, MotionPath, Scene,
+};
 use moorline::simulation::Simulation;
 use nalgebra::Complex;
 
@@ -74,14 +76,6 @@ pub fn harder_bed(mut scene: Scene, factor: f64) -> Scene {
     if let Some(bed) = &mut scene.seabed {
         bed.stiffness *= factor;
         bed.damping *= factor;
-    }
-    scene
-}
-
-/// The same scene without axial damping.
-pub fn undamped(mut scene: Scene) -> Scene {
-    for line_type in scene.line_types.values_mut() {
-        (line_type.axial_damping, line_type.damping_ratio) = (Some(0.0), None);
     }
     scene
 }
@@ -317,19 +311,31 @@ pub fn clump(elements: usize, lift: f64, angle: f64) -> Scene {
     scene
 }
 
-/// Pull of the rope at the bottom of the swing of [`clump`] let go at `angle` [rad] [N]: T = m (g + v²/l), where the rope's length l and what it
-/// holds, T²L/(2EA), go with its tension.
-pub fn swing_pull(angle: f64) -> f64 {
-    let length = |tension: f64| ROPE * (1.0 + tension / ROPE_STIFFNESS);
-    let held = |tension: f64| 0.5 * tension * tension * ROPE / ROPE_STIFFNESS;
-    let start = CLUMP * G * angle.cos();
-    let mut pull = 3.0 * CLUMP * G;
-    for _ in 0..50 {
-        let fall = length(pull) - length(start) * angle.cos();
-        let kinetic = CLUMP * G * fall - held(pull) + held(start);
-        pull = CLUMP * G + 2.0 * kinetic / length(pull);
+/// Pull of the rope of [`clump`] let go at `angle` [rad], every `interval` [s] [N]: the mass on a spring without mass, by Runge and Kutta's
+/// method in steps of a tenth of that.
+pub fn swing_pulls(angle: f64, interval: f64, count: usize) -> Vec<f64> {
+    let pull = |x: f64, z: f64| ROPE_STIFFNESS * (x.hypot(z) / ROPE - 1.0).max(0.0);
+    let rates = |[x, z, vx, vz]: [f64; 4]| {
+        let share = pull(x, z) / (CLUMP * x.hypot(z));
+        [vx, vz, -share * x, -share * z - G]
+    };
+    let reach = ROPE * (1.0 + CLUMP * G * angle.cos() / ROPE_STIFFNESS);
+    let mut now = [reach * angle.sin(), -reach * angle.cos(), 0.0, 0.0];
+    let h = 0.1 * interval;
+    let mut pulls = vec![pull(now[0], now[1])];
+    for _ in 0..count {
+        for _ in 0..10 {
+            let after = |k: [f64; 4], part: f64| [0, 1, 2, 3].map(|i| now[i] + part * h * k[i]);
+            let k1 = rates(now);
+            let k2 = rates(after(k1, 0.5));
+            let k3 = rates(after(k2, 0.5));
+            let k4 = rates(after(k3, 1.0));
+            now = [0, 1, 2, 3]
+                .map(|i| now[i] + h / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]));
+        }
+        pulls.push(pull(now[0], now[1]));
     }
-    pull
+    pulls
 }
 
 /// Pull of the rope that catches [`clump`] dropped by `lift` [m] [N]: m g (h + δ) = EA δ²/2L.
@@ -340,11 +346,7 @@ pub fn caught_pull(lift: f64) -> f64 {
 
 /// A taut line of 100 m of `mass` [kg/m], EA 1 MN, strained by 1 %, in water or in air, driven along and across itself.
 pub fn nearly_massless(mass: f64, wet: bool) -> Scene {
-    let water = if wet {
-        "[water]\ndensity = 1025.0"
-    } else {
-        ""
-    };
+    let water = if wet { "[water]\ndensity = 1025.0" } else { "" };
     written(&format!(
         r#"
         {water}
@@ -377,10 +379,10 @@ pub fn nearly_massless(mass: f64, wet: bool) -> Scene {
 /// Length of the folded chain [m].
 pub const CHAIN: f64 = 10.0;
 
-/// A chain of 10 m folded so that both ends are at one height, two elements apart; the free one is let go. Node 0 is the free end.
-pub fn folded_chain(elements: usize) -> Scene {
+/// A chain of 10 m folded so that both ends are at one height, `fold` elements apart; the free one is let go. Node 0 is the free end.
+pub fn folded_chain(elements: usize, fold: usize) -> Scene {
     let h = CHAIN / elements as f64;
-    let gap = FOLD * h;
+    let gap = fold as f64 * h;
     let mut scene = written(&format!(
         r#"
         gravity = {G}
@@ -404,18 +406,15 @@ pub fn folded_chain(elements: usize) -> Scene {
         "#
     ));
     // two arms, and a bottom of as many elements as the gap is wide
-    let arm = (elements - FOLD as usize) / 2;
+    let arm = (elements - fold) / 2;
     let node = |i: usize| {
         let down = i.min(elements - i).min(arm);
-        let x = (arm + FOLD as usize).saturating_sub(i.max(arm)) as f64;
-        [x.min(FOLD) * h, 0.0, -(down as f64) * h]
+        let x = (arm + fold).saturating_sub(i.max(arm)) as f64;
+        [x * h, 0.0, -(down as f64) * h]
     };
     scene.lines[0].initial = InitialShape::Nodes((0..=elements).map(node).collect());
     scene
 }
-
-/// Width of the fold, in elements [-].
-const FOLD: f64 = 2.0;
 
 /// Time at which the free end of the folded chain has fallen by `part` of its length [s], from v² = g x (2L − x)/(L − x), the balance of energy
 /// of the one-dimensional chain: with x = L s², t = 2 √(L/g) ∫ √((1 − s²)/(2 − s²)) ds.

@@ -29,10 +29,16 @@ fn snaps_after_slack_peak_as_in_a_converged_run() {
             let span = [turn, turn + 1].map(|turn| TURN * f64::from(turn));
             let peak = run.peak_between(span[0], span[1]);
             let truth = converged.peak_between(span[0], span[1]);
-            at_most(0.02, &format!("{what}, peak of turn {turn}"), (peak / truth - 1.0).abs());
+            at_most(
+                0.02,
+                &format!("{what}, peak of turn {turn}"),
+                (peak / truth - 1.0).abs(),
+            );
             let turn = |t: &f64| (span[0]..span[1]).contains(t);
             let samples = run.time.iter().zip(&run.tension).filter(|(t, _)| turn(t));
-            let slack = samples.filter(|(_, tension)| **tension < 0.02 * truth).count();
+            let slack = samples
+                .filter(|(_, tension)| **tension < 0.02 * truth)
+                .count();
             assert!(slack > 0, "{what}: slack in every turn");
         }
     }
@@ -72,16 +78,27 @@ fn jump(name: &str, integrator: Integrator, reconstruction: Reconstruction) -> R
 
 #[test]
 fn a_fairlead_that_jumps_by_a_metre_leaves_a_line_that_settles() {
-    for (name, ledger) in [("oc3_catenary", 0.05), ("taut_polyester", 0.05)] {
+    for name in ["oc3_catenary", "taut_polyester"] {
+        let mut moved = shipped(name);
+        moved.points[1].position[0] += 1.0;
+        let rest = Run::of(&moved, 0.0, 1.0).tension[0];
         for integrator in INTEGRATORS {
             for reconstruction in [Reconstruction::Smooth, Reconstruction::Jump] {
                 let run = jump(name, integrator, reconstruction);
                 let what = format!("jump, {name}, {integrator:?}, {reconstruction:?}");
+                // the work of a jump is no work of a path; and the axial-implicit leapfrog makes the whole metre in one step
+                let ledger = match (reconstruction, integrator) {
+                    (Reconstruction::Jump, _) => f64::INFINITY,
+                    (_, Integrator::AxialImplicit) => 2.0,
+                    (_, Integrator::GeneralisedAlpha) => 0.15,
+                    _ => 0.05,
+                };
                 sound(&what, &run, ledger, 250.0);
-                println!("{what}: peak {:.4e} from {:.4e}", run.peak(), run.tension[0]);
-                let mut moved = shipped(name);
-                moved.points[1].position[0] += 1.0;
-                let rest = Run::of(&moved, 0.0, 1.0).tension[0];
+                at_most(
+                    3.0,
+                    &format!("{what}, peak over the start"),
+                    run.peak() / run.tension[0],
+                );
                 let last = run.tension[run.tension.len() - 1];
                 at_most(1e-3, &format!("{what}, settled"), (last / rest - 1.0).abs());
             }
@@ -94,8 +111,8 @@ fn resonance_at_the_axial_frequency_is_limited_as_in_a_damped_rod() {
     let omega = rod_frequency();
     for (integrator, bound) in [
         (Integrator::Leapfrog, 0.01),
-        (Integrator::AxialImplicit, 0.02),
-        (Integrator::GeneralisedAlpha, 0.05),
+        (Integrator::AxialImplicit, 0.01),
+        (Integrator::GeneralisedAlpha, 0.01),
         (Integrator::Auto, 0.01),
     ] {
         let mut scene = by(resonant_rod(40, omega), integrator, 0.001);
@@ -105,11 +122,11 @@ fn resonance_at_the_axial_frequency_is_limited_as_in_a_damped_rod() {
         let run = Run::of(&scene, 40.0, 0.005);
         let what = format!("resonance, {integrator:?}");
         sound(&what, &run, 2e-2, 1500.0);
-        let last = &run.tension[run.tension.len() - 400..];
-        let (low, high) = last.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), t| {
-            (low.min(*t), high.max(*t))
-        });
         let exact = rod_amplitude(omega);
-        at_most(bound, &format!("{what}, amplitude"), (0.5 * (high - low) / exact - 1.0).abs());
+        at_most(
+            bound,
+            &format!("{what}, amplitude"),
+            (run.last_amplitude() / exact - 1.0).abs(),
+        );
     }
 }

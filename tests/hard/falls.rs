@@ -1,4 +1,4 @@
-//! A folded chain that falls, and the whip at its end.
+//! A folded chain that falls, the whip at its end, and a line that is let go in full swing.
 
 use moorline::scene::Integrator;
 use moorline::simulation::Simulation;
@@ -14,47 +14,74 @@ const FREE: [Integrator; 3] = [
     Integrator::AxialImplicit,
     Integrator::GeneralisedAlpha,
 ];
+/// Parts of the drop at which the fall is looked at [-].
+const PARTS: [f64; 5] = [0.3, 0.5, 0.7, 0.8, 0.9];
 
-/// The folded chain until its free end has fallen by these parts of its length [-], and how far it has fallen by then [-].
-fn falling(elements: usize, integrator: Integrator, parts: &[f64]) -> (Run, Vec<f64>) {
-    let scene = by(folded_chain(elements), integrator, 0.01 / elements as f64);
-    let mut fallen = Vec::new();
-    let mut run = None;
-    for part in parts {
-        let done = Run::of(&scene, fall_time(*part), fall_time(*part) / 200.0);
-        fallen.push(-done.end.state().lines[0].position[0].z / CHAIN);
-        run = Some(done);
-    }
-    (run.expect("a part"), fallen)
+/// The folded chain when its free end should have fallen by [`PARTS`], and how far it has [-].
+fn falling(elements: usize, fold: usize, integrator: Integrator) -> (Run, Vec<f64>) {
+    let scene = by(
+        folded_chain(elements, fold),
+        integrator,
+        0.01 / elements as f64,
+    );
+    Run::watched(&scene, &PARTS.map(fall_time), |now| {
+        -now.state().lines[0].position[0].z / CHAIN
+    })
 }
 
 #[test]
 fn the_free_end_of_a_folded_chain_outruns_free_fall_as_its_energy_says() {
-    let parts = [0.3, 0.5, 0.7, 0.8, 0.9];
     for integrator in FREE {
-        let mut errors = Vec::new();
-        let sizes = [20, 40, 80, 160];
-        for elements in sizes {
-            let (run, fallen) = falling(elements, integrator, &parts);
-            let pairs = fallen.iter().zip(&parts);
-            let error = pairs.map(|(x, part)| (x - part).abs()).fold(0.0, f64::max);
+        let mut last = [f64::INFINITY; 2];
+        for (elements, bound) in [(20, 0.05), (40, 0.032), (80, 0.021), (160, 0.013)] {
+            let (run, fallen) = falling(elements, 2, integrator);
+            let what = format!("fall of {elements}, {integrator:?}");
+            sound(&what, &run, 8e-3, 20_000.0);
+            let errors: Vec<f64> = fallen
+                .iter()
+                .zip(PARTS)
+                .map(|(x, part)| (x - part).abs())
+                .collect();
+            let now = [errors[1], errors[4]];
+            at_most(bound, &format!("{what}, up to 0.9 of the drop"), now[1]);
+            for (part, (now, last)) in [0.5, 0.9].iter().zip(now.iter().zip(last)) {
+                // no full order: the fold is as wide as two elements, and tightens with them
+                at_most(0.75 * last, &format!("{what}, at {part} of the drop"), *now);
+            }
+            last = now;
             let free = 0.5 * G * fall_time(0.9).powi(2) / CHAIN;
-            println!("{integrator:?}, {elements}: {fallen:?}, free fall {free:.3}, error {error:.4}, ledger {:.2e}, pull {:.3} {:.3}", run.ledger_error(), run.tension[run.tension.len()-1] / (CHAIN * G), fall_pull(0.9));
-            errors.push(error);
+            assert!(fallen[4] > 1.2 * free, "{what}: {} and {free}", fallen[4]);
         }
-        println!("{integrator:?} {errors:?}");
     }
 }
 
 #[test]
+fn the_fall_over_a_fold_of_half_a_metre_converges() {
+    let run = |elements: usize| falling(elements, elements / 20, Integrator::GeneralisedAlpha).1;
+    let fine = run(320);
+    let mut last = f64::INFINITY;
+    for elements in [40, 80, 160] {
+        let pairs = run(elements).into_iter().zip(&fine);
+        let error = pairs.map(|(x, y)| (x - y).abs()).fold(0.0, f64::max);
+        at_most(last / 3.0, &format!("wide fold of {elements}"), error);
+        last = error;
+    }
+    at_most(4e-3, "wide fold of 160", last);
+}
+
+#[test]
 fn a_whip_crack_gains_no_energy() {
-    for integrator in FREE {
+    for (integrator, gain) in FREE.into_iter().zip([0.05, 0.08, 1e-3]) {
         for elements in [40, 80] {
-            let scene = by(folded_chain(elements), integrator, 0.01 / elements as f64);
+            let scene = by(
+                folded_chain(elements, 2),
+                integrator,
+                0.01 / elements as f64,
+            );
             let run = Run::of(&scene, 5.0, 0.005);
             let what = format!("whip of {elements}, {integrator:?}");
-            sound(&what, &run, 1.0, 50_000.0);
-            at_most(0.02, &format!("{what}, gain"), run.energy_gain());
+            sound(&what, &run, 1.0, 10_000.0);
+            at_most(gain, &format!("{what}, gain"), run.energy_gain());
         }
     }
 }
@@ -74,9 +101,9 @@ fn momenta(simulation: &Simulation) -> [Vector3<f64>; 2] {
 #[test]
 fn a_line_let_go_in_full_swing_whips_and_keeps_its_momenta() {
     for (integrator, bound) in [
-        (Integrator::Leapfrog, 1e-9),
-        (Integrator::AxialImplicit, 1e-9),
-        (Integrator::GeneralisedAlpha, 1e-3),
+        (Integrator::Leapfrog, 1e-5),
+        (Integrator::AxialImplicit, 1e-3),
+        (Integrator::GeneralisedAlpha, 1e-4),
     ] {
         let scene = by(let_go_in_swing(), integrator, 0.002);
         let run = |duration: f64| {
@@ -85,13 +112,12 @@ fn a_line_let_go_in_full_swing_whips_and_keeps_its_momenta() {
         };
         let (start, flight) = (run(LET_GO + 0.1), run(LET_GO + 4.1));
         let what = format!("let go in full swing, {integrator:?}");
-        sound(&what, &flight, 0.05, 800.0);
-        println!("momenta {:?} {:?}", momenta(&start.end), momenta(&flight.end));
+        sound(&what, &flight, 5e-3, 800.0);
         let mass: f64 = flight.end.model().lines[0].nodes.mass.iter().sum();
         let [before, after] = [&start, &flight].map(|run| momenta(&run.end));
         let fallen = Vector3::new(0.0, 0.0, -4.0 * mass * G);
         let change = (after[0] - before[0] - fallen).norm() / fallen.norm();
-        at_most(bound, &format!("{what}, momentum"), change);
+        at_most(1e-12, &format!("{what}, momentum"), change);
         let turned = (after[1] - before[1]).norm() / before[1].norm();
         at_most(bound, &format!("{what}, angular momentum"), turned);
         at_most(1e-3, &format!("{what}, gain"), flight.energy_gain());
