@@ -92,13 +92,19 @@ impl Clock {
         Foresight::new(self, order, step, reconstruction)
     }
 
-    /// Part of what a path misses now that may be left after a step [s] [-], and the rate at which it falls [1/s].
-    fn left(&self, step: f64) -> [f64; 2] {
+    /// What is left after a step [s] of a distance and a velocity by which a path misses its host now: the cubic from both to none when all is
+    /// made up. Rows of position [-, s] and velocity [1/s, -].
+    fn left(&self, step: f64) -> [[f64; 2]; 2] {
         let time = self.made_up - self.times[0];
         if time <= step * (1.0 + ROUNDING) {
-            return [0.0; 2];
+            return [[0.0; 2]; 2];
         }
-        [1.0 - step / time, 1.0 / time]
+        let s = step / time;
+        let rest = 1.0 - s;
+        [
+            [rest * rest * (1.0 + 2.0 * s), step * rest * rest],
+            [-6.0 * s * rest / time, rest * (1.0 - 3.0 * s)],
+        ]
     }
 }
 
@@ -109,8 +115,8 @@ pub struct Foresight {
     jumps: bool,
     /// Start and end of the step [s].
     span: [f64; 2],
-    /// Part of what the path misses that is left at the end of the step [-], and the rate at which it falls then [1/s].
-    left: [f64; 2],
+    /// What is left at the end of the step of what the path misses now, see [`Clock::left`].
+    left: [[f64; 2]; 2],
     /// The samples that count, newest first; the first `count` are in use.
     picked: [usize; SAMPLES_MAX],
     count: usize,
@@ -235,10 +241,12 @@ impl AxisPath {
                 [position + (end - start) * velocity, velocity],
             );
         }
-        let missed = self.end[0] - position;
-        let [left, rate] = foresight.left;
-        let [position, velocity] = self.predict(foresight);
-        let to = [position + left * missed, velocity - rate * missed];
+        let [place, velocity] = self.predict(foresight);
+        let missed = [self.end[0] - position, self.end[1] - velocity];
+        let left = foresight
+            .left
+            .map(|row| row[0] * missed[0] + row[1] * missed[1]);
+        let to = [place + left[0], velocity + left[1]];
         self.follow(foresight.span, to);
     }
 

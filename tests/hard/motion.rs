@@ -76,7 +76,7 @@ fn communication_steps_from_a_millisecond_to_ten_seconds_give_one_answer() {
             (0.01, 1e-3),
             (0.1, 1e-3),
             (1.0, 2e-3),
-            (10.0, 0.1),
+            (10.0, 0.2),
         ] {
             if integrator == Integrator::GeneralisedAlpha && step == 0.001 {
                 continue; // 200 000 solves
