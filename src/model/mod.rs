@@ -31,7 +31,7 @@ use crate::scene::{InitialShape, PointForce, PointMoment, Solver, TimeFunction};
 pub use beam::{Beam, BeamElement, BeamState};
 pub use bending::{Bending, joint};
 pub use bottom::Bottom;
-pub use motion::{Kinematics, Motion, Pose};
+pub use motion::{Derivatives, Kinematics, Motion, Pose};
 pub use sea::{WaterAlong, WaveSpan, WavesAlong, WavesAt};
 pub use state::{ClosedForm, LineState, PointState, Reel, State};
 pub use surface::{Dry, Surface};
