@@ -91,7 +91,7 @@ fn communication_steps_from_a_millisecond_to_ten_seconds_give_one_answer() {
             );
         }
         let what = format!("irregular steps, {integrator:?}");
-        answers(&what, &scene, irregular_steps(200.0), &truth, 0.5);
+        answers(&what, &scene, irregular_steps(200.0), &truth, 0.2);
     }
 }
 
