@@ -4,7 +4,9 @@
 //! error of its energy ledger and the energy that it gained over the energy that flowed, and draws a figure of each case.
 
 mod figures;
+#[allow(dead_code)] // the tests use what the figures do not
 mod run;
+#[allow(dead_code)] // the same
 mod scenes;
 
 use std::error::Error;
