@@ -14,6 +14,8 @@
 //! the choice of degree is made here. Valid for any sequence of step sizes: samples closer
 //! together than half the coming step are passed over, and all are dropped when the host steps back.
 
+use std::array::from_fn;
+
 use nalgebra::{Vector3, Vector6};
 use serde::{Deserialize, Serialize};
 
@@ -96,15 +98,31 @@ pub struct Foresight {
     /// The samples that count, newest first; the first `count` are in use.
     picked: [usize; SAMPLES_MAX],
     count: usize,
-    /// 1/(t_i − t_{i+k}) of the samples that count, by order k − 1 and place i [1/s].
-    inverse: [[f64; SAMPLES_MAX - 1]; DEGREE_MAX + 1],
-    /// Products of t_j − t_{j+1} … t_j − t_{j+k}, by order k − 1 and place j [s^k].
-    reach: [[f64; JUDGED]; DEGREE_MAX + 1],
+    /// Whether all samples count.
+    all: bool,
+    /// 1/length of the step [1/s].
+    rate: f64,
+    /// 1/(t_i − t_{i+k}) of the samples that count.
+    inverse: Reciprocals,
+    /// Products of t_j − t_{j+1} … t_j − t_{j+k}, by place j and order k − 1 [s^k].
+    reach: [Terms; JUDGED],
     /// Newton's polynomials of the newest samples at the end of the step, their slopes there and their integrals over it.
-    value: [f64; DEGREE_MAX + 1],
-    slope: [f64; DEGREE_MAX + 1],
-    integral: [f64; DEGREE_MAX + 1],
+    value: Terms,
+    slope: Terms,
+    integral: Terms,
 }
+
+/// 1/(t_i − t_{i+k}) by place i, for the orders k from 1 on [1/s]. Written out, so that the compiler unrolls what is done with them.
+#[derive(Debug, Clone)]
+struct Reciprocals {
+    first: [f64; SAMPLES_MAX - 1],
+    second: [f64; SAMPLES_MAX - 2],
+    third: [f64; SAMPLES_MAX - 3],
+    fourth: [f64; SAMPLES_MAX - 4],
+}
+
+/// A number for every term of a polynomial.
+type Terms = [f64; DEGREE_MAX + 1];
 
 impl Foresight {
     fn new(clock: &Clock, order: Order, step: f64, reconstruction: Reconstruction) -> Foresight {
@@ -112,40 +130,30 @@ impl Foresight {
         let end = start + step;
         let (picked, count) = spaced(&clock.times[..clock.count], step / STEP_RATIO_MAX);
         // what is not in use gets times that divide nothing by zero, and is not looked at
-        let mut t = [0.0; SAMPLES_MAX];
-        for (i, t) in t.iter_mut().enumerate() {
-            *t = if i < count {
-                clock.times[picked[i]]
-            } else {
-                start - (1.0 + i as f64) * step.max(f64::MIN_POSITIVE)
-            };
-        }
-        let mut inverse = [[1.0; SAMPLES_MAX - 1]; DEGREE_MAX + 1];
-        for (k, row) in inverse.iter_mut().enumerate() {
-            for i in 0..SAMPLES_MAX - 1 - k {
-                row[i] = t[i] - t[i + k + 1];
-            }
-        }
-        let mut reach = [[0.0; JUDGED]; DEGREE_MAX + 1];
-        let mut product = [1.0; JUDGED];
-        for (row, differences) in reach.iter_mut().zip(&inverse) {
-            for j in 0..JUDGED {
-                product[j] *= differences[j];
-                row[j] = product[j];
-            }
-        }
-        for row in &mut inverse {
-            row.iter_mut()
-                .for_each(|difference| *difference = 1.0 / *difference);
-        }
+        let t: [f64; SAMPLES_MAX] = from_fn(|i| match i < count {
+            true => clock.times[picked[i]],
+            false => start - (1.0 + i as f64) * step.max(f64::MIN_POSITIVE),
+        });
+        let reach = [0, 1].map(|j| {
+            let [a, b, c, d] = [1, 2, 3, 4].map(|k| t[j] - t[j + k]);
+            [a, a * b, a * b * c, a * b * c * d]
+        });
+        let inverse = Reciprocals {
+            first: from_fn(|i| 1.0 / (t[i] - t[i + 1])),
+            second: from_fn(|i| 1.0 / (t[i] - t[i + 2])),
+            third: from_fn(|i| 1.0 / (t[i] - t[i + 3])),
+            fourth: from_fn(|i| 1.0 / (t[i] - t[i + 4])),
+        };
         let [h, e1, e2] = [end - t[0], end - t[1], end - t[2]];
         let [a, b] = [t[0] - t[1], t[0] - t[2]];
         Foresight {
             order,
             jumps: reconstruction == Reconstruction::Jump,
             span: [start, end],
+            rate: 1.0 / (end - start),
             picked,
             count,
+            all: count == clock.count,
             inverse,
             reach,
             value: [1.0, h, h * e1, h * e1 * e2],
@@ -217,7 +225,9 @@ impl AxisPath {
             );
         }
         let to = self.predict(foresight);
-        self.follow(foresight.span, to);
+        let [start, end] = foresight.span;
+        self.curve = Hermite::bridge([start, end - start, foresight.rate], self.end, to);
+        self.end = to;
     }
 
     /// Continues the path over a span of time [s] to a position [m] and a velocity [m/s] that are known.
@@ -236,8 +246,10 @@ impl AxisPath {
     fn remember(&mut self, order: Order, position: f64, velocity: Option<f64>) {
         match order {
             Order::After => {
-                self.positions.copy_within(0..SAMPLES_MAX - 1, 1);
-                self.velocities.copy_within(0..SAMPLES_MAX - 1, 1);
+                let [a, b, c, d, e, _] = self.positions;
+                self.positions = [a, a, b, c, d, e];
+                let [a, b, c, d, e, _] = self.velocities;
+                self.velocities = [a, a, b, c, d, e];
             }
             Order::Again => self.rated = self.rated.saturating_sub(1),
             Order::Before => (self.rated, self.degree) = (0, 0),
@@ -254,11 +266,8 @@ impl AxisPath {
 
     /// Position [m] and velocity [m/s] predicted for the end of a step.
     fn predict(&mut self, foresight: &Foresight) -> [f64; 2] {
-        let picked = &foresight.picked[..foresight.count];
-        let with_velocity = picked
-            .iter()
-            .take_while(|&&place| place < self.rated)
-            .count();
+        let picked = foresight.picked.iter().take(foresight.count);
+        let with_velocity = picked.take_while(|place| **place < self.rated).count();
         if with_velocity > 0 {
             let rates = Differences::new(foresight, &self.velocities);
             let degree = rates.degree(with_velocity, &mut self.degree);
@@ -287,7 +296,8 @@ impl HostPath {
     /// Position, velocity and acceleration at time `t` [s].
     #[inline]
     pub fn at(&self, t: f64) -> Kinematics {
-        let [x, y, z] = self.0.each_ref().map(|axis| axis.at(t));
+        let [x, y, z] = &self.0;
+        let [x, y, z] = [x.at(t), y.at(t), z.at(t)];
         Kinematics {
             position: Vector3::new(x.value, y.value, z.value),
             velocity: Vector3::new(x.slope, y.slope, z.slope),
@@ -321,51 +331,59 @@ impl VesselPath {
 /// Divided differences of the samples that count.
 struct Differences {
     /// Of the newest samples, by order from 0 on.
-    newest: [f64; DEGREE_MAX + 1],
+    newest: Terms,
     /// By how much polynomials of every degree through the samples before would have missed the newest ones.
-    miss: [[f64; JUDGED]; DEGREE_MAX + 1],
+    miss: [Terms; JUDGED],
 }
 
 impl Differences {
+    #[inline]
     fn new(foresight: &Foresight, samples: &[f64; SAMPLES_MAX]) -> Differences {
-        let mut differences = foresight.picked.map(|place| samples[place]);
-        let mut newest = [differences[0]; DEGREE_MAX + 1];
-        let mut miss = [[0.0; JUDGED]; DEGREE_MAX + 1];
-        for k in 0..=DEGREE_MAX {
-            for i in 0..SAMPLES_MAX - 1 - k {
-                differences[i] = (differences[i] - differences[i + 1]) * foresight.inverse[k][i];
-            }
-            // the remainder of the polynomial of degree k is the difference of order k + 1 times its nodes' distances
-            for (j, miss) in miss[k].iter_mut().enumerate() {
-                *miss = (differences[j] * foresight.reach[k][j]).abs();
-            }
-            if k < DEGREE_MAX {
-                newest[k + 1] = differences[0];
-            }
+        let zeroth = match foresight.all {
+            true => *samples,
+            false => foresight.picked.map(|place| samples[place]),
+        };
+        let by = &foresight.inverse;
+        let first: [f64; SAMPLES_MAX - 1] = from_fn(|i| (zeroth[i] - zeroth[i + 1]) * by.first[i]);
+        let second: [f64; SAMPLES_MAX - 2] = from_fn(|i| (first[i] - first[i + 1]) * by.second[i]);
+        let third: [f64; SAMPLES_MAX - 3] = from_fn(|i| (second[i] - second[i + 1]) * by.third[i]);
+        let fourth: [f64; SAMPLES_MAX - 4] = from_fn(|i| (third[i] - third[i + 1]) * by.fourth[i]);
+        // the remainder of the polynomial of degree k is the difference of order k + 1 times its nodes' distances
+        let miss = from_fn(|j| {
+            let next = [first[j], second[j], third[j], fourth[j]];
+            from_fn(|k| (next[k] * foresight.reach[j][k]).abs())
+        });
+        Differences {
+            newest: [zeroth[0], first[0], second[0], third[0]],
+            miss,
         }
-        Differences { newest, miss }
     }
 
     /// The degree given, or the one that is set instead, because it would have predicted the newest samples clearly better from the ones
     /// older than each; of the `known` newest samples.
+    #[inline]
     fn degree(&self, known: usize, degree: &mut usize) -> usize {
         if known <= 2 {
             // two samples can judge no line, but a host that moves a point goes on moving it
             return known - 1;
         }
         let judged = JUDGED.min(known - 2);
-        let error = |degree: usize| -> f64 { self.miss[degree][..judged].iter().sum() };
         let highest = DEGREE_MAX.min(known - 1 - judged);
+        let [newest, before] = &self.miss;
+        let error: Terms = match judged {
+            JUDGED => from_fn(|k| newest[k] + before[k]),
+            _ => *newest,
+        };
         let (kept, mut best, mut least) = match *degree {
-            kept if kept <= highest => (kept, kept, error(kept)),
+            kept if kept <= highest => (kept, kept, error[kept]),
             _ => (0, 0, f64::INFINITY),
         };
-        for other in 0..=highest {
-            let handicap = match (kept, other) {
-                (0, _) | (_, 0) => 1.0 / BETTER_AT_REST,
+        for (other, error) in error.into_iter().enumerate().take(highest + 1) {
+            let handicap = match kept.min(other) {
+                0 => 1.0 / BETTER_AT_REST,
                 _ => 1.0 / BETTER,
             };
-            let handicapped = error(other) * handicap;
+            let handicapped = error * handicap;
             // what rests has no degree to keep
             if handicapped < least || (other == 0 && handicapped == 0.0) {
                 (best, least) = (other, handicapped);
@@ -376,9 +394,10 @@ impl Differences {
     }
 
     /// Newton's polynomial of a degree, whose terms have the values `basis`.
-    fn sum(&self, degree: usize, basis: &[f64; DEGREE_MAX + 1]) -> f64 {
+    #[inline]
+    fn sum(&self, degree: usize, basis: &Terms) -> f64 {
         let terms = self.newest.iter().zip(basis).take(degree + 1);
-        terms.map(|(difference, term)| difference * term).sum()
+        terms.map(|(difference, value)| difference * value).sum()
     }
 }
 

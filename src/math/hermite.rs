@@ -35,11 +35,21 @@ impl Hermite {
     /// Through (time, value, slope) at both ends; the second time must be the later one.
     pub fn new((t0, p0, m0): Knot, (t1, p1, m1): Knot) -> Hermite {
         let span = t1 - t0;
+        Hermite::bridge([t0, span, 1.0 / span], [p0, m0], [p1, m1])
+    }
+
+    /// From a start over a span, whose inverse is at hand, through value and slope at both ends.
+    #[inline]
+    pub fn bridge(
+        [start, span, rate]: [f64; 3],
+        [p0, m0]: [f64; 2],
+        [p1, m1]: [f64; 2],
+    ) -> Hermite {
         let (m0, m1) = (span * m0, span * m1);
         let rise = p1 - p0;
         Hermite {
-            start: t0,
-            rate: 1.0 / span,
+            start,
+            rate,
             powers: [p0, m0, 3.0 * rise - 2.0 * m0 - m1, m0 + m1 - 2.0 * rise],
         }
     }
