@@ -329,13 +329,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
             let count = self.substeps(step_max.min(1.0 / work.drag_rate(model, network)), retry)?;
             let drift = self.length / count as f64;
             let mut steps = self.state.lines[network.lines[0]].half_step.steps;
-            work.put_ends(
-                model,
-                network,
-                self.start,
-                Step::after(steps, drift),
-                self.held,
-            );
+            work.put_ends(self.start, Step::after(steps, drift), self.held);
             work.start_reels(network, self.state, self.reels, Step::after(steps, drift));
             work.meet_surface();
             for k in 0..count {

@@ -56,6 +56,18 @@ enum Order {
     Before,
 }
 
+impl Order {
+    /// Samples with one more, newest first.
+    #[inline]
+    fn push(self, samples: &[f64; SAMPLES_MAX], sample: f64) -> [f64; SAMPLES_MAX] {
+        let [a, b, c, d, e, f] = *samples;
+        match self {
+            Order::After => [sample, a, b, c, d, e],
+            Order::Again | Order::Before => [sample, b, c, d, e, f],
+        }
+    }
+}
+
 impl Clock {
     /// Begins at a time [s].
     pub fn new(time: f64) -> Clock {
@@ -76,14 +88,11 @@ impl Clock {
             Order::After
         };
         match order {
-            Order::After => {
-                self.times.copy_within(0..SAMPLES_MAX - 1, 1);
-                self.count = (self.count + 1).min(SAMPLES_MAX);
-            }
+            Order::After => self.count = (self.count + 1).min(SAMPLES_MAX),
             Order::Again => {}
             Order::Before => self.count = 1,
         }
-        self.times[0] = time;
+        self.times = order.push(&self.times, time);
         Foresight::new(self, order, step, reconstruction)
     }
 }
@@ -168,6 +177,18 @@ impl Foresight {
     }
 }
 
+impl Foresight {
+    /// How many of the samples that count are among the `newest` of all.
+    #[inline]
+    fn known(&self, newest: usize) -> usize {
+        if self.all {
+            return self.count.min(newest);
+        }
+        let picked = self.picked.iter().take(self.count);
+        picked.take_while(|place| **place < newest).count()
+    }
+}
+
 /// Places of the times, newest first, that lie at least `spacing` [s] apart, and how many: what lies closer says more about noise than
 /// about a long step.
 fn spaced(times: &[f64], spacing: f64) -> ([usize; SAMPLES_MAX], usize) {
@@ -214,18 +235,27 @@ impl AxisPath {
 
     /// Continues the path by a communication step from a position [m] and perhaps a velocity [m/s] at its start.
     pub fn extend(&mut self, foresight: &Foresight, position: f64, velocity: Option<f64>) {
-        self.remember(foresight.order, position, velocity);
+        if foresight.order == Order::Before {
+            (self.rated, self.degree) = (0, 0);
+        }
+        let positions = foresight.order.push(&self.positions, position);
+        self.positions = positions;
+        let to = match velocity {
+            Some(velocity) => self.rate(foresight, position, velocity),
+            None => {
+                self.rated = 0;
+                self.predict(foresight, &positions)
+            }
+        };
+        let [start, end] = foresight.span;
         if foresight.jumps {
             let velocity = velocity.unwrap_or(0.0);
-            let [start, end] = foresight.span;
             self.end = [position, velocity];
             return self.follow(
                 foresight.span,
                 [position + (end - start) * velocity, velocity],
             );
         }
-        let to = self.predict(foresight);
-        let [start, end] = foresight.span;
         self.curve = Hermite::bridge([start, end - start, foresight.rate], self.end, to);
         self.end = to;
     }
@@ -243,43 +273,27 @@ impl AxisPath {
         self.curve.at(t)
     }
 
-    fn remember(&mut self, order: Order, position: f64, velocity: Option<f64>) {
-        match order {
-            Order::After => {
-                let [a, b, c, d, e, _] = self.positions;
-                self.positions = [a, a, b, c, d, e];
-                let [a, b, c, d, e, _] = self.velocities;
-                self.velocities = [a, a, b, c, d, e];
-            }
-            Order::Again => self.rated = self.rated.saturating_sub(1),
-            Order::Before => (self.rated, self.degree) = (0, 0),
-        }
-        self.positions[0] = position;
-        match velocity {
-            Some(velocity) => {
-                self.velocities[0] = velocity;
-                self.rated = (self.rated + 1).min(SAMPLES_MAX);
-            }
-            None => self.rated = 0,
-        }
+    /// Position [m] and velocity [m/s] predicted for the end of a step from what the host said of the position.
+    #[inline]
+    fn predict(&mut self, foresight: &Foresight, positions: &[f64; SAMPLES_MAX]) -> [f64; 2] {
+        let differences = Differences::new(foresight, positions);
+        let degree = differences.degree(foresight.count, &mut self.degree);
+        [&foresight.value, &foresight.slope].map(|basis| differences.sum(degree, basis))
     }
 
-    /// Position [m] and velocity [m/s] predicted for the end of a step.
-    fn predict(&mut self, foresight: &Foresight) -> [f64; 2] {
-        let picked = foresight.picked.iter().take(foresight.count);
-        let with_velocity = picked.take_while(|place| **place < self.rated).count();
-        if with_velocity > 0 {
-            let rates = Differences::new(foresight, &self.velocities);
-            let degree = rates.degree(with_velocity, &mut self.degree);
-            let travelled = rates.sum(degree, &foresight.integral);
-            return [
-                self.positions[0] + travelled,
-                rates.sum(degree, &foresight.value),
-            ];
-        }
-        let positions = Differences::new(foresight, &self.positions);
-        let degree = positions.degree(foresight.count, &mut self.degree);
-        [&foresight.value, &foresight.slope].map(|basis| positions.sum(degree, basis))
+    /// Remembers a velocity [m/s], and predicts from the velocities and the position [m] at the start of a step.
+    #[inline]
+    fn rate(&mut self, foresight: &Foresight, position: f64, velocity: f64) -> [f64; 2] {
+        let again = usize::from(foresight.order == Order::Again);
+        self.rated = (self.rated.saturating_sub(again) + 1).min(SAMPLES_MAX);
+        let velocities = foresight.order.push(&self.velocities, velocity);
+        self.velocities = velocities;
+        let differences = Differences::new(foresight, &velocities);
+        let degree = differences.degree(foresight.known(self.rated), &mut self.degree);
+        [
+            position + differences.sum(degree, &foresight.integral),
+            differences.sum(degree, &foresight.value),
+        ]
     }
 }
 
@@ -337,7 +351,7 @@ struct Differences {
 }
 
 impl Differences {
-    #[inline]
+    #[inline(always)]
     fn new(foresight: &Foresight, samples: &[f64; SAMPLES_MAX]) -> Differences {
         let zeroth = match foresight.all {
             true => *samples,
@@ -361,7 +375,7 @@ impl Differences {
 
     /// The degree given, or the one that is set instead, because it would have predicted the newest samples clearly better from the ones
     /// older than each; of the `known` newest samples.
-    #[inline]
+    #[inline(always)]
     fn degree(&self, known: usize, degree: &mut usize) -> usize {
         if known <= 2 {
             // two samples can judge no line, but a host that moves a point goes on moving it
@@ -394,10 +408,13 @@ impl Differences {
     }
 
     /// Newton's polynomial of a degree, whose terms have the values `basis`.
-    #[inline]
+    #[inline(always)]
     fn sum(&self, degree: usize, basis: &Terms) -> f64 {
-        let terms = self.newest.iter().zip(basis).take(degree + 1);
-        terms.map(|(difference, value)| difference * value).sum()
+        let term = |k: usize| match k <= degree {
+            true => self.newest[k] * basis[k],
+            false => 0.0,
+        };
+        (term(0) + term(1)) + (term(2) + term(3))
     }
 }
 
