@@ -13,7 +13,7 @@ use super::leapfrog::Step;
 use super::surface::SurfaceNow;
 use crate::math::fold::{Column, Field, Fold, Slot};
 use crate::math::hermite::Hermite;
-use crate::math::lanes::{Lanes, Vectors};
+use crate::math::lanes::{LANES, Lanes, Vectors};
 use crate::model::{Bottom, Contact, End, Line, LineState, Model, WaveSpan};
 use crate::physics::airy::{Orbit, cubics};
 use crate::physics::flow::{Profile, Stream};
@@ -381,12 +381,21 @@ impl Layout {
         memory.velocity_before.resize(count, Vector3::zeros());
         memory.steps = steps;
         let extrapolation = Step::after(steps, steps[0]).extrapolation;
-        for (i, at) in self.fold.slots().take(count).enumerate() {
-            let (velocity, before) = (self.velocity.get(at), self.velocity_before.get(at));
-            state.position[i] = self.position.get(at);
-            state.velocity[i] = velocity + extrapolation * (velocity - before);
-            memory.velocity[i] = velocity;
-            memory.velocity_before[i] = before;
+        let now = state.position.iter_mut().zip(&mut state.velocity);
+        let past = memory.velocity.iter_mut().zip(&mut memory.velocity_before);
+        let mut nodes = now.zip(past);
+        let rows = 1..=self.fold.rows();
+        let [place, velocity, before] = [&self.position, &self.velocity, &self.velocity_before]
+            .map(|field| &field.rows(*rows.end())[rows.clone()]);
+        for lane in 0..LANES {
+            for ((place, velocity), before) in place.iter().zip(velocity).zip(before) {
+                let Some(((at, now), (half, earlier))) = nodes.next() else {
+                    break;
+                };
+                *at = place.get(lane);
+                (*half, *earlier) = (velocity.get(lane), before.get(lane));
+                *now = *half + extrapolation * (*half - *earlier);
+            }
         }
         if let Some(bottom) = self.bottom() {
             let places = state.position.iter().zip(self.fold.slots());

@@ -175,9 +175,7 @@ impl Foresight {
             ],
         }
     }
-}
 
-impl Foresight {
     /// How many of the samples that count are among the `newest` of all.
     #[inline]
     fn known(&self, newest: usize) -> usize {

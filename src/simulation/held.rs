@@ -435,7 +435,7 @@ mod tests {
         let (snapshot, _) = start::begin(&model, 0.0, Inputs::new(&model), false).unwrap();
         let mut paths = snapshot.paths.clone();
         for (axis, path) in paths.vessels[0].0.iter_mut().enumerate() {
-            path.follow([0.0, 0.1], [0.02 * axis as f64, 0.3]);
+            path.follow([0.0, 0.1], [1e-4 * axis as f64, 2e-3]);
         }
         let at = At::new(&model, &paths, false);
         let mut held = Held::new(&model, false);
