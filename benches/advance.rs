@@ -5,7 +5,7 @@ mod common;
 
 use std::time::Instant;
 
-use moorline::interface::{Causality, Interface, Layout};
+use moorline::interface::{Binding, Causality, Interface, Layout};
 use moorline::model::Body;
 use moorline::scene::{Integrator, Scene};
 use moorline::simulation::Simulation;
@@ -53,7 +53,7 @@ fn warm(scene: &Scene, drive: Drive, step: f64) -> (Simulation, Vec<Body>) {
         .variables()
         .iter()
         .filter_map(|variable| match variable.binding {
-            moorline::interface::Binding::Displacement { body, .. } => Some(body),
+            Binding::Displacement { body, .. } => Some(body),
             _ => None,
         })
         .collect();
@@ -74,8 +74,9 @@ fn warm(scene: &Scene, drive: Drive, step: f64) -> (Simulation, Vec<Body>) {
 fn advance(scene: &Scene, drive: Drive, step: f64) -> (f64, f64) {
     let (mut simulation, bodies) = warm(scene, drive, step);
     let start = simulation.snapshot().clone();
+    let now = simulation.time();
     let table: Vec<Said> = (0..STEPS)
-        .map(|k| said(drive, start_time(&simulation) + k as f64 * step))
+        .map(|k| said(drive, now + k as f64 * step))
         .collect();
     let (mut best, mut substeps) = (f64::INFINITY, 0);
     for _ in 0..REPETITIONS {
@@ -94,10 +95,6 @@ fn advance(scene: &Scene, drive: Drive, step: f64) -> (f64, f64) {
         best = best.min(clock.elapsed().as_secs_f64());
     }
     (1e9 * best / STEPS as f64, substeps as f64 / STEPS as f64)
-}
-
-fn start_time(simulation: &Simulation) -> f64 {
-    simulation.time()
 }
 
 /// Least time to read all outputs once [ns], and how many there are.

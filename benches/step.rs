@@ -1,26 +1,138 @@
-//! Cost of a step, by scene, integrator and mesh: ns per node and step, CPU seconds per simulated second.
+//! Cost of an internal step: of the explicit kernel alone, with the widest vectors of the machine and in the portable build, and of whole
+//! communication steps by both leapfrogs.
 
 mod common;
 
-use moorline::scene::Integrator;
+use std::time::Instant;
+
+use moorline::dynamics::leapfrog::Step;
+use moorline::dynamics::network::NetworkWork;
+use moorline::model::{Kinematics, Model, State};
+use moorline::scene::{Integrator, Scene};
+use moorline::simulation::Simulation;
+use nalgebra::Vector3;
+
+const SCENES: [&str; 4] = [
+    "oc3_catenary",
+    "oc4_chain",
+    "taut_polyester",
+    "lindahl_fast",
+];
+const ELEMENTS: [usize; 6] = [10, 20, 28, 40, 80, 160];
+/// Lines of a system, which take turns.
+const LINES: usize = 12;
+/// Steps that a line takes in its turn.
+const TURN: usize = 8;
+/// Turns that are timed together, and how often that is done; the fastest counts.
+const TURNS: usize = 200;
+const REPETITIONS: usize = 60;
 
 fn main() {
+    kernels();
+    communication();
+}
+
+fn meshed(name: &str, integrator: Integrator, elements: usize) -> Scene {
+    let mut scene = common::scene(name);
+    scene.solver.integrator = integrator;
+    scene.lines[0].sections[0].elements = Some(elements);
+    scene
+}
+
+/// The explicit kernel alone.
+fn kernels() {
     println!(
-        "{:<16} {:<15} {:>5} {:>10} {:>14} {:>12} {:>10}",
-        "scene", "integrator", "n", "steps/s", "ns/node/step", "s/s", "real-time"
+        "{:<16} {:>5} {:>6} {:>9} {:>13} {:>18} {:>22}",
+        "kernel alone",
+        "n",
+        "lines",
+        "ns/step",
+        "ns/node/step",
+        "portable ns/step",
+        "portable ns/node/step"
     );
-    for name in [
-        "oc3_catenary",
-        "oc4_chain",
-        "taut_polyester",
-        "lindahl_fast",
-    ] {
+    for name in SCENES {
+        for elements in ELEMENTS {
+            let mut simulation = Simulation::new(&meshed(name, Integrator::Leapfrog, elements))
+                .expect("an equilibrium");
+            simulation.follow_scene().expect("an equilibrium");
+            simulation.advance(0.05).expect("a step");
+            let step = 0.05 / simulation.substeps() as f64;
+            for lines in [1, LINES] {
+                let [wide, portable] = [false, true].map(|portable| {
+                    step_cost(
+                        simulation.model(),
+                        simulation.state(),
+                        step,
+                        lines,
+                        portable,
+                    )
+                });
+                let nodes = (elements + 1) as f64;
+                println!(
+                    "{name:<16} {elements:>5} {lines:>6} {wide:>9.0} {:>13.1} {portable:>18.0} {:>22.1}",
+                    wide / nodes,
+                    portable / nodes
+                );
+            }
+        }
+    }
+}
+
+/// Time of a step of one line [ns] where `lines` alike take turns, with the fairlead swaying.
+fn step_cost(model: &Model, state: &State, size: f64, lines: usize, portable: bool) -> f64 {
+    let network = &model.networks[0];
+    let mut works: Vec<NetworkWork> = (0..lines)
+        .map(|_| {
+            let mut work = NetworkWork::new(model, network).expect("one strain measure");
+            work.set_portable(portable);
+            work.load(network, state);
+            work
+        })
+        .collect();
+    // to and fro by 1 m in 10 s, as cheap as the path between two communication points
+    let held = |point: usize, t: f64| {
+        let u = (0.1 * (t - state.time)).fract();
+        let v = u * (1.0 - u);
+        Kinematics {
+            position: state.points[point].position + 16.0 * v * v * Vector3::x(),
+            velocity: 3.2 * v * (1.0 - 2.0 * u) * Vector3::x(),
+            acceleration: 0.32 * (1.0 - 6.0 * v) * Vector3::x(),
+            ..Kinematics::default()
+        }
+    };
+    let step = Step::after([size; 2], size);
+    for work in &mut works {
+        work.put_ends(state.time, step, &held);
+    }
+    let (mut t, mut best) = (state.time, f64::INFINITY);
+    for _ in 0..REPETITIONS {
+        let clock = Instant::now();
+        for _ in 0..TURNS / lines {
+            for work in &mut works {
+                for k in 0..TURN {
+                    work.step(model, network, t + k as f64 * size, step, &held);
+                }
+            }
+            t += TURN as f64 * size;
+        }
+        best = best.min(clock.elapsed().as_secs_f64());
+    }
+    let sound = works.iter().all(|work| work.broken_node().is_none());
+    assert!(sound, "a stable step");
+    1e9 * best / (TURNS / lines * lines * TURN) as f64
+}
+
+/// Whole communication steps.
+fn communication() {
+    println!(
+        "\n{:<16} {:<15} {:>5} {:>10} {:>14} {:>12} {:>10}",
+        "whole steps", "integrator", "n", "steps/s", "ns/node/step", "s/s", "real-time"
+    );
+    for name in SCENES {
         for integrator in [Integrator::Leapfrog, Integrator::AxialImplicit] {
-            for elements in [20, 40, 80, 160] {
-                let mut scene = common::scene(name);
-                scene.solver.integrator = integrator;
-                scene.lines[0].sections[0].elements = Some(elements);
-                let cost = common::measure(&scene);
+            for elements in ELEMENTS {
+                let cost = common::measure(&meshed(name, integrator, elements));
                 println!(
                     "{name:<16} {:<15} {elements:>5} {:>10.0} {:>14.1} {:>12.2e} {:>10.0}",
                     format!("{integrator:?}"),

@@ -208,6 +208,37 @@ fn a_snapshot_put_back_replays_bit_for_bit() {
 }
 
 #[test]
+fn a_step_goes_on_as_if_its_state_were_put_back_before_it() {
+    for name in ["oc4_chain", "clump_weight", "storm_moored_semi"] {
+        let mut straight = following(&shipped(name));
+        let mut put_back = straight.clone();
+        for step in [0.05, 0.05, 0.08, 0.3, 0.02, 0.05, 0.05] {
+            straight.advance(step).unwrap();
+            put_back.restore(put_back.snapshot().clone());
+            put_back.advance(step).unwrap();
+            assert!(straight.snapshot() == put_back.snapshot(), "{name}");
+        }
+    }
+}
+
+#[test]
+fn a_step_that_fails_leaves_state_and_future_as_they_were() {
+    for integrator in [Integrator::Leapfrog, Integrator::AxialImplicit] {
+        let mut simulation = Simulation::new(&chain(integrator)).unwrap();
+        let fairlead = simulation.model().point_index("fairlead").unwrap();
+        simulation.advance(0.05).unwrap();
+        let mut spared = simulation.clone();
+        simulation.set_displacement(fairlead, [1e12, 0.0, 0.0]);
+        simulation.advance(0.05).unwrap_err();
+        for simulation in [&mut simulation, &mut spared] {
+            simulation.set_displacement(fairlead, [0.1, 0.0, 0.0]);
+            simulation.advance(0.05).unwrap();
+        }
+        assert!(simulation.snapshot() == spared.snapshot(), "{integrator:?}");
+    }
+}
+
+#[test]
 fn a_step_of_no_length_changes_nothing() {
     for integrator in INTEGRATORS {
         let mut simulation = following(&chain(integrator));

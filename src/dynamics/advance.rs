@@ -211,7 +211,8 @@ impl Workspace {
         length: f64,
         held: &impl Fn(usize, f64) -> Kinematics,
     ) -> Result<Done, StepError> {
-        if self.networks.iter().any(|(_, solver)| solver.reads_next()) {
+        let heaves = state.waves.is_some();
+        if heaves && self.networks.iter().any(|(_, solver)| solver.reads_next()) {
             self.next.waves.clone_from(&state.waves);
         }
         let step = Communication {
@@ -243,7 +244,9 @@ impl Workspace {
         }
         self.next.time = state.time + length;
         place_held(model, &mut self.next, held);
-        std::mem::swap(&mut state.waves, &mut self.next.waves);
+        if heaves {
+            std::mem::swap(&mut state.waves, &mut self.next.waves);
+        }
         std::mem::swap(state, &mut self.next);
         self.holds = true;
         Ok(total)
@@ -326,13 +329,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
             let count = self.substeps(step_max.min(1.0 / work.drag_rate(model, network)), retry)?;
             let drift = self.length / count as f64;
             let mut steps = self.state.lines[network.lines[0]].half_step.steps;
-            work.put_ends(
-                model,
-                network,
-                self.start,
-                Step::after(steps, drift),
-                self.held,
-            );
+            work.put_ends(self.start, Step::after(steps, drift), self.held);
             work.start_reels(network, self.state, self.reels, Step::after(steps, drift));
             work.meet_surface();
             for k in 0..count {

@@ -6,14 +6,14 @@
 use std::sync::Arc;
 
 use nalgebra::Vector3;
-use pulp::{Arch, NullaryFnOnce};
+use pulp::Arch;
 
 use super::creep::CreepArrays;
 use super::leapfrog::Step;
 use super::surface::SurfaceNow;
 use crate::math::fold::{Column, Field, Fold, Slot};
 use crate::math::hermite::Hermite;
-use crate::math::lanes::{Lanes, Vectors};
+use crate::math::lanes::{LANES, Lanes, Vectors};
 use crate::model::{Bottom, Contact, End, Line, LineState, Model, WaveSpan};
 use crate::physics::airy::{Orbit, cubics};
 use crate::physics::flow::{Profile, Stream};
@@ -186,6 +186,37 @@ impl WaveArrays {
     }
 }
 
+/// Velocities of the water at the nodes of a row at the heights z [m], in [m/s].
+#[inline(always)]
+pub(super) fn water_flow(
+    current: Option<&CurrentNow>,
+    waves: Option<&WaveArrays>,
+    at: usize,
+    z: Lanes,
+) -> Vectors {
+    // closures would not be compiled for the vector unit of the kernel
+    let mut flow = Vectors::zero();
+    if let Some(current) = current {
+        let shape = current.profile.velocities(z);
+        flow = shape.scale(Lanes::splat(current.factor));
+    }
+    match waves {
+        Some(waves) => flow + waves.velocity(at),
+        None => flow,
+    }
+}
+
+/// Inverse of the norm of vectors with this square [1/m], finite if that is 0.
+#[inline(always)]
+pub(super) fn inverse_norm(square: Lanes) -> Lanes {
+    (square + Lanes::splat(LENGTH2_MIN)).sqrt().recip()
+}
+
+/// The same of one vector.
+pub(super) fn inverse_norm_of(square: f64) -> f64 {
+    1.0 / (square + LENGTH2_MIN).sqrt()
+}
+
 #[inline(always)]
 fn polynomial(powers: &[Field; 4], passed: f64, at: usize) -> Vectors {
     let u = Lanes::splat(passed);
@@ -319,7 +350,11 @@ impl Layout {
         for end in [End::A, End::B] {
             if parted[end as usize] {
                 let at = self.end_slot(end);
-                let beyond = if end == End::A { at.before() } else { at.after() };
+                let beyond = if end == End::A {
+                    at.before()
+                } else {
+                    at.after()
+                };
                 self.position.set(beyond, self.position.get(at));
             }
         }
@@ -346,12 +381,21 @@ impl Layout {
         memory.velocity_before.resize(count, Vector3::zeros());
         memory.steps = steps;
         let extrapolation = Step::after(steps, steps[0]).extrapolation;
-        for (i, at) in self.fold.slots().take(count).enumerate() {
-            let (velocity, before) = (self.velocity.get(at), self.velocity_before.get(at));
-            state.position[i] = self.position.get(at);
-            state.velocity[i] = velocity + extrapolation * (velocity - before);
-            memory.velocity[i] = velocity;
-            memory.velocity_before[i] = before;
+        let now = state.position.iter_mut().zip(&mut state.velocity);
+        let past = memory.velocity.iter_mut().zip(&mut memory.velocity_before);
+        let mut nodes = now.zip(past);
+        let rows = 1..=self.fold.rows();
+        let [place, velocity, before] = [&self.position, &self.velocity, &self.velocity_before]
+            .map(|field| &field.rows(*rows.end())[rows.clone()]);
+        for lane in 0..LANES {
+            for ((place, velocity), before) in place.iter().zip(velocity).zip(before) {
+                let Some(((at, now), (half, earlier))) = nodes.next() else {
+                    break;
+                };
+                *at = place.get(lane);
+                (*half, *earlier) = (velocity.get(lane), before.get(lane));
+                *now = *half + extrapolation * (*half - *earlier);
+            }
         }
         if let Some(bottom) = self.bottom() {
             let places = state.position.iter().zip(self.fold.slots());
@@ -523,21 +567,8 @@ impl Layout {
     /// Velocities of the water at the nodes [m/s].
     #[inline(always)]
     pub fn water_velocity(&self, at: usize) -> Vectors {
-        // closures would not be compiled for the vector unit of the kernel
-        let flow = match &self.current {
-            None => None,
-            Some(current) => {
-                let z = self.position.load(at).z;
-                let shape = current.profile.velocities(z);
-                Some(shape.scale(Lanes::splat(current.factor)))
-            }
-        };
-        match (flow, &self.waves) {
-            (Some(flow), None) => flow,
-            (Some(flow), Some(waves)) => flow + waves.velocity(at),
-            (None, Some(waves)) => waves.velocity(at),
-            (None, None) => Vectors::zero(),
-        }
+        let z = self.position.load(at).z;
+        water_flow(self.current.as_ref(), self.waves.as_ref(), at, z)
     }
 
     /// Velocity of the water at a node [m/s].
@@ -595,8 +626,9 @@ impl Layout {
 
     /// Tension [N] of the segment at an end at t_n.
     pub fn end_tension(&self, end: End, step: Step) -> f64 {
-        let (at, _) = self.end_segment(end);
-        let change = |of: &Field| of.get(at.after()) - of.get(at);
+        let (at, sign) = self.end_segment(end);
+        let nodes = [self.end_slot(end), self.end_neighbour(end)];
+        let change = |of: &Field| sign * (of.get(nodes[1]) - of.get(nodes[0]));
         let chord = change(&self.position);
         let relative = change(&self.velocity);
         let before = change(&self.velocity_before);
@@ -668,23 +700,14 @@ impl Layout {
     #[inline(always)]
     pub fn tangent(&self, at: usize) -> Vectors {
         let chord = self.position.load(at + 1) - self.position.load(at - 1);
-        chord.scale(
-            (chord.dot(chord) + Lanes::splat(LENGTH2_MIN))
-                .sqrt()
-                .recip(),
-        )
+        chord.scale(inverse_norm(chord.dot(chord)))
     }
 
     /// Vectors along the segments, and the inverse of their lengths.
     #[inline(always)]
     pub fn chord(&self, at: usize) -> (Vectors, Lanes) {
         let chord = self.position.load(at + 1) - self.position.load(at);
-        (
-            chord,
-            (chord.dot(chord) + Lanes::splat(LENGTH2_MIN))
-                .sqrt()
-                .recip(),
-        )
+        (chord, inverse_norm(chord.dot(chord)))
     }
 
     /// Velocities extrapolated to t_n [m/s].
@@ -696,13 +719,8 @@ impl Layout {
     }
 
     /// Moves the nodes from t_n to t_{n+1}.
-    pub fn drift(&mut self, drift: f64) {
-        let unit = self.vector_unit;
-        unit.dispatch(Drift(self, drift));
-    }
-
     #[inline(always)]
-    fn drift_nodes(&mut self, drift: f64) {
+    pub fn drift(&mut self, drift: f64) {
         let drift = Lanes::splat(drift);
         for at in self.rows() {
             let position = self.position.load(at) + self.velocity.load(at).scale(drift);
@@ -710,41 +728,25 @@ impl Layout {
         }
     }
 
-    /// Greatest ratio K |v| / M of the nodes [1/s], v relative to the water: explicit drag wants Δt below its inverse.
-    pub fn drag_rate(&self, line: &Line) -> f64 {
-        let Some(drag) = &line.nodes.drag else {
-            return 0.0;
-        };
-        let rate = |i: usize| {
-            let coefficient = drag.normal[i].max(drag.tangent[i]);
-            let at = self.slot(i);
-            let relative = self.velocity.get(at) - self.water_velocity_of(at);
-            relative.norm() * coefficient / line.nodes.mass_normal[i]
-        };
-        (0..=self.segment_count).map(rate).fold(0.0, f64::max)
-    }
-
     /// Index of the first node that has no finite position, or a speed that no mooring line reaches.
     pub fn broken_node(&self) -> Option<usize> {
+        let (zero, fastest) = (Lanes::splat(0.0), Lanes::splat(SPEED_MAX * SPEED_MAX));
+        let mut sound = true;
+        for row in self.rows() {
+            let (position, velocity) = (self.position.load(row), self.velocity.load(row));
+            let finite = position.scale(zero).dot(position.scale(zero)); // 0, or not a number
+            sound &= (fastest + finite - velocity.dot(velocity)).all_positive();
+        }
         let broken = |at: Slot| {
             let (position, velocity) = (self.position.get(at), self.velocity.get(at));
-            !position.iter().all(|value| value.is_finite())
-                || !velocity.norm_squared().is_finite()
-                || velocity.norm() > SPEED_MAX
+            let slow = velocity.norm_squared() < SPEED_MAX * SPEED_MAX;
+            !slow || !position.iter().all(|value| value.is_finite())
         };
-        self.nodes().position(broken)
-    }
-}
-
-/// [`Layout::drift`] for the vector unit of the machine.
-struct Drift<'a>(&'a mut Layout, f64);
-
-impl NullaryFnOnce for Drift<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn call(self) {
-        self.0.drift_nodes(self.1);
+        if sound {
+            None
+        } else {
+            self.nodes().position(broken)
+        }
     }
 }
 

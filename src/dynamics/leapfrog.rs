@@ -1,37 +1,41 @@
 //! Semi-explicit leapfrog of lumped two-node segments: the default for cables without bending.
 //!
-//! Positions live at t_n, velocities at t_{n−½}. A step is
+//! Positions live at t_n, velocities at t_{n−½}. A step is one sweep over the nodes, in which
 //!
 //! 1. segments: strain, lagged strain rate, tension T q;
 //! 2. nodes: v_{n+½} = v_{n−½} + Δt M⁻¹ f, with drag at the extrapolated velocity 1.5 v_{n−½} − 0.5 v_{n−3/2}, the
 //!    anisotropic mass inverted in closed form and the seabed solved implicitly, node by node, by a rank-one update;
-//! 3. r_{n+1} = r_n + Δt v_{n+½}; held ends are put where their path says.
+//! 3. r_{n+1} = r_n + Δt v_{n+½}; the ends are put where their points are.
+//!
+//! Before the sweep free points take the pull of the segments at them, and after it beds that slope or rub look after the nodes one by one.
 //!
 //! One force evaluation a step, second order, stable below [`super::limit::explicit_step`] whatever the seabed.
 //!
 //! Source: Verlet's scheme as in Hairer, Lubich & Wanner (2003), Acta Numerica 12, 399-450; the inverse of
 //! M_n I + (M_t − M_n) t tᵀ by Sherman & Morrison (1950); contact: backward Euler on the penetrating spring and damper.
-//!
+
+mod sweep;
 mod winch;
 
 use nalgebra::{Matrix3, Vector3};
-use pulp::NullaryFnOnce;
+use pulp::{Arch, NullaryFnOnce};
 
-use super::layout::{Layout, Water, interior};
+use super::layout::{Layout, Water, interior, inverse_norm_of};
 use super::ledger::Flow;
 use crate::math::fold::{Column, Field};
-use crate::math::lanes::{Lanes, Vectors};
+use crate::math::lanes::{LANES, Lanes, Vectors};
 use crate::model::{End, Line, LineState, Parting, WaveSpan};
 use crate::physics::friction_step::Landing;
 use crate::physics::morison::{self, DragCoefficients};
 use crate::physics::stretch::{StretchLaw, total_tension};
+pub use sweep::Placed;
+use sweep::{Drift, Sweep};
 use winch::WinchWork;
 
 /// A line and the scratch of its steps.
 #[derive(Debug, Clone)]
 pub struct LineWork {
     layout: Layout,
-    damped: bool,
     /// Force of a segment on its lower node, T q [N].
     pull: Field,
     inverse_mass: Column,
@@ -59,16 +63,6 @@ struct Settling {
     lost: f64,
 }
 
-/// Whether the kernel knows a bed.
-mod bed {
-    /// None.
-    pub const NONE: u8 = 0;
-    /// A level one without friction.
-    pub const LEVEL: u8 = 1;
-    /// One that slopes or rubs, whose nodes [`super::LineWork::settle`] looks after.
-    pub const BOTTOM: u8 = 2;
-}
-
 /// What needs a node's tangent: drag, and a mass that differs along and across the line.
 #[derive(Debug, Clone)]
 struct WaterWork {
@@ -76,6 +70,8 @@ struct WaterWork {
     drag_tangent: Column,
     /// 1/M_t − 1/M_n [1/kg].
     inverse_mass_excess: Column,
+    /// The greater drag coefficient over the mass of a node that is wholly in the water [1/m].
+    drag_over_mass: Column,
 }
 
 impl WaterWork {
@@ -92,35 +88,17 @@ impl WaterWork {
             || layout.waves.is_some()
             || excess.iter().any(|excess| *excess != 0.0);
         let drag = layout.drag.as_ref();
+        let over_mass = nodes.drag.as_ref().map_or(Vec::new(), |drag| {
+            let each = drag.normal.iter().zip(&drag.tangent);
+            let rates = each.zip(&nodes.mass_normal);
+            rates.map(|((n, t), mass)| n.max(*t) / mass).collect()
+        });
         wet.then(|| WaterWork {
+            drag_over_mass: layout.fold.column(&over_mass, 0.0),
             drag_normal: drag.map_or(zeros.clone(), |drag| drag.normal.clone()),
             drag_tangent: drag.map_or(zeros, |drag| drag.tangent.clone()),
             inverse_mass_excess: layout.fold.column(&excess, 0.0),
         })
-    }
-
-    /// What the water resists with at t_n, what it presses with, and the power of the drag on the water's way.
-    #[inline(always)]
-    fn drag_now<const CURRENT: bool>(
-        &self,
-        line: &Layout,
-        at: usize,
-        tangent: Vectors,
-        step: Step,
-    ) -> (Vectors, Vectors, Lanes) {
-        let velocity = line.velocity_now(at, step);
-        let still = Lanes::splat(0.0);
-        if CURRENT {
-            let flow = line.water_velocity(at);
-            let drag = self.drag(at, velocity - flow, tangent);
-            let press = match &line.waves {
-                Some(waves) => waves.press(at, tangent),
-                None => Vectors::zero(),
-            };
-            (drag, press, still - drag.dot(flow))
-        } else {
-            (self.drag(at, velocity, tangent), Vectors::zero(), still)
-        }
     }
 
     /// M⁻¹f, and M⁻¹ẑ for the bed.
@@ -163,18 +141,6 @@ impl NullaryFnOnce for PullSegments<'_> {
     #[inline(always)]
     fn call(self) {
         self.0.choose_segment_pass(self.1);
-    }
-}
-
-/// [`LineWork::kick_nodes`] for the vector unit of the machine.
-struct KickNodes<'a>(&'a mut LineWork, Step);
-
-impl NullaryFnOnce for KickNodes<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn call(self) {
-        self.0.choose_node_pass(self.1);
     }
 }
 
@@ -240,11 +206,6 @@ impl LineWork {
             .map(|mass| 1.0 / mass)
             .collect();
         Some(LineWork {
-            damped: line
-                .segments
-                .axial_damping
-                .iter()
-                .any(|damping| *damping != 0.0),
             pull: Field::zeros(layout.fold),
             inverse_mass: layout.fold.column(&inverse_mass, 0.0),
             water: WaterWork::new(line, &layout),
@@ -263,6 +224,11 @@ impl LineWork {
         })
     }
 
+    /// Sets for which vectors the kernels are compiled that run.
+    pub fn set_vector_unit(&mut self, unit: Arch) {
+        self.layout.vector_unit = unit;
+    }
+
     /// Takes over the state of a line.
     pub fn load(&mut self, state: &LineState) {
         self.load_reel(state);
@@ -272,7 +238,6 @@ impl LineWork {
             let at = self.layout.end_slot(end);
             self.interior[at] = f64::from(u8::from(self.is_parted(end)));
         }
-        self.renew_ghosts();
         self.clear_flow();
     }
 
@@ -383,53 +348,72 @@ impl LineWork {
         }
     }
 
-    /// Step 1: tensions from positions at t_n and velocities at t_{n−½}.
-    pub fn pull_segments(&mut self, step: Step) {
-        self.layout.vector_unit.dispatch(PullSegments(self, step));
+    /// Tensions from positions at t_n and velocities at t_{n−½}, where they must be known before the sweep: of segments with laws
+    /// that it does not know, and of those at free points.
+    pub fn pull_beforehand(&mut self, step: Step) {
+        if self.pulls_beforehand() {
+            self.layout.renew_ghosts(self.parted);
+            self.layout.vector_unit.dispatch(PullSegments(self, step));
+            return;
+        }
+        for end in [End::A, End::B] {
+            if !self.tied[end as usize] && !self.is_parted(end) {
+                self.pull_end(end);
+            }
+        }
+    }
+
+    /// Whether the segments have a law that the sweep does not know.
+    fn pulls_beforehand(&self) -> bool {
+        self.layout.creep.is_some() || self.layout.law != StretchLaw::Engineering
+    }
+
+    /// The pull of the segment at an end, as the sweep will find it.
+    fn pull_end(&mut self, end: End) {
+        let line = &self.layout;
+        let ((at, sign), near) = (line.end_segment(end), line.end_neighbour(end));
+        let far = line.end_slot(end);
+        let change = |of: &Field| sign * (of.get(near) - of.get(far));
+        let (chord, rate) = (change(&line.position), change(&line.velocity));
+        let square = chord.dot(&chord);
+        let inverse_l = inverse_norm_of(square);
+        let strain = square * inverse_l * line.inverse_length[at] - 1.0;
+        let stretching = chord.dot(&rate) * inverse_l;
+        let tension = total_tension(
+            line.axial_stiffness[at] * strain,
+            line.axial_damping[at] * stretching * line.inverse_length[at],
+            0.0,
+            line.negative_tension,
+        );
+        self.pull.set(at, chord * (tension * inverse_l));
     }
 
     #[inline(always)]
     fn choose_segment_pass(&mut self, step: Step) {
-        match (&self.layout.law, self.damped) {
-            _ if self.layout.creep.is_some() => self.creeping_segment_pass(step),
-            (StretchLaw::Engineering, false) => self.segment_pass::<false>(step, |strain| strain),
-            (StretchLaw::Engineering, true) => self.segment_pass::<true>(step, |strain| strain),
-            (law, _) => {
-                let law = law.clone();
-                self.segment_pass::<true>(step, |strain| strain.map(|e| law.at(e).force));
-            }
+        if self.layout.creep.is_some() {
+            return self.creeping_segment_pass(step);
         }
-    }
-
-    #[inline(always)]
-    fn segment_pass<const DAMPED: bool>(&mut self, step: Step, law: impl Fn(Lanes) -> Lanes) {
         let line = &self.layout;
         let kick = Lanes::splat(step.kick);
-        let one = Lanes::splat(1.0);
         for at in line.rows() {
             let (chord, inverse_l) = line.chord(at);
-            let inverse_length = line.inverse_length.load(at);
-            let strain = chord.dot(chord) * inverse_l * inverse_length - one;
-            let elastic = line.axial_stiffness.load(at) * law(strain);
-            let mut tension = elastic.positive();
-            if DAMPED {
-                let rate = line.velocity.load(at + 1) - line.velocity.load(at);
-                let stretching = chord.dot(rate) * inverse_l;
-                let damping = line.axial_damping.load(at) * stretching * inverse_length;
-                let total = if line.negative_tension {
-                    tension + damping
-                } else {
-                    (elastic + damping).positive()
-                };
-                self.lost = self.lost + (total - tension) * stretching * kick;
-                tension = total;
-            }
+            let stiffness = line.axial_stiffness.load(at);
+            let elastic = stiffness * line.strain(at).map(|strain| line.law.at(strain).force);
+            let rate = line.velocity.load(at + 1) - line.velocity.load(at);
+            let stretching = chord.dot(rate) * inverse_l;
+            let damping = line.axial_damping.load(at) * stretching * line.inverse_length.load(at);
+            let spring = elastic.positive();
+            let tension = if line.negative_tension {
+                spring + damping
+            } else {
+                (elastic + damping).positive()
+            };
+            self.lost = self.lost + (tension - spring) * stretching * kick;
             self.pull.store(chord.scale(tension * inverse_l), at);
         }
-        self.pull.wrap();
     }
 
-    /// [`LineWork::segment_pass`] of a line with viscoelastic segments.
+    /// [`LineWork::choose_segment_pass`] of a line with viscoelastic segments.
     #[inline(always)]
     fn creeping_segment_pass(&mut self, step: Step) {
         let mut creep = self.layout.creep.take().expect("this line creeps");
@@ -454,120 +438,31 @@ impl LineWork {
             self.lost = self.lost + loss * Lanes::splat(step.kick) * inverse_length.recip();
             self.pull.store(direction.scale(tension), at);
         }
-        self.pull.wrap();
         self.layout.creep = Some(creep);
     }
 
-    /// After the ends were put where they are at t_{n+1}: takes the memory of viscoelastic segments there.
-    pub fn creep(&mut self, step: Step) {
-        self.layout.creep(step.drift);
-    }
-
-    /// Step 2: velocities from t_{n−½} to t_{n+½}.
-    pub fn kick_nodes(&mut self, step: Step) {
-        self.layout.vector_unit.dispatch(KickNodes(self, step));
-        if self.settling.is_some() {
-            self.settle(step);
+    /// Takes the memory of viscoelastic segments to t_{n+1}.
+    fn creep(&mut self, step: Step) {
+        if self.layout.creep.is_some() {
+            self.layout.renew_ghosts(self.parted);
+            self.layout.creep(step.drift);
         }
     }
 
-    #[inline(always)]
-    fn choose_node_pass(&mut self, step: Step) {
-        match (&self.water, self.layout.flows()) {
-            (None, _) => self.choose_dry_pass::<false, false>(step),
-            (Some(_), false) => self.choose_dry_pass::<true, false>(step),
-            (Some(_), true) => self.choose_dry_pass::<true, true>(step),
+    /// A step from t_n to `t` [s], with the ends going where `ends` says.
+    pub fn advance(&mut self, t: f64, step: Step, ends: [Placed; 2]) {
+        let unit = self.layout.vector_unit;
+        let work = self;
+        unit.dispatch(Sweep { work, step, ends });
+        if work.settling.is_some() {
+            work.settle(step);
+            unit.dispatch(Drift { work, step, ends });
         }
-    }
-
-    /// What is chosen beside the water.
-    #[inline(always)]
-    fn choose_dry_pass<const WATER: bool, const CURRENT: bool>(&mut self, step: Step) {
-        match (&self.layout.contact, self.settling.is_some()) {
-            (None, _) => self.choose_damped_pass::<WATER, CURRENT, { bed::NONE }>(step),
-            (Some(_), false) => self.choose_damped_pass::<WATER, CURRENT, { bed::LEVEL }>(step),
-            (Some(_), true) => self.choose_damped_pass::<WATER, CURRENT, { bed::BOTTOM }>(step),
-        }
-    }
-
-    #[inline(always)]
-    fn choose_damped_pass<const WATER: bool, const CURRENT: bool, const BED: u8>(
-        &mut self,
-        step: Step,
-    ) {
-        match self.layout.mass_damping {
-            None => self.node_pass::<WATER, CURRENT, BED, false>(step),
-            Some(_) => self.node_pass::<WATER, CURRENT, BED, true>(step),
-        }
-    }
-
-    #[inline(always)]
-    fn node_pass<
-        const WATER: bool,
-        const CURRENT: bool,
-        const BED: u8,
-        const MASS_DAMPING: bool,
-    >(
-        &mut self,
-        step: Step,
-    ) {
-        let line = &mut self.layout;
-        let kick = Lanes::splat(step.kick);
-        for at in line.rows() {
-            let velocity = line.velocity.load(at);
-            let inverse_mass = self.inverse_mass.load(at);
-            let mut force = self.pull.load(at) - self.pull.load(at - 1);
-            force.z = force.z - line.weight.load(at);
-            let zero = Lanes::splat(0.0);
-            let mut resistance = Vectors::zero();
-            if MASS_DAMPING {
-                let damping = line.mass_damping.as_ref().expect("this kernel damps");
-                resistance = velocity.scale(damping.load(at));
-            }
-            let (mut press, mut power) = (Vectors::zero(), zero);
-            // M⁻¹f, and M⁻¹ẑ for the bed
-            let (inverted, response) = if WATER {
-                let water = self.water.as_ref().expect("this kernel runs in water");
-                let tangent = line.tangent(at);
-                let drag;
-                (drag, press, power) = water.drag_now::<CURRENT>(line, at, tangent, step);
-                resistance = resistance + drag;
-                force = force - resistance;
-                force = if CURRENT { force + press } else { force };
-                water.inverted(at, inverse_mass, force, tangent)
-            } else {
-                force = force - resistance;
-                let mut response = Vectors::zero();
-                response.z = inverse_mass;
-                (force.scale(inverse_mass), response)
-            };
-            let mut kicked = velocity + inverted.scale(kick);
-            let mut given_away = zero; // twice the energy that leaves the nodes
-            if BED == bed::LEVEL {
-                let impulse = contact_impulse(line, at, kicked.z, response.z, step);
-                kicked = kicked + response.scale(impulse);
-                given_away = given_away - impulse * (velocity.z + kicked.z);
-            }
-            if WATER || MASS_DAMPING {
-                given_away = given_away + resistance.dot(velocity + kicked) * kick;
-            }
-            if WATER || MASS_DAMPING || BED == bed::LEVEL {
-                let half = Lanes::splat(0.5) * self.interior.load(at);
-                self.lost = self.lost + half * given_away;
-            }
-            if CURRENT {
-                let part = self.interior.load(at);
-                let by_press = part * press.dot(velocity + kicked) * kick * Lanes::splat(0.5);
-                let given = part * power * kick;
-                self.given_by_current = self.given_by_current + given + by_press;
-                self.lost = self.lost + given;
-            }
-            if let (bed::BOTTOM, Some(settling)) = (BED, &mut self.settling) {
-                settling.resistance.store(resistance, at);
-            }
-            line.velocity_before.store(kicked, at); // v_{n−3/2} has been read
-        }
-        std::mem::swap(&mut line.velocity, &mut line.velocity_before);
+        work.wind(t, step);
+        work.creep(step);
+        work.book_ends(step);
+        work.meet_surface(Some(step));
+        work.renew_reel(step);
     }
 
     /// What a bed that slopes or rubs makes of the velocities at t_{n+½}.
@@ -615,14 +510,9 @@ impl LineWork {
         }
     }
 
-    /// Step 3: positions from t_n to t_{n+1}.
-    pub fn drift_nodes(&mut self, step: Step) {
-        self.layout.drift(step.drift);
-    }
-
-    /// Books the work of the ends in a step, after [`Self::put_end`] has told how they move on; ends at free points do no
+    /// Books the work of the ends in a step; ends at free points do no
     /// work that the line loses.
-    pub fn book_ends(&mut self, step: Step) {
+    fn book_ends(&mut self, step: Step) {
         let held = self.held();
         for end in [End::A, End::B]
             .into_iter()
@@ -637,14 +527,14 @@ impl LineWork {
         }
     }
 
-    /// Puts an end at a position [m] with the velocity [m/s] that the next step takes as lagged, unless it has parted from its point.
-    pub fn put_end(&mut self, end: End, position: Vector3<f64>, velocity: Vector3<f64>) {
+    /// Puts an end somewhere, unless it has parted from its point.
+    pub fn put_end(&mut self, end: End, placed: Placed) {
         if !self.is_parted(end) {
-            self.layout.put_end(end, position, velocity);
+            self.layout.put_end(end, placed.position, placed.velocity);
         }
     }
 
-    /// What the end brings to a free point, after [`Self::pull_segments`]; `velocity` [m/s] is the point's at t_n.
+    /// What the end brings to a free point, after [`Self::pull_beforehand`]; `velocity` [m/s] is the point's at t_n.
     pub fn end_load(&self, end: End, velocity: Vector3<f64>) -> EndLoad {
         let line = &self.layout;
         let (at, other) = (line.end_slot(end), line.end_neighbour(end));
@@ -690,40 +580,29 @@ impl LineWork {
         }
     }
 
-    /// After the ends were put in their places: makes the ghosts of the layout repeat the nodes.
-    pub fn renew_ghosts(&mut self) {
-        self.layout.renew_ghosts(self.parted);
-    }
-
-    /// Greatest ratio K |v| / M of the nodes [1/s]: explicit drag wants Δt below its inverse.
-    pub fn drag_rate(&self, line: &Line) -> f64 {
-        self.layout.drag_rate(line)
+    /// Greatest ratio K |v| / M of the nodes [1/s], v relative to the water: explicit drag wants Δt below its inverse.
+    pub fn drag_rate(&self) -> f64 {
+        let (line, Some(water)) = (&self.layout, &self.water) else {
+            return 0.0;
+        };
+        let mut greatest = Lanes::splat(0.0);
+        for row in line.rows() {
+            let mut past = line.velocity.load(row);
+            if line.flows() {
+                past = past - line.water_velocity(row);
+            }
+            let rate = past.scale(water.drag_over_mass.load(row));
+            greatest = rate.dot(rate).max(greatest);
+        }
+        (0..LANES)
+            .fold(0.0, |sum: f64, lane| sum.max(greatest[lane]))
+            .sqrt()
     }
 
     /// Index of the first node that has no finite position, or a speed that no mooring line reaches.
     pub fn broken_node(&self) -> Option<usize> {
         self.layout.broken_node()
     }
-}
-
-/// Impulse Δt·F of the bed: F = k(p − Δt u') − c u' ≥ 0 with u' = u + Δt μ F, only if p − Δt u > 0.
-#[inline(always)]
-fn contact_impulse(
-    line: &Layout,
-    at: usize,
-    velocity_z: Lanes,
-    response_z: Lanes,
-    step: Step,
-) -> Lanes {
-    let contact = line.contact.as_ref().expect("this kernel runs over a bed");
-    let (drift, kick) = (Lanes::splat(step.drift), Lanes::splat(step.kick));
-    let stiffness = contact.stiffness.load(at);
-    let resistance = stiffness * drift + contact.damping.load(at); // b = kΔt + c
-    let penetration = contact.level.load(at) - line.position.load(at).z;
-    let push = stiffness * penetration - resistance * velocity_z;
-    let yielding = Lanes::splat(1.0) + response_z * kick * resistance;
-    let lands = penetration - drift * velocity_z;
-    (kick * push.positive() * yielding.recip()).where_positive(lands)
 }
 
 /// Tension [N] of one segment from its end positions [m] and velocities [m/s]: the pointwise law of the kernel.

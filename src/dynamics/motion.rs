@@ -15,6 +15,8 @@
 //! the choice of degree is made here. Valid for any sequence of step sizes: samples closer
 //! together than half the coming step are passed over, and all are dropped when the host steps back.
 
+use std::array::from_fn;
+
 use nalgebra::{Vector3, Vector6};
 use serde::{Deserialize, Serialize};
 
@@ -59,6 +61,18 @@ enum Order {
     Before,
 }
 
+impl Order {
+    /// Samples with one more, newest first.
+    #[inline]
+    fn push(self, samples: &[f64; SAMPLES_MAX], sample: f64) -> [f64; SAMPLES_MAX] {
+        let [a, b, c, d, e, f] = *samples;
+        match self {
+            Order::After => [sample, a, b, c, d, e],
+            Order::Again | Order::Before => [sample, b, c, d, e, f],
+        }
+    }
+}
+
 impl Clock {
     /// Begins at a time [s].
     pub fn new(time: f64) -> Clock {
@@ -81,14 +95,13 @@ impl Clock {
         };
         match order {
             Order::After => {
-                self.times.copy_within(0..SAMPLES_MAX - 1, 1);
                 self.count = (self.count + 1).min(SAMPLES_MAX);
                 self.made_up = self.made_up.max(time + last_step);
             }
             Order::Again => {}
             Order::Before => (self.count, self.made_up) = (1, time),
         }
-        self.times[0] = time;
+        self.times = order.push(&self.times, time);
         Foresight::new(self, order, step, reconstruction)
     }
 
@@ -120,15 +133,31 @@ pub struct Foresight {
     /// The samples that count, newest first; the first `count` are in use.
     picked: [usize; SAMPLES_MAX],
     count: usize,
-    /// 1/(t_i − t_{i+k}) of the samples that count, by order k − 1 and place i [1/s].
-    inverse: [[f64; SAMPLES_MAX - 1]; DEGREE_MAX + 1],
-    /// Products of t_j − t_{j+1} … t_j − t_{j+k}, by order k − 1 and place j [s^k].
-    reach: [[f64; JUDGED]; DEGREE_MAX + 1],
+    /// Whether all samples count.
+    all: bool,
+    /// 1/length of the step [1/s].
+    rate: f64,
+    /// 1/(t_i − t_{i+k}) of the samples that count.
+    inverse: Reciprocals,
+    /// Products of t_j − t_{j+1} … t_j − t_{j+k}, by place j and order k − 1 [s^k].
+    reach: [Terms; JUDGED],
     /// Newton's polynomials of the newest samples at the end of the step, their slopes there and their integrals over it.
-    value: [f64; DEGREE_MAX + 1],
-    slope: [f64; DEGREE_MAX + 1],
-    integral: [f64; DEGREE_MAX + 1],
+    value: Terms,
+    slope: Terms,
+    integral: Terms,
 }
+
+/// 1/(t_i − t_{i+k}) by place i, for the orders k from 1 on [1/s]. Written out, so that the compiler unrolls what is done with them.
+#[derive(Debug, Clone)]
+struct Reciprocals {
+    first: [f64; SAMPLES_MAX - 1],
+    second: [f64; SAMPLES_MAX - 2],
+    third: [f64; SAMPLES_MAX - 3],
+    fourth: [f64; SAMPLES_MAX - 4],
+}
+
+/// A number for every term of a polynomial.
+type Terms = [f64; DEGREE_MAX + 1];
 
 impl Foresight {
     fn new(clock: &Clock, order: Order, step: f64, reconstruction: Reconstruction) -> Foresight {
@@ -136,32 +165,20 @@ impl Foresight {
         let end = start + step;
         let (picked, count) = spaced(&clock.times[..clock.count], step / STEP_RATIO_MAX);
         // what is not in use gets times that divide nothing by zero, and is not looked at
-        let mut t = [0.0; SAMPLES_MAX];
-        for (i, t) in t.iter_mut().enumerate() {
-            *t = if i < count {
-                clock.times[picked[i]]
-            } else {
-                start - (1.0 + i as f64) * step.max(f64::MIN_POSITIVE)
-            };
-        }
-        let mut inverse = [[1.0; SAMPLES_MAX - 1]; DEGREE_MAX + 1];
-        for (k, row) in inverse.iter_mut().enumerate() {
-            for i in 0..SAMPLES_MAX - 1 - k {
-                row[i] = t[i] - t[i + k + 1];
-            }
-        }
-        let mut reach = [[0.0; JUDGED]; DEGREE_MAX + 1];
-        let mut product = [1.0; JUDGED];
-        for (row, differences) in reach.iter_mut().zip(&inverse) {
-            for j in 0..JUDGED {
-                product[j] *= differences[j];
-                row[j] = product[j];
-            }
-        }
-        for row in &mut inverse {
-            row.iter_mut()
-                .for_each(|difference| *difference = 1.0 / *difference);
-        }
+        let t: [f64; SAMPLES_MAX] = from_fn(|i| match i < count {
+            true => clock.times[picked[i]],
+            false => start - (1.0 + i as f64) * step.max(f64::MIN_POSITIVE),
+        });
+        let reach = [0, 1].map(|j| {
+            let [a, b, c, d] = [1, 2, 3, 4].map(|k| t[j] - t[j + k]);
+            [a, a * b, a * b * c, a * b * c * d]
+        });
+        let inverse = Reciprocals {
+            first: from_fn(|i| 1.0 / (t[i] - t[i + 1])),
+            second: from_fn(|i| 1.0 / (t[i] - t[i + 2])),
+            third: from_fn(|i| 1.0 / (t[i] - t[i + 3])),
+            fourth: from_fn(|i| 1.0 / (t[i] - t[i + 4])),
+        };
         let [h, e1, e2] = [end - t[0], end - t[1], end - t[2]];
         let [a, b] = [t[0] - t[1], t[0] - t[2]];
         Foresight {
@@ -169,8 +186,10 @@ impl Foresight {
             jumps: reconstruction == Reconstruction::Jump,
             span: [start, end],
             left: clock.left(step),
+            rate: 1.0 / (end - start),
             picked,
             count,
+            all: count == clock.count,
             inverse,
             reach,
             value: [1.0, h, h * e1, h * e1 * e2],
@@ -182,6 +201,16 @@ impl Foresight {
                 h * h * (h * h / 4.0 + (a + b) * h / 3.0 + a * b / 2.0),
             ],
         }
+    }
+
+    /// How many of the samples that count are among the `newest` of all.
+    #[inline]
+    fn known(&self, newest: usize) -> usize {
+        if self.all {
+            return self.count.min(newest);
+        }
+        let picked = self.picked.iter().take(self.count);
+        picked.take_while(|place| **place < newest).count()
     }
 }
 
@@ -231,23 +260,34 @@ impl AxisPath {
 
     /// Continues the path by a communication step from a position [m] and perhaps a velocity [m/s] at its start.
     pub fn extend(&mut self, foresight: &Foresight, position: f64, velocity: Option<f64>) {
-        self.remember(foresight.order, position, velocity);
+        if foresight.order == Order::Before {
+            (self.rated, self.degree) = (0, 0);
+        }
+        let positions = foresight.order.push(&self.positions, position);
+        self.positions = positions;
+        let to = match velocity {
+            Some(velocity) => self.rate(foresight, position, velocity),
+            None => {
+                self.rated = 0;
+                self.predict(foresight, &positions)
+            }
+        };
+        let [start, end] = foresight.span;
         if foresight.jumps {
             let velocity = velocity.unwrap_or(0.0);
-            let [start, end] = foresight.span;
             self.end = [position, velocity];
             return self.follow(
                 foresight.span,
                 [position + (end - start) * velocity, velocity],
             );
         }
-        let [place, velocity] = self.predict(foresight);
-        let missed = [self.end[0] - position, self.end[1] - velocity];
+        let missed = [self.end[0] - position, self.end[1] - to[1]];
         let left = foresight
             .left
             .map(|row| row[0] * missed[0] + row[1] * missed[1]);
-        let to = [place + left[0], velocity + left[1]];
-        self.follow(foresight.span, to);
+        let to = [to[0] + left[0], to[1] + left[1]];
+        self.curve = Hermite::bridge([start, end - start, foresight.rate], self.end, to);
+        self.end = to;
     }
 
     /// Continues the path over a span of time [s] to a position [m] and a velocity [m/s] that are known.
@@ -263,44 +303,27 @@ impl AxisPath {
         self.curve.at(t)
     }
 
-    fn remember(&mut self, order: Order, position: f64, velocity: Option<f64>) {
-        match order {
-            Order::After => {
-                self.positions.copy_within(0..SAMPLES_MAX - 1, 1);
-                self.velocities.copy_within(0..SAMPLES_MAX - 1, 1);
-            }
-            Order::Again => self.rated = self.rated.saturating_sub(1),
-            Order::Before => (self.rated, self.degree) = (0, 0),
-        }
-        self.positions[0] = position;
-        match velocity {
-            Some(velocity) => {
-                self.velocities[0] = velocity;
-                self.rated = (self.rated + 1).min(SAMPLES_MAX);
-            }
-            None => self.rated = 0,
-        }
+    /// Position [m] and velocity [m/s] predicted for the end of a step from what the host said of the position.
+    #[inline]
+    fn predict(&mut self, foresight: &Foresight, positions: &[f64; SAMPLES_MAX]) -> [f64; 2] {
+        let differences = Differences::new(foresight, positions);
+        let degree = differences.degree(foresight.count, &mut self.degree);
+        [&foresight.value, &foresight.slope].map(|basis| differences.sum(degree, basis))
     }
 
-    /// Position [m] and velocity [m/s] predicted for the end of a step.
-    fn predict(&mut self, foresight: &Foresight) -> [f64; 2] {
-        let picked = &foresight.picked[..foresight.count];
-        let with_velocity = picked
-            .iter()
-            .take_while(|&&place| place < self.rated)
-            .count();
-        if with_velocity > 0 {
-            let rates = Differences::new(foresight, &self.velocities);
-            let degree = rates.degree(with_velocity, &mut self.degree);
-            let travelled = rates.sum(degree, &foresight.integral);
-            return [
-                self.positions[0] + travelled,
-                rates.sum(degree, &foresight.value),
-            ];
-        }
-        let positions = Differences::new(foresight, &self.positions);
-        let degree = positions.degree(foresight.count, &mut self.degree);
-        [&foresight.value, &foresight.slope].map(|basis| positions.sum(degree, basis))
+    /// Remembers a velocity [m/s], and predicts from the velocities and the position [m] at the start of a step.
+    #[inline]
+    fn rate(&mut self, foresight: &Foresight, position: f64, velocity: f64) -> [f64; 2] {
+        let again = usize::from(foresight.order == Order::Again);
+        self.rated = (self.rated.saturating_sub(again) + 1).min(SAMPLES_MAX);
+        let velocities = foresight.order.push(&self.velocities, velocity);
+        self.velocities = velocities;
+        let differences = Differences::new(foresight, &velocities);
+        let degree = differences.degree(foresight.known(self.rated), &mut self.degree);
+        [
+            position + differences.sum(degree, &foresight.integral),
+            differences.sum(degree, &foresight.value),
+        ]
     }
 }
 
@@ -317,7 +340,8 @@ impl HostPath {
     /// Position, velocity and acceleration at time `t` [s].
     #[inline]
     pub fn at(&self, t: f64) -> Kinematics {
-        let [x, y, z] = self.0.each_ref().map(|axis| axis.at(t));
+        let [x, y, z] = &self.0;
+        let [x, y, z] = [x.at(t), y.at(t), z.at(t)];
         Kinematics {
             position: Vector3::new(x.value, y.value, z.value),
             velocity: Vector3::new(x.slope, y.slope, z.slope),
@@ -351,51 +375,59 @@ impl VesselPath {
 /// Divided differences of the samples that count.
 struct Differences {
     /// Of the newest samples, by order from 0 on.
-    newest: [f64; DEGREE_MAX + 1],
+    newest: Terms,
     /// By how much polynomials of every degree through the samples before would have missed the newest ones.
-    miss: [[f64; JUDGED]; DEGREE_MAX + 1],
+    miss: [Terms; JUDGED],
 }
 
 impl Differences {
+    #[inline(always)]
     fn new(foresight: &Foresight, samples: &[f64; SAMPLES_MAX]) -> Differences {
-        let mut differences = foresight.picked.map(|place| samples[place]);
-        let mut newest = [differences[0]; DEGREE_MAX + 1];
-        let mut miss = [[0.0; JUDGED]; DEGREE_MAX + 1];
-        for k in 0..=DEGREE_MAX {
-            for i in 0..SAMPLES_MAX - 1 - k {
-                differences[i] = (differences[i] - differences[i + 1]) * foresight.inverse[k][i];
-            }
-            // the remainder of the polynomial of degree k is the difference of order k + 1 times its nodes' distances
-            for (j, miss) in miss[k].iter_mut().enumerate() {
-                *miss = (differences[j] * foresight.reach[k][j]).abs();
-            }
-            if k < DEGREE_MAX {
-                newest[k + 1] = differences[0];
-            }
+        let zeroth = match foresight.all {
+            true => *samples,
+            false => foresight.picked.map(|place| samples[place]),
+        };
+        let by = &foresight.inverse;
+        let first: [f64; SAMPLES_MAX - 1] = from_fn(|i| (zeroth[i] - zeroth[i + 1]) * by.first[i]);
+        let second: [f64; SAMPLES_MAX - 2] = from_fn(|i| (first[i] - first[i + 1]) * by.second[i]);
+        let third: [f64; SAMPLES_MAX - 3] = from_fn(|i| (second[i] - second[i + 1]) * by.third[i]);
+        let fourth: [f64; SAMPLES_MAX - 4] = from_fn(|i| (third[i] - third[i + 1]) * by.fourth[i]);
+        // the remainder of the polynomial of degree k is the difference of order k + 1 times its nodes' distances
+        let miss = from_fn(|j| {
+            let next = [first[j], second[j], third[j], fourth[j]];
+            from_fn(|k| (next[k] * foresight.reach[j][k]).abs())
+        });
+        Differences {
+            newest: [zeroth[0], first[0], second[0], third[0]],
+            miss,
         }
-        Differences { newest, miss }
     }
 
     /// The degree given, or the one that is set instead, because it would have predicted the newest samples clearly better from the ones
     /// older than each; of the `known` newest samples.
+    #[inline(always)]
     fn degree(&self, known: usize, degree: &mut usize) -> usize {
         if known <= 2 {
             // two samples can judge no line, but a host that moves a point goes on moving it
             return known - 1;
         }
         let judged = JUDGED.min(known - 2);
-        let error = |degree: usize| -> f64 { self.miss[degree][..judged].iter().sum() };
         let highest = DEGREE_MAX.min(known - 1 - judged);
+        let [newest, before] = &self.miss;
+        let error: Terms = match judged {
+            JUDGED => from_fn(|k| newest[k] + before[k]),
+            _ => *newest,
+        };
         let (kept, mut best, mut least) = match *degree {
-            kept if kept <= highest => (kept, kept, error(kept)),
+            kept if kept <= highest => (kept, kept, error[kept]),
             _ => (0, 0, f64::INFINITY),
         };
-        for other in 0..=highest {
-            let handicap = match (kept, other) {
-                (0, _) | (_, 0) => 1.0 / BETTER_AT_REST,
+        for (other, error) in error.into_iter().enumerate().take(highest + 1) {
+            let handicap = match kept.min(other) {
+                0 => 1.0 / BETTER_AT_REST,
                 _ => 1.0 / BETTER,
             };
-            let handicapped = error(other) * handicap;
+            let handicapped = error * handicap;
             // what rests has no degree to keep
             if handicapped < least || (other == 0 && handicapped == 0.0) {
                 (best, least) = (other, handicapped);
@@ -406,9 +438,13 @@ impl Differences {
     }
 
     /// Newton's polynomial of a degree, whose terms have the values `basis`.
-    fn sum(&self, degree: usize, basis: &[f64; DEGREE_MAX + 1]) -> f64 {
-        let terms = self.newest.iter().zip(basis).take(degree + 1);
-        terms.map(|(difference, term)| difference * term).sum()
+    #[inline(always)]
+    fn sum(&self, degree: usize, basis: &Terms) -> f64 {
+        let term = |k: usize| match k <= degree {
+            true => self.newest[k] * basis[k],
+            false => 0.0,
+        };
+        (term(0) + term(1)) + (term(2) + term(3))
     }
 }
 

@@ -1,12 +1,15 @@
 //! A network of lines advanced by the explicit leapfrog: its lines, and the free points that join them.
 
 use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
+use pulp::Arch;
 
 use super::layout::Water;
-use super::leapfrog::{EndLoad, LineWork, Step};
+use super::leapfrog::{EndLoad, LineWork, Placed, Step};
 use super::ledger::Flow;
 use super::motion::AxisPath;
-use crate::model::{End, FreePoint, Kinematics, Model, Network, PointAtHeight, PointState, State};
+use crate::model::{
+    End, FreePoint, Kinematics, Model, Network, PointAtHeight, PointState, Role, State,
+};
 use crate::physics::airy::Orbit;
 use crate::physics::friction::{Axes, Friction};
 use crate::statics::assembly::rubbing::point_stick;
@@ -16,7 +19,11 @@ use crate::statics::assembly::rubbing::point_stick;
 pub struct NetworkWork {
     /// Lines, in the order of the network.
     pub lines: Vec<LineWork>,
+    /// What holds the ends of the lines, and where that goes.
+    ends: Vec<[LineEnd; 2]>,
     points: Vec<PointState>,
+    /// Lines, by their place in the network, and ends at the free points.
+    attached: Vec<Vec<(usize, End)>>,
     /// What waves do at the free points at both ends of a span of time [s], where there are waves.
     waves: Vec<[Orbit; 2]>,
     times: [f64; 2],
@@ -24,6 +31,66 @@ pub struct NetworkWork {
     springs: Vec<Spring>,
     /// Energy given to and lost by the free points since the state was loaded [J].
     point_flow: Flow,
+}
+
+/// An end of a line.
+#[derive(Debug, Clone, Copy)]
+struct LineEnd {
+    tie: Tie,
+    /// Where the point is, or goes.
+    placed: Placed,
+}
+
+/// What an end of a line is tied to.
+#[derive(Debug, Clone, Copy)]
+enum Tie {
+    /// A point that never moves.
+    Fixed,
+    /// A point that is moved, by its number.
+    Held(usize),
+    /// A free point, by its place in the network.
+    Free(usize),
+}
+
+impl LineEnd {
+    fn new(model: &Model, network: &Network, point: usize) -> LineEnd {
+        let free = network.free_points.iter().position(|&free| free == point);
+        let tie = match (free, &model.points[point].role) {
+            (Some(free), _) => Tie::Free(free),
+            (None, Role::Fixed) => Tie::Fixed,
+            (None, _) => Tie::Held(point),
+        };
+        let placed = Placed {
+            position: model.points[point].reference,
+            velocity: Vector3::zeros(),
+        };
+        LineEnd { tie, placed }
+    }
+
+    /// Finds where the point is at `t` [s], and its velocity half a step earlier.
+    #[inline]
+    fn find(
+        &mut self,
+        points: &[PointState],
+        t: f64,
+        step: Step,
+        held: &impl Fn(usize, f64) -> Kinematics,
+    ) {
+        self.placed = match self.tie {
+            Tie::Fixed => return,
+            Tie::Held(point) => {
+                let k = held(point, t);
+                Placed {
+                    position: k.position,
+                    velocity: k.velocity - 0.5 * step.drift * k.acceleration,
+                }
+            }
+            Tie::Free(free) => Placed {
+                position: points[free].position,
+                velocity: points[free].half_step[0],
+            },
+        };
+    }
 }
 
 /// Spring and damper of the bed under a point: its own, or that of the half node of a line.
@@ -58,14 +125,33 @@ impl NetworkWork {
             .iter()
             .map(|&point| model.points[point].attached.len() + 1)
             .max();
+        let ends = |&line: &usize| {
+            let points = model.lines[line].ends;
+            points.map(|point| LineEnd::new(model, network, point))
+        };
         Some(NetworkWork {
             lines,
+            ends: network.lines.iter().map(ends).collect(),
+            attached: network
+                .free_points
+                .iter()
+                .map(|&point| attached(model, network, point))
+                .collect(),
             points,
             waves: Vec::with_capacity(network.free_points.len()),
             times: [0.0; 2],
             springs: Vec::with_capacity(springs.unwrap_or(0)),
             point_flow: Flow::default(),
         })
+    }
+
+    /// Runs the kernels as they are compiled for any machine of the target, or for the widest vectors of this one, as is the default.
+    /// Results do not depend on it.
+    pub fn set_portable(&mut self, portable: bool) {
+        let unit = if portable { Arch::Scalar } else { Arch::new() };
+        self.lines
+            .iter_mut()
+            .for_each(|line| line.set_vector_unit(unit));
     }
 
     /// Takes over the state.
@@ -133,10 +219,8 @@ impl NetworkWork {
 
     /// Greatest ratio K |v| / M of all nodes [1/s].
     pub fn drag_rate(&self, model: &Model, network: &Network) -> f64 {
-        let lines = self.lines.iter().zip(&network.lines);
-        let of_lines = lines
-            .map(|(work, &line)| work.drag_rate(&model.lines[line]))
-            .fold(0.0, f64::max);
+        let rates = self.lines.iter().map(LineWork::drag_rate);
+        let of_lines = rates.fold(0.0, f64::max);
         let points = self.points.iter().zip(&network.free_points);
         points
             .filter_map(|(point, &index)| {
@@ -169,21 +253,16 @@ impl NetworkWork {
             if let Some(partings) = &model.lines[line].parting {
                 work.part_ends(partings, t, step);
             }
-            work.pull_segments(step);
+            work.pull_beforehand(step);
             work.weigh_reel();
         }
         self.step_points(model, network, t, step);
-        for line in &mut self.lines {
-            line.kick_nodes(step);
-            line.drift_nodes(step);
-        }
-        self.put_ends(model, network, t + step.drift, step, held);
-        for line in &mut self.lines {
-            line.wind(t + step.drift, step);
-            line.creep(step);
-            line.book_ends(step);
-            line.meet_surface(Some(step));
-            line.renew_reel(step);
+        let after = t + step.drift;
+        for (work, ends) in self.lines.iter_mut().zip(&mut self.ends) {
+            for end in ends.iter_mut() {
+                end.find(&self.points, after, step, held);
+            }
+            work.advance(after, step, ends.map(|end| end.placed));
         }
     }
 
@@ -228,32 +307,12 @@ impl NetworkWork {
     }
 
     /// Puts every line's ends where their points are at `t` [s], with velocities half a step earlier.
-    pub fn put_ends(
-        &mut self,
-        model: &Model,
-        network: &Network,
-        t: f64,
-        step: Step,
-        held: &impl Fn(usize, f64) -> Kinematics,
-    ) {
-        for (work, &line) in self.lines.iter_mut().zip(&network.lines) {
-            for (end, &point) in [End::A, End::B].into_iter().zip(&model.lines[line].ends) {
-                match network.free_points.iter().position(|&free| free == point) {
-                    Some(free) => {
-                        let point = &self.points[free];
-                        work.put_end(end, point.position, point.half_step[0]);
-                    }
-                    None => {
-                        let k = held(point, t);
-                        work.put_end(
-                            end,
-                            k.position,
-                            k.velocity - 0.5 * step.drift * k.acceleration,
-                        );
-                    }
-                }
+    pub fn put_ends(&mut self, t: f64, step: Step, held: &impl Fn(usize, f64) -> Kinematics) {
+        for (work, ends) in self.lines.iter_mut().zip(&mut self.ends) {
+            for (end, at) in [End::A, End::B].into_iter().zip(ends) {
+                at.find(&self.points, t, step, held);
+                work.put_end(end, at.placed);
             }
-            work.renew_ghosts();
         }
     }
 
@@ -276,10 +335,7 @@ impl NetworkWork {
             self.springs.clear();
             self.springs
                 .extend(Spring::new(load.contact, bed.height, step));
-            for &(line, end) in &point.attached {
-                let Some(at) = network.lines.iter().position(|&l| l == line) else {
-                    continue;
-                };
+            for &(at, end) in &self.attached[free] {
                 if self.lines[at].is_parted(end) {
                     continue;
                 }
@@ -317,6 +373,19 @@ impl NetworkWork {
             }
         }
     }
+}
+
+/// Lines, by their place in a network, and ends at a point of it.
+fn attached(model: &Model, network: &Network, point: usize) -> Vec<(usize, End)> {
+    let place = |&(line, end): &(usize, End)| {
+        let place = network.lines.iter().position(|&l| l == line)?;
+        Some((place, end))
+    };
+    model.points[point]
+        .attached
+        .iter()
+        .filter_map(place)
+        .collect()
 }
 
 /// What weight, load and water bring to a free point at a height [m] and a time [s] that moves at `now` [m/s], without lines and bed; and

@@ -107,6 +107,12 @@ impl Column {
         }
     }
 
+    /// The rows up to the ghost behind row `last`.
+    #[inline(always)]
+    pub fn rows(&self, last: usize) -> &[Lanes] {
+        &self.rows[..last + 2]
+    }
+
     /// The numbers in a row.
     #[inline(always)]
     pub fn load(&self, row: usize) -> Lanes {
@@ -166,7 +172,7 @@ impl IndexMut<Slot> for Column {
 }
 
 /// A vector for every node of a folded chain.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Field {
     rows: Vec<Vectors>,
 }
@@ -177,6 +183,18 @@ impl Field {
         Field {
             rows: vec![Vectors::zero(); fold.rows + 2],
         }
+    }
+
+    /// The rows up to the ghost behind row `last`.
+    #[inline(always)]
+    pub fn rows(&self, last: usize) -> &[Vectors] {
+        &self.rows[..last + 2]
+    }
+
+    /// The rows up to the ghost behind row `last`, to be written.
+    #[inline(always)]
+    pub fn rows_mut(&mut self, last: usize) -> &mut [Vectors] {
+        &mut self.rows[..last + 2]
     }
 
     /// The vectors in a row.

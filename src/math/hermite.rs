@@ -35,11 +35,21 @@ impl Hermite {
     /// Through (time, value, slope) at both ends; the second time must be the later one.
     pub fn new((t0, p0, m0): Knot, (t1, p1, m1): Knot) -> Hermite {
         let span = t1 - t0;
+        Hermite::bridge([t0, span, 1.0 / span], [p0, m0], [p1, m1])
+    }
+
+    /// From a start over a span, whose inverse is at hand, through value and slope at both ends.
+    #[inline]
+    pub fn bridge(
+        [start, span, rate]: [f64; 3],
+        [p0, m0]: [f64; 2],
+        [p1, m1]: [f64; 2],
+    ) -> Hermite {
         let (m0, m1) = (span * m0, span * m1);
         let rise = p1 - p0;
         Hermite {
-            start: t0,
-            rate: 1.0 / span,
+            start,
+            rate,
             powers: [p0, m0, 3.0 * rise - 2.0 * m0 - m1, m0 + m1 - 2.0 * rise],
         }
     }
@@ -138,10 +148,11 @@ mod tests {
     #[test]
     fn a_quintic_misses_a_curve_by_no_more_than_its_remainder() {
         for span in [0.5, 0.25, 0.125] {
-            let curve = Quintic::new(wave(2.0), wave(2.0 + span), span);
+            let start = 0.5 * (std::f64::consts::PI / 1.3 - span); // where the sixth derivative of x is greatest in the middle
+            let curve = Quintic::new(wave(start), wave(start + span), span);
             let bound = 1.3_f64.powi(6) * span.powi(6) * QUINTIC_ERROR;
             let miss = |u: f64| {
-                (curve.at(u, 1.0 / span)[0] - wave(2.0 + u * span)[0])
+                (curve.at(u, 1.0 / span)[0] - wave(start + u * span)[0])
                     .x
                     .abs()
             };
@@ -149,7 +160,7 @@ mod tests {
                 .map(|k| miss(0.05 * f64::from(k)))
                 .fold(0.0, f64::max);
             assert!(
-                worst <= bound + 1e-15 && worst > 0.3 * bound,
+                worst <= bound + 1e-15 && worst > 0.9 * bound,
                 "{worst} of {bound}"
             );
         }

@@ -89,7 +89,21 @@ impl Lanes {
     /// Whether any lane is > 0.
     #[inline(always)]
     pub fn any_positive(self) -> bool {
-        self.0.iter().any(|value| *value > 0.0)
+        let [a, b, c, d] = self.0.map(|value| value > 0.0);
+        (a | b) | (c | d) // without branches
+    }
+
+    /// Whether all lanes are > 0.
+    #[inline(always)]
+    pub fn all_positive(self) -> bool {
+        let [a, b, c, d] = self.0.map(|value| value > 0.0);
+        (a & b) & (c & d)
+    }
+
+    /// These numbers with another one in a lane.
+    #[inline(always)]
+    pub fn with(self, lane: usize, value: f64) -> Lanes {
+        Lanes(from_fn(|i| if i == lane { value } else { self.0[i] }))
     }
 
     /// Applies a scalar function to every lane.
@@ -207,6 +221,16 @@ impl Vectors {
     #[inline(always)]
     pub fn set(&mut self, lane: usize, vector: Vector3<f64>) {
         (self.x[lane], self.y[lane], self.z[lane]) = (vector.x, vector.y, vector.z);
+    }
+
+    /// These vectors with another one in a lane.
+    #[inline(always)]
+    pub fn with(self, lane: usize, vector: Vector3<f64>) -> Vectors {
+        Vectors {
+            x: self.x.with(lane, vector.x),
+            y: self.y.with(lane, vector.y),
+            z: self.z.with(lane, vector.z),
+        }
     }
 
     /// As [`Lanes::moved_up`].

@@ -222,6 +222,9 @@ impl Held {
 
     /// Makes ready for a span of time [s].
     pub fn prepare(&mut self, at: &At, span: [f64; 2]) {
+        if !self.ways.iter().any(|way| matches!(way, Way::Bridged(_))) {
+            return;
+        }
         for (point, way) in self.ways.iter_mut().enumerate() {
             if let (Way::Bridged(bridge), Some(motion)) = (way, at.own_motion(point)) {
                 let [start, end] = span;
@@ -346,4 +349,114 @@ fn bell([a, b, c, d, e, f]: [f64; 6]) -> f64 {
         + 10.0 * c * c
         + 6.0 * a * e
         + f
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::start;
+    use super::*;
+    use crate::scene::Scene;
+    use crate::simulation::inputs::Inputs;
+    use approx::assert_relative_eq;
+
+    const SCENE: &str = r#"
+        [line_types.rope]
+        mass = 2.0
+        diameter = 0.05
+        axial_stiffness = 1.0e6
+        [[vessels]]
+        name = "buoy"
+        attitude = [0.0, 0.1, 0.8]
+        [[points]]
+        name = "anchor"
+        position = [0.0, 0.0, 0.0]
+        kind = "fixed"
+        [[points]]
+        name = "left"
+        position = [16.0, 0.0, 0.0]
+        kind = "coupled"
+        [[points]]
+        name = "right"
+        position = [10.0, 5.0, -4.0]
+        kind = "coupled"
+        on = "buoy"
+        [[lines]]
+        name = "one"
+        from = "anchor"
+        to = "left"
+        sections = [{ type = "rope", length = 17.0, elements = 4 }]
+        [[lines]]
+        name = "two"
+        from = "anchor"
+        to = "right"
+        sections = [{ type = "rope", length = 15.0, elements = 4 }]
+        [motion]
+        left = { x = [[-6.0, 10.0], [-0.3, 1.6]], z = [[2.0, 8.0, 0.3]], ramp = 20.0 }
+        buoy = { x = [[4.0, 11.0]], roll = [[0.1, 9.0]], pitch = [[0.2, 7.0, 1.0], [0.02, 2.0]], ramp = 20.0 }
+    "#;
+
+    /// Greatest distances of a bridged point from where it is [m] and of its velocities [m/s], over steps of a length [s].
+    fn misses(point: &str, step: f64) -> [f64; 2] {
+        let scene = Scene::from_toml(SCENE).unwrap();
+        let model = Model::new(&scene).unwrap();
+        let paths = Paths::at_rest(&model, 0.0, &Inputs::new(&model), true);
+        let at = At::new(&model, &paths, true);
+        let mut held = Held::new(&model, true);
+        let point = model.point_index(point).unwrap();
+        let mut worst = [0.0_f64; 2];
+        for k in 0..(30.0 / step) as usize {
+            let start = k as f64 * step;
+            held.prepare(&at, [start, start + step]);
+            for part in [0.0, 0.21, 0.5, 0.83, 1.0] {
+                let t = start + part * step;
+                let (is, should) = (held.point(&at, point, t), at.point(point, t));
+                worst[0] = worst[0].max((is.position - should.position).norm());
+                worst[1] = worst[1].max((is.velocity - should.velocity).norm());
+            }
+        }
+        worst
+    }
+
+    #[test]
+    fn bridges_stay_within_a_picometre_of_the_motion() {
+        for point in ["left", "right"] {
+            for step in [0.01, 0.05, 0.1, 0.4, 2.0] {
+                let [place, speed] = misses(point, step);
+                assert!(place < ERROR_MAX + 1e-13, "{point}, {step} s: {place:e} m");
+                assert!(speed < 1e-9, "{point}, {step} s: {speed:e} m/s");
+            }
+        }
+    }
+
+    #[test]
+    fn a_carried_point_is_bridged_along_the_path_of_a_host_too() {
+        let scene = Scene::from_toml(SCENE).unwrap();
+        let model = Model::new(&scene).unwrap();
+        let (snapshot, _) = start::begin(&model, 0.0, Inputs::new(&model), false).unwrap();
+        let mut paths = snapshot.paths.clone();
+        for (axis, path) in paths.vessels[0].0.iter_mut().enumerate() {
+            path.follow([0.0, 0.1], [1e-4 * axis as f64, 2e-3]);
+        }
+        let at = At::new(&model, &paths, false);
+        let mut held = Held::new(&model, false);
+        held.prepare(&at, [0.0, 0.1]);
+        let point = model.point_index("right").unwrap();
+        let Way::Bridged(bridge) = &held.ways[point] else {
+            panic!("a point on a vessel without clamps is bridged");
+        };
+        assert!(!bridge.pieces.is_empty());
+        for part in 0..=10 {
+            let t = 0.01 * f64::from(part);
+            let (is, should) = (held.point(&at, point, t), at.point(point, t));
+            assert_relative_eq!(is.position, should.position, epsilon = 1.1e-12);
+            assert_relative_eq!(is.acceleration, should.acceleration, epsilon = 1e-6);
+        }
+    }
+
+    #[test]
+    fn the_bell_polynomial_is_the_sixth_derivative_of_an_exponential() {
+        // exp(sin t) at t = 0: derivatives 1, 0, −1, 0, 1, 0 of the sine, sixth derivative −3 of the whole
+        assert_eq!(bell([1.0, 0.0, -1.0, 0.0, 1.0, 0.0]), -3.0);
+        assert_eq!(bell([1.0; 6]), 203.0); // partitions of six things
+    }
 }

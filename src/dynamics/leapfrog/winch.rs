@@ -149,7 +149,6 @@ impl LineWork {
         let stretch = (place(end) - place(near)) / winch.end_length(change); // λ q
         let velocity = layout.velocity.get(end) - rate * stretch;
         layout.velocity.set(end, velocity);
-        layout.renew_ghosts(self.parted);
     }
 
     /// After the tensions of t_n: what a length of the end segment holds.
@@ -167,7 +166,7 @@ impl LineWork {
 
     /// Winds on to `t` [s], the end of a step, after the end was put where it is then: books what the winch gives, and gives the end the
     /// velocity of its material.
-    pub fn wind(&mut self, t: f64, step: Step) {
+    pub(super) fn wind(&mut self, t: f64, step: Step) {
         let Some(winch) = &mut self.winch else {
             return;
         };
@@ -200,7 +199,7 @@ impl LineWork {
     }
 
     /// After the work of the ends was booked: lays out the end segment at its new length, and splits or merges it.
-    pub fn renew_reel(&mut self, step: Step) {
+    pub(super) fn renew_reel(&mut self, step: Step) {
         let Some(winch) = &mut self.winch else {
             return;
         };
@@ -367,7 +366,6 @@ impl LineWork {
             layout.velocity.set(at, Vector3::zeros());
             layout.velocity_before.set(at, Vector3::zeros());
         }
-        layout.renew_ghosts(self.parted);
         self.lay_out_water(from);
     }
 
