@@ -36,6 +36,8 @@ use winch::WinchWork;
 #[derive(Debug, Clone)]
 pub struct LineWork {
     layout: Layout,
+    /// Whether the sweep can do all by itself: the strain is the engineering one, and there is neither creep, nor damping by mass, nor a bed
+    /// that slopes or rubs.
     plain: bool,
     /// Force of a segment on its lower node, T q [N].
     pull: Field,
@@ -326,7 +328,7 @@ impl LineWork {
     /// Tensions from positions at t_n and velocities at t_{n−½}, where they must be known before the sweep: of lines that are not
     /// plain, and of segments at free points.
     pub fn pull_beforehand(&mut self, step: Step) {
-        if !self.is_plain() {
+        if !self.plain {
             self.layout.renew_ghosts(self.parted);
             self.layout.vector_unit.dispatch(PullSegments(self, step));
             return;
@@ -336,13 +338,6 @@ impl LineWork {
                 self.pull_end(end);
             }
         }
-    }
-
-    /// Whether the sweep can do all by itself: the strain is the engineering one, and there is neither creep, nor damping by mass, nor a bed
-    /// that slopes or rubs.
-    #[inline]
-    fn is_plain(&self) -> bool {
-        self.plain
     }
 
     /// The pull of the segment at an end, as the sweep will find it.
@@ -434,11 +429,17 @@ impl LineWork {
             work.settle(step);
             unit.dispatch(Drift { work, size, ends });
         }
-        work.wind(t, step);
+        if work.winch.is_some() {
+            work.wind(t, step);
+        }
         work.creep(step);
         work.book_ends(step);
-        work.meet_surface(Some(step));
-        work.renew_reel(step);
+        if work.layout.surface.is_some() {
+            work.meet_surface(Some(step));
+        }
+        if work.winch.is_some() {
+            work.renew_reel(step);
+        }
     }
 
     /// What a bed that slopes or rubs makes of the velocities at t_{n+½}.

@@ -1,11 +1,16 @@
 //! A step of a line in one sweep over its rows, four nodes at a time.
 //!
 //! With the positions of three rows at hand, a row of nodes takes the pull of the segments after it from the chords to the next row, that of
-//! the segments before it from the row that was swept last, and its tangent from the rows on both sides. It is kicked and drifts on at once:
-//! nothing is stored that the next row would have to load. The first row needs the pull of the last, which therefore comes first.
-//! What the ghosts repeat is taken before any node has moved. After the last row the ends are put where their points are.
+//! the segments before it from the row that was swept last, and its tangent c/|c| from the chord c between the rows on both sides. It is
+//! kicked and drifts on at once: nothing is stored that the next row would have to wait for. The first row needs the pull of the last,
+//! which therefore comes first. What the ghosts repeat is taken before any node has moved, and after the last row the ends are put where
+//! their points are.
 //!
-//! A sweep costs about as long as its divisions and roots take, three of each to a row in water, on a unit that works at one of them at a time.
+//! A row passes through a chain of some forty operations that wait for each other, with roots and quotients among them. Its first half,
+//! pulls and what resists, knows nothing of the row below, and is begun before the second half of that, the kick: so the two chains
+//! run side by side.
+//!
+//! Lines that are not plain have their pulls found beforehand, by [`LineWork::pull_beforehand`].
 
 use nalgebra::Vector3;
 use pulp::NullaryFnOnce;
@@ -36,8 +41,8 @@ mod around {
     pub const FLOWING: u8 = 2;
 }
 
-/// Velocities are multiples of this times 2⁻⁵³ [m/s]. What comes to rest on the bed would else go on to numbers that are too small for the
-/// full precision and speed of the machine.
+/// Speeds below this [m/s] are rounded to multiples of about 2⁻⁵³ of it. What comes to rest on the bed would else go on to squares that are
+/// too small to be normal numbers, with which a machine is many times slower.
 const STILLNESS: f64 = 1e-30;
 
 /// A sweep for the vector unit of the machine.
@@ -392,7 +397,7 @@ impl LineWork {
     #[inline(always)]
     fn choose_bed<const AROUND: u8>(&mut self, step: &Step) {
         let level = self.layout.contact.is_some() && self.settling.is_none();
-        match (level, self.is_plain()) {
+        match (level, self.plain) {
             (false, false) => self.sweep::<AROUND, false, false>(step),
             (false, true) => self.sweep::<AROUND, false, true>(step),
             (true, false) => self.sweep::<AROUND, true, false>(step),
@@ -422,8 +427,7 @@ impl LineWork {
         }
     }
 
-    /// The sweep. What is known of a row before it is kicked is begun before the row below it is kicked, so that the long roots and quotients
-    /// of the one and the long sums of products of the other take the same time.
+    /// The sweep. What can be known of a row before its kick is found before the row below it is kicked.
     #[inline(always)]
     fn sweep<const AROUND: u8, const BED: bool, const PLAIN: bool>(&mut self, step: &Step) {
         self.prepare_ghosts();
