@@ -24,7 +24,7 @@ use crate::physics::stretch::{StretchLaw, total_tension};
 /// Speed that only an unstable step reaches [m/s]: the fastest axial waves run at about this speed.
 const SPEED_MAX: f64 = 1e4;
 /// Keeps coincident nodes from dividing by zero [m²].
-const LENGTH2_MIN: f64 = 1e-200;
+pub(super) const LENGTH2_MIN: f64 = 1e-200;
 
 /// Geometry, motion and coefficients of a line.
 #[derive(Debug, Clone)]

@@ -23,7 +23,7 @@ use pulp::{Arch, NullaryFnOnce};
 use super::layout::{Layout, Water, interior, inverse_norm_of};
 use super::ledger::Flow;
 use crate::math::fold::{Column, Field};
-use crate::math::lanes::{LANES, Lanes, Vectors};
+use crate::math::lanes::{LANES, Lanes};
 use crate::model::{End, Line, LineState, Parting, WaveSpan};
 use crate::physics::friction_step::Landing;
 use crate::physics::morison::{self, DragCoefficients};
@@ -36,6 +36,9 @@ use winch::WinchWork;
 #[derive(Debug, Clone)]
 pub struct LineWork {
     layout: Layout,
+    /// Whether the sweep can do all by itself: the strain is the engineering one, and there is neither creep, nor damping by mass, nor a bed
+    /// that slopes or rubs.
+    plain: bool,
     /// Force of a segment on its lower node, T q [N].
     pull: Field,
     inverse_mass: Column,
@@ -100,39 +103,9 @@ impl WaterWork {
             inverse_mass_excess: layout.fold.column(&excess, 0.0),
         })
     }
-
-    /// M⁻¹f, and M⁻¹ẑ for the bed.
-    #[inline(always)]
-    fn inverted(
-        &self,
-        at: usize,
-        inverse_mass: Lanes,
-        force: Vectors,
-        tangent: Vectors,
-    ) -> (Vectors, Vectors) {
-        let excess = self.inverse_mass_excess.load(at);
-        let response = tangent.scale(excess * tangent.z);
-        (
-            force.scale(inverse_mass) + tangent.scale(excess * force.dot(tangent)),
-            Vectors {
-                z: response.z + inverse_mass,
-                ..response
-            },
-        )
-    }
-
-    /// K_n |u_n| u_n + K_t |u_t| u_t.
-    #[inline(always)]
-    fn drag(&self, at: usize, velocity: Vectors, tangent: Vectors) -> Vectors {
-        let along = velocity.dot(tangent);
-        let across = velocity - tangent.scale(along);
-        let normal = self.drag_normal.load(at) * across.dot(across).sqrt();
-        let tangential = self.drag_tangent.load(at) * along.abs() * along;
-        across.scale(normal) + tangent.scale(tangential)
-    }
 }
 
-/// [`LineWork::pull_segments`] for the vector unit of the machine.
+/// [`LineWork::pull_beforehand`] for the vector unit of the machine.
 struct PullSegments<'a>(&'a mut LineWork, Step);
 
 impl NullaryFnOnce for PullSegments<'_> {
@@ -206,6 +179,10 @@ impl LineWork {
             .map(|mass| 1.0 / mass)
             .collect();
         Some(LineWork {
+            plain: layout.law == StretchLaw::Engineering
+                && layout.creep.is_none()
+                && layout.mass_damping.is_none()
+                && layout.bottom().is_none(),
             pull: Field::zeros(layout.fold),
             inverse_mass: layout.fold.column(&inverse_mass, 0.0),
             water: WaterWork::new(line, &layout),
@@ -348,10 +325,10 @@ impl LineWork {
         }
     }
 
-    /// Tensions from positions at t_n and velocities at t_{n−½}, where they must be known before the sweep: of segments with laws
-    /// that it does not know, and of those at free points.
+    /// Tensions from positions at t_n and velocities at t_{n−½}, where they must be known before the sweep: of lines that are not
+    /// plain, and of segments at free points.
     pub fn pull_beforehand(&mut self, step: Step) {
-        if self.pulls_beforehand() {
+        if !self.plain {
             self.layout.renew_ghosts(self.parted);
             self.layout.vector_unit.dispatch(PullSegments(self, step));
             return;
@@ -361,11 +338,6 @@ impl LineWork {
                 self.pull_end(end);
             }
         }
-    }
-
-    /// Whether the segments have a law that the sweep does not know.
-    fn pulls_beforehand(&self) -> bool {
-        self.layout.creep.is_some() || self.layout.law != StretchLaw::Engineering
     }
 
     /// The pull of the segment at an end, as the sweep will find it.
@@ -450,19 +422,24 @@ impl LineWork {
     }
 
     /// A step from t_n to `t` [s], with the ends going where `ends` says.
-    pub fn advance(&mut self, t: f64, step: Step, ends: [Placed; 2]) {
-        let unit = self.layout.vector_unit;
-        let work = self;
-        unit.dispatch(Sweep { work, step, ends });
+    pub fn advance(&mut self, t: f64, step: Step, ends: &[Placed; 2]) {
+        let (unit, work, size) = (self.layout.vector_unit, self, &step);
+        unit.dispatch(Sweep { work, size, ends });
         if work.settling.is_some() {
             work.settle(step);
-            unit.dispatch(Drift { work, step, ends });
+            unit.dispatch(Drift { work, size, ends });
         }
-        work.wind(t, step);
+        if work.winch.is_some() {
+            work.wind(t, step);
+        }
         work.creep(step);
         work.book_ends(step);
-        work.meet_surface(Some(step));
-        work.renew_reel(step);
+        if work.layout.surface.is_some() {
+            work.meet_surface(Some(step));
+        }
+        if work.winch.is_some() {
+            work.renew_reel(step);
+        }
     }
 
     /// What a bed that slopes or rubs makes of the velocities at t_{n+½}.

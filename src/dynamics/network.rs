@@ -256,13 +256,15 @@ impl NetworkWork {
             work.pull_beforehand(step);
             work.weigh_reel();
         }
-        self.step_points(model, network, t, step);
+        if !self.points.is_empty() {
+            self.step_points(model, network, t, step);
+        }
         let after = t + step.drift;
         for (work, ends) in self.lines.iter_mut().zip(&mut self.ends) {
             for end in ends.iter_mut() {
                 end.find(&self.points, after, step, held);
             }
-            work.advance(after, step, ends.map(|end| end.placed));
+            work.advance(after, step, &[ends[0].placed, ends[1].placed]);
         }
     }
 

@@ -223,6 +223,17 @@ impl Vectors {
         (self.x[lane], self.y[lane], self.z[lane]) = (vector.x, vector.y, vector.z);
     }
 
+    /// Components rounded to multiples of about 1e-16 times a number, if they are smaller than it.
+    #[inline(always)]
+    pub fn rounded(self, size: f64) -> Vectors {
+        let size = Lanes::splat(size);
+        Vectors {
+            x: (self.x + size) - size,
+            y: (self.y + size) - size,
+            z: (self.z + size) - size,
+        }
+    }
+
     /// These vectors with another one in a lane.
     #[inline(always)]
     pub fn with(self, lane: usize, vector: Vector3<f64>) -> Vectors {
