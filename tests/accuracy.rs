@@ -77,8 +77,11 @@ fn a_study_of_a_rope_says_what_each_error_costs() {
         .filter(|run| leapfrog(&run.code))
         .collect();
     assert!(runs.len() >= 30);
-    // The ladder goes from coarse to fine: second order over a factor of 80 in the mesh, down to what a host's motion tells.
-    assert!(rms(runs[runs.len() - 1]) < 0.01 * rms(runs[0]));
+    // The ladder goes from coarse to fine: second order over a factor of 80 in the mesh. The converged solution's tension lags by 0.7 of
+    // its step, a period over 8000: 5e-4 of RMS tension.
+    let position = |run: &moorline::accuracy::Run| run.errors.of(Metric::Position);
+    assert!(position(runs[runs.len() - 1]) < 0.01 * position(runs[0]));
+    assert!(rms(runs[runs.len() - 1]) < 6e-4);
     assert!(study.uncertainty.of(Metric::Rms) < 1e-3 * rms(runs[0]));
     let chosen = study.runs.iter().filter(|run| run.code == Code::Chosen);
     assert_eq!(chosen.count(), 4);
@@ -147,6 +150,21 @@ fn oc3_converges_to_a_fifth_of_a_percent_in_tension_and_a_thousandth_in_position
 #[test]
 fn oc4_converges_to_a_fifth_of_a_percent_in_tension_and_a_thousandth_in_position() {
     converges("oc4", include_str!("../scenes/oc4_chain.toml"));
+}
+
+#[test]
+fn the_readme_shows_the_committed_summary() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let readme = std::fs::read_to_string(root.join("README.md")).unwrap();
+    let part = readme.split("<!-- accuracy: begin -->").nth(1).unwrap();
+    let part = part.split("<!-- accuracy: end -->").next().unwrap();
+    let folder = part.split("](").nth(1).unwrap().split(')').next().unwrap();
+    let file = |name: &str| root.join(folder).join(name);
+    let summary = std::fs::read_to_string(file("summary.md")).unwrap();
+    assert!(part.ends_with(&summary), "{part}");
+    for name in ["overview.svg", "accuracy.csv", "verdicts.csv"] {
+        assert!(file(name).is_file(), "{folder}/{name}");
+    }
 }
 
 #[test]
