@@ -10,7 +10,8 @@
 //! T̄ − k q·G(v) = EA b₁(ε^n + κ) + H + ½BA(1−θ) q·G(v⁻),  k = EA b₁Δt + ½BA(1+θ),  b₁ = 1/N,
 //!
 //! with the history terms H and θ = 0.2. A row is off where the total would be negative. Eliminating v by the nodes'
-//! momentum leaves one scalar tridiagonal system in T̄. Drag is trapezoidal and folded into the node's mass, the seabed
+//! momentum leaves one scalar tridiagonal system in T̄. Drag C v is folded into the node's mass by θΔt C, θ = max(½, 1 − M/(Δt C)): trapezoidal,
+//! but where it outweighs inertia no more than that no velocity changes its sign by it, which would go on for ever. The seabed is folded in
 //! too; flags of slack and contact are checked after the solve and the step repeated until they hold.
 //!
 //! Source: Stern & Grinspun (2009), Implicit-explicit variational integration of highly oscillatory problems, Multiscale
@@ -71,6 +72,8 @@ pub struct AxialWork {
     lost: Lanes,
     given: f64,
     tension_peak: f64,
+    /// Whether the flags and the true stretch of all steps since then were found.
+    settled: bool,
 }
 
 /// What a step knows of the segments before it is solved.
@@ -160,6 +163,7 @@ impl AxialWork {
             lost: Lanes::splat(0.0),
             given: 0.0,
             tension_peak: 0.0,
+            settled: true,
             layout,
             weights: Weights::new(rho),
             segments: SegmentArrays {
@@ -204,6 +208,7 @@ impl AxialWork {
             self.interior[at] = f64::from(u8::from(self.parted[end as usize]));
         }
         (self.lost, self.given, self.tension_peak) = (Lanes::splat(0.0), 0.0, 0.0);
+        self.settled = true;
         let count = self.layout.segment_count;
         if state.half_step.tension[0].len() == count {
             for (own, kept) in self
@@ -238,6 +243,12 @@ impl AxialWork {
             given: self.given + self.layout.lifted(),
             lost: self.lost.sum() - self.layout.joined(),
         }
+    }
+
+    /// Whether every step since [`Self::load`] found which segments are slack, where the bed pushes and how far stiff segments stretch.
+    /// Where one did not, its tension is wrong by more than the tolerance: the steps were too long.
+    pub fn is_settled(&self) -> bool {
+        self.settled
     }
 
     /// Hands the state back after steps of `steps` [s].
@@ -359,6 +370,7 @@ impl AxialWork {
                 self.find_velocities(step) && (self.rubbing.is_none() || self.check_bed(step));
             let slack_holds = self.check_segments(step, greatest);
             if bed_holds && slack_holds || passes == PASSES_MAX {
+                self.settled &= bed_holds && slack_holds;
                 break;
             }
         }
@@ -497,8 +509,8 @@ impl AxialWork {
                 let across = now - tangent.scale(speed);
                 let normal = drag.normal.load(at) * across.dot(across).sqrt();
                 let along = drag.tangent.load(at) * speed.abs();
-                mass_normal = mass_normal + half * normal;
-                mass_tangent = mass_tangent + half * along;
+                mass_normal = mass_normal + (half * normal).max(kick * normal - mass_normal);
+                mass_tangent = mass_tangent + (half * along).max(kick * along - mass_tangent);
                 force = force
                     - last.scale(normal)
                     - tangent.scale((along - normal) * last.dot(tangent));
