@@ -153,9 +153,9 @@ impl Foresight {
         let mut reach = [[0.0; JUDGED]; DEGREE_MAX + 1];
         let mut product = [1.0; JUDGED];
         for (row, differences) in reach.iter_mut().zip(&inverse) {
-            for j in 0..JUDGED {
-                product[j] *= differences[j];
-                row[j] = product[j];
+            for ((product, reach), difference) in product.iter_mut().zip(row).zip(differences) {
+                *product *= difference;
+                *reach = *product;
             }
         }
         for row in &mut inverse {
