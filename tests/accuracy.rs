@@ -77,8 +77,8 @@ fn a_study_of_a_rope_says_what_each_error_costs() {
         .filter(|run| leapfrog(&run.code))
         .collect();
     assert!(runs.len() >= 30);
-    // The ladder goes from coarse to fine: second order over a factor of 80 in the mesh. The converged solution's tension lags by 0.7 of
-    // its step, a period over 8000: 5e-4 of RMS tension.
+    // The ladder goes from coarse to fine: second order over a factor of 80 in the mesh. From 30 elements on, driven by a host at points
+    // in time, the tension stays 5.4e-4 beside the converged solution, which follows the motion exactly.
     let position = |run: &moorline::accuracy::Run| run.errors.of(Metric::Position);
     assert!(position(runs[runs.len() - 1]) < 0.01 * position(runs[0]));
     assert!(rms(runs[runs.len() - 1]) < 6e-4);
