@@ -1,6 +1,6 @@
 //! The settings that a scene is tried with.
 
-use crate::scene::{Integrator, Scene};
+use crate::scene::{ContactLaw, Integrator, Scene};
 
 /// Elements of the longest line where a run costs next to nothing [-]. Close together: an explicit step must divide the communication
 /// step, so that a mesh a little finer may take one step more, and one a little coarser waste none.
@@ -11,24 +11,33 @@ const ELEMENTS: [usize; 28] = [
 /// Elements of the longest line in dearer explicit runs [-].
 const ELEMENTS_FINE: [usize; 7] = [72, 80, 96, 112, 160, 226, 320];
 /// Elements of the longest line, tensions implicit [-].
-const ELEMENTS_AXIAL: [usize; 16] = [
-    6, 8, 10, 12, 14, 16, 20, 24, 28, 32, 40, 48, 56, 80, 112, 160,
+const ELEMENTS_AXIAL: [usize; 18] = [
+    4, 6, 8, 10, 12, 14, 16, 20, 24, 28, 32, 40, 48, 56, 64, 80, 112, 160,
 ];
 /// Elements of the longest line, fully implicit [-].
-const ELEMENTS_IMPLICIT: [usize; 4] = [10, 20, 40, 80];
-/// Steps of the implicit integrators to the shortest period [-].
-const STEPS_PER_PERIOD: [f64; 6] = [20.0, 40.0, 80.0, 160.0, 320.0, 640.0];
+const ELEMENTS_IMPLICIT: [usize; 3] = [10, 20, 40];
+/// Steps to the shortest period, tensions implicit [-].
+const STEPS_AXIAL: [f64; 6] = [16.0, 40.0, 80.0, 160.0, 320.0, 640.0];
+/// Steps to the shortest period, fully implicit [-].
+const STEPS_IMPLICIT: [f64; 3] = [20.0, 80.0, 320.0];
 /// Communication steps over the interval of the output that explicit runs are tried with [-].
-const COMMUNICATIONS: [usize; 3] = [1, 2, 4];
+const COMMUNICATIONS: [usize; 5] = [1, 2, 3, 4, 8];
+/// Elements up to which explicit runs are tried with more than the first of them [-]: what a communication step costs does not
+/// count on finer meshes.
+const COMMUNICATING_ELEMENTS: usize = 32;
 /// Communication steps to the shortest period, at least [-]: the motion in between is a cubic.
-const COMMUNICATIONS_PER_PERIOD: f64 = 20.0;
+const COMMUNICATIONS_PER_PERIOD: f64 = 16.0;
 /// Target errors of the tool's own choice [-].
 pub const TOLERANCES: [f64; 4] = [0.05, 0.02, 0.01, 0.005];
-/// Elements of the longest line in the converged solution [-]; half as many tell how far it has converged.
-const CONVERGED_ELEMENTS: usize = 640;
-/// Steps to the shortest period in the converged solution, where it needs an implicit integrator [-].
-const CONVERGED_STEPS_PER_PERIOD: f64 = 4000.0;
-/// Elements of the longest line of a converged solution that needs an implicit integrator [-].
+/// Elements of the longest line in converged solutions, each with those that tell how far it has converged before it [-].
+const CONVERGED_ELEMENTS: [usize; 3] = [320, 640, 1280];
+/// The same under the peers' law: the short waves of a slack line grow under it, the faster the finer the mesh [-].
+const CONVERGED_ELEMENTS_PEERS: [usize; 3] = [160, 320, 640];
+/// Steps to the shortest period in the converged solution, tensions implicit [-].
+const CONVERGED_STEPS_AXIAL: f64 = 8000.0;
+/// Steps to the shortest period in the converged solution, where it needs a fully implicit integrator [-].
+const CONVERGED_STEPS: f64 = 4000.0;
+/// Elements of the longest line of a converged solution that needs a fully implicit integrator [-].
 const CONVERGED_ELEMENTS_IMPLICIT: usize = 320;
 
 /// One way to solve a scene.
@@ -44,6 +53,8 @@ pub struct Setting {
     pub tolerance: Option<f64>,
     /// Intervals of the output from one communication point to the next [-].
     pub communication: usize,
+    /// How a bed pushes back; as the scene says where absent.
+    pub contact: Option<ContactLaw>,
 }
 
 impl Setting {
@@ -55,6 +66,7 @@ impl Setting {
             time_step_max,
             tolerance: None,
             communication: 1,
+            contact: None,
         }
     }
 
@@ -66,6 +78,7 @@ impl Setting {
             time_step_max: None,
             tolerance: Some(tolerance),
             communication: 1,
+            contact: None,
         }
     }
 
@@ -86,6 +99,9 @@ impl Setting {
         // A step that is not asked for is limited by the integrator's own rules only.
         scene.solver.time_step_max = self.time_step_max.unwrap_or(scene.solver.time_step_max);
         scene.solver.tolerance = self.tolerance.unwrap_or(scene.solver.tolerance);
+        if let (Some(bed), Some(contact)) = (&mut scene.seabed, self.contact) {
+            bed.contact = contact;
+        }
         scene
     }
 
@@ -96,32 +112,69 @@ impl Setting {
             ..self
         }
     }
+
+    /// The same on a bed with exactly the scene's coefficients.
+    pub fn on_bed_as_given(self) -> Setting {
+        Setting {
+            contact: Some(ContactLaw::AsGiven),
+            ..self
+        }
+    }
 }
 
-/// The ladder of a scene whose motion has this shortest period [s] and whose output this interval [s].
-pub fn ladder(period: f64, interval: f64) -> Vec<Setting> {
+/// The ladder of a scene whose motion has this shortest period [s].
+pub fn ladder(scene: &Scene, period: f64) -> Vec<Setting> {
+    let interval = scene.output.interval;
     let mut settings: Vec<Setting> = TOLERANCES.map(Setting::chosen).into();
     settings.extend(explicit(period, interval));
-    let implicit = [
-        (Integrator::AxialImplicit, ELEMENTS_AXIAL.as_slice()),
-        (Integrator::GeneralisedAlpha, &ELEMENTS_IMPLICIT),
-    ];
-    for (integrator, meshes) in implicit {
-        for elements in meshes {
-            let mut of_mesh: Vec<Setting> = Vec::new();
-            for steps in STEPS_PER_PERIOD {
-                let (communication, step) = stepping(period / steps, interval);
-                let setting = Setting::new(*elements, integrator, Some(step));
-                let setting = setting.communicating(communication);
-                if !of_mesh.contains(&setting) {
-                    of_mesh.push(setting);
-                }
-            }
-            settings.append(&mut of_mesh);
-        }
+    let axial = Integrator::AxialImplicit;
+    settings.extend(implicit(
+        axial,
+        &ELEMENTS_AXIAL,
+        &STEPS_AXIAL,
+        period,
+        interval,
+    ));
+    let full = Integrator::GeneralisedAlpha;
+    settings.extend(implicit(
+        full,
+        &ELEMENTS_IMPLICIT,
+        &STEPS_IMPLICIT,
+        period,
+        interval,
+    ));
+    let softened = |bed: &crate::scene::Seabed| bed.contact == ContactLaw::Regularised;
+    if scene.seabed.as_ref().is_some_and(softened) {
+        let cheap = |setting: &&Setting| match setting.integrator {
+            Integrator::Leapfrog => [1, 4].contains(&setting.communication),
+            integrator => integrator == Integrator::AxialImplicit,
+        };
+        let again: Vec<Setting> = settings.iter().filter(cheap).copied().collect();
+        settings.extend(again.into_iter().map(Setting::on_bed_as_given));
     }
     let static_lines = |n: usize| Setting::new(n, Integrator::QuasiStatic, None);
     settings.extend([10, 40].map(static_lines));
+    settings
+}
+
+fn implicit(
+    integrator: Integrator,
+    meshes: &[usize],
+    steps: &[f64],
+    period: f64,
+    interval: f64,
+) -> Vec<Setting> {
+    let mut settings: Vec<Setting> = Vec::new();
+    for elements in meshes {
+        for steps in steps {
+            let (communication, step) = stepping(period / steps, interval);
+            let setting = Setting::new(*elements, integrator, Some(step));
+            let setting = setting.communicating(communication);
+            if !settings.contains(&setting) {
+                settings.push(setting);
+            }
+        }
+    }
     settings
 }
 
@@ -135,15 +188,16 @@ fn explicit(period: f64, interval: f64) -> impl Iterator<Item = Setting> {
     let seldom = move |communication: &usize| {
         *communication == 1 || *communication as f64 * interval <= longest
     };
-    let coarse = ELEMENTS.into_iter().flat_map(move |elements| {
-        let communications = COMMUNICATIONS.into_iter().filter(seldom);
+    let meshes = ELEMENTS.into_iter().chain(ELEMENTS_FINE);
+    meshes.flat_map(move |elements| {
+        let admitted = if elements > COMMUNICATING_ELEMENTS {
+            1
+        } else {
+            COMMUNICATIONS.len()
+        };
+        let communications = COMMUNICATIONS.into_iter().take(admitted).filter(seldom);
         communications.map(move |communication| leapfrog(elements, communication))
-    });
-    coarse.chain(
-        ELEMENTS_FINE
-            .into_iter()
-            .map(move |elements| leapfrog(elements, 1)),
-    )
+    })
 }
 
 /// Communication step [intervals] and internal step [s] that come nearest to a wanted internal step [s] from below, one a multiple of
@@ -158,26 +212,36 @@ fn stepping(wanted: f64, interval: f64) -> (usize, f64) {
     }
 }
 
-/// Settings of a converged solution, in the order they are tried: the first that serves the scene is taken. Each with the
-/// coarser one that tells how far it has converged.
-pub fn converged(period: f64) -> [[Setting; 2]; 2] {
-    let explicit = |n: usize| Setting::new(n, Integrator::Leapfrog, None);
-    let implicit = |n: usize, steps: f64| {
-        let step = Some(period / steps);
-        Setting::new(n, Integrator::Auto, step)
+/// Families of settings for a converged solution, in the order they are tried: the first that serves the scene is taken. Each holds one or
+/// more sequences of finer and finer settings, the best of which is followed to its end: a bed may be softened with the mesh, or have the
+/// scene's own coefficients.
+pub fn converged(scene: &Scene, period: f64) -> [Vec<Vec<Setting>>; 3] {
+    let meshes = if scene.solver.negative_tension {
+        CONVERGED_ELEMENTS_PEERS
+    } else {
+        CONVERGED_ELEMENTS
     };
+    let stepped = |steps: f64| Some(stepping(period / steps, scene.output.interval).1);
+    let axial_step = stepped(CONVERGED_STEPS_AXIAL);
+    let axial: Vec<Setting> = meshes
+        .map(|n| Setting::new(n, Integrator::AxialImplicit, axial_step))
+        .into();
+    let as_given = axial.iter().copied().map(Setting::on_bed_as_given);
+    let mut both = vec![as_given.collect()];
+    if scene.seabed.is_some() {
+        both.push(axial);
+    }
+    let explicit = |n: &usize| Setting::new(*n, Integrator::Leapfrog, None).on_bed_as_given();
+    let implicit =
+        |n: usize, steps: f64| Setting::new(n, Integrator::Auto, stepped(steps)).on_bed_as_given();
+    let finest = CONVERGED_ELEMENTS_IMPLICIT;
     [
-        [
-            explicit(CONVERGED_ELEMENTS),
-            explicit(CONVERGED_ELEMENTS / 2),
-        ],
-        [
-            implicit(CONVERGED_ELEMENTS_IMPLICIT, CONVERGED_STEPS_PER_PERIOD),
-            implicit(
-                CONVERGED_ELEMENTS_IMPLICIT / 2,
-                CONVERGED_STEPS_PER_PERIOD / 2.0,
-            ),
-        ],
+        both,
+        vec![meshes[..2].iter().map(explicit).collect()],
+        vec![vec![
+            implicit(finest / 2, CONVERGED_STEPS / 2.0),
+            implicit(finest, CONVERGED_STEPS),
+        ]],
     ]
 }
 
@@ -218,7 +282,9 @@ mod tests {
         assert_eq!(stepping(0.05, 0.05), (1, 0.05));
         assert_eq!(stepping(0.23, 0.05), (4, 0.2));
         assert_eq!(stepping(0.02, 0.05), (1, 0.05 / 3.0));
-        for setting in ladder(9.0, 0.05) {
+        let mut scene = Scene::default();
+        scene.output.interval = 0.05;
+        for setting in ladder(&scene, 9.0) {
             let communication = 0.05 * setting.communication as f64;
             assert!(communication <= 9.0 / COMMUNICATIONS_PER_PERIOD + 1e-9);
             if let Some(step) = setting.time_step_max {

@@ -3,12 +3,13 @@
 //! Cost is processor time of the stepping thread per simulated second, without reading, statics and output. moorline is driven as the
 //! peers are: a host tells it where the fairlead is and how fast it moves, one communication step after the other. The runs that the
 //! verdicts name are timed in several rounds, own and peers' in turn ([`rounds`]). Errors are those of [`errors`], over the second half
-//! of the run. The converged solution's own uncertainty is its distance from one of half its resolution: nothing below that is a
-//! statement.
+//! of the run. The converged solution is the best of a sequence of fine meshes, its uncertainty the distance from the one of half its
+//! resolution: nothing below that is a statement.
 //!
 //! With peers, all codes solve the peers' equations, damping that acts in compression too
 //! ([`crate::scene::Solver::negative_tension`]).
 
+mod converged;
 pub mod errors;
 mod ladder;
 mod peers;
@@ -17,8 +18,9 @@ mod slow;
 mod timed;
 mod verdict;
 
-use crate::scene::{Integrator, MotionPath, Scene};
+use crate::scene::{ContactLaw, Integrator, MotionPath, Scene};
 
+use converged::Converged;
 pub use errors::{Errors, Histories, Judge, Metric};
 pub use ladder::{Setting, TOLERANCES};
 pub use peers::{PeerError, Peers};
@@ -100,7 +102,8 @@ impl Run {
 
     /// Least and greatest of its timings [-].
     pub fn spread(&self) -> [f64; 2] {
-        let ends = |[least, greatest]: [f64; 2], cost: &f64| [least.min(*cost), greatest.max(*cost)];
+        let ends =
+            |[least, greatest]: [f64; 2], cost: &f64| [least.min(*cost), greatest.max(*cost)];
         self.costs.iter().fold([self.cost; 2], ends)
     }
 }
@@ -171,7 +174,7 @@ pub fn study(
     let mut scene = scene.clone();
     scene.solver.negative_tension |= peers.is_some();
     let period = shortest_period(&scene);
-    let settings = ladder::ladder(period, scene.output.interval);
+    let settings = ladder::ladder(&scene, period);
     let mut conversation = peers.map(|peers| peers.begin(name, &scene));
     let of_peers = match &conversation {
         Some(Ok(conversation)) => conversation.count(),
@@ -183,14 +186,14 @@ pub fn study(
     progress(0, total);
     let converged = Converged::find(name, &scene)?;
     progress(first, total);
-    let judge = judge(&scene, period, &converged.fine.histories);
+    let judge = converged.judge;
     let mut study = Study {
         name: name.to_string(),
         title: scene.title.clone(),
         negative_tension: scene.solver.negative_tension,
         on_bed: scene.seabed.is_some(),
         converged: label(&converged.setting, &converged.fine),
-        uncertainty: judge.errors(&converged.coarse.histories, &converged.fine.histories),
+        uncertainty: converged.uncertainty,
         runs: Vec::new(),
         failed: Vec::new(),
         slow: slow::slow(&scene),
@@ -223,46 +226,7 @@ pub fn study(
 /// # Errors
 /// Where it cannot be had.
 pub fn uncertainty(name: &str, scene: &Scene) -> Result<Errors, StudyError> {
-    let converged = Converged::find(name, scene)?;
-    let fine = &converged.fine.histories;
-    let judge = judge(scene, shortest_period(scene), fine);
-    Ok(judge.errors(&converged.coarse.histories, fine))
-}
-
-/// The converged solution: its setting, itself, and the coarser one that judges it.
-struct Converged {
-    setting: Setting,
-    fine: Timed,
-    coarse: Timed,
-}
-
-impl Converged {
-    fn find(name: &str, scene: &Scene) -> Result<Converged, StudyError> {
-        let name = || name.to_string();
-        let mut reason = String::new();
-        for [setting, half] in ladder::converged(shortest_period(scene)) {
-            let exact = |setting: &Setting| Ok(Trial::exact(scene, setting)?.recorded()?.0);
-            // The coarse one first: what moves not, or fails, is found at an eighth of the price.
-            match exact(&half).and_then(|coarse: Timed| Ok((coarse.moves(), coarse))) {
-                Ok((false, _)) => return Err(StudyError::AtRest { name: name() }),
-                Ok((true, coarse)) => match exact(&setting) {
-                    Ok(fine) => {
-                        return Ok(Converged {
-                            setting,
-                            fine,
-                            coarse,
-                        });
-                    }
-                    Err(said) => reason = said,
-                },
-                Err(said) => reason = said,
-            }
-        }
-        Err(StudyError::NotConverged {
-            name: name(),
-            reason,
-        })
-    }
+    Converged::find(name, scene).map(|converged| converged.uncertainty)
 }
 
 impl Study {
@@ -279,7 +243,12 @@ impl Study {
         for (index, setting) in settings.iter().enumerate() {
             let trial = Trial::new(scene, setting);
             if let Ok(trial) = &trial {
-                let plan = (setting.elements, setting.communication, trial.plan());
+                let plan = (
+                    setting.elements,
+                    setting.communication,
+                    setting.contact,
+                    trial.plan(),
+                );
                 if setting.tolerance.is_none() && plans.contains(&plan) {
                     continue;
                 }
@@ -354,7 +323,11 @@ fn label(setting: &Setting, timed: &Timed) -> String {
     let communication = timed.communication.map_or(String::new(), |step| {
         format!(", communication step {}", seconds(step))
     });
-    let step = format!("step {}{communication}", seconds(timed.step));
+    let bed = match setting.contact {
+        Some(ContactLaw::AsGiven) => ", bed as given",
+        _ => "",
+    };
+    let step = format!("step {}{communication}{bed}", seconds(timed.step));
     match setting.tolerance {
         Some(tolerance) => format!(
             "tolerance {} %: {}, n = {}, {step}",

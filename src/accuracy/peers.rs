@@ -405,6 +405,9 @@ mod tests {
             family.take(&Errors::all(error));
             family.idle
         };
-        assert_eq!([0.1, 0.05, 0.049, 0.06, 0.02].map(&mut idle), [0, 0, 1, 2, 0]);
+        assert_eq!(
+            [0.1, 0.05, 0.049, 0.06, 0.02].map(&mut idle),
+            [0, 0, 1, 2, 0]
+        );
     }
 }

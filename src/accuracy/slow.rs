@@ -45,7 +45,10 @@ pub(super) fn slow(scene: &Scene) -> Vec<Slow> {
 fn compared(scene: &Scene, factor: f64) -> Option<Slow> {
     let period = shortest_period(scene);
     let step = Some(period / STEPS_PER_PERIOD);
-    let with = |integrator| histories(scene, &Setting::new(ELEMENTS, integrator, step));
+    let with = |integrator| {
+        let setting = Setting::new(ELEMENTS, integrator, step).on_bed_as_given();
+        histories(scene, &setting)
+    };
     let dynamic = with(Integrator::AxialImplicit).or_else(|| with(Integrator::Auto))?;
     let quasi_static = with(Integrator::QuasiStatic)?;
     let judge: Judge = judge(scene, period, &dynamic);

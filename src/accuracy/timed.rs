@@ -16,7 +16,7 @@ use crate::simulation::Simulation;
 
 /// Passes of one timing, the median of which counts: at most this many, and no more once they add up to this time [s].
 const PASSES_MAX: usize = 9;
-const PASSES_TIME: f64 = 0.15;
+const PASSES_TIME: f64 = 0.08;
 
 /// A run that can be repeated.
 #[derive(Debug, Clone)]
@@ -75,7 +75,9 @@ impl Trial {
         let said: Vec<Vec<Moving>> = (0..count)
             .map(|index| start.model().moving(time(index)))
             .collect();
-        said.first().map(|first| tell(&mut start, first));
+        if let Some(first) = said.first() {
+            tell(&mut start, first);
+        }
         start.restart(0.0).map_err(|error| error.to_string())?;
         Ok(Trial {
             start,

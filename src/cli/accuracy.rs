@@ -232,7 +232,12 @@ fn settings(study: &Study) -> Table {
         for level in LEVELS {
             if let Some(run) = study.cheapest(Metric::Rms, level, runs) {
                 let level = format!("{:.1} %", 100.0 * level);
-                let row = [code.name().into(), level, cost(Some(run)), run.label.clone()];
+                let row = [
+                    code.name().into(),
+                    level,
+                    cost(Some(run)),
+                    run.label.clone(),
+                ];
                 table.text_row(row.into());
             }
         }
@@ -272,9 +277,7 @@ fn slower(slow: &[Slow]) -> String {
         row.extend(Metric::ALL.map(|metric| format!("{:.2} %", 100.0 * one.errors.of(metric))));
         table.text_row(row);
     }
-    let enough = slow
-        .iter()
-        .find(|one| one.errors.of(Metric::Rms) <= ENOUGH);
+    let enough = slow.iter().find(|one| one.errors.of(Metric::Rms) <= ENOUGH);
     let sentence = match enough {
         Some(one) if one.factor == 1.0 => "the quasi-static mode is enough here".to_string(),
         Some(one) => format!(

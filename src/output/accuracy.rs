@@ -132,7 +132,11 @@ fn row(study: &Study, verdict: &Verdict<'_>) -> String {
         other => other.title(),
     };
     let setting = verdict.own.map_or("—".to_string(), |run| {
-        format!("{}, {}", run.code.name().replace("moorline, ", ""), run.label)
+        format!(
+            "{}, {}",
+            run.code.name().replace("moorline, ", ""),
+            run.label
+        )
     });
     format!(
         "| {}, {metric} {} | {} | {} | {} | {ratio} | {setting} |\n",

@@ -33,9 +33,9 @@ pub fn figure(study: &Study) -> String {
 
 /// RMS tension and position of several studies.
 pub fn overview(studies: &[Study]) -> String {
-    let charts = studies
-        .iter()
-        .flat_map(|study| [Metric::Rms, Metric::Position].map(|metric| chart(study, metric, false)));
+    let charts = studies.iter().flat_map(|study| {
+        [Metric::Rms, Metric::Position].map(|metric| chart(study, metric, false))
+    });
     grid(charts.collect())
 }
 
@@ -133,8 +133,21 @@ fn duel(study: &Study, metric: Metric, level: f64) -> Option<Curve> {
     let middle = (own.cost * peer.cost).sqrt();
     let points = vec![at(own.cost), at(middle), at(peer.cost)];
     let star = if verdict.key { " *" } else { "" };
-    let labels = vec![String::new(), format!("{ratio:.0}×{star}"), String::new()];
+    let labels = vec![
+        String::new(),
+        format!("{}×{star}", times(ratio)),
+        String::new(),
+    ];
     Some(Curve::new(points, DARK, Stroke::Fine).labelled(labels))
+}
+
+/// A ratio [-] in two digits.
+fn times(ratio: f64) -> String {
+    match ratio {
+        r if r < 1.0 => format!("{r:.2}"),
+        r if r < 10.0 => format!("{r:.1}"),
+        r => format!("{r:.0}"),
+    }
 }
 
 fn shown_runs(study: &Study, metric: Metric, code: &Code) -> Vec<[f64; 2]> {
