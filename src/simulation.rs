@@ -4,6 +4,7 @@
 //! point to the next. Coupled points follow what [`Simulation::set_displacement`] says, or the scene's own motion after
 //! [`Simulation::follow_scene`].
 
+pub mod pilot;
 mod winches;
 
 use std::cell::Cell;
@@ -159,11 +160,18 @@ pub struct NodeBending {
 }
 
 impl Simulation {
-    /// Makes a scene discrete and solves its static equilibrium at the reference positions.
+    /// Makes a scene discrete and solves its static equilibrium at the reference positions. What the scene leaves open of mesh,
+    /// integrator and step is tried on its motion ([`pilot::settle`]).
     ///
     /// # Errors
     /// Mistakes in the scene, or an equilibrium that does not exist.
     pub fn new(scene: &Scene) -> Result<Simulation, Error> {
+        let settled = pilot::settle(scene);
+        Simulation::made(settled.as_ref().map_or(scene, |settled| &settled.scene))
+    }
+
+    /// [`Simulation::new`] by rules alone.
+    fn made(scene: &Scene) -> Result<Simulation, Error> {
         let model = Arc::new(Model::new(scene)?);
         let inputs = Inputs {
             points: vec![PointInput::default(); model.points.len()],
