@@ -16,7 +16,7 @@
 //! longest allowed down, as long as that is cheaper, and taken with the first step that keeps the error against the finest mesh; else
 //! steps are explicit.
 //!
-//! All this is bounded by [`WORK_MAX`], of the order of half a second, and the same on every machine. Beyond that the number of elements is extrapolated
+//! All this is bounded by [`WORK_MAX`], of the order of a second, and the same on every machine. Beyond that the number of elements is extrapolated
 //! from the last one tried, with an error that falls as 1/n. A scene whose motion is not known, whose elements are given or that needs another
 //! integrator keeps the rule of [`crate::model::mesh`].
 
@@ -29,10 +29,12 @@ use crate::scene::{Integrator, MotionPath, Scene};
 const LADDER: [usize; 13] = [5, 7, 10, 14, 20, 28, 40, 56, 80, 112, 160, 224, 320];
 /// Part of the tolerance that the estimated error is to keep [-].
 const AIM: f64 = 0.85;
+/// The same where the elements are extrapolated and the steps follow a rule [-].
+const AIM_UNTRIED: f64 = 0.7;
 /// Most elements that are extrapolated to [-].
 const ELEMENTS_MAX: f64 = 400.0;
 /// Explicit steps of an element that all trials may take [-].
-const WORK_MAX: f64 = 6e7;
+const WORK_MAX: f64 = 1e8;
 /// Tolerance that the steps of the ladder are chosen by, over the scene's [-].
 const FINER: f64 = 0.25;
 /// Part of the cost below which another step is worth taking [-].
@@ -40,7 +42,7 @@ const WORTH: f64 = 0.8;
 /// Halvings of the longest axial-implicit step that are tried [-].
 const HALVINGS: u32 = 8;
 /// Periods of the slowest sine that are tried, after the ramp [-].
-const PERIODS: f64 = 10.0;
+const PERIODS: f64 = 20.0;
 /// Time that is tried where the motion is a table, or of no period [s].
 const DURATION: f64 = 200.0;
 /// Samples in a period of the fastest sine, at least [-].
@@ -220,6 +222,7 @@ impl Search {
             }
         }
         let last = self.trials.last()?;
+        let aim = AIM_UNTRIED * self.scene.solver.tolerance;
         let wanted = (last.elements as f64 * last.error / aim).min(ELEMENTS_MAX);
         let error = last.error * last.elements as f64 / wanted;
         Some((wanted.ceil() as usize, error, false))
