@@ -230,6 +230,7 @@ impl NetworkWork {
                     }
                 }
             }
+            work.renew_ghosts();
         }
     }
 
