@@ -35,6 +35,26 @@ pub struct Choice {
 }
 
 impl Choice {
+    /// Integrator and step, and why.
+    pub fn in_words(&self) -> String {
+        let milli = |step: f64| format!("{:.3} ms", 1e3 * step);
+        let (step, explicit) = (milli(self.step_max), milli(self.explicit_limit));
+        match self.integrator {
+            Integrator::Leapfrog if self.step_max < self.explicit_limit => {
+                format!("explicit steps of at most {step}, axial waves would allow {explicit}")
+            }
+            Integrator::Leapfrog => {
+                format!("explicit steps of at most {step}, which axial waves limit")
+            }
+            Integrator::AxialImplicit => format!(
+                "axial tension implicit, steps of at most {step}: {AXIAL_IMPLICIT_COST} times as dear as explicit ones, of which axial waves \
+                 would allow {explicit}"
+            ),
+            Integrator::QuasiStatic => "an equilibrium at every communication point".to_string(),
+            _ => format!("fully implicit steps of at most {step}"),
+        }
+    }
+
     /// For a network whose lines carry the static tensions that `tension` [N] tells.
     pub fn new(model: &Model, network: &Network, tension: &impl Fn(usize) -> f64) -> Choice {
         let least = |limit: &dyn Fn(&Line) -> f64| {

@@ -22,6 +22,7 @@
 
 use super::{Error, Simulation};
 use crate::dynamics::AXIAL_IMPLICIT_COST;
+use crate::model::mesh::line_elements;
 use crate::model::{Model, Network, Role};
 use crate::scene::{Integrator, MotionPath, Scene};
 
@@ -132,6 +133,27 @@ pub fn settle(scene: &Scene) -> Option<Settled> {
     })
 }
 
+/// The scene with the mesh that it has now, whatever is set of it later: as [`settle`] finds it, or by rule. None where all elements are
+/// given.
+pub fn frozen(scene: &Scene) -> Option<Scene> {
+    if let Some(settled) = settle(scene) {
+        return Some(settled.scene);
+    }
+    if !is_open(scene) {
+        return None;
+    }
+    let mut scene = scene.clone();
+    let elements = line_elements(scene.solver.tolerance);
+    scene.solver.elements = Some(elements.round() as usize);
+    Some(scene)
+}
+
+/// Whether the number of elements of any section is left open.
+fn is_open(scene: &Scene) -> bool {
+    let mut sections = scene.lines.iter().flat_map(|line| &line.sections);
+    scene.solver.elements.is_none() && sections.any(|section| section.elements.is_none())
+}
+
 /// The state of the search.
 struct Search {
     /// The scene, as long and with such samples as is tried.
@@ -156,14 +178,11 @@ struct Run {
 
 impl Search {
     fn new(scene: &Scene) -> Option<Search> {
-        let sections = || scene.lines.iter().flat_map(|line| &line.sections);
-        let open = sections().any(|section| section.elements.is_none());
-        let solver = &scene.solver;
-        let explicit = matches!(
-            solver.integrator,
+        let leapfrog = matches!(
+            scene.solver.integrator,
             Integrator::Auto | Integrator::Leapfrog | Integrator::AxialImplicit
         );
-        if !open || !explicit || solver.elements.is_some() {
+        if !leapfrog || !is_open(scene) {
             return None;
         }
         let pace = Pace::of(scene)?;
