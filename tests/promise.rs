@@ -28,9 +28,10 @@ const AXIAL_IMPLICIT_COST: f64 = 3.0;
 /// A scene, by name.
 type Case = (&'static str, Scene);
 
-/// What is promised of the raw tension where a line slackens in every period and lies on the bed for most of its length, so that its RMS
-/// error falls as slowly as 1/n: scene, tolerance, and what is kept instead. The low-passed tension keeps the tolerance there too.
-const ROUGH: [(&str, f64, f64); 2] = [("shallow", 0.01, 0.02), ("shallow", 0.005, 0.02)];
+/// What is not promised: on a chain that slackens in every period and lies on the bed for half of its length the RMS error of the raw tension
+/// falls as slowly as 1/n, and 400 elements, the most that are chosen, leave more than 0.5 %. Scene, tolerance, and what is kept instead;
+/// the low-passed tension keeps the tolerance.
+const ROUGH: [(&str, f64, f64); 1] = [("shallow", 0.005, 0.009)];
 
 fn public() -> Vec<Case> {
     let names = PUBLIC_SCENES.iter();

@@ -41,14 +41,14 @@ impl Choice {
         let (step, explicit) = (milli(self.step_max), milli(self.explicit_limit));
         match self.integrator {
             Integrator::Leapfrog if self.step_max < self.explicit_limit => {
-                format!("explicit steps of at most {step}, axial waves would allow {explicit}")
+                format!("explicit steps of at most {step}; axial waves would allow {explicit}")
             }
             Integrator::Leapfrog => {
                 format!("explicit steps of at most {step}, which axial waves limit")
             }
             Integrator::AxialImplicit => format!(
-                "axial tension implicit, steps of at most {step}: {AXIAL_IMPLICIT_COST} times as dear as explicit ones, of which axial waves \
-                 would allow {explicit}"
+                "axial tension implicit, steps of at most {step}: explicit ones, {AXIAL_IMPLICIT_COST} times cheaper, would be limited to \
+                 {explicit} by axial waves"
             ),
             Integrator::QuasiStatic => "an equilibrium at every communication point".to_string(),
             _ => format!("fully implicit steps of at most {step}"),
