@@ -167,11 +167,14 @@ impl Simulation {
     /// Mistakes in the scene, or an equilibrium that does not exist.
     pub fn new(scene: &Scene) -> Result<Simulation, Error> {
         let settled = pilot::settle(scene);
-        Simulation::made(settled.as_ref().map_or(scene, |settled| &settled.scene))
+        Simulation::by_rules(settled.as_ref().map_or(scene, |settled| &settled.scene))
     }
 
-    /// [`Simulation::new`] by rules alone.
-    fn made(scene: &Scene) -> Result<Simulation, Error> {
+    /// [`Simulation::new`] by rules alone: the mesh is that of [`Model::new`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn by_rules(scene: &Scene) -> Result<Simulation, Error> {
         let model = Arc::new(Model::new(scene)?);
         let inputs = Inputs {
             points: vec![PointInput::default(); model.points.len()],

@@ -317,7 +317,7 @@ impl Search {
 
     /// What explicit steps cost; none where the axial-implicit leapfrog does not serve.
     fn explicit_work(&self, scene: &Scene) -> Option<Explicit> {
-        let simulation = Simulation::made(scene).ok()?;
+        let simulation = Simulation::by_rules(scene).ok()?;
         let model = simulation.model();
         let free = |network: &Network| !network.free_points.is_empty();
         if model.networks.iter().any(free) || model.lines.iter().any(|line| line.winch.is_some()) {
@@ -336,7 +336,7 @@ impl Search {
 
     /// Runs a scene of so many elements; none where its lines need another integrator than a leapfrog.
     fn run(&mut self, scene: &Scene, elements: usize) -> Result<Option<Run>, Error> {
-        let mut simulation = Simulation::made(scene)?;
+        let mut simulation = Simulation::by_rules(scene)?;
         simulation.follow_scene()?;
         let mut weight = 0.0_f64;
         for choice in simulation.choices() {
