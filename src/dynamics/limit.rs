@@ -15,8 +15,8 @@
 
 use crate::model::{End, Line, Model, SHORTEST, Segments};
 
-/// Part of the closed-form limit that is used [-].
-const SAFETY: f64 = 0.95;
+/// Part of the closed-form limit that is used [-]. With 0.95 the scene lindahl_fast blows up with five times the drag and 20 elements.
+const SAFETY: f64 = 0.9;
 /// Steps to the first axial period that leave an error of 1 % in a tension with snaps [-]: half of the tolerance they belong to, so that
 /// the mesh has the rest of it. Measured on oc3_catenary and lindahl_fast: 2 % with 65, second order.
 const STEPS_PER_AXIAL_PERIOD: f64 = 92.0;
