@@ -441,7 +441,7 @@ fn driven(model: &Model, line: usize) -> usize {
             Role::Coupled { .. } | Role::Carried { .. } | Role::Prescribed(_)
         )
     };
-    usize::from(!(moved(0) && !moved(1)))
+    usize::from(!moved(0) || moved(1))
 }
 
 /// Error of the coarse one of three runs whose elements grow by √2 [-].
