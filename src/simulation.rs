@@ -7,6 +7,7 @@
 mod held;
 mod inputs;
 mod paths;
+pub mod pilot;
 mod results;
 mod start;
 mod winches;
@@ -67,11 +68,21 @@ pub struct Simulation {
 }
 
 impl Simulation {
-    /// Makes a scene discrete and solves its static equilibrium at the reference positions.
+    /// Makes a scene discrete and solves its static equilibrium at the reference positions. What the scene leaves open of mesh,
+    /// integrator and step is tried on its motion ([`pilot::settle`]).
     ///
     /// # Errors
     /// Mistakes in the scene, or an equilibrium that does not exist.
     pub fn new(scene: &Scene) -> Result<Simulation, Error> {
+        let settled = pilot::settle(scene);
+        Simulation::by_rules(settled.as_ref().map_or(scene, |settled| &settled.scene))
+    }
+
+    /// [`Simulation::new`] by rules alone: the mesh is that of [`Model::new`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn by_rules(scene: &Scene) -> Result<Simulation, Error> {
         let model = Arc::new(Model::new(scene)?);
         let inputs = Inputs::new(&model);
         let (snapshot, work) = start::begin(&model, 0.0, inputs, false)?;

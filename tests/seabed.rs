@@ -639,7 +639,8 @@ fn what_hangs_from_a_softened_bed_pulls_as_over_a_rigid_one() {
                     "{name}, {elements}, {shift}: {lifts:e} at the anchor"
                 );
                 let laid = simulation.laid_length(0) - rigid.laid_length();
-                assert!(laid.abs() < 225.0 / elements as f64, "{laid} m"); // a quarter of an element
+                // 0.31 of an element; it was 0.25 with a rise to held ends over five elements, which costs up to 1.45 times the error of tension
+                assert!(laid.abs() < 280.0 / elements as f64, "{laid} m");
             }
         }
     }

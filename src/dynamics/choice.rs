@@ -1,7 +1,7 @@
 //! Which integrator serves a network, and its largest step.
 //!
-//! The explicit leapfrog costs least a step. Its axial-implicit variant costs about four times as much and is chosen where
-//! the axial limit lies more than four times below the step that accuracy allows; it serves single lines between held ends.
+//! The explicit leapfrog costs least a step. Its axial-implicit variant costs about three times as much and is chosen where
+//! the axial limit lies more than three times below the step that accuracy allows; it serves single lines between held ends.
 //! Networks joined at free points whose axial limit would need more than 25 steps for one of those are integrated fully
 //! implicitly, and so are lines that bend, mix strain measures or have nodes without mass. Beams have an integrator of their own.
 
@@ -12,7 +12,7 @@ use crate::model::{Line, Model, Network};
 use crate::scene::Integrator;
 
 /// Cost of an axial-implicit step over that of an explicit one [-].
-const AXIAL_IMPLICIT_COST: f64 = 4.0;
+pub const AXIAL_IMPLICIT_COST: f64 = 3.0;
 /// Explicit steps for one that accuracy allows, above which a network is integrated implicitly [-].
 const EXPLICIT_STEPS_MAX: f64 = 25.0;
 /// Part of the transverse limit that no line needs to go below for accuracy: where axial waves are much faster than that,
@@ -35,6 +35,26 @@ pub struct Choice {
 }
 
 impl Choice {
+    /// Integrator and step, and why.
+    pub fn in_words(&self) -> String {
+        let milli = |step: f64| format!("{:.3} ms", 1e3 * step);
+        let (step, explicit) = (milli(self.step_max), milli(self.explicit_limit));
+        match self.integrator {
+            Integrator::Leapfrog if self.step_max < self.explicit_limit => {
+                format!("explicit steps of at most {step}; axial waves would allow {explicit}")
+            }
+            Integrator::Leapfrog => {
+                format!("explicit steps of at most {step}, which axial waves limit")
+            }
+            Integrator::AxialImplicit => format!(
+                "axial tension implicit, steps of at most {step}: explicit ones, {AXIAL_IMPLICIT_COST} times cheaper, would be limited to \
+                 {explicit} by axial waves"
+            ),
+            Integrator::QuasiStatic => "an equilibrium at every communication point".to_string(),
+            _ => format!("fully implicit steps of at most {step}"),
+        }
+    }
+
     /// For a network whose lines carry the static tensions that `tension` [N] tells.
     pub fn new(model: &Model, network: &Network, tension: &impl Fn(usize) -> f64) -> Choice {
         let least = |limit: &dyn Fn(&Line) -> f64| {

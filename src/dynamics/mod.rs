@@ -17,7 +17,7 @@ pub mod reaction;
 mod sea;
 mod surface;
 
-pub use choice::Choice;
+pub use choice::{AXIAL_IMPLICIT_COST, Choice};
 
 /// Why a step could not be made. The state is as it was before.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -8,7 +8,7 @@ mod bending;
 mod bottom;
 mod build;
 mod initial;
-mod mesh;
+pub(crate) mod mesh;
 mod motion;
 mod moving;
 mod sea;

@@ -13,6 +13,7 @@ use zip::{CompressionMethod, DateTime, ZipWriter};
 
 use super::description::{Description, MODEL_IDENTIFIER};
 use crate::scene::{LoadedScene, Scene, SceneError};
+use crate::simulation::pilot;
 
 /// Name of the scene below `resources/`.
 pub const SCENE_FILE: &str = "scene.toml";
@@ -76,7 +77,7 @@ pub fn find_library() -> Result<PathBuf, PackageError> {
         })
 }
 
-/// Packages a scene with the FMU library into `target`.
+/// Packages a scene with the FMU library into `target`. Its mesh is the one that it has now, whatever a host sets later.
 ///
 /// # Errors
 /// A scene that cannot be described, a library that cannot be read, a target that cannot be written.
@@ -90,8 +91,13 @@ pub fn write_fmu(
         let path = path.to_path_buf();
         move |problem| PackageError::File { path, problem }
     };
-    let text = packaged_text(loaded);
-    let description = Description::new(&text, &loaded.scene, version)?;
+    let frozen = pilot::frozen(&loaded.scene);
+    let text = match &frozen {
+        Some(scene) => scene.to_toml(),
+        None => packaged_text(loaded),
+    };
+    let scene = frozen.as_ref().unwrap_or(&loaded.scene);
+    let description = Description::new(&text, scene, version)?;
     let binary = fs::read(library).map_err(fail(library))?;
     let bytes = container(&description.xml, &text, version, &binary)?;
     fs::write(target, bytes).map_err(fail(target))

@@ -459,6 +459,8 @@ pub enum InitialShape {
 pub struct Solver {
     /// Target error of fairlead tension [-].
     pub tolerance: f64,
+    /// Elements of a line alone [-], where its sections leave their number open; chosen from the tolerance where absent.
+    pub elements: Option<usize>,
     /// Time integrator.
     pub integrator: Integrator,
     /// The peers' law: axial damping acts in compression too.
@@ -603,6 +605,7 @@ impl Default for Solver {
     fn default() -> Self {
         Solver {
             tolerance: 0.02,
+            elements: None,
             integrator: Integrator::Auto,
             negative_tension: false,
             time_step_max: 0.05,

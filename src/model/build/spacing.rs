@@ -46,9 +46,16 @@ pub(super) fn elements(scene: &Scene) -> Vec<f64> {
             break;
         }
     }
-    let alone = line_elements(scene.solver.tolerance);
+    let alone = alone(scene);
     let pairs = lengths.iter().zip(&longest);
     pairs.map(|(own, longest)| alone * own / longest).collect()
+}
+
+/// Elements of a line alone [-].
+fn alone(scene: &Scene) -> f64 {
+    let solver = &scene.solver;
+    let given = solver.elements.map(|elements| elements as f64);
+    given.unwrap_or_else(|| line_elements(solver.tolerance))
 }
 
 /// Where a line that bends needs short elements, as far as its closed-form catenary tells.
@@ -241,9 +248,14 @@ fn reasons(scene: &Scene, model: &Model, line: &scene::Line, built: &Line, share
     {
         return "as given".to_string();
     }
-    let percent = 100.0 * scene.solver.tolerance;
-    let mut reasons = format!("for the target error of {percent} %");
-    if share < line_elements(scene.solver.tolerance) {
+    let mut reasons = match scene.solver.elements {
+        Some(elements) => format!("of the {elements} of a line alone"),
+        None => {
+            let percent = 100.0 * scene.solver.tolerance;
+            format!("for the target error of {percent} %")
+        }
+    };
+    if share < alone(scene) {
         reasons += ", in proportion to the longest line it is tied to";
     }
     let types = line

@@ -4,6 +4,8 @@ use super::{Bounds, Findings, number, quantity};
 use crate::scene::channel::Channel;
 use crate::scene::{Integrator, Scene};
 
+/// Most elements of a line alone [-].
+const ELEMENTS_MAX: usize = 100_000;
 /// Most output steps of a run.
 const STEPS_MAX: f64 = 1e7;
 
@@ -16,6 +18,13 @@ fn check_solver(scene: &Scene, findings: &mut Findings) {
     let solver = &scene.solver;
     let tolerance = Bounds::Within(1e-12, 0.5);
     findings.number("solver.tolerance", solver.tolerance, tolerance, "-");
+    if solver
+        .elements
+        .is_some_and(|elements| !(1..=ELEMENTS_MAX).contains(&elements))
+    {
+        let problem = format!("a line alone has 1 to {ELEMENTS_MAX} elements");
+        findings.say("solver.elements", problem);
+    }
     let step = Bounds::Positive(1e4);
     findings.number("solver.time_step_max", solver.time_step_max, step, "s");
     if let Some(radius) = solver.spectral_radius {
