@@ -13,6 +13,11 @@
 //! momentum leaves one scalar tridiagonal system in T̄. Drag is trapezoidal and folded into the node's mass, the seabed
 //! too; flags of slack and contact are checked after the solve and the step repeated until they hold.
 //!
+//! A step ([`AxialWork::step`]) goes down the rows of the folded line ([`crate::math::fold`]) once for each thing it finds out: geometry,
+//! segments, drag, inverse masses, contact (`prepare`); then, until the assumptions hold, the couplings and equations, T̄ by
+//! [`crate::math::folded_tridiagonal`], velocities and what they say about the assumptions (`solve`). Each sweep has little to do in a
+//! row, so that the processor, which waits for roots and quotients, works on several rows at once.
+//!
 //! Source: Stern & Grinspun (2009), Implicit-explicit variational integration of highly oscillatory problems, Multiscale
 //! Model. Simul. 7, 1779-1794, with controllable dissipation added. The limit left is transverse:
 //! [`super::limit::transverse_step`].
@@ -30,12 +35,13 @@ use super::leapfrog::Step;
 use super::ledger::Flow;
 use crate::math::lanes::Lanes;
 use crate::model::{End, Line, LineState, Parting, WaveSpan};
-use prepare::ENDS;
 use rows::{CurrentRow, NodeRow, Rows, SegmentRow};
 use rubbing::Rubbing;
 
 /// Passes over slack and contact flags, at most [-].
 const PASSES_MAX: usize = 8;
+/// Ends in the order of the line.
+const ENDS: [End; 2] = [End::A, End::B];
 
 /// Weights of T^{n+1}, T^n, T^{n−1}, T^{n−2} in T̄.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -90,7 +96,10 @@ impl AxialWork {
         Some(AxialWork {
             weights: Weights::new(rho),
             rows: Rows {
-                segments: vec![SegmentRow::new(); count],
+                segments: layout
+                    .rows()
+                    .map(|at| SegmentRow::new(&layout, at))
+                    .collect(),
                 nodes: layout.rows().map(node).collect(),
                 current: layout.flows().then(|| vec![CurrentRow::new(); count]),
             },
@@ -116,10 +125,10 @@ impl AxialWork {
         (self.lost, self.given, self.tension_peak) = (Lanes::splat(0.0), 0.0, 0.0);
         let count = self.layout.segment_count;
         if state.half_step.tension[0].len() == count {
-            for (k, kept) in state.half_step.tension.iter().enumerate() {
-                for (at, tension) in self.layout.fold.slots().zip(kept) {
-                    self.rows.segments[at.row - 1].history[k][at.lane] = *tension;
-                }
+            let [now, before] = &state.half_step.tension;
+            for (at, tensions) in self.layout.fold.slots().zip(now.iter().zip(before)) {
+                let [own, own_before] = &mut self.rows.segments[at.row - 1].history;
+                (own[at.lane], own_before[at.lane]) = (*tensions.0, *tensions.1);
             }
             return;
         }
@@ -153,10 +162,14 @@ impl AxialWork {
     pub fn store(&self, state: &mut LineState, steps: [f64; 2]) {
         state.parted = self.parted;
         self.layout.store(state, steps);
-        for (k, kept) in state.half_step.tension.iter_mut().enumerate() {
-            let slots = self.layout.fold.slots().take(self.layout.segment_count);
-            kept.clear();
-            kept.extend(slots.map(|at| self.rows.segments[at.row - 1].history[k][at.lane]));
+        let count = self.layout.segment_count;
+        let [now, before] = &mut state.half_step.tension;
+        now.resize(count, 0.0);
+        before.resize(count, 0.0);
+        let kept = now.iter_mut().zip(before);
+        for (at, (now, before)) in self.layout.fold.slots().zip(kept) {
+            let [own, own_before] = &self.rows.segments[at.row - 1].history;
+            (*now, *before) = (own[at.lane], own_before[at.lane]);
         }
     }
 
@@ -236,14 +249,20 @@ impl AxialWork {
 
     #[inline(always)]
     fn choose_step(&mut self, step: Step, ends: [Vector3<f64>; 2]) -> usize {
-        match self.rows.current {
-            None => self.step_vectors::<false>(step, ends),
-            Some(_) => self.step_vectors::<true>(step, ends),
+        match (&self.rows.current, &self.rubbing) {
+            (None, None) => self.step_vectors::<false, false>(step, ends),
+            (None, Some(_)) => self.step_vectors::<false, true>(step, ends),
+            (Some(_), None) => self.step_vectors::<true, false>(step, ends),
+            (Some(_), Some(_)) => self.step_vectors::<true, true>(step, ends),
         }
     }
 
     #[inline(always)]
-    fn step_vectors<const CURRENT: bool>(&mut self, step: Step, ends: [Vector3<f64>; 2]) -> usize {
+    fn step_vectors<const CURRENT: bool, const RUBS: bool>(
+        &mut self,
+        step: Step,
+        ends: [Vector3<f64>; 2],
+    ) -> usize {
         self.layout.renew_ghosts(self.parted);
         self.prepare_geometry();
         match self.layout.creep {
@@ -254,24 +273,24 @@ impl AxialWork {
         self.prepare_nodes::<CURRENT>(step);
         self.prepare_ends(step, ends);
         self.prepare_contact(step);
-        if self.rubbing.is_some() {
+        if RUBS {
             self.meet_bed(step);
         }
         let mut passes = 0;
         let lost = loop {
             passes += 1;
-            self.weigh_nodes();
+            self.weigh_nodes::<RUBS>();
             self.assemble(step);
             self.solve_tensions();
-            let found = self.find_velocities(step);
+            let found = self.find_velocities::<RUBS>(step);
             self.tension_peak = self.tension_peak.max(found.greatest());
-            let rubs = self.rubbing.is_none() || self.check_bed(step);
-            if self.holds(&found, step) && rubs || passes == PASSES_MAX {
+            let bed_holds = !RUBS || self.check_bed(step);
+            if self.holds(&found, step) && bed_holds || passes == PASSES_MAX {
                 break found.lost;
             }
         };
         self.lost = self.lost + lost;
-        if self.rubbing.is_some() {
+        if RUBS {
             self.keep_rub(step);
         }
         self.book_ends(step);

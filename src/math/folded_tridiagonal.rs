@@ -19,6 +19,10 @@
 
 use super::lanes::{LANES, Lanes};
 
+/// 1 in the lanes of the pieces that one is before, or behind.
+const NOT_FIRST: [f64; LANES] = [0.0, 1.0, 1.0, 1.0];
+const NOT_LAST: [f64; LANES] = [1.0, 1.0, 1.0, 0.0];
+
 /// Four equations l x_{r−1} + d x_r + u x_{r+1} = b, one of every piece. What lies before the first equation and behind the last of
 /// the whole system is 0, whatever its coefficient.
 #[derive(Debug, Clone, Copy)]
@@ -131,24 +135,21 @@ impl Elimination {
             before: self.first.before.moved_down(),
             after: self.first.after.moved_down(),
         };
-        let mut upper = row.upper;
-        upper[LANES - 1] = 0.0;
+        let (not_first, not_last) = (Lanes::new(NOT_FIRST), Lanes::new(NOT_LAST));
+        let (lower, upper) = (row.lower * not_first, row.upper * not_last);
         let diagonal = row.diagonal - row.lower * last.after - upper * next.before;
         let right = row.right - row.lower * last.known - upper * next.known;
         let inverse = diagonal.recip();
-        let l = zero - row.lower * last.before * inverse;
+        let l = zero - lower * last.before * inverse;
         let u = zero - upper * next.after * inverse;
         let own = solve_four(l, u, right * inverse);
-        let mut before = own.moved_up();
-        before[0] = 0.0;
-        (before, own)
+        (own.moved_up() * not_first, own)
     }
 }
 
-/// Solves l_i x_{i−1} + x_i + u_i x_{i+1} = b_i for the lanes i; nothing is before the first and after the last.
+/// Solves l_i x_{i−1} + x_i + u_i x_{i+1} = b_i for the lanes i, with l_0 = u_3 = 0.
 #[inline(always)]
-fn solve_four(mut l: Lanes, u: Lanes, b: Lanes) -> Lanes {
-    l[0] = 0.0;
+fn solve_four(l: Lanes, u: Lanes, b: Lanes) -> Lanes {
     let zero = Lanes::splat(0.0);
     // without the unknowns next to it, every lane has one other: e x + c x* = f, and that one's x* is two lanes on
     let e = Lanes::splat(1.0) - l * u.moved_up() - u * l.moved_down();

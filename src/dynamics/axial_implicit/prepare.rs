@@ -7,7 +7,6 @@ use super::rows::{NodeRow, SegmentRow};
 use crate::dynamics::layout::{ContactArrays, Layout};
 use crate::dynamics::leapfrog::Step;
 use crate::math::lanes::{Lanes, Vectors};
-use crate::model::End;
 use crate::physics::stretch::StretchLaw;
 
 /// Weight of the new strain rate over the old one in the axial damping [-].
@@ -25,7 +24,8 @@ impl AxialWork {
     #[inline(always)]
     pub(super) fn elastic(&self, at: usize, l: Lanes) -> Elastic {
         let one = Lanes::splat(1.0);
-        let strain = l * self.layout.inverse_length.load(at) - one;
+        let row = &self.rows.segments[at - 1];
+        let strain = l * row.inverse_length - one;
         let (force, slope) = match &self.layout.law {
             StretchLaw::Engineering => (strain, one),
             law => (
@@ -33,7 +33,7 @@ impl AxialWork {
                 strain.map(|e| law.at(e).slope),
             ),
         };
-        let ea = self.layout.axial_stiffness.load(at);
+        let ea = row.axial_stiffness;
         let share = Lanes::splat(self.weights.0[0]) * ea;
         Elastic {
             now: ea * force.positive(),
@@ -192,7 +192,6 @@ impl SegmentRow {
         step: Step,
     ) {
         let (half, drift) = (Lanes::splat(0.5), Lanes::splat(step.drift));
-        let inverse_length = line.inverse_length.load(at);
         let relative = line.velocity.load(at + 1) - line.velocity.load(at);
         let along = self.direction.dot(relative);
         let [t1, t2] = self.history;
@@ -202,14 +201,15 @@ impl SegmentRow {
             + Lanes::splat(h0) * elastic.now
             + Lanes::splat(h1) * t1
             + Lanes::splat(h2) * t2;
-        self.stiffness = elastic.slope * drift * inverse_length;
-        let damping = half * line.axial_damping.load(at) * inverse_length;
+        self.stiffness = elastic.slope * drift * self.inverse_length;
+        let damping = half * self.axial_damping * self.inverse_length;
         self.damping = damping * Lanes::splat(1.0 + DAMPING_SHIFT);
         self.known = self.elastic + damping * Lanes::splat(1.0 - DAMPING_SHIFT) * along;
         let bend = relative.dot(relative) - along * along;
         self.curvature = half * self.stiffness * drift * bend * self.inverse;
-        let (taut, slack) = (Lanes::splat(1.0), Lanes::splat(-1.0));
-        self.taut = (self.known + self.curvature).choose(taut, slack);
+        let push = Lanes::splat(f64::from(u8::from(line.negative_tension)));
+        let (_, total) = self.spring(along, push); // as if they went on stretching as they do
+        self.taut = total.choose(Lanes::splat(1.0), Lanes::splat(-1.0));
     }
 }
 
@@ -220,11 +220,6 @@ impl NodeRow {
         let inverse = self.free * (across * along).recip();
         self.across = along * inverse;
         self.excess = across * inverse - self.across;
-        let response = self.tangent.scale(self.excess * self.tangent.z);
-        self.response = Vectors {
-            z: response.z + self.across,
-            ..response
-        };
         self.held = Lanes::splat(0.0);
     }
 
@@ -266,15 +261,14 @@ impl NodeRow {
         let above = self.penetration - self.penetration.positive(); // the damper acts below the bed only
         let landing = damping * above * Lanes::splat(1.0 / step.drift);
         let resistance = kick * (stiffness * drift + damping);
-        let share = (one + resistance * self.response.z)
+        let lift = self.lift();
+        let share = (one + resistance * (self.across + lift * self.tangent.z))
             .recip()
             .where_positive(self.touches);
         let spring = kick * (stiffness * self.penetration + landing);
         let impulse = (spring - resistance * self.fall.z) * share;
         self.held = resistance * share;
-        self.loose = self.fall + self.response.scale(impulse);
+        self.loose = self.fall + self.tangent.scale(lift * impulse);
+        self.loose.z = self.loose.z + self.across * impulse;
     }
 }
-
-/// Ends in the order of the line.
-pub(super) const ENDS: [End; 2] = [End::A, End::B];

@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 
+use crate::dynamics::layout::Layout;
 use crate::math::fold::Slot;
 use crate::math::folded_tridiagonal::{Eliminated, Equations};
 use crate::math::lanes::{Lanes, Vectors};
@@ -9,6 +10,10 @@ use crate::math::lanes::{Lanes, Vectors};
 /// Segments, each between its node and the one after.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SegmentRow {
+    /// 1/L [1/m], axial stiffness [N] and damping [N s].
+    pub inverse_length: Lanes,
+    pub axial_stiffness: Lanes,
+    pub axial_damping: Lanes,
     /// Unit vectors q along the segments.
     pub direction: Vectors,
     /// Lengths l at t_n [m], and 1/l.
@@ -36,9 +41,13 @@ pub(super) struct SegmentRow {
 }
 
 impl SegmentRow {
-    pub fn new() -> SegmentRow {
+    /// Row `at` of a line.
+    pub fn new(line: &Layout, at: usize) -> SegmentRow {
         let zero = Lanes::splat(0.0);
         SegmentRow {
+            inverse_length: line.inverse_length.load(at),
+            axial_stiffness: line.axial_stiffness.load(at),
+            axial_damping: line.axial_damping.load(at),
             direction: Vectors::zero(),
             length: zero,
             inverse: zero,
@@ -99,7 +108,7 @@ pub(super) struct NodeRow {
     pub excess: Lanes,
     /// t.
     pub tangent: Vectors,
-    /// s [1/kg].
+    /// s of nodes on a bed that slopes or rubs [1/kg].
     pub response: Vectors,
     /// c, 0 off the bed [kg].
     pub held: Lanes,
@@ -136,25 +145,48 @@ impl NodeRow {
         }
     }
 
+    /// b t_z, which makes s = a ẑ + b t_z t over a level bed [1/kg].
+    #[inline(always)]
+    pub fn lift(&self) -> Lanes {
+        self.excess * self.tangent.z
+    }
+
+    /// s·x [1/kg], and t·x, of a vector x.
+    #[inline(always)]
+    fn shares<const RUBS: bool>(&self, x: Vectors) -> [Lanes; 2] {
+        let along = self.tangent.dot(x);
+        let rise = if RUBS {
+            self.response.dot(x)
+        } else {
+            self.across * x.z + self.lift() * along
+        };
+        [rise, along]
+    }
+
     /// M⁻¹ x.
     #[inline(always)]
-    pub fn inverse_mass(&self, x: Vectors) -> Vectors {
-        let excess = self.excess * self.tangent.dot(x);
-        let held = self.held * self.response.dot(x);
-        x.scale(self.across) + self.tangent.scale(excess) - self.response.scale(held)
+    pub fn inverse_mass<const RUBS: bool>(&self, x: Vectors) -> Vectors {
+        let [rise, along] = self.shares::<RUBS>(x);
+        let (across, along, held) = (x.scale(self.across), self.excess * along, self.held * rise);
+        if RUBS {
+            return across + self.tangent.scale(along) - self.response.scale(held);
+        }
+        let mut inverted = across + self.tangent.scale(along - self.lift() * held);
+        inverted.z = inverted.z - self.across * held;
+        inverted
     }
 
     /// The forms qᵀM⁻¹q, qᵀM⁻¹q′ and q′ᵀM⁻¹q′ of unit vectors [1/kg].
     #[inline(always)]
-    pub fn inverse_forms(&self, q: Vectors, other: Vectors) -> [Lanes; 3] {
-        let along = [self.tangent.dot(q), self.tangent.dot(other)];
-        let rise = [self.response.dot(q), self.response.dot(other)];
-        let excess = [self.excess * along[0], self.excess * along[1]];
-        let held = [self.held * rise[0], self.held * rise[1]];
+    pub fn inverse_forms<const RUBS: bool>(&self, q: Vectors, other: Vectors) -> [Lanes; 3] {
+        let [rise, along] = self.shares::<RUBS>(q);
+        let [other_rise, other_along] = self.shares::<RUBS>(other);
+        let (excess, held) = (self.excess * along, self.held * rise);
         [
-            self.across + excess[0] * along[0] - held[0] * rise[0],
-            self.across * q.dot(other) + excess[0] * along[1] - held[0] * rise[1],
-            self.across + excess[1] * along[1] - held[1] * rise[1],
+            self.across + excess * along - held * rise,
+            self.across * q.dot(other) + excess * other_along - held * other_rise,
+            self.across + self.excess * other_along * other_along
+                - self.held * other_rise * other_rise,
         ]
     }
 }

@@ -57,7 +57,7 @@ impl AxialWork {
 
     /// Finds what couples the segments through their nodes.
     #[inline(always)]
-    pub(super) fn weigh_nodes(&mut self) {
+    pub(super) fn weigh_nodes<const RUBS: bool>(&mut self) {
         let segments = &self.rows.segments;
         let direction = |at: usize| segments[at].direction;
         let mut before = segments.len() - 1;
@@ -67,7 +67,7 @@ impl AxialWork {
                 before = at - 1;
                 q = direction(before);
             }
-            node.forms = node.inverse_forms(q, direction(at));
+            node.forms = node.inverse_forms::<RUBS>(q, direction(at));
         }
     }
 
@@ -109,7 +109,7 @@ impl AxialWork {
 
     /// New velocities from T̄, into `velocity_before`, and what they say about the assumptions.
     #[inline(always)]
-    pub(super) fn find_velocities(&mut self, step: Step) -> Found {
+    pub(super) fn find_velocities<const RUBS: bool>(&mut self, step: Step) -> Found {
         let mut found = Found::new();
         let segments = &self.rows.segments[..];
         let before = segments[segments.len() - 1].direction.moved_up();
@@ -117,10 +117,10 @@ impl AxialWork {
         let [first, others @ ..] = &self.rows.nodes[..] else {
             return found;
         };
-        found.move_nodes(first, force, &mut self.layout, 1, step);
+        found.move_nodes::<RUBS>(first, force, &mut self.layout, 1, step);
         for ((pair, node), at) in segments.windows(2).zip(others).zip(2..) {
             let force = pair[1].pull() - pair[0].pull();
-            found.move_nodes(node, force, &mut self.layout, at, step);
+            found.move_nodes::<RUBS>(node, force, &mut self.layout, at, step);
         }
         let push = self.push();
         let line = &mut self.layout;
@@ -158,7 +158,7 @@ impl SegmentRow {
 impl Found {
     /// Moves nodes under a force [N] of the segments; whether they are on the bed as they were taken to be.
     #[inline(always)]
-    fn move_nodes(
+    fn move_nodes<const RUBS: bool>(
         &mut self,
         node: &NodeRow,
         force: Vectors,
@@ -167,11 +167,9 @@ impl Found {
         step: Step,
     ) {
         let (old, kick) = (line.velocity.load(at), Lanes::splat(step.kick));
-        let new = node.loose + node.inverse_mass(force).scale(kick);
+        let new = node.loose + node.inverse_mass::<RUBS>(force).scale(kick);
         line.velocity_before.store(new, at);
-        if let Some(contact) = &line.contact
-            && contact.bottom.is_none()
-        {
+        if !RUBS && let Some(contact) = &line.contact {
             let touches = node.pushed(contact, at, new.z, step);
             self.landed = self.landed.max(Lanes::splat(0.0) - touches * node.touches);
         }
