@@ -273,6 +273,18 @@ impl LineWork {
             self.interior[at] = f64::from(u8::from(self.is_parted(end)));
         }
         self.renew_ghosts();
+        self.clear_flow();
+    }
+
+    /// Goes on from the state that [`Self::store`] handed back last; a line on a winch is laid out anew.
+    pub fn resume(&mut self, state: &LineState) {
+        match self.winch {
+            None => self.clear_flow(),
+            Some(_) => self.load(state),
+        }
+    }
+
+    fn clear_flow(&mut self) {
         (self.lost, self.given) = (Lanes::splat(0.0), 0.0);
         self.given_by_current = Lanes::splat(0.0);
         if let Some(settling) = &mut self.settling {

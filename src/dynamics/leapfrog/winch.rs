@@ -53,7 +53,7 @@ impl WinchWork {
         line.winch.as_ref()?;
         Some(Box::new(WinchWork {
             line: line.clone(),
-            path: AxisPath::at_rest(0.0, 0.0),
+            path: AxisPath::at_rest(0.0),
             reel: Reel::at_rest(0.0),
             next: Reel::at_rest(0.0),
             density: 0.0,
