@@ -148,12 +148,13 @@ fn main() {
     );
     for count in [20, 40, 80, 160, 320] {
         let mut numbers = |shift| (0..count).map(|_| shift - random.unit()).collect();
-        let system = System {
+        let mut system = System {
             lower: numbers(0.0),
             diagonal: numbers(4.0),
             upper: numbers(0.0),
             right: numbers(0.0),
         };
+        (system.lower[0], system.upper[count - 1]) = (0.0, 0.0);
         let mut folded = Folded::new(&system);
         let [widest, portable] = [Arch::new(), Arch::Scalar]
             .map(|unit| time(|| unit.dispatch(Solve(black_box(&mut folded)))));

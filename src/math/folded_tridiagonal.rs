@@ -17,14 +17,10 @@
 //! Source: Wang (1981), A parallel method for tridiagonal equations, ACM Trans. Math. Softw. 7, 170-183 (partition); Polizzi & Sameh
 //! (2006), A parallel hybrid banded system solver: the SPIKE algorithm, Parallel Computing 32, 177-194 (spikes, reduced system).
 
-use super::lanes::{LANES, Lanes};
+use super::lanes::Lanes;
 
-/// 1 in the lanes of the pieces that one is before, or behind.
-const NOT_FIRST: [f64; LANES] = [0.0, 1.0, 1.0, 1.0];
-const NOT_LAST: [f64; LANES] = [1.0, 1.0, 1.0, 0.0];
-
-/// Four equations l x_{r−1} + d x_r + u x_{r+1} = b, one of every piece. What lies before the first equation and behind the last of
-/// the whole system is 0, whatever its coefficient.
+/// Four equations l x_{r−1} + d x_r + u x_{r+1} = b, one of every piece. In the whole system the first l and the last u must be 0,
+/// the first l only where the last equation is not x = 0.
 #[derive(Debug, Clone, Copy)]
 pub struct Equations {
     /// l [-].
@@ -135,19 +131,17 @@ impl Elimination {
             before: self.first.before.moved_down(),
             after: self.first.after.moved_down(),
         };
-        let (not_first, not_last) = (Lanes::new(NOT_FIRST), Lanes::new(NOT_LAST));
-        let (lower, upper) = (row.lower * not_first, row.upper * not_last);
-        let diagonal = row.diagonal - row.lower * last.after - upper * next.before;
-        let right = row.right - row.lower * last.known - upper * next.known;
+        let diagonal = row.diagonal - row.lower * last.after - row.upper * next.before;
+        let right = row.right - row.lower * last.known - row.upper * next.known;
         let inverse = diagonal.recip();
-        let l = zero - lower * last.before * inverse;
-        let u = zero - upper * next.after * inverse;
+        let l = zero - row.lower * last.before * inverse;
+        let u = zero - row.upper * next.after * inverse;
         let own = solve_four(l, u, right * inverse);
-        (own.moved_up() * not_first, own)
+        (own.moved_up(), own)
     }
 }
 
-/// Solves l_i x_{i−1} + x_i + u_i x_{i+1} = b_i for the lanes i, with l_0 = u_3 = 0.
+/// Solves l_i x_{i−1} + x_i + u_i x_{i+1} = b_i for the lanes i, with u_3 = 0, and l_0 = 0 or x_3 = 0.
 #[inline(always)]
 fn solve_four(l: Lanes, u: Lanes, b: Lanes) -> Lanes {
     let zero = Lanes::splat(0.0);
@@ -164,10 +158,18 @@ mod tests {
     use nalgebra::{DMatrix, DVector};
 
     use super::*;
+    use crate::math::lanes::LANES;
     use crate::math::random::Random;
 
     /// [l, d, u, b] of every equation.
     type System = Vec<[f64; 4]>;
+
+    /// A system of `count` equations, cut off at its ends.
+    fn system(count: usize, equation: impl FnMut(usize) -> [f64; 4]) -> System {
+        let mut system: System = (0..count).map(equation).collect();
+        (system[0][0], system[count - 1][2]) = (0.0, 0.0);
+        system
+    }
 
     fn folded(system: &System) -> Vec<f64> {
         let rows = system.len().div_ceil(LANES);
@@ -220,11 +222,11 @@ mod tests {
         let mut random = Random::new(1);
         let mut uniform = || 2.0 * random.unit() - 1.0;
         for n in 1..=200 {
-            let equation = |_| {
+            let equation = |_: usize| {
                 let (l, u, b) = (uniform(), uniform(), uniform());
                 [l, l.abs() + u.abs() + 0.01 + uniform().abs(), u, b]
             };
-            let system: System = (0..n).map(equation).collect();
+            let system = system(n, equation);
             assert!(error(&system) < 1e-13, "n = {n}: {}", error(&system));
         }
     }
@@ -240,16 +242,16 @@ mod tests {
                 let b = (k + 1.0) * random.unit();
                 [-k * turn[i], 1.0 + 2.0 * k, -k * turn[i + 1], b]
             };
-            let system: System = (0..n).map(equation).collect();
+            let system = system(n, equation);
             assert!(error(&system) < 1e-10, "n = {n}: {}", error(&system));
         }
     }
 
     #[test]
-    fn what_lies_beyond_the_system_is_zero() {
-        let inner: System = vec![[7.0, 4.0, -1.0, 2.0]; 16];
+    fn what_lies_beyond_a_system_with_filling_is_zero() {
+        let inner: System = vec![[7.0, 4.0, -1.0, 2.0]; 15];
         let mut ends = inner.clone();
-        (ends[0][0], ends[15][2]) = (0.0, 0.0);
+        (ends[0][0], ends[14][2]) = (0.0, 0.0);
         assert_eq!(folded(&inner), folded(&ends));
     }
 }
