@@ -1,4 +1,6 @@
 //! A pass of the axial-implicit leapfrog: the system in T̄, the velocities that follow, and whether they are what was assumed.
+//!
+//! Loops name the rows by index: with iterators the compiler would see that it may take four rows at once, and take them lane by lane.
 
 use super::AxialWork;
 use super::rows::{NodeRow, SegmentRow};
@@ -60,12 +62,10 @@ impl AxialWork {
     pub(super) fn weigh_nodes<const RUBS: bool>(&mut self) {
         let segments = &self.rows.segments;
         let direction = |at: usize| segments[at].direction;
-        let mut before = segments.len() - 1;
-        let mut q = direction(before).moved_up();
+        let mut q = direction(segments.len() - 1).moved_up();
         for (at, node) in self.rows.nodes.iter_mut().enumerate() {
             if at > 0 {
-                before = at - 1;
-                q = direction(before);
+                q = direction(at - 1);
             }
             node.forms = node.inverse_forms::<RUBS>(q, direction(at));
         }
