@@ -96,8 +96,8 @@ fn energy_error(integrator: Integrator, step: f64) -> f64 {
 fn a_tabulated_rope_keeps_its_energy() {
     for integrator in INTEGRATORS {
         let (coarse, fine) = (
-            energy_error(integrator, 4e-3),
-            energy_error(integrator, 1e-3),
+            energy_error(integrator, 2e-3),
+            energy_error(integrator, 5e-4),
         );
         println!("{integrator:?}: {coarse:.2e} {fine:.2e}");
         assert!(fine < 1e-3, "{integrator:?}: {fine}");

@@ -395,8 +395,8 @@ impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
                 solves += work.step(Step::after(steps, drift), ends);
                 steps = [drift, steps[0]];
             }
-            let too_long = drift > transverse / work.tension_peak().sqrt() && retry < RETRIES_MAX;
-            if work.broken_node().is_none() && !too_long {
+            let too_long = drift > transverse / work.tension_peak().sqrt() || !work.is_settled();
+            if work.broken_node().is_none() && !(too_long && retry < RETRIES_MAX) {
                 work.store(&mut next.lines[index], steps);
                 return Ok(Done {
                     counters: Counters {

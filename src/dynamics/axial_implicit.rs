@@ -10,7 +10,8 @@
 //! T̄ − k q·G(v) = EA b₁(ε^n + κ) + H + ½BA(1−θ) q·G(v⁻),  k = EA b₁Δt + ½BA(1+θ),  b₁ = 1/N,
 //!
 //! with the history terms H and θ = 0.2. A row is off where the total would be negative. Eliminating v by the nodes'
-//! momentum leaves one scalar tridiagonal system in T̄. Drag is trapezoidal and folded into the node's mass, the seabed
+//! momentum leaves one scalar tridiagonal system in T̄. Drag C v is folded into the node's mass by θΔt C, θ = max(½, 1 − M/(Δt C)): trapezoidal,
+//! but where it outweighs inertia no more than that no velocity changes its sign by it, which would go on for ever. The seabed is folded in
 //! too; flags of slack and contact are checked after the solve and the step repeated until they hold.
 //!
 //! A step ([`AxialWork::step`]) goes down the rows of the folded line ([`crate::math::fold`]) once for each thing it finds out: geometry,
@@ -72,6 +73,8 @@ pub struct AxialWork {
     lost: Lanes,
     given: f64,
     tension_peak: f64,
+    /// Whether the flags and the true stretch of all steps since then were found.
+    settled: bool,
 }
 
 impl AxialWork {
@@ -111,6 +114,7 @@ impl AxialWork {
             lost: Lanes::splat(0.0),
             given: 0.0,
             tension_peak: 0.0,
+            settled: true,
             layout,
         })
     }
@@ -123,6 +127,7 @@ impl AxialWork {
             self.set_free(end, self.parted[end as usize]);
         }
         (self.lost, self.given, self.tension_peak) = (Lanes::splat(0.0), 0.0, 0.0);
+        self.settled = true;
         let count = self.layout.segment_count;
         if state.half_step.tension[0].len() == count {
             let [now, before] = &state.half_step.tension;
@@ -156,6 +161,12 @@ impl AxialWork {
             given: self.given + self.layout.lifted(),
             lost: self.lost.sum() - self.layout.joined(),
         }
+    }
+
+    /// Whether every step since [`Self::load`] found which segments are slack, where the bed pushes and how far stiff segments stretch.
+    /// Where one did not, its tension is wrong by more than the tolerance: the steps were too long.
+    pub fn is_settled(&self) -> bool {
+        self.settled
     }
 
     /// Hands the state back after steps of `steps` [s].
@@ -285,7 +296,9 @@ impl AxialWork {
             let found = self.find_velocities::<RUBS>(step);
             self.tension_peak = self.tension_peak.max(found.greatest());
             let bed_holds = !RUBS || self.check_bed(step);
-            if self.holds(&found, step) && bed_holds || passes == PASSES_MAX {
+            let holds = self.holds(&found, step) && bed_holds;
+            if holds || passes == PASSES_MAX {
+                self.settled &= holds;
                 break found.lost;
             }
         };

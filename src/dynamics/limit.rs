@@ -4,9 +4,14 @@
 //! ω² = max_i 2(k_{i−1} + k_i)/M_i. Axial damping of ratio ζ = BA·ω/(2EA), taken with the lagged velocity, lowers the
 //! limit 2/ω of the undamped leapfrog to
 //!
-//! Δt_max = (2/ω)(√(1 + ζ²) − ζ).
+//! Δt_max = (2/ω)(√(1 + ζ²) − ζ),
 //!
-//! Transversely, waves of speed c = √(T/m) limit any variant, the axial-implicit one too: Δt < 0.6 h/c. Quadratic drag,
+//! of which 0.9 is used. That is the limit of springs that pull and push. Those of a line only pull, and change between two maps where it
+//! slackens: with θ from ωΔt = 2 sin(θ/2), the trace of k taut steps and a slack one is 2 cos((k + ½)θ)/cos(θ/2), whose size exceeds 2 about
+//! (k + ½)θ = π. One taut step and a slack one, over and over, feed on each other above ωΔt = √2, two and one from 1 to √2, and more of them, ever
+//! more weakly, below: a slack line without damping gathers energy in its shortest waves. Lines with little damping use 0.5 of the limit, ωΔt ≤ 1.
+//!
+//! Transversely, waves of speed c = √(T/m) limit any variant, the axial-implicit one too: Δt < 0.6 h/c, or 1.2/ω with k = T/l. Quadratic drag,
 //! taken explicitly, wants Δt ≤ M_n/(K_n |v|). Lines that may come out of the water are taken with the mass that
 //! they have in air, and with the stiffness of their waterplane.
 //!
@@ -17,6 +22,10 @@ use crate::model::{End, Line, Model, SHORTEST, Segments};
 
 /// Part of the closed-form limit that is used [-].
 const SAFETY: f64 = 0.9;
+/// The same of a line without damping [-].
+const SAFETY_UNDAMPED: f64 = 0.5;
+/// Damping ratio of the shortest waves from which slackening gathers no energy at the full safety [-].
+const DAMPING_RATIO_ENOUGH: f64 = 0.016;
 /// Steps that resolve the first axial period for 2 % of error in a tension with snaps [-].
 const STEPS_PER_AXIAL_PERIOD: f64 = 70.0;
 /// Strain up to which a stiffening measure is stable [-].
@@ -105,7 +114,9 @@ fn lag(segments: &Segments, i: usize) -> f64 {
 /// Limit for a circular frequency ω [rad/s] and BA/EA [s], with safety.
 fn damped_limit(omega: f64, lag: f64) -> f64 {
     let zeta = 0.5 * omega * lag;
-    SAFETY * 2.0 / omega * ((1.0 + zeta * zeta).sqrt() - zeta)
+    let damped = (zeta / DAMPING_RATIO_ENOUGH).min(1.0);
+    let safety = SAFETY_UNDAMPED + damped * (SAFETY - SAFETY_UNDAMPED);
+    safety * 2.0 / omega * ((1.0 + zeta * zeta).sqrt() - zeta)
 }
 
 /// Step [s] that resolves the first axial period 4L/c for a target error of tension [-].
@@ -129,7 +140,7 @@ fn heave(line: &Line, node: usize) -> f64 {
 
 /// Explicit step limit [s] of a line that floats, with safety; infinite where it does not meet the water's surface.
 pub fn heave_step(line: &Line) -> f64 {
-    let limit = |i: usize| damped_limit((heave(line, i) / line.least_mass(i)).sqrt(), 0.0);
+    let limit = |i: usize| SAFETY * 2.0 / (heave(line, i) / line.least_mass(i)).sqrt();
     let nodes = if line.surface.is_some() {
         1..line.segment_count()
     } else {
@@ -138,18 +149,19 @@ pub fn heave_step(line: &Line) -> f64 {
     nodes.map(limit).fold(f64::INFINITY, f64::min)
 }
 
-/// Transverse step limit [s] of a line under a tension [N]; infinite without tension.
+/// Transverse step limit [s] of a line under a tension [N]; infinite without tension. Gershgorin's bound again, with the transverse stiffness
+/// T/l of the segments: where these are alike it is 0.6 h/c.
 pub fn transverse_step(line: &Line, tension: f64) -> f64 {
     let lengths = &line.segments.length;
     let mut limit = f64::INFINITY;
     for i in 1..line.segment_count() {
         let mass = match &line.surface {
             None => line.nodes.mass_normal[i],
-            Some(_) => line.nodes.mass[i],
+            Some(_) => line.nodes.mass[i], // in air
         };
-        let density = mass / line.nodes.length[i]; // m + m_a, in air m [kg/m]
-        let speed = (tension.max(0.0) / density).sqrt();
-        limit = limit.min(TRANSVERSE_COURANT * lengths[i - 1].min(lengths[i]) / speed);
+        let stiffness = tension.max(0.0) * (1.0 / lengths[i - 1] + 1.0 / lengths[i]);
+        let omega = (2.0 * stiffness / mass).sqrt();
+        limit = limit.min(TRANSVERSE_COURANT * 2.0 / omega);
     }
     limit
 }

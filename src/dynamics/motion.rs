@@ -8,7 +8,8 @@
 //! last two samples best from the older ones: smooth motion gets the third degree (error O(h⁴)), noise and jumps a low one. A degree
 //! is kept until another would have been better by more than a factor: two of them often do equally well, where a harmonic motion is
 //! sampled symmetrically, and rounding of the host's times would then choose between them.
-//! With velocities the polynomial is fitted to them and integrated from x_k.
+//! With velocities the polynomial is fitted to them and integrated from x_k. What a prediction missed by is made up over as long a time as it was
+//! for: after a step of 10 s that ends a metre beside the host, one of 1 ms must not leap back by a metre.
 //!
 //! Source: divided differences, e.g. Hairer, Nørsett & Wanner (1993), Solving Ordinary Differential Equations I, eq. III.1.7;
 //! the choice of degree is made here. Valid for any sequence of step sizes: samples closer
@@ -34,6 +35,8 @@ const BETTER_AT_REST: f64 = 0.9;
 const SAMPLES_MAX: usize = DEGREE_MAX + 1 + JUDGED;
 /// Samples closer together than the coming step over this are passed over [-].
 const STEP_RATIO_MAX: f64 = 2.0;
+/// Rounding of a host's times over its steps [-].
+const ROUNDING: f64 = 1e-9;
 
 /// When a host spoke, as far back as predictions look: at the same times of all that it moves.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -41,6 +44,8 @@ pub struct Clock {
     /// Newest first; the first `count` are in use [s].
     times: [f64; SAMPLES_MAX],
     count: usize,
+    /// When all that was missed is to be made up [s].
+    made_up: f64,
 }
 
 /// What the time of a sample is to the samples before.
@@ -60,6 +65,7 @@ impl Clock {
         Clock {
             times: [time; SAMPLES_MAX],
             count: 1,
+            made_up: time,
         }
     }
 
@@ -77,12 +83,28 @@ impl Clock {
             Order::After => {
                 self.times.copy_within(0..SAMPLES_MAX - 1, 1);
                 self.count = (self.count + 1).min(SAMPLES_MAX);
+                self.made_up = self.made_up.max(time + last_step);
             }
             Order::Again => {}
-            Order::Before => self.count = 1,
+            Order::Before => (self.count, self.made_up) = (1, time),
         }
         self.times[0] = time;
         Foresight::new(self, order, step, reconstruction)
+    }
+
+    /// What is left after a step [s] of a distance and a velocity by which a path misses its host now: the cubic from both to none when all is
+    /// made up. Rows of position [-, s] and velocity [1/s, -].
+    fn left(&self, step: f64) -> [[f64; 2]; 2] {
+        let time = self.made_up - self.times[0];
+        if time <= step * (1.0 + ROUNDING) {
+            return [[0.0; 2]; 2];
+        }
+        let s = step / time;
+        let rest = 1.0 - s;
+        [
+            [rest * rest * (1.0 + 2.0 * s), step * rest * rest],
+            [-6.0 * s * rest / time, rest * (1.0 - 3.0 * s)],
+        ]
     }
 }
 
@@ -93,6 +115,8 @@ pub struct Foresight {
     jumps: bool,
     /// Start and end of the step [s].
     span: [f64; 2],
+    /// What is left at the end of the step of what the path misses now, see [`Clock::left`].
+    left: [[f64; 2]; 2],
     /// The samples that count, newest first; the first `count` are in use.
     picked: [usize; SAMPLES_MAX],
     count: usize,
@@ -144,6 +168,7 @@ impl Foresight {
             order,
             jumps: reconstruction == Reconstruction::Jump,
             span: [start, end],
+            left: clock.left(step),
             picked,
             count,
             inverse,
@@ -216,7 +241,12 @@ impl AxisPath {
                 [position + (end - start) * velocity, velocity],
             );
         }
-        let to = self.predict(foresight);
+        let [place, velocity] = self.predict(foresight);
+        let missed = [self.end[0] - position, self.end[1] - velocity];
+        let left = foresight
+            .left
+            .map(|row| row[0] * missed[0] + row[1] * missed[1]);
+        let to = [place + left[0], velocity + left[1]];
         self.follow(foresight.span, to);
     }
 
@@ -449,6 +479,26 @@ mod tests {
             }
         }
         worst
+    }
+
+    #[test]
+    fn a_short_step_after_a_long_one_does_not_leap_back_to_the_host() {
+        let mut path = Guided::at_rest(0.0, 0.0);
+        let mut time = 0.0;
+        for step in [10.0, 1e-3, 1e-3, 2.0, 1e-3, 4.0, 4.0, 4.0, 4.0, 4.0] {
+            // at rest for 10 s as far as the path could know, and a metre off
+            let there = if time > 0.0 { 1.0 } else { 0.0 };
+            path.extend(sample(time, there), step, Reconstruction::Smooth);
+            let fastest = (0..=100)
+                .map(|k| path.at(time + 0.01 * step * f64::from(k)).slope.abs())
+                .fold(0.0, f64::max);
+            assert!(
+                fastest < 0.6,
+                "{fastest} m/s in a step of {step} s at {time} s"
+            );
+            time += step;
+        }
+        assert_relative_eq!(path.at(time).value, 1.0, epsilon = 1e-6);
     }
 
     #[test]

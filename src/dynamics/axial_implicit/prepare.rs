@@ -122,7 +122,8 @@ impl AxialWork {
         for (at, node) in line.rows().zip(&mut self.rows.nodes) {
             let (velocity, tangent) = (line.velocity.load(at), node.tangent);
             let [normal, along] = node.drag;
-            let (mut resistance, mut last) = ([normal, along], velocity);
+            let mut masses = [node.mass_normal, node.mass_tangent];
+            let mut last = velocity;
             let mut force = Vectors {
                 z: zero - line.weight.load(at),
                 ..Vectors::zero()
@@ -136,19 +137,20 @@ impl AxialWork {
                 }
             }
             if line.drag.is_some() {
+                masses = [
+                    masses[0] + (half * normal).max(kick * normal - masses[0]),
+                    masses[1] + (half * along).max(kick * along - masses[1]),
+                ];
                 force = force
                     - last.scale(normal)
                     - tangent.scale((along - normal) * last.dot(tangent));
             }
             if let Some(damping) = &line.mass_damping {
                 let damping = damping.load(at);
-                resistance = [normal + damping, along + damping];
+                masses = [masses[0] + half * damping, masses[1] + half * damping];
                 force = force - velocity.scale(damping);
             }
-            node.invert([
-                node.mass_normal + half * resistance[0],
-                node.mass_tangent + half * resistance[1],
-            ]);
+            node.invert(masses);
             node.fall = velocity + node.inverse_mass_off_bed(force).scale(kick);
         }
     }

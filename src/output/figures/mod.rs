@@ -6,6 +6,7 @@
 pub mod agreement;
 mod axis;
 mod chart;
+pub mod compared;
 mod flight;
 pub mod frontier;
 

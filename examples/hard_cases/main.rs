@@ -1,0 +1,50 @@
+//! The figures of `docs/hard-cases.md`, and the numbers that stand beside them.
+//!
+//! `cargo run --release --example hard_cases -- docs/figures` runs all cases, prints for every run its internal steps for a second, the
+//! error of its energy ledger and the energy that it gained over the energy that flowed, and draws a figure of each case.
+
+mod figures;
+#[allow(dead_code)] // the tests use what the figures do not
+mod run;
+#[allow(dead_code)] // the same
+mod scenes;
+
+use std::error::Error;
+use std::path::Path;
+
+use moorline::output::figures::compared::{Panel, compared};
+use run::Run;
+
+/// What a case shows: its charts, and its runs by name.
+pub struct Page {
+    /// Stem of the figure's file.
+    pub stem: &'static str,
+    /// Charts from top to bottom.
+    pub panels: Vec<Panel>,
+    /// Runs that the table speaks of.
+    pub runs: Vec<(String, Run)>,
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let folder = std::env::args().nth(1);
+    println!("run | integrator | steps for a second | peak [N] | ledger [-] | gain [-]");
+    for draw in figures::ALL {
+        let page = draw();
+        for (name, run) in &page.runs {
+            println!(
+                "{}: {name} | {:?} | {:.0} | {:.4e} | {:.1e} | {:.1e}",
+                page.stem,
+                run.chosen,
+                run.substeps_per_second(),
+                run.peak(),
+                run.ledger_error(),
+                run.energy_gain()
+            );
+        }
+        if let Some(folder) = &folder {
+            let svg = compared(&page.panels).ok_or("a chart without a finite point")?;
+            std::fs::write(Path::new(folder).join(format!("{}.svg", page.stem)), svg)?;
+        }
+    }
+    Ok(())
+}
