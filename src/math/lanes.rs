@@ -23,6 +23,12 @@ impl Lanes {
         Lanes([value; LANES])
     }
 
+    /// Four numbers.
+    #[inline(always)]
+    pub fn new(values: [f64; LANES]) -> Lanes {
+        Lanes(values)
+    }
+
     /// `values[at..at + 4]`.
     #[inline(always)]
     pub fn load(values: &[f64], at: usize) -> Lanes {

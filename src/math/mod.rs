@@ -4,6 +4,7 @@ pub mod attitude;
 pub mod block_tridiagonal;
 pub mod elementary;
 pub mod fold;
+pub mod folded_tridiagonal;
 pub mod hermite;
 pub mod lanes;
 pub mod low_pass;

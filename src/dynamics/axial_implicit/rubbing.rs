@@ -16,7 +16,6 @@ use nalgebra::{Vector2, Vector3};
 
 use super::AxialWork;
 use crate::dynamics::leapfrog::Step;
-use crate::math::fold::{Column, Field, Fold, Slot};
 use crate::physics::friction::{Axes, held};
 
 /// Change of friction over the push of the bed that asks for another pass [-].
@@ -32,32 +31,38 @@ enum Mode {
     Sticks,
 }
 
-/// What a step knows of the bed under the nodes.
+/// What a step knows of the bed under the nodes, by their numbers.
 #[derive(Debug, Clone)]
 pub(super) struct Rubbing {
-    /// In the order of the nodes.
-    mode: Vec<Mode>,
+    nodes: Vec<Stand>,
+}
+
+/// How a node stands to the bed.
+#[derive(Debug, Clone, Copy)]
+struct Stand {
+    mode: Mode,
     /// Penetration p [m].
-    penetration: Column,
+    penetration: f64,
     /// Normal n of the bed.
-    normal: Field,
+    normal: Vector3<f64>,
     /// a and b of the inverse mass off the bed [1/kg].
-    across: Column,
-    excess: Column,
+    inverse: [f64; 2],
     /// λ_t of nodes that slide [N s].
-    rub: Field,
+    rub: Vector3<f64>,
 }
 
 impl Rubbing {
-    pub fn new(fold: Fold) -> Rubbing {
-        let zeros = || Column::new(fold, 0.0);
+    /// For a line of `count` nodes.
+    pub fn new(count: usize) -> Rubbing {
+        let stand = Stand {
+            mode: Mode::Off,
+            penetration: 0.0,
+            normal: Vector3::zeros(),
+            inverse: [0.0; 2],
+            rub: Vector3::zeros(),
+        };
         Rubbing {
-            mode: vec![Mode::Off; fold.room()],
-            penetration: zeros(),
-            normal: Field::zeros(fold),
-            across: zeros(),
-            excess: zeros(),
-            rub: Field::zeros(fold),
+            nodes: vec![stand; count],
         }
     }
 }
@@ -91,54 +96,62 @@ impl Node {
 }
 
 impl AxialWork {
-    /// Numbers of the nodes between the ends, and where they stand.
-    fn inner_nodes(&self) -> impl Iterator<Item = (usize, Slot)> + use<> {
-        let count = self.layout.segment_count;
-        self.layout.nodes().enumerate().take(count).skip(1)
+    /// Numbers of the nodes between the ends.
+    fn inner_nodes(&self) -> std::ops::Range<usize> {
+        1..self.layout.segment_count
+    }
+
+    /// New velocity of a node [m/s].
+    fn new_velocity(&self, i: usize) -> Vector3<f64> {
+        self.layout.velocity_before.get(self.layout.slot(i))
     }
 
     /// Finds out how the nodes stand to the bed, and what they are first taken to do there.
     pub(super) fn meet_bed(&mut self, step: Step) {
-        for (i, at) in self.inner_nodes() {
+        for i in self.inner_nodes() {
+            let at = self.layout.slot(i);
             let (penetration, normal) = self.layout.stand(at);
             let velocity = self.layout.velocity.get(at);
             let Some(rubbing) = &mut self.rubbing else {
                 return;
             };
-            rubbing.mode[i] = Mode::Off;
-            rubbing.penetration[at] = penetration;
-            rubbing.normal.set(at, normal);
-            rubbing.across[at] = self.nodes.across[at];
-            rubbing.excess[at] = self.nodes.excess[at];
-            rubbing.rub.set(at, Vector3::zeros());
-            self.rest((i, at), velocity, step);
-            self.settle_on((i, at), step);
+            let row = &self.rows.nodes[at.row - 1];
+            rubbing.nodes[i] = Stand {
+                mode: Mode::Off,
+                penetration,
+                normal,
+                inverse: [row.across[at.lane], row.excess[at.lane]],
+                rub: Vector3::zeros(),
+            };
+            self.rest(i, velocity, step);
+            self.settle_on(i, step);
         }
     }
 
-    fn node(&self, at: Slot, step: Step) -> Option<Node> {
-        let rubbing = self.rubbing.as_ref()?;
+    fn node(&self, i: usize, step: Step) -> Option<Node> {
+        let stand = &self.rubbing.as_ref()?.nodes[i];
         let contact = self.layout.contact.as_ref()?;
-        let (across, excess) = (rubbing.across[at], rubbing.excess[at]);
-        let (mass, penetration) = (1.0 / across, rubbing.penetration[at]);
+        let at = self.layout.slot(i);
+        let ([across, excess], penetration) = (stand.inverse, stand.penetration);
+        let mass = 1.0 / across;
         // the damper acts below the bed only
         let landing = contact.damping[at] * penetration.min(0.0) / step.drift;
         Some(Node {
-            tangent: self.nodes.tangent.get(at),
-            normal: rubbing.normal.get(at),
+            tangent: self.rows.nodes[at.row - 1].tangent.get(at.lane),
+            normal: stand.normal,
             mass: [mass, 1.0 / (across + excess) - mass],
-            inverse: [across, excess],
+            inverse: stand.inverse,
             spring: step.kick * (contact.stiffness[at] * penetration + landing),
             resistance: step.kick * (contact.stiffness[at] * step.drift + contact.damping[at]),
         })
     }
 
     /// Takes a node that moves at `velocity` [m/s] to do what the bed makes of it; whether that is what it was taken to do.
-    fn rest(&mut self, (i, at): (usize, Slot), velocity: Vector3<f64>, step: Step) -> bool {
-        let Some(node) = self.node(at, step) else {
+    fn rest(&mut self, i: usize, velocity: Vector3<f64>, step: Step) -> bool {
+        let Some(node) = self.node(i, step) else {
             return true;
         };
-        let needed = self.needed((i, at), &node, velocity, step);
+        let needed = self.needed(i, &node, velocity, step);
         let friction = self
             .layout
             .rubbing()
@@ -147,16 +160,17 @@ impl AxialWork {
         let Some(rubbing) = &mut self.rubbing else {
             return true;
         };
-        let (mode, before) = (rubbing.mode[i], rubbing.rub.get(at));
+        let stand = &mut rubbing.nodes[i];
+        let (mode, before) = (stand.mode, stand.rub);
         let rise = node.normal.dot(&velocity);
-        let lands = rubbing.penetration[at] - step.drift * rise > 0.0;
+        let lands = stand.penetration - step.drift * rise > 0.0;
         let push = node.spring - node.resistance * rise;
         if !lands || push <= 0.0 {
-            rubbing.mode[i] = Mode::Off;
+            stand.mode = Mode::Off;
             return mode == Mode::Off;
         }
         let Some(friction) = friction else {
-            rubbing.mode[i] = Mode::Slides;
+            stand.mode = Mode::Slides;
             return mode == Mode::Slides;
         };
         let axes = Axes::new(node.normal, node.tangent);
@@ -168,68 +182,65 @@ impl AxialWork {
         let held = held(holding, compliance, friction.limits(&axes, push));
         let still = mode == Mode::Off && slides.norm() <= STILL;
         if held.multiplier.is_none() || still {
-            rubbing.mode[i] = Mode::Sticks;
+            stand.mode = Mode::Sticks;
             return mode == Mode::Sticks;
         }
         let rub = axes.vector(&held.force);
-        rubbing.mode[i] = Mode::Slides;
-        rubbing.rub.set(at, rub);
+        stand.mode = Mode::Slides;
+        stand.rub = rub;
         mode == Mode::Slides && (rub - before).norm() <= RUB_TOLERANCE * push
     }
 
     /// The friction [N s] that a node moved with, in the pass that gave it `velocity` [m/s].
-    fn needed(
-        &self,
-        (i, at): (usize, Slot),
-        node: &Node,
-        velocity: Vector3<f64>,
-        step: Step,
-    ) -> Vector3<f64> {
+    fn needed(&self, i: usize, node: &Node, velocity: Vector3<f64>, step: Step) -> Vector3<f64> {
         let Some(rubbing) = &self.rubbing else {
             return Vector3::zeros();
         };
-        match rubbing.mode[i] {
+        let stand = &rubbing.nodes[i];
+        match stand.mode {
             Mode::Off => Vector3::zeros(),
-            Mode::Slides => rubbing.rub.get(at),
+            Mode::Slides => stand.rub,
             Mode::Sticks => {
-                let pull = |at: Slot| self.rows.tension[at] * self.segments.direction.get(at);
-                let impulse = step.kick * (pull(at) - pull(at.before()));
-                node.flat(node.mass_times(velocity - self.nodes.fall.get(at)) - impulse)
+                let [before, at] = [i - 1, i].map(|i| self.layout.slot(i));
+                let impulse = step.kick * (self.rows.pull(at) - self.rows.pull(before));
+                let fall = self.rows.nodes[at.row - 1].fall.get(at.lane);
+                node.flat(node.mass_times(velocity - fall) - impulse)
             }
         }
     }
 
     /// Puts the bed into the equation of a node.
-    fn settle_on(&mut self, (i, at): (usize, Slot), step: Step) {
-        let Some(node) = self.node(at, step) else {
+    fn settle_on(&mut self, i: usize, step: Step) {
+        let Some(node) = self.node(i, step) else {
             return;
         };
         let Some(rubbing) = &self.rubbing else {
             return;
         };
-        let (mode, rub) = (rubbing.mode[i], rubbing.rub.get(at));
-        let nodes = &mut self.nodes;
-        let fall = nodes.fall.get(at);
-        [nodes.across[at], nodes.excess[at]] = node.inverse;
-        nodes.held[at] = 0.0;
+        let Stand { mode, rub, .. } = rubbing.nodes[i];
+        let at = self.layout.slot(i);
+        let (row, lane) = (&mut self.rows.nodes[at.row - 1], at.lane);
+        let fall = row.fall.get(lane);
+        (row.across[lane], row.excess[lane]) = node.inverse.into();
+        row.held[lane] = 0.0;
         match mode {
-            Mode::Off => nodes.loose.set(at, fall),
+            Mode::Off => row.loose.set(lane, fall),
             Mode::Slides => {
                 let response = node.inverse_times(node.normal);
                 let fall = fall + node.inverse_times(rub);
                 let share = 1.0 / (1.0 + node.resistance * node.normal.dot(&response));
                 let push = (node.spring - node.resistance * node.normal.dot(&fall)) * share;
-                nodes.held[at] = node.resistance * share;
-                nodes.response.set(at, response);
-                nodes.loose.set(at, fall + push * response);
+                row.held[lane] = node.resistance * share;
+                row.response.set(lane, response);
+                row.loose.set(lane, fall + push * response);
             }
             Mode::Sticks => {
                 let mass = node.normal.dot(&node.mass_times(node.normal)) + node.resistance;
                 let momentum = node.normal.dot(&node.mass_times(fall)) + node.spring;
-                (nodes.across[at], nodes.excess[at]) = (0.0, 0.0);
-                nodes.held[at] = -1.0 / mass;
-                nodes.response.set(at, node.normal);
-                nodes.loose.set(at, momentum / mass * node.normal);
+                (row.across[lane], row.excess[lane]) = (0.0, 0.0);
+                row.held[lane] = -1.0 / mass;
+                row.response.set(lane, node.normal);
+                row.loose.set(lane, momentum / mass * node.normal);
             }
         }
     }
@@ -237,10 +248,10 @@ impl AxialWork {
     /// Compares what the nodes do with what they were taken to do; false if that asks for another pass.
     pub(super) fn check_bed(&mut self, step: Step) -> bool {
         let mut holds = true;
-        for (i, at) in self.inner_nodes() {
-            let velocity = self.layout.velocity_before.get(at);
-            if !self.rest((i, at), velocity, step) {
-                self.settle_on((i, at), step);
+        for i in self.inner_nodes() {
+            let velocity = self.new_velocity(i);
+            if !self.rest(i, velocity, step) {
+                self.settle_on(i, step);
                 holds = false;
             }
         }
@@ -249,13 +260,12 @@ impl AxialWork {
 
     /// Remembers the friction of the step.
     pub(super) fn keep_rub(&mut self, step: Step) {
-        for (i, at) in self.inner_nodes() {
-            let velocity = self.layout.velocity_before.get(at);
-            let Some(node) = self.node(at, step) else {
+        for i in self.inner_nodes() {
+            let Some(node) = self.node(i, step) else {
                 return;
             };
-            let rub = self.needed((i, at), &node, velocity, step);
-            self.layout.set_rub(at, rub / step.kick);
+            let rub = self.needed(i, &node, self.new_velocity(i), step);
+            self.layout.set_rub(self.layout.slot(i), rub / step.kick);
         }
     }
 }
