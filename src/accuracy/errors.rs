@@ -79,6 +79,11 @@ pub struct Judge {
 pub struct Errors([f64; 4]);
 
 impl Errors {
+    /// The same error [-] in all respects.
+    pub fn all(error: f64) -> Errors {
+        Errors([error; 4])
+    }
+
     /// The error in one respect [-].
     pub fn of(&self, metric: Metric) -> f64 {
         self.0[metric as usize]

@@ -2,16 +2,30 @@
 
 use crate::scene::{Integrator, Scene};
 
-/// Elements of the longest line [-].
-const ELEMENTS: [usize; 14] = [4, 6, 8, 10, 14, 20, 28, 40, 56, 80, 112, 160, 226, 320];
-/// Elements of the longest line where steps are dear [-].
-const ELEMENTS_IMPLICIT: [usize; 5] = [10, 20, 40, 80, 160];
+/// Elements of the longest line where a run costs next to nothing [-]. Close together: an explicit step must divide the communication
+/// step, so that a mesh a little finer may take one step more, and one a little coarser waste none.
+const ELEMENTS: [usize; 28] = [
+    4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 16, 18, 20, 22, 24, 26, 28, 30, 32, 36, 40, 44, 48, 52,
+    56, 60, 64,
+];
+/// Elements of the longest line in dearer explicit runs [-].
+const ELEMENTS_FINE: [usize; 7] = [72, 80, 96, 112, 160, 226, 320];
+/// Elements of the longest line, tensions implicit [-].
+const ELEMENTS_AXIAL: [usize; 16] = [
+    6, 8, 10, 12, 14, 16, 20, 24, 28, 32, 40, 48, 56, 80, 112, 160,
+];
+/// Elements of the longest line, fully implicit [-].
+const ELEMENTS_IMPLICIT: [usize; 4] = [10, 20, 40, 80];
 /// Steps of the implicit integrators to the shortest period [-].
-const STEPS_PER_PERIOD: [f64; 5] = [40.0, 80.0, 160.0, 320.0, 640.0];
+const STEPS_PER_PERIOD: [f64; 6] = [20.0, 40.0, 80.0, 160.0, 320.0, 640.0];
+/// Communication steps over the interval of the output that explicit runs are tried with [-].
+const COMMUNICATIONS: [usize; 3] = [1, 2, 4];
+/// Communication steps to the shortest period, at least [-]: the motion in between is a cubic.
+const COMMUNICATIONS_PER_PERIOD: f64 = 20.0;
 /// Target errors of the tool's own choice [-].
 pub const TOLERANCES: [f64; 4] = [0.05, 0.02, 0.01, 0.005];
 /// Elements of the longest line in the converged solution [-]; half as many tell how far it has converged.
-pub const CONVERGED_ELEMENTS: usize = 640;
+const CONVERGED_ELEMENTS: usize = 640;
 /// Steps to the shortest period in the converged solution, where it needs an implicit integrator [-].
 const CONVERGED_STEPS_PER_PERIOD: f64 = 4000.0;
 /// Elements of the longest line of a converged solution that needs an implicit integrator [-].
@@ -28,15 +42,19 @@ pub struct Setting {
     pub time_step_max: Option<f64>,
     /// Target error [-] that the tool chooses by.
     pub tolerance: Option<f64>,
+    /// Intervals of the output from one communication point to the next [-].
+    pub communication: usize,
 }
 
 impl Setting {
-    fn new(elements: usize, integrator: Integrator, time_step_max: Option<f64>) -> Setting {
+    /// A mesh and an integrator; the longest internal step [s] is the scene's where absent.
+    pub fn new(elements: usize, integrator: Integrator, time_step_max: Option<f64>) -> Setting {
         Setting {
             elements: Some(elements),
             integrator,
             time_step_max,
             tolerance: None,
+            communication: 1,
         }
     }
 
@@ -47,6 +65,7 @@ impl Setting {
             integrator: Integrator::Auto,
             time_step_max: None,
             tolerance: Some(tolerance),
+            communication: 1,
         }
     }
 
@@ -69,18 +88,36 @@ impl Setting {
         scene.solver.tolerance = self.tolerance.unwrap_or(scene.solver.tolerance);
         scene
     }
+
+    /// The same with communication points so far apart [intervals of the output].
+    fn communicating(self, communication: usize) -> Setting {
+        Setting {
+            communication,
+            ..self
+        }
+    }
 }
 
-/// The ladder of a scene whose motion has this shortest period [s].
-pub fn ladder(shortest_period: f64) -> Vec<Setting> {
+/// The ladder of a scene whose motion has this shortest period [s] and whose output this interval [s].
+pub fn ladder(period: f64, interval: f64) -> Vec<Setting> {
     let mut settings: Vec<Setting> = TOLERANCES.map(Setting::chosen).into();
-    let leapfrog = |n: &usize| Setting::new(*n, Integrator::Leapfrog, None);
-    settings.extend(ELEMENTS.iter().map(leapfrog));
-    for integrator in [Integrator::AxialImplicit, Integrator::GeneralisedAlpha] {
-        for elements in ELEMENTS_IMPLICIT {
-            let step = |steps: f64| Some(shortest_period / steps);
-            let with = |steps| Setting::new(elements, integrator, step(steps));
-            settings.extend(STEPS_PER_PERIOD.map(with));
+    settings.extend(explicit(period, interval));
+    let implicit = [
+        (Integrator::AxialImplicit, ELEMENTS_AXIAL.as_slice()),
+        (Integrator::GeneralisedAlpha, &ELEMENTS_IMPLICIT),
+    ];
+    for (integrator, meshes) in implicit {
+        for elements in meshes {
+            let mut of_mesh: Vec<Setting> = Vec::new();
+            for steps in STEPS_PER_PERIOD {
+                let (communication, step) = stepping(period / steps, interval);
+                let setting = Setting::new(*elements, integrator, Some(step));
+                let setting = setting.communicating(communication);
+                if !of_mesh.contains(&setting) {
+                    of_mesh.push(setting);
+                }
+            }
+            settings.append(&mut of_mesh);
         }
     }
     let static_lines = |n: usize| Setting::new(n, Integrator::QuasiStatic, None);
@@ -88,12 +125,45 @@ pub fn ladder(shortest_period: f64) -> Vec<Setting> {
     settings
 }
 
+fn explicit(period: f64, interval: f64) -> impl Iterator<Item = Setting> {
+    let longest = period / COMMUNICATIONS_PER_PERIOD;
+    let leapfrog = move |elements: usize, communication: usize| {
+        let step = communication as f64 * interval;
+        let setting = Setting::new(elements, Integrator::Leapfrog, Some(step));
+        setting.communicating(communication)
+    };
+    let seldom = move |communication: &usize| {
+        *communication == 1 || *communication as f64 * interval <= longest
+    };
+    let coarse = ELEMENTS.into_iter().flat_map(move |elements| {
+        let communications = COMMUNICATIONS.into_iter().filter(seldom);
+        communications.map(move |communication| leapfrog(elements, communication))
+    });
+    coarse.chain(
+        ELEMENTS_FINE
+            .into_iter()
+            .map(move |elements| leapfrog(elements, 1)),
+    )
+}
+
+/// Communication step [intervals] and internal step [s] that come nearest to a wanted internal step [s] from below, one a multiple of
+/// the other.
+fn stepping(wanted: f64, interval: f64) -> (usize, f64) {
+    const ROUNDING: f64 = 1e-9;
+    if wanted >= interval {
+        let intervals = (wanted / interval + ROUNDING).floor();
+        (intervals as usize, intervals * interval)
+    } else {
+        (1, interval / (interval / wanted - ROUNDING).ceil())
+    }
+}
+
 /// Settings of a converged solution, in the order they are tried: the first that serves the scene is taken. Each with the
 /// coarser one that tells how far it has converged.
-pub fn converged(shortest_period: f64) -> [[Setting; 2]; 2] {
+pub fn converged(period: f64) -> [[Setting; 2]; 2] {
     let explicit = |n: usize| Setting::new(n, Integrator::Leapfrog, None);
     let implicit = |n: usize, steps: f64| {
-        let step = Some(shortest_period / steps);
+        let step = Some(period / steps);
         Setting::new(n, Integrator::Auto, step)
     };
     [
@@ -141,5 +211,20 @@ mod tests {
         let own = Setting::chosen(0.01).apply(&scene);
         assert_eq!(own.lines[0].sections[0].elements, None);
         assert_eq!(own.solver.tolerance, 0.01);
+    }
+
+    #[test]
+    fn internal_and_communication_steps_divide_each_other() {
+        assert_eq!(stepping(0.05, 0.05), (1, 0.05));
+        assert_eq!(stepping(0.23, 0.05), (4, 0.2));
+        assert_eq!(stepping(0.02, 0.05), (1, 0.05 / 3.0));
+        for setting in ladder(9.0, 0.05) {
+            let communication = 0.05 * setting.communication as f64;
+            assert!(communication <= 9.0 / COMMUNICATIONS_PER_PERIOD + 1e-9);
+            if let Some(step) = setting.time_step_max {
+                let steps = communication / step;
+                assert!((steps - steps.round()).abs() < 1e-9, "{setting:?}");
+            }
+        }
     }
 }

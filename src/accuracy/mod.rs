@@ -1,8 +1,10 @@
 //! Speed against error: a scene run with a ladder of meshes, integrators and steps, each judged against a converged solution.
 //!
-//! Cost is processor time of the stepping thread per simulated second, without reading, statics and output; the median of a few
-//! repetitions where a run is short. Errors are those of [`errors`], over the second half of the run. The converged solution's
-//! own uncertainty is its distance from one of half its resolution: nothing below that is a statement.
+//! Cost is processor time of the stepping thread per simulated second, without reading, statics and output. moorline is driven as the
+//! peers are: a host tells it where the fairlead is and how fast it moves, one communication step after the other. The runs that the
+//! verdicts name are timed in several rounds, own and peers' in turn ([`rounds`]). Errors are those of [`errors`], over the second half
+//! of the run. The converged solution's own uncertainty is its distance from one of half its resolution: nothing below that is a
+//! statement.
 //!
 //! With peers, all codes solve the peers' equations, damping that acts in compression too
 //! ([`crate::scene::Solver::negative_tension`]).
@@ -10,14 +12,19 @@
 pub mod errors;
 mod ladder;
 mod peers;
+mod rounds;
+mod slow;
 mod timed;
+mod verdict;
 
 use crate::scene::{Integrator, MotionPath, Scene};
 
 pub use errors::{Errors, Histories, Judge, Metric};
 pub use ladder::{Setting, TOLERANCES};
 pub use peers::{PeerError, Peers};
-use timed::{Timed, run};
+pub use slow::Slow;
+use timed::{Timed, Trial, run};
+pub use verdict::{Duel, LEVELS, Verdict};
 
 /// Cut-off of the low-passed tension over the frequency of the fastest motion [-].
 const CUT_OFF: f64 = 5.0;
@@ -62,10 +69,40 @@ pub struct Run {
     pub code: Code,
     /// Mesh and step, in words.
     pub label: String,
-    /// Processor time over simulated time [-].
+    /// Processor time over simulated time [-], the least of its timings.
     pub cost: f64,
     /// Against the converged solution.
     pub errors: Errors,
+    /// All timings.
+    costs: Vec<f64>,
+    how: How,
+}
+
+/// How a run is made again.
+#[derive(Debug, Clone, PartialEq)]
+enum How {
+    Own(Setting),
+    /// By its number in the peers' ladder.
+    Peer(usize),
+}
+
+impl Run {
+    fn new(code: Code, label: String, cost: f64, errors: Errors, how: How) -> Run {
+        Run {
+            code,
+            label,
+            cost,
+            errors,
+            costs: vec![cost],
+            how,
+        }
+    }
+
+    /// Least and greatest of its timings [-].
+    pub fn spread(&self) -> [f64; 2] {
+        let ends = |[least, greatest]: [f64; 2], cost: &f64| [least.min(*cost), greatest.max(*cost)];
+        self.costs.iter().fold([self.cost; 2], ends)
+    }
 }
 
 /// A run that gave no result, and why.
@@ -86,6 +123,8 @@ pub struct Study {
     pub title: String,
     /// Whether damping acts in compression, the peers' law.
     pub negative_tension: bool,
+    /// Whether there is a bed.
+    pub on_bed: bool,
     /// Mesh and step of the converged solution, in words.
     pub converged: String,
     /// Its distance from one of half its resolution.
@@ -94,6 +133,8 @@ pub struct Study {
     pub runs: Vec<Run>,
     /// Runs without a result.
     pub failed: Vec<Failed>,
+    /// The quasi-static mode in the scene's motion and slower ones.
+    pub slow: Vec<Slow>,
 }
 
 /// Why a scene cannot be studied.
@@ -130,79 +171,134 @@ pub fn study(
     let mut scene = scene.clone();
     scene.solver.negative_tension |= peers.is_some();
     let period = shortest_period(&scene);
-    let settings = ladder::ladder(period);
-    let total = settings.len() + 2 + usize::from(peers.is_some());
-    let (setting, converged, coarser) = converged(name, &scene, period)?;
-    progress(2, total);
-    let judge = judge(&scene, period, &converged.histories);
+    let settings = ladder::ladder(period, scene.output.interval);
+    let mut conversation = peers.map(|peers| peers.begin(name, &scene));
+    let of_peers = match &conversation {
+        Some(Ok(conversation)) => conversation.count(),
+        _ => 0,
+    };
+    // The converged solution and its judge are dear, and so is timing again.
+    let (first, last) = (settings.len() / 4, (settings.len() + of_peers) / 8 + 1);
+    let total = first + settings.len() + of_peers + last;
+    progress(0, total);
+    let converged = Converged::find(name, &scene)?;
+    progress(first, total);
+    let judge = judge(&scene, period, &converged.fine.histories);
     let mut study = Study {
         name: name.to_string(),
         title: scene.title.clone(),
         negative_tension: scene.solver.negative_tension,
-        converged: label(&setting, &converged),
-        uncertainty: judge.errors(&coarser.histories, &converged.histories),
+        on_bed: scene.seabed.is_some(),
+        converged: label(&converged.setting, &converged.fine),
+        uncertainty: judge.errors(&converged.coarse.histories, &converged.fine.histories),
         runs: Vec::new(),
         failed: Vec::new(),
+        slow: slow::slow(&scene),
     };
-    for (index, setting) in settings.iter().enumerate() {
-        study.add(setting, run(&setting.apply(&scene)), &judge, &converged);
-        progress(index + 3, total);
+    study.climb(&scene, &settings, &judge, &converged.fine, &mut |done| {
+        progress(first + done, total);
+    });
+    match &mut conversation {
+        Some(Ok(conversation)) => {
+            let before = first + settings.len();
+            let mut told = |done| progress(before + done, total);
+            conversation.add_runs(&judge, &converged.fine.histories, &mut study, &mut told);
+            study.settle(&scene, Some(conversation));
+        }
+        Some(Err(reason)) => {
+            study.failed.push(Failed {
+                label: "peers".to_string(),
+                reason: reason.clone(),
+            });
+            study.settle(&scene, None);
+        }
+        None => study.settle(&scene, None),
     }
-    if let Some(peers) = peers {
-        peers.add_runs(&scene, &judge, &converged.histories, &mut study);
-        progress(total, total);
-    }
+    progress(total, total);
     Ok(study)
 }
 
+/// How far the converged solution of a scene lies from one of half its resolution.
+///
+/// # Errors
+/// Where it cannot be had.
+pub fn uncertainty(name: &str, scene: &Scene) -> Result<Errors, StudyError> {
+    let converged = Converged::find(name, scene)?;
+    let fine = &converged.fine.histories;
+    let judge = judge(scene, shortest_period(scene), fine);
+    Ok(judge.errors(&converged.coarse.histories, fine))
+}
+
 /// The converged solution: its setting, itself, and the coarser one that judges it.
-fn converged(
-    name: &str,
-    scene: &Scene,
-    period: f64,
-) -> Result<(Setting, Timed, Timed), StudyError> {
-    let mut reason = String::new();
-    for [fine, coarse] in ladder::converged(period) {
-        match (run(&fine.apply(scene)), run(&coarse.apply(scene))) {
-            (Ok(converged), Ok(coarser)) => {
-                if !converged.moves() {
-                    return Err(StudyError::AtRest {
-                        name: name.to_string(),
-                    });
-                }
-                return Ok((fine, converged, coarser));
+struct Converged {
+    setting: Setting,
+    fine: Timed,
+    coarse: Timed,
+}
+
+impl Converged {
+    fn find(name: &str, scene: &Scene) -> Result<Converged, StudyError> {
+        let name = || name.to_string();
+        let mut reason = String::new();
+        for [setting, half] in ladder::converged(shortest_period(scene)) {
+            let exact = |setting: &Setting| Ok(Trial::exact(scene, setting)?.recorded()?.0);
+            // The coarse one first: what moves not, or fails, is found at an eighth of the price.
+            match exact(&half).and_then(|coarse: Timed| Ok((coarse.moves(), coarse))) {
+                Ok((false, _)) => return Err(StudyError::AtRest { name: name() }),
+                Ok((true, coarse)) => match exact(&setting) {
+                    Ok(fine) => {
+                        return Ok(Converged {
+                            setting,
+                            fine,
+                            coarse,
+                        });
+                    }
+                    Err(said) => reason = said,
+                },
+                Err(said) => reason = said,
             }
-            (Err(said), _) | (_, Err(said)) => reason = said,
         }
+        Err(StudyError::NotConverged {
+            name: name(),
+            reason,
+        })
     }
-    Err(StudyError::NotConverged {
-        name: name.to_string(),
-        reason,
-    })
 }
 
 impl Study {
-    fn add(
+    /// Runs all settings but those that come to the same as one before.
+    fn climb(
         &mut self,
-        setting: &Setting,
-        outcome: Result<Timed, String>,
+        scene: &Scene,
+        settings: &[Setting],
         judge: &Judge,
         converged: &Timed,
+        done: &mut dyn FnMut(usize),
     ) {
-        match outcome {
-            Ok(timed) => self.runs.push(Run {
-                code: match setting.integrator {
-                    Integrator::Auto => Code::Chosen,
-                    integrator => Code::Own(integrator),
-                },
-                label: label(setting, &timed),
-                cost: timed.cost,
-                errors: judge.errors(&timed.histories, &converged.histories),
-            }),
-            Err(reason) => self.failed.push(Failed {
-                label: described(setting),
-                reason,
-            }),
+        let mut plans = Vec::new();
+        for (index, setting) in settings.iter().enumerate() {
+            let trial = Trial::new(scene, setting);
+            if let Ok(trial) = &trial {
+                let plan = (setting.elements, setting.communication, trial.plan());
+                if setting.tolerance.is_none() && plans.contains(&plan) {
+                    continue;
+                }
+                plans.push(plan);
+            }
+            match trial.and_then(|trial| run(&trial)) {
+                Ok(timed) => self.runs.push(Run::new(
+                    code(setting),
+                    label(setting, &timed),
+                    timed.cost,
+                    judge.errors(&timed.histories, &converged.histories),
+                    How::Own(*setting),
+                )),
+                Err(reason) => self.failed.push(Failed {
+                    label: described(setting),
+                    reason,
+                }),
+            }
+            done(index + 1);
         }
     }
 
@@ -245,9 +341,20 @@ impl Study {
     }
 }
 
+/// Who computes with a setting.
+fn code(setting: &Setting) -> Code {
+    match setting.integrator {
+        Integrator::Auto => Code::Chosen,
+        integrator => Code::Own(integrator),
+    }
+}
+
 /// Mesh and step of a run, in words.
 fn label(setting: &Setting, timed: &Timed) -> String {
-    let step = format!("step {}", seconds(timed.step));
+    let communication = timed.communication.map_or(String::new(), |step| {
+        format!(", communication step {}", seconds(step))
+    });
+    let step = format!("step {}{communication}", seconds(timed.step));
     match setting.tolerance {
         Some(tolerance) => format!(
             "tolerance {} %: {}, n = {}, {step}",
@@ -261,16 +368,12 @@ fn label(setting: &Setting, timed: &Timed) -> String {
 
 /// A setting in words, before it has run.
 fn described(setting: &Setting) -> String {
-    let code = match setting.integrator {
-        Integrator::Auto => Code::Chosen,
-        integrator => Code::Own(integrator),
-    };
     let elements = setting
         .elements
         .map_or(String::new(), |n| format!(", n = {n}"));
     let step = setting.time_step_max.map(seconds);
     let step = step.map_or(String::new(), |step| format!(", step {step}"));
-    format!("{}{elements}{step}", code.name())
+    format!("{}{elements}{step}", code(setting).name())
 }
 
 /// A time [s] in the multiple of the second that fits.
@@ -311,5 +414,48 @@ fn shortest_period(scene: &Scene) -> f64 {
         shortest
     } else {
         PERIOD
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A study of these runs, certain to 0.1 %.
+    pub fn study_of(runs: Vec<Run>) -> Study {
+        Study {
+            name: "scene".to_string(),
+            title: "a scene".to_string(),
+            negative_tension: true,
+            on_bed: true,
+            converged: String::new(),
+            uncertainty: Errors::all(0.001),
+            runs,
+            failed: Vec::new(),
+            slow: Vec::new(),
+        }
+    }
+
+    fn run_of(code: Code, cost: f64, error: f64) -> Run {
+        let how = How::Peer(0);
+        Run::new(code, format!("at {error}"), cost, Errors::all(error), how)
+    }
+
+    /// A run of moorline with one error [-] in all respects.
+    pub fn own(cost: f64, error: f64) -> Run {
+        run_of(Code::Own(Integrator::Leapfrog), cost, error)
+    }
+
+    /// A run of a peer with one error [-] in all respects.
+    pub fn peer(name: &str, cost: f64, error: f64) -> Run {
+        run_of(Code::Peer(name.to_string()), cost, error)
+    }
+
+    #[test]
+    fn a_run_is_as_dear_as_its_best_timing_and_shows_its_worst() {
+        let mut run = own(3.0, 0.1);
+        run.costs.extend([2.0, 5.0]);
+        run.cost = 2.0;
+        assert_eq!(run.spread(), [2.0, 5.0]);
     }
 }

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Run MoorDyn and CableDyn over one scene at their own best settings, for `moorline accuracy --peers`.
 
-One JSON document on standard input describes a scene of one line whose upper end is driven; one JSON object a line on
-standard output answers, a run each, and `{"done": true}` at the end. Everything else goes to standard error.
+A conversation in lines of JSON. The first line on standard input describes a scene of one line whose upper end is driven; the answer
+names the runs of the ladder. Every further line asks for one of them; the answer is what it gave. Everything else goes to standard
+error.
 
 Input (SI units)
     name, gravity [m/s²], density [kg/m³], depth [m] or null, bed {stiffness [Pa/m], damping [Pa·s/m]} or null,
@@ -12,9 +13,13 @@ Input (SI units)
     motion {times [s], position [m], velocity [m/s]}, duration [s], interval [s], elements [-], and
     time_limit_seconds [s], the CPU time that all passes of a run may take. The last two have defaults, and a
     density of null is a line in air.
-Output, per run
-    peer, label, elements [-], and either cpu_seconds [s], tension [N] at the fairlead and mid [m], the position at
-    s = L/2, both at interval, 2·interval, ...; or failed, the reason.
+First answer
+    runs, each with peer, label, and family, a name that runs share which differ in their mesh alone, from coarse to fine.
+Question
+    run, its number from 0, and read, whether its results are wanted beside its cost.
+Answer
+    Either cpu_seconds [s] and, where wanted, tension [N] at the fairlead and mid [m], the position at s = L/2, both at
+    interval, 2·interval, ...; or failed, the reason.
 
 What a run costs
     CPU time of the time loop alone: reading the deck, the initial equilibrium and the reading of results are not
@@ -405,6 +410,7 @@ def moordyn_runs(scene, elements, period, bedded):
             label = f"n = {count}, {scheme}, dtM {step:.3g} s, host step {host:.3g} s"
             runs.append(
                 {"peer": "MoorDyn", "label": label, "elements": count, "scheme": scheme, "step": step, "host": host}
+                | {"family": f"MoorDyn at {part:g} of its limit"}
             )
     return runs
 
@@ -524,7 +530,8 @@ def cabledyn_runs(scene, elements, period, bedded):
         for parts, radius, reuse in landing if bedded else free:
             step = host_step(period / parts, scene["interval"])
             label = f"n = {count}, dt {step:.3g} s, rhoInf {radius:g}" + (", modified Newton" if reuse else "")
-            run = {"peer": "CableDyn", "label": label, "elements": count, "step": step}
+            family = f"CableDyn, {parts:g} steps to the period"
+            run = {"peer": "CableDyn", "label": label, "elements": count, "step": step, "family": family}
             runs.append(run | {"radius": radius, "reuse": reuse, "tolerance": 1e-2})
     return runs
 
@@ -532,65 +539,75 @@ def cabledyn_runs(scene, elements, period, bedded):
 # One process a run
 
 
-def single(scene, run, limit):
+def single(scene, run, limit, read):
     """Run one rung here in at most `limit` [s] of CPU, and return its answer; a peer that fails says why."""
     if resource is not None:
         _, hard = resource.getrlimit(resource.RLIMIT_CPU)
         resource.setrlimit(resource.RLIMIT_CPU, (math.ceil(limit), hard))
-    answer = {key: run[key] for key in ("peer", "label", "elements")}
-    wanted = scene["interval"] * np.arange(1, round(scene["duration"] / scene["interval"]) + 1)
+    answer = {}
     with tempfile.TemporaryDirectory() as directory:
         os.chdir(directory)
         try:
             peer = {"MoorDyn": MoorDyn, "CableDyn": CableDyn}[run["peer"]](scene, run)
-            tension, mid = (resampled(*series, wanted) for series in peer.read())
-            if not (np.isfinite(tension).all() and np.isfinite(mid).all()):
-                raise RuntimeError("the results are not finite")
-            mid[:, 2] += peer.site.lowered
-            answer |= {"cpu_seconds": median_cpu(peer.timed), "tension": tension.tolist(), "mid": mid.tolist()}
+            if read:
+                answer |= results(scene, peer)
+            answer |= {"cpu_seconds": median_cpu(peer.timed)}
         except Exception as error:  # whatever a peer raises is the answer
-            answer["failed"] = f"{type(error).__name__}: {error}"
+            answer = {"failed": f"{type(error).__name__}: {error}"}
         os.chdir(os.path.dirname(directory))
     return answer
 
 
-def in_own_process(scene, run, limit):
+def results(scene, peer):
+    """Return a peer's tension [N] and mid-position [m] at the scene's output times."""
+    wanted = scene["interval"] * np.arange(1, round(scene["duration"] / scene["interval"]) + 1)
+    tension, mid = (resampled(*series, wanted) for series in peer.read())
+    if not (np.isfinite(tension).all() and np.isfinite(mid).all()):
+        raise RuntimeError("the results are not finite")
+    mid[:, 2] += peer.site.lowered
+    return {"tension": tension.tolist(), "mid": mid.tolist()}
+
+
+def in_own_process(scene, run, limit, read):
     """Run one rung in a process of its own, for at most `limit` [s] of CPU; a crash or a timeout is an answer too."""
-    answer = {key: run[key] for key in ("peer", "label", "elements")}
     command = [sys.executable, os.path.abspath(__file__), "--single"]
-    question = json.dumps([scene, run, limit])
+    question = json.dumps([scene, run, limit, read])
     try:
         done = subprocess.run(
             command, input=question, stdout=subprocess.PIPE, text=True, timeout=WALL * limit, check=False
         )
     except subprocess.TimeoutExpired:
-        return answer | {"failed": f"not done in {WALL * limit:g} s"}
+        return {"failed": f"not done in {WALL * limit:g} s"}
     try:
         return json.loads(done.stdout)
     except json.JSONDecodeError:
         if hasattr(signal, "SIGXCPU") and done.returncode == -signal.SIGXCPU:
-            return answer | {"failed": f"not done in {limit:g} s of CPU time"}
-        return answer | {"failed": f"ended with exit code {done.returncode}"}
+            return {"failed": f"not done in {limit:g} s of CPU time"}
+        return {"failed": f"ended with exit code {done.returncode}"}
 
 
 def main():
-    """Read a scene, run both ladders and print an answer a line; with `--single`, one rung."""
+    """Read a scene, name its ladder, and run what is asked for; with `--single`, one rung."""
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)  # the peers print, and standard output is for answers only
     if "--single" in sys.argv[1:]:
         json.dump(single(*json.load(sys.stdin)), answers)
         answers.close()
         return
-    scene = json.load(sys.stdin)
+    scene = json.loads(sys.stdin.readline())
     scene["density"] = scene.get("density") or AIR
     path = Path(scene)
     period, bedded = path.period(scene["duration"]), lies_on_bed(scene, path)
     elements = scene.get("elements") or (ELEMENTS_ON_BED if bedded else ELEMENTS)
     settings = elements, period, bedded
-    for run in moordyn_runs(scene, *settings) + cabledyn_runs(scene, *settings):
-        answer = in_own_process(scene, run, scene.get("time_limit_seconds") or TIME_LIMIT)
+    runs = moordyn_runs(scene, *settings) + cabledyn_runs(scene, *settings)
+    named = [{key: run[key] for key in ("peer", "label", "family")} for run in runs]
+    print(json.dumps({"runs": named}), file=answers, flush=True)
+    limit = scene.get("time_limit_seconds") or TIME_LIMIT
+    for line in sys.stdin:
+        question = json.loads(line)
+        answer = in_own_process(scene, runs[question["run"]], limit, question["read"])
         print(json.dumps(answer), file=answers, flush=True)
-    print(json.dumps({"done": True}), file=answers, flush=True)
 
 
 if __name__ == "__main__":

@@ -1,17 +1,18 @@
 //! The peers, MoorDyn and CableDyn, run on the same scene, in the same run and on the same core.
 //!
-//! A Python script beside this file drives the peers' packages: it reads one JSON document, the scene, and answers with a line
-//! of JSON for every run. It finds each peer's best settings within its ladder; times are processor times of the peer's loop alone.
+//! A Python script beside this file drives the peers' packages and is talked with in lines of JSON: it hears of the scene and answers with
+//! its ladder, then makes the runs it is asked for, with or without reading their results. Its ladder holds each peer's best settings;
+//! times are processor times of the peer's loop alone.
 
 use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-use super::errors::{Histories, Judge};
-use super::{Code, Failed, Run, Study};
+use super::errors::{Errors, Histories, Judge, Metric};
+use super::{Code, Failed, How, Run, Study};
 use crate::scene::{MotionPath, Point, PointKind, Scene};
 
 const SCRIPT: &str = include_str!("peers.py");
@@ -21,6 +22,11 @@ const ELEMENTS: [usize; 10] = [4, 6, 8, 10, 14, 20, 28, 40, 56, 80];
 const ELEMENTS_ON_BED: usize = 2;
 /// Processor time that all passes of a single run of a peer may take [s].
 const TIME_LIMIT: f64 = 60.0;
+
+/// A finer mesh pays as long as it lowers some error to less than this part of the least so far [-].
+const PAYS: f64 = 0.95;
+/// So many meshes in a row that do not pay end their family of settings [-].
+const IDLE_MAX: usize = 2;
 
 /// A Python interpreter that can import the peers' packages.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -99,26 +105,53 @@ struct Harmonics<'a> {
     ramp: f64,
 }
 
+/// The script's first answer.
+#[derive(Debug, Deserialize)]
+struct Ladder {
+    runs: Vec<Planned>,
+}
+
+/// A run of the script's ladder.
+#[derive(Debug, Clone, Deserialize)]
+struct Planned {
+    peer: String,
+    label: String,
+    /// Runs that differ in their mesh alone, from coarse to fine.
+    family: String,
+}
+
+/// A run that the script is asked for.
+#[derive(Debug, Serialize)]
+struct Asked {
+    run: usize,
+    read: bool,
+}
+
 /// A line of the script's answer.
 #[derive(Debug, Deserialize)]
 #[serde(untagged)]
 enum Answer {
     Run {
-        peer: String,
-        label: String,
         cpu_seconds: f64,
+        #[serde(default)]
         tension: Vec<f64>,
+        #[serde(default)]
         mid: Vec<[f64; 3]>,
     },
     Failed {
-        peer: String,
-        label: String,
         failed: String,
     },
-    Done {
-        #[serde(rename = "done")]
-        _done: bool,
-    },
+}
+
+/// The script at work on a scene.
+#[derive(Debug)]
+pub(super) struct Conversation {
+    child: Child,
+    /// Absent once the script has been told to end.
+    input: Option<ChildStdin>,
+    output: BufReader<ChildStdout>,
+    runs: Vec<Planned>,
+    simulated: f64,
 }
 
 impl Peers {
@@ -149,30 +182,9 @@ impl Peers {
         }
     }
 
-    /// Runs the peers on a scene and judges what they answer.
-    pub(super) fn add_runs(
-        &self,
-        scene: &Scene,
-        judge: &Judge,
-        converged: &Histories,
-        study: &mut Study,
-    ) {
-        let name = study.name.clone();
-        let answers = question(&name, scene).and_then(|question| self.ask(&question));
-        match answers {
-            Ok(answers) => {
-                for answer in answers {
-                    study.take(answer, scene.output.duration, judge, converged);
-                }
-            }
-            Err(reason) => study.failed.push(Failed {
-                label: "peers".to_string(),
-                reason,
-            }),
-        }
-    }
-
-    fn ask(&self, question: &Question<'_>) -> Result<Vec<Answer>, String> {
+    /// Tells the script of a scene, and hears of its ladder.
+    pub(super) fn begin(&self, name: &str, scene: &Scene) -> Result<Conversation, String> {
+        let question = question(name, scene)?;
         let mut child = Command::new(&self.python)
             .arg(&self.script)
             .stdin(Stdio::piped())
@@ -180,66 +192,141 @@ impl Peers {
             .stderr(Stdio::null())
             .spawn()
             .map_err(|error| format!("{}: {error}", self.python.display()))?;
-        let answers = answers(&mut child, question);
-        let ended = child.wait().map_err(|error| error.to_string())?;
-        match answers {
-            Ok(answers) if ended.success() => Ok(answers),
-            Ok(_) => Err(format!("the peers' script ended with {ended}")),
-            Err(reason) => Err(reason),
-        }
+        let input = child.stdin.take();
+        let output = child.stdout.take().ok_or("the script has no output")?;
+        let mut conversation = Conversation {
+            child,
+            input,
+            output: BufReader::new(output),
+            runs: Vec::new(),
+            simulated: scene.output.duration,
+        };
+        let ladder: Ladder = conversation.ask(&question)?;
+        conversation.runs = ladder.runs;
+        Ok(conversation)
     }
 }
 
-fn answers(child: &mut Child, question: &Question<'_>) -> Result<Vec<Answer>, String> {
-    let mut input = child.stdin.take().ok_or("the script has no input")?;
-    let text = serde_json::to_string(question).map_err(|error| error.to_string())?;
-    input
-        .write_all(text.as_bytes())
-        .map_err(|error| error.to_string())?;
-    drop(input);
-    let output = child.stdout.take().ok_or("the script has no output")?;
-    let mut answers = Vec::new();
-    for line in BufReader::new(output).lines() {
-        let line = line.map_err(|error| error.to_string())?;
-        match serde_json::from_str(&line) {
-            Ok(Answer::Done { .. }) => break,
-            Ok(answer) => answers.push(answer),
-            Err(error) => return Err(format!("the peers' script answered {line:.80}: {error}")),
-        }
+impl Drop for Conversation {
+    fn drop(&mut self) {
+        drop(self.input.take());
+        // The script ends with its input; a status that cannot be had changes nothing.
+        let _ = self.child.wait();
     }
-    Ok(answers)
 }
 
-impl Study {
-    fn take(&mut self, answer: Answer, simulated: f64, judge: &Judge, converged: &Histories) {
-        match answer {
-            Answer::Run {
+/// How far a family of settings has come.
+#[derive(Debug, Default)]
+struct Family {
+    name: String,
+    least: Option<[f64; 4]>,
+    idle: usize,
+}
+
+impl Family {
+    fn take(&mut self, errors: &Errors) {
+        let errors = Metric::ALL.map(|metric| errors.of(metric));
+        let least = self.least.get_or_insert([f64::INFINITY; 4]);
+        let mut pays = false;
+        for (least, error) in least.iter_mut().zip(errors) {
+            pays |= error < PAYS * *least;
+            *least = least.min(error);
+        }
+        self.idle = if pays { 0 } else { self.idle + 1 };
+    }
+}
+
+impl Conversation {
+    /// Runs in the peers' ladder.
+    pub(super) fn count(&self) -> usize {
+        self.runs.len()
+    }
+
+    fn ask<A: for<'a> Deserialize<'a>>(&mut self, question: &impl Serialize) -> Result<A, String> {
+        let mut text = serde_json::to_string(question).map_err(|error| error.to_string())?;
+        text.push('\n');
+        let input = self.input.as_mut().ok_or("the script has no input")?;
+        input
+            .write_all(text.as_bytes())
+            .and_then(|()| input.flush())
+            .map_err(|error| format!("the peers' script has ended: {error}"))?;
+        let mut line = String::new();
+        self.output
+            .read_line(&mut line)
+            .map_err(|error| error.to_string())?;
+        serde_json::from_str(&line)
+            .map_err(|error| format!("the peers' script answered {line:.80}: {error}"))
+    }
+
+    /// Runs the peers' ladder and judges what they answer. A family of settings ends where finer meshes no longer pay; `done` is
+    /// told how much of the ladder is done.
+    pub(super) fn add_runs(
+        &mut self,
+        judge: &Judge,
+        converged: &Histories,
+        study: &mut Study,
+        done: &mut dyn FnMut(usize),
+    ) {
+        let mut families: Vec<Family> = Vec::new();
+        for number in 0..self.runs.len() {
+            let Planned {
                 peer,
                 label,
-                cpu_seconds,
-                tension,
-                mid,
-            } => {
-                let histories = Histories {
-                    tension: vec![tension],
-                    middle: vec![mid.into_iter().map(Vector3::from).collect()],
-                };
-                self.runs.push(Run {
-                    code: Code::Peer(peer),
-                    label,
-                    cost: cpu_seconds / simulated,
-                    errors: judge.errors(&histories, converged),
+                family,
+            } = self.runs[number].clone();
+            let index = families.iter().position(|one| one.name == family);
+            let index = index.unwrap_or(families.len());
+            if index == families.len() {
+                families.push(Family {
+                    name: family,
+                    ..Family::default()
                 });
             }
-            Answer::Failed {
-                peer,
-                label,
-                failed,
-            } => self.failed.push(Failed {
-                label: format!("{peer}, {label}"),
-                reason: failed,
-            }),
-            Answer::Done { .. } => {}
+            if families[index].idle >= IDLE_MAX {
+                continue;
+            }
+            let asked = Asked {
+                run: number,
+                read: true,
+            };
+            let failed = match self.ask(&asked) {
+                Ok(Answer::Run {
+                    cpu_seconds,
+                    tension,
+                    mid,
+                }) => {
+                    let histories = Histories {
+                        tension: vec![tension],
+                        middle: vec![mid.into_iter().map(Vector3::from).collect()],
+                    };
+                    let errors = judge.errors(&histories, converged);
+                    families[index].take(&errors);
+                    let cost = cpu_seconds / self.simulated;
+                    let how = How::Peer(number);
+                    let run = Run::new(Code::Peer(peer), label, cost, errors, how);
+                    study.runs.push(run);
+                    None
+                }
+                Ok(Answer::Failed { failed }) => Some(failed),
+                Err(reason) => Some(reason),
+            };
+            study.failed.extend(failed.map(|reason| Failed {
+                label: format!("{}, {}", self.runs[number].peer, self.runs[number].label),
+                reason,
+            }));
+            done(number + 1);
+        }
+    }
+
+    /// Times a run of the peers' ladder again: processor time over simulated time [-]. `None` where it fails.
+    pub(super) fn time(&mut self, number: usize) -> Option<f64> {
+        let asked = Asked {
+            run: number,
+            read: false,
+        };
+        match self.ask(&asked) {
+            Ok(Answer::Run { cpu_seconds, .. }) => Some(cpu_seconds / self.simulated),
+            _ => None,
         }
     }
 }
@@ -305,4 +392,19 @@ fn question<'a>(name: &'a str, scene: &'a Scene) -> Result<Question<'a>, String>
         },
         time_limit_seconds: TIME_LIMIT,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_family_ends_where_no_error_falls_any_more() {
+        let mut family = Family::default();
+        let mut idle = |error: f64| {
+            family.take(&Errors::all(error));
+            family.idle
+        };
+        assert_eq!([0.1, 0.05, 0.049, 0.06, 0.02].map(&mut idle), [0, 0, 1, 2, 0]);
+    }
 }

@@ -1,18 +1,38 @@
 //! One run of a scene: its histories and what they cost.
+//!
+//! A timed run is driven as a host drives it: before every communication step it is told displacement and velocity of what moves,
+//! made beforehand, and nothing of what comes. The converged solution follows the scene's motion exactly.
+
+use std::hint::black_box;
 
 use cpu_time::ThreadTime;
 use nalgebra::Vector3;
 
 use super::errors::Histories;
-use crate::model::{Line, Model, Role};
-use crate::scene::Scene;
+use super::ladder::Setting;
+use crate::model::{Line, Model, Moving, Role};
+use crate::scene::{Integrator, Scene};
 use crate::simulation::Simulation;
 
-/// Timed passes of a run, the median of which counts: at most this many, and no more once they add up to this time [s].
+/// Passes of one timing, the median of which counts: at most this many, and no more once they add up to this time [s].
 const PASSES_MAX: usize = 9;
-const PASSES_TIME: f64 = 0.4;
+const PASSES_TIME: f64 = 0.15;
 
-/// A run.
+/// A run that can be repeated.
+#[derive(Debug, Clone)]
+pub(super) struct Trial {
+    start: Simulation,
+    /// What the host says before every step; empty where the scene's motion is followed exactly.
+    said: Vec<Vec<Moving>>,
+    /// Communication step [s].
+    step: f64,
+    count: usize,
+    /// Interval [s] and number of the samples.
+    interval: f64,
+    samples: usize,
+}
+
+/// What a run gave.
 #[derive(Debug, Clone)]
 pub(super) struct Timed {
     pub histories: Histories,
@@ -24,6 +44,8 @@ pub(super) struct Timed {
     pub elements: usize,
     /// Mean internal step [s].
     pub step: f64,
+    /// Communication step [s], where it is not the interval of the output.
+    pub communication: Option<f64>,
 }
 
 impl Timed {
@@ -40,21 +62,184 @@ impl Timed {
     }
 }
 
-/// Runs a scene with its own motion; a failure is told in words. A first pass keeps the histories and is not timed, further
-/// ones take the same steps and read nothing.
-pub(super) fn run(scene: &Scene) -> Result<Timed, String> {
-    let mut simulation = Simulation::new(scene).map_err(|error| error.to_string())?;
-    simulation
-        .follow_scene()
-        .map_err(|error| error.to_string())?;
-    let mut timed = recorded(simulation.clone(), scene)?;
-    let mut times = Vec::with_capacity(PASSES_MAX);
-    while times.len() < PASSES_MAX && times.iter().sum::<f64>() < PASSES_TIME {
-        times.push(stepped(simulation.clone(), scene)?);
+impl Trial {
+    /// A run driven as a host drives it; a failure is told in words.
+    pub fn new(scene: &Scene, setting: &Setting) -> Result<Trial, String> {
+        let interval = scene.output.interval;
+        let step = setting.communication as f64 * interval;
+        let samples = samples(scene);
+        let count = samples.div_ceil(setting.communication);
+        let mut start =
+            Simulation::new(&setting.apply(scene)).map_err(|error| error.to_string())?;
+        let time = |index: usize| (index * setting.communication) as f64 * interval;
+        let said: Vec<Vec<Moving>> = (0..count)
+            .map(|index| start.model().moving(time(index)))
+            .collect();
+        said.first().map(|first| tell(&mut start, first));
+        start.restart(0.0).map_err(|error| error.to_string())?;
+        Ok(Trial {
+            start,
+            said,
+            step,
+            count,
+            interval,
+            samples,
+        })
     }
-    times.sort_by(f64::total_cmp);
-    timed.cost = times[times.len() / 2] / (scene.output.interval * samples(scene) as f64);
-    Ok(timed)
+
+    /// A run that follows the scene's motion exactly.
+    pub fn exact(scene: &Scene, setting: &Setting) -> Result<Trial, String> {
+        let mut start =
+            Simulation::new(&setting.apply(scene)).map_err(|error| error.to_string())?;
+        start.follow_scene().map_err(|error| error.to_string())?;
+        let samples = samples(scene);
+        Ok(Trial {
+            start,
+            said: Vec::new(),
+            step: scene.output.interval,
+            count: samples,
+            interval: scene.output.interval,
+            samples,
+        })
+    }
+
+    /// Integrator and planned steps in a communication step, by network: two runs with one mesh and the same plan are the same.
+    pub fn plan(&self) -> Vec<(Integrator, usize)> {
+        let steps = |step_max: f64| (self.step / step_max - 1e-9).ceil() as usize;
+        let choices = self.start.choices();
+        choices
+            .map(|choice| (choice.integrator, steps(choice.step_max)))
+            .collect()
+    }
+
+    /// Runs once and reads; the time of a long pass counts, for reading is nothing beside it. Short ones are to be timed.
+    pub fn recorded(&self) -> Result<(Timed, Option<f64>), String> {
+        let mut record = Record::new(&self.start, self.count);
+        let mut steps = 0;
+        let elapsed = self.step_through(|simulation| {
+            steps += simulation.substeps();
+            record.read(simulation);
+        })?;
+        let choice = self.start.choices().next();
+        let lines = &self.start.model().lines;
+        let timed = Timed {
+            cost: f64::NAN,
+            integrator: choice.map_or(String::new(), |choice| name(choice.integrator)),
+            elements: lines.iter().map(Line::segment_count).sum(),
+            step: self.step * self.count as f64 / steps.max(1) as f64,
+            communication: (self.step != self.interval).then_some(self.step),
+            histories: record.sampled(self.step, self.interval, self.samples),
+        };
+        let long = elapsed >= PASSES_TIME;
+        Ok((timed, long.then(|| self.relative(elapsed))))
+    }
+
+    /// Processor time over simulated time [-], the median of a few passes that read nothing.
+    pub fn cost(&self) -> Result<f64, String> {
+        let mut times = Vec::with_capacity(PASSES_MAX);
+        while times.len() < PASSES_MAX && times.iter().sum::<f64>() < PASSES_TIME {
+            times.push(self.step_through(|simulation| {
+                black_box(simulation);
+            })?);
+        }
+        times.sort_by(f64::total_cmp);
+        Ok(self.relative(times[times.len() / 2]))
+    }
+
+    fn relative(&self, elapsed: f64) -> f64 {
+        elapsed / (self.step * self.count as f64)
+    }
+
+    /// Steps to the end from the start; processor time of this thread [s].
+    fn step_through(&self, mut each: impl FnMut(&Simulation)) -> Result<f64, String> {
+        let mut simulation = self.start.clone();
+        let before = ThreadTime::now();
+        for index in 0..self.count {
+            if let Some(said) = self.said.get(index) {
+                tell(&mut simulation, said);
+            }
+            simulation
+                .advance(self.step)
+                .map_err(|error| error.to_string())?;
+            each(&simulation);
+        }
+        Ok(before.elapsed().as_secs_f64())
+    }
+}
+
+fn tell(simulation: &mut Simulation, said: &[Moving]) {
+    for moving in said {
+        simulation.set_body(moving.body, moving.pose, moving.velocity.map(Some));
+    }
+}
+
+/// Runs a setting as a host drives it, and times it.
+pub(super) fn run(trial: &Trial) -> Result<Timed, String> {
+    let (timed, cost) = trial.recorded()?;
+    let cost = cost.map_or_else(|| trial.cost(), Ok)?;
+    Ok(Timed { cost, ..timed })
+}
+
+/// What is read at every communication point, the start among them.
+struct Record {
+    tension: Vec<Vec<f64>>,
+    middle: Vec<Vec<Vector3<f64>>>,
+}
+
+impl Record {
+    fn new(start: &Simulation, count: usize) -> Record {
+        let lines = start.model().lines.len();
+        let mut record = Record {
+            tension: vec![Vec::with_capacity(count + 1); lines],
+            middle: vec![Vec::with_capacity(count + 1); lines],
+        };
+        record.read(start);
+        record
+    }
+
+    fn read(&mut self, simulation: &Simulation) {
+        for line in 0..self.tension.len() {
+            self.tension[line].push(driven_tension(simulation, line));
+            self.middle[line].push(middle(simulation, line));
+        }
+    }
+
+    /// Histories after every interval [s] of what was read after every step [s].
+    fn sampled(self, step: f64, interval: f64, samples: usize) -> Histories {
+        let parts = step / interval;
+        let tension = self.tension.into_iter();
+        let middle = self.middle.into_iter();
+        Histories {
+            tension: tension.map(|all| resampled(&all, parts, samples)).collect(),
+            middle: middle.map(|all| resampled(&all, parts, samples)).collect(),
+        }
+    }
+}
+
+/// Values at 1, 2, … `samples` of values that are `parts` apart and begin at 0: by cubics through four of them.
+fn resampled<T>(values: &[T], parts: f64, samples: usize) -> Vec<T>
+where
+    T: Copy + std::ops::Mul<f64, Output = T> + std::ops::Add<Output = T>,
+{
+    if parts == 1.0 || values.len() < 4 {
+        return values.iter().skip(1).take(samples).copied().collect();
+    }
+    let at = |sample: usize| {
+        let place = sample as f64 / parts;
+        let first = (place.floor() as usize)
+            .saturating_sub(1)
+            .min(values.len() - 4);
+        let u = place - first as f64;
+        let weights = [
+            -(u - 1.0) * (u - 2.0) * (u - 3.0) / 6.0,
+            u * (u - 2.0) * (u - 3.0) / 2.0,
+            -u * (u - 1.0) * (u - 3.0) / 2.0,
+            u * (u - 1.0) * (u - 2.0) / 6.0,
+        ];
+        let [a, b, c, d] = [0, 1, 2, 3].map(|point| values[first + point] * weights[point]);
+        a + b + c + d
+    };
+    (1..=samples).map(at).collect()
 }
 
 fn samples(scene: &Scene) -> usize {
@@ -63,52 +248,8 @@ fn samples(scene: &Scene) -> usize {
         .max(2.0) as usize
 }
 
-/// Processor time of all steps [s].
-fn stepped(mut simulation: Simulation, scene: &Scene) -> Result<f64, String> {
-    let before = ThreadTime::now();
-    for _ in 0..samples(scene) {
-        simulation
-            .advance(scene.output.interval)
-            .map_err(|error| error.to_string())?;
-    }
-    Ok(before.elapsed().as_secs_f64())
-}
-
-fn recorded(mut simulation: Simulation, scene: &Scene) -> Result<Timed, String> {
-    let (interval, samples) = (scene.output.interval, samples(scene));
-    let count = simulation.model().lines.len();
-    let mut histories = Histories {
-        tension: vec![Vec::with_capacity(samples); count],
-        middle: vec![Vec::with_capacity(samples); count],
-    };
-    let mut steps = 0;
-    for _ in 0..samples {
-        simulation
-            .advance(interval)
-            .map_err(|error| error.to_string())?;
-        steps += simulation.substeps();
-        for line in 0..count {
-            histories.tension[line].push(driven_tension(&simulation, line));
-            histories.middle[line].push(middle(&simulation, line));
-        }
-    }
-    let choice = simulation.choices().next();
-    Ok(Timed {
-        cost: f64::NAN,
-        integrator: choice.map_or(String::new(), |choice| name(choice.integrator)),
-        elements: simulation
-            .model()
-            .lines
-            .iter()
-            .map(Line::segment_count)
-            .sum(),
-        step: interval * samples as f64 / steps.max(1) as f64,
-        histories,
-    })
-}
-
 /// The integrator as the scene format spells it.
-fn name(integrator: crate::scene::Integrator) -> String {
+fn name(integrator: Integrator) -> String {
     serde_json::to_value(integrator)
         .ok()
         .and_then(|value| value.as_str().map(str::to_string))
@@ -142,4 +283,22 @@ fn middle(simulation: &Simulation, line: usize) -> Vector3<f64> {
     let after = arc.partition_point(|s| *s < half).clamp(1, arc.len() - 1);
     let part = (half - arc[after - 1]) / (arc[after] - arc[after - 1]);
     profile[after - 1] + part * (profile[after] - profile[after - 1])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cubic_is_resampled_exactly() {
+        let cubic = |t: f64| 2.0 + t - 0.3 * t * t + 0.01 * t * t * t;
+        let values: Vec<f64> = (0..8).map(|k| cubic(4.0 * f64::from(k))).collect();
+        let fine = resampled(&values, 4.0, 26);
+        assert_eq!(fine.len(), 26);
+        for (index, value) in fine.iter().enumerate() {
+            let right = cubic((index + 1) as f64);
+            assert!((value - right).abs() < 1e-12 * right.abs().max(1.0));
+        }
+        assert_eq!(resampled(&values, 1.0, 7), values[1..]);
+    }
 }

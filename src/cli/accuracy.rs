@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use moorline::accuracy::{Code, Metric, Peers, Run, Study, study};
-use moorline::output::accuracy::write_runs;
+use moorline::accuracy::{Code, LEVELS, Metric, Peers, Run, Slow, Study, Verdict, study};
+use moorline::output::accuracy::{summary, write_runs, write_verdicts};
 use moorline::output::figures::frontier;
 use moorline::output::{make_folder, write_file};
-use moorline::scene::{Scene, Supplement};
+use moorline::scene::{Integrator, Scene, Supplement};
 
 use super::failure::Failure;
 use super::summary::Table;
@@ -32,16 +32,25 @@ const PUBLIC: [(&str, &str); 5] = [
         include_str!("../../scenes/lindahl_slow.toml"),
     ),
 ];
-/// Error levels of the table [-].
-const LEVELS: [f64; 5] = [0.05, 0.03, 0.02, 0.01, 0.005];
+/// moorline's integrators that have a ladder.
+const INTEGRATORS: [Integrator; 4] = [
+    Integrator::Leapfrog,
+    Integrator::AxialImplicit,
+    Integrator::GeneralisedAlpha,
+    Integrator::QuasiStatic,
+];
+/// Error of RMS tension with which the quasi-static mode is enough [-].
+const ENOUGH: f64 = 0.02;
 
-/// Studies scenes, prints what each level of error costs and writes table and figures into a folder.
+/// Studies scenes, prints what each level of error costs and writes tables and figures into a folder.
 pub fn accuracy(paths: &[PathBuf], folder: &Path, python: Option<&Path>) -> Result<(), Failure> {
     let scenes = scenes(paths)?;
     make_folder(folder)?;
     let peers = python.map(|python| Peers::find(python, folder)).transpose();
     let peers = peers.map_err(|error| Failure::Argument(error.to_string()))?;
     stay_on_one_core();
+    let machine = processor();
+    print(&format!("on {machine}\n\n"))?;
     let mut studies = Vec::new();
     for (name, scene) in &scenes {
         let bar = progress(1);
@@ -52,15 +61,30 @@ pub fn accuracy(paths: &[PathBuf], folder: &Path, python: Option<&Path>) -> Resu
         bar.finish_and_clear();
         let done = done.map_err(|error| Failure::Computation(error.to_string()))?;
         print(&told(&done))?;
-        let svg = frontier::figure(&done);
-        write_file(&folder.join(format!("{name}.svg")), |w| {
-            w.write_all(svg.as_bytes())
-        })?;
         studies.push(done);
         // After every scene: an interrupted run keeps what it has.
-        write_file(&folder.join("accuracy.csv"), |w| write_runs(&studies, w))?;
+        write_studies(&machine, &studies, folder)?;
     }
     print(&format!("written to {}\n", folder.display()))
+}
+
+fn write_studies(machine: &str, studies: &[Study], folder: &Path) -> Result<(), Failure> {
+    let file = |name: &str| folder.join(name);
+    write_file(&file("accuracy.csv"), |w| write_runs(machine, studies, w))?;
+    write_file(&file("verdicts.csv"), |w| {
+        write_verdicts(machine, studies, w)
+    })?;
+    let mut texts = vec![
+        ("summary.md".to_string(), summary(studies)),
+        ("overview.svg".to_string(), frontier::overview(studies)),
+    ];
+    if let Some(last) = studies.last() {
+        texts.push((format!("{}.svg", last.name), frontier::figure(last)));
+    }
+    for (name, text) in texts {
+        write_file(&file(&name), |w| w.write_all(text.as_bytes()))?;
+    }
+    Ok(())
 }
 
 fn scenes(paths: &[PathBuf]) -> Result<Vec<(String, Scene)>, Failure> {
@@ -88,16 +112,33 @@ fn stay_on_one_core() {
     }
 }
 
-/// A study in a table: cost and setting that reach each level.
+/// Name of the processor, or its architecture where the system does not tell.
+fn processor() -> String {
+    let told = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let model = told.lines().find(|line| line.starts_with("model name"));
+    let name = model.and_then(|line| line.split_once(':'));
+    name.map_or(std::env::consts::ARCH, |(_, name)| name.trim())
+        .to_string()
+}
+
+/// A study in tables: what reaches each level and how many times dearer the peers are, what each integrator needs, moorline's own choice,
+/// and where equilibria are enough.
 fn told(study: &Study) -> String {
     let mut text = format!("{}: {}\n", study.name, study.title);
     text.push_str(&format!("converged solution: {}; ", study.converged));
     let limits = Metric::ALL.map(|m| format!("{} {:.2} %", m.title(), percent(study, m)));
     text.push_str(&format!("its uncertainty: {}\n", limits.join(", ")));
-    for metric in Metric::ALL {
-        text.push_str(&format!("\n{}\n{}", metric.title(), levels(study, metric)));
+    text.push_str(&format!("\ncheapest runs\n{}", verdicts(study)));
+    if !study.peers().is_empty() {
+        text.push_str(&lost(study));
     }
+    text.push_str(&format!(
+        "\nsettings that reach an error of {}\n{}",
+        Metric::Rms.title(),
+        settings(study)
+    ));
     text.push_str(&format!("\nits own choice\n{}", choices(study)));
+    text.push_str(&format!("\n{}", slower(&study.slow)));
     for failed in &study.failed {
         text.push_str(&format!("no result: {}: {}\n", failed.label, failed.reason));
     }
@@ -109,44 +150,94 @@ fn percent(study: &Study, metric: Metric) -> f64 {
     100.0 * study.uncertainty.of(metric)
 }
 
-/// The cheapest way to each level of error, and how many times dearer the peers' is.
-fn levels(study: &Study, metric: Metric) -> Table {
+/// The cheapest way to each level of error, beside the peers'; levels that moorline is held to are starred.
+fn verdicts(study: &Study) -> Table {
     let peers = study.peers();
-    let names = peers.iter().map(|peer| format!("{peer}, cost"));
-    let head = ["error", "cost"]
-        .map(str::to_string)
-        .into_iter()
-        .chain(names);
-    let head: Vec<String> = head.chain(["setting".to_string()]).collect();
-    let head: Vec<&str> = head.iter().map(String::as_str).collect();
+    let mut head = vec!["", "error", "cost"];
+    head.extend(peers.iter().copied());
+    if !peers.is_empty() {
+        head.extend(["ratio", "least to greatest"]);
+    }
+    head.push("settings");
     let mut table = Table::new(&head).ending_in_words();
-    for level in LEVELS {
-        let own = study.cheapest(metric, level, Code::is_own);
-        let own_cost = own.map_or("—".to_string(), |run| cost(run.cost));
-        let mut row = vec![format!("{:.1} %", 100.0 * level), own_cost];
-        for peer in &peers {
-            let of_peer = |code: &Code| *code == Code::Peer((*peer).to_string());
-            let its = study.cheapest(metric, level, of_peer);
-            row.push(its.map_or("—".to_string(), |its| beside(its, own)));
+    for verdict in study.verdicts() {
+        let star = if verdict.key { " *" } else { "" };
+        let mut row = vec![
+            format!("{}{star}", verdict.metric.title()),
+            format!("{:.1} %", 100.0 * verdict.level),
+            cost(verdict.own),
+        ];
+        row.extend(verdict.peers.iter().map(|(_, run)| cost(*run)));
+        if !peers.is_empty() {
+            row.push(verdict.ratio().map_or("—".to_string(), times));
+            let range = verdict.ratio_range();
+            row.push(range.map_or("—".to_string(), |[least, greatest]| {
+                format!("{least:.1} … {greatest:.1}")
+            }));
         }
-        row.push(match own {
-            _ if level < study.uncertainty.of(metric) => {
-                "within the converged solution's uncertainty".to_string()
-            }
-            Some(run) => format!("{}, {}", run.code.name(), run.label),
-            None => "not reached".to_string(),
-        });
+        row.push(how(&verdict));
         table.text_row(row);
     }
     table
 }
 
-/// A peer's cost, and its ratio to ours.
-fn beside(its: &Run, own: Option<&Run>) -> String {
-    let ratio = own.map_or(String::new(), |own| {
-        format!(" ({:.1} x)", its.cost / own.cost)
-    });
-    format!("{}{ratio}", cost(its.cost))
+/// Settings of moorline and of the better peer.
+fn how(verdict: &Verdict<'_>) -> String {
+    if !verdict.certain {
+        return "within the converged solution's uncertainty".to_string();
+    }
+    let named = |run: &Run| format!("{}, {}", run.code.name(), run.label);
+    let own = verdict.own.map_or("not reached".to_string(), named);
+    let peer = verdict.best_peer().map(named);
+    peer.map_or(own.clone(), |peer| format!("{own} | {peer}"))
+}
+
+/// Where a peer is cheaper than moorline, or else where it comes closest.
+fn lost(study: &Study) -> String {
+    let mut text = String::new();
+    for metric in Metric::ALL {
+        let mut duels = study.duels(metric);
+        duels.sort_by(|a, b| a.ratio().total_cmp(&b.ratio()));
+        let lost: Vec<_> = duels.iter().filter(|duel| duel.ratio() <= 1.0).collect();
+        let told = |duel: &moorline::accuracy::Duel<'_>| {
+            format!(
+                "{} at {:.2} %, {} ({})",
+                times(duel.ratio()),
+                100.0 * duel.level,
+                duel.peer.code.name(),
+                duel.peer.label
+            )
+        };
+        let Some(closest) = duels.first() else {
+            continue;
+        };
+        let sentence = if lost.is_empty() {
+            format!("no peer is cheaper anywhere; closest {}", told(closest))
+        } else {
+            let all: Vec<String> = lost.into_iter().map(told).collect();
+            format!("a peer is cheaper: {}", all.join("; "))
+        };
+        text.push_str(&format!("{}: {sentence}\n", metric.title()));
+    }
+    text
+}
+
+/// What every integrator needs for each level of RMS tension.
+fn settings(study: &Study) -> Table {
+    let head = ["", "error", "cost", "setting"];
+    let mut table = Table::new(&head).ending_in_words();
+    for integrator in INTEGRATORS {
+        let code = Code::Own(integrator);
+        let runs = |other: &Code| *other == code;
+        for level in LEVELS {
+            if let Some(run) = study.cheapest(Metric::Rms, level, runs) {
+                let level = format!("{:.1} %", 100.0 * level);
+                let row = [code.name().into(), level, cost(Some(run)), run.label.clone()];
+                table.text_row(row.into());
+            }
+        }
+    }
+    table
 }
 
 /// What moorline chose for each tolerance, and what came of it.
@@ -156,13 +247,55 @@ fn choices(study: &Study) -> Table {
     let mut table = Table::new(&head);
     for run in study.runs.iter().filter(|run| run.code == Code::Chosen) {
         let errors = Metric::ALL.map(|metric| format!("{:.2} %", 100.0 * run.errors.of(metric)));
-        let mut row = vec![run.label.clone(), cost(run.cost)];
+        let mut row = vec![run.label.clone(), cost(Some(run))];
         row.extend(errors);
         table.text_row(row);
     }
     table
 }
 
-fn cost(cost: f64) -> String {
-    format!("{cost:.2e}")
+/// Where the quasi-static mode is enough.
+fn slower(slow: &[Slow]) -> String {
+    let Some(last) = slow.last() else {
+        return "the quasi-static mode was not compared: it serves single sines in still water\n"
+            .to_string();
+    };
+    let head = ["quasi-static, periods", "shortest"];
+    let titles = Metric::ALL.map(Metric::title);
+    let head: Vec<&str> = head.into_iter().chain(titles).collect();
+    let mut table = Table::new(&head);
+    for one in slow {
+        let mut row = vec![
+            format!("{} times as long", one.factor),
+            format!("{:.4} s", one.period).replace(".0000", ""),
+        ];
+        row.extend(Metric::ALL.map(|metric| format!("{:.2} %", 100.0 * one.errors.of(metric))));
+        table.text_row(row);
+    }
+    let enough = slow
+        .iter()
+        .find(|one| one.errors.of(Metric::Rms) <= ENOUGH);
+    let sentence = match enough {
+        Some(one) if one.factor == 1.0 => "the quasi-static mode is enough here".to_string(),
+        Some(one) => format!(
+            "the quasi-static mode is enough for {} % of RMS tension from periods {} times as long on, {:.4} s",
+            100.0 * ENOUGH,
+            one.factor,
+            one.period
+        ),
+        None => format!(
+            "the quasi-static mode is not enough for {} % of RMS tension, not even with periods of {:.4} s",
+            100.0 * ENOUGH,
+            last.period
+        ),
+    };
+    format!("{table}{sentence}\n")
+}
+
+fn cost(run: Option<&Run>) -> String {
+    run.map_or("—".to_string(), |run| format!("{:.2e}", run.cost))
+}
+
+fn times(ratio: f64) -> String {
+    format!("{ratio:.1} x")
 }

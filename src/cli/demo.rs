@@ -14,7 +14,7 @@ use moorline_host::{FmiVersion, Fmu, HostError, Slave};
 
 use super::failure::Failure;
 use super::fmu::package;
-use super::run::{Times, columns, recorded, scene_input, scene_motion};
+use super::run::{Times, columns, recorded, scene_input};
 use super::summary::run_summary;
 use super::{print, progress, simulate};
 
@@ -147,7 +147,7 @@ impl<'a> Host<'a> {
 
     /// Sets where the scene's motion has the coupled points and vessels at `time` [s].
     fn set_motion(&mut self, time: f64) -> Result<(), HostError> {
-        for moving in scene_motion(self.reference.model(), time) {
+        for moving in self.reference.model().moving(time) {
             for &(owner, axis, reference) in &self.displacements {
                 if owner == moving.body {
                     self.slave.set_real(&[reference], &[moving.pose[axis]])?;

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use moorline::interface::{Binding, Causality, Interface, Layout, Variable};
-use moorline::model::{Body, Model, Role};
+use moorline::model::{Body, Model, Moving};
 use moorline::output::channels::Channels;
 use moorline::output::figures::ELEVATION;
 use moorline::output::record::{Column, Record};
@@ -250,7 +250,7 @@ fn value(variable: &Variable, simulation: &Simulation, time: f64) -> f64 {
 /// An input by the scene's motion at `time` [s], in its unit; `None` of an output.
 pub fn scene_input(variable: &Variable, model: &Model, time: f64) -> Option<f64> {
     let of = |body: Body, part: fn(&Moving) -> [f64; 6], axis: usize| {
-        let moving = scene_motion(model, time);
+        let moving = model.moving(time);
         let found = moving.iter().find(|moving| moving.body == body);
         Some(found.map_or(0.0, |moving| part(moving)[axis]))
     };
@@ -266,48 +266,8 @@ pub fn scene_input(variable: &Variable, model: &Model, time: f64) -> Option<f64>
     }
 }
 
-/// What the scene moves, as a host would say it.
-pub struct Moving {
-    /// What moves.
-    pub body: Body,
-    /// Its displacement [m] and angles [rad] from its reference.
-    pub pose: [f64; 6],
-    /// Its velocity [m/s] and angular velocity [rad/s].
-    pub velocity: [f64; 6],
-}
-
-/// Every moving coupled point and vessel at `time` [s], by the scene.
-pub fn scene_motion(model: &Model, time: f64) -> Vec<Moving> {
-    let points = model.points.iter().enumerate();
-    let points = points.filter_map(|(index, point)| match &point.role {
-        Role::Coupled {
-            motion: Some(motion),
-        } => {
-            let pose = motion.pose(time);
-            Some(Moving {
-                body: Body::Point(index),
-                pose: pose.value.into(),
-                velocity: pose.rate.into(),
-            })
-        }
-        _ => None,
-    });
-    let vessels = model.vessels.iter().enumerate();
-    let vessels = vessels.filter_map(|(index, vessel)| {
-        let pose = vessel.motion.as_ref()?.pose(time);
-        let frame = vessel.frame(&pose);
-        let (v, w) = (frame.origin.velocity, frame.attitude.spin);
-        Some(Moving {
-            body: Body::Vessel(index),
-            pose: pose.value.into(),
-            velocity: [v.x, v.y, v.z, w.x, w.y, w.z],
-        })
-    });
-    points.chain(vessels).collect()
-}
-
 fn set_motion(simulation: &mut Simulation, time: f64, velocities: bool) {
-    for moving in scene_motion(simulation.model(), time) {
+    for moving in simulation.model().moving(time) {
         let velocity = moving.velocity.map(|rate| velocities.then_some(rate));
         simulation.set_body(moving.body, moving.pose, velocity);
     }

@@ -13,7 +13,7 @@ use super::motion::AxisPath;
 use super::network::NetworkWork;
 use super::sea::SeaWork;
 use super::{Choice, StepError, quasi_static};
-use crate::model::{End, Kinematics, Model, Network, State};
+use crate::model::{End, Kinematics, Model, Network, Role, State};
 use crate::physics::airy::Waves;
 use crate::scene::Integrator;
 use crate::statics::assembly::rubbing::{drop_anchors, hold_at_rest};
@@ -60,6 +60,8 @@ pub struct Workspace {
     before: State,
     /// How the winches pay out, by line; empty where there are none.
     reels: Vec<AxisPath>,
+    /// Whether the explicit kernels still hold the state that they handed back last.
+    holds: bool,
 }
 
 #[derive(Debug, Clone)]
@@ -91,7 +93,13 @@ impl Workspace {
             sea: SeaWork::new(),
             before: State::default(),
             reels: Vec::new(),
+            holds: false,
         }
+    }
+
+    /// Must be told when the state is another than the one that [`Self::advance`] left.
+    pub fn forget(&mut self) {
+        self.holds = false;
     }
 
     /// Sets how the winches pay out in the next step, by line.
@@ -213,6 +221,7 @@ impl Workspace {
             length,
             held,
             reels: &self.reels,
+            holds: std::mem::take(&mut self.holds),
         };
         let mut total = Done::default();
         for (number, (choice, solver)) in self.networks.iter_mut().enumerate() {
@@ -236,6 +245,7 @@ impl Workspace {
         place_held(model, &mut self.next, held);
         std::mem::swap(&mut state.waves, &mut self.next.waves);
         std::mem::swap(state, &mut self.next);
+        self.holds = true;
         Ok(total)
     }
 }
@@ -293,6 +303,8 @@ struct Communication<'a, K> {
     held: &'a K,
     /// How the winches pay out, by line; empty where there are none.
     reels: &'a [AxisPath],
+    /// Whether the explicit kernels hold the state.
+    holds: bool,
 }
 
 impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
@@ -305,7 +317,11 @@ impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
     ) -> Result<Done, StepError> {
         let (model, network) = (self.model, &self.model.networks[number]);
         for retry in 0..=RETRIES_MAX {
-            work.load(network, self.state);
+            if self.holds && retry == 0 {
+                work.resume(network, self.state);
+            } else {
+                work.load(network, self.state);
+            }
             work.set_current(model, self.start);
             let count = self.substeps(step_max.min(1.0 / work.drag_rate(model, network)), retry)?;
             let drift = self.length / count as f64;
@@ -520,7 +536,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
 /// Puts held points, and the velocities of the nodes at all lines' ends, where they are at the time of `state`.
 fn place_held(model: &Model, state: &mut State, held: &impl Fn(usize, f64) -> Kinematics) {
     for (index, point) in state.points.iter_mut().enumerate() {
-        if model.points[index].free().is_none() {
+        if !matches!(model.points[index].role, Role::Fixed | Role::Free(_)) {
             let k = held(index, state.time);
             (point.position, point.velocity, point.acceleration) =
                 (k.position, k.velocity, k.acceleration);

@@ -22,10 +22,11 @@ mod rubbing;
 use nalgebra::Vector3;
 use pulp::NullaryFnOnce;
 
-use super::layout::{FIRST, Layout, Water, interior, pad};
+use super::layout::{Layout, Water, interior};
 use super::leapfrog::Step;
 use super::ledger::Flow;
-use crate::math::lanes::{Components, Lanes, Vectors};
+use crate::math::fold::{Column, Field};
+use crate::math::lanes::{Lanes, Vectors};
 use crate::model::{End, Line, LineState, Parting, WaveSpan};
 use crate::physics::stretch::StretchLaw;
 use rubbing::Rubbing;
@@ -63,7 +64,7 @@ pub struct AxialWork {
     /// The bed under the nodes, where it is more than a level plane without friction.
     rubbing: Option<Rubbing>,
     /// 1 for nodes between the ends, 0 elsewhere.
-    interior: Vec<f64>,
+    interior: Column,
     /// Whether ends A and B have parted from their points.
     parted: [bool; 2],
     /// Energy lost and given since the state was loaded [J].
@@ -76,63 +77,63 @@ pub struct AxialWork {
 #[derive(Debug, Clone)]
 struct SegmentArrays {
     /// Unit vectors q along the segments.
-    direction: Components,
+    direction: Field,
     /// Lengths l at t_n [m].
-    length: Vec<f64>,
+    length: Column,
     /// dT̄/d(q·(v_{i+1} − v_i)): elastic and damping part [N s/m].
-    stiffness: Vec<f64>,
-    damping: Vec<f64>,
+    stiffness: Column,
+    damping: Column,
     /// Parts of T̄ known beforehand: elastic, and with damping [N].
-    elastic: Vec<f64>,
-    known: Vec<f64>,
+    elastic: Column,
+    known: Column,
     /// EA·b₁ times the stretch by transverse motion [N].
-    curvature: Vec<f64>,
+    curvature: Column,
     /// 1 where the segment is taut, −1 where it is slack.
-    taut: Vec<f64>,
+    taut: Column,
     /// Elastic tensions at t_{n−1} and t_{n−2} [N].
-    history: [Vec<f64>; 2],
+    history: [Column; 2],
 }
 
 /// What a step knows of the nodes: M⁻¹ x = a x + b (t·x) t − c (s·x) s, with s = (a I + b t tᵀ) ẑ.
 #[derive(Debug, Clone)]
 struct NodeArrays {
-    mass_normal: Vec<f64>,
-    mass_tangent: Vec<f64>,
+    mass_normal: Column,
+    mass_tangent: Column,
     /// a, with drag folded in [1/kg].
-    across: Vec<f64>,
+    across: Column,
     /// b [1/kg].
-    excess: Vec<f64>,
-    tangent: Components,
+    excess: Column,
+    tangent: Field,
     /// s [1/kg].
-    response: Components,
+    response: Field,
     /// c, 0 off the bed [kg].
-    held: Vec<f64>,
+    held: Column,
     /// 1 where the bed pushes, −1 elsewhere.
-    touches: Vec<f64>,
+    touches: Column,
     /// Velocity without tension, without and with the bed [m/s].
-    fall: Components,
-    loose: Components,
+    fall: Field,
+    loose: Field,
 }
 
 /// What a step knows of the water that flows past the nodes.
 #[derive(Debug, Clone)]
 struct CurrentArrays {
     /// Velocity of the water [m/s].
-    flow: Components,
+    flow: Field,
     /// Drag over relative velocity, across and along the line [N s/m].
-    across: Vec<f64>,
-    along: Vec<f64>,
+    across: Column,
+    along: Column,
     /// Force of water that waves accelerate [N].
-    press: Components,
+    press: Field,
 }
 
 /// The tridiagonal system in T̄.
 #[derive(Debug, Clone)]
 struct Rows {
-    lower: Vec<f64>,
-    diagonal: Vec<f64>,
-    upper: Vec<f64>,
-    tension: Vec<f64>,
+    lower: Column,
+    diagonal: Column,
+    upper: Column,
+    tension: Column,
 }
 
 impl AxialWork {
@@ -144,9 +145,8 @@ impl AxialWork {
         negative_tension: bool,
     ) -> Option<AxialWork> {
         let layout = Layout::new(line, water, negative_tension)?;
-        let n = layout.segment_count;
-        let size = layout.weight.len();
-        let (zeros, vectors) = (vec![0.0; size], Components::zeros(size));
+        let (n, fold) = (layout.segment_count, layout.fold);
+        let (zeros, vectors) = (Column::new(fold, 0.0), Field::zeros(fold));
         Some(AxialWork {
             interior: interior(n),
             parted: [false; 2],
@@ -156,7 +156,7 @@ impl AxialWork {
                 along: zeros.clone(),
                 press: vectors.clone(),
             }),
-            rubbing: layout.bottom().map(|_| Rubbing::new(size)),
+            rubbing: layout.bottom().map(|_| Rubbing::new(fold)),
             lost: Lanes::splat(0.0),
             given: 0.0,
             tension_peak: 0.0,
@@ -174,8 +174,8 @@ impl AxialWork {
                 history: [zeros.clone(), zeros.clone()],
             },
             nodes: NodeArrays {
-                mass_normal: pad(n, &line.nodes.mass_normal, 1.0),
-                mass_tangent: pad(n, &line.nodes.mass_tangent, 1.0),
+                mass_normal: fold.column(&line.nodes.mass_normal, 1.0),
+                mass_tangent: fold.column(&line.nodes.mass_tangent, 1.0),
                 across: zeros.clone(),
                 excess: zeros.clone(),
                 tangent: vectors.clone(),
@@ -187,7 +187,7 @@ impl AxialWork {
             },
             rows: Rows {
                 lower: zeros.clone(),
-                diagonal: vec![1.0; size],
+                diagonal: Column::new(fold, 1.0),
                 upper: zeros.clone(),
                 tension: zeros,
             },
@@ -198,8 +198,9 @@ impl AxialWork {
     pub fn load(&mut self, state: &LineState) {
         self.layout.load(state);
         self.parted = state.parted;
+        self.layout.renew_ghosts(self.parted);
         for end in [End::A, End::B] {
-            let at = self.layout.end_index(end);
+            let at = self.layout.end_slot(end);
             self.interior[at] = f64::from(u8::from(self.parted[end as usize]));
         }
         (self.lost, self.given, self.tension_peak) = (Lanes::splat(0.0), 0.0, 0.0);
@@ -211,23 +212,23 @@ impl AxialWork {
                 .iter_mut()
                 .zip(&state.half_step.tension)
             {
-                own[FIRST..FIRST + count].copy_from_slice(kept);
+                own.assign(kept);
             }
             return;
         }
-        for at in self.layout.segment_blocks() {
+        for at in self.layout.rows() {
             let (chord, inverse_l) = self.layout.chord(at);
             let tension = match &self.layout.creep {
                 None => {
                     let (force, _) = self.force_and_slope(at, chord.dot(chord) * inverse_l);
-                    Lanes::load(&self.layout.axial_stiffness, at) * force.positive()
+                    self.layout.axial_stiffness.load(at) * force.positive()
                 }
                 Some(creep) => creep.elastic(at, self.layout.strain(at)).positive(),
             };
             self.segments
                 .history
                 .iter_mut()
-                .for_each(|history| tension.store(history, at));
+                .for_each(|history| history.store(tension, at));
         }
     }
 
@@ -243,7 +244,7 @@ impl AxialWork {
     pub fn store(&self, state: &mut LineState, steps: [f64; 2]) {
         state.parted = self.parted;
         self.layout.store(state, steps);
-        let own = FIRST..FIRST + self.layout.segment_count;
+        let count = self.layout.segment_count;
         for (kept, history) in state
             .half_step
             .tension
@@ -251,7 +252,7 @@ impl AxialWork {
             .zip(&self.segments.history)
         {
             kept.clear();
-            kept.extend_from_slice(&history[own.clone()]);
+            kept.extend(history.values(count));
         }
     }
 
@@ -272,8 +273,9 @@ impl AxialWork {
         };
         for i in surface.crossed() {
             let [across, along] = surface.node(i).masses;
-            self.nodes.mass_normal[FIRST + i] = across;
-            self.nodes.mass_tangent[FIRST + i] = along;
+            let at = self.layout.slot(i);
+            self.nodes.mass_normal[at] = across;
+            self.nodes.mass_tangent[at] = along;
         }
         match after {
             Some(_) => self.layout.book_surface(self.parted.map(|parted| !parted)),
@@ -295,13 +297,14 @@ impl AxialWork {
     pub fn put_end(&mut self, end: End, position: Vector3<f64>, velocity: Vector3<f64>) {
         if !self.parted[end as usize] {
             self.layout.put_end(end, position, velocity);
+            self.layout.renew_ghosts(self.parted);
         }
     }
 
     /// Parts the ends from their points that the tensions of t_n, `t` [s], are too much for, or the time has come for.
     pub fn part_ends(&mut self, partings: &[Parting; 2], t: f64, step: Step) {
         for end in [End::A, End::B] {
-            let (side, at) = (end as usize, self.layout.end_index(end));
+            let (side, at) = (end as usize, self.layout.end_slot(end));
             let tension = self.layout.end_tension(end, step);
             if self.parted[side] || !partings[side].parts(tension, t) {
                 continue;
@@ -369,9 +372,10 @@ impl AxialWork {
         std::mem::swap(&mut self.layout.velocity, &mut self.layout.velocity_before);
         self.layout.drift(step.drift);
         for end in self.held_ends() {
-            let at = self.layout.end_index(end);
+            let at = self.layout.end_slot(end);
             self.layout.position.set(at, ends[end as usize]);
         }
+        self.layout.renew_ghosts(self.parted);
         self.layout.creep(step.drift);
         self.meet_surface(Some(step));
         passes
@@ -381,7 +385,7 @@ impl AxialWork {
     #[inline(always)]
     fn force_and_slope(&self, at: usize, l: Lanes) -> (Lanes, Lanes) {
         let one = Lanes::splat(1.0);
-        let strain = l * Lanes::load(&self.layout.inverse_length, at) - one;
+        let strain = l * self.layout.inverse_length.load(at) - one;
         match &self.layout.law {
             StretchLaw::Engineering => (strain, one),
             law => (
@@ -395,16 +399,16 @@ impl AxialWork {
     fn prepare_segments<const CREEPS: bool>(&mut self, step: Step) {
         let [b1, h0, h1, h2] = self.weights.0.map(Lanes::splat);
         let drift = Lanes::splat(step.drift);
-        for at in self.layout.segment_blocks() {
+        for at in self.layout.rows() {
             let line = &self.layout;
             let (chord, inverse_l) = line.chord(at);
             let direction = chord.scale(inverse_l);
             let l = chord.dot(chord) * inverse_l;
-            let inverse_length = Lanes::load(&line.inverse_length, at);
+            let inverse_length = line.inverse_length.load(at);
             let relative = line.velocity.load(at + 1) - line.velocity.load(at);
             let along = direction.dot(relative);
             let (force, slope) = self.force_and_slope(at, l);
-            let ea = Lanes::load(&line.axial_stiffness, at);
+            let ea = line.axial_stiffness.load(at);
             let mut tension = ea * force.positive();
             let (mut ahead, mut tangent) = (b1 * ea * force, b1 * ea * slope);
             if CREEPS {
@@ -415,26 +419,28 @@ impl AxialWork {
             let line = &self.layout;
             let segments = &mut self.segments;
             let [last, before] = &mut segments.history;
-            let (t1, t2) = (Lanes::load(last, at), Lanes::load(before, at));
-            tension.store(last, at);
-            t1.store(before, at);
+            let (t1, t2) = (last.load(at), before.load(at));
+            last.store(tension, at);
+            before.store(t1, at);
             let elastic = ahead + h0 * tension + h1 * t1 + h2 * t2;
-            let damping = Lanes::splat(0.5) * Lanes::load(&line.axial_damping, at) * inverse_length;
+            let damping = Lanes::splat(0.5) * line.axial_damping.load(at) * inverse_length;
             let stiffness = tangent * drift * inverse_length;
             let bend = relative.dot(relative) - along * along;
             let curvature = Lanes::splat(0.5) * stiffness * drift * bend * inverse_l;
             let known = elastic + damping * Lanes::splat(1.0 - DAMPING_SHIFT) * along;
             segments.direction.store(direction, at);
-            l.store(&mut segments.length, at);
-            stiffness.store(&mut segments.stiffness, at);
-            (damping * Lanes::splat(1.0 + DAMPING_SHIFT)).store(&mut segments.damping, at);
-            elastic.store(&mut segments.elastic, at);
-            known.store(&mut segments.known, at);
-            curvature.store(&mut segments.curvature, at);
-            (known + curvature)
-                .choose(Lanes::splat(1.0), Lanes::splat(-1.0))
-                .store(&mut segments.taut, at);
+            segments.length.store(l, at);
+            segments.stiffness.store(stiffness, at);
+            segments
+                .damping
+                .store(damping * Lanes::splat(1.0 + DAMPING_SHIFT), at);
+            segments.elastic.store(elastic, at);
+            segments.known.store(known, at);
+            segments.curvature.store(curvature, at);
+            let taut = (known + curvature).choose(Lanes::splat(1.0), Lanes::splat(-1.0));
+            segments.taut.store(taut, at);
         }
+        self.segments.direction.wrap();
     }
 
     /// Elastic force of viscoelastic segments now [N], after the step without further strain [N], and its slope with the strain then
@@ -449,10 +455,10 @@ impl AxialWork {
         let strain = self.layout.strain(at);
         let rate = self.layout.strain_rate(at, direction, step);
         let creep = self.layout.creep.as_mut().expect("this line creeps");
-        strain.store(&mut creep.strain, at);
+        creep.strain.store(strain, at);
         let now = creep.elastic(at, strain);
         let loss = creep.loss(at, strain, rate, now.positive());
-        let length = Lanes::load(&self.layout.inverse_length, at).recip();
+        let length = self.layout.inverse_length.load(at).recip();
         self.lost = self.lost + loss * length * Lanes::splat(step.kick);
         let creep = self.layout.creep.as_ref().expect("this line creeps");
         let (coming, stiffness) = creep.ahead(at, strain, step.drift);
@@ -463,14 +469,14 @@ impl AxialWork {
     fn prepare_nodes<const CURRENT: bool>(&mut self, step: Step) {
         let kick = Lanes::splat(step.kick);
         let half = Lanes::splat(0.5) * kick;
-        for at in self.layout.node_blocks() {
+        for at in self.layout.rows() {
             let line = &self.layout;
             let velocity = line.velocity.load(at);
             let tangent = line.tangent(at);
-            let mut mass_normal = Lanes::load(&self.nodes.mass_normal, at);
-            let mut mass_tangent = Lanes::load(&self.nodes.mass_tangent, at);
+            let mut mass_normal = self.nodes.mass_normal.load(at);
+            let mut mass_tangent = self.nodes.mass_tangent.load(at);
             let zero = Lanes::splat(0.0);
-            let weight = zero - Lanes::load(&line.weight, at);
+            let weight = zero - line.weight.load(at);
             let mut force = Vectors {
                 x: zero,
                 y: zero,
@@ -489,8 +495,8 @@ impl AxialWork {
                 }
                 let speed = now.dot(tangent);
                 let across = now - tangent.scale(speed);
-                let normal = Lanes::load(&drag.normal, at) * across.dot(across).sqrt();
-                let along = Lanes::load(&drag.tangent, at) * speed.abs();
+                let normal = drag.normal.load(at) * across.dot(across).sqrt();
+                let along = drag.tangent.load(at) * speed.abs();
                 mass_normal = mass_normal + half * normal;
                 mass_tangent = mass_tangent + half * along;
                 force = force
@@ -501,8 +507,8 @@ impl AxialWork {
                         .current
                         .as_mut()
                         .expect("this kernel runs in moving water");
-                    normal.store(&mut current.across, at);
-                    along.store(&mut current.along, at);
+                    current.across.store(normal, at);
+                    current.along.store(along, at);
                 }
             }
             if CURRENT && let Some(waves) = &line.waves {
@@ -513,15 +519,15 @@ impl AxialWork {
                 current.press.store(press, at);
             }
             if let Some(damping) = &line.mass_damping {
-                let damping = Lanes::load(damping, at);
+                let damping = damping.load(at);
                 mass_normal = mass_normal + half * damping;
                 mass_tangent = mass_tangent + half * damping;
                 force = force - velocity.scale(damping);
             }
             self.invert_mass(at, tangent, [mass_normal, mass_tangent], force, kick);
             if self.layout.contact.is_some() && self.rubbing.is_none() {
-                self.touches(at, velocity.z, step)
-                    .store(&mut self.nodes.touches, at);
+                let touches = self.touches(at, velocity.z, step);
+                self.nodes.touches.store(touches, at);
                 self.settle(at, step);
             }
         }
@@ -543,8 +549,8 @@ impl AxialWork {
         let response = tangent.scale(excess * tangent.z);
         let inverted = force.scale(across) + tangent.scale(excess * force.dot(tangent));
         let nodes = &mut self.nodes;
-        across.store(&mut nodes.across, at);
-        excess.store(&mut nodes.excess, at);
+        nodes.across.store(across, at);
+        nodes.excess.store(excess, at);
         nodes.tangent.store(tangent, at);
         nodes.response.store(
             Vectors {
@@ -561,7 +567,7 @@ impl AxialWork {
     #[inline(always)]
     fn prepare_ends(&mut self, step: Step, ends: [Vector3<f64>; 2]) {
         for end in self.held_ends() {
-            let (at, position) = (self.layout.end_index(end), ends[end as usize]);
+            let (at, position) = (self.layout.end_slot(end), ends[end as usize]);
             let secant = (position - self.layout.position.get(at)) / step.drift;
             let nodes = &mut self.nodes;
             (nodes.across[at], nodes.excess[at], nodes.held[at]) = (0.0, 0.0, 0.0);
@@ -578,13 +584,12 @@ impl AxialWork {
     fn touches(&self, at: usize, rise: Lanes, step: Step) -> Lanes {
         let contact = self.layout.contact.as_ref().expect("asked over a bed only");
         let drift = Lanes::splat(step.drift);
-        let penetration =
-            Lanes::load(&contact.level, at) - Lanes::load(&self.layout.position.z, at);
+        let penetration = contact.level.load(at) - self.layout.position.load(at).z;
         let next = penetration - drift * rise;
-        let push = Lanes::load(&contact.stiffness, at) * next * drift
-            + Lanes::load(&contact.damping, at) * (next - penetration.positive());
+        let push = contact.stiffness.load(at) * next * drift
+            + contact.damping.load(at) * (next - penetration.positive());
         let (yes, no) = (Lanes::splat(1.0), Lanes::splat(-1.0));
-        let free = Lanes::load(&self.interior, at); // held ends yield to no bed
+        let free = self.interior.load(at); // held ends yield to no bed
         free.choose(next.choose(push.choose(yes, no), no), no)
     }
 
@@ -594,11 +599,10 @@ impl AxialWork {
         let contact = self.layout.contact.as_ref().expect("asked over a bed only");
         let (kick, drift) = (Lanes::splat(step.kick), Lanes::splat(step.drift));
         let (zero, one) = (Lanes::splat(0.0), Lanes::splat(1.0));
-        let touches = Lanes::load(&self.nodes.touches, at);
-        let stiffness = Lanes::load(&contact.stiffness, at);
-        let damping = Lanes::load(&contact.damping, at);
-        let penetration =
-            Lanes::load(&contact.level, at) - Lanes::load(&self.layout.position.z, at);
+        let touches = self.nodes.touches.load(at);
+        let stiffness = contact.stiffness.load(at);
+        let damping = contact.damping.load(at);
+        let penetration = contact.level.load(at) - self.layout.position.load(at).z;
         let above = penetration - penetration.positive(); // the damper acts below the bed only
         let landing = damping * above * Lanes::splat(1.0 / step.drift);
         let resistance = kick * (stiffness * drift + damping);
@@ -606,9 +610,8 @@ impl AxialWork {
         let fall = self.nodes.fall.load(at);
         let share = (one + resistance * response.z).recip();
         let impulse = (kick * (stiffness * penetration + landing) - resistance * fall.z) * share;
-        touches
-            .choose(resistance * share, zero)
-            .store(&mut self.nodes.held, at);
+        let held = touches.choose(resistance * share, zero);
+        self.nodes.held.store(held, at);
         let loose = fall + response.scale(touches.choose(impulse, zero));
         self.nodes.loose.store(loose, at);
     }
@@ -617,18 +620,19 @@ impl AxialWork {
     fn assemble_rows(&mut self, step: Step) {
         let kick = Lanes::splat(step.kick);
         let (zero, one) = (Lanes::splat(0.0), Lanes::splat(1.0));
+        self.nodes.renew_ghosts();
         let (nodes, segments, rows) = (&self.nodes, &self.segments, &mut self.rows);
-        for at in self.layout.segment_blocks() {
+        for at in self.layout.rows() {
             let direction = segments.direction.load(at);
-            let taut = Lanes::load(&segments.taut, at);
-            let elastic = taut.choose(Lanes::load(&segments.stiffness, at), zero);
-            let damping = Lanes::load(&segments.damping, at);
-            let known = Lanes::load(&segments.known, at);
-            let taut_known = known + Lanes::load(&segments.curvature, at);
+            let taut = segments.taut.load(at);
+            let elastic = taut.choose(segments.stiffness.load(at), zero);
+            let damping = segments.damping.load(at);
+            let known = segments.known.load(at);
+            let taut_known = known + segments.curvature.load(at);
             let (resistance, known) = if self.layout.negative_tension {
                 (
                     elastic + damping,
-                    taut.choose(taut_known, known - Lanes::load(&segments.elastic, at)),
+                    taut.choose(taut_known, known - segments.elastic.load(at)),
                 )
             } else {
                 (
@@ -640,10 +644,12 @@ impl AxialWork {
             let low = nodes.inverse_mass(at, direction);
             let high = nodes.inverse_mass(at + 1, direction);
             let relative = nodes.loose.load(at + 1) - nodes.loose.load(at);
-            (one + k * direction.dot(low + high)).store(&mut rows.diagonal, at);
-            (zero - k * low.dot(segments.direction.load(at - 1))).store(&mut rows.lower, at);
-            (zero - k * high.dot(segments.direction.load(at + 1))).store(&mut rows.upper, at);
-            (known + resistance * direction.dot(relative)).store(&mut rows.tension, at);
+            let [before, after] = [at - 1, at + 1].map(|at| segments.direction.load(at));
+            rows.diagonal.store(one + k * direction.dot(low + high), at);
+            rows.lower.store(zero - k * low.dot(before), at);
+            rows.upper.store(zero - k * high.dot(after), at);
+            rows.tension
+                .store(known + resistance * direction.dot(relative), at);
         }
     }
 
@@ -652,12 +658,12 @@ impl AxialWork {
     fn find_velocities(&mut self, step: Step) -> bool {
         let kick = Lanes::splat(step.kick);
         let mut holds = true;
-        for at in self.layout.node_blocks() {
+        for at in self.layout.rows() {
             let pull = |at: usize| {
                 self.segments
                     .direction
                     .load(at)
-                    .scale(Lanes::load(&self.rows.tension, at))
+                    .scale(self.rows.tension.load(at))
             };
             let moved = self
                 .nodes
@@ -667,15 +673,16 @@ impl AxialWork {
             self.layout.velocity_before.store(velocity, at);
             if self.layout.contact.is_some() && self.rubbing.is_none() {
                 let touches = self.touches(at, velocity.z, step);
-                let assumed = Lanes::load(&self.nodes.touches, at);
+                let assumed = self.nodes.touches.load(at);
                 let changed = Lanes::splat(0.0) - touches * assumed;
                 if changed.any_positive() {
-                    touches.store(&mut self.nodes.touches, at);
+                    self.nodes.touches.store(touches, at);
                     self.settle(at, step);
                     holds = false;
                 }
             }
         }
+        self.layout.velocity_before.wrap();
         holds
     }
 
@@ -686,26 +693,24 @@ impl AxialWork {
         let one = Lanes::splat(1.0);
         let tolerance = Lanes::splat(STRETCH_TOLERANCE * greatest);
         let mut changed = false;
-        for at in self.layout.segment_blocks() {
+        for at in self.layout.rows() {
             let line = &self.layout;
             let segments = &mut self.segments;
             let relative = line.velocity_before.load(at + 1) - line.velocity_before.load(at);
             let direction = segments.direction.load(at);
             let along = direction.dot(relative);
-            let stiffness = Lanes::load(&segments.stiffness, at);
-            let curvature = Lanes::load(&segments.curvature, at);
+            let stiffness = segments.stiffness.load(at);
+            let curvature = segments.curvature.load(at);
             let stretching = stiffness * along + curvature;
             let total = if line.negative_tension {
-                Lanes::load(&segments.elastic, at) + stretching
+                segments.elastic.load(at) + stretching
             } else {
-                Lanes::load(&segments.known, at)
-                    + stretching
-                    + Lanes::load(&segments.damping, at) * along
+                segments.known.load(at) + stretching + segments.damping.load(at) * along
             };
             let taut = total.choose(one, Lanes::splat(-1.0));
-            let flips = Lanes::splat(0.0) - taut * Lanes::load(&segments.taut, at);
+            let flips = Lanes::splat(0.0) - taut * segments.taut.load(at);
             // l1 − l0 less its part along the segment, exact: (2 l0 Δt a + Δt²|Δv|²)/(l0 + l1) − Δt a
-            let l = Lanes::load(&segments.length, at);
+            let l = segments.length.load(at);
             let square = drift * (l * along + l * along + drift * relative.dot(relative));
             let longer = (l * l + square).positive().sqrt();
             let transverse =
@@ -714,8 +719,8 @@ impl AxialWork {
             let off = (true_curvature - curvature).abs() - tolerance;
             let again = flips.max(taut.choose(off, Lanes::splat(-1.0)));
             if again.any_positive() {
-                true_curvature.store(&mut segments.curvature, at);
-                taut.store(&mut segments.taut, at);
+                segments.curvature.store(true_curvature, at);
+                segments.taut.store(taut, at);
                 changed = true;
             }
         }
@@ -728,45 +733,43 @@ impl AxialWork {
         let kick = Lanes::splat(step.kick);
         let half = Lanes::splat(0.5);
         let line = &self.layout;
-        for at in line.segment_blocks() {
+        for at in line.rows() {
             let direction = self.segments.direction.load(at);
             let relative =
-                |velocity: &Components| direction.dot(velocity.load(at + 1) - velocity.load(at));
+                |velocity: &Field| direction.dot(velocity.load(at + 1) - velocity.load(at));
             let (old, new) = (relative(&line.velocity), relative(&line.velocity_before));
-            let stiffness = Lanes::load(&self.segments.stiffness, at);
-            let spring = Lanes::load(&self.segments.elastic, at)
-                + Lanes::load(&self.segments.curvature, at)
-                + stiffness * new;
-            let tension = Lanes::load(&self.rows.tension, at);
+            let stiffness = self.segments.stiffness.load(at);
+            let spring =
+                self.segments.elastic.load(at) + self.segments.curvature.load(at) + stiffness * new;
+            let tension = self.rows.tension.load(at);
             self.lost = self.lost + (tension - spring.positive()) * half * (old + new) * kick;
         }
-        for at in line.node_blocks() {
+        for at in line.rows() {
             let (old, new) = (line.velocity.load(at), line.velocity_before.load(at));
             // what is left of the node's momentum beside tension and weight is what water, damping and bed took
             let pull = |at: usize| {
                 self.segments
                     .direction
                     .load(at)
-                    .scale(Lanes::load(&self.rows.tension, at))
+                    .scale(self.rows.tension.load(at))
             };
             let mut impulse = (pull(at) - pull(at - 1)).scale(kick);
-            impulse.z = impulse.z - Lanes::load(&line.weight, at) * kick;
+            impulse.z = impulse.z - line.weight.load(at) * kick;
             let tangent = self.nodes.tangent.load(at);
             let change = new - old;
-            let mass_normal = Lanes::load(&self.nodes.mass_normal, at);
-            let excess = Lanes::load(&self.nodes.mass_tangent, at) - mass_normal;
+            let mass_normal = self.nodes.mass_normal.load(at);
+            let excess = self.nodes.mass_tangent.load(at) - mass_normal;
             let momentum = change.scale(mass_normal) + tangent.scale(excess * tangent.dot(change));
             let taken = (impulse - momentum).dot(old + new) * half;
-            self.lost = self.lost + Lanes::load(&self.interior, at) * taken;
+            self.lost = self.lost + self.interior.load(at) * taken;
         }
         for end in self.held_ends() {
-            let sign = if end == End::A { -1.0 } else { 1.0 };
             let line = &self.layout;
-            let node = line.end_index(end);
-            let segment = if sign < 0.0 { node } else { node - 1 };
+            let node = line.end_slot(end);
+            let (segment, sign) = line.end_segment(end);
             let pull = self.rows.tension[segment] * self.segments.direction.get(segment);
             let velocities = line.velocity.get(node) + line.velocity_before.get(node);
-            self.given += sign * 0.5 * step.kick * pull.dot(&velocities);
+            self.given -= sign * 0.5 * step.kick * pull.dot(&velocities);
             self.given += 0.5 * step.kick * line.end_lack(end) * velocities.z;
         }
     }
@@ -781,15 +784,15 @@ impl AxialWork {
         let half = Lanes::splat(0.5);
         let line = &self.layout;
         let mut sum = Lanes::splat(0.0);
-        for at in line.node_blocks() {
+        for at in line.rows() {
             let flow = current.flow.load(at);
             let mean = (line.velocity.load(at) + line.velocity_before.load(at)).scale(half);
             let tangent = self.nodes.tangent.load(at);
-            let (past, across) = (flow - mean, Lanes::load(&current.across, at));
-            let excess = Lanes::load(&current.along, at) - across;
+            let (past, across) = (flow - mean, current.across.load(at));
+            let excess = current.along.load(at) - across;
             let power = across * past.dot(flow) + excess * past.dot(tangent) * flow.dot(tangent);
             let pressing = current.press.load(at).dot(mean);
-            sum = sum + Lanes::load(&self.interior, at) * (power + pressing);
+            sum = sum + self.interior.load(at) * (power + pressing);
         }
         let work = sum * Lanes::splat(step.kick);
         self.given += work.sum();
@@ -820,35 +823,50 @@ impl NullaryFnOnce for AxialStep<'_> {
 }
 
 impl NodeArrays {
+    /// Makes the ghosts repeat what the inverse masses and velocities are now.
+    #[inline(always)]
+    fn renew_ghosts(&mut self) {
+        self.across.wrap();
+        self.excess.wrap();
+        self.held.wrap();
+        self.tangent.wrap();
+        self.response.wrap();
+        self.loose.wrap();
+    }
+
     /// M⁻¹ x of the nodes from `at` on.
     #[inline(always)]
     fn inverse_mass(&self, at: usize, x: Vectors) -> Vectors {
         let (tangent, response) = (self.tangent.load(at), self.response.load(at));
-        let excess = Lanes::load(&self.excess, at) * tangent.dot(x);
-        let held = Lanes::load(&self.held, at) * response.dot(x);
-        x.scale(Lanes::load(&self.across, at)) + tangent.scale(excess) - response.scale(held)
+        let excess = self.excess.load(at) * tangent.dot(x);
+        let held = self.held.load(at) * response.dot(x);
+        x.scale(self.across.load(at)) + tangent.scale(excess) - response.scale(held)
     }
 }
 
 impl Rows {
     /// Thomas's elimination; the matrix is diagonally dominant, so that no pivoting is needed. Returns the greatest T̄ [N].
     fn solve(&mut self, count: usize) -> f64 {
-        let rows = FIRST..FIRST + count;
-        let (lower, upper) = (&self.lower[rows.clone()], &self.upper[rows.clone()]);
-        let (diagonal, tension) = (&mut self.diagonal[rows.clone()], &mut self.tension[rows]);
+        let (diagonal, tension) = (&mut self.diagonal, &mut self.tension);
+        let fold = tension.fold();
         // the diagonal is replaced by the pivots' inverses
-        diagonal[0] = 1.0 / diagonal[0];
-        for i in 1..count {
-            let factor = lower[i] * diagonal[i - 1];
-            diagonal[i] = 1.0 / (diagonal[i] - factor * upper[i - 1]);
-            tension[i] -= factor * tension[i - 1];
+        let mut last = fold.slot(0);
+        diagonal[last] = 1.0 / diagonal[last];
+        for at in fold.slots().take(count).skip(1) {
+            let factor = self.lower[at] * diagonal[last];
+            diagonal[at] = 1.0 / (diagonal[at] - factor * self.upper[last]);
+            tension[at] -= factor * tension[last];
+            last = at;
         }
-        tension[count - 1] *= diagonal[count - 1];
-        let mut greatest = tension[count - 1];
+        tension[last] *= diagonal[last];
+        let mut greatest = tension[last];
         for i in (0..count - 1).rev() {
-            tension[i] = (tension[i] - upper[i] * tension[i + 1]) * diagonal[i];
-            greatest = greatest.max(tension[i]);
+            let at = fold.slot(i);
+            tension[at] = (tension[at] - self.upper[at] * tension[last]) * diagonal[at];
+            greatest = greatest.max(tension[at]);
+            last = at;
         }
+        tension.wrap();
         greatest
     }
 }

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::layout::{FIRST, pad};
+use crate::math::fold::{Column, Fold, Slot};
 use crate::math::lanes::Lanes;
 use crate::model::{Line, LineState};
 use crate::physics::stretch::total_tension;
@@ -80,35 +80,36 @@ pub(super) struct CreepArrays {
     /// Number of segments.
     count: usize,
     /// K [N] and C [N s].
-    pub stiffness: Vec<f64>,
-    pub damping: Vec<f64>,
+    pub stiffness: Column,
+    pub damping: Column,
     /// G [N].
-    memory: Vec<f64>,
+    memory: Column,
     /// EA₁ and EA_d [N].
-    slow_stiffness: Vec<f64>,
-    fast_stiffness: Vec<f64>,
+    slow_stiffness: Column,
+    fast_stiffness: Column,
     /// BA_d [N s].
-    fast_damping: Vec<f64>,
+    fast_damping: Column,
     /// 1/B [1/(N s)].
-    yielding: Vec<f64>,
+    yielding: Column,
     /// EA₁/BA_s [1/s].
-    contraction: Vec<f64>,
+    contraction: Column,
     /// Strain at t_n [-].
-    pub strain: Vec<f64>,
+    pub strain: Column,
     /// Slow strain at t_n [-].
-    slow: Vec<f64>,
+    slow: Column,
 }
 
 impl CreepArrays {
     /// For a line; `None` where it is not viscoelastic.
-    pub fn new(line: &Line) -> Option<CreepArrays> {
-        line.segments.viscoelastic.as_deref().map(CreepArrays::of)
+    pub fn new(line: &Line, fold: Fold) -> Option<CreepArrays> {
+        let laws = line.segments.viscoelastic.as_deref()?;
+        Some(CreepArrays::of(laws, fold))
     }
 
-    fn of(laws: &[Viscoelastic]) -> CreepArrays {
+    fn of(laws: &[Viscoelastic], fold: Fold) -> CreepArrays {
         let each = |value: fn(&Viscoelastic) -> f64| {
             let values: Vec<f64> = laws.iter().map(value).collect();
-            pad(laws.len(), &values, 0.0)
+            fold.column(&values, 0.0)
         };
         CreepArrays {
             count: laws.len(),
@@ -127,31 +128,31 @@ impl CreepArrays {
 
     /// Takes over the slow strains of a line.
     pub fn load(&mut self, slow: &[f64]) {
-        self.slow[FIRST..FIRST + slow.len()].copy_from_slice(slow);
+        self.slow.assign(slow);
     }
 
     /// Hands them back.
     pub fn store(&self, slow: &mut Vec<f64>) {
         slow.clear();
-        slow.extend_from_slice(&self.slow[FIRST..FIRST + self.count]);
+        slow.extend(self.slow.values(self.count));
     }
 
     /// [`Viscoelastic::elastic`] at t_n.
     #[inline(always)]
     pub fn elastic(&self, at: usize, strain: Lanes) -> Lanes {
-        let load = |values: &[f64]| Lanes::load(values, at);
+        let load = |values: &Column| values.load(at);
         load(&self.stiffness) * strain + load(&self.memory) * load(&self.slow)
     }
 
     /// The same of one segment.
-    pub fn elastic_of(&self, at: usize, strain: f64) -> f64 {
+    pub fn elastic_of(&self, at: Slot, strain: f64) -> f64 {
         self.stiffness[at] * strain + self.memory[at] * self.slow[at]
     }
 
     /// [`Viscoelastic::loss`] at t_n.
     #[inline(always)]
     pub fn loss(&self, at: usize, strain: Lanes, rate: Lanes, tension: Lanes) -> Lanes {
-        let load = |values: &[f64]| Lanes::load(values, at);
+        let load = |values: &Column| values.load(at);
         let (slow, slow_stiffness) = (load(&self.slow), load(&self.slow_stiffness));
         let fast_stiffness = load(&self.fast_stiffness);
         let total = self.elastic(at, strain) + load(&self.damping) * rate;
@@ -166,7 +167,7 @@ impl CreepArrays {
     /// Elastic force [N] after a step of `dt` [s] at the strain of t_n, and its slope with the strain then [N].
     #[inline(always)]
     pub fn ahead(&self, at: usize, strain: Lanes, dt: f64) -> (Lanes, Lanes) {
-        let load = |values: &[f64]| Lanes::load(values, at);
+        let load = |values: &Column| values.load(at);
         let (slow, memory) = (load(&self.slow), load(&self.memory));
         let share = self.share(at, dt);
         let both = load(&self.fast_stiffness) + load(&self.slow_stiffness);
@@ -184,7 +185,7 @@ impl CreepArrays {
     /// 1/(B + ½Δt (EA_d + EA₁)) [1/(N s)].
     #[inline(always)]
     fn share(&self, at: usize, dt: f64) -> Lanes {
-        let load = |values: &[f64]| Lanes::load(values, at);
+        let load = |values: &Column| values.load(at);
         let yielding = load(&self.yielding);
         let both = load(&self.fast_stiffness) + load(&self.slow_stiffness);
         yielding * (Lanes::splat(1.0) + Lanes::splat(0.5 * dt) * both * yielding).recip()
@@ -193,7 +194,7 @@ impl CreepArrays {
     /// [`Viscoelastic::creep`] from t_n to the strain after a step of `dt` [s].
     #[inline(always)]
     pub fn advance(&mut self, at: usize, now: Lanes, dt: f64) {
-        let load = |values: &[f64]| Lanes::load(values, at);
+        let load = |values: &Column| values.load(at);
         let (slow, before) = (load(&self.slow), load(&self.strain));
         let (half, step, one) = (Lanes::splat(0.5), Lanes::splat(dt), Lanes::splat(1.0));
         let (mean, change) = (half * (before + now), now - before);
@@ -205,7 +206,7 @@ impl CreepArrays {
         let impulse = step * elastic + load(&self.damping) * change;
         let part = half * step * load(&self.contraction);
         let slack = (slow * (one - part) * (one + part).recip()).positive();
-        impulse.choose(crept, slack).store(&mut self.slow, at);
+        self.slow.store(impulse.choose(crept, slack), at);
     }
 }
 
@@ -221,26 +222,24 @@ mod tests {
             Viscoelastic::new([1.0e8, 3.0e8], [1.0e8, 0.0]),
         ];
         for (before, now, rate) in [(0.01, 0.012, 0.1), (0.01, -0.02, -0.5), (0.0, 0.01, 0.0)] {
-            let mut arrays = CreepArrays::of(&laws);
+            let fold = Fold::new(laws.len() + 1); // one row
+            let mut arrays = CreepArrays::of(&laws, fold);
             arrays.strain.fill(before);
             let slow = [0.002, 0.0, 0.001];
             arrays.load(&slow);
             let (now_lanes, rate_lanes) = (Lanes::splat(now), Lanes::splat(rate));
             let tension = Lanes::splat(1.0e5);
-            let mut loss = vec![0.0; 2 * FIRST + 4];
-            arrays
-                .loss(FIRST, now_lanes, rate_lanes, tension)
-                .store(&mut loss, FIRST);
-            arrays.advance(FIRST, now_lanes, 0.02);
+            let loss = arrays.loss(1, now_lanes, rate_lanes, tension);
+            arrays.advance(1, now_lanes, 0.02);
             for (i, law) in laws.iter().enumerate() {
                 let creep = law.creep([before, now], slow[i], 0.02);
                 approx::assert_relative_eq!(
-                    arrays.slow[FIRST + i],
+                    arrays.slow[fold.slot(i)],
                     creep.slow,
                     max_relative = 1e-13
                 );
                 let exact = law.loss(now, rate, slow[i], 1.0e5);
-                approx::assert_relative_eq!(loss[FIRST + i], exact, max_relative = 1e-12);
+                approx::assert_relative_eq!(loss[i], exact, max_relative = 1e-12);
             }
         }
     }

@@ -1,7 +1,7 @@
-//! A line laid out for the leapfrog kernels: padded arrays, four nodes or segments to a vector.
+//! A line laid out for the leapfrog kernels: folded into four lanes ([`crate::math::fold`]), padded and with ghosts.
 //!
-//! Node i and segment i, which lies between nodes i and i + 1, stand at index [`FIRST`] + i. Padding has no stiffness, no
-//! weight and no drag, so that it stays at rest and no loop has a remainder.
+//! Node i and segment i, which lies between nodes i and i + 1, stand in the same slot. Padding has no stiffness, no weight and no drag, so
+//! that it stays at rest and no loop has a remainder. Ghosts are renewed when the nodes that they repeat have moved.
 
 use std::sync::Arc;
 
@@ -11,8 +11,9 @@ use pulp::{Arch, NullaryFnOnce};
 use super::creep::CreepArrays;
 use super::leapfrog::Step;
 use super::surface::SurfaceNow;
+use crate::math::fold::{Column, Field, Fold, Slot};
 use crate::math::hermite::Hermite;
-use crate::math::lanes::{Components, LANES, Lanes, Vectors};
+use crate::math::lanes::{Lanes, Vectors};
 use crate::model::{Bottom, Contact, End, Line, LineState, Model, WaveSpan};
 use crate::physics::airy::{Orbit, cubics};
 use crate::physics::flow::{Profile, Stream};
@@ -20,8 +21,6 @@ use crate::physics::friction::Friction;
 use crate::physics::seabed::ContactCoefficients;
 use crate::physics::stretch::{StretchLaw, total_tension};
 
-/// Index of node 0 and of segment 0.
-pub(super) const FIRST: usize = LANES;
 /// Speed that only an unstable step reaches [m/s]: the fastest axial waves run at about this speed.
 const SPEED_MAX: f64 = 1e4;
 /// Keeps coincident nodes from dividing by zero [m²].
@@ -31,26 +30,28 @@ const LENGTH2_MIN: f64 = 1e-200;
 #[derive(Debug, Clone)]
 pub(super) struct Layout {
     pub segment_count: usize,
+    /// Where nodes and segments stand.
+    pub fold: Fold,
     /// The widest vectors of this machine; results do not depend on it.
     pub vector_unit: Arch,
     pub law: StretchLaw,
     pub negative_tension: bool,
     /// Node positions at t_n [m].
-    pub position: Components,
+    pub position: Field,
     /// Velocities at t_{n−½} [m/s].
-    pub velocity: Components,
+    pub velocity: Field,
     /// Velocities at t_{n−3/2} [m/s].
-    pub velocity_before: Components,
-    pub inverse_length: Vec<f64>,
-    pub axial_stiffness: Vec<f64>,
-    pub axial_damping: Vec<f64>,
-    pub weight: Vec<f64>,
+    pub velocity_before: Field,
+    pub inverse_length: Column,
+    pub axial_stiffness: Column,
+    pub axial_damping: Column,
+    pub weight: Column,
     pub drag: Option<DragArrays>,
     /// The current, where it acts on the line.
     pub current: Option<CurrentNow>,
     /// The waves, where they act on the line.
     pub waves: Option<WaveArrays>,
-    pub mass_damping: Option<Vec<f64>>,
+    pub mass_damping: Option<Column>,
     pub contact: Option<ContactArrays>,
     /// Memory of viscoelastic segments, where the line has any.
     pub creep: Option<CreepArrays>,
@@ -61,8 +62,8 @@ pub(super) struct Layout {
 /// Lumped drag coefficients [N s²/m²].
 #[derive(Debug, Clone)]
 pub(super) struct DragArrays {
-    pub normal: Vec<f64>,
-    pub tangent: Vec<f64>,
+    pub normal: Column,
+    pub tangent: Column,
 }
 
 /// What moves the water around a line.
@@ -105,12 +106,12 @@ impl CurrentNow {
 #[derive(Debug, Clone)]
 pub(super) struct WaveArrays {
     /// Of the velocity [m/s].
-    velocity: [Components; 4],
+    velocity: [Field; 4],
     /// Of the acceleration [m/s²].
-    acceleration: [Components; 4],
+    acceleration: [Field; 4],
     /// Mass of the water that presses, across and along the line [kg].
-    normal: Vec<f64>,
-    tangent: Vec<f64>,
+    normal: Column,
+    tangent: Column,
     /// Start and end of the span [s].
     times: [f64; 2],
     /// Part of the span that has passed at t_n [-].
@@ -120,13 +121,12 @@ pub(super) struct WaveArrays {
 }
 
 impl WaveArrays {
-    fn new(line: &Line) -> WaveArrays {
-        let n = line.segment_count();
-        let zeros = || Components::zeros(padded_size(n));
+    fn new(line: &Line, fold: Fold) -> WaveArrays {
+        let zeros = || Field::zeros(fold);
         let pressed = line.nodes.pressed.as_ref();
-        let mass = |of: fn(&crate::model::Pressed) -> &Vec<f64>| match pressed {
-            Some(pressed) => pad(n, of(pressed), 0.0),
-            None => vec![0.0; padded_size(n)],
+        let mass = |of: fn(&crate::model::Pressed) -> &Vec<f64>| {
+            let values = pressed.map_or(&[][..], |pressed| of(pressed));
+            fold.column(values, 0.0)
         };
         WaveArrays {
             velocity: std::array::from_fn(|_| zeros()),
@@ -168,26 +168,26 @@ impl WaveArrays {
     #[inline(always)]
     pub fn press(&self, at: usize, tangent: Vectors) -> Vectors {
         let acceleration = polynomial(&self.acceleration, self.passed, at);
-        let normal = Lanes::load(&self.normal, at);
-        let excess = Lanes::load(&self.tangent, at) - normal;
+        let normal = self.normal.load(at);
+        let excess = self.tangent.load(at) - normal;
         acceleration.scale(normal) + tangent.scale(excess * acceleration.dot(tangent))
     }
 
     /// Force of the accelerated water on a node with this unit tangent [N].
-    pub fn press_of(&self, at: usize, tangent: Vector3<f64>) -> Vector3<f64> {
+    pub fn press_of(&self, at: Slot, tangent: Vector3<f64>) -> Vector3<f64> {
         let acceleration = self.value(&self.acceleration, at);
         let excess = self.tangent[at] - self.normal[at];
         self.normal[at] * acceleration + excess * acceleration.dot(&tangent) * tangent
     }
 
-    fn value(&self, powers: &[Components; 4], at: usize) -> Vector3<f64> {
+    fn value(&self, powers: &[Field; 4], at: Slot) -> Vector3<f64> {
         let [p0, p1, p2, p3] = [0, 1, 2, 3].map(|power| powers[power].get(at));
         p0 + self.passed * (p1 + self.passed * (p2 + self.passed * p3))
     }
 }
 
 #[inline(always)]
-fn polynomial(powers: &[Components; 4], passed: f64, at: usize) -> Vectors {
+fn polynomial(powers: &[Field; 4], passed: f64, at: usize) -> Vectors {
     let u = Lanes::splat(passed);
     let [p0, p1, p2, p3] = powers;
     p0.load(at) + (p1.load(at) + (p2.load(at) + p3.load(at).scale(u)).scale(u)).scale(u)
@@ -196,9 +196,9 @@ fn polynomial(powers: &[Components; 4], passed: f64, at: usize) -> Vectors {
 /// Lumped contact coefficients [N/m, N s/m] and the z [m] below which they push; over a bed that slopes or rubs the height above it, along its normal.
 #[derive(Debug, Clone)]
 pub(super) struct ContactArrays {
-    pub level: Vec<f64>,
-    pub stiffness: Vec<f64>,
-    pub damping: Vec<f64>,
+    pub level: Column,
+    pub stiffness: Column,
+    pub damping: Column,
     /// Where the bed is more than a level plane without friction.
     pub bottom: Option<BottomArrays>,
 }
@@ -208,31 +208,31 @@ pub(super) struct ContactArrays {
 pub(super) struct BottomArrays {
     pub bottom: Arc<Bottom>,
     /// Stiffness along the bed of a node that sticks [N/m]; 0 without friction.
-    pub stick: Vec<f64>,
+    pub stick: Column,
     /// Friction on the nodes in the last step [N].
-    pub rub: Components,
+    pub rub: Field,
 }
 
 impl ContactArrays {
-    fn new(contact: &Contact, keep: impl Fn(&[f64]) -> Vec<f64>) -> ContactArrays {
+    fn new(contact: &Contact, fold: Fold) -> ContactArrays {
         let lifts = || (0..contact.level.len()).map(|i| contact.lift(i)).collect();
         let bottom = contact.bottom.as_ref();
         let level: Vec<f64> = bottom.map_or_else(|| contact.level.clone(), |_| lifts());
-        let level = keep(&level);
+        let keep = |values: &[f64]| fold.column(values, 0.0);
         ContactArrays {
             bottom: bottom.map(|bottom| BottomArrays {
                 bottom: bottom.clone(),
                 stick: keep(&contact.stick),
-                rub: Components::zeros(level.len()),
+                rub: Field::zeros(fold),
             }),
-            level,
+            level: keep(&level),
             stiffness: keep(&contact.stiffness),
             damping: keep(&contact.damping),
         }
     }
 
     /// Spring and damper of the node at `at`.
-    pub fn coefficients(&self, at: usize) -> ContactCoefficients {
+    pub fn coefficients(&self, at: Slot) -> ContactCoefficients {
         ContactCoefficients {
             stiffness: self.stiffness[at],
             damping: self.damping[at],
@@ -244,11 +244,11 @@ impl Layout {
     /// Arrays for a line; `None` where its sections have different strain measures, which the kernels do not mix.
     pub fn new(line: &Line, water: Water<'_>, negative_tension: bool) -> Option<Layout> {
         let n = line.segment_count();
-        let size = padded_size(n);
-        let keep = |values: &[f64]| pad(n, values, 0.0);
+        let fold = Fold::new(n + 1);
+        let keep = |values: &[f64]| fold.column(values, 0.0);
         let nodes = &line.nodes;
-        let lengths = pad(n, &line.segments.length, 1.0);
-        let creep = CreepArrays::new(line);
+        let inverse_lengths: Vec<f64> = line.segments.length.iter().map(|l| 1.0 / l).collect();
+        let creep = CreepArrays::new(line, fold);
         let (stiffness, damping) = match &creep {
             Some(creep) => (creep.stiffness.clone(), creep.damping.clone()),
             None => (
@@ -258,13 +258,14 @@ impl Layout {
         };
         Some(Layout {
             segment_count: n,
+            fold,
             vector_unit: Arch::new(),
             law: line.uniform_law()?,
             negative_tension,
-            position: padded_positions(size),
-            velocity: Components::zeros(size),
-            velocity_before: Components::zeros(size),
-            inverse_length: lengths.iter().map(|length| 1.0 / length).collect(),
+            position: padded_positions(fold),
+            velocity: Field::zeros(fold),
+            velocity_before: Field::zeros(fold),
+            inverse_length: fold.column(&inverse_lengths, 1.0),
             axial_stiffness: stiffness,
             axial_damping: damping,
             weight: keep(&nodes.weight),
@@ -272,7 +273,7 @@ impl Layout {
                 normal: keep(&drag.normal),
                 tangent: keep(&drag.tangent),
             }),
-            waves: water.waves.then(|| WaveArrays::new(line)),
+            waves: water.waves.then(|| WaveArrays::new(line, fold)),
             current: water
                 .profile
                 .filter(|_| nodes.drag.is_some())
@@ -284,29 +285,54 @@ impl Layout {
             contact: nodes
                 .contact
                 .as_ref()
-                .map(|contact| ContactArrays::new(contact, keep)),
+                .map(|contact| ContactArrays::new(contact, fold)),
             creep,
             surface: SurfaceNow::new(line),
         })
     }
 
-    /// Takes over positions and velocities of a line.
+    /// Takes over positions and velocities of a line; the ghosts are yet to be renewed.
     pub fn load(&mut self, state: &LineState) {
         if let Some(creep) = &mut self.creep {
             creep.load(&state.creep);
         }
         let memory = &state.half_step;
         let fresh = memory.velocity.is_empty();
-        for (i, position) in state.position.iter().enumerate() {
-            self.position.set(FIRST + i, *position);
+        for (i, (at, position)) in self.fold.slots().zip(&state.position).enumerate() {
+            self.position.set(at, *position);
             let (velocity, before) = if fresh {
                 (state.velocity[i], state.velocity[i])
             } else {
                 (memory.velocity[i], memory.velocity_before[i])
             };
-            self.velocity.set(FIRST + i, velocity);
-            self.velocity_before.set(FIRST + i, before);
+            self.velocity.set(at, velocity);
+            self.velocity_before.set(at, before);
         }
+    }
+
+    /// Makes the ghosts repeat the nodes where they are now. Ends that have parted have no neighbour beyond them.
+    #[inline(always)]
+    pub fn renew_ghosts(&mut self, parted: [bool; 2]) {
+        self.position.wrap();
+        self.velocity.wrap();
+        self.velocity_before.wrap();
+        for end in [End::A, End::B] {
+            if parted[end as usize] {
+                let at = self.end_slot(end);
+                let beyond = if end == End::A { at.before() } else { at.after() };
+                self.position.set(beyond, self.position.get(at));
+            }
+        }
+    }
+
+    /// Where node `i` and segment `i` stand.
+    pub fn slot(&self, i: usize) -> Slot {
+        self.fold.slot(i)
+    }
+
+    /// Where the nodes stand, in their order.
+    pub fn nodes(&self) -> impl Iterator<Item = Slot> + use<> {
+        self.fold.slots().take(self.segment_count + 1)
     }
 
     /// Hands them back after steps of `steps` [s], with velocities extrapolated to the time of the positions.
@@ -320,20 +346,17 @@ impl Layout {
         memory.velocity_before.resize(count, Vector3::zeros());
         memory.steps = steps;
         let extrapolation = Step::after(steps, steps[0]).extrapolation;
-        for i in 0..count {
-            let (velocity, before) = (
-                self.velocity.get(FIRST + i),
-                self.velocity_before.get(FIRST + i),
-            );
-            state.position[i] = self.position.get(FIRST + i);
+        for (i, at) in self.fold.slots().take(count).enumerate() {
+            let (velocity, before) = (self.velocity.get(at), self.velocity_before.get(at));
+            state.position[i] = self.position.get(at);
             state.velocity[i] = velocity + extrapolation * (velocity - before);
             memory.velocity[i] = velocity;
             memory.velocity_before[i] = before;
         }
         if let Some(bottom) = self.bottom() {
-            for (i, anchor) in state.anchor.iter_mut().enumerate() {
-                let rub = bottom.rub.get(FIRST + i) / bottom.stick[FIRST + i];
-                *anchor = state.position[i] + rub;
+            let places = state.position.iter().zip(self.fold.slots());
+            for (anchor, (position, at)) in state.anchor.iter_mut().zip(places) {
+                *anchor = position + bottom.rub.get(at) / bottom.stick[at];
             }
         }
     }
@@ -351,7 +374,7 @@ impl Layout {
     }
 
     /// Remembers the friction on a node [N].
-    pub fn set_rub(&mut self, at: usize, rub: Vector3<f64>) {
+    pub fn set_rub(&mut self, at: Slot, rub: Vector3<f64>) {
         if let Some(contact) = &mut self.contact
             && let Some(bottom) = &mut contact.bottom
         {
@@ -362,7 +385,7 @@ impl Layout {
     /// How far the node at `at` is below the level from which the bed pushes it [m], and the bed's normal there; it must lie over a bed that
     /// slopes or rubs.
     #[inline]
-    pub fn stand(&self, at: usize) -> (f64, Vector3<f64>) {
+    pub fn stand(&self, at: Slot) -> (f64, Vector3<f64>) {
         let contact = self.contact.as_ref().expect("asked over a bed only");
         let bottom = contact
             .bottom
@@ -372,12 +395,10 @@ impl Layout {
         (below + contact.level[at], normal)
     }
 
-    /// Unit vector along the chord of the nodes beside the one at `at`, at an end along the segment.
-    pub fn tangent_of(&self, at: usize) -> Vector3<f64> {
-        let (before, after) = (
-            (at - 1).max(FIRST),
-            (at + 1).min(FIRST + self.segment_count),
-        );
+    /// Unit vector along the chord of the nodes beside node `i`, at an end along the segment.
+    pub fn tangent_of(&self, i: usize) -> Vector3<f64> {
+        let before = self.slot(i.saturating_sub(1));
+        let after = self.slot((i + 1).min(self.segment_count));
         let chord = self.position.get(after) - self.position.get(before);
         chord.try_normalize(0.0).unwrap_or_else(Vector3::zeros)
     }
@@ -391,17 +412,18 @@ impl Layout {
             for (i, level) in surface.level.iter_mut().enumerate() {
                 *level = waves.elevation(i);
             }
-            surface.find_calm(&self.position.z);
+            surface.find_calm(self.fold, &self.position);
         }
-        surface.find(&self.position.z);
+        surface.find(self.fold, &self.position);
         for i in surface.crossed() {
             let now = surface.node(i);
-            self.weight[FIRST + i] = now.weight;
+            let at = self.fold.slot(i);
+            self.weight[at] = now.weight;
             if let Some(waves) = &mut self.waves {
-                [waves.normal[FIRST + i], waves.tangent[FIRST + i]] = now.pressed;
+                [waves.normal[at], waves.tangent[at]] = now.pressed;
             }
             if let Some(drag) = &mut self.drag {
-                [drag.normal[FIRST + i], drag.tangent[FIRST + i]] = now.drag;
+                [drag.normal[at], drag.tangent[at]] = now.drag;
             }
         }
     }
@@ -413,7 +435,7 @@ impl Layout {
         };
         let [first, last] = held.map(usize::from);
         for i in first..=self.segment_count - last {
-            surface.book(i, &self.velocity, &self.position);
+            surface.book(i, self.fold, &self.velocity, &self.position);
         }
     }
 
@@ -424,7 +446,8 @@ impl Layout {
         };
         let [first, last] = held.map(usize::from);
         for i in first..=self.segment_count - last {
-            let velocities = self.velocity.z[FIRST + i] + self.velocity_before.z[FIRST + i];
+            let at = self.fold.slot(i);
+            let velocities = self.velocity.get(at).z + self.velocity_before.get(at).z;
             surface.book_lift(i, 0.5 * step.kick * velocities);
         }
         waves.pass(step.drift);
@@ -444,7 +467,7 @@ impl Layout {
 
     /// Buoyancy that an end lacks at t_n [N].
     pub fn end_lack(&self, end: End) -> f64 {
-        let node = self.end_index(end) - FIRST;
+        let node = self.end_node(end);
         let surface = self.surface.as_ref();
         surface.map_or(0.0, |surface| surface.lack(node, self.waves.is_some()))
     }
@@ -475,11 +498,11 @@ impl Layout {
             waves.surface.extend(nodes.map(|(b, a)| [of(b), of(a)]));
         }
         let nodes = before.lines[line].iter().zip(&after.lines[line]);
-        for (i, (before, after)) in nodes.enumerate() {
+        for (at, (before, after)) in self.fold.slots().zip(nodes) {
             let [velocity, acceleration] = cubics(before, after, span.times);
             for power in 0..4 {
-                waves.velocity[power].set(FIRST + i, velocity[power]);
-                waves.acceleration[power].set(FIRST + i, acceleration[power]);
+                waves.velocity[power].set(at, velocity[power]);
+                waves.acceleration[power].set(at, acceleration[power]);
             }
         }
     }
@@ -504,7 +527,7 @@ impl Layout {
         let flow = match &self.current {
             None => None,
             Some(current) => {
-                let z = Lanes::load(&self.position.z, at);
+                let z = self.position.load(at).z;
                 let shape = current.profile.velocities(z);
                 Some(shape.scale(Lanes::splat(current.factor)))
             }
@@ -518,9 +541,9 @@ impl Layout {
     }
 
     /// Velocity of the water at a node [m/s].
-    pub fn water_velocity_of(&self, at: usize) -> Vector3<f64> {
+    pub fn water_velocity_of(&self, at: Slot) -> Vector3<f64> {
         let flow = self.current.as_ref().map_or(Vector3::zeros(), |current| {
-            current.stream().velocity(self.position.z[at])
+            current.stream().velocity(self.position.get(at).z)
         });
         match &self.waves {
             None => flow,
@@ -530,40 +553,53 @@ impl Layout {
 
     /// Puts an end at a position [m] with the velocity [m/s] that the next step takes as lagged.
     pub fn put_end(&mut self, end: End, position: Vector3<f64>, velocity: Vector3<f64>) {
-        let at = self.end_index(end);
+        let at = self.end_slot(end);
         self.position.set(at, position);
         self.velocity.set(at, velocity);
     }
 
-    /// Index of the node at an end.
-    pub fn end_index(&self, end: End) -> usize {
+    /// The node at an end.
+    pub fn end_node(&self, end: End) -> usize {
         match end {
-            End::A => FIRST,
-            End::B => FIRST + self.segment_count,
+            End::A => 0,
+            End::B => self.segment_count,
         }
     }
 
-    #[inline(always)]
-    /// Starts of the vectors that cover all segments.
-    pub fn segment_blocks(&self) -> impl Iterator<Item = usize> + use<> {
-        (FIRST..FIRST + self.segment_count).step_by(LANES)
+    /// Where the node at an end stands.
+    pub fn end_slot(&self, end: End) -> Slot {
+        self.slot(self.end_node(end))
     }
 
+    /// Where the segment at an end stands, and what the sign of its pull on the end is.
+    pub fn end_segment(&self, end: End) -> (Slot, f64) {
+        match end {
+            End::A => (self.slot(0), 1.0),
+            End::B => (self.slot(self.segment_count - 1), -1.0),
+        }
+    }
+
+    /// Where the neighbour of the node at an end stands.
+    pub fn end_neighbour(&self, end: End) -> Slot {
+        match end {
+            End::A => self.slot(1),
+            End::B => self.slot(self.segment_count - 1),
+        }
+    }
+
+    /// Rows of nodes, and of segments.
     #[inline(always)]
-    /// Starts of the vectors that cover all nodes.
-    pub fn node_blocks(&self) -> impl Iterator<Item = usize> + use<> {
-        (FIRST..=FIRST + self.segment_count).step_by(LANES)
+    pub fn rows(&self) -> std::ops::RangeInclusive<usize> {
+        1..=self.fold.rows()
     }
 
     /// Tension [N] of the segment at an end at t_n.
     pub fn end_tension(&self, end: End, step: Step) -> f64 {
-        let at = match end {
-            End::A => FIRST,
-            End::B => FIRST + self.segment_count - 1,
-        };
-        let chord = self.position.get(at + 1) - self.position.get(at);
-        let relative = self.velocity.get(at + 1) - self.velocity.get(at);
-        let before = self.velocity_before.get(at + 1) - self.velocity_before.get(at);
+        let (at, _) = self.end_segment(end);
+        let change = |of: &Field| of.get(at.after()) - of.get(at);
+        let chord = change(&self.position);
+        let relative = change(&self.velocity);
+        let before = change(&self.velocity_before);
         let now = relative + step.extrapolation * (relative - before);
         let (l, inverse) = (chord.norm(), self.inverse_length[at]);
         let strain = l * inverse - 1.0;
@@ -587,20 +623,19 @@ impl Layout {
     /// Energy [J] that the half node at an end of masses across and along the line [kg] brings to the line when it parts from what held it
     /// at t_n.
     pub fn joining_energy(&self, end: End, [across, along]: [f64; 2], step: Step) -> f64 {
-        let at = self.end_index(end);
+        let (at, other) = (self.end_slot(end), self.end_neighbour(end));
         let velocity = self.velocity.get(at);
-        let other = if end == End::A { at + 1 } else { at - 1 };
         let chord = self.position.get(other) - self.position.get(at);
         let tangent = chord.try_normalize(0.0).unwrap_or_else(Vector3::zeros);
         let lag = step.kick - 0.5 * step.drift; // from the velocities to the positions
-        let height = self.position.z[at] - lag * velocity.z;
+        let height = self.position.get(at).z - lag * velocity.z;
         let axial = velocity.dot(&tangent).powi(2);
         let kinetic = 0.5 * (across * (velocity.norm_squared() - axial) + along * axial);
         // the surface holds the energy of the buoyancy that is lacking by itself
         let lack = self
             .surface
             .as_ref()
-            .map_or(0.0, |surface| surface.lack(at - FIRST, false));
+            .map_or(0.0, |surface| surface.lack(self.end_node(end), false));
         kinetic + (self.weight[at] - lack) * height
     }
 
@@ -608,21 +643,21 @@ impl Layout {
     #[inline(always)]
     pub fn strain_rate(&self, at: usize, direction: Vectors, step: Step) -> Lanes {
         let relative = self.velocity_now(at + 1, step) - self.velocity_now(at, step);
-        direction.dot(relative) * Lanes::load(&self.inverse_length, at)
+        direction.dot(relative) * self.inverse_length.load(at)
     }
 
     /// Strain of the segments [-].
     #[inline(always)]
     pub fn strain(&self, at: usize) -> Lanes {
         let (chord, inverse_l) = self.chord(at);
-        let inverse_length = Lanes::load(&self.inverse_length, at);
+        let inverse_length = self.inverse_length.load(at);
         chord.dot(chord) * inverse_l * inverse_length - Lanes::splat(1.0)
     }
 
     /// Takes the memory of viscoelastic segments from t_n to t_{n+1}, `drift` [s] later, where the nodes now are.
     pub fn creep(&mut self, drift: f64) {
         if let Some(mut creep) = self.creep.take() {
-            for at in self.segment_blocks() {
+            for at in self.rows() {
                 creep.advance(at, self.strain(at), drift);
             }
             self.creep = Some(creep);
@@ -669,7 +704,7 @@ impl Layout {
     #[inline(always)]
     fn drift_nodes(&mut self, drift: f64) {
         let drift = Lanes::splat(drift);
-        for at in self.node_blocks() {
+        for at in self.rows() {
             let position = self.position.load(at) + self.velocity.load(at).scale(drift);
             self.position.store(position, at);
         }
@@ -682,7 +717,8 @@ impl Layout {
         };
         let rate = |i: usize| {
             let coefficient = drag.normal[i].max(drag.tangent[i]);
-            let relative = self.velocity.get(FIRST + i) - self.water_velocity_of(FIRST + i);
+            let at = self.slot(i);
+            let relative = self.velocity.get(at) - self.water_velocity_of(at);
             relative.norm() * coefficient / line.nodes.mass_normal[i]
         };
         (0..=self.segment_count).map(rate).fold(0.0, f64::max)
@@ -690,13 +726,13 @@ impl Layout {
 
     /// Index of the first node that has no finite position, or a speed that no mooring line reaches.
     pub fn broken_node(&self) -> Option<usize> {
-        let broken = |i: &usize| {
-            let (position, velocity) = (self.position.get(FIRST + i), self.velocity.get(FIRST + i));
+        let broken = |at: Slot| {
+            let (position, velocity) = (self.position.get(at), self.velocity.get(at));
             !position.iter().all(|value| value.is_finite())
                 || !velocity.norm_squared().is_finite()
                 || velocity.norm() > SPEED_MAX
         };
-        (0..=self.segment_count).find(broken)
+        self.nodes().position(broken)
     }
 }
 
@@ -712,31 +748,18 @@ impl NullaryFnOnce for Drift<'_> {
     }
 }
 
-fn padded_size(segment_count: usize) -> usize {
-    FIRST + (segment_count + 1).div_ceil(LANES) * LANES + LANES
-}
-
-/// `values` from [`FIRST`] on, with `padding` around, for a line of `segment_count` segments.
-pub(super) fn pad(segment_count: usize, values: &[f64], padding: f64) -> Vec<f64> {
-    let mut padded = vec![padding; padded_size(segment_count)];
-    padded[FIRST..FIRST + values.len()].copy_from_slice(values);
-    padded
-}
-
 /// 1 for nodes between the ends, 0 elsewhere.
-pub(super) fn interior(segment_count: usize) -> Vec<f64> {
+pub(super) fn interior(segment_count: usize) -> Column {
     let mut interior = vec![1.0; segment_count + 1];
     (interior[0], interior[segment_count]) = (0.0, 0.0);
-    pad(segment_count, &interior, 0.0)
+    Fold::new(segment_count + 1).column(&interior, 0.0)
 }
 
 /// Padding far away and apart: its chords are never zero.
-fn padded_positions(size: usize) -> Components {
-    let mut position = Components::zeros(size);
-    position
-        .x
-        .iter_mut()
-        .enumerate()
-        .for_each(|(i, x)| *x = i as f64);
+fn padded_positions(fold: Fold) -> Field {
+    let mut position = Field::zeros(fold);
+    for (i, at) in fold.slots().enumerate() {
+        position.set(at, i as f64 * Vector3::x());
+    }
     position
 }

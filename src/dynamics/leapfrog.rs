@@ -17,9 +17,10 @@ mod winch;
 use nalgebra::{Matrix3, Vector3};
 use pulp::NullaryFnOnce;
 
-use super::layout::{FIRST, Layout, Water, interior, pad};
+use super::layout::{Layout, Water, interior};
 use super::ledger::Flow;
-use crate::math::lanes::{Components, Lanes, Vectors};
+use crate::math::fold::{Column, Field};
+use crate::math::lanes::{Lanes, Vectors};
 use crate::model::{End, Line, LineState, Parting, WaveSpan};
 use crate::physics::friction_step::Landing;
 use crate::physics::morison::{self, DragCoefficients};
@@ -32,11 +33,11 @@ pub struct LineWork {
     layout: Layout,
     damped: bool,
     /// Force of a segment on its lower node, T q [N].
-    pull: Components,
-    inverse_mass: Vec<f64>,
+    pull: Field,
+    inverse_mass: Column,
     water: Option<WaterWork>,
     /// 1 for nodes between the ends, 0 elsewhere.
-    interior: Vec<f64>,
+    interior: Column,
     /// Whether ends A and B are held, were none parted.
     tied: [bool; 2],
     /// Whether they have parted from their points.
@@ -54,7 +55,7 @@ pub struct LineWork {
 /// What a bed that slopes or rubs is worked out with, node by node.
 #[derive(Debug, Clone)]
 struct Settling {
-    resistance: Components,
+    resistance: Field,
     lost: f64,
 }
 
@@ -71,16 +72,16 @@ mod bed {
 /// What needs a node's tangent: drag, and a mass that differs along and across the line.
 #[derive(Debug, Clone)]
 struct WaterWork {
-    drag_normal: Vec<f64>,
-    drag_tangent: Vec<f64>,
+    drag_normal: Column,
+    drag_tangent: Column,
     /// 1/M_t − 1/M_n [1/kg].
-    inverse_mass_excess: Vec<f64>,
+    inverse_mass_excess: Column,
 }
 
 impl WaterWork {
     fn new(line: &Line, layout: &Layout) -> Option<WaterWork> {
         let nodes = &line.nodes;
-        let zeros = vec![0.0; layout.weight.len()];
+        let zeros = Column::new(layout.fold, 0.0);
         let excess: Vec<f64> = nodes
             .mass_tangent
             .iter()
@@ -94,7 +95,7 @@ impl WaterWork {
         wet.then(|| WaterWork {
             drag_normal: drag.map_or(zeros.clone(), |drag| drag.normal.clone()),
             drag_tangent: drag.map_or(zeros, |drag| drag.tangent.clone()),
-            inverse_mass_excess: pad(layout.segment_count, &excess, 0.0),
+            inverse_mass_excess: layout.fold.column(&excess, 0.0),
         })
     }
 
@@ -131,7 +132,7 @@ impl WaterWork {
         force: Vectors,
         tangent: Vectors,
     ) -> (Vectors, Vectors) {
-        let excess = Lanes::load(&self.inverse_mass_excess, at);
+        let excess = self.inverse_mass_excess.load(at);
         let response = tangent.scale(excess * tangent.z);
         (
             force.scale(inverse_mass) + tangent.scale(excess * force.dot(tangent)),
@@ -147,8 +148,8 @@ impl WaterWork {
     fn drag(&self, at: usize, velocity: Vectors, tangent: Vectors) -> Vectors {
         let along = velocity.dot(tangent);
         let across = velocity - tangent.scale(along);
-        let normal = Lanes::load(&self.drag_normal, at) * across.dot(across).sqrt();
-        let tangential = Lanes::load(&self.drag_tangent, at) * along.abs() * along;
+        let normal = self.drag_normal.load(at) * across.dot(across).sqrt();
+        let tangential = self.drag_tangent.load(at) * along.abs() * along;
         across.scale(normal) + tangent.scale(tangential)
     }
 }
@@ -244,8 +245,8 @@ impl LineWork {
                 .axial_damping
                 .iter()
                 .any(|damping| *damping != 0.0),
-            pull: Components::zeros(layout.weight.len()),
-            inverse_mass: pad(layout.segment_count, &inverse_mass, 0.0),
+            pull: Field::zeros(layout.fold),
+            inverse_mass: layout.fold.column(&inverse_mass, 0.0),
             water: WaterWork::new(line, &layout),
             interior: interior(layout.segment_count),
             tied: held,
@@ -253,8 +254,8 @@ impl LineWork {
             lost: Lanes::splat(0.0),
             given: 0.0,
             given_by_current: Lanes::splat(0.0),
-            settling: layout.bottom().map(|bottom| Settling {
-                resistance: Components::zeros(bottom.stick.len()),
+            settling: layout.bottom().map(|_| Settling {
+                resistance: Field::zeros(layout.fold),
                 lost: 0.0,
             }),
             layout,
@@ -268,9 +269,22 @@ impl LineWork {
         self.layout.load(state);
         self.parted = state.parted;
         for end in [End::A, End::B] {
-            let at = self.layout.end_index(end);
+            let at = self.layout.end_slot(end);
             self.interior[at] = f64::from(u8::from(self.is_parted(end)));
         }
+        self.renew_ghosts();
+        self.clear_flow();
+    }
+
+    /// Goes on from the state that [`Self::store`] handed back last; a line on a winch is laid out anew.
+    pub fn resume(&mut self, state: &LineState) {
+        match self.winch {
+            None => self.clear_flow(),
+            Some(_) => self.load(state),
+        }
+    }
+
+    fn clear_flow(&mut self) {
         (self.lost, self.given) = (Lanes::splat(0.0), 0.0);
         self.given_by_current = Lanes::splat(0.0);
         if let Some(settling) = &mut self.settling {
@@ -288,7 +302,7 @@ impl LineWork {
             return;
         };
         for i in surface.crossed() {
-            let (at, now) = (FIRST + i, surface.node(i));
+            let (at, now) = (self.layout.slot(i), surface.node(i));
             let [across, along] = now.masses.map(|mass| 1.0 / mass);
             self.inverse_mass[at] = across;
             if let Some(water) = &mut self.water {
@@ -354,7 +368,7 @@ impl LineWork {
             if self.parted[side] || !partings[side].parts(layout.end_tension(end, step), t) {
                 continue;
             }
-            let at = layout.end_index(end);
+            let at = layout.end_slot(end);
             if self.tied[side] {
                 let excess = self
                     .water
@@ -392,16 +406,16 @@ impl LineWork {
         let line = &self.layout;
         let kick = Lanes::splat(step.kick);
         let one = Lanes::splat(1.0);
-        for at in line.segment_blocks() {
+        for at in line.rows() {
             let (chord, inverse_l) = line.chord(at);
-            let inverse_length = Lanes::load(&line.inverse_length, at);
+            let inverse_length = line.inverse_length.load(at);
             let strain = chord.dot(chord) * inverse_l * inverse_length - one;
-            let elastic = Lanes::load(&line.axial_stiffness, at) * law(strain);
+            let elastic = line.axial_stiffness.load(at) * law(strain);
             let mut tension = elastic.positive();
             if DAMPED {
                 let rate = line.velocity.load(at + 1) - line.velocity.load(at);
                 let stretching = chord.dot(rate) * inverse_l;
-                let damping = Lanes::load(&line.axial_damping, at) * stretching * inverse_length;
+                let damping = line.axial_damping.load(at) * stretching * inverse_length;
                 let total = if line.negative_tension {
                     tension + damping
                 } else {
@@ -412,6 +426,7 @@ impl LineWork {
             }
             self.pull.store(chord.scale(tension * inverse_l), at);
         }
+        self.pull.wrap();
     }
 
     /// [`LineWork::segment_pass`] of a line with viscoelastic segments.
@@ -419,16 +434,16 @@ impl LineWork {
     fn creeping_segment_pass(&mut self, step: Step) {
         let mut creep = self.layout.creep.take().expect("this line creeps");
         let line = &self.layout;
-        for at in line.segment_blocks() {
+        for at in line.rows() {
             let (chord, inverse_l) = line.chord(at);
             let direction = chord.scale(inverse_l);
-            let inverse_length = Lanes::load(&line.inverse_length, at);
+            let inverse_length = line.inverse_length.load(at);
             let strain = line.strain(at);
-            strain.store(&mut creep.strain, at);
+            creep.strain.store(strain, at);
             let relative = line.velocity.load(at + 1) - line.velocity.load(at);
             let rate = direction.dot(relative) * inverse_length;
             let elastic = creep.elastic(at, strain);
-            let damping = Lanes::load(&line.axial_damping, at) * rate;
+            let damping = line.axial_damping.load(at) * rate;
             let tension = if line.negative_tension {
                 elastic.positive() + damping
             } else {
@@ -439,6 +454,7 @@ impl LineWork {
             self.lost = self.lost + loss * Lanes::splat(step.kick) * inverse_length.recip();
             self.pull.store(direction.scale(tension), at);
         }
+        self.pull.wrap();
         self.layout.creep = Some(creep);
     }
 
@@ -497,16 +513,16 @@ impl LineWork {
     ) {
         let line = &mut self.layout;
         let kick = Lanes::splat(step.kick);
-        for at in line.node_blocks() {
+        for at in line.rows() {
             let velocity = line.velocity.load(at);
-            let inverse_mass = Lanes::load(&self.inverse_mass, at);
+            let inverse_mass = self.inverse_mass.load(at);
             let mut force = self.pull.load(at) - self.pull.load(at - 1);
-            force.z = force.z - Lanes::load(&line.weight, at);
+            force.z = force.z - line.weight.load(at);
             let zero = Lanes::splat(0.0);
             let mut resistance = Vectors::zero();
             if MASS_DAMPING {
-                let damping = line.mass_damping.as_deref().unwrap_or_default();
-                resistance = velocity.scale(Lanes::load(damping, at));
+                let damping = line.mass_damping.as_ref().expect("this kernel damps");
+                resistance = velocity.scale(damping.load(at));
             }
             let (mut press, mut power) = (Vectors::zero(), zero);
             // M⁻¹f, and M⁻¹ẑ for the bed
@@ -536,11 +552,11 @@ impl LineWork {
                 given_away = given_away + resistance.dot(velocity + kicked) * kick;
             }
             if WATER || MASS_DAMPING || BED == bed::LEVEL {
-                let half = Lanes::splat(0.5) * Lanes::load(&self.interior, at);
+                let half = Lanes::splat(0.5) * self.interior.load(at);
                 self.lost = self.lost + half * given_away;
             }
             if CURRENT {
-                let part = Lanes::load(&self.interior, at);
+                let part = self.interior.load(at);
                 let by_press = part * press.dot(velocity + kicked) * kick * Lanes::splat(0.5);
                 let given = part * power * kick;
                 self.given_by_current = self.given_by_current + given + by_press;
@@ -560,7 +576,7 @@ impl LineWork {
         let Some(settling) = &mut self.settling else {
             return;
         };
-        for at in FIRST..=FIRST + line.segment_count {
+        for (i, at) in line.nodes().enumerate() {
             if self.interior[at] == 0.0 {
                 continue; // tied to its point
             }
@@ -575,7 +591,7 @@ impl LineWork {
                 .as_ref()
                 .map_or(0.0, |w| w.inverse_mass_excess[at]);
             let inverse_mass = self.inverse_mass[at];
-            let tangent = line.tangent_of(at);
+            let tangent = line.tangent_of(i);
             let Some((contact, friction)) = line.rubbing() else {
                 return;
             };
@@ -612,11 +628,9 @@ impl LineWork {
             .into_iter()
             .filter(|&end| held[end as usize])
         {
-            let at = self.layout.end_index(end);
-            let pull = match end {
-                End::A => self.pull.get(at),
-                End::B => -self.pull.get(at - 1),
-            };
+            let at = self.layout.end_slot(end);
+            let (segment, sign) = self.layout.end_segment(end);
+            let pull = sign * self.pull.get(segment);
             let velocities = self.layout.velocity_before.get(at) + self.layout.velocity.get(at);
             self.given -= 0.5 * step.kick * pull.dot(&velocities);
             self.given += 0.5 * step.kick * self.layout.end_lack(end) * velocities.z;
@@ -633,11 +647,8 @@ impl LineWork {
     /// What the end brings to a free point, after [`Self::pull_segments`]; `velocity` [m/s] is the point's at t_n.
     pub fn end_load(&self, end: End, velocity: Vector3<f64>) -> EndLoad {
         let line = &self.layout;
-        let at = line.end_index(end);
-        let (segment, other, sign) = match end {
-            End::A => (at, at + 1, 1.0),
-            End::B => (at - 1, at - 1, -1.0),
-        };
+        let (at, other) = (line.end_slot(end), line.end_neighbour(end));
+        let (segment, sign) = line.end_segment(end);
         let chord = line.position.get(other) - line.position.get(at);
         let tangent = chord.try_normalize(0.0).unwrap_or_else(Vector3::zeros);
         let (mut resistance, mut current_power) = (Vector3::zeros(), 0.0);
@@ -679,6 +690,11 @@ impl LineWork {
         }
     }
 
+    /// After the ends were put in their places: makes the ghosts of the layout repeat the nodes.
+    pub fn renew_ghosts(&mut self) {
+        self.layout.renew_ghosts(self.parted);
+    }
+
     /// Greatest ratio K |v| / M of the nodes [1/s]: explicit drag wants Δt below its inverse.
     pub fn drag_rate(&self, line: &Line) -> f64 {
         self.layout.drag_rate(line)
@@ -701,9 +717,9 @@ fn contact_impulse(
 ) -> Lanes {
     let contact = line.contact.as_ref().expect("this kernel runs over a bed");
     let (drift, kick) = (Lanes::splat(step.drift), Lanes::splat(step.kick));
-    let stiffness = Lanes::load(&contact.stiffness, at);
-    let resistance = stiffness * drift + Lanes::load(&contact.damping, at); // b = kΔt + c
-    let penetration = Lanes::load(&contact.level, at) - Lanes::load(&line.position.z, at);
+    let stiffness = contact.stiffness.load(at);
+    let resistance = stiffness * drift + contact.damping.load(at); // b = kΔt + c
+    let penetration = contact.level.load(at) - line.position.load(at).z;
     let push = stiffness * penetration - resistance * velocity_z;
     let yielding = Lanes::splat(1.0) + response_z * kick * resistance;
     let lands = penetration - drift * velocity_z;

@@ -73,6 +73,26 @@ impl NetworkWork {
         for (work, &line) in self.lines.iter_mut().zip(&network.lines) {
             work.load(&state.lines[line]);
         }
+        self.load_waves(network, state);
+        self.load_points(network, state);
+    }
+
+    /// Goes on from the state that [`Self::store`] handed back last.
+    pub fn resume(&mut self, network: &Network, state: &State) {
+        for (work, &line) in self.lines.iter_mut().zip(&network.lines) {
+            work.resume(&state.lines[line]);
+        }
+        if state
+            .waves
+            .as_ref()
+            .is_some_and(|span| span.times != self.times)
+        {
+            self.load_waves(network, state);
+        }
+        self.load_points(network, state);
+    }
+
+    fn load_waves(&mut self, network: &Network, state: &State) {
         for (work, &line) in self.lines.iter_mut().zip(&network.lines) {
             work.load_waves(state.waves.as_ref(), line);
         }
@@ -83,6 +103,9 @@ impl NetworkWork {
             let ends = points.map(|&point| [0, 1].map(|end| span.ends[end].points[point]));
             self.waves.extend(ends);
         }
+    }
+
+    fn load_points(&mut self, network: &Network, state: &State) {
         self.point_flow = Flow::default();
         for (point, &index) in self.points.iter_mut().zip(&network.free_points) {
             *point = state.points[index];
@@ -230,6 +253,7 @@ impl NetworkWork {
                     }
                 }
             }
+            work.renew_ghosts();
         }
     }
 

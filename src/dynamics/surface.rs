@@ -4,10 +4,8 @@
 //! With the mass M_n of the positions at t_n, the velocities v_{n−½} have the kinetic energy ½ vᵀM_n v, and what joins or leaves with
 //! the water in a step brings or takes ½ vᵀ(M_{n+1} − M_n)v, which is booked here.
 
-use crate::math::lanes::Components;
+use crate::math::fold::{Field, Fold};
 use crate::model::{Dry, Line, Nodes, Surface};
-
-use super::layout::FIRST;
 
 /// A line that may pierce the surface, as it lies at t_n.
 #[derive(Debug, Clone)]
@@ -56,14 +54,14 @@ impl SurfaceNow {
         })
     }
 
-    /// Finds what is dry of a line whose nodes, from [`FIRST`] on, are at the heights `z` [m].
-    pub fn find(&mut self, z: &[f64]) {
+    /// Finds what is dry of a line whose nodes are at `position` [m].
+    pub fn find(&mut self, fold: Fold, position: &Field) {
         for (before, dry) in self.before.iter_mut().zip(&mut self.dry) {
             *before = dry.part;
             *dry = Dry::default();
         }
         for i in 0..self.surface.radius.len() {
-            let heights = [i, i + 1].map(|node| z[FIRST + node] - self.level[node]);
+            let heights = [i, i + 1].map(|node| position.get(fold.slot(node)).z - self.level[node]);
             let Some(at) = self.surface.segment(i, heights, 0.0) else {
                 continue;
             };
@@ -75,11 +73,11 @@ impl SurfaceNow {
         }
     }
 
-    /// Finds what nodes at the heights `z` [m] would lack in calm water.
-    pub fn find_calm(&mut self, z: &[f64]) {
+    /// Finds what nodes at `position` [m] would lack in calm water.
+    pub fn find_calm(&mut self, fold: Fold, position: &Field) {
         self.calm.fill(0.0);
         for i in 0..self.surface.radius.len() {
-            let heights = [i, i + 1].map(|node| z[FIRST + node]);
+            let heights = [i, i + 1].map(|node| position.get(fold.slot(node)).z);
             if let Some(at) = self.surface.segment(i, heights, 0.0) {
                 for end in 0..2 {
                     self.calm[i + end] += self.surface.buoyancy[i] * at.parts[end];
@@ -127,12 +125,12 @@ impl SurfaceNow {
     }
 
     /// Books what joined node `i` or left it since the [`Self::find`] before the last; `velocity` [m/s] and `position` [m] as laid out.
-    pub fn book(&mut self, i: usize, velocity: &Components, position: &Components) {
+    pub fn book(&mut self, i: usize, fold: Fold, velocity: &Field, position: &Field) {
         let wetter = self.before[i] - self.dry[i].part;
         let (air, last) = (self.nodes.mass[i], self.dry.len() - 1);
-        let v = velocity.get(FIRST + i);
+        let v = velocity.get(fold.slot(i));
         let (low, high) = (i.saturating_sub(1), (i + 1).min(last));
-        let chord = position.get(FIRST + high) - position.get(FIRST + low);
+        let chord = position.get(fold.slot(high)) - position.get(fold.slot(low));
         let along = chord.try_normalize(0.0).map_or(0.0, |t| v.dot(&t));
         let across = v.norm_squared() - along * along;
         let [normal, tangent] = [self.nodes.mass_normal[i], self.nodes.mass_tangent[i]];

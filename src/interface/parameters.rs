@@ -1,6 +1,7 @@
 //! The parameters of a scene: what a host may change before the simulation starts.
 
-use super::{Binding, Causality, Kind, Unit, Variable, row};
+use super::rows::row;
+use super::{Binding, Causality, Kind, Unit, Variable};
 use crate::scene::{LineType, Reconstruction, Scene};
 
 /// A parameter of the scene.

@@ -1,6 +1,7 @@
 //! Node positions and tensions of a line as variables.
 
-use super::{AXES, Binding, Causality, Layout, ProfileQuantity, Unit, Variable, row};
+use super::rows::{AXES, row};
+use super::{Binding, Causality, Layout, ProfileQuantity, Unit, Variable};
 use crate::model::Model;
 use crate::scene::Axis;
 use crate::simulation::Simulation;

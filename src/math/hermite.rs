@@ -1,10 +1,19 @@
-//! Cubic Hermite segment between two points with given slopes, and its derivatives.
+//! Hermite segments between two points: cubic with given slopes, quintic with given curvatures too.
+//!
+//! The quintic of a curve f misses it by f⁽⁶⁾ h⁶ u³(1 − u)³/720, with the sixth derivative somewhere between the ends: at most by
+//! max|f⁽⁶⁾| h⁶/46080, in the middle.
+//!
+//! Source: the remainder of Hermite interpolation, e.g. Stoer & Bulirsch (2002), Introduction to Numerical Analysis, theorem 2.1.5.9.
+
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
 
 /// p(t) on [t0, t0 + h] from values and slopes at both ends.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Hermite {
     start: f64,
-    span: f64,
+    /// 1/h, 0 where the curve stands still.
+    rate: f64,
     /// Coefficients of powers of u = (t − t0)/h.
     powers: [f64; 4],
 }
@@ -30,8 +39,17 @@ impl Hermite {
         let rise = p1 - p0;
         Hermite {
             start: t0,
-            span,
+            rate: 1.0 / span,
             powers: [p0, m0, 3.0 * rise - 2.0 * m0 - m1, m0 + m1 - 2.0 * rise],
+        }
+    }
+
+    /// The same value at all times.
+    pub fn constant(value: f64) -> Hermite {
+        Hermite {
+            start: 0.0,
+            rate: 0.0,
+            powers: [value, 0.0, 0.0, 0.0],
         }
     }
 
@@ -41,14 +59,54 @@ impl Hermite {
     }
 
     /// Value and derivatives at time `t`.
+    #[inline]
     pub fn at(&self, t: f64) -> Sample {
-        let u = (t - self.start) / self.span;
+        let u = (t - self.start) * self.rate;
         let [a, b, c, d] = self.powers;
         Sample {
             value: a + u * (b + u * (c + u * d)),
-            slope: (b + u * (2.0 * c + 3.0 * u * d)) / self.span,
-            curvature: (2.0 * c + 6.0 * u * d) / (self.span * self.span),
+            slope: (b + u * (2.0 * c + 3.0 * u * d)) * self.rate,
+            curvature: (2.0 * c + 6.0 * u * d) * (self.rate * self.rate),
         }
+    }
+}
+
+/// Greatest error of a quintic over the sixth derivative times the sixth power of its span [-].
+pub const QUINTIC_ERROR: f64 = 1.0 / 46080.0;
+
+/// Value, first and second derivative of a curve in space.
+pub type Motion = [Vector3<f64>; 3];
+
+/// p(u), 0 ≤ u ≤ 1, from values, slopes and curvatures at both ends, in space: coefficients of powers of u.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Quintic([Vector3<f64>; 6]);
+
+impl Quintic {
+    /// Between two ends that lie `span` apart in time.
+    pub fn new([r0, v0, a0]: Motion, [r1, v1, a1]: Motion, span: f64) -> Quintic {
+        let (slope, half_curvature) = (span * v0, 0.5 * span * span * a0);
+        let rise = r1 - r0 - slope - half_curvature;
+        let steeper = span * v1 - slope - 2.0 * half_curvature;
+        let bend = 0.5 * span * span * a1 - half_curvature;
+        Quintic([
+            r0,
+            slope,
+            half_curvature,
+            10.0 * rise - 4.0 * steeper + bend,
+            7.0 * steeper - 15.0 * rise - 2.0 * bend,
+            6.0 * rise - 3.0 * steeper + bend,
+        ])
+    }
+
+    /// At a part u of the span, of which there are `rate` in a unit of time.
+    #[inline]
+    pub fn at(&self, u: f64, rate: f64) -> Motion {
+        let [a, b, c, d, e, f] = self.0;
+        [
+            a + u * (b + u * (c + u * (d + u * (e + u * f)))),
+            (b + u * (2.0 * c + u * (3.0 * d + u * (4.0 * e + 5.0 * u * f)))) * rate,
+            (2.0 * c + u * (6.0 * d + u * (12.0 * e + 20.0 * u * f))) * (rate * rate),
+        ]
     }
 }
 
@@ -66,5 +124,44 @@ mod tests {
         assert_relative_eq!(sample.value, p(1.3), epsilon = 1e-13);
         assert_relative_eq!(sample.slope, dp(1.3), epsilon = 1e-13);
         assert_relative_eq!(sample.curvature, -12.0 * 1.3, epsilon = 1e-12);
+    }
+    /// A curve, with its first two derivatives, at a time.
+    fn wave(t: f64) -> Motion {
+        let (x, y) = ((1.3 * t).sin_cos(), (0.7 * t).sin_cos());
+        [
+            Vector3::new(x.0, y.1, t),
+            Vector3::new(1.3 * x.1, -0.7 * y.0, 1.0),
+            Vector3::new(-1.69 * x.0, -0.49 * y.1, 0.0),
+        ]
+    }
+
+    #[test]
+    fn a_quintic_misses_a_curve_by_no_more_than_its_remainder() {
+        for span in [0.5, 0.25, 0.125] {
+            let curve = Quintic::new(wave(2.0), wave(2.0 + span), span);
+            let bound = 1.3_f64.powi(6) * span.powi(6) * QUINTIC_ERROR;
+            let miss = |u: f64| {
+                (curve.at(u, 1.0 / span)[0] - wave(2.0 + u * span)[0])
+                    .x
+                    .abs()
+            };
+            let worst = (0..=20)
+                .map(|k| miss(0.05 * f64::from(k)))
+                .fold(0.0, f64::max);
+            assert!(
+                worst <= bound + 1e-15 && worst > 0.3 * bound,
+                "{worst} of {bound}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_quintic_meets_value_slope_and_curvature_at_its_ends() {
+        let curve = Quintic::new(wave(2.0), wave(2.5), 0.5);
+        for (u, t) in [(0.0, 2.0), (1.0, 2.5)] {
+            for (is, should) in curve.at(u, 2.0).into_iter().zip(wave(t)) {
+                assert_relative_eq!(is, should, epsilon = 1e-12);
+            }
+        }
     }
 }

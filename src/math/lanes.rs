@@ -4,7 +4,9 @@
 //! unit the surrounding function may use.
 
 use std::array::from_fn;
-use std::ops::{Add, Mul, Sub};
+use std::ops::{Add, Index, IndexMut, Mul, Sub};
+
+use nalgebra::Vector3;
 
 /// Number of lanes [-].
 pub const LANES: usize = 4;
@@ -114,10 +116,37 @@ impl Lanes {
         Lanes(from_fn(|i| f64::from_bits(self.0[i].to_bits() ^ signs[i])))
     }
 
+    /// Lane k takes the number of lane k − 1, and lane 0 that of lane 3.
+    #[inline(always)]
+    pub fn moved_up(self) -> Lanes {
+        Lanes([self.0[3], self.0[0], self.0[1], self.0[2]])
+    }
+
+    /// Lane k takes the number of lane k + 1, and lane 3 that of lane 0.
+    #[inline(always)]
+    pub fn moved_down(self) -> Lanes {
+        Lanes([self.0[1], self.0[2], self.0[3], self.0[0]])
+    }
+
     /// Sum of the lanes.
     #[inline(always)]
     pub fn sum(self) -> f64 {
         (self.0[0] + self.0[1]) + (self.0[2] + self.0[3])
+    }
+}
+
+impl Index<usize> for Lanes {
+    type Output = f64;
+    #[inline(always)]
+    fn index(&self, lane: usize) -> &f64 {
+        &self.0[lane]
+    }
+}
+
+impl IndexMut<usize> for Lanes {
+    #[inline(always)]
+    fn index_mut(&mut self, lane: usize) -> &mut f64 {
+        &mut self.0[lane]
     }
 }
 
@@ -168,6 +197,38 @@ impl Vectors {
         }
     }
 
+    /// The vector in a lane.
+    #[inline(always)]
+    pub fn get(&self, lane: usize) -> Vector3<f64> {
+        Vector3::new(self.x[lane], self.y[lane], self.z[lane])
+    }
+
+    /// Writes the vector in a lane.
+    #[inline(always)]
+    pub fn set(&mut self, lane: usize, vector: Vector3<f64>) {
+        (self.x[lane], self.y[lane], self.z[lane]) = (vector.x, vector.y, vector.z);
+    }
+
+    /// As [`Lanes::moved_up`].
+    #[inline(always)]
+    pub fn moved_up(self) -> Vectors {
+        Vectors {
+            x: self.x.moved_up(),
+            y: self.y.moved_up(),
+            z: self.z.moved_up(),
+        }
+    }
+
+    /// As [`Lanes::moved_down`].
+    #[inline(always)]
+    pub fn moved_down(self) -> Vectors {
+        Vectors {
+            x: self.x.moved_down(),
+            y: self.y.moved_down(),
+            z: self.z.moved_down(),
+        }
+    }
+
     /// Scalar products.
     #[inline(always)]
     pub fn dot(self, other: Vectors) -> Lanes {
@@ -206,58 +267,5 @@ impl Sub for Vectors {
             y: self.y - other.y,
             z: self.z - other.z,
         }
-    }
-}
-
-/// Vectors stored component by component.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Components {
-    /// x components.
-    pub x: Vec<f64>,
-    /// y components.
-    pub y: Vec<f64>,
-    /// z components.
-    pub z: Vec<f64>,
-}
-
-impl Components {
-    /// `count` zero vectors.
-    pub fn zeros(count: usize) -> Components {
-        let zeros = vec![0.0; count];
-        Components {
-            x: zeros.clone(),
-            y: zeros.clone(),
-            z: zeros,
-        }
-    }
-
-    /// Four vectors from `at` on.
-    #[inline(always)]
-    pub fn load(&self, at: usize) -> Vectors {
-        Vectors {
-            x: Lanes::load(&self.x, at),
-            y: Lanes::load(&self.y, at),
-            z: Lanes::load(&self.z, at),
-        }
-    }
-
-    /// Writes four vectors from `at` on.
-    #[inline(always)]
-    pub fn store(&mut self, vectors: Vectors, at: usize) {
-        vectors.x.store(&mut self.x, at);
-        vectors.y.store(&mut self.y, at);
-        vectors.z.store(&mut self.z, at);
-    }
-
-    /// The vector at `at`.
-    #[inline(always)]
-    pub fn get(&self, at: usize) -> nalgebra::Vector3<f64> {
-        nalgebra::Vector3::new(self.x[at], self.y[at], self.z[at])
-    }
-
-    /// Writes the vector at `at`.
-    #[inline(always)]
-    pub fn set(&mut self, at: usize, vector: nalgebra::Vector3<f64>) {
-        (self.x[at], self.y[at], self.z[at]) = (vector.x, vector.y, vector.z);
     }
 }

@@ -3,6 +3,7 @@ pub mod anderson;
 pub mod attitude;
 pub mod block_tridiagonal;
 pub mod elementary;
+pub mod fold;
 pub mod hermite;
 pub mod lanes;
 pub mod low_pass;

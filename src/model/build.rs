@@ -161,12 +161,12 @@ fn current(water: &scene::Water) -> Option<Current> {
 }
 
 fn vessel(scene: &Scene, vessel: &scene::Vessel) -> Vessel {
-    Vessel {
-        name: vessel.name.clone(),
-        position: Vector3::from(vessel.position),
-        attitude: Vector3::from(vessel.attitude),
-        motion: scene.motion.get(&vessel.name).map(Motion::new),
-    }
+    Vessel::new(
+        vessel.name.clone(),
+        Vector3::from(vessel.position),
+        Vector3::from(vessel.attitude),
+        scene.motion.get(&vessel.name).map(Motion::new),
+    )
 }
 
 fn build_point(scene: &Scene, vessels: &[Vessel], point: &scene::Point) -> Point {

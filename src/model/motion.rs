@@ -60,6 +60,31 @@ pub enum Motion {
     Table(Vec<TableRow>),
 }
 
+/// Bounds of the first six derivatives of a motion, over their circular frequencies: Σ A ω^k.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Derivatives {
+    /// Of displacement, of the sixth order [m/s⁶].
+    sixth: f64,
+    /// Of the sum of the angles, from the first order on [rad/s^k].
+    angles: [f64; 6],
+}
+
+impl Derivatives {
+    /// The bound of the sixth derivative of displacement times the sixth power of a span of time [s], in [m].
+    pub fn shift(&self, span: f64) -> f64 {
+        self.sixth * span.powi(6)
+    }
+
+    /// The bounds of the angles times the powers of a span of time [s], in [rad].
+    pub fn turn(&self, span: f64) -> [f64; 6] {
+        let mut power = 1.0;
+        self.angles.map(|bound| {
+            power *= span;
+            bound * power
+        })
+    }
+}
+
 /// One sine.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Harmonic {
@@ -94,6 +119,40 @@ impl Motion {
             },
             MotionPath::File(file) => Motion::Table(table(&file.rows)),
             MotionPath::Table(rows) => Motion::Table(table(rows)),
+        }
+    }
+
+    /// Bounds of its derivatives; `None` where it is piecewise cubic.
+    pub fn derivatives(&self) -> Option<Derivatives> {
+        let Motion::Harmonic { axes, ramp } = self else {
+            return None;
+        };
+        // |dᵏ(r f)| ≤ A (ω + π/ramp)ᵏ, since the ramp r is no more than 1 and its derivatives no more than those of a sine
+        let ramp = ramp.map_or(0.0, |ramp| PI / ramp);
+        let sum = |axes: &[Vec<Harmonic>], order: i32| -> f64 {
+            let components = axes.iter().flatten();
+            components
+                .map(|h| h.amplitude.abs() * (h.frequency.abs() + ramp).powi(order))
+                .sum()
+        };
+        Some(Derivatives {
+            sixth: sum(&axes[..3], 6),
+            angles: [1, 2, 3, 4, 5, 6].map(|order| sum(&axes[3..], order)),
+        })
+    }
+
+    /// Whether it has no kink within a span of time [s].
+    pub fn is_smooth(&self, [start, end]: [f64; 2]) -> bool {
+        let within = |kink: f64| kink > start && kink < end;
+        match self {
+            Motion::Harmonic { ramp: None, .. } => true,
+            Motion::Harmonic {
+                ramp: Some(ramp), ..
+            } => !within(0.0) && !within(*ramp),
+            Motion::Table(rows) => {
+                let next = rows.partition_point(|row| row.time <= start);
+                rows.get(next).is_none_or(|row| row.time >= end)
+            }
         }
     }
 
@@ -190,11 +249,11 @@ fn interpolate(rows: &[TableRow], t: f64) -> Pose {
             ..Pose::default()
         };
     }
-    let (low, high) = (rows[after - 1], rows[after]);
+    let (low, high) = (&rows[after - 1], &rows[after]);
     let mut pose = Pose::default();
     for axis in 0..6 {
         let knot = |row: &TableRow| (row.time, row.displacement[axis], row.slope[axis]);
-        let sample = Hermite::new(knot(&low), knot(&high)).at(t);
+        let sample = Hermite::new(knot(low), knot(high)).at(t);
         pose.value[axis] = sample.value;
         pose.rate[axis] = sample.slope;
         pose.acceleration[axis] = sample.curvature;

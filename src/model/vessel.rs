@@ -16,6 +16,8 @@ pub struct Vessel {
     pub attitude: Vector3<f64>,
     /// The scene's motion for it.
     pub motion: Option<Motion>,
+    /// Rotation [-] from body axes to global ones in the reference attitude, a unit quaternion.
+    reference_rotation: UnitQuaternion<f64>,
 }
 
 /// Where a vessel is, and how it moves.
@@ -28,6 +30,23 @@ pub struct Frame {
 }
 
 impl Vessel {
+    /// At a reference position [m], with reference roll, pitch and yaw [rad].
+    pub fn new(
+        name: String,
+        position: Vector3<f64>,
+        attitude: Vector3<f64>,
+        motion: Option<Motion>,
+    ) -> Vessel {
+        let [roll, pitch, yaw] = attitude.into();
+        Vessel {
+            name,
+            position,
+            attitude,
+            motion,
+            reference_rotation: UnitQuaternion::from_euler_angles(roll, pitch, yaw),
+        }
+    }
+
     /// The frame displaced by a pose: x, y, z [m] from the reference position; roll, pitch and yaw [rad] added to the reference angles.
     pub fn frame(&self, pose: &Pose) -> Frame {
         let turn = |six: &nalgebra::Vector6<f64>| Vector3::new(six[3], six[4], six[5]);
@@ -45,15 +64,9 @@ impl Vessel {
         }
     }
 
-    /// Rotation [-] from body axes to global ones in the reference attitude, a unit quaternion.
-    pub fn reference_rotation(&self) -> UnitQuaternion<f64> {
-        let [roll, pitch, yaw] = self.attitude.into();
-        UnitQuaternion::from_euler_angles(roll, pitch, yaw)
-    }
-
     /// Where a point of the body at `arm` [m] is in the reference position [m].
     pub fn reference_place(&self, arm: Vector3<f64>) -> Vector3<f64> {
-        self.position + self.reference_rotation() * arm
+        self.position + self.reference_rotation * arm
     }
 
     /// Kinematics of a point of the body at `arm` [m] in body axes; its orientation is relative to the reference attitude.
@@ -67,7 +80,7 @@ impl Vessel {
             acceleration: origin.acceleration
                 + attitude.spin_rate.cross(&arm)
                 + attitude.spin.cross(&swing),
-            orientation: attitude.rotation * self.reference_rotation().inverse(),
+            orientation: attitude.rotation * self.reference_rotation.inverse(),
             spin: attitude.spin,
         }
     }
@@ -80,12 +93,12 @@ mod tests {
     use nalgebra::Vector6;
 
     fn vessel() -> Vessel {
-        Vessel {
-            name: "platform".into(),
-            position: Vector3::new(100.0, -20.0, 3.0),
-            attitude: Vector3::new(0.0, 0.1, 0.8),
-            motion: None,
-        }
+        Vessel::new(
+            "platform".into(),
+            Vector3::new(100.0, -20.0, 3.0),
+            Vector3::new(0.0, 0.1, 0.8),
+            None,
+        )
     }
 
     fn pose(t: f64) -> Pose {

@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use crate::dynamics::motion::{AxisPath, Sample};
+use crate::dynamics::motion::{AxisPath, Foresight};
 use crate::model::{Line, Model, State, Winch};
-use crate::scene::{Reconstruction, SceneError, TimeFunction};
+use crate::scene::{SceneError, TimeFunction};
 
 /// The length that a winch pays out.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -18,36 +18,26 @@ pub(super) struct ReelPath {
 }
 
 impl ReelPath {
-    /// Continues by a communication step [s] from what a host says at a time [s] of the length change [m]; a winch that has a greatest speed
+    /// Continues by a communication step from what a host says at a time [s] of the length change [m]; a winch that has a greatest speed
     /// [m/s] lags behind what is faster.
     pub fn extend(
         &mut self,
         speed_max: Option<f64>,
         [time, wanted]: [f64; 2],
-        step: f64,
-        reconstruction: Reconstruction,
+        foresight: &Foresight,
     ) {
         let [last, before] = self.told;
         let reach = speed_max.map_or(f64::INFINITY, |speed| speed * (time - last).max(0.0));
         let position = wanted.clamp(before - reach, before + reach);
         self.told = [time, position];
-        let sample = Sample {
-            time,
-            position,
-            velocity: None,
-        };
-        self.path.extend(sample, step, reconstruction);
+        self.path.extend(foresight, position, None);
     }
 
     /// Continues along the scene's own path from a time [s] by a communication step [s]: through its value there, at its mean rate around it.
     pub fn follow(&mut self, path: &TimeFunction, time: f64, step: f64) {
         let end = time + step;
-        let to = Sample {
-            time: end,
-            position: path.at(end),
-            velocity: Some((path.at(end + step) - path.at(time)) / (2.0 * step)),
-        };
-        self.path.follow(to);
+        let velocity = (path.at(end + step) - path.at(time)) / (2.0 * step);
+        self.path.follow([time, end], [path.at(end), velocity]);
     }
 }
 
@@ -87,7 +77,7 @@ pub(super) fn paths(model: &Model, told: &[f64], time: f64, follows_scene: bool)
             start(winch, *told, follows_scene.then_some(time))
         });
         ReelPath {
-            path: AxisPath::at_rest(time, change),
+            path: AxisPath::at_rest(change),
             told: [time, change],
         }
     };

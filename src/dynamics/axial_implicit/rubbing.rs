@@ -15,9 +15,8 @@
 use nalgebra::{Vector2, Vector3};
 
 use super::AxialWork;
-use crate::dynamics::layout::FIRST;
 use crate::dynamics::leapfrog::Step;
-use crate::math::lanes::Components;
+use crate::math::fold::{Column, Field, Fold, Slot};
 use crate::physics::friction::{Axes, held};
 
 /// Change of friction over the push of the bed that asks for another pass [-].
@@ -36,28 +35,29 @@ enum Mode {
 /// What a step knows of the bed under the nodes.
 #[derive(Debug, Clone)]
 pub(super) struct Rubbing {
+    /// In the order of the nodes.
     mode: Vec<Mode>,
     /// Penetration p [m].
-    penetration: Vec<f64>,
+    penetration: Column,
     /// Normal n of the bed.
-    normal: Components,
+    normal: Field,
     /// a and b of the inverse mass off the bed [1/kg].
-    across: Vec<f64>,
-    excess: Vec<f64>,
+    across: Column,
+    excess: Column,
     /// λ_t of nodes that slide [N s].
-    rub: Components,
+    rub: Field,
 }
 
 impl Rubbing {
-    pub fn new(size: usize) -> Rubbing {
-        let zeros = || vec![0.0; size];
+    pub fn new(fold: Fold) -> Rubbing {
+        let zeros = || Column::new(fold, 0.0);
         Rubbing {
-            mode: vec![Mode::Off; size],
+            mode: vec![Mode::Off; fold.room()],
             penetration: zeros(),
-            normal: Components::zeros(size),
+            normal: Field::zeros(fold),
             across: zeros(),
             excess: zeros(),
-            rub: Components::zeros(size),
+            rub: Field::zeros(fold),
         }
     }
 }
@@ -91,30 +91,32 @@ impl Node {
 }
 
 impl AxialWork {
-    fn inner_nodes(&self) -> std::ops::Range<usize> {
-        FIRST + 1..FIRST + self.layout.segment_count
+    /// Numbers of the nodes between the ends, and where they stand.
+    fn inner_nodes(&self) -> impl Iterator<Item = (usize, Slot)> + use<> {
+        let count = self.layout.segment_count;
+        self.layout.nodes().enumerate().take(count).skip(1)
     }
 
     /// Finds out how the nodes stand to the bed, and what they are first taken to do there.
     pub(super) fn meet_bed(&mut self, step: Step) {
-        for at in self.inner_nodes() {
+        for (i, at) in self.inner_nodes() {
             let (penetration, normal) = self.layout.stand(at);
             let velocity = self.layout.velocity.get(at);
             let Some(rubbing) = &mut self.rubbing else {
                 return;
             };
-            rubbing.mode[at] = Mode::Off;
+            rubbing.mode[i] = Mode::Off;
             rubbing.penetration[at] = penetration;
             rubbing.normal.set(at, normal);
             rubbing.across[at] = self.nodes.across[at];
             rubbing.excess[at] = self.nodes.excess[at];
             rubbing.rub.set(at, Vector3::zeros());
-            self.rest(at, velocity, step);
-            self.settle_on(at, step);
+            self.rest((i, at), velocity, step);
+            self.settle_on((i, at), step);
         }
     }
 
-    fn node(&self, at: usize, step: Step) -> Option<Node> {
+    fn node(&self, at: Slot, step: Step) -> Option<Node> {
         let rubbing = self.rubbing.as_ref()?;
         let contact = self.layout.contact.as_ref()?;
         let (across, excess) = (rubbing.across[at], rubbing.excess[at]);
@@ -132,11 +134,11 @@ impl AxialWork {
     }
 
     /// Takes a node that moves at `velocity` [m/s] to do what the bed makes of it; whether that is what it was taken to do.
-    fn rest(&mut self, at: usize, velocity: Vector3<f64>, step: Step) -> bool {
+    fn rest(&mut self, (i, at): (usize, Slot), velocity: Vector3<f64>, step: Step) -> bool {
         let Some(node) = self.node(at, step) else {
             return true;
         };
-        let needed = self.needed(at, &node, velocity, step);
+        let needed = self.needed((i, at), &node, velocity, step);
         let friction = self
             .layout
             .rubbing()
@@ -145,16 +147,16 @@ impl AxialWork {
         let Some(rubbing) = &mut self.rubbing else {
             return true;
         };
-        let (mode, before) = (rubbing.mode[at], rubbing.rub.get(at));
+        let (mode, before) = (rubbing.mode[i], rubbing.rub.get(at));
         let rise = node.normal.dot(&velocity);
         let lands = rubbing.penetration[at] - step.drift * rise > 0.0;
         let push = node.spring - node.resistance * rise;
         if !lands || push <= 0.0 {
-            rubbing.mode[at] = Mode::Off;
+            rubbing.mode[i] = Mode::Off;
             return mode == Mode::Off;
         }
         let Some(friction) = friction else {
-            rubbing.mode[at] = Mode::Slides;
+            rubbing.mode[i] = Mode::Slides;
             return mode == Mode::Slides;
         };
         let axes = Axes::new(node.normal, node.tangent);
@@ -166,40 +168,46 @@ impl AxialWork {
         let held = held(holding, compliance, friction.limits(&axes, push));
         let still = mode == Mode::Off && slides.norm() <= STILL;
         if held.multiplier.is_none() || still {
-            rubbing.mode[at] = Mode::Sticks;
+            rubbing.mode[i] = Mode::Sticks;
             return mode == Mode::Sticks;
         }
         let rub = axes.vector(&held.force);
-        rubbing.mode[at] = Mode::Slides;
+        rubbing.mode[i] = Mode::Slides;
         rubbing.rub.set(at, rub);
         mode == Mode::Slides && (rub - before).norm() <= RUB_TOLERANCE * push
     }
 
     /// The friction [N s] that a node moved with, in the pass that gave it `velocity` [m/s].
-    fn needed(&self, at: usize, node: &Node, velocity: Vector3<f64>, step: Step) -> Vector3<f64> {
+    fn needed(
+        &self,
+        (i, at): (usize, Slot),
+        node: &Node,
+        velocity: Vector3<f64>,
+        step: Step,
+    ) -> Vector3<f64> {
         let Some(rubbing) = &self.rubbing else {
             return Vector3::zeros();
         };
-        match rubbing.mode[at] {
+        match rubbing.mode[i] {
             Mode::Off => Vector3::zeros(),
             Mode::Slides => rubbing.rub.get(at),
             Mode::Sticks => {
-                let pull = |at: usize| self.rows.tension[at] * self.segments.direction.get(at);
-                let impulse = step.kick * (pull(at) - pull(at - 1));
+                let pull = |at: Slot| self.rows.tension[at] * self.segments.direction.get(at);
+                let impulse = step.kick * (pull(at) - pull(at.before()));
                 node.flat(node.mass_times(velocity - self.nodes.fall.get(at)) - impulse)
             }
         }
     }
 
     /// Puts the bed into the equation of a node.
-    fn settle_on(&mut self, at: usize, step: Step) {
+    fn settle_on(&mut self, (i, at): (usize, Slot), step: Step) {
         let Some(node) = self.node(at, step) else {
             return;
         };
         let Some(rubbing) = &self.rubbing else {
             return;
         };
-        let (mode, rub) = (rubbing.mode[at], rubbing.rub.get(at));
+        let (mode, rub) = (rubbing.mode[i], rubbing.rub.get(at));
         let nodes = &mut self.nodes;
         let fall = nodes.fall.get(at);
         [nodes.across[at], nodes.excess[at]] = node.inverse;
@@ -229,10 +237,10 @@ impl AxialWork {
     /// Compares what the nodes do with what they were taken to do; false if that asks for another pass.
     pub(super) fn check_bed(&mut self, step: Step) -> bool {
         let mut holds = true;
-        for at in self.inner_nodes() {
+        for (i, at) in self.inner_nodes() {
             let velocity = self.layout.velocity_before.get(at);
-            if !self.rest(at, velocity, step) {
-                self.settle_on(at, step);
+            if !self.rest((i, at), velocity, step) {
+                self.settle_on((i, at), step);
                 holds = false;
             }
         }
@@ -241,12 +249,12 @@ impl AxialWork {
 
     /// Remembers the friction of the step.
     pub(super) fn keep_rub(&mut self, step: Step) {
-        for at in self.inner_nodes() {
+        for (i, at) in self.inner_nodes() {
             let velocity = self.layout.velocity_before.get(at);
             let Some(node) = self.node(at, step) else {
                 return;
             };
-            let rub = self.needed(at, &node, velocity, step);
+            let rub = self.needed((i, at), &node, velocity, step);
             self.layout.set_rub(at, rub / step.kick);
         }
     }

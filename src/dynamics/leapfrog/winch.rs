@@ -23,10 +23,9 @@
 use nalgebra::Vector3;
 
 use super::{LineWork, Step};
-use crate::dynamics::layout::FIRST;
 use crate::dynamics::ledger::axial_energy;
 use crate::dynamics::motion::AxisPath;
-use crate::math::lanes::{Components, LANES};
+use crate::math::fold::{Column, Field, Fold, Slot};
 use crate::model::{End, Line, LineState, Passage, Reel, Winch};
 
 /// Segments from the winch on whose energy a split or a merge can change.
@@ -54,7 +53,7 @@ impl WinchWork {
         line.winch.as_ref()?;
         Some(Box::new(WinchWork {
             line: line.clone(),
-            path: AxisPath::at_rest(0.0, 0.0),
+            path: AxisPath::at_rest(0.0),
             reel: Reel::at_rest(0.0),
             next: Reel::at_rest(0.0),
             density: 0.0,
@@ -144,11 +143,13 @@ impl LineWork {
             return;
         };
         let [change, rate] = reel.half_step;
-        let at = self.layout.end_index(End::B);
-        let place = |at: usize| self.layout.position.get(at) - lag * self.layout.velocity.get(at);
-        let stretch = (place(at) - place(at - 1)) / winch.end_length(change); // λ q
-        let velocity = self.layout.velocity.get(at) - rate * stretch;
-        self.layout.velocity.set(at, velocity);
+        let layout = &mut self.layout;
+        let (end, near) = (layout.end_slot(End::B), layout.end_neighbour(End::B));
+        let place = |at: Slot| layout.position.get(at) - lag * layout.velocity.get(at);
+        let stretch = (place(end) - place(near)) / winch.end_length(change); // λ q
+        let velocity = layout.velocity.get(end) - rate * stretch;
+        layout.velocity.set(end, velocity);
+        layout.renew_ghosts(self.parted);
     }
 
     /// After the tensions of t_n: what a length of the end segment holds.
@@ -156,9 +157,11 @@ impl LineWork {
         let Some(winch) = &mut self.winch else {
             return;
         };
-        let (at, i) = (self.layout.end_index(End::B), self.layout.segment_count - 1);
+        let (layout, i) = (&self.layout, self.layout.segment_count - 1);
         let length = winch.line.segments.length[i];
-        let chord = self.layout.position.get(at) - self.layout.position.get(at - 1);
+        let ends = [layout.end_slot(End::B), layout.end_neighbour(End::B)];
+        let [end, near] = ends.map(|at| layout.position.get(at));
+        let chord = end - near;
         winch.density = axial_energy(&winch.line, i, chord.norm() / length - 1.0) / length;
     }
 
@@ -179,15 +182,15 @@ impl LineWork {
             ],
         };
         let halves = [now.half_step[0], winch.next.half_step[0]];
-        let (layout, at) = (&self.layout, self.layout.end_index(End::B) - 1);
-        let tangent = layout.tangent_of(at);
+        let (layout, at) = (&self.layout, self.layout.end_neighbour(End::B));
+        let tangent = layout.tangent_of(layout.segment_count - 1);
         let velocities = [layout.velocity_before.get(at), layout.velocity.get(at)];
         let moving = velocities.map(|velocity| {
             let along = velocity.dot(&tangent).powi(2);
             [velocity.norm_squared() - along, along]
         });
         let [before, after] = velocities.map(|velocity| velocity.z);
-        let height = layout.position.z[at] - step.drift * after; // at t_n
+        let height = layout.position.get(at).z - step.drift * after; // at t_n
         let lag = step.kick - 0.5 * step.drift;
         let heights = [height - lag * before, height + 0.5 * step.drift * after];
         winch.given += winch.density * (halves[1] - halves[0]);
@@ -227,7 +230,7 @@ impl LineWork {
             return;
         };
         let (n, reel) = (self.layout.segment_count, winch.reel);
-        let first = n.saturating_sub(CHANGED);
+        let (first, fold) = (n.saturating_sub(CHANGED), self.layout.fold);
         winch.line.set_length_change(reel.half_step[0]); // the time of the energies
         let before = self.energy_from(first, lag);
         let layout = &mut self.layout;
@@ -244,7 +247,7 @@ impl LineWork {
                 let nominal = winch.winch().reel().segments.length[n - 1];
                 let part = nominal / winch.end_length(reel.change);
                 for motion in motions {
-                    split(motion, FIRST + n, part);
+                    split(motion, fold, n, part);
                 }
                 n + 1
             }
@@ -254,9 +257,9 @@ impl LineWork {
                 winch.line.pay_out(n - 1, reel.half_step[0]);
                 let new = last_masses(&winch.line, n - 2);
                 for motion in [velocity, velocity_before] {
-                    merge(motion, FIRST + n, old, new);
+                    merge(motion, fold, n, old, new);
                 }
-                place.set(FIRST + n - 1, place.get(FIRST + n));
+                place.set(fold.slot(n - 1), place.get(fold.slot(n)));
                 n - 1
             }
         };
@@ -275,21 +278,21 @@ impl LineWork {
         };
         let (layout, line) = (&self.layout, &winch.line);
         let n = layout.segment_count;
-        let last = |i: usize| layout.position.get(FIRST + i) - layout.position.get(FIRST + i - 1);
+        let position = |i: usize| layout.position.get(layout.slot(i));
+        let velocity = |i: usize| layout.velocity.get(layout.slot(i));
+        let last = |i: usize| position(i) - position(i - 1);
         let [_, rate] = winch.reel.half_step;
         let stretch = last(n) / winch.end_length(winch.reel.change);
         let place = |i: usize| {
             let transport = if i == n { rate } else { 0.0 };
-            let velocity = layout.velocity.get(FIRST + i) + transport * stretch;
-            layout.position.get(FIRST + i) - lag * velocity
+            position(i) - lag * (velocity(i) + transport * stretch)
         };
         let axial = |i: usize| {
             let strain = (place(i + 1) - place(i)).norm() / line.segments.length[i] - 1.0;
             axial_energy(line, i, strain)
         };
         let carried = |i: usize| {
-            let (velocity, tangent) =
-                (layout.velocity.get(FIRST + i), layout.tangent_of(FIRST + i));
+            let (velocity, tangent) = (velocity(i), layout.tangent_of(i));
             let along = velocity.dot(&tangent).powi(2);
             let across = velocity.norm_squared() - along;
             let nodes = &line.nodes;
@@ -336,7 +339,9 @@ impl LineWork {
             |i| 1.0 / nodes.mass_normal[i],
             0.0,
         );
-        put(&mut self.interior, from.max(1), n, |_| 1.0, 0.0);
+        let first = self.interior[layout.slot(0)];
+        let interior = |i: usize| if i == 0 { first } else { 1.0 };
+        put(&mut self.interior, from, n, interior, 0.0);
         if let (Some(into), Some(values)) = (&mut layout.mass_damping, &nodes.mass_damping) {
             put(into, from, n + 1, |i| values[i], 0.0);
         }
@@ -358,15 +363,11 @@ impl LineWork {
                 put(&mut bottom.stick, from, n + 1, |i| contact.stick[i], 0.0);
             }
         }
-        for (motion, used) in [
-            (&mut self.pull, n),
-            (&mut layout.velocity, n + 1),
-            (&mut layout.velocity_before, n + 1),
-        ] {
-            for values in [&mut motion.x, &mut motion.y, &mut motion.z] {
-                put(values, used, used, |_| 0.0, 0.0);
-            }
+        for at in beyond(layout.fold, from, n + 1) {
+            layout.velocity.set(at, Vector3::zeros());
+            layout.velocity_before.set(at, Vector3::zeros());
         }
+        layout.renew_ghosts(self.parted);
         self.lay_out_water(from);
     }
 
@@ -397,28 +398,34 @@ fn last_masses(line: &Line, first: usize) -> [f64; 3] {
     [0, 1, 2].map(|k| masses.get(first + k).copied().unwrap_or(0.0))
 }
 
-/// Writes `count` values, from number `from` on, and padding behind them as far as a kernel reads.
-fn put(into: &mut [f64], from: usize, count: usize, value: impl Fn(usize) -> f64, padding: f64) {
-    for i in from..count {
-        into[FIRST + i] = value(i);
-    }
-    let end = (FIRST + count + 2 * LANES).min(into.len());
-    into[FIRST + count..end].fill(padding);
+/// Writes `count` values, from number `from` on, and padding behind them.
+fn put(into: &mut Column, from: usize, count: usize, value: impl Fn(usize) -> f64, padding: f64) {
+    let fold = into.fold();
+    (from..count).for_each(|i| into[fold.slot(i)] = value(i));
+    beyond(fold, from, count).for_each(|at| into[at] = padding);
+    into.wrap();
 }
 
-/// Puts a node into the last segment, which ends at `end`, at a part [-] of it.
-fn split(motion: &mut Components, end: usize, part: f64) {
-    let (near, far) = (motion.get(end - 1), motion.get(end));
-    motion.set(end, near + part * (far - near));
-    motion.set(end + 1, far);
+/// The slots behind `count` nodes that need to be padded anew, where nodes from `from` on have changed: none if the end is where it was.
+fn beyond(fold: Fold, from: usize, count: usize) -> impl Iterator<Item = Slot> {
+    let end = if from == 0 { fold.room() } else { count };
+    (count..end).map(move |i| fold.slot(i))
+}
+
+/// Puts a node into the last segment, which ends at node `end`, at a part [-] of it.
+fn split(motion: &mut Field, fold: Fold, end: usize, part: f64) {
+    let [near, far] = [end - 1, end].map(|i| motion.get(fold.slot(i)));
+    motion.set(fold.slot(end), near + part * (far - near));
+    motion.set(fold.slot(end + 1), far);
 }
 
 /// Takes out the neighbour of the end, so that momentum stays: of masses `old` of the three last nodes and `new` of the two that are left and none [kg].
-fn merge(velocity: &mut Components, end: usize, old: [f64; 3], new: [f64; 3]) {
-    let [before, near, far] = [end - 2, end - 1, end].map(|at| velocity.get(at));
+fn merge(velocity: &mut Field, fold: Fold, end: usize, old: [f64; 3], new: [f64; 3]) {
+    let last = [end - 2, end - 1, end].map(|i| fold.slot(i));
+    let [before, near, far] = last.map(|at| velocity.get(at));
     let momentum = old[0] * before + old[1] * near + (old[2] - new[1]) * far;
-    velocity.set(end - 2, momentum / new[0]);
-    velocity.set(end - 1, far);
+    velocity.set(last[0], momentum / new[0]);
+    velocity.set(last[1], far);
 }
 
 #[cfg(test)]
@@ -475,7 +482,9 @@ mod tests {
         let motions = [&work.layout.velocity, &work.layout.velocity_before];
         let momenta = motions.map(|motion| {
             let nodes = nodes.mass.iter().enumerate();
-            nodes.map(|(i, mass)| *mass * motion.get(FIRST + i)).sum()
+            nodes
+                .map(|(i, mass)| *mass * motion.get(work.layout.slot(i)))
+                .sum()
         });
         (nodes.mass.iter().sum(), momenta)
     }
@@ -511,7 +520,8 @@ mod tests {
             .zip(&motion)
         {
             for i in 0..=10 {
-                assert_relative_eq!(motion.get(FIRST + i), was.get(FIRST + i), epsilon = 1e-12);
+                let at = again.layout.slot(i);
+                assert_relative_eq!(motion.get(at), was.get(at), epsilon = 1e-12);
             }
         }
     }

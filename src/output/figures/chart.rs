@@ -53,6 +53,8 @@ pub enum Stroke {
     Nodes,
     /// Discs at the points.
     Marks,
+    /// The rectangle between the first two points.
+    Band,
 }
 
 /// A curve of a chart.
@@ -62,6 +64,8 @@ pub struct Curve {
     pub points: Vec<[f64; 2]>,
     /// Name in the legend; none where empty.
     pub name: String,
+    /// Words beside the points; none where empty.
+    labels: Vec<String>,
     behind: bool,
     colour: [u8; 3],
     stroke: Stroke,
@@ -73,7 +77,8 @@ impl Curve {
         Curve {
             points,
             name: String::new(),
-            behind: matches!(stroke, Stroke::Faint | Stroke::Level),
+            labels: Vec::new(),
+            behind: matches!(stroke, Stroke::Faint | Stroke::Level | Stroke::Band),
             colour,
             stroke,
         }
@@ -82,6 +87,12 @@ impl Curve {
     /// The same with a name for the legend.
     pub fn named(mut self, name: &str) -> Curve {
         self.name = name.to_string();
+        self
+    }
+
+    /// The same with words beside its points, in their order.
+    pub fn labelled(mut self, labels: Vec<String>) -> Curve {
+        self.labels = labels;
         self
     }
 
@@ -95,6 +106,7 @@ impl Curve {
             Stroke::Level => (1.0, 1.4),
             Stroke::Nodes => (0.75, 1.0),
             Stroke::Marks => (0.85, 1.0),
+            Stroke::Band => (0.10, 1.0),
         };
         RGBColor(r, g, b).mix(opacity).stroke_width(fine_f(width))
     }
@@ -167,18 +179,7 @@ impl Chart {
 
     /// Where every entry of the legend stands: left edge [px] and row.
     fn legend(&self) -> Vec<(&Curve, u32, u32)> {
-        let (mut left, mut row) = (LABELS_LEFT, 0);
-        let mut places = Vec::new();
-        for curve in self.named() {
-            let letters = curve.name.chars().count() as f64;
-            let width = SAMPLE + 6 + (letters * LETTER * f64::from(TEXT)) as u32 + 14;
-            if left + width > self.width && left > LABELS_LEFT {
-                (left, row) = (LABELS_LEFT, row + 1);
-            }
-            places.push((curve, left, row));
-            left += width;
-        }
-        places
+        entries(self.named(), self.width)
     }
 
     fn total_height(&self) -> u32 {
@@ -243,10 +244,56 @@ impl Chart {
                     let disc = |p| Circle::new(p, fine_f(3.4), style.filled());
                     chart.draw_series(points().map(disc))?;
                 }
+                Stroke::Band => {
+                    let corners: Vec<(f64, f64)> = points().take(2).collect();
+                    if let [from, to] = corners[..] {
+                        let rectangle = Rectangle::new([from, to], style.filled());
+                        chart.draw_series([rectangle])?;
+                    }
+                }
             };
+        }
+        let place = |point: &[f64; 2]| chart.backend_coord(&(point[0], point[1]));
+        for curve in &self.curves {
+            let labels = curve.points.iter().zip(&curve.labels);
+            for (point, label) in labels.filter(|(_, label)| !label.is_empty()) {
+                draw_label(area, label, curve.colour, place(point))?;
+            }
         }
         Ok(())
     }
+}
+
+/// Words right of a point, on white so that curves do not run through them.
+fn draw_label(area: &Area, label: &str, colour: [u8; 3], point: (i32, i32)) -> DrawResult {
+    const SIZE: f64 = 12.0;
+    let (left, top) = area.get_base_pixel();
+    let (x, y) = (point.0 - left + fine(7), point.1 - top);
+    let width = fine_f(LETTER * SIZE * label.chars().count() as f64) as i32;
+    let ground = [(x - fine(1), y - fine(7)), (x + width, y + fine(7))];
+    area.draw(&Rectangle::new(ground, WHITE.mix(0.7).filled()))?;
+    let [r, g, b] = colour;
+    let colour = RGBColor(r, g, b);
+    let text = text_style(SIZE)
+        .color(&colour)
+        .pos(Pos::new(HPos::Left, VPos::Center));
+    area.draw_text(label, &text, (x, y))
+}
+
+/// Where every entry of a legend of this width [px] stands: left edge [px] and row.
+fn entries<'a>(curves: impl Iterator<Item = &'a Curve>, wide: u32) -> Vec<(&'a Curve, u32, u32)> {
+    let (mut left, mut row) = (LABELS_LEFT, 0);
+    let mut places = Vec::new();
+    for curve in curves {
+        let letters = curve.name.chars().count() as f64;
+        let width = SAMPLE + 6 + (letters * LETTER * f64::from(TEXT)) as u32 + 14;
+        if left + width > wide && left > LABELS_LEFT {
+            (left, row) = (LABELS_LEFT, row + 1);
+        }
+        places.push((curve, left, row));
+        left += width;
+    }
+    places
 }
 
 impl Curve {
@@ -296,6 +343,10 @@ fn draw_entry(area: &Area, curve: &Curve, left: u32, middle: u32) -> DrawResult 
             let disc = Circle::new(((x0 + x1) / 2, y), fine_f(3.4), style.filled());
             area.draw(&disc)?;
         }
+        Stroke::Band => {
+            let corners = [(x0, y - fine(5)), (x1, y + fine(5))];
+            area.draw(&Rectangle::new(corners, style.filled()))?;
+        }
     }
     let text = text_style(f64::from(TEXT))
         .color(&RGBColor(40, 40, 40))
@@ -305,10 +356,22 @@ fn draw_entry(area: &Area, curve: &Curve, left: u32, middle: u32) -> DrawResult 
 
 /// Charts below one another as one SVG document.
 pub fn stacked_svg(charts: &[Chart]) -> String {
-    let width = charts.iter().map(|chart| chart.width).max().unwrap_or(0);
-    let height: u32 = charts.iter().map(Chart::total_height).sum();
+    grid_svg(&[], charts, 1)
+}
+
+/// Charts of one size in rows of so many, below the legend that they share, as one SVG document.
+pub fn grid_svg(legend: &[Curve], charts: &[Chart], columns: usize) -> String {
+    let rows = || charts.chunks(columns.max(1));
+    let sum = |row: &[Chart]| row.iter().map(|chart| chart.width).sum();
+    let width = rows().map(sum).max().unwrap_or(0);
+    let legend = entries(legend.iter(), width);
+    let head = legend
+        .last()
+        .map_or(0, |&(_, _, row)| (row + 1) * LEGEND_ROW + MARGIN);
+    let height: u32 = head + rows().map(row_height).sum::<u32>();
     let mut svg = String::new();
-    draw_stack(&mut svg, charts, width, height).expect("drawing into a string does not fail");
+    draw_grid(&mut svg, &legend, rows(), [width, height, head])
+        .expect("drawing into a string does not fail");
     // The drawing is FINE times as large as the figure; round joins keep a sharp peak from growing a spike.
     let end_of_head = svg.find('>').map_or(0, |end| end + 1);
     let mut head = String::new();
@@ -324,13 +387,30 @@ pub fn stacked_svg(charts: &[Chart]) -> String {
     svg
 }
 
-fn draw_stack(svg: &mut String, charts: &[Chart], width: u32, height: u32) -> DrawResult {
+fn row_height(row: &[Chart]) -> u32 {
+    row.iter().map(Chart::total_height).max().unwrap_or(0)
+}
+
+/// Draws rows of charts below a legend; the last three numbers are width, height and height of the legend [px].
+fn draw_grid<'a>(
+    svg: &mut String,
+    legend: &[(&Curve, u32, u32)],
+    rows: impl Iterator<Item = &'a [Chart]>,
+    [width, height, head]: [u32; 3],
+) -> DrawResult {
     let root = SVGBackend::with_string(svg, (width * FINE, height * FINE)).into_drawing_area();
     root.fill(&WHITE)?;
-    let mut rest = root.clone();
-    for chart in charts {
-        let (top, below) = rest.split_vertically(fine(chart.total_height()));
-        chart.draw(&top)?;
+    for &(curve, left, row) in legend {
+        draw_entry(&root, curve, left, MARGIN + row * LEGEND_ROW)?;
+    }
+    let (_, mut rest) = root.split_vertically(fine(head));
+    for row in rows {
+        let (mut line, below) = rest.split_vertically(fine(row_height(row)));
+        for chart in row {
+            let (left, right) = line.split_horizontally(fine(chart.width));
+            chart.draw(&left)?;
+            line = right;
+        }
         rest = below;
     }
     root.present()

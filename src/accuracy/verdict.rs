@@ -1,0 +1,160 @@
+//! What a study says at a level of error: who reaches it, at what cost, and where a peer is cheaper.
+
+use super::errors::Metric;
+use super::{Code, Run, Study};
+
+/// Error levels that are judged [-].
+pub const LEVELS: [f64; 5] = [0.05, 0.03, 0.02, 0.01, 0.005];
+/// Runs beyond this error [-] show nothing.
+const ERROR_MAX: f64 = 1.0;
+
+/// The cheapest ways to one level of error.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Verdict<'a> {
+    /// What is compared.
+    pub metric: Metric,
+    /// Error level [-].
+    pub level: f64,
+    /// Whether it is one that moorline is held to: 3 % of RMS tension, 1 % in position; of lines without a bed 1 % of RMS tension.
+    pub key: bool,
+    /// Whether the converged solution is certain enough to judge this level.
+    pub certain: bool,
+    /// moorline's cheapest run.
+    pub own: Option<&'a Run>,
+    /// Every peer's cheapest run, where it has one.
+    pub peers: Vec<(&'a str, Option<&'a Run>)>,
+}
+
+impl<'a> Verdict<'a> {
+    /// The cheaper of the peers' runs.
+    pub fn best_peer(&self) -> Option<&'a Run> {
+        let runs = self.peers.iter().filter_map(|(_, run)| *run);
+        runs.min_by(|a, b| a.cost.total_cmp(&b.cost))
+    }
+
+    /// Cost of the better peer over moorline's [-].
+    pub fn ratio(&self) -> Option<f64> {
+        Some(self.best_peer()?.cost / self.own?.cost)
+    }
+
+    /// Least and greatest ratio [-] that the timings of both runs allow.
+    pub fn ratio_range(&self) -> Option<[f64; 2]> {
+        let ([own_min, own_max], [peer_min, peer_max]) =
+            (self.own?.spread(), self.best_peer()?.spread());
+        Some([peer_min / own_max, peer_max / own_min])
+    }
+}
+
+/// A peer's run on its frontier beside moorline's cheapest run of no greater error.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Duel<'a> {
+    /// What is compared.
+    pub metric: Metric,
+    /// The peer's error, or the converged solution's uncertainty where that is greater [-].
+    pub level: f64,
+    /// moorline's run, where it has one.
+    pub own: Option<&'a Run>,
+    /// The peer's run.
+    pub peer: &'a Run,
+}
+
+impl Duel<'_> {
+    /// Cost of the peer over moorline's [-]; 0 where moorline does not get there.
+    pub fn ratio(&self) -> f64 {
+        self.own.map_or(0.0, |own| self.peer.cost / own.cost)
+    }
+}
+
+impl Study {
+    /// Verdicts at all levels, metric by metric.
+    pub fn verdicts(&self) -> Vec<Verdict<'_>> {
+        let of_metric = |metric: Metric| LEVELS.map(|level| self.verdict(metric, level));
+        Metric::ALL.into_iter().flat_map(of_metric).collect()
+    }
+
+    /// The verdict at a level [-].
+    pub fn verdict(&self, metric: Metric, level: f64) -> Verdict<'_> {
+        let of_peer = |name| {
+            let its_runs = move |code: &Code| matches!(code, Code::Peer(peer) if peer == name);
+            (name, self.cheapest(metric, level, its_runs))
+        };
+        Verdict {
+            metric,
+            level,
+            key: match metric {
+                Metric::Rms => level == 0.03 || (level == 0.01 && !self.on_bed),
+                Metric::Position => level == 0.01,
+                Metric::LowPassed | Metric::Peak => false,
+            },
+            certain: level >= self.uncertainty.of(metric),
+            own: self.cheapest(metric, level, Code::is_own),
+            peers: self.peers().into_iter().map(of_peer).collect(),
+        }
+    }
+
+    /// Every run on a peer's frontier against moorline: as costs are staircases in the error, a peer is cheaper somewhere if it is
+    /// cheaper at one of these.
+    pub fn duels<'a>(&'a self, metric: Metric) -> Vec<Duel<'a>> {
+        let of_peer = |name: &str| {
+            let its_runs = |code: &Code| matches!(code, Code::Peer(peer) if peer == name);
+            self.frontier(metric, its_runs)
+        };
+        let runs = self.peers().into_iter().flat_map(of_peer);
+        let runs = runs.filter(|run| run.errors.of(metric) <= ERROR_MAX);
+        let duel = |peer: &'a Run| {
+            let level = peer.errors.of(metric).max(self.uncertainty.of(metric));
+            Duel {
+                metric,
+                level,
+                own: self.cheapest(metric, level, Code::is_own),
+                peer,
+            }
+        };
+        runs.map(duel).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::errors::Errors;
+    use super::super::tests::{own, peer, study_of};
+    use super::*;
+
+    #[test]
+    fn a_verdict_sets_the_cheaper_peer_against_the_cheapest_own_run() {
+        let study = study_of(vec![
+            own(1.0, 0.02),
+            own(4.0, 0.004),
+            peer("A", 40.0, 0.03),
+            peer("B", 30.0, 0.025),
+            peer("A", 100.0, 0.01),
+        ]);
+        let verdict = study.verdict(Metric::Rms, 0.03);
+        assert!(verdict.key && verdict.certain);
+        assert_eq!(verdict.ratio(), Some(30.0));
+        assert_eq!(study.verdict(Metric::Rms, 0.01).ratio(), Some(25.0));
+        assert_eq!(study.verdict(Metric::Rms, 0.005).ratio(), None);
+        assert_eq!(study.verdicts().len(), 20);
+    }
+
+    #[test]
+    fn a_peer_that_is_cheaper_at_one_level_alone_is_found() {
+        let study = study_of(vec![
+            own(1.0, 0.02),
+            own(9.0, 0.004),
+            peer("A", 7.0, 0.015),
+            peer("A", 90.0, 0.003),
+        ]);
+        let ratios: Vec<f64> = study.duels(Metric::Rms).iter().map(Duel::ratio).collect();
+        // At 1.5 % moorline needs its dear run; at 0.3 % it has none.
+        assert_eq!(ratios, [7.0 / 9.0, 0.0]);
+    }
+
+    #[test]
+    fn what_a_peer_reaches_within_the_uncertainty_counts_as_the_uncertainty() {
+        let mut study = study_of(vec![own(1.0, 0.009), peer("A", 50.0, 0.001)]);
+        study.uncertainty = Errors::all(0.01);
+        assert_eq!(study.duels(Metric::Rms)[0].ratio(), 50.0);
+        assert!(!study.verdict(Metric::Rms, 0.005).certain);
+    }
+}

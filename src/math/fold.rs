@@ -1,0 +1,250 @@
+//! A chain of nodes folded into the lanes of vectors, so that the neighbours of a vector of nodes are whole vectors too.
+//!
+//! With m = ⌈count/4⌉ rows, node i stands in row i mod m of lane ⌊i/m⌋:
+//!
+//! ```text
+//! row 0, a ghost     ·    m−1   2m−1   3m−1
+//! row 1              0     m     2m     3m
+//! row 2              1    m+1   2m+1   3m+1
+//! …
+//! row m             m−1  2m−1   3m−1   4m−1
+//! row m+1, a ghost   m    2m     3m     ·
+//! ```
+//!
+//! The nodes before and after those of a row are those of the rows before and after it: no lane is shifted, and no vector is read that
+//! overlaps two that were written. The ghost rows repeat the rows m and 1, moved on by a lane, and are renewed by `wrap` when these
+//! have changed. Nodes beyond the last one are padding. Segment i, which lies between the nodes i and i + 1, stands where node i does.
+
+use nalgebra::Vector3;
+use std::ops::{Index, IndexMut};
+
+use super::lanes::{LANES, Lanes, Vectors};
+
+/// How many rows a chain is folded into.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Fold {
+    rows: usize,
+}
+
+/// Where a node stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Slot {
+    /// Row, of which the first is number 1.
+    pub row: usize,
+    /// Lane.
+    pub lane: usize,
+}
+
+impl Fold {
+    /// For `count` nodes.
+    pub fn new(count: usize) -> Fold {
+        Fold {
+            rows: count.div_ceil(LANES).max(1),
+        }
+    }
+
+    /// Number of rows without ghosts [-].
+    pub fn rows(self) -> usize {
+        self.rows
+    }
+
+    /// Number of nodes that there is room for [-].
+    pub fn room(self) -> usize {
+        LANES * self.rows
+    }
+
+    /// Where node `i` stands.
+    pub fn slot(self, i: usize) -> Slot {
+        let (i, rows) = (i as u32, self.rows as u32); // shorter to divide
+        Slot {
+            row: (i % rows) as usize + 1,
+            lane: (i / rows) as usize,
+        }
+    }
+
+    /// Where the nodes stand, from the first to the last that there is room for.
+    pub fn slots(self) -> impl Iterator<Item = Slot> {
+        (0..LANES).flat_map(move |lane| (1..=self.rows).map(move |row| Slot { row, lane }))
+    }
+
+    /// A number for every node, and `padding` behind them.
+    pub fn column(self, values: &[f64], padding: f64) -> Column {
+        let mut column = Column::new(self, padding);
+        column.assign(values);
+        column
+    }
+}
+
+impl Slot {
+    /// Where the node before stands: in a ghost row, if need be.
+    pub fn before(self) -> Slot {
+        Slot {
+            row: self.row - 1,
+            ..self
+        }
+    }
+
+    /// Where the node after stands: in a ghost row, if need be.
+    pub fn after(self) -> Slot {
+        Slot {
+            row: self.row + 1,
+            ..self
+        }
+    }
+}
+
+/// A number for every node of a folded chain.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Column {
+    rows: Vec<Lanes>,
+}
+
+impl Column {
+    /// The same number everywhere.
+    pub fn new(fold: Fold, value: f64) -> Column {
+        Column {
+            rows: vec![Lanes::splat(value); fold.rows + 2],
+        }
+    }
+
+    /// The numbers in a row.
+    #[inline(always)]
+    pub fn load(&self, row: usize) -> Lanes {
+        self.rows[row]
+    }
+
+    /// Writes the numbers in a row.
+    #[inline(always)]
+    pub fn store(&mut self, lanes: Lanes, row: usize) {
+        self.rows[row] = lanes;
+    }
+
+    /// Writes a number everywhere.
+    pub fn fill(&mut self, value: f64) {
+        self.rows.fill(Lanes::splat(value));
+    }
+
+    /// Writes the numbers of the first nodes.
+    pub fn assign(&mut self, values: &[f64]) {
+        let slots = self.fold().slots();
+        slots.zip(values).for_each(|(at, value)| self[at] = *value);
+        self.wrap();
+    }
+
+    /// The numbers of the first `count` nodes.
+    pub fn values(&self, count: usize) -> impl Iterator<Item = f64> + '_ {
+        self.fold().slots().take(count).map(|at| self[at])
+    }
+
+    /// Renews the ghosts.
+    #[inline(always)]
+    pub fn wrap(&mut self) {
+        let last = self.rows.len() - 1;
+        self.rows[0] = self.rows[last - 1].moved_up();
+        self.rows[last] = self.rows[1].moved_down();
+    }
+
+    /// How it is folded.
+    pub fn fold(&self) -> Fold {
+        Fold {
+            rows: self.rows.len() - 2,
+        }
+    }
+}
+
+impl Index<Slot> for Column {
+    type Output = f64;
+    fn index(&self, at: Slot) -> &f64 {
+        &self.rows[at.row][at.lane]
+    }
+}
+
+impl IndexMut<Slot> for Column {
+    fn index_mut(&mut self, at: Slot) -> &mut f64 {
+        &mut self.rows[at.row][at.lane]
+    }
+}
+
+/// A vector for every node of a folded chain.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Field {
+    rows: Vec<Vectors>,
+}
+
+impl Field {
+    /// Zero vectors.
+    pub fn zeros(fold: Fold) -> Field {
+        Field {
+            rows: vec![Vectors::zero(); fold.rows + 2],
+        }
+    }
+
+    /// The vectors in a row.
+    #[inline(always)]
+    pub fn load(&self, row: usize) -> Vectors {
+        self.rows[row]
+    }
+
+    /// Writes the vectors in a row.
+    #[inline(always)]
+    pub fn store(&mut self, vectors: Vectors, row: usize) {
+        self.rows[row] = vectors;
+    }
+
+    /// The vector of a node.
+    #[inline(always)]
+    pub fn get(&self, at: Slot) -> Vector3<f64> {
+        self.rows[at.row].get(at.lane)
+    }
+
+    /// Writes the vector of a node.
+    #[inline(always)]
+    pub fn set(&mut self, at: Slot, vector: Vector3<f64>) {
+        self.rows[at.row].set(at.lane, vector);
+    }
+
+    /// Renews the ghosts.
+    #[inline(always)]
+    pub fn wrap(&mut self) {
+        let last = self.rows.len() - 1;
+        self.rows[0] = self.rows[last - 1].moved_up();
+        self.rows[last] = self.rows[1].moved_down();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn neighbours_stand_in_the_rows_before_and_after() {
+        for count in 1..30 {
+            let fold = Fold::new(count);
+            assert!(fold.room() >= count && fold.room() < count + LANES);
+            let values: Vec<f64> = (0..count).map(|i| i as f64).collect();
+            let column = fold.column(&values, -1.0);
+            assert!(column.values(count).eq(values));
+            for i in 0..count {
+                let at = fold.slot(i);
+                assert_eq!(fold.slots().nth(i), Some(at));
+                assert_eq!(column[at], i as f64);
+                assert!(i == 0 || column[at.before()] == i as f64 - 1.0);
+                assert!(i + 1 == count || column[at.after()] == i as f64 + 1.0);
+            }
+        }
+    }
+
+    #[test]
+    fn vectors_stand_where_numbers_do() {
+        let fold = Fold::new(11);
+        let mut field = Field::zeros(fold);
+        let vector = |i: usize| Vector3::new(i as f64, -1.0, 2.0 * i as f64);
+        (0..11).for_each(|i| field.set(fold.slot(i), vector(i)));
+        field.wrap();
+        for i in 1..10 {
+            let at = fold.slot(i);
+            let near = [at.before(), at, at.after()].map(|at| field.get(at));
+            assert_eq!(near, [i - 1, i, i + 1].map(vector));
+        }
+    }
+}

@@ -1,0 +1,46 @@
+//! What the scene moves, as a host would say it at a communication point.
+
+use super::{Body, Model, Role};
+
+/// A moving coupled point or vessel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Moving {
+    /// What moves.
+    pub body: Body,
+    /// Its displacement [m] and angles [rad] from its reference.
+    pub pose: [f64; 6],
+    /// Its velocity [m/s] and angular velocity [rad/s].
+    pub velocity: [f64; 6],
+}
+
+impl Model {
+    /// Every coupled point and vessel that the scene moves, at `time` [s].
+    pub fn moving(&self, time: f64) -> Vec<Moving> {
+        let points = self.points.iter().enumerate();
+        let points = points.filter_map(|(index, point)| match &point.role {
+            Role::Coupled {
+                motion: Some(motion),
+            } => {
+                let pose = motion.pose(time);
+                Some(Moving {
+                    body: Body::Point(index),
+                    pose: pose.value.into(),
+                    velocity: pose.rate.into(),
+                })
+            }
+            _ => None,
+        });
+        let vessels = self.vessels.iter().enumerate();
+        let vessels = vessels.filter_map(|(index, vessel)| {
+            let pose = vessel.motion.as_ref()?.pose(time);
+            let frame = vessel.frame(&pose);
+            let (v, w) = (frame.origin.velocity, frame.attitude.spin);
+            Some(Moving {
+                body: Body::Vessel(index),
+                pose: pose.value.into(),
+                velocity: [v.x, v.y, v.z, w.x, w.y, w.z],
+            })
+        });
+        points.chain(vessels).collect()
+    }
+}

@@ -1,0 +1,349 @@
+//! Where everything that forces do not move is in time.
+//!
+//! A host's path is a cubic over a communication step and is evaluated where it is asked for. Motions of the scene and points that ride
+//! on vessels take sines: these are worked out at both ends of the step, and a quintic through position, velocity and acceleration there
+//! bridges it, in as many pieces as keep its error below [`ERROR_MAX`]. Where that takes too many, or a motion has a kink within the step,
+//! or clamped lines need to know how a point turns, everything is worked out where it is asked for.
+//!
+//! The error of a quintic over a piece τ is at most max|r⁽⁶⁾| τ⁶/46080. For a sine, r⁽⁶⁾ ≤ A ω⁶. The rotation of an arm a by angles whose
+//! derivatives are bounded by x₁ … x₆ has r⁽⁶⁾ ≤ |a| B₆(x₁ … x₆), with the complete Bell polynomial B₆, since every derivative of it by an
+//! angle is a rotation or a projection of one.
+//!
+//! Source: [`crate::math::hermite`]; Faà di Bruno's formula, e.g. Comtet (1974), Advanced Combinatorics, section 3.3.
+
+use crate::math::hermite::{QUINTIC_ERROR, Quintic};
+use crate::model::{Derivatives, Frame, Kinematics, Model, Motion, Point, Pose, Role};
+
+use super::paths::{Paths, is_coupled};
+
+/// Error of a bridge [m].
+const ERROR_MAX: f64 = 1e-12;
+/// Pieces of a bridge, at most [-].
+const PIECES_MAX: usize = 16;
+/// Rounding of the times that are asked for, over a piece [-].
+const ROUNDING: f64 = 1e-6;
+
+/// What tells where things are: the model, and the paths of a communication step.
+#[derive(Clone, Copy)]
+pub(super) struct At<'a> {
+    model: &'a Model,
+    paths: &'a Paths,
+    follows_scene: bool,
+}
+
+impl<'a> At<'a> {
+    /// Along the scene's own motion or the paths of a host.
+    pub fn new(model: &'a Model, paths: &'a Paths, follows_scene: bool) -> At<'a> {
+        At {
+            model,
+            paths,
+            follows_scene,
+        }
+    }
+
+    /// A point at time `t` [s].
+    pub fn point(&self, point: usize, t: f64) -> Kinematics {
+        let reference = self.model.points[point].reference;
+        let moved = |k: Kinematics| Kinematics {
+            position: reference + k.position,
+            ..k
+        };
+        match &self.model.points[point].role {
+            Role::Carried { vessel, arm } => {
+                self.model.vessels[*vessel].carry(&self.frame(*vessel, t), *arm)
+            }
+            Role::Coupled { .. } if self.own_motion(point).is_none() => {
+                let coupled = |point: &&Point| is_coupled(point);
+                let before = self.model.points[..point].iter().filter(coupled);
+                self.paths.points[before.count()].at(t)
+            }
+            _ => moved(
+                self.own_motion(point)
+                    .map_or_else(Kinematics::default, |motion| motion.at(t)),
+            ),
+        }
+    }
+
+    /// The motion of the scene that a point follows.
+    fn own_motion(&self, point: usize) -> Option<&'a Motion> {
+        match &self.model.points[point].role {
+            Role::Prescribed(motion) => Some(motion),
+            Role::Coupled { motion } => motion.as_ref().filter(|_| self.follows_scene),
+            _ => None,
+        }
+    }
+
+    /// The motion of the scene that a vessel follows.
+    fn vessel_motion(&self, vessel: usize) -> Option<&'a Motion> {
+        let motion = self.model.vessels[vessel].motion.as_ref();
+        motion.filter(|_| self.follows_scene)
+    }
+
+    /// A vessel at time `t` [s].
+    pub fn frame(&self, vessel: usize, t: f64) -> Frame {
+        self.model.vessels[vessel].frame(&self.pose(vessel, t))
+    }
+
+    fn pose(&self, vessel: usize, t: f64) -> Pose {
+        match self.vessel_motion(vessel) {
+            Some(motion) => motion.pose(t),
+            None => self.paths.vessels[vessel].at(t),
+        }
+    }
+}
+
+/// How it is found where a point is.
+#[derive(Debug, Clone)]
+enum Way {
+    /// It never moves, or forces move it.
+    Still,
+    /// As the path of the host says, by its place among the coupled points.
+    Host(usize),
+    /// Over a bridge.
+    Bridged(Box<Bridge>),
+    /// As the model says.
+    Worked,
+}
+
+/// A way over a communication step.
+#[derive(Debug, Clone)]
+struct Bridge {
+    /// Start and end of the step [s].
+    span: [f64; 2],
+    /// There.
+    ends: [Kinematics; 2],
+    /// Pieces per second [1/s].
+    rate: f64,
+    /// Empty where the way must be worked out.
+    pieces: Vec<Quintic>,
+    /// What bounds the error where a motion of the scene is bridged.
+    derivatives: Option<Derivatives>,
+}
+
+impl Bridge {
+    fn new(derivatives: Option<Derivatives>) -> Bridge {
+        Bridge {
+            span: [f64::NAN; 2],
+            ends: [Kinematics::default(); 2],
+            rate: 0.0,
+            pieces: Vec::with_capacity(PIECES_MAX),
+            derivatives,
+        }
+    }
+
+    /// Bridges a span of time [s] in `count` pieces, between whose ends `at` tells where the point is.
+    fn build(&mut self, [start, end]: [f64; 2], count: usize, at: impl Fn(usize) -> Kinematics) {
+        self.pieces.clear();
+        self.span = [start, end];
+        self.ends[1] = at(count.max(1));
+        let piece = (end - start) / count.max(1) as f64;
+        self.rate = 1.0 / piece;
+        let motion = |k: &Kinematics| [k.position, k.velocity, k.acceleration];
+        let mut before = motion(&self.ends[0]);
+        for knot in 1..=count {
+            let after = if knot == count {
+                motion(&self.ends[1])
+            } else {
+                motion(&at(knot))
+            };
+            self.pieces.push(Quintic::new(before, after, piece));
+            before = after;
+        }
+    }
+
+    /// Where the point is at time `t` [s]; without how it turns, but at the ends.
+    #[inline]
+    fn at(&self, t: f64) -> Option<Kinematics> {
+        let [start, end] = self.span;
+        if t == end {
+            return Some(self.ends[1]);
+        }
+        if t == start {
+            return Some(self.ends[0]);
+        }
+        let count = self.pieces.len();
+        let passed = (t - start) * self.rate;
+        if count == 0 || !(-ROUNDING..count as f64 + ROUNDING).contains(&passed) {
+            return None;
+        }
+        let piece = (passed as usize).min(count - 1);
+        let [position, velocity, acceleration] =
+            self.pieces[piece].at(passed - piece as f64, self.rate);
+        Some(Kinematics {
+            position,
+            velocity,
+            acceleration,
+            ..Kinematics::default()
+        })
+    }
+}
+
+/// The ways of all points over a communication step.
+#[derive(Debug, Clone)]
+pub(super) struct Held {
+    ways: Vec<Way>,
+    /// What bounds the errors of the ways of points on vessels, where these follow a motion of the scene that is no cubic.
+    vessels: Vec<Option<Derivatives>>,
+}
+
+impl Held {
+    /// For a model whose points follow the scene, or a host.
+    pub fn new(model: &Model, follows_scene: bool) -> Held {
+        let mut coupled = 0..;
+        let ways = model.points.iter().map(|point| {
+            let place = if is_coupled(point) {
+                coupled.next()
+            } else {
+                None
+            };
+            let mut clamps = point.attached.iter();
+            let turns = clamps.any(|&(line, _)| model.lines[line].bends());
+            match &point.role {
+                Role::Fixed | Role::Free(_) => Way::Still,
+                Role::Prescribed(motion) => {
+                    Way::Bridged(Box::new(Bridge::new(motion.derivatives())))
+                }
+                Role::Coupled {
+                    motion: Some(motion),
+                } if follows_scene => Way::Bridged(Box::new(Bridge::new(motion.derivatives()))),
+                Role::Coupled { .. } => place.map_or(Way::Worked, Way::Host),
+                Role::Carried { .. } if turns => Way::Worked,
+                Role::Carried { .. } => Way::Bridged(Box::new(Bridge::new(None))),
+            }
+        });
+        let motions = model.vessels.iter().map(|vessel| vessel.motion.as_ref());
+        Held {
+            ways: ways.collect(),
+            vessels: motions
+                .map(|motion| motion.filter(|_| follows_scene)?.derivatives())
+                .collect(),
+        }
+    }
+
+    /// Makes ready for a span of time [s].
+    pub fn prepare(&mut self, at: &At, span: [f64; 2]) {
+        for (point, way) in self.ways.iter_mut().enumerate() {
+            if let (Way::Bridged(bridge), Some(motion)) = (way, at.own_motion(point)) {
+                let [start, end] = span;
+                bridge.ends[0] = match bridge.span {
+                    [_, last] if last == start => bridge.ends[1],
+                    _ => at.point(point, start),
+                };
+                let length = end - start;
+                let error = bridge
+                    .derivatives
+                    .map_or(0.0, |bounds| bounds.shift(length));
+                let count = pieces(error).filter(|_| motion.is_smooth(span));
+                let knot = |k: usize| at.point(point, knot_time(span, k, count));
+                bridge.build(span, count.unwrap_or(0), knot);
+            }
+        }
+        for vessel in 0..self.vessels.len() {
+            self.prepare_vessel(at, vessel, span);
+        }
+    }
+
+    fn prepare_vessel(&mut self, at: &At, vessel: usize, span: [f64; 2]) {
+        let model = at.model;
+        let poses = span.map(|t| at.pose(vessel, t));
+        let frames = poses
+            .each_ref()
+            .map(|pose| model.vessels[vessel].frame(pose));
+        let length = span[1] - span[0];
+        let smooth = at
+            .vessel_motion(vessel)
+            .is_none_or(|motion| motion.is_smooth(span));
+        let bounds = self.vessels[vessel];
+        let turned = match bounds {
+            Some(bounds) => bounds.turn(length),
+            None => cubic_turn(&poses, length),
+        };
+        let (shift, spread) = (
+            bounds.map_or(0.0, |bounds| bounds.shift(length)),
+            bell(turned),
+        );
+        let points = model.points.iter().zip(&mut self.ways);
+        for (point, way) in points {
+            let (
+                Way::Bridged(bridge),
+                Role::Carried {
+                    vessel: carrier,
+                    arm,
+                },
+            ) = (way, &point.role)
+            else {
+                continue;
+            };
+            if *carrier != vessel {
+                continue;
+            }
+            let carry = |frame: &Frame| model.vessels[vessel].carry(frame, *arm);
+            let count = pieces(shift + arm.norm() * spread).filter(|_| smooth);
+            bridge.ends[0] = carry(&frames[0]);
+            bridge.build(span, count.unwrap_or(0), |knot| {
+                if knot == count.unwrap_or(1) {
+                    carry(&frames[1])
+                } else {
+                    carry(&at.frame(vessel, knot_time(span, knot, count)))
+                }
+            });
+        }
+    }
+
+    /// A point at time `t` [s] of the span; how it turns is told at its ends, and everywhere where lines are clamped.
+    #[inline]
+    pub fn point(&self, at: &At, point: usize, t: f64) -> Kinematics {
+        match &self.ways[point] {
+            Way::Host(path) => at.paths.points[*path].at(t),
+            Way::Still => Kinematics {
+                position: at.model.points[point].reference,
+                ..Kinematics::default()
+            },
+            Way::Bridged(bridge) => bridge.at(t).unwrap_or_else(|| at.point(point, t)),
+            Way::Worked => at.point(point, t),
+        }
+    }
+}
+
+/// Time of a knot between pieces [s].
+fn knot_time([start, end]: [f64; 2], knot: usize, count: Option<usize>) -> f64 {
+    let count = count.unwrap_or(1);
+    if knot == count {
+        return end;
+    }
+    start + (end - start) * (knot as f64 / count as f64)
+}
+
+/// Pieces that a span needs whose sixth derivative times its sixth power is at most this [m]; `None` where they are too many.
+fn pieces(sixth: f64) -> Option<usize> {
+    let excess = sixth * QUINTIC_ERROR / ERROR_MAX;
+    if excess <= 1.0 {
+        return Some(1);
+    }
+    let count = excess.powf(1.0 / 6.0).ceil();
+    (count <= PIECES_MAX as f64).then_some(count as usize)
+}
+
+/// Bounds of the derivatives of angles that are cubics over a span [s], times its powers [rad].
+fn cubic_turn([before, after]: &[Pose; 2], span: f64) -> [f64; 6] {
+    let mut bounds = [0.0; 6];
+    for axis in 3..6 {
+        let [a0, a1] = [before, after].map(|pose| span * span * pose.acceleration[axis]);
+        let bend = a0.abs().max(a1.abs());
+        bounds[0] += span * before.rate[axis].abs() + bend;
+        bounds[1] += bend;
+        bounds[2] += (a1 - a0).abs();
+    }
+    bounds
+}
+
+/// The complete Bell polynomial B₆.
+fn bell([a, b, c, d, e, f]: [f64; 6]) -> f64 {
+    let a2 = a * a;
+    a2 * a2 * (a2 + 15.0 * b)
+        + a2 * (20.0 * a * c + 45.0 * b * b + 15.0 * d)
+        + b * (15.0 * b * b + 60.0 * a * c + 15.0 * d)
+        + 10.0 * c * c
+        + 6.0 * a * e
+        + f
+}

@@ -1,0 +1,145 @@
+//! What a host says to a simulation: where points and vessels are, which lines let go, what winches pay out.
+
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
+
+use super::Simulation;
+use crate::math::attitude::angle_rates;
+use crate::model::{Body, Model};
+
+/// What a host has said about points and vessels.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(super) struct Inputs {
+    pub points: Vec<PointInput>,
+    pub vessels: Vec<VesselInput>,
+    /// Whether each line is to let go.
+    pub releases: Vec<bool>,
+    /// What the winches are to have paid out, by line [m].
+    pub length_changes: Vec<f64>,
+}
+
+impl Inputs {
+    /// Nothing said yet.
+    pub fn new(model: &Model) -> Inputs {
+        Inputs {
+            points: vec![PointInput::default(); model.points.len()],
+            vessels: vec![VesselInput::default(); model.vessels.len()],
+            releases: vec![false; model.lines.len()],
+            length_changes: vec![0.0; model.lines.len()],
+        }
+    }
+}
+
+/// What a host has said about a point.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct PointInput {
+    /// Displacement from the reference position [m].
+    pub displacement: [f64; 3],
+    /// Velocity [m/s]; derived from the displacements where absent.
+    pub velocity: [Option<f64>; 3],
+}
+
+/// What a host has said about a vessel.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct VesselInput {
+    /// Displacement from the reference position [m]; roll, pitch and yaw from the reference attitude [rad].
+    pub pose: [f64; 6],
+    /// Velocity [m/s] and angular velocity in global axes [rad/s]; derived from the poses where absent.
+    pub velocity: [Option<f64>; 6],
+}
+
+impl VesselInput {
+    /// Rates of the pose [m/s, rad/s]. Those of the angles need the whole angular velocity.
+    pub fn rates(&self, attitude: Vector3<f64>) -> [Option<f64>; 6] {
+        let [vx, vy, vz, wx, wy, wz] = self.velocity;
+        let [_, _, _, roll, pitch, yaw] = self.pose;
+        let turning = match (wx, wy, wz) {
+            (Some(x), Some(y), Some(z)) => angle_rates(
+                attitude + Vector3::new(roll, pitch, yaw),
+                Vector3::new(x, y, z),
+            ),
+            _ => None,
+        };
+        let angle = |axis: usize| turning.map(|rates| rates[axis]);
+        [vx, vy, vz, angle(0), angle(1), angle(2)]
+    }
+}
+
+impl Simulation {
+    /// Sets where a coupled point is now, from its reference position [m].
+    pub fn set_displacement(&mut self, point: usize, displacement: [f64; 3]) {
+        self.snapshot.inputs.points[point].displacement = displacement;
+    }
+
+    /// Displacement of a coupled point as set [m].
+    pub fn displacement(&self, point: usize) -> [f64; 3] {
+        self.snapshot.inputs.points[point].displacement
+    }
+
+    /// Sets how a coupled point moves now [m/s]; axes without a velocity are derived from the displacements.
+    pub fn set_velocity(&mut self, point: usize, velocity: [Option<f64>; 3]) {
+        self.snapshot.inputs.points[point].velocity = velocity;
+    }
+
+    /// Velocity of a coupled point as set [m/s].
+    pub fn velocity(&self, point: usize) -> [Option<f64>; 3] {
+        self.snapshot.inputs.points[point].velocity
+    }
+
+    /// Sets where a vessel is now: displacement from its reference position [m]; roll, pitch and yaw added to those of its reference
+    /// attitude [rad].
+    pub fn set_pose(&mut self, vessel: usize, pose: [f64; 6]) {
+        self.snapshot.inputs.vessels[vessel].pose = pose;
+    }
+
+    /// Pose of a vessel as set [m, rad].
+    pub fn pose(&self, vessel: usize) -> [f64; 6] {
+        self.snapshot.inputs.vessels[vessel].pose
+    }
+
+    /// Sets where a body is now and how it moves, along its first three axes or all six.
+    pub fn set_body(&mut self, body: Body, pose: [f64; 6], velocity: [Option<f64>; 6]) {
+        match body {
+            Body::Point(point) => {
+                let ([x, y, z, ..], [vx, vy, vz, ..]) = (pose, velocity);
+                self.set_displacement(point, [x, y, z]);
+                self.set_velocity(point, [vx, vy, vz]);
+            }
+            Body::Vessel(vessel) => {
+                self.set_pose(vessel, pose);
+                self.set_vessel_velocity(vessel, velocity);
+            }
+        }
+    }
+
+    /// Sets how a vessel moves now: velocity of its origin [m/s] and angular velocity [rad/s], both in global axes. What is absent is
+    /// derived from the poses; the rotation needs all three components.
+    pub fn set_vessel_velocity(&mut self, vessel: usize, velocity: [Option<f64>; 6]) {
+        self.snapshot.inputs.vessels[vessel].velocity = velocity;
+    }
+
+    /// Says whether a line is to let go of the point that its scene names; it does so at the next step, and for good.
+    pub fn set_release(&mut self, line: usize, release: bool) {
+        self.snapshot.inputs.releases[line] = release;
+    }
+
+    /// Whether a line is to let go, as set.
+    pub fn release(&self, line: usize) -> bool {
+        self.snapshot.inputs.releases[line]
+    }
+
+    /// Whether ends A and B of a line have parted from their points.
+    pub fn parted(&self, line: usize) -> [bool; 2] {
+        self.snapshot.state.lines[line].parted
+    }
+
+    /// Sets the length that the winch of a line is to have paid out now beyond that of the scene [m], negative where it is to have hauled in.
+    pub fn set_length_change(&mut self, line: usize, change: f64) {
+        self.snapshot.inputs.length_changes[line] = change;
+    }
+
+    /// Length that the winch of a line is to have paid out, as set [m].
+    pub fn length_change(&self, line: usize) -> f64 {
+        self.snapshot.inputs.length_changes[line]
+    }
+}

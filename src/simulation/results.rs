@@ -1,0 +1,393 @@
+//! What a simulation tells of itself: forces, tensions, shapes and energies.
+
+use std::sync::OnceLock;
+
+use nalgebra::{Vector3, Vector6};
+use serde::Serialize;
+
+use super::{Simulation, held};
+use crate::dynamics::advance::Counters;
+use crate::dynamics::beam::{BeamView, Momentum};
+use crate::dynamics::ledger::{Energy, Ledger};
+use crate::dynamics::reaction;
+use crate::model::{ClosedForm, End, Line, LineState, Role, joint};
+use crate::statics::catenary::Catenary;
+use crate::statics::{self, assembly, catenary_network};
+
+/// A node of a line's profile.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct ProfileNode {
+    /// Unstretched arc length from end A [m].
+    pub s: f64,
+    /// Position [m].
+    pub x: f64,
+    /// Position [m].
+    pub y: f64,
+    /// Position [m].
+    pub z: f64,
+    /// Effective tension [N].
+    pub tension: f64,
+    /// How it bends, where the line has bending stiffness.
+    pub bending: Option<NodeBending>,
+}
+
+/// How a line bends at a node.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct NodeBending {
+    /// Curvature [1/m].
+    pub curvature: f64,
+    /// Bending moment [N m].
+    pub moment: f64,
+}
+
+/// What several outputs need of the present state, worked out when the first of them is read.
+#[derive(Debug, Clone)]
+pub(super) struct Memo {
+    /// Energy held [J].
+    energy: OnceLock<Energy>,
+    /// Force [N] and moment [N m] on every vessel.
+    vessels: Vec<OnceLock<[f64; 6]>>,
+}
+
+impl Memo {
+    /// Of a simulation with so many vessels.
+    pub fn new(vessels: usize) -> Memo {
+        Memo {
+            energy: OnceLock::new(),
+            vessels: vec![OnceLock::new(); vessels],
+        }
+    }
+
+    /// Forgets what was worked out: the state is another.
+    pub fn clear(&mut self) {
+        self.energy.take();
+        self.vessels.iter_mut().for_each(|force| {
+            force.take();
+        });
+    }
+}
+
+impl Simulation {
+    /// Force [N] and moment [N m] of the mooring on a vessel, about its origin, in global axes.
+    pub fn vessel_force(&self, vessel: usize) -> [f64; 6] {
+        let force = &self.memo.vessels[vessel];
+        *force.get_or_init(|| self.sum_of_forces(vessel))
+    }
+
+    fn sum_of_forces(&self, vessel: usize) -> [f64; 6] {
+        let model = &*self.model;
+        let origin = self.vessel_origin(vessel);
+        let mut sum = Vector6::zeros();
+        for (index, point) in model.points.iter().enumerate() {
+            if !matches!(point.role, Role::Carried { vessel: carrier, .. } if carrier == vessel) {
+                continue;
+            }
+            let force = Vector3::from(self.end_force(index));
+            let arm = self.snapshot.state.points[index].position - origin;
+            let moment = arm.cross(&force) + self.end_moment(index);
+            sum += Vector6::new(force.x, force.y, force.z, moment.x, moment.y, moment.z);
+        }
+        sum.into()
+    }
+
+    /// Stiffness of the mooring on a vessel as it is now: minus the change of the static part of [`Simulation::vessel_force`], in [N/m]
+    /// and [N], and moment, in [N] and [N m], with displacement along and small rotation about the global axes through the vessel's
+    /// origin; rows of force. `None` where the lines are not stable as they are, or one of them is a beam. See
+    /// [`statics::stiffness`].
+    pub fn vessel_stiffness(&self, vessel: usize) -> Option<[[f64; 6]; 6]> {
+        let (model, state) = (&*self.model, &self.snapshot.state);
+        let mut work = assembly::Workspace::new(model);
+        let origin = self.vessel_origin(vessel);
+        let stiffness = statics::stiffness::of_vessel(model, state, vessel, origin, &mut work)?;
+        Some(stiffness.transpose().into()) // an array of columns
+    }
+
+    /// Force [N, N m] and stiffness [N/m, N, N m] of the mooring on a vessel were it at rest as it is now, every network that has one on
+    /// its closed-form catenaries and the others on their elements. The closed form has bed friction and no error of a mesh; of a network
+    /// on its elements this is the present force and stiffness.
+    pub fn vessel_at_rest(&self, vessel: usize) -> ([f64; 6], Option<[[f64; 6]; 6]>) {
+        let mut hung = self.clone();
+        hung.snapshot.state.waves = None;
+        hung.memo.clear();
+        let (model, time) = (&*self.model, self.time());
+        let mut work = assembly::Workspace::new(model);
+        for number in 0..model.networks.len() {
+            let state = &mut hung.snapshot.state;
+            catenary_network::solve_network(model, number, state, time, &mut work);
+        }
+        (hung.vessel_force(vessel), hung.vessel_stiffness(vessel))
+    }
+
+    /// Where the origin of a vessel is now [m].
+    fn vessel_origin(&self, vessel: usize) -> Vector3<f64> {
+        let snapshot = &self.snapshot;
+        let at = held::At::new(&self.model, &snapshot.paths, snapshot.follows_scene);
+        at.frame(vessel, self.time()).origin.position
+    }
+
+    /// Moment [N m] of the lines that are clamped to a point on what holds it, in global axes.
+    pub fn end_moment(&self, point: usize) -> Vector3<f64> {
+        let (model, state) = (&*self.model, &self.snapshot.state);
+        let at = &state.points[point];
+        let moment = |&(line, end): &(usize, End)| {
+            let (data, shape) = (&model.lines[line], &state.lines[line]);
+            match BeamView::of(data, shape) {
+                Some(view) => {
+                    let clamped = view.beam.clamped[usize::from(end == End::B)].is_some();
+                    clamped.then(|| view.end_action(end, at).1)
+                }
+                None => Some(assembly::end_moment(data, &shape.position, end, at)),
+            }
+        };
+        let attached = &model.points[point].attached;
+        attached.iter().filter_map(moment).sum()
+    }
+
+    /// Force of the mooring on a point [N]: what a vessel feels there.
+    pub fn end_force(&self, point: usize) -> [f64; 3] {
+        let attached = &self.model.points[point].attached;
+        attached
+            .iter()
+            .map(|&(line, end)| self.line_end_force(line, end))
+            .sum::<Vector3<f64>>()
+            .into()
+    }
+
+    /// Force of one line on the point at its end [N].
+    pub fn line_end_force(&self, line: usize, end: End) -> Vector3<f64> {
+        let (model, state) = (&self.model, &self.snapshot.state);
+        let point = match end {
+            End::A => model.lines[line].ends[0],
+            End::B => model.lines[line].ends[1],
+        };
+        let negative = model.solver.negative_tension;
+        reaction::end_force(
+            &model.lines[line],
+            &state.lines[line],
+            end,
+            &state.points[point],
+            model.water_along(state, line, state.time),
+            negative,
+        )
+    }
+
+    /// Axial tension at end A [N].
+    pub fn tension_a(&self, line: usize) -> f64 {
+        self.line_end_force(line, End::A).norm()
+    }
+
+    /// Axial tension at end B [N].
+    pub fn tension_b(&self, line: usize) -> f64 {
+        self.line_end_force(line, End::B).norm()
+    }
+
+    /// Greatest tension along a line [N].
+    pub fn tension_max(&self, line: usize) -> f64 {
+        if let Some(closed_form) = self.closed_form(line) {
+            return closed_form.tension.iter().copied().fold(0.0, f64::max);
+        }
+        let (model, state) = (&self.model.lines[line], &self.snapshot.state.lines[line]);
+        (0..model.segment_count())
+            .map(|i| reaction::tension(model, state, i, self.model.solver.negative_tension))
+            .fold(self.tension_a(line).max(self.tension_b(line)), f64::max)
+    }
+
+    /// Unstretched length that the seabed carries [m].
+    pub fn laid_length(&self, line: usize) -> f64 {
+        self.closed_form(line).map_or_else(
+            || laid_length(&self.model.lines[line], &self.snapshot.state.lines[line]),
+            |closed_form| closed_form.laid_length,
+        )
+    }
+
+    /// Greatest vertical distance below the chord between the ends [m].
+    pub fn sag(&self, line: usize) -> f64 {
+        let nodes = &self.snapshot.state.lines[line].position;
+        self.closed_form(line)
+            .map_or_else(|| sag(nodes), |closed_form| closed_form.sag)
+    }
+
+    /// Stretched length [m].
+    pub fn stretched_length(&self, line: usize) -> f64 {
+        let nodes = &self.snapshot.state.lines[line].position;
+        let chords = nodes.windows(2).map(|pair| (pair[1] - pair[0]).norm());
+        self.closed_form(line)
+            .map_or_else(|| chords.sum(), |closed_form| closed_form.stretched_length)
+    }
+
+    /// What the closed-form catenary of a quasi-static line says of it now.
+    fn closed_form(&self, line: usize) -> Option<&ClosedForm> {
+        self.snapshot.state.lines[line].closed_form.as_ref()
+    }
+
+    /// Elastic catenary of the reference configuration, where the line's ends are held and its strain is small or
+    /// engineering strain.
+    pub fn catenary(&self, line: usize) -> Option<&Catenary> {
+        self.catenaries[line].as_ref()
+    }
+
+    /// Effective tension at every node [N].
+    pub fn tensions(&self, line: usize) -> Vec<f64> {
+        if let Some(closed_form) = self.closed_form(line) {
+            return closed_form.tension.clone();
+        }
+        let (model, state) = (&self.model.lines[line], &self.snapshot.state.lines[line]);
+        let segment =
+            |i: usize| reaction::tension(model, state, i, self.model.solver.negative_tension);
+        let n = model.segment_count();
+        (0..=n)
+            .map(|i| match i {
+                0 => self.tension_a(line),
+                i if i == n => self.tension_b(line),
+                i => 0.5 * (segment(i - 1) + segment(i)),
+            })
+            .collect()
+    }
+
+    /// Curvature [1/m] and bending moment [N m] at every node, where the line has bending stiffness; zero at hinges and pinned ends.
+    pub fn bending(&self, line: usize) -> Option<Vec<NodeBending>> {
+        let (data, state) = (&self.model.lines[line], &self.snapshot.state);
+        if let Some(view) = BeamView::of(data, &state.lines[line]) {
+            let at = |node| NodeBending {
+                curvature: view.curvature(node),
+                moment: view.bending_moment(node),
+            };
+            return Some((0..=data.segment_count()).map(at).collect());
+        }
+        let bending = data.bending.as_ref()?;
+        let clamps = data.clamps(&state.points);
+        let nodes = &state.lines[line].position;
+        let at = |i: usize| {
+            let turn = (bending.joint[i] > 0.0).then(|| joint(clamps, nodes, i));
+            let bend = turn.flatten().map(|turn| turn.bend());
+            bend.map_or(NodeBending::default(), |bend| NodeBending {
+                curvature: bend / bending.length[i],
+                moment: bending.joint[i] * (bend - bending.rest[i]).abs(),
+            })
+        };
+        Some((0..nodes.len()).map(at).collect())
+    }
+
+    /// Nodes of a line with their tensions, from end A to end B; those that a winch has not paid out are at the winch.
+    pub fn profile(&self, line: usize) -> Vec<ProfileNode> {
+        let bending = self.bending(line);
+        let arcs = &self.model.lines[line].nodes.arc;
+        let nodes = arcs.iter().zip(&self.snapshot.state.lines[line].position);
+        let mut profile: Vec<ProfileNode> = nodes
+            .zip(self.tensions(line))
+            .enumerate()
+            .map(|(node, ((s, r), tension))| ProfileNode {
+                s: *s,
+                x: r.x,
+                y: r.y,
+                z: r.z,
+                tension,
+                bending: bending.as_ref().map(|nodes| nodes[node]),
+            })
+            .collect();
+        if let Some(&end) = profile.last() {
+            profile.resize(self.model.lines[line].nodes_max(), end);
+        }
+        profile
+    }
+
+    /// Momenta of all beams.
+    pub fn momentum(&self) -> Momentum {
+        let lines = self.model.lines.iter().zip(&self.snapshot.state.lines);
+        lines
+            .filter_map(|(line, shape)| BeamView::of(line, shape))
+            .fold(Momentum::default(), |sum, view| {
+                let own = view.momentum();
+                Momentum {
+                    linear: sum.linear + own.linear,
+                    angular: sum.angular + own.angular,
+                }
+            })
+    }
+
+    /// Internal steps of the last communication step.
+    pub fn substeps(&self) -> usize {
+        self.snapshot.counters.substeps
+    }
+
+    /// Work of the last communication step.
+    pub fn counters(&self) -> Counters {
+        self.snapshot.counters
+    }
+
+    /// Energy held, by kind.
+    pub fn energy(&self) -> Energy {
+        let energy = || self.work.energy(&self.model, &self.snapshot.state);
+        *self.memo.energy.get_or_init(energy)
+    }
+
+    /// Imbalance of the energy ledger since the start [J].
+    pub fn energy_error(&self) -> f64 {
+        self.snapshot.ledger.error(self.energy().total())
+    }
+
+    /// The energy ledger.
+    pub fn ledger(&self) -> &Ledger {
+        &self.snapshot.ledger
+    }
+
+    /// Imbalance of the energy ledger since the start, over the time since then [W].
+    pub fn power_residual(&self) -> f64 {
+        let elapsed = self.time() - self.snapshot.start_time;
+        if elapsed > 0.0 {
+            self.energy_error() / elapsed
+        } else {
+            0.0
+        }
+    }
+}
+
+/// Length whose weight the contact springs carry [m].
+fn laid_length(line: &Line, state: &LineState) -> f64 {
+    let Some(contact) = &line.nodes.contact else {
+        return 0.0;
+    };
+    let carried = |i: usize| {
+        let penetration = match &contact.bottom {
+            None => contact.level[i] - state.position[i].z,
+            Some(bottom) => bottom.touch(state.position[i], contact.lift(i)).penetration,
+        };
+        let weight = line.nodes.weight[i];
+        if weight <= 0.0 {
+            0.0
+        } else {
+            (contact.stiffness[i] * penetration / weight).clamp(0.0, 1.0)
+        }
+    };
+    let n = line.segment_count();
+    let share = |i: usize| match i {
+        0 => carried(1),
+        i if i == n => carried(n - 1),
+        i => carried(i),
+    };
+    if n < 2 {
+        return 0.0;
+    }
+    (0..=n).map(|i| share(i) * line.nodes.length[i]).sum()
+}
+
+/// Greatest vertical distance of the nodes below the chord of the ends, or below the lower end where that is vertical [m].
+fn sag(nodes: &[Vector3<f64>]) -> f64 {
+    let (a, b) = (nodes[0], nodes[nodes.len() - 1]);
+    let across = Vector3::new(b.x - a.x, b.y - a.y, 0.0);
+    let span2 = across.norm_squared();
+    let below = |r: &Vector3<f64>| {
+        let share = if span2 > 0.0 {
+            (r - a).dot(&across) / span2
+        } else {
+            0.0
+        };
+        let chord = if (0.0..=1.0).contains(&share) && span2 > 0.0 {
+            a.z + share * (b.z - a.z)
+        } else {
+            a.z.min(b.z)
+        };
+        chord - r.z
+    };
+    nodes.iter().map(below).fold(0.0, f64::max)
+}

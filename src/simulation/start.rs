@@ -1,0 +1,162 @@
+//! How a simulation starts: at rest, where the scene or its static equilibrium says.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::held::At;
+use super::inputs::Inputs;
+use super::paths::Paths;
+use super::{Error, Snapshot};
+use crate::dynamics::advance::{Counters, Workspace};
+use crate::dynamics::ledger::Ledger;
+use crate::dynamics::{beam, reaction};
+use crate::model::{Line, LineState, Model, PointState, Reel, State};
+use crate::physics::stretch::StretchLaw;
+use crate::scene::{InitialShape, Integrator};
+use crate::statics::catenary::{self, Bed, Catenary};
+use crate::statics::{self, StaticsError, assembly, catenary_network, equilibrium};
+
+/// A simulation at rest at a time [s], with its scratch.
+pub(super) fn begin(
+    model: &Model,
+    time: f64,
+    inputs: Inputs,
+    follows_scene: bool,
+) -> Result<(Snapshot, Workspace), Error> {
+    let paths = Paths::at_rest(model, time, &inputs, follows_scene);
+    let at = At::new(model, &paths, follows_scene);
+    let held = |point: usize, t: f64| at.point(point, t);
+    let places: Vec<PointState> = (0..model.points.len())
+        .map(|point| PointState::held(&held(point, time)))
+        .collect();
+    let mut state = at_rest(model, time, &places)?;
+    for ((line, shape), reel) in model.lines.iter().zip(&mut state.lines).zip(&paths.reels) {
+        let change = reel.path.at(time).value;
+        shape.reel = line.winch.as_ref().map(|_| Reel::at_rest(change));
+    }
+    if model.solver.integrator != Integrator::QuasiStatic {
+        for (line, shape) in model.lines.iter().zip(&mut state.lines) {
+            shape.become_viscoelastic(line);
+        }
+    }
+    rest_beams(model, &mut state, time, |point| {
+        beam::attitude(&held(point, time))
+    })?;
+    let mut work = Workspace::new(model, &state, |line| static_tension(model, &state, line));
+    work.start(model, &mut state, &held);
+    let counters = Counters::default();
+    let ledger = Ledger::new(work.energy(model, &state).total());
+    Ok((
+        Snapshot {
+            state,
+            inputs,
+            paths,
+            follows_scene,
+            counters,
+            ledger,
+            start_time: time,
+        },
+        work,
+    ))
+}
+
+/// In static equilibrium, or on the shapes the scene gives. Quasi-static lines start on their catenaries; those that will move
+/// start where their elements are at rest.
+fn at_rest(model: &Model, time: f64, places: &[PointState]) -> Result<State, StaticsError> {
+    let given = |line: &Line| {
+        let [a, b] = line.ends.map(|point| places[point].position);
+        line.given_shape(a, b)
+    };
+    if let Some(shapes) = model.lines.iter().map(given).collect::<Option<Vec<_>>>() {
+        return Ok(State {
+            time,
+            points: places.to_vec(),
+            lines: shapes.into_iter().map(LineState::at_rest).collect(),
+            waves: None,
+        });
+    }
+    let mut work = assembly::Workspace::new(model);
+    let mut state = match model.solver.integrator {
+        Integrator::QuasiStatic => catenary_network::solve_posed(model, places, time, &mut work)?,
+        _ => equilibrium::solve_posed(model, places, time, &mut work)?,
+    };
+    for (line, shape) in model.lines.iter().zip(&mut state.lines) {
+        if let Some(nodes) = given(line) {
+            *shape = LineState::at_rest(nodes);
+        }
+    }
+    Ok(state)
+}
+
+/// Gives beams their frames at time `t` [s], and rest where no shape is given; `attitude` tells how a point has turned.
+fn rest_beams(
+    model: &Model,
+    state: &mut State,
+    t: f64,
+    attitude: impl Fn(usize) -> Matrix3<f64>,
+) -> Result<(), StaticsError> {
+    for (index, line) in model.lines.iter().enumerate() {
+        if line.beam.is_some() {
+            state.lines[index].become_beam(line, line.ends.map(&attitude));
+            if line.initial == InitialShape::Static {
+                statics::beam::rest(model, index, state, t)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+fn static_tension(model: &Model, state: &State, line: usize) -> f64 {
+    let (data, shape) = (&model.lines[line], &state.lines[line]);
+    (0..data.segment_count())
+        .map(|i| reaction::tension(data, shape, i, false))
+        .fold(0.0, f64::max)
+}
+
+/// The closed-form catenary between two places, where it applies: engineering strain, and a level bed if any is in reach.
+fn solve_catenary(
+    model: &Model,
+    line: &Line,
+    a: Vector3<f64>,
+    b: Vector3<f64>,
+) -> Option<Catenary> {
+    if line
+        .sections
+        .iter()
+        .any(|section| section.law != StretchLaw::Engineering)
+    {
+        return None;
+    }
+    if line.nodes.contact.is_some() && !model.bed_is_level() {
+        return None;
+    }
+    let sections: Vec<catenary::Section> = line
+        .sections
+        .iter()
+        .map(|section| catenary::Section {
+            length: section.length,
+            weight: section.weight,
+            axial_stiffness: section.axial_stiffness,
+        })
+        .collect();
+    let bed = line.nodes.contact.as_ref().map(|contact| Bed {
+        height: contact.bed - a.z,
+        friction: model.bed_friction,
+    });
+    let span = (b.x - a.x).hypot(b.y - a.y);
+    catenary::solve(&sections, span, b.z - a.z, bed).ok()
+}
+
+/// The closed-form catenary of a line in its reference configuration; none where an end is free, or where it would come out of the
+/// water, of which the closed form knows nothing.
+pub(crate) fn reference_catenary(model: &Model, line: &Line) -> Option<Catenary> {
+    let ends = line.ends.map(|point| &model.points[point]);
+    if ends.iter().any(|point| point.free().is_some()) {
+        return None;
+    }
+    let [a, b] = ends.map(|point| point.reference);
+    let solved = solve_catenary(model, line, a, b)?;
+    let height = |&s: &f64| Vector3::new(0.0, 0.0, a.z + solved.at(s).z);
+    let shape = || line.nodes.arc.iter().map(height).collect::<Vec<_>>();
+    let surface = line.surface.as_ref();
+    (!surface.is_some_and(|surface| surface.is_pierced(&shape()))).then_some(solved)
+}
