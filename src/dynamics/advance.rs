@@ -340,7 +340,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
                 work.step(model, network, t, Step::after(steps, drift), self.held);
                 steps = [drift, steps[0]];
             }
-            if work.broken_node().is_none() {
+            if work.broken_node().is_none() && work.flow().is_finite() {
                 work.store(network, next, steps);
                 return Ok(Done {
                     counters: Counters {
@@ -396,7 +396,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
                 steps = [drift, steps[0]];
             }
             let too_long = drift > transverse / work.tension_peak().sqrt() && retry < RETRIES_MAX;
-            if work.broken_node().is_none() && !too_long {
+            if work.broken_node().is_none() && work.flow().is_finite() && !too_long {
                 work.store(&mut next.lines[index], steps);
                 return Ok(Done {
                     counters: Counters {
