@@ -126,11 +126,16 @@ impl Survey {
             let mut names = account.integrators;
             names.sort();
             names.dedup();
-            let name = if names.len() > 1 {
-                "several".to_string()
-            } else {
-                names.concat()
+            let name = match &names[..] {
+                [name] => name,
+                _ => "several",
             };
+            let steps = if case.drive.is_irregular() {
+                "irregular steps"
+            } else {
+                "equal steps"
+            };
+            let name = format!("{name}, {steps}");
             self.imbalance
                 .entry(name)
                 .or_default()
@@ -159,15 +164,14 @@ impl Survey {
         closed as f64 / errors.len().max(1) as f64
     }
 
-    /// Greatest error of the ledgers of an integrator [-].
+    /// Greatest error of the ledgers of an integrator, whatever a host's steps [-].
     pub fn worst(&self, integrator: &str) -> f64 {
-        let errors = self
-            .imbalance
-            .get(integrator)
-            .map_or(&[][..], |errors| errors);
-        errors
-            .iter()
-            .fold(0.0, |worst: f64, (error, _)| worst.max(error.abs()))
+        let ledgers = self.imbalance.iter();
+        let errors = ledgers.filter(|(name, _)| name.starts_with(integrator));
+        let sizes = errors
+            .flat_map(|(_, errors)| errors)
+            .map(|(error, _)| error.abs());
+        sizes.fold(0.0, f64::max)
     }
 }
 
