@@ -14,8 +14,7 @@ mod rows;
 
 use std::collections::BTreeSet;
 
-use crate::model::{Body, Line, Model};
-use crate::physics::stretch::StretchLaw;
+use crate::model::{Body, Model};
 use crate::scene::{Axis, PointKind, Scene, SceneError};
 use crate::simulation::{NodeBending, Simulation, reference_catenary};
 
@@ -320,7 +319,7 @@ impl Interface {
         }
         rows::solver(&mut variables);
         for (index, line) in model.lines.iter().enumerate() {
-            if has_closed_form(model, line) {
+            if reference_catenary(model, line).is_some() {
                 rows::catenary(&mut variables, index, &line.name);
             }
         }
@@ -439,18 +438,6 @@ fn bending_result(nodes: &[NodeBending], result: LineResult) -> f64 {
         LineResult::MomentB => moments.next_back().unwrap_or(0.0),
         _ => moments.fold(0.0, f64::max),
     }
-}
-
-/// Whether a line has a closed-form catenary: held ends and engineering strain, and under water where there is any.
-fn has_closed_form(model: &Model, line: &Line) -> bool {
-    line.ends
-        .iter()
-        .all(|&end| model.points[end].free().is_none())
-        && line
-            .sections
-            .iter()
-            .all(|section| section.law == StretchLaw::Engineering)
-        && (line.surface.is_none() || reference_catenary(model, line).is_some())
 }
 
 /// Characters that neither XML nor FMI's naming conventions can carry.

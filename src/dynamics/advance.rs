@@ -337,7 +337,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
                 work.step(model, network, t, Step::after(steps, drift), self.held);
                 steps = [drift, steps[0]];
             }
-            if work.broken_node().is_none() {
+            if work.broken_node().is_none() && work.flow().is_finite() {
                 work.store(network, next, steps);
                 return Ok(Done {
                     counters: Counters {
@@ -393,7 +393,8 @@ impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
                 steps = [drift, steps[0]];
             }
             let too_long = drift > transverse / work.tension_peak().sqrt() || !work.is_settled();
-            if work.broken_node().is_none() && !(too_long && retry < RETRIES_MAX) {
+            let whole = work.broken_node().is_none() && work.flow().is_finite();
+            if whole && !(too_long && retry < RETRIES_MAX) {
                 work.store(&mut next.lines[index], steps);
                 return Ok(Done {
                     counters: Counters {

@@ -101,6 +101,11 @@ impl Flow {
         self.lost += other.lost;
     }
 
+    /// Whether it can be booked: what grew without bound and came back within a step cannot.
+    pub fn is_finite(&self) -> bool {
+        self.given.is_finite() && self.lost.is_finite()
+    }
+
     /// This flow times a factor.
     pub fn times(self, factor: f64) -> Flow {
         Flow {

@@ -1,0 +1,157 @@
+//! Instructions of fixed steps, counted by valgrind, against a table of this processor: what others run on the machine hardly moves them.
+//!
+//! `cargo bench --bench instructions` says what has changed, and fails where steps of a scene take over 3 % more than the table says.
+//! `-- --write` makes the table of this machine, `benches/tables/<processor>.instructions.csv`. Where there is no valgrind or no table,
+//! nothing is claimed.
+//!
+//! Valgrind runs this program itself with the name of a scene and a number of steps. Two runs of different length tell what the steps
+//! between them take, without the start.
+
+mod common;
+
+use std::env;
+use std::fmt::Write;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode};
+
+use moorline::simulation::Simulation;
+
+/// Growth that is reported [-].
+const ALLOWED: f64 = 0.03;
+/// Communication steps of the short and the long run [-].
+const STEPS: [usize; 2] = [20, 120];
+
+/// Scenes, which between them use every integrator but the quasi-static one.
+const SCENES: [&str; 8] = [
+    "oc3_catenary",
+    "oc4_chain",
+    "taut_polyester",
+    "lindahl_fast",
+    "bridle",
+    "lazy_wave",
+    "power_cable",
+    "flying_spaghetti",
+];
+
+fn main() -> ExitCode {
+    let words: Vec<String> = env::args().skip(1).collect();
+    let words: Vec<&str> = words
+        .iter()
+        .map(String::as_str)
+        .filter(|word| *word != "--bench")
+        .collect();
+    match words[..] {
+        [scene, steps] => {
+            step(scene, steps.parse().expect("a number of steps"));
+            ExitCode::SUCCESS
+        }
+        ["--write"] => write(),
+        _ => compare(),
+    }
+}
+
+/// Steps a scene by its output interval with its own motion.
+fn step(name: &str, count: usize) {
+    let scene = common::scene(name);
+    let mut simulation = Simulation::new(&scene).expect("an equilibrium");
+    simulation.follow_scene().expect("an equilibrium");
+    for _ in 0..count {
+        simulation.advance(scene.output.interval).expect("a step");
+    }
+}
+
+/// Where the table of this processor is; none where its name is not known.
+fn table() -> Option<PathBuf> {
+    let known = fs::read_to_string("/proc/cpuinfo").ok()?;
+    let name = known
+        .lines()
+        .find_map(|line| line.strip_prefix("model name"))?;
+    let name = name.trim_start_matches([' ', '\t', ':']).to_lowercase();
+    let words = name.split(|c: char| !c.is_ascii_alphanumeric());
+    let words: Vec<&str> = words.filter(|word| !word.is_empty()).collect();
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/tables");
+    Some(folder.join(format!("{}.instructions.csv", words.join("-"))))
+}
+
+/// Instructions that valgrind counts in a run; none where there is no valgrind.
+fn counted(scene: &str, steps: usize) -> Option<u64> {
+    let program = env::current_exe().ok()?;
+    let run = Command::new("valgrind")
+        .args([
+            "--tool=cachegrind",
+            "--cache-sim=no",
+            "--cachegrind-out-file=/dev/null",
+        ])
+        .arg(program)
+        .args([scene, &steps.to_string()])
+        .output()
+        .ok()?;
+    let said = String::from_utf8_lossy(&run.stderr);
+    assert!(run.status.success(), "{scene}: {said}");
+    let (_, count) = said.split_once("refs:")?;
+    let count = count.lines().next()?.trim().replace(',', "");
+    count.parse().ok()
+}
+
+/// Instructions of a communication step of every scene.
+fn counts() -> Option<Vec<(&'static str, u64)>> {
+    let [short, long] = STEPS;
+    let count = |scene| {
+        let between = counted(scene, long)? - counted(scene, short)?;
+        Some((scene, between / (long - short) as u64))
+    };
+    SCENES.into_iter().map(count).collect()
+}
+
+fn write() -> ExitCode {
+    let (Some(path), Some(counts)) = (table(), counts()) else {
+        println!("valgrind or the processor's name is missing: no table can be made");
+        return ExitCode::FAILURE;
+    };
+    let mut text = String::from("scene,instructions per communication step\n");
+    for (scene, count) in counts {
+        writeln!(text, "{scene},{count}").expect("a String takes all");
+    }
+    let folder = path.parent().expect("a table is in a folder");
+    fs::create_dir_all(folder).expect("the folder of the tables");
+    fs::write(&path, text).expect("the table can be written");
+    ExitCode::SUCCESS
+}
+
+fn compare() -> ExitCode {
+    let Some(text) = table().and_then(|path| fs::read_to_string(path).ok()) else {
+        println!(
+            "no table of this processor: `cargo bench --bench instructions -- --write` makes one"
+        );
+        return ExitCode::SUCCESS;
+    };
+    let Some(counts) = counts() else {
+        println!("no valgrind: instructions are not counted");
+        return ExitCode::SUCCESS;
+    };
+    let mut dearer = false;
+    for (scene, now) in counts {
+        let row = text
+            .lines()
+            .find_map(|line| line.strip_prefix(scene)?.strip_prefix(','));
+        let Some(before) = row.and_then(|count| count.parse::<u64>().ok()) else {
+            println!("{scene:<16} {now:>12}, not in the table");
+            continue;
+        };
+        let change = now as f64 / before as f64 - 1.0;
+        dearer |= change > ALLOWED;
+        println!(
+            "{scene:<16} {before:>12} before {now:>12} now {:+6.1} %",
+            100.0 * change
+        );
+    }
+    if dearer {
+        println!(
+            "steps take over {} % more instructions: where that is meant, write the table anew and say why",
+            100.0 * ALLOWED
+        );
+        return ExitCode::FAILURE;
+    }
+    ExitCode::SUCCESS
+}

@@ -1,0 +1,152 @@
+//! Where random numbers come from: a tape of genes that proptest draws and shrinks, read part by part.
+//!
+//! A gene of zero means the plainest of all choices, so that a failing scene shrinks to a plain one: parts first, single genes after.
+
+use std::ops::Range;
+
+use proptest::prelude::Rng;
+use proptest::strategy::{NewTree, Strategy, ValueTree};
+use proptest::test_runner::TestRunner;
+
+/// Parts of a tape: what is drawn in one part does not move with what is drawn in another.
+const PARTS: usize = 48;
+/// Genes of a part.
+const GENES: usize = 64;
+
+/// All that is random about a scene and its drive.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tape(Vec<u32>);
+
+impl Tape {
+    /// Dice of a part; `wild` is the share of numbers that are drawn from all that is legal.
+    pub fn part(&self, number: usize, wild: f64) -> Dice<'_> {
+        assert!(number < PARTS, "a tape has {PARTS} parts");
+        Dice {
+            genes: &self.0[number * GENES..(number + 1) * GENES],
+            at: 0,
+            wild,
+        }
+    }
+}
+
+/// Reads the genes of a part, one after the other and round again.
+#[derive(Debug, Clone)]
+pub struct Dice<'t> {
+    genes: &'t [u32],
+    at: usize,
+    wild: f64,
+}
+
+impl Dice<'_> {
+    /// From 0 to just below 1.
+    fn unit(&mut self) -> f64 {
+        let gene = self.genes[self.at % self.genes.len()];
+        self.at += 1;
+        f64::from(gene) / (f64::from(u32::MAX) + 1.0)
+    }
+
+    /// Whether something rare happens.
+    pub fn chance(&mut self, share: f64) -> bool {
+        self.unit() > 1.0 - share
+    }
+
+    /// A value, if something rare happens.
+    pub fn maybe<T>(&mut self, share: f64, value: impl FnOnce(&mut Self) -> T) -> Option<T> {
+        self.chance(share).then(|| value(self))
+    }
+
+    /// Evenly between two numbers.
+    pub fn between(&mut self, lower: f64, upper: f64) -> f64 {
+        lower + (upper - lower) * self.unit()
+    }
+
+    /// Evenly to both sides of zero.
+    pub fn within(&mut self, size: f64) -> f64 {
+        let sign = if self.chance(0.5) { -1.0 } else { 1.0 };
+        sign * self.between(0.0, size)
+    }
+
+    /// Alike in every power of ten.
+    pub fn log(&mut self, lower: f64, upper: f64) -> f64 {
+        (lower * (upper / lower).powf(self.unit())).clamp(lower, upper)
+    }
+
+    /// As [`Self::log`] from the usual range, now and then from the legal one.
+    pub fn size(&mut self, usual: [f64; 2], legal: [f64; 2]) -> f64 {
+        let [lower, upper] = if self.chance(self.wild) { legal } else { usual };
+        self.log(lower, upper)
+    }
+
+    /// A whole number, both bounds included.
+    pub fn whole(&mut self, lower: usize, upper: usize) -> usize {
+        lower + (self.unit() * (upper - lower + 1) as f64) as usize
+    }
+
+    /// One of several.
+    pub fn pick<T: Clone>(&mut self, list: &[T]) -> T {
+        list[self.whole(0, list.len() - 1)].clone()
+    }
+
+    /// A number of no meaning, for generators of their own.
+    pub fn seed(&mut self) -> u64 {
+        (self.unit() * 1e6) as u64
+    }
+}
+
+/// Draws tapes.
+#[derive(Debug, Clone, Copy)]
+pub struct Tapes;
+
+impl Strategy for Tapes {
+    type Tree = TapeTree;
+    type Value = Tape;
+
+    fn new_tree(&self, runner: &mut TestRunner) -> NewTree<Self> {
+        let rng = runner.rng();
+        let tape = Tape((0..PARTS * GENES).map(|_| rng.next_u32()).collect());
+        let parts = (0..PARTS).map(|part| part * GENES..(part + 1) * GENES);
+        let single = (0..PARTS * GENES).map(|gene| gene..gene + 1);
+        Ok(TapeTree {
+            tape,
+            kept: None,
+            rest: parts.chain(single).collect::<Vec<_>>().into_iter(),
+        })
+    }
+}
+
+/// A tape on its way to a plainer one.
+#[derive(Debug, Clone)]
+pub struct TapeTree {
+    tape: Tape,
+    /// What the last simplification set to zero.
+    kept: Option<(Range<usize>, Vec<u32>)>,
+    /// Ranges that have not been tried.
+    rest: std::vec::IntoIter<Range<usize>>,
+}
+
+impl ValueTree for TapeTree {
+    type Value = Tape;
+
+    fn current(&self) -> Tape {
+        self.tape.clone()
+    }
+
+    fn simplify(&mut self) -> bool {
+        for range in self.rest.by_ref() {
+            let genes = &mut self.tape.0[range.clone()];
+            if genes.iter().any(|gene| *gene != 0) {
+                self.kept = Some((range, genes.to_vec()));
+                genes.fill(0);
+                return true;
+            }
+        }
+        false
+    }
+
+    fn complicate(&mut self) -> bool {
+        if let Some((range, genes)) = self.kept.take() {
+            self.tape.0[range].copy_from_slice(&genes);
+        }
+        self.simplify()
+    }
+}

@@ -1,0 +1,121 @@
+//! How a host drives a scene: by its own motion or step by step, at regular or irregular communication points, with jumps.
+
+use moorline::model::{Body, Motion};
+use moorline::scene::{PointKind, Scene};
+use moorline::simulation::Simulation;
+
+use crate::dice::{Dice, Tape};
+use crate::plan::{Plan, part};
+
+/// Simulated span [s].
+pub const SPAN: f64 = 60.0;
+
+/// What a host does.
+#[derive(Debug, Clone)]
+pub struct Drive {
+    /// Whether the scene's own motion moves everything.
+    pub follows: bool,
+    /// Communication steps [s], [`SPAN`] in all.
+    pub steps: Vec<f64>,
+    /// Whether velocities are told.
+    tells_velocity: bool,
+    /// What is moved, where.
+    bodies: Vec<(Body, Motion)>,
+    /// From a time [s] on, all bodies are elsewhere along x [m].
+    jump: Option<[f64; 2]>,
+    /// Lines that are released, and when [s].
+    releases: Vec<(usize, f64)>,
+    /// Lines on winches and how far they are told to go [m].
+    winches: Vec<(usize, f64)>,
+}
+
+impl Drive {
+    /// The host of a tape and its scene.
+    pub fn of(tape: &Tape, plan: &Plan, scene: &Scene) -> Drive {
+        let mut dice = plan.dice(tape, part::DRIVE);
+        let follows = !dice.chance(0.5);
+        let points = scene.points.iter().enumerate();
+        let coupled =
+            points.filter(|(_, point)| point.kind == PointKind::Coupled && point.on.is_none());
+        let points = coupled.map(|(index, point)| (Body::Point(index), &point.name));
+        let vessels = scene.vessels.iter().enumerate();
+        let vessels = vessels.map(|(index, vessel)| (Body::Vessel(index), &vessel.name));
+        let moved =
+            |(body, name): (Body, &String)| Some((body, Motion::new(scene.motion.get(name)?)));
+        let winch = |(index, line): (usize, &moorline::scene::Line)| {
+            let winch = line.winch.as_ref()?;
+            Some((index, 0.9 * winch.length_max))
+        };
+        let mut drive = Drive {
+            follows,
+            steps: steps(&mut dice),
+            tells_velocity: dice.chance(0.4),
+            bodies: points.chain(vessels).filter_map(moved).collect(),
+            jump: dice.maybe(0.25, |dice| {
+                [dice.between(1.0, SPAN), dice.within(1e-2 * plan.size)]
+            }),
+            releases: Vec::new(),
+            winches: scene.lines.iter().enumerate().filter_map(winch).collect(),
+        };
+        for (index, line) in scene.lines.iter().enumerate() {
+            if line.release.is_some() && dice.chance(0.8) {
+                drive.releases.push((index, dice.between(0.0, SPAN)));
+            }
+        }
+        drive
+    }
+
+    /// Whether communication steps differ.
+    pub fn is_irregular(&self) -> bool {
+        let inner = &self.steps[..self.steps.len() - 1];
+        inner.windows(2).any(|pair| pair[0] != pair[1])
+    }
+
+    /// Whether a body jumps.
+    pub fn jumps(&self) -> bool {
+        !self.follows && self.jump.is_some()
+    }
+
+    /// Tells a simulation what holds at its time.
+    pub fn tell(&self, simulation: &mut Simulation) {
+        let time = simulation.time();
+        for &(line, at) in &self.releases {
+            simulation.set_release(line, time >= at);
+        }
+        if self.follows {
+            return;
+        }
+        for (body, motion) in &self.bodies {
+            let pose = motion.pose(time);
+            let mut value: [f64; 6] = pose.value.into();
+            if let Some([at, away]) = self.jump
+                && time >= at
+            {
+                value[0] += away;
+            }
+            let mut rate = [None; 6];
+            if self.tells_velocity {
+                // angular velocities of a vessel are not the rates of its angles: those are left to be derived
+                (0..3).for_each(|axis| rate[axis] = Some(pose.rate[axis]));
+            }
+            simulation.set_body(*body, value, rate);
+        }
+        for &(line, most) in &self.winches {
+            simulation.set_length_change(line, most * (time / SPAN).min(1.0));
+        }
+    }
+}
+
+/// Communication steps [s]: alike, or each another.
+fn steps(dice: &mut Dice) -> Vec<f64> {
+    let usual = dice.log(0.05, 0.5);
+    let spread = dice.pick(&[1.0, 1.0, 5.0, 20.0]);
+    let (mut steps, mut left) = (Vec::new(), SPAN);
+    while left > 0.0 {
+        let step = usual * dice.log(1.0 / spread, spread);
+        let step = if step > 0.999 * left { left } else { step };
+        steps.push(step);
+        left -= step;
+    }
+    steps
+}

@@ -1,0 +1,44 @@
+//! How well the energy ledger closes.
+
+use moorline::simulation::Simulation;
+
+/// What the ledger has booked.
+pub struct Balance {
+    /// All that was given and lost, whatever its sign [J].
+    turnover: f64,
+    /// Most that was held [J].
+    held: f64,
+    given: f64,
+    lost: f64,
+}
+
+impl Balance {
+    /// At the start.
+    pub fn new(simulation: &Simulation) -> Balance {
+        let mut balance = Balance {
+            turnover: 0.0,
+            held: 0.0,
+            given: 0.0,
+            lost: 0.0,
+        };
+        balance.count(simulation);
+        balance
+    }
+
+    /// Books a communication step.
+    pub fn count(&mut self, simulation: &Simulation) {
+        let (energy, flow) = (simulation.energy(), simulation.ledger().flow);
+        self.turnover += (flow.given - self.given).abs() + (flow.lost - self.lost).abs();
+        (self.given, self.lost) = (flow.given, flow.lost);
+        let height = energy.gravitational;
+        self.held = self.held.max(energy.total() - height + height.abs());
+    }
+
+    /// Error of the ledger over all that it has booked [-].
+    pub fn imbalance(&self, simulation: &Simulation) -> f64 {
+        match simulation.energy_error() {
+            0.0 => 0.0,
+            error => error / (self.turnover + self.held),
+        }
+    }
+}

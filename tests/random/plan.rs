@@ -1,0 +1,138 @@
+//! What kind of scene it is to be: choices that all its parts know.
+
+use moorline::scene::{Bossak, Integrator, Reconstruction, Solver};
+
+use crate::dice::{Dice, Tape};
+use crate::surroundings;
+
+/// Parts of the tape, by what is drawn from them.
+pub mod part {
+    pub const PLAN: usize = 0;
+    pub const SOLVER: usize = 1;
+    pub const WATER: usize = 2;
+    pub const BED: usize = 3;
+    pub const TOPS: usize = 4;
+    pub const DRIVE: usize = 5;
+    pub const TYPES: usize = 8;
+    pub const MOTIONS: usize = 12;
+    pub const JUNCTIONS: usize = 20;
+    pub const LINES: usize = 30;
+}
+
+/// What lines resist.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Resists {
+    Stretch,
+    Bending,
+    Torsion,
+}
+
+/// What all parts of a scene know.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Plan {
+    /// Share of numbers that are drawn from all that is legal [-].
+    pub wild: f64,
+    /// About how far and deep the scene reaches [m].
+    pub size: f64,
+    /// [m/s²]
+    pub gravity: f64,
+    pub integrator: Integrator,
+    pub resists: Resists,
+    pub wet: bool,
+    pub bed: bool,
+    /// The axial law that all line types share, by number; each its own where absent. Ropes with memory and lines integrated
+    /// explicitly share one.
+    pub law: Option<usize>,
+    /// Poisson's ratio of logarithmic strain [-].
+    pub poisson: f64,
+    /// Whether lines are on winches.
+    pub winch: bool,
+    /// Whether points move freely.
+    pub junctions: bool,
+    /// Whether lines break or are released.
+    pub parts: bool,
+}
+
+impl Plan {
+    /// The choices of a tape.
+    pub fn of(tape: &Tape) -> Plan {
+        let mut dice = tape.part(part::PLAN, 0.0);
+        let wild = dice.pick(&[0.0, 0.0, 0.02, 0.1]);
+        let gravity = surroundings::gravity(&mut tape.part(part::WATER, wild));
+        let mut integrator = dice.pick(&[
+            Integrator::Auto,
+            Integrator::Auto,
+            Integrator::Auto,
+            Integrator::Leapfrog,
+            Integrator::AxialImplicit,
+            Integrator::GeneralisedAlpha,
+            Integrator::Bossak,
+            Integrator::QuasiStatic,
+        ]);
+        let implicit = !matches!(integrator, Integrator::Leapfrog | Integrator::AxialImplicit);
+        let resists = match dice.whole(0, 9) {
+            8 if implicit => Resists::Bending,
+            9 => {
+                integrator = dice.pick(&[Integrator::Beam, Integrator::Auto]);
+                Resists::Torsion
+            }
+            _ => Resists::Stretch,
+        };
+        let plain = resists == Resists::Stretch;
+        let winch = dice.chance(0.12)
+            && plain
+            && matches!(integrator, Integrator::Auto | Integrator::Leapfrog);
+        let alike = resists == Resists::Torsion || !implicit || dice.chance(0.7);
+        let law = dice.whole(0, 9);
+        Plan {
+            wild,
+            law: (alike || law == 9).then_some(law),
+            poisson: dice.between(0.0, 0.5),
+            size: dice.log(5.0, 2000.0),
+            gravity,
+            integrator,
+            resists,
+            wet: dice.chance(0.75),
+            bed: dice.chance(0.7),
+            winch,
+            junctions: integrator != Integrator::AxialImplicit && dice.chance(0.4),
+            parts: plain && integrator != Integrator::QuasiStatic && dice.chance(0.2),
+        }
+    }
+
+    /// Dice of a part of a tape.
+    pub fn dice<'t>(&self, tape: &'t Tape, part: usize) -> Dice<'t> {
+        tape.part(part, self.wild)
+    }
+
+    /// How the scene is solved.
+    pub fn solver(&self, dice: &mut Dice) -> Solver {
+        let radius = matches!(
+            self.integrator,
+            Integrator::AxialImplicit | Integrator::GeneralisedAlpha
+        );
+        let bossak = self.integrator == Integrator::Bossak;
+        Solver {
+            tolerance: dice.size([0.02, 0.3], [1e-3, 0.5]),
+            integrator: self.integrator,
+            negative_tension: dice.chance(0.15),
+            elements: dice.maybe(0.9, |dice| dice.whole(4, 40)), // else they are found by trials
+            time_step_max: dice.size([0.05, 0.05], [2e-3, 10.0]),
+            spectral_radius: dice
+                .maybe(0.4, |dice| dice.between(0.0, 1.0))
+                .filter(|_| radius),
+            bossak: dice.maybe(0.7, self::bossak).filter(|_| bossak),
+            input_reconstruction: match dice.chance(0.2) {
+                true => Reconstruction::Jump,
+                false => Reconstruction::Smooth,
+            },
+        }
+    }
+}
+
+fn bossak(dice: &mut Dice) -> Bossak {
+    Bossak {
+        alpha: -dice.between(0.0, 1.0 / 3.0),
+        gamma: dice.maybe(0.2, |dice| dice.between(0.5, 1.5)),
+    }
+}

@@ -1,0 +1,222 @@
+//! Runs many scenes on two threads and counts what became of them.
+
+use std::collections::BTreeMap;
+use std::fmt;
+use std::ops::Range;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
+
+use proptest::strategy::{Strategy, ValueTree};
+use proptest::test_runner::{Config, RngAlgorithm, TestCaseError, TestError, TestRng, TestRunner};
+
+use crate::dice::{TapeTree, Tapes};
+use crate::features;
+use crate::run::{Account, Case, Fate, run};
+
+/// Threads.
+const THREADS: usize = 2;
+/// Runs that shrinking a failing scene may take.
+const SHRINKS_MAX: u32 = 200;
+/// Error of a ledger that closes, over what it books [-].
+pub const CLOSED: f64 = 0.02;
+
+fn runner(number: usize) -> TestRunner {
+    let config = Config {
+        failure_persistence: None,
+        max_shrink_iters: SHRINKS_MAX,
+        ..Config::default()
+    };
+    let mut seed = [0; 32];
+    seed[..8].copy_from_slice(&(number as u64).to_le_bytes());
+    TestRunner::new_with_rng(config, TestRng::from_seed(RngAlgorithm::ChaCha, &seed))
+}
+
+fn tree(number: usize) -> TapeTree {
+    let tree = Tapes.new_tree(&mut runner(number));
+    tree.expect("tapes are always drawn")
+}
+
+/// The case of a number: always the same.
+pub fn case(number: usize) -> Case {
+    Case::of(&tree(number).current())
+}
+
+/// A plainer case that breaks a claim like that of a number, with the claim.
+pub fn shrunk(number: usize) -> Option<(Case, String)> {
+    let hold = |tape| match run(&Case::of(&tape)) {
+        Ok(_) => Ok(()),
+        Err(claim) => Err(TestCaseError::fail(claim)),
+    };
+    match runner(number).run_one(tree(number), hold) {
+        Err(TestError::Fail(claim, tape)) => Some((Case::of(&tape), claim.message().to_string())),
+        _ => None,
+    }
+}
+
+/// What became of scenes.
+#[derive(Debug, Default)]
+pub struct Survey {
+    /// Scenes in all.
+    pub scenes: usize,
+    /// Scenes by fate.
+    pub fates: BTreeMap<&'static str, usize>,
+    /// By feature: how many ran for the whole span or as far as they may cost, of how many.
+    pub features: BTreeMap<&'static str, [usize; 2]>,
+    /// Errors of energy ledgers, by integrator [-].
+    pub imbalance: BTreeMap<String, Vec<(f64, usize)>>,
+    /// Scenes that break a claim, with the claim.
+    pub broken: Vec<(usize, String)>,
+    /// Reasons given by scenes that could not be run.
+    pub reasons: BTreeMap<String, usize>,
+    /// Dearest communication step, and its scene.
+    pub dearest: (f64, usize),
+}
+
+impl Survey {
+    /// Runs the scenes of these numbers.
+    pub fn of(numbers: Range<usize>) -> Survey {
+        let survey = Mutex::new(Survey::default());
+        let next = AtomicUsize::new(numbers.start);
+        let work = || {
+            loop {
+                let number = next.fetch_add(1, Ordering::Relaxed);
+                if number >= numbers.end {
+                    break;
+                }
+                let case = case(number);
+                let result = run(&case);
+                let mut survey = survey.lock().expect("no thread panics while it counts");
+                survey.count(number, &case, result);
+            }
+        };
+        thread::scope(|scope| {
+            for _ in 0..THREADS {
+                scope.spawn(work);
+            }
+        });
+        survey
+            .into_inner()
+            .expect("no thread panics while it counts")
+    }
+
+    fn count(&mut self, number: usize, case: &Case, result: Result<Account, String>) {
+        self.scenes += 1;
+        let account = match result {
+            Ok(account) => account,
+            Err(claim) => return self.broken.push((number, claim)),
+        };
+        let (fate, reason) = match account.fate {
+            Fate::Ran => ("ran", None),
+            Fate::Costly => ("too dear", None),
+            Fate::Refused(reason) => ("refused", Some(reason)),
+            Fate::Unsolved(reason) => ("no equilibrium", Some(reason)),
+            Fate::Stopped(reason) => ("stopped", Some(reason)),
+        };
+        *self.fates.entry(fate).or_default() += 1;
+        if let Some(reason) = &reason {
+            *self.reasons.entry(kind_of(reason)).or_default() += 1;
+        }
+        for feature in features::of(case) {
+            let [ran, all] = self.features.entry(feature).or_default();
+            *ran += usize::from(reason.is_none());
+            *all += 1;
+        }
+        if reason.is_none() && account.time > 0.0 && !features::jumps(&case.scene) {
+            let mut names = account.integrators;
+            names.sort();
+            names.dedup();
+            let name = match &names[..] {
+                [name] => name,
+                _ => "several",
+            };
+            let steps = if case.drive.is_irregular() {
+                "irregular steps"
+            } else {
+                "equal steps"
+            };
+            let name = format!("{name}, {steps}");
+            self.imbalance
+                .entry(name)
+                .or_default()
+                .push((account.imbalance, number));
+        }
+        if account.dearest > self.dearest.0 {
+            self.dearest = (account.dearest, number);
+        }
+    }
+
+    /// Share of scenes of a fate [-].
+    pub fn share(&self, fate: &str) -> f64 {
+        self.fates.get(fate).copied().unwrap_or(0) as f64 / self.scenes as f64
+    }
+
+    /// Share of the ledgers of an integrator that close [-].
+    pub fn closed(&self, integrator: &str) -> f64 {
+        let errors = self
+            .imbalance
+            .get(integrator)
+            .map_or(&[][..], |errors| errors);
+        let closed = errors
+            .iter()
+            .filter(|(error, _)| error.abs() <= CLOSED)
+            .count();
+        closed as f64 / errors.len().max(1) as f64
+    }
+
+    /// Greatest error of the ledgers of an integrator, whatever a host's steps [-].
+    pub fn worst(&self, integrator: &str) -> f64 {
+        let ledgers = self.imbalance.iter();
+        let errors = ledgers.filter(|(name, _)| name.starts_with(integrator));
+        let sizes = errors
+            .flat_map(|(_, errors)| errors)
+            .map(|(error, _)| error.abs());
+        sizes.fold(0.0, f64::max)
+    }
+}
+
+/// A reason without its numbers and names.
+fn kind_of(reason: &str) -> String {
+    let words = reason.split([' ', '"']);
+    let plain = words.filter(|word| !word.contains(|c: char| c.is_ascii_digit()));
+    plain
+        .filter(|word| !word.is_empty())
+        .take(12)
+        .collect::<Vec<_>>()
+        .join(" ")
+}
+
+impl fmt::Display for Survey {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{} scenes: {:?}", self.scenes, self.fates)?;
+        for (reason, count) in &self.reasons {
+            writeln!(f, "{count:6} {reason}")?;
+        }
+        writeln!(f, "run, of all, with")?;
+        for (feature, [ran, all]) in &self.features {
+            writeln!(f, "{ran:6} {all:6} {feature}")?;
+        }
+        for (integrator, errors) in &self.imbalance {
+            let mut errors = errors.clone();
+            errors.sort_by(|(a, _), (b, _)| a.abs().total_cmp(&b.abs()));
+            let at = |share: f64| errors[(share * (errors.len() - 1) as f64) as usize];
+            let (median, most, worst) = (at(0.5).0, at(0.9).0, at(1.0));
+            let closed = 100.0 * self.closed(integrator);
+            writeln!(
+                f,
+                "{integrator}: {} ledgers, {closed:.1} % closed within {CLOSED}; half of them within {:.1e}, nine in ten within {:.1e}, \
+                 worst {:+.1e} in scene {}",
+                errors.len(),
+                median.abs(),
+                most.abs(),
+                worst.0,
+                worst.1
+            )?;
+        }
+        writeln!(
+            f,
+            "dearest communication step: {:.1e} node steps in scene {}",
+            self.dearest.0, self.dearest.1
+        )
+    }
+}
