@@ -27,6 +27,9 @@ pub struct Page {
 
 fn main() -> Result<(), Box<dyn Error>> {
     let folder = std::env::args().nth(1);
+    if let Some(folder) = &folder {
+        std::fs::create_dir_all(folder)?;
+    }
     println!("run | integrator | steps for a second | peak [N] | ledger [-] | gain [-]");
     for draw in figures::ALL {
         let page = draw();

@@ -58,7 +58,7 @@ const FEWER: f64 = 0.93;
 pub struct Trial {
     /// Elements of a line alone [-].
     pub elements: usize,
-    /// Estimated relative RMS error of the tension at the driven end [-].
+    /// Estimated RMS error of the tension at the driven end, over the standard deviation of the line that moves most [-].
     pub error: f64,
 }
 
@@ -420,7 +420,7 @@ impl Pace {
             }
         }
         let duration = if tables || longest == 0.0 {
-            DURATION.max(PERIODS * longest)
+            DURATION
         } else {
             PERIODS * longest
         };
@@ -454,21 +454,29 @@ fn estimated(coarse: &Run, middle: &Run, fine: &Run) -> f64 {
     (smooth * whole).max(distance(middle, fine))
 }
 
-/// RMS of the difference of two runs over the standard deviation of the second, of the line where it is greatest [-].
+/// RMS of the difference of two runs, of the line where it is greatest, over the greatest standard deviation of a line's tension in the
+/// second [-]: lines that hardly move need not be right to a part of what little they do.
 fn distance(run: &Run, reference: &Run) -> f64 {
-    let lines = run.tension.iter().zip(&reference.tension);
-    lines
-        .map(|(own, right)| relative(own, right))
-        .fold(0.0, f64::max)
-}
-
-fn relative(own: &[f64], right: &[f64]) -> f64 {
-    let count = right.len() as f64;
-    let mean = right.iter().sum::<f64>() / count;
-    let spread: f64 = right.iter().map(|b| (b - mean).powi(2)).sum();
-    if (spread / count).sqrt() <= STILL * mean.abs() {
+    let spread = |tension: &Vec<f64>| {
+        let mean = tension.iter().sum::<f64>() / tension.len() as f64;
+        let wave: Vec<f64> = tension.iter().map(|value| value - mean).collect();
+        let spread = rms(wave.iter().copied());
+        if spread > STILL * mean.abs() {
+            spread
+        } else {
+            0.0
+        }
+    };
+    let scale = reference.tension.iter().map(spread).fold(0.0, f64::max);
+    if scale == 0.0 {
         return 0.0;
     }
-    let wrong: f64 = own.iter().zip(right).map(|(a, b)| (a - b).powi(2)).sum();
-    (wrong / spread).sqrt()
+    let lines = run.tension.iter().zip(&reference.tension);
+    let wrong = lines.map(|(own, right)| rms(own.iter().zip(right).map(|(a, b)| a - b)));
+    wrong.fold(0.0, f64::max) / scale
+}
+
+fn rms(values: impl ExactSizeIterator<Item = f64>) -> f64 {
+    let count = values.len() as f64;
+    (values.map(|value| value * value).sum::<f64>() / count).sqrt()
 }

@@ -22,21 +22,24 @@ use crate::physics::seabed::REGULARISED_PENETRATION;
 const SUNK: f64 = 0.5;
 /// Elements over which the line comes up to a held end [-].
 const RISE: f64 = 3.0;
+/// The same where the line bends: its curvature follows the second derivative of the step.
+const RISE_BENT: f64 = 5.0;
 
 /// Lowers the level from which softened contact pushes, from where a line would rest on the bed to where what hangs is right.
 pub(super) fn sink(line: &mut Line, points: &[Point]) {
     if let Some(winch) = &mut line.winch {
         sink(winch.reel_mut(), points);
     }
-    let length = line.unstretched_length();
+    let (length, bends) = (line.unstretched_length(), line.bends());
     let Some(contact) = &mut line.nodes.contact else {
         return;
     };
+    let elements = if bends { RISE_BENT } else { RISE };
     let spacing = line.nodes.length[0];
     let lies = line.ends.map(|end| lies_on(contact, &points[end], spacing));
     for (arc, level) in line.nodes.arc.iter().zip(&mut contact.level) {
         let compression = *level - contact.bed; // δ
-        let rise = RISE * compression / REGULARISED_PENETRATION; // R
+        let rise = elements * compression / REGULARISED_PENETRATION; // R
         let near = |distance: f64| {
             if rise > 0.0 {
                 step(1.0 - distance / rise)
