@@ -2,7 +2,7 @@
 //!
 //! Cost is processor time of the stepping thread per simulated second, without reading, statics and output. moorline is driven as the
 //! peers are: a host tells it where the fairlead is and how fast it moves, one communication step after the other. The runs that the
-//! verdicts name are timed in several rounds, own and peers' in turn ([`rounds`]). Errors are those of [`errors`], over the second half
+//! verdicts name are timed in several rounds, own and peers' in turn. Errors are those of [`errors`], over the second half
 //! of the run. The converged solution is the best of a sequence of fine meshes, its uncertainty the distance from the one of half its
 //! resolution: nothing below that is a statement.
 //!

@@ -10,15 +10,15 @@
 //! n_{j+2} having twice the elements. Where the errors of the meshes have nothing to do with each other, d(j, j+2) ≈ e_j and
 //! c ≈ 1; where they fall with n², d(j, j+2) = ¾ e_j, d(j, j+1) = ½ e_j and c = 4/3. On fifteen scenes and nine meshes d(j, j+2)/e_j was
 //! 0.74 to 1.15 wherever the error is 0.5 % or more, but for a chain that snaps at n = 7 (0.65). The mesh is the coarsest whose e_j is
-//! below [`AIM`] of the tolerance, interpolated between the rungs and tried once more there.
+//! below a part of the tolerance, interpolated between the rungs and tried once more there.
 //!
 //! The axial-implicit leapfrog costs about three times as much a step as the explicit one. On the mesh found it is tried with steps from the
 //! longest allowed down, as long as that is cheaper, and taken with the first step that keeps the error against the finest mesh; else
 //! steps are explicit.
 //!
-//! All this is bounded by [`WORK_MAX`], of the order of a second, and the same on every machine. Beyond that the number of elements is extrapolated
+//! All this is bounded, by a work of the order of a second, and the same on every machine. Beyond that the number of elements is extrapolated
 //! from the last one tried, with an error that falls as 1/n. A scene whose motion is not known, whose elements are given or that needs another
-//! integrator keeps the rule of [`crate::model::mesh`].
+//! integrator keeps the rule that elements follow from the tolerance alone.
 
 use super::{Error, Simulation};
 use crate::dynamics::AXIAL_IMPLICIT_COST;
