@@ -1,0 +1,57 @@
+//! The kernels run with the widest vectors of the machine; what they find must not depend on it.
+
+mod common;
+
+use common::*;
+use moorline::dynamics::leapfrog::Step;
+use moorline::dynamics::network::NetworkWork;
+use moorline::model::{Kinematics, State};
+use moorline::scene::Integrator;
+use moorline::simulation::Simulation;
+use nalgebra::Vector3;
+
+/// The state after `steps` steps of the first network of a scene, whose held points sway by a metre.
+fn swayed(name: &str, elements: usize, steps: usize, portable: bool) -> State {
+    let mut scene = with_elements(shipped(name), elements);
+    scene.solver.integrator = Integrator::Leapfrog;
+    let mut simulation = Simulation::new(&scene).expect("an equilibrium");
+    simulation.advance(0.05).expect("a step");
+    let size = 0.05 / simulation.substeps() as f64;
+    let (model, mut state) = (simulation.model(), simulation.state().clone());
+    let network = &model.networks[0];
+    let mut work = NetworkWork::new(model, network).expect("one strain measure");
+    work.set_portable(portable);
+    work.load(network, &state);
+    let start = state.clone();
+    let held = |point: usize, t: f64| {
+        let phase = t - start.time;
+        Kinematics {
+            position: start.points[point].position + phase.sin() * Vector3::x(),
+            velocity: phase.cos() * Vector3::x(),
+            acceleration: -phase.sin() * Vector3::x(),
+            ..Kinematics::default()
+        }
+    };
+    let step = Step::after([size; 2], size);
+    work.put_ends(start.time, step, &held);
+    for k in 0..steps {
+        work.step(model, network, start.time + k as f64 * size, step, &held);
+    }
+    assert_eq!(work.broken_node(), None);
+    work.store(network, &mut state, [size; 2]);
+    state
+}
+
+#[test]
+fn the_widest_vectors_and_portable_ones_agree_bit_for_bit() {
+    for name in ["oc3_catenary", "taut_polyester"] {
+        for elements in [2, 3, 10, 21, 40] {
+            let [wide, portable] =
+                [false, true].map(|portable| swayed(name, elements, 400, portable));
+            assert!(
+                wide.lines == portable.lines,
+                "{name}, {elements} elements: states differ"
+            );
+        }
+    }
+}
