@@ -176,7 +176,8 @@ impl Simulation {
         let model = &*self.model;
         let follows_scene = self.snapshot.follows_scene;
         let (time, at) = (self.time(), At::new(model, &self.paths, follows_scene));
-        self.held.prepare(&at, [time, time + step]);
+        let steps = self.snapshot.counters.substeps;
+        self.held.prepare(&at, [time, time + step], steps);
         let held = |point: usize, t: f64| self.held.point(&at, point, t);
         let state = &mut self.snapshot.state;
         let advanced = self.work.advance(model, state, step, &held);
