@@ -329,13 +329,14 @@ impl AxisPath {
         if foresight.order == Order::Before {
             (self.rated, self.degree) = (0, 0);
         }
-        let positions = foresight.order.push(&self.positions, position);
-        self.positions = positions;
         let to = match velocity {
-            Some(velocity) => self.rate(foresight, position, velocity),
+            Some(velocity) => {
+                self.positions = foresight.order.push(&self.positions, position);
+                self.rate(foresight, position, velocity)
+            }
             None => {
                 self.rated = 0;
-                self.predict(foresight, &positions)
+                self.predict(foresight, position)
             }
         };
         let [start, end] = foresight.span;
@@ -369,10 +370,10 @@ impl AxisPath {
         self.curve.at(t)
     }
 
-    /// Position [m] and velocity [m/s] predicted for the end of a step from what the host said of the position.
+    /// Remembers a position [m], and predicts position [m] and velocity [m/s] at the end of a step from what the host said of the position.
     #[inline]
-    fn predict(&mut self, foresight: &Foresight, positions: &[f64; SAMPLES_MAX]) -> [f64; 2] {
-        let differences = Differences::new(foresight, positions);
+    fn predict(&mut self, foresight: &Foresight, position: f64) -> [f64; 2] {
+        let differences = Differences::new(foresight, &mut self.positions, position);
         let degree = differences.degree(foresight.count, &mut self.degree);
         [&foresight.value, &foresight.slope].map(|basis| differences.sum(degree, basis))
     }
@@ -382,9 +383,7 @@ impl AxisPath {
     fn rate(&mut self, foresight: &Foresight, position: f64, velocity: f64) -> [f64; 2] {
         let again = usize::from(foresight.order == Order::Again);
         self.rated = (self.rated.saturating_sub(again) + 1).min(SAMPLES_MAX);
-        let velocities = foresight.order.push(&self.velocities, velocity);
-        self.velocities = velocities;
-        let differences = Differences::new(foresight, &velocities);
+        let differences = Differences::new(foresight, &mut self.velocities, velocity);
         let degree = differences.degree(foresight.known(self.rated), &mut self.degree);
         [
             position + differences.sum(degree, &foresight.integral),
@@ -447,10 +446,14 @@ struct Differences {
 }
 
 impl Differences {
+    /// Of samples that a new one joins.
     #[inline(always)]
-    fn new(foresight: &Foresight, samples: &[f64; SAMPLES_MAX]) -> Differences {
+    fn new(foresight: &Foresight, samples: &mut [f64; SAMPLES_MAX], sample: f64) -> Differences {
+        let pushed = foresight.order.push(samples, sample);
+        *samples = pushed;
+        // what was pushed is taken from registers: read again at once, at other places than it was written, it would hold up the step
         let zeroth = match foresight.all {
-            true => *samples,
+            true => pushed,
             false => foresight.picked.map(|place| samples[place]),
         };
         let by = &foresight.inverse;
