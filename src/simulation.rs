@@ -18,6 +18,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::dynamics::advance::{Counters, Workspace};
 use crate::dynamics::ledger::{self, Ledger};
+use crate::dynamics::motion::Foresight;
 use crate::dynamics::{Choice, StepError};
 use crate::model::{Line, LineState, Model, State};
 use crate::scene::{Scene, SceneError};
@@ -62,6 +63,7 @@ pub struct Simulation {
     work: Workspace,
     /// The paths of the step that is made.
     paths: Paths,
+    foresight: Foresight,
     held: Held,
     memo: Memo,
     catenaries: Vec<Option<Catenary>>,
@@ -90,6 +92,7 @@ impl Simulation {
         Ok(Simulation {
             catenaries: lines.map(|line| reference_catenary(&model, line)).collect(),
             paths: snapshot.paths.clone(),
+            foresight: Foresight::none(),
             held: Held::new(&model, false),
             memo: Memo::new(model.vessels.len()),
             snapshot,
@@ -176,7 +179,8 @@ impl Simulation {
         let model = &*self.model;
         let follows_scene = self.snapshot.follows_scene;
         let (time, at) = (self.time(), At::new(model, &self.paths, follows_scene));
-        self.held.prepare(&at, [time, time + step]);
+        let steps = self.snapshot.counters.substeps;
+        self.held.prepare(&at, [time, time + step], steps);
         let held = |point: usize, t: f64| self.held.point(&at, point, t);
         let state = &mut self.snapshot.state;
         let advanced = self.work.advance(model, state, step, &held);

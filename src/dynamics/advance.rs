@@ -337,15 +337,14 @@ impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
                 work.step(model, network, t, Step::after(steps, drift), self.held);
                 steps = [drift, steps[0]];
             }
-            if work.broken_node().is_none() && work.flow().is_finite() {
+            let flow = work.flow();
+            if work.is_sound() && flow.is_finite() {
                 work.store(network, next, steps);
-                return Ok(Done {
-                    counters: Counters {
-                        substeps: count,
-                        solves: count,
-                    },
-                    flow: work.flow(),
-                });
+                let counters = Counters {
+                    substeps: count,
+                    solves: count,
+                };
+                return Ok(Done { counters, flow });
             }
         }
         let (line, node) = work.broken_node().unwrap_or((0, 0));
@@ -507,7 +506,11 @@ impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
     /// Equal steps no longer than `step_max` [s], halved `retry` times.
     fn substeps(&self, step_max: f64, retry: u32) -> Result<usize, StepError> {
         // a span of exactly one limit must not become two steps by rounding
-        let count = (self.length / step_max * (1.0 - 1e-9)).ceil().max(1.0);
+        let count = self.length / step_max * (1.0 - 1e-9);
+        if count <= 1.0 {
+            return Ok(1 << retry);
+        }
+        let count = count.ceil();
         if count <= SUBSTEPS_MAX {
             return Ok((count as usize) << retry);
         }

@@ -380,21 +380,22 @@ impl Layout {
         memory.velocity.resize(count, Vector3::zeros());
         memory.velocity_before.resize(count, Vector3::zeros());
         memory.steps = steps;
-        let extrapolation = Step::after(steps, steps[0]).extrapolation;
-        let now = state.position.iter_mut().zip(&mut state.velocity);
-        let past = memory.velocity.iter_mut().zip(&mut memory.velocity_before);
-        let mut nodes = now.zip(past);
-        let rows = 1..=self.fold.rows();
-        let [place, velocity, before] = [&self.position, &self.velocity, &self.velocity_before]
-            .map(|field| &field.rows(*rows.end())[rows.clone()]);
-        for lane in 0..LANES {
-            for ((place, velocity), before) in place.iter().zip(velocity).zip(before) {
-                let Some(((at, now), (half, earlier))) = nodes.next() else {
-                    break;
-                };
-                *at = place.get(lane);
-                (*half, *earlier) = (velocity.get(lane), before.get(lane));
-                *now = *half + extrapolation * (*half - *earlier);
+        let extrapolation = Lanes::splat(Step::after(steps, steps[0]).extrapolation);
+        let (places, now) = (&mut state.position[..], &mut state.velocity[..count]);
+        let (last, before) = (
+            &mut memory.velocity[..count],
+            &mut memory.velocity_before[..count],
+        );
+        for row in self.rows() {
+            let place = self.position.load(row);
+            let (half, earlier) = (self.velocity.load(row), self.velocity_before.load(row));
+            let whole = half + (half - earlier).scale(extrapolation);
+            for lane in 0..LANES {
+                let i = lane * self.fold.rows() + row - 1;
+                if i < count {
+                    (places[i], now[i]) = (place.get(lane), whole.get(lane));
+                    (last[i], before[i]) = (half.get(lane), earlier.get(lane));
+                }
             }
         }
         if let Some(bottom) = self.bottom() {
@@ -728,15 +729,18 @@ impl Layout {
         }
     }
 
+    /// Whether all nodes of a row have a finite position, and a speed that mooring lines reach.
+    #[inline(always)]
+    pub fn is_sound(&self, row: usize) -> bool {
+        let (position, velocity) = (self.position.load(row), self.velocity.load(row));
+        let zero = (position.x + position.y + position.z) * Lanes::splat(0.0); // or not a number
+        let fastest = Lanes::splat(SPEED_MAX * SPEED_MAX);
+        (fastest + zero - velocity.dot(velocity)).all_positive()
+    }
+
     /// Index of the first node that has no finite position, or a speed that no mooring line reaches.
     pub fn broken_node(&self) -> Option<usize> {
-        let (zero, fastest) = (Lanes::splat(0.0), Lanes::splat(SPEED_MAX * SPEED_MAX));
-        let mut sound = true;
-        for row in self.rows() {
-            let (position, velocity) = (self.position.load(row), self.velocity.load(row));
-            let finite = position.scale(zero).dot(position.scale(zero)); // 0, or not a number
-            sound &= (fastest + finite - velocity.dot(velocity)).all_positive();
-        }
+        let sound = self.rows().fold(true, |all, row| all & self.is_sound(row));
         let broken = |at: Slot| {
             let (position, velocity) = (self.position.get(at), self.velocity.get(at));
             let slow = velocity.norm_squared() < SPEED_MAX * SPEED_MAX;

@@ -105,6 +105,27 @@ impl WaterWork {
     }
 }
 
+/// What a look over the nodes tells.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Survey {
+    /// Greatest ratio K |v| / M [1/s], v relative to the water: explicit drag wants Δt below its inverse.
+    pub drag_rate: f64,
+    /// Whether all positions are finite, and all speeds such as mooring lines reach.
+    pub is_sound: bool,
+}
+
+/// [`LineWork::survey`] for the vector unit of the machine.
+struct SurveyRows<'a>(&'a LineWork);
+
+impl NullaryFnOnce for SurveyRows<'_> {
+    type Output = Survey;
+
+    #[inline(always)]
+    fn call(self) -> Survey {
+        self.0.survey_rows()
+    }
+}
+
 /// [`LineWork::pull_beforehand`] for the vector unit of the machine.
 struct PullSegments<'a>(&'a mut LineWork, Step);
 
@@ -557,23 +578,35 @@ impl LineWork {
         }
     }
 
-    /// Greatest ratio K |v| / M of the nodes [1/s], v relative to the water: explicit drag wants Δt below its inverse.
-    pub fn drag_rate(&self) -> f64 {
-        let (line, Some(water)) = (&self.layout, &self.water) else {
-            return 0.0;
-        };
-        let mut greatest = Lanes::splat(0.0);
+    /// Looks over the nodes.
+    pub fn survey(&self) -> Survey {
+        self.layout.vector_unit.dispatch(SurveyRows(self))
+    }
+
+    #[inline(always)]
+    fn survey_rows(&self) -> Survey {
+        let (line, flows) = (&self.layout, self.layout.flows());
+        let (mut greatest, mut is_sound) = (Lanes::splat(0.0), true);
         for row in line.rows() {
+            is_sound &= line.is_sound(row);
+            let Some(water) = &self.water else { continue };
             let mut past = line.velocity.load(row);
-            if line.flows() {
+            if flows {
                 past = past - line.water_velocity(row);
             }
             let rate = past.scale(water.drag_over_mass.load(row));
             greatest = rate.dot(rate).max(greatest);
         }
-        (0..LANES)
-            .fold(0.0, |sum: f64, lane| sum.max(greatest[lane]))
-            .sqrt()
+        let square = (0..LANES).fold(0.0, |sum: f64, lane| sum.max(greatest[lane]));
+        Survey {
+            drag_rate: square.sqrt(),
+            is_sound,
+        }
+    }
+
+    /// Whether its nodes move as they did when they were surveyed last and [`Self::resume`] went on from there, and nothing else matters to a survey.
+    pub fn keeps_survey(&self) -> bool {
+        !self.layout.flows() && self.winch.is_none()
     }
 
     /// Index of the first node that has no finite position, or a speed that no mooring line reaches.

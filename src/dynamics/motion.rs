@@ -33,6 +33,16 @@ const JUDGED: usize = 2;
 const BETTER: f64 = 0.45;
 /// The same to and from degree 0, so that what comes to rest, jumps or sets out is followed at once [-].
 const BETTER_AT_REST: f64 = 0.9;
+/// What multiplies the errors of the degrees that are not kept: where degree 0 is, and where another [-].
+const HANDICAPS: [Terms; 2] = [
+    [1.0 / BETTER_AT_REST; DEGREE_MAX + 1],
+    [
+        1.0 / BETTER_AT_REST,
+        1.0 / BETTER,
+        1.0 / BETTER,
+        1.0 / BETTER,
+    ],
+];
 /// Samples kept.
 const SAMPLES_MAX: usize = DEGREE_MAX + 1 + JUDGED;
 /// Samples closer together than the coming step over this are passed over [-].
@@ -83,8 +93,14 @@ impl Clock {
         }
     }
 
-    /// A host speaks at a time [s] of a step from then on [s]: what all paths need to continue by it.
-    pub fn tell(&mut self, time: f64, step: f64, reconstruction: Reconstruction) -> Foresight {
+    /// A host speaks at a time [s] of a step from then on [s]: `foresight` becomes what all paths need to continue by it, whatever it was.
+    pub fn tell(
+        &mut self,
+        time: f64,
+        step: f64,
+        reconstruction: Reconstruction,
+        foresight: &mut Foresight,
+    ) {
         let last_step = time - self.times[0];
         let order = if last_step == 0.0 {
             Order::Again
@@ -102,7 +118,7 @@ impl Clock {
             Order::Before => (self.count, self.made_up) = (1, time),
         }
         self.times = order.push(&self.times, time);
-        Foresight::new(self, order, step, reconstruction)
+        foresight.renew(self, order, step, reconstruction);
     }
 
     /// What is left after a step [s] of a distance and a velocity by which a path misses its host now: the cubic from both to none when all is
@@ -137,6 +153,8 @@ pub struct Foresight {
     all: bool,
     /// 1/length of the step [1/s].
     rate: f64,
+    /// Times of the samples that count [s].
+    times: [f64; SAMPLES_MAX],
     /// 1/(t_i − t_{i+k}) of the samples that count.
     inverse: Reciprocals,
     /// Products of t_j − t_{j+1} … t_j − t_{j+k}, by place j and order k − 1 [s^k].
@@ -156,11 +174,58 @@ struct Reciprocals {
     fourth: [f64; SAMPLES_MAX - 4],
 }
 
+impl Reciprocals {
+    /// Of these times [s].
+    fn new(t: &[f64; SAMPLES_MAX]) -> Reciprocals {
+        Reciprocals {
+            first: from_fn(|i| 1.0 / (t[i] - t[i + 1])),
+            second: from_fn(|i| 1.0 / (t[i] - t[i + 2])),
+            third: from_fn(|i| 1.0 / (t[i] - t[i + 3])),
+            fourth: from_fn(|i| 1.0 / (t[i] - t[i + 4])),
+        }
+    }
+
+    /// The times [s] are those before, moved on by a place, and a new first one.
+    fn push(&mut self, t: &[f64; SAMPLES_MAX]) {
+        let [one, two, three, four] = [1, 2, 3, 4].map(|k| 1.0 / (t[0] - t[k]));
+        let [a, b, c, d, _] = self.first;
+        self.first = [one, a, b, c, d];
+        let [a, b, c, _] = self.second;
+        self.second = [two, a, b, c];
+        let [a, b, _] = self.third;
+        self.third = [three, a, b];
+        let [a, _] = self.fourth;
+        self.fourth = [four, a];
+    }
+}
+
 /// A number for every term of a polynomial.
 type Terms = [f64; DEGREE_MAX + 1];
 
 impl Foresight {
-    fn new(clock: &Clock, order: Order, step: f64, reconstruction: Reconstruction) -> Foresight {
+    /// Of nothing, as it is before [`Clock::tell`].
+    pub fn none() -> Foresight {
+        let zeros = [0.0; DEGREE_MAX + 1];
+        Foresight {
+            order: Order::Before,
+            jumps: false,
+            span: [f64::NAN; 2],
+            left: [[0.0; 2]; 2],
+            picked: [0; SAMPLES_MAX],
+            count: 0,
+            all: false,
+            rate: 0.0,
+            times: [f64::NAN; SAMPLES_MAX],
+            inverse: Reciprocals::new(&[f64::NAN; SAMPLES_MAX]),
+            reach: [zeros; JUDGED],
+            value: zeros,
+            slope: zeros,
+            integral: zeros,
+        }
+    }
+
+    /// What holds of the samples of the last step is not worked out again, but moved on by a place.
+    fn renew(&mut self, clock: &Clock, order: Order, step: f64, reconstruction: Reconstruction) {
         let start = clock.times[0];
         let end = start + step;
         let (picked, count) = spaced(&clock.times[..clock.count], step / STEP_RATIO_MAX);
@@ -169,38 +234,32 @@ impl Foresight {
             true => clock.times[picked[i]],
             false => start - (1.0 + i as f64) * step.max(f64::MIN_POSITIVE),
         });
-        let reach = [0, 1].map(|j| {
+        let reach = |j: usize| {
             let [a, b, c, d] = [1, 2, 3, 4].map(|k| t[j] - t[j + k]);
             [a, a * b, a * b * c, a * b * c * d]
-        });
-        let inverse = Reciprocals {
-            first: from_fn(|i| 1.0 / (t[i] - t[i + 1])),
-            second: from_fn(|i| 1.0 / (t[i] - t[i + 2])),
-            third: from_fn(|i| 1.0 / (t[i] - t[i + 3])),
-            fourth: from_fn(|i| 1.0 / (t[i] - t[i + 4])),
         };
+        if t[1..] == self.times[..SAMPLES_MAX - 1] {
+            self.inverse.push(&t);
+            self.reach[1] = self.reach[0];
+        } else {
+            self.inverse = Reciprocals::new(&t);
+            self.reach[1] = reach(1);
+        }
+        (self.reach[0], self.times) = (reach(0), t);
         let [h, e1, e2] = [end - t[0], end - t[1], end - t[2]];
         let [a, b] = [t[0] - t[1], t[0] - t[2]];
-        Foresight {
-            order,
-            jumps: reconstruction == Reconstruction::Jump,
-            span: [start, end],
-            left: clock.left(step),
-            rate: 1.0 / (end - start),
-            picked,
-            count,
-            all: count == clock.count,
-            inverse,
-            reach,
-            value: [1.0, h, h * e1, h * e1 * e2],
-            slope: [0.0, 1.0, h + e1, h * e1 + (h + e1) * e2],
-            integral: [
-                h,
-                h * h / 2.0,
-                h * h * (h / 3.0 + a / 2.0),
-                h * h * (h * h / 4.0 + (a + b) * h / 3.0 + a * b / 2.0),
-            ],
-        }
+        (self.order, self.jumps) = (order, reconstruction == Reconstruction::Jump);
+        (self.span, self.rate) = ([start, end], 1.0 / (end - start));
+        self.left = clock.left(step);
+        (self.picked, self.count, self.all) = (picked, count, count == clock.count);
+        self.value = [1.0, h, h * e1, h * e1 * e2];
+        self.slope = [0.0, 1.0, h + e1, h * e1 + (h + e1) * e2];
+        self.integral = [
+            h,
+            h * h / 2.0,
+            h * h * (h / 3.0 + a / 2.0),
+            h * h * (h * h / 4.0 + (a + b) * h / 3.0 + a * b / 2.0),
+        ];
     }
 
     /// How many of the samples that count are among the `newest` of all.
@@ -217,10 +276,17 @@ impl Foresight {
 /// Places of the times, newest first, that lie at least `spacing` [s] apart, and how many: what lies closer says more about noise than
 /// about a long step.
 fn spaced(times: &[f64], spacing: f64) -> ([usize; SAMPLES_MAX], usize) {
+    let far = spacing * (1.0 - 1e-9);
+    if let [a, b, c, d, e, f] = *times {
+        let [ab, bc, cd, de, ef] = [a - b, b - c, c - d, d - e, e - f].map(|gap| gap >= far);
+        if ab & bc & cd & de & ef {
+            return (from_fn(|place| place), SAMPLES_MAX);
+        }
+    }
     let (mut picked, mut count) = ([0; SAMPLES_MAX], 0);
     let mut last = f64::INFINITY;
     for (place, &time) in times.iter().enumerate() {
-        if last - time >= spacing * (1.0 - 1e-9) {
+        if last - time >= far {
             picked[count] = place;
             count += 1;
             last = time;
@@ -263,13 +329,14 @@ impl AxisPath {
         if foresight.order == Order::Before {
             (self.rated, self.degree) = (0, 0);
         }
-        let positions = foresight.order.push(&self.positions, position);
-        self.positions = positions;
         let to = match velocity {
-            Some(velocity) => self.rate(foresight, position, velocity),
+            Some(velocity) => {
+                self.positions = foresight.order.push(&self.positions, position);
+                self.rate(foresight, position, velocity)
+            }
             None => {
                 self.rated = 0;
-                self.predict(foresight, &positions)
+                self.predict(foresight, position)
             }
         };
         let [start, end] = foresight.span;
@@ -303,10 +370,10 @@ impl AxisPath {
         self.curve.at(t)
     }
 
-    /// Position [m] and velocity [m/s] predicted for the end of a step from what the host said of the position.
+    /// Remembers a position [m], and predicts position [m] and velocity [m/s] at the end of a step from what the host said of the position.
     #[inline]
-    fn predict(&mut self, foresight: &Foresight, positions: &[f64; SAMPLES_MAX]) -> [f64; 2] {
-        let differences = Differences::new(foresight, positions);
+    fn predict(&mut self, foresight: &Foresight, position: f64) -> [f64; 2] {
+        let differences = Differences::new(foresight, &mut self.positions, position);
         let degree = differences.degree(foresight.count, &mut self.degree);
         [&foresight.value, &foresight.slope].map(|basis| differences.sum(degree, basis))
     }
@@ -316,9 +383,7 @@ impl AxisPath {
     fn rate(&mut self, foresight: &Foresight, position: f64, velocity: f64) -> [f64; 2] {
         let again = usize::from(foresight.order == Order::Again);
         self.rated = (self.rated.saturating_sub(again) + 1).min(SAMPLES_MAX);
-        let velocities = foresight.order.push(&self.velocities, velocity);
-        self.velocities = velocities;
-        let differences = Differences::new(foresight, &velocities);
+        let differences = Differences::new(foresight, &mut self.velocities, velocity);
         let degree = differences.degree(foresight.known(self.rated), &mut self.degree);
         [
             position + differences.sum(degree, &foresight.integral),
@@ -381,10 +446,14 @@ struct Differences {
 }
 
 impl Differences {
+    /// Of samples that a new one joins.
     #[inline(always)]
-    fn new(foresight: &Foresight, samples: &[f64; SAMPLES_MAX]) -> Differences {
+    fn new(foresight: &Foresight, samples: &mut [f64; SAMPLES_MAX], sample: f64) -> Differences {
+        let pushed = foresight.order.push(samples, sample);
+        *samples = pushed;
+        // what was pushed is taken from registers: read again at once, at other places than it was written, it would hold up the step
         let zeroth = match foresight.all {
-            true => *samples,
+            true => pushed,
             false => foresight.picked.map(|place| samples[place]),
         };
         let by = &foresight.inverse;
@@ -422,12 +491,13 @@ impl Differences {
             kept if kept <= highest => (kept, kept, error[kept]),
             _ => (0, 0, f64::INFINITY),
         };
-        for (other, error) in error.into_iter().enumerate().take(highest + 1) {
-            let handicap = match kept.min(other) {
-                0 => 1.0 / BETTER_AT_REST,
-                _ => 1.0 / BETTER,
+        let handicaps = HANDICAPS[usize::from(kept > 0)];
+        for (other, error) in error.into_iter().enumerate() {
+            // over all degrees, so that the compiler unrolls it
+            let handicapped = match other <= highest {
+                true => error * handicaps[other],
+                false => f64::INFINITY,
             };
-            let handicapped = error * handicap;
             // what rests has no degree to keep
             if handicapped < least || (other == 0 && handicapped == 0.0) {
                 (best, least) = (other, handicapped);
@@ -461,16 +531,21 @@ mod tests {
     }
 
     /// A path and its clock.
-    struct Guided(Clock, AxisPath);
+    struct Guided(Clock, AxisPath, Foresight);
 
     impl Guided {
         fn at_rest(time: f64, position: f64) -> Guided {
-            Guided(Clock::new(time), AxisPath::at_rest(position))
+            Guided(
+                Clock::new(time),
+                AxisPath::at_rest(position),
+                Foresight::none(),
+            )
         }
 
         fn extend(&mut self, sample: Sample, step: f64, reconstruction: Reconstruction) {
-            let foresight = self.0.tell(sample.time, step, reconstruction);
-            self.1.extend(&foresight, sample.position, sample.velocity);
+            let foresight = &mut self.2;
+            self.0.tell(sample.time, step, reconstruction, foresight);
+            self.1.extend(foresight, sample.position, sample.velocity);
         }
 
         fn at(&self, t: f64) -> hermite::Sample {
@@ -491,6 +566,26 @@ mod tests {
             time,
             position,
             velocity: None,
+        }
+    }
+
+    #[test]
+    fn what_is_foreseen_does_not_depend_on_what_was_foreseen_before() {
+        let (mut clock, mut kept, mut time) = (Clock::new(0.0), Foresight::none(), 0.0);
+        for k in 0..200 {
+            // equal steps, short ones between them, the same instant again and leaps back
+            let step = if k % 31 == 30 { 0.007 } else { 0.05 };
+            let mut fresh = Foresight::none();
+            clock
+                .clone()
+                .tell(time, step, Reconstruction::Smooth, &mut fresh);
+            clock.tell(time, step, Reconstruction::Smooth, &mut kept);
+            assert_eq!(format!("{kept:?}"), format!("{fresh:?}"), "at {time} s");
+            time += match k {
+                70 => 0.0,
+                140 => -0.1,
+                _ => step,
+            };
         }
     }
 

@@ -31,6 +31,8 @@ pub struct NetworkWork {
     springs: Vec<Spring>,
     /// Energy given to and lost by the free points since the state was loaded [J].
     point_flow: Flow,
+    /// Greatest ratio K |v| / M of the lines' nodes as they are held, where it is known [1/s].
+    drag_rate: Option<f64>,
 }
 
 /// An end of a line.
@@ -142,6 +144,7 @@ impl NetworkWork {
             times: [0.0; 2],
             springs: Vec::with_capacity(springs.unwrap_or(0)),
             point_flow: Flow::default(),
+            drag_rate: None,
         })
     }
 
@@ -156,6 +159,7 @@ impl NetworkWork {
 
     /// Takes over the state.
     pub fn load(&mut self, network: &Network, state: &State) {
+        self.drag_rate = None;
         for (work, &line) in self.lines.iter_mut().zip(&network.lines) {
             work.load(&state.lines[line]);
         }
@@ -218,9 +222,14 @@ impl NetworkWork {
     }
 
     /// Greatest ratio K |v| / M of all nodes [1/s].
-    pub fn drag_rate(&self, model: &Model, network: &Network) -> f64 {
-        let rates = self.lines.iter().map(LineWork::drag_rate);
-        let of_lines = rates.fold(0.0, f64::max);
+    pub fn drag_rate(&mut self, model: &Model, network: &Network) -> f64 {
+        let of_lines = match self.drag_rate.take() {
+            Some(rate) => rate,
+            None => {
+                let surveys = self.lines.iter().map(LineWork::survey);
+                surveys.fold(0.0, |rate: f64, line| rate.max(line.drag_rate))
+            }
+        };
         let points = self.points.iter().zip(&network.free_points);
         points
             .filter_map(|(point, &index)| {
@@ -229,6 +238,19 @@ impl NetworkWork {
                 (rate > 0.0).then(|| rate / tied_mass(model, index))
             })
             .fold(of_lines, f64::max)
+    }
+
+    /// Whether all nodes have finite positions and speeds such as mooring lines reach.
+    pub fn is_sound(&mut self) -> bool {
+        let (mut rate, mut is_sound, mut keeps) = (0.0_f64, true, true);
+        for line in &self.lines {
+            let survey = line.survey();
+            rate = rate.max(survey.drag_rate);
+            is_sound &= survey.is_sound;
+            keeps &= line.keeps_survey();
+        }
+        self.drag_rate = keeps.then_some(rate);
+        is_sound
     }
 
     /// The first line, by its place in the network, and node whose position or velocity is not finite.

@@ -2,8 +2,9 @@
 //!
 //! A host's path is a cubic over a communication step and is evaluated where it is asked for. Motions of the scene and points that ride
 //! on vessels take sines: these are worked out at both ends of the step, and a quintic through position, velocity and acceleration there
-//! bridges it, in as many pieces as keep its error below [`ERROR_MAX`]. Where that takes too many, or a motion has a kink within the step,
-//! or clamped lines need to know how a point turns, everything is worked out where it is asked for.
+//! bridges it, in as many pieces as keep its error below [`ERROR_MAX`]. Where that takes too many, beside the internal steps that the last
+//! communication step took, or a motion has a kink within the step, or clamped lines need to know how a point turns, everything is worked out
+//! where it is asked for.
 //!
 //! The error of a quintic over a piece τ is at most max|r⁽⁶⁾| τ⁶/46080. For a sine, r⁽⁶⁾ ≤ A ω⁶. The rotation of an arm a by angles whose
 //! derivatives are bounded by x₁ … x₆ has r⁽⁶⁾ ≤ |a| B₆(x₁ … x₆), with the complete Bell polynomial B₆, since every derivative of it by an
@@ -220,8 +221,8 @@ impl Held {
         }
     }
 
-    /// Makes ready for a span of time [s].
-    pub fn prepare(&mut self, at: &At, span: [f64; 2]) {
+    /// Makes ready for a span of time [s], in which as many internal steps are to be expected.
+    pub fn prepare(&mut self, at: &At, span: [f64; 2], steps: usize) {
         if !self.ways.iter().any(|way| matches!(way, Way::Bridged(_))) {
             return;
         }
@@ -236,17 +237,17 @@ impl Held {
                 let error = bridge
                     .derivatives
                     .map_or(0.0, |bounds| bounds.shift(length));
-                let count = pieces(error).filter(|_| motion.is_smooth(span));
+                let count = pieces(error, steps / 2).filter(|_| motion.is_smooth(span));
                 let knot = |k: usize| at.point(point, knot_time(span, k, count));
                 bridge.build(span, count.unwrap_or(0), knot);
             }
         }
         for vessel in 0..self.vessels.len() {
-            self.prepare_vessel(at, vessel, span);
+            self.prepare_vessel(at, vessel, span, steps - steps.min(1));
         }
     }
 
-    fn prepare_vessel(&mut self, at: &At, vessel: usize, span: [f64; 2]) {
+    fn prepare_vessel(&mut self, at: &At, vessel: usize, span: [f64; 2], most: usize) {
         let model = at.model;
         let poses = span.map(|t| at.pose(vessel, t));
         let frames = poses
@@ -281,7 +282,7 @@ impl Held {
                 continue;
             }
             let carry = |frame: &Frame| model.vessels[vessel].carry(frame, *arm);
-            let count = pieces(shift + arm.norm() * spread).filter(|_| smooth);
+            let count = pieces(shift + arm.norm() * spread, most).filter(|_| smooth);
             bridge.ends[0] = carry(&frames[0]);
             bridge.build(span, count.unwrap_or(0), |knot| {
                 if knot == count.unwrap_or(1) {
@@ -317,14 +318,15 @@ fn knot_time([start, end]: [f64; 2], knot: usize, count: Option<usize>) -> f64 {
     start + (end - start) * (knot as f64 / count as f64)
 }
 
-/// Pieces that a span needs whose sixth derivative times its sixth power is at most this [m]; `None` where they are too many.
-fn pieces(sixth: f64) -> Option<usize> {
+/// Pieces that a span needs whose sixth derivative times its sixth power is at most this [m]; `None` where they are more than `most`.
+fn pieces(sixth: f64, most: usize) -> Option<usize> {
     let excess = sixth * QUINTIC_ERROR / ERROR_MAX;
-    if excess <= 1.0 {
-        return Some(1);
-    }
-    let count = excess.powf(1.0 / 6.0).ceil();
-    (count <= PIECES_MAX as f64).then_some(count as usize)
+    let count = if excess <= 1.0 {
+        1.0
+    } else {
+        excess.powf(1.0 / 6.0).ceil()
+    };
+    (count <= most.min(PIECES_MAX) as f64).then_some(count as usize)
 }
 
 /// Bounds of the derivatives of angles that are cubics over a span [s], times its powers [rad].
@@ -406,7 +408,7 @@ mod tests {
         let mut worst = [0.0_f64; 2];
         for k in 0..(30.0 / step) as usize {
             let start = k as f64 * step;
-            held.prepare(&at, [start, start + step]);
+            held.prepare(&at, [start, start + step], 100);
             for part in [0.0, 0.21, 0.5, 0.83, 1.0] {
                 let t = start + part * step;
                 let (is, should) = (held.point(&at, point, t), at.point(point, t));
@@ -439,7 +441,7 @@ mod tests {
         }
         let at = At::new(&model, &paths, false);
         let mut held = Held::new(&model, false);
-        held.prepare(&at, [0.0, 0.1]);
+        held.prepare(&at, [0.0, 0.1], 100);
         let point = model.point_index("right").unwrap();
         let Way::Bridged(bridge) = &held.ways[point] else {
             panic!("a point on a vessel without clamps is bridged");

@@ -127,12 +127,15 @@ impl Simulation {
             return Ok(());
         }
         let reconstruction = model.solver.input_reconstruction;
-        let foresight = paths.clock.tell(snapshot.state.time, step, reconstruction);
+        let foresight = &mut self.foresight;
+        paths
+            .clock
+            .tell(snapshot.state.time, step, reconstruction, foresight);
         if !snapshot.follows_scene {
-            paths.extend(model, &snapshot.inputs, &foresight);
+            paths.extend(model, &snapshot.inputs, foresight);
         }
         if !paths.reels.is_empty() {
-            paths.extend_reels(model, snapshot, &foresight, step)?;
+            paths.extend_reels(model, snapshot, foresight, step)?;
             let reels = paths.reels.iter().map(|reel| reel.path);
             self.work.set_reels(reels);
         }
