@@ -10,6 +10,7 @@ use common::*;
 use moorline::model::End;
 use moorline::scene::{Integrator, Scene};
 use moorline::simulation::Simulation;
+use nalgebra::Vector3;
 
 const INTEGRATORS: [Integrator; 3] = [
     Integrator::Leapfrog,
@@ -225,6 +226,28 @@ fn a_release_replays_bit_for_bit_from_a_snapshot() {
         let first = run(&mut simulation);
         simulation.restore(postcard::from_bytes(&bytes).unwrap());
         assert_eq!(run(&mut simulation), first);
+    }
+}
+
+#[test]
+fn a_simulation_goes_on_from_a_snapshot_after_a_step_that_grew_without_bound() {
+    let keys = "break = { at = \"b\", time = 0.0 }";
+    for integrator in INTEGRATORS {
+        let scene = with_integrator(chain(keys, ""), integrator, 1e-3);
+        let mut simulation = Simulation::new(&scene).unwrap();
+        let sound = simulation.snapshot().clone();
+        simulation.advance(0.1).unwrap();
+        let should = simulation.snapshot().clone();
+        simulation.restore(sound.clone());
+        let count = simulation.state().lines[0].position.len();
+        let mad: Vec<_> = (0..count)
+            .map(|i| Vector3::repeat(1e300 * i as f64))
+            .collect();
+        set_node_velocities(&mut simulation, &mad);
+        assert!(simulation.advance(0.1).is_err(), "{integrator:?}");
+        simulation.restore(sound);
+        simulation.advance(0.1).unwrap();
+        assert!(*simulation.snapshot() == should, "{integrator:?}");
     }
 }
 

@@ -132,6 +132,9 @@ impl AxialWork {
         let count = self.layout.segment_count;
         if state.half_step.tension[0].len() == count {
             let [now, before] = &state.half_step.tension;
+            for row in &mut self.rows.segments {
+                row.history = [Lanes::splat(0.0); 2]; // of padding
+            }
             for (at, tensions) in self.layout.fold.slots().zip(now.iter().zip(before)) {
                 let [own, own_before] = &mut self.rows.segments[at.row - 1].history;
                 (own[at.lane], own_before[at.lane]) = (*tensions.0, *tensions.1);
