@@ -251,6 +251,52 @@ fn a_simulation_goes_on_from_a_snapshot_after_a_step_that_grew_without_bound() {
     }
 }
 
+/// Heights of the free end of a hanging line of two elements whose top moves up and down, every 0.1 s [m].
+fn shaken(step: f64) -> Vec<Vector3<f64>> {
+    let text = r#"
+        [line_types.rope]
+        mass = 20.0
+        diameter = 0.05
+        axial_stiffness = 1.0e5
+        [[points]]
+        name = "top"
+        position = [0.0, 0.0, 0.0]
+        kind = "coupled"
+        [[points]]
+        name = "hand"
+        position = [0.0, 0.0, -10.0980665] # carries nothing
+        kind = "fixed"
+        [[lines]]
+        name = "line1"
+        from = "top"
+        to = "hand"
+        release = "b"
+        sections = [{ type = "rope", length = 10.0, elements = 2 }]
+        [motion]
+        top = { z = [[0.01, 1.0]], ramp = 1.0 }
+        "#;
+    let mut simulation = following(&with_integrator(
+        scene(text),
+        Integrator::GeneralisedAlpha,
+        step,
+    ));
+    simulation.set_release(0, true);
+    let mut heights = Vec::new();
+    for _ in 0..20 {
+        simulation.advance(0.1).unwrap();
+        heights.push(simulation.state().lines[0].position[2]);
+    }
+    heights
+}
+
+#[test]
+fn an_end_that_has_let_go_moves_at_second_order() {
+    let steps = [0.01, 0.005, 0.0025, 0.00125];
+    let exact = shaken(2e-4);
+    let errors = steps.map(|step| relative_rms(&shaken(step), &exact));
+    assert_order(2.0, &steps, &errors);
+}
+
 #[test]
 fn lines_that_cannot_let_go_are_refused() {
     let refused = |text: &str, said: &str| {
