@@ -298,6 +298,28 @@ fn an_end_that_has_let_go_moves_at_second_order() {
 }
 
 #[test]
+fn an_end_that_may_let_go_limits_the_step_as_the_half_node_that_it_becomes() {
+    let limit = |keys: &str| {
+        let mut scene = with_integrator(chain(keys, ""), Integrator::Leapfrog, 1.0);
+        let chain = scene.line_types.get_mut("chain").unwrap();
+        chain.axial_damping = Some(0.0);
+        let sections = &mut scene.lines[0].sections;
+        let mut short = sections[0].clone();
+        (short.length, short.elements) = (1.0, Some(1));
+        (sections[0].length, sections[0].elements) = (100.0, Some(10));
+        sections.push(short);
+        let simulation = Simulation::new(&scene).unwrap();
+        simulation.choices().next().unwrap().explicit_limit
+    };
+    // half of 2/ω, with ω² = 2 Σk/M
+    let inner = (2.0 * (1.0e5 + 1.0e6) / (20.0 * 5.5_f64)).sqrt();
+    let end = (2.0 * 1.0e6 / (20.0 * 0.5_f64)).sqrt();
+    assert_relative_eq!(limit(""), 1.0 / inner, max_relative = 1e-9);
+    assert_relative_eq!(limit("release = \"a\""), 1.0 / inner, max_relative = 1e-9);
+    assert_relative_eq!(limit("release = \"b\""), 1.0 / end, max_relative = 1e-9);
+}
+
+#[test]
 fn lines_that_cannot_let_go_are_refused() {
     let refused = |text: &str, said: &str| {
         let mistake = Scene::from_toml(text).unwrap_err();
