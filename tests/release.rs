@@ -10,6 +10,7 @@ use common::*;
 use moorline::model::End;
 use moorline::scene::{Integrator, Scene};
 use moorline::simulation::Simulation;
+use nalgebra::Vector3;
 
 const INTEGRATORS: [Integrator; 3] = [
     Integrator::Leapfrog,
@@ -226,6 +227,96 @@ fn a_release_replays_bit_for_bit_from_a_snapshot() {
         simulation.restore(postcard::from_bytes(&bytes).unwrap());
         assert_eq!(run(&mut simulation), first);
     }
+}
+
+#[test]
+fn a_simulation_goes_on_from_a_snapshot_after_a_step_that_grew_without_bound() {
+    let keys = "break = { at = \"b\", time = 0.0 }";
+    for integrator in INTEGRATORS {
+        let scene = with_integrator(chain(keys, ""), integrator, 1e-3);
+        let mut simulation = Simulation::new(&scene).unwrap();
+        let sound = simulation.snapshot().clone();
+        simulation.advance(0.1).unwrap();
+        let should = simulation.snapshot().clone();
+        simulation.restore(sound.clone());
+        let count = simulation.state().lines[0].position.len();
+        let mad: Vec<_> = (0..count)
+            .map(|i| Vector3::repeat(1e300 * i as f64))
+            .collect();
+        set_node_velocities(&mut simulation, &mad);
+        assert!(simulation.advance(0.1).is_err(), "{integrator:?}");
+        simulation.restore(sound);
+        simulation.advance(0.1).unwrap();
+        assert!(*simulation.snapshot() == should, "{integrator:?}");
+    }
+}
+
+/// Heights of the free end of a hanging line of two elements whose top moves up and down, every 0.1 s [m].
+fn shaken(step: f64) -> Vec<Vector3<f64>> {
+    let text = r#"
+        [line_types.rope]
+        mass = 20.0
+        diameter = 0.05
+        axial_stiffness = 1.0e5
+        [[points]]
+        name = "top"
+        position = [0.0, 0.0, 0.0]
+        kind = "coupled"
+        [[points]]
+        name = "hand"
+        position = [0.0, 0.0, -10.0980665] # carries nothing
+        kind = "fixed"
+        [[lines]]
+        name = "line1"
+        from = "top"
+        to = "hand"
+        release = "b"
+        sections = [{ type = "rope", length = 10.0, elements = 2 }]
+        [motion]
+        top = { z = [[0.01, 1.0]], ramp = 1.0 }
+        "#;
+    let mut simulation = following(&with_integrator(
+        scene(text),
+        Integrator::GeneralisedAlpha,
+        step,
+    ));
+    simulation.set_release(0, true);
+    let mut heights = Vec::new();
+    for _ in 0..20 {
+        simulation.advance(0.1).unwrap();
+        heights.push(simulation.state().lines[0].position[2]);
+    }
+    heights
+}
+
+#[test]
+fn an_end_that_has_let_go_moves_at_second_order() {
+    let steps = [0.01, 0.005, 0.0025, 0.00125];
+    let exact = shaken(2e-4);
+    let errors = steps.map(|step| relative_rms(&shaken(step), &exact));
+    assert_order(2.0, &steps, &errors);
+}
+
+#[test]
+fn an_end_that_may_let_go_limits_the_step_as_the_half_node_that_it_becomes() {
+    let limit = |keys: &str| {
+        let mut scene = with_integrator(chain(keys, ""), Integrator::Leapfrog, 1.0);
+        let chain = scene.line_types.get_mut("chain").unwrap();
+        chain.axial_damping = Some(0.0);
+        let sections = &mut scene.lines[0].sections;
+        let mut short = sections[0].clone();
+        (short.length, short.elements) = (1.0, Some(1));
+        (sections[0].length, sections[0].elements) = (100.0, Some(10));
+        sections.push(short);
+        let simulation = Simulation::new(&scene).unwrap();
+        simulation.choices().next().unwrap().explicit_limit
+    };
+    // half of 2/ω, with ω² = 2 Σk/M
+    let inner = (2.0 * (1.0e5 + 1.0e6) / (20.0 * 5.5_f64)).sqrt();
+    let end = (2.0 * 1.0e6 / (20.0 * 0.5_f64)).sqrt();
+    assert_relative_eq!(limit(""), 1.0 / inner, max_relative = 1e-9);
+    assert_relative_eq!(limit("release = \"a\""), 1.0 / inner, max_relative = 1e-9);
+    assert_relative_eq!(limit("release = \"b\""), 1.0 / end, max_relative = 1e-9);
 }
 
 #[test]

@@ -864,6 +864,11 @@ const SETTINGS: &[Refusal] = &[
     ),
     (
         "[output]",
+        "[solver]\nintegrator = \"axial_implicit\"\nspectral_radius = 0.0\n[output]",
+        "48:19: solver.spectral_radius: 0 is not between 0.5 and 1",
+    ),
+    (
+        "[output]",
         "[solver]\nintegrator = \"leapfrog\"\nspectral_radius = 0.5\n[output]",
         r#"48:19: solver.spectral_radius: the integrator is "leapfrog", and a spectral radius belongs to "generalised_alpha" and "axial_implicit""#,
     ),

@@ -15,7 +15,7 @@ use super::sea::SeaWork;
 use super::{Choice, StepError, quasi_static};
 use crate::model::{End, Kinematics, Model, Network, Role, State};
 use crate::physics::airy::Waves;
-use crate::scene::Integrator;
+use crate::scene::{AXIAL_RADIUS_MIN, Integrator};
 use crate::statics::assembly::rubbing::{drop_anchors, hold_at_rest};
 use crate::statics::assembly::{self, copy_network};
 
@@ -282,7 +282,8 @@ impl Solver {
                 let rho = model
                     .solver
                     .spectral_radius
-                    .unwrap_or(AXIAL_SPECTRAL_RADIUS);
+                    .unwrap_or(AXIAL_SPECTRAL_RADIUS)
+                    .max(AXIAL_RADIUS_MIN);
                 let line = &model.lines[network.lines[0]];
                 kernel(
                     AxialWork::new(line, Water::around(model, line), rho, negative)

@@ -4,8 +4,9 @@
 //!
 //! T̄ = [T^{n+1} + (2ρ+b)T^n + (ρ²+2ρb)T^{n−1} + ρ²b T^{n−2}]/N,  b = (1−ρ)/(2ρ),  N = (1+ρ)²(1+b),
 //!
-//! second order and unconditionally stable with spectral radius ρ at infinite frequency (ρ = 1: ¼, ½, ¼). The new strain is
-//! linear in the new velocity, ε^{n+1} = ε^n + κ + Δt q·G(v), κ = Δt²(|G(v⁻)|² − (q·G(v⁻))²)/(2|G(r)|), so that
+//! second order. In z, which takes a step to the next, T̄ is (z + ρ)²(z + b)/(N z²) T^n: at infinite frequency the motion is multiplied by −ρ and
+//! −b, and the spectral radius is ρ as long as b ≤ ρ, that is from ρ = ½, which damps most, to ρ = 1 (¼, ½, ¼). Below ½ it rises again, and
+//! below ⅓ it is more than 1. The new strain is linear in the new velocity, ε^{n+1} = ε^n + κ + Δt q·G(v), κ = Δt²(|G(v⁻)|² − (q·G(v⁻))²)/(2|G(r)|), so that
 //!
 //! T̄ − k q·G(v) = EA b₁(ε^n + κ) + H + ½BA(1−θ) q·G(v⁻),  k = EA b₁Δt + ½BA(1+θ),  b₁ = 1/N,
 //!
@@ -49,7 +50,7 @@ const ENDS: [End; 2] = [End::A, End::B];
 pub struct Weights([f64; 4]);
 
 impl Weights {
-    /// For the spectral radius ρ [-] at infinite frequency, 0 < ρ ≤ 1.
+    /// For the spectral radius ρ [-] at infinite frequency, ½ to 1.
     pub fn new(rho: f64) -> Weights {
         let b = (1.0 - rho) / (2.0 * rho);
         let n = (1.0 + rho) * (1.0 + rho) * (1.0 + b);
@@ -131,6 +132,9 @@ impl AxialWork {
         let count = self.layout.segment_count;
         if state.half_step.tension[0].len() == count {
             let [now, before] = &state.half_step.tension;
+            for row in &mut self.rows.segments {
+                row.history = [Lanes::splat(0.0); 2]; // of padding
+            }
             for (at, tensions) in self.layout.fold.slots().zip(now.iter().zip(before)) {
                 let [own, own_before] = &mut self.rows.segments[at.row - 1].history;
                 (own[at.lane], own_before[at.lane]) = (*tensions.0, *tensions.1);
@@ -389,7 +393,31 @@ impl NullaryFnOnce for AxialStep<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::AXIAL_RADIUS_MIN;
     use approx::assert_relative_eq;
+
+    /// Size of an oscillation after many steps with ωΔt = 10⁴, over that at its start [-].
+    fn stiff_oscillation(rho: f64) -> f64 {
+        let Weights([new, now, last, before]) = Weights::new(rho);
+        let (mut x, mut v) = ([1.0, 1.0, 1.0], 0.0);
+        for _ in 0..200 {
+            // v' = v − ω²Δt T̄ with the new x = x + Δt v', in units of Δt = 1
+            let old = (new + now) * x[0] + last * x[1] + before * x[2];
+            v = (v - 1e8 * old) / (1.0 + 1e8 * new);
+            x = [x[0] + v, x[0], x[1]];
+        }
+        x[0].hypot(v)
+    }
+
+    #[test]
+    fn the_least_radius_damps_a_stiff_oscillation_most_and_one_below_a_third_feeds_it() {
+        let least = stiff_oscillation(AXIAL_RADIUS_MIN);
+        for rho in [0.4, 0.6, 0.7, 0.9] {
+            let other = stiff_oscillation(rho);
+            assert!(least < other && other < 1e-6, "{rho}: {other:e}, {least:e}");
+        }
+        assert!(stiff_oscillation(0.3) > 1.0);
+    }
 
     #[test]
     fn the_weights_sum_to_one_and_are_centred_at_the_present() {

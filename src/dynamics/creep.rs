@@ -128,6 +128,7 @@ impl CreepArrays {
 
     /// Takes over the slow strains of a line.
     pub fn load(&mut self, slow: &[f64]) {
+        self.slow.fill(0.0);
         self.slow.assign(slow);
     }
 

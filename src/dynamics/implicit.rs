@@ -469,9 +469,8 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
         let shifted = |new: Vector3<f64>, old: Vector3<f64>| of_new * new + (1.0 - of_new) * old;
         for &index in &self.network.lines {
             let (new, old) = (&mut state.lines[index], &before.lines[index]);
-            let last = new.acceleration.len() - 1;
-            for i in 1..last {
-                new.acceleration[i] = shifted(new.acceleration[i], old.acceleration[i]);
+            for (new, old) in new.acceleration.iter_mut().zip(&old.acceleration) {
+                *new = shifted(*new, *old);
             }
         }
         for &index in &self.network.free_points {

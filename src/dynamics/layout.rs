@@ -322,14 +322,22 @@ impl Layout {
         })
     }
 
-    /// Takes over positions and velocities of a line; the ghosts are yet to be renewed.
+    /// Takes over positions and velocities of a line; the ghosts are yet to be renewed. Padding starts anew: it may have met what a step
+    /// that was too long made of the nodes beside it.
     pub fn load(&mut self, state: &LineState) {
         if let Some(creep) = &mut self.creep {
             creep.load(&state.creep);
         }
         let memory = &state.half_step;
         let fresh = memory.velocity.is_empty();
-        for (i, (at, position)) in self.fold.slots().zip(&state.position).enumerate() {
+        let zero = Vector3::zeros();
+        for (i, at) in self.fold.slots().enumerate() {
+            let Some(position) = state.position.get(i) else {
+                self.position.set(at, padding(i));
+                self.velocity.set(at, zero);
+                self.velocity_before.set(at, zero);
+                continue;
+            };
             self.position.set(at, *position);
             let (velocity, before) = if fresh {
                 (state.velocity[i], state.velocity[i])
@@ -765,7 +773,12 @@ pub(super) fn interior(segment_count: usize) -> Column {
 fn padded_positions(fold: Fold) -> Field {
     let mut position = Field::zeros(fold);
     for (i, at) in fold.slots().enumerate() {
-        position.set(at, i as f64 * Vector3::x());
+        position.set(at, padding(i));
     }
     position
+}
+
+/// Where node `i` is if it is padding [m].
+fn padding(i: usize) -> Vector3<f64> {
+    i as f64 * Vector3::x()
 }

@@ -18,6 +18,8 @@
 //! Source: Belytschko, Liu & Moran (2000), Nonlinear Finite Elements for Continua and Structures, section 6.2.6 (damped
 //! central differences with lagged velocity). Contact is implicit and sets no limit.
 
+use std::ops::{Range, RangeInclusive};
+
 use crate::model::{End, Line, Model, SHORTEST, Segments};
 
 /// Part of the closed-form limit that is used [-]. With 0.95 the scene lindahl_fast blows up with five times the drag and 20 elements.
@@ -34,20 +36,37 @@ const STRAIN_EXPECTED: f64 = 0.05;
 /// Transverse Courant number of the axial-implicit leapfrog [-].
 const TRANSVERSE_COURANT: f64 = 0.6;
 
-/// Explicit axial step limit [s] of a line, with safety; infinite for a line without interior nodes.
+/// Explicit axial step limit [s] of a line, with safety; infinite for a line without nodes that may move.
 pub fn explicit_step(line: &Line) -> f64 {
     if let Some(winch) = &line.winch {
         return explicit_step(winch.reel()).min(reeled_step(winch.reel()));
     }
     let segments = &line.segments;
     let mut limit = f64::INFINITY;
-    for i in 1..line.segment_count() {
-        let (left, right) = (stiffness(line, i - 1), stiffness(line, i));
-        let omega = ((2.0 * (left + right) + heave(line, i)) / line.least_mass(i)).sqrt();
-        let lag = lag(segments, i - 1).max(lag(segments, i));
-        limit = limit.min(damped_limit(omega, lag));
+    for i in loose_nodes(line) {
+        let spring: f64 = beside(line, i)
+            .map(|segment| stiffness(line, segment))
+            .sum();
+        let lags = beside(line, i).map(|segment| lag(segments, segment));
+        let omega = ((2.0 * spring + heave(line, i)) / line.least_mass(i)).sqrt();
+        limit = limit.min(damped_limit(omega, lags.fold(0.0, f64::max)));
     }
     limit
+}
+
+/// Nodes that no point holds, or that one may let go of.
+fn loose_nodes(line: &Line) -> RangeInclusive<usize> {
+    let parts = |end: End| {
+        line.parting
+            .is_some_and(|sides| sides[end as usize].may_part())
+    };
+    let [first, last] = [End::A, End::B].map(|end| usize::from(parts(end)));
+    1 - first..=line.segment_count() - 1 + last
+}
+
+/// The segments beside a node: one at an end.
+fn beside(line: &Line, node: usize) -> Range<usize> {
+    node.saturating_sub(1)..(node + 1).min(line.segment_count())
 }
 
 /// Explicit step limit [s] of the node before the end segment of a line on a winch when that is shortest, wherever it may be.
@@ -142,12 +161,12 @@ fn heave(line: &Line, node: usize) -> f64 {
 /// Explicit step limit [s] of a line that floats, with safety; infinite where it does not meet the water's surface.
 pub fn heave_step(line: &Line) -> f64 {
     let limit = |i: usize| SAFETY * 2.0 / (heave(line, i) / line.least_mass(i)).sqrt();
-    let nodes = if line.surface.is_some() {
-        1..line.segment_count()
-    } else {
-        0..0
-    };
-    nodes.map(limit).fold(f64::INFINITY, f64::min)
+    let nodes = line.surface.as_ref().map(|_| loose_nodes(line));
+    nodes
+        .into_iter()
+        .flatten()
+        .map(limit)
+        .fold(f64::INFINITY, f64::min)
 }
 
 /// Transverse step limit [s] of a line under a tension [N]; infinite without tension. Gershgorin's bound again, with the transverse stiffness
@@ -155,12 +174,13 @@ pub fn heave_step(line: &Line) -> f64 {
 pub fn transverse_step(line: &Line, tension: f64) -> f64 {
     let lengths = &line.segments.length;
     let mut limit = f64::INFINITY;
-    for i in 1..line.segment_count() {
+    for i in loose_nodes(line) {
         let mass = match &line.surface {
             None => line.nodes.mass_normal[i],
             Some(_) => line.nodes.mass[i], // in air
         };
-        let stiffness = tension.max(0.0) * (1.0 / lengths[i - 1] + 1.0 / lengths[i]);
+        let inverse: f64 = lengths[beside(line, i)].iter().map(|l| 1.0 / l).sum();
+        let stiffness = tension.max(0.0) * inverse;
         let omega = (2.0 * stiffness / mass).sqrt();
         limit = limit.min(TRANSVERSE_COURANT * 2.0 / omega);
     }

@@ -224,6 +224,11 @@ pub struct Parting {
 }
 
 impl Parting {
+    /// Whether anything may part the end.
+    pub fn may_part(&self) -> bool {
+        self.tension.is_some() || self.time.is_some() || self.on_release
+    }
+
     /// Whether an end under a tension [N] at time `t` [s] parts by itself.
     pub fn parts(&self, tension: f64, t: f64) -> bool {
         self.tension.is_some_and(|most| tension >= most) || self.time.is_some_and(|time| t >= time)

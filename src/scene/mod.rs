@@ -48,6 +48,8 @@ pub use waves::{RegularWave, Sea, SpectrumKind, WaveComponents, Waves};
 
 /// Standard gravity [m/s²], the default of [`Scene::gravity`].
 pub const STANDARD_GRAVITY: f64 = 9.80665;
+/// Least spectral radius at infinite frequency of `axial_implicit` [-], at which it damps most.
+pub const AXIAL_RADIUS_MIN: f64 = 0.5;
 
 /// One mooring scene as the user described it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -467,7 +469,8 @@ pub struct Solver {
     pub negative_tension: bool,
     /// Upper limit of the internal time step [s].
     pub time_step_max: f64,
-    /// Spectral radius at infinite frequency [-] of `generalised_alpha` (default 0.2) or `axial_implicit` (default 0.9).
+    /// Spectral radius at infinite frequency [-] of `generalised_alpha` (0 to 1, default 0.2) or `axial_implicit` (½ to 1, default 0.9);
+    /// where `auto` chooses the latter, less than ½ counts as ½.
     pub spectral_radius: Option<f64>,
     /// Parameters of `bossak`.
     pub bossak: Option<Bossak>,

@@ -1,6 +1,6 @@
 //! What kind of scene it is to be: choices that all its parts know.
 
-use moorline::scene::{Bossak, Integrator, Reconstruction, Solver};
+use moorline::scene::{AXIAL_RADIUS_MIN, Bossak, Integrator, Reconstruction, Solver};
 
 use crate::dice::{Dice, Tape};
 use crate::surroundings;
@@ -107,10 +107,11 @@ impl Plan {
 
     /// How the scene is solved.
     pub fn solver(&self, dice: &mut Dice) -> Solver {
-        let radius = matches!(
-            self.integrator,
-            Integrator::AxialImplicit | Integrator::GeneralisedAlpha
-        );
+        let radius = match self.integrator {
+            Integrator::AxialImplicit => Some(AXIAL_RADIUS_MIN),
+            Integrator::GeneralisedAlpha => Some(0.0),
+            _ => None,
+        };
         let bossak = self.integrator == Integrator::Bossak;
         Solver {
             tolerance: dice.size([0.02, 0.3], [1e-3, 0.5]),
@@ -119,8 +120,8 @@ impl Plan {
             elements: dice.maybe(0.9, |dice| dice.whole(4, 40)), // else they are found by trials
             time_step_max: dice.size([0.05, 0.05], [2e-3, 10.0]),
             spectral_radius: dice
-                .maybe(0.4, |dice| dice.between(0.0, 1.0))
-                .filter(|_| radius),
+                .maybe(0.4, |dice| dice.between(radius.unwrap_or(0.0), 1.0))
+                .filter(|_| radius.is_some()),
             bossak: dice.maybe(0.7, self::bossak).filter(|_| bossak),
             input_reconstruction: match dice.chance(0.2) {
                 true => Reconstruction::Jump,

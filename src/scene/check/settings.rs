@@ -2,7 +2,7 @@
 
 use super::{Bounds, Findings, number, quantity};
 use crate::scene::channel::Channel;
-use crate::scene::{Integrator, Scene};
+use crate::scene::{AXIAL_RADIUS_MIN, Integrator, Scene};
 
 /// Most elements of a line alone [-].
 const ELEMENTS_MAX: usize = 100_000;
@@ -29,7 +29,11 @@ fn check_solver(scene: &Scene, findings: &mut Findings) {
     findings.number("solver.time_step_max", solver.time_step_max, step, "s");
     if let Some(radius) = solver.spectral_radius {
         let at = "solver.spectral_radius";
-        findings.number(at, radius, Bounds::Within(0.0, 1.0), "-");
+        let least = match solver.integrator {
+            Integrator::AxialImplicit => AXIAL_RADIUS_MIN,
+            _ => 0.0,
+        };
+        findings.number(at, radius, Bounds::Within(least, 1.0), "-");
         if !matches!(
             solver.integrator,
             Integrator::Auto | Integrator::AxialImplicit | Integrator::GeneralisedAlpha
