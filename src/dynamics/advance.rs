@@ -7,6 +7,7 @@ use super::beam::{self, BeamWork, Driven, Stuck, StuckReason};
 use super::implicit::{self, Scheme};
 use super::layout::Water;
 use super::leapfrog::Step;
+use super::ledger::passed::{self, Passed};
 use super::ledger::{self, Energy, Flow};
 use super::limit::transverse_step;
 use super::motion::AxisPath;
@@ -327,12 +328,13 @@ impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
                 work.load(network, self.state);
             }
             work.set_current(model, self.start);
-            let count = self.substeps(step_max.min(1.0 / work.drag_rate(model, network)), retry)?;
+            let longest = step_max / work.stiffening().sqrt();
+            let count = self.substeps(longest.min(1.0 / work.drag_rate(model, network)), retry)?;
             let drift = self.length / count as f64;
             let mut steps = self.state.lines[network.lines[0]].half_step.steps;
             work.put_ends(self.start, Step::after(steps, drift), self.held);
             work.start_reels(network, self.state, self.reels, Step::after(steps, drift));
-            work.meet_surface();
+            work.begin();
             for k in 0..count {
                 let t = self.start + k as f64 * drift;
                 work.step(model, network, t, Step::after(steps, drift), self.held);
@@ -348,7 +350,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
                 return Ok(Done { counters, flow });
             }
         }
-        let (line, node) = work.broken_node().unwrap_or((0, 0));
+        let (line, node) = work.broken_node();
         Err(self.diverged(network.lines[line], node))
     }
 
@@ -379,6 +381,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
             }
             work.set_time(self.start);
             work.meet_surface(None);
+            work.open_books();
             for k in 1..=count {
                 let t = self.start + k as f64 * drift;
                 if let Some(stream) = self.model.stream(t - drift) {
@@ -393,7 +396,8 @@ impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
                 steps = [drift, steps[0]];
             }
             let too_long = drift > transverse / work.tension_peak().sqrt() || !work.is_settled();
-            let whole = work.broken_node().is_none() && work.flow().is_finite();
+            let flow = work.flow();
+            let whole = work.broken_node().is_none() && flow.is_finite();
             if whole && !(too_long && retry < RETRIES_MAX) {
                 work.store(&mut next.lines[index], steps);
                 return Ok(Done {
@@ -401,11 +405,12 @@ impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
                         substeps: count,
                         solves,
                     },
-                    flow: work.flow(),
+                    flow,
                 });
             }
         }
-        Err(self.diverged(index, work.broken_node().unwrap_or(0)))
+        let node = work.broken_node();
+        Err(self.diverged(index, node.unwrap_or_else(|| work.fastest_node())))
     }
 
     fn implicit(
@@ -424,19 +429,17 @@ impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
             step_max,
         };
         let (model, network) = (self.model, &self.model.networks[number]);
-        let (mut flow, mut last) = (Flow::default(), self.start);
-        let mut before = ledger::power(model, network, self.state, self.start);
+        let mut flow = Flow::default();
         let mut parted = ledger::parted_ends(network, self.state);
-        let count = |state: &State, t: f64| {
-            let now_parted = ledger::parted_ends(network, state);
+        let count = |passed: &Passed| {
+            let [before, after] = passed.states;
+            let now_parted = ledger::parted_ends(network, after);
             if now_parted != parted {
-                flow.given += ledger::joined_energy(model, network, [self.state, state]);
+                flow.given += ledger::joined_energy(model, network, [before, after]);
                 parted = now_parted;
+            } else {
+                flow.add(passed::flow(model, network, passed));
             }
-            let now = ledger::power(model, network, state, t);
-            flow.add(before.times(0.5 * (t - last)));
-            flow.add(now.times(0.5 * (t - last)));
-            (before, last) = (now, t);
         };
         let held = implicit::Held {
             kinematics: self.held,

@@ -65,6 +65,8 @@ pub struct Account {
     pub integrators: Vec<String>,
     /// Error of the energy ledger, over what it books [-].
     pub imbalance: f64,
+    /// Energy that the integrators created, over the same [-].
+    pub created: f64,
     /// Work of all steps [-].
     pub work: f64,
     /// Work of the dearest communication step [-].
@@ -87,6 +89,7 @@ fn watched(case: &Case) -> Result<Account, String> {
         fate: Fate::Ran,
         integrators: Vec::new(),
         imbalance: 0.0,
+        created: 0.0,
         work: 0.0,
         dearest: 0.0,
         time: 0.0,
@@ -157,6 +160,7 @@ fn steps(case: &Case, simulation: &mut Simulation, account: &mut Account) -> Res
     }
     account.time = simulation.time();
     account.imbalance = balance.imbalance(simulation);
+    account.created = balance.created();
     Ok(())
 }
 

@@ -69,6 +69,8 @@ pub struct Survey {
     pub broken: Vec<(usize, String)>,
     /// Reasons given by scenes that could not be run.
     pub reasons: BTreeMap<String, usize>,
+    /// Scenes in which a step could not be made, with the reason.
+    pub stopped: Vec<(usize, String)>,
     /// Dearest communication step, and its scene.
     pub dearest: (f64, usize),
 }
@@ -114,6 +116,9 @@ impl Survey {
             Fate::Stopped(reason) => ("stopped", Some(reason)),
         };
         *self.fates.entry(fate).or_default() += 1;
+        if let (Some(reason), "stopped") = (&reason, fate) {
+            self.stopped.push((number, reason.clone()));
+        }
         if let Some(reason) = &reason {
             *self.reasons.entry(kind_of(reason)).or_default() += 1;
         }
@@ -212,6 +217,19 @@ impl fmt::Display for Survey {
                 worst.0,
                 worst.1
             )?;
+        }
+        for (integrator, errors) in &self.imbalance {
+            let open = errors.iter().filter(|(error, _)| error.abs() > CLOSED);
+            let mut open: Vec<_> = open.collect();
+            open.sort_by_key(|(_, scene)| *scene);
+            writeln!(f, "{integrator}: open in")?;
+            for (error, scene) in open {
+                write!(f, " {scene} ({:+.1} %)", 100.0 * error)?;
+            }
+            writeln!(f)?;
+        }
+        for (scene, reason) in &self.stopped {
+            writeln!(f, "{scene} stopped: {reason}")?;
         }
         writeln!(
             f,

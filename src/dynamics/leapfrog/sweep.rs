@@ -116,6 +116,7 @@ struct Moving<'a> {
     velocity: &'a [Vectors],
     velocity_before: &'a mut [Vectors],
     pull: &'a mut [Vectors],
+    brake: &'a mut [Vectors],
 }
 
 /// What the segments are made of, row by row.
@@ -138,12 +139,13 @@ struct NodeRows<'a> {
     contact: ContactRows<'a>,
 }
 
-/// Drag coefficients and 1/M_t − 1/M_n; empty without water.
+/// Drag coefficients, 1/M_t − 1/M_n and M_t − M_n; empty without water.
 #[derive(Default)]
 struct WaterRows<'a> {
     normal: &'a [Lanes],
     tangent: &'a [Lanes],
     excess: &'a [Lanes],
+    mass_excess: &'a [Lanes],
 }
 
 /// The bed; empty without one.
@@ -164,6 +166,7 @@ impl LineWork {
             velocity: line.velocity.rows(last),
             velocity_before: line.velocity_before.rows_mut(last),
             pull: self.pull.rows_mut(last),
+            brake: self.brake.rows_mut(last),
         };
         let segments = SegmentRows {
             inverse_length: line.inverse_length.rows(last),
@@ -189,6 +192,7 @@ impl LineWork {
                 normal: water.drag_normal.rows(last),
                 tangent: water.drag_tangent.rows(last),
                 excess: water.inverse_mass_excess.rows(last),
+                mass_excess: water.mass_excess.rows(last),
             };
         }
         if let Some(contact) = &line.contact {
@@ -203,6 +207,7 @@ impl LineWork {
             lost: zero,
             left: zero,
             given: zero,
+            turned: zero,
         };
         Swept {
             moving,
@@ -216,8 +221,9 @@ impl LineWork {
 /// What is known of a row before it is kicked.
 #[derive(Clone, Copy)]
 struct Row {
-    /// Pull of the segments after the nodes [N].
+    /// Pull of the segments after the nodes, and the part of it that no spring has [N].
     pull: Vectors,
+    brake: Vectors,
     /// From the nodes before to those after [m].
     chord: Vectors,
     /// Its square's inverse [1/m²].
@@ -237,9 +243,10 @@ struct Flow {
 }
 
 impl SegmentRows<'_> {
-    /// T q of the segments of a row [N], and the power that their dampers take [W]; `rate` is how their chords [m] change [m/s].
+    /// T q of the segments of a row and the part of it that no spring has [N], and the power of that [W]; `rate` is how their chords [m] change
+    /// [m/s].
     #[inline(always)]
-    fn pull(&self, row: usize, chord: Vectors, rate: Vectors) -> (Vectors, Lanes) {
+    fn pull(&self, row: usize, chord: Vectors, rate: Vectors) -> (Vectors, Vectors, Lanes) {
         let square = chord.dot(chord);
         let inverse_l = inverse_norm(square);
         let inverse_length = self.inverse_length[row];
@@ -253,19 +260,23 @@ impl SegmentRows<'_> {
         } else {
             (elastic + damping).positive()
         };
+        let brake = tension - spring;
         (
             chord.scale(tension * inverse_l),
-            (tension - spring) * stretching,
+            chord.scale(brake * inverse_l),
+            brake * stretching,
         )
     }
 }
 
-/// What a sweep sums up over the rows: power lost, twice the power that leaves the nodes, and power given by moving water [W].
+/// What a sweep sums up over the rows: power lost, twice the power that leaves the nodes, and power given by moving water [W]; twice what
+/// ½ vᵀMv loses along the tangents beside what it loses across them [J].
 #[derive(Clone, Copy)]
 struct Sums {
     lost: Lanes,
     left: Lanes,
     given: Lanes,
+    turned: Lanes,
 }
 
 impl NodeRows<'_> {
@@ -300,12 +311,13 @@ impl NodeRows<'_> {
         }
     }
 
-    /// The velocities at t_{n+½} [m/s] of row number `at`, whose nodes are at the heights `z` [m]; `pull` is the sum of the pulls on them [N].
+    /// The velocities at t_{n+½} [m/s] of row number `at`, whose nodes are at the heights `z` [m]; `pull` is the sum of the pulls on them, and
+    /// `brake` the part of it that no spring has [N].
     #[inline(always)]
     fn kick<const AROUND: u8, const BED: bool, const PLAIN: bool>(
         &self,
         (at, z): (usize, Lanes),
-        (row, pull): (&Row, Vectors),
+        (row, pull, brake): (&Row, Vectors, Vectors),
         velocity: Vectors,
         sizes: Sizes,
         sums: &mut Sums,
@@ -321,14 +333,14 @@ impl NodeRows<'_> {
         }
         // Δt M⁻¹f, and Δt M⁻¹ẑ for the bed
         let inverse_mass = self.inverse_mass[at] * sizes.kick;
-        let (mut change, mut response) = (force.scale(inverse_mass), Vectors::zero());
+        let (mut kick, mut response) = (force.scale(inverse_mass), Vectors::zero());
         if AROUND != around::DRY {
             let excess = self.water.excess[at] * row.inverse_square * sizes.kick;
-            change = change + row.chord.scale(excess * force.dot(row.chord));
+            kick = kick + row.chord.scale(excess * force.dot(row.chord));
             response = row.chord.scale(excess * row.chord.z);
         }
         response.z = response.z + inverse_mass;
-        let mut kicked = velocity + change;
+        let mut kicked = velocity + kick;
         let mut left = Lanes::splat(0.0);
         if BED {
             let push = self.contact.push(at, z, [kicked.z, response.z], sizes);
@@ -340,8 +352,12 @@ impl NodeRows<'_> {
         if resists {
             left = left + row.resistance.dot(both);
         }
-        if resists || BED {
-            sums.left = sums.left + interior * left;
+        // the dampers' power was that at the velocities before
+        let change = kicked - velocity;
+        sums.left = sums.left + interior * (left - brake.dot(change));
+        if AROUND != around::DRY {
+            let passed = change.dot(row.chord) * both.dot(row.chord) * row.inverse_square;
+            sums.turned = sums.turned - self.water.mass_excess[at] * interior * passed;
         }
         if AROUND == around::FLOWING {
             let pressed = Lanes::splat(0.5) * row.flow.press.dot(both);
@@ -446,6 +462,7 @@ impl LineWork {
             swept.pull(last);
         }
         let mut pull_low = swept.moving.pull[last].moved_up();
+        let mut brake_low = swept.moving.brake[last].moved_up();
         let mut row = swept.row::<AROUND, PLAIN>(1, swept.moving.position[0], sizes);
         for at in 1..=last {
             let (here, mut next) = (swept.moving.position[at], row);
@@ -458,17 +475,24 @@ impl LineWork {
                 sums,
                 ..
             } = &mut swept;
-            let (place, pulled) = ((at, here.z), (&row, row.pull - pull_low));
+            let braked = row.brake - brake_low;
+            let (place, pulled) = ((at, here.z), (&row, row.pull - pull_low, braked));
             let velocity = moving.velocity[at];
             let kicked = nodes.kick::<AROUND, BED, PLAIN>(place, pulled, velocity, sizes, sums);
             moving.velocity_before[at] = kicked; // v_{n−3/2} has been read
             moving.position[at] = here + kicked.scale(drift);
             if let Some(settling) = &mut settling {
-                settling.resistance.store(row.resistance, at);
+                settling.resistance.store(row.resistance - braked, at);
             }
-            (row, pull_low) = (next, row.pull);
+            (row, pull_low, brake_low) = (next, row.pull, row.brake);
         }
-        let Sums { lost, left, given } = swept.sums;
+        let Sums {
+            lost,
+            left,
+            given,
+            turned,
+        } = swept.sums;
+        self.turned = self.turned + turned;
         let half = Lanes::splat(0.5);
         self.lost = self.lost + (lost + half * left) * sizes.kick;
         self.given_by_current = self.given_by_current + given * sizes.kick;
@@ -495,8 +519,8 @@ impl Swept<'_> {
         let moving = &mut self.moving;
         let chord = moving.position[row + 1] - moving.position[row];
         let rate = moving.velocity[row + 1] - moving.velocity[row];
-        let (pull, lost) = self.segments.pull(row, chord, rate);
-        moving.pull[row] = pull;
+        let (pull, brake, lost) = self.segments.pull(row, chord, rate);
+        (moving.pull[row], moving.brake[row]) = (pull, brake);
         self.sums.lost = self.sums.lost + lost;
     }
 
@@ -512,6 +536,7 @@ impl Swept<'_> {
         let moving = &self.moving;
         let mut row = Row {
             pull: Vectors::zero(),
+            brake: Vectors::zero(),
             chord: moving.position[at + 1] - low,
             inverse_square: zero,
             resistance: Vectors::zero(),
@@ -528,7 +553,7 @@ impl Swept<'_> {
         if PLAIN && at + 2 < self.moving.position.len() {
             self.pull(at);
         }
-        row.pull = self.moving.pull[at];
+        (row.pull, row.brake) = (self.moving.pull[at], self.moving.brake[at]);
         row
     }
 }
