@@ -324,7 +324,7 @@ impl LineWork {
 
     /// Σ ½ (M_t − M_n)(v·t)² of all nodes but held ends, the velocities being those of t_{n−½} [J].
     fn turning_energy(&mut self) -> f64 {
-        self.layout.renew_ghosts(self.parted);
+        self.layout.renew_ghosts([true; 2]); // ends of excess mass have no neighbour beyond them
         match (&self.water, &self.winch) {
             (Some(water), None) => self.layout.turning_energy(|at| water.mass_excess.load(at)),
             _ => 0.0, // a winch books its own
