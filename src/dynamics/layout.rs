@@ -245,6 +245,12 @@ pub(super) struct BottomArrays {
 }
 
 impl ContactArrays {
+    /// Stiffness [N/m] and damping [N s/m] of a row.
+    #[inline(always)]
+    pub fn law(&self, at: usize) -> [Lanes; 2] {
+        [self.stiffness.load(at), self.damping.load(at)]
+    }
+
     fn new(contact: &Contact, fold: Fold) -> ContactArrays {
         let lifts = || (0..contact.level.len()).map(|i| contact.lift(i)).collect();
         let bottom = contact.bottom.as_ref();

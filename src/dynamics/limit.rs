@@ -29,7 +29,7 @@ const SAFETY_UNDAMPED: f64 = 0.5;
 /// Damping ratio of the shortest waves from which slackening gathers no energy at the full safety [-].
 const DAMPING_RATIO_ENOUGH: f64 = 0.016;
 /// Steps to the first axial period that leave an error of 1 % in a tension with snaps [-]: half of the tolerance they belong to, so that
-/// the mesh has the rest of it. Measured on oc3_catenary and lindahl_fast: 2 % with 65, second order.
+/// the mesh has the rest of it. Measured on oc3_catenary: 2 % with 65, 0.7 % with 130.
 const STEPS_PER_AXIAL_PERIOD: f64 = 92.0;
 /// Strain up to which a stiffening measure is stable [-].
 const STRAIN_EXPECTED: f64 = 0.05;
@@ -142,14 +142,49 @@ fn damped_limit(omega: f64, lag: f64) -> f64 {
 /// Step [s] that resolves the first axial period 4L/c for a target error of tension [-].
 pub fn axial_accuracy_step(line: &Line, tolerance: f64) -> f64 {
     let segments = &line.segments;
-    let travel: f64 = (0..line.segment_count())
-        .map(|i| {
-            let mass = line.nodes.mass_tangent[i] + line.nodes.mass_tangent[i + 1];
-            let length = line.nodes.length[i] + line.nodes.length[i + 1];
-            segments.length[i] * (mass / length / segments.in_motion(i).0).sqrt()
-        })
-        .sum();
-    4.0 * travel / STEPS_PER_AXIAL_PERIOD * (tolerance / 0.02).sqrt()
+    let travel = travel_time(line, &line.nodes.mass_tangent, |i| segments.in_motion(i).0);
+    resolved(4.0 * travel, tolerance)
+}
+
+/// Step [s] that resolves the elastic oscillation of a free point on its lines, each taken as one spring with half of its mass, for a target error of
+/// tension [-]; infinite for points that are held.
+pub fn point_accuracy_step(model: &Model, point: usize, tolerance: f64) -> f64 {
+    let Some(free) = model.points[point].free() else {
+        return f64::INFINITY;
+    };
+    let (mut mass, mut spring) = (free.mass, 0.0);
+    for &(index, _) in &model.points[point].attached {
+        let line = &model.lines[index];
+        let yields = |i: usize| 1.0 / stiffness(line, i);
+        spring += 1.0 / (0..line.segment_count()).map(yields).sum::<f64>();
+        mass += 0.5 * line.nodes.mass_tangent.iter().sum::<f64>();
+    }
+    resolved(std::f64::consts::TAU * (mass / spring).sqrt(), tolerance)
+}
+
+/// Step [s] that resolves an axial period [s] for a target error of tension [-].
+fn resolved(period: f64, tolerance: f64) -> f64 {
+    period / STEPS_PER_AXIAL_PERIOD * (tolerance / 0.02).sqrt()
+}
+
+/// Longest period of a line's transverse waves between ends that are held [s], under a tension [N].
+pub fn transverse_period(line: &Line, tension: f64) -> f64 {
+    let mass = match &line.surface {
+        None => &line.nodes.mass_normal,
+        Some(_) => &line.nodes.mass, // in air
+    };
+    2.0 * travel_time(line, mass, |_| tension.max(0.0))
+}
+
+/// Time that a wave takes along a line [s] with masses of its nodes [kg] and a force that restores its segments [N].
+fn travel_time(line: &Line, masses: &[f64], force: impl Fn(usize) -> f64) -> f64 {
+    let (nodes, lengths) = (&line.nodes, &line.segments.length);
+    let time = |i: usize| {
+        let mass = masses[i] + masses[i + 1];
+        let length = nodes.length[i] + nodes.length[i + 1];
+        lengths[i] * (mass / length / force(i)).sqrt()
+    };
+    (0..line.segment_count()).map(time).sum()
 }
 
 /// Greatest stiffness that the water's surface gives a node [N/m].

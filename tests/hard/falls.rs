@@ -86,11 +86,16 @@ fn a_whip_crack_gains_no_energy() {
     }
 }
 
-/// Momentum [kg m/s], and angular momentum about the centre of mass [kg m²/s], of the first line, dry.
+/// Momentum [kg m/s], and angular momentum about the centre of mass [kg m²/s], of the first line, dry: of the leapfrogs with the velocities that they
+/// step, half a step before. Those extrapolated to the places' time differ by ½ Δt² Σ v × F in angular momentum.
 fn momenta(simulation: &Simulation) -> [Vector3<f64>; 2] {
     let shape = &simulation.state().lines[0];
     let mass = &simulation.model().lines[0].nodes.mass;
-    let nodes = || mass.iter().zip(&shape.position).zip(&shape.velocity);
+    let velocity = match &shape.half_step.velocity {
+        stepped if stepped.is_empty() => &shape.velocity,
+        stepped => stepped,
+    };
+    let nodes = || mass.iter().zip(&shape.position).zip(velocity);
     let total: f64 = mass.iter().sum();
     let centre = nodes().map(|((m, r), _)| *m * r).sum::<Vector3<f64>>() / total;
     let linear = nodes().map(|((m, _), v)| *m * v).sum();
@@ -101,8 +106,8 @@ fn momenta(simulation: &Simulation) -> [Vector3<f64>; 2] {
 #[test]
 fn a_line_let_go_in_full_swing_whips_and_keeps_its_momenta() {
     for (integrator, bound) in [
-        (Integrator::Leapfrog, 1e-5),
-        (Integrator::AxialImplicit, 1e-3),
+        (Integrator::Leapfrog, 1e-12),
+        (Integrator::AxialImplicit, 1e-12),
         (Integrator::GeneralisedAlpha, 1e-4),
     ] {
         let scene = by(let_go_in_swing(), integrator, 0.002);
