@@ -8,7 +8,6 @@ use super::implicit::{self, Scheme};
 use super::layout::Water;
 use super::leapfrog::Step;
 use super::ledger::{self, Energy, Flow};
-use super::limit::transverse_step;
 use super::motion::AxisPath;
 use super::network::NetworkWork;
 use super::sea::SeaWork;
@@ -60,7 +59,7 @@ pub struct Workspace {
     before: State,
     /// How the winches pay out, by line; empty where there are none.
     reels: Vec<AxisPath>,
-    /// Whether the explicit kernels still hold the state that they handed back last.
+    /// Whether the leapfrogs still hold the state that they handed back last.
     holds: bool,
 }
 
@@ -307,7 +306,7 @@ struct Communication<'a, K> {
     held: &'a K,
     /// How the winches pay out, by line; empty where there are none.
     reels: &'a [AxisPath],
-    /// Whether the explicit kernels hold the state.
+    /// Whether the leapfrogs hold the state.
     holds: bool,
 }
 
@@ -330,13 +329,15 @@ impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
             let count = self.substeps(step_max.min(1.0 / work.drag_rate(model, network)), retry)?;
             let drift = self.length / count as f64;
             let mut steps = self.state.lines[network.lines[0]].half_step.steps;
-            work.put_ends(self.start, Step::after(steps, drift), self.held);
-            work.start_reels(network, self.state, self.reels, Step::after(steps, drift));
+            let mut step = Step::after(steps, drift);
+            work.put_ends(self.start, step, self.held);
+            work.start_reels(network, self.state, self.reels, step);
             work.meet_surface();
             for k in 0..count {
                 let t = self.start + k as f64 * drift;
-                work.step(model, network, t, Step::after(steps, drift), self.held);
+                work.step(model, network, t, step, self.held);
                 steps = [drift, steps[0]];
+                step = Step::after(steps, drift);
             }
             let flow = work.flow();
             if work.is_sound() && flow.is_finite() {
@@ -361,13 +362,17 @@ impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
     ) -> Result<Done, StepError> {
         let index = self.model.networks[number].lines[0];
         let line = &self.model.lines[index];
-        let transverse = transverse_step(line, 1.0); // over √T [s √N]
+        let transverse = work.transverse;
         let tension_now = self.state.lines[index].half_step.tension[0]
             .iter()
             .fold(0.0, |a: f64, b| a.max(*b));
         let step_max = step_max.min(transverse / (SNAP_GROWTH * tension_now).sqrt());
         for retry in 0..=RETRIES_MAX {
-            work.load(&self.state.lines[index]);
+            if self.holds && retry == 0 {
+                work.resume();
+            } else {
+                work.load(&self.state.lines[index]);
+            }
             work.load_waves(self.state.waves.as_ref(), index);
             let count = self.substeps(step_max, retry)?;
             let drift = self.length / count as f64;

@@ -41,6 +41,7 @@ use pulp::NullaryFnOnce;
 use super::layout::{Layout, Water, interior};
 use super::leapfrog::Step;
 use super::ledger::Flow;
+use super::limit::transverse_step;
 use crate::math::lanes::Lanes;
 use crate::model::{End, Line, LineState, Parting, WaveSpan};
 use rows::{CurrentRow, NodeRow, Rows, SegmentRow};
@@ -78,6 +79,8 @@ fn damping_rate(line: &Line) -> f64 {
 #[derive(Debug, Clone)]
 pub struct AxialWork {
     layout: Layout,
+    /// Longest step over √T [s √N].
+    pub transverse: f64,
     weights: Weights,
     /// Greatest rate at which axial dampers would take velocities away [1/s].
     damping_rate: f64,
@@ -116,6 +119,7 @@ impl AxialWork {
             ..NodeRow::new()
         };
         Some(AxialWork {
+            transverse: transverse_step(line, 1.0),
             weights: Weights::new(rho),
             damping_rate: damping_rate(line),
             rows: Rows {
@@ -146,8 +150,7 @@ impl AxialWork {
         for end in ENDS {
             self.set_free(end, self.parted[end as usize]);
         }
-        (self.lost, self.given, self.tension_peak) = (Lanes::splat(0.0), 0.0, 0.0);
-        self.settled = true;
+        self.resume();
         let count = self.layout.segment_count;
         if state.half_step.tension[0].len() == count {
             let [now, before] = &state.half_step.tension;
@@ -171,6 +174,12 @@ impl AxialWork {
             };
             self.rows.segments[at - 1].history = [tension; 2];
         }
+    }
+
+    /// Goes on from the state that [`Self::store`] handed back last.
+    pub fn resume(&mut self) {
+        (self.lost, self.given, self.tension_peak) = (Lanes::splat(0.0), 0.0, 0.0);
+        self.settled = true;
     }
 
     fn set_free(&mut self, end: End, free: bool) {

@@ -30,6 +30,8 @@ pub(super) const LENGTH2_MIN: f64 = 1e-200;
 #[derive(Debug, Clone)]
 pub(super) struct Layout {
     pub segment_count: usize,
+    /// Where the last node and the last segment stand.
+    last: [Slot; 2],
     /// Where nodes and segments stand.
     pub fold: Fold,
     /// The widest vectors of this machine; results do not depend on it.
@@ -295,6 +297,7 @@ impl Layout {
         };
         Some(Layout {
             segment_count: n,
+            last: [n, n - 1].map(|i| fold.slot(i)),
             fold,
             vector_unit: Arch::new(),
             law: line.uniform_law()?,
@@ -374,6 +377,12 @@ impl Layout {
         }
     }
 
+    /// Sets how many of the segments that there is room for the line has.
+    pub fn set_segment_count(&mut self, count: usize) {
+        self.segment_count = count;
+        self.last = [count, count - 1].map(|i| self.fold.slot(i));
+    }
+
     /// Where node `i` and segment `i` stand.
     pub fn slot(&self, i: usize) -> Slot {
         self.fold.slot(i)
@@ -394,22 +403,22 @@ impl Layout {
         memory.velocity.resize(count, Vector3::zeros());
         memory.velocity_before.resize(count, Vector3::zeros());
         memory.steps = steps;
-        let extrapolation = Lanes::splat(Step::after(steps, steps[0]).extrapolation);
-        let (places, now) = (&mut state.position[..], &mut state.velocity[..count]);
-        let (last, before) = (
-            &mut memory.velocity[..count],
-            &mut memory.velocity_before[..count],
-        );
-        for row in self.rows() {
-            let place = self.position.load(row);
-            let (half, earlier) = (self.velocity.load(row), self.velocity_before.load(row));
-            let whole = half + (half - earlier).scale(extrapolation);
-            for lane in 0..LANES {
-                let i = lane * self.fold.rows() + row - 1;
-                if i < count {
-                    (places[i], now[i]) = (place.get(lane), whole.get(lane));
-                    (last[i], before[i]) = (half.get(lane), earlier.get(lane));
-                }
+        let extrapolation = Step::after(steps, steps[0]).extrapolation;
+        let rows = self.fold.rows();
+        let own = [&self.position, &self.velocity, &self.velocity_before];
+        let [positions, velocities, earlier] = own.map(|field| &field.rows(rows)[1..]);
+        for lane in 0..LANES {
+            let nodes = (lane * rows).min(count)..((lane + 1) * rows).min(count);
+            let places = state.position[nodes.clone()].iter_mut().zip(positions);
+            let speeds = state.velocity[nodes.clone()].iter_mut();
+            let halves = memory.velocity[nodes.clone()].iter_mut().zip(velocities);
+            let befores = memory.velocity_before[nodes].iter_mut().zip(earlier);
+            let nodes = places.zip(speeds).zip(halves.zip(befores));
+            for (((place, position), speed), ((last, half), (before, earlier))) in nodes {
+                *place = position.get(lane);
+                let (half, earlier) = (half.get(lane), earlier.get(lane));
+                *speed = half + extrapolation * (half - earlier);
+                (*last, *before) = (half, earlier);
             }
         }
         if let Some(bottom) = self.bottom() {
@@ -614,14 +623,17 @@ impl Layout {
 
     /// Where the node at an end stands.
     pub fn end_slot(&self, end: End) -> Slot {
-        self.slot(self.end_node(end))
+        match end {
+            End::A => Slot { row: 1, lane: 0 },
+            End::B => self.last[0],
+        }
     }
 
     /// Where the segment at an end stands, and what the sign of its pull on the end is.
     pub fn end_segment(&self, end: End) -> (Slot, f64) {
         match end {
-            End::A => (self.slot(0), 1.0),
-            End::B => (self.slot(self.segment_count - 1), -1.0),
+            End::A => (self.end_slot(End::A), 1.0),
+            End::B => (self.last[1], -1.0),
         }
     }
 
@@ -629,7 +641,7 @@ impl Layout {
     pub fn end_neighbour(&self, end: End) -> Slot {
         match end {
             End::A => self.slot(1),
-            End::B => self.slot(self.segment_count - 1),
+            End::B => self.last[1],
         }
     }
 

@@ -138,6 +138,19 @@ impl NullaryFnOnce for PullSegments<'_> {
     }
 }
 
+/// [`LineWork::put_ends`] for the vector unit of the machine.
+struct PutEnds<'a>(&'a mut LineWork, &'a [Placed; 2]);
+
+impl NullaryFnOnce for PutEnds<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let PutEnds(work, ends) = self;
+        work.layout.place_ends(ends, work.parted);
+    }
+}
+
 /// Sizes of a step.
 #[derive(Debug, Clone, Copy)]
 pub struct Step {
@@ -525,11 +538,9 @@ impl LineWork {
         }
     }
 
-    /// Puts an end somewhere, unless it has parted from its point.
-    pub fn put_end(&mut self, end: End, placed: Placed) {
-        if !self.is_parted(end) {
-            self.layout.put_end(end, placed.position, placed.velocity);
-        }
+    /// Puts the ends somewhere that have not parted from their points.
+    pub fn put_ends(&mut self, ends: &[Placed; 2]) {
+        self.layout.vector_unit.dispatch(PutEnds(self, ends));
     }
 
     /// What the end brings to a free point, after [`Self::pull_beforehand`]; `velocity` [m/s] is the point's at t_n.

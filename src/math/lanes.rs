@@ -7,12 +7,13 @@ use std::array::from_fn;
 use std::ops::{Add, Index, IndexMut, Mul, Sub};
 
 use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
 
 /// Number of lanes [-].
 pub const LANES: usize = 4;
 
 /// Four f64 side by side.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[repr(align(32))]
 pub struct Lanes([f64; LANES]);
 
@@ -92,6 +93,18 @@ impl Lanes {
         }))
     }
 
+    /// The smaller of two, lane by lane.
+    #[inline(always)]
+    pub fn min(self, other: Lanes) -> Lanes {
+        Lanes(from_fn(|i| {
+            if self.0[i] < other.0[i] {
+                self.0[i]
+            } else {
+                other.0[i]
+            }
+        }))
+    }
+
     /// Whether any lane is > 0.
     #[inline(always)]
     pub fn any_positive(self) -> bool {
@@ -146,6 +159,12 @@ impl Lanes {
     #[inline(always)]
     pub fn moved_down(self) -> Lanes {
         Lanes([self.0[1], self.0[2], self.0[3], self.0[0]])
+    }
+
+    /// The first three lanes.
+    #[inline(always)]
+    pub fn xyz(self) -> Vector3<f64> {
+        Vector3::new(self.0[0], self.0[1], self.0[2])
     }
 
     /// Sum of the lanes.

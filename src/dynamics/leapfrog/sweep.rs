@@ -86,7 +86,7 @@ impl NullaryFnOnce for Drift<'_> {
 impl Layout {
     /// Puts the ends that have not parted from their points where these are.
     #[inline(always)]
-    fn place_ends(&mut self, ends: &[Placed; 2], parted: [bool; 2]) {
+    pub(super) fn place_ends(&mut self, ends: &[Placed; 2], parted: [bool; 2]) {
         for end in [End::A, End::B] {
             let (side, at) = (end as usize, self.end_slot(end));
             if !parted[side] {
