@@ -1,6 +1,6 @@
 //! Semi-explicit leapfrog of lumped two-node segments: the default for cables without bending.
 //!
-//! Positions live at t_n, velocities at t_{n−½}. A step is one sweep over the nodes, in which
+//! Positions live at t_n, velocities at t_{n−½}. A step is a sweep over the line, in which
 //!
 //! 1. segments: strain, lagged strain rate, tension T q;
 //! 2. nodes: v_{n+½} = v_{n−½} + Δt M⁻¹ f, with drag at the extrapolated velocity 1.5 v_{n−½} − 0.5 v_{n−3/2}, the
@@ -41,6 +41,12 @@ pub struct LineWork {
     plain: bool,
     /// Force of a segment on its lower node, T q [N].
     pull: Field,
+    /// Force that water and damping resist with at t_n [N].
+    resistance: Field,
+    /// Force of water that waves accelerate at t_n [N], where there are waves.
+    press: Option<Field>,
+    /// Inverse square of the chord between the nodes beside a node at t_n [1/m²].
+    inverse_square: Column,
     inverse_mass: Column,
     water: Option<WaterWork>,
     /// 1 for nodes between the ends, 0 elsewhere.
@@ -53,17 +59,10 @@ pub struct LineWork {
     lost: Lanes,
     given: f64,
     given_by_current: Lanes,
-    /// Force of water and damping on the nodes at t_n [N], and the energy lost to the bed [J], over a bed that slopes or rubs.
-    settling: Option<Settling>,
+    /// Energy lost to the bed [J], where it slopes or rubs.
+    settled: Option<f64>,
     /// The winch at end B, where the line is on one.
     winch: Option<Box<WinchWork>>,
-}
-
-/// What a bed that slopes or rubs is worked out with, node by node.
-#[derive(Debug, Clone)]
-struct Settling {
-    resistance: Field,
-    lost: f64,
 }
 
 /// What needs a node's tangent: drag, and a mass that differs along and across the line.
@@ -218,6 +217,9 @@ impl LineWork {
                 && layout.mass_damping.is_none()
                 && layout.bottom().is_none(),
             pull: Field::zeros(layout.fold),
+            resistance: Field::zeros(layout.fold),
+            press: layout.waves.as_ref().map(|_| Field::zeros(layout.fold)),
+            inverse_square: Column::new(layout.fold, 0.0),
             inverse_mass: layout.fold.column(&inverse_mass, 0.0),
             water: WaterWork::new(line, &layout),
             interior: interior(layout.segment_count),
@@ -226,10 +228,7 @@ impl LineWork {
             lost: Lanes::splat(0.0),
             given: 0.0,
             given_by_current: Lanes::splat(0.0),
-            settling: layout.bottom().map(|_| Settling {
-                resistance: Field::zeros(layout.fold),
-                lost: 0.0,
-            }),
+            settled: layout.bottom().map(|_| 0.0),
             layout,
             winch,
         })
@@ -263,8 +262,8 @@ impl LineWork {
     fn clear_flow(&mut self) {
         (self.lost, self.given) = (Lanes::splat(0.0), 0.0);
         self.given_by_current = Lanes::splat(0.0);
-        if let Some(settling) = &mut self.settling {
-            settling.lost = 0.0;
+        if let Some(lost) = &mut self.settled {
+            *lost = 0.0;
         }
     }
 
@@ -299,7 +298,7 @@ impl LineWork {
                 + self.given_by_current.sum()
                 + self.layout.lifted()
                 + self.winch.as_ref().map_or(0.0, |winch| winch.given()),
-            lost: self.lost.sum() + self.settling.as_ref().map_or(0.0, |bed| bed.lost)
+            lost: self.lost.sum() + self.settled.unwrap_or(0.0)
                 - self.layout.joined(),
         }
     }
@@ -459,7 +458,7 @@ impl LineWork {
     pub fn advance(&mut self, t: f64, step: Step, ends: &[Placed; 2]) {
         let (unit, work, size) = (self.layout.vector_unit, self, &step);
         unit.dispatch(Sweep { work, size, ends });
-        if work.settling.is_some() {
+        if work.settled.is_some() {
             work.settle(step);
             unit.dispatch(Drift { work, size, ends });
         }
@@ -479,7 +478,7 @@ impl LineWork {
     /// What a bed that slopes or rubs makes of the velocities at t_{n+½}.
     fn settle(&mut self, step: Step) {
         let line = &mut self.layout;
-        let Some(settling) = &mut self.settling else {
+        let Some(lost) = &mut self.settled else {
             return;
         };
         for (i, at) in line.nodes().enumerate() {
@@ -514,8 +513,8 @@ impl LineWork {
                 continue;
             };
             let passed = line.velocity_before.get(at) + landed.velocity;
-            let resisted = settling.resistance.get(at).dot(&(landed.velocity - free));
-            settling.lost += 0.5 * (step.kick * resisted - landed.impulse.dot(&passed));
+            let resisted = self.resistance.get(at).dot(&(landed.velocity - free));
+            *lost += 0.5 * (step.kick * resisted - landed.impulse.dot(&passed));
             line.velocity.set(at, landed.velocity);
             line.set_rub(at, landed.rub / step.kick);
         }
