@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::axial_implicit::AxialWork;
 use super::beam::{self, BeamWork, Driven, Stuck, StuckReason};
+use super::crew::{Crew, Hands, Labour, Queue};
 use super::implicit::{self, Scheme};
 use super::layout::Water;
 use super::leapfrog::Step;
@@ -62,6 +63,21 @@ pub struct Workspace {
     reels: Vec<AxisPath>,
     /// Whether the explicit kernels still hold the state that they handed back last.
     holds: bool,
+    crew: Crew,
+    labour: Labour,
+    /// Scratch of the other threads, once there are some.
+    helpers: Vec<Helper>,
+    /// What became of the networks that threads shared.
+    outcomes: Vec<Option<Result<Done, StepError>>>,
+}
+
+/// Scratch of a thread that helps.
+#[derive(Debug, Clone)]
+struct Helper {
+    implicit: assembly::Workspace,
+    next: State,
+    /// Networks that it brought to the end of the step.
+    made: Vec<usize>,
 }
 
 #[derive(Debug, Clone)]
@@ -77,7 +93,7 @@ impl Workspace {
     /// Chooses integrators and allocates all scratch for a model that starts from `state`; `tension` tells the static
     /// tension of a line [N].
     pub fn new(model: &Model, state: &State, tension: impl Fn(usize) -> f64) -> Workspace {
-        let networks = model
+        let networks: Vec<(Choice, Solver)> = model
             .networks
             .iter()
             .map(|network| {
@@ -87,6 +103,10 @@ impl Workspace {
             })
             .collect();
         Workspace {
+            crew: Crew::default(),
+            labour: Labour::new(model, networks.iter().map(|(choice, _)| choice)),
+            helpers: Vec::new(),
+            outcomes: Vec::new(),
             networks,
             implicit: assembly::Workspace::new(model),
             next: state.clone(),
@@ -113,6 +133,11 @@ impl Workspace {
         self.networks.iter().map(|(choice, _)| choice)
     }
 
+    /// How many threads share steps of a length [s], and why.
+    pub fn threads_in_words(&self, length: f64) -> String {
+        self.labour.in_words(length)
+    }
+
     /// Energy that the networks hold; none of motion where they are quasi-static.
     pub fn energy(&self, model: &Model, state: &State) -> Energy {
         let mut sum = Energy::default();
@@ -136,7 +161,11 @@ impl Workspace {
         let time = state.time;
         drop_anchors(model, state);
         place_held(model, state, held);
-        self.sea.start(model, state);
+        let mut hands = Hands {
+            crew: &mut self.crew,
+            threads: 1,
+        };
+        self.sea.start(model, state, &mut hands);
         for (number, (_, solver)) in self.networks.iter().enumerate() {
             if matches!(solver, Solver::Implicit(_)) {
                 let network = &model.networks[number];
@@ -156,7 +185,7 @@ impl Workspace {
         model: &Model,
         state: &mut State,
         length: f64,
-        held: &impl Fn(usize, f64) -> Kinematics,
+        held: &(impl Fn(usize, f64) -> Kinematics + Sync),
     ) -> Result<Done, StepError> {
         match &model.waves {
             None => self.pass(model, state, length, held),
@@ -171,11 +200,11 @@ impl Workspace {
         model: &Model,
         state: &mut State,
         length: f64,
-        held: &impl Fn(usize, f64) -> Kinematics,
+        held: &(impl Fn(usize, f64) -> Kinematics + Sync),
     ) -> Result<Done, StepError> {
-        let mut part = self.sea.reach(waves, state, length);
+        let mut part = self.sea.reach(model, waves, state, length);
         if part == length {
-            let renewed = self.sea.renew(model, waves, state, length);
+            let renewed = self.renew_waves(model, waves, state, length);
             let done = self.pass(model, state, length, held);
             if done.is_err() && renewed {
                 self.sea.undo(state);
@@ -186,7 +215,7 @@ impl Workspace {
         let mut total = Done::default();
         self.before.clone_from(state);
         loop {
-            self.sea.renew(model, waves, state, part);
+            self.renew_waves(model, waves, state, part);
             match self.pass(model, state, part, held) {
                 Ok(done) => total.add(done),
                 Err(error) => {
@@ -199,8 +228,17 @@ impl Workspace {
                 state.time = end;
                 return Ok(total);
             }
-            part = self.sea.reach(waves, state, left);
+            part = self.sea.reach(model, waves, state, left);
         }
+    }
+
+    /// Asks the waves anew where a span of theirs is over; whether it was.
+    fn renew_waves(&mut self, model: &Model, waves: &Waves, state: &mut State, step: f64) -> bool {
+        let mut hands = Hands {
+            crew: &mut self.crew,
+            threads: self.labour.at_sea(),
+        };
+        self.sea.renew(model, waves, state, step, &mut hands)
     }
 
     /// Advances `state` by `length` [s], over which it knows what waves do.
@@ -209,7 +247,7 @@ impl Workspace {
         model: &Model,
         state: &mut State,
         length: f64,
-        held: &impl Fn(usize, f64) -> Kinematics,
+        held: &(impl Fn(usize, f64) -> Kinematics + Sync),
     ) -> Result<Done, StepError> {
         let heaves = state.waves.is_some();
         if heaves && self.networks.iter().any(|(_, solver)| solver.reads_next()) {
@@ -224,23 +262,25 @@ impl Workspace {
             reels: &self.reels,
             holds: std::mem::take(&mut self.holds),
         };
+        let threads = self.labour.over(length);
         let mut total = Done::default();
-        for (number, (choice, solver)) in self.networks.iter_mut().enumerate() {
-            let next = &mut self.next;
-            let done = match solver {
-                Solver::Leapfrog(work) => step.leapfrog(number, choice.step_max, work, next)?,
-                Solver::AxialImplicit(work) => {
-                    step.axial_implicit(number, choice.step_max, work, next)?
-                }
-                Solver::Implicit(scheme) => {
-                    step.implicit(number, choice.step_max, scheme, &mut self.implicit, next)?
-                }
-                Solver::Beam(work) => step.beam(number, choice.step_max, work, next)?,
-                Solver::QuasiStatic => step.quasi_static(number, &mut self.implicit, next)?,
-            };
-            total.counters.substeps = total.counters.substeps.max(done.counters.substeps);
-            total.counters.solves += done.counters.solves;
-            total.flow.add(done.flow);
+        if threads > 1 {
+            share_out(&mut self.helpers, threads, &step, &self.next);
+            let (own, crew) = ((&mut self.implicit, &mut self.next), &mut self.crew);
+            step.on_threads(
+                crew,
+                &mut self.networks,
+                own,
+                &mut self.helpers[..threads - 1],
+                &mut self.outcomes,
+            );
+            for done in self.outcomes.drain(..).flatten() {
+                total.join(done?);
+            }
+        } else {
+            for (number, network) in self.networks.iter_mut().enumerate() {
+                total.join(step.network(number, network, &mut self.implicit, &mut self.next)?);
+            }
         }
         self.next.time = state.time + length;
         place_held(model, &mut self.next, held);
@@ -253,7 +293,28 @@ impl Workspace {
     }
 }
 
+/// Gives all threads but the first the scratch that they need for a step.
+fn share_out<K>(helpers: &mut Vec<Helper>, threads: usize, step: &Communication<K>, next: &State) {
+    while helpers.len() + 1 < threads {
+        helpers.push(Helper {
+            implicit: assembly::Workspace::new(step.model),
+            next: next.clone(),
+            made: Vec::with_capacity(step.model.networks.len()),
+        });
+    }
+    for helper in helpers {
+        helper.next.waves.clone_from(&next.waves);
+    }
+}
+
 impl Done {
+    /// Adds what another network did in the same time.
+    fn join(&mut self, other: Done) {
+        self.counters.substeps = self.counters.substeps.max(other.counters.substeps);
+        self.counters.solves += other.counters.solves;
+        self.flow.add(other.flow);
+    }
+
     /// Adds what a later part of the step did.
     fn add(&mut self, other: Done) {
         self.counters.substeps += other.counters.substeps;
@@ -311,7 +372,64 @@ struct Communication<'a, K> {
     holds: bool,
 }
 
-impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
+impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
+    /// All networks, each on the thread that takes it; `next` becomes what it would be on one thread.
+    fn on_threads(
+        &self,
+        crew: &mut Crew,
+        networks: &mut [(Choice, Solver)],
+        (implicit, next): (&mut assembly::Workspace, &mut State),
+        helpers: &mut [Helper],
+        outcomes: &mut Vec<Option<Result<Done, StepError>>>,
+    ) {
+        outcomes.clear();
+        outcomes.resize_with(networks.len(), || None);
+        let queue = Queue::new(networks.iter_mut().zip(outcomes).enumerate());
+        let help = |helper: &mut Helper| {
+            helper.made.clear();
+            while let Some((number, (network, outcome))) = queue.take() {
+                let (implicit, next) = (&mut helper.implicit, &mut helper.next);
+                *outcome = Some(self.network(number, network, implicit, next));
+                helper.made.push(number);
+            }
+        };
+        let lead = || {
+            while let Some((number, (network, outcome))) = queue.take() {
+                *outcome = Some(self.network(number, network, implicit, next));
+            }
+        };
+        crew.run(helpers, help, lead);
+        for helper in helpers {
+            for number in helper.made.drain(..) {
+                let network = &self.model.networks[number];
+                for &line in &network.lines {
+                    std::mem::swap(&mut next.lines[line], &mut helper.next.lines[line]);
+                }
+                for &point in &network.free_points {
+                    next.points[point] = helper.next.points[point];
+                }
+            }
+        }
+    }
+
+    /// One network over the step.
+    fn network(
+        &self,
+        number: usize,
+        (choice, solver): &mut (Choice, Solver),
+        implicit: &mut assembly::Workspace,
+        next: &mut State,
+    ) -> Result<Done, StepError> {
+        let step_max = choice.step_max;
+        match solver {
+            Solver::Leapfrog(work) => self.leapfrog(number, step_max, work, next),
+            Solver::AxialImplicit(work) => self.axial_implicit(number, step_max, work, next),
+            Solver::Implicit(scheme) => self.implicit(number, step_max, scheme, implicit, next),
+            Solver::Beam(work) => self.beam(number, step_max, work, next),
+            Solver::QuasiStatic => self.quasi_static(number, implicit, next),
+        }
+    }
+
     fn leapfrog(
         &self,
         number: usize,

@@ -1,0 +1,367 @@
+//! Threads that share work with the one that steps, and when they pay.
+//!
+//! Networks have nothing in common within a communication step: each goes its whole way over it on one thread, in the same operations in the
+//! same order as on any other, and what is summed over networks is summed by their numbers afterwards. So results do not depend on
+//! the number of threads, bit for bit. Who is free takes the next network, so that a thread that wakes late, or is taken away, costs little.
+//!
+//! Threads are made when they are first needed, wait asleep, and have ended when their crew is dropped: a host that frees an
+//! instance may unload the library. Where a host allows no threads everything is done on its own.
+//!
+//! A second thread pays where half of the work takes longer than to wake it and to wait for it. So `auto` gives every thread
+//! [`WORTH`] of work at least; how long that takes is told from the nodes and the internal steps, not from a clock, so that it is
+//! the same in every run.
+
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::thread::{self, JoinHandle};
+
+use rayon_core::{ThreadPool, ThreadPoolBuilder};
+
+use super::Choice;
+use crate::model::{Model, Network};
+use crate::scene::{Integrator, Threads};
+use crate::statics::catenary_network;
+
+/// Name of the threads: a host that looks for its own knows these by it.
+pub const THREAD_NAME: &str = "moorline";
+/// Work that `auto` gives every thread at least [ns].
+const WORTH: f64 = 50e3;
+/// Time of an explicit step at a node [ns].
+const EXPLICIT_NODE: f64 = 12.0;
+/// Time of an axial-implicit step at a node [ns].
+const AXIAL_IMPLICIT_NODE: f64 = 40.0;
+/// Time of a fully implicit step at a node [ns].
+const IMPLICIT_NODE: f64 = 700.0;
+/// Time of a step of a beam at a node [ns].
+const BEAM_NODE: f64 = 4000.0;
+/// Time of an equilibrium at a node, where there is no closed form [ns].
+const EQUILIBRIUM_NODE: f64 = 1500.0;
+/// Time of a closed-form catenary at a node [ns].
+const CATENARY_NODE: f64 = 100.0;
+/// Time to sum a wave component at a node [ns].
+const COMPONENT: f64 = 5.0;
+
+/// Threads beside the one that calls.
+#[derive(Debug, Default)]
+pub struct Crew {
+    pool: Option<Pool>,
+    /// Whether threads were asked for in vain.
+    refused: bool,
+}
+
+/// A crew, and how many threads of it share some work.
+#[derive(Debug)]
+pub struct Hands<'a> {
+    pub crew: &'a mut Crew,
+    /// With the one that calls [-].
+    pub threads: usize,
+}
+
+/// Threads that sleep until there is work.
+#[derive(Debug)]
+struct Pool {
+    /// Present until it is dropped.
+    threads: Option<ThreadPool>,
+    handles: Vec<JoinHandle<()>>,
+}
+
+impl Clone for Crew {
+    /// Another crew, whose threads are made when they are needed.
+    fn clone(&self) -> Crew {
+        Crew::default()
+    }
+}
+
+impl Crew {
+    /// Runs `lead` here and `help` with every helper on a thread of its own; returns when all have.
+    ///
+    /// # Panics
+    /// One of them panicked.
+    pub fn run<S: Send>(
+        &mut self,
+        helpers: &mut [S],
+        help: impl Fn(&mut S) + Sync,
+        lead: impl FnOnce(),
+    ) {
+        let size = helpers.len();
+        match self.muster(size) {
+            Some(threads) if size > 0 => {
+                let help = &help;
+                threads.in_place_scope(|scope| {
+                    for helper in helpers {
+                        scope.spawn(move |_| help(helper));
+                    }
+                    lead();
+                });
+            }
+            _ => lead(),
+        }
+    }
+
+    /// So many threads or more; none where that is none, or there are none to be had.
+    fn muster(&mut self, size: usize) -> Option<&ThreadPool> {
+        let has = self.pool.as_ref().map_or(0, |pool| pool.handles.len());
+        if has < size && !self.refused {
+            self.pool = None;
+            self.pool = Pool::new(size);
+            self.refused = self.pool.is_none();
+        }
+        self.pool.as_ref()?.threads.as_ref()
+    }
+}
+
+impl Pool {
+    fn new(size: usize) -> Option<Pool> {
+        let mut pool = Pool {
+            threads: None,
+            handles: Vec::with_capacity(size),
+        };
+        let handles = &mut pool.handles;
+        let built = ThreadPoolBuilder::new()
+            .num_threads(size)
+            .spawn_handler(|worker| {
+                let named = thread::Builder::new().name(THREAD_NAME.into());
+                handles.push(named.spawn(|| worker.run())?);
+                Ok(())
+            })
+            .build();
+        pool.threads = built.ok();
+        pool.threads.is_some().then_some(pool)
+    }
+}
+
+impl Drop for Pool {
+    fn drop(&mut self) {
+        self.threads = None; // tells them to end
+        for handle in self.handles.drain(..) {
+            // one that panicked has ended too
+            let _ = handle.join();
+        }
+    }
+}
+
+/// What is left to do, for whoever is free.
+#[derive(Debug)]
+pub struct Queue<I>(Mutex<I>);
+
+impl<I: Iterator> Queue<I> {
+    /// Items in their order.
+    pub fn new(items: I) -> Queue<I> {
+        Queue(Mutex::new(items))
+    }
+
+    /// The next item.
+    pub fn take(&self) -> Option<I::Item> {
+        self.items().next()
+    }
+
+    fn items(&self) -> MutexGuard<'_, I> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// What there is to share, and among how many.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Labour {
+    asked: Threads,
+    /// Threads that the machine runs at once [-].
+    hands: usize,
+    /// Networks [-].
+    parts: usize,
+    /// Time for a second of all networks [ns/s].
+    rate: f64,
+    /// Time for one step of all networks [ns].
+    least: f64,
+    /// Lines that waves act on [-].
+    heaving: usize,
+    /// Time to ask the waves of all nodes once [ns].
+    asking: f64,
+}
+
+impl Labour {
+    /// Of a model whose networks are integrated as was chosen.
+    pub fn new<'a>(model: &Model, choices: impl Iterator<Item = &'a Choice>) -> Labour {
+        let asked = model.solver.threads;
+        let parts = model.networks.len();
+        let alone = parts < 2 && model.waves.is_none();
+        let (mut rate, mut least) = (0.0, 0.0);
+        for (network, choice) in model.networks.iter().zip(choices) {
+            let step = node_time(model, network, choice.integrator) * nodes(model, network);
+            least += step;
+            if choice.integrator != Integrator::QuasiStatic {
+                rate += step / choice.step_max;
+            }
+        }
+        let heaving = model.lines.iter().filter(|line| line.heaves(model));
+        let places = heaving.clone().map(|line| line.segment_count() + 1);
+        let components = model.waves.as_ref().map_or(0, |w| w.components().len());
+        Labour {
+            asked,
+            hands: match asked {
+                Threads::Auto if !alone => thread::available_parallelism().map_or(1, usize::from),
+                _ => 1,
+            },
+            parts,
+            rate,
+            least,
+            heaving: heaving.count(),
+            asking: COMPONENT * (places.sum::<usize>() * components) as f64,
+        }
+    }
+
+    /// Threads for all networks over a time [s].
+    pub fn over(&self, length: f64) -> usize {
+        self.among(self.parts, (self.rate * length).max(self.least))
+    }
+
+    /// Threads to ask the waves of all lines.
+    pub fn at_sea(&self) -> usize {
+        self.among(self.heaving, self.asking)
+    }
+
+    /// Threads for so many parts that take a time [ns] together.
+    fn among(&self, parts: usize, time: f64) -> usize {
+        let most = match self.asked {
+            Threads::Number(number) => number,
+            Threads::Auto => self.hands.min((time / WORTH) as usize),
+        };
+        most.min(parts).max(1)
+    }
+
+    /// How many threads share steps of a length [s], and why.
+    pub fn in_words(&self, length: f64) -> String {
+        let count = |threads: usize| match threads {
+            1 => "one thread".to_string(),
+            more => format!("{more} threads"),
+        };
+        let micro = |time: f64| format!("{:.0} µs", 1e-3 * time);
+        let (steps, sea) = (self.over(length), self.at_sea());
+        let shared = match self.asking > 0.0 && sea != steps {
+            true => format!("{}, waves on {}", count(steps), count(sea)),
+            false => count(steps),
+        };
+        if let Threads::Number(_) = self.asked {
+            return format!("{shared}, as given");
+        }
+        if self.parts < 2 && self.heaving < 2 {
+            return format!("{shared}: there is one system of lines");
+        }
+        let time = micro((self.rate * length).max(self.least));
+        let waves = match self.asking > 0.0 {
+            true => format!(", and {} of waves now and then,", micro(self.asking)),
+            false => String::new(),
+        };
+        format!(
+            "{shared}: {} systems of lines with about {time} of work a communication step{waves} on a machine that runs {}; another one \
+             pays from {} on",
+            self.parts,
+            count(self.hands),
+            micro(WORTH)
+        )
+    }
+}
+
+/// Time of a step at a node of a network [ns], roughly.
+fn node_time(model: &Model, network: &Network, integrator: Integrator) -> f64 {
+    match integrator {
+        Integrator::Leapfrog | Integrator::Auto => EXPLICIT_NODE,
+        Integrator::AxialImplicit => AXIAL_IMPLICIT_NODE,
+        Integrator::GeneralisedAlpha | Integrator::Bossak => IMPLICIT_NODE,
+        Integrator::Beam => BEAM_NODE,
+        Integrator::QuasiStatic if catenary_network::serves(model, network) => CATENARY_NODE,
+        Integrator::QuasiStatic => EQUILIBRIUM_NODE,
+    }
+}
+
+fn nodes(model: &Model, network: &Network) -> f64 {
+    let lines = network.lines.iter();
+    let count = lines.map(|&line| model.lines[line].segment_count() + 1);
+    count.sum::<usize>() as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::panic::{AssertUnwindSafe, catch_unwind};
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    /// Sums numbers with so many helpers; returns the sum, and who took part.
+    fn summed(crew: &mut Crew, helpers: usize) -> (usize, usize) {
+        let queue = Queue::new(1..=1000_usize);
+        let sum = AtomicUsize::new(0);
+        let work = |came: &mut usize| {
+            *came = 1;
+            while let Some(item) = queue.take() {
+                sum.fetch_add(item, Ordering::Relaxed);
+            }
+        };
+        let (mut came, mut mine) = (vec![0; helpers], 0);
+        crew.run(&mut came, work, || work(&mut mine));
+        (sum.into_inner(), mine + came.iter().sum::<usize>())
+    }
+
+    #[test]
+    fn all_take_part_and_nothing_is_done_twice() {
+        let mut crew = Crew::default();
+        for helpers in [0, 1, 3, 2] {
+            assert_eq!(summed(&mut crew, helpers), (500_500, helpers + 1));
+        }
+        assert_eq!(summed(&mut crew.clone(), 2), (500_500, 3));
+    }
+
+    #[test]
+    fn no_thread_is_made_before_it_is_needed_and_none_lives_on() {
+        let mut crew = Crew::default();
+        summed(&mut crew, 0);
+        assert!(crew.pool.is_none());
+        let (ended, before) = (AtomicUsize::new(0), thread::current().id());
+        let mut helper = [&ended];
+        crew.run(
+            &mut helper,
+            |ended| {
+                assert_eq!(thread::current().name(), Some(THREAD_NAME));
+                assert_ne!(thread::current().id(), before);
+                ended.fetch_add(1, Ordering::Relaxed);
+            },
+            || (),
+        );
+        assert_eq!(ended.load(Ordering::Relaxed), 1);
+        let pool = crew.pool.as_mut().expect("a pool");
+        let handle = pool.handles.pop().expect("a thread");
+        assert!(!handle.is_finished());
+        drop(crew);
+        handle.join().expect("it has been told to end");
+    }
+
+    #[test]
+    fn a_panic_of_a_helper_arrives_and_the_crew_works_on() {
+        let mut crew = Crew::default();
+        let mut helpers = [(); 2];
+        let run = AssertUnwindSafe(|| crew.run(&mut helpers, |()| panic!("lost"), || ()));
+        let payload = catch_unwind(run).expect_err("a panic");
+        assert_eq!(payload.downcast_ref::<&str>(), Some(&"lost"));
+        assert_eq!(summed(&mut crew, 2), (500_500, 3));
+    }
+
+    #[test]
+    fn threads_are_as_many_as_the_work_is_worth() {
+        let labour = Labour {
+            asked: Threads::Auto,
+            hands: 4,
+            parts: 12,
+            rate: 1e7,
+            least: 1e4,
+            heaving: 0,
+            asking: 0.0,
+        };
+        let lengths = [1e-4, 5e-3, 1.01e-2, 1.51e-2, 1.0];
+        assert_eq!(lengths.map(|length| labour.over(length)), [1, 1, 2, 3, 4]);
+        assert_eq!(labour.at_sea(), 1);
+        let few = Labour { parts: 2, ..labour };
+        assert_eq!(few.over(1.0), 2);
+        let asked = Labour {
+            asked: Threads::Number(3),
+            ..labour
+        };
+        assert_eq!(asked.over(1e-4), 3);
+    }
+}
