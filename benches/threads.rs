@@ -9,13 +9,13 @@ use moorline::scene::{Integrator, Scene, Threads};
 use moorline::simulation::Simulation;
 
 /// Rounds of which the fastest counts.
-const ROUNDS: usize = 40;
+const ROUNDS: usize = 200;
 /// Time before the timed steps, for the ramp to pass [s].
 const WARM_UP: f64 = 70.0;
 /// Communication step [s].
 const STEP: f64 = 0.05;
 /// Timed communication steps of a round.
-const STEPS: usize = 100;
+const STEPS: usize = 20;
 
 /// The semi-submersible with twelve lines of so many elements, in waves or without.
 fn semi(elements: usize, waves: bool) -> Scene {
@@ -52,7 +52,9 @@ fn farm(elements: usize, waves: bool) -> Scene {
             .points
             .extend(one.points.iter().cloned().map(|mut point| {
                 point.name = named(&point.name);
-                point.position[0] += east;
+                if point.on.is_none() {
+                    point.position[0] += east;
+                }
                 point.on = point.on.as_deref().map(named);
                 point
             }));

@@ -1,10 +1,12 @@
 //! One communication step of a whole model: every network by its integrator, in as many internal steps as it needs.
 
+use std::sync::Mutex;
+
 use serde::{Deserialize, Serialize};
 
 use super::axial_implicit::AxialWork;
 use super::beam::{self, BeamWork, Driven, Stuck, StuckReason};
-use super::crew::{Crew, Hands, Labour, Queue};
+use super::crew::{Crew, Hands, Labour, Queue, lock};
 use super::implicit::{self, Scheme};
 use super::layout::Water;
 use super::leapfrog::Step;
@@ -66,13 +68,24 @@ pub struct Workspace {
     crew: Crew,
     labour: Labour,
     /// Scratch of the other threads, once there are some.
-    helpers: Vec<Helper>,
+    helpers: Helpers,
     /// What became of the networks that threads shared.
     outcomes: Vec<Option<Result<Done, StepError>>>,
 }
 
+/// Scratch of the threads that help.
+#[derive(Debug, Default)]
+struct Helpers(Vec<Mutex<Helper>>);
+
+impl Clone for Helpers {
+    /// None yet.
+    fn clone(&self) -> Helpers {
+        Helpers::default()
+    }
+}
+
 /// Scratch of a thread that helps.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 struct Helper {
     implicit: assembly::Workspace,
     next: State,
@@ -105,7 +118,7 @@ impl Workspace {
         Workspace {
             crew: Crew::default(),
             labour: Labour::new(model, networks.iter().map(|(choice, _)| choice)),
-            helpers: Vec::new(),
+            helpers: Helpers::default(),
             outcomes: Vec::new(),
             networks,
             implicit: assembly::Workspace::new(model),
@@ -265,15 +278,10 @@ impl Workspace {
         let threads = self.labour.over(length);
         let mut total = Done::default();
         if threads > 1 {
-            share_out(&mut self.helpers, threads, &step, &self.next);
-            let (own, crew) = ((&mut self.implicit, &mut self.next), &mut self.crew);
-            step.on_threads(
-                crew,
-                &mut self.networks,
-                own,
-                &mut self.helpers[..threads - 1],
-                &mut self.outcomes,
-            );
+            let helpers = self.helpers.of(threads - 1, &step, &self.next);
+            let own = (&mut self.implicit, &mut self.next);
+            let networks = (&mut self.networks[..], &mut self.outcomes);
+            step.on_threads(&mut self.crew, helpers, networks, own);
             for done in self.outcomes.drain(..).flatten() {
                 total.join(done?);
             }
@@ -293,17 +301,20 @@ impl Workspace {
     }
 }
 
-/// Gives all threads but the first the scratch that they need for a step.
-fn share_out<K>(helpers: &mut Vec<Helper>, threads: usize, step: &Communication<K>, next: &State) {
-    while helpers.len() + 1 < threads {
-        helpers.push(Helper {
-            implicit: assembly::Workspace::new(step.model),
-            next: next.clone(),
-            made: Vec::with_capacity(step.model.networks.len()),
-        });
-    }
-    for helper in helpers {
-        helper.next.waves.clone_from(&next.waves);
+impl Helpers {
+    /// So many, ready for a step whose state is built in `next`.
+    fn of<K>(&mut self, count: usize, step: &Communication<K>, next: &State) -> &[Mutex<Helper>] {
+        while self.0.len() < count {
+            self.0.push(Mutex::new(Helper {
+                implicit: assembly::Workspace::new(step.model),
+                next: next.clone(),
+                made: Vec::with_capacity(step.model.networks.len()),
+            }));
+        }
+        for helper in &self.0[..count] {
+            lock(helper).next.waves.clone_from(&next.waves);
+        }
+        &self.0[..count]
     }
 }
 
@@ -377,37 +388,59 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
     fn on_threads(
         &self,
         crew: &mut Crew,
-        networks: &mut [(Choice, Solver)],
+        helpers: &[Mutex<Helper>],
+        (networks, outcomes): (
+            &mut [(Choice, Solver)],
+            &mut Vec<Option<Result<Done, StepError>>>,
+        ),
         (implicit, next): (&mut assembly::Workspace, &mut State),
-        helpers: &mut [Helper],
-        outcomes: &mut Vec<Option<Result<Done, StepError>>>,
     ) {
+        let count = networks.len();
         outcomes.clear();
-        outcomes.resize_with(networks.len(), || None);
-        let queue = Queue::new(networks.iter_mut().zip(outcomes).enumerate());
-        let help = |helper: &mut Helper| {
+        outcomes.resize_with(count, || None);
+        let size = count.div_ceil(helpers.len() + 1);
+        for (number, helper) in helpers.iter().enumerate() {
+            let first = ((number + 1) * size).min(count);
+            self.exchange(
+                first..(first + size).min(count),
+                next,
+                &mut lock(helper).next,
+            );
+        }
+        let parts = networks.chunks_mut(size).zip(outcomes.chunks_mut(size));
+        let queue = Queue::new(parts.enumerate().map(|(part, (networks, outcomes))| {
+            let numbers = part * size..part * size + networks.len();
+            numbers.zip(networks.iter_mut().zip(outcomes))
+        }));
+        let help = |number: usize, helper: &mut Helper| {
             helper.made.clear();
-            while let Some((number, (network, outcome))) = queue.take() {
+            while let Some((network, (solver, outcome))) = queue.take(number + 1) {
                 let (implicit, next) = (&mut helper.implicit, &mut helper.next);
-                *outcome = Some(self.network(number, network, implicit, next));
-                helper.made.push(number);
+                *outcome = Some(self.network(network, solver, implicit, next));
+                helper.made.push(network);
             }
         };
         let lead = || {
-            while let Some((number, (network, outcome))) = queue.take() {
-                *outcome = Some(self.network(number, network, implicit, next));
+            while let Some((network, (solver, outcome))) = queue.take(0) {
+                *outcome = Some(self.network(network, solver, implicit, next));
             }
         };
         crew.run(helpers, help, lead);
         for helper in helpers {
-            for number in helper.made.drain(..) {
-                let network = &self.model.networks[number];
-                for &line in &network.lines {
-                    std::mem::swap(&mut next.lines[line], &mut helper.next.lines[line]);
-                }
-                for &point in &network.free_points {
-                    next.points[point] = helper.next.points[point];
-                }
+            let helper = &mut *lock(helper);
+            self.exchange(helper.made.drain(..), next, &mut helper.next);
+        }
+    }
+
+    /// Exchanges networks between two states.
+    fn exchange(&self, networks: impl Iterator<Item = usize>, one: &mut State, other: &mut State) {
+        for number in networks {
+            let network = &self.model.networks[number];
+            for &line in &network.lines {
+                std::mem::swap(&mut one.lines[line], &mut other.lines[line]);
+            }
+            for &point in &network.free_points {
+                std::mem::swap(&mut one.points[point], &mut other.points[point]);
             }
         }
     }

@@ -2,7 +2,8 @@
 //!
 //! Networks have nothing in common within a communication step: each goes its whole way over it on one thread, in the same operations in the
 //! same order as on any other, and what is summed over networks is summed by their numbers afterwards. So results do not depend on
-//! the number of threads, bit for bit. Who is free takes the next network, so that a thread that wakes late, or is taken away, costs little.
+//! the number of threads, bit for bit. Each thread has its own networks, which its cache then holds from step to step; one that is done takes
+//! over what others have not begun, so that a thread that wakes late, or is taken away, costs little.
 //!
 //! Threads are made when they are first needed, wait asleep, and have ended when their crew is dropped: a host that frees an
 //! instance may unload the library. Where a host allows no threads everything is done on its own.
@@ -72,33 +73,39 @@ impl Clone for Crew {
 }
 
 impl Crew {
-    /// Runs `lead` here and `help` with every helper on a thread of its own; returns when all have.
+    /// Runs `lead` here and `help` with the number of every helper, from 0, and its scratch, each on the same thread every time; returns
+    /// when all have.
     ///
     /// # Panics
     /// One of them panicked.
     pub fn run<S: Send>(
         &mut self,
-        helpers: &mut [S],
-        help: impl Fn(&mut S) + Sync,
+        helpers: &[Mutex<S>],
+        help: impl Fn(usize, &mut S) + Sync,
         lead: impl FnOnce(),
     ) {
-        let size = helpers.len();
-        match self.muster(size) {
-            Some(threads) if size > 0 => {
+        match self.muster(helpers.len()) {
+            Some(threads) => {
                 let help = &help;
                 threads.in_place_scope(|scope| {
-                    for helper in helpers {
-                        scope.spawn(move |_| help(helper));
-                    }
+                    scope.spawn_broadcast(move |_, worker| {
+                        let number = worker.index();
+                        if let Some(helper) = helpers.get(number) {
+                            help(number, &mut lock(helper));
+                        }
+                    });
                     lead();
                 });
             }
-            _ => lead(),
+            None => lead(),
         }
     }
 
-    /// So many threads or more; none where that is none, or there are none to be had.
+    /// So many threads or more; none where none are wanted, or to be had.
     fn muster(&mut self, size: usize) -> Option<&ThreadPool> {
+        if size == 0 {
+            return None;
+        }
         let has = self.pool.as_ref().map_or(0, |pool| pool.handles.len());
         if has < size && !self.refused {
             self.pool = None;
@@ -139,24 +146,28 @@ impl Drop for Pool {
     }
 }
 
-/// What is left to do, for whoever is free.
+/// What is left to do. Everyone has a part, and takes from the ends of the others' when it is done.
 #[derive(Debug)]
-pub struct Queue<I>(Mutex<I>);
+pub struct Queue<I>(Vec<Mutex<I>>);
 
-impl<I: Iterator> Queue<I> {
-    /// Items in their order.
-    pub fn new(items: I) -> Queue<I> {
-        Queue(Mutex::new(items))
+impl<I: DoubleEndedIterator> Queue<I> {
+    /// The part of each.
+    pub fn new(parts: impl Iterator<Item = I>) -> Queue<I> {
+        Queue(parts.map(Mutex::new).collect())
     }
 
-    /// The next item.
-    pub fn take(&self) -> Option<I::Item> {
-        self.items().next()
+    /// The next item for the owner of a part.
+    pub fn take(&self, own: usize) -> Option<I::Item> {
+        let first = || lock(self.0.get(own)?).next();
+        let others = (1..self.0.len()).map(|step| (own + step) % self.0.len());
+        let last = |other: usize| lock(&self.0[other]).next_back();
+        first().or_else(|| others.map(last).find_map(|item| item))
     }
+}
 
-    fn items(&self) -> MutexGuard<'_, I> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
-    }
+/// Scratch or work that no one else has at the moment; what a panic left of it is written anew.
+pub fn lock<T>(slot: &Mutex<T>) -> MutexGuard<'_, T> {
+    slot.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// What there is to share, and among how many.
@@ -286,17 +297,28 @@ mod tests {
 
     /// Sums numbers with so many helpers; returns the sum, and who took part.
     fn summed(crew: &mut Crew, helpers: usize) -> (usize, usize) {
-        let queue = Queue::new(1..=1000_usize);
+        let numbers: Vec<usize> = (1..=1000).collect();
+        let queue = Queue::new(
+            numbers
+                .chunks(1000 / (helpers + 1) + 1)
+                .map(<[usize]>::iter),
+        );
         let sum = AtomicUsize::new(0);
-        let work = |came: &mut usize| {
+        let work = |own: usize, came: &mut usize| {
             *came = 1;
-            while let Some(item) = queue.take() {
-                sum.fetch_add(item, Ordering::Relaxed);
+            while let Some(item) = queue.take(own) {
+                sum.fetch_add(*item, Ordering::Relaxed);
             }
         };
-        let (mut came, mut mine) = (vec![0; helpers], 0);
-        crew.run(&mut came, work, || work(&mut mine));
-        (sum.into_inner(), mine + came.iter().sum::<usize>())
+        let came: Vec<Mutex<usize>> = (0..helpers).map(|_| Mutex::new(0)).collect();
+        let mut mine = 0;
+        crew.run(
+            &came,
+            |number, came| work(number + 1, came),
+            || work(0, &mut mine),
+        );
+        let theirs: usize = came.iter().map(|came| *lock(came)).sum();
+        (sum.into_inner(), mine + theirs)
     }
 
     #[test]
@@ -313,18 +335,14 @@ mod tests {
         let mut crew = Crew::default();
         summed(&mut crew, 0);
         assert!(crew.pool.is_none());
-        let (ended, before) = (AtomicUsize::new(0), thread::current().id());
-        let mut helper = [&ended];
-        crew.run(
-            &mut helper,
-            |ended| {
-                assert_eq!(thread::current().name(), Some(THREAD_NAME));
-                assert_ne!(thread::current().id(), before);
-                ended.fetch_add(1, Ordering::Relaxed);
-            },
-            || (),
-        );
-        assert_eq!(ended.load(Ordering::Relaxed), 1);
+        let here = thread::current().id();
+        let helper = [Mutex::new(here)];
+        let help = |_, helper: &mut thread::ThreadId| {
+            assert_eq!(thread::current().name(), Some(THREAD_NAME));
+            *helper = thread::current().id();
+        };
+        crew.run(&helper, help, || ());
+        assert_ne!(*lock(&helper[0]), here);
         let pool = crew.pool.as_mut().expect("a pool");
         let handle = pool.handles.pop().expect("a thread");
         assert!(!handle.is_finished());
@@ -335,8 +353,8 @@ mod tests {
     #[test]
     fn a_panic_of_a_helper_arrives_and_the_crew_works_on() {
         let mut crew = Crew::default();
-        let mut helpers = [(); 2];
-        let run = AssertUnwindSafe(|| crew.run(&mut helpers, |()| panic!("lost"), || ()));
+        let helpers = [(); 2].map(Mutex::new);
+        let run = AssertUnwindSafe(|| crew.run(&helpers, |_, ()| panic!("lost"), || ()));
         let payload = catch_unwind(run).expect_err("a panic");
         assert_eq!(payload.downcast_ref::<&str>(), Some(&"lost"));
         assert_eq!(summed(&mut crew, 2), (500_500, 3));

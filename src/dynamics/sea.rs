@@ -4,25 +4,33 @@
 //! into spans. Where a node will be is foretold from its velocity at the start of the span, r + τ v. What was found for the end of a span is
 //! the start of the next, so that velocity and acceleration of the water have no jump and no kink in time.
 
+use std::sync::Mutex;
+
 use pulp::{Arch, NullaryFnOnce};
 
 use super::crew::{Hands, Queue};
-use crate::model::{LineState, Model, Point, State, WaveSpan, WavesAt};
+use crate::model::{Line, LineState, Model, Point, State, WaveSpan, WavesAt};
 use crate::physics::airy::{Instant, Orbit, Waves};
 
 /// Rounding of times, over a step [-].
 const ROUNDING: f64 = 1e-9;
 
 /// Scratch of the spans.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub struct SeaWork {
     /// The widest vectors of this machine; results do not depend on it.
     unit: Arch,
     instant: Instant,
     /// The same for the other threads.
-    instants: Vec<Instant>,
+    instants: Vec<Mutex<Instant>>,
     /// The span before, or room for the next one.
     spare: WaveSpan,
+}
+
+impl Clone for SeaWork {
+    fn clone(&self) -> SeaWork {
+        SeaWork::new()
+    }
 }
 
 impl SeaWork {
@@ -116,10 +124,8 @@ impl SeaWork {
             found.points.push(orbit.unwrap_or_default());
         }
         found.lines.resize_with(model.lines.len(), Vec::new);
-        let lines = model.lines.iter().zip(&state.lines).zip(&mut found.lines);
-        let queue = Queue::new(lines);
-        let ask = |instant: &mut Instant| {
-            while let Some(((line, shape), nodes)) = queue.take() {
+        let ask =
+            |instant: &mut Instant, line: &Line, shape: &LineState, nodes: &mut Vec<Orbit>| {
                 nodes.clear();
                 if line.heaves(model) {
                     nodes.resize(shape.position.len(), Orbit::default());
@@ -131,18 +137,33 @@ impl SeaWork {
                         instant,
                     });
                 }
+            };
+        let lines = model.lines.iter().zip(&state.lines);
+        if hands.threads == 1 {
+            let all = lines.zip(&mut found.lines);
+            all.for_each(|((line, shape), nodes)| ask(instant, line, shape, nodes));
+            return;
+        }
+        let size = model.lines.len().div_ceil(hands.threads);
+        let parts = found.lines.chunks_mut(size).enumerate();
+        let queue = Queue::new(parts.map(|(part, nodes)| {
+            let lines = part * size..(part * size + nodes.len());
+            lines.zip(nodes)
+        }));
+        let work = |own: usize, instant: &mut Instant| {
+            while let Some((line, nodes)) = queue.take(own) {
+                ask(instant, &model.lines[line], &state.lines[line], nodes);
             }
         };
-        let others = hands.threads - 1;
-        if self.instants.len() < others {
-            self.instants.resize_with(others, Instant::default);
+        while self.instants.len() + 1 < hands.threads {
+            self.instants.push(Mutex::default());
         }
-        let help = |instant: &mut Instant| {
+        let help = |number: usize, instant: &mut Instant| {
             waves.turn_to(time, instant);
-            ask(instant);
+            work(number + 1, instant);
         };
-        let helpers = &mut self.instants[..others];
-        hands.crew.run(helpers, help, || ask(&mut self.instant));
+        let helpers = &self.instants[..hands.threads - 1];
+        hands.crew.run(helpers, help, || work(0, instant));
     }
 }
 
