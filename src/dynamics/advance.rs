@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::axial_implicit::AxialWork;
 use super::beam::{self, BeamWork, Driven, Stuck, StuckReason};
-use super::crew::{Crew, Hands, Labour, Queue, lock};
+use super::crew::{Crew, Hands, Labour, Pace, Queue, lock};
 use super::implicit::{self, Scheme};
 use super::layout::Water;
 use super::leapfrog::Step;
@@ -67,6 +67,8 @@ pub struct Workspace {
     holds: bool,
     crew: Crew,
     labour: Labour,
+    /// How steps go on threads, and how waves are asked on them.
+    paces: [Pace; 2],
     /// Scratch of the other threads, once there are some.
     helpers: Helpers,
     /// What became of the networks that threads shared.
@@ -118,6 +120,7 @@ impl Workspace {
         Workspace {
             crew: Crew::default(),
             labour: Labour::new(model, networks.iter().map(|(choice, _)| choice)),
+            paces: Default::default(),
             helpers: Helpers::default(),
             outcomes: Vec::new(),
             networks,
@@ -247,11 +250,19 @@ impl Workspace {
 
     /// Asks the waves anew where a span of theirs is over; whether it was.
     fn renew_waves(&mut self, model: &Model, waves: &Waves, state: &mut State, step: f64) -> bool {
+        let (labour, [_, pace]) = (&self.labour, &mut self.paces);
+        let expected = labour.at_sea();
+        self.crew.call(expected - 1);
+        let turn = pace.turn(expected, labour.is_given());
         let mut hands = Hands {
             crew: &mut self.crew,
-            threads: self.labour.at_sea(),
+            threads: turn.threads,
         };
-        self.sea.renew(model, waves, state, step, &mut hands)
+        let renewed = self.sea.renew(model, waves, state, step, &mut hands);
+        if renewed {
+            pace.note(turn, 1.0);
+        }
+        renewed
     }
 
     /// Advances `state` by `length` [s], over which it knows what waves do.
@@ -275,10 +286,12 @@ impl Workspace {
             reels: &self.reels,
             holds: std::mem::take(&mut self.holds),
         };
-        let threads = self.labour.over(length);
+        let expected = self.labour.over(length);
+        self.crew.call(expected - 1);
+        let turn = self.paces[0].turn(expected, self.labour.is_given());
         let mut total = Done::default();
-        if threads > 1 {
-            let helpers = self.helpers.of(threads - 1, &step, &self.next);
+        if turn.threads > 1 {
+            let helpers = self.helpers.of(turn.threads - 1, &step, &self.next);
             let own = (&mut self.implicit, &mut self.next);
             let networks = (&mut self.networks[..], &mut self.outcomes);
             step.on_threads(&mut self.crew, helpers, networks, own);
@@ -297,6 +310,7 @@ impl Workspace {
         }
         std::mem::swap(state, &mut self.next);
         self.holds = true;
+        self.paces[0].note(turn, length);
         Ok(total)
     }
 }

@@ -8,12 +8,13 @@
 //! Threads are made when they are first needed, wait asleep, and have ended when their crew is dropped: a host that frees an
 //! instance may unload the library. Where a host allows no threads everything is done on its own.
 //!
-//! A second thread pays where half of the work takes longer than to wake it and to wait for it. So `auto` gives every thread
-//! [`WORTH`] of work at least; how long that takes is told from the nodes and the internal steps, not from a clock, so that it is
-//! the same in every run.
+//! A second thread pays where half of the work takes longer than to wake it and to wait for it, and where the machine has a core to spare.
+//! So `auto` gives every thread [`WORTH`] of work at least, as told from the nodes and the internal steps; and every so often it times a few
+//! steps on one thread against as many on all, in turns, and keeps to one where that is as fast ([`Pace`]).
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
+use std::time::Instant;
 
 use rayon_core::{ThreadPool, ThreadPoolBuilder};
 
@@ -25,7 +26,7 @@ use crate::statics::catenary_network;
 /// Name of the threads: a host that looks for its own knows these by it.
 pub const THREAD_NAME: &str = "moorline";
 /// Work that `auto` gives every thread at least [ns].
-const WORTH: f64 = 50e3;
+const WORTH: f64 = 25e3;
 /// Time of an explicit step at a node [ns].
 const EXPLICIT_NODE: f64 = 12.0;
 /// Time of an axial-implicit step at a node [ns].
@@ -52,6 +53,7 @@ pub struct Crew {
 /// A crew, and how many threads of it share some work.
 #[derive(Debug)]
 pub struct Hands<'a> {
+    /// The crew.
     pub crew: &'a mut Crew,
     /// With the one that calls [-].
     pub threads: usize,
@@ -99,6 +101,11 @@ impl Crew {
             }
             None => lead(),
         }
+    }
+
+    /// Makes the threads for so many helpers, where that is still to be done.
+    pub fn call(&mut self, helpers: usize) {
+        self.muster(helpers);
     }
 
     /// So many threads or more; none where none are wanted, or to be had.
@@ -170,6 +177,69 @@ pub fn lock<T>(slot: &Mutex<T>) -> MutexGuard<'_, T> {
     slot.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
+/// Steps on one thread that are timed against as many on all [-].
+const TRIALS: u32 = 8;
+/// Steps from one such comparison to the next [-].
+const CYCLE: u32 = 600;
+/// Time on all threads over that on one, above which one does [-].
+const FASTER: f64 = 0.95;
+
+/// Whether threads are as fast as was expected of them.
+#[derive(Debug, Clone, Default)]
+pub struct Pace {
+    /// Steps since the last comparison began.
+    count: u32,
+    /// Time of the compared steps on one thread and on all, over their lengths [-].
+    times: [f64; 2],
+    /// Whether one thread was as fast.
+    alone: bool,
+}
+
+/// How the next step goes.
+#[derive(Debug, Clone, Copy)]
+pub struct Turn {
+    /// Threads [-].
+    pub threads: usize,
+    /// Whether it is for the pace to say.
+    paced: bool,
+    /// When it began, where it is timed.
+    start: Option<Instant>,
+}
+
+impl Pace {
+    /// Begins a step that so many threads are expected to be worth, or that is made on them whatever they are.
+    pub fn turn(&self, expected: usize, is_given: bool) -> Turn {
+        let paced = expected > 1 && !is_given;
+        let compares = paced && self.count < 2 * TRIALS;
+        let alone = match compares {
+            true => self.count.is_multiple_of(2),
+            false => paced && self.alone,
+        };
+        Turn {
+            threads: if alone { 1 } else { expected },
+            paced,
+            start: compares.then(Instant::now),
+        }
+    }
+
+    /// Takes note of a step that is over, which went a length [s].
+    pub fn note(&mut self, turn: Turn, length: f64) {
+        if !turn.paced {
+            return;
+        }
+        if let Some(start) = turn.start {
+            let time = start.elapsed().as_secs_f64() / length;
+            self.times[self.count as usize % 2] += time;
+        }
+        self.count += 1;
+        if self.count == 2 * TRIALS {
+            let [alone, shared] = std::mem::take(&mut self.times);
+            self.alone = shared > FASTER * alone;
+        }
+        self.count %= CYCLE;
+    }
+}
+
 /// What there is to share, and among how many.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Labour {
@@ -219,6 +289,11 @@ impl Labour {
         }
     }
 
+    /// Whether the number of threads is given.
+    pub fn is_given(&self) -> bool {
+        self.asked != Threads::Auto
+    }
+
     /// Threads for all networks over a time [s].
     pub fn over(&self, length: f64) -> usize {
         self.among(self.parts, (self.rate * length).max(self.least))
@@ -263,10 +338,14 @@ impl Labour {
         };
         format!(
             "{shared}: {} systems of lines with about {time} of work a communication step{waves} on a machine that runs {}; another one \
-             pays from {} on",
+             pays from {} on{}",
             self.parts,
             count(self.hands),
-            micro(WORTH)
+            micro(WORTH),
+            match steps.max(sea) {
+                1 => "",
+                _ => ", as long as steps are not found to be as fast on one",
+            }
         )
     }
 }
@@ -294,6 +373,7 @@ mod tests {
     use super::*;
     use std::panic::{AssertUnwindSafe, catch_unwind};
     use std::sync::atomic::{AtomicUsize, Ordering};
+    use std::time::Duration;
 
     /// Sums numbers with so many helpers; returns the sum, and who took part.
     fn summed(crew: &mut Crew, helpers: usize) -> (usize, usize) {
@@ -361,6 +441,30 @@ mod tests {
     }
 
     #[test]
+    fn threads_that_do_not_make_steps_faster_are_left_alone_until_the_next_comparison() {
+        let compared = |shared: f64| {
+            let mut pace = Pace::default();
+            for step in 0..2 * TRIALS as usize {
+                let mut turn = pace.turn(4, false);
+                assert_eq!(turn.threads, [1, 4][step % 2]);
+                let ago = Duration::from_secs_f64([1.0, shared][step % 2]);
+                turn.start = turn.start.and_then(|now| now.checked_sub(ago));
+                pace.note(turn, 0.1);
+            }
+            let kept = pace.turn(4, false).threads;
+            for _ in 2 * TRIALS..CYCLE {
+                let turn = pace.turn(4, false);
+                assert_eq!((turn.threads, turn.start), (kept, None));
+                pace.note(turn, 0.1);
+                pace.note(pace.turn(4, true), 0.1); // no part of it
+            }
+            assert!(pace.turn(4, false).start.is_some());
+            kept
+        };
+        assert_eq!([0.6, 0.99, 3.0].map(compared), [4, 1, 1]);
+    }
+
+    #[test]
     fn threads_are_as_many_as_the_work_is_worth() {
         let labour = Labour {
             asked: Threads::Auto,
@@ -371,7 +475,7 @@ mod tests {
             heaving: 0,
             asking: 0.0,
         };
-        let lengths = [1e-4, 5e-3, 1.01e-2, 1.51e-2, 1.0];
+        let lengths = [1e-4, 2.5e-3, 5.1e-3, 7.6e-3, 1.0];
         assert_eq!(lengths.map(|length| labour.over(length)), [1, 1, 2, 3, 4]);
         assert_eq!(labour.at_sea(), 1);
         let few = Labour { parts: 2, ..labour };
