@@ -168,6 +168,11 @@ impl Simulation {
         self.work.choices()
     }
 
+    /// How many threads share communication steps of a length [s], and why.
+    pub fn threads_in_words(&self, length: f64) -> String {
+        self.work.threads_in_words(length)
+    }
+
     /// Steps from the present time to `step` [s] later. A step of 0 s does nothing.
     ///
     /// # Errors

@@ -1,6 +1,6 @@
 //! The settings that a scene is tried with.
 
-use crate::scene::{ContactLaw, Integrator, Scene};
+use crate::scene::{ContactLaw, Integrator, Scene, Threads};
 
 /// Elements of the longest line where a run costs next to nothing [-]. Close together: an explicit step must divide the communication
 /// step, so that a mesh a little finer may take one step more, and one a little coarser waste none.
@@ -99,6 +99,8 @@ impl Setting {
         // A step that is not asked for is limited by the integrator's own rules only.
         scene.solver.time_step_max = self.time_step_max.unwrap_or(scene.solver.time_step_max);
         scene.solver.tolerance = self.tolerance.unwrap_or(scene.solver.tolerance);
+        // Processor time is that of one thread, as that of other codes.
+        scene.solver.threads = Threads::Number(1);
         if let (Some(bed), Some(contact)) = (&mut scene.seabed, self.contact) {
             bed.contact = contact;
         }

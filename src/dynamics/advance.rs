@@ -1,9 +1,12 @@
 //! One communication step of a whole model: every network by its integrator, in as many internal steps as it needs.
 
+use std::sync::Mutex;
+
 use serde::{Deserialize, Serialize};
 
 use super::axial_implicit::AxialWork;
 use super::beam::{self, BeamWork, Driven, Stuck, StuckReason};
+use super::crew::{Crew, Hands, Labour, Pace, Queue, lock};
 use super::implicit::{self, Scheme};
 use super::layout::Water;
 use super::leapfrog::Step;
@@ -61,6 +64,34 @@ pub struct Workspace {
     reels: Vec<AxisPath>,
     /// Whether the leapfrogs still hold the state that they handed back last.
     holds: bool,
+    crew: Crew,
+    labour: Labour,
+    /// How steps go on threads, and how waves are asked on them.
+    paces: [Pace; 2],
+    /// Scratch of the other threads, once there are some.
+    helpers: Helpers,
+    /// What became of the networks that threads shared.
+    outcomes: Vec<Option<Result<Done, StepError>>>,
+}
+
+/// Scratch of the threads that help.
+#[derive(Debug, Default)]
+struct Helpers(Vec<Mutex<Helper>>);
+
+impl Clone for Helpers {
+    /// None yet.
+    fn clone(&self) -> Helpers {
+        Helpers::default()
+    }
+}
+
+/// Scratch of a thread that helps.
+#[derive(Debug)]
+struct Helper {
+    implicit: assembly::Workspace,
+    next: State,
+    /// Networks that it brought to the end of the step.
+    made: Vec<usize>,
 }
 
 #[derive(Debug, Clone)]
@@ -76,7 +107,7 @@ impl Workspace {
     /// Chooses integrators and allocates all scratch for a model that starts from `state`; `tension` tells the static
     /// tension of a line [N].
     pub fn new(model: &Model, state: &State, tension: impl Fn(usize) -> f64) -> Workspace {
-        let networks = model
+        let networks: Vec<(Choice, Solver)> = model
             .networks
             .iter()
             .map(|network| {
@@ -86,6 +117,11 @@ impl Workspace {
             })
             .collect();
         Workspace {
+            crew: Crew::default(),
+            labour: Labour::new(model, networks.iter().map(|(choice, _)| choice)),
+            paces: Default::default(),
+            helpers: Helpers::default(),
+            outcomes: Vec::new(),
             networks,
             implicit: assembly::Workspace::new(model),
             next: state.clone(),
@@ -112,6 +148,11 @@ impl Workspace {
         self.networks.iter().map(|(choice, _)| choice)
     }
 
+    /// How many threads share steps of a length [s], and why.
+    pub fn threads_in_words(&self, length: f64) -> String {
+        self.labour.in_words(length)
+    }
+
     /// Energy that the networks hold; none of motion where they are quasi-static.
     pub fn energy(&self, model: &Model, state: &State) -> Energy {
         let mut sum = Energy::default();
@@ -135,7 +176,11 @@ impl Workspace {
         let time = state.time;
         drop_anchors(model, state);
         place_held(model, state, held);
-        self.sea.start(model, state);
+        let mut hands = Hands {
+            crew: &mut self.crew,
+            threads: 1,
+        };
+        self.sea.start(model, state, &mut hands);
         for (number, (_, solver)) in self.networks.iter().enumerate() {
             if matches!(solver, Solver::Implicit(_)) {
                 let network = &model.networks[number];
@@ -155,7 +200,7 @@ impl Workspace {
         model: &Model,
         state: &mut State,
         length: f64,
-        held: &impl Fn(usize, f64) -> Kinematics,
+        held: &(impl Fn(usize, f64) -> Kinematics + Sync),
     ) -> Result<Done, StepError> {
         match &model.waves {
             None => self.pass(model, state, length, held),
@@ -170,11 +215,11 @@ impl Workspace {
         model: &Model,
         state: &mut State,
         length: f64,
-        held: &impl Fn(usize, f64) -> Kinematics,
+        held: &(impl Fn(usize, f64) -> Kinematics + Sync),
     ) -> Result<Done, StepError> {
-        let mut part = self.sea.reach(waves, state, length);
+        let mut part = self.sea.reach(model, waves, state, length);
         if part == length {
-            let renewed = self.sea.renew(model, waves, state, length);
+            let renewed = self.renew_waves(model, waves, state, length);
             let done = self.pass(model, state, length, held);
             if done.is_err() && renewed {
                 self.sea.undo(state);
@@ -185,7 +230,7 @@ impl Workspace {
         let mut total = Done::default();
         self.before.clone_from(state);
         loop {
-            self.sea.renew(model, waves, state, part);
+            self.renew_waves(model, waves, state, part);
             match self.pass(model, state, part, held) {
                 Ok(done) => total.add(done),
                 Err(error) => {
@@ -198,8 +243,25 @@ impl Workspace {
                 state.time = end;
                 return Ok(total);
             }
-            part = self.sea.reach(waves, state, left);
+            part = self.sea.reach(model, waves, state, left);
         }
+    }
+
+    /// Asks the waves anew where a span of theirs is over; whether it was.
+    fn renew_waves(&mut self, model: &Model, waves: &Waves, state: &mut State, step: f64) -> bool {
+        let (labour, [_, pace]) = (&self.labour, &mut self.paces);
+        let expected = labour.at_sea();
+        self.crew.call(expected - 1);
+        let turn = pace.turn(expected, labour.is_given());
+        let mut hands = Hands {
+            crew: &mut self.crew,
+            threads: turn.threads,
+        };
+        let renewed = self.sea.renew(model, waves, state, step, &mut hands);
+        if renewed {
+            pace.note(turn, 1.0);
+        }
+        renewed
     }
 
     /// Advances `state` by `length` [s], over which it knows what waves do.
@@ -208,7 +270,7 @@ impl Workspace {
         model: &Model,
         state: &mut State,
         length: f64,
-        held: &impl Fn(usize, f64) -> Kinematics,
+        held: &(impl Fn(usize, f64) -> Kinematics + Sync),
     ) -> Result<Done, StepError> {
         let heaves = state.waves.is_some();
         if heaves && self.networks.iter().any(|(_, solver)| solver.reads_next()) {
@@ -223,23 +285,22 @@ impl Workspace {
             reels: &self.reels,
             holds: std::mem::take(&mut self.holds),
         };
+        let expected = self.labour.over(length);
+        self.crew.call(expected - 1);
+        let turn = self.paces[0].turn(expected, self.labour.is_given());
         let mut total = Done::default();
-        for (number, (choice, solver)) in self.networks.iter_mut().enumerate() {
-            let next = &mut self.next;
-            let done = match solver {
-                Solver::Leapfrog(work) => step.leapfrog(number, choice.step_max, work, next)?,
-                Solver::AxialImplicit(work) => {
-                    step.axial_implicit(number, choice.step_max, work, next)?
-                }
-                Solver::Implicit(scheme) => {
-                    step.implicit(number, choice.step_max, scheme, &mut self.implicit, next)?
-                }
-                Solver::Beam(work) => step.beam(number, choice.step_max, work, next)?,
-                Solver::QuasiStatic => step.quasi_static(number, &mut self.implicit, next)?,
-            };
-            total.counters.substeps = total.counters.substeps.max(done.counters.substeps);
-            total.counters.solves += done.counters.solves;
-            total.flow.add(done.flow);
+        if turn.threads > 1 {
+            let helpers = self.helpers.of(turn.threads - 1, &step, &self.next);
+            let own = (&mut self.implicit, &mut self.next);
+            let networks = (&mut self.networks[..], &mut self.outcomes);
+            step.on_threads(&mut self.crew, helpers, networks, own);
+            for done in self.outcomes.drain(..).flatten() {
+                total.join(done?);
+            }
+        } else {
+            for (number, network) in self.networks.iter_mut().enumerate() {
+                total.join(step.network(number, network, &mut self.implicit, &mut self.next)?);
+            }
         }
         self.next.time = state.time + length;
         place_held(model, &mut self.next, held);
@@ -248,11 +309,36 @@ impl Workspace {
         }
         std::mem::swap(state, &mut self.next);
         self.holds = true;
+        self.paces[0].note(turn, length);
         Ok(total)
     }
 }
 
+impl Helpers {
+    /// So many, ready for a step whose state is built in `next`.
+    fn of<K>(&mut self, count: usize, step: &Communication<K>, next: &State) -> &[Mutex<Helper>] {
+        while self.0.len() < count {
+            self.0.push(Mutex::new(Helper {
+                implicit: assembly::Workspace::new(step.model),
+                next: next.clone(),
+                made: Vec::with_capacity(step.model.networks.len()),
+            }));
+        }
+        for helper in &self.0[..count] {
+            lock(helper).next.waves.clone_from(&next.waves);
+        }
+        &self.0[..count]
+    }
+}
+
 impl Done {
+    /// Adds what another network did in the same time.
+    fn join(&mut self, other: Done) {
+        self.counters.substeps = self.counters.substeps.max(other.counters.substeps);
+        self.counters.solves += other.counters.solves;
+        self.flow.add(other.flow);
+    }
+
     /// Adds what a later part of the step did.
     fn add(&mut self, other: Done) {
         self.counters.substeps += other.counters.substeps;
@@ -310,7 +396,86 @@ struct Communication<'a, K> {
     holds: bool,
 }
 
-impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
+impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
+    /// All networks, each on the thread that takes it; `next` becomes what it would be on one thread.
+    fn on_threads(
+        &self,
+        crew: &mut Crew,
+        helpers: &[Mutex<Helper>],
+        (networks, outcomes): (
+            &mut [(Choice, Solver)],
+            &mut Vec<Option<Result<Done, StepError>>>,
+        ),
+        (implicit, next): (&mut assembly::Workspace, &mut State),
+    ) {
+        let count = networks.len();
+        outcomes.clear();
+        outcomes.resize_with(count, || None);
+        let size = count.div_ceil(helpers.len() + 1);
+        for (number, helper) in helpers.iter().enumerate() {
+            let first = ((number + 1) * size).min(count);
+            self.exchange(
+                first..(first + size).min(count),
+                next,
+                &mut lock(helper).next,
+            );
+        }
+        let parts = networks.chunks_mut(size).zip(outcomes.chunks_mut(size));
+        let queue = Queue::new(parts.enumerate().map(|(part, (networks, outcomes))| {
+            let numbers = part * size..part * size + networks.len();
+            numbers.zip(networks.iter_mut().zip(outcomes))
+        }));
+        let help = |number: usize, helper: &mut Helper| {
+            helper.made.clear();
+            while let Some((network, (solver, outcome))) = queue.take(number + 1) {
+                let (implicit, next) = (&mut helper.implicit, &mut helper.next);
+                *outcome = Some(self.network(network, solver, implicit, next));
+                helper.made.push(network);
+            }
+        };
+        let lead = || {
+            while let Some((network, (solver, outcome))) = queue.take(0) {
+                *outcome = Some(self.network(network, solver, implicit, next));
+            }
+        };
+        crew.run(helpers, help, lead);
+        for helper in helpers {
+            let helper = &mut *lock(helper);
+            self.exchange(helper.made.drain(..), next, &mut helper.next);
+        }
+    }
+
+    /// Exchanges networks between two states.
+    fn exchange(&self, networks: impl Iterator<Item = usize>, one: &mut State, other: &mut State) {
+        for number in networks {
+            let network = &self.model.networks[number];
+            for &line in &network.lines {
+                std::mem::swap(&mut one.lines[line], &mut other.lines[line]);
+            }
+            for &point in &network.free_points {
+                std::mem::swap(&mut one.points[point], &mut other.points[point]);
+            }
+        }
+    }
+
+    /// One network over the step.
+    fn network(
+        &self,
+        number: usize,
+        (choice, solver): &mut (Choice, Solver),
+        implicit: &mut assembly::Workspace,
+        next: &mut State,
+    ) -> Result<Done, StepError> {
+        let step_max = choice.step_max;
+        match solver {
+            Solver::Leapfrog(work) => self.leapfrog(number, step_max, work, next),
+            Solver::AxialImplicit(work) => self.axial_implicit(number, step_max, work, next),
+            Solver::Implicit(scheme) => self.implicit(number, step_max, scheme, implicit, next),
+            Solver::Beam(work) => self.beam(number, step_max, work, next),
+            Solver::QuasiStatic => self.quasi_static(number, implicit, next),
+        }
+    }
+
     fn leapfrog(
         &self,
         number: usize,

@@ -25,6 +25,7 @@ mod rows;
 mod seabed;
 mod surface;
 mod tension_strain;
+mod threads;
 mod time_function;
 mod units;
 mod water_file;
@@ -43,6 +44,7 @@ use read::Reading;
 pub use read::{LoadedScene, Supplement, TOML, load, load_with};
 pub use seabed::{ContactLaw, DepthGrid, Friction, Seabed};
 pub use tension_strain::TensionStrain;
+pub use threads::Threads;
 pub use time_function::{HarmonicMotion, MotionFile, MotionPath, MotionRow, TimeFunction};
 pub use waves::{RegularWave, Sea, SpectrumKind, WaveComponents, Waves};
 
@@ -490,6 +492,9 @@ pub struct Solver {
     pub bossak: Option<Bossak>,
     /// How the path of a coupled point between communication points is built.
     pub input_reconstruction: Reconstruction,
+    /// Threads that share the lines of a system [-].
+    #[serde(skip_serializing_if = "Threads::is_auto")]
+    pub threads: Threads,
 }
 
 /// Time integrator.
@@ -629,6 +634,7 @@ impl Default for Solver {
             spectral_radius: None,
             bossak: None,
             input_reconstruction: Reconstruction::Smooth,
+            threads: Threads::Auto,
         }
     }
 }

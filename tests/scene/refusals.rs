@@ -774,6 +774,11 @@ const SETTINGS: &[Refusal] = &[
     ),
     (
         "[output]",
+        "[solver]\nthreads = 0\n[output]",
+        "47:11: solver.threads: 0 is not between 1 and 256",
+    ),
+    (
+        "[output]",
         "[solver]\nintegrator = \"generalised_alpha\"\nspectral_radius = 1.1\n[output]",
         "48:19: solver.spectral_radius: 1.1 is not between 0 and 1",
     ),
