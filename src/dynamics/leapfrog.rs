@@ -235,13 +235,17 @@ impl LineWork {
             let at = self.layout.end_slot(end);
             self.interior[at] = f64::from(u8::from(self.is_parted(end)));
         }
+        self.layout.still();
         self.clear_flow();
     }
 
     /// Goes on from the state that [`Self::store`] handed back last; a line on a winch is laid out anew.
     pub fn resume(&mut self, state: &LineState) {
         match self.winch {
-            None => self.clear_flow(),
+            None => {
+                self.layout.still();
+                self.clear_flow();
+            }
             Some(_) => self.load(state),
         }
     }
