@@ -52,7 +52,7 @@ fn main() -> ExitCode {
 /// Three roots and three quotients for every four numbers, as many as the explicit kernel has for four nodes on the bed.
 struct Divide<'a> {
     of: &'a [[Lanes; 3]],
-    into: &'a mut [[Lanes; 2]],
+    into: &'a mut [Lanes],
 }
 
 impl NullaryFnOnce for Divide<'_> {
@@ -62,10 +62,8 @@ impl NullaryFnOnce for Divide<'_> {
     fn call(self) {
         for row in 0..self.of.len() {
             let [a, b, c] = self.of[row];
-            self.into[row] = [
-                a.sqrt() + b.sqrt() + c.sqrt(),
-                a.recip() + b.recip() + c.recip(),
-            ];
+            let roots = a.sqrt() + b.sqrt() + c.sqrt();
+            self.into[row] = roots + a.recip() + b.recip() + c.recip();
         }
     }
 }
@@ -75,7 +73,7 @@ fn divider(table: &mut String) {
     let numbers: Vec<[Lanes; 3]> = (1..=64)
         .map(|k| [1.0, 2.0, 3.0].map(|a| Lanes::splat(a + f64::from(k))))
         .collect();
-    let mut found = vec![[Lanes::splat(0.0); 2]; numbers.len()];
+    let mut found = vec![Lanes::splat(0.0); numbers.len()];
     let [wide, portable] = [Arch::new(), Arch::Scalar].map(|unit| {
         let mut best = f64::INFINITY;
         for _ in 0..TURNS * REPETITIONS {

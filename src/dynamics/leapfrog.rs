@@ -289,8 +289,7 @@ impl LineWork {
                 + self.given_by_current.sum()
                 + self.layout.lifted()
                 + self.winch.as_ref().map_or(0.0, |winch| winch.given()),
-            lost: self.lost.sum() + self.settled.unwrap_or(0.0)
-                - self.layout.joined(),
+            lost: self.lost.sum() + self.settled.unwrap_or(0.0) - self.layout.joined(),
         }
     }
 
