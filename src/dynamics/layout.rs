@@ -23,6 +23,9 @@ use crate::physics::stretch::{StretchLaw, total_tension};
 
 /// Speed that only an unstable step reaches [m/s]: the fastest axial waves run at about this speed.
 const SPEED_MAX: f64 = 1e4;
+/// Speeds below this [m/s] are rounded to multiples of about 2⁻⁵³ of it. What comes to rest on the bed would else go on to squares that are
+/// too small to be normal numbers, with which a machine is many times slower.
+const STILLNESS: f64 = 1e-30;
 /// Keeps coincident nodes from dividing by zero [m²].
 pub(super) const LENGTH2_MIN: f64 = 1e-200;
 
@@ -358,12 +361,26 @@ impl Layout {
         }
     }
 
+    /// Rounds speeds far below [`STILLNESS`] to zero.
+    pub fn still(&mut self) {
+        for at in self.rows() {
+            self.velocity
+                .store(self.velocity.load(at).rounded(STILLNESS), at);
+        }
+    }
+
     /// Makes the ghosts repeat the nodes where they are now. Ends that have parted have no neighbour beyond them.
     #[inline(always)]
     pub fn renew_ghosts(&mut self, parted: [bool; 2]) {
         self.position.wrap();
         self.velocity.wrap();
         self.velocity_before.wrap();
+        self.part_ghosts(parted);
+    }
+
+    /// Puts the ghosts beyond ends that have parted where these ends are.
+    #[inline(always)]
+    pub fn part_ghosts(&mut self, parted: [bool; 2]) {
         for end in [End::A, End::B] {
             if parted[end as usize] {
                 let at = self.end_slot(end);
@@ -607,6 +624,7 @@ impl Layout {
     }
 
     /// Puts an end at a position [m] with the velocity [m/s] that the next step takes as lagged.
+    #[inline(always)]
     pub fn put_end(&mut self, end: End, position: Vector3<f64>, velocity: Vector3<f64>) {
         let at = self.end_slot(end);
         self.position.set(at, position);

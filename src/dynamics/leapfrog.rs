@@ -248,13 +248,17 @@ impl LineWork {
             let at = self.layout.end_slot(end);
             self.interior[at] = f64::from(u8::from(self.is_parted(end)));
         }
+        self.layout.still();
         self.clear_flow();
     }
 
     /// Goes on from the state that [`Self::store`] handed back last; a line on a winch is laid out anew.
     pub fn resume(&mut self, state: &LineState) {
         match self.winch {
-            None => self.clear_flow(),
+            None => {
+                self.layout.still();
+                self.clear_flow();
+            }
             Some(_) => self.load(state),
         }
     }
@@ -298,8 +302,7 @@ impl LineWork {
                 + self.given_by_current.sum()
                 + self.layout.lifted()
                 + self.winch.as_ref().map_or(0.0, |winch| winch.given()),
-            lost: self.lost.sum() + self.settled.unwrap_or(0.0)
-                - self.layout.joined(),
+            lost: self.lost.sum() + self.settled.unwrap_or(0.0) - self.layout.joined(),
         }
     }
 

@@ -119,12 +119,6 @@ impl Lanes {
         (a & b) & (c & d)
     }
 
-    /// These numbers with another one in a lane.
-    #[inline(always)]
-    pub fn with(self, lane: usize, value: f64) -> Lanes {
-        Lanes(from_fn(|i| if i == lane { value } else { self.0[i] }))
-    }
-
     /// Applies a scalar function to every lane.
     #[inline(always)]
     pub fn map(self, f: impl Fn(f64) -> f64) -> Lanes {
@@ -256,16 +250,6 @@ impl Vectors {
             x: (self.x + size) - size,
             y: (self.y + size) - size,
             z: (self.z + size) - size,
-        }
-    }
-
-    /// These vectors with another one in a lane.
-    #[inline(always)]
-    pub fn with(self, lane: usize, vector: Vector3<f64>) -> Vectors {
-        Vectors {
-            x: self.x.with(lane, vector.x),
-            y: self.y.with(lane, vector.y),
-            z: self.z.with(lane, vector.z),
         }
     }
 

@@ -38,10 +38,6 @@ mod around {
     pub const FLOWING: u8 = 2;
 }
 
-/// Speeds below this [m/s] are rounded to multiples of about 2⁻⁵³ of it. What comes to rest on the bed would else go on to squares that are
-/// too small to be normal numbers, with which a machine is many times slower.
-const STILLNESS: f64 = 1e-30;
-
 /// A sweep for the vector unit of the machine.
 pub(super) struct Sweep<'a> {
     pub work: &'a mut LineWork,
@@ -85,15 +81,9 @@ impl Layout {
     #[inline(always)]
     pub(super) fn place_ends(&mut self, ends: &[Placed; 2], parted: [bool; 2]) {
         for end in [End::A, End::B] {
-            let (side, at) = (end as usize, self.end_slot(end));
-            if !parted[side] {
-                // whole rows are written: a part of one would hold up the next sweep, which loads it at once
-                let place = self.position.load(at.row);
-                self.position
-                    .store(place.with(at.lane, ends[side].position), at.row);
-                let velocity = self.velocity.load(at.row);
-                self.velocity
-                    .store(velocity.with(at.lane, ends[side].velocity), at.row);
+            if !parted[end as usize] {
+                let Placed { position, velocity } = ends[end as usize];
+                self.put_end(end, position, velocity);
             }
         }
     }
@@ -297,19 +287,15 @@ impl NodeRows<'_> {
         }
         response.z = response.z + inverse_mass;
         let mut kicked = velocity + change;
-        let mut left = Lanes::splat(0.0);
+        let mut taken = by.resistance;
         if BED {
             let push = self.contact.push(at, by.z, [kicked.z, response.z], sizes);
             kicked = kicked + response.scale(push);
-            left = left - push * (velocity.z + kicked.z);
+            taken.z = taken.z - push;
         }
-        kicked = kicked.rounded(STILLNESS);
         let (both, interior) = (velocity + kicked, self.interior[at]);
-        if resists {
-            left = left + by.resistance.dot(both);
-        }
         if resists || BED {
-            sums.left = sums.left + interior * left;
+            sums.left = sums.left + interior * taken.dot(both);
         }
         if AROUND == around::FLOWING {
             let pressed = Lanes::splat(0.5) * by.press.dot(both);
@@ -372,26 +358,14 @@ impl LineWork {
         }
     }
 
-    /// Makes the ghosts repeat the nodes; an end that has parted has no neighbour beyond it.
+    /// Makes the ghosts repeat the nodes as far as the sweep reads them.
     #[inline(always)]
     fn prepare_ghosts(&mut self) {
         let (last, line) = (self.layout.fold.rows(), &mut self.layout);
-        let first = line.position.load(1);
-        let mut low = line.position.load(last).moved_up();
-        if self.parted[End::A as usize] {
-            low = low.with(0, first.get(0));
-        }
-        line.position.store(low, 0);
-        line.position.store(first.moved_down(), last + 1);
+        line.position.wrap();
         let first = line.velocity.load(1);
         line.velocity.store(first.moved_down(), last + 1);
-        if self.parted[End::B as usize] {
-            let end = line.end_slot(End::B);
-            let beyond = line.position.load(end.row + 1);
-            let place = line.position.get(end);
-            line.position
-                .store(beyond.with(end.lane, place), end.row + 1);
-        }
+        line.part_ghosts(self.parted);
     }
 
     #[inline(always)]
