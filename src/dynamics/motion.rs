@@ -773,6 +773,57 @@ mod tests {
         }
     }
 
+    #[test]
+    fn a_host_that_keeps_its_step_but_for_rounding_is_foreseen_as_one_that_keeps_it_exactly() {
+        for with_velocity in [false, true] {
+            let ends = [0.0, 1e-12, 1e-8].map(|noise| {
+                let mut path = Guided::at_rest(0.0, position(0.0));
+                let told = |k: usize| {
+                    let time = 0.25 * k as f64;
+                    Sample {
+                        time: time * (1.0 + noise * (k % 3) as f64),
+                        position: position(time),
+                        velocity: with_velocity.then(|| velocity(time)),
+                    }
+                };
+                (0..40).for_each(|k| path.extend(told(k), 0.25, Reconstruction::Smooth));
+                assert_eq!(path.2.even, noise < 1e-9);
+                path.at(10.0).value
+            });
+            // the last one is worked out from its times
+            assert_relative_eq!(ends[1], ends[0], epsilon = 1e-9);
+            assert_relative_eq!(ends[2], ends[0], epsilon = 1e-4);
+        }
+    }
+
+    #[test]
+    fn axes_are_foreseen_as_each_would_be_alone() {
+        let (mut clock, mut foresight) = (Clock::new(0.0), Foresight::none());
+        let mut together = AxesPath::at_rest([0.0; 3]);
+        let mut alone = [0.0; 3].map(AxisPath::at_rest);
+        for k in 0..300 {
+            // the second axis without its velocity; leaps in between
+            let time = 0.1 * f64::from(k) + if k % 50 > 25 { 0.03 } else { 0.0 };
+            let places = [position(time), position(0.4 * time), position(2.0 * time)];
+            let rates = [Some(velocity(time)), None, Some(2.0 * velocity(2.0 * time))];
+            clock.tell(time, 0.1, Reconstruction::Smooth, &mut foresight);
+            let before = together;
+            together.extend(&before, &foresight, &Said::new(places, rates));
+            for axis in 0..3 {
+                alone[axis].extend(&foresight, places[axis], rates[axis]);
+            }
+            for axis in 0..3 {
+                let [value, slope, _] = together.at(time + 0.1).map(|lanes| lanes[axis]);
+                let own = alone[axis].at(time + 0.1);
+                assert_eq!(
+                    [value, slope],
+                    [own.value, own.slope],
+                    "axis {axis}, {time} s"
+                );
+            }
+        }
+    }
+
     /// Greatest distance between path and truth after a start-up, at a communication step h.
     fn path_error(h: f64, with_velocity: bool) -> f64 {
         let mut path = Guided::at_rest(0.0, position(0.0));
