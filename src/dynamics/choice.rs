@@ -55,6 +55,11 @@ impl Choice {
                 "axial tension implicit, steps of at most {step}: explicit ones, {AXIAL_IMPLICIT_COST} times cheaper, would be limited to \
                  {explicit} by axial waves"
             ),
+            Integrator::GeneralisedAlpha if IMPLICIT_COST * self.explicit_limit < self.step_max => {
+                format!(
+                    "fully implicit steps of at most {step}: explicit ones, {IMPLICIT_COST} times cheaper, would be limited to {explicit}"
+                )
+            }
             Integrator::QuasiStatic => "an equilibrium at every communication point".to_string(),
             _ => format!("fully implicit steps of at most {step}"),
         }

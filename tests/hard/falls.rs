@@ -36,7 +36,7 @@ fn the_free_end_of_a_folded_chain_outruns_free_fall_as_its_energy_says() {
         for (elements, bound) in [(20, 0.05), (40, 0.032), (80, 0.021), (160, 0.013)] {
             let (run, fallen) = falling(elements, 2, integrator);
             let what = format!("fall of {elements}, {integrator:?}");
-            sound(&what, &run, 8e-3, 20_000.0);
+            sound(&what, &run, 8e-3, 30_000.0);
             let errors: Vec<f64> = fallen
                 .iter()
                 .zip(PARTS)
@@ -71,7 +71,11 @@ fn the_fall_over_a_fold_of_half_a_metre_converges() {
 
 #[test]
 fn a_whip_crack_gains_no_energy() {
-    for (integrator, gain) in FREE.into_iter().zip([0.05, 0.08, 1e-3]) {
+    for (integrator, gain, ledger) in [
+        (Integrator::Leapfrog, 2e-3, 0.25),
+        (Integrator::AxialImplicit, 0.08, 1.0),
+        (Integrator::GeneralisedAlpha, 1e-3, 1.0),
+    ] {
         for elements in [40, 80] {
             let scene = by(
                 folded_chain(elements, 2),
@@ -80,7 +84,7 @@ fn a_whip_crack_gains_no_energy() {
             );
             let run = Run::of(&scene, 5.0, 0.005);
             let what = format!("whip of {elements}, {integrator:?}");
-            sound(&what, &run, 1.0, 10_000.0);
+            sound(&what, &run, ledger, 16_000.0);
             at_most(gain, &format!("{what}, gain"), run.energy_gain());
         }
     }
