@@ -71,8 +71,11 @@ pub struct Workspace {
     /// Scratch of the other threads, once there are some.
     helpers: Helpers,
     /// What became of the networks that threads shared.
-    outcomes: Vec<Option<Result<Done, StepError>>>,
+    outcomes: Vec<Outcome>,
 }
+
+/// What became of a network in a step that threads shared.
+type Outcome = Option<Result<Done, StepError>>;
 
 /// Scratch of the threads that help.
 #[derive(Debug, Default)]
@@ -402,10 +405,7 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
         &self,
         crew: &mut Crew,
         helpers: &[Mutex<Helper>],
-        (networks, outcomes): (
-            &mut [(Choice, Solver)],
-            &mut Vec<Option<Result<Done, StepError>>>,
-        ),
+        (networks, outcomes): (&mut [(Choice, Solver)], &mut Vec<Outcome>),
         (implicit, next): (&mut assembly::Workspace, &mut State),
     ) {
         let count = networks.len();

@@ -662,6 +662,34 @@ mod tests {
     }
 
     #[test]
+    fn deeper_places_are_bridged_for_longer_with_no_more_error() {
+        let mut components = storm(None).components;
+        let small = |c: &mut Component| c.amplitude *= 1e-4; // stretching is of second order
+        components.iter_mut().for_each(small);
+        let waves = Waves::new(&components, None, None, GRAVITY);
+        let heights = [-0.0, -1.0, -4.0, -12.0, -50.0, -2000.0];
+        let intervals = heights.map(|z| waves.interval_below(z));
+        assert!(intervals.is_sorted() && intervals[5] == INTERVAL_MAX);
+        assert!(intervals[3] > 1.3 * intervals[0], "{intervals:?}");
+        for (z, interval) in heights.into_iter().zip(intervals).take(5) {
+            let at = |t: f64| orbit(&waves, Vector3::new(4.0, 9.0, z), t);
+            let (mut error, mut square) = (0.0, 0.0);
+            for step in 0..4000 {
+                let times = [0.7, 1.7].map(|k| 7.3 * f64::from(step) + k * interval);
+                let middle = 0.5 * (times[0] + times[1]);
+                let (found, exact) = (
+                    Orbit::between(&at(times[0]), &at(times[1]), times, middle),
+                    at(middle),
+                );
+                error += (found.acceleration - exact.acceleration).norm_squared();
+                square += exact.acceleration.norm_squared();
+            }
+            let error = f64::sqrt(error / square);
+            assert!(error < 1.2 * BETWEEN, "z = {z} m: {error:e}");
+        }
+    }
+
+    #[test]
     fn components_left_out_at_a_depth_would_move_it_by_a_ten_thousandth() {
         let waves = storm(None);
         let surface = root(&waves.components, 2);
