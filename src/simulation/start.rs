@@ -9,7 +9,7 @@ use super::{Error, Snapshot};
 use crate::dynamics::advance::{Counters, Workspace};
 use crate::dynamics::ledger::Ledger;
 use crate::dynamics::{beam, reaction};
-use crate::model::{Line, LineState, Model, PointState, Reel, State};
+use crate::model::{End, Line, LineState, Model, PointState, Reel, State};
 use crate::physics::stretch::StretchLaw;
 use crate::scene::{InitialShape, Integrator};
 use crate::statics::catenary::{self, Bed, Catenary};
@@ -62,11 +62,12 @@ pub(super) fn begin(
 /// In static equilibrium, or on the shapes the scene gives. Quasi-static lines start on their catenaries; those that will move
 /// start where their elements are at rest.
 fn at_rest(model: &Model, time: f64, places: &[PointState]) -> Result<State, StaticsError> {
-    let given = |line: &Line| {
-        let [a, b] = line.ends.map(|point| places[point].position);
+    let given = |line: &Line, points: &[PointState]| {
+        let [a, b] = line.ends.map(|point| points[point].position);
         line.given_shape(a, b)
     };
-    if let Some(shapes) = model.lines.iter().map(given).collect::<Option<Vec<_>>>() {
+    let shapes = model.lines.iter().map(|line| given(line, places));
+    if let Some(shapes) = shapes.collect::<Option<Vec<_>>>() {
         return Ok(State {
             time,
             points: places.to_vec(),
@@ -80,7 +81,14 @@ fn at_rest(model: &Model, time: f64, places: &[PointState]) -> Result<State, Sta
         _ => equilibrium::solve_posed(model, places, time, &mut work)?,
     };
     for (line, shape) in model.lines.iter().zip(&mut state.lines) {
-        if let Some(nodes) = given(line) {
+        // free points are where they rest, which is not where the scene puts them
+        if let Some(mut nodes) = given(line, &state.points) {
+            for end in [End::A, End::B] {
+                let point = line.ends[usize::from(end == End::B)];
+                if model.points[point].free().is_some() {
+                    nodes[line.end_node(end)] = state.points[point].position;
+                }
+            }
             *shape = LineState::at_rest(nodes);
         }
     }
