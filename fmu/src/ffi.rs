@@ -11,7 +11,7 @@ use std::ffi::{CStr, CString, c_char, c_void};
 use std::panic::{self, AssertUnwindSafe};
 use std::sync::{Mutex, MutexGuard, Once, PoisonError};
 
-use moorline::dynamics::THREAD_NAME;
+use moorline::dynamics::is_helper;
 use moorline_host::fmi2::{fmi2CallbackFunctions, fmi2CallbackLogger};
 use moorline_host::fmi3::fmi3LogMessageCallback;
 use moorline_host::{FmiVersion, Status};
@@ -127,7 +127,7 @@ fn silence_guarded_panics() {
     ONCE.call_once(|| {
         let before = panic::take_hook();
         panic::set_hook(Box::new(move |info| {
-            let helps = std::thread::current().name() == Some(THREAD_NAME);
+            let helps = is_helper();
             if helps || IS_GUARDED.get() {
                 if let Some(place) = info.location() {
                     let thread = if helps { HELPER } else { thread_number() };
@@ -435,6 +435,7 @@ pub(crate) fn copy_state(bytes: &[u8], target: &mut [u8]) -> Result<(), Refusal>
 #[cfg(test)]
 mod tests {
     use super::*;
+    use moorline::dynamics::as_helper;
 
     #[test]
     fn a_guarded_panic_becomes_its_message_and_place() {
@@ -446,10 +447,8 @@ mod tests {
 
     #[test]
     fn a_panic_of_a_helping_thread_becomes_its_message_and_place() {
-        let helper = std::thread::Builder::new().name(THREAD_NAME.into());
         let message = guard(|| {
-            let helper = helper.spawn(|| panic!("line {} lost", 3)).unwrap();
-            helper
+            std::thread::spawn(|| as_helper(|| panic!("line {} lost", 3)))
                 .join()
                 .unwrap_or_else(|payload| panic::resume_unwind(payload))
         });

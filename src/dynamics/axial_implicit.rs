@@ -65,11 +65,13 @@ impl Weights {
     }
 }
 
-/// Bound on the rate at which axial dampers would take the velocities of a line's nodes away, by Gershgorin [1/s].
+/// Bound on the rate at which axial dampers would take the velocities of a line's nodes away, all of it being where it is at home, in
+/// water or without any, by Gershgorin [1/s].
 fn damping_rate(line: &Line) -> f64 {
-    let segments = &line.segments;
+    let (segments, nodes) = (&line.segments, &line.nodes);
+    let mass = |i: usize| nodes.mass_tangent[i].min(nodes.mass_normal[i]);
     let rate = |i: usize| {
-        let yields = 1.0 / line.least_mass(i) + 1.0 / line.least_mass(i + 1);
+        let yields = 1.0 / mass(i) + 1.0 / mass(i + 1);
         2.0 * segments.in_motion(i).1 / segments.length[i] * yields
     };
     (0..line.segment_count()).map(rate).fold(0.0, f64::max)

@@ -12,6 +12,7 @@
 //! So `auto` gives every thread [`WORTH`] of work at least, as told from the nodes and the internal steps; and every so often it times a few
 //! steps on one thread against as many on all, in turns, and keeps to one where that is as fast ([`Pace`]).
 
+use std::cell::Cell;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::Instant;
@@ -24,7 +25,7 @@ use crate::scene::{Integrator, Threads};
 use crate::statics::catenary_network;
 
 /// Name of the threads: a host that looks for its own knows these by it.
-pub const THREAD_NAME: &str = "moorline";
+const THREAD_NAME: &str = "moorline";
 /// Work that `auto` gives every thread at least [ns].
 const WORTH: f64 = 25e3;
 /// Time of an explicit step at a node [ns].
@@ -41,6 +42,22 @@ const EQUILIBRIUM_NODE: f64 = 1500.0;
 const CATENARY_NODE: f64 = 100.0;
 /// Time to sum a wave component at a node [ns].
 const COMPONENT: f64 = 5.0;
+
+thread_local! {
+    static HELPS: Cell<bool> = const { Cell::new(false) };
+}
+
+/// Whether this thread is one of a crew. Asks for nothing that a thread of a host would have to tidy up when it ends, by when the library may
+/// be gone: its handle, [`thread::current`], is such a thing.
+pub fn is_helper() -> bool {
+    HELPS.get()
+}
+
+/// Makes this thread one of a crew, and does its work.
+pub fn as_helper<T>(work: impl FnOnce() -> T) -> T {
+    HELPS.set(true);
+    work()
+}
 
 /// Threads beside the one that calls.
 #[derive(Debug, Default)]
@@ -134,7 +151,7 @@ impl Pool {
             .num_threads(size)
             .spawn_handler(|worker| {
                 let named = thread::Builder::new().name(THREAD_NAME.into());
-                handles.push(named.spawn(|| worker.run())?);
+                handles.push(named.spawn(|| as_helper(|| worker.run()))?);
                 Ok(())
             })
             .build();
@@ -419,10 +436,12 @@ mod tests {
         let helper = [Mutex::new(here)];
         let help = |_, helper: &mut thread::ThreadId| {
             assert_eq!(thread::current().name(), Some(THREAD_NAME));
+            assert!(is_helper());
             *helper = thread::current().id();
         };
         crew.run(&helper, help, || ());
         assert_ne!(*lock(&helper[0]), here);
+        assert!(!is_helper());
         let pool = crew.pool.as_mut().expect("a pool");
         let handle = pool.handles.pop().expect("a thread");
         assert!(!handle.is_finished());

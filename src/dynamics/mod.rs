@@ -19,7 +19,7 @@ mod sea;
 mod surface;
 
 pub use choice::{AXIAL_IMPLICIT_COST, Choice};
-pub use crew::THREAD_NAME;
+pub use crew::{as_helper, is_helper};
 
 /// Why a step could not be made. The state is as it was before.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
