@@ -128,6 +128,14 @@ fn taut(elements: usize) -> Scene {
     scene
 }
 
+/// The taut line with `elements`, tensions implicit, in internal steps of at most `longest` [s].
+fn taut_implicit(elements: usize, longest: f64) -> Scene {
+    let mut scene = taut(elements);
+    scene.solver.integrator = Integrator::AxialImplicit;
+    scene.solver.time_step_max = longest;
+    scene
+}
+
 /// Twelve lines of a semi-submersible, in waves or without.
 fn semi(waves: bool) -> Scene {
     let mut scene = common::scene("storm_moored_semi");
@@ -164,6 +172,14 @@ fn main() {
                 for step in [0.05, 0.4] {
                     row("taut_polyester", elements, &scene, drive, step);
                 }
+            }
+        }
+    }
+    if wanted("implicit") {
+        for (elements, longest) in [(4, 0.5), (5, 0.5), (8, 0.25)] {
+            let scene = taut_implicit(elements, longest);
+            for drive in drives {
+                row("taut, implicit", elements, &scene, drive, 0.5);
             }
         }
     }

@@ -12,7 +12,6 @@ mod common;
 use std::env;
 use std::fmt::Write;
 use std::fs;
-use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
 use moorline::simulation::Simulation;
@@ -61,19 +60,6 @@ fn step(name: &str, count: usize) {
     }
 }
 
-/// Where the table of this processor is; none where its name is not known.
-fn table() -> Option<PathBuf> {
-    let known = fs::read_to_string("/proc/cpuinfo").ok()?;
-    let name = known
-        .lines()
-        .find_map(|line| line.strip_prefix("model name"))?;
-    let name = name.trim_start_matches([' ', '\t', ':']).to_lowercase();
-    let words = name.split(|c: char| !c.is_ascii_alphanumeric());
-    let words: Vec<&str> = words.filter(|word| !word.is_empty()).collect();
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/tables");
-    Some(folder.join(format!("{}.instructions.csv", words.join("-"))))
-}
-
 /// Instructions that valgrind counts in a run; none where there is no valgrind.
 fn counted(scene: &str, steps: usize) -> Option<u64> {
     let program = env::current_exe().ok()?;
@@ -105,22 +91,24 @@ fn counts() -> Option<Vec<(&'static str, u64)>> {
 }
 
 fn write() -> ExitCode {
-    let (Some(path), Some(counts)) = (table(), counts()) else {
-        println!("valgrind or the processor's name is missing: no table can be made");
+    let Some(counts) = counts() else {
+        println!("no valgrind: instructions are not counted");
         return ExitCode::FAILURE;
     };
     let mut text = String::from("scene,instructions per communication step\n");
     for (scene, count) in counts {
         writeln!(text, "{scene},{count}").expect("a String takes all");
     }
-    let folder = path.parent().expect("a table is in a folder");
-    fs::create_dir_all(folder).expect("the folder of the tables");
-    fs::write(&path, text).expect("the table can be written");
+    if !common::write_table("instructions", &text) {
+        println!("the processor's name is not known: no table can be made");
+        return ExitCode::FAILURE;
+    }
     ExitCode::SUCCESS
 }
 
 fn compare() -> ExitCode {
-    let Some(text) = table().and_then(|path| fs::read_to_string(path).ok()) else {
+    let Some(text) = common::table("instructions").and_then(|path| fs::read_to_string(path).ok())
+    else {
         println!(
             "no table of this processor: `cargo bench --bench instructions -- --write` makes one"
         );

@@ -1,16 +1,24 @@
-//! Cost of an internal step: of the explicit kernel alone, with the widest vectors of the machine and in the portable build, and of whole
-//! communication steps by both leapfrogs.
+//! Cost of an internal step: of the explicit kernel alone, with the widest vectors of the machine and in the portable build, beside what its
+//! roots and quotients alone take; and of whole communication steps by both leapfrogs.
+//!
+//! `-- --write` also makes the table of this machine, `benches/tables/<processor>.step.csv`.
 
 mod common;
 
+use std::env;
+use std::fmt::Write;
+use std::hint::black_box;
+use std::process::ExitCode;
 use std::time::Instant;
 
 use moorline::dynamics::leapfrog::Step;
 use moorline::dynamics::network::NetworkWork;
+use moorline::math::lanes::{LANES, Lanes};
 use moorline::model::{Kinematics, Model, State};
 use moorline::scene::{Integrator, Scene};
 use moorline::simulation::Simulation;
 use nalgebra::Vector3;
+use pulp::{Arch, NullaryFnOnce};
 
 const SCENES: [&str; 4] = [
     "oc3_catenary",
@@ -27,9 +35,58 @@ const TURN: usize = 8;
 const TURNS: usize = 200;
 const REPETITIONS: usize = 60;
 
-fn main() {
-    kernels();
-    communication();
+fn main() -> ExitCode {
+    let mut table = String::from(
+        "what,scene,n,lines,ns per step,ns per node and step,portable ns per step,portable ns per node and step\n",
+    );
+    divider(&mut table);
+    kernels(&mut table);
+    communication(&mut table);
+    if env::args().any(|word| word == "--write") && !common::write_table("step", &table) {
+        println!("the processor's name is not known: no table can be made");
+        return ExitCode::FAILURE;
+    }
+    ExitCode::SUCCESS
+}
+
+/// Three roots and three quotients for every four numbers, as many as the explicit kernel has for four nodes on the bed.
+struct Divide<'a> {
+    of: &'a [[Lanes; 3]],
+    into: &'a mut [Lanes],
+}
+
+impl NullaryFnOnce for Divide<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        for row in 0..self.of.len() {
+            let [a, b, c] = self.of[row];
+            let roots = a.sqrt() + b.sqrt() + c.sqrt();
+            self.into[row] = roots + a.recip() + b.recip() + c.recip();
+        }
+    }
+}
+
+/// What the kernel cannot be faster than.
+fn divider(table: &mut String) {
+    let numbers: Vec<[Lanes; 3]> = (1..=64)
+        .map(|k| [1.0, 2.0, 3.0].map(|a| Lanes::splat(a + f64::from(k))))
+        .collect();
+    let mut found = vec![Lanes::splat(0.0); numbers.len()];
+    let [wide, portable] = [Arch::new(), Arch::Scalar].map(|unit| {
+        let mut best = f64::INFINITY;
+        for _ in 0..TURNS * REPETITIONS {
+            let clock = Instant::now();
+            let (of, into) = (black_box(&numbers[..]), black_box(&mut found[..]));
+            unit.dispatch(Divide { of, into });
+            best = best.min(clock.elapsed().as_secs_f64());
+        }
+        1e9 * best / (LANES * numbers.len()) as f64
+    });
+    println!("roots and quotients alone: {wide:.2} ns/node/step, portable {portable:.2}\n");
+    writeln!(table, "roots and quotients,,,,,{wide:.2},,{portable:.2}")
+        .expect("a String takes all");
 }
 
 fn meshed(name: &str, integrator: Integrator, elements: usize) -> Scene {
@@ -40,7 +97,7 @@ fn meshed(name: &str, integrator: Integrator, elements: usize) -> Scene {
 }
 
 /// The explicit kernel alone.
-fn kernels() {
+fn kernels(table: &mut String) {
     println!(
         "{:<16} {:>5} {:>6} {:>9} {:>13} {:>18} {:>22}",
         "kernel alone",
@@ -74,6 +131,13 @@ fn kernels() {
                     wide / nodes,
                     portable / nodes
                 );
+                writeln!(
+                    table,
+                    "kernel alone,{name},{elements},{lines},{wide:.0},{:.2},{portable:.0},{:.2}",
+                    wide / nodes,
+                    portable / nodes
+                )
+                .expect("a String takes all");
             }
         }
     }
@@ -124,7 +188,7 @@ fn step_cost(model: &Model, state: &State, size: f64, lines: usize, portable: bo
 }
 
 /// Whole communication steps.
-fn communication() {
+fn communication(table: &mut String) {
     println!(
         "\n{:<16} {:<15} {:>5} {:>10} {:>14} {:>12} {:>10}",
         "whole steps", "integrator", "n", "steps/s", "ns/node/step", "s/s", "real-time"
@@ -141,6 +205,13 @@ fn communication() {
                     cost.second,
                     1.0 / cost.second
                 );
+                writeln!(
+                    table,
+                    "whole steps by {integrator:?},{name},{elements},1,{:.0},{:.2},,",
+                    cost.node_step * (elements + 1) as f64,
+                    cost.node_step
+                )
+                .expect("a String takes all");
             }
         }
     }

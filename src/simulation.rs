@@ -126,6 +126,7 @@ impl Simulation {
             follows_scene.then_some(time),
         )?;
         (self.snapshot, self.work) = start::begin(&model, time, inputs, follows_scene)?;
+        self.paths.clone_from(&self.snapshot.paths);
         self.model = model;
         self.held = Held::new(&self.model, follows_scene);
         self.memo.clear();
@@ -155,6 +156,7 @@ impl Simulation {
     /// Puts back what [`Simulation::snapshot`] gave.
     pub fn restore(&mut self, snapshot: Snapshot) {
         self.snapshot = snapshot;
+        self.paths.clone_from(&self.snapshot.paths);
         self.work.forget();
         self.held = Held::new(&self.model, self.snapshot.follows_scene);
         self.memo.clear();
@@ -164,6 +166,11 @@ impl Simulation {
     /// Which integrator serves each network, and its step limits.
     pub fn choices(&self) -> impl Iterator<Item = &Choice> {
         self.work.choices()
+    }
+
+    /// How many threads share communication steps of a length [s], and why.
+    pub fn threads_in_words(&self, length: f64) -> String {
+        self.work.threads_in_words(length)
     }
 
     /// Steps from the present time to `step` [s] later. A step of 0 s does nothing.

@@ -4,7 +4,7 @@ mod common;
 
 use common::*;
 use moorline::model::Motion;
-use moorline::scene::{Integrator, Scene};
+use moorline::scene::{Integrator, MotionPath, Scene};
 use moorline::simulation::Simulation;
 
 const LEAPFROGS: [Integrator; 2] = [Integrator::Leapfrog, Integrator::AxialImplicit];
@@ -71,6 +71,27 @@ fn halving_the_time_step_quarters_the_error() {
         for errors in errors(&found, &reference) {
             assert_order(2.0, &steps, &errors);
         }
+    }
+}
+
+/// The OC3 line with a fifth of its motion, so that it stays taut, while the nodes of its touchdown land and rise.
+fn calm(step: f64) -> Scene {
+    let mut scene = with_integrator(shipped("oc3_catenary"), Integrator::AxialImplicit, step);
+    if let Some(MotionPath::Harmonic(motion)) = scene.motion.get_mut("fairlead") {
+        for sine in motion.x.iter_mut().chain(&mut motion.z) {
+            sine[0] *= 0.2;
+        }
+    }
+    scene
+}
+
+#[test]
+fn halving_the_axial_implicit_step_of_a_line_that_lands_quarters_the_error() {
+    let steps = [0.05, 0.025, 0.0125, 0.00625];
+    let reference = run(&calm(SAMPLE / 256.0), 60.0);
+    let found = steps.map(|step| run(&calm(step), 60.0));
+    for errors in errors(&found, &reference) {
+        assert_order(2.0, &steps, &errors);
     }
 }
 

@@ -1,6 +1,8 @@
 //! Timing of fixed steps from a saved state: the least of many repetitions, which noise cannot lower.
 #![allow(dead_code)] // each bench uses a part
 
+use std::fs;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use moorline::scene::Scene;
@@ -28,6 +30,32 @@ pub fn scene(name: &str) -> Scene {
     let path = format!("{}/scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
     let text = std::fs::read_to_string(&path).expect("a scene of the repository");
     Scene::from_toml(&text).expect("a scene that passes its checks")
+}
+
+/// Where a table of this processor is, `benches/tables/<processor>.<name>.csv`; none where the processor's name is not known.
+pub fn table(name: &str) -> Option<PathBuf> {
+    let known = fs::read_to_string("/proc/cpuinfo").ok()?;
+    let processor = known
+        .lines()
+        .find_map(|line| line.strip_prefix("model name"))?;
+    let processor = processor
+        .trim_start_matches([' ', '\t', ':'])
+        .to_lowercase();
+    let words = processor.split(|c: char| !c.is_ascii_alphanumeric());
+    let words: Vec<&str> = words.filter(|word| !word.is_empty()).collect();
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/tables");
+    Some(folder.join(format!("{}.{name}.csv", words.join("-"))))
+}
+
+/// Writes a table of this processor; whether its name is known.
+pub fn write_table(name: &str, text: &str) -> bool {
+    let Some(path) = table(name) else {
+        return false;
+    };
+    let folder = path.parent().expect("a table is in a folder");
+    fs::create_dir_all(folder).expect("the folder of the tables");
+    fs::write(&path, text).expect("the table can be written");
+    true
 }
 
 /// Times steps of the scene's output interval with its own motion.

@@ -11,6 +11,7 @@ use std::ffi::{CStr, CString, c_char, c_void};
 use std::panic::{self, AssertUnwindSafe};
 use std::sync::{Mutex, MutexGuard, Once, PoisonError};
 
+use moorline::dynamics::is_helper;
 use moorline_host::fmi2::{fmi2CallbackFunctions, fmi2CallbackLogger};
 use moorline_host::fmi3::fmi3LogMessageCallback;
 use moorline_host::{FmiVersion, Status};
@@ -105,6 +106,9 @@ thread_local! {
     static IS_GUARDED: Cell<bool> = const { Cell::new(false) };
 }
 
+/// Stands for all threads that an instance has work done on; a guard passes on what panics there.
+const HELPER: usize = 0;
+
 /// Where guarded panics happened, by thread, until their guards have told it.
 static PANIC_PLACES: Mutex<BTreeMap<usize, String>> = Mutex::new(BTreeMap::new());
 
@@ -123,9 +127,11 @@ fn silence_guarded_panics() {
     ONCE.call_once(|| {
         let before = panic::take_hook();
         panic::set_hook(Box::new(move |info| {
-            if IS_GUARDED.get() {
+            let helps = is_helper();
+            if helps || IS_GUARDED.get() {
                 if let Some(place) = info.location() {
-                    panic_places().insert(thread_number(), place.to_string());
+                    let thread = if helps { HELPER } else { thread_number() };
+                    panic_places().insert(thread, place.to_string());
                 }
             } else {
                 before(info);
@@ -141,7 +147,10 @@ pub(crate) fn guard<T>(body: impl FnOnce() -> T) -> Result<T, String> {
     let result = panic::catch_unwind(AssertUnwindSafe(body));
     IS_GUARDED.set(outer);
     result.map_err(|payload| {
-        let place = panic_places().remove(&thread_number());
+        let mut places = panic_places();
+        let place = places.remove(&thread_number());
+        let place = place.or_else(|| places.remove(&HELPER));
+        drop(places);
         let said = panic_text(payload.as_ref());
         // A payload with a destructor that panics must not do so here.
         std::mem::forget(payload);
@@ -426,6 +435,7 @@ pub(crate) fn copy_state(bytes: &[u8], target: &mut [u8]) -> Result<(), Refusal>
 #[cfg(test)]
 mod tests {
     use super::*;
+    use moorline::dynamics::as_helper;
 
     #[test]
     fn a_guarded_panic_becomes_its_message_and_place() {
@@ -433,6 +443,18 @@ mod tests {
         assert!(message.contains("node 7 lost"), "{message}");
         assert!(message.contains("ffi.rs"), "{message}");
         assert_eq!(guard(|| 42), Ok(42));
+    }
+
+    #[test]
+    fn a_panic_of_a_helping_thread_becomes_its_message_and_place() {
+        let message = guard(|| {
+            std::thread::spawn(|| as_helper(|| panic!("line {} lost", 3)))
+                .join()
+                .unwrap_or_else(|payload| panic::resume_unwind(payload))
+        });
+        let message = message.unwrap_err();
+        assert!(message.contains("line 3 lost"), "{message}");
+        assert!(message.contains("ffi.rs"), "{message}");
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
-use moorline::scene::{Integrator, Scene};
+use moorline::scene::{Integrator, Scene, Threads};
 use moorline::simulation::Simulation;
 
 struct Counting;
@@ -63,4 +63,19 @@ fn a_step_allocates_nothing() {
         drive(5..200);
         assert_eq!(COUNT.with(Cell::get) - before, 0, "{integrator:?}");
     }
+}
+
+#[test]
+fn a_step_of_many_lines_on_one_thread_allocates_nothing() {
+    let text = include_str!("../../scenes/storm_moored_semi.toml");
+    let mut scene = Scene::from_toml(text).unwrap();
+    scene.solver.elements = Some(8);
+    scene.solver.threads = Threads::Number(1);
+    let mut simulation = Simulation::by_rules(&scene).unwrap();
+    simulation.follow_scene().unwrap();
+    let mut advance = |steps: usize| (0..steps).for_each(|_| simulation.advance(0.05).unwrap());
+    advance(50); // buffers grow to their sizes, on both sides of a span of waves
+    let before = COUNT.with(Cell::get);
+    advance(100);
+    assert_eq!(COUNT.with(Cell::get) - before, 0);
 }

@@ -93,7 +93,7 @@ impl Sequence {
             let judge = judge(scene, shortest_period(scene), &fine.histories);
             let one = Converged {
                 setting,
-                uncertainty: judge.errors(&coarse.histories, &fine.histories),
+                uncertainty: judge.uncertainty(&coarse.histories, &fine.histories),
                 fine,
                 judge,
             };

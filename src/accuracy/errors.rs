@@ -104,6 +104,26 @@ impl Judge {
         ])
     }
 
+    /// How well a solution is known that lies so far from one on another mesh. Two greatest tensions may agree by chance where the
+    /// histories do not: the peak is known no better than the tension is on the whole, its RMS distance over its range.
+    pub fn uncertainty(&self, coarse: &Histories, fine: &Histories) -> Errors {
+        let mut errors = self.errors(coarse, fine);
+        let tensions = coarse.tension.iter().zip(&fine.tension);
+        let on_the_whole =
+            worst(tensions.map(|(a, b)| self.rms(a, b) * self.deviation_over_range(b)));
+        let peak = &mut errors.0[Metric::Peak as usize];
+        *peak = peak.max(on_the_whole);
+        errors
+    }
+
+    fn deviation_over_range(&self, tension: &[f64]) -> f64 {
+        let tension = &tension[self.from..];
+        let count = tension.len() as f64;
+        let mean = tension.iter().sum::<f64>() / count;
+        let square: f64 = tension.iter().map(|t| (t - mean).powi(2)).sum();
+        (square / count).sqrt() / range(tension)
+    }
+
     fn rms(&self, own: &[f64], right: &[f64]) -> f64 {
         if own.len() != right.len() {
             return f64::INFINITY;
@@ -120,10 +140,8 @@ impl Judge {
         if own.len() != right.len() {
             return f64::INFINITY;
         }
-        let greatest = |values: &[f64]| values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let least = |values: &[f64]| values.iter().copied().fold(f64::INFINITY, f64::min);
         let (own, right) = (&own[self.from..], &right[self.from..]);
-        (greatest(own) - greatest(right)).abs() / (greatest(right) - least(right))
+        (greatest(own) - greatest(right)).abs() / range(right)
     }
 
     fn position(&self, own: &[Vector3<f64>], right: &[Vector3<f64>]) -> f64 {
@@ -140,6 +158,14 @@ impl Judge {
         let motion: f64 = right.iter().map(|b| (b - mean).norm_squared()).sum();
         (wrong / motion).sqrt()
     }
+}
+
+fn greatest(values: &[f64]) -> f64 {
+    values.iter().copied().fold(f64::NEG_INFINITY, f64::max)
+}
+
+fn range(values: &[f64]) -> f64 {
+    greatest(values) - values.iter().copied().fold(f64::INFINITY, f64::min)
 }
 
 /// The greatest; what is no number is infinitely wrong.
@@ -196,6 +222,17 @@ mod tests {
         assert_relative_eq!(errors.of(Metric::Rms), 0.1, max_relative = 1e-6);
         // Its gain is 1/626; the filter starts at the end of the record.
         assert!(errors.of(Metric::LowPassed) < 2e-3);
+    }
+
+    #[test]
+    fn peaks_that_agree_by_chance_are_known_no_better_than_the_histories() {
+        let (one, other) = (histories(-1.0, 0.0), histories(1.0, 0.0));
+        assert!(JUDGE.errors(&one, &other).of(Metric::Peak) < 1e-12);
+        let uncertainty = JUDGE.uncertainty(&one, &other);
+        // apart by 2 sin: √2 of the range 2
+        let wanted = 0.5 * 2f64.sqrt();
+        assert_relative_eq!(uncertainty.of(Metric::Peak), wanted, max_relative = 1e-9);
+        assert_relative_eq!(uncertainty.of(Metric::Rms), 2.0, max_relative = 1e-9);
     }
 
     #[test]

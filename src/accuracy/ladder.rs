@@ -1,6 +1,6 @@
 //! The settings that a scene is tried with.
 
-use crate::scene::{ContactLaw, Integrator, Scene};
+use crate::scene::{ContactLaw, Integrator, Scene, Threads};
 
 /// Elements of the longest line where a run costs next to nothing [-]. Close together: an explicit step must divide the communication
 /// step, so that a mesh a little finer may take one step more, and one a little coarser waste none.
@@ -11,8 +11,8 @@ const ELEMENTS: [usize; 28] = [
 /// Elements of the longest line in dearer explicit runs [-].
 const ELEMENTS_FINE: [usize; 7] = [72, 80, 96, 112, 160, 226, 320];
 /// Elements of the longest line, tensions implicit [-].
-const ELEMENTS_AXIAL: [usize; 18] = [
-    4, 6, 8, 10, 12, 14, 16, 20, 24, 28, 32, 40, 48, 56, 64, 80, 112, 160,
+const ELEMENTS_AXIAL: [usize; 21] = [
+    4, 5, 6, 7, 8, 9, 10, 12, 14, 16, 20, 24, 28, 32, 40, 48, 56, 64, 80, 112, 160,
 ];
 /// Elements of the longest line, fully implicit [-].
 const ELEMENTS_IMPLICIT: [usize; 3] = [10, 20, 40];
@@ -21,7 +21,7 @@ const STEPS_AXIAL: [f64; 6] = [16.0, 40.0, 80.0, 160.0, 320.0, 640.0];
 /// Steps to the shortest period, fully implicit [-].
 const STEPS_IMPLICIT: [f64; 3] = [20.0, 80.0, 320.0];
 /// Communication steps over the interval of the output that explicit runs are tried with [-].
-const COMMUNICATIONS: [usize; 5] = [1, 2, 3, 4, 8];
+const COMMUNICATIONS: [usize; 6] = [1, 2, 3, 4, 8, 10];
 /// Elements up to which explicit runs are tried with more than the first of them [-]: what a communication step costs does not
 /// count on finer meshes.
 const COMMUNICATING_ELEMENTS: usize = 32;
@@ -99,6 +99,8 @@ impl Setting {
         // A step that is not asked for is limited by the integrator's own rules only.
         scene.solver.time_step_max = self.time_step_max.unwrap_or(scene.solver.time_step_max);
         scene.solver.tolerance = self.tolerance.unwrap_or(scene.solver.tolerance);
+        // Processor time is that of one thread, as that of other codes.
+        scene.solver.threads = Threads::Number(1);
         if let (Some(bed), Some(contact)) = (&mut scene.seabed, self.contact) {
             bed.contact = contact;
         }

@@ -59,5 +59,7 @@ fn steps_in_words(scene: &Scene) -> Vec<String> {
     };
     let mut said: Vec<String> = simulation.choices().map(Choice::in_words).collect();
     said.dedup();
+    let threads = simulation.threads_in_words(scene.output.interval);
+    said.push(format!("lines on {threads}"));
     said
 }

@@ -1,15 +1,17 @@
 //! One communication step of a whole model: every network by its integrator, in as many internal steps as it needs.
 
+use std::sync::Mutex;
+
 use serde::{Deserialize, Serialize};
 
 use super::axial_implicit::AxialWork;
 use super::beam::{self, BeamWork, Driven, Stuck, StuckReason};
+use super::crew::{Crew, Hands, Labour, Pace, Queue, lock};
 use super::implicit::{self, Scheme};
 use super::layout::Water;
 use super::leapfrog::Step;
 use super::ledger::passed::{self, Passed};
 use super::ledger::{self, Energy, Flow};
-use super::limit::transverse_step;
 use super::motion::AxisPath;
 use super::network::NetworkWork;
 use super::sea::SeaWork;
@@ -61,8 +63,39 @@ pub struct Workspace {
     before: State,
     /// How the winches pay out, by line; empty where there are none.
     reels: Vec<AxisPath>,
-    /// Whether the explicit kernels still hold the state that they handed back last.
+    /// Whether the leapfrogs still hold the state that they handed back last.
     holds: bool,
+    crew: Crew,
+    labour: Labour,
+    /// How steps go on threads, and how waves are asked on them.
+    paces: [Pace; 2],
+    /// Scratch of the other threads, once there are some.
+    helpers: Helpers,
+    /// What became of the networks that threads shared.
+    outcomes: Vec<Outcome>,
+}
+
+/// What became of a network in a step that threads shared.
+type Outcome = Option<Result<Done, StepError>>;
+
+/// Scratch of the threads that help.
+#[derive(Debug, Default)]
+struct Helpers(Vec<Mutex<Helper>>);
+
+impl Clone for Helpers {
+    /// None yet.
+    fn clone(&self) -> Helpers {
+        Helpers::default()
+    }
+}
+
+/// Scratch of a thread that helps.
+#[derive(Debug)]
+struct Helper {
+    implicit: assembly::Workspace,
+    next: State,
+    /// Networks that it brought to the end of the step.
+    made: Vec<usize>,
 }
 
 #[derive(Debug, Clone)]
@@ -78,7 +111,7 @@ impl Workspace {
     /// Chooses integrators and allocates all scratch for a model that starts from `state`; `tension` tells the static
     /// tension of a line [N].
     pub fn new(model: &Model, state: &State, tension: impl Fn(usize) -> f64) -> Workspace {
-        let networks = model
+        let networks: Vec<(Choice, Solver)> = model
             .networks
             .iter()
             .map(|network| {
@@ -88,6 +121,11 @@ impl Workspace {
             })
             .collect();
         Workspace {
+            crew: Crew::default(),
+            labour: Labour::new(model, networks.iter().map(|(choice, _)| choice)),
+            paces: Default::default(),
+            helpers: Helpers::default(),
+            outcomes: Vec::new(),
             networks,
             implicit: assembly::Workspace::new(model),
             next: state.clone(),
@@ -114,6 +152,11 @@ impl Workspace {
         self.networks.iter().map(|(choice, _)| choice)
     }
 
+    /// How many threads share steps of a length [s], and why.
+    pub fn threads_in_words(&self, length: f64) -> String {
+        self.labour.in_words(length)
+    }
+
     /// Energy that the networks hold; none of motion where they are quasi-static.
     pub fn energy(&self, model: &Model, state: &State) -> Energy {
         let mut sum = Energy::default();
@@ -137,7 +180,11 @@ impl Workspace {
         let time = state.time;
         drop_anchors(model, state);
         place_held(model, state, held);
-        self.sea.start(model, state);
+        let mut hands = Hands {
+            crew: &mut self.crew,
+            threads: 1,
+        };
+        self.sea.start(model, state, &mut hands);
         for (number, (_, solver)) in self.networks.iter().enumerate() {
             if matches!(solver, Solver::Implicit(_)) {
                 let network = &model.networks[number];
@@ -157,7 +204,7 @@ impl Workspace {
         model: &Model,
         state: &mut State,
         length: f64,
-        held: &impl Fn(usize, f64) -> Kinematics,
+        held: &(impl Fn(usize, f64) -> Kinematics + Sync),
     ) -> Result<Done, StepError> {
         match &model.waves {
             None => self.pass(model, state, length, held),
@@ -172,11 +219,11 @@ impl Workspace {
         model: &Model,
         state: &mut State,
         length: f64,
-        held: &impl Fn(usize, f64) -> Kinematics,
+        held: &(impl Fn(usize, f64) -> Kinematics + Sync),
     ) -> Result<Done, StepError> {
-        let mut part = self.sea.reach(waves, state, length);
+        let mut part = self.sea.reach(model, waves, state, length);
         if part == length {
-            let renewed = self.sea.renew(model, waves, state, length);
+            let renewed = self.renew_waves(model, waves, state, length);
             let done = self.pass(model, state, length, held);
             if done.is_err() && renewed {
                 self.sea.undo(state);
@@ -187,7 +234,7 @@ impl Workspace {
         let mut total = Done::default();
         self.before.clone_from(state);
         loop {
-            self.sea.renew(model, waves, state, part);
+            self.renew_waves(model, waves, state, part);
             match self.pass(model, state, part, held) {
                 Ok(done) => total.add(done),
                 Err(error) => {
@@ -200,8 +247,25 @@ impl Workspace {
                 state.time = end;
                 return Ok(total);
             }
-            part = self.sea.reach(waves, state, left);
+            part = self.sea.reach(model, waves, state, left);
         }
+    }
+
+    /// Asks the waves anew where a span of theirs is over; whether it was.
+    fn renew_waves(&mut self, model: &Model, waves: &Waves, state: &mut State, step: f64) -> bool {
+        let (labour, [_, pace]) = (&self.labour, &mut self.paces);
+        let expected = labour.at_sea();
+        self.crew.call(expected - 1);
+        let turn = pace.turn(expected, labour.is_given());
+        let mut hands = Hands {
+            crew: &mut self.crew,
+            threads: turn.threads,
+        };
+        let renewed = self.sea.renew(model, waves, state, step, &mut hands);
+        if renewed {
+            pace.note(turn, 1.0);
+        }
+        renewed
     }
 
     /// Advances `state` by `length` [s], over which it knows what waves do.
@@ -210,7 +274,7 @@ impl Workspace {
         model: &Model,
         state: &mut State,
         length: f64,
-        held: &impl Fn(usize, f64) -> Kinematics,
+        held: &(impl Fn(usize, f64) -> Kinematics + Sync),
     ) -> Result<Done, StepError> {
         let heaves = state.waves.is_some();
         if heaves && self.networks.iter().any(|(_, solver)| solver.reads_next()) {
@@ -225,23 +289,22 @@ impl Workspace {
             reels: &self.reels,
             holds: std::mem::take(&mut self.holds),
         };
+        let expected = self.labour.over(length);
+        self.crew.call(expected - 1);
+        let turn = self.paces[0].turn(expected, self.labour.is_given());
         let mut total = Done::default();
-        for (number, (choice, solver)) in self.networks.iter_mut().enumerate() {
-            let next = &mut self.next;
-            let done = match solver {
-                Solver::Leapfrog(work) => step.leapfrog(number, choice.step_max, work, next)?,
-                Solver::AxialImplicit(work) => {
-                    step.axial_implicit(number, choice.step_max, work, next)?
-                }
-                Solver::Implicit(scheme) => {
-                    step.implicit(number, choice.step_max, scheme, &mut self.implicit, next)?
-                }
-                Solver::Beam(work) => step.beam(number, choice.step_max, work, next)?,
-                Solver::QuasiStatic => step.quasi_static(number, &mut self.implicit, next)?,
-            };
-            total.counters.substeps = total.counters.substeps.max(done.counters.substeps);
-            total.counters.solves += done.counters.solves;
-            total.flow.add(done.flow);
+        if turn.threads > 1 {
+            let helpers = self.helpers.of(turn.threads - 1, &step, &self.next);
+            let own = (&mut self.implicit, &mut self.next);
+            let networks = (&mut self.networks[..], &mut self.outcomes);
+            step.on_threads(&mut self.crew, helpers, networks, own);
+            for done in self.outcomes.drain(..).flatten() {
+                total.join(done?);
+            }
+        } else {
+            for (number, network) in self.networks.iter_mut().enumerate() {
+                total.join(step.network(number, network, &mut self.implicit, &mut self.next)?);
+            }
         }
         self.next.time = state.time + length;
         place_held(model, &mut self.next, held);
@@ -250,11 +313,36 @@ impl Workspace {
         }
         std::mem::swap(state, &mut self.next);
         self.holds = true;
+        self.paces[0].note(turn, length);
         Ok(total)
     }
 }
 
+impl Helpers {
+    /// So many, ready for a step whose state is built in `next`.
+    fn of<K>(&mut self, count: usize, step: &Communication<K>, next: &State) -> &[Mutex<Helper>] {
+        while self.0.len() < count {
+            self.0.push(Mutex::new(Helper {
+                implicit: assembly::Workspace::new(step.model),
+                next: next.clone(),
+                made: Vec::with_capacity(step.model.networks.len()),
+            }));
+        }
+        for helper in &self.0[..count] {
+            lock(helper).next.waves.clone_from(&next.waves);
+        }
+        &self.0[..count]
+    }
+}
+
 impl Done {
+    /// Adds what another network did in the same time.
+    fn join(&mut self, other: Done) {
+        self.counters.substeps = self.counters.substeps.max(other.counters.substeps);
+        self.counters.solves += other.counters.solves;
+        self.flow.add(other.flow);
+    }
+
     /// Adds what a later part of the step did.
     fn add(&mut self, other: Done) {
         self.counters.substeps += other.counters.substeps;
@@ -308,11 +396,87 @@ struct Communication<'a, K> {
     held: &'a K,
     /// How the winches pay out, by line; empty where there are none.
     reels: &'a [AxisPath],
-    /// Whether the explicit kernels hold the state.
+    /// Whether the leapfrogs hold the state.
     holds: bool,
 }
 
-impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
+impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
+    /// All networks, each on the thread that takes it; `next` becomes what it would be on one thread.
+    fn on_threads(
+        &self,
+        crew: &mut Crew,
+        helpers: &[Mutex<Helper>],
+        (networks, outcomes): (&mut [(Choice, Solver)], &mut Vec<Outcome>),
+        (implicit, next): (&mut assembly::Workspace, &mut State),
+    ) {
+        let count = networks.len();
+        outcomes.clear();
+        outcomes.resize_with(count, || None);
+        let size = count.div_ceil(helpers.len() + 1);
+        for (number, helper) in helpers.iter().enumerate() {
+            let first = ((number + 1) * size).min(count);
+            self.exchange(
+                first..(first + size).min(count),
+                next,
+                &mut lock(helper).next,
+            );
+        }
+        let parts = networks.chunks_mut(size).zip(outcomes.chunks_mut(size));
+        let queue = Queue::new(parts.enumerate().map(|(part, (networks, outcomes))| {
+            let numbers = part * size..part * size + networks.len();
+            numbers.zip(networks.iter_mut().zip(outcomes))
+        }));
+        let help = |number: usize, helper: &mut Helper| {
+            helper.made.clear();
+            while let Some((network, (solver, outcome))) = queue.take(number + 1) {
+                let (implicit, next) = (&mut helper.implicit, &mut helper.next);
+                *outcome = Some(self.network(network, solver, implicit, next));
+                helper.made.push(network);
+            }
+        };
+        let lead = || {
+            while let Some((network, (solver, outcome))) = queue.take(0) {
+                *outcome = Some(self.network(network, solver, implicit, next));
+            }
+        };
+        crew.run(helpers, help, lead);
+        for helper in helpers {
+            let helper = &mut *lock(helper);
+            self.exchange(helper.made.drain(..), next, &mut helper.next);
+        }
+    }
+
+    /// Exchanges networks between two states.
+    fn exchange(&self, networks: impl Iterator<Item = usize>, one: &mut State, other: &mut State) {
+        for number in networks {
+            let network = &self.model.networks[number];
+            for &line in &network.lines {
+                std::mem::swap(&mut one.lines[line], &mut other.lines[line]);
+            }
+            for &point in &network.free_points {
+                std::mem::swap(&mut one.points[point], &mut other.points[point]);
+            }
+        }
+    }
+
+    /// One network over the step.
+    fn network(
+        &self,
+        number: usize,
+        (choice, solver): &mut (Choice, Solver),
+        implicit: &mut assembly::Workspace,
+        next: &mut State,
+    ) -> Result<Done, StepError> {
+        let step_max = choice.step_max;
+        match solver {
+            Solver::Leapfrog(work) => self.leapfrog(number, step_max, work, next),
+            Solver::AxialImplicit(work) => self.axial_implicit(number, step_max, work, next),
+            Solver::Implicit(scheme) => self.implicit(number, step_max, scheme, implicit, next),
+            Solver::Beam(work) => self.beam(number, step_max, work, next),
+            Solver::QuasiStatic => self.quasi_static(number, implicit, next),
+        }
+    }
+
     fn leapfrog(
         &self,
         number: usize,
@@ -332,13 +496,15 @@ impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
             let count = self.substeps(longest.min(1.0 / work.drag_rate(model, network)), retry)?;
             let drift = self.length / count as f64;
             let mut steps = self.state.lines[network.lines[0]].half_step.steps;
-            work.put_ends(self.start, Step::after(steps, drift), self.held);
-            work.start_reels(network, self.state, self.reels, Step::after(steps, drift));
+            let mut step = Step::after(steps, drift);
+            work.put_ends(self.start, step, self.held);
+            work.start_reels(network, self.state, self.reels, step);
             work.begin();
             for k in 0..count {
                 let t = self.start + k as f64 * drift;
-                work.step(model, network, t, Step::after(steps, drift), self.held);
+                work.step(model, network, t, step, self.held);
                 steps = [drift, steps[0]];
+                step = Step::after(steps, drift);
             }
             let flow = work.flow();
             if work.is_sound() && flow.is_finite() {
@@ -363,13 +529,17 @@ impl<K: Fn(usize, f64) -> Kinematics> Communication<'_, K> {
     ) -> Result<Done, StepError> {
         let index = self.model.networks[number].lines[0];
         let line = &self.model.lines[index];
-        let transverse = transverse_step(line, 1.0); // over √T [s √N]
+        let transverse = work.transverse;
         let tension_now = self.state.lines[index].half_step.tension[0]
             .iter()
             .fold(0.0, |a: f64, b| a.max(*b));
         let step_max = step_max.min(transverse / (SNAP_GROWTH * tension_now).sqrt());
         for retry in 0..=RETRIES_MAX {
-            work.load(&self.state.lines[index]);
+            if self.holds && retry == 0 {
+                work.resume();
+            } else {
+                work.load(&self.state.lines[index]);
+            }
             work.load_waves(self.state.waves.as_ref(), index);
             let count = self.substeps(step_max, retry)?;
             let drift = self.length / count as f64;

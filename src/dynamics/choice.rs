@@ -1,20 +1,25 @@
 //! Which integrator serves a network, and its largest step.
 //!
-//! The explicit leapfrog costs least a step. Its axial-implicit variant costs about three times as much and is chosen where
-//! the axial limit lies more than three times below the step that accuracy allows; it serves single lines between held ends.
-//! Networks joined at free points whose axial limit would need more than 25 steps for one of those are integrated fully
-//! implicitly, and so are lines that bend, mix strain measures or have nodes without mass. Beams have an integrator of their own.
+//! Of the integrators that serve a network, the one whose steps cost least for a second of motion. The explicit leapfrog costs least a step, and
+//! takes those of its axial limit. Its axial-implicit variant costs about three times as much; it serves single lines between held ends, and
+//! takes the steps that accuracy asks for. Generalised-α costs about fifty times as much: it serves networks joined at free points, with steps
+//! that follow the elastic oscillation of these, and single lines whose slowest wave runs through them within one step of the
+//! longest allowed, such as a taut line almost without mass: they are at rest in every step, whatever its length.
+//!
+//! Lines that bend, mix strain measures or have nodes without mass are integrated fully implicitly whatever that costs. Beams have an
+//! integrator of their own.
 
 use super::limit::{
-    axial_accuracy_step, explicit_step, free_point_step, heave_step, transverse_step,
+    axial_accuracy_step, explicit_step, free_point_step, heave_step, point_accuracy_step,
+    transverse_period, transverse_step,
 };
 use crate::model::{Line, Model, Network};
 use crate::scene::Integrator;
 
 /// Cost of an axial-implicit step over that of an explicit one [-].
 pub const AXIAL_IMPLICIT_COST: f64 = 3.0;
-/// Explicit steps for one that accuracy allows, above which a network is integrated implicitly [-].
-const EXPLICIT_STEPS_MAX: f64 = 25.0;
+/// Cost of a step of generalised-α over that of an explicit one [-].
+const IMPLICIT_COST: f64 = 50.0;
 /// Part of the transverse limit that no line needs to go below for accuracy: where axial waves are much faster than that,
 /// the line stretches quasi-statically [-].
 const AXIAL_RESOLUTION_MIN: f64 = 0.125;
@@ -50,6 +55,11 @@ impl Choice {
                 "axial tension implicit, steps of at most {step}: explicit ones, {AXIAL_IMPLICIT_COST} times cheaper, would be limited to \
                  {explicit} by axial waves"
             ),
+            Integrator::GeneralisedAlpha if IMPLICIT_COST * self.explicit_limit < self.step_max => {
+                format!(
+                    "fully implicit steps of at most {step}: explicit ones, {IMPLICIT_COST} times cheaper, would be limited to {explicit}"
+                )
+            }
             Integrator::QuasiStatic => "an equilibrium at every communication point".to_string(),
             _ => format!("fully implicit steps of at most {step}"),
         }
@@ -76,16 +86,20 @@ impl Choice {
             .min(transverse_limit);
         let longest = model.solver.time_step_max;
         let asked = model.solver.integrator;
+        let steps = Steps {
+            explicit: explicit_limit.min(longest),
+            axial: accurate.min(least(&heave_step)).min(longest),
+            implicit: implicit_step(model, network),
+        };
         let integrator = match asked {
-            Integrator::Auto => choose(model, network, explicit_limit, accurate.min(longest)),
+            Integrator::Auto => choose(model, network, &steps, tension),
             chosen => chosen,
         };
         let step_max = match integrator {
-            Integrator::Leapfrog => explicit_limit,
-            Integrator::AxialImplicit if asked == Integrator::Auto => {
-                accurate.min(least(&heave_step))
-            }
+            Integrator::Leapfrog => steps.explicit,
+            Integrator::AxialImplicit if asked == Integrator::Auto => steps.axial,
             Integrator::AxialImplicit => transverse_limit.min(least(&heave_step)),
+            Integrator::GeneralisedAlpha if asked == Integrator::Auto => steps.implicit,
             _ => longest,
         };
         Choice {
@@ -97,7 +111,29 @@ impl Choice {
     }
 }
 
-fn choose(model: &Model, network: &Network, explicit: f64, accurate: f64) -> Integrator {
+/// Steps that a network would take [s].
+struct Steps {
+    explicit: f64,
+    axial: f64,
+    implicit: f64,
+}
+
+/// Step of generalised-α [s]: one that follows the free points, where it need not be taken.
+fn implicit_step(model: &Model, network: &Network) -> f64 {
+    let mut lines = network.lines.iter().map(|&line| &model.lines[line]);
+    let choosy = lines.all(Line::serves_leapfrog);
+    let points = network.free_points.iter().filter(|_| choosy);
+    points
+        .map(|&point| point_accuracy_step(model, point, model.solver.tolerance))
+        .fold(model.solver.time_step_max, f64::min)
+}
+
+fn choose(
+    model: &Model,
+    network: &Network,
+    steps: &Steps,
+    tension: &impl Fn(usize) -> f64,
+) -> Integrator {
     let lines = || network.lines.iter().map(|&line| &model.lines[line]);
     if lines().any(|line| line.beam.is_some()) {
         return Integrator::Beam;
@@ -108,12 +144,25 @@ fn choose(model: &Model, network: &Network, explicit: f64, accurate: f64) -> Int
     if lines().any(|line| line.winch.is_some()) {
         return Integrator::Leapfrog;
     }
-    let steps = accurate / explicit;
-    if network.free_points.is_empty() && steps > AXIAL_IMPLICIT_COST {
-        Integrator::AxialImplicit
-    } else if steps > EXPLICIT_STEPS_MAX {
-        Integrator::GeneralisedAlpha
-    } else {
-        Integrator::Leapfrog
-    }
+    let joined = !network.free_points.is_empty();
+    let at_rest = |&line: &usize| {
+        transverse_period(&model.lines[line], tension(line)) < model.solver.time_step_max
+    };
+    let quick = network.lines.iter().all(at_rest);
+    let rates = [
+        (Integrator::Leapfrog, 1.0 / steps.explicit, true),
+        (
+            Integrator::AxialImplicit,
+            AXIAL_IMPLICIT_COST / steps.axial,
+            !joined,
+        ),
+        (
+            Integrator::GeneralisedAlpha,
+            IMPLICIT_COST / steps.implicit,
+            joined || quick,
+        ),
+    ];
+    let serving = rates.into_iter().filter(|&(_, _, serves)| serves);
+    let cheapest = serving.min_by(|a, b| a.1.total_cmp(&b.1));
+    cheapest.map_or(Integrator::Leapfrog, |(integrator, ..)| integrator)
 }

@@ -23,6 +23,9 @@ use crate::physics::stretch::{StretchLaw, total_tension};
 
 /// Speed that only an unstable step reaches [m/s]: the fastest axial waves run at about this speed.
 const SPEED_MAX: f64 = 1e4;
+/// Speeds below this [m/s] are rounded to multiples of about 2⁻⁵³ of it. What comes to rest on the bed would else go on to squares that are
+/// too small to be normal numbers, with which a machine is many times slower.
+const STILLNESS: f64 = 1e-30;
 /// Keeps coincident nodes from dividing by zero [m²].
 pub(super) const LENGTH2_MIN: f64 = 1e-200;
 
@@ -30,6 +33,8 @@ pub(super) const LENGTH2_MIN: f64 = 1e-200;
 #[derive(Debug, Clone)]
 pub(super) struct Layout {
     pub segment_count: usize,
+    /// Where the last node and the last segment stand.
+    last: [Slot; 2],
     /// Where nodes and segments stand.
     pub fold: Fold,
     /// The widest vectors of this machine; results do not depend on it.
@@ -245,6 +250,12 @@ pub(super) struct BottomArrays {
 }
 
 impl ContactArrays {
+    /// Stiffness [N/m] and damping [N s/m] of a row.
+    #[inline(always)]
+    pub fn law(&self, at: usize) -> [Lanes; 2] {
+        [self.stiffness.load(at), self.damping.load(at)]
+    }
+
     fn new(contact: &Contact, fold: Fold) -> ContactArrays {
         let lifts = || (0..contact.level.len()).map(|i| contact.lift(i)).collect();
         let bottom = contact.bottom.as_ref();
@@ -289,6 +300,7 @@ impl Layout {
         };
         Some(Layout {
             segment_count: n,
+            last: [n, n - 1].map(|i| fold.slot(i)),
             fold,
             vector_unit: Arch::new(),
             law: line.uniform_law()?,
@@ -349,12 +361,26 @@ impl Layout {
         }
     }
 
+    /// Rounds speeds far below [`STILLNESS`] to zero.
+    pub fn still(&mut self) {
+        for at in self.rows() {
+            self.velocity
+                .store(self.velocity.load(at).rounded(STILLNESS), at);
+        }
+    }
+
     /// Makes the ghosts repeat the nodes where they are now. Ends that have parted have no neighbour beyond them.
     #[inline(always)]
     pub fn renew_ghosts(&mut self, parted: [bool; 2]) {
         self.position.wrap();
         self.velocity.wrap();
         self.velocity_before.wrap();
+        self.part_ghosts(parted);
+    }
+
+    /// Puts the ghosts beyond ends that have parted where these ends are.
+    #[inline(always)]
+    pub fn part_ghosts(&mut self, parted: [bool; 2]) {
         for end in [End::A, End::B] {
             if parted[end as usize] {
                 let at = self.end_slot(end);
@@ -366,6 +392,12 @@ impl Layout {
                 self.position.set(beyond, self.position.get(at));
             }
         }
+    }
+
+    /// Sets how many of the segments that there is room for the line has.
+    pub fn set_segment_count(&mut self, count: usize) {
+        self.segment_count = count;
+        self.last = [count, count - 1].map(|i| self.fold.slot(i));
     }
 
     /// Σ ½ e (v·t)² [J] of nodes that are heavier by e along the line than across it [kg]. Ghosts must be renewed.
@@ -400,22 +432,22 @@ impl Layout {
         memory.velocity.resize(count, Vector3::zeros());
         memory.velocity_before.resize(count, Vector3::zeros());
         memory.steps = steps;
-        let extrapolation = Lanes::splat(Step::after(steps, steps[0]).extrapolation);
-        let (places, now) = (&mut state.position[..], &mut state.velocity[..count]);
-        let (last, before) = (
-            &mut memory.velocity[..count],
-            &mut memory.velocity_before[..count],
-        );
-        for row in self.rows() {
-            let place = self.position.load(row);
-            let (half, earlier) = (self.velocity.load(row), self.velocity_before.load(row));
-            let whole = half + (half - earlier).scale(extrapolation);
-            for lane in 0..LANES {
-                let i = lane * self.fold.rows() + row - 1;
-                if i < count {
-                    (places[i], now[i]) = (place.get(lane), whole.get(lane));
-                    (last[i], before[i]) = (half.get(lane), earlier.get(lane));
-                }
+        let extrapolation = Step::after(steps, steps[0]).extrapolation;
+        let rows = self.fold.rows();
+        let own = [&self.position, &self.velocity, &self.velocity_before];
+        let [positions, velocities, earlier] = own.map(|field| &field.rows(rows)[1..]);
+        for lane in 0..LANES {
+            let nodes = (lane * rows).min(count)..((lane + 1) * rows).min(count);
+            let places = state.position[nodes.clone()].iter_mut().zip(positions);
+            let speeds = state.velocity[nodes.clone()].iter_mut();
+            let halves = memory.velocity[nodes.clone()].iter_mut().zip(velocities);
+            let befores = memory.velocity_before[nodes].iter_mut().zip(earlier);
+            let nodes = places.zip(speeds).zip(halves.zip(befores));
+            for (((place, position), speed), ((last, half), (before, earlier))) in nodes {
+                *place = position.get(lane);
+                let (half, earlier) = (half.get(lane), earlier.get(lane));
+                *speed = half + extrapolation * (half - earlier);
+                (*last, *before) = (half, earlier);
             }
         }
         if let Some(bottom) = self.bottom() {
@@ -604,6 +636,7 @@ impl Layout {
     }
 
     /// Puts an end at a position [m] with the velocity [m/s] that the next step takes as lagged.
+    #[inline(always)]
     pub fn put_end(&mut self, end: End, position: Vector3<f64>, velocity: Vector3<f64>) {
         let at = self.end_slot(end);
         self.position.set(at, position);
@@ -620,14 +653,17 @@ impl Layout {
 
     /// Where the node at an end stands.
     pub fn end_slot(&self, end: End) -> Slot {
-        self.slot(self.end_node(end))
+        match end {
+            End::A => Slot { row: 1, lane: 0 },
+            End::B => self.last[0],
+        }
     }
 
     /// Where the segment at an end stands, and what the sign of its pull on the end is.
     pub fn end_segment(&self, end: End) -> (Slot, f64) {
         match end {
-            End::A => (self.slot(0), 1.0),
-            End::B => (self.slot(self.segment_count - 1), -1.0),
+            End::A => (self.end_slot(End::A), 1.0),
+            End::B => (self.last[1], -1.0),
         }
     }
 
@@ -635,7 +671,7 @@ impl Layout {
     pub fn end_neighbour(&self, end: End) -> Slot {
         match end {
             End::A => self.slot(1),
-            End::B => self.slot(self.segment_count - 1),
+            End::B => self.last[1],
         }
     }
 

@@ -1,6 +1,6 @@
 //! Semi-explicit leapfrog of lumped two-node segments: the default for cables without bending.
 //!
-//! Positions live at t_n, velocities at t_{n−½}. A step is one sweep over the nodes, in which
+//! Positions live at t_n, velocities at t_{n−½}. A step is a sweep over the line, in which
 //!
 //! 1. segments: strain, lagged strain rate, tension T q;
 //! 2. nodes: v_{n+½} = v_{n−½} + Δt M⁻¹ f, with drag at the extrapolated velocity 1.5 v_{n−½} − 0.5 v_{n−3/2}, the
@@ -44,6 +44,12 @@ pub struct LineWork {
     pull: Field,
     /// The part of it that no spring has, but where segments creep [N].
     brake: Field,
+    /// Force that water and damping resist with at t_n [N]; where the bed slopes or rubs with the dampers beside the nodes.
+    resistance: Field,
+    /// Force of water that waves accelerate at t_n [N], where there are waves.
+    press: Option<Field>,
+    /// Inverse square of the chord between the nodes beside a node at t_n [1/m²].
+    inverse_square: Column,
     inverse_mass: Column,
     water: Option<WaterWork>,
     /// 1 for nodes between the ends, 0 elsewhere.
@@ -58,17 +64,10 @@ pub struct LineWork {
     given_by_current: Lanes,
     /// Twice what ½ vᵀMv lost by the kicks along the tangents, which those gain or lose by turning between them [J].
     turned: Lanes,
-    /// Force of water and damping on the nodes at t_n [N], and the energy lost to the bed [J], over a bed that slopes or rubs.
-    settling: Option<Settling>,
+    /// Energy lost to the bed [J], where it slopes or rubs.
+    settled: Option<f64>,
     /// The winch at end B, where the line is on one.
     winch: Option<Box<WinchWork>>,
-}
-
-/// What a bed that slopes or rubs is worked out with, node by node.
-#[derive(Debug, Clone)]
-struct Settling {
-    resistance: Field,
-    lost: f64,
 }
 
 /// What needs a node's tangent: drag, and a mass that differs along and across the line.
@@ -154,6 +153,19 @@ impl NullaryFnOnce for PullSegments<'_> {
     }
 }
 
+/// [`LineWork::put_ends`] for the vector unit of the machine.
+struct PutEnds<'a>(&'a mut LineWork, &'a [Placed; 2]);
+
+impl NullaryFnOnce for PutEnds<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let PutEnds(work, ends) = self;
+        work.layout.place_ends(ends, work.parted);
+    }
+}
+
 /// Sizes of a step.
 #[derive(Debug, Clone, Copy)]
 pub struct Step {
@@ -223,6 +235,9 @@ impl LineWork {
                 && layout.mass_damping.is_none()
                 && layout.bottom().is_none(),
             pull: Field::zeros(layout.fold),
+            resistance: Field::zeros(layout.fold),
+            press: layout.waves.as_ref().map(|_| Field::zeros(layout.fold)),
+            inverse_square: Column::new(layout.fold, 0.0),
             inverse_mass: layout.fold.column(&inverse_mass, 0.0),
             water: WaterWork::new(line, &layout, held),
             brake: Field::zeros(layout.fold),
@@ -233,10 +248,7 @@ impl LineWork {
             lost: Lanes::splat(0.0),
             given: 0.0,
             given_by_current: Lanes::splat(0.0),
-            settling: layout.bottom().map(|_| Settling {
-                resistance: Field::zeros(layout.fold),
-                lost: 0.0,
-            }),
+            settled: layout.bottom().map(|_| 0.0),
             layout,
             winch,
         })
@@ -257,13 +269,17 @@ impl LineWork {
             self.interior[at] = f64::from(u8::from(self.is_parted(end)));
             self.set_mass_excess(end);
         }
+        self.layout.still();
         self.clear_flow();
     }
 
     /// Goes on from the state that [`Self::store`] handed back last; a line on a winch is laid out anew.
     pub fn resume(&mut self, state: &LineState) {
         match self.winch {
-            None => self.clear_flow(),
+            None => {
+                self.layout.still();
+                self.clear_flow();
+            }
             Some(_) => self.load(state),
         }
     }
@@ -283,8 +299,8 @@ impl LineWork {
         self.turned = Lanes::splat(0.0);
         (self.lost, self.given) = (Lanes::splat(0.0), 0.0);
         self.given_by_current = Lanes::splat(0.0);
-        if let Some(settling) = &mut self.settling {
-            settling.lost = 0.0;
+        if let Some(lost) = &mut self.settled {
+            *lost = 0.0;
         }
     }
 
@@ -344,7 +360,7 @@ impl LineWork {
                 + self.given_by_current.sum()
                 + self.layout.lifted()
                 + self.winch.as_ref().map_or(0.0, |winch| winch.given()),
-            lost: self.lost.sum() + self.settling.as_ref().map_or(0.0, |bed| bed.lost)
+            lost: self.lost.sum() + self.settled.unwrap_or(0.0)
                 - self.layout.joined()
                 - turned,
         }
@@ -516,7 +532,7 @@ impl LineWork {
     pub fn advance(&mut self, t: f64, step: Step, ends: &[Placed; 2]) {
         let (unit, work, size) = (self.layout.vector_unit, self, &step);
         unit.dispatch(Sweep { work, size, ends });
-        if work.settling.is_some() {
+        if work.settled.is_some() {
             work.settle(step);
             unit.dispatch(Drift { work, size, ends });
         }
@@ -536,7 +552,7 @@ impl LineWork {
     /// What a bed that slopes or rubs makes of the velocities at t_{n+½}.
     fn settle(&mut self, step: Step) {
         let line = &mut self.layout;
-        let Some(settling) = &mut self.settling else {
+        let Some(lost) = &mut self.settled else {
             return;
         };
         for (i, at) in line.nodes().enumerate() {
@@ -571,8 +587,8 @@ impl LineWork {
                 continue;
             };
             let passed = line.velocity_before.get(at) + landed.velocity;
-            let resisted = settling.resistance.get(at).dot(&(landed.velocity - free));
-            settling.lost += 0.5 * (step.kick * resisted - landed.impulse.dot(&passed));
+            let resisted = self.resistance.get(at).dot(&(landed.velocity - free));
+            *lost += 0.5 * (step.kick * resisted - landed.impulse.dot(&passed));
             if let Some(water) = &self.water {
                 let squares = [free, landed.velocity].map(|v| v.dot(&tangent).powi(2));
                 self.turned[0] += water.mass_excess[at] * (squares[0] - squares[1]);
@@ -603,11 +619,9 @@ impl LineWork {
         }
     }
 
-    /// Puts an end somewhere, unless it has parted from its point.
-    pub fn put_end(&mut self, end: End, placed: Placed) {
-        if !self.is_parted(end) {
-            self.layout.put_end(end, placed.position, placed.velocity);
-        }
+    /// Puts the ends somewhere that have not parted from their points.
+    pub fn put_ends(&mut self, ends: &[Placed; 2]) {
+        self.layout.vector_unit.dispatch(PutEnds(self, ends));
     }
 
     /// What the end brings to a free point, after [`Self::pull_beforehand`]; `velocity` [m/s] is the point's at t_n.

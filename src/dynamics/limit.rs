@@ -10,6 +10,7 @@
 //! slackens: with θ from ωΔt = 2 sin(θ/2), the trace of k taut steps and a slack one is 2 cos((k + ½)θ)/cos(θ/2), whose size exceeds 2 about
 //! (k + ½)θ = π. One taut step and a slack one, over and over, feed on each other above ωΔt = √2, two and one from 1 to √2, and more of them, ever
 //! more weakly, below: a slack line without damping gathers energy in its shortest waves. Lines with little damping use 0.5 of the limit, ωΔt ≤ 1.
+//! A line that may part needs more damping to use more of it: a loose end cracks like a whip, slack and taut by turns.
 //!
 //! Transversely, waves of speed c = √(T/m) limit any variant, the axial-implicit one too: Δt < 0.6 h/c, or 1.2/ω with k = T/l. Quadratic drag,
 //! taken explicitly, wants Δt ≤ M_n/(K_n |v|). Lines that may come out of the water are taken with the mass that
@@ -29,8 +30,11 @@ const SAFETY: f64 = 0.9;
 const SAFETY_UNDAMPED: f64 = 0.5;
 /// Damping ratio of the shortest waves from which slackening gathers no energy at the full safety [-].
 const DAMPING_RATIO_ENOUGH: f64 = 0.016;
+/// The same of a line that may part [-]. Measured on a folded chain let go at an end, 2 % damped, of 40 to 160 elements: with 0.9, 0.72, 0.63 and 0.54 of
+/// the limit the crack gains up to 3.2, 1.1, 0.5 and 0 % of its energy.
+const DAMPING_RATIO_WHIP: f64 = 0.1;
 /// Steps to the first axial period that leave an error of 1 % in a tension with snaps [-]: half of the tolerance they belong to, so that
-/// the mesh has the rest of it. Measured on oc3_catenary and lindahl_fast: 2 % with 65, second order.
+/// the mesh has the rest of it. Measured on oc3_catenary: 2 % with 65, 0.7 % with 130.
 const STEPS_PER_AXIAL_PERIOD: f64 = 92.0;
 /// Strain up to which a stiffening measure is stable [-]; beyond it the steps shorten as it stiffens.
 const STRAIN_EXPECTED: f64 = 0.05;
@@ -42,7 +46,7 @@ pub fn explicit_step(line: &Line) -> f64 {
     if let Some(winch) = &line.winch {
         return explicit_step(winch.reel()).min(reeled_step(winch.reel()));
     }
-    let segments = &line.segments;
+    let (segments, enough) = (&line.segments, damping_enough(line));
     let mut limit = f64::INFINITY;
     for i in loose_nodes(line) {
         let spring: f64 = beside(line, i)
@@ -50,7 +54,7 @@ pub fn explicit_step(line: &Line) -> f64 {
             .sum();
         let lags = beside(line, i).map(|segment| lag(segments, segment));
         let omega = ((2.0 * spring + heave(line, i)) / line.least_mass(i)).sqrt();
-        limit = limit.min(damped_limit(omega, lags.fold(0.0, f64::max)));
+        limit = limit.min(damped_limit(omega, lags.fold(0.0, f64::max), enough));
     }
     limit
 }
@@ -76,7 +80,11 @@ fn reeled_step(reel: &Line) -> f64 {
         let (left, right) = (stiffness(reel, i - 1), stiffness(reel, i) / SHORTEST);
         let mass = 0.5 * (1.0 + SHORTEST) * reel.least_mass(i);
         let lag = lag(&reel.segments, i - 1).max(lag(&reel.segments, i));
-        damped_limit((2.0 * (left + right) / mass).sqrt(), lag)
+        damped_limit(
+            (2.0 * (left + right) / mass).sqrt(),
+            lag,
+            DAMPING_RATIO_ENOUGH,
+        )
     };
     let nodes = 1..reel.segment_count();
     nodes.map(limit).fold(f64::INFINITY, f64::min)
@@ -89,6 +97,7 @@ pub fn free_point_step(model: &Model, point: usize) -> f64 {
     };
     let own = free.sphere.map_or(0.0, |sphere| sphere.stiffness_max());
     let mut alone = 0.0_f64; // greatest k/M of one line, should all others part
+    let mut enough = DAMPING_RATIO_ENOUGH;
     let (mut mass, mut sum, mut longest) = (free.mass, 0.5 * own, 0.0_f64);
     for &(index, end) in &model.points[point].attached {
         let line = &model.lines[index];
@@ -103,8 +112,9 @@ pub fn free_point_step(model: &Model, point: usize) -> f64 {
             alone = lone_rates(model, point);
         }
         longest = longest.max(lag(&line.segments, segment));
+        enough = enough.max(damping_enough(line));
     }
-    damped_limit((2.0 * (sum / mass).max(alone)).sqrt(), longest)
+    damped_limit((2.0 * (sum / mass).max(alone)).sqrt(), longest, enough)
 }
 
 /// Greatest ratio of a segment's stiffness to the mass of its half node [1/s²] among the lines at a point.
@@ -137,10 +147,18 @@ fn lag(segments: &Segments, i: usize) -> f64 {
     damping / stiffness
 }
 
-/// Limit for a circular frequency ω [rad/s] and BA/EA [s], with safety.
-fn damped_limit(omega: f64, lag: f64) -> f64 {
+/// Damping ratio from which a line uses the full safety [-].
+fn damping_enough(line: &Line) -> f64 {
+    match &line.parting {
+        None => DAMPING_RATIO_ENOUGH,
+        Some(_) => DAMPING_RATIO_WHIP,
+    }
+}
+
+/// Limit for a circular frequency ω [rad/s] and BA/EA [s], with safety, the full one from the damping ratio `enough` on.
+fn damped_limit(omega: f64, lag: f64, enough: f64) -> f64 {
     let zeta = 0.5 * omega * lag;
-    let damped = (zeta / DAMPING_RATIO_ENOUGH).min(1.0);
+    let damped = (zeta / enough).min(1.0);
     let safety = SAFETY_UNDAMPED + damped * (SAFETY - SAFETY_UNDAMPED);
     safety * 2.0 / omega * ((1.0 + zeta * zeta).sqrt() - zeta)
 }
@@ -148,14 +166,49 @@ fn damped_limit(omega: f64, lag: f64) -> f64 {
 /// Step [s] that resolves the first axial period 4L/c for a target error of tension [-].
 pub fn axial_accuracy_step(line: &Line, tolerance: f64) -> f64 {
     let segments = &line.segments;
-    let travel: f64 = (0..line.segment_count())
-        .map(|i| {
-            let mass = line.nodes.mass_tangent[i] + line.nodes.mass_tangent[i + 1];
-            let length = line.nodes.length[i] + line.nodes.length[i + 1];
-            segments.length[i] * (mass / length / segments.in_motion(i).0).sqrt()
-        })
-        .sum();
-    4.0 * travel / STEPS_PER_AXIAL_PERIOD * (tolerance / 0.02).sqrt()
+    let travel = travel_time(line, &line.nodes.mass_tangent, |i| segments.in_motion(i).0);
+    resolved(4.0 * travel, tolerance)
+}
+
+/// Step [s] that resolves the elastic oscillation of a free point on its lines, each taken as one spring with half of its mass, for a target error of
+/// tension [-]; infinite for points that are held.
+pub fn point_accuracy_step(model: &Model, point: usize, tolerance: f64) -> f64 {
+    let Some(free) = model.points[point].free() else {
+        return f64::INFINITY;
+    };
+    let (mut mass, mut spring) = (free.mass, 0.0);
+    for &(index, _) in &model.points[point].attached {
+        let line = &model.lines[index];
+        let yields = |i: usize| 1.0 / stiffness(line, i);
+        spring += 1.0 / (0..line.segment_count()).map(yields).sum::<f64>();
+        mass += 0.5 * line.nodes.mass_tangent.iter().sum::<f64>();
+    }
+    resolved(std::f64::consts::TAU * (mass / spring).sqrt(), tolerance)
+}
+
+/// Step [s] that resolves an axial period [s] for a target error of tension [-].
+fn resolved(period: f64, tolerance: f64) -> f64 {
+    period / STEPS_PER_AXIAL_PERIOD * (tolerance / 0.02).sqrt()
+}
+
+/// Longest period of a line's transverse waves between ends that are held [s], under a tension [N].
+pub fn transverse_period(line: &Line, tension: f64) -> f64 {
+    let mass = match &line.surface {
+        None => &line.nodes.mass_normal,
+        Some(_) => &line.nodes.mass, // in air
+    };
+    2.0 * travel_time(line, mass, |_| tension.max(0.0))
+}
+
+/// Time that a wave takes along a line [s] with masses of its nodes [kg] and a force that restores its segments [N].
+fn travel_time(line: &Line, masses: &[f64], force: impl Fn(usize) -> f64) -> f64 {
+    let (nodes, lengths) = (&line.nodes, &line.segments.length);
+    let time = |i: usize| {
+        let mass = masses[i] + masses[i + 1];
+        let length = nodes.length[i] + nodes.length[i + 1];
+        lengths[i] * (mass / length / force(i)).sqrt()
+    };
+    (0..line.segment_count()).map(time).sum()
 }
 
 /// Greatest stiffness that the water's surface gives a node [N/m].

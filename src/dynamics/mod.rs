@@ -5,6 +5,7 @@ pub mod axial_implicit;
 pub mod beam;
 mod choice;
 mod creep;
+mod crew;
 pub mod implicit;
 mod layout;
 pub mod leapfrog;
@@ -18,6 +19,7 @@ mod sea;
 mod surface;
 
 pub use choice::{AXIAL_IMPLICIT_COST, Choice};
+pub use crew::{as_helper, is_helper};
 
 /// Why a step could not be made. The state is as it was before.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

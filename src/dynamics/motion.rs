@@ -20,7 +20,8 @@ use std::array::from_fn;
 use nalgebra::{Vector3, Vector6};
 use serde::{Deserialize, Serialize};
 
-use crate::math::hermite::{self, Hermite};
+use crate::math::hermite::{self, Hermites};
+use crate::math::lanes::{LANES, Lanes};
 use crate::model::{Kinematics, Pose};
 use crate::scene::Reconstruction;
 
@@ -58,6 +59,9 @@ pub struct Clock {
     count: usize,
     /// When all that was missed is to be made up [s].
     made_up: f64,
+    /// The time between two samples [s] that the `even` newest pairs of neighbours are apart, but for rounding.
+    gap: f64,
+    even: usize,
 }
 
 /// What the time of a sample is to the samples before.
@@ -73,8 +77,8 @@ enum Order {
 
 impl Order {
     /// Samples with one more, newest first.
-    #[inline]
-    fn push(self, samples: &[f64; SAMPLES_MAX], sample: f64) -> [f64; SAMPLES_MAX] {
+    #[inline(always)]
+    fn push<T: Copy>(self, samples: &[T; SAMPLES_MAX], sample: T) -> [T; SAMPLES_MAX] {
         let [a, b, c, d, e, f] = *samples;
         match self {
             Order::After => [sample, a, b, c, d, e],
@@ -90,6 +94,8 @@ impl Clock {
             times: [time; SAMPLES_MAX],
             count: 1,
             made_up: time,
+            gap: 0.0,
+            even: 0,
         }
     }
 
@@ -102,62 +108,70 @@ impl Clock {
         foresight: &mut Foresight,
     ) {
         let last_step = time - self.times[0];
-        let order = if last_step == 0.0 {
-            Order::Again
+        let order = if last_step > 0.0 {
+            self.count = (self.count + 1).min(SAMPLES_MAX);
+            self.made_up = self.made_up.max(time + last_step);
+            if self.keeps(last_step) {
+                self.even = (self.even + 1).min(SAMPLES_MAX - 1);
+            } else {
+                (self.gap, self.even) = (last_step, 1);
+            }
+            Order::After
         } else if last_step < 0.0 {
+            (self.count, self.made_up, self.even) = (1, time, 0);
             Order::Before
         } else {
-            Order::After
+            Order::Again
         };
-        match order {
-            Order::After => {
-                self.count = (self.count + 1).min(SAMPLES_MAX);
-                self.made_up = self.made_up.max(time + last_step);
-            }
-            Order::Again => {}
-            Order::Before => (self.count, self.made_up) = (1, time),
-        }
         self.times = order.push(&self.times, time);
         foresight.renew(self, order, step, reconstruction);
     }
 
-    /// What is left after a step [s] of a distance and a velocity by which a path misses its host now: the cubic from both to none when all is
-    /// made up. Rows of position [-, s] and velocity [1/s, -].
-    fn left(&self, step: f64) -> [[f64; 2]; 2] {
+    /// Whether a step [s] is as long as the ones before, but for rounding.
+    fn keeps(&self, step: f64) -> bool {
+        (step - self.gap).abs() <= ROUNDING * self.gap
+    }
+
+    /// What is left after a step [s] of a distance and a velocity by which a path misses its host now, where anything is: the cubic from both
+    /// to none when all is made up. Rows of position [-, s] and velocity [1/s, -].
+    fn left(&self, step: f64) -> Option<[[f64; 2]; 2]> {
         let time = self.made_up - self.times[0];
         if time <= step * (1.0 + ROUNDING) {
-            return [[0.0; 2]; 2];
+            return None;
         }
         let s = step / time;
         let rest = 1.0 - s;
-        [
+        Some([
             [rest * rest * (1.0 + 2.0 * s), step * rest * rest],
             [-6.0 * s * rest / time, rest * (1.0 - 3.0 * s)],
-        ]
+        ])
     }
 }
 
 /// What the times of the samples make of a prediction, worked out once for all paths of a communication step.
+///
+/// A host that keeps its step is taken at its word: its samples and the end of the step are evenly apart, whatever rounding says. What
+/// follows from that is then the same for every step.
 #[derive(Debug, Clone)]
 pub struct Foresight {
     order: Order,
     jumps: bool,
-    /// Start and end of the step [s].
-    span: [f64; 2],
+    /// Start of the step [s], its length [s] and 1/length [1/s].
+    span: [f64; 3],
     /// What is left at the end of the step of what the path misses now, see [`Clock::left`].
-    left: [[f64; 2]; 2],
+    left: Option<[[f64; 2]; 2]>,
     /// The samples that count, newest first; the first `count` are in use.
     picked: [usize; SAMPLES_MAX],
     count: usize,
     /// Whether all samples count.
     all: bool,
-    /// 1/length of the step [1/s].
-    rate: f64,
-    /// Times of the samples that count [s].
-    times: [f64; SAMPLES_MAX],
+    /// Whether the host keeps its step.
+    even: bool,
+    /// Unit of the times that follow [s], and its inverse [1/s]: the step where it is kept.
+    unit: [f64; 2],
     /// 1/(t_i − t_{i+k}) of the samples that count.
     inverse: Reciprocals,
-    /// Products of t_j − t_{j+1} … t_j − t_{j+k}, by place j and order k − 1 [s^k].
+    /// Products of t_j − t_{j+1} … t_j − t_{j+k}, by place j and order k − 1.
     reach: [Terms; JUDGED],
     /// Newton's polynomials of the newest samples at the end of the step, their slopes there and their integrals over it.
     value: Terms,
@@ -165,7 +179,7 @@ pub struct Foresight {
     integral: Terms,
 }
 
-/// 1/(t_i − t_{i+k}) by place i, for the orders k from 1 on [1/s]. Written out, so that the compiler unrolls what is done with them.
+/// 1/(t_i − t_{i+k}) by place i, for the orders k from 1 on. Written out, so that the compiler unrolls what is done with them.
 #[derive(Debug, Clone)]
 struct Reciprocals {
     first: [f64; SAMPLES_MAX - 1],
@@ -175,7 +189,7 @@ struct Reciprocals {
 }
 
 impl Reciprocals {
-    /// Of these times [s].
+    /// Of these times.
     fn new(t: &[f64; SAMPLES_MAX]) -> Reciprocals {
         Reciprocals {
             first: from_fn(|i| 1.0 / (t[i] - t[i + 1])),
@@ -183,19 +197,6 @@ impl Reciprocals {
             third: from_fn(|i| 1.0 / (t[i] - t[i + 3])),
             fourth: from_fn(|i| 1.0 / (t[i] - t[i + 4])),
         }
-    }
-
-    /// The times [s] are those before, moved on by a place, and a new first one.
-    fn push(&mut self, t: &[f64; SAMPLES_MAX]) {
-        let [one, two, three, four] = [1, 2, 3, 4].map(|k| 1.0 / (t[0] - t[k]));
-        let [a, b, c, d, _] = self.first;
-        self.first = [one, a, b, c, d];
-        let [a, b, c, _] = self.second;
-        self.second = [two, a, b, c];
-        let [a, b, _] = self.third;
-        self.third = [three, a, b];
-        let [a, _] = self.fourth;
-        self.fourth = [four, a];
     }
 }
 
@@ -209,13 +210,13 @@ impl Foresight {
         Foresight {
             order: Order::Before,
             jumps: false,
-            span: [f64::NAN; 2],
-            left: [[0.0; 2]; 2],
+            span: [f64::NAN; 3],
+            left: None,
             picked: [0; SAMPLES_MAX],
             count: 0,
             all: false,
-            rate: 0.0,
-            times: [f64::NAN; SAMPLES_MAX],
+            even: false,
+            unit: [1.0; 2],
             inverse: Reciprocals::new(&[f64::NAN; SAMPLES_MAX]),
             reach: [zeros; JUDGED],
             value: zeros,
@@ -224,34 +225,42 @@ impl Foresight {
         }
     }
 
-    /// What holds of the samples of the last step is not worked out again, but moved on by a place.
     fn renew(&mut self, clock: &Clock, order: Order, step: f64, reconstruction: Reconstruction) {
-        let start = clock.times[0];
-        let end = start + step;
-        let (picked, count) = spaced(&clock.times[..clock.count], step / STEP_RATIO_MAX);
+        let (was_even, start) = (self.even, clock.times[0]);
+        let rate = 1.0 / step;
+        (self.order, self.jumps) = (order, reconstruction == Reconstruction::Jump);
+        self.span = [start, step, rate];
+        self.left = clock.left(step);
+        self.even = clock.even == SAMPLES_MAX - 1 && clock.keeps(step);
+        if self.even {
+            self.unit = [step, rate];
+            if !was_even {
+                (self.picked, self.count) = (from_fn(|place| place), SAMPLES_MAX);
+                self.all = true;
+                self.foresee(&from_fn(|i| -(i as f64)), 1.0);
+            }
+            return;
+        }
+        self.unit = [1.0; 2];
+        (self.picked, self.count) = spaced(&clock.times[..clock.count], step / STEP_RATIO_MAX);
+        self.all = self.count == clock.count;
         // what is not in use gets times that divide nothing by zero, and is not looked at
-        let t: [f64; SAMPLES_MAX] = from_fn(|i| match i < count {
-            true => clock.times[picked[i]],
+        let t: [f64; SAMPLES_MAX] = from_fn(|i| match i < self.count {
+            true => clock.times[self.picked[i]],
             false => start - (1.0 + i as f64) * step.max(f64::MIN_POSITIVE),
         });
-        let reach = |j: usize| {
+        self.foresee(&t, start + step);
+    }
+
+    /// From samples at the times `t` to an end.
+    fn foresee(&mut self, t: &[f64; SAMPLES_MAX], end: f64) {
+        self.inverse = Reciprocals::new(t);
+        self.reach = from_fn(|j| {
             let [a, b, c, d] = [1, 2, 3, 4].map(|k| t[j] - t[j + k]);
             [a, a * b, a * b * c, a * b * c * d]
-        };
-        if t[1..] == self.times[..SAMPLES_MAX - 1] {
-            self.inverse.push(&t);
-            self.reach[1] = self.reach[0];
-        } else {
-            self.inverse = Reciprocals::new(&t);
-            self.reach[1] = reach(1);
-        }
-        (self.reach[0], self.times) = (reach(0), t);
+        });
         let [h, e1, e2] = [end - t[0], end - t[1], end - t[2]];
         let [a, b] = [t[0] - t[1], t[0] - t[2]];
-        (self.order, self.jumps) = (order, reconstruction == Reconstruction::Jump);
-        (self.span, self.rate) = ([start, end], 1.0 / (end - start));
-        self.left = clock.left(step);
-        (self.picked, self.count, self.all) = (picked, count, count == clock.count);
         self.value = [1.0, h, h * e1, h * e1 * e2];
         self.slope = [0.0, 1.0, h + e1, h * e1 + (h + e1) * e2];
         self.integral = [
@@ -262,8 +271,13 @@ impl Foresight {
         ];
     }
 
+    /// The samples that count.
+    fn pick(&self, samples: &Samples) -> Samples {
+        self.picked.map(|place| samples[place])
+    }
+
     /// How many of the samples that count are among the `newest` of all.
-    #[inline]
+    #[inline(always)]
     fn known(&self, newest: usize) -> usize {
         if self.all {
             return self.count.min(newest);
@@ -277,12 +291,6 @@ impl Foresight {
 /// about a long step.
 fn spaced(times: &[f64], spacing: f64) -> ([usize; SAMPLES_MAX], usize) {
     let far = spacing * (1.0 - 1e-9);
-    if let [a, b, c, d, e, f] = *times {
-        let [ab, bc, cd, de, ef] = [a - b, b - c, c - d, d - e, e - f].map(|gap| gap >= far);
-        if ab & bc & cd & de & ef {
-            return (from_fn(|place| place), SAMPLES_MAX);
-        }
-    }
     let (mut picked, mut count) = ([0; SAMPLES_MAX], 0);
     let mut last = f64::INFINITY;
     for (place, &time) in times.iter().enumerate() {
@@ -295,144 +303,282 @@ fn spaced(times: &[f64], spacing: f64) -> ([usize; SAMPLES_MAX], usize) {
     (picked, count)
 }
 
-/// The C1 path of a coupled point along one axis, and the samples it is predicted from.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct AxisPath {
-    /// What the host said, newest first, at the times of the clock [m].
-    positions: [f64; SAMPLES_MAX],
-    /// The same of the velocity, as far as it did without a gap: the first `rated` are in use [m/s].
-    velocities: [f64; SAMPLES_MAX],
-    rated: usize,
-    /// Degree that the last prediction was judged to need [-].
-    degree: usize,
-    /// The present segment.
-    curve: Hermite,
-    /// Where it ends [m], and at which velocity [m/s].
-    end: [f64; 2],
+/// Of four axes, newest first.
+type Samples = [Lanes; SAMPLES_MAX];
+
+/// What a host says of up to four axes at a time.
+#[derive(Debug, Clone, Copy)]
+pub struct Said {
+    /// Where it is along them [m, rad].
+    pub position: Lanes,
+    /// How fast [m/s, rad/s].
+    pub velocity: Lanes,
+    /// 1 along those of which the host tells the velocity, else 0 [-].
+    pub rated: Lanes,
 }
 
-impl AxisPath {
-    /// At rest at a position [m].
-    pub fn at_rest(position: f64) -> AxisPath {
-        AxisPath {
+impl Said {
+    /// Of N axes, the last of which stands for those that are not there too.
+    #[inline(always)]
+    pub fn new<const N: usize>(position: [f64; N], velocity: [Option<f64>; N]) -> Said {
+        let last = |lane: usize| lane.min(N - 1);
+        let rated = velocity.map(|rate| f64::from(u8::from(rate.is_some())));
+        let velocity = velocity.map(|rate| rate.unwrap_or(0.0));
+        Said {
+            position: Lanes::new(from_fn(|lane| position[last(lane)])),
+            velocity: Lanes::new(from_fn(|lane| velocity[last(lane)])),
+            rated: Lanes::new(from_fn(|lane| rated[last(lane)])),
+        }
+    }
+}
+
+/// The C1 path of something along four axes side by side, and the samples it is predicted from.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct AxesPath {
+    /// What the host said, newest first, at the times of the clock [m, rad].
+    positions: Samples,
+    /// The same of the velocities, as far as it did along the same axes [m/s, rad/s].
+    velocities: Samples,
+    /// 1 along the axes of which it told the velocity last, else 0 [-].
+    rated: Lanes,
+    /// How often it did along these [-].
+    times_rated: usize,
+    /// Degrees that the last prediction was judged to need [-].
+    degree: Lanes,
+    /// The present segments.
+    curve: Hermites,
+    /// Where they end [m, rad], and at which velocities [m/s, rad/s].
+    end: [Lanes; 2],
+}
+
+impl AxesPath {
+    /// At rest at a position [m, rad].
+    pub fn at_rest<const N: usize>(position: [f64; N]) -> AxesPath {
+        let zero = Lanes::splat(0.0);
+        let Said { position, .. } = Said::new(position, [None; N]);
+        AxesPath {
             positions: [position; SAMPLES_MAX],
-            velocities: [0.0; SAMPLES_MAX],
-            rated: 0,
-            degree: 0,
-            curve: Hermite::constant(position),
-            end: [position, 0.0],
+            velocities: [zero; SAMPLES_MAX],
+            rated: zero,
+            times_rated: 0,
+            degree: zero,
+            curve: Hermites::constant(position),
+            end: [position, zero],
         }
     }
 
-    /// Continues the path by a communication step from a position [m] and perhaps a velocity [m/s] at its start.
-    pub fn extend(&mut self, foresight: &Foresight, position: f64, velocity: Option<f64>) {
-        if foresight.order == Order::Before {
-            (self.rated, self.degree) = (0, 0);
+    /// Becomes the path `before` continued by a communication step from what the host says at its start.
+    #[inline(always)]
+    pub fn extend(&mut self, before: &AxesPath, foresight: &Foresight, said: &Said) {
+        let goes_on = foresight.order == Order::After && said.rated == before.rated;
+        if !goes_on || !foresight.all {
+            return self.turn(before, foresight, said);
         }
-        let to = match velocity {
-            Some(velocity) => {
-                self.positions = foresight.order.push(&self.positions, position);
-                self.rate(foresight, position, velocity)
-            }
-            None => {
-                self.rated = 0;
-                self.predict(foresight, position)
-            }
+        // arrays are taken apart, so that they stay in registers: read again at once, at other places than they were written, they would
+        // hold up the step
+        let [a, b, c, d, e, _] = before.positions;
+        let [v, w, x, y, z, _] = before.velocities;
+        (self.rated, self.degree) = (before.rated, before.degree);
+        self.positions = [said.position, a, b, c, d, e];
+        let to = if said.rated.all_positive() {
+            self.velocities = [said.velocity, v, w, x, y, z];
+            self.times_rated = (before.times_rated + 1).min(SAMPLES_MAX);
+            self.rate(foresight, said, [said.velocity, v, w, x, y, z])
+        } else if !said.rated.any_positive() {
+            self.velocities = before.velocities;
+            self.times_rated = 0;
+            self.predict(foresight, [said.position, a, b, c, d, e])
+        } else {
+            return self.turn(before, foresight, said);
         };
-        let [start, end] = foresight.span;
-        if foresight.jumps {
-            let velocity = velocity.unwrap_or(0.0);
-            self.end = [position, velocity];
-            return self.follow(
-                foresight.span,
-                [position + (end - start) * velocity, velocity],
-            );
+        self.bridge(before, foresight, said, to);
+    }
+
+    /// [`AxesPath::extend`] where the host goes back in time or leaves samples behind that do not count, or tells the velocity along other axes
+    /// than before, or along some only.
+    #[cold]
+    #[inline(never)]
+    fn turn(&mut self, before: &AxesPath, foresight: &Foresight, said: &Said) {
+        let (order, forgets) = (foresight.order, foresight.order == Order::Before);
+        let again = usize::from(order == Order::Again);
+        let known = match forgets || said.rated != before.rated {
+            true => 0,
+            false => before.times_rated.saturating_sub(again),
+        };
+        *self = *before;
+        self.rated = said.rated;
+        self.times_rated = (known + 1).min(SAMPLES_MAX);
+        self.positions = order.push(&before.positions, said.position);
+        self.velocities = order.push(&before.velocities, said.velocity);
+        if forgets {
+            self.degree = Lanes::splat(0.0);
         }
-        let missed = [self.end[0] - position, self.end[1] - to[1]];
-        let left = foresight
-            .left
-            .map(|row| row[0] * missed[0] + row[1] * missed[1]);
-        let to = [to[0] + left[0], to[1] + left[1]];
-        self.curve = Hermite::bridge([start, end - start, foresight.rate], self.end, to);
+        let degree = self.degree;
+        let predicted = self.predict(foresight, foresight.pick(&self.positions));
+        let judged = std::mem::replace(&mut self.degree, degree);
+        let rated = self.rate(foresight, said, foresight.pick(&self.velocities));
+        self.degree = said.rated.choose(self.degree, judged);
+        let to = from_fn(|k| said.rated.choose(rated[k], predicted[k]));
+        self.bridge(before, foresight, said, to);
+    }
+
+    /// Lays the segments from the end of the path `before` to position [m, rad] and velocity [m/s, rad/s].
+    #[inline(always)]
+    fn bridge(&mut self, before: &AxesPath, foresight: &Foresight, said: &Said, to: [Lanes; 2]) {
+        let ([position, velocity], [_, length, _]) = (to, foresight.span);
+        let mut from = before.end;
+        self.end = to;
+        if foresight.jumps {
+            from = [said.position, said.velocity];
+            let reached = said.position + Lanes::splat(length) * said.velocity;
+            self.end = [reached, said.velocity];
+        } else if let Some(left) = foresight.left {
+            let missed = [from[0] - said.position, from[1] - velocity];
+            let [place, speed] = left.map(|[a, b]| {
+                let [a, b] = [a, b].map(Lanes::splat);
+                a * missed[0] + b * missed[1]
+            });
+            self.end = [position + place, velocity + speed];
+        }
+        self.curve = Hermites::bridge(foresight.span, from, self.end);
+    }
+
+    /// Continues the path over a span of time [s] to positions [m, rad] and velocities [m/s, rad/s] that are known.
+    pub fn follow(&mut self, [start, end]: [f64; 2], to: [Lanes; 2]) {
+        let length = end - start;
+        self.curve = Hermites::bridge([start, length, 1.0 / length], self.end, to);
         self.end = to;
     }
 
-    /// Continues the path over a span of time [s] to a position [m] and a velocity [m/s] that are known.
-    pub fn follow(&mut self, [start, end]: [f64; 2], to: [f64; 2]) {
-        let [position, velocity] = self.end;
-        self.curve = Hermite::new((start, position, velocity), (end, to[0], to[1]));
-        self.end = to;
-    }
-
-    /// Position, velocity and acceleration at time `t` [s] of the present segment.
-    #[inline]
-    pub fn at(&self, t: f64) -> hermite::Sample {
+    /// Positions, velocities and accelerations at time `t` [s] of the present segments.
+    #[inline(always)]
+    pub fn at(&self, t: f64) -> [Lanes; 3] {
         self.curve.at(t)
     }
 
-    /// Remembers a position [m], and predicts position [m] and velocity [m/s] at the end of a step from what the host said of the position.
-    #[inline]
-    fn predict(&mut self, foresight: &Foresight, position: f64) -> [f64; 2] {
-        let differences = Differences::new(foresight, &mut self.positions, position);
+    /// Predicts position [m, rad] and velocity [m/s, rad/s] at the end of a step from what the host said of the position.
+    #[inline(always)]
+    fn predict(&mut self, foresight: &Foresight, samples: Samples) -> [Lanes; 2] {
+        let differences = Differences::new(foresight, samples);
         let degree = differences.degree(foresight.count, &mut self.degree);
-        [&foresight.value, &foresight.slope].map(|basis| differences.sum(degree, basis))
+        let slope = differences.sum(degree, &foresight.slope);
+        [
+            differences.sum(degree, &foresight.value),
+            slope * Lanes::splat(foresight.unit[1]),
+        ]
     }
 
-    /// Remembers a velocity [m/s], and predicts from the velocities and the position [m] at the start of a step.
-    #[inline]
-    fn rate(&mut self, foresight: &Foresight, position: f64, velocity: f64) -> [f64; 2] {
-        let again = usize::from(foresight.order == Order::Again);
-        self.rated = (self.rated.saturating_sub(again) + 1).min(SAMPLES_MAX);
-        let differences = Differences::new(foresight, &mut self.velocities, velocity);
-        let degree = differences.degree(foresight.known(self.rated), &mut self.degree);
+    /// Predicts from what it said of the velocity, and the position [m, rad] at the start of a step.
+    #[inline(always)]
+    fn rate(&mut self, foresight: &Foresight, said: &Said, samples: Samples) -> [Lanes; 2] {
+        let differences = Differences::new(foresight, samples);
+        let degree = differences.degree(foresight.known(self.times_rated), &mut self.degree);
+        let rise = differences.sum(degree, &foresight.integral);
         [
-            position + differences.sum(degree, &foresight.integral),
+            said.position + rise * Lanes::splat(foresight.unit[0]),
             differences.sum(degree, &foresight.value),
         ]
     }
 }
 
-/// The paths of a coupled point along x, y and z.
+/// The path of something along one axis.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct HostPath(pub [AxisPath; 3]);
+pub struct AxisPath(AxesPath);
+
+impl AxisPath {
+    /// At rest at a position [m].
+    pub fn at_rest(position: f64) -> AxisPath {
+        AxisPath(AxesPath::at_rest([position]))
+    }
+
+    /// Continues the path by a communication step from a position [m] and perhaps a velocity [m/s] at its start.
+    pub fn extend(&mut self, foresight: &Foresight, position: f64, velocity: Option<f64>) {
+        let before = self.0;
+        self.0
+            .extend(&before, foresight, &Said::new([position], [velocity]));
+    }
+
+    /// Continues the path over a span of time [s] to a position [m] and a velocity [m/s] that are known.
+    pub fn follow(&mut self, span: [f64; 2], to: [f64; 2]) {
+        self.0.follow(span, to.map(Lanes::splat));
+    }
+
+    /// Position, velocity and acceleration at time `t` [s] of the present segment.
+    #[inline]
+    pub fn at(&self, t: f64) -> hermite::Sample {
+        let [value, slope, curvature] = self.0.at(t).map(|lanes| lanes[0]);
+        hermite::Sample {
+            value,
+            slope,
+            curvature,
+        }
+    }
+}
+
+/// The path of a coupled point along x, y and z.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct HostPath(pub AxesPath);
 
 impl HostPath {
     /// At rest at a position [m].
     pub fn at_rest(position: Vector3<f64>) -> HostPath {
-        HostPath([0, 1, 2].map(|axis| AxisPath::at_rest(position[axis])))
+        HostPath(AxesPath::at_rest(position.into()))
     }
 
     /// Position, velocity and acceleration at time `t` [s].
-    #[inline]
+    #[inline(always)]
     pub fn at(&self, t: f64) -> Kinematics {
-        let [x, y, z] = &self.0;
-        let [x, y, z] = [x.at(t), y.at(t), z.at(t)];
+        let [position, velocity, acceleration] = self.0.at(t).map(|lanes| lanes.xyz());
         Kinematics {
-            position: Vector3::new(x.value, y.value, z.value),
-            velocity: Vector3::new(x.slope, y.slope, z.slope),
-            acceleration: Vector3::new(x.curvature, y.curvature, z.curvature),
+            position,
+            velocity,
+            acceleration,
             ..Kinematics::default()
         }
     }
 }
 
-/// The paths of a vessel's displacement [m] along x, y and z and of its roll, pitch and yaw [rad].
+/// The paths of a vessel's displacement [m] along x, y and z, and of its roll, pitch and yaw [rad].
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct VesselPath(pub [AxisPath; 6]);
+pub struct VesselPath(pub [AxesPath; 2]);
 
 impl VesselPath {
     /// At rest at a pose [m, rad].
-    pub fn at_rest(pose: [f64; 6]) -> VesselPath {
-        VesselPath(pose.map(AxisPath::at_rest))
+    pub fn at_rest([x, y, z, roll, pitch, yaw]: [f64; 6]) -> VesselPath {
+        VesselPath([
+            AxesPath::at_rest([x, y, z]),
+            AxesPath::at_rest([roll, pitch, yaw]),
+        ])
+    }
+
+    /// Becomes the path `before` continued by a communication step from a pose [m, rad] and perhaps its rates [m/s, rad/s] at its start.
+    #[inline(always)]
+    pub fn extend(
+        &mut self,
+        before: &VesselPath,
+        foresight: &Foresight,
+        [x, y, z, roll, pitch, yaw]: [f64; 6],
+        [vx, vy, vz, wx, wy, wz]: [Option<f64>; 6],
+    ) {
+        let place = Said::new([x, y, z], [vx, vy, vz]);
+        let angles = Said::new([roll, pitch, yaw], [wx, wy, wz]);
+        let paths = self.0.iter_mut().zip(&before.0);
+        for ((path, before), said) in paths.zip([place, angles]) {
+            path.extend(before, foresight, &said);
+        }
     }
 
     /// Pose and its derivatives at time `t` [s].
     pub fn at(&self, t: f64) -> Pose {
-        let axes = self.0.each_ref().map(|axis| axis.at(t));
+        let [place, angles] = self.0.each_ref().map(|path| path.at(t));
+        let six = |order: usize| {
+            let (place, angles) = (place[order], angles[order]);
+            Vector6::from_fn(|i, _| if i < 3 { place[i] } else { angles[i - 3] })
+        };
         Pose {
-            value: Vector6::from_fn(|i, _| axes[i].value),
-            rate: Vector6::from_fn(|i, _| axes[i].slope),
-            acceleration: Vector6::from_fn(|i, _| axes[i].curvature),
+            value: six(0),
+            rate: six(1),
+            acceleration: six(2),
         }
     }
 }
@@ -440,82 +586,120 @@ impl VesselPath {
 /// Divided differences of the samples that count.
 struct Differences {
     /// Of the newest samples, by order from 0 on.
-    newest: Terms,
+    newest: [Lanes; DEGREE_MAX + 1],
     /// By how much polynomials of every degree through the samples before would have missed the newest ones.
-    miss: [Terms; JUDGED],
+    miss: [[Lanes; DEGREE_MAX + 1]; JUDGED],
 }
 
 impl Differences {
-    /// Of samples that a new one joins.
     #[inline(always)]
-    fn new(foresight: &Foresight, samples: &mut [f64; SAMPLES_MAX], sample: f64) -> Differences {
-        let pushed = foresight.order.push(samples, sample);
-        *samples = pushed;
-        // what was pushed is taken from registers: read again at once, at other places than it was written, it would hold up the step
-        let zeroth = match foresight.all {
-            true => pushed,
-            false => foresight.picked.map(|place| samples[place]),
-        };
-        let by = &foresight.inverse;
-        let first: [f64; SAMPLES_MAX - 1] = from_fn(|i| (zeroth[i] - zeroth[i + 1]) * by.first[i]);
-        let second: [f64; SAMPLES_MAX - 2] = from_fn(|i| (first[i] - first[i + 1]) * by.second[i]);
-        let third: [f64; SAMPLES_MAX - 3] = from_fn(|i| (second[i] - second[i + 1]) * by.third[i]);
-        let fourth: [f64; SAMPLES_MAX - 4] = from_fn(|i| (third[i] - third[i + 1]) * by.fourth[i]);
+    fn new(foresight: &Foresight, [a, b, c, d, e, f]: Samples) -> Differences {
+        let Reciprocals {
+            first: [ab, bc, cd, de, ef],
+            second: [ac, bd, ce, df],
+            third: [ad, be, cf],
+            fourth: [ae, bf],
+        } = foresight.inverse;
+        let over = |change: Lanes, inverse: f64| change * Lanes::splat(inverse);
+        let (p, q, r) = (over(a - b, ab), over(b - c, bc), over(c - d, cd));
+        let (s, t) = (over(d - e, de), over(e - f, ef));
+        let (pq, qr, rs, st) = (
+            over(p - q, ac),
+            over(q - r, bd),
+            over(r - s, ce),
+            over(s - t, df),
+        );
+        let (pr, qs, rt) = (over(pq - qr, ad), over(qr - rs, be), over(rs - st, cf));
+        let (ps, qt) = (over(pr - qs, ae), over(qs - rt, bf));
         // the remainder of the polynomial of degree k is the difference of order k + 1 times its nodes' distances
-        let miss = from_fn(|j| {
-            let next = [first[j], second[j], third[j], fourth[j]];
-            from_fn(|k| (next[k] * foresight.reach[j][k]).abs())
-        });
+        let [[r0, r1, r2, r3], [s0, s1, s2, s3]] = foresight.reach;
+        let miss = |next: Lanes, reach: f64| over(next, reach).abs();
         Differences {
-            newest: [zeroth[0], first[0], second[0], third[0]],
-            miss,
+            newest: [a, p, pq, pr],
+            miss: [
+                [miss(p, r0), miss(pq, r1), miss(pr, r2), miss(ps, r3)],
+                [miss(q, s0), miss(qr, s1), miss(qs, s2), miss(qt, s3)],
+            ],
         }
     }
 
-    /// The degree given, or the one that is set instead, because it would have predicted the newest samples clearly better from the ones
-    /// older than each; of the `known` newest samples.
+    /// The degrees given, or the ones that are set instead, because they would have predicted the newest samples clearly better from the
+    /// ones older than each; of the `known` newest samples.
     #[inline(always)]
-    fn degree(&self, known: usize, degree: &mut usize) -> usize {
+    fn degree(&self, known: usize, degree: &mut Lanes) -> Lanes {
+        if known < SAMPLES_MAX {
+            return self.degree_of_few(known, degree);
+        }
+        let [newest, before] = &self.miss;
+        let error = |k: usize| newest[k] + before[k];
+        let error = [error(0), error(1), error(2), error(3)];
+        let kept = *degree;
+        let low = above(kept, 1).choose(error[1], error[0]);
+        let high = above(kept, 3).choose(error[3], error[2]);
+        let own = above(kept, 2).choose(high, low);
+        let factor = |better: f64| Lanes::splat(1.0 / better);
+        let moves = above(kept, 1).choose(factor(BETTER), factor(BETTER_AT_REST));
+        let other = error[1].min(error[2]).min(error[3]) * moves;
+        let other = other.min(error[0] * factor(BETTER_AT_REST));
+        // another would have been better, or nothing moves and the degree says it does
+        let rests = kept - error[0] * Lanes::splat(f64::MAX);
+        if (own - other).any_positive() || rests.any_positive() {
+            (0..LANES).for_each(|axis| degree[axis] = self.judge(SAMPLES_MAX, kept[axis], axis));
+        }
+        *degree
+    }
+
+    /// [`Differences::degree`] where there are fewer samples than that looks at.
+    #[cold]
+    #[inline(never)]
+    fn degree_of_few(&self, known: usize, degree: &mut Lanes) -> Lanes {
         if known <= 2 {
             // two samples can judge no line, but a host that moves a point goes on moving it
-            return known - 1;
+            return Lanes::splat(known as f64 - 1.0);
         }
+        (0..LANES).for_each(|axis| degree[axis] = self.judge(known, degree[axis], axis));
+        *degree
+    }
+
+    /// The degree along an axis that would have predicted the newest samples best, the present one being `degree`.
+    #[cold]
+    #[inline(never)]
+    fn judge(&self, known: usize, degree: f64, axis: usize) -> f64 {
         let judged = JUDGED.min(known - 2);
         let highest = DEGREE_MAX.min(known - 1 - judged);
-        let [newest, before] = &self.miss;
-        let error: Terms = match judged {
-            JUDGED => from_fn(|k| newest[k] + before[k]),
-            _ => *newest,
-        };
-        let (kept, mut best, mut least) = match *degree {
-            kept if kept <= highest => (kept, kept, error[kept]),
-            _ => (0, 0, f64::INFINITY),
+        let errors = self.miss[..judged].iter();
+        let error = |k: usize| -> f64 { errors.clone().map(|miss| miss[k][axis]).sum() };
+        let kept = degree as usize;
+        let (kept, mut best, mut least) = match kept <= highest {
+            true => (kept, kept, error(kept)),
+            false => (0, 0, f64::INFINITY),
         };
         let handicaps = HANDICAPS[usize::from(kept > 0)];
-        for (other, error) in error.into_iter().enumerate() {
-            // over all degrees, so that the compiler unrolls it
-            let handicapped = match other <= highest {
-                true => error * handicaps[other],
-                false => f64::INFINITY,
-            };
+        for (other, handicap) in handicaps.into_iter().enumerate().take(highest + 1) {
+            let handicapped = error(other) * handicap;
             // what rests has no degree to keep
             if handicapped < least || (other == 0 && handicapped == 0.0) {
                 (best, least) = (other, handicapped);
             }
         }
-        *degree = best;
-        best
+        best as f64
     }
 
-    /// Newton's polynomial of a degree, whose terms have the values `basis`.
+    /// Newton's polynomials of these degrees, whose terms have the values `basis`.
     #[inline(always)]
-    fn sum(&self, degree: usize, basis: &Terms) -> f64 {
-        let term = |k: usize| match k <= degree {
-            true => self.newest[k] * basis[k],
-            false => 0.0,
+    fn sum(&self, degree: Lanes, basis: &Terms) -> Lanes {
+        let term = |k: usize| {
+            let term = self.newest[k] * Lanes::splat(basis[k]);
+            term.where_positive(above(degree, k))
         };
         (term(0) + term(1)) + (term(2) + term(3))
     }
+}
+
+/// Positive where a degree is at least k.
+#[inline(always)]
+fn above(degree: Lanes, k: usize) -> Lanes {
+    degree - Lanes::splat(k as f64 - 0.5)
 }
 
 #[cfg(test)]
@@ -586,6 +770,57 @@ mod tests {
                 140 => -0.1,
                 _ => step,
             };
+        }
+    }
+
+    #[test]
+    fn a_host_that_keeps_its_step_but_for_rounding_is_foreseen_as_one_that_keeps_it_exactly() {
+        for with_velocity in [false, true] {
+            let ends = [0.0, 1e-12, 1e-8].map(|noise| {
+                let mut path = Guided::at_rest(0.0, position(0.0));
+                let told = |k: usize| {
+                    let time = 0.25 * k as f64;
+                    Sample {
+                        time: time * (1.0 + noise * (k % 3) as f64),
+                        position: position(time),
+                        velocity: with_velocity.then(|| velocity(time)),
+                    }
+                };
+                (0..40).for_each(|k| path.extend(told(k), 0.25, Reconstruction::Smooth));
+                assert_eq!(path.2.even, noise < 1e-9);
+                path.at(10.0).value
+            });
+            // the last one is worked out from its times
+            assert_relative_eq!(ends[1], ends[0], epsilon = 1e-9);
+            assert_relative_eq!(ends[2], ends[0], epsilon = 1e-4);
+        }
+    }
+
+    #[test]
+    fn axes_are_foreseen_as_each_would_be_alone() {
+        let (mut clock, mut foresight) = (Clock::new(0.0), Foresight::none());
+        let mut together = AxesPath::at_rest([0.0; 3]);
+        let mut alone = [0.0; 3].map(AxisPath::at_rest);
+        for k in 0..300 {
+            // the second axis without its velocity; leaps in between
+            let time = 0.1 * f64::from(k) + if k % 50 > 25 { 0.03 } else { 0.0 };
+            let places = [position(time), position(0.4 * time), position(2.0 * time)];
+            let rates = [Some(velocity(time)), None, Some(2.0 * velocity(2.0 * time))];
+            clock.tell(time, 0.1, Reconstruction::Smooth, &mut foresight);
+            let before = together;
+            together.extend(&before, &foresight, &Said::new(places, rates));
+            for axis in 0..3 {
+                alone[axis].extend(&foresight, places[axis], rates[axis]);
+            }
+            for axis in 0..3 {
+                let [value, slope, _] = together.at(time + 0.1).map(|lanes| lanes[axis]);
+                let own = alone[axis].at(time + 0.1);
+                assert_eq!(
+                    [value, slope],
+                    [own.value, own.slope],
+                    "axis {axis}, {time} s"
+                );
+            }
         }
     }
 
@@ -667,7 +902,7 @@ mod tests {
             let time = k as f64 * step;
             let said = sample(time * (1.0 + rounding), motion(time));
             path.extend(said, step, Reconstruction::Smooth);
-            path.1.degree
+            path.1.0.degree[0] as usize
         };
         (0..(120.0 / step) as usize).map(degree).collect()
     }
@@ -703,7 +938,7 @@ mod tests {
                 assert!(path.at(time + 0.1).value <= 4.0 + 1e-12, "{time} s");
             }
         }
-        assert_eq!(path.1.degree, 0);
+        assert_eq!(path.1.0.degree[0], 0.0);
     }
 
     #[test]

@@ -344,10 +344,10 @@ impl NetworkWork {
     /// Puts every line's ends where their points are at `t` [s], with velocities half a step earlier.
     pub fn put_ends(&mut self, t: f64, step: Step, held: &impl Fn(usize, f64) -> Kinematics) {
         for (work, ends) in self.lines.iter_mut().zip(&mut self.ends) {
-            for (end, at) in [End::A, End::B].into_iter().zip(ends) {
-                at.find(&self.points, t, step, held);
-                work.put_end(end, at.placed);
+            for end in ends.iter_mut() {
+                end.find(&self.points, t, step, held);
             }
+            work.put_ends(&[ends[0].placed, ends[1].placed]);
         }
     }
 

@@ -55,10 +55,11 @@ impl Fold {
 
     /// Where node `i` stands.
     pub fn slot(self, i: usize) -> Slot {
-        let (i, rows) = (i as u32, self.rows as u32); // shorter to divide
+        // quicker than a division, and steps ask for their ends
+        let lane = (1..=LANES).map(|k| usize::from(i >= k * self.rows)).sum();
         Slot {
-            row: (i % rows) as usize + 1,
-            lane: (i / rows) as usize,
+            row: i - lane * self.rows + 1,
+            lane,
         }
     }
 
@@ -111,6 +112,12 @@ impl Column {
     #[inline(always)]
     pub fn rows(&self, last: usize) -> &[Lanes] {
         &self.rows[..last + 2]
+    }
+
+    /// The rows up to the ghost behind row `last`, to be written.
+    #[inline(always)]
+    pub fn rows_mut(&mut self, last: usize) -> &mut [Lanes] {
+        &mut self.rows[..last + 2]
     }
 
     /// The numbers in a row.

@@ -8,14 +8,25 @@
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
+use super::lanes::Lanes;
+
 /// p(t) on [t0, t0 + h] from values and slopes at both ends.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Hermite {
     start: f64,
-    /// 1/h, 0 where the curve stands still.
+    /// 1/h.
     rate: f64,
     /// Coefficients of powers of u = (t − t0)/h.
     powers: [f64; 4],
+}
+
+/// Four of them side by side.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Hermites {
+    start: f64,
+    /// 1/h, 0 where the curves stand still.
+    rate: f64,
+    powers: [Lanes; 4],
 }
 
 /// Value and derivatives of a curve.
@@ -35,31 +46,12 @@ impl Hermite {
     /// Through (time, value, slope) at both ends; the second time must be the later one.
     pub fn new((t0, p0, m0): Knot, (t1, p1, m1): Knot) -> Hermite {
         let span = t1 - t0;
-        Hermite::bridge([t0, span, 1.0 / span], [p0, m0], [p1, m1])
-    }
-
-    /// From a start over a span, whose inverse is at hand, through value and slope at both ends.
-    #[inline]
-    pub fn bridge(
-        [start, span, rate]: [f64; 3],
-        [p0, m0]: [f64; 2],
-        [p1, m1]: [f64; 2],
-    ) -> Hermite {
         let (m0, m1) = (span * m0, span * m1);
         let rise = p1 - p0;
         Hermite {
-            start,
-            rate,
+            start: t0,
+            rate: 1.0 / span,
             powers: [p0, m0, 3.0 * rise - 2.0 * m0 - m1, m0 + m1 - 2.0 * rise],
-        }
-    }
-
-    /// The same value at all times.
-    pub fn constant(value: f64) -> Hermite {
-        Hermite {
-            start: 0.0,
-            rate: 0.0,
-            powers: [value, 0.0, 0.0, 0.0],
         }
     }
 
@@ -78,6 +70,50 @@ impl Hermite {
             slope: (b + u * (2.0 * c + 3.0 * u * d)) * self.rate,
             curvature: (2.0 * c + 6.0 * u * d) * (self.rate * self.rate),
         }
+    }
+}
+
+impl Hermites {
+    /// From a start over a span, whose inverse is at hand, through values and slopes at both ends.
+    #[inline(always)]
+    pub fn bridge(
+        [start, span, rate]: [f64; 3],
+        [p0, m0]: [Lanes; 2],
+        [p1, m1]: [Lanes; 2],
+    ) -> Hermites {
+        let (two, three) = (Lanes::splat(2.0), Lanes::splat(3.0));
+        let span = Lanes::splat(span);
+        let (m0, m1) = (span * m0, span * m1);
+        let rise = p1 - p0;
+        Hermites {
+            start,
+            rate,
+            powers: [p0, m0, three * rise - two * m0 - m1, m0 + m1 - two * rise],
+        }
+    }
+
+    /// The same values at all times.
+    pub fn constant(values: Lanes) -> Hermites {
+        let zero = Lanes::splat(0.0);
+        Hermites {
+            start: 0.0,
+            rate: 0.0,
+            powers: [values, zero, zero, zero],
+        }
+    }
+
+    /// Values, first and second derivatives at time `t`.
+    #[inline(always)]
+    pub fn at(&self, t: f64) -> [Lanes; 3] {
+        let u = Lanes::splat((t - self.start) * self.rate);
+        let rate = Lanes::splat(self.rate);
+        let [a, b, c, d] = self.powers;
+        let (two_c, three_ud) = (c + c, Lanes::splat(3.0) * u * d);
+        [
+            a + u * (b + u * (c + u * d)),
+            (b + u * (two_c + three_ud)) * rate,
+            (two_c + Lanes::splat(2.0) * three_ud) * (rate * rate),
+        ]
     }
 }
 

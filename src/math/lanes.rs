@@ -7,12 +7,13 @@ use std::array::from_fn;
 use std::ops::{Add, Index, IndexMut, Mul, Sub};
 
 use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
 
 /// Number of lanes [-].
 pub const LANES: usize = 4;
 
 /// Four f64 side by side.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[repr(align(32))]
 pub struct Lanes([f64; LANES]);
 
@@ -92,6 +93,18 @@ impl Lanes {
         }))
     }
 
+    /// The smaller of two, lane by lane.
+    #[inline(always)]
+    pub fn min(self, other: Lanes) -> Lanes {
+        Lanes(from_fn(|i| {
+            if self.0[i] < other.0[i] {
+                self.0[i]
+            } else {
+                other.0[i]
+            }
+        }))
+    }
+
     /// Whether any lane is > 0.
     #[inline(always)]
     pub fn any_positive(self) -> bool {
@@ -104,12 +117,6 @@ impl Lanes {
     pub fn all_positive(self) -> bool {
         let [a, b, c, d] = self.0.map(|value| value > 0.0);
         (a & b) & (c & d)
-    }
-
-    /// These numbers with another one in a lane.
-    #[inline(always)]
-    pub fn with(self, lane: usize, value: f64) -> Lanes {
-        Lanes(from_fn(|i| if i == lane { value } else { self.0[i] }))
     }
 
     /// Applies a scalar function to every lane.
@@ -146,6 +153,12 @@ impl Lanes {
     #[inline(always)]
     pub fn moved_down(self) -> Lanes {
         Lanes([self.0[1], self.0[2], self.0[3], self.0[0]])
+    }
+
+    /// The first three lanes.
+    #[inline(always)]
+    pub fn xyz(self) -> Vector3<f64> {
+        Vector3::new(self.0[0], self.0[1], self.0[2])
     }
 
     /// Sum of the lanes.
@@ -237,16 +250,6 @@ impl Vectors {
             x: (self.x + size) - size,
             y: (self.y + size) - size,
             z: (self.z + size) - size,
-        }
-    }
-
-    /// These vectors with another one in a lane.
-    #[inline(always)]
-    pub fn with(self, lane: usize, vector: Vector3<f64>) -> Vectors {
-        Vectors {
-            x: self.x.with(lane, vector.x),
-            y: self.y.with(lane, vector.y),
-            z: self.z.with(lane, vector.z),
         }
     }
 

@@ -31,11 +31,6 @@ use crate::scene::{
     SceneError, Strain,
 };
 
-/// Axial damping of a segment whose line type leaves it open, as a part of critical [-]. A line that slackens and snaps
-/// without any is driven by the kink of its own tension law when the step is explicit; codes of that kind damp the
-/// highest axial frequencies, which no mesh resolves, by as much (linear bulk viscosity).
-pub const NUMERICAL_DAMPING_RATIO: f64 = 0.02;
-
 /// Segments that a winch pays out, at most.
 const REEL_SEGMENTS_MAX: f64 = 1e5;
 
@@ -269,12 +264,12 @@ pub(super) struct LineLaw {
 
 /// ζ as given; the numerical one where the line type says nothing of axial damping.
 fn damping_ratio(line_type: &LineType) -> f64 {
-    let silent = line_type.axial_damping.is_none()
-        && line_type.dynamic_damping.is_none()
-        && line_type.rayleigh.is_none();
-    line_type
-        .damping_ratio
-        .unwrap_or(if silent { NUMERICAL_DAMPING_RATIO } else { 0.0 })
+    let open = if line_type.leaves_damping_open() {
+        scene::NUMERICAL_DAMPING_RATIO
+    } else {
+        0.0
+    };
+    line_type.damping_ratio.unwrap_or(open)
 }
 
 /// EI of a cable's section [N m²]: as given or of its solid section, shared by its strands. Beams have their own.

@@ -16,11 +16,12 @@
 //! elevation that stretches z those of the highest frequencies are left out whose √Σa² times √Σ(k aω² e^{kz})² is below 10⁻⁴ R; near the
 //! surface that is none.
 //!
-//! Between two instants not further apart than [`Waves::interval`] velocity, acceleration and elevation follow cubics with the slopes
+//! Between two instants not further apart than [`Waves::interval_below`] velocity, acceleration and elevation follow cubics with the slopes
 //! that they have there, [`Orbit::between`]. By the error h⁴f⁗/384 of that cubic the interval h = (384·10⁻³ √Σ(aω²)²/√Σ(aω⁶)²)^¼ leaves
 //! an error of 10⁻³ of the acceleration, or less, beside what the stretching makes of the slopes, of the order of (ka)². h is also
 //! at most half of √Σ(aω)²/√Σ(aω²)², a twelfth of the period of a single wave, since places are foretold over that time by their
-//! velocities, and at most 0.5 s.
+//! velocities, and at most 0.5 s. a is that at the highest place, a e^{kz} with z again three standard deviations too high: short waves, which
+//! change soonest, do not reach down to lines that hang from a deep fairlead.
 //!
 //! Source: Airy (1845) as in Dean & Dalrymple (1991), Water Wave Mechanics for Engineers and Scientists, chapter 3; Wheeler (1970), J.
 //! Petroleum Technology 22(3), 359-367. Valid for ka ≪ 1. The dispersion relation is solved by Newton's method from the
@@ -126,7 +127,8 @@ pub struct Waves {
     stretch: Vec<f64>,
     depth: Option<f64>,
     ramp: Option<f64>,
-    interval: f64,
+    /// Heights [m], downwards from 0, and the longest time between two instants for places below each [s].
+    intervals: Vec<[f64; 2]>,
 }
 
 /// The components for the kernels: four side by side, padded with components of no amplitude.
@@ -214,7 +216,7 @@ impl Waves {
             },
             reach: reach(&components, &numbers),
             stretch: stretch(&components, &numbers),
-            interval: interval(&components),
+            intervals: intervals(&components, &numbers),
             components,
             depth,
             ramp,
@@ -226,9 +228,10 @@ impl Waves {
         &self.components
     }
 
-    /// Longest time between two instants that cubics may bridge [s].
-    pub fn interval(&self) -> f64 {
-        self.interval
+    /// Longest time between two instants that cubics may bridge [s], for places at a height [m] and below.
+    pub fn interval_below(&self, z: f64) -> f64 {
+        let above = self.intervals.partition_point(|[height, _]| *height >= z);
+        self.intervals[above.saturating_sub(1)][1]
     }
 
     /// Standard deviation of the elevation once the ramp has passed [m].
@@ -314,7 +317,8 @@ impl Waves {
                 cosine.store(&mut instant.cosine, at);
             }
         }
-        sum.sum()
+        let [sum] = added_up(&[sum]);
+        sum
     }
 
     /// Sums over the first `count` components at a stretched height [m], without the ramp.
@@ -341,12 +345,12 @@ impl Waves {
             }
             sums[9] = sums[9] + speed * sine;
         }
-        let [vx, vy, vz, ax, ay, az, jx, jy, jz, rise] = sums;
+        let [vx, vy, vz, ax, ay, az, jx, jy, jz, rise] = added_up(&sums);
         Sums {
-            velocity: Vector3::new(vx.sum(), vy.sum(), vz.sum()),
-            acceleration: Vector3::new(ax.sum(), ay.sum(), -az.sum()),
-            jerk: -Vector3::new(jx.sum(), jy.sum(), jz.sum()),
-            rise: rise.sum(),
+            velocity: Vector3::new(vx, vy, vz),
+            acceleration: Vector3::new(ax, ay, -az),
+            jerk: -Vector3::new(jx, jy, jz),
+            rise,
         }
     }
 
@@ -379,6 +383,12 @@ impl Waves {
     }
 }
 
+/// The sum of each four. Out of line: the compiler would lay out the loops before by how these sums pair the lanes, in halves of the width.
+#[inline(never)]
+fn added_up<const N: usize>(fours: &[Lanes; N]) -> [f64; N] {
+    fours.map(Lanes::sum)
+}
+
 /// Sums over components.
 struct Sums {
     velocity: Vector3<f64>,
@@ -406,6 +416,28 @@ fn interval(components: &[Component]) -> f64 {
     let smooth = (384.0 * BETWEEN * acceleration / root(components, 6)).powf(0.25);
     let near = 0.5 * root(components, 1) / acceleration;
     smooth.min(near).min(INTERVAL_MAX)
+}
+
+/// Heights that intervals are found for: from the first, of the shortest scale of any wave, each is deeper by this factor [-].
+const INTERVAL_DEEPER: f64 = 1.5;
+/// Their number.
+const INTERVAL_HEIGHTS: i32 = 24;
+
+/// Heights, and the longest times between two instants for places below each.
+fn intervals(components: &[Component], numbers: &[f64]) -> Vec<[f64; 2]> {
+    let margin = TROUGH * deviation(components);
+    let shortest = numbers.last().copied().unwrap_or(1.0);
+    let depths = (0..INTERVAL_HEIGHTS).map(|step| INTERVAL_DEEPER.powi(step) / shortest);
+    let rows = std::iter::once(0.0).chain(depths.map(|depth| -margin - 0.1 * depth));
+    rows.map(|z| {
+        let calmer = |(c, k): (&Component, &f64)| Component {
+            amplitude: c.amplitude * (k * (z + margin).min(0.0)).exp(),
+            ..*c
+        };
+        let there: Vec<Component> = components.iter().zip(numbers).map(calmer).collect();
+        [z, interval(&there)]
+    })
+    .collect()
 }
 
 /// For every component, the height below which it and those after it move nothing [m].
@@ -615,7 +647,7 @@ mod tests {
         let (mut worst, mut square) = (0.0_f64, 0.0);
         let steps = 400;
         for step in 0..steps {
-            let [t0, t1] = [0, 1].map(|k| f64::from(step + k) * waves.interval());
+            let [t0, t1] = [0, 1].map(|k| f64::from(step + k) * waves.interval_below(place.z));
             let (before, after) = (orbit(&waves, place, t0), orbit(&waves, place, t1));
             let middle = 0.5 * (t0 + t1);
             let exact = orbit(&waves, place, middle);
@@ -627,6 +659,34 @@ mod tests {
             assert_eq!(start.acceleration, before.acceleration);
         }
         assert!(worst.sqrt() < 4e-3 * (square / f64::from(steps)).sqrt());
+    }
+
+    #[test]
+    fn deeper_places_are_bridged_for_longer_with_no_more_error() {
+        let mut components = storm(None).components;
+        let small = |c: &mut Component| c.amplitude *= 1e-4; // stretching is of second order
+        components.iter_mut().for_each(small);
+        let waves = Waves::new(&components, None, None, GRAVITY);
+        let heights = [-0.0, -1.0, -4.0, -12.0, -50.0, -2000.0];
+        let intervals = heights.map(|z| waves.interval_below(z));
+        assert!(intervals.is_sorted() && intervals[5] == INTERVAL_MAX);
+        assert!(intervals[3] > 1.3 * intervals[0], "{intervals:?}");
+        for (z, interval) in heights.into_iter().zip(intervals).take(5) {
+            let at = |t: f64| orbit(&waves, Vector3::new(4.0, 9.0, z), t);
+            let (mut error, mut square) = (0.0, 0.0);
+            for step in 0..4000 {
+                let times = [0.7, 1.7].map(|k| 7.3 * f64::from(step) + k * interval);
+                let middle = 0.5 * (times[0] + times[1]);
+                let (found, exact) = (
+                    Orbit::between(&at(times[0]), &at(times[1]), times, middle),
+                    at(middle),
+                );
+                error += (found.acceleration - exact.acceleration).norm_squared();
+                square += exact.acceleration.norm_squared();
+            }
+            let error = f64::sqrt(error / square);
+            assert!(error < 1.2 * BETWEEN, "z = {z} m: {error:e}");
+        }
     }
 
     #[test]

@@ -25,6 +25,7 @@ mod rows;
 mod seabed;
 mod surface;
 mod tension_strain;
+mod threads;
 mod time_function;
 mod units;
 mod water_file;
@@ -43,11 +44,16 @@ use read::Reading;
 pub use read::{LoadedScene, Supplement, TOML, load, load_with};
 pub use seabed::{ContactLaw, DepthGrid, Friction, Seabed};
 pub use tension_strain::TensionStrain;
+pub use threads::Threads;
 pub use time_function::{HarmonicMotion, MotionFile, MotionPath, MotionRow, TimeFunction};
 pub use waves::{RegularWave, Sea, SpectrumKind, WaveComponents, Waves};
 
 /// Standard gravity [m/s²], the default of [`Scene::gravity`].
 pub const STANDARD_GRAVITY: f64 = 9.80665;
+/// Axial damping of a segment whose line type leaves it open, as a part of critical [-]. A line that slackens and snaps
+/// without any is driven by the kink of its own tension law when the step is explicit; codes of that kind damp the
+/// highest axial frequencies, which no mesh resolves, by as much (linear bulk viscosity).
+pub const NUMERICAL_DAMPING_RATIO: f64 = 0.02;
 /// Least spectral radius at infinite frequency of `axial_implicit` [-], at which it damps most.
 pub const AXIAL_RADIUS_MIN: f64 = 0.5;
 
@@ -199,6 +205,16 @@ pub struct LineType {
     pub torsional_stiffness: Option<f64>,
     /// Rotary inertia of the section per length, about any axis [kg m], beams only.
     pub rotary_inertia: Option<f64>,
+}
+
+impl LineType {
+    /// Whether nothing is said of the axial damping, so that segments have [`NUMERICAL_DAMPING_RATIO`]; beams then have none.
+    pub fn leaves_damping_open(&self) -> bool {
+        self.axial_damping.is_none()
+            && self.damping_ratio.is_none()
+            && self.dynamic_damping.is_none()
+            && self.rayleigh.is_none()
+    }
 }
 
 /// What the elements of a line resist.
@@ -476,6 +492,9 @@ pub struct Solver {
     pub bossak: Option<Bossak>,
     /// How the path of a coupled point between communication points is built.
     pub input_reconstruction: Reconstruction,
+    /// Threads that share the lines of a system [-].
+    #[serde(skip_serializing_if = "Threads::is_auto")]
+    pub threads: Threads,
 }
 
 /// Time integrator.
@@ -615,6 +634,7 @@ impl Default for Solver {
             spectral_radius: None,
             bossak: None,
             input_reconstruction: Reconstruction::Smooth,
+            threads: Threads::Auto,
         }
     }
 }

@@ -84,15 +84,14 @@ fn note_line_type(scene: &Scene, name: &str, line_type: &LineType, notes: &mut V
         let text = "lighter than the water: it floats up from the seabed";
         say(notes, at.clone(), text);
     }
-    let damped = line_type.axial_damping.is_some()
-        || line_type.damping_ratio.is_some()
-        || line_type.rayleigh.is_some();
-    if !damped && scene.solver.integrator != Integrator::QuasiStatic {
-        say(
-            notes,
-            at,
-            "no damping within the line: waves along it ring on",
-        );
+    if line_type.leaves_damping_open() && scene.solver.integrator != Integrator::QuasiStatic {
+        let text = match line_type.model {
+            LineModel::Cable => {
+                "no `axial_damping`: moorline's own fades as meshes get finer, so that waves along the line ring on and converge slowly"
+            }
+            LineModel::Beam => "no damping within the line: waves along it ring on",
+        };
+        say(notes, at, text);
     }
 }
 

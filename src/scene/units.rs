@@ -76,6 +76,7 @@ const UNITS: &[(&str, &str, &str)] = &[
     ("Solver", "tolerance", "-"),
     ("Solver", "time_step_max", "s"),
     ("Solver", "spectral_radius", "-"),
+    ("Solver", "threads", "-"),
     ("Bossak", "alpha", "-"),
     ("Bossak", "gamma", "-"),
     ("MotionText", "ramp", "s"),

@@ -16,8 +16,8 @@ use std::fmt::Write;
 use super::check::{integrator_name, number, quantity};
 use super::notes::{chord, length};
 use super::{
-    Axis, ContactLaw, HarmonicMotion, InitialShape, Integrator, Line, LineType, MotionPath, Point,
-    PointForce, PointKind, Scene, Strain, TimeFunction,
+    Axis, ContactLaw, HarmonicMotion, InitialShape, Integrator, Line, LineModel, LineType,
+    MotionPath, NUMERICAL_DAMPING_RATIO, Point, PointForce, PointKind, Scene, Strain, TimeFunction,
 };
 use vessels::vessel_in_words;
 
@@ -393,10 +393,13 @@ fn damping_in_words(line_type: &LineType) -> String {
             "Rayleigh damping ratios {ratio_1} at {frequency_1} rad/s and {ratio_2} at {frequency_2} rad/s"
         ));
     }
-    if parts.is_empty() {
-        "no damping of its own".to_string()
-    } else {
-        parts.join(" and ")
+    match (parts.is_empty(), line_type.model) {
+        (false, _) => parts.join(" and "),
+        (true, LineModel::Cable) if line_type.leaves_damping_open() => format!(
+            "axial damping {} of critical in each segment (moorline's own choice)",
+            number(NUMERICAL_DAMPING_RATIO)
+        ),
+        (true, _) => "no damping of its own".to_string(),
     }
 }
 

@@ -295,16 +295,26 @@ impl Held {
     }
 
     /// A point at time `t` [s] of the span; how it turns is told at its ends, and everywhere where lines are clamped.
-    #[inline]
+    #[inline(always)]
     pub fn point(&self, at: &At, point: usize, t: f64) -> Kinematics {
         match &self.ways[point] {
             Way::Host(path) => at.paths.points[*path].at(t),
+            way => way.point(at, point, t),
+        }
+    }
+}
+
+impl Way {
+    /// [`Held::point`] where the host does not say it.
+    #[inline(never)]
+    fn point(&self, at: &At, point: usize, t: f64) -> Kinematics {
+        match self {
             Way::Still => Kinematics {
                 position: at.model.points[point].reference,
                 ..Kinematics::default()
             },
             Way::Bridged(bridge) => bridge.at(t).unwrap_or_else(|| at.point(point, t)),
-            Way::Worked => at.point(point, t),
+            Way::Host(_) | Way::Worked => at.point(point, t),
         }
     }
 }
@@ -357,6 +367,7 @@ fn bell([a, b, c, d, e, f]: [f64; 6]) -> f64 {
 mod tests {
     use super::super::start;
     use super::*;
+    use crate::math::lanes::Lanes;
     use crate::scene::Scene;
     use crate::simulation::inputs::Inputs;
     use approx::assert_relative_eq;
@@ -436,8 +447,10 @@ mod tests {
         let model = Model::new(&scene).unwrap();
         let (snapshot, _) = start::begin(&model, 0.0, Inputs::new(&model), false).unwrap();
         let mut paths = snapshot.paths.clone();
-        for (axis, path) in paths.vessels[0].0.iter_mut().enumerate() {
-            path.follow([0.0, 0.1], [1e-4 * axis as f64, 2e-3]);
+        let [place, angles] = &mut paths.vessels[0].0;
+        for (path, first) in [(place, 0.0), (angles, 3e-4)] {
+            let end = Lanes::new([0.0, 1e-4, 2e-4, 3e-4]) + Lanes::splat(first);
+            path.follow([0.0, 0.1], [end, Lanes::splat(2e-3)]);
         }
         let at = At::new(&model, &paths, false);
         let mut held = Held::new(&model, false);

@@ -1,13 +1,14 @@
 //! The paths that points, vessels and winches follow between communication points.
 
 use nalgebra::Vector3;
+use pulp::{Arch, NullaryFnOnce};
 use serde::{Deserialize, Serialize};
 
-use super::inputs::Inputs;
+use super::inputs::{Inputs, PointInput};
 use super::winches::{self, ReelPath};
 use super::{Simulation, Snapshot};
 use crate::dynamics::StepError;
-use crate::dynamics::motion::{Clock, Foresight, HostPath, VesselPath};
+use crate::dynamics::motion::{Clock, Foresight, HostPath, Said, VesselPath};
 use crate::model::{Line, Model, Point, Role};
 
 /// The paths of everything that a host moves, told at the same times.
@@ -50,7 +51,7 @@ impl Paths {
     pub fn at_rest(model: &Model, time: f64, inputs: &Inputs, follows_scene: bool) -> Paths {
         let points = model.points.iter().zip(&inputs.points);
         let coupled = points.filter(|(point, _)| is_coupled(point));
-        let place = |(point, input): (&Point, &super::inputs::PointInput)| {
+        let place = |(point, input): (&Point, &PointInput)| {
             HostPath::at_rest(point.reference + Vector3::from(input.displacement))
         };
         let vessels = inputs.vessels.iter();
@@ -61,25 +62,6 @@ impl Paths {
                 .map(|input| VesselPath::at_rest(input.pose))
                 .collect(),
             reels: winches::paths(model, &inputs.length_changes, time, follows_scene),
-        }
-    }
-
-    /// Continues the paths of the coupled points and the vessels.
-    fn extend(&mut self, model: &Model, inputs: &Inputs, foresight: &Foresight) {
-        let points = model.points.iter().zip(&inputs.points);
-        let coupled = points.filter(|(point, _)| is_coupled(point));
-        for (path, (point, input)) in self.points.iter_mut().zip(coupled) {
-            for (axis, path) in path.0.iter_mut().enumerate() {
-                let position = point.reference[axis] + input.displacement[axis];
-                path.extend(foresight, position, input.velocity[axis]);
-            }
-        }
-        let vessels = model.vessels.iter().zip(&inputs.vessels);
-        for (path, (vessel, input)) in self.vessels.iter_mut().zip(vessels) {
-            let rates = input.rates(vessel.attitude);
-            for (axis, path) in path.0.iter_mut().enumerate() {
-                path.extend(foresight, input.pose[axis], rates[axis]);
-            }
         }
     }
 
@@ -108,6 +90,42 @@ impl Paths {
     }
 }
 
+/// Makes paths those `before` continued by what a host says of the coupled points and the vessels, for the vector unit of the machine.
+struct Extend<'a> {
+    paths: &'a mut Paths,
+    before: &'a Paths,
+    model: &'a Model,
+    inputs: &'a Inputs,
+    foresight: &'a Foresight,
+}
+
+impl NullaryFnOnce for Extend<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        // loops, not closures, which would not be compiled for the vector unit
+        let mut paths = self.paths.points.iter_mut().zip(&self.before.points);
+        for (point, input) in self.model.points.iter().zip(&self.inputs.points) {
+            if !is_coupled(point) {
+                continue;
+            }
+            let Some((path, before)) = paths.next() else {
+                break;
+            };
+            let place: [f64; 3] = (point.reference + Vector3::from(input.displacement)).into();
+            let said = Said::new(place, input.velocity);
+            path.0.extend(&before.0, self.foresight, &said);
+        }
+        let paths = self.paths.vessels.iter_mut().zip(&self.before.vessels);
+        let vessels = self.model.vessels.iter().zip(&self.inputs.vessels);
+        for ((path, before), (vessel, input)) in paths.zip(vessels) {
+            let rates = input.rates(vessel.attitude);
+            path.extend(before, self.foresight, input.pose, rates);
+        }
+    }
+}
+
 fn out_of_bounds(line: &Line, time: f64, reason: String) -> StepError {
     StepError {
         time,
@@ -122,7 +140,9 @@ impl Simulation {
     /// Lays out the paths of the next communication step [s]; those of the snapshot stay as they are.
     pub(super) fn extend_paths(&mut self, step: f64) -> Result<(), StepError> {
         let (model, snapshot, paths) = (&*self.model, &self.snapshot, &mut self.paths);
-        paths.clone_from(&snapshot.paths);
+        let before = &snapshot.paths;
+        paths.clock = before.clock;
+        paths.reels.clone_from(&before.reels);
         if snapshot.follows_scene && paths.reels.is_empty() {
             return Ok(());
         }
@@ -132,7 +152,14 @@ impl Simulation {
             .clock
             .tell(snapshot.state.time, step, reconstruction, foresight);
         if !snapshot.follows_scene {
-            paths.extend(model, &snapshot.inputs, foresight);
+            let inputs = &snapshot.inputs;
+            Arch::new().dispatch(Extend {
+                paths,
+                before,
+                model,
+                inputs,
+                foresight,
+            });
         }
         if !paths.reels.is_empty() {
             paths.extend_reels(model, snapshot, foresight, step)?;

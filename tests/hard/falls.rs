@@ -36,7 +36,7 @@ fn the_free_end_of_a_folded_chain_outruns_free_fall_as_its_energy_says() {
         for (elements, bound) in [(20, 0.05), (40, 0.032), (80, 0.021), (160, 0.013)] {
             let (run, fallen) = falling(elements, 2, integrator);
             let what = format!("fall of {elements}, {integrator:?}");
-            sound(&what, &run, 8e-3, 20_000.0);
+            sound(&what, &run, 8e-3, 30_000.0);
             let errors: Vec<f64> = fallen
                 .iter()
                 .zip(PARTS)
@@ -71,7 +71,11 @@ fn the_fall_over_a_fold_of_half_a_metre_converges() {
 
 #[test]
 fn a_whip_crack_gains_no_energy() {
-    for (integrator, gain) in FREE.into_iter().zip([0.05, 0.08, 1e-3]) {
+    for (integrator, gain, ledger) in [
+        (Integrator::Leapfrog, 2e-3, 0.25),
+        (Integrator::AxialImplicit, 0.08, 1.0),
+        (Integrator::GeneralisedAlpha, 1e-3, 1.0),
+    ] {
         for elements in [40, 80] {
             let scene = by(
                 folded_chain(elements, 2),
@@ -80,17 +84,22 @@ fn a_whip_crack_gains_no_energy() {
             );
             let run = Run::of(&scene, 5.0, 0.005);
             let what = format!("whip of {elements}, {integrator:?}");
-            sound(&what, &run, 1.0, 10_000.0);
+            sound(&what, &run, ledger, 16_000.0);
             at_most(gain, &format!("{what}, gain"), run.energy_gain());
         }
     }
 }
 
-/// Momentum [kg m/s], and angular momentum about the centre of mass [kg m²/s], of the first line, dry.
+/// Momentum [kg m/s], and angular momentum about the centre of mass [kg m²/s], of the first line, dry: of the leapfrogs with the velocities that they
+/// step, half a step before. Those extrapolated to the places' time differ by ½ Δt² Σ v × F in angular momentum.
 fn momenta(simulation: &Simulation) -> [Vector3<f64>; 2] {
     let shape = &simulation.state().lines[0];
     let mass = &simulation.model().lines[0].nodes.mass;
-    let nodes = || mass.iter().zip(&shape.position).zip(&shape.velocity);
+    let velocity = match &shape.half_step.velocity {
+        stepped if stepped.is_empty() => &shape.velocity,
+        stepped => stepped,
+    };
+    let nodes = || mass.iter().zip(&shape.position).zip(velocity);
     let total: f64 = mass.iter().sum();
     let centre = nodes().map(|((m, r), _)| *m * r).sum::<Vector3<f64>>() / total;
     let linear = nodes().map(|((m, _), v)| *m * v).sum();
@@ -101,8 +110,8 @@ fn momenta(simulation: &Simulation) -> [Vector3<f64>; 2] {
 #[test]
 fn a_line_let_go_in_full_swing_whips_and_keeps_its_momenta() {
     for (integrator, bound) in [
-        (Integrator::Leapfrog, 1e-5),
-        (Integrator::AxialImplicit, 1e-3),
+        (Integrator::Leapfrog, 1e-12),
+        (Integrator::AxialImplicit, 1e-12),
         (Integrator::GeneralisedAlpha, 1e-4),
     ] {
         let scene = by(let_go_in_swing(), integrator, 0.002);

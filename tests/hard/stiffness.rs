@@ -125,7 +125,7 @@ fn a_tonne_on_a_light_rope_swings_as_a_pendulum() {
 fn a_tonne_dropped_into_a_light_rope_is_caught_with_its_energy() {
     let fall = 1.0;
     let exact = caught_pull(fall);
-    for (integrator, ledger) in JOINED.into_iter().zip([0.02, 0.05, 0.15]) {
+    for (integrator, ledger) in JOINED.into_iter().zip([5e-3, 0.05, 5e-3]) {
         let run = Run::of(&by(clump(10, fall, 0.0), integrator, 0.001), 2.0, 0.01);
         let what = format!("dropped clump, {integrator:?}");
         sound(&what, &run, ledger, 5000.0);
@@ -147,15 +147,16 @@ fn a_line_almost_without_mass_pulls_as_it_should() {
                 12.0,
                 0.05,
             );
-            for (integrator, steps) in [
-                (Integrator::Leapfrog, 70_000.0),
-                (Integrator::AxialImplicit, 10_000.0),
-                (Integrator::GeneralisedAlpha, 110.0),
-                (Integrator::Auto, 40_000.0),
+            // `auto` steps as far as the host does where the line is at rest in every step; the ledger's sums have as many terms
+            for (integrator, ledger, steps) in [
+                (Integrator::Leapfrog, 1e-4, 70_000.0),
+                (Integrator::AxialImplicit, 1e-4, 10_000.0),
+                (Integrator::GeneralisedAlpha, 1e-4, 110.0),
+                (Integrator::Auto, 2e-4, 4000.0),
             ] {
                 let run = Run::of(&by(scene(), integrator, 0.01), 12.0, 0.05);
                 let what = format!("{mass} kg/m, wet {wet}, {integrator:?}");
-                sound(&what, &run, 1e-4, steps);
+                sound(&what, &run, ledger, steps);
                 at_most(
                     0.03,
                     &format!("{what}, tension"),

@@ -1,6 +1,6 @@
 //! What kind of scene it is to be: choices that all its parts know.
 
-use moorline::scene::{AXIAL_RADIUS_MIN, Bossak, Integrator, Reconstruction, Solver};
+use moorline::scene::{AXIAL_RADIUS_MIN, Bossak, Integrator, Reconstruction, Solver, Threads};
 
 use crate::dice::{Dice, Tape};
 use crate::surroundings;
@@ -126,6 +126,10 @@ impl Plan {
             input_reconstruction: match dice.chance(0.2) {
                 true => Reconstruction::Jump,
                 false => Reconstruction::Smooth,
+            },
+            threads: match dice.chance(0.2) {
+                true => Threads::Number(2),
+                false => Threads::Auto,
             },
         }
     }

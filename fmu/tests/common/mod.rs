@@ -1,4 +1,5 @@
 //! A small scene, packaged with the library that this test run built.
+#![allow(dead_code)] // each test file uses a part
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -74,14 +75,14 @@ fn run_cargo(features: &[&str]) {
 }
 
 /// The packaged scene, written once for each test program and version.
-fn package(version: FmiVersion, features: &[&str]) -> &'static Path {
+fn package(version: FmiVersion, features: &[&str], text: &str) -> &'static Path {
     static LIBRARY: OnceLock<PathBuf> = OnceLock::new();
     static PACKAGED: [OnceLock<PathBuf>; 2] = [OnceLock::new(), OnceLock::new()];
     let library = LIBRARY.get_or_init(|| build_library(features));
     PACKAGED[version as usize].get_or_init(|| {
         let scene = library.with_file_name(format!("scene{version}.toml"));
         let fmu = library.with_file_name(format!("line{version}.fmu"));
-        std::fs::write(&scene, SCENE).unwrap();
+        std::fs::write(&scene, text).unwrap();
         let loaded = moorline::scene::load(&scene).unwrap();
         package::write_fmu(&loaded, version, library, &fmu).unwrap();
         fmu
@@ -90,5 +91,10 @@ fn package(version: FmiVersion, features: &[&str]) -> &'static Path {
 
 /// Packages the scene with a library that is built with the given features, and opens it.
 pub fn open(version: FmiVersion, features: &[&str]) -> Fmu {
-    Fmu::open(package(version, features)).unwrap()
+    Fmu::open(package(version, features, SCENE)).unwrap()
+}
+
+/// Packages another scene, the only one of its test program, and opens it.
+pub fn open_scene(version: FmiVersion, text: &str) -> Fmu {
+    Fmu::open(package(version, &[], text)).unwrap()
 }

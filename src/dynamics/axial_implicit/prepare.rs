@@ -3,14 +3,17 @@
 use nalgebra::Vector3;
 
 use super::AxialWork;
+use super::bed::Bed;
 use super::rows::{NodeRow, SegmentRow};
-use crate::dynamics::layout::{ContactArrays, Layout};
+use crate::dynamics::layout::Layout;
 use crate::dynamics::leapfrog::Step;
 use crate::math::lanes::{Lanes, Vectors};
 use crate::physics::stretch::StretchLaw;
 
-/// Weight of the new strain rate over the old one in the axial damping [-].
+/// Weight of the new strain rate over the old one in the axial damping, at most [-].
 const DAMPING_SHIFT: f64 = 0.2; // θ
+/// Hardness of the dampers over a step from which on it is that [-].
+const DAMPING_HARD: f64 = 4.0;
 
 /// Elastic forces of segments [N]: now, and b₁ times what they come to without further strain; b₁ times their slope with the strain.
 pub(super) struct Elastic {
@@ -79,6 +82,8 @@ impl AxialWork {
     /// The part of the system that needs no node, from geometry and velocities at t_{n−½}.
     #[inline(always)]
     pub(super) fn prepare_segments<const CREEPS: bool>(&mut self, step: Step) {
+        let hardness = self.damping_rate * step.kick;
+        let shift = DAMPING_SHIFT * (hardness / DAMPING_HARD).min(1.0);
         for at in self.layout.rows() {
             let SegmentRow {
                 direction, length, ..
@@ -88,7 +93,8 @@ impl AxialWork {
             } else {
                 self.elastic(at, length)
             };
-            self.rows.segments[at - 1].prepare(&self.layout, at, elastic, self.weights.0, step);
+            let row = &mut self.rows.segments[at - 1];
+            row.prepare(&self.layout, at, elastic, self.weights.0, shift, step);
         }
     }
 
@@ -173,9 +179,13 @@ impl AxialWork {
         match &line.contact {
             Some(contact) if contact.bottom.is_none() => {
                 for (at, node) in nodes {
-                    node.penetration = contact.level.load(at) - line.position.load(at).z;
-                    node.touches = node.pushed(contact, at, line.velocity.load(at).z, step);
-                    node.settle(contact, at, step);
+                    let penetration = contact.level.load(at) - line.position.load(at).z;
+                    let rise = line.velocity.load(at).z;
+                    let yields = node.across + node.lift() * node.tangent.z;
+                    let law = contact.law(at);
+                    node.bed = Bed::new(law, penetration, rise, yields, step);
+                    node.touches = node.pushed(rise);
+                    node.settle();
                 }
             }
             _ => nodes.for_each(|(_, node)| node.loose = node.fall),
@@ -191,6 +201,7 @@ impl SegmentRow {
         at: usize,
         elastic: Elastic,
         [b1, h0, h1, h2]: [f64; 4],
+        shift: f64,
         step: Step,
     ) {
         let (half, drift) = (Lanes::splat(0.5), Lanes::splat(step.drift));
@@ -208,8 +219,8 @@ impl SegmentRow {
         self.spring_now = elastic.ahead * share;
         self.spring_slope = elastic.slope * self.inverse_length * share;
         let damping = half * self.axial_damping * self.inverse_length;
-        self.damping = damping * Lanes::splat(1.0 + DAMPING_SHIFT);
-        self.known = self.elastic + damping * Lanes::splat(1.0 - DAMPING_SHIFT) * along;
+        self.damping = damping * Lanes::splat(1.0 + shift);
+        self.known = self.elastic + damping * Lanes::splat(1.0 - shift) * along;
         let bend = relative.dot(relative) - along * along;
         self.across = bend;
         self.curvature = half * self.stiffness * drift * bend * self.inverse;
@@ -235,44 +246,25 @@ impl NodeRow {
         x.scale(self.across) + self.tangent.scale(self.excess * self.tangent.dot(x))
     }
 
-    /// 1 where the level bed pushes nodes that rise at `rise` [m/s], else −1: they would be below the bed, and not leave it
-    /// faster than the damper lets go.
+    /// 1 where the level bed pushes nodes that rise at `rise` [m/s], else −1.
     #[inline(always)]
-    pub(super) fn pushed(
-        &self,
-        contact: &ContactArrays,
-        at: usize,
-        rise: Lanes,
-        step: Step,
-    ) -> Lanes {
-        let drift = Lanes::splat(step.drift);
-        let next = self.penetration - drift * rise;
-        let push = contact.stiffness.load(at) * next * drift
-            + contact.damping.load(at) * (next - self.penetration.positive());
-        let (yes, no) = (Lanes::splat(1.0), Lanes::splat(-1.0));
-        let both = next.where_positive(push).where_positive(self.free); // held ends yield to no bed
-        both.choose(yes, no)
+    pub(super) fn pushed(&self, rise: Lanes) -> Lanes {
+        let pushes = self.bed.pushes(rise).where_positive(self.free); // held ends yield to no bed
+        pushes.choose(Lanes::splat(1.0), Lanes::splat(-1.0))
     }
 
     /// Adds the level bed to the nodes it pushes: a rank-one update of the inverse mass, and its impulse.
     #[inline(always)]
-    pub(super) fn settle(&mut self, contact: &ContactArrays, at: usize, step: Step) {
+    pub(super) fn settle(&mut self) {
         (self.held, self.loose) = (Lanes::splat(0.0), self.fall);
         if !self.touches.any_positive() {
             return;
         }
-        let (kick, drift) = (Lanes::splat(step.kick), Lanes::splat(step.drift));
-        let one = Lanes::splat(1.0);
-        let (stiffness, damping) = (contact.stiffness.load(at), contact.damping.load(at));
-        let above = self.penetration - self.penetration.positive(); // the damper acts below the bed only
-        let landing = damping * above * Lanes::splat(1.0 / step.drift);
-        let resistance = kick * (stiffness * drift + damping);
-        let lift = self.lift();
+        let (one, resistance, lift) = (Lanes::splat(1.0), self.bed.resistance, self.lift());
         let share = (one + resistance * (self.across + lift * self.tangent.z))
             .recip()
             .where_positive(self.touches);
-        let spring = kick * (stiffness * self.penetration + landing);
-        let impulse = (spring - resistance * self.fall.z) * share;
+        let impulse = self.bed.push(self.fall.z) * share;
         self.held = resistance * share;
         self.loose = self.fall + self.tangent.scale(lift * impulse);
         self.loose.z = self.loose.z + self.across * impulse;

@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 
+use super::bed::Bed;
 use crate::dynamics::layout::Layout;
 use crate::math::fold::Slot;
 use crate::math::folded_tridiagonal::{Eliminated, Equations};
@@ -119,8 +120,8 @@ pub(super) struct NodeRow {
     pub response: Vectors,
     /// c, 0 off the bed [kg].
     pub held: Lanes,
-    /// Penetration into a level bed [m].
-    pub penetration: Lanes,
+    /// The level bed.
+    pub bed: Bed,
     /// 1 where the level bed pushes, −1 elsewhere.
     pub touches: Lanes,
     /// Velocity without tension, without and with the bed [m/s].
@@ -144,7 +145,7 @@ impl NodeRow {
             tangent: Vectors::zero(),
             response: Vectors::zero(),
             held: zero,
-            penetration: zero,
+            bed: Bed::none(),
             touches: Lanes::splat(-1.0),
             fall: Vectors::zero(),
             loose: Vectors::zero(),

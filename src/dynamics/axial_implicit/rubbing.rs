@@ -5,17 +5,19 @@
 //!
 //! ```text
 //! off       λ = 0                                    v = u + M⁻¹ Δt pull
-//! slides    λ_t as the last pass found it            λ_n = Δt (k p + …) − b v_n eliminated by a rank-one update, as on a level bed
-//! sticks    v = v_n n                                v_n = (n·M u + Δt (k p + …) + Δt n·pull)/(n·M n + b): of rank one itself
+//! slides    λ_t as the last pass found it            λ_n = a − b v_n eliminated by a rank-one update, as on a level bed
+//! sticks    v = v_n n                                v_n = (n·M u + a + Δt n·pull)/(n·M n + b): of rank one itself
 //! ```
 //!
-//! b = Δt (k Δt + c). After a pass every node on the bed takes the friction that Coulomb's law allows of what would stop it (`physics::friction`);
+//! a and b are those of [`super::bed`]. After a pass every node on the bed takes the friction that Coulomb's law allows of what would stop it (`physics::friction`);
 //! the step is repeated until states and friction hold. Frictionless beds slide with λ_t = 0.
 
 use nalgebra::{Vector2, Vector3};
 
 use super::AxialWork;
+use super::bed::Bed;
 use crate::dynamics::leapfrog::Step;
+use crate::math::lanes::Lanes;
 use crate::physics::friction::{Axes, held};
 
 /// Change of friction over the push of the bed that asks for another pass [-].
@@ -41,8 +43,8 @@ pub(super) struct Rubbing {
 #[derive(Debug, Clone, Copy)]
 struct Stand {
     mode: Mode,
-    /// Penetration p [m].
-    penetration: f64,
+    /// The bed, alike in all lanes.
+    bed: Bed,
     /// Normal n of the bed.
     normal: Vector3<f64>,
     /// a and b of the inverse mass off the bed [1/kg].
@@ -56,7 +58,7 @@ impl Rubbing {
     pub fn new(count: usize) -> Rubbing {
         let stand = Stand {
             mode: Mode::Off,
-            penetration: 0.0,
+            bed: Bed::none(),
             normal: Vector3::zeros(),
             inverse: [0.0; 2],
             rub: Vector3::zeros(),
@@ -112,43 +114,47 @@ impl AxialWork {
             let at = self.layout.slot(i);
             let (penetration, normal) = self.layout.stand(at);
             let velocity = self.layout.velocity.get(at);
-            let Some(rubbing) = &mut self.rubbing else {
+            let (Some(rubbing), Some(contact)) = (&mut self.rubbing, &self.layout.contact) else {
                 return;
             };
+            let law = [contact.stiffness[at], contact.damping[at]];
             let row = &self.rows.nodes[at.row - 1];
+            let [across, excess] = [row.across, row.excess].map(|part| part[at.lane]);
+            let upright = normal.dot(&row.tangent.get(at.lane));
+            let yields = across + excess * upright * upright;
+            let [penetration, rise, yields] =
+                [penetration, normal.dot(&velocity), yields].map(Lanes::splat);
+            let law = law.map(Lanes::splat);
             rubbing.nodes[i] = Stand {
                 mode: Mode::Off,
-                penetration,
+                bed: Bed::new(law, penetration, rise, yields, step),
                 normal,
-                inverse: [row.across[at.lane], row.excess[at.lane]],
+                inverse: [across, excess],
                 rub: Vector3::zeros(),
             };
             self.rest(i, velocity, step);
-            self.settle_on(i, step);
+            self.settle_on(i);
         }
     }
 
-    fn node(&self, i: usize, step: Step) -> Option<Node> {
+    fn node(&self, i: usize) -> Option<Node> {
         let stand = &self.rubbing.as_ref()?.nodes[i];
-        let contact = self.layout.contact.as_ref()?;
         let at = self.layout.slot(i);
-        let ([across, excess], penetration) = (stand.inverse, stand.penetration);
+        let [across, excess] = stand.inverse;
         let mass = 1.0 / across;
-        // the damper acts below the bed only
-        let landing = contact.damping[at] * penetration.min(0.0) / step.drift;
         Some(Node {
             tangent: self.rows.nodes[at.row - 1].tangent.get(at.lane),
             normal: stand.normal,
             mass: [mass, 1.0 / (across + excess) - mass],
             inverse: stand.inverse,
-            spring: step.kick * (contact.stiffness[at] * penetration + landing),
-            resistance: step.kick * (contact.stiffness[at] * step.drift + contact.damping[at]),
+            spring: stand.bed.spring[0],
+            resistance: stand.bed.resistance[0],
         })
     }
 
     /// Takes a node that moves at `velocity` [m/s] to do what the bed makes of it; whether that is what it was taken to do.
     fn rest(&mut self, i: usize, velocity: Vector3<f64>, step: Step) -> bool {
-        let Some(node) = self.node(i, step) else {
+        let Some(node) = self.node(i) else {
             return true;
         };
         let needed = self.needed(i, &node, velocity, step);
@@ -163,9 +169,8 @@ impl AxialWork {
         let stand = &mut rubbing.nodes[i];
         let (mode, before) = (stand.mode, stand.rub);
         let rise = node.normal.dot(&velocity);
-        let lands = stand.penetration - step.drift * rise > 0.0;
         let push = node.spring - node.resistance * rise;
-        if !lands || push <= 0.0 {
+        if stand.bed.pushes(Lanes::splat(rise))[0] <= 0.0 {
             stand.mode = Mode::Off;
             return mode == Mode::Off;
         }
@@ -210,8 +215,8 @@ impl AxialWork {
     }
 
     /// Puts the bed into the equation of a node.
-    fn settle_on(&mut self, i: usize, step: Step) {
-        let Some(node) = self.node(i, step) else {
+    fn settle_on(&mut self, i: usize) {
+        let Some(node) = self.node(i) else {
             return;
         };
         let Some(rubbing) = &self.rubbing else {
@@ -251,7 +256,7 @@ impl AxialWork {
         for i in self.inner_nodes() {
             let velocity = self.new_velocity(i);
             if !self.rest(i, velocity, step) {
-                self.settle_on(i, step);
+                self.settle_on(i);
                 holds = false;
             }
         }
@@ -261,7 +266,7 @@ impl AxialWork {
     /// Remembers the friction of the step.
     pub(super) fn keep_rub(&mut self, step: Step) {
         for i in self.inner_nodes() {
-            let Some(node) = self.node(i, step) else {
+            let Some(node) = self.node(i) else {
                 return;
             };
             let rub = self.needed(i, &node, self.new_velocity(i), step);

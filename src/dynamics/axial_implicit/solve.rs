@@ -174,8 +174,8 @@ impl Found {
         let (old, kick) = (line.velocity.load(at), Lanes::splat(step.kick));
         let new = node.loose + node.inverse_mass::<RUBS>(force).scale(kick);
         line.velocity_before.store(new, at);
-        if !RUBS && let Some(contact) = &line.contact {
-            let touches = node.pushed(contact, at, new.z, step);
+        if !RUBS && line.contact.is_some() {
+            let touches = node.pushed(new.z);
             self.landed = self.landed.max(Lanes::splat(0.0) - touches * node.touches);
         }
         self.book(node, force, line.weight.load(at), [old, new], step);
@@ -266,7 +266,7 @@ impl AxialWork {
         let stretched = off.max(found.flipped).max(found.turned).any_positive();
         let landed = found.landed.any_positive();
         if landed {
-            self.revise_contact(step);
+            self.revise_contact();
         }
         let revised = stretched && self.revise_segments(step, tolerance);
         !(landed || revised)
@@ -274,19 +274,11 @@ impl AxialWork {
 
     /// Takes the nodes to meet the bed as the last pass found.
     #[inline(always)]
-    fn revise_contact(&mut self, step: Step) {
-        let Layout {
-            velocity_before: velocity,
-            contact: Some(contact),
-            ..
-        } = &self.layout
-        else {
-            return;
-        };
+    fn revise_contact(&mut self) {
+        let velocity = &self.layout.velocity_before;
         for (row, node) in self.rows.nodes.iter_mut().enumerate() {
-            let rise = velocity.load(row + 1).z;
-            node.touches = node.pushed(contact, row + 1, rise, step);
-            node.settle(contact, row + 1, step);
+            node.touches = node.pushed(velocity.load(row + 1).z);
+            node.settle();
         }
     }
 

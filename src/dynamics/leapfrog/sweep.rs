@@ -1,14 +1,11 @@
-//! A step of a line in one sweep over its rows, four nodes at a time.
+//! A step of a line in a sweep over its rows, four nodes at a time.
 //!
-//! With the positions of three rows at hand, a row of nodes takes the pull of the segments after it from the chords to the next row, that of
-//! the segments before it from the row that was swept last, and its tangent c/|c| from the chord c between the rows on both sides. It is
-//! kicked and drifts on at once: nothing is stored that the next row would have to wait for. The first row needs the pull of the last,
-//! which therefore comes first. What the ghosts repeat is taken before any node has moved, and after the last row the ends are put where
-//! their points are.
+//! It passes over them three times: pulls of the segments; what water and damping resist with; and the kick, after which the nodes drift on at
+//! once. A row goes through a chain of some forty operations that wait for each other, with roots and quotients among them. A machine holds
+//! no more than about one row of them at a time, but several rows of a third of them: so those of neighbouring rows run side by side, and
+//! what a pass works with fits into the registers.
 //!
-//! A row passes through a chain of some forty operations that wait for each other, with roots and quotients among them. Its first half,
-//! pulls and what resists, knows nothing of the row below, and is begun before the second half of that, the kick: so the two chains
-//! run side by side.
+//! What the ghosts repeat is taken before any node has moved, and in the end the ends are put where their points are.
 //!
 //! Lines that are not plain have their pulls found beforehand, by [`LineWork::pull_beforehand`].
 
@@ -41,10 +38,6 @@ mod around {
     pub const FLOWING: u8 = 2;
 }
 
-/// Speeds below this [m/s] are rounded to multiples of about 2⁻⁵³ of it. What comes to rest on the bed would else go on to squares that are
-/// too small to be normal numbers, with which a machine is many times slower.
-const STILLNESS: f64 = 1e-30;
-
 /// A sweep for the vector unit of the machine.
 pub(super) struct Sweep<'a> {
     pub work: &'a mut LineWork,
@@ -59,7 +52,7 @@ impl NullaryFnOnce for Sweep<'_> {
     fn call(self) {
         let work = self.work;
         work.choose_sweep(self.size);
-        if work.settling.is_none() {
+        if work.settled.is_none() {
             work.layout.place_ends(self.ends, work.parted);
         }
     }
@@ -86,17 +79,11 @@ impl NullaryFnOnce for Drift<'_> {
 impl Layout {
     /// Puts the ends that have not parted from their points where these are.
     #[inline(always)]
-    fn place_ends(&mut self, ends: &[Placed; 2], parted: [bool; 2]) {
+    pub(super) fn place_ends(&mut self, ends: &[Placed; 2], parted: [bool; 2]) {
         for end in [End::A, End::B] {
-            let (side, at) = (end as usize, self.end_slot(end));
-            if !parted[side] {
-                // whole rows are written: a part of one would hold up the next sweep, which loads it at once
-                let place = self.position.load(at.row);
-                self.position
-                    .store(place.with(at.lane, ends[side].position), at.row);
-                let velocity = self.velocity.load(at.row);
-                self.velocity
-                    .store(velocity.with(at.lane, ends[side].velocity), at.row);
+            if !parted[end as usize] {
+                let Placed { position, velocity } = ends[end as usize];
+                self.put_end(end, position, velocity);
             }
         }
     }
@@ -117,6 +104,9 @@ struct Moving<'a> {
     velocity_before: &'a mut [Vectors],
     pull: &'a mut [Vectors],
     brake: &'a mut [Vectors],
+    resistance: &'a mut [Vectors],
+    inverse_square: &'a mut [Lanes],
+    press: &'a mut [Vectors],
 }
 
 /// What the segments are made of, row by row.
@@ -167,6 +157,12 @@ impl LineWork {
             velocity_before: line.velocity_before.rows_mut(last),
             pull: self.pull.rows_mut(last),
             brake: self.brake.rows_mut(last),
+            resistance: self.resistance.rows_mut(last),
+            inverse_square: self.inverse_square.rows_mut(last),
+            press: match &mut self.press {
+                Some(press) => press.rows_mut(last),
+                None => &mut [],
+            },
         };
         let segments = SegmentRows {
             inverse_length: line.inverse_length.rows(last),
@@ -218,30 +214,6 @@ impl LineWork {
     }
 }
 
-/// What is known of a row before it is kicked.
-#[derive(Clone, Copy)]
-struct Row {
-    /// Pull of the segments after the nodes, and the part of it that no spring has [N].
-    pull: Vectors,
-    brake: Vectors,
-    /// From the nodes before to those after [m].
-    chord: Vectors,
-    /// Its square's inverse [1/m²].
-    inverse_square: Lanes,
-    /// What water and damping resist with [N].
-    resistance: Vectors,
-    flow: Flow,
-}
-
-/// What moving water does to a row.
-#[derive(Clone, Copy)]
-struct Flow {
-    /// Power of the drag on the way of the water [W].
-    on_drag: Lanes,
-    /// What it presses with where waves accelerate it [N].
-    press: Vectors,
-}
-
 impl SegmentRows<'_> {
     /// T q of the segments of a row and the part of it that no spring has [N], and the power of that [W]; `rate` is how their chords [m] change
     /// [m/s].
@@ -279,90 +251,70 @@ struct Sums {
     turned: Lanes,
 }
 
-impl NodeRows<'_> {
-    /// What resists the motion of row number `at`, whose nodes are at the heights `z` [m].
-    #[inline(always)]
-    fn resist<const AROUND: u8, const PLAIN: bool>(
-        &self,
-        (at, z): (usize, Lanes),
-        row: &mut Row,
-        [velocity, velocity_before]: [Vectors; 2],
-        sizes: Sizes,
-    ) {
-        if AROUND != around::DRY {
-            let chord = row.chord;
-            row.inverse_square = (chord.dot(chord) + Lanes::splat(LENGTH2_MIN)).recip();
-            let change = velocity - velocity_before;
-            let now = velocity + change.scale(sizes.extrapolation);
-            if AROUND == around::FLOWING {
-                let water = water_flow(self.current, self.waves, at, z);
-                row.resistance = self.water.drag(at, now - water, row);
-                row.flow.on_drag = Lanes::splat(0.0) - row.resistance.dot(water);
-                if let Some(waves) = self.waves {
-                    let tangent = chord.scale(row.inverse_square.sqrt());
-                    row.flow.press = waves.press(at, tangent);
-                }
-            } else {
-                row.resistance = self.water.drag(at, now, row);
-            }
-        }
-        if !PLAIN && let Some(damping) = self.mass_damping {
-            row.resistance = row.resistance + velocity.scale(damping[at]);
-        }
-    }
+/// What a row is kicked by.
+struct Kicking {
+    /// Height of its nodes [m].
+    z: Lanes,
+    /// Sum of the pulls on them, and the part of it that no spring has [N].
+    pull: Vectors,
+    brake: Vectors,
+    /// What water and damping resist with [N].
+    resistance: Vectors,
+    /// What water presses with that waves accelerate [N].
+    press: Vectors,
+    /// From the nodes before to those after [m].
+    chord: Vectors,
+    /// Its square's inverse [1/m²].
+    inverse_square: Lanes,
+}
 
-    /// The velocities at t_{n+½} [m/s] of row number `at`, whose nodes are at the heights `z` [m]; `pull` is the sum of the pulls on them, and
-    /// `brake` the part of it that no spring has [N].
+impl NodeRows<'_> {
+    /// The velocities at t_{n+½} [m/s] of row number `at`.
     #[inline(always)]
     fn kick<const AROUND: u8, const BED: bool, const PLAIN: bool>(
         &self,
-        (at, z): (usize, Lanes),
-        (row, pull, brake): (&Row, Vectors, Vectors),
+        at: usize,
+        by: &Kicking,
         velocity: Vectors,
         sizes: Sizes,
         sums: &mut Sums,
     ) -> Vectors {
         let resists = AROUND != around::DRY || !PLAIN;
-        let mut force = pull;
+        let mut force = by.pull;
         force.z = force.z - self.weight[at];
         if resists {
-            force = force - row.resistance;
+            force = force - by.resistance;
         }
         if AROUND == around::FLOWING {
-            force = force + row.flow.press;
+            force = force + by.press;
         }
         // Δt M⁻¹f, and Δt M⁻¹ẑ for the bed
         let inverse_mass = self.inverse_mass[at] * sizes.kick;
         let (mut kick, mut response) = (force.scale(inverse_mass), Vectors::zero());
         if AROUND != around::DRY {
-            let excess = self.water.excess[at] * row.inverse_square * sizes.kick;
-            kick = kick + row.chord.scale(excess * force.dot(row.chord));
-            response = row.chord.scale(excess * row.chord.z);
+            let excess = self.water.excess[at] * by.inverse_square * sizes.kick;
+            kick = kick + by.chord.scale(excess * force.dot(by.chord));
+            response = by.chord.scale(excess * by.chord.z);
         }
         response.z = response.z + inverse_mass;
         let mut kicked = velocity + kick;
-        let mut left = Lanes::splat(0.0);
+        let mut taken = by.resistance;
         if BED {
-            let push = self.contact.push(at, z, [kicked.z, response.z], sizes);
+            let push = self.contact.push(at, by.z, [kicked.z, response.z], sizes);
             kicked = kicked + response.scale(push);
-            left = left - push * (velocity.z + kicked.z);
+            taken.z = taken.z - push;
         }
-        kicked = kicked.rounded(STILLNESS);
         let (both, interior) = (velocity + kicked, self.interior[at]);
-        if resists {
-            left = left + row.resistance.dot(both);
-        }
         // the dampers' power was that at the velocities before
         let change = kicked - velocity;
-        sums.left = sums.left + interior * (left - brake.dot(change));
+        sums.left = sums.left + interior * (taken.dot(both) - by.brake.dot(change));
         if AROUND != around::DRY {
-            let passed = change.dot(row.chord) * both.dot(row.chord) * row.inverse_square;
+            let passed = change.dot(by.chord) * both.dot(by.chord) * by.inverse_square;
             sums.turned = sums.turned - self.water.mass_excess[at] * interior * passed;
         }
         if AROUND == around::FLOWING {
-            let pressed = Lanes::splat(0.5) * row.flow.press.dot(both);
-            sums.given = sums.given + interior * (row.flow.on_drag + pressed);
-            sums.lost = sums.lost + interior * row.flow.on_drag;
+            let pressed = Lanes::splat(0.5) * by.press.dot(both);
+            sums.given = sums.given + interior * pressed;
         }
         kicked
     }
@@ -371,13 +323,13 @@ impl NodeRows<'_> {
 impl WaterRows<'_> {
     /// K_n |u_n| u_n + K_t |u_t| u_t, with c the chord, u_t = (u·c) c/c².
     #[inline(always)]
-    fn drag(&self, at: usize, past: Vectors, row: &Row) -> Vectors {
-        let along = past.dot(row.chord); // u·c
-        let part = along * row.inverse_square;
-        let across = past - row.chord.scale(part);
+    fn drag(&self, at: usize, past: Vectors, chord: Vectors, inverse_square: Lanes) -> Vectors {
+        let along = past.dot(chord); // u·c
+        let part = along * inverse_square;
+        let across = past - chord.scale(part);
         let normal = self.normal[at] * across.dot(across).sqrt();
-        let tangent = self.tangent[at] * (along.abs() * row.inverse_square.sqrt()) * part;
-        across.scale(normal) + row.chord.scale(tangent)
+        let tangent = self.tangent[at] * (along.abs() * inverse_square.sqrt()) * part;
+        across.scale(normal) + chord.scale(tangent)
     }
 }
 
@@ -412,7 +364,7 @@ impl LineWork {
     /// A bed that slopes or rubs is looked after by [`LineWork::settle`].
     #[inline(always)]
     fn choose_bed<const AROUND: u8>(&mut self, step: &Step) {
-        let level = self.layout.contact.is_some() && self.settling.is_none();
+        let level = self.layout.contact.is_some() && self.settled.is_none();
         match (level, self.plain) {
             (false, false) => self.sweep::<AROUND, false, false>(step),
             (false, true) => self.sweep::<AROUND, false, true>(step),
@@ -421,71 +373,37 @@ impl LineWork {
         }
     }
 
-    /// Makes the ghosts repeat the nodes; an end that has parted has no neighbour beyond it.
+    /// Makes the ghosts repeat the nodes as far as the sweep reads them.
     #[inline(always)]
     fn prepare_ghosts(&mut self) {
         let (last, line) = (self.layout.fold.rows(), &mut self.layout);
-        let first = line.position.load(1);
-        let mut low = line.position.load(last).moved_up();
-        if self.parted[End::A as usize] {
-            low = low.with(0, first.get(0));
-        }
-        line.position.store(low, 0);
-        line.position.store(first.moved_down(), last + 1);
+        line.position.wrap();
         let first = line.velocity.load(1);
         line.velocity.store(first.moved_down(), last + 1);
-        if self.parted[End::B as usize] {
-            let end = line.end_slot(End::B);
-            let beyond = line.position.load(end.row + 1);
-            let place = line.position.get(end);
-            line.position
-                .store(beyond.with(end.lane, place), end.row + 1);
-        }
+        line.part_ghosts(self.parted);
     }
 
-    /// The sweep. What can be known of a row before its kick is found before the row below it is kicked.
     #[inline(always)]
     fn sweep<const AROUND: u8, const BED: bool, const PLAIN: bool>(&mut self, step: &Step) {
         self.prepare_ghosts();
-        let last = self.layout.fold.rows();
         let sizes = Sizes {
             kick: Lanes::splat(step.kick),
             drift: Lanes::splat(step.drift),
             extrapolation: Lanes::splat(step.extrapolation),
         };
-        let mut settling = if PLAIN { None } else { self.settling.take() };
         // what is settled afterwards drifts afterwards
-        let settles = settling.is_some();
-        let drift = Lanes::splat(if settles { 0.0 } else { step.drift });
+        let drift = match self.settled {
+            None => sizes.drift,
+            Some(_) => Lanes::splat(0.0),
+        };
         let mut swept = self.cut();
         if PLAIN {
-            swept.pull(last);
+            swept.pull();
         }
-        let mut pull_low = swept.moving.pull[last].moved_up();
-        let mut brake_low = swept.moving.brake[last].moved_up();
-        let mut row = swept.row::<AROUND, PLAIN>(1, swept.moving.position[0], sizes);
-        for at in 1..=last {
-            let (here, mut next) = (swept.moving.position[at], row);
-            if at < last {
-                next = swept.row::<AROUND, PLAIN>(at + 1, here, sizes);
-            }
-            let Swept {
-                moving,
-                nodes,
-                sums,
-                ..
-            } = &mut swept;
-            let braked = row.brake - brake_low;
-            let (place, pulled) = ((at, here.z), (&row, row.pull - pull_low, braked));
-            let velocity = moving.velocity[at];
-            let kicked = nodes.kick::<AROUND, BED, PLAIN>(place, pulled, velocity, sizes, sums);
-            moving.velocity_before[at] = kicked; // v_{n−3/2} has been read
-            moving.position[at] = here + kicked.scale(drift);
-            if let Some(settling) = &mut settling {
-                settling.resistance.store(row.resistance - braked, at);
-            }
-            (row, pull_low, brake_low) = (next, row.pull, row.brake);
+        if AROUND != around::DRY || !PLAIN {
+            swept.resist::<AROUND, PLAIN>(sizes);
         }
+        swept.kick::<AROUND, BED, PLAIN>(sizes, drift);
         let Sums {
             lost,
             left,
@@ -496,9 +414,6 @@ impl LineWork {
         let half = Lanes::splat(0.5);
         self.lost = self.lost + (lost + half * left) * sizes.kick;
         self.given_by_current = self.given_by_current + given * sizes.kick;
-        if !PLAIN {
-            self.settling = settling;
-        }
         let line = &mut self.layout;
         std::mem::swap(&mut line.velocity, &mut line.velocity_before);
     }
@@ -513,47 +428,94 @@ struct Swept<'a> {
 }
 
 impl Swept<'_> {
-    /// Finds the pull of a row of segments.
+    /// The last of the rows that are no ghosts.
     #[inline(always)]
-    fn pull(&mut self, row: usize) {
-        let moving = &mut self.moving;
-        let chord = moving.position[row + 1] - moving.position[row];
-        let rate = moving.velocity[row + 1] - moving.velocity[row];
-        let (pull, brake, lost) = self.segments.pull(row, chord, rate);
-        (moving.pull[row], moving.brake[row]) = (pull, brake);
-        self.sums.lost = self.sums.lost + lost;
+    fn last(&self) -> usize {
+        self.moving.position.len() - 2
     }
 
-    /// What is known of row number `at` before it is kicked; `low` is where the nodes before are [m].
+    /// Finds the pulls of the segments.
     #[inline(always)]
-    fn row<const AROUND: u8, const PLAIN: bool>(
-        &mut self,
-        at: usize,
-        low: Vectors,
-        sizes: Sizes,
-    ) -> Row {
-        let zero = Lanes::splat(0.0);
-        let moving = &self.moving;
-        let mut row = Row {
-            pull: Vectors::zero(),
-            brake: Vectors::zero(),
-            chord: moving.position[at + 1] - low,
-            inverse_square: zero,
-            resistance: Vectors::zero(),
-            flow: Flow {
-                on_drag: zero,
-                press: Vectors::zero(),
-            },
-        };
-        let place = (at, moving.position[at].z);
-        let velocities = [moving.velocity[at], moving.velocity_before[at]];
-        let nodes = &self.nodes;
-        nodes.resist::<AROUND, PLAIN>(place, &mut row, velocities, sizes);
-        // the last row was pulled before the first
-        if PLAIN && at + 2 < self.moving.position.len() {
-            self.pull(at);
+    fn pull(&mut self) {
+        for at in 1..=self.last() {
+            let moving = &mut self.moving;
+            let chord = moving.position[at + 1] - moving.position[at];
+            let rate = moving.velocity[at + 1] - moving.velocity[at];
+            let (pull, brake, lost) = self.segments.pull(at, chord, rate);
+            (moving.pull[at], moving.brake[at]) = (pull, brake);
+            self.sums.lost = self.sums.lost + lost;
         }
-        (row.pull, row.brake) = (self.moving.pull[at], self.moving.brake[at]);
-        row
+    }
+
+    /// Finds what resists the motion of the nodes, and what else moving water does to them.
+    #[inline(always)]
+    fn resist<const AROUND: u8, const PLAIN: bool>(&mut self, sizes: Sizes) {
+        for at in 1..=self.last() {
+            let (moving, nodes, sums) = (&mut self.moving, &self.nodes, &mut self.sums);
+            let velocity = moving.velocity[at];
+            let mut resistance = Vectors::zero();
+            if AROUND != around::DRY {
+                let chord = moving.position[at + 1] - moving.position[at - 1];
+                let inverse_square = (chord.dot(chord) + Lanes::splat(LENGTH2_MIN)).recip();
+                let change = velocity - moving.velocity_before[at];
+                let now = velocity + change.scale(sizes.extrapolation);
+                moving.inverse_square[at] = inverse_square;
+                if AROUND == around::FLOWING {
+                    let z = moving.position[at].z;
+                    let water = water_flow(nodes.current, nodes.waves, at, z);
+                    resistance = nodes.water.drag(at, now - water, chord, inverse_square);
+                    // power of the drag on the way of the water
+                    let on_drag = nodes.interior[at] * resistance.dot(water);
+                    sums.given = sums.given - on_drag;
+                    sums.lost = sums.lost - on_drag;
+                    if let Some(waves) = nodes.waves {
+                        moving.press[at] = waves.press(at, chord.scale(inverse_square.sqrt()));
+                    }
+                } else {
+                    resistance = nodes.water.drag(at, now, chord, inverse_square);
+                }
+            }
+            if !PLAIN && let Some(damping) = nodes.mass_damping {
+                resistance = resistance + velocity.scale(damping[at]);
+            }
+            moving.resistance[at] = resistance;
+        }
+    }
+
+    /// Kicks the nodes, which then move for `drift` [s].
+    #[inline(always)]
+    fn kick<const AROUND: u8, const BED: bool, const PLAIN: bool>(
+        &mut self,
+        sizes: Sizes,
+        drift: Lanes,
+    ) {
+        let last = self.last();
+        let mut low = self.moving.position[0];
+        let mut pull_low = self.moving.pull[last].moved_up();
+        let mut brake_low = self.moving.brake[last].moved_up();
+        for at in 1..=last {
+            let (moving, nodes) = (&mut self.moving, &self.nodes);
+            let (here, velocity) = (moving.position[at], moving.velocity[at]);
+            let (pull, brake) = (moving.pull[at], moving.brake[at]);
+            let mut by = Kicking {
+                z: here.z,
+                pull: pull - pull_low,
+                brake: brake - brake_low,
+                resistance: moving.resistance[at],
+                press: Vectors::zero(),
+                chord: moving.position[at + 1] - low,
+                inverse_square: moving.inverse_square[at],
+            };
+            if AROUND == around::FLOWING && nodes.waves.is_some() {
+                by.press = moving.press[at];
+            }
+            let kicked = nodes.kick::<AROUND, BED, PLAIN>(at, &by, velocity, sizes, &mut self.sums);
+            moving.velocity_before[at] = kicked; // v_{n−3/2} has been read
+            moving.position[at] = here + kicked.scale(drift);
+            if !PLAIN {
+                moving.resistance[at] = by.resistance - by.brake; // for what is settled afterwards
+            }
+            (low, pull_low, brake_low) = (here, pull, brake);
+        }
     }
 }

@@ -263,7 +263,7 @@ impl LineWork {
             }
         };
         winch.line.pay_out(count, reel.half_step[0]);
-        layout.segment_count = count;
+        layout.set_segment_count(count);
         let after = self.energy_from(first, lag);
         if let Some(winch) = &mut self.winch {
             winch.given += after - before;
@@ -308,7 +308,7 @@ impl LineWork {
         };
         let (layout, segments, nodes) = (&mut self.layout, &winch.line.segments, &winch.line.nodes);
         let n = winch.line.segment_count();
-        layout.segment_count = n;
+        layout.set_segment_count(n);
         put(
             &mut layout.axial_stiffness,
             from,

@@ -2,10 +2,12 @@
 
 use super::{Bounds, Findings, number, quantity};
 use crate::scene::channel::Channel;
-use crate::scene::{AXIAL_RADIUS_MIN, Integrator, Scene};
+use crate::scene::{AXIAL_RADIUS_MIN, Integrator, Scene, Threads};
 
 /// Most elements of a line alone [-].
 const ELEMENTS_MAX: usize = 100_000;
+/// Most threads [-].
+const THREADS_MAX: usize = 256;
 /// Most output steps of a run.
 const STEPS_MAX: f64 = 1e7;
 
@@ -27,6 +29,12 @@ fn check_solver(scene: &Scene, findings: &mut Findings) {
     }
     let step = Bounds::Positive(1e4);
     findings.number("solver.time_step_max", solver.time_step_max, step, "s");
+    if let Threads::Number(number) = solver.threads
+        && !(1..=THREADS_MAX).contains(&number)
+    {
+        let problem = format!("{number} is not between 1 and {THREADS_MAX}");
+        findings.say("solver.threads", problem);
+    }
     if let Some(radius) = solver.spectral_radius {
         let at = "solver.spectral_radius";
         let least = match solver.integrator {

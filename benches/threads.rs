@@ -1,0 +1,130 @@
+//! Where threads pay: µs per communication step of systems of many lines on one thread, on two, and on as many as the solver chooses; all
+//! in turns, so that what else the machine does falls on all of them.
+
+mod common;
+
+use std::time::Instant;
+
+use moorline::scene::{Integrator, Scene, Threads};
+use moorline::simulation::Simulation;
+
+/// Rounds of which the fastest counts.
+const ROUNDS: usize = 200;
+/// Time before the timed steps, for the ramp to pass [s].
+const WARM_UP: f64 = 70.0;
+/// Communication step [s].
+const STEP: f64 = 0.05;
+/// Timed communication steps of a round.
+const STEPS: usize = 20;
+
+/// The semi-submersible with twelve lines of so many elements, in waves or without.
+fn semi(elements: usize, waves: bool) -> Scene {
+    let mut scene = common::scene("storm_moored_semi");
+    scene.solver.integrator = Integrator::Leapfrog;
+    scene.solver.elements = Some(elements);
+    if let (false, Some(water)) = (waves, &mut scene.water) {
+        water.waves = None;
+    }
+    scene
+}
+
+/// Five such vessels, three kilometres apart: sixty lines.
+fn farm(elements: usize, waves: bool) -> Scene {
+    let one = semi(elements, waves);
+    let mut scene = Scene {
+        points: Vec::new(),
+        lines: Vec::new(),
+        vessels: Vec::new(),
+        motion: Default::default(),
+        ..one.clone()
+    };
+    for unit in 0..5 {
+        let named = |name: &str| format!("{name}_{unit}");
+        let east = 3000.0 * f64::from(unit);
+        scene
+            .vessels
+            .extend(one.vessels.iter().cloned().map(|mut vessel| {
+                vessel.name = named(&vessel.name);
+                vessel.position[0] += east;
+                vessel
+            }));
+        scene
+            .points
+            .extend(one.points.iter().cloned().map(|mut point| {
+                point.name = named(&point.name);
+                if point.on.is_none() {
+                    point.position[0] += east;
+                }
+                point.on = point.on.as_deref().map(named);
+                point
+            }));
+        scene
+            .lines
+            .extend(one.lines.iter().cloned().map(|mut line| {
+                line.name = named(&line.name);
+                (line.from, line.to) = (named(&line.from), named(&line.to));
+                line
+            }));
+        let motion = one.motion.iter();
+        scene
+            .motion
+            .extend(motion.map(|(name, motion)| (named(name), motion.clone())));
+    }
+    scene
+}
+
+/// A simulation past its start-up, on so many threads.
+fn warm(scene: &Scene, threads: Threads) -> Simulation {
+    let mut scene = scene.clone();
+    scene.solver.threads = threads;
+    let mut simulation = Simulation::by_rules(&scene).expect("an equilibrium");
+    simulation.follow_scene().expect("an equilibrium");
+    while simulation.time() < WARM_UP {
+        simulation.advance(STEP).expect("a step");
+    }
+    simulation
+}
+
+/// Time of a step [µs]: the least of all rounds.
+fn time(simulation: &mut Simulation, best: f64) -> f64 {
+    let clock = Instant::now();
+    for _ in 0..STEPS {
+        simulation.advance(STEP).expect("a step");
+    }
+    best.min(1e6 * clock.elapsed().as_secs_f64() / STEPS as f64)
+}
+
+fn main() {
+    println!(
+        "{:<24} {:>9} {:>9} {:>9} {:>7}  auto",
+        "scene", "1 [µs]", "2 [µs]", "auto [µs]", "1 / 2"
+    );
+    let scenes = [
+        ("semi, n = 8, calm", semi(8, false)),
+        ("semi, n = 16, calm", semi(16, false)),
+        ("semi, n = 32, calm", semi(32, false)),
+        ("semi, n = 67, calm", semi(67, false)),
+        ("semi, n = 67, waves", semi(67, true)),
+        ("farm, n = 20, calm", farm(20, false)),
+        ("farm, n = 67, calm", farm(67, false)),
+        ("farm, n = 67, waves", farm(67, true)),
+    ];
+    for (name, scene) in &scenes {
+        let settings = [Threads::Number(1), Threads::Number(2), Threads::Auto];
+        let mut runs = settings.map(|threads| warm(scene, threads));
+        let starts = runs.each_ref().map(|run| run.snapshot().clone());
+        let mut best = [f64::INFINITY; 3];
+        for _ in 0..ROUNDS {
+            for ((run, start), best) in runs.iter_mut().zip(&starts).zip(&mut best) {
+                run.restore(start.clone());
+                *best = time(run, *best);
+            }
+        }
+        let [one, two, auto] = best;
+        println!(
+            "{name:<24} {one:>9.1} {two:>9.1} {auto:>9.1} {:>7.2}  {}",
+            one / two,
+            runs[2].threads_in_words(STEP)
+        );
+    }
+}

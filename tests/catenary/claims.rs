@@ -1,0 +1,306 @@
+//! Closed forms, published figures and invariants.
+
+use moorline::statics::catenary::{Bed, CatenaryError, Section, solve};
+
+use crate::Line;
+use crate::random::{CLASSES, Dice};
+
+fn assert_near(value: f64, wanted: f64, tolerance: f64) {
+    assert!(
+        (value - wanted).abs() <= tolerance,
+        "{value} is not {wanted} within {tolerance:e}"
+    );
+}
+
+#[test]
+fn seafem_case_11_has_the_exact_sag_and_reactions() {
+    let line = Line::uniform(14.1421, 0.49, 2505.0, 14.1421, 0.0, None).solve();
+    assert_near(line.horizontal(), 17.00889855, 5e-9);
+    assert_near(line.vertical_b(), 3.4648145, 1e-12);
+    assert_near(line.vertical_a(), -3.4648145, 1e-12);
+    assert_near(line.sag(), 0.717_777_465_4, 5e-11);
+}
+
+fn oc3(friction: f64) -> Line {
+    let bed = Some(Bed {
+        height: 0.0,
+        friction,
+    });
+    // MAP++ prints 698.094 N/m and computes with all digits: 77.7066 kg/m, 0.09 m, in 1025 kg/m³
+    let weight = 9.80665 * (77.7066 - 1025.0 * std::f64::consts::PI * 0.09 * 0.09 / 4.0);
+    Line::uniform(902.2, weight, 384.243e6, 848.67, 250.0, bed)
+}
+
+#[test]
+fn the_oc3_line_has_the_tension_map_prints_with_its_friction_and_less_without() {
+    let line = oc3(0.001).solve();
+    assert_near(line.tension_b(), 911_089.46, 5e-3);
+    assert_near(line.horizontal(), 736_939.29, 5e-3);
+    assert_near(line.vertical_b(), 535_727.99, 5e-3);
+    let frictionless =
+        Line::uniform(902.2, 698.094, 384.243e6, 848.67, 250.0, oc3(0.0).bed).solve();
+    assert_near(frictionless.tension_b(), 911_088.356_868_612_6, 1e-6);
+    assert_eq!(frictionless.horizontal_a(), frictionless.horizontal());
+}
+
+#[test]
+fn friction_takes_its_share_of_the_laid_weight_and_no_more_than_all() {
+    let line = oc3(0.5).solve();
+    assert_near(
+        line.horizontal() - line.horizontal_a(),
+        0.5 * oc3(0.5).weights() / 902.2 * line.laid_length(),
+        1e-6,
+    );
+    assert_eq!(line.friction(), 0.5);
+    let long = Line {
+        span: 800.0,
+        ..oc3(0.9)
+    }
+    .solve();
+    assert_eq!(long.tension_a(), 0.0);
+    assert!(long.horizontal() > 0.0);
+}
+
+#[test]
+fn swapping_the_ends_mirrors_the_line() {
+    let mut dice = Dice(11);
+    let frictionless = CLASSES
+        .iter()
+        .filter(|(name, _)| !name.contains("friction"));
+    for (name, make) in frictionless {
+        for _ in 0..200 {
+            let mut line = make(&mut dice);
+            line.bed = line.bed.map(|bed| Bed {
+                friction: 0.0,
+                ..bed
+            });
+            let sections = line.sections.iter().rev().copied().collect();
+            let bed = line.bed.map(|bed| Bed {
+                height: bed.height - line.rise,
+                ..bed
+            });
+            let swapped = Line {
+                sections,
+                span: line.span,
+                rise: -line.rise,
+                bed,
+            };
+            let (there, back) = (line.solve(), swapped.solve());
+            // what a change of L by one rounding would do to the force is beyond any solver: Δ = EA ε/strain at most
+            let flexibility: f64 = line
+                .sections
+                .iter()
+                .map(|s| s.length / s.axial_stiffness)
+                .sum();
+            let scale = there.tension_a().max(there.tension_b()) + line.weights();
+            let tolerance = 1e-9 * scale + 1e-14 * line.length() / flexibility;
+            assert!(
+                (there.horizontal() - back.horizontal()).abs() <= tolerance,
+                "{name}: {line:?}"
+            );
+            assert!(
+                (there.vertical_a() + back.vertical_b()).abs() <= tolerance,
+                "{name}: {line:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn cutting_a_line_into_like_sections_changes_nothing() {
+    let mut dice = Dice(12);
+    for (name, make) in &CLASSES {
+        for _ in 0..50 {
+            let line = make(&mut dice);
+            let halves = line
+                .sections
+                .iter()
+                .flat_map(|s| {
+                    [Section {
+                        length: 0.5 * s.length,
+                        ..*s
+                    }; 2]
+                })
+                .collect();
+            let (whole, cut) = (
+                line.solve(),
+                Line {
+                    sections: halves,
+                    ..line.clone()
+                }
+                .solve(),
+            );
+            let flexibility: f64 = line
+                .sections
+                .iter()
+                .map(|s| s.length / s.axial_stiffness)
+                .sum();
+            let scale = whole.tension_a().max(whole.tension_b()) + line.weights();
+            let tolerance = 1e-9 * scale + 1e-14 * line.length() / flexibility;
+            assert!(
+                (whole.tension_b() - cut.tension_b()).abs() <= tolerance,
+                "{name}: {line:?}"
+            );
+            assert!(
+                (whole.laid_length() - cut.laid_length()).abs() <= 1e-8 * line.length(),
+                "{name}: {line:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_taut_line_tends_to_its_stiffness_times_its_strain() {
+    let strain = 0.02;
+    let errors: Vec<f64> = [1.0, 0.1, 0.01, 0.001]
+        .map(|weight| {
+            let line = Line::uniform(100.0, weight, 1e5, 61.2, 81.6, None).solve();
+            0.5 * (line.tension_a() + line.tension_b()) - 1e5 * strain
+        })
+        .to_vec();
+    // the sag's share is quadratic in weight over tension
+    for pair in errors.windows(2) {
+        let order = (pair[0] / pair[1]).log10();
+        assert!((order - 2.0).abs() < 0.1, "order {order} of {errors:?}");
+    }
+}
+
+#[test]
+fn a_slack_line_hangs_vertically_and_pulls_with_what_hangs() {
+    let bed = Some(Bed {
+        height: 0.0,
+        friction: 0.3,
+    });
+    let line = Line::uniform(100.0, 20.0, 1e9, 30.0, 40.0, bed).solve();
+    assert_eq!((line.horizontal(), line.tension_a()), (0.0, 0.0));
+    // T + T²/2EAw·w = w·40, the stretch of what hangs
+    assert_near(
+        line.vertical_b() + line.vertical_b().powi(2) / 2e9,
+        800.0,
+        1e-9,
+    );
+    assert_near(line.at(100.0).x, 30.0, 1e-12);
+}
+
+#[test]
+fn a_weightless_line_longer_than_its_chord_pulls_nothing() {
+    for length in [50.0, 60.0, 1e4] {
+        let line = Line::uniform(length, 0.0, 1e6, 30.0, -40.0, None).solve();
+        assert_eq!((line.tension_a(), line.tension_b()), (0.0, 0.0));
+        assert_near(line.at(length).z, -40.0, 1e-11);
+    }
+    let taut = Line::uniform(40.0, 0.0, 1e6, 30.0, -40.0, None).solve();
+    assert_near(taut.tension_b(), 1e6 * 0.25, 1e-8);
+}
+
+#[test]
+fn a_buoyant_line_is_a_heavy_one_upside_down_and_leaves_the_bed_alone() {
+    let heavy = Line::uniform(120.0, 7.0, 1e6, 90.0, 20.0, None).solve();
+    let bed = Some(Bed {
+        height: -20.0,
+        friction: 0.7,
+    });
+    let buoyant = Line::uniform(120.0, -7.0, 1e6, 90.0, -20.0, bed).solve();
+    assert_eq!(buoyant.horizontal(), heavy.horizontal());
+    assert_eq!(buoyant.vertical_b(), -heavy.vertical_b());
+    assert_eq!((buoyant.laid_length(), buoyant.sag()), (0.0, 0.0));
+}
+
+#[test]
+fn a_line_just_off_the_bed_and_one_just_on_it_pull_alike() {
+    let span_of_lift_off = {
+        // the span at which V at A passes zero
+        let vertical = |span: f64| {
+            let free = Line {
+                span,
+                bed: None,
+                ..oc3(0.0)
+            };
+            free.solve().vertical_a()
+        };
+        let (mut lower, mut upper) = (850.0, 868.0);
+        for _ in 0..60 {
+            let middle = 0.5 * (lower + upper);
+            if vertical(middle) < 0.0 {
+                lower = middle
+            } else {
+                upper = middle
+            }
+        }
+        lower
+    };
+    for friction in [0.0, 1.0] {
+        let [before, after] = [-1e-9, 1e-9].map(|step| {
+            Line {
+                span: span_of_lift_off + step,
+                ..oc3(friction)
+            }
+            .solve()
+        });
+        assert!(before.laid_length() < 1e-3 && after.laid_length() == 0.0);
+        assert_near(before.tension_b() / after.tension_b(), 1.0, 1e-8);
+    }
+}
+
+#[test]
+fn what_is_not_a_line_is_refused_with_the_place_and_the_reason() {
+    let good = Section {
+        length: 10.0,
+        weight: 1.0,
+        axial_stiffness: 1e5,
+    };
+    let refuse = |sections: &[Section], span: f64, rise: f64, bed: Option<Bed>| -> String {
+        let error: CatenaryError = solve(sections, span, rise, bed).expect_err("it is no line");
+        error.to_string()
+    };
+    assert_eq!(
+        refuse(&[], 1.0, 0.0, None),
+        "sections: a line needs at least one section, there is none"
+    );
+    let short = Section {
+        length: 0.0,
+        ..good
+    };
+    assert_eq!(
+        refuse(&[good, short], 1.0, 0.0, None),
+        "sections[1].length: 0 m is not positive and finite"
+    );
+    let soft = Section {
+        axial_stiffness: -5.0,
+        ..good
+    };
+    assert_eq!(
+        refuse(&[soft], 1.0, 0.0, None),
+        "sections[0].axial_stiffness: -5 N is not positive and finite"
+    );
+    let odd = Section {
+        weight: f64::NAN,
+        ..good
+    };
+    assert_eq!(
+        refuse(&[odd], 1.0, 0.0, None),
+        "sections[0].weight: NaN N/m is not finite"
+    );
+    assert_eq!(
+        refuse(&[good], -1.0, 0.0, None),
+        "span: -1 m is not at least 0 and finite"
+    );
+    assert_eq!(
+        refuse(&[good], 1.0, f64::INFINITY, None),
+        "rise: inf m is not finite"
+    );
+    let rough = Bed {
+        height: 0.0,
+        friction: -0.1,
+    };
+    assert_eq!(
+        refuse(&[good], 1.0, 0.0, Some(rough)),
+        "bed.friction: -0.1 [-] is not at least 0 and finite"
+    );
+    let high = Bed {
+        height: -2.0,
+        friction: 0.0,
+    };
+    let message = "bed.height: the bed at z = -2 m is above end B at z = -3 m; it must be at or below both ends";
+    assert_eq!(refuse(&[good], 1.0, -3.0, Some(high)), message);
+}

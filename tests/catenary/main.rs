@@ -1,0 +1,64 @@
+//! The elastic catenary against 60-digit references and, on random lines of every class, against the equations of the cable.
+//!
+//! ```text
+//!                        ● B        judged: the end forces the solver gives are integrated from A to B along the line by
+//!                      ╱            Gauss quadrature of dx/ds = H/T + H/EA, dz/ds = V/T + V/EA, dV/ds = w; the walk must
+//!  A ●══════════════╱               arrive at B, with B's forces, never under the bed, and on it obey Coulomb's law
+//! ```
+//!
+//! `tests/reference/catenary.csv` is made by `python_tests/make_catenary_reference.py`. Source of the published figures: SeaFEM
+//! validation case 11; the MAP++ summary of the OC3 Hywind line in the OpenFAST regression tests.
+
+mod claims;
+mod judge;
+mod random;
+mod references;
+
+use moorline::statics::catenary::{Bed, Catenary, Section, solve};
+
+/// A line to solve.
+#[derive(Debug, Clone)]
+struct Line {
+    sections: Vec<Section>,
+    span: f64,
+    rise: f64,
+    bed: Option<Bed>,
+}
+
+impl Line {
+    fn uniform(
+        length: f64,
+        weight: f64,
+        axial_stiffness: f64,
+        span: f64,
+        rise: f64,
+        bed: Option<Bed>,
+    ) -> Self {
+        Line {
+            sections: vec![Section {
+                length,
+                weight,
+                axial_stiffness,
+            }],
+            span,
+            rise,
+            bed,
+        }
+    }
+
+    fn solve(&self) -> Catenary {
+        solve(&self.sections, self.span, self.rise, self.bed)
+            .unwrap_or_else(|e| panic!("{e}: {self:?}"))
+    }
+
+    fn length(&self) -> f64 {
+        self.sections.iter().map(|section| section.length).sum()
+    }
+
+    fn weights(&self) -> f64 {
+        self.sections
+            .iter()
+            .map(|section| section.length * section.weight.abs())
+            .sum()
+    }
+}

@@ -1,0 +1,85 @@
+//! The command line on decks.
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use crate::*;
+
+fn moorline(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
+    let done = Command::new(env!("CARGO_BIN_EXE_moorline"))
+        .args(arguments)
+        .current_dir(folder)
+        .env("NO_COLOR", "1")
+        .output()
+        .unwrap();
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    (
+        done.status.code().unwrap(),
+        text(&done.stdout),
+        text(&done.stderr),
+    )
+}
+
+#[test]
+fn the_command_line_converts_a_deck_with_what_its_host_would_give() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("farm.dat"), FARM).unwrap();
+    let (code, _, error) = moorline(folder.path(), &["convert", "farm.dat", "-o", "farm.toml"]);
+    assert_eq!(code, 2, "{error}");
+    let placed = [
+        "convert",
+        "farm.dat",
+        "-o",
+        "farm.toml",
+        "--at",
+        "turbine1=0,0,0",
+        "--at",
+        "turbine2=1000,0,0",
+    ];
+    let (code, said, error) = moorline(folder.path(), &placed);
+    assert_eq!((code, error.as_str()), (0, ""), "{said}");
+    assert!(
+        said.starts_with("written to farm.toml\nnote: file"),
+        "{said}"
+    );
+    let (code, _, error) = moorline(folder.path(), &["convert", "farm.toml", "-o", "again.toml"]);
+    assert_eq!(code, 2);
+    assert!(error.contains("is a scene of moorline already"), "{error}");
+}
+
+#[test]
+fn a_run_of_a_deck_writes_its_channels_beside_moorlines_columns() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = with(
+        VERSION_1,
+        "FairTen2 AnchTen1",
+        "FairTen2 AnchTen1 L2N0Px Point2Pz Con3Fx L1NBVz",
+    );
+    let text = with(&text, "0.02   dtOut", "5.0   dtOut");
+    fs::write(folder.path().join("deck.dat"), text).unwrap();
+    let (code, _, error) = moorline(folder.path(), &["run", "deck.dat", "-o", "out"]);
+    assert_eq!(code, 0, "{error}");
+    let mut table = csv::Reader::from_path(folder.path().join("out/results.csv")).unwrap();
+    let header: Vec<String> = table
+        .headers()
+        .unwrap()
+        .iter()
+        .map(str::to_string)
+        .collect();
+    let rows: Vec<Vec<f64>> = table.deserialize().map(Result::unwrap).collect();
+    let column = |name: &str| {
+        let index = header
+            .iter()
+            .position(|known| known == name)
+            .unwrap_or_else(|| panic!("{name}: {header:?}"));
+        rows.iter().map(|row| row[index]).collect::<Vec<f64>>()
+    };
+    assert_eq!(rows.len(), 13);
+    assert_eq!(column("FairTen2"), column("line2.tension_b"));
+    assert_eq!(column("AnchTen1"), column("line1.tension_a"));
+    assert!(column("L2N0Px").iter().all(|x| (x - 60.0).abs() < 40.0));
+    assert!(column("Point2Pz").iter().all(|z| *z < 0.0));
+    assert!(column("Con3Fx").iter().all(|force| *force > 0.0));
+    assert!(column("L1NBVz").iter().all(|speed| speed.abs() < 1e-3));
+}

@@ -1,0 +1,175 @@
+//! Files that are no scenes, and the files that a scene names.
+
+use std::fs;
+use std::path::Path;
+
+use moorline::scene::{LoadError, MotionPath, Scene, load};
+
+use crate::{SCENE, said};
+
+#[test]
+fn a_moordyn_file_is_refused_as_one() {
+    let text = "--------- MoorDyn Input File ---------\nMooring system\n----- LINE TYPES -----\nName Diam\n";
+    assert!(said(text).starts_with("1:1: this is a MoorDyn file"));
+}
+
+#[test]
+fn a_byte_order_mark_and_windows_line_ends_are_read() {
+    let text = format!("\u{feff}{}", SCENE.replace('\n', "\r\n"));
+    assert_eq!(said(&text), "fine");
+}
+
+#[test]
+fn a_file_that_is_no_text_is_refused_with_the_byte() {
+    let folder = tempfile::tempdir().unwrap();
+    let refused = |name: &str, bytes: &[u8]| {
+        let path = folder.path().join(name);
+        fs::write(&path, bytes).unwrap();
+        load(&path).unwrap_err()
+    };
+    let latin = refused("latin.toml", b"title = \"a\"\n# M\xfcller\n");
+    assert!(
+        matches!(&latin, LoadError::NotText { byte: 15, .. }),
+        "{latin}"
+    );
+    assert!(
+        latin
+            .to_string()
+            .contains("byte 15 (line 2, column 4) is 0xFC"),
+        "{latin}"
+    );
+    let binary = refused("binary.toml", b"\x7fELF\x02\x00\x01");
+    assert!(
+        matches!(&binary, LoadError::NotText { byte: 5, .. }),
+        "{binary}"
+    );
+}
+
+#[test]
+fn a_file_that_cannot_be_read_is_refused_by_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let missing = load(&folder.path().join("missing.toml")).unwrap_err();
+    assert!(
+        missing.to_string().ends_with("missing.toml: no such file"),
+        "{missing}"
+    );
+    let is_folder = load(folder.path()).unwrap_err();
+    assert!(
+        is_folder
+            .to_string()
+            .ends_with("is a folder, not a scene file"),
+        "{is_folder}"
+    );
+}
+
+#[test]
+fn all_mistakes_are_listed_in_the_order_of_the_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.toml");
+    let text = SCENE
+        .replace("depth = 50.0", "depth = -50.0")
+        .replace("to = \"buoy\"", "to = \"bouy\"")
+        .replace("interval = 0.1", "interval = 0.0")
+        .replace("mass = 100.0", "mass = -1.0");
+    fs::write(&path, &text).unwrap();
+    let error = load(&path).unwrap_err();
+    let list = error.list();
+    let keys: Vec<&str> = error
+        .mistakes()
+        .iter()
+        .map(|mistake| mistake.at.as_str())
+        .collect();
+    assert_eq!(
+        keys,
+        [
+            "seabed.depth",
+            "line_types.chain.mass",
+            "lines[0].to",
+            "output.interval"
+        ]
+    );
+    assert!(
+        list.contains(
+            "scene.toml:34:6: lines[0].to: no point is called `bouy`, did you mean `buoy`?"
+        )
+    );
+    assert!(error.to_string().ends_with("(and 3 mistakes more)"));
+    let mut shown = String::new();
+    miette::GraphicalReportHandler::new_themed(miette::GraphicalTheme::none())
+        .render_report(&mut shown, &error)
+        .unwrap();
+    assert!(
+        shown.contains("depth = -50.0") && shown.contains("to = \"bouy\""),
+        "{shown}"
+    );
+}
+
+/// Loads a scene whose fairlead follows a motion file with this text.
+fn load_with_motion_file(folder: &Path, csv: &[u8]) -> Result<Scene, String> {
+    let motion = "fairlead = { file = \"motion.csv\" }";
+    let text = SCENE.replace("fairlead = { x = [[1.0, 10.0]] }", motion);
+    fs::write(folder.join("scene.toml"), text).unwrap();
+    fs::write(folder.join("motion.csv"), csv).unwrap();
+    match load(&folder.join("scene.toml")) {
+        Ok(loaded) => Ok(loaded.scene),
+        Err(error) => Err(error.list()),
+    }
+}
+
+#[test]
+fn a_motion_file_is_read_beside_the_scene_and_packed_into_its_text() {
+    let folder = tempfile::tempdir().unwrap();
+    let csv = b"time [s], x [m], y [m], z [m]\n0, 0, 0, 0\n0.1, 1e-3, 0.3, -7\n";
+    let scene = load_with_motion_file(folder.path(), csv).unwrap();
+    let rows = vec![[0.0; 7], [0.1, 1e-3, 0.3, -7.0, 0.0, 0.0, 0.0]];
+    assert_eq!(scene.motion["fairlead"].rows(), Some(rows.as_slice()));
+    let packed = Scene::from_toml(&scene.to_toml()).unwrap();
+    assert_eq!(packed.motion["fairlead"], MotionPath::Table(rows));
+}
+
+#[test]
+fn a_motion_file_with_a_mistake_is_refused_with_its_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let cases: [(&[u8], &str); 8] = [
+        (
+            b"",
+            "line 1: the header must be \"time,x,y,z\" [s, m] or \"time,x,y,z,roll,pitch,yaw\" [s, m, rad], found \"\"",
+        ),
+        (
+            b"0,0,0,0\n1,0,0,0\n",
+            "line 1: the header must be \"time,x,y,z\" [s, m] or \"time,x,y,z,roll,pitch,yaw\" [s, m, rad], found \"0,0,0,0\"",
+        ),
+        (b"time,x,y,z\n", "motion.csv: no rows below the header"),
+        (
+            b"time,x,y,z\n0,0,0\n",
+            "line 2: expected 4 numbers (time, x, y, z), found 3",
+        ),
+        (
+            b"time,x,y,z\n0,0,0,0\n1,0,,0\n",
+            "line 3: column y: expected a finite number, found \"\"",
+        ),
+        (
+            b"time,x,y,z\n0,0,0,nan\n",
+            "line 2: column z: expected a finite number, found \"nan\"",
+        ),
+        (
+            b"time,x,y,z\n1,0,0,0\n1,0,0,0\n",
+            "line 3: time 1 s does not come after 1 s",
+        ),
+        (b"time,x,y,z\n1,0,0,\xff\n", "line 2 is not UTF-8 text"),
+    ];
+    for (csv, message) in cases {
+        let said = load_with_motion_file(folder.path(), csv).unwrap_err();
+        assert!(
+            said.contains("scene.toml:44:21: motion.fairlead.file: "),
+            "{said}"
+        );
+        assert!(said.contains(message), "{said}\n  wanted: {message}");
+    }
+    fs::remove_file(folder.path().join("motion.csv")).unwrap();
+    let said = load(&folder.path().join("scene.toml")).unwrap_err().list();
+    assert!(
+        said.ends_with("no such file (it is looked for beside the scene)"),
+        "{said}"
+    );
+}
