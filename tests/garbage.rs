@@ -3,6 +3,8 @@
 //!
 //! Mutations come from a generator with a fixed seed: the same files every time.
 
+mod common;
+
 use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
@@ -10,28 +12,12 @@ use std::sync::mpsc;
 use std::thread;
 use std::time::Duration;
 
+use common::Chance;
 use moorline::scene::{LoadError, load};
 use moorline::simulation::{Error, Simulation};
 
 /// Longest that one file may take in a busy test run [s]; most take milliseconds.
 const PATIENCE: Duration = Duration::from_secs(120);
-
-/// A generator of numbers from a seed: Knuth's multiplier and increment of the linear congruential kind, upper bits.
-struct Chance(u64);
-
-impl Chance {
-    fn below(&mut self, count: usize) -> usize {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        ((self.0 >> 33) as usize) % count.max(1)
-    }
-
-    fn one_of<'a, T>(&mut self, list: &'a [T]) -> &'a T {
-        &list[self.below(list.len())]
-    }
-}
 
 /// A system with a bit of everything: a vessel, sections, a clump, a line through the surface, a motion.
 const SYSTEM: &str = r#"title = "a barge on two lines, one of them with a clump"

@@ -14,7 +14,7 @@
 //! second order, and no ringing of those that are. A row is off where the total would be negative. Eliminating v by the nodes'
 //! momentum leaves one scalar tridiagonal system in T̄. Drag C v is folded into the node's mass by θΔt C, θ = max(½, 1 − M/(Δt C)): trapezoidal,
 //! but where it outweighs inertia no more than that no velocity changes its sign by it, which would go on for ever. The seabed is folded in
-//! too, likewise ([`bed`]); flags of slack and contact are checked after the solve and the step repeated until they hold.
+//! too, likewise (`bed`); flags of slack and contact are checked after the solve and the step repeated until they hold.
 //!
 //! A step ([`AxialWork::step`]) goes down the rows of the folded line ([`crate::math::fold`]) once for each thing it finds out: geometry,
 //! segments, drag, inverse masses, contact (`prepare`); then, until the assumptions hold, the couplings and equations, T̄ by

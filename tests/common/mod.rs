@@ -187,3 +187,22 @@ pub fn zero_crossings(samples: &[f64], step: f64) -> Vec<f64> {
     };
     pairs.filter_map(crossing).collect()
 }
+
+/// A generator of numbers from a seed: Knuth's multiplier and increment of the linear congruential kind, upper bits.
+pub struct Chance(pub u64);
+
+impl Chance {
+    /// A number below `count`.
+    pub fn below(&mut self, count: usize) -> usize {
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        ((self.0 >> 33) as usize) % count.max(1)
+    }
+
+    /// An element of a list.
+    pub fn one_of<'a, T>(&mut self, list: &'a [T]) -> &'a T {
+        &list[self.below(list.len())]
+    }
+}

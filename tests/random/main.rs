@@ -87,7 +87,7 @@ fn five_hundred_random_scenes_run_or_say_why_not() {
 }
 
 #[test]
-#[ignore = "takes the better part of an hour on two cores"]
+#[ignore = "takes a quarter of an hour on two cores"]
 fn ten_thousand_random_scenes_run_or_say_why_not() {
     let bound = |number: &str| number.parse().expect("SCENES is two numbers, as 500..1000");
     let given = std::env::var("SCENES").ok();

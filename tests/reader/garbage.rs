@@ -1,19 +1,7 @@
 //! Broken decks by the hundred.
 
+use crate::common::Chance;
 use crate::*;
-
-/// A generator of numbers from a seed: Knuth's multiplier and increment of the linear congruential kind, upper bits.
-struct Chance(u64);
-
-impl Chance {
-    fn below(&mut self, count: usize) -> usize {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        ((self.0 >> 33) as usize) % count.max(1)
-    }
-}
 
 /// Cells of the tables that hold numbers: line of the text and number of the word.
 fn number_cells(text: &str) -> Vec<(usize, usize)> {

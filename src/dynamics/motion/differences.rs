@@ -1,0 +1,138 @@
+//! The polynomials through the newest samples, and the degree that would have predicted them best.
+
+use super::foresight::{DEGREE_MAX, Foresight, JUDGED, Reciprocals, SAMPLES_MAX, Samples, Terms};
+use crate::math::lanes::{LANES, Lanes};
+
+/// Error of another degree over that of the present one, below which it takes over [-]. On harmonic motions anything from 0.3 to 0.9 but
+/// ½, which symmetry makes exact, tells rounding from motion; 0.45 predicts them best.
+const BETTER: f64 = 0.45;
+/// The same to and from degree 0, so that what comes to rest, jumps or sets out is followed at once [-].
+const BETTER_AT_REST: f64 = 0.9;
+/// What multiplies the errors of the degrees that are not kept: where degree 0 is, and where another [-].
+const HANDICAPS: [Terms; 2] = [
+    [1.0 / BETTER_AT_REST; DEGREE_MAX + 1],
+    [
+        1.0 / BETTER_AT_REST,
+        1.0 / BETTER,
+        1.0 / BETTER,
+        1.0 / BETTER,
+    ],
+];
+/// Divided differences of the samples that count.
+pub(super) struct Differences {
+    /// Of the newest samples, by order from 0 on.
+    newest: [Lanes; DEGREE_MAX + 1],
+    /// By how much polynomials of every degree through the samples before would have missed the newest ones.
+    miss: [[Lanes; DEGREE_MAX + 1]; JUDGED],
+}
+
+impl Differences {
+    #[inline(always)]
+    pub(super) fn new(foresight: &Foresight, [a, b, c, d, e, f]: Samples) -> Differences {
+        let Reciprocals {
+            first: [ab, bc, cd, de, ef],
+            second: [ac, bd, ce, df],
+            third: [ad, be, cf],
+            fourth: [ae, bf],
+        } = foresight.inverse;
+        let over = |change: Lanes, inverse: f64| change * Lanes::splat(inverse);
+        let (p, q, r) = (over(a - b, ab), over(b - c, bc), over(c - d, cd));
+        let (s, t) = (over(d - e, de), over(e - f, ef));
+        let (pq, qr, rs, st) = (
+            over(p - q, ac),
+            over(q - r, bd),
+            over(r - s, ce),
+            over(s - t, df),
+        );
+        let (pr, qs, rt) = (over(pq - qr, ad), over(qr - rs, be), over(rs - st, cf));
+        let (ps, qt) = (over(pr - qs, ae), over(qs - rt, bf));
+        // the remainder of the polynomial of degree k is the difference of order k + 1 times its nodes' distances
+        let [[r0, r1, r2, r3], [s0, s1, s2, s3]] = foresight.reach;
+        let miss = |next: Lanes, reach: f64| over(next, reach).abs();
+        Differences {
+            newest: [a, p, pq, pr],
+            miss: [
+                [miss(p, r0), miss(pq, r1), miss(pr, r2), miss(ps, r3)],
+                [miss(q, s0), miss(qr, s1), miss(qs, s2), miss(qt, s3)],
+            ],
+        }
+    }
+
+    /// The degrees given, or the ones that are set instead, because they would have predicted the newest samples clearly better from the
+    /// ones older than each; of the `known` newest samples.
+    #[inline(always)]
+    pub(super) fn degree(&self, known: usize, degree: &mut Lanes) -> Lanes {
+        if known < SAMPLES_MAX {
+            return self.degree_of_few(known, degree);
+        }
+        let [newest, before] = &self.miss;
+        let error = |k: usize| newest[k] + before[k];
+        let error = [error(0), error(1), error(2), error(3)];
+        let kept = *degree;
+        let low = above(kept, 1).choose(error[1], error[0]);
+        let high = above(kept, 3).choose(error[3], error[2]);
+        let own = above(kept, 2).choose(high, low);
+        let factor = |better: f64| Lanes::splat(1.0 / better);
+        let moves = above(kept, 1).choose(factor(BETTER), factor(BETTER_AT_REST));
+        let other = error[1].min(error[2]).min(error[3]) * moves;
+        let other = other.min(error[0] * factor(BETTER_AT_REST));
+        // another would have been better, or nothing moves and the degree says it does
+        let rests = kept - error[0] * Lanes::splat(f64::MAX);
+        if (own - other).any_positive() || rests.any_positive() {
+            (0..LANES).for_each(|axis| degree[axis] = self.judge(SAMPLES_MAX, kept[axis], axis));
+        }
+        *degree
+    }
+
+    /// [`Differences::degree`] where there are fewer samples than that looks at.
+    #[cold]
+    #[inline(never)]
+    fn degree_of_few(&self, known: usize, degree: &mut Lanes) -> Lanes {
+        if known <= 2 {
+            // two samples can judge no line, but a host that moves a point goes on moving it
+            return Lanes::splat(known as f64 - 1.0);
+        }
+        (0..LANES).for_each(|axis| degree[axis] = self.judge(known, degree[axis], axis));
+        *degree
+    }
+
+    /// The degree along an axis that would have predicted the newest samples best, the present one being `degree`.
+    #[cold]
+    #[inline(never)]
+    fn judge(&self, known: usize, degree: f64, axis: usize) -> f64 {
+        let judged = JUDGED.min(known - 2);
+        let highest = DEGREE_MAX.min(known - 1 - judged);
+        let errors = self.miss[..judged].iter();
+        let error = |k: usize| -> f64 { errors.clone().map(|miss| miss[k][axis]).sum() };
+        let kept = degree as usize;
+        let (kept, mut best, mut least) = match kept <= highest {
+            true => (kept, kept, error(kept)),
+            false => (0, 0, f64::INFINITY),
+        };
+        let handicaps = HANDICAPS[usize::from(kept > 0)];
+        for (other, handicap) in handicaps.into_iter().enumerate().take(highest + 1) {
+            let handicapped = error(other) * handicap;
+            // what rests has no degree to keep
+            if handicapped < least || (other == 0 && handicapped == 0.0) {
+                (best, least) = (other, handicapped);
+            }
+        }
+        best as f64
+    }
+
+    /// Newton's polynomials of these degrees, whose terms have the values `basis`.
+    #[inline(always)]
+    pub(super) fn sum(&self, degree: Lanes, basis: &Terms) -> Lanes {
+        let term = |k: usize| {
+            let term = self.newest[k] * Lanes::splat(basis[k]);
+            term.where_positive(above(degree, k))
+        };
+        (term(0) + term(1)) + (term(2) + term(3))
+    }
+}
+
+/// Positive where a degree is at least k.
+#[inline(always)]
+fn above(degree: Lanes, k: usize) -> Lanes {
+    degree - Lanes::splat(k as f64 - 0.5)
+}
