@@ -396,10 +396,11 @@ impl AxialWork {
         for end in self.held_ends() {
             let line = &self.layout;
             let (at, (segment, sign)) = (line.end_slot(end), line.end_segment(end));
-            let velocities = line.velocity.get(at) + line.velocity_before.get(at);
+            let after = 0.5 * step.drift;
+            let way =
+                after * line.velocity_before.get(at) + (step.kick - after) * line.velocity.get(at);
             let pull = sign * self.rows.pull(segment);
-            let lack = line.end_lack(end) * velocities.z;
-            self.given += 0.5 * step.kick * (lack - pull.dot(&velocities));
+            self.given += line.end_lack(end) * way.z - pull.dot(&way);
         }
     }
 

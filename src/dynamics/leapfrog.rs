@@ -58,6 +58,8 @@ pub struct LineWork {
     tied: [bool; 2],
     /// Whether they have parted from their points.
     parted: [bool; 2],
+    /// Where they were half a step before t_n [m].
+    half_places: [Vector3<f64>; 2],
     /// Energy lost, and given by held ends and by moving water, since the state was loaded [J].
     lost: Lanes,
     given: f64,
@@ -245,6 +247,7 @@ impl LineWork {
             interior: interior(layout.segment_count),
             tied: held,
             parted: [false; 2],
+            half_places: [Vector3::zeros(); 2],
             lost: Lanes::splat(0.0),
             given: 0.0,
             given_by_current: Lanes::splat(0.0),
@@ -268,6 +271,9 @@ impl LineWork {
             let at = self.layout.end_slot(end);
             self.interior[at] = f64::from(u8::from(self.is_parted(end)));
             self.set_mass_excess(end);
+            let [velocity, place] =
+                [&self.layout.velocity, &self.layout.position].map(|of| of.get(at));
+            self.half_places[end as usize] = place - 0.5 * state.half_step.steps[0] * velocity;
         }
         self.layout.still();
         self.clear_flow();
@@ -360,9 +366,7 @@ impl LineWork {
                 + self.given_by_current.sum()
                 + self.layout.lifted()
                 + self.winch.as_ref().map_or(0.0, |winch| winch.given()),
-            lost: self.lost.sum() + self.settled.unwrap_or(0.0)
-                - self.layout.joined()
-                - turned,
+            lost: self.lost.sum() + self.settled.unwrap_or(0.0) - self.layout.joined() - turned,
         }
     }
 
@@ -603,20 +607,33 @@ impl LineWork {
     fn book_ends(&mut self, step: Step) {
         let held = self.held();
         for end in [End::A, End::B] {
-            let at = self.layout.end_slot(end);
-            let (segment, sign) = self.layout.end_segment(end);
-            if !self.is_parted(end) {
-                let change = self.layout.velocity.get(at) - self.layout.velocity_before.get(at);
-                self.lost[0] -= 0.5 * step.kick * sign * self.brake.get(segment).dot(&change);
-            }
-            if !held[end as usize] {
+            if self.is_parted(end) {
                 continue;
             }
-            let pull = sign * self.pull.get(segment);
-            let velocities = self.layout.velocity_before.get(at) + self.layout.velocity.get(at);
-            self.given -= 0.5 * step.kick * pull.dot(&velocities);
-            self.given += 0.5 * step.kick * self.layout.end_lack(end) * velocities.z;
+            let (segment, sign) = self.layout.end_segment(end);
+            let (way, before) = self.end_way(end, step);
+            self.lost[0] -= sign * self.brake.get(segment).dot(&(way - step.kick * before));
+            if held[end as usize] {
+                let pull = sign * self.pull.get(segment);
+                self.given += self.layout.end_lack(end) * way.z - pull.dot(&way);
+            }
         }
+    }
+
+    /// How far an end went from half a step before t_n to half a step after it [m], and its velocity before [m/s]. A held end goes from place to
+    /// place: where its acceleration jumps no velocity tells how far. The material at a winch goes with its velocities.
+    fn end_way(&mut self, end: End, step: Step) -> (Vector3<f64>, Vector3<f64>) {
+        let (at, side) = (self.layout.end_slot(end), end as usize);
+        let [before, after] =
+            [&self.layout.velocity_before, &self.layout.velocity].map(|of| of.get(at));
+        let place = self.layout.position.get(at) - 0.5 * step.drift * after;
+        let gone = place - self.half_places[side];
+        self.half_places[side] = place;
+        let way = match self.held()[side] && self.winch.is_none() {
+            true => gone,
+            false => 0.5 * step.kick * (before + after),
+        };
+        (way, before)
     }
 
     /// Puts the ends somewhere that have not parted from their points.
