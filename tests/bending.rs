@@ -498,9 +498,6 @@ fn the_energy_error_of_a_driven_cable_falls_with_the_square_of_the_step() {
         cable.solver.integrator = Integrator::GeneralisedAlpha;
         cable.solver.time_step_max = step;
         cable.seabed = None;
-        for line_type in cable.line_types.values_mut() {
-            line_type.added_mass_tangential = line_type.added_mass_normal; // a mass that turns makes or takes energy
-        }
         let mut simulation = Simulation::new(&cable).unwrap();
         simulation.follow_scene().unwrap();
         for _ in 0..100 {

@@ -12,7 +12,9 @@
 //! The springs of viscoelastic segments count as held, what their dampers take as lost. An end that parts from a held point brings the energy of
 //! its half node along, which counts as given.
 //!
-//! Dissipated: what the integrator takes by its own damping, found from how it weighs accelerations and forces of the past.
+//! Dissipated: what an implicit integrator takes by its own damping, found from how it weighs the forces of a step and those of the past, by
+//! a formula for each of them that knows nothing of the balance. What it makes or loses beside that, where laws have kinks and geometry turns within a
+//! step, is no part of it.
 //!
 //! E − E₀ − given + lost + dissipated is the error of the time integration.
 //!
@@ -48,7 +50,7 @@ pub struct Flow {
     pub given: f64,
     /// Taken by water, damping and seabed [J] or [W].
     pub lost: f64,
-    /// Taken by the numerical dissipation of the integrator, negative where it creates energy [J] or [W].
+    /// Taken by the damping of the integrator, negative where it brings energy [J] or [W].
     pub numerical: f64,
 }
 

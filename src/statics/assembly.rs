@@ -35,7 +35,7 @@ use crate::math::block_tridiagonal::DenseSystem;
 use crate::model::{End, Model, Network, PointState, State};
 use crate::statics::catenary::Catenary;
 
-pub(crate) use bending::BendingWork;
+pub(crate) use bending::{BendingWork, rates};
 pub use bending::{end_moment, end_shear, joint_damping_power};
 use contact::damper_reach;
 pub(crate) use contact::faded_push;

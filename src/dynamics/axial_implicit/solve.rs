@@ -203,8 +203,8 @@ impl Found {
         self.lost = self.lost + node.free * (taken - turned) * Lanes::splat(0.5);
     }
 
-    /// What the springs' part of T̄ does beyond what the springs store from half a step before t_n to half a step after it, their slopes being those
-    /// of t_n.
+    /// What the averaging dissipates: the work of the springs' part of T̄ less that of the mean of the tensions half a step before t_n and half a
+    /// step after it, the slopes being those of t_n. The averaging of ρ = 1 makes this mean, and dissipates nothing.
     #[inline(always)]
     fn book_average(&mut self, segment: &SegmentRow, relative: Vectors, step: Step) {
         let along = segment.direction.dot(relative);
@@ -221,11 +221,10 @@ impl Found {
         ];
         let [low, high] = stretched
             .map(|stretched| (segment.spring_now + segment.spring_slope * stretched).positive());
-        let slope = segment.spring_slope + Lanes::splat(f64::MIN_POSITIVE);
-        let stored = Lanes::splat(0.5) * (high - low) * (high + low) * slope.recip();
         let average = segment.elastic + segment.curvature + segment.stiffness * along;
         let moved = Lanes::splat(0.5 * step.kick) * (segment.along + along);
-        self.numerical = self.numerical + (average.positive() * moved - stored);
+        let centred = Lanes::splat(0.5) * (low + high);
+        self.numerical = self.numerical + (average.positive() - centred) * moved;
     }
 
     /// Whether segments are as slack, and bent by as much, as they were taken to be; books what their dampers took.

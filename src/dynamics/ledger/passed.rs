@@ -6,22 +6,25 @@
 //!   ¼ (v'ᵀ(M' − M)v' + vᵀ(M' − M)v),   which masses bring that turn with their line or dip into the water, and
 //!   (r' − r)·inertia − ½ (v + v')·½(M + M')(v' − v),   the dissipation of the scheme.
 //!
-//! On each spring the scheme dissipates the work of F on it less the energy that it stores: where it is linear, (½ − α_f)(s' − s)·(r' − r), s being
-//! what it resists with; where it slackens or turns in the step this may be a gain.
+//! On each spring, joint and weight that changes it dissipates (½ − α_f)(s' − s)·(r' − r), s being what that resists with: what its weights do beyond the
+//! mean of both. Over all of a linear system that nothing drives the two sum to no less than nothing; of one that is driven they may have
+//! either sign. What the mean does beyond what is stored, where springs slacken or turn within the step, is the error of the integration.
 //!
 //! Source: the discrete balance of Newmark's approximations, as in Krenk (2006), Comput. Methods Appl. Mech. Eng. 195, 6110-6124.
 
 use nalgebra::Vector3;
 
 use super::super::implicit::Scheme;
-use super::{Flow, axial_energy, dry_part, lacking_energy, tangent};
+use super::{Flow, dry_part, tangent};
 use crate::dynamics::creep::{Creeping, Stretching};
-use crate::model::{End, FreePoint, Line, LineState, Model, Network, State, WaterAlong};
+use crate::model::{End, FreePoint, Line, LineState, Model, Network, State, WaterAlong, joint};
 use crate::physics::morison::{DragCoefficients, drag};
 use crate::physics::seabed::ContactCoefficients;
 use crate::physics::stretch::total_tension;
 use crate::statics::assembly::rubbing::{resting_node, resting_point};
-use crate::statics::assembly::{Workspace, end_moment, end_shear, faded_push, joint_damping_power};
+use crate::statics::assembly::{
+    Workspace, end_moment, end_shear, faded_push, joint_damping_power, rates,
+};
 
 /// A step that an implicit integrator has made.
 #[derive(Clone, Copy)]
@@ -90,6 +93,12 @@ impl Passed<'_> {
         (after - before) / self.length()
     }
 
+    /// Mean spin of a held point over the step [rad/s].
+    fn turn(&self, point: usize) -> Vector3<f64> {
+        let [before, after] = self.states.map(|state| state.points[point].orientation);
+        (after * before.inverse()).scaled_axis() / self.length()
+    }
+
     /// What masses of a line bring that change, and what the scheme's inertia dissipates [J].
     fn inertia(&self, model: &Model, index: usize) -> Flow {
         let line = &model.lines[index];
@@ -131,9 +140,8 @@ impl Passed<'_> {
         ];
         let mut flow = self.carried(masses, v, a, self.point_way(point));
         let heights = points.map(|point| point.position.z);
-        let [low, high] = heights.map(|z| free.at(z).weight);
-        let stored = free.potential(heights[1]) - free.potential(heights[0]);
-        flow.numerical += self.mean(low, high) * (heights[1] - heights[0]) - stored;
+        let weights = heights.map(|z| free.at(z).weight);
+        flow.numerical += self.beyond_mean(weights) * (heights[1] - heights[0]);
         flow
     }
 
@@ -160,12 +168,12 @@ impl Passed<'_> {
         }
     }
 
-    /// What the scheme makes of a value before and after the step.
-    fn mean(&self, old: f64, new: f64) -> f64 {
-        self.scheme.alpha_f * old + (1.0 - self.scheme.alpha_f) * new
+    /// What the scheme makes of a value before and after the step beyond the mean of both.
+    fn beyond_mean(&self, [old, new]: [f64; 2]) -> f64 {
+        (0.5 - self.scheme.alpha_f) * (new - old)
     }
 
-    /// What the scheme dissipates on the springs of a line, and on the buoyancy that it lacks out of the water [J].
+    /// What the scheme dissipates on the springs and joints of a line, and on the buoyancy that it lacks out of the water [J].
     fn spring_dissipation(&self, model: &Model, index: usize) -> f64 {
         let line = &model.lines[index];
         let shapes = self.states.map(|state| &state.lines[index]);
@@ -173,20 +181,50 @@ impl Passed<'_> {
         let mut sum = 0.0;
         for i in 0..line.segment_count() {
             let stretched = way(i + 1) - way(i);
-            let [old, new] = shapes.map(|shape| Segment::of(line, shape, i));
-            let [before, after] = [&old, &new].map(|segment| {
-                let force = segment.elastic.max(0.0 - line.compression_max(i));
-                force * segment.direction.dot(&stretched)
+            let ends = shapes.map(|shape| Segment::of(line, shape, i));
+            let works = [0, 1].map(|side| {
+                let force = ends[side].elastic.max(0.0 - line.compression_max(i));
+                force * ends[side].direction.dot(&stretched)
             });
-            sum += self.mean(before, after) - (new.energy(line, i) - old.energy(line, i));
+            sum += self.beyond_mean(works);
         }
         if let Some(surface) = &line.surface {
             for i in 0..=line.segment_count() {
-                let [old, new] = shapes.map(|shape| surface.node(i, &shape.position).weight);
-                sum += self.mean(old, new) * way(i).z;
+                let weights = shapes.map(|shape| surface.node(i, &shape.position).weight);
+                sum += self.beyond_mean(weights) * way(i).z;
             }
-            let [old, new] = shapes.map(|shape| lacking_energy(surface, &shape.position));
-            sum -= new - old;
+        }
+        sum + self.joint_dissipation(line, index)
+    }
+
+    /// The same on the joints of a line that bends [J].
+    fn joint_dissipation(&self, line: &Line, index: usize) -> f64 {
+        let Some(bending) = &line.bending else {
+            return 0.0;
+        };
+        let shapes = self.states.map(|state| &state.lines[index].position);
+        let clamps = self.states.map(|state| line.clamps(&state.points));
+        let nodes = 0..=line.segment_count();
+        let ways: Vec<_> = nodes.clone().map(|i| shapes[1][i] - shapes[0][i]).collect();
+        let mut sum = 0.0;
+        for i in nodes.filter(|&i| bending.joint[i] > 0.0) {
+            let turned = rates(&ways, i);
+            let works = [0, 1].map(|side| {
+                let turn = joint(clamps[side], shapes[side], i);
+                turn.map_or(0.0, |turn| {
+                    let [first, second] = turn.energy(bending.joint[i], bending.rest[i]).slope;
+                    first.dot(&turned[0]) + second.dot(&turned[1])
+                })
+            });
+            sum += self.beyond_mean(works);
+        }
+        for (end, point) in [End::A, End::B].into_iter().zip(line.ends) {
+            let turned = self.length() * self.turn(point);
+            let works = [0, 1].map(|side| {
+                let at = &self.states[side].points[point];
+                0.0 - end_moment(line, shapes[side], end, at).dot(&turned)
+            });
+            sum += self.beyond_mean(works);
         }
         sum
     }
@@ -249,14 +287,6 @@ impl Segment {
             elastic,
             damping,
             creep,
-        }
-    }
-
-    /// Energy that the spring of segment `i` holds [J].
-    fn energy(&self, line: &Line, i: usize) -> f64 {
-        match &self.creep {
-            None => axial_energy(line, i, self.now.strain),
-            Some(creep) => creep.energy(self.now.strain, self.now, 0.0) * line.segments.length[i],
         }
     }
 }
@@ -401,13 +431,15 @@ impl Side<'_> {
                     let shear = end_shear(line, [&shape.position, &shape.velocity], end, at);
                     let moment = end_moment(line, &shape.position, end, at);
                     let way = self.passed.way(index, line.end_node(end));
-                    -shear.dot(&way) - moment.dot(&at.spin)
+                    -shear.dot(&way) - moment.dot(&self.passed.turn(point))
                 }
             }
         };
+        let nodes = 0..=line.segment_count();
+        let ways: Vec<_> = nodes.map(|i| self.passed.way(index, i)).collect();
         Flow {
             given: [End::A, End::B].into_iter().zip(line.ends).map(given).sum(),
-            lost: joint_damping_power(line, shape, line.clamps(&self.state.points)),
+            lost: joint_damping_power(line, shape, line.clamps(&self.state.points), &ways),
             numerical: 0.0,
         }
     }
