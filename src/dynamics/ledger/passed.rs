@@ -81,6 +81,11 @@ impl Passed<'_> {
         self.times[1] - self.times[0]
     }
 
+    /// The state that knows the waves of both times: the one before is a copy of the network alone.
+    fn sea(&self) -> &State {
+        self.states[1]
+    }
+
     /// Mean velocity of a node of a line over the step [m/s].
     fn way(&self, line: usize, node: usize) -> Vector3<f64> {
         let [before, after] = self.states.map(|state| state.lines[line].position[node]);
@@ -104,7 +109,7 @@ impl Passed<'_> {
         let line = &model.lines[index];
         let shapes = self.states.map(|state| &state.lines[index]);
         let held = [End::A, End::B].map(|end| line.is_held(model, shapes[1], end));
-        let waters = [0, 1].map(|i| model.water_along(self.states[i], index, self.times[i]));
+        let waters = self.times.map(|t| model.water_along(self.sea(), index, t));
         let mut flow = Flow::default();
         for i in usize::from(held[0])..=line.segment_count() - usize::from(held[1]) {
             let masses = [0, 1].map(|side| Mass::of(line, shapes[side], i, waters[side]));
@@ -123,10 +128,10 @@ impl Passed<'_> {
             return Flow::default();
         };
         let mass = |side: usize| {
-            let (state, t) = (self.states[side], self.times[side]);
-            let waves = state.waves_at_point(point, t);
+            let waves = self.sea().waves_at_point(point, self.times[side]);
             let surface = waves.map_or(0.0, |orbit| orbit.elevation);
-            free.at(state.points[point].position.z - surface).mass
+            free.at(self.states[side].points[point].position.z - surface)
+                .mass
         };
         let masses = [0, 1].map(|side| Mass {
             across: mass(side),
@@ -296,7 +301,7 @@ impl Side<'_> {
     fn power(&self, network: &Network) -> Flow {
         let mut flow = Flow::default();
         for &index in &network.lines {
-            let water = self.model.water_along(self.state, index, self.t);
+            let water = self.model.water_along(self.passed.sea(), index, self.t);
             flow.add(self.line_power(index, water));
             if self.model.lines[index].bending.is_some() {
                 flow.add(self.bending_power(index));
@@ -455,7 +460,7 @@ impl Side<'_> {
         let stream = model.stream(self.t);
         let mut water = stream.map_or(Vector3::zeros(), |stream| stream.velocity(z));
         let (mut at, mut flow) = (free.at(z), Flow::default());
-        if let Some(orbit) = &self.state.waves_at_point(point, self.t) {
+        if let Some(orbit) = &self.passed.sea().waves_at_point(point, self.t) {
             let still = at.weight;
             at = free.at(z - orbit.elevation);
             water += orbit.velocity;
