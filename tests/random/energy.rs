@@ -36,7 +36,7 @@ impl Balance {
         self.held = self.held.max(energy.total() - height + height.abs());
     }
 
-    /// Energy that the integrators created in all, over all that was booked; negative where they dissipated [-].
+    /// Energy that the damping of the integrators brought in all, over all that was booked; negative where it took some [-].
     pub fn created(&self) -> f64 {
         match self.numerical {
             0.0 => 0.0,

@@ -11,7 +11,7 @@
 //!
 //! Beams conserve energy: their ledgers close in every scene. Lines that slacken and snap do so by a kink in their tension law, which no
 //! fixed step resolves where they are as stiff and as little damped as these may be; implicit integrators lose track of axial waves
-//! far shorter than their step; and a quasi-static line may jump from one equilibrium to another: of these, the share of ledgers that
+//! far shorter than their step, and may make energy of them; and a quasi-static line may jump from one equilibrium to another: of these, the share of ledgers that
 //! close is claimed. Jumps of driven points between communication points do work that no velocity tells, and have no part in it.
 
 mod dice;
@@ -35,16 +35,18 @@ const SUITE: usize = 500;
 /// Scenes of the long run.
 const LONG: usize = 10_000;
 
-/// Least share of ledgers that close, by integrator, where a host's steps are equal and where they differ [-]: a tenth of all below what
-/// scenes 0..500 were measured to have; quasi-static ones below the lesser of that and of scenes 500..1500.
+/// Least share of ledgers that close, by integrator, where a host's steps are equal and where they differ [-]: 0.05 below the lesser of what
+/// scenes 0..500 and 500..1500 were measured to have.
 const CLOSED_MIN: [(&str, f64, f64); 6] = [
-    ("AxialImplicit", 0.84, 0.85),
-    ("Bossak", 0.90, 0.82),
-    ("GeneralisedAlpha", 0.80, 0.86),
-    ("Leapfrog", 0.79, 0.84),
-    ("QuasiStatic", 0.86, 0.79),
-    ("several", 0.83, 0.77),
+    ("AxialImplicit", 0.83, 0.82),
+    ("Bossak", 0.55, 0.52),
+    ("GeneralisedAlpha", 0.62, 0.59),
+    ("Leapfrog", 0.85, 0.92),
+    ("QuasiStatic", 0.90, 0.83),
+    ("several", 0.81, 0.77),
 ];
+/// Most energy that the damping of an integrator may bring to a scene whose ledger closes, over what it books [-].
+const CREATED_MAX: f64 = 0.05;
 /// Greatest error of a beam's ledger, over what it books [-].
 const BEAM: f64 = 1e-6;
 /// Least share of the scenes with any feature that run [-].
@@ -78,6 +80,7 @@ fn claim(numbers: Range<usize>) {
             assert!(closed >= least, "{name}: {closed} of all ledgers close");
         }
     }
+    assert!(survey.created.0 < CREATED_MAX, "{:?}", survey.created);
     assert!(survey.worst("Beam") < BEAM);
 }
 

@@ -65,7 +65,7 @@ pub struct Account {
     pub integrators: Vec<String>,
     /// Error of the energy ledger, over what it books [-].
     pub imbalance: f64,
-    /// Energy that the integrators created, over the same [-].
+    /// Energy that the damping of the integrators brought on balance, over the same [-].
     pub created: f64,
     /// Work of all steps [-].
     pub work: f64,

@@ -65,6 +65,8 @@ pub struct Survey {
     pub features: BTreeMap<&'static str, [usize; 2]>,
     /// Errors of energy ledgers, by integrator [-].
     pub imbalance: BTreeMap<String, Vec<(f64, usize)>>,
+    /// Most energy that the damping of integrators brought to a scene whose ledger closes, over what it books, and the scene [-].
+    pub created: (f64, usize),
     /// Scenes that break a claim, with the claim.
     pub broken: Vec<(usize, String)>,
     /// Reasons given by scenes that could not be run.
@@ -141,6 +143,9 @@ impl Survey {
                 "equal steps"
             };
             let name = format!("{name}, {steps}");
+            if account.imbalance.abs() <= CLOSED && account.created > self.created.0 {
+                self.created = (account.created, number);
+            }
             self.imbalance
                 .entry(name)
                 .or_default()
@@ -231,6 +236,11 @@ impl fmt::Display for Survey {
         for (scene, reason) in &self.stopped {
             writeln!(f, "{scene} stopped: {reason}")?;
         }
+        writeln!(
+            f,
+            "most created by an integrator's damping: {:.1e} in scene {}",
+            self.created.0, self.created.1
+        )?;
         writeln!(
             f,
             "dearest communication step: {:.1e} node steps in scene {}",
