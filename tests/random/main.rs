@@ -9,10 +9,12 @@
 //! SCENE=123 cargo test --release --test random -- --ignored --nocapture one     a scene as TOML, its host, and what becomes of it
 //! ```
 //!
-//! Beams conserve energy: their ledgers close in every scene. Lines that slacken and snap do so by a kink in their tension law, which no
-//! fixed step resolves where they are as stiff and as little damped as these may be; implicit integrators lose track of axial waves
-//! far shorter than their step, and may make energy of them; and a quasi-static line may jump from one equilibrium to another: of these, the share of ledgers that
-//! close is claimed. Jumps of driven points between communication points do work that no velocity tells, and have no part in it.
+//! Of a ledger that closes no more than 2 % of what it books is unaccounted for, and no more than that was brought by what should be the damping of an
+//! integrator. Beams conserve energy: their ledgers close in every scene. Lines that slacken and snap do so by a kink in their tension law,
+//! which no fixed step resolves where they are as stiff and as little damped as these may be; implicit integrators lose track of axial waves
+//! far shorter than their step, and may make energy of them; and a quasi-static line may jump from one equilibrium to another: of these, the
+//! share of ledgers that close is claimed. Jumps of driven points between communication points do work that no velocity tells, and have no
+//! part in it.
 
 mod dice;
 mod drive;
@@ -45,8 +47,6 @@ const CLOSED_MIN: [(&str, f64, f64); 6] = [
     ("QuasiStatic", 0.90, 0.83),
     ("several", 0.81, 0.77),
 ];
-/// Most energy that the damping of an integrator may bring to a scene whose ledger closes, over what it books [-].
-const CREATED_MAX: f64 = 0.05;
 /// Greatest error of a beam's ledger, over what it books [-].
 const BEAM: f64 = 1e-6;
 /// Least share of the scenes with any feature that run [-].
@@ -80,7 +80,6 @@ fn claim(numbers: Range<usize>) {
             assert!(closed >= least, "{name}: {closed} of all ledgers close");
         }
     }
-    assert!(survey.created.0 < CREATED_MAX, "{:?}", survey.created);
     assert!(survey.worst("Beam") < BEAM);
 }
 

@@ -63,10 +63,8 @@ pub struct Survey {
     pub fates: BTreeMap<&'static str, usize>,
     /// By feature: how many ran for the whole span or as far as they may cost, of how many.
     pub features: BTreeMap<&'static str, [usize; 2]>,
-    /// Errors of energy ledgers, by integrator [-].
+    /// The worse of the error of the energy ledger and of what damping of integrators brought, by integrator [-].
     pub imbalance: BTreeMap<String, Vec<(f64, usize)>>,
-    /// Most energy that the damping of integrators brought to a scene whose ledger closes, over what it books, and the scene [-].
-    pub created: (f64, usize),
     /// Scenes that break a claim, with the claim.
     pub broken: Vec<(usize, String)>,
     /// Reasons given by scenes that could not be run.
@@ -110,6 +108,7 @@ impl Survey {
             Ok(account) => account,
             Err(claim) => return self.broken.push((number, claim)),
         };
+        let worst = account.worst();
         let (fate, reason) = match account.fate {
             Fate::Ran => ("ran", None),
             Fate::Costly => ("too dear", None),
@@ -143,13 +142,10 @@ impl Survey {
                 "equal steps"
             };
             let name = format!("{name}, {steps}");
-            if account.imbalance.abs() <= CLOSED && account.created > self.created.0 {
-                self.created = (account.created, number);
-            }
             self.imbalance
                 .entry(name)
                 .or_default()
-                .push((account.imbalance, number));
+                .push((worst, number));
         }
         if account.dearest > self.dearest.0 {
             self.dearest = (account.dearest, number);
@@ -236,11 +232,6 @@ impl fmt::Display for Survey {
         for (scene, reason) in &self.stopped {
             writeln!(f, "{scene} stopped: {reason}")?;
         }
-        writeln!(
-            f,
-            "most created by an integrator's damping: {:.1e} in scene {}",
-            self.created.0, self.created.1
-        )?;
         writeln!(
             f,
             "dearest communication step: {:.1e} node steps in scene {}",
