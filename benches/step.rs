@@ -182,7 +182,7 @@ fn step_cost(model: &Model, state: &State, size: f64, lines: usize, portable: bo
         }
         best = best.min(clock.elapsed().as_secs_f64());
     }
-    let sound = works.iter().all(|work| work.broken_node().is_none());
+    let sound = works.iter_mut().all(|work| work.is_sound());
     assert!(sound, "a stable step");
     1e9 * best / (TURNS / lines * lines * TURN) as f64
 }

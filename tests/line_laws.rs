@@ -235,7 +235,9 @@ fn the_loops_of_a_viscoelastic_rope_are_those_of_the_closed_form() {
             assert_relative_eq!(storage, exact[0], max_relative = tolerance);
             assert_relative_eq!(loop_area, area, max_relative = tolerance);
             assert_relative_eq!(after.lost - before.lost, area, max_relative = tolerance);
-            assert_relative_eq!(after.given - before.given, area, max_relative = tolerance);
+            // the damping of the integrator is given too
+            let given = after.given - before.given - (after.numerical - before.numerical);
+            assert_relative_eq!(given, area, max_relative = tolerance);
         }
     }
 }

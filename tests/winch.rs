@@ -206,10 +206,10 @@ fn the_ledger_closes_through_splits() {
     let errors = [4e-3, 2e-3, 1e-3, 5e-4].map(ledger_error);
     println!("ledger: {errors:?}");
     assert!(
-        errors[0] > 3.0 * errors[1] && errors[1] > 2.5 * errors[2],
+        errors[0] > 2.5 * errors[1] && errors[1] > 2.5 * errors[2],
         "{errors:?}"
     );
-    assert!(errors[3] < 1e-6, "{errors:?}");
+    assert!(errors[0] < 1e-5 && errors[3] < 3e-7, "{errors:?}");
 }
 
 /// Tension at the fairlead [N] every 0.1 s of 20 s in which the fairlead sways above a deep bed and the winch pays out a length [m], at a step [s].

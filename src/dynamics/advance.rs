@@ -10,6 +10,7 @@ use super::crew::{Crew, Hands, Labour, Pace, Queue, lock};
 use super::implicit::{self, Scheme};
 use super::layout::Water;
 use super::leapfrog::Step;
+use super::ledger::passed::{self, Passed};
 use super::ledger::{self, Energy, Flow};
 use super::motion::AxisPath;
 use super::network::NetworkWork;
@@ -491,13 +492,14 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
                 work.load(network, self.state);
             }
             work.set_current(model, self.start);
-            let count = self.substeps(step_max.min(1.0 / work.drag_rate(model, network)), retry)?;
+            let longest = step_max / work.stiffening().sqrt();
+            let count = self.substeps(longest.min(1.0 / work.drag_rate(model, network)), retry)?;
             let drift = self.length / count as f64;
             let mut steps = self.state.lines[network.lines[0]].half_step.steps;
             let mut step = Step::after(steps, drift);
             work.put_ends(self.start, step, self.held);
             work.start_reels(network, self.state, self.reels, step);
-            work.meet_surface();
+            work.begin();
             for k in 0..count {
                 let t = self.start + k as f64 * drift;
                 work.step(model, network, t, step, self.held);
@@ -514,7 +516,7 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
                 return Ok(Done { counters, flow });
             }
         }
-        let (line, node) = work.broken_node().unwrap_or((0, 0));
+        let (line, node) = work.broken_node();
         Err(self.diverged(network.lines[line], node))
     }
 
@@ -549,6 +551,7 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
             }
             work.set_time(self.start);
             work.meet_surface(None);
+            work.open_books();
             for k in 1..=count {
                 let t = self.start + k as f64 * drift;
                 if let Some(stream) = self.model.stream(t - drift) {
@@ -563,7 +566,8 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
                 steps = [drift, steps[0]];
             }
             let too_long = drift > transverse / work.tension_peak().sqrt() || !work.is_settled();
-            let whole = work.broken_node().is_none() && work.flow().is_finite();
+            let flow = work.flow();
+            let whole = work.broken_node().is_none() && flow.is_finite();
             if whole && !(too_long && retry < RETRIES_MAX) {
                 work.store(&mut next.lines[index], steps);
                 return Ok(Done {
@@ -571,11 +575,12 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
                         substeps: count,
                         solves,
                     },
-                    flow: work.flow(),
+                    flow,
                 });
             }
         }
-        Err(self.diverged(index, work.broken_node().unwrap_or(0)))
+        let node = work.broken_node();
+        Err(self.diverged(index, node.unwrap_or_else(|| work.fastest_node())))
     }
 
     fn implicit(
@@ -594,19 +599,17 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
             step_max,
         };
         let (model, network) = (self.model, &self.model.networks[number]);
-        let (mut flow, mut last) = (Flow::default(), self.start);
-        let mut before = ledger::power(model, network, self.state, self.start);
+        let mut flow = Flow::default();
         let mut parted = ledger::parted_ends(network, self.state);
-        let count = |state: &State, t: f64| {
-            let now_parted = ledger::parted_ends(network, state);
+        let count = |passed: &Passed| {
+            let [before, after] = passed.states;
+            let now_parted = ledger::parted_ends(network, after);
             if now_parted != parted {
-                flow.given += ledger::joined_energy(model, network, [self.state, state]);
+                flow.given += ledger::joined_energy(model, network, [before, after]);
                 parted = now_parted;
+            } else {
+                flow.add(passed::flow(model, network, passed));
             }
-            let now = ledger::power(model, network, state, t);
-            flow.add(before.times(0.5 * (t - last)));
-            flow.add(now.times(0.5 * (t - last)));
-            (before, last) = (now, t);
         };
         let held = implicit::Held {
             kinematics: self.held,

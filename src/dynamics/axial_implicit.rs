@@ -93,9 +93,10 @@ pub struct AxialWork {
     rubbing: Option<Rubbing>,
     /// Whether ends A and B have parted from their points.
     parted: [bool; 2],
-    /// Energy lost and given since the state was loaded [J].
+    /// Energy lost, given and dissipated by the averaging of tensions since the state was loaded [J].
     lost: Lanes,
     given: f64,
+    numerical: Lanes,
     tension_peak: f64,
     /// Whether the flags and the true stretch of all steps since then were found.
     settled: bool,
@@ -139,6 +140,7 @@ impl AxialWork {
             tension_before: Lanes::splat(0.0),
             lost: Lanes::splat(0.0),
             given: 0.0,
+            numerical: Lanes::splat(0.0),
             tension_peak: 0.0,
             settled: true,
             layout,
@@ -182,6 +184,7 @@ impl AxialWork {
     pub fn resume(&mut self) {
         (self.lost, self.given, self.tension_peak) = (Lanes::splat(0.0), 0.0, 0.0);
         self.settled = true;
+        self.numerical = Lanes::splat(0.0);
     }
 
     fn set_free(&mut self, end: End, free: bool) {
@@ -189,11 +192,30 @@ impl AxialWork {
         self.rows.nodes[at.row - 1].free[at.lane] = f64::from(u8::from(free));
     }
 
+    /// Starts the books of the steps to come, the ends and the surface being where they are.
+    pub fn open_books(&mut self) {
+        let turning = self.turning_energy();
+        self.lost[0] += turning;
+    }
+
+    /// Σ ½ (M_t − M_n)(v·t)² of all nodes but held ends, the velocities being those of t_{n−½} [J].
+    fn turning_energy(&mut self) -> f64 {
+        self.layout.renew_ghosts(self.parted);
+        let nodes = &self.rows.nodes;
+        let excess = |at: usize| {
+            let node = &nodes[at - 1];
+            node.free * (node.mass_tangent - node.mass_normal)
+        };
+        self.layout.turning_energy(excess)
+    }
+
     /// Energy given by the held ends and lost between them since [`Self::load`].
-    pub fn flow(&self) -> Flow {
+    pub fn flow(&mut self) -> Flow {
+        let turning = self.turning_energy();
         Flow {
             given: self.given + self.layout.lifted(),
-            lost: self.lost.sum() - self.layout.joined(),
+            lost: self.lost.sum() - self.layout.joined() - turning,
+            numerical: self.numerical.sum(),
         }
     }
 
@@ -275,6 +297,9 @@ impl AxialWork {
             let node = &self.rows.nodes[at.row - 1];
             let masses = [node.mass_normal[at.lane], node.mass_tangent[at.lane]];
             self.given += self.layout.joining_energy(end, masses, step);
+            let tangent = self.layout.tangent_of(self.layout.end_node(end));
+            let along = self.layout.velocity.get(at).dot(&tangent);
+            self.lost[0] += 0.5 * (masses[1] - masses[0]) * along * along;
             self.parted[side] = true;
             self.set_free(end, true);
         }
@@ -322,7 +347,7 @@ impl AxialWork {
             self.meet_bed(step);
         }
         let mut passes = 0;
-        let lost = loop {
+        let found = loop {
             passes += 1;
             self.weigh_nodes::<RUBS>();
             self.assemble(step);
@@ -333,10 +358,11 @@ impl AxialWork {
             let holds = self.holds(&found, step) && bed_holds;
             if holds || passes == PASSES_MAX {
                 self.settled &= holds;
-                break found.lost;
+                break found;
             }
         };
-        self.lost = self.lost + lost;
+        self.lost = self.lost + found.lost;
+        self.numerical = self.numerical + found.numerical;
         if RUBS {
             self.keep_rub(step);
         }
@@ -370,10 +396,11 @@ impl AxialWork {
         for end in self.held_ends() {
             let line = &self.layout;
             let (at, (segment, sign)) = (line.end_slot(end), line.end_segment(end));
-            let velocities = line.velocity.get(at) + line.velocity_before.get(at);
+            let after = 0.5 * step.drift;
+            let way =
+                after * line.velocity_before.get(at) + (step.kick - after) * line.velocity.get(at);
             let pull = sign * self.rows.pull(segment);
-            let lack = line.end_lack(end) * velocities.z;
-            self.given += 0.5 * step.kick * (lack - pull.dot(&velocities));
+            self.given += line.end_lack(end) * way.z - pull.dot(&way);
         }
     }
 
@@ -400,6 +427,11 @@ impl AxialWork {
     /// Greatest T̄ [N] since the state was loaded.
     pub fn tension_peak(&self) -> f64 {
         self.tension_peak
+    }
+
+    /// Index of the node that moves fastest.
+    pub fn fastest_node(&self) -> usize {
+        self.layout.fastest_node()
     }
 
     /// Index of the first node that has no finite position, or a speed that no mooring line reaches.

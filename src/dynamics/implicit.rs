@@ -27,6 +27,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::ledger::passed::Passed;
 use super::{StepError, reaction};
 use crate::model::{Kinematics, Model, Network, PointState, State};
 use crate::scene::{Integrator, Solver};
@@ -203,7 +204,7 @@ pub fn advance<K: Fn(usize, f64) -> Kinematics>(
         kinematics: held,
         scheme,
     };
-    advance_observed(model, number, state, held, span, work, |_, _| {})
+    advance_observed(model, number, state, held, span, work, |_| {})
 }
 
 /// What moves a network from outside, and by which scheme it follows.
@@ -215,7 +216,7 @@ pub struct Held<'a, K> {
     pub scheme: &'a Scheme,
 }
 
-/// [`advance`], showing the state and its time [s] after every internal step.
+/// [`advance`], showing every internal step, and once more as one of no length where ends parted after it.
 ///
 /// # Errors
 /// As there.
@@ -226,7 +227,7 @@ pub fn advance_observed<K: Fn(usize, f64) -> Kinematics>(
     held: Held<K>,
     span: Span,
     work: &mut Workspace,
-    mut observe: impl FnMut(&State, f64),
+    mut observe: impl FnMut(&Passed),
 ) -> Result<Counters, StepError> {
     if span.end <= span.start {
         return Ok(Counters::default());
@@ -279,7 +280,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
         [t0, t1]: [f64; 2],
         state: &mut State,
         work: &mut Workspace,
-        observe: &mut impl FnMut(&State, f64),
+        observe: &mut impl FnMut(&Passed),
     ) -> Result<(), StepError> {
         let at = |parts: usize| t0 + (t1 - t0) * parts as f64 / PARTS_MAX as f64;
         let mut before = std::mem::take(&mut work.before);
@@ -289,9 +290,9 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
             copy_network(self.model, self.network, state, &mut before);
             let span = [at(done), at(done + parts)];
             if self.step(span, &before, state, work) {
-                observe(state, span[1]);
+                observe(&self.passed([&before, state], span, work));
                 if self.part_ends(state, span[1]) {
-                    observe(state, span[1]);
+                    observe(&self.passed([&before, state], [span[1]; 2], work));
                 }
                 work.counters.steps += 1;
                 done += parts;
@@ -310,6 +311,20 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
         }
         work.before = before;
         result
+    }
+
+    fn passed<'a>(
+        &'a self,
+        states: [&'a State; 2],
+        times: [f64; 2],
+        work: &'a Workspace,
+    ) -> Passed<'a> {
+        Passed {
+            states,
+            times,
+            scheme: self.scheme,
+            work,
+        }
     }
 
     /// Parts the ends from their points that the tension at `t` [s] is too much for, or the time has come for; whether there were any.

@@ -400,6 +400,18 @@ impl Layout {
         self.last = [count, count - 1].map(|i| self.fold.slot(i));
     }
 
+    /// Σ ½ e (v·t)² [J] of nodes that are heavier by e along the line than across it [kg]. Ghosts must be renewed.
+    pub fn turning_energy(&self, excess: impl Fn(usize) -> Lanes) -> f64 {
+        let mut sum = Lanes::splat(0.0);
+        for at in self.rows() {
+            let chord = self.position.load(at + 1) - self.position.load(at - 1);
+            let along = self.velocity.load(at).dot(chord);
+            let square = chord.dot(chord) + Lanes::splat(LENGTH2_MIN);
+            sum = sum + excess(at) * along * along * square.recip();
+        }
+        0.5 * sum.sum()
+    }
+
     /// Where node `i` and segment `i` stand.
     pub fn slot(&self, i: usize) -> Slot {
         self.fold.slot(i)
@@ -520,7 +532,7 @@ impl Layout {
         };
         let [first, last] = held.map(usize::from);
         for i in first..=self.segment_count - last {
-            surface.book(i, self.fold, &self.velocity, &self.position);
+            surface.book(i, self.fold, &self.velocity);
         }
     }
 
@@ -780,6 +792,13 @@ impl Layout {
         let zero = (position.x + position.y + position.z) * Lanes::splat(0.0); // or not a number
         let fastest = Lanes::splat(SPEED_MAX * SPEED_MAX);
         (fastest + zero - velocity.dot(velocity)).all_positive()
+    }
+
+    /// Index of the node that moves fastest.
+    pub fn fastest_node(&self) -> usize {
+        let speeds = self.nodes().map(|at| self.velocity.get(at).norm_squared());
+        let fastest = speeds.enumerate().max_by(|(_, a), (_, b)| a.total_cmp(b));
+        fastest.map_or(0, |(node, _)| node)
     }
 
     /// Index of the first node that has no finite position, or a speed that no mooring line reaches.

@@ -22,6 +22,7 @@ use pulp::{Arch, NullaryFnOnce};
 
 use super::layout::{Layout, Water, interior, inverse_norm_of};
 use super::ledger::Flow;
+use super::limit::expected_slope;
 use crate::math::fold::{Column, Field};
 use crate::math::lanes::{LANES, Lanes};
 use crate::model::{End, Line, LineState, Parting, WaveSpan};
@@ -41,7 +42,9 @@ pub struct LineWork {
     plain: bool,
     /// Force of a segment on its lower node, T q [N].
     pull: Field,
-    /// Force that water and damping resist with at t_n [N].
+    /// The part of it that no spring has, but where segments creep [N].
+    brake: Field,
+    /// Force that water and damping resist with at t_n [N]; where the bed slopes or rubs with the dampers beside the nodes.
     resistance: Field,
     /// Force of water that waves accelerate at t_n [N], where there are waves.
     press: Option<Field>,
@@ -55,10 +58,14 @@ pub struct LineWork {
     tied: [bool; 2],
     /// Whether they have parted from their points.
     parted: [bool; 2],
+    /// Where they were half a step before t_n [m].
+    half_places: [Vector3<f64>; 2],
     /// Energy lost, and given by held ends and by moving water, since the state was loaded [J].
     lost: Lanes,
     given: f64,
     given_by_current: Lanes,
+    /// Twice what ½ vᵀMv lost by the kicks along the tangents, which those gain or lose by turning between them [J].
+    turned: Lanes,
     /// Energy lost to the bed [J], where it slopes or rubs.
     settled: Option<f64>,
     /// The winch at end B, where the line is on one.
@@ -72,13 +79,23 @@ struct WaterWork {
     drag_tangent: Column,
     /// 1/M_t − 1/M_n [1/kg].
     inverse_mass_excess: Column,
+    /// M_t − M_n [kg], 0 for ends that are held.
+    mass_excess: Column,
     /// The greater drag coefficient over the mass of a node that is wholly in the water [1/m].
     drag_over_mass: Column,
 }
 
 impl WaterWork {
-    fn new(line: &Line, layout: &Layout) -> Option<WaterWork> {
+    fn new(line: &Line, layout: &Layout, held: [bool; 2]) -> Option<WaterWork> {
         let nodes = &line.nodes;
+        let masses = nodes.mass_tangent.iter().zip(&nodes.mass_normal);
+        let mut mass_excess: Vec<f64> = masses.map(|(t, n)| t - n).collect();
+        for end in [End::A, End::B]
+            .into_iter()
+            .filter(|&end| held[end as usize])
+        {
+            mass_excess[line.end_node(end)] = 0.0;
+        }
         let zeros = Column::new(layout.fold, 0.0);
         let excess: Vec<f64> = nodes
             .mass_tangent
@@ -100,6 +117,7 @@ impl WaterWork {
             drag_normal: drag.map_or(zeros.clone(), |drag| drag.normal.clone()),
             drag_tangent: drag.map_or(zeros, |drag| drag.tangent.clone()),
             inverse_mass_excess: layout.fold.column(&excess, 0.0),
+            mass_excess: layout.fold.column(&mass_excess, 0.0),
         })
     }
 }
@@ -190,6 +208,8 @@ pub struct EndLoad {
     pub current_power: f64,
     /// Mass matrix of the half node [kg].
     pub mass: Matrix3<f64>,
+    /// Its mass across the line [kg].
+    pub across: f64,
     /// Contact stiffness [N/m] and damping [N s/m] of the half node, and its force at z = 0, or at no height over a bed that slopes or rubs [N].
     pub contact: [f64; 3],
 }
@@ -221,10 +241,13 @@ impl LineWork {
             press: layout.waves.as_ref().map(|_| Field::zeros(layout.fold)),
             inverse_square: Column::new(layout.fold, 0.0),
             inverse_mass: layout.fold.column(&inverse_mass, 0.0),
-            water: WaterWork::new(line, &layout),
+            water: WaterWork::new(line, &layout, held),
+            brake: Field::zeros(layout.fold),
+            turned: Lanes::splat(0.0),
             interior: interior(layout.segment_count),
             tied: held,
             parted: [false; 2],
+            half_places: [Vector3::zeros(); 2],
             lost: Lanes::splat(0.0),
             given: 0.0,
             given_by_current: Lanes::splat(0.0),
@@ -247,6 +270,10 @@ impl LineWork {
         for end in [End::A, End::B] {
             let at = self.layout.end_slot(end);
             self.interior[at] = f64::from(u8::from(self.is_parted(end)));
+            self.set_mass_excess(end);
+            let [velocity, place] =
+                [&self.layout.velocity, &self.layout.position].map(|of| of.get(at));
+            self.half_places[end as usize] = place - 0.5 * state.half_step.steps[0] * velocity;
         }
         self.layout.still();
         self.clear_flow();
@@ -263,7 +290,19 @@ impl LineWork {
         }
     }
 
+    /// Sets by how much an end is heavier along the line than across it: not at all where it is held.
+    fn set_mass_excess(&mut self, end: End) {
+        let (at, held) = (self.layout.end_slot(end), self.held()[end as usize]);
+        let across = self.inverse_mass[at];
+        if let Some(water) = &mut self.water {
+            let along = across + water.inverse_mass_excess[at];
+            let excess = 1.0 / along - 1.0 / across;
+            water.mass_excess[at] = if held { 0.0 } else { excess };
+        }
+    }
+
     fn clear_flow(&mut self) {
+        self.turned = Lanes::splat(0.0);
         (self.lost, self.given) = (Lanes::splat(0.0), 0.0);
         self.given_by_current = Lanes::splat(0.0);
         if let Some(lost) = &mut self.settled {
@@ -287,7 +326,11 @@ impl LineWork {
             if let Some(water) = &mut self.water {
                 [water.drag_normal[at], water.drag_tangent[at]] = now.drag;
                 water.inverse_mass_excess[at] = along - across;
+                water.mass_excess[at] = now.masses[1] - now.masses[0];
             }
+        }
+        for end in [End::A, End::B] {
+            self.set_mass_excess(end);
         }
         match after {
             Some(_) => self.layout.book_surface(self.held()),
@@ -295,14 +338,35 @@ impl LineWork {
         }
     }
 
+    /// Starts the books of the steps to come, the ends and the surface being where they are.
+    pub fn open_books(&mut self) {
+        let turning = self.turning_energy();
+        self.turned[0] -= 2.0 * turning;
+    }
+
+    /// Σ ½ (M_t − M_n)(v·t)² of all nodes but held ends, the velocities being those of t_{n−½} [J].
+    fn turning_energy(&mut self) -> f64 {
+        self.layout.renew_ghosts([true; 2]); // ends of excess mass have no neighbour beyond them
+        match (&self.water, &self.winch) {
+            (Some(water), None) => self.layout.turning_energy(|at| water.mass_excess.load(at)),
+            _ => 0.0, // a winch books its own
+        }
+    }
+
     /// Energy given by held ends and the current and lost between them since [`Self::load`].
-    pub fn flow(&self) -> Flow {
+    pub fn flow(&mut self) -> Flow {
+        let turning = self.turning_energy();
+        let turned = match self.winch {
+            None => 0.5 * self.turned.sum() + turning,
+            Some(_) => 0.0,
+        };
         Flow {
+            numerical: 0.0,
             given: self.given
                 + self.given_by_current.sum()
                 + self.layout.lifted()
                 + self.winch.as_ref().map_or(0.0, |winch| winch.given()),
-            lost: self.lost.sum() + self.settled.unwrap_or(0.0) - self.layout.joined(),
+            lost: self.lost.sum() + self.settled.unwrap_or(0.0) - self.layout.joined() - turned,
         }
     }
 
@@ -358,6 +422,15 @@ impl LineWork {
             }
             self.parted[side] = true;
             self.interior[at] = 1.0;
+            self.set_mass_excess(end);
+            if let (Some(water), true) = (&self.water, self.tied[side]) {
+                let along = self
+                    .layout
+                    .velocity
+                    .get(at)
+                    .dot(&self.layout.tangent_of(self.layout.end_node(end)));
+                self.turned[0] -= water.mass_excess[at] * along * along;
+            }
         }
     }
 
@@ -418,6 +491,8 @@ impl LineWork {
             };
             self.lost = self.lost + (tension - spring) * stretching * kick;
             self.pull.store(chord.scale(tension * inverse_l), at);
+            let brake = chord.scale((tension - spring) * inverse_l);
+            self.brake.store(brake, at);
         }
     }
 
@@ -518,26 +593,47 @@ impl LineWork {
             let passed = line.velocity_before.get(at) + landed.velocity;
             let resisted = self.resistance.get(at).dot(&(landed.velocity - free));
             *lost += 0.5 * (step.kick * resisted - landed.impulse.dot(&passed));
+            if let Some(water) = &self.water {
+                let squares = [free, landed.velocity].map(|v| v.dot(&tangent).powi(2));
+                self.turned[0] += water.mass_excess[at] * (squares[0] - squares[1]);
+            }
             line.velocity.set(at, landed.velocity);
             line.set_rub(at, landed.rub / step.kick);
         }
     }
 
-    /// Books the work of the ends in a step; ends at free points do no
-    /// work that the line loses.
+    /// Books the work of the ends in a step, and what the dampers beside them took by the change of their velocities; ends at free points
+    /// do no work that the line loses.
     fn book_ends(&mut self, step: Step) {
         let held = self.held();
-        for end in [End::A, End::B]
-            .into_iter()
-            .filter(|&end| held[end as usize])
-        {
-            let at = self.layout.end_slot(end);
+        for end in [End::A, End::B] {
+            if self.is_parted(end) {
+                continue;
+            }
             let (segment, sign) = self.layout.end_segment(end);
-            let pull = sign * self.pull.get(segment);
-            let velocities = self.layout.velocity_before.get(at) + self.layout.velocity.get(at);
-            self.given -= 0.5 * step.kick * pull.dot(&velocities);
-            self.given += 0.5 * step.kick * self.layout.end_lack(end) * velocities.z;
+            let (way, before) = self.end_way(end, step);
+            self.lost[0] -= sign * self.brake.get(segment).dot(&(way - step.kick * before));
+            if held[end as usize] {
+                let pull = sign * self.pull.get(segment);
+                self.given += self.layout.end_lack(end) * way.z - pull.dot(&way);
+            }
         }
+    }
+
+    /// How far an end went from half a step before t_n to half a step after it [m], and its velocity before [m/s]. A held end goes from place to
+    /// place: where its acceleration jumps no velocity tells how far. The material at a winch goes with its velocities.
+    fn end_way(&mut self, end: End, step: Step) -> (Vector3<f64>, Vector3<f64>) {
+        let (at, side) = (self.layout.end_slot(end), end as usize);
+        let [before, after] =
+            [&self.layout.velocity_before, &self.layout.velocity].map(|of| of.get(at));
+        let place = self.layout.position.get(at) - 0.5 * step.drift * after;
+        let gone = place - self.half_places[side];
+        self.half_places[side] = place;
+        let way = match self.held()[side] && self.winch.is_none() {
+            true => gone,
+            false => 0.5 * step.kick * (before + after),
+        };
+        (way, before)
     }
 
     /// Puts the ends somewhere that have not parted from their points.
@@ -587,8 +683,24 @@ impl LineWork {
             press,
             current_power,
             mass,
+            across: mass_normal,
             contact,
         }
+    }
+
+    /// How much stiffer than the limit of the step expects the stiffest segment is [-], at least 1.
+    pub fn stiffening(&self) -> f64 {
+        let line = &self.layout;
+        if line.law == StretchLaw::Engineering {
+            return 1.0;
+        }
+        let slope = |i: usize| {
+            let [low, high] = [i, i + 1].map(|node| line.position.get(line.slot(node)));
+            let strain = (high - low).norm() * line.inverse_length[line.slot(i)] - 1.0;
+            line.law.at(strain).slope
+        };
+        let greatest = (0..line.segment_count).map(slope).fold(0.0, f64::max);
+        (greatest / expected_slope(&line.law)).max(1.0)
     }
 
     /// Looks over the nodes.
@@ -620,6 +732,11 @@ impl LineWork {
     /// Whether its nodes move as they did when they were surveyed last and [`Self::resume`] went on from there, and nothing else matters to a survey.
     pub fn keeps_survey(&self) -> bool {
         !self.layout.flows() && self.winch.is_none()
+    }
+
+    /// Index of the node that moves fastest.
+    pub fn fastest_node(&self) -> usize {
+        self.layout.fastest_node()
     }
 
     /// Index of the first node that has no finite position, or a speed that no mooring line reaches.

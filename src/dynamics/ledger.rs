@@ -12,16 +12,22 @@
 //! The springs of viscoelastic segments count as held, what their dampers take as lost. An end that parts from a held point brings the energy of
 //! its half node along, which counts as given.
 //!
-//! E − E₀ − given + lost is the error of the time integration: numerical dissipation shows up as a negative one.
+//! Dissipated: what an implicit integrator takes by its own damping, found from how it weighs the forces of a step and those of the past, by
+//! a formula for each of them that knows nothing of the balance. What it makes or loses beside that, where laws have kinks and geometry turns within a
+//! step, is no part of it.
+//!
+//! E − E₀ − given + lost + dissipated is the error of the time integration.
 //!
 //! The leapfrogs sum the flows of every internal step, forces at t_n times the mean of the velocities around it; energy is then
-//! exact at t − Δt/2, where the velocities live, and so E is taken there. The implicit integrators use the trapezoidal
-//! rule over every internal step; the leapfrogs leave ½ vᵀṀv of turning nodes out. Quasi-static networks hold no kinetic energy; the work of ends and loads is that of the mean of the
+//! exact at t − Δt/2, where the velocities live, and so E is taken there. The implicit integrators book the work of the forces by which
+//! they make a step ([`passed`]). Quasi-static networks hold no kinetic energy; the work of ends and loads is that of the mean of the
 //! forces before and after a step. Where they are closed-form catenaries, the whole of these counts, held ends included:
 //!
 //! ∫ T²/(2EA) ds and ∫ w z ds, exact where the line hangs.
 //!
 //! Source: the discrete energy balance of the leapfrog, e.g. Hairer, Lubich & Wanner (2003), Acta Numerica 12, section 1.
+
+pub mod passed;
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -30,16 +36,11 @@ use super::beam::{self, BeamView};
 use super::creep::{Creeping, Stretching};
 use super::leapfrog::segment_tension;
 use crate::model::{
-    Bottom, ClosedForm, End, FreePoint, Line, LineState, Model, Network, PointState, Reel, State,
-    WaterAlong, joint,
+    ClosedForm, End, Line, LineState, Model, Network, PointState, Reel, State, Surface, WaterAlong,
+    joint,
 };
-use crate::physics::airy::Orbit;
-use crate::physics::flow::Stream;
-use crate::physics::morison::{DragCoefficients, drag};
-use crate::physics::seabed::{ContactCoefficients, normal_force};
-use crate::physics::stretch::total_tension;
 use crate::statics::assembly::rubbing::{resting_node, resting_point};
-use crate::statics::assembly::{end_moment, end_shear, joint_damping_power};
+use crate::statics::assembly::{end_moment, end_shear};
 use crate::statics::equilibrium::current::drag_at_rest;
 
 /// Energy that crossed the border of a network, or the rate at which it does.
@@ -49,6 +50,8 @@ pub struct Flow {
     pub given: f64,
     /// Taken by water, damping and seabed [J] or [W].
     pub lost: f64,
+    /// Taken by the damping of the integrator, negative where it brings energy [J] or [W].
+    pub numerical: f64,
 }
 
 /// Energy held, by kind.
@@ -99,11 +102,12 @@ impl Flow {
     pub fn add(&mut self, other: Flow) {
         self.given += other.given;
         self.lost += other.lost;
+        self.numerical += other.numerical;
     }
 
     /// Whether it can be booked: what grew without bound and came back within a step cannot.
     pub fn is_finite(&self) -> bool {
-        self.given.is_finite() && self.lost.is_finite()
+        self.given.is_finite() && self.lost.is_finite() && self.numerical.is_finite()
     }
 
     /// This flow times a factor.
@@ -111,6 +115,7 @@ impl Flow {
         Flow {
             given: factor * self.given,
             lost: factor * self.lost,
+            numerical: factor * self.numerical,
         }
     }
 }
@@ -126,7 +131,7 @@ impl Ledger {
 
     /// Imbalance [J] where the model now holds an energy [J].
     pub fn error(&self, held: f64) -> f64 {
-        held - self.start - self.flow.given + self.flow.lost
+        held - self.start - self.flow.given + self.flow.lost + self.flow.numerical
     }
 }
 
@@ -212,11 +217,8 @@ fn line_energy(line: &Line, state: &State, index: usize, model: &Model) -> Energ
         energy.gravitational += line.nodes.weight[i] * position(i).z;
     }
     if let Some(surface) = &line.surface {
-        let lacking = (0..n).map(|i| {
-            let heights = [i, i + 1].map(|node| surface.height(&position(node)));
-            surface.energy(i, heights)
-        });
-        energy.gravitational += lacking.sum::<f64>();
+        let places: Vec<_> = (0..=n).map(position).collect();
+        energy.gravitational += lacking_energy(surface, &places);
     }
     if let Some(bending) = &line.bending {
         let clamps = line.clamps(&state.points);
@@ -227,6 +229,15 @@ fn line_energy(line: &Line, state: &State, index: usize, model: &Model) -> Energ
             .sum();
     }
     energy
+}
+
+/// Energy of the buoyancy that a line lacks whose nodes are at `position` [m] [J].
+fn lacking_energy(surface: &Surface, position: &[Vector3<f64>]) -> f64 {
+    let segments = position.windows(2).enumerate();
+    let energy = |(i, ends): (usize, &[Vector3<f64>])| {
+        surface.energy(i, [0, 1].map(|end| surface.height(&ends[end])))
+    };
+    segments.map(energy).sum()
 }
 
 /// A line on a winch as it was laid out `lag` [s] ago, when the leapfrog has its velocities.
@@ -539,232 +550,6 @@ fn force_at_rest(line: &Line, shape: &LineState, end: End, point: &PointState) -
         force += end_shear(line, [&shape.position, &[]], end, point);
     }
     force
-}
-
-/// Power given to and lost by a network at time `t` [s], in [W], from the velocities at the time of the positions.
-pub fn power(model: &Model, network: &Network, state: &State, t: f64) -> Flow {
-    let mut flow = Flow::default();
-    for &index in &network.lines {
-        let (line, shape) = (&model.lines[index], &state.lines[index]);
-        let water = model.water_along(state, index, t);
-        flow.add(line_power(line, shape, model, water));
-        if model.lines[index].bending.is_some() {
-            flow.add(bending_power(model, &model.lines[index], state, index));
-        }
-    }
-    for &point in &network.free_points {
-        let velocity = &state.points[point].velocity;
-        flow.given += model.points[point].load_at(t).dot(velocity);
-        if let Some(free) = model.points[point].free() {
-            let waves = state.waves_at_point(point, t);
-            flow.add(point_power(
-                free,
-                model.bottom.as_deref(),
-                &state.points[point],
-                (model.stream(t), waves),
-            ));
-        }
-    }
-    flow
-}
-
-/// Power that moving water gives a free point, and that water and seabed take from it [W]; what joins the added mass where it dips in
-/// is negative.
-fn point_power(
-    free: &FreePoint,
-    bottom: Option<&Bottom>,
-    state: &PointState,
-    (stream, waves): (Option<Stream>, Option<Orbit>),
-) -> Flow {
-    let (z, velocity) = (state.position.z, state.velocity);
-    let mut water = stream.map_or(Vector3::zeros(), |stream| stream.velocity(z));
-    let (mut at, mut given, mut sinks) = (free.at(z), 0.0, velocity.z);
-    if let Some(orbit) = &waves {
-        let still = at.weight;
-        at = free.at(z - orbit.elevation);
-        water += orbit.velocity;
-        sinks -= orbit.rise; // relative to the surface
-        given += free.pressed(at.wetted, orbit).dot(&velocity);
-        given += (still - at.weight) * velocity.z;
-    }
-    let past = velocity - water;
-    let drag = free.drag(at.wetted, past);
-    let mut lost = -drag.dot(&past);
-    lost -= 0.5 * at.mass_slope * sinks * velocity.norm_squared();
-    if let Some(bottom) = bottom {
-        let push = resting_point(free, bottom, state, 0.0, 1.0).and_then(|point| point.push());
-        lost -= push.map_or(0.0, |push| push.force.dot(&velocity));
-    } else if let Some(contact) = &free.contact {
-        let push = normal_force(contact.coefficients, contact.level - z, velocity.z);
-        lost -= push * velocity.z;
-    }
-    given += drag.dot(&water);
-    Flow { given, lost }
-}
-
-/// Power of the shear at held ends, and that of the joints' dampers [W].
-fn bending_power(model: &Model, line: &Line, state: &State, index: usize) -> Flow {
-    let shape = &state.lines[index];
-    let given = |(end, point): (End, usize)| {
-        let at = &state.points[point];
-        match model.points[point].free() {
-            Some(_) => 0.0,
-            None => {
-                let shear = end_shear(line, [&shape.position, &shape.velocity], end, at);
-                let moment = end_moment(line, &shape.position, end, at);
-                -shear.dot(&shape.velocity[line.end_node(end)]) - moment.dot(&at.spin)
-            }
-        }
-    };
-    Flow {
-        given: [End::A, End::B].into_iter().zip(line.ends).map(given).sum(),
-        lost: joint_damping_power(line, shape, line.clamps(&state.points)),
-    }
-}
-
-fn line_power(line: &Line, shape: &LineState, model: &Model, water: WaterAlong) -> Flow {
-    let (n, negative) = (line.segment_count(), model.solver.negative_tension);
-    let segments = &line.segments;
-    let [a, b] = [End::A, End::B].map(|end| line.is_held(model, shape, end));
-    let mut flow = Flow::default();
-    for i in 0..n {
-        let chord = shape.position[i + 1] - shape.position[i];
-        let length = chord.norm();
-        if length == 0.0 {
-            continue;
-        }
-        let direction = chord / length;
-        let unstretched = segments.length[i];
-        let stretch = segments.law[i].at(length / unstretched - 1.0);
-        let mut elastic = segments.axial_stiffness[i] * stretch.force;
-        let stretching = direction.dot(&(shape.velocity[i + 1] - shape.velocity[i]));
-        let mut damping = segments.axial_damping[i] * stretching / unstretched;
-        let least = 0.0 - line.compression_max(i);
-        if let Some(creep) = Creeping::of(line, shape, i) {
-            let now = Stretching {
-                strain: length / unstretched - 1.0,
-                rate: stretching / unstretched,
-            };
-            (elastic, damping) = creep.forces(now);
-            flow.lost += creep.loss(now, elastic.max(least)) * unstretched;
-        }
-        let tension = total_tension(elastic, damping, least, negative);
-        flow.lost += (tension - elastic.max(least)) * stretching;
-        if i == 0 && a {
-            flow.given -= tension * direction.dot(&shape.velocity[0]);
-        }
-        if i + 1 == n && b {
-            flow.given += tension * direction.dot(&shape.velocity[n]);
-        }
-    }
-    for i in usize::from(a)..=n - usize::from(b) {
-        flow.add(node_power(line, shape, i, water));
-    }
-    if line.surface.is_some() {
-        flow.add(surface_power(line, shape, [a, b], water));
-    }
-    flow
-}
-
-/// ½ vᵀṀv of a node whose added mass differs along and across the line, as that turns [W].
-fn turning_power(line: &Line, shape: &LineState, i: usize, water: WaterAlong) -> f64 {
-    let [normal, along] = line.nodes.masses(i, dry_part(line, shape, i, water));
-    if normal == along {
-        return 0.0;
-    }
-    let (low, high) = (i.saturating_sub(1), (i + 1).min(shape.position.len() - 1));
-    let length = (shape.position[high] - shape.position[low]).norm();
-    if length == 0.0 {
-        return 0.0;
-    }
-    let (tangent, velocity) = (tangent(shape, i), shape.velocity[i]);
-    let rate = (shape.velocity[high] - shape.velocity[low]) / length; // of the chord [1/s]
-    let turning = rate - rate.dot(&tangent) * tangent;
-    (along - normal) * velocity.dot(&tangent) * velocity.dot(&turning)
-}
-
-/// Power of held ends on the buoyancy that they lack in calm water, that of the buoyancy by which waves exceed it on the other nodes, and
-/// minus that of the added mass which joins the nodes with the water [W].
-fn surface_power(line: &Line, shape: &LineState, held: [bool; 2], water: WaterAlong) -> Flow {
-    let (mut flow, nodes) = (Flow::default(), &line.nodes);
-    let Some(surface) = &line.surface else {
-        return flow;
-    };
-    let n = line.segment_count();
-    for node in [0, n]
-        .into_iter()
-        .zip(held)
-        .filter_map(|(i, held)| held.then_some(i))
-    {
-        let calm = surface.node(node, &shape.position);
-        flow.given += calm.weight * shape.velocity[node].z;
-    }
-    if water.waves.is_some() {
-        for i in usize::from(held[0])..=n - usize::from(held[1]) {
-            let calm = surface.node(i, &shape.position);
-            let now = surface.node_in(water, i, &shape.position);
-            flow.given += (calm.weight - now.weight) * shape.velocity[i].z;
-        }
-    }
-    let sinks = |node: usize| shape.velocity[node].z - water.rise(node);
-    for i in 0..n {
-        let heights = surface.heights(i, &shape.position, water);
-        let Some(at) = surface.segment(i, heights, 0.0) else {
-            continue;
-        };
-        for (end, node) in [i, i + 1].into_iter().enumerate() {
-            if (node == 0 && held[0]) || (node == n && held[1]) {
-                continue;
-            }
-            let drying = at.slopes[end] * sinks(i) + at.slopes[end + 1] * sinks(i + 1); // [1/s]
-            let [across, along] = squares(shape, node, shape.velocity[node]);
-            let air = nodes.mass[node];
-            let added =
-                (nodes.mass_normal[node] - air) * across + (nodes.mass_tangent[node] - air) * along;
-            flow.lost += 0.5 * surface.share[i][end] * drying * added;
-        }
-    }
-    flow
-}
-
-/// Power that water, mass damping and seabed take from a node, and that moving water gives it [W].
-fn node_power(line: &Line, shape: &LineState, i: usize, water: WaterAlong) -> Flow {
-    let (nodes, velocity) = (&line.nodes, shape.velocity[i]);
-    let (mut given, mut lost) = (0.0, -turning_power(line, shape, i, water));
-    if let Some(coefficients) = &nodes.drag {
-        let k = DragCoefficients {
-            normal: coefficients.normal[i],
-            tangent: coefficients.tangent[i],
-        }
-        .times(1.0 - dry_part(line, shape, i, water));
-        let tangent = tangent(shape, i);
-        if water.is_still() {
-            lost -= drag(k, velocity, tangent).dot(&velocity);
-        } else {
-            let flow = water.velocity(i, shape.position[i].z);
-            let force = drag(k, velocity - flow, tangent);
-            given += force.dot(&flow);
-            lost -= force.dot(&(velocity - flow));
-        }
-    }
-    if let (Some(pressed), Some(waves)) = (&nodes.pressed, &water.waves) {
-        let force = pressed.force(i, waves.at(i).acceleration, tangent(shape, i));
-        given += (1.0 - dry_part(line, shape, i, water)) * force.dot(&velocity);
-    }
-    if let Some(damping) = &nodes.mass_damping {
-        lost += damping[i] * velocity.norm_squared();
-    }
-    if line.bottom().is_some() {
-        let push = resting_node(line, shape, i, 0.0, 1.0).and_then(|node| node.push());
-        lost -= push.map_or(0.0, |push| push.force.dot(&velocity));
-    } else if let Some(contact) = &nodes.contact {
-        let k = ContactCoefficients {
-            stiffness: contact.stiffness[i],
-            damping: contact.damping[i],
-        };
-        lost -= normal_force(k, contact.level[i] - shape.position[i].z, velocity.z) * velocity.z;
-    }
-    Flow { given, lost }
 }
 
 fn tangent(shape: &LineState, i: usize) -> Vector3<f64> {

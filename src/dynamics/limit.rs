@@ -22,6 +22,7 @@
 use std::ops::{Range, RangeInclusive};
 
 use crate::model::{End, Line, Model, SHORTEST, Segments};
+use crate::physics::stretch::StretchLaw;
 
 /// Part of the closed-form limit that is used [-]. With 0.95 the scene lindahl_fast blows up with five times the drag and 20 elements.
 const SAFETY: f64 = 0.9;
@@ -35,7 +36,7 @@ const DAMPING_RATIO_WHIP: f64 = 0.1;
 /// Steps to the first axial period that leave an error of 1 % in a tension with snaps [-]: half of the tolerance they belong to, so that
 /// the mesh has the rest of it. Measured on oc3_catenary: 2 % with 65, 0.7 % with 130.
 const STEPS_PER_AXIAL_PERIOD: f64 = 92.0;
-/// Strain up to which a stiffening measure is stable [-].
+/// Strain up to which a stiffening measure is stable [-]; beyond it the steps shorten as it stiffens.
 const STRAIN_EXPECTED: f64 = 0.05;
 /// Transverse Courant number of the axial-implicit leapfrog [-].
 const TRANSVERSE_COURANT: f64 = 0.6;
@@ -131,8 +132,13 @@ fn lone_rates(model: &Model, point: usize) -> f64 {
 /// k = EA/l of a segment [N/m], at the greatest slope expected of its strain measure.
 fn stiffness(line: &Line, i: usize) -> f64 {
     let segments = &line.segments;
-    let slope = segments.law[i].at(STRAIN_EXPECTED).slope.max(1.0);
+    let slope = expected_slope(&segments.law[i]);
     segments.in_motion(i).0 * slope / segments.length[i]
+}
+
+/// Slope of a strain measure that the step limits count on [-].
+pub(super) fn expected_slope(law: &StretchLaw) -> f64 {
+    law.at(STRAIN_EXPECTED).slope.max(1.0)
 }
 
 /// BA/EA of a segment [s].

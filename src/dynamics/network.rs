@@ -221,6 +221,12 @@ impl NetworkWork {
         }
     }
 
+    /// How much stiffer than the limit of the step expects the stiffest segment is [-], at least 1.
+    pub fn stiffening(&self) -> f64 {
+        let lines = self.lines.iter().map(LineWork::stiffening);
+        lines.fold(1.0, f64::max)
+    }
+
     /// Greatest ratio K |v| / M of all nodes [1/s].
     pub fn drag_rate(&mut self, model: &Model, network: &Network) -> f64 {
         let of_lines = match self.drag_rate.take() {
@@ -253,12 +259,16 @@ impl NetworkWork {
         is_sound
     }
 
-    /// The first line, by its place in the network, and node whose position or velocity is not finite.
-    pub fn broken_node(&self) -> Option<(usize, usize)> {
-        self.lines
-            .iter()
-            .enumerate()
-            .find_map(|(line, work)| Some((line, work.broken_node()?)))
+    /// The first line, by its place in the network, and node whose position is not finite, or whose speed is one that no mooring line reaches;
+    /// where there is none, the fastest node of the first line whose books are not finite.
+    pub fn broken_node(&mut self) -> (usize, usize) {
+        let mut lines = self.lines.iter().enumerate();
+        let broken = lines.find_map(|(line, work)| Some((line, work.broken_node()?)));
+        broken.unwrap_or_else(|| {
+            let mut lines = self.lines.iter_mut();
+            let grown = lines.position(|work| !work.flow().is_finite()).unwrap_or(0);
+            (grown, self.lines[grown].fastest_node())
+        })
     }
 
     /// One step from `t` [s]. `held` tells where held points are.
@@ -304,11 +314,12 @@ impl NetworkWork {
         }
     }
 
-    /// Meets the water's surface where the lines lie before the first step.
-    pub fn meet_surface(&mut self) {
-        self.lines
-            .iter_mut()
-            .for_each(|line| line.meet_surface(None));
+    /// Meets the water's surface where the lines lie before the first step, and starts the books.
+    pub fn begin(&mut self) {
+        for line in &mut self.lines {
+            line.meet_surface(None);
+            line.open_books();
+        }
     }
 
     /// Sets current and waves to those of `t` [s].
@@ -324,9 +335,9 @@ impl NetworkWork {
     }
 
     /// Energy given and lost since the state was loaded.
-    pub fn flow(&self) -> Flow {
+    pub fn flow(&mut self) -> Flow {
         let mut flow = self.point_flow;
-        self.lines.iter().for_each(|line| flow.add(line.flow()));
+        self.lines.iter_mut().for_each(|line| flow.add(line.flow()));
         flow
     }
 
@@ -376,6 +387,8 @@ impl NetworkWork {
             self.point_flow.lost -=
                 step.kick * load.resistance.dot(&mean) + kicked.impulse.dot(&mean) - by_current;
             self.point_flow.given += step.kick * load.press.dot(&mean);
+            let excess = |v: &Vector3<f64>| v.dot(&(load.mass * v)) - load.across * v.dot(v);
+            self.point_flow.lost -= 0.5 * (excess(&last) - excess(&velocity));
             let surface = |t: f64| self.waves_at(free, t).map_or(0.0, |w| w.elevation);
             let before = t - 0.5 * (2.0 * step.kick - step.drift);
             let surfaces = [before, t + 0.5 * step.drift].map(surface);
@@ -440,6 +453,7 @@ fn load_in_water(
         press,
         current_power: drag.dot(&water),
         mass: at.mass * Matrix3::identity(),
+        across: at.mass,
         contact: law.contact.map_or([0.0; 3], |contact| {
             let k = contact.coefficients;
             let level = match model.bottom {
@@ -506,6 +520,7 @@ impl EndLoad {
         self.press += other.press;
         self.current_power += other.current_power;
         self.mass += other.mass;
+        self.across += other.across;
     }
 
     /// v_{n+½} of a point that moves along `axes` only, and the impulse of the bed, which is implicit: friction is sought that agrees with

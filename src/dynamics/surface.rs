@@ -2,7 +2,8 @@
 //! to what they are there, so that the kernels need not know of it.
 //!
 //! With the mass M_n of the positions at t_n, the velocities v_{n−½} have the kinetic energy ½ vᵀM_n v, and what joins or leaves with
-//! the water in a step brings or takes ½ vᵀ(M_{n+1} − M_n)v, which is booked here.
+//! the water in a step brings or takes ½ vᵀ(M_{n+1} − M_n)v. What M has along the line beside what it has across it is booked with the turning
+//! of the nodes; the rest is booked here.
 
 use crate::math::fold::{Field, Fold};
 use crate::model::{Dry, Line, Nodes, Surface};
@@ -124,16 +125,11 @@ impl SurfaceNow {
         }
     }
 
-    /// Books what joined node `i` or left it since the [`Self::find`] before the last; `velocity` [m/s] and `position` [m] as laid out.
-    pub fn book(&mut self, i: usize, fold: Fold, velocity: &Field, position: &Field) {
+    /// Books what joined node `i` or left it since the [`Self::find`] before the last, as if it had the same mass along the line as across it;
+    /// `velocity` [m/s] as laid out.
+    pub fn book(&mut self, i: usize, fold: Fold, velocity: &Field) {
         let wetter = self.before[i] - self.dry[i].part;
-        let (air, last) = (self.nodes.mass[i], self.dry.len() - 1);
-        let v = velocity.get(fold.slot(i));
-        let (low, high) = (i.saturating_sub(1), (i + 1).min(last));
-        let chord = position.get(fold.slot(high)) - position.get(fold.slot(low));
-        let along = chord.try_normalize(0.0).map_or(0.0, |t| v.dot(&t));
-        let across = v.norm_squared() - along * along;
-        let [normal, tangent] = [self.nodes.mass_normal[i], self.nodes.mass_tangent[i]];
-        self.joined += 0.5 * wetter * ((normal - air) * across + (tangent - air) * along * along);
+        let added = self.nodes.mass_normal[i] - self.nodes.mass[i];
+        self.joined += 0.5 * wetter * added * velocity.get(fold.slot(i)).norm_squared();
     }
 }

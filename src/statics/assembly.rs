@@ -35,9 +35,10 @@ use crate::math::block_tridiagonal::DenseSystem;
 use crate::model::{End, Model, Network, PointState, State};
 use crate::statics::catenary::Catenary;
 
-pub(crate) use bending::BendingWork;
+pub(crate) use bending::{BendingWork, rates};
 pub use bending::{end_moment, end_shear, joint_damping_power};
 use contact::damper_reach;
+pub(crate) use contact::faded_push;
 pub(crate) use line::{LineWork, node_tangent};
 use places::{Place, blank_state};
 pub(crate) use places::{copy_network, place_ends};
@@ -344,6 +345,16 @@ impl Workspace {
                 self.points[index].reach = resting.max(moved);
             }
         });
+    }
+
+    /// Half the range of penetrations over which the bed's damper under a node of a line fades in [m].
+    pub(crate) fn reach(&self, line: usize, node: usize) -> f64 {
+        self.lines[line].reach[node]
+    }
+
+    /// The same of a free point.
+    pub(crate) fn point_reach(&self, point: usize) -> f64 {
+        self.points[point].reach
     }
 
     /// Moves the anchors of nodes that slid along the bed, after an assembly of the state.

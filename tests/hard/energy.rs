@@ -89,9 +89,9 @@ fn a_fairlead_that_jumps_by_a_metre_leaves_a_line_that_settles() {
                 // the work of a jump is no work of a path; and the axial-implicit leapfrog makes the whole metre in one step
                 let ledger = match (reconstruction, integrator) {
                     (Reconstruction::Jump, _) => f64::INFINITY,
-                    (_, Integrator::AxialImplicit) => 2.0,
-                    (_, Integrator::GeneralisedAlpha) => 0.15,
-                    _ => 0.05,
+                    (_, Integrator::AxialImplicit) => 1.0,
+                    (_, Integrator::GeneralisedAlpha) => 0.03,
+                    _ => 0.02,
                 };
                 sound(&what, &run, ledger, 250.0);
                 at_most(

@@ -10,6 +10,7 @@ pub struct Balance {
     held: f64,
     given: f64,
     lost: f64,
+    numerical: f64,
 }
 
 impl Balance {
@@ -20,6 +21,7 @@ impl Balance {
             held: 0.0,
             given: 0.0,
             lost: 0.0,
+            numerical: 0.0,
         };
         balance.count(simulation);
         balance
@@ -29,9 +31,17 @@ impl Balance {
     pub fn count(&mut self, simulation: &Simulation) {
         let (energy, flow) = (simulation.energy(), simulation.ledger().flow);
         self.turnover += (flow.given - self.given).abs() + (flow.lost - self.lost).abs();
-        (self.given, self.lost) = (flow.given, flow.lost);
+        (self.given, self.lost, self.numerical) = (flow.given, flow.lost, flow.numerical);
         let height = energy.gravitational;
         self.held = self.held.max(energy.total() - height + height.abs());
+    }
+
+    /// Energy that the damping of the integrators brought in all, over all that was booked; negative where it took some [-].
+    pub fn created(&self) -> f64 {
+        match self.numerical {
+            0.0 => 0.0,
+            numerical => -numerical / (self.turnover + self.held),
+        }
     }
 
     /// Error of the ledger over all that it has booked [-].

@@ -9,10 +9,12 @@
 //! SCENE=123 cargo test --release --test random -- --ignored --nocapture one     a scene as TOML, its host, and what becomes of it
 //! ```
 //!
-//! Beams conserve energy: their ledgers close in every scene. Lines that slacken and snap do so by a kink in their tension law, which no
-//! fixed step resolves where they are as stiff and as little damped as these may be; implicit integrators lose track of axial waves
-//! far shorter than their step; and a quasi-static line may jump from one equilibrium to another: of these, the share of ledgers that
-//! close is claimed. Jumps of driven points between communication points do work that no velocity tells, and have no part in it.
+//! Of a ledger that closes no more than 2 % of what it books is unaccounted for, and no more than that was brought by what should be the damping of an
+//! integrator. Beams conserve energy: their ledgers close in every scene. Lines that slacken and snap do so by a kink in their tension law,
+//! which no fixed step resolves where they are as stiff and as little damped as these may be; implicit integrators lose track of axial waves
+//! far shorter than their step, and may make energy of them; and a quasi-static line may jump from one equilibrium to another: of these, the
+//! share of ledgers that close is claimed. Jumps of driven points between communication points do work that no velocity tells, and have no
+//! part in it.
 
 mod dice;
 mod drive;
@@ -35,15 +37,15 @@ const SUITE: usize = 500;
 /// Scenes of the long run.
 const LONG: usize = 10_000;
 
-/// Least share of ledgers that close, by integrator, where a host's steps are equal and where they differ [-]: a tenth of all below the
-/// lesser of what scenes 0..500 and 500..1500 were measured to have.
+/// Least share of ledgers that close, by integrator, where a host's steps are equal and where they differ [-]: 0.05 below the lesser of what
+/// scenes 0..500 and 500..1500 were measured to have.
 const CLOSED_MIN: [(&str, f64, f64); 6] = [
-    ("AxialImplicit", 0.72, 0.61),
-    ("Bossak", 0.38, 0.11),
-    ("GeneralisedAlpha", 0.48, 0.44),
-    ("Leapfrog", 0.74, 0.67),
-    ("QuasiStatic", 0.86, 0.79),
-    ("several", 0.58, 0.45),
+    ("AxialImplicit", 0.83, 0.81),
+    ("Bossak", 0.53, 0.48),
+    ("GeneralisedAlpha", 0.67, 0.65),
+    ("Leapfrog", 0.85, 0.92),
+    ("QuasiStatic", 0.90, 0.83),
+    ("several", 0.81, 0.77),
 ];
 /// Greatest error of a beam's ledger, over what it books [-].
 const BEAM: f64 = 1e-6;
@@ -93,6 +95,37 @@ fn ten_thousand_random_scenes_run_or_say_why_not() {
     let given = std::env::var("SCENES").ok();
     let part = given.as_ref().and_then(|given| given.split_once(".."));
     claim(part.map_or(0..LONG, |(from, to)| bound(from)..bound(to)));
+}
+
+#[test]
+#[ignore = "compares the ledger of the scene of the number in SCENE with those of shorter steps"]
+fn one_random_ledger_closes_better_in_shorter_steps() {
+    for number in std::env::var("SCENE")
+        .expect("SCENE is a number")
+        .split(',')
+    {
+        let case = survey::case(number.parse().expect("SCENE is a number"));
+        let told: Vec<String> = [1.0, 0.5, 0.25].map(|part| told(&case, part)).into();
+        println!("{number}: {}", told.join("; "));
+    }
+}
+
+/// What becomes of a case in steps of a part of their usual length.
+fn told(case: &run::Case, part: f64) -> String {
+    let mut case = case.clone();
+    if let Ok(simulation) = moorline::simulation::Simulation::new(&case.scene) {
+        let steps = simulation.choices().map(|choice| choice.step_max);
+        case.scene.solver.time_step_max = part * steps.fold(f64::INFINITY, f64::min);
+    }
+    let account = run::run(&case).expect("no claim is broken");
+    format!(
+        "{} {:+.2e} {:+.2e} at {:.3} s {:?}",
+        account.integrators.join(" "),
+        account.imbalance,
+        account.created,
+        account.time,
+        account.fate
+    )
 }
 
 #[test]

@@ -65,12 +65,24 @@ pub struct Account {
     pub integrators: Vec<String>,
     /// Error of the energy ledger, over what it books [-].
     pub imbalance: f64,
+    /// Energy that the damping of the integrators brought on balance, over the same [-].
+    pub created: f64,
     /// Work of all steps [-].
     pub work: f64,
     /// Work of the dearest communication step [-].
     pub dearest: f64,
     /// Time that it reached [s].
     pub time: f64,
+}
+
+impl Account {
+    /// Error of its ledger, or what the damping of the integrators brought if that is more [-].
+    pub fn worst(&self) -> f64 {
+        match self.created > self.imbalance.abs() {
+            true => self.created,
+            false => self.imbalance,
+        }
+    }
 }
 
 /// Runs a case; the error is the claim that does not hold.
@@ -87,6 +99,7 @@ fn watched(case: &Case) -> Result<Account, String> {
         fate: Fate::Ran,
         integrators: Vec::new(),
         imbalance: 0.0,
+        created: 0.0,
         work: 0.0,
         dearest: 0.0,
         time: 0.0,
@@ -157,6 +170,7 @@ fn steps(case: &Case, simulation: &mut Simulation, account: &mut Account) -> Res
     }
     account.time = simulation.time();
     account.imbalance = balance.imbalance(simulation);
+    account.created = balance.created();
     Ok(())
 }
 

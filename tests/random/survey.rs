@@ -63,12 +63,14 @@ pub struct Survey {
     pub fates: BTreeMap<&'static str, usize>,
     /// By feature: how many ran for the whole span or as far as they may cost, of how many.
     pub features: BTreeMap<&'static str, [usize; 2]>,
-    /// Errors of energy ledgers, by integrator [-].
+    /// The worse of the error of the energy ledger and of what damping of integrators brought, by integrator [-].
     pub imbalance: BTreeMap<String, Vec<(f64, usize)>>,
     /// Scenes that break a claim, with the claim.
     pub broken: Vec<(usize, String)>,
     /// Reasons given by scenes that could not be run.
     pub reasons: BTreeMap<String, usize>,
+    /// Scenes in which a step could not be made, with the reason.
+    pub stopped: Vec<(usize, String)>,
     /// Dearest communication step, and its scene.
     pub dearest: (f64, usize),
 }
@@ -106,6 +108,7 @@ impl Survey {
             Ok(account) => account,
             Err(claim) => return self.broken.push((number, claim)),
         };
+        let worst = account.worst();
         let (fate, reason) = match account.fate {
             Fate::Ran => ("ran", None),
             Fate::Costly => ("too dear", None),
@@ -114,6 +117,9 @@ impl Survey {
             Fate::Stopped(reason) => ("stopped", Some(reason)),
         };
         *self.fates.entry(fate).or_default() += 1;
+        if let (Some(reason), "stopped") = (&reason, fate) {
+            self.stopped.push((number, reason.clone()));
+        }
         if let Some(reason) = &reason {
             *self.reasons.entry(kind_of(reason)).or_default() += 1;
         }
@@ -139,7 +145,7 @@ impl Survey {
             self.imbalance
                 .entry(name)
                 .or_default()
-                .push((account.imbalance, number));
+                .push((worst, number));
         }
         if account.dearest > self.dearest.0 {
             self.dearest = (account.dearest, number);
@@ -212,6 +218,19 @@ impl fmt::Display for Survey {
                 worst.0,
                 worst.1
             )?;
+        }
+        for (integrator, errors) in &self.imbalance {
+            let open = errors.iter().filter(|(error, _)| error.abs() > CLOSED);
+            let mut open: Vec<_> = open.collect();
+            open.sort_by_key(|(_, scene)| *scene);
+            writeln!(f, "{integrator}: open in")?;
+            for (error, scene) in open {
+                write!(f, " {scene} ({:+.1} %)", 100.0 * error)?;
+            }
+            writeln!(f)?;
+        }
+        for (scene, reason) in &self.stopped {
+            writeln!(f, "{scene} stopped: {reason}")?;
         }
         writeln!(
             f,

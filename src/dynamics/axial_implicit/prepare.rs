@@ -200,7 +200,7 @@ impl SegmentRow {
         line: &Layout,
         at: usize,
         elastic: Elastic,
-        [_, h0, h1, h2]: [f64; 4],
+        [b1, h0, h1, h2]: [f64; 4],
         shift: f64,
         step: Step,
     ) {
@@ -215,10 +215,14 @@ impl SegmentRow {
             + Lanes::splat(h1) * t1
             + Lanes::splat(h2) * t2;
         self.stiffness = elastic.slope * drift * self.inverse_length;
+        let share = Lanes::splat(1.0 / b1);
+        self.spring_now = elastic.ahead * share;
+        self.spring_slope = elastic.slope * self.inverse_length * share;
         let damping = half * self.axial_damping * self.inverse_length;
         self.damping = damping * Lanes::splat(1.0 + shift);
         self.known = self.elastic + damping * Lanes::splat(1.0 - shift) * along;
         let bend = relative.dot(relative) - along * along;
+        self.across = bend;
         self.curvature = half * self.stiffness * drift * bend * self.inverse;
         let push = Lanes::splat(f64::from(u8::from(line.negative_tension)));
         let (_, total) = self.spring(along, push); // as if they went on stretching as they do

@@ -20,14 +20,18 @@ pub(super) struct SegmentRow {
     /// Lengths l at t_n [m], and 1/l.
     pub length: Lanes,
     pub inverse: Lanes,
-    /// q·(v_{i+1} − v_i) at t_{n−½} [m/s].
+    /// q·(v_{i+1} − v_i) at t_{n−½} [m/s], and the square of what else v_{i+1} − v_i has [m²/s²].
     pub along: Lanes,
+    pub across: Lanes,
     /// dT̄/d(q·(v_{i+1} − v_i)): elastic and damping part [N s/m].
     pub stiffness: Lanes,
     pub damping: Lanes,
     /// Parts of T̄ known beforehand: elastic, and with damping [N].
     pub elastic: Lanes,
     pub known: Lanes,
+    /// Tension of the springs at t_n as if they pushed too, and its slope with the length [N, N/m].
+    pub spring_now: Lanes,
+    pub spring_slope: Lanes,
     /// EA·b₁ times the strain by transverse motion [N].
     pub curvature: Lanes,
     /// 1 where the segment is taut, −1 where it is slack.
@@ -53,10 +57,13 @@ impl SegmentRow {
             length: zero,
             inverse: zero,
             along: zero,
+            across: zero,
             stiffness: zero,
             damping: zero,
             elastic: zero,
             known: zero,
+            spring_now: zero,
+            spring_slope: zero,
             curvature: zero,
             taut: zero,
             history: [zero; 2],

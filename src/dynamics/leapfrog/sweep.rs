@@ -103,6 +103,7 @@ struct Moving<'a> {
     velocity: &'a [Vectors],
     velocity_before: &'a mut [Vectors],
     pull: &'a mut [Vectors],
+    brake: &'a mut [Vectors],
     resistance: &'a mut [Vectors],
     inverse_square: &'a mut [Lanes],
     press: &'a mut [Vectors],
@@ -128,12 +129,13 @@ struct NodeRows<'a> {
     contact: ContactRows<'a>,
 }
 
-/// Drag coefficients and 1/M_t − 1/M_n; empty without water.
+/// Drag coefficients, 1/M_t − 1/M_n and M_t − M_n; empty without water.
 #[derive(Default)]
 struct WaterRows<'a> {
     normal: &'a [Lanes],
     tangent: &'a [Lanes],
     excess: &'a [Lanes],
+    mass_excess: &'a [Lanes],
 }
 
 /// The bed; empty without one.
@@ -154,6 +156,7 @@ impl LineWork {
             velocity: line.velocity.rows(last),
             velocity_before: line.velocity_before.rows_mut(last),
             pull: self.pull.rows_mut(last),
+            brake: self.brake.rows_mut(last),
             resistance: self.resistance.rows_mut(last),
             inverse_square: self.inverse_square.rows_mut(last),
             press: match &mut self.press {
@@ -185,6 +188,7 @@ impl LineWork {
                 normal: water.drag_normal.rows(last),
                 tangent: water.drag_tangent.rows(last),
                 excess: water.inverse_mass_excess.rows(last),
+                mass_excess: water.mass_excess.rows(last),
             };
         }
         if let Some(contact) = &line.contact {
@@ -199,6 +203,7 @@ impl LineWork {
             lost: zero,
             left: zero,
             given: zero,
+            turned: zero,
         };
         Swept {
             moving,
@@ -210,9 +215,10 @@ impl LineWork {
 }
 
 impl SegmentRows<'_> {
-    /// T q of the segments of a row [N], and the power that their dampers take [W]; `rate` is how their chords [m] change [m/s].
+    /// T q of the segments of a row and the part of it that no spring has [N], and the power of that [W]; `rate` is how their chords [m] change
+    /// [m/s].
     #[inline(always)]
-    fn pull(&self, row: usize, chord: Vectors, rate: Vectors) -> (Vectors, Lanes) {
+    fn pull(&self, row: usize, chord: Vectors, rate: Vectors) -> (Vectors, Vectors, Lanes) {
         let square = chord.dot(chord);
         let inverse_l = inverse_norm(square);
         let inverse_length = self.inverse_length[row];
@@ -226,27 +232,32 @@ impl SegmentRows<'_> {
         } else {
             (elastic + damping).positive()
         };
+        let brake = tension - spring;
         (
             chord.scale(tension * inverse_l),
-            (tension - spring) * stretching,
+            chord.scale(brake * inverse_l),
+            brake * stretching,
         )
     }
 }
 
-/// What a sweep sums up over the rows: power lost, twice the power that leaves the nodes, and power given by moving water [W].
+/// What a sweep sums up over the rows: power lost, twice the power that leaves the nodes, and power given by moving water [W]; twice what
+/// ½ vᵀMv loses along the tangents beside what it loses across them [J].
 #[derive(Clone, Copy)]
 struct Sums {
     lost: Lanes,
     left: Lanes,
     given: Lanes,
+    turned: Lanes,
 }
 
 /// What a row is kicked by.
 struct Kicking {
     /// Height of its nodes [m].
     z: Lanes,
-    /// Sum of the pulls on them [N].
+    /// Sum of the pulls on them, and the part of it that no spring has [N].
     pull: Vectors,
+    brake: Vectors,
     /// What water and damping resist with [N].
     resistance: Vectors,
     /// What water presses with that waves accelerate [N].
@@ -279,14 +290,14 @@ impl NodeRows<'_> {
         }
         // Δt M⁻¹f, and Δt M⁻¹ẑ for the bed
         let inverse_mass = self.inverse_mass[at] * sizes.kick;
-        let (mut change, mut response) = (force.scale(inverse_mass), Vectors::zero());
+        let (mut kick, mut response) = (force.scale(inverse_mass), Vectors::zero());
         if AROUND != around::DRY {
             let excess = self.water.excess[at] * by.inverse_square * sizes.kick;
-            change = change + by.chord.scale(excess * force.dot(by.chord));
+            kick = kick + by.chord.scale(excess * force.dot(by.chord));
             response = by.chord.scale(excess * by.chord.z);
         }
         response.z = response.z + inverse_mass;
-        let mut kicked = velocity + change;
+        let mut kicked = velocity + kick;
         let mut taken = by.resistance;
         if BED {
             let push = self.contact.push(at, by.z, [kicked.z, response.z], sizes);
@@ -294,8 +305,12 @@ impl NodeRows<'_> {
             taken.z = taken.z - push;
         }
         let (both, interior) = (velocity + kicked, self.interior[at]);
-        if resists || BED {
-            sums.left = sums.left + interior * taken.dot(both);
+        // the dampers' power was that at the velocities before
+        let change = kicked - velocity;
+        sums.left = sums.left + interior * (taken.dot(both) - by.brake.dot(change));
+        if AROUND != around::DRY {
+            let passed = change.dot(by.chord) * both.dot(by.chord) * by.inverse_square;
+            sums.turned = sums.turned - self.water.mass_excess[at] * interior * passed;
         }
         if AROUND == around::FLOWING {
             let pressed = Lanes::splat(0.5) * by.press.dot(both);
@@ -389,7 +404,13 @@ impl LineWork {
             swept.resist::<AROUND, PLAIN>(sizes);
         }
         swept.kick::<AROUND, BED, PLAIN>(sizes, drift);
-        let Sums { lost, left, given } = swept.sums;
+        let Sums {
+            lost,
+            left,
+            given,
+            turned,
+        } = swept.sums;
+        self.turned = self.turned + turned;
         let half = Lanes::splat(0.5);
         self.lost = self.lost + (lost + half * left) * sizes.kick;
         self.given_by_current = self.given_by_current + given * sizes.kick;
@@ -420,8 +441,8 @@ impl Swept<'_> {
             let moving = &mut self.moving;
             let chord = moving.position[at + 1] - moving.position[at];
             let rate = moving.velocity[at + 1] - moving.velocity[at];
-            let (pull, lost) = self.segments.pull(at, chord, rate);
-            moving.pull[at] = pull;
+            let (pull, brake, lost) = self.segments.pull(at, chord, rate);
+            (moving.pull[at], moving.brake[at]) = (pull, brake);
             self.sums.lost = self.sums.lost + lost;
         }
     }
@@ -471,13 +492,15 @@ impl Swept<'_> {
         let last = self.last();
         let mut low = self.moving.position[0];
         let mut pull_low = self.moving.pull[last].moved_up();
+        let mut brake_low = self.moving.brake[last].moved_up();
         for at in 1..=last {
             let (moving, nodes) = (&mut self.moving, &self.nodes);
-            let (here, velocity, pull) =
-                (moving.position[at], moving.velocity[at], moving.pull[at]);
+            let (here, velocity) = (moving.position[at], moving.velocity[at]);
+            let (pull, brake) = (moving.pull[at], moving.brake[at]);
             let mut by = Kicking {
                 z: here.z,
                 pull: pull - pull_low,
+                brake: brake - brake_low,
                 resistance: moving.resistance[at],
                 press: Vectors::zero(),
                 chord: moving.position[at + 1] - low,
@@ -489,7 +512,10 @@ impl Swept<'_> {
             let kicked = nodes.kick::<AROUND, BED, PLAIN>(at, &by, velocity, sizes, &mut self.sums);
             moving.velocity_before[at] = kicked; // v_{n−3/2} has been read
             moving.position[at] = here + kicked.scale(drift);
-            (low, pull_low) = (here, pull);
+            if !PLAIN {
+                moving.resistance[at] = by.resistance - by.brake; // for what is settled afterwards
+            }
+            (low, pull_low, brake_low) = (here, pull, brake);
         }
     }
 }

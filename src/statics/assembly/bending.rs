@@ -196,7 +196,7 @@ impl BendingWork {
 }
 
 /// Rates of the vectors that meet at a node [m/s]; zero where a clamp or nothing moves.
-fn rates(velocity: &[Vector3<f64>], node: usize) -> [Vector3<f64>; 2] {
+pub(crate) fn rates(velocity: &[Vector3<f64>], node: usize) -> [Vector3<f64>; 2] {
     let rate = |from: Option<usize>| match from {
         Some(i) if i + 1 < velocity.len() => velocity[i + 1] - velocity[i],
         _ => Vector3::zeros(),
@@ -204,11 +204,12 @@ fn rates(velocity: &[Vector3<f64>], node: usize) -> [Vector3<f64>; 2] {
     [rate(node.checked_sub(1)), rate(Some(node))]
 }
 
-/// Power that the dampers of a line's joints take [W].
+/// Power that the dampers of a line's joints take [W] from nodes that move at `passing` [m/s] while they resist the velocities of a state.
 pub fn joint_damping_power(
     line: &Line,
     state: &LineState,
     clamps: [Option<Vector3<f64>>; 2],
+    passing: &[Vector3<f64>],
 ) -> f64 {
     let Some(damping) = line
         .bending
@@ -221,9 +222,9 @@ pub fn joint_damping_power(
         let Some(turn) = joint(clamps, &state.position, i) else {
             return 0.0;
         };
-        let rates = rates(&state.velocity, i);
-        let drag = turn.damper(*damping).product(rates);
-        drag[0].dot(&rates[0]) + drag[1].dot(&rates[1])
+        let drag = turn.damper(*damping).product(rates(&state.velocity, i));
+        let passing = rates(passing, i);
+        drag[0].dot(&passing[0]) + drag[1].dot(&passing[1])
     };
     damping.iter().enumerate().map(power).sum()
 }

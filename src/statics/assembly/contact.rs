@@ -60,6 +60,17 @@ impl SmoothContact {
         })
     }
 }
+
+/// Upward force [N] of a level bed whose damper fades in over ± `reach` of penetration [m].
+pub(crate) fn faded_push(
+    k: ContactCoefficients,
+    penetration: f64,
+    velocity: f64,
+    reach: f64,
+) -> f64 {
+    SmoothContact::new(k, penetration, velocity, reach).map_or(0.0, |bed| bed.force)
+}
+
 impl LineWork {
     /// The bed's springs under nodes at rest.
     pub(super) fn add_bed_at_rest(&mut self, line: &Line, position: &[Vector3<f64>]) {

@@ -1,0 +1,485 @@
+//! What a step of an implicit integrator gave to a network, what it took from it, and what the integrator itself did.
+//!
+//! The scheme moves a network from r to r' by the forces F = (1 − α_f) f(t') + α_f f(t), which do the work F·(r' − r): so each force is
+//! booked. Its inertia (1 − α_m) M'a' + (α_m − α_f) M'a + α_f M a does what the energy of motion changes by, but for
+//!
+//!   ¼ (v'ᵀ(M' − M)v' + vᵀ(M' − M)v),   which masses bring that turn with their line or dip into the water, and
+//!   (r' − r)·inertia − ½ (v + v')·½(M + M')(v' − v),   the dissipation of the scheme.
+//!
+//! On each spring, joint and weight that changes it dissipates (½ − α_f)(s' − s)·(r' − r), s being what that resists with: what its weights do beyond the
+//! mean of both. Over all of a linear system that nothing drives the two sum to no less than nothing; of one that is driven they may have
+//! either sign. What the mean does beyond what is stored, where springs slacken or turn within the step, is the error of the integration.
+//!
+//! Source: the discrete balance of Newmark's approximations, as in Krenk (2006), Comput. Methods Appl. Mech. Eng. 195, 6110-6124.
+
+use nalgebra::Vector3;
+
+use super::super::implicit::Scheme;
+use super::{Flow, dry_part, tangent};
+use crate::dynamics::creep::{Creeping, Stretching};
+use crate::model::{End, FreePoint, Line, LineState, Model, Network, State, WaterAlong, joint};
+use crate::physics::morison::{DragCoefficients, drag};
+use crate::physics::seabed::ContactCoefficients;
+use crate::physics::stretch::total_tension;
+use crate::statics::assembly::rubbing::{resting_node, resting_point};
+use crate::statics::assembly::{
+    Workspace, end_moment, end_shear, faded_push, joint_damping_power, rates,
+};
+
+/// A step that an implicit integrator has made.
+#[derive(Clone, Copy)]
+pub struct Passed<'a> {
+    /// The states around it.
+    pub states: [&'a State; 2],
+    /// Their times [s].
+    pub times: [f64; 2],
+    /// How it was made.
+    pub scheme: &'a Scheme,
+    /// What it was made with: it knows over which penetrations the bed's dampers fade in.
+    pub work: &'a Workspace,
+}
+
+/// Energy [J] that crossed the border of a network in a step.
+pub fn flow(model: &Model, network: &Network, passed: &Passed) -> Flow {
+    let alpha_f = passed.scheme.alpha_f;
+    let mut flow = Flow::default();
+    for (side, weight) in [alpha_f, 1.0 - alpha_f].into_iter().enumerate() {
+        if weight == 0.0 {
+            continue;
+        }
+        let side = Side {
+            model,
+            passed,
+            state: passed.states[side],
+            t: passed.times[side],
+            friction: if side == 0 { 0.0 } else { 1.0 / weight },
+        };
+        flow.add(side.power(network).times(weight * passed.length()));
+    }
+    for &line in &network.lines {
+        flow.add(passed.inertia(model, line));
+        flow.numerical += passed.spring_dissipation(model, line);
+    }
+    for &point in &network.free_points {
+        flow.add(passed.point_inertia(model, point));
+    }
+    flow
+}
+
+/// A network at one end of a step.
+struct Side<'a> {
+    model: &'a Model,
+    passed: &'a Passed<'a>,
+    state: &'a State,
+    t: f64,
+    /// Weight of friction over that of the other forces [-].
+    friction: f64,
+}
+
+impl Passed<'_> {
+    fn length(&self) -> f64 {
+        self.times[1] - self.times[0]
+    }
+
+    /// The state that knows the waves of both times: the one before is a copy of the network alone.
+    fn sea(&self) -> &State {
+        self.states[1]
+    }
+
+    /// Mean velocity of a node of a line over the step [m/s].
+    fn way(&self, line: usize, node: usize) -> Vector3<f64> {
+        let [before, after] = self.states.map(|state| state.lines[line].position[node]);
+        (after - before) / self.length()
+    }
+
+    /// The same of a point.
+    fn point_way(&self, point: usize) -> Vector3<f64> {
+        let [before, after] = self.states.map(|state| state.points[point].position);
+        (after - before) / self.length()
+    }
+
+    /// Mean spin of a held point over the step [rad/s].
+    fn turn(&self, point: usize) -> Vector3<f64> {
+        let [before, after] = self.states.map(|state| state.points[point].orientation);
+        (after * before.inverse()).scaled_axis() / self.length()
+    }
+
+    /// What masses of a line bring that change, and what the scheme's inertia dissipates [J].
+    fn inertia(&self, model: &Model, index: usize) -> Flow {
+        let line = &model.lines[index];
+        let shapes = self.states.map(|state| &state.lines[index]);
+        let held = [End::A, End::B].map(|end| line.is_held(model, shapes[1], end));
+        let waters = self.times.map(|t| model.water_along(self.sea(), index, t));
+        let mut flow = Flow::default();
+        for i in usize::from(held[0])..=line.segment_count() - usize::from(held[1]) {
+            let masses = [0, 1].map(|side| Mass::of(line, shapes[side], i, waters[side]));
+            let [v, a] = [
+                shapes.map(|shape| shape.velocity[i]),
+                shapes.map(|shape| shape.acceleration[i]),
+            ];
+            flow.add(self.carried(masses, v, a, self.way(index, i)));
+        }
+        flow
+    }
+
+    /// The same of a free point.
+    fn point_inertia(&self, model: &Model, point: usize) -> Flow {
+        let Some(free) = model.points[point].free() else {
+            return Flow::default();
+        };
+        let mass = |side: usize| {
+            let waves = self.sea().waves_at_point(point, self.times[side]);
+            let surface = waves.map_or(0.0, |orbit| orbit.elevation);
+            free.at(self.states[side].points[point].position.z - surface)
+                .mass
+        };
+        let masses = [0, 1].map(|side| Mass {
+            across: mass(side),
+            excess: 0.0,
+            tangent: Vector3::zeros(),
+        });
+        let points = self.states.map(|state| &state.points[point]);
+        let [v, a] = [
+            points.map(|point| point.velocity),
+            points.map(|point| point.acceleration),
+        ];
+        let mut flow = self.carried(masses, v, a, self.point_way(point));
+        let heights = points.map(|point| point.position.z);
+        let weights = heights.map(|z| free.at(z).weight);
+        flow.numerical += self.beyond_mean(weights) * (heights[1] - heights[0]);
+        flow
+    }
+
+    /// A mass before and after the step with its velocities [m/s] and accelerations [m/s²].
+    fn carried(
+        &self,
+        [old, new]: [Mass; 2],
+        [v0, v1]: [Vector3<f64>; 2],
+        [a0, a1]: [Vector3<f64>; 2],
+        way: Vector3<f64>,
+    ) -> Flow {
+        let Scheme {
+            alpha_m, alpha_f, ..
+        } = *self.scheme;
+        let changed = |v: &Vector3<f64>| v.dot(&(new.times(v) - old.times(v)));
+        let inertia = new.times(&((1.0 - alpha_m) * a1 + (alpha_m - alpha_f) * a0))
+            + alpha_f * old.times(&a0);
+        let change = v1 - v0;
+        let gained = 0.25 * (v0 + v1).dot(&(old.times(&change) + new.times(&change)));
+        Flow {
+            given: 0.0,
+            lost: -0.25 * (changed(&v0) + changed(&v1)),
+            numerical: self.length() * way.dot(&inertia) - gained,
+        }
+    }
+
+    /// What the scheme makes of a value before and after the step beyond the mean of both.
+    fn beyond_mean(&self, [old, new]: [f64; 2]) -> f64 {
+        (0.5 - self.scheme.alpha_f) * (new - old)
+    }
+
+    /// What the scheme dissipates on the springs and joints of a line, and on the buoyancy that it lacks out of the water [J].
+    fn spring_dissipation(&self, model: &Model, index: usize) -> f64 {
+        let line = &model.lines[index];
+        let shapes = self.states.map(|state| &state.lines[index]);
+        let way = |i: usize| shapes[1].position[i] - shapes[0].position[i];
+        let mut sum = 0.0;
+        for i in 0..line.segment_count() {
+            let stretched = way(i + 1) - way(i);
+            let ends = shapes.map(|shape| Segment::of(line, shape, i));
+            let works = [0, 1].map(|side| {
+                let force = ends[side].elastic.max(0.0 - line.compression_max(i));
+                force * ends[side].direction.dot(&stretched)
+            });
+            sum += self.beyond_mean(works);
+        }
+        if let Some(surface) = &line.surface {
+            for i in 0..=line.segment_count() {
+                let weights = shapes.map(|shape| surface.node(i, &shape.position).weight);
+                sum += self.beyond_mean(weights) * way(i).z;
+            }
+        }
+        sum + self.joint_dissipation(line, index)
+    }
+
+    /// The same on the joints of a line that bends [J].
+    fn joint_dissipation(&self, line: &Line, index: usize) -> f64 {
+        let Some(bending) = &line.bending else {
+            return 0.0;
+        };
+        let shapes = self.states.map(|state| &state.lines[index].position);
+        let clamps = self.states.map(|state| line.clamps(&state.points));
+        let nodes = 0..=line.segment_count();
+        let ways: Vec<_> = nodes.clone().map(|i| shapes[1][i] - shapes[0][i]).collect();
+        let mut sum = 0.0;
+        for i in nodes.filter(|&i| bending.joint[i] > 0.0) {
+            let turned = rates(&ways, i);
+            let works = [0, 1].map(|side| {
+                let turn = joint(clamps[side], shapes[side], i);
+                turn.map_or(0.0, |turn| {
+                    let [first, second] = turn.energy(bending.joint[i], bending.rest[i]).slope;
+                    first.dot(&turned[0]) + second.dot(&turned[1])
+                })
+            });
+            sum += self.beyond_mean(works);
+        }
+        for (end, point) in [End::A, End::B].into_iter().zip(line.ends) {
+            let turned = self.length() * self.turn(point);
+            let works = [0, 1].map(|side| {
+                let at = &self.states[side].points[point];
+                0.0 - end_moment(line, shapes[side], end, at).dot(&turned)
+            });
+            sum += self.beyond_mean(works);
+        }
+        sum
+    }
+}
+
+/// Mass of a node.
+#[derive(Clone, Copy)]
+struct Mass {
+    /// Across the line [kg].
+    across: f64,
+    /// That along it less that across it [kg].
+    excess: f64,
+    tangent: Vector3<f64>,
+}
+
+impl Mass {
+    fn of(line: &Line, shape: &LineState, i: usize, water: WaterAlong) -> Mass {
+        let [across, along] = line.nodes.masses(i, dry_part(line, shape, i, water));
+        Mass {
+            across,
+            excess: along - across,
+            tangent: tangent(shape, i),
+        }
+    }
+
+    fn times(&self, v: &Vector3<f64>) -> Vector3<f64> {
+        self.across * v + self.excess * self.tangent.dot(v) * self.tangent
+    }
+}
+
+/// A segment at one end of a step.
+struct Segment {
+    direction: Vector3<f64>,
+    /// Strain [-] and its rate [1/s].
+    now: Stretching,
+    /// Forces of its spring and of its damper [N].
+    elastic: f64,
+    damping: f64,
+    creep: Option<Creeping>,
+}
+
+impl Segment {
+    fn of(line: &Line, shape: &LineState, i: usize) -> Segment {
+        let segments = &line.segments;
+        let pair = |values: &[Vector3<f64>]| [values[i], values[i + 1]];
+        let [low, high] = pair(&shape.position);
+        let now = Stretching::of(line, i, [low, high], pair(&shape.velocity));
+        let creep = Creeping::of(line, shape, i);
+        let (elastic, damping) = match &creep {
+            Some(creep) => creep.forces(now),
+            None => (
+                segments.axial_stiffness[i] * segments.law[i].at(now.strain).force,
+                segments.axial_damping[i] * now.rate,
+            ),
+        };
+        let direction = (high - low).try_normalize(0.0);
+        Segment {
+            direction: direction.unwrap_or_else(Vector3::zeros),
+            now,
+            elastic,
+            damping,
+            creep,
+        }
+    }
+}
+
+impl Side<'_> {
+    /// Power of the forces at this end on the mean velocities of the step [W].
+    fn power(&self, network: &Network) -> Flow {
+        let mut flow = Flow::default();
+        for &index in &network.lines {
+            let water = self.model.water_along(self.passed.sea(), index, self.t);
+            flow.add(self.line_power(index, water));
+            if self.model.lines[index].bending.is_some() {
+                flow.add(self.bending_power(index));
+            }
+        }
+        for &point in &network.free_points {
+            let load = self.model.points[point].load_at(self.t);
+            flow.given += load.dot(&self.passed.point_way(point));
+            if let Some(free) = self.model.points[point].free() {
+                flow.add(self.point_power(free, point));
+            }
+        }
+        flow
+    }
+
+    fn line_power(&self, index: usize, water: WaterAlong) -> Flow {
+        let (model, line, shape) = (
+            self.model,
+            &self.model.lines[index],
+            &self.state.lines[index],
+        );
+        let (n, negative) = (line.segment_count(), model.solver.negative_tension);
+        let after = &self.passed.states[1].lines[index];
+        let [a, b] = [End::A, End::B].map(|end| line.is_held(model, after, end));
+        let mut flow = Flow::default();
+        for i in 0..n {
+            let segment = Segment::of(line, shape, i);
+            let [low, high] = [i, i + 1].map(|node| self.passed.way(index, node));
+            let (direction, unstretched) = (segment.direction, line.segments.length[i]);
+            let stretching = direction.dot(&(high - low));
+            let least = 0.0 - line.compression_max(i);
+            let elastic = segment.elastic.max(least);
+            if let Some(creep) = &segment.creep {
+                let rate = stretching / unstretched;
+                let now = Stretching {
+                    rate,
+                    ..segment.now
+                };
+                flow.lost += creep.loss(now, elastic) * unstretched;
+            }
+            let tension = total_tension(segment.elastic, segment.damping, least, negative);
+            flow.lost += (tension - elastic) * stretching;
+            if i == 0 && a {
+                flow.given -= tension * direction.dot(&low);
+            }
+            if i + 1 == n && b {
+                flow.given += tension * direction.dot(&high);
+            }
+        }
+        for i in usize::from(a)..=n - usize::from(b) {
+            flow.add(self.node_power(index, i, water));
+        }
+        flow.given += self.surface_power(index, [a, b], water);
+        flow
+    }
+
+    /// Power that water, mass damping and seabed take from a node, and that moving water gives it [W].
+    fn node_power(&self, index: usize, i: usize, water: WaterAlong) -> Flow {
+        let (line, shape) = (&self.model.lines[index], &self.state.lines[index]);
+        let (nodes, velocity, way) = (&line.nodes, shape.velocity[i], self.passed.way(index, i));
+        let mut flow = Flow::default();
+        let wet = 1.0 - dry_part(line, shape, i, water);
+        if let Some(coefficients) = &nodes.drag {
+            let k = DragCoefficients {
+                normal: coefficients.normal[i],
+                tangent: coefficients.tangent[i],
+            };
+            let past = match water.is_still() {
+                true => Vector3::zeros(),
+                false => water.velocity(i, shape.position[i].z),
+            };
+            let force = drag(k.times(wet), velocity - past, tangent(shape, i));
+            flow.given += force.dot(&past);
+            flow.lost -= force.dot(&(way - past));
+        }
+        if let (Some(pressed), Some(waves)) = (&nodes.pressed, &water.waves) {
+            let force = pressed.force(i, waves.at(i).acceleration, tangent(shape, i));
+            flow.given += wet * force.dot(&way);
+        }
+        if let Some(damping) = &nodes.mass_damping {
+            flow.lost += damping[i] * velocity.dot(&way);
+        }
+        let Some(contact) = &nodes.contact else {
+            return flow;
+        };
+        let reach = self.passed.work.reach(index, i);
+        if line.bottom().is_some() {
+            let push = resting_node(line, shape, i, reach, 1.0).and_then(|node| node.push());
+            let force = push.map(|push| push.force + (self.friction - 1.0) * push.friction);
+            flow.lost -= force.map_or(0.0, |force| force.dot(&way));
+        } else {
+            let k = ContactCoefficients {
+                stiffness: contact.stiffness[i],
+                damping: contact.damping[i],
+            };
+            let penetration = contact.level[i] - shape.position[i].z;
+            flow.lost -= faded_push(k, penetration, velocity.z, reach) * way.z;
+        }
+        flow
+    }
+
+    /// Power of held ends on the buoyancy that they lack in calm water, and that of the buoyancy by which waves exceed it on the other
+    /// nodes [W].
+    fn surface_power(&self, index: usize, held: [bool; 2], water: WaterAlong) -> f64 {
+        let (line, shape) = (&self.model.lines[index], &self.state.lines[index]);
+        let Some(surface) = &line.surface else {
+            return 0.0;
+        };
+        let n = line.segment_count();
+        let rise = |i: usize| self.passed.way(index, i).z;
+        let calm = |i: usize| surface.node(i, &shape.position).weight;
+        let ends = [0, n].into_iter().zip(held).filter(|(_, held)| *held);
+        let mut power: f64 = ends.map(|(i, _)| calm(i) * rise(i)).sum();
+        if water.waves.is_some() {
+            for i in usize::from(held[0])..=n - usize::from(held[1]) {
+                let now = surface.node_in(water, i, &shape.position);
+                power += (calm(i) - now.weight) * rise(i);
+            }
+        }
+        power
+    }
+
+    /// Power of the shear at held ends, and that of the joints' dampers [W].
+    fn bending_power(&self, index: usize) -> Flow {
+        let (model, line) = (self.model, &self.model.lines[index]);
+        let shape = &self.state.lines[index];
+        let given = |(end, point): (End, usize)| {
+            let at = &self.state.points[point];
+            match model.points[point].free() {
+                Some(_) => 0.0,
+                None => {
+                    let shear = end_shear(line, [&shape.position, &shape.velocity], end, at);
+                    let moment = end_moment(line, &shape.position, end, at);
+                    let way = self.passed.way(index, line.end_node(end));
+                    -shear.dot(&way) - moment.dot(&self.passed.turn(point))
+                }
+            }
+        };
+        let nodes = 0..=line.segment_count();
+        let ways: Vec<_> = nodes.map(|i| self.passed.way(index, i)).collect();
+        Flow {
+            given: [End::A, End::B].into_iter().zip(line.ends).map(given).sum(),
+            lost: joint_damping_power(line, shape, line.clamps(&self.state.points), &ways),
+            numerical: 0.0,
+        }
+    }
+
+    /// Power that moving water gives a free point, and that water and seabed take from it [W].
+    fn point_power(&self, free: &FreePoint, point: usize) -> Flow {
+        let (model, state) = (self.model, &self.state.points[point]);
+        let (z, velocity, way) = (
+            state.position.z,
+            state.velocity,
+            self.passed.point_way(point),
+        );
+        let stream = model.stream(self.t);
+        let mut water = stream.map_or(Vector3::zeros(), |stream| stream.velocity(z));
+        let (mut at, mut flow) = (free.at(z), Flow::default());
+        if let Some(orbit) = &self.passed.sea().waves_at_point(point, self.t) {
+            let still = at.weight;
+            at = free.at(z - orbit.elevation);
+            water += orbit.velocity;
+            flow.given += free.pressed(at.wetted, orbit).dot(&way);
+            flow.given += (still - at.weight) * way.z;
+        }
+        let drag = free.drag(at.wetted, velocity - water);
+        flow.given += drag.dot(&water);
+        flow.lost -= drag.dot(&(way - water));
+        let reach = self.passed.work.point_reach(point);
+        if let Some(bottom) = model.bottom.as_deref() {
+            let push = resting_point(free, bottom, state, reach, 1.0);
+            let push = push.and_then(|point| point.push());
+            let force = push.map(|push| push.force + (self.friction - 1.0) * push.friction);
+            flow.lost -= force.map_or(0.0, |force| force.dot(&way));
+        } else if let Some(contact) = &free.contact {
+            let push = faded_push(contact.coefficients, contact.level - z, velocity.z, reach);
+            flow.lost -= push * way.z;
+        }
+        flow
+    }
+}
