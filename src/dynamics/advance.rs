@@ -276,8 +276,8 @@ impl Workspace {
         length: f64,
         held: &(impl Fn(usize, f64) -> Kinematics + Sync),
     ) -> Result<Done, StepError> {
-        let heaves = state.waves.is_some();
-        if heaves && self.networks.iter().any(|(_, solver)| solver.reads_next()) {
+        let reads_next = |(_, solver): &(Choice, Solver)| solver.reads_next();
+        if state.waves.is_some() && self.networks.iter().any(reads_next) {
             self.next.waves.clone_from(&state.waves);
         }
         let step = Communication {
@@ -308,10 +308,10 @@ impl Workspace {
         }
         self.next.time = state.time + length;
         place_held(model, &mut self.next, held);
-        if heaves {
-            std::mem::swap(&mut state.waves, &mut self.next.waves);
-        }
-        std::mem::swap(state, &mut self.next);
+        // all but the waves, which stay as they are
+        state.time = self.next.time;
+        std::mem::swap(&mut state.points, &mut self.next.points);
+        std::mem::swap(&mut state.lines, &mut self.next.lines);
         self.holds = true;
         self.paces[0].note(turn, length);
         Ok(total)
@@ -530,9 +530,8 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
         let index = self.model.networks[number].lines[0];
         let line = &self.model.lines[index];
         let transverse = work.transverse;
-        let tension_now = self.state.lines[index].half_step.tension[0]
-            .iter()
-            .fold(0.0, |a: f64, b| a.max(*b));
+        let tensions = self.state.lines[index].half_step.tension[0].iter();
+        let tension_now = tensions.fold(0.0, |a, &b| if b > a { b } else { a });
         let step_max = step_max.min(transverse / (SNAP_GROWTH * tension_now).sqrt());
         for retry in 0..=RETRIES_MAX {
             if self.holds && retry == 0 {
@@ -684,19 +683,25 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
         if count <= 1.0 {
             return Ok(1 << retry);
         }
-        let count = count.ceil();
         if count <= SUBSTEPS_MAX {
-            return Ok((count as usize) << retry);
+            let whole = count as usize; // rounded down
+            return Ok((whole + usize::from(count > whole as f64)) << retry);
         }
-        Err(StepError {
+        Err(self.too_many(step_max, count.ceil()))
+    }
+
+    #[cold]
+    fn too_many(&self, step_max: f64, count: f64) -> StepError {
+        StepError {
             time: self.start,
             line: self.model.lines[0].name.clone(),
             node: 0,
             reason: format!("steps of {step_max:.1e} s would be needed, {count:.0e} of them"),
             advice: "check masses, lengths and stiffnesses, or use solver.integrator = \"generalised_alpha\"",
-        })
+        }
     }
 
+    #[cold]
     fn diverged(&self, line: usize, node: usize) -> StepError {
         StepError {
             time: self.start,

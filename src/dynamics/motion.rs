@@ -252,13 +252,25 @@ impl HostPath {
     /// Position, velocity and acceleration at time `t` [s].
     #[inline(always)]
     pub fn at(&self, t: f64) -> Kinematics {
-        let [position, velocity, acceleration] = self.0.at(t).map(|lanes| lanes.xyz());
-        Kinematics {
-            position,
-            velocity,
-            acceleration,
-            ..Kinematics::default()
-        }
+        kinematics(self.0.at(t))
+    }
+
+    /// The same at both ends of the present segment.
+    #[inline(always)]
+    pub fn ends(&self) -> [Kinematics; 2] {
+        self.0.curve.ends().map(kinematics)
+    }
+}
+
+/// Of something that does not turn, from position [m], velocity [m/s] and acceleration [m/s²] along x, y and z.
+#[inline(always)]
+fn kinematics(motion: [Lanes; 3]) -> Kinematics {
+    let [position, velocity, acceleration] = motion.map(|lanes| lanes.xyz());
+    Kinematics {
+        position,
+        velocity,
+        acceleration,
+        ..Kinematics::default()
     }
 }
 
