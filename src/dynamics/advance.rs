@@ -532,7 +532,12 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
         let transverse = work.transverse;
         let tensions = self.state.lines[index].half_step.tension[0].iter();
         let tension_now = tensions.fold(0.0, |a, &b| if b > a { b } else { a });
-        let step_max = step_max.min(transverse / (SNAP_GROWTH * tension_now).sqrt());
+        let expected = SNAP_GROWTH * tension_now;
+        // what holds over the whole communication step is told without roots and quotients
+        let step_max = match self.length * self.length * expected <= transverse * transverse {
+            true => step_max,
+            false => step_max.min(transverse / expected.sqrt()),
+        };
         for retry in 0..=RETRIES_MAX {
             if self.holds && retry == 0 {
                 work.resume();
@@ -557,14 +562,16 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
                     work.set_current(stream.factor);
                 }
                 work.set_time(t - drift);
-                let ends = line.ends.map(|point| (self.held)(point, t).position);
+                let [a, b] = line.ends;
+                let ends = [(self.held)(a, t).position, (self.held)(b, t).position];
                 if let Some(partings) = &line.parting {
                     work.part_ends(partings, t - drift, Step::after(steps, drift));
                 }
                 solves += work.step(Step::after(steps, drift), ends);
                 steps = [drift, steps[0]];
             }
-            let too_long = drift > transverse / work.tension_peak().sqrt() || !work.is_settled();
+            let stretch = drift * drift * work.tension_peak();
+            let too_long = stretch > transverse * transverse || !work.is_settled();
             let flow = work.flow();
             let whole = work.broken_node().is_none() && flow.is_finite();
             if whole && !(too_long && retry < RETRIES_MAX) {
@@ -678,11 +685,11 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
 
     /// Equal steps no longer than `step_max` [s], halved `retry` times.
     fn substeps(&self, step_max: f64, retry: u32) -> Result<usize, StepError> {
-        // a span of exactly one limit must not become two steps by rounding
-        let count = self.length / step_max * (1.0 - 1e-9);
-        if count <= 1.0 {
+        if self.length <= step_max {
             return Ok(1 << retry);
         }
+        // a span of exactly one limit must not become two steps by rounding
+        let count = self.length / step_max * (1.0 - 1e-9);
         if count <= SUBSTEPS_MAX {
             let whole = count as usize; // rounded down
             return Ok((whole + usize::from(count > whole as f64)) << retry);

@@ -16,6 +16,8 @@ use crate::math::hermite::{QUINTIC_ERROR, Quintic};
 use crate::model::{Derivatives, Frame, Kinematics, Model, Motion, Point, Pose, Role};
 
 use super::paths::{Paths, is_coupled};
+use crate::dynamics::motion::HostPath;
+use crate::math::lanes::Lanes;
 
 /// Error of a bridge [m].
 const ERROR_MAX: f64 = 1e-12;
@@ -190,8 +192,10 @@ impl Bridge {
 pub(super) struct Held {
     /// Start and end of the step [s].
     span: [f64; 2],
-    /// Where the points are then.
+    /// Where the points are then, but those that a host moves.
     ends: Vec<[Kinematics; 2]>,
+    /// The same of these, along x, y and z: position [m], velocity [m/s] and acceleration [m/s²].
+    hosted: Vec<[[Lanes; 3]; 2]>,
     ways: Vec<Way>,
     /// Whether anything moves but by forces.
     moves: bool,
@@ -233,6 +237,7 @@ impl Held {
         Held {
             span: [f64::NAN; 2],
             ends: references.map(|k| [k; 2]).collect(),
+            hosted: vec![[[Lanes::splat(0.0); 3]; 2]; coupled.start],
             moves: ways.iter().any(|way| !matches!(way, Way::Still)),
             ways,
             vessels: motions
@@ -251,7 +256,7 @@ impl Held {
         for (point, (way, ends)) in self.ways.iter_mut().zip(&mut self.ends).enumerate() {
             match way {
                 Way::Still => (),
-                Way::Host(path) => *ends = at.paths.points[*path].ends(),
+                Way::Host(path) => self.hosted[*path] = at.paths.points[*path].0.ends(),
                 Way::Worked => *ends = span.map(|t| at.point(point, t)),
                 Way::Bridged(bridge) => {
                     let Some(motion) = at.own_motion(point) else {
@@ -322,6 +327,18 @@ impl Held {
     /// A point at time `t` [s] of the span; how it turns is told at its ends, and everywhere where lines are clamped.
     #[inline(always)]
     pub fn point(&self, at: &At, point: usize, t: f64) -> Kinematics {
+        let [start, end] = self.span;
+        match &self.ways[point] {
+            Way::Host(path) if t == end => HostPath::kinematics(&self.hosted[*path][1]),
+            Way::Host(path) if t == start => HostPath::kinematics(&self.hosted[*path][0]),
+            Way::Host(path) => at.paths.points[*path].at(t),
+            _ => self.other(at, point, t),
+        }
+    }
+
+    /// [`Held::point`] where the host does not say it.
+    #[inline(never)]
+    fn other(&self, at: &At, point: usize, t: f64) -> Kinematics {
         let ([first, last], [start, end]) = (&self.ends[point], self.span);
         if t == end {
             return *last;
@@ -330,21 +347,7 @@ impl Held {
             return *first;
         }
         match &self.ways[point] {
-            Way::Host(path) => at.paths.points[*path].at(t),
-            way => way.point(at, point, t),
-        }
-    }
-}
-
-impl Way {
-    /// [`Held::point`] where the host does not say it.
-    #[inline(never)]
-    fn point(&self, at: &At, point: usize, t: f64) -> Kinematics {
-        match self {
-            Way::Still => Kinematics {
-                position: at.model.points[point].reference,
-                ..Kinematics::default()
-            },
+            Way::Still => *first,
             Way::Bridged(bridge) => bridge.at(t).unwrap_or_else(|| at.point(point, t)),
             Way::Host(_) | Way::Worked => at.point(point, t),
         }
@@ -391,7 +394,6 @@ fn bell([a, b, c, d, e, f]: [f64; 6]) -> f64 {
 mod tests {
     use super::super::start;
     use super::*;
-    use crate::math::lanes::Lanes;
     use crate::scene::Scene;
     use crate::simulation::inputs::Inputs;
     use approx::assert_relative_eq;
