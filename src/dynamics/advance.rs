@@ -276,8 +276,8 @@ impl Workspace {
         length: f64,
         held: &(impl Fn(usize, f64) -> Kinematics + Sync),
     ) -> Result<Done, StepError> {
-        let heaves = state.waves.is_some();
-        if heaves && self.networks.iter().any(|(_, solver)| solver.reads_next()) {
+        let reads_next = |(_, solver): &(Choice, Solver)| solver.reads_next();
+        if state.waves.is_some() && self.networks.iter().any(reads_next) {
             self.next.waves.clone_from(&state.waves);
         }
         let step = Communication {
@@ -308,10 +308,10 @@ impl Workspace {
         }
         self.next.time = state.time + length;
         place_held(model, &mut self.next, held);
-        if heaves {
-            std::mem::swap(&mut state.waves, &mut self.next.waves);
-        }
-        std::mem::swap(state, &mut self.next);
+        // all but the waves, which stay as they are
+        state.time = self.next.time;
+        std::mem::swap(&mut state.points, &mut self.next.points);
+        std::mem::swap(&mut state.lines, &mut self.next.lines);
         self.holds = true;
         self.paces[0].note(turn, length);
         Ok(total)
@@ -530,10 +530,14 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
         let index = self.model.networks[number].lines[0];
         let line = &self.model.lines[index];
         let transverse = work.transverse;
-        let tension_now = self.state.lines[index].half_step.tension[0]
-            .iter()
-            .fold(0.0, |a: f64, b| a.max(*b));
-        let step_max = step_max.min(transverse / (SNAP_GROWTH * tension_now).sqrt());
+        let tensions = self.state.lines[index].half_step.tension[0].iter();
+        let tension_now = tensions.fold(0.0, |a, &b| if b > a { b } else { a });
+        let expected = SNAP_GROWTH * tension_now;
+        // what holds over the whole communication step is told without roots and quotients
+        let step_max = match self.length * self.length * expected <= transverse * transverse {
+            true => step_max,
+            false => step_max.min(transverse / expected.sqrt()),
+        };
         for retry in 0..=RETRIES_MAX {
             if self.holds && retry == 0 {
                 work.resume();
@@ -558,14 +562,16 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
                     work.set_current(stream.factor);
                 }
                 work.set_time(t - drift);
-                let ends = line.ends.map(|point| (self.held)(point, t).position);
+                let [a, b] = line.ends;
+                let ends = [(self.held)(a, t).position, (self.held)(b, t).position];
                 if let Some(partings) = &line.parting {
                     work.part_ends(partings, t - drift, Step::after(steps, drift));
                 }
                 solves += work.step(Step::after(steps, drift), ends);
                 steps = [drift, steps[0]];
             }
-            let too_long = drift > transverse / work.tension_peak().sqrt() || !work.is_settled();
+            let stretch = drift * drift * work.tension_peak();
+            let too_long = stretch > transverse * transverse || !work.is_settled();
             let flow = work.flow();
             let whole = work.broken_node().is_none() && flow.is_finite();
             if whole && !(too_long && retry < RETRIES_MAX) {
@@ -679,24 +685,30 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
 
     /// Equal steps no longer than `step_max` [s], halved `retry` times.
     fn substeps(&self, step_max: f64, retry: u32) -> Result<usize, StepError> {
-        // a span of exactly one limit must not become two steps by rounding
-        let count = self.length / step_max * (1.0 - 1e-9);
-        if count <= 1.0 {
+        if self.length <= step_max {
             return Ok(1 << retry);
         }
-        let count = count.ceil();
+        // a span of exactly one limit must not become two steps by rounding
+        let count = self.length / step_max * (1.0 - 1e-9);
         if count <= SUBSTEPS_MAX {
-            return Ok((count as usize) << retry);
+            let whole = count as usize; // rounded down
+            return Ok((whole + usize::from(count > whole as f64)) << retry);
         }
-        Err(StepError {
+        Err(self.too_many(step_max, count.ceil()))
+    }
+
+    #[cold]
+    fn too_many(&self, step_max: f64, count: f64) -> StepError {
+        StepError {
             time: self.start,
             line: self.model.lines[0].name.clone(),
             node: 0,
             reason: format!("steps of {step_max:.1e} s would be needed, {count:.0e} of them"),
             advice: "check masses, lengths and stiffnesses, or use solver.integrator = \"generalised_alpha\"",
-        })
+        }
     }
 
+    #[cold]
     fn diverged(&self, line: usize, node: usize) -> StepError {
         StepError {
             time: self.start,

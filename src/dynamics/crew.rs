@@ -121,8 +121,11 @@ impl Crew {
     }
 
     /// Makes the threads for so many helpers, where that is still to be done.
+    #[inline]
     pub fn call(&mut self, helpers: usize) {
-        self.muster(helpers);
+        if helpers > 0 {
+            self.muster(helpers);
+        }
     }
 
     /// So many threads or more; none where none are wanted, or to be had.
@@ -323,6 +326,9 @@ impl Labour {
 
     /// Threads for so many parts that take a time [ns] together.
     fn among(&self, parts: usize, time: f64) -> usize {
+        if parts < 2 {
+            return 1;
+        }
         let most = match self.asked {
             Threads::Number(number) => number,
             Threads::Auto => self.hands.min((time / WORTH) as usize),

@@ -6,7 +6,7 @@
 use std::sync::Arc;
 
 use nalgebra::Vector3;
-use pulp::Arch;
+use pulp::{Arch, NullaryFnOnce};
 
 use super::creep::CreepArrays;
 use super::leapfrog::Step;
@@ -279,6 +279,22 @@ impl ContactArrays {
             stiffness: self.stiffness[at],
             damping: self.damping[at],
         }
+    }
+}
+
+/// Whether [`Layout::is_sound`] of all rows, for the vector unit of the machine.
+struct AreSound<'a>(&'a Layout);
+
+impl NullaryFnOnce for AreSound<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn call(self) -> bool {
+        let mut sound = true;
+        for row in self.0.rows() {
+            sound &= self.0.is_sound(row);
+        }
+        sound
     }
 }
 
@@ -803,16 +819,14 @@ impl Layout {
 
     /// Index of the first node that has no finite position, or a speed that no mooring line reaches.
     pub fn broken_node(&self) -> Option<usize> {
-        let sound = self.rows().fold(true, |all, row| all & self.is_sound(row));
         let broken = |at: Slot| {
             let (position, velocity) = (self.position.get(at), self.velocity.get(at));
             let slow = velocity.norm_squared() < SPEED_MAX * SPEED_MAX;
             !slow || !position.iter().all(|value| value.is_finite())
         };
-        if sound {
-            None
-        } else {
-            self.nodes().position(broken)
+        match self.vector_unit.dispatch(AreSound(self)) {
+            true => None,
+            false => self.nodes().position(broken),
         }
     }
 }

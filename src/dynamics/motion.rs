@@ -180,6 +180,12 @@ impl AxesPath {
         self.curve.at(t)
     }
 
+    /// The same at both ends of the present segments.
+    #[inline(always)]
+    pub fn ends(&self) -> [[Lanes; 3]; 2] {
+        self.curve.ends()
+    }
+
     /// Predicts position [m, rad] and velocity [m/s, rad/s] at the end of a step from what the host said of the position.
     #[inline(always)]
     fn predict(&mut self, foresight: &Foresight, samples: Samples) -> [Lanes; 2] {
@@ -252,7 +258,13 @@ impl HostPath {
     /// Position, velocity and acceleration at time `t` [s].
     #[inline(always)]
     pub fn at(&self, t: f64) -> Kinematics {
-        let [position, velocity, acceleration] = self.0.at(t).map(|lanes| lanes.xyz());
+        HostPath::kinematics(&self.0.at(t))
+    }
+
+    /// Of position [m], velocity [m/s] and acceleration [m/s²] along x, y and z; nothing turns.
+    #[inline(always)]
+    pub fn kinematics(motion: &[Lanes; 3]) -> Kinematics {
+        let [position, velocity, acceleration] = motion.map(|lanes| lanes.xyz());
         Kinematics {
             position,
             velocity,

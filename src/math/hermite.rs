@@ -115,6 +115,23 @@ impl Hermites {
             (two_c + Lanes::splat(2.0) * three_ud) * (rate * rate),
         ]
     }
+
+    /// The same at both ends.
+    #[inline(always)]
+    pub fn ends(&self) -> [[Lanes; 3]; 2] {
+        let rate = Lanes::splat(self.rate);
+        let [a, b, c, d] = self.powers;
+        let (two_c, three_d) = (c + c, Lanes::splat(3.0) * d);
+        let curvature = |two_c: Lanes| two_c * (rate * rate);
+        [
+            [a, b * rate, curvature(two_c)],
+            [
+                a + (b + (c + d)),
+                (b + (two_c + three_d)) * rate,
+                curvature(two_c + Lanes::splat(2.0) * three_d),
+            ],
+        ]
+    }
 }
 
 /// Greatest error of a quintic over the sixth derivative times the sixth power of its span [-].

@@ -623,10 +623,11 @@ fn nodes(scene: &Scene, parts: &[SegmentPart], contact_in_reach: bool) -> Nodes 
         normal: lump(&|law| law.displaced + law.added_normal),
         tangent: lump(&|law| law.displaced + law.added_tangent),
     });
+    let mass_normal = lump(&|law| law.mass + law.added_normal);
     let contact = (contact_in_reach && any(&|law| law.contact.is_some())).then(|| {
         let stiffness = lump(&|law| law.contact.map_or(0.0, |contact| contact.stiffness));
         let damping = lump(&|law| law.contact.map_or(0.0, |contact| contact.damping));
-        contact(scene, &length, &weight, stiffness, damping)
+        contact(scene, &length, [&weight, &mass_normal], stiffness, damping)
     });
     let mut arc = vec![0.0];
     arc.extend(parts.iter().scan(0.0, |arc, part| {
@@ -636,7 +637,7 @@ fn nodes(scene: &Scene, parts: &[SegmentPart], contact_in_reach: bool) -> Nodes 
     Nodes {
         arc,
         mass: lump(&|law| law.mass),
-        mass_normal: lump(&|law| law.mass + law.added_normal),
+        mass_normal,
         mass_tangent: lump(&|law| law.mass + law.added_tangent),
         mass_damping: any(&|law| law.mass_damping != 0.0)
             .then(|| lump(&|law| law.mass_damping * law.mass)),
@@ -662,7 +663,7 @@ fn lumped(parts: &[SegmentPart], density: &dyn Fn(&LineLaw) -> f64) -> Vec<f64> 
 fn contact(
     scene: &Scene,
     length: &[f64],
-    weight: &[f64],
+    [weight, mass]: [&[f64]; 2],
     mut stiffness: Vec<f64>,
     mut damping: Vec<f64>,
 ) -> Contact {
@@ -683,7 +684,7 @@ fn contact(
             } else {
                 length[i]
             };
-            let soft = regularised(given, weight[i], spacing);
+            let soft = regularised(given, [weight[i], mass[i]], spacing);
             if soft.stiffness < given.stiffness {
                 level[i] += weight[i] / soft.stiffness; // so that a resting node lies on the bed; see also `resting`
             }

@@ -51,7 +51,7 @@ pub struct DepthGrid {
 #[serde(rename_all = "snake_case")]
 pub enum ContactLaw {
     /// Softened together until a resting node compresses its spring by a small part of its segment length; the spring begins
-    /// that much above the bed, so that the node lies on it.
+    /// that much above the bed, so that the node lies on it. The damper keeps a part of critical damping, where the given one has as much.
     #[default]
     Regularised,
     /// Exactly the given coefficients.

@@ -102,7 +102,7 @@ impl Scene {
         };
         let law = match seabed.contact {
             ContactLaw::Regularised => {
-                "softened together to suit the mesh; a resting line lies on the bed"
+                "softened together to suit the mesh, with no less than 0.2 of critical damping left where the bed has it; a resting line lies on the bed"
             }
             ContactLaw::AsGiven => "exactly as given",
         };

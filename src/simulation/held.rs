@@ -1,8 +1,8 @@
 //! Where everything that forces do not move is in time.
 //!
-//! A host's path is a cubic over a communication step and is evaluated where it is asked for. Motions of the scene and points that ride
-//! on vessels take sines: these are worked out at both ends of the step, and a quintic through position, velocity and acceleration there
-//! bridges it, in as many pieces as keep its error below [`ERROR_MAX`]. Where that takes too many, beside the internal steps that the last
+//! Everything is worked out at both ends of a communication step, where it is asked for most. Between them a host's path is a cubic. Motions of
+//! the scene and points that ride on vessels take sines: a quintic through position, velocity and acceleration at the ends
+//! bridges the step, in as many pieces as keep its error below [`ERROR_MAX`]. Where that takes too many, beside the internal steps that the last
 //! communication step took, or a motion has a kink within the step, or clamped lines need to know how a point turns, everything is worked out
 //! where it is asked for.
 //!
@@ -16,6 +16,8 @@ use crate::math::hermite::{QUINTIC_ERROR, Quintic};
 use crate::model::{Derivatives, Frame, Kinematics, Model, Motion, Point, Pose, Role};
 
 use super::paths::{Paths, is_coupled};
+use crate::dynamics::motion::HostPath;
+use crate::math::lanes::Lanes;
 
 /// Error of a bridge [m].
 const ERROR_MAX: f64 = 1e-12;
@@ -109,10 +111,8 @@ enum Way {
 /// A way over a communication step.
 #[derive(Debug, Clone)]
 struct Bridge {
-    /// Start and end of the step [s].
-    span: [f64; 2],
-    /// There.
-    ends: [Kinematics; 2],
+    /// Start of the step [s].
+    start: f64,
     /// Pieces per second [1/s].
     rate: f64,
     /// Empty where the way must be worked out.
@@ -124,46 +124,54 @@ struct Bridge {
 impl Bridge {
     fn new(derivatives: Option<Derivatives>) -> Bridge {
         Bridge {
-            span: [f64::NAN; 2],
-            ends: [Kinematics::default(); 2],
+            start: f64::NAN,
             rate: 0.0,
             pieces: Vec::with_capacity(PIECES_MAX),
             derivatives,
         }
     }
 
-    /// Bridges a span of time [s] in `count` pieces, between whose ends `at` tells where the point is.
-    fn build(&mut self, [start, end]: [f64; 2], count: usize, at: impl Fn(usize) -> Kinematics) {
+    /// Pieces that a motion of the scene needs over a length of time [s]; `None` where they are more than `most`.
+    fn pieces_over(&self, length: f64, most: usize) -> Option<usize> {
+        if most == 0 {
+            return None;
+        }
+        let bounds = self.derivatives.as_ref();
+        pieces(bounds.map_or(0.0, |bounds| bounds.shift(length)), most)
+    }
+
+    /// Bridges a span of time [s] in `count` pieces from end to end, between which `at` tells where the point is.
+    fn build(
+        &mut self,
+        [start, end]: [f64; 2],
+        count: usize,
+        ends: &[Kinematics; 2],
+        at: impl Fn(usize) -> Kinematics,
+    ) {
         self.pieces.clear();
-        self.span = [start, end];
-        self.ends[1] = at(count.max(1));
-        let piece = (end - start) / count.max(1) as f64;
+        self.start = start;
+        if count == 0 {
+            return;
+        }
+        let piece = (end - start) / count as f64;
         self.rate = 1.0 / piece;
         let motion = |k: &Kinematics| [k.position, k.velocity, k.acceleration];
-        let mut before = motion(&self.ends[0]);
+        let mut before = motion(&ends[0]);
         for knot in 1..=count {
-            let after = if knot == count {
-                motion(&self.ends[1])
-            } else {
-                motion(&at(knot))
+            let after = match knot == count {
+                true => motion(&ends[1]),
+                false => motion(&at(knot)),
             };
             self.pieces.push(Quintic::new(before, after, piece));
             before = after;
         }
     }
 
-    /// Where the point is at time `t` [s]; without how it turns, but at the ends.
+    /// Where the point is at time `t` [s]; without how it turns.
     #[inline]
     fn at(&self, t: f64) -> Option<Kinematics> {
-        let [start, end] = self.span;
-        if t == end {
-            return Some(self.ends[1]);
-        }
-        if t == start {
-            return Some(self.ends[0]);
-        }
         let count = self.pieces.len();
-        let passed = (t - start) * self.rate;
+        let passed = (t - self.start) * self.rate;
         if count == 0 || !(-ROUNDING..count as f64 + ROUNDING).contains(&passed) {
             return None;
         }
@@ -182,7 +190,15 @@ impl Bridge {
 /// The ways of all points over a communication step.
 #[derive(Debug, Clone)]
 pub(super) struct Held {
+    /// Start and end of the step [s].
+    span: [f64; 2],
+    /// Where the points are then, but those that a host moves.
+    ends: Vec<[Kinematics; 2]>,
+    /// The same of these, along x, y and z: position [m], velocity [m/s] and acceleration [m/s²].
+    hosted: Vec<[[Lanes; 3]; 2]>,
     ways: Vec<Way>,
+    /// Whether anything moves but by forces.
+    moves: bool,
     /// What bounds the errors of the ways of points on vessels, where these follow a motion of the scene that is no cubic.
     vessels: Vec<Option<Derivatives>>,
 }
@@ -212,9 +228,18 @@ impl Held {
                 Role::Carried { .. } => Way::Bridged(Box::new(Bridge::new(None))),
             }
         });
+        let ways: Vec<Way> = ways.collect();
         let motions = model.vessels.iter().map(|vessel| vessel.motion.as_ref());
+        let references = model.points.iter().map(|point| Kinematics {
+            position: point.reference,
+            ..Kinematics::default()
+        });
         Held {
-            ways: ways.collect(),
+            span: [f64::NAN; 2],
+            ends: references.map(|k| [k; 2]).collect(),
+            hosted: vec![[[Lanes::splat(0.0); 3]; 2]; coupled.start],
+            moves: ways.iter().any(|way| !matches!(way, Way::Still)),
+            ways,
             vessels: motions
                 .map(|motion| motion.filter(|_| follows_scene)?.derivatives())
                 .collect(),
@@ -223,23 +248,32 @@ impl Held {
 
     /// Makes ready for a span of time [s], in which as many internal steps are to be expected.
     pub fn prepare(&mut self, at: &At, span: [f64; 2], steps: usize) {
-        if !self.ways.iter().any(|way| matches!(way, Way::Bridged(_))) {
+        let goes_on = self.span[1] == span[0];
+        self.span = span;
+        if !self.moves {
             return;
         }
-        for (point, way) in self.ways.iter_mut().enumerate() {
-            if let (Way::Bridged(bridge), Some(motion)) = (way, at.own_motion(point)) {
-                let [start, end] = span;
-                bridge.ends[0] = match bridge.span {
-                    [_, last] if last == start => bridge.ends[1],
-                    _ => at.point(point, start),
-                };
-                let length = end - start;
-                let error = bridge
-                    .derivatives
-                    .map_or(0.0, |bounds| bounds.shift(length));
-                let count = pieces(error, steps / 2).filter(|_| motion.is_smooth(span));
-                let knot = |k: usize| at.point(point, knot_time(span, k, count));
-                bridge.build(span, count.unwrap_or(0), knot);
+        for (point, (way, ends)) in self.ways.iter_mut().zip(&mut self.ends).enumerate() {
+            match way {
+                Way::Still => (),
+                Way::Host(path) => self.hosted[*path] = at.paths.points[*path].0.ends(),
+                Way::Worked => *ends = span.map(|t| at.point(point, t)),
+                Way::Bridged(bridge) => {
+                    let Some(motion) = at.own_motion(point) else {
+                        continue; // on a vessel
+                    };
+                    let [start, end] = span;
+                    let first = if goes_on {
+                        ends[1]
+                    } else {
+                        at.point(point, start)
+                    };
+                    *ends = [first, at.point(point, end)];
+                    let count = bridge.pieces_over(end - start, steps / 2);
+                    let count = count.filter(|_| motion.is_smooth(span));
+                    let knot = |k: usize| at.point(point, knot_time(span, k, count));
+                    bridge.build(span, count.unwrap_or(0), ends, knot);
+                }
             }
         }
         for vessel in 0..self.vessels.len() {
@@ -266,8 +300,8 @@ impl Held {
             bounds.map_or(0.0, |bounds| bounds.shift(length)),
             bell(turned),
         );
-        let points = model.points.iter().zip(&mut self.ways);
-        for (point, way) in points {
+        let ways = self.ways.iter_mut().zip(&mut self.ends);
+        for (point, (way, ends)) in model.points.iter().zip(ways) {
             let (
                 Way::Bridged(bridge),
                 Role::Carried {
@@ -283,13 +317,9 @@ impl Held {
             }
             let carry = |frame: &Frame| model.vessels[vessel].carry(frame, *arm);
             let count = pieces(shift + arm.norm() * spread, most).filter(|_| smooth);
-            bridge.ends[0] = carry(&frames[0]);
-            bridge.build(span, count.unwrap_or(0), |knot| {
-                if knot == count.unwrap_or(1) {
-                    carry(&frames[1])
-                } else {
-                    carry(&at.frame(vessel, knot_time(span, knot, count)))
-                }
+            *ends = frames.each_ref().map(carry);
+            bridge.build(span, count.unwrap_or(0), ends, |knot| {
+                carry(&at.frame(vessel, knot_time(span, knot, count)))
             });
         }
     }
@@ -297,22 +327,27 @@ impl Held {
     /// A point at time `t` [s] of the span; how it turns is told at its ends, and everywhere where lines are clamped.
     #[inline(always)]
     pub fn point(&self, at: &At, point: usize, t: f64) -> Kinematics {
+        let [start, end] = self.span;
         match &self.ways[point] {
+            Way::Host(path) if t == end => HostPath::kinematics(&self.hosted[*path][1]),
+            Way::Host(path) if t == start => HostPath::kinematics(&self.hosted[*path][0]),
             Way::Host(path) => at.paths.points[*path].at(t),
-            way => way.point(at, point, t),
+            _ => self.other(at, point, t),
         }
     }
-}
 
-impl Way {
     /// [`Held::point`] where the host does not say it.
     #[inline(never)]
-    fn point(&self, at: &At, point: usize, t: f64) -> Kinematics {
-        match self {
-            Way::Still => Kinematics {
-                position: at.model.points[point].reference,
-                ..Kinematics::default()
-            },
+    fn other(&self, at: &At, point: usize, t: f64) -> Kinematics {
+        let ([first, last], [start, end]) = (&self.ends[point], self.span);
+        if t == end {
+            return *last;
+        }
+        if t == start {
+            return *first;
+        }
+        match &self.ways[point] {
+            Way::Still => *first,
             Way::Bridged(bridge) => bridge.at(t).unwrap_or_else(|| at.point(point, t)),
             Way::Host(_) | Way::Worked => at.point(point, t),
         }
@@ -322,21 +357,13 @@ impl Way {
 /// Time of a knot between pieces [s].
 fn knot_time([start, end]: [f64; 2], knot: usize, count: Option<usize>) -> f64 {
     let count = count.unwrap_or(1);
-    if knot == count {
-        return end;
-    }
     start + (end - start) * (knot as f64 / count as f64)
 }
 
 /// Pieces that a span needs whose sixth derivative times its sixth power is at most this [m]; `None` where they are more than `most`.
 fn pieces(sixth: f64, most: usize) -> Option<usize> {
     let excess = sixth * QUINTIC_ERROR / ERROR_MAX;
-    let count = if excess <= 1.0 {
-        1.0
-    } else {
-        excess.powf(1.0 / 6.0).ceil()
-    };
-    (count <= most.min(PIECES_MAX) as f64).then_some(count as usize)
+    (1..=most.min(PIECES_MAX)).find(|&count| (count as f64).powi(6) >= excess)
 }
 
 /// Bounds of the derivatives of angles that are cubics over a span [s], times its powers [rad].
@@ -367,7 +394,6 @@ fn bell([a, b, c, d, e, f]: [f64; 6]) -> f64 {
 mod tests {
     use super::super::start;
     use super::*;
-    use crate::math::lanes::Lanes;
     use crate::scene::Scene;
     use crate::simulation::inputs::Inputs;
     use approx::assert_relative_eq;
