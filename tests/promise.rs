@@ -264,7 +264,7 @@ fn what_was_tried_is_told_in_words() {
         .in_words();
     println!("{words:?}");
     assert!(
-        words[0].starts_with("7 elements a line alone for the target error of 2 %"),
+        words[0].starts_with("5 elements a line alone for the target error of 2 %"),
         "{}",
         words[0]
     );

@@ -7,14 +7,30 @@
 //! T q pointing into the line, S the shear of a line with bending stiffness, v and a those of the point. Leaving the half node out would make the end force first order in
 //! the segment length. A line on its closed-form catenary brings the forces of that.
 //!
-//! Source: the node's own equation of motion, as for the interior nodes.
+//! The bracket takes what acts per length on the half node, p, to be everywhere as it is at the end, p_e. Over the last element it rather
+//! grows linearly to the p_k of the next node, which its two segments tell: p_k h_k = T₁q₁ − T₂q₂ − (own weight). On the half node
+//! act then h(⅜p_e + ⅛p_k), and T q, which is that of the middle of the chord but for (h²/24)p', gives another (h/24)(p_k − p_e):
+//!
+//! h(⅓p_e + ⅙p_k) for (h/2)p_e,
+//!
+//! the reaction of consistent loads. p is without the weight, whose share is exact as it is, and p_e belongs to the tangent at the
+//! end, along 3q₁ − q₂. The change is scaled by min(1, (|p_e|/|p_k − p_e|)⁴).
+//!
+//! On a taut rope that follows its fairlead (`taut_polyester`) the tension has 0.37 of its error with 3 to 6 elements and 0.55 with 10; with 20 and
+//! more, where it is below 0.2 % either way, 1.2 to 1.6 times, for the plain half node's error then makes up for that of the waves along the
+//! line. A load that changes by more than itself, as to a next node that snaps or lands, is not linear: unscaled
+//! the error of chains that slacken in every turn grows by up to 6 %, scaled by 2 % at most. The law asks for one line on both sides of
+//! the next node and for still water, where the balance of a line at rest does not depend on it: it is left out where sections meet there, and
+//! where the line bends, is on a winch, or is out of the water or on the bed with one of the two nodes.
+//!
+//! Source: the node's own equation of motion, as for the interior nodes; the linear load is derived here from the Taylor series of T q.
 
 use nalgebra::Vector3;
 
 use super::beam::BeamView;
 use super::creep::{Creeping, Stretching};
 use super::leapfrog::segment_tension;
-use crate::model::{Dry, End, Line, LineState, PointState, Reel, WaterAlong};
+use crate::model::{Contact, Dry, End, Line, LineState, PointState, Reel, Surface, WaterAlong};
 use crate::physics::morison::{self, DragCoefficients};
 use crate::statics::assembly::end_shear;
 
@@ -77,15 +93,19 @@ pub fn end_force(
     let chord = state.position[other] - state.position[node];
     let inward = chord.try_normalize(0.0).unwrap_or_else(Vector3::zeros);
     let nodes = &line.nodes;
-    let (velocity, acceleration) = (point.velocity, point.acceleration);
-    let surface = line.surface.as_ref();
-    let dry = surface.map_or(Dry::default(), |surface| {
+    let dry = line.surface.as_ref().map_or(Dry::default(), |surface| {
         surface.node_in(water, node, &state.position)
     });
-    let along = acceleration.dot(&inward) * inward;
-    let [mass_normal, mass_tangent] = nodes.masses(node, dry.part);
-    let inertia = mass_normal * (acceleration - along) + mass_tangent * along;
-    let mut force = tension(line, state, segment, negative_tension) * inward - inertia;
+    let half = HalfNode {
+        line,
+        node,
+        place: state.position[node],
+        point,
+        water,
+        dry,
+    };
+    let pull = tension(line, state, segment, negative_tension) * inward;
+    let mut force = pull + half.load(inward);
     if let (Some(reel), End::B) = (state.reel, end) {
         force -= passing(line, reel) * chord / line.segments.length[segment];
     }
@@ -93,24 +113,212 @@ pub fn end_force(
     if line.bending.is_some() {
         force += end_shear(line, [&state.position, &state.velocity], end, point);
     }
-    if let Some(drag) = &nodes.drag {
-        let coefficients = DragCoefficients {
-            normal: drag.normal[node],
-            tangent: drag.tangent[node],
-        }
-        .times(1.0 - dry.part);
-        let flow = water.velocity(node, state.position[node].z);
-        force += morison::drag(coefficients, velocity - flow, inward);
-    }
-    if let (Some(pressed), Some(waves)) = (&nodes.pressed, &water.waves) {
-        let wet = 1.0 - dry.part;
-        force += wet * pressed.force(node, waves.at(node).acceleration, inward);
-    }
-    if let Some(damping) = &nodes.mass_damping {
-        force -= damping[node] * velocity;
-    }
     if let Some(contact) = &nodes.contact {
-        force += contact.push(node, state.position[node], velocity);
+        force += contact.push(node, state.position[node], point.velocity);
+    }
+    let next = match end {
+        End::A => [1, 2],
+        End::B => [node - 1, node.saturating_sub(2)],
+    };
+    if half.may_be_linear(state, next[0]) {
+        force += half.linear(state, next, [inward, pull], negative_tension);
     }
     force
+}
+
+/// The half node at an end.
+struct HalfNode<'a> {
+    line: &'a Line,
+    node: usize,
+    place: Vector3<f64>,
+    point: &'a PointState,
+    water: WaterAlong<'a>,
+    dry: Dry,
+}
+
+impl HalfNode<'_> {
+    /// What acts on it beside its weight and the bed [N]: inertia, water and damping in proportion to mass.
+    fn load(&self, inward: Vector3<f64>) -> Vector3<f64> {
+        let (nodes, node) = (&self.line.nodes, self.node);
+        let (velocity, acceleration) = (self.point.velocity, self.point.acceleration);
+        let wet = 1.0 - self.dry.part;
+        let along = acceleration.dot(&inward) * inward;
+        let [mass_normal, mass_tangent] = nodes.masses(node, self.dry.part);
+        let mut load = -(mass_normal * (acceleration - along) + mass_tangent * along);
+        if let Some(drag) = &nodes.drag {
+            let coefficients = DragCoefficients {
+                normal: drag.normal[node],
+                tangent: drag.tangent[node],
+            }
+            .times(wet);
+            let flow = self.water.velocity(node, self.place.z);
+            load += morison::drag(coefficients, velocity - flow, inward);
+        }
+        if let (Some(pressed), Some(waves)) = (&nodes.pressed, &self.water.waves) {
+            load += wet * pressed.force(node, waves.at(node).acceleration, inward);
+        }
+        if let Some(damping) = &nodes.mass_damping {
+            load -= damping[node] * velocity;
+        }
+        load
+    }
+
+    /// Whether its load may be taken as linear to the `next` node.
+    fn may_be_linear(&self, state: &LineState, next: usize) -> bool {
+        let (line, node) = (self.line, self.node);
+        if line.segment_count() < 2
+            || line.bending.is_some()
+            || state.reel.is_some()
+            || !self.water.is_still()
+            || !line.nodes.is_alike(node, next)
+        {
+            return false;
+        }
+        let place = state.position[next];
+        let is_dry = |surface: &Surface| {
+            let dry = surface.node_in(self.water, next, &state.position);
+            self.dry.part > 0.0 || dry.part > 0.0
+        };
+        let lies = |contact: &Contact| {
+            let own = contact.push(node, self.place, self.point.velocity);
+            own + contact.push(next, place, state.velocity[next]) != Vector3::zeros()
+        };
+        !line.surface.as_ref().is_some_and(is_dry) && !line.nodes.contact.as_ref().is_some_and(lies)
+    }
+
+    /// What a load that is linear to the `next` node and the one `after` adds to the force at the end [N], whose segment pulls `inward`.
+    fn linear(
+        &self,
+        state: &LineState,
+        [next, after]: [usize; 2],
+        [inward, pull]: [Vector3<f64>; 2],
+        negative_tension: bool,
+    ) -> Vector3<f64> {
+        let nodes = &self.line.nodes;
+        let chord = state.position[after] - state.position[next];
+        let onward = chord.try_normalize(0.0).unwrap_or(inward);
+        let passed_on = tension(self.line, state, next.min(after), negative_tension) * onward;
+        let tangent = 3.0 * inward - onward;
+        let own = self.load(tangent.try_normalize(0.0).unwrap_or(inward));
+        let weight = nodes.weight[next] * Vector3::z();
+        let share = nodes.length[self.node] / nodes.length[next];
+        let change = share * (pull - passed_on + weight) - own;
+        let ratio = own.norm_squared() / change.norm_squared().max(f64::MIN_POSITIVE);
+        ratio.powi(2).min(1.0) * (own + change / 3.0 - self.load(inward))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use approx::assert_relative_eq;
+
+    use super::*;
+    use crate::model::Model;
+    use crate::scene::Scene;
+
+    const LENGTH: f64 = 100.0;
+    const STIFFNESS: f64 = 1e6;
+    const MASS: f64 = 10.0;
+    const STRAIN: f64 = 0.01;
+
+    /// A weightless line along x whose first section has another mass [kg/m].
+    fn model(elements: usize, other: f64) -> Model {
+        let half = 0.5 * LENGTH;
+        let each = elements / 2;
+        Model::new(
+            &Scene::from_toml(&format!(
+                r#"
+                [line_types.rope]
+                mass = {MASS}
+                weight = 0.0
+                axial_stiffness = {STIFFNESS}
+                axial_damping = 0.0
+                [line_types.other]
+                mass = {other}
+                weight = 0.0
+                axial_stiffness = {STIFFNESS}
+                axial_damping = 0.0
+                [[points]]
+                name = "a"
+                position = [0.0, 0.0, 0.0]
+                kind = "fixed"
+                [[points]]
+                name = "b"
+                position = [{LENGTH}, 0.0, 0.0]
+                kind = "coupled"
+                [[lines]]
+                name = "line"
+                from = "a"
+                to = "b"
+                sections = [
+                    {{ type = "other", length = {half}, elements = {each} }},
+                    {{ type = "rope", length = {half}, elements = {each} }},
+                ]
+                "#
+            ))
+            .unwrap(),
+        )
+        .unwrap()
+    }
+
+    /// The line at the turn of a harmonic motion of its end B along itself, u = U sin(ks)/sin(kL), where nothing moves.
+    fn turning(elements: usize, wave_number: f64) -> (LineState, PointState) {
+        let u = |s: f64| (wave_number * s).sin() / (wave_number * LENGTH).sin();
+        let place = |i: usize| {
+            let s = LENGTH * i as f64 / elements as f64;
+            Vector3::x() * ((1.0 + STRAIN) * s + u(s))
+        };
+        let nodes: Vec<_> = (0..=elements).map(place).collect();
+        let mut point = PointState::at_rest(nodes[elements]);
+        point.acceleration.x = -wave_number.powi(2) * STIFFNESS / MASS; // −ω²U
+        (LineState::at_rest(nodes), point)
+    }
+
+    fn pull(model: &Model, state: &LineState, point: &PointState) -> Vector3<f64> {
+        let water = WaterAlong::default();
+        -end_force(&model.lines[0], state, End::B, point, water, false)
+    }
+
+    #[test]
+    fn the_error_of_the_force_on_the_end_of_a_swinging_rope_falls_with_the_cube_of_the_elements() {
+        let k = 1.0 / LENGTH;
+        let slope = k / (k * LENGTH).tan(); // u'
+        for n in [8, 16, 32, 64] {
+            let (state, point) = turning(n, k);
+            let error = pull(&model(n, MASS), &state, &point).x - STIFFNESS * (STRAIN + slope);
+            let phase = k * LENGTH / n as f64;
+            // −⅙ phase² with the load as it is at the end
+            assert!(
+                error.abs() < 0.25 * STIFFNESS * slope * phase.powi(3),
+                "{error} N"
+            );
+        }
+    }
+
+    #[test]
+    fn beside_another_section_and_beside_a_jerk_the_load_is_taken_as_it_is_at_the_end() {
+        let k = 1.0 / LENGTH;
+        let (mut state, point) = turning(2, k);
+        let stretch = |state: &LineState| (state.position[2] - state.position[1]).norm();
+        let half_node = |state: &LineState, n: f64| {
+            let strain = stretch(state) * n / LENGTH - 1.0;
+            STIFFNESS * strain + MASS * 0.5 * LENGTH / n * point.acceleration.x
+        };
+        let found = pull(&model(2, 2.0 * MASS), &state, &point).x;
+        assert_relative_eq!(found, half_node(&state, 2.0), max_relative = 1e-12);
+        state.position[1].x -= 0.05 * LENGTH;
+        let found = pull(&model(2, MASS), &state, &point).x;
+        let load = MASS * 0.25 * LENGTH * point.acceleration.x.abs();
+        assert!((found - half_node(&state, 2.0)).abs() < 0.01 * load);
+    }
+
+    #[test]
+    fn an_end_at_rest_feels_the_tension_of_its_element_and_half_of_its_weight() {
+        let (state, mut point) = turning(8, 1.0 / LENGTH);
+        point.acceleration = Vector3::zeros();
+        let model = model(8, MASS);
+        let tension = tension(&model.lines[0], &state, 7, false);
+        let force = pull(&model, &state, &point);
+        assert_relative_eq!(force, tension * Vector3::x(), max_relative = 1e-12);
+    }
 }

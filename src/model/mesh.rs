@@ -18,9 +18,13 @@
 //! Tried and left, on the public scenes and ten variants with n = 14 to 40:
 //! * elements of three times the length on the part that always lies on the bed: 12 % less work on average, 26 % at most, and 8 % more
 //!   RMS error, 24 to 36 % on the lines that lie most: worse than fewer elements all along;
-//! * unstretched lengths shortened by (hκ)²/24 of the static curvature κ, chords for arcs: the position half-way along has 0.62 of its
-//!   error, on oc3_catenary 0.57, the tension 0.94, 0.70 where the motion is slow, and none less where the line slackens. It moves
-//!   the discrete equilibrium, which is held to published values.
+//! * unstretched lengths shortened by (hκ)²/24 of the static curvature κ, chords for arcs: with 14 elements the position half-way along has 0.45
+//!   of its error on oc3_catenary and 0.64 on oc4_chain, the tension 0.94 on average, and none less where the line slackens. It moves
+//!   the discrete equilibrium, which is held to published values. With the give of that sag in the stiffness too, 1/EA' = 1/EA +
+//!   (qh)²/(12T³) as Ernst (1965) has it for a whole cable, q the weight across and T the tension at rest, the tension has 1.3 to 1.4 times its
+//!   error on both (14 to 28 elements): a weight is too slow to follow waves along the line. On taut_polyester neither does
+//!   anything, (hκ)²/24 being 5e-8 with 10 elements: what curves that rope is the sea's drag. Its tension was wrong at
+//!   the end, see `dynamics/reaction.rs`.
 //!
 //! Elements of half the length where a line without bending stiffness touches down were tried with the same number of elements in all
 //! (oc3 and oc4 scenes, n = 20 to 120, regularised contact): the error of the tension did not fall, and the explicit step halved. So it is

@@ -40,6 +40,9 @@ pub use surface::{Dry, Surface};
 pub use vessel::{Frame, Vessel};
 pub use winch::{LONGEST, Passage, SHORTEST, Winch};
 
+/// Part of a property below which two are one [-].
+const ROUNDING: f64 = 1e-9;
+
 /// A scene made discrete. Immutable; shared by reference.
 #[derive(Debug, Clone)]
 pub struct Model {
@@ -363,6 +366,27 @@ impl Segments {
             Some(laws) => (laws[i].fast, laws[i].damping),
             None => (self.axial_stiffness[i], self.axial_damping[i]),
         }
+    }
+}
+
+impl Nodes {
+    /// Whether two nodes have the same mass, weight and drag per length.
+    pub fn is_alike(&self, i: usize, k: usize) -> bool {
+        let (one, other) = (1.0 / self.length[i], 1.0 / self.length[k]);
+        let same = |values: &[f64]| {
+            let (a, b) = (one * values[i], other * values[k]);
+            (a - b).abs() <= ROUNDING * a.abs()
+        };
+        let dragged = |drag: &Drag| same(&drag.normal) && same(&drag.tangent);
+        [
+            &self.mass,
+            &self.mass_normal,
+            &self.mass_tangent,
+            &self.weight,
+        ]
+        .into_iter()
+        .all(|values| same(values))
+            && self.drag.as_ref().is_none_or(dragged)
     }
 }
 
