@@ -36,14 +36,14 @@ mod rubbing;
 mod solve;
 
 use nalgebra::Vector3;
-use pulp::NullaryFnOnce;
+use pulp::{Arch, NullaryFnOnce};
 
 use super::layout::{Layout, Water, interior};
 use super::leapfrog::Step;
 use super::ledger::Flow;
 use super::limit::transverse_step;
 use crate::math::lanes::Lanes;
-use crate::model::{End, Line, LineState, Parting, WaveSpan};
+use crate::model::{End, Line, LineState, Model, Parting, WaveSpan};
 use rows::{CurrentRow, NodeRow, Rows, SegmentRow};
 use rubbing::Rubbing;
 
@@ -103,14 +103,11 @@ pub struct AxialWork {
 }
 
 impl AxialWork {
-    /// Scratch for a line; `None` where its sections have different strain measures, which the kernel does not mix.
-    pub fn new(
-        line: &Line,
-        water: Water<'_>,
-        rho: f64,
-        negative_tension: bool,
-    ) -> Option<AxialWork> {
-        let layout = Layout::new(line, water, negative_tension)?;
+    /// Scratch for a line of a model, with the spectral radius ρ [-]; `None` where its sections have different strain measures, which the
+    /// kernel does not mix.
+    pub fn new(model: &Model, line: &Line, rho: f64) -> Option<AxialWork> {
+        let water = Water::around(model, line);
+        let layout = Layout::new(line, water, model.solver.negative_tension)?;
         let count = layout.rows().count();
         let column = |values: &[f64]| layout.fold.column(values, 1.0);
         let masses = [&line.nodes.mass_normal, &line.nodes.mass_tangent].map(|m| column(m));
@@ -145,6 +142,12 @@ impl AxialWork {
             settled: true,
             layout,
         })
+    }
+
+    /// Runs the kernel as it is compiled for any machine of the target, or for the widest vectors of this one, as is the default.
+    /// Results do not depend on it.
+    pub fn set_portable(&mut self, portable: bool) {
+        self.layout.vector_unit = if portable { Arch::Scalar } else { Arch::new() };
     }
 
     /// Takes over the state of a line.
