@@ -1,7 +1,8 @@
 //! Cost of an internal step: of the kernels alone, with the widest vectors of the machine and in the portable build, beside what the roots
 //! and quotients of the explicit one alone take; and of whole communication steps by both leapfrogs.
 //!
-//! `-- PART`, one of divider, explicit, axial, compared and whole, measures that part alone; `-- --write` measures all and makes the table of this machine, `benches/tables/<processor>.step.csv`.
+//! `-- PART`, one of divider, explicit, axial, compared and whole, measures that part alone; `-- --write` measures all and makes the table
+//! of this machine, `benches/tables/<processor>.step.csv`.
 
 mod common;
 
@@ -131,7 +132,7 @@ fn kernel_heading(kernel: &str, times: &str) {
 /// Notes what a step costs, [ns] with the widest vectors and with portable ones.
 fn note_kernel(
     table: &mut String,
-    what: &str,
+    (what, lines): (&str, usize),
     (name, elements, times): (&str, usize, usize),
     [wide, portable]: [f64; 2],
 ) {
@@ -143,7 +144,7 @@ fn note_kernel(
     );
     writeln!(
         table,
-        "{what},{name},{elements},1,{wide:.0},{:.2},{portable:.0},{:.2}",
+        "{what},{name},{elements},{lines},{wide:.0},{:.2},{portable:.0},{:.2}",
         wide / nodes,
         portable / nodes
     )
@@ -170,11 +171,7 @@ fn kernels(table: &mut String) {
                         portable,
                     )
                 });
-                let what = if lines == 1 {
-                    "explicit alone"
-                } else {
-                    "explicit in turns"
-                };
+                let what = ("explicit alone", lines);
                 note_kernel(table, what, (name, elements, lines), [wide, portable]);
             }
         }
@@ -203,7 +200,7 @@ fn axial_kernels(table: &mut String) {
                     )
                 });
                 let what = format!("axial-implicit alone, {count} in an advance");
-                note_kernel(table, &what, (name, elements, count), costs);
+                note_kernel(table, (&what, 1), (name, elements, count), costs);
             }
         }
     }
