@@ -49,11 +49,14 @@ const TURN: usize = 8;
 const TURNS: usize = 200;
 const REPETITIONS: usize = 60;
 
+/// Measures a part, and writes what it finds into the table.
+type Part = fn(&mut String);
+
 fn main() -> ExitCode {
     let mut table = String::from(
         "what,scene,n,lines,ns per step,ns per node and step,portable ns per step,portable ns per node and step\n",
     );
-    let parts: [(&str, fn(&mut String)); 5] = [
+    let parts: [(&str, Part); 5] = [
         ("divider", divider),
         ("explicit", kernels),
         ("axial", axial_kernels),
