@@ -1,7 +1,8 @@
-//! Cost of an internal step: of the explicit kernel alone, with the widest vectors of the machine and in the portable build, beside what its
-//! roots and quotients alone take; and of whole communication steps by both leapfrogs.
+//! Cost of an internal step: of the kernels alone, with the widest vectors of the machine and in the portable build, beside what the roots
+//! and quotients of the explicit one alone take; and of whole communication steps by both leapfrogs.
 //!
-//! `-- --write` also makes the table of this machine, `benches/tables/<processor>.step.csv`.
+//! `-- PART`, one of divider, explicit, axial, compared and whole, measures that part alone; `-- --write` measures all and makes the table
+//! of this machine, `benches/tables/<processor>.step.csv`.
 
 mod common;
 
@@ -11,10 +12,11 @@ use std::hint::black_box;
 use std::process::ExitCode;
 use std::time::Instant;
 
+use moorline::dynamics::axial_implicit::AxialWork;
 use moorline::dynamics::leapfrog::Step;
 use moorline::dynamics::network::NetworkWork;
 use moorline::math::lanes::{LANES, Lanes};
-use moorline::model::{Kinematics, Model, State};
+use moorline::model::{End, Kinematics, Model, State};
 use moorline::scene::{Integrator, Scene};
 use moorline::simulation::Simulation;
 use nalgebra::Vector3;
@@ -27,6 +29,18 @@ const SCENES: [&str; 4] = [
     "lindahl_fast",
 ];
 const ELEMENTS: [usize; 6] = [10, 20, 28, 40, 80, 160];
+/// Elements of the axial-implicit kernel alone, and its steps in an advance.
+const ELEMENTS_AXIAL: [usize; 7] = [5, 10, 20, 40, 48, 80, 160];
+const STEPS_AXIAL: [usize; 2] = [1, 10];
+/// Spectral radius of the axial-implicit kernel.
+const RADIUS: f64 = 0.9;
+/// Axial-implicit runs by which the public scenes are compared with other codes: scene, elements, step and communication step [s].
+const COMPARED: [(&str, usize, f64, f64); 4] = [
+    ("lindahl_fast", 48, 1.25 / 176.0, 0.05),
+    ("taut_polyester", 5, 0.5, 0.5),
+    ("taut_polyester", 10, 0.25, 0.5),
+    ("taut_polyester", 8, 0.25, 0.5),
+];
 /// Lines of a system, which take turns.
 const LINES: usize = 12;
 /// Steps that a line takes in its turn.
@@ -35,14 +49,29 @@ const TURN: usize = 8;
 const TURNS: usize = 200;
 const REPETITIONS: usize = 60;
 
+/// Measures a part, and writes what it finds into the table.
+type Part = fn(&mut String);
+
 fn main() -> ExitCode {
     let mut table = String::from(
         "what,scene,n,lines,ns per step,ns per node and step,portable ns per step,portable ns per node and step\n",
     );
-    divider(&mut table);
-    kernels(&mut table);
-    communication(&mut table);
-    if env::args().any(|word| word == "--write") && !common::write_table("step", &table) {
+    let parts: [(&str, Part); 5] = [
+        ("divider", divider),
+        ("explicit", kernels),
+        ("axial", axial_kernels),
+        ("compared", compared),
+        ("whole", communication),
+    ];
+    let words: Vec<String> = env::args().skip(1).collect();
+    let named = |name: &str| words.iter().any(|word| word == name);
+    let all = !parts.iter().any(|(name, _)| named(name));
+    for (name, part) in parts {
+        if all || named(name) {
+            part(&mut table);
+        }
+    }
+    if all && named("--write") && !common::write_table("step", &table) {
         println!("the processor's name is not known: no table can be made");
         return ExitCode::FAILURE;
     }
@@ -96,18 +125,38 @@ fn meshed(name: &str, integrator: Integrator, elements: usize) -> Scene {
     scene
 }
 
+fn kernel_heading(kernel: &str, times: &str) {
+    println!(
+        "\n{kernel:<16} {:>5} {times:>6} {:>9} {:>13} {:>18} {:>22}",
+        "n", "ns/step", "ns/node/step", "portable ns/step", "portable ns/node/step"
+    );
+}
+
+/// Notes what a step costs, [ns] with the widest vectors and with portable ones.
+fn note_kernel(
+    table: &mut String,
+    (what, lines): (&str, usize),
+    (name, elements, times): (&str, usize, usize),
+    [wide, portable]: [f64; 2],
+) {
+    let nodes = (elements + 1) as f64;
+    println!(
+        "{name:<16} {elements:>5} {times:>6} {wide:>9.0} {:>13.1} {portable:>18.0} {:>22.1}",
+        wide / nodes,
+        portable / nodes
+    );
+    writeln!(
+        table,
+        "{what},{name},{elements},{lines},{wide:.0},{:.2},{portable:.0},{:.2}",
+        wide / nodes,
+        portable / nodes
+    )
+    .expect("a String takes all");
+}
+
 /// The explicit kernel alone.
 fn kernels(table: &mut String) {
-    println!(
-        "{:<16} {:>5} {:>6} {:>9} {:>13} {:>18} {:>22}",
-        "kernel alone",
-        "n",
-        "lines",
-        "ns/step",
-        "ns/node/step",
-        "portable ns/step",
-        "portable ns/node/step"
-    );
+    kernel_heading("explicit alone", "lines");
     for name in SCENES {
         for elements in ELEMENTS {
             let mut simulation = Simulation::new(&meshed(name, Integrator::Leapfrog, elements))
@@ -125,22 +174,91 @@ fn kernels(table: &mut String) {
                         portable,
                     )
                 });
-                let nodes = (elements + 1) as f64;
-                println!(
-                    "{name:<16} {elements:>5} {lines:>6} {wide:>9.0} {:>13.1} {portable:>18.0} {:>22.1}",
-                    wide / nodes,
-                    portable / nodes
-                );
-                writeln!(
-                    table,
-                    "kernel alone,{name},{elements},{lines},{wide:.0},{:.2},{portable:.0},{:.2}",
-                    wide / nodes,
-                    portable / nodes
-                )
-                .expect("a String takes all");
+                let what = ("explicit alone", lines);
+                note_kernel(table, what, (name, elements, lines), [wide, portable]);
             }
         }
     }
+}
+
+/// The axial-implicit kernel alone, with what it prepares and hands back in an advance.
+fn axial_kernels(table: &mut String) {
+    kernel_heading("axial-implicit", "steps");
+    for name in SCENES {
+        for elements in ELEMENTS_AXIAL {
+            let mut simulation =
+                Simulation::new(&meshed(name, Integrator::AxialImplicit, elements))
+                    .expect("an equilibrium");
+            simulation.follow_scene().expect("an equilibrium");
+            simulation.advance(0.05).expect("a step");
+            let step = 0.05 / simulation.substeps() as f64;
+            for count in STEPS_AXIAL {
+                let costs = [false, true].map(|portable| {
+                    axial_cost(
+                        simulation.model(),
+                        simulation.state(),
+                        step,
+                        count,
+                        portable,
+                    )
+                });
+                let what = format!("axial-implicit alone, {count} in an advance");
+                note_kernel(table, (&what, 1), (name, elements, count), costs);
+            }
+        }
+    }
+}
+
+/// Motion to and fro by 1 m in 10 s, as cheap as the path between two communication points.
+fn sway(state: &State) -> impl Fn(usize, f64) -> Kinematics + '_ {
+    |point, t| {
+        let u = (0.1 * (t - state.time)).fract();
+        let v = u * (1.0 - u);
+        Kinematics {
+            position: state.points[point].position + 16.0 * v * v * Vector3::x(),
+            velocity: 3.2 * v * (1.0 - 2.0 * u) * Vector3::x(),
+            acceleration: 0.32 * (1.0 - 6.0 * v) * Vector3::x(),
+            ..Kinematics::default()
+        }
+    }
+}
+
+/// Time of a step of one line [ns] where an advance takes `count`, with the fairlead swaying.
+fn axial_cost(model: &Model, state: &State, size: f64, count: usize, portable: bool) -> f64 {
+    let line = &model.lines[0];
+    let mut work = AxialWork::new(model, line, RADIUS).expect("one strain measure");
+    work.set_portable(portable);
+    work.load(&state.lines[0]);
+    let (mut shape, sways) = (state.lines[0].clone(), sway(state));
+    let [anchor, fairlead] = line.ends;
+    let held = |end: End, t: f64| match end {
+        End::A => sways(anchor, state.time),
+        End::B => sways(fairlead, t),
+    };
+    let step = Step::after([size; 2], size);
+    let (mut t, mut best) = (state.time, f64::INFINITY);
+    let advances = TURNS * TURN / 2 / count;
+    for _ in 0..REPETITIONS {
+        let clock = Instant::now();
+        for _ in 0..advances {
+            work.resume();
+            for end in [End::A, End::B] {
+                let k = held(end, t);
+                work.put_end(end, k.position, k.velocity - 0.5 * size * k.acceleration);
+            }
+            work.meet_surface(None);
+            work.open_books();
+            for _ in 0..count {
+                t += size;
+                work.step(step, [End::A, End::B].map(|end| held(end, t).position));
+            }
+            black_box(work.flow());
+            work.store(&mut shape, [size; 2]);
+        }
+        best = best.min(clock.elapsed().as_secs_f64());
+    }
+    assert!(work.broken_node().is_none(), "a stable step");
+    1e9 * best / (advances * count) as f64
 }
 
 /// Time of a step of one line [ns] where `lines` alike take turns, with the fairlead swaying.
@@ -154,17 +272,7 @@ fn step_cost(model: &Model, state: &State, size: f64, lines: usize, portable: bo
             work
         })
         .collect();
-    // to and fro by 1 m in 10 s, as cheap as the path between two communication points
-    let held = |point: usize, t: f64| {
-        let u = (0.1 * (t - state.time)).fract();
-        let v = u * (1.0 - u);
-        Kinematics {
-            position: state.points[point].position + 16.0 * v * v * Vector3::x(),
-            velocity: 3.2 * v * (1.0 - 2.0 * u) * Vector3::x(),
-            acceleration: 0.32 * (1.0 - 6.0 * v) * Vector3::x(),
-            ..Kinematics::default()
-        }
-    };
+    let held = sway(state);
     let step = Step::after([size; 2], size);
     for work in &mut works {
         work.put_ends(state.time, step, &held);
@@ -182,9 +290,34 @@ fn step_cost(model: &Model, state: &State, size: f64, lines: usize, portable: bo
         }
         best = best.min(clock.elapsed().as_secs_f64());
     }
-    let sound = works.iter_mut().all(|work| work.is_sound());
+    let sound = works.iter_mut().all(NetworkWork::is_sound);
     assert!(sound, "a stable step");
     1e9 * best / (TURNS / lines * lines * TURN) as f64
+}
+
+/// Whole communication steps of the runs that are compared with other codes.
+fn compared(table: &mut String) {
+    println!(
+        "\n{:<16} {:>5} {:>8} {:>8} {:>14} {:>11} {:>12}",
+        "compared", "n", "step", "advance", "ns/node/step", "ns/advance", "s/s"
+    );
+    for (name, elements, step, interval) in COMPARED {
+        let mut scene = meshed(name, Integrator::AxialImplicit, elements);
+        (scene.solver.time_step_max, scene.output.interval) = (step, interval);
+        let cost = common::measure(&scene);
+        let advance = 1e9 * cost.second * interval;
+        println!(
+            "{name:<16} {elements:>5} {step:>8.4} {interval:>8.2} {:>14.1} {advance:>11.0} {:>12.3e}",
+            cost.node_step, cost.second
+        );
+        writeln!(
+            table,
+            "advances of {interval} s in steps of {step:.4} s,{name},{elements},1,{:.0},{:.2},,",
+            cost.node_step * (elements + 1) as f64,
+            cost.node_step
+        )
+        .expect("a String takes all");
+    }
 }
 
 /// Whole communication steps.

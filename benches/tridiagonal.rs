@@ -5,7 +5,7 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use moorline::math::fold::Fold;
-use moorline::math::folded_tridiagonal::{Eliminated, Elimination, Equations};
+use moorline::math::folded_tridiagonal::{Eliminated, Equations};
 use moorline::math::lanes::Lanes;
 use moorline::math::random::Random;
 use pulp::{Arch, NullaryFnOnce};
@@ -36,7 +36,7 @@ impl Folded {
         };
         Folded {
             equations: (1..=fold.rows()).map(equation).collect(),
-            eliminated: vec![Eliminated::zero(); fold.rows()],
+            eliminated: vec![Eliminated::start(); fold.rows()],
             solution: vec![Lanes::splat(0.0); fold.rows()],
         }
     }
@@ -55,11 +55,17 @@ impl NullaryFnOnce for Solve<'_> {
             solution,
         } = self.0;
         let last = equations.len() - 1;
-        let mut elimination = Elimination::start();
-        for (row, eliminated) in equations[..last].iter().zip(eliminated.iter_mut()) {
-            *eliminated = elimination.eliminate(*row);
+        let mut above = Eliminated::start();
+        for row in 0..last {
+            if row > 0 {
+                above = eliminated[row - 1];
+            }
+            eliminated[row] = above.eliminate(&equations[row]);
         }
-        let (before, mut after) = elimination.close(equations[last]);
+        if last > 0 {
+            above = eliminated[last - 1];
+        }
+        let (before, mut after) = above.close(&equations[last]);
         solution[last] = after;
         for (x, eliminated) in solution[..last].iter_mut().zip(eliminated.iter()).rev() {
             after = eliminated.substitute(before, after);

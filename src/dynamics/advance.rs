@@ -8,7 +8,6 @@ use super::axial_implicit::AxialWork;
 use super::beam::{self, BeamWork, Driven, Stuck, StuckReason};
 use super::crew::{Crew, Hands, Labour, Pace, Queue, lock};
 use super::implicit::{self, Scheme};
-use super::layout::Water;
 use super::leapfrog::Step;
 use super::ledger::passed::{self, Passed};
 use super::ledger::{self, Energy, Flow};
@@ -358,7 +357,6 @@ impl Solver {
     }
 
     fn new(model: &Model, network: &Network, integrator: Integrator) -> Solver {
-        let negative = model.solver.negative_tension;
         let kernel =
             |solver: Option<Solver>| solver.expect("the integrator was chosen for these lines");
         match integrator {
@@ -374,10 +372,8 @@ impl Solver {
                     .unwrap_or(AXIAL_SPECTRAL_RADIUS)
                     .max(AXIAL_RADIUS_MIN);
                 let line = &model.lines[network.lines[0]];
-                kernel(
-                    AxialWork::new(line, Water::around(model, line), rho, negative)
-                        .map(|work| Solver::AxialImplicit(Box::new(work))),
-                )
+                let work = AxialWork::new(model, line, rho);
+                kernel(work.map(|work| Solver::AxialImplicit(Box::new(work))))
             }
             Integrator::Leapfrog => kernel(NetworkWork::new(model, network).map(Solver::Leapfrog)),
             _ => Solver::Implicit(Scheme::new(&model.solver)),

@@ -16,10 +16,11 @@
 //! but where it outweighs inertia no more than that no velocity changes its sign by it, which would go on for ever. The seabed is folded in
 //! too, likewise (`bed`); flags of slack and contact are checked after the solve and the step repeated until they hold.
 //!
-//! A step ([`AxialWork::step`]) goes down the rows of the folded line ([`crate::math::fold`]) once for each thing it finds out: geometry,
-//! segments, drag, inverse masses, contact (`prepare`); then, until the assumptions hold, the couplings and equations, T̄ by
+//! A step ([`AxialWork::step`]) goes over the rows of the folded line ([`crate::math::fold`]) once for each thing it finds out: geometry,
+//! segments, drag, inverse masses, contact (`prepare`), couplings; then, until the assumptions hold, the equations, T̄ by
 //! [`crate::math::folded_tridiagonal`], velocities and what they say about the assumptions (`solve`). Each sweep has little to do in a
-//! row, so that the processor, which waits for roots and quotients, works on several rows at once.
+//! row, and keeps in memory what the next one goes on with: the processor, which waits for roots, quotients and sums, then works on several rows at
+//! once, and the compiler finds whole vectors, which it loses where much waits for much, or is carried from row to row.
 //!
 //! All of it is of second order in the step. What is left of the error of tension are axial waves that a line sends out when it snaps taut: with ωΔt they
 //! run late by (ωΔt)²/12, as with every scheme of second order that is stable whatever ωΔt, and reach up to where that is a turn, so that the RMS
@@ -36,15 +37,16 @@ mod rubbing;
 mod solve;
 
 use nalgebra::Vector3;
-use pulp::NullaryFnOnce;
+use pulp::{Arch, NullaryFnOnce};
 
 use super::layout::{Layout, Water, interior};
 use super::leapfrog::Step;
 use super::ledger::Flow;
 use super::limit::transverse_step;
 use crate::math::lanes::Lanes;
-use crate::model::{End, Line, LineState, Parting, WaveSpan};
-use rows::{CurrentRow, NodeRow, Rows, SegmentRow};
+use crate::model::{End, Line, LineState, Model, Parting, WaveSpan};
+use crate::physics::stretch::StretchLaw;
+use rows::{CurrentRow, NodeRow, Rows, SegmentRow, Sizes, springs, under};
 use rubbing::Rubbing;
 
 /// Passes over slack and contact flags, at most [-].
@@ -87,8 +89,6 @@ pub struct AxialWork {
     /// Greatest rate at which axial dampers would take velocities away [1/s].
     damping_rate: f64,
     rows: Rows,
-    /// T̄ of the segments before those of the first row [N].
-    tension_before: Lanes,
     /// The bed under the nodes, where it is more than a level plane without friction.
     rubbing: Option<Rubbing>,
     /// Whether ends A and B have parted from their points.
@@ -97,20 +97,22 @@ pub struct AxialWork {
     lost: Lanes,
     given: f64,
     numerical: Lanes,
-    tension_peak: f64,
+    /// Greatest T̄ since then [N].
+    tension_peak: Lanes,
     /// Whether the flags and the true stretch of all steps since then were found.
     settled: bool,
+    /// Σ ½ (M_t − M_n)(v·t)² where the last advance left it, while nothing has changed it [J].
+    turning: Option<f64>,
+    /// Whether any node may be heavier along the line than across it, or lighter.
+    turns: bool,
 }
 
 impl AxialWork {
-    /// Scratch for a line; `None` where its sections have different strain measures, which the kernel does not mix.
-    pub fn new(
-        line: &Line,
-        water: Water<'_>,
-        rho: f64,
-        negative_tension: bool,
-    ) -> Option<AxialWork> {
-        let layout = Layout::new(line, water, negative_tension)?;
+    /// Scratch for a line of a model, with the spectral radius ρ [-]; `None` where its sections have different strain measures, which the
+    /// kernel does not mix.
+    pub fn new(model: &Model, line: &Line, rho: f64) -> Option<AxialWork> {
+        let water = Water::around(model, line);
+        let layout = Layout::new(line, water, model.solver.negative_tension)?;
         let count = layout.rows().count();
         let column = |values: &[f64]| layout.fold.column(values, 1.0);
         let masses = [&line.nodes.mass_normal, &line.nodes.mass_tangent].map(|m| column(m));
@@ -137,18 +139,26 @@ impl AxialWork {
             rubbing: layout
                 .bottom()
                 .map(|_| Rubbing::new(line.segment_count() + 1)),
-            tension_before: Lanes::splat(0.0),
             lost: Lanes::splat(0.0),
             given: 0.0,
             numerical: Lanes::splat(0.0),
-            tension_peak: 0.0,
+            tension_peak: Lanes::splat(0.0),
             settled: true,
+            turning: None,
+            turns: line.nodes.mass_tangent != line.nodes.mass_normal || layout.surface.is_some(),
             layout,
         })
     }
 
+    /// Runs the kernel as it is compiled for any machine of the target, or for the widest vectors of this one, as is the default.
+    /// Results do not depend on it.
+    pub fn set_portable(&mut self, portable: bool) {
+        self.layout.vector_unit = if portable { Arch::Scalar } else { Arch::new() };
+    }
+
     /// Takes over the state of a line.
     pub fn load(&mut self, state: &LineState) {
+        self.turning = None;
         self.layout.load(state);
         self.parted = state.parted;
         for end in ENDS {
@@ -169,22 +179,24 @@ impl AxialWork {
         }
         self.layout.renew_ghosts(self.parted);
         for at in self.layout.rows() {
+            let strain = self.layout.strain(at);
             let tension = match &self.layout.creep {
                 None => {
-                    let (chord, inverse) = self.layout.chord(at);
-                    self.elastic(at, chord.dot(chord) * inverse).now
+                    let force = strain.map(|strain| self.layout.law.at(strain).force);
+                    self.layout.axial_stiffness.load(at) * force
                 }
-                Some(creep) => creep.elastic(at, self.layout.strain(at)).positive(),
+                Some(creep) => creep.elastic(at, strain),
             };
+            let tension = tension.positive();
             self.rows.segments[at - 1].history = [tension; 2];
         }
     }
 
     /// Goes on from the state that [`Self::store`] handed back last.
     pub fn resume(&mut self) {
-        (self.lost, self.given, self.tension_peak) = (Lanes::splat(0.0), 0.0, 0.0);
-        self.settled = true;
-        self.numerical = Lanes::splat(0.0);
+        let zero = Lanes::splat(0.0);
+        (self.lost, self.given, self.numerical) = (zero, 0.0, zero);
+        (self.tension_peak, self.settled) = (zero, true);
     }
 
     fn set_free(&mut self, end: End, free: bool) {
@@ -194,24 +206,26 @@ impl AxialWork {
 
     /// Starts the books of the steps to come, the ends and the surface being where they are.
     pub fn open_books(&mut self) {
-        let turning = self.turning_energy();
+        let turning = match self.turning.take() {
+            Some(turning) if self.layout.surface.is_none() => turning,
+            _ => self.turning_energy(),
+        };
         self.lost[0] += turning;
     }
 
     /// Σ ½ (M_t − M_n)(v·t)² of all nodes but held ends, the velocities being those of t_{n−½} [J].
     fn turning_energy(&mut self) -> f64 {
-        self.layout.renew_ghosts(self.parted);
-        let nodes = &self.rows.nodes;
-        let excess = |at: usize| {
-            let node = &nodes[at - 1];
-            node.free * (node.mass_tangent - node.mass_normal)
-        };
-        self.layout.turning_energy(excess)
+        if !self.turns {
+            return 0.0;
+        }
+        let unit = self.layout.vector_unit;
+        unit.dispatch(Turning(self))
     }
 
     /// Energy given by the held ends and lost between them since [`Self::load`].
     pub fn flow(&mut self) -> Flow {
         let turning = self.turning_energy();
+        self.turning = Some(turning);
         Flow {
             given: self.given + self.layout.lifted(),
             lost: self.lost.sum() - self.layout.joined() - turning,
@@ -229,14 +243,15 @@ impl AxialWork {
     pub fn store(&self, state: &mut LineState, steps: [f64; 2]) {
         state.parted = self.parted;
         self.layout.store(state, steps);
-        let count = self.layout.segment_count;
+        let (count, rows) = (self.layout.segment_count, self.rows.segments.len());
         let [now, before] = &mut state.half_step.tension;
         now.resize(count, 0.0);
         before.resize(count, 0.0);
-        let kept = now.iter_mut().zip(before);
-        for (at, (now, before)) in self.layout.fold.slots().zip(kept) {
-            let [own, own_before] = &self.rows.segments[at.row - 1].history;
-            (*now, *before) = (own[at.lane], own_before[at.lane]);
+        let pieces = now.chunks_mut(rows).zip(before.chunks_mut(rows));
+        for (lane, (now, before)) in pieces.enumerate() {
+            for (row, kept) in self.rows.segments.iter().zip(now.iter_mut().zip(before)) {
+                (*kept.0, *kept.1) = (row.history[0][lane], row.history[1][lane]);
+            }
         }
     }
 
@@ -247,6 +262,9 @@ impl AxialWork {
 
     /// Meets the water's surface as it is at t_n. Where that is `after` a step, what joined with the water in it is booked.
     pub fn meet_surface(&mut self, after: Option<Step>) {
+        if self.layout.surface.is_none() {
+            return;
+        }
         if let Some(step) = after {
             self.layout
                 .leave_surface(step, self.parted.map(|parted| !parted));
@@ -279,6 +297,9 @@ impl AxialWork {
     /// Puts an end at a position [m] with the velocity [m/s] that the next step takes as lagged.
     pub fn put_end(&mut self, end: End, position: Vector3<f64>, velocity: Vector3<f64>) {
         if !self.parted[end as usize] {
+            if self.layout.position.get(self.layout.end_slot(end)) != position {
+                self.turning = None;
+            }
             self.layout.put_end(end, position, velocity);
         }
     }
@@ -313,57 +334,60 @@ impl AxialWork {
 
     /// One step; `ends` are the positions [m] of both ends after it. Returns the passes it took.
     pub fn step(&mut self, step: Step, ends: [Vector3<f64>; 2]) -> usize {
+        self.turning = None;
         let unit = self.layout.vector_unit;
         unit.dispatch(AxialStep(self, step, ends))
     }
 
     #[inline(always)]
     fn choose_step(&mut self, step: Step, ends: [Vector3<f64>; 2]) -> usize {
-        match (&self.rows.current, &self.rubbing) {
-            (None, None) => self.step_vectors::<false, false>(step, ends),
-            (None, Some(_)) => self.step_vectors::<false, true>(step, ends),
-            (Some(_), None) => self.step_vectors::<true, false>(step, ends),
-            (Some(_), Some(_)) => self.step_vectors::<true, true>(step, ends),
+        match (&self.rows.current, &self.rubbing, &self.layout.contact) {
+            (None, None, None) => self.step_vectors::<false, { under::NOTHING }>(step, ends),
+            (None, None, Some(_)) => self.step_vectors::<false, { under::LEVEL }>(step, ends),
+            (None, Some(_), _) => self.step_vectors::<false, { under::ROUGH }>(step, ends),
+            (Some(_), None, None) => self.step_vectors::<true, { under::NOTHING }>(step, ends),
+            (Some(_), None, Some(_)) => self.step_vectors::<true, { under::LEVEL }>(step, ends),
+            (Some(_), Some(_), _) => self.step_vectors::<true, { under::ROUGH }>(step, ends),
         }
     }
 
     #[inline(always)]
-    fn step_vectors<const CURRENT: bool, const RUBS: bool>(
+    fn step_vectors<const CURRENT: bool, const BED: u8>(
         &mut self,
         step: Step,
         ends: [Vector3<f64>; 2],
     ) -> usize {
-        self.layout.renew_ghosts(self.parted);
-        self.prepare_geometry();
-        match self.layout.creep {
-            None => self.prepare_segments::<false>(step),
-            Some(_) => self.prepare_segments::<true>(step),
-        }
+        let sizes = self.sizes(step);
+        self.choose_springs(step, &sizes);
         self.prepare_drag::<CURRENT>(step);
-        self.prepare_nodes::<CURRENT>(step);
+        self.prepare_nodes::<CURRENT>(&sizes);
         self.prepare_ends(step, ends);
-        self.prepare_contact(step);
-        if RUBS {
-            self.meet_bed(step);
+        match BED {
+            under::NOTHING => {}
+            under::LEVEL => self.prepare_contact(step),
+            _ => self.meet_bed(step),
         }
+        self.weigh_nodes::<BED>();
         let mut passes = 0;
         let found = loop {
             passes += 1;
-            self.weigh_nodes::<RUBS>();
-            self.assemble(step);
-            self.solve_tensions();
-            let found = self.find_velocities::<RUBS>(step);
-            self.tension_peak = self.tension_peak.max(found.greatest());
-            let bed_holds = !RUBS || self.check_bed(step);
-            let holds = self.holds(&found, step) && bed_holds;
+            self.assemble(&sizes);
+            let before = self.solve_tensions();
+            self.find_velocities::<BED>(before, &sizes);
+            let found = self.look_over::<BED>(&sizes);
+            self.tension_peak = self.tension_peak.max(found.greatest);
+            let bed_holds = BED != under::ROUGH || self.check_bed(step);
+            let holds = self.holds::<BED>(&found, &sizes) && bed_holds;
             if holds || passes == PASSES_MAX {
                 self.settled &= holds;
                 break found;
             }
+            self.weigh_nodes::<BED>();
         };
-        self.lost = self.lost + found.lost;
-        self.numerical = self.numerical + found.numerical;
-        if RUBS {
+        let half = Lanes::splat(0.5);
+        self.lost = self.lost + half * found.lost;
+        self.numerical = self.numerical + half * found.numerical;
+        if BED == under::ROUGH {
             self.keep_rub(step);
         }
         self.book_ends(step);
@@ -373,6 +397,22 @@ impl AxialWork {
         std::mem::swap(&mut self.layout.velocity, &mut self.layout.velocity_before);
         self.move_on(step, ends);
         passes
+    }
+
+    #[inline(always)]
+    fn choose_springs(&mut self, step: Step, sizes: &Sizes) {
+        let line = &mut self.layout;
+        if line.creep.is_some() {
+            line.renew_ghosts(self.parted);
+            self.prepare_geometry();
+            return self.prepare_segments::<{ springs::CREEPING }>(step, sizes);
+        }
+        line.renew_neighbours(self.parted);
+        self.prepare_geometry();
+        match self.layout.law {
+            StretchLaw::Engineering => self.prepare_segments::<{ springs::LINEAR }>(step, sizes),
+            _ => self.prepare_segments::<{ springs::CURVED }>(step, sizes),
+        }
     }
 
     /// Moves nodes and all that goes with them from t_n to t_{n+1}.
@@ -426,7 +466,7 @@ impl AxialWork {
 
     /// Greatest T̄ [N] since the state was loaded.
     pub fn tension_peak(&self) -> f64 {
-        self.tension_peak
+        self.tension_peak.greatest()[0]
     }
 
     /// Index of the node that moves fastest.
@@ -449,6 +489,30 @@ impl NullaryFnOnce for AxialStep<'_> {
     #[inline(always)]
     fn call(self) -> usize {
         self.0.choose_step(self.1, self.2)
+    }
+}
+
+/// [`AxialWork::turning_energy`] for the vector unit of the machine.
+struct Turning<'a>(&'a mut AxialWork);
+
+impl NullaryFnOnce for Turning<'_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn call(self) -> f64 {
+        let AxialWork {
+            layout,
+            rows,
+            parted,
+            ..
+        } = self.0;
+        layout.renew_neighbours(*parted);
+        let mut sum = Lanes::splat(0.0);
+        for (at, node) in layout.rows().zip(&rows.nodes) {
+            let excess = node.free * (node.mass_tangent - node.mass_normal);
+            sum = sum + excess * layout.along_squared(at);
+        }
+        0.5 * sum.sum()
     }
 }
 

@@ -394,6 +394,16 @@ impl Layout {
         self.part_ghosts(parted);
     }
 
+    /// The same, for what needs no more than the positions of the nodes beside a node and the velocity of the one after.
+    #[inline(always)]
+    pub fn renew_neighbours(&mut self, parted: [bool; 2]) {
+        self.position.wrap();
+        let first = self.velocity.load(1);
+        self.velocity
+            .store(first.moved_down(), self.fold.rows() + 1);
+        self.part_ghosts(parted);
+    }
+
     /// Puts the ghosts beyond ends that have parted where these ends are.
     #[inline(always)]
     pub fn part_ghosts(&mut self, parted: [bool; 2]) {
@@ -416,16 +426,13 @@ impl Layout {
         self.last = [count, count - 1].map(|i| self.fold.slot(i));
     }
 
-    /// Σ ½ e (v·t)² [J] of nodes that are heavier by e along the line than across it [kg]. Ghosts must be renewed.
-    pub fn turning_energy(&self, excess: impl Fn(usize) -> Lanes) -> f64 {
-        let mut sum = Lanes::splat(0.0);
-        for at in self.rows() {
-            let chord = self.position.load(at + 1) - self.position.load(at - 1);
-            let along = self.velocity.load(at).dot(chord);
-            let square = chord.dot(chord) + Lanes::splat(LENGTH2_MIN);
-            sum = sum + excess(at) * along * along * square.recip();
-        }
-        0.5 * sum.sum()
+    /// (v·t)² of nodes whose neighbours are known [m²/s²].
+    #[inline(always)]
+    pub fn along_squared(&self, at: usize) -> Lanes {
+        let chord = self.position.load(at + 1) - self.position.load(at - 1);
+        let along = self.velocity.load(at).dot(chord);
+        let square = chord.dot(chord) + Lanes::splat(LENGTH2_MIN);
+        along * along * square.recip()
     }
 
     /// Where node `i` and segment `i` stand.

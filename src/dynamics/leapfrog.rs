@@ -155,6 +155,26 @@ impl NullaryFnOnce for PullSegments<'_> {
     }
 }
 
+/// [`LineWork::turning_energy`] for the vector unit of the machine.
+struct Turning<'a>(&'a mut LineWork);
+
+impl NullaryFnOnce for Turning<'_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn call(self) -> f64 {
+        let LineWork { layout, water, .. } = self.0;
+        layout.renew_neighbours([true; 2]); // ends of excess mass have no neighbour beyond them
+        let mut sum = Lanes::splat(0.0);
+        if let Some(water) = water {
+            for at in layout.rows() {
+                sum = sum + water.mass_excess.load(at) * layout.along_squared(at);
+            }
+        }
+        0.5 * sum.sum()
+    }
+}
+
 /// [`LineWork::put_ends`] for the vector unit of the machine.
 struct PutEnds<'a>(&'a mut LineWork, &'a [Placed; 2]);
 
@@ -346,11 +366,11 @@ impl LineWork {
 
     /// Σ ½ (M_t − M_n)(v·t)² of all nodes but held ends, the velocities being those of t_{n−½} [J].
     fn turning_energy(&mut self) -> f64 {
-        self.layout.renew_ghosts([true; 2]); // ends of excess mass have no neighbour beyond them
-        match (&self.water, &self.winch) {
-            (Some(water), None) => self.layout.turning_energy(|at| water.mass_excess.load(at)),
-            _ => 0.0, // a winch books its own
+        if self.water.is_none() || self.winch.is_some() {
+            return 0.0; // a winch books its own
         }
+        let unit = self.layout.vector_unit;
+        unit.dispatch(Turning(self))
     }
 
     /// Energy given by held ends and the current and lost between them since [`Self::load`].

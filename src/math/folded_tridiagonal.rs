@@ -46,7 +46,9 @@ impl Equations {
     }
 }
 
-/// What elimination makes of four equations: x_r = g − s p − c x_{r+1}.
+/// What elimination makes of four equations: x_r = g − s p − c x_{r+1}; and of the first unknowns of their pieces, x_0 = G − F p + E x_r.
+///
+/// A row goes on from the one above where that is kept: what is carried from row to row in registers is not compiled to whole vectors.
 #[derive(Debug, Clone, Copy)]
 pub struct Eliminated {
     /// g, in the unit of x.
@@ -55,89 +57,64 @@ pub struct Eliminated {
     before: Lanes,
     /// c [-].
     after: Lanes,
+    /// G, F and −E.
+    first: [Lanes; 3],
 }
 
 impl Eliminated {
-    /// Scratch that is written before it is read.
-    pub fn zero() -> Eliminated {
-        let zero = Lanes::splat(0.0);
+    /// Above the first row; scratch that is written before it is read.
+    #[inline(always)]
+    pub fn start() -> Eliminated {
+        let (zero, minus) = (Lanes::splat(0.0), Lanes::splat(-1.0));
         Eliminated {
             known: zero,
-            before: zero,
+            before: minus,
             after: zero,
+            first: [zero, zero, minus],
         }
+    }
+
+    /// Goes on to the row below, which is not the last.
+    #[inline(always)]
+    pub fn eliminate(&self, row: &Equations) -> Eliminated {
+        let zero = Lanes::splat(0.0);
+        let inverse = (row.diagonal - row.lower * self.after).recip();
+        let lower = row.lower * inverse;
+        let known = row.right * inverse - lower * self.known;
+        let before = zero - lower * self.before;
+        let after = row.upper * inverse;
+        let [first_known, first_before, first_after] = self.first;
+        let share = zero - first_after; // E
+        Eliminated {
+            known,
+            before,
+            after,
+            first: [
+                first_known + share * known,
+                first_before + share * before,
+                share * after,
+            ],
+        }
+    }
+
+    /// Goes on to the last row. Returns the last unknowns of the pieces before, and of the pieces themselves.
+    #[inline(always)]
+    pub fn close(&self, row: &Equations) -> (Lanes, Lanes) {
+        let zero = Lanes::splat(0.0);
+        let [next_known, next_before, next_after] = self.first.map(Lanes::moved_down);
+        let diagonal = row.diagonal - row.lower * self.after - row.upper * next_before;
+        let right = row.right - row.lower * self.known - row.upper * next_known;
+        let inverse = diagonal.recip();
+        let l = zero - row.lower * self.before * inverse;
+        let u = zero - row.upper * next_after * inverse;
+        let own = solve_four(l, u, right * inverse);
+        (own.moved_up(), own)
     }
 
     /// x_r from the last unknowns of the pieces before, and x_{r+1}.
     #[inline(always)]
     pub fn substitute(&self, before: Lanes, after: Lanes) -> Lanes {
         self.known - self.before * before - self.after * after
-    }
-}
-
-/// The elimination, as far down the rows as it has come.
-#[derive(Debug, Clone, Copy)]
-pub struct Elimination {
-    /// The row before.
-    last: Eliminated,
-    /// G, F and −E of x_0 = G − F p + E x_r.
-    first: Eliminated,
-}
-
-impl Elimination {
-    /// Above the first row.
-    #[inline(always)]
-    pub fn start() -> Elimination {
-        let (zero, minus) = (Lanes::splat(0.0), Lanes::splat(-1.0));
-        Elimination {
-            last: Eliminated {
-                known: zero,
-                before: minus,
-                after: zero,
-            },
-            first: Eliminated {
-                known: zero,
-                before: zero,
-                after: minus,
-            },
-        }
-    }
-
-    /// Goes over a row that is not the last.
-    #[inline(always)]
-    pub fn eliminate(&mut self, row: Equations) -> Eliminated {
-        let (last, zero) = (self.last, Lanes::splat(0.0));
-        let inverse = (row.diagonal - row.lower * last.after).recip();
-        let lower = row.lower * inverse;
-        self.last = Eliminated {
-            known: row.right * inverse - lower * last.known,
-            before: zero - lower * last.before,
-            after: row.upper * inverse,
-        };
-        let (first, last) = (&mut self.first, self.last);
-        let share = zero - first.after; // E
-        first.known = first.known + share * last.known;
-        first.before = first.before + share * last.before;
-        first.after = share * last.after;
-        last
-    }
-
-    /// Meets the last row. Returns the last unknowns of the pieces before, and of the pieces themselves.
-    #[inline(always)]
-    pub fn close(self, row: Equations) -> (Lanes, Lanes) {
-        let (last, zero) = (self.last, Lanes::splat(0.0));
-        let next = Eliminated {
-            known: self.first.known.moved_down(),
-            before: self.first.before.moved_down(),
-            after: self.first.after.moved_down(),
-        };
-        let diagonal = row.diagonal - row.lower * last.after - row.upper * next.before;
-        let right = row.right - row.lower * last.known - row.upper * next.known;
-        let inverse = diagonal.recip();
-        let l = zero - row.lower * last.before * inverse;
-        let u = zero - row.upper * next.after * inverse;
-        let own = solve_four(l, u, right * inverse);
-        (own.moved_up(), own)
     }
 }
 
@@ -186,14 +163,15 @@ mod tests {
                 right: of(3),
             }
         };
-        let mut elimination = Elimination::start();
-        let eliminated: Vec<_> = (0..rows - 1)
-            .map(|r| elimination.eliminate(row(r)))
-            .collect();
-        let (before, own) = elimination.close(row(rows - 1));
+        let mut eliminated = vec![Eliminated::start()];
+        for r in 0..rows - 1 {
+            let next = eliminated[r].eliminate(&row(r));
+            eliminated.push(next);
+        }
+        let (before, own) = eliminated[rows - 1].close(&row(rows - 1));
         let mut solution = vec![own; rows];
         for r in (0..rows - 1).rev() {
-            solution[r] = eliminated[r].substitute(before, solution[r + 1]);
+            solution[r] = eliminated[r + 1].substitute(before, solution[r + 1]);
         }
         let value = |i: usize| solution[i % rows][i / rows];
         (0..system.len()).map(value).collect()

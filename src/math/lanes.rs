@@ -105,6 +105,13 @@ impl Lanes {
         }))
     }
 
+    /// The greatest lane, in all lanes.
+    #[inline(always)]
+    pub fn greatest(self) -> Lanes {
+        let pairs = self.max(self.moved_up());
+        pairs.max(pairs.moved_up().moved_up())
+    }
+
     /// Whether any lane is > 0.
     #[inline(always)]
     pub fn any_positive(self) -> bool {

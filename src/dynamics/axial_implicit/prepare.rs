@@ -1,67 +1,94 @@
 //! What a step of the axial-implicit leapfrog knows before its system is solved: segments, nodes, and how the nodes meet a level bed.
+//!
+//! Loops name the rows by index: with iterators the compiler would see that it may take four rows at once, and take them lane by lane.
 
 use nalgebra::Vector3;
 
 use super::AxialWork;
 use super::bed::Bed;
-use super::rows::{NodeRow, SegmentRow};
-use crate::dynamics::layout::Layout;
+use super::rows::{NodeRow, Sizes, springs};
 use crate::dynamics::leapfrog::Step;
 use crate::math::lanes::{Lanes, Vectors};
-use crate::physics::stretch::StretchLaw;
 
 /// Weight of the new strain rate over the old one in the axial damping, at most [-].
 const DAMPING_SHIFT: f64 = 0.2; // θ
 /// Hardness of the dampers over a step from which on it is that [-].
 const DAMPING_HARD: f64 = 4.0;
 
-/// Elastic forces of segments [N]: now, and b₁ times what they come to without further strain; b₁ times their slope with the strain.
-pub(super) struct Elastic {
-    pub now: Lanes,
+/// Springs: their tension now as if they pushed too [N], b₁ times what it comes to without further strain [N], and b₁ times its slope with the
+/// length [N/m].
+struct Springs {
+    now: Lanes,
     ahead: Lanes,
     slope: Lanes,
 }
 
+/// What water does to nodes: drag over relative velocity, across and along the line [N s/m].
+type Drag = [Lanes; 2];
+
 impl AxialWork {
-    /// Elastic forces of segments of length `l` [m] that do not creep.
+    /// Sizes of a step.
     #[inline(always)]
-    pub(super) fn elastic(&self, at: usize, l: Lanes) -> Elastic {
-        let one = Lanes::splat(1.0);
-        let row = &self.rows.segments[at - 1];
-        let strain = l * row.inverse_length - one;
-        let (force, slope) = match &self.layout.law {
-            StretchLaw::Engineering => (strain, one),
-            law => (
-                strain.map(|e| law.at(e).force),
-                strain.map(|e| law.at(e).slope),
-            ),
-        };
-        let ea = row.axial_stiffness;
-        let share = Lanes::splat(self.weights.0[0]) * ea;
-        Elastic {
-            now: ea * force.positive(),
-            ahead: share * force,
-            slope: share * slope,
+    pub(super) fn sizes(&self, step: Step) -> Sizes {
+        let hardness = self.damping_rate * step.kick;
+        let shift = DAMPING_SHIFT * (hardness / DAMPING_HARD).min(1.0);
+        let push = f64::from(u8::from(self.layout.negative_tension));
+        Sizes {
+            kick: Lanes::splat(step.kick),
+            drift: Lanes::splat(step.drift),
+            damping: [0.5 * (1.0 + shift), 0.5 * (1.0 - shift)].map(Lanes::splat),
+            slope: match self.layout.creep {
+                None => Some(Lanes::splat(1.0 / (self.weights.0[0] * step.drift))),
+                Some(_) => None,
+            },
+            push: Lanes::splat(push),
         }
     }
 
-    /// Elastic forces of viscoelastic segments; books what is lost in the step.
+    /// Springs of a row of segments.
     #[inline(always)]
-    fn creeping(&mut self, at: usize, direction: Vectors, step: Step) -> Elastic {
+    fn springs<const SPRINGS: u8>(&mut self, at: usize, step: Step) -> Springs {
+        if SPRINGS == springs::CREEPING {
+            return self.creeping(at, step);
+        }
+        let row = &self.rows.segments[at - 1];
+        let (stiffness, longer) = (row.axial_stiffness, row.length - row.unstretched_length);
+        let share = Lanes::splat(self.weights.0[0]) * stiffness;
+        if SPRINGS == springs::LINEAR {
+            return Springs {
+                now: stiffness * longer,
+                ahead: share * longer,
+                slope: share,
+            };
+        }
+        let law = &self.layout.law;
+        let strain = longer * self.layout.inverse_length.load(at);
+        let stretched = row.unstretched_length * strain.map(|e| law.at(e).force);
+        Springs {
+            now: stiffness * stretched,
+            ahead: share * stretched,
+            slope: share * strain.map(|e| law.at(e).slope),
+        }
+    }
+
+    /// Viscoelastic springs; books what is lost in the step.
+    #[inline(always)]
+    fn creeping(&mut self, at: usize, step: Step) -> Springs {
+        let direction = self.rows.segments[at - 1].direction;
         let strain = self.layout.strain(at);
         let rate = self.layout.strain_rate(at, direction, step);
         let creep = self.layout.creep.as_mut().expect("this line creeps");
         creep.strain.store(strain, at);
         let now = creep.elastic(at, strain);
         let loss = creep.loss(at, strain, rate, now.positive());
-        let length = self.layout.inverse_length.load(at).recip();
-        self.lost = self.lost + loss * length * Lanes::splat(step.kick);
+        let inverse = self.layout.inverse_length.load(at);
+        self.lost = self.lost + loss * inverse.recip() * Lanes::splat(step.kick);
         let (coming, stiffness) = creep.ahead(at, strain, step.drift);
         let b1 = Lanes::splat(self.weights.0[0]);
-        Elastic {
-            now: now.positive(),
+        Springs {
+            now,
             ahead: b1 * coming,
-            slope: b1 * stiffness,
+            slope: b1 * stiffness * inverse,
         }
     }
 
@@ -69,32 +96,44 @@ impl AxialWork {
     #[inline(always)]
     pub(super) fn prepare_geometry(&mut self) {
         let line = &self.layout;
-        let rows = self.rows.segments.iter_mut().zip(&mut self.rows.nodes);
-        for (at, (segment, node)) in line.rows().zip(rows) {
+        for at in line.rows() {
             let (chord, inverse) = line.chord(at);
+            let segment = &mut self.rows.segments[at - 1];
             segment.direction = chord.scale(inverse);
             segment.length = chord.dot(chord) * inverse;
             segment.inverse = inverse;
-            node.tangent = line.tangent(at);
+            self.rows.nodes[at - 1].tangent = line.tangent(at);
         }
     }
 
-    /// The part of the system that needs no node, from geometry and velocities at t_{n−½}.
+    /// The segments, from geometry and velocities at t_{n−½}.
     #[inline(always)]
-    pub(super) fn prepare_segments<const CREEPS: bool>(&mut self, step: Step) {
-        let hardness = self.damping_rate * step.kick;
-        let shift = DAMPING_SHIFT * (hardness / DAMPING_HARD).min(1.0);
+    pub(super) fn prepare_segments<const SPRINGS: u8>(&mut self, step: Step, sizes: &Sizes) {
+        let half = Lanes::splat(0.5);
+        let back = Lanes::splat(0.5 * step.drift - step.kick);
+        let half_back = half * back;
+        let [_, h0, h1, h2] = self.weights.0.map(Lanes::splat);
+        let share = Lanes::splat(1.0 / self.weights.0[0]);
         for at in self.layout.rows() {
-            let SegmentRow {
-                direction, length, ..
-            } = self.rows.segments[at - 1];
-            let elastic = if CREEPS {
-                self.creeping(at, direction, step)
-            } else {
-                self.elastic(at, length)
-            };
+            let found = self.springs::<SPRINGS>(at, step);
+            let velocity = &self.layout.velocity;
+            let relative = velocity.load(at + 1) - velocity.load(at);
             let row = &mut self.rows.segments[at - 1];
-            row.prepare(&self.layout, at, elastic, self.weights.0, shift, step);
+            let along = row.direction.dot(relative);
+            let [t1, t2] = row.history;
+            row.along = along;
+            let tension = found.now.positive();
+            row.history = [tension, t1];
+            row.elastic = found.ahead + h0 * tension + h1 * t1 + h2 * t2;
+            row.stiffness = found.slope * sizes.drift;
+            let bend = (relative.dot(relative) - along * along) * row.inverse;
+            row.curvature = half * row.stiffness * sizes.drift * bend;
+            // as if they went on stretching as they do
+            let (_, total) = row.spring(along, sizes);
+            row.taut = total.choose(Lanes::splat(1.0), Lanes::splat(-1.0));
+            let longer = back * (along + half_back * bend);
+            row.now = found.now;
+            row.before = (found.now + found.slope * share * longer).positive();
         }
     }
 
@@ -105,7 +144,8 @@ impl AxialWork {
         let Some(drag) = &line.drag else {
             return;
         };
-        for (at, node) in line.rows().zip(&mut self.rows.nodes) {
+        for at in line.rows() {
+            let node = &mut self.rows.nodes[at - 1];
             let mut now = line.velocity_now(at, step);
             if CURRENT && let Some(current) = &mut self.rows.current {
                 let flow = line.water_velocity(at);
@@ -121,43 +161,44 @@ impl AxialWork {
 
     /// Inverse masses, and the velocities that nodes would come to without tension and bed.
     #[inline(always)]
-    pub(super) fn prepare_nodes<const CURRENT: bool>(&mut self, step: Step) {
-        let (kick, zero) = (Lanes::splat(step.kick), Lanes::splat(0.0));
-        let half = Lanes::splat(0.5) * kick;
+    pub(super) fn prepare_nodes<const CURRENT: bool>(&mut self, sizes: &Sizes) {
         let line = &self.layout;
-        for (at, node) in line.rows().zip(&mut self.rows.nodes) {
-            let (velocity, tangent) = (line.velocity.load(at), node.tangent);
-            let [normal, along] = node.drag;
-            let mut masses = [node.mass_normal, node.mass_tangent];
-            let mut last = velocity;
-            let mut force = Vectors {
-                z: zero - line.weight.load(at),
-                ..Vectors::zero()
-            };
+        for at in line.rows() {
+            let node = &mut self.rows.nodes[at - 1];
+            let velocity = line.velocity.load(at);
+            let (mut past, mut press) = (velocity, None);
             if CURRENT && let Some(current) = &mut self.rows.current {
                 let current = &mut current[at - 1];
-                last = last - current.flow;
+                past = past - current.flow;
                 if let Some(waves) = &line.waves {
-                    current.press = waves.press(at, tangent);
-                    force = force + current.press;
+                    current.press = waves.press(at, node.tangent);
+                    press = Some(current.press);
                 }
             }
-            if line.drag.is_some() {
-                masses = [
-                    masses[0] + (half * normal).max(kick * normal - masses[0]),
-                    masses[1] + (half * along).max(kick * along - masses[1]),
-                ];
-                force = force
-                    - last.scale(normal)
-                    - tangent.scale((along - normal) * last.dot(tangent));
-            }
-            if let Some(damping) = &line.mass_damping {
-                let damping = damping.load(at);
-                masses = [masses[0] + half * damping, masses[1] + half * damping];
-                force = force - velocity.scale(damping);
-            }
-            node.invert(masses);
-            node.fall = velocity + node.inverse_mass_off_bed(force).scale(kick);
+            let drag = line.drag.as_ref().map(|_| node.drag);
+            let damping = line.mass_damping.as_ref().map(|d| d.load(at));
+            node.invert(drag, damping, sizes);
+            node.fall(line.weight.load(at), [velocity, past], drag, sizes);
+            node.press(press, velocity, damping, sizes);
+            node.loose = node.fall;
+        }
+    }
+
+    /// Lets the nodes meet the level bed.
+    #[inline(always)]
+    pub(super) fn prepare_contact(&mut self, step: Step) {
+        let line = &self.layout;
+        let Some(contact) = &line.contact else {
+            return;
+        };
+        for at in line.rows() {
+            let node = &mut self.rows.nodes[at - 1];
+            let penetration = contact.level.load(at) - line.position.load(at).z;
+            let rise = line.velocity.load(at).z;
+            let yields = node.across + node.lift() * node.tangent.z;
+            node.bed = Bed::new(contact.law(at), penetration, rise, yields, step);
+            node.touches = node.pushed(rise);
+            node.settle();
         }
     }
 
@@ -167,83 +208,73 @@ impl AxialWork {
         for end in self.held_ends() {
             let at = self.layout.end_slot(end);
             let secant = (ends[end as usize] - self.layout.position.get(at)) / step.drift;
-            self.rows.nodes[at.row - 1].fall.set(at.lane, secant);
+            let node = &mut self.rows.nodes[at.row - 1];
+            node.fall.set(at.lane, secant);
+            node.loose.set(at.lane, secant);
         }
-    }
-
-    /// Lets the nodes meet the bed, if there is one.
-    #[inline(always)]
-    pub(super) fn prepare_contact(&mut self, step: Step) {
-        let line = &self.layout;
-        let nodes = line.rows().zip(&mut self.rows.nodes);
-        match &line.contact {
-            Some(contact) if contact.bottom.is_none() => {
-                for (at, node) in nodes {
-                    let penetration = contact.level.load(at) - line.position.load(at).z;
-                    let rise = line.velocity.load(at).z;
-                    let yields = node.across + node.lift() * node.tangent.z;
-                    let law = contact.law(at);
-                    node.bed = Bed::new(law, penetration, rise, yields, step);
-                    node.touches = node.pushed(rise);
-                    node.settle();
-                }
-            }
-            _ => nodes.for_each(|(_, node)| node.loose = node.fall),
-        }
-    }
-}
-
-impl SegmentRow {
-    #[inline(always)]
-    fn prepare(
-        &mut self,
-        line: &Layout,
-        at: usize,
-        elastic: Elastic,
-        [b1, h0, h1, h2]: [f64; 4],
-        shift: f64,
-        step: Step,
-    ) {
-        let (half, drift) = (Lanes::splat(0.5), Lanes::splat(step.drift));
-        let relative = line.velocity.load(at + 1) - line.velocity.load(at);
-        let along = self.direction.dot(relative);
-        let [t1, t2] = self.history;
-        self.along = along;
-        self.history = [elastic.now, t1];
-        self.elastic = elastic.ahead
-            + Lanes::splat(h0) * elastic.now
-            + Lanes::splat(h1) * t1
-            + Lanes::splat(h2) * t2;
-        self.stiffness = elastic.slope * drift * self.inverse_length;
-        let share = Lanes::splat(1.0 / b1);
-        self.spring_now = elastic.ahead * share;
-        self.spring_slope = elastic.slope * self.inverse_length * share;
-        let damping = half * self.axial_damping * self.inverse_length;
-        self.damping = damping * Lanes::splat(1.0 + shift);
-        self.known = self.elastic + damping * Lanes::splat(1.0 - shift) * along;
-        let bend = relative.dot(relative) - along * along;
-        self.across = bend;
-        self.curvature = half * self.stiffness * drift * bend * self.inverse;
-        let push = Lanes::splat(f64::from(u8::from(line.negative_tension)));
-        let (_, total) = self.spring(along, push); // as if they went on stretching as they do
-        self.taut = total.choose(Lanes::splat(1.0), Lanes::splat(-1.0));
     }
 }
 
 impl NodeRow {
-    /// Inverts the masses across and along the line, with what adds to them [kg]; what is held yields to no force.
+    /// Inverts the masses with what drag and damping [N s/m] add to them; what is held yields to no force.
     #[inline(always)]
-    fn invert(&mut self, [across, along]: [Lanes; 2]) {
+    fn invert(&mut self, drag: Option<Drag>, damping: Option<Lanes>, sizes: &Sizes) {
+        let half = Lanes::splat(0.5) * sizes.kick;
+        let [mut across, mut along] = [self.mass_normal, self.mass_tangent];
+        if let Some([normal, tangent]) = drag {
+            across = across + (half * normal).max(sizes.kick * normal - across);
+            along = along + (half * tangent).max(sizes.kick * tangent - along);
+        }
+        if let Some(damping) = damping {
+            (across, along) = (across + half * damping, along + half * damping);
+        }
         let inverse = self.free * (across * along).recip();
         self.across = along * inverse;
         self.excess = across * inverse - self.across;
         self.held = Lanes::splat(0.0);
     }
 
-    /// M⁻¹ x off the bed.
+    /// Lets the nodes fall under their weight [N], with the drag at velocities `past` the water, from `velocity` [m/s].
     #[inline(always)]
-    fn inverse_mass_off_bed(&self, x: Vectors) -> Vectors {
-        x.scale(self.across) + self.tangent.scale(self.excess * self.tangent.dot(x))
+    fn fall(
+        &mut self,
+        weight: Lanes,
+        [velocity, past]: [Vectors; 2],
+        drag: Option<Drag>,
+        sizes: &Sizes,
+    ) {
+        let (across, excess) = (self.across * sizes.kick, self.excess * sizes.kick);
+        let zero = Lanes::splat(0.0);
+        let mut along = zero - excess * (weight * self.tangent.z); // Δt b t·f
+        self.fall = velocity;
+        if let Some([normal, tangent]) = drag {
+            // f = −K_n u − (K_t − K_n)(u·t) t, and f·t = −K_t u·t
+            let speed = past.dot(self.tangent);
+            self.fall = self.fall - past.scale(across * normal);
+            along = along - (excess * tangent + across * (tangent - normal)) * speed;
+        }
+        self.fall = self.fall + self.tangent.scale(along);
+        self.fall.z = self.fall.z - across * weight;
+    }
+
+    /// Adds what accelerated water presses with [N], and what damping by mass [N s/m] takes from `velocity` [m/s].
+    #[inline(always)]
+    fn press(
+        &mut self,
+        press: Option<Vectors>,
+        velocity: Vectors,
+        damping: Option<Lanes>,
+        sizes: &Sizes,
+    ) {
+        let mut force = press;
+        if let Some(damping) = damping {
+            let taken = velocity.scale(damping);
+            force = Some(force.unwrap_or(Vectors::zero()) - taken);
+        }
+        if let Some(force) = force {
+            let along = self.tangent.scale(self.excess * self.tangent.dot(force));
+            self.fall = self.fall + (force.scale(self.across) + along).scale(sizes.kick);
+        }
     }
 
     /// 1 where the level bed pushes nodes that rise at `rise` [m/s], else −1.

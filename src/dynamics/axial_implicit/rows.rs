@@ -8,11 +8,44 @@ use crate::math::fold::Slot;
 use crate::math::folded_tridiagonal::{Eliminated, Equations};
 use crate::math::lanes::{Lanes, Vectors};
 
+/// What springs pull by: kinds of them.
+pub(super) mod springs {
+    /// Engineering strain.
+    pub const LINEAR: u8 = 0;
+    /// Another measure of strain, or a table.
+    pub const CURVED: u8 = 1;
+    /// Viscoelastic.
+    pub const CREEPING: u8 = 2;
+}
+
+/// What is under the nodes.
+pub(super) mod under {
+    /// No bed.
+    pub const NOTHING: u8 = 0;
+    /// A level bed without friction.
+    pub const LEVEL: u8 = 1;
+    /// A bed that slopes or rubs.
+    pub const ROUGH: u8 = 2;
+}
+
+/// Sizes of a step, in every lane.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Sizes {
+    pub kick: Lanes,
+    pub drift: Lanes,
+    /// ½(1+θ) and ½(1−θ), the weights of the new strain rate and the old one in the damping [-].
+    pub damping: [Lanes; 2],
+    /// The springs' slope with the length over dT̄/d(q·(v_{i+1} − v_i)), 1/(b₁Δt) [1/s], unless they creep.
+    pub slope: Option<Lanes>,
+    /// 1 where dampers act in slack segments, else 0 [-].
+    pub push: Lanes,
+}
+
 /// Segments, each between its node and the one after.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SegmentRow {
-    /// 1/L [1/m], axial stiffness [N] and damping [N s].
-    pub inverse_length: Lanes,
+    /// Unstretched length L [m], EA/L [N/m] and BA/L [N s/m].
+    pub unstretched_length: Lanes,
     pub axial_stiffness: Lanes,
     pub axial_damping: Lanes,
     /// Unit vectors q along the segments.
@@ -20,18 +53,15 @@ pub(super) struct SegmentRow {
     /// Lengths l at t_n [m], and 1/l.
     pub length: Lanes,
     pub inverse: Lanes,
-    /// q·(v_{i+1} − v_i) at t_{n−½} [m/s], and the square of what else v_{i+1} − v_i has [m²/s²].
+    /// Tension of the springs at t_n as if they pushed too, and that half a step before [N].
+    pub now: Lanes,
+    pub before: Lanes,
+    /// q·(v_{i+1} − v_i) at t_{n−½} [m/s].
     pub along: Lanes,
-    pub across: Lanes,
-    /// dT̄/d(q·(v_{i+1} − v_i)): elastic and damping part [N s/m].
+    /// dT̄/d(q·(v_{i+1} − v_i)) of the springs [N s/m].
     pub stiffness: Lanes,
-    pub damping: Lanes,
-    /// Parts of T̄ known beforehand: elastic, and with damping [N].
+    /// Part of T̄ that springs have without any further strain [N].
     pub elastic: Lanes,
-    pub known: Lanes,
-    /// Tension of the springs at t_n as if they pushed too, and its slope with the length [N, N/m].
-    pub spring_now: Lanes,
-    pub spring_slope: Lanes,
     /// EA·b₁ times the strain by transverse motion [N].
     pub curvature: Lanes,
     /// 1 where the segment is taut, −1 where it is slack.
@@ -49,54 +79,59 @@ impl SegmentRow {
     /// Row `at` of a line.
     pub fn new(line: &Layout, at: usize) -> SegmentRow {
         let zero = Lanes::splat(0.0);
+        let inverse = line.inverse_length.load(at);
         SegmentRow {
-            inverse_length: line.inverse_length.load(at),
-            axial_stiffness: line.axial_stiffness.load(at),
-            axial_damping: line.axial_damping.load(at),
+            unstretched_length: inverse.recip(),
+            axial_stiffness: line.axial_stiffness.load(at) * inverse,
+            axial_damping: line.axial_damping.load(at) * inverse,
             direction: Vectors::zero(),
             length: zero,
             inverse: zero,
+            now: zero,
+            before: zero,
             along: zero,
-            across: zero,
             stiffness: zero,
-            damping: zero,
             elastic: zero,
-            known: zero,
-            spring_now: zero,
-            spring_slope: zero,
             curvature: zero,
             taut: zero,
             history: [zero; 2],
             equations: Equations::unit(),
-            eliminated: Eliminated::zero(),
+            eliminated: Eliminated::start(),
             tension: zero,
         }
     }
 
-    /// Pulls T̄ q of the segments [N].
+    /// Writes the equations T̄ − r q·(v_{i+1} − v_i) = known with the velocities that the nodes' momentum gives them: from what the loose
+    /// velocities [m/s] of the nodes differ by, and from the forms of both.
     #[inline(always)]
-    pub fn pull(&self) -> Vectors {
-        self.direction.scale(self.tension)
-    }
-
-    /// What resists stretching [N s/m] and is known [N] in T̄ − r q·(v_{i+1} − v_i) = known; `push` is 1 where dampers act in slack segments, else 0.
-    #[inline(always)]
-    pub fn law(&self, push: Lanes) -> (Lanes, Lanes) {
-        let (stiffness, damping) = (self.stiffness, self.damping);
-        let (known, elastic) = (self.known, self.elastic);
-        let taut = known + self.curvature;
-        (
-            self.taut.choose(stiffness + damping, push * damping),
-            self.taut.choose(taut, push * (known - elastic)),
-        )
+    pub fn assemble(
+        &mut self,
+        relative: Vectors,
+        [[_, to_before, low], [high, to_after, _]]: [[Lanes; 3]; 2],
+        sizes: &Sizes,
+    ) {
+        let (zero, one, push) = (Lanes::splat(0.0), Lanes::splat(1.0), sizes.push);
+        let damping = self.axial_damping * sizes.damping[0];
+        let damped = self.axial_damping * sizes.damping[1] * self.along;
+        let springs = self.elastic + self.curvature;
+        let resistance = self.taut.choose(self.stiffness + damping, push * damping);
+        let known = self.taut.choose(springs + damped, push * damped);
+        let k = resistance * sizes.kick;
+        self.equations = Equations {
+            lower: zero - k * to_before,
+            diagonal: one + k * (low + high),
+            upper: zero - k * to_after,
+            right: known + resistance * self.direction.dot(relative),
+        };
     }
 
     /// Force of the springs [N] at a stretching velocity [m/s], and what is > 0 where the segment is taut with it.
     #[inline(always)]
-    pub fn spring(&self, along: Lanes, push: Lanes) -> (Lanes, Lanes) {
+    pub fn spring(&self, along: Lanes, sizes: &Sizes) -> (Lanes, Lanes) {
         let spring = self.elastic + self.curvature + self.stiffness * along;
-        let damper = self.known - self.elastic + self.damping * along;
-        (spring, spring + (Lanes::splat(1.0) - push) * damper)
+        let rate = sizes.damping[0] * along + sizes.damping[1] * self.along;
+        let damper = self.axial_damping * rate;
+        (spring, spring + (Lanes::splat(1.0) - sizes.push) * damper)
     }
 }
 
@@ -129,6 +164,8 @@ pub(super) struct NodeRow {
     pub loose: Vectors,
     /// qᵀM⁻¹q, qᵀM⁻¹q′ and q′ᵀM⁻¹q′ of the segments before and after [1/kg].
     pub forms: [Lanes; 3],
+    /// Impulse of the segments [N s].
+    pub impulse: Vectors,
 }
 
 impl NodeRow {
@@ -150,6 +187,7 @@ impl NodeRow {
             fall: Vectors::zero(),
             loose: Vectors::zero(),
             forms: [zero; 3],
+            impulse: Vectors::zero(),
         }
     }
 
@@ -159,24 +197,28 @@ impl NodeRow {
         self.excess * self.tangent.z
     }
 
-    /// s·x [1/kg], and t·x, of a vector x.
+    /// s·x [1/kg] over a bed, and t·x, of a vector x.
     #[inline(always)]
-    fn shares<const RUBS: bool>(&self, x: Vectors) -> [Lanes; 2] {
+    fn shares<const BED: u8>(&self, x: Vectors) -> [Lanes; 2] {
         let along = self.tangent.dot(x);
-        let rise = if RUBS {
-            self.response.dot(x)
-        } else {
-            self.across * x.z + self.lift() * along
+        let rise = match BED {
+            under::NOTHING => Lanes::splat(0.0),
+            under::LEVEL => self.across * x.z + self.lift() * along,
+            _ => self.response.dot(x),
         };
         [rise, along]
     }
 
     /// M⁻¹ x.
     #[inline(always)]
-    pub fn inverse_mass<const RUBS: bool>(&self, x: Vectors) -> Vectors {
-        let [rise, along] = self.shares::<RUBS>(x);
-        let (across, along, held) = (x.scale(self.across), self.excess * along, self.held * rise);
-        if RUBS {
+    pub fn inverse_mass<const BED: u8>(&self, x: Vectors) -> Vectors {
+        let [rise, along] = self.shares::<BED>(x);
+        let (across, along) = (x.scale(self.across), self.excess * along);
+        if BED == under::NOTHING {
+            return across + self.tangent.scale(along);
+        }
+        let held = self.held * rise;
+        if BED == under::ROUGH {
             return across + self.tangent.scale(along) - self.response.scale(held);
         }
         let mut inverted = across + self.tangent.scale(along - self.lift() * held);
@@ -184,18 +226,26 @@ impl NodeRow {
         inverted
     }
 
-    /// The forms qᵀM⁻¹q, qᵀM⁻¹q′ and q′ᵀM⁻¹q′ of unit vectors [1/kg].
+    /// Finds the forms of the unit vectors q and q′ of the segments before and after.
     #[inline(always)]
-    pub fn inverse_forms<const RUBS: bool>(&self, q: Vectors, other: Vectors) -> [Lanes; 3] {
-        let [rise, along] = self.shares::<RUBS>(q);
-        let [other_rise, other_along] = self.shares::<RUBS>(other);
-        let (excess, held) = (self.excess * along, self.held * rise);
-        [
-            self.across + excess * along - held * rise,
-            self.across * q.dot(other) + excess * other_along - held * other_rise,
-            self.across + self.excess * other_along * other_along
-                - self.held * other_rise * other_rise,
-        ]
+    pub fn weigh<const BED: u8>(&mut self, q: Vectors, other: Vectors) {
+        let [rise, along] = self.shares::<BED>(q);
+        let [other_rise, other_along] = self.shares::<BED>(other);
+        let (excess, other_excess) = (self.excess * along, self.excess * other_along);
+        self.forms = [
+            self.across + excess * along,
+            self.across * q.dot(other) + excess * other_along,
+            self.across + other_excess * other_along,
+        ];
+        if BED != under::NOTHING {
+            let (held, other_held) = (self.held * rise, self.held * other_rise);
+            let [own, both, others] = self.forms;
+            self.forms = [
+                own - held * rise,
+                both - held * other_rise,
+                others - other_held * other_rise,
+            ];
+        }
     }
 }
 

@@ -3,10 +3,8 @@
 //! Loops name the rows by index: with iterators the compiler would see that it may take four rows at once, and take them lane by lane.
 
 use super::AxialWork;
-use super::rows::{NodeRow, SegmentRow};
-use crate::dynamics::layout::Layout;
-use crate::dynamics::leapfrog::Step;
-use crate::math::folded_tridiagonal::{Elimination, Equations};
+use super::rows::{NodeRow, SegmentRow, Sizes, under};
+use crate::math::folded_tridiagonal::Eliminated;
 use crate::math::lanes::{Lanes, Vectors};
 
 /// Change of tension by the true stretch, relative to the greatest tension, that asks for another pass [-].
@@ -26,8 +24,8 @@ pub(super) struct Found {
     bent: Lanes,
     turned: Lanes,
     /// Greatest T̄ [N].
-    greatest: Lanes,
-    /// Energy lost, and dissipated by the averaging of tensions [J].
+    pub greatest: Lanes,
+    /// Twice the energy lost, and dissipated by the averaging of tensions [J].
     pub lost: Lanes,
     pub numerical: Lanes,
 }
@@ -45,23 +43,12 @@ impl Found {
             numerical: zero,
         }
     }
-
-    /// Greatest T̄ [N].
-    pub fn greatest(&self) -> f64 {
-        (0..crate::math::lanes::LANES).fold(0.0, |a, lane| self.greatest[lane].max(a))
-    }
 }
 
 impl AxialWork {
-    /// 1 where dampers act in slack segments, else 0.
-    #[inline(always)]
-    fn push(&self) -> Lanes {
-        Lanes::splat(f64::from(u8::from(self.layout.negative_tension)))
-    }
-
     /// Finds what couples the segments through their nodes.
     #[inline(always)]
-    pub(super) fn weigh_nodes<const RUBS: bool>(&mut self) {
+    pub(super) fn weigh_nodes<const BED: u8>(&mut self) {
         let segments = &self.rows.segments;
         let direction = |at: usize| segments[at].direction;
         let mut q = direction(segments.len() - 1).moved_up();
@@ -69,205 +56,157 @@ impl AxialWork {
             if at > 0 {
                 q = direction(at - 1);
             }
-            node.forms = node.inverse_forms::<RUBS>(q, direction(at));
+            node.weigh::<BED>(q, direction(at));
         }
     }
 
-    /// Writes the rows of the system.
+    /// Writes the rows of the system in T̄.
     #[inline(always)]
-    pub(super) fn assemble(&mut self, step: Step) {
-        let (kick, push) = (Lanes::splat(step.kick), self.push());
+    pub(super) fn assemble(&mut self, sizes: &Sizes) {
         let nodes = &self.rows.nodes;
         let last = nodes.len() - 1;
         for (at, segment) in self.rows.segments.iter_mut().enumerate() {
             let (low, high) = (&nodes[at], &nodes[(at + 1).min(last)]);
             let relative = high.loose - low.loose;
-            segment.assemble(kick, push, relative, [low.forms, high.forms]);
+            segment.assemble(relative, [low.forms, high.forms], sizes);
         }
         let (low, high) = (&nodes[last], &nodes[0]);
         let relative = high.loose.moved_down() - low.loose;
         let forms = [low.forms, high.forms.map(Lanes::moved_down)];
-        self.rows.segments[last].assemble(kick, push, relative, forms);
+        self.rows.segments[last].assemble(relative, forms, sizes);
     }
 
-    /// Solves for T̄: down the rows and up again.
+    /// Solves for T̄, down the rows and up again. Returns T̄ of the segments before those of the first row [N].
     #[inline(always)]
-    pub(super) fn solve_tensions(&mut self) {
-        let Some((last, others)) = self.rows.segments.split_last_mut() else {
-            return;
-        };
-        let mut elimination = Elimination::start();
-        for segment in others.iter_mut() {
-            segment.eliminated = elimination.eliminate(segment.equations);
+    pub(super) fn solve_tensions(&mut self) -> Lanes {
+        let segments = &mut self.rows.segments[..];
+        let last = segments.len() - 1;
+        let mut start = Eliminated::start();
+        for at in 0..last {
+            if at > 0 {
+                start = segments[at - 1].eliminated;
+            }
+            segments[at].eliminated = start.eliminate(&segments[at].equations);
         }
-        let (before, mut tension) = elimination.close(last.equations);
-        self.tension_before = before;
-        last.tension = tension;
-        for segment in others.iter_mut().rev() {
+        if last > 0 {
+            start = segments[last - 1].eliminated;
+        }
+        let (before, mut tension) = start.close(&segments[last].equations);
+        segments[last].tension = tension;
+        for segment in segments[..last].iter_mut().rev() {
             tension = segment.eliminated.substitute(before, tension);
             segment.tension = tension;
         }
+        before
     }
 
-    /// New velocities from T̄, into `velocity_before`, and what they say about the assumptions.
+    /// New velocities, into `velocity_before`, from T̄, that of the segments before those of the first row being `before` [N].
     #[inline(always)]
-    pub(super) fn find_velocities<const RUBS: bool>(&mut self, step: Step) -> Found {
-        let mut found = Found::new();
-        let segments = &self.rows.segments[..];
-        let before = segments[segments.len() - 1].direction.moved_up();
-        let force = segments[0].pull() - before.scale(self.tension_before);
-        let [first, others @ ..] = &self.rows.nodes[..] else {
-            return found;
-        };
-        found.move_nodes::<RUBS>(first, force, &mut self.layout, 1, step);
-        for ((pair, node), at) in segments.windows(2).zip(others).zip(2..) {
-            let force = pair[1].pull() - pair[0].pull();
-            found.move_nodes::<RUBS>(node, force, &mut self.layout, at, step);
-        }
-        let (push, creeps) = (self.push(), self.layout.creep.is_some());
-        let line = &mut self.layout;
-        line.velocity_before.wrap();
-        for (at, segment) in line.rows().zip(segments) {
-            let relative = line.velocity_before.load(at + 1) - line.velocity_before.load(at);
-            found.check(segment, relative, push, step);
-            if !creeps {
-                found.book_average(segment, relative, step);
+    pub(super) fn find_velocities<const BED: u8>(&mut self, before: Lanes, sizes: &Sizes) {
+        let (segments, kick) = (&self.rows.segments, sizes.kick);
+        let pull = |at: usize| segments[at].direction.scale(kick * segments[at].tension);
+        let mut below = segments[segments.len() - 1].direction.moved_up();
+        below = below.scale(kick * before);
+        for (at, node) in self.rows.nodes.iter_mut().enumerate() {
+            if at > 0 {
+                below = pull(at - 1);
             }
+            node.impulse = pull(at) - below;
+            let velocity = node.loose + node.inverse_mass::<BED>(node.impulse);
+            self.layout.velocity_before.store(velocity, at + 1);
+        }
+        self.layout.velocity_before.wrap();
+    }
+
+    /// What the new velocities say about the assumptions, and the books of the step.
+    #[inline(always)]
+    pub(super) fn look_over<const BED: u8>(&mut self, sizes: &Sizes) -> Found {
+        let mut found = Found::new();
+        let line = &self.layout;
+        for at in line.rows() {
+            let new = &line.velocity_before;
+            let relative = new.load(at + 1) - new.load(at);
+            found.check(&self.rows.segments[at - 1], relative, sizes);
+        }
+        for at in line.rows() {
+            let velocities = [&line.velocity, &line.velocity_before].map(|v| v.load(at));
+            let weight = line.weight.load(at);
+            found.look_at::<BED>(&self.rows.nodes[at - 1], velocities, weight, sizes);
         }
         found
     }
 }
 
-impl SegmentRow {
-    /// Writes equations in T̄, from the loose velocities of their nodes [m/s] and the forms of the inverse masses of both.
-    #[inline(always)]
-    fn assemble(
-        &mut self,
-        kick: Lanes,
-        push: Lanes,
-        relative: Vectors,
-        [[_, to_before, low], [high, to_after, _]]: [[Lanes; 3]; 2],
-    ) {
-        let (zero, one) = (Lanes::splat(0.0), Lanes::splat(1.0));
-        let (resistance, known) = self.law(push);
-        let k = resistance * kick;
-        self.equations = Equations {
-            lower: zero - k * to_before,
-            diagonal: one + k * (low + high),
-            upper: zero - k * to_after,
-            right: known + resistance * self.direction.dot(relative),
-        };
-    }
-}
-
 impl Found {
-    /// Moves nodes under a force [N] of the segments; whether they are on the bed as they were taken to be.
+    /// Whether nodes are on the bed as they were taken to be. What is left of their momentum beside tension and weight is what water, damping and
+    /// bed took; what ½ vᵀMv has along the tangents beside what it has across them, these turning between the kicks, is booked at both
+    /// ends of the advance.
     #[inline(always)]
-    fn move_nodes<const RUBS: bool>(
+    fn look_at<const BED: u8>(
         &mut self,
         node: &NodeRow,
-        force: Vectors,
-        line: &mut Layout,
-        at: usize,
-        step: Step,
+        [old, new]: [Vectors; 2],
+        weight: Lanes,
+        sizes: &Sizes,
     ) {
-        let (old, kick) = (line.velocity.load(at), Lanes::splat(step.kick));
-        let new = node.loose + node.inverse_mass::<RUBS>(force).scale(kick);
-        line.velocity_before.store(new, at);
-        if !RUBS && line.contact.is_some() {
+        if BED == under::LEVEL {
             let touches = node.pushed(new.z);
             self.landed = self.landed.max(Lanes::splat(0.0) - touches * node.touches);
         }
-        self.book(node, force, line.weight.load(at), [old, new], step);
+        let mut left = node.impulse - (new - old).scale(node.mass_normal);
+        left.z = left.z - sizes.kick * weight;
+        self.lost = self.lost + node.free * left.dot(old + new);
     }
 
-    /// What is left of the nodes' momentum beside tension and weight is what water, damping and bed took.
+    /// Whether segments are as slack, and bent by as much, as they were taken to be; books what their dampers took, and what the averaging
+    /// dissipates: the work of the springs' part of T̄ less that of the mean of the tensions half a step before t_n and half a step after it, the slopes
+    /// being those of t_n. The averaging of ρ = 1 makes this mean, and dissipates nothing.
     #[inline(always)]
-    fn book(
-        &mut self,
-        node: &NodeRow,
-        pull: Vectors,
-        weight: Lanes,
-        [old, new]: [Vectors; 2],
-        step: Step,
-    ) {
-        let mut impulse = pull;
-        impulse.z = impulse.z - weight;
-        let change = new - old;
-        let excess = (node.mass_tangent - node.mass_normal) * node.tangent.dot(change);
-        let momentum = change.scale(node.mass_normal) + node.tangent.scale(excess);
-        let taken = (impulse.scale(Lanes::splat(step.kick)) - momentum).dot(old + new);
-        // what the tangents gain by turning between the kicks
-        let [before, after] = [node.tangent.dot(old), node.tangent.dot(new)];
-        let turned = (node.mass_tangent - node.mass_normal) * (before * before - after * after);
-        self.lost = self.lost + node.free * (taken - turned) * Lanes::splat(0.5);
-    }
-
-    /// What the averaging dissipates: the work of the springs' part of T̄ less that of the mean of the tensions half a step before t_n and half a
-    /// step after it, the slopes being those of t_n. The averaging of ρ = 1 makes this mean, and dissipates nothing.
-    #[inline(always)]
-    fn book_average(&mut self, segment: &SegmentRow, relative: Vectors, step: Step) {
+    fn check(&mut self, segment: &SegmentRow, relative: Vectors, sizes: &Sizes) {
+        let (zero, drift) = (Lanes::splat(0.0), sizes.drift);
         let along = segment.direction.dot(relative);
-        let across = relative.dot(relative) - along * along;
-        let after = Lanes::splat(0.5 * step.drift);
-        let before = Lanes::splat(step.kick - 0.5 * step.drift);
-        // how much longer the segments are then
-        let longer = |time: Lanes, along: Lanes, across: Lanes| {
-            time * (along + Lanes::splat(0.5) * time * across * segment.inverse)
-        };
-        let stretched = [
-            longer(Lanes::splat(0.0) - before, segment.along, segment.across),
-            longer(after, along, across),
-        ];
-        let [low, high] = stretched
-            .map(|stretched| (segment.spring_now + segment.spring_slope * stretched).positive());
-        let average = segment.elastic + segment.curvature + segment.stiffness * along;
-        let moved = Lanes::splat(0.5 * step.kick) * (segment.along + along);
-        let centred = Lanes::splat(0.5) * (low + high);
-        self.numerical = self.numerical + (average.positive() - centred) * moved;
-    }
-
-    /// Whether segments are as slack, and bent by as much, as they were taken to be; books what their dampers took.
-    #[inline(always)]
-    fn check(&mut self, segment: &SegmentRow, relative: Vectors, push: Lanes, step: Step) {
-        let (zero, drift) = (Lanes::splat(0.0), Lanes::splat(step.drift));
-        let along = segment.direction.dot(relative);
-        let (spring, total) = segment.spring(along, push);
+        let across = relative.dot(relative) - along * along; // w²
+        let (spring, total) = segment.spring(along, sizes);
         let taut = total.choose(Lanes::splat(1.0), Lanes::splat(-1.0));
         self.flipped = self.flipped.max(zero - taut * segment.taut);
         // transverse stretch over Δt²: w²/2L (1 − O(Δt²w²/L²)/4), L the length without it
         let l = segment.length;
         let longer = l + drift * along;
-        let across = relative.dot(relative) - along * along; // w²
         let square = drift * drift * across;
         let turned =
             (square - Lanes::splat(FLAT) * longer * longer).max(Lanes::splat(SHORT) * l - longer);
         self.turned = self.turned.max(turned.where_positive(taut));
-        let slope = segment.stiffness * drift;
+        let push = segment.stiffness * drift * across;
         let twice = segment.curvature * longer;
-        let off =
-            (slope * across - twice - twice).abs() + Lanes::splat(0.25 * FLAT) * slope * across;
+        let off = (push - twice - twice).abs() + Lanes::splat(0.25 * FLAT) * push;
         let bent = off * segment.inverse * Lanes::splat(0.5 / SHORT);
         self.bent = self.bent.max(bent.where_positive(taut));
         self.greatest = self.greatest.max(segment.tension);
-        let moved = segment.along + along;
-        let lost = (segment.tension - spring.positive()) * moved;
-        self.lost = self.lost + lost * Lanes::splat(0.5 * step.kick);
+        let moved = sizes.kick * (segment.along + along);
+        let springs = spring.positive();
+        self.lost = self.lost + (segment.tension - springs) * moved;
+        if let Some(slope) = sizes.slope {
+            let half = Lanes::splat(0.5) * drift;
+            let longer = half * (along + Lanes::splat(0.5) * half * across * segment.inverse);
+            let after = (segment.now + segment.stiffness * slope * longer).positive();
+            let centred = Lanes::splat(0.5) * (segment.before + after);
+            self.numerical = self.numerical + (springs - centred) * moved;
+        }
     }
 }
 
 impl AxialWork {
     /// Corrects what a pass found not to be as assumed; false if another pass is needed.
     #[inline(always)]
-    pub(super) fn holds(&mut self, found: &Found, step: Step) -> bool {
-        let tolerance = STRETCH_TOLERANCE * found.greatest();
-        let off = found.bent - Lanes::splat(tolerance);
+    pub(super) fn holds<const BED: u8>(&mut self, found: &Found, sizes: &Sizes) -> bool {
+        let tolerance = Lanes::splat(STRETCH_TOLERANCE) * found.greatest.greatest();
+        let off = found.bent - tolerance;
         let stretched = off.max(found.flipped).max(found.turned).any_positive();
-        let landed = found.landed.any_positive();
+        let landed = BED == under::LEVEL && found.landed.any_positive();
         if landed {
             self.revise_contact();
         }
-        let revised = stretched && self.revise_segments(step, tolerance);
+        let revised = stretched && self.revise_segments(sizes, tolerance);
         !(landed || revised)
     }
 
@@ -283,17 +222,15 @@ impl AxialWork {
 
     /// Takes the segments to be slack and bent as the last pass found, true stretch by transverse motion included; whether that asks for another pass.
     #[inline(always)]
-    fn revise_segments(&mut self, step: Step, tolerance: f64) -> bool {
-        let (zero, drift) = (Lanes::splat(0.0), Lanes::splat(step.drift));
-        let (one, tolerance) = (Lanes::splat(1.0), Lanes::splat(tolerance));
-        let push = self.push();
-        let line = &self.layout;
+    fn revise_segments(&mut self, sizes: &Sizes, tolerance: Lanes) -> bool {
+        let (zero, one, drift) = (Lanes::splat(0.0), Lanes::splat(1.0), sizes.drift);
+        let per_drift = drift.recip();
+        let velocity = &self.layout.velocity_before;
         let mut revised = false;
         for (row, segment) in self.rows.segments.iter_mut().enumerate() {
-            let velocity = &line.velocity_before;
             let relative = velocity.load(row + 2) - velocity.load(row + 1);
             let along = segment.direction.dot(relative);
-            let (_, total) = segment.spring(along, push);
+            let (_, total) = segment.spring(along, sizes);
             let taut = total.choose(one, zero - one);
             // l1 − l0 less its part along the segment, exact: (2 l0 Δt a + Δt²|Δv|²)/(l0 + l1) − Δt a
             let l = segment.length;
@@ -301,7 +238,7 @@ impl AxialWork {
             let longer = (l * l + square).positive().sqrt();
             let transverse =
                 square * (l + longer + Lanes::splat(f64::MIN_POSITIVE)).recip() - drift * along;
-            let curvature = segment.stiffness * transverse * Lanes::splat(1.0 / step.drift);
+            let curvature = segment.stiffness * transverse * per_drift;
             let off = (curvature - segment.curvature).abs() - tolerance;
             let again = (zero - taut * segment.taut).max(off.where_positive(taut));
             if again.any_positive() {

@@ -373,19 +373,9 @@ impl LineWork {
         }
     }
 
-    /// Makes the ghosts repeat the nodes as far as the sweep reads them.
-    #[inline(always)]
-    fn prepare_ghosts(&mut self) {
-        let (last, line) = (self.layout.fold.rows(), &mut self.layout);
-        line.position.wrap();
-        let first = line.velocity.load(1);
-        line.velocity.store(first.moved_down(), last + 1);
-        line.part_ghosts(self.parted);
-    }
-
     #[inline(always)]
     fn sweep<const AROUND: u8, const BED: bool, const PLAIN: bool>(&mut self, step: &Step) {
-        self.prepare_ghosts();
+        self.layout.renew_neighbours(self.parted);
         let sizes = Sizes {
             kick: Lanes::splat(step.kick),
             drift: Lanes::splat(step.drift),
