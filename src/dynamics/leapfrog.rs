@@ -42,8 +42,8 @@ pub struct LineWork {
     plain: bool,
     /// Force of a segment on its lower node, T q [N].
     pull: Field,
-    /// The part of it that no spring has, but where segments creep [N].
-    brake: Field,
+    /// The part of it that springs have; all of it where segments creep [N].
+    spring: Field,
     /// Force that water and damping resist with at t_n [N]; where the bed slopes or rubs with the dampers beside the nodes.
     resistance: Field,
     /// Force of water that waves accelerate at t_n [N], where there are waves.
@@ -51,6 +51,8 @@ pub struct LineWork {
     /// Inverse square of the chord between the nodes beside a node at t_n [1/m²].
     inverse_square: Column,
     inverse_mass: Column,
+    /// M_n [kg].
+    mass: Column,
     water: Option<WaterWork>,
     /// 1 for nodes between the ends, 0 elsewhere.
     interior: Column,
@@ -64,8 +66,8 @@ pub struct LineWork {
     lost: Lanes,
     given: f64,
     given_by_current: Lanes,
-    /// Twice what ½ vᵀMv lost by the kicks along the tangents, which those gain or lose by turning between them [J].
-    turned: Lanes,
+    /// What ½ vᵀMv had along the tangents beside what it had across them when the books were opened [J].
+    turning: f64,
     /// Energy lost to the bed [J], where it slopes or rubs.
     settled: Option<f64>,
     /// The winch at end B, where the line is on one.
@@ -261,9 +263,10 @@ impl LineWork {
             press: layout.waves.as_ref().map(|_| Field::zeros(layout.fold)),
             inverse_square: Column::new(layout.fold, 0.0),
             inverse_mass: layout.fold.column(&inverse_mass, 0.0),
+            mass: layout.fold.column(&line.nodes.mass_normal, 0.0),
             water: WaterWork::new(line, &layout, held),
-            brake: Field::zeros(layout.fold),
-            turned: Lanes::splat(0.0),
+            spring: Field::zeros(layout.fold),
+            turning: 0.0,
             interior: interior(layout.segment_count),
             tied: held,
             parted: [false; 2],
@@ -322,7 +325,6 @@ impl LineWork {
     }
 
     fn clear_flow(&mut self) {
-        self.turned = Lanes::splat(0.0);
         (self.lost, self.given) = (Lanes::splat(0.0), 0.0);
         self.given_by_current = Lanes::splat(0.0);
         if let Some(lost) = &mut self.settled {
@@ -342,7 +344,7 @@ impl LineWork {
         for i in surface.crossed() {
             let (at, now) = (self.layout.slot(i), surface.node(i));
             let [across, along] = now.masses.map(|mass| 1.0 / mass);
-            self.inverse_mass[at] = across;
+            (self.inverse_mass[at], self.mass[at]) = (across, now.masses[0]);
             if let Some(water) = &mut self.water {
                 [water.drag_normal[at], water.drag_tangent[at]] = now.drag;
                 water.inverse_mass_excess[at] = along - across;
@@ -360,26 +362,21 @@ impl LineWork {
 
     /// Starts the books of the steps to come, the ends and the surface being where they are.
     pub fn open_books(&mut self) {
-        let turning = self.turning_energy();
-        self.turned[0] -= 2.0 * turning;
+        self.turning = self.turning_energy();
     }
 
     /// Σ ½ (M_t − M_n)(v·t)² of all nodes but held ends, the velocities being those of t_{n−½} [J].
     fn turning_energy(&mut self) -> f64 {
-        if self.water.is_none() || self.winch.is_some() {
-            return 0.0; // a winch books its own
+        if self.water.is_none() {
+            return 0.0;
         }
         let unit = self.layout.vector_unit;
         unit.dispatch(Turning(self))
     }
 
-    /// Energy given by held ends and the current and lost between them since [`Self::load`].
+    /// Energy given by held ends and the current and lost between them since [`Self::open_books`].
     pub fn flow(&mut self) -> Flow {
-        let turning = self.turning_energy();
-        let turned = match self.winch {
-            None => 0.5 * self.turned.sum() + turning,
-            Some(_) => 0.0,
-        };
+        let turned = self.turning_energy() - self.turning;
         Flow {
             numerical: 0.0,
             given: self.given
@@ -449,7 +446,7 @@ impl LineWork {
                     .velocity
                     .get(at)
                     .dot(&self.layout.tangent_of(self.layout.end_node(end)));
-                self.turned[0] -= water.mass_excess[at] * along * along;
+                self.turning += 0.5 * water.mass_excess[at] * along * along;
             }
         }
     }
@@ -495,7 +492,6 @@ impl LineWork {
             return self.creeping_segment_pass(step);
         }
         let line = &self.layout;
-        let kick = Lanes::splat(step.kick);
         for at in line.rows() {
             let (chord, inverse_l) = line.chord(at);
             let stiffness = line.axial_stiffness.load(at);
@@ -509,10 +505,8 @@ impl LineWork {
             } else {
                 (elastic + damping).positive()
             };
-            self.lost = self.lost + (tension - spring) * stretching * kick;
             self.pull.store(chord.scale(tension * inverse_l), at);
-            let brake = chord.scale((tension - spring) * inverse_l);
-            self.brake.store(brake, at);
+            self.spring.store(chord.scale(spring * inverse_l), at);
         }
     }
 
@@ -540,6 +534,7 @@ impl LineWork {
             let loss = creep.loss(at, strain, now, tension);
             self.lost = self.lost + loss * Lanes::splat(step.kick) * inverse_length.recip();
             self.pull.store(direction.scale(tension), at);
+            self.spring.store(direction.scale(tension), at);
         }
         self.layout.creep = Some(creep);
     }
@@ -615,15 +610,14 @@ impl LineWork {
             *lost += 0.5 * (step.kick * resisted - landed.impulse.dot(&passed));
             if let Some(water) = &self.water {
                 let squares = [free, landed.velocity].map(|v| v.dot(&tangent).powi(2));
-                self.turned[0] += water.mass_excess[at] * (squares[0] - squares[1]);
+                *lost += 0.5 * water.mass_excess[at] * (squares[1] - squares[0]);
             }
             line.velocity.set(at, landed.velocity);
             line.set_rub(at, landed.rub / step.kick);
         }
     }
 
-    /// Books the work of the ends in a step, and what the dampers beside them took by the change of their velocities; ends at free points
-    /// do no work that the line loses.
+    /// Books the work of the ends in a step, and that of the dampers beside them on the ends.
     fn book_ends(&mut self, step: Step) {
         let held = self.held();
         for end in [End::A, End::B] {
@@ -631,29 +625,27 @@ impl LineWork {
                 continue;
             }
             let (segment, sign) = self.layout.end_segment(end);
-            let (way, before) = self.end_way(end, step);
-            self.lost[0] -= sign * self.brake.get(segment).dot(&(way - step.kick * before));
+            let (way, pull) = (self.end_way(end, step), sign * self.pull.get(segment));
+            self.lost[0] += (sign * self.spring.get(segment) - pull).dot(&way);
             if held[end as usize] {
-                let pull = sign * self.pull.get(segment);
                 self.given += self.layout.end_lack(end) * way.z - pull.dot(&way);
             }
         }
     }
 
-    /// How far an end went from half a step before t_n to half a step after it [m], and its velocity before [m/s]. A held end goes from place to
-    /// place: where its acceleration jumps no velocity tells how far. The material at a winch goes with its velocities.
-    fn end_way(&mut self, end: End, step: Step) -> (Vector3<f64>, Vector3<f64>) {
+    /// How far an end went from half a step before t_n to half a step after it [m]. A held end goes from place to place: where its acceleration
+    /// jumps no velocity tells how far. The material at a winch goes with its velocities.
+    fn end_way(&mut self, end: End, step: Step) -> Vector3<f64> {
         let (at, side) = (self.layout.end_slot(end), end as usize);
         let [before, after] =
             [&self.layout.velocity_before, &self.layout.velocity].map(|of| of.get(at));
         let place = self.layout.position.get(at) - 0.5 * step.drift * after;
         let gone = place - self.half_places[side];
         self.half_places[side] = place;
-        let way = match self.held()[side] && self.winch.is_none() {
+        match self.held()[side] && self.winch.is_none() {
             true => gone,
             false => 0.5 * step.kick * (before + after),
-        };
-        (way, before)
+        }
     }
 
     /// Puts the ends somewhere that have not parted from their points.

@@ -103,7 +103,7 @@ struct Moving<'a> {
     velocity: &'a [Vectors],
     velocity_before: &'a mut [Vectors],
     pull: &'a mut [Vectors],
-    brake: &'a mut [Vectors],
+    spring: &'a mut [Vectors],
     resistance: &'a mut [Vectors],
     inverse_square: &'a mut [Lanes],
     press: &'a mut [Vectors],
@@ -121,6 +121,7 @@ struct SegmentRows<'a> {
 struct NodeRows<'a> {
     weight: &'a [Lanes],
     inverse_mass: &'a [Lanes],
+    mass: &'a [Lanes],
     interior: &'a [Lanes],
     mass_damping: Option<&'a [Lanes]>,
     water: WaterRows<'a>,
@@ -129,13 +130,12 @@ struct NodeRows<'a> {
     contact: ContactRows<'a>,
 }
 
-/// Drag coefficients, 1/M_t − 1/M_n and M_t − M_n; empty without water.
+/// Drag coefficients and 1/M_t − 1/M_n; empty without water.
 #[derive(Default)]
 struct WaterRows<'a> {
     normal: &'a [Lanes],
     tangent: &'a [Lanes],
     excess: &'a [Lanes],
-    mass_excess: &'a [Lanes],
 }
 
 /// The bed; empty without one.
@@ -156,7 +156,7 @@ impl LineWork {
             velocity: line.velocity.rows(last),
             velocity_before: line.velocity_before.rows_mut(last),
             pull: self.pull.rows_mut(last),
-            brake: self.brake.rows_mut(last),
+            spring: self.spring.rows_mut(last),
             resistance: self.resistance.rows_mut(last),
             inverse_square: self.inverse_square.rows_mut(last),
             press: match &mut self.press {
@@ -173,6 +173,7 @@ impl LineWork {
         let mut nodes = NodeRows {
             weight: line.weight.rows(last),
             inverse_mass: self.inverse_mass.rows(last),
+            mass: self.mass.rows(last),
             interior: self.interior.rows(last),
             mass_damping: None,
             water: WaterRows::default(),
@@ -188,7 +189,6 @@ impl LineWork {
                 normal: water.drag_normal.rows(last),
                 tangent: water.drag_tangent.rows(last),
                 excess: water.inverse_mass_excess.rows(last),
-                mass_excess: water.mass_excess.rows(last),
             };
         }
         if let Some(contact) = &line.contact {
@@ -200,10 +200,9 @@ impl LineWork {
         }
         let zero = Lanes::splat(0.0);
         let sums = Sums {
-            lost: zero,
-            left: zero,
             given: zero,
-            turned: zero,
+            dragged: zero,
+            left: zero,
         };
         Swept {
             moving,
@@ -215,10 +214,9 @@ impl LineWork {
 }
 
 impl SegmentRows<'_> {
-    /// T q of the segments of a row and the part of it that no spring has [N], and the power of that [W]; `rate` is how their chords [m] change
-    /// [m/s].
+    /// T q of the segments of a row and the part of it that springs have [N]; `rate` is how their chords [m] change [m/s].
     #[inline(always)]
-    fn pull(&self, row: usize, chord: Vectors, rate: Vectors) -> (Vectors, Vectors, Lanes) {
+    fn pull(&self, row: usize, chord: Vectors, rate: Vectors) -> (Vectors, Vectors) {
         let square = chord.dot(chord);
         let inverse_l = inverse_norm(square);
         let inverse_length = self.inverse_length[row];
@@ -232,32 +230,31 @@ impl SegmentRows<'_> {
         } else {
             (elastic + damping).positive()
         };
-        let brake = tension - spring;
         (
             chord.scale(tension * inverse_l),
-            chord.scale(brake * inverse_l),
-            brake * stretching,
+            chord.scale(spring * inverse_l),
         )
     }
 }
 
-/// What a sweep sums up over the rows: power lost, twice the power that leaves the nodes, and power given by moving water [W]; twice what
-/// ½ vᵀMv loses along the tangents beside what it loses across them [J].
+/// What a sweep sums up over the rows.
 #[derive(Clone, Copy)]
 struct Sums {
-    lost: Lanes,
-    left: Lanes,
+    /// Power given by moving water [W], and what of it the drag takes.
     given: Lanes,
-    turned: Lanes,
+    dragged: Lanes,
+    /// Twice the work of springs, weights and waves that is not left in ½ M_n v² [J]: dampers, water and bed took it, or ½ vᵀMv has it along the
+    /// tangents, which is booked at both ends of an advance as those turn between the kicks.
+    left: Lanes,
 }
 
 /// What a row is kicked by.
 struct Kicking {
     /// Height of its nodes [m].
     z: Lanes,
-    /// Sum of the pulls on them, and the part of it that no spring has [N].
+    /// Sum of the pulls on them, and the part of it that springs have [N].
     pull: Vectors,
-    brake: Vectors,
+    spring: Vectors,
     /// What water and damping resist with [N].
     resistance: Vectors,
     /// What water presses with that waves accelerate [N].
@@ -279,14 +276,15 @@ impl NodeRows<'_> {
         sizes: Sizes,
         sums: &mut Sums,
     ) -> Vectors {
-        let resists = AROUND != around::DRY || !PLAIN;
-        let mut force = by.pull;
+        let (mut force, mut driven) = (by.pull, by.spring);
         force.z = force.z - self.weight[at];
-        if resists {
+        driven.z = driven.z - self.weight[at];
+        if AROUND != around::DRY || !PLAIN {
             force = force - by.resistance;
         }
         if AROUND == around::FLOWING {
             force = force + by.press;
+            driven = driven + by.press;
         }
         // Δt M⁻¹f, and Δt M⁻¹ẑ for the bed
         let inverse_mass = self.inverse_mass[at] * sizes.kick;
@@ -298,20 +296,13 @@ impl NodeRows<'_> {
         }
         response.z = response.z + inverse_mass;
         let mut kicked = velocity + kick;
-        let mut taken = by.resistance;
         if BED {
             let push = self.contact.push(at, by.z, [kicked.z, response.z], sizes);
             kicked = kicked + response.scale(push);
-            taken.z = taken.z - push;
         }
         let (both, interior) = (velocity + kicked, self.interior[at]);
-        // the dampers' power was that at the velocities before
-        let change = kicked - velocity;
-        sums.left = sums.left + interior * (taken.dot(both) - by.brake.dot(change));
-        if AROUND != around::DRY {
-            let passed = change.dot(by.chord) * both.dot(by.chord) * by.inverse_square;
-            sums.turned = sums.turned - self.water.mass_excess[at] * interior * passed;
-        }
+        let left = driven.scale(sizes.kick) - (kicked - velocity).scale(self.mass[at]);
+        sums.left = sums.left + interior * left.dot(both);
         if AROUND == around::FLOWING {
             let pressed = Lanes::splat(0.5) * by.press.dot(both);
             sums.given = sums.given + interior * pressed;
@@ -395,14 +386,11 @@ impl LineWork {
         }
         swept.kick::<AROUND, BED, PLAIN>(sizes, drift);
         let Sums {
-            lost,
-            left,
             given,
-            turned,
+            dragged,
+            left,
         } = swept.sums;
-        self.turned = self.turned + turned;
-        let half = Lanes::splat(0.5);
-        self.lost = self.lost + (lost + half * left) * sizes.kick;
+        self.lost = self.lost + Lanes::splat(0.5) * left - dragged * sizes.kick;
         self.given_by_current = self.given_by_current + given * sizes.kick;
         let line = &mut self.layout;
         std::mem::swap(&mut line.velocity, &mut line.velocity_before);
@@ -431,9 +419,8 @@ impl Swept<'_> {
             let moving = &mut self.moving;
             let chord = moving.position[at + 1] - moving.position[at];
             let rate = moving.velocity[at + 1] - moving.velocity[at];
-            let (pull, brake, lost) = self.segments.pull(at, chord, rate);
-            (moving.pull[at], moving.brake[at]) = (pull, brake);
-            self.sums.lost = self.sums.lost + lost;
+            let (pull, spring) = self.segments.pull(at, chord, rate);
+            (moving.pull[at], moving.spring[at]) = (pull, spring);
         }
     }
 
@@ -457,7 +444,7 @@ impl Swept<'_> {
                     // power of the drag on the way of the water
                     let on_drag = nodes.interior[at] * resistance.dot(water);
                     sums.given = sums.given - on_drag;
-                    sums.lost = sums.lost - on_drag;
+                    sums.dragged = sums.dragged + on_drag;
                     if let Some(waves) = nodes.waves {
                         moving.press[at] = waves.press(at, chord.scale(inverse_square.sqrt()));
                     }
@@ -482,15 +469,15 @@ impl Swept<'_> {
         let last = self.last();
         let mut low = self.moving.position[0];
         let mut pull_low = self.moving.pull[last].moved_up();
-        let mut brake_low = self.moving.brake[last].moved_up();
+        let mut spring_low = self.moving.spring[last].moved_up();
         for at in 1..=last {
             let (moving, nodes) = (&mut self.moving, &self.nodes);
             let (here, velocity) = (moving.position[at], moving.velocity[at]);
-            let (pull, brake) = (moving.pull[at], moving.brake[at]);
+            let (pull, spring) = (moving.pull[at], moving.spring[at]);
             let mut by = Kicking {
                 z: here.z,
                 pull: pull - pull_low,
-                brake: brake - brake_low,
+                spring: spring - spring_low,
                 resistance: moving.resistance[at],
                 press: Vectors::zero(),
                 chord: moving.position[at + 1] - low,
@@ -503,9 +490,10 @@ impl Swept<'_> {
             moving.velocity_before[at] = kicked; // v_{n−3/2} has been read
             moving.position[at] = here + kicked.scale(drift);
             if !PLAIN {
-                moving.resistance[at] = by.resistance - by.brake; // for what is settled afterwards
+                // with the dampers, for what is settled afterwards
+                moving.resistance[at] = by.resistance - (by.pull - by.spring);
             }
-            (low, pull_low, brake_low) = (here, pull, brake);
+            (low, pull_low, spring_low) = (here, pull, spring);
         }
     }
 }

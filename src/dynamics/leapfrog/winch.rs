@@ -76,17 +76,15 @@ impl WinchWork {
         self.winch().end_length(self.line.segment_count(), change)
     }
 
-    /// What the neighbour of the end takes up between t_{n−½} and t_{n+½}: energy of motion and of height [J], from its velocities [m/s] and
-    /// heights [m] then.
-    fn taken_up(&self, halves: [f64; 2], moving: [[f64; 2]; 2], heights: [f64; 2]) -> f64 {
+    /// What the neighbour of the end takes up between t_{n−½} and t_{n+½}: ½ M_n v² and energy of height [J], from its velocities [m/s] and
+    /// heights [m] then. What it has along its tangent beside that is booked with the turning of the tangents.
+    fn taken_up(&self, halves: [f64; 2], velocities: [Vector3<f64>; 2], heights: [f64; 2]) -> f64 {
         let (n, nodes) = (self.line.segment_count(), &self.line.nodes);
         let per_length = |values: &[f64]| 0.5 * values[n] / nodes.length[n];
-        let masses = [&nodes.mass_normal, &nodes.mass_tangent].map(|mass| per_length(mass));
-        let weight = per_length(&nodes.weight);
+        let [mass, weight] = [&nodes.mass_normal, &nodes.weight].map(|values| per_length(values));
         let grown = [self.reel.change - halves[0], halves[1] - self.reel.change];
         let energy = |side: usize| {
-            let [across, along] = moving[side];
-            let motion = 0.5 * (masses[0] * across + masses[1] * along);
+            let motion = 0.5 * mass * velocities[side].norm_squared();
             grown[side] * (motion + weight * heights[side])
         };
         energy(0) + energy(1)
@@ -182,18 +180,13 @@ impl LineWork {
         };
         let halves = [now.half_step[0], winch.next.half_step[0]];
         let (layout, at) = (&self.layout, self.layout.end_neighbour(End::B));
-        let tangent = layout.tangent_of(layout.segment_count - 1);
         let velocities = [layout.velocity_before.get(at), layout.velocity.get(at)];
-        let moving = velocities.map(|velocity| {
-            let along = velocity.dot(&tangent).powi(2);
-            [velocity.norm_squared() - along, along]
-        });
         let [before, after] = velocities.map(|velocity| velocity.z);
         let height = layout.position.get(at).z - step.drift * after; // at t_n
         let lag = step.kick - 0.5 * step.drift;
         let heights = [height - lag * before, height + 0.5 * step.drift * after];
         winch.given += winch.density * (halves[1] - halves[0]);
-        winch.given += winch.taken_up(halves, moving, heights);
+        winch.given += winch.taken_up(halves, velocities, heights);
         let next = winch.next;
         self.transport(next, 0.5 * step.drift);
     }
@@ -270,7 +263,8 @@ impl LineWork {
         }
     }
 
-    /// Energy [J] of the segments from `first` on and of the nodes between them, at the time of the velocities, `lag` [s] before the positions.
+    /// Energy [J] of the segments from `first` on and of the nodes between them, their mass along the line being that across it, at the time of the
+    /// velocities, `lag` [s] before the positions.
     fn energy_from(&self, first: usize, lag: f64) -> f64 {
         let Some(winch) = &self.winch else {
             return 0.0;
@@ -291,12 +285,8 @@ impl LineWork {
             axial_energy(line, i, strain)
         };
         let carried = |i: usize| {
-            let (velocity, tangent) = (velocity(i), layout.tangent_of(i));
-            let along = velocity.dot(&tangent).powi(2);
-            let across = velocity.norm_squared() - along;
             let nodes = &line.nodes;
-            0.5 * (nodes.mass_normal[i] * across + nodes.mass_tangent[i] * along)
-                + nodes.weight[i] * place(i).z
+            0.5 * nodes.mass_normal[i] * velocity(i).norm_squared() + nodes.weight[i] * place(i).z
         };
         (first..n).map(axial).sum::<f64>() + (first + 1..n).map(carried).sum::<f64>()
     }
@@ -338,6 +328,7 @@ impl LineWork {
             |i| 1.0 / nodes.mass_normal[i],
             0.0,
         );
+        put(&mut self.mass, from, n + 1, |i| nodes.mass_normal[i], 0.0);
         let first = self.interior[layout.slot(0)];
         let interior = |i: usize| if i == 0 { first } else { 1.0 };
         put(&mut self.interior, from, n, interior, 0.0);
@@ -385,8 +376,14 @@ impl LineWork {
                 0.0,
             );
         }
-        let excess = |i: usize| 1.0 / nodes.mass_tangent[i] - 1.0 / nodes.mass_normal[i];
-        put(&mut water.inverse_mass_excess, from, n + 1, excess, 0.0);
+        let inverse = |i: usize| 1.0 / nodes.mass_tangent[i] - 1.0 / nodes.mass_normal[i];
+        put(&mut water.inverse_mass_excess, from, n + 1, inverse, 0.0);
+        let first = water.mass_excess[self.layout.slot(0)];
+        let excess = |i: usize| match i {
+            0 => first,
+            _ => nodes.mass_tangent[i] - nodes.mass_normal[i],
+        };
+        put(&mut water.mass_excess, from, n, excess, 0.0); // the end on the winch is held
     }
 }
 
