@@ -258,10 +258,15 @@ fn a_line_in_a_current_is_a_line_towed_the_other_way_in_still_water() {
             .zip(&towed.state().lines[0].position);
         let apart = pairs.map(|(a, b)| (a - b - way).norm()).fold(0.0, f64::max);
         assert!(apart < 1e-9 * LENGTH, "{integrator:?}: {apart:e} m");
+        let [tensions, others] = [&anchored, &towed].map(|simulation| simulation.tensions(0));
+        for i in 1..tensions.len() - 1 {
+            assert_relative_eq!(tensions[i], others[i], max_relative = 1e-7);
+        }
+        // in still water the end force takes its load as linear over the last segment
         assert_relative_eq!(
             anchored.tension_b(0),
             towed.tension_b(0),
-            max_relative = 1e-7
+            max_relative = 1e-4
         );
     }
 }

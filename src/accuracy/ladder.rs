@@ -4,15 +4,15 @@ use crate::scene::{ContactLaw, Integrator, Scene, Threads};
 
 /// Elements of the longest line where a run costs next to nothing [-]. Close together: an explicit step must divide the communication
 /// step, so that a mesh a little finer may take one step more, and one a little coarser waste none.
-const ELEMENTS: [usize; 28] = [
-    4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 16, 18, 20, 22, 24, 26, 28, 30, 32, 36, 40, 44, 48, 52,
-    56, 60, 64,
+const ELEMENTS: [usize; 29] = [
+    3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 16, 18, 20, 22, 24, 26, 28, 30, 32, 36, 40, 44, 48,
+    52, 56, 60, 64,
 ];
 /// Elements of the longest line in dearer explicit runs [-].
 const ELEMENTS_FINE: [usize; 7] = [72, 80, 96, 112, 160, 226, 320];
 /// Elements of the longest line, tensions implicit [-].
-const ELEMENTS_AXIAL: [usize; 21] = [
-    4, 5, 6, 7, 8, 9, 10, 12, 14, 16, 20, 24, 28, 32, 40, 48, 56, 64, 80, 112, 160,
+const ELEMENTS_AXIAL: [usize; 22] = [
+    3, 4, 5, 6, 7, 8, 9, 10, 12, 14, 16, 20, 24, 28, 32, 40, 48, 56, 64, 80, 112, 160,
 ];
 /// Elements of the longest line, fully implicit [-].
 const ELEMENTS_IMPLICIT: [usize; 3] = [10, 20, 40];
