@@ -17,7 +17,7 @@ const ELEMENTS_AXIAL: [usize; 22] = [
 /// Elements of the longest line, fully implicit [-].
 const ELEMENTS_IMPLICIT: [usize; 3] = [10, 20, 40];
 /// Steps to the shortest period, tensions implicit [-].
-const STEPS_AXIAL: [f64; 6] = [16.0, 40.0, 80.0, 160.0, 320.0, 640.0];
+const STEPS_AXIAL: [f64; 8] = [16.0, 20.0, 28.0, 40.0, 80.0, 160.0, 320.0, 640.0];
 /// Steps to the shortest period, fully implicit [-].
 const STEPS_IMPLICIT: [f64; 3] = [20.0, 80.0, 320.0];
 /// Communication steps over the interval of the output that explicit runs are tried with [-].
