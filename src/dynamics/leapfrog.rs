@@ -81,30 +81,19 @@ struct WaterWork {
     drag_tangent: Column,
     /// 1/M_t − 1/M_n [1/kg].
     inverse_mass_excess: Column,
-    /// M_t − M_n [kg], 0 for ends that are held.
+    /// M_t − M_n [kg]; of ends as [`LineWork::set_mass_excess`] says.
     mass_excess: Column,
     /// The greater drag coefficient over the mass of a node that is wholly in the water [1/m].
     drag_over_mass: Column,
 }
 
 impl WaterWork {
-    fn new(line: &Line, layout: &Layout, held: [bool; 2]) -> Option<WaterWork> {
+    fn new(line: &Line, layout: &Layout) -> Option<WaterWork> {
         let nodes = &line.nodes;
-        let masses = nodes.mass_tangent.iter().zip(&nodes.mass_normal);
-        let mut mass_excess: Vec<f64> = masses.map(|(t, n)| t - n).collect();
-        for end in [End::A, End::B]
-            .into_iter()
-            .filter(|&end| held[end as usize])
-        {
-            mass_excess[line.end_node(end)] = 0.0;
-        }
         let zeros = Column::new(layout.fold, 0.0);
-        let excess: Vec<f64> = nodes
-            .mass_tangent
-            .iter()
-            .zip(&nodes.mass_normal)
-            .map(|(t, n)| 1.0 / t - 1.0 / n)
-            .collect();
+        let masses = || nodes.mass_tangent.iter().zip(&nodes.mass_normal);
+        let excess: Vec<f64> = masses().map(|(t, n)| 1.0 / t - 1.0 / n).collect();
+        let mass_excess: Vec<f64> = masses().map(|(t, n)| t - n).collect();
         let wet = layout.drag.is_some()
             || layout.waves.is_some()
             || excess.iter().any(|excess| *excess != 0.0);
@@ -264,7 +253,7 @@ impl LineWork {
             inverse_square: Column::new(layout.fold, 0.0),
             inverse_mass: layout.fold.column(&inverse_mass, 0.0),
             mass: layout.fold.column(&line.nodes.mass_normal, 0.0),
-            water: WaterWork::new(line, &layout, held),
+            water: WaterWork::new(line, &layout),
             spring: Field::zeros(layout.fold),
             turning: 0.0,
             interior: interior(layout.segment_count),

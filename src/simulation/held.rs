@@ -12,12 +12,12 @@
 //!
 //! Source: [`crate::math::hermite`]; Faà di Bruno's formula, e.g. Comtet (1974), Advanced Combinatorics, section 3.3.
 
+use crate::dynamics::motion::HostPath;
 use crate::math::hermite::{QUINTIC_ERROR, Quintic};
+use crate::math::lanes::Lanes;
 use crate::model::{Derivatives, Frame, Kinematics, Model, Motion, Point, Pose, Role};
 
 use super::paths::{Paths, is_coupled};
-use crate::dynamics::motion::HostPath;
-use crate::math::lanes::Lanes;
 
 /// Error of a bridge [m].
 const ERROR_MAX: f64 = 1e-12;
