@@ -34,7 +34,8 @@ const ELEMENTS_AXIAL: [usize; 7] = [5, 10, 20, 40, 48, 80, 160];
 const STEPS_AXIAL: [usize; 2] = [1, 10];
 /// Spectral radius of the axial-implicit kernel.
 const RADIUS: f64 = 0.9;
-/// Axial-implicit runs by which the public scenes are compared with other codes: scene, elements, step and communication step [s].
+/// Axial-implicit runs, without a ledger, by which the public scenes are compared with other codes: scene, elements, step and communication
+/// step [s].
 const COMPARED: [(&str, usize, f64, f64); 4] = [
     ("lindahl_fast", 48, 1.25 / 176.0, 0.05),
     ("taut_polyester", 5, 0.5, 0.5),
@@ -125,6 +126,21 @@ fn meshed(name: &str, integrator: Integrator, elements: usize) -> Scene {
     scene
 }
 
+/// A mesh with an energy ledger, and without one: what a table calls it, and whether it has one.
+fn with_and_without(elements: usize) -> [(usize, (&'static str, bool)); 2] {
+    [("", true), (" without ledger", false)].map(|kind| (elements, kind))
+}
+
+/// A scene one communication step after its start.
+fn stepped(name: &str, integrator: Integrator, elements: usize, ledger: bool) -> Simulation {
+    let mut scene = meshed(name, integrator, elements);
+    scene.solver.energy_ledger = ledger;
+    let mut simulation = Simulation::new(&scene).expect("an equilibrium");
+    simulation.follow_scene().expect("an equilibrium");
+    simulation.advance(0.05).expect("a step");
+    simulation
+}
+
 fn kernel_heading(kernel: &str, times: &str) {
     println!(
         "\n{kernel:<16} {:>5} {times:>6} {:>9} {:>13} {:>18} {:>22}",
@@ -141,7 +157,7 @@ fn note_kernel(
 ) {
     let nodes = (elements + 1) as f64;
     println!(
-        "{name:<16} {elements:>5} {times:>6} {wide:>9.0} {:>13.1} {portable:>18.0} {:>22.1}",
+        "{name:<16} {elements:>5} {times:>6} {wide:>9.0} {:>13.1} {portable:>18.0} {:>22.1}   {what}",
         wide / nodes,
         portable / nodes
     );
@@ -158,11 +174,8 @@ fn note_kernel(
 fn kernels(table: &mut String) {
     kernel_heading("explicit alone", "lines");
     for name in SCENES {
-        for elements in ELEMENTS {
-            let mut simulation = Simulation::new(&meshed(name, Integrator::Leapfrog, elements))
-                .expect("an equilibrium");
-            simulation.follow_scene().expect("an equilibrium");
-            simulation.advance(0.05).expect("a step");
+        for (elements, (booked, ledger)) in ELEMENTS.into_iter().flat_map(with_and_without) {
+            let simulation = stepped(name, Integrator::Leapfrog, elements, ledger);
             let step = 0.05 / simulation.substeps() as f64;
             for lines in [1, LINES] {
                 let [wide, portable] = [false, true].map(|portable| {
@@ -174,7 +187,7 @@ fn kernels(table: &mut String) {
                         portable,
                     )
                 });
-                let what = ("explicit alone", lines);
+                let what = (&*format!("explicit alone{booked}"), lines);
                 note_kernel(table, what, (name, elements, lines), [wide, portable]);
             }
         }
@@ -185,12 +198,8 @@ fn kernels(table: &mut String) {
 fn axial_kernels(table: &mut String) {
     kernel_heading("axial-implicit", "steps");
     for name in SCENES {
-        for elements in ELEMENTS_AXIAL {
-            let mut simulation =
-                Simulation::new(&meshed(name, Integrator::AxialImplicit, elements))
-                    .expect("an equilibrium");
-            simulation.follow_scene().expect("an equilibrium");
-            simulation.advance(0.05).expect("a step");
+        for (elements, (booked, ledger)) in ELEMENTS_AXIAL.into_iter().flat_map(with_and_without) {
+            let simulation = stepped(name, Integrator::AxialImplicit, elements, ledger);
             let step = 0.05 / simulation.substeps() as f64;
             for count in STEPS_AXIAL {
                 let costs = [false, true].map(|portable| {
@@ -202,7 +211,7 @@ fn axial_kernels(table: &mut String) {
                         portable,
                     )
                 });
-                let what = format!("axial-implicit alone, {count} in an advance");
+                let what = format!("axial-implicit alone{booked}, {count} in an advance");
                 note_kernel(table, (&what, 1), (name, elements, count), costs);
             }
         }
@@ -304,6 +313,7 @@ fn compared(table: &mut String) {
     for (name, elements, step, interval) in COMPARED {
         let mut scene = meshed(name, Integrator::AxialImplicit, elements);
         (scene.solver.time_step_max, scene.output.interval) = (step, interval);
+        scene.solver.energy_ledger = false;
         let cost = common::measure(&scene);
         let advance = 1e9 * cost.second * interval;
         println!(

@@ -196,7 +196,9 @@ impl Simulation {
         }
         let done = advanced?;
         self.snapshot.counters = done.counters;
-        self.snapshot.ledger.flow.add(done.flow);
+        if self.keeps_ledger() {
+            self.snapshot.ledger.flow.add(done.flow);
+        }
         std::mem::swap(&mut self.snapshot.paths, &mut self.paths);
         self.memo.clear();
         winches::follow(&mut self.model, &self.snapshot.state);

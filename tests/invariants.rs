@@ -4,8 +4,9 @@ mod common;
 
 use approx::assert_relative_eq;
 use common::*;
+use moorline::dynamics::ledger::Flow;
 use moorline::model::{Motion, State};
-use moorline::scene::{Integrator, MotionPath, Scene};
+use moorline::scene::{Current, Integrator, MotionPath, Scene};
 use moorline::simulation::{Simulation, Snapshot};
 use nalgebra::{Rotation3, Vector3};
 
@@ -32,6 +33,43 @@ fn after(scene: &Scene, duration: f64) -> State {
         simulation.advance(0.05).unwrap();
     }
     simulation.state().clone()
+}
+
+#[test]
+fn a_scene_without_an_energy_ledger_moves_to_the_last_bit_as_one_with_it() {
+    let in_current = |mut scene: Scene| {
+        let velocity = Some([0.6, 0.2, 0.0]);
+        let water = scene.water.as_mut().expect("a scene in water");
+        water.current = Some(Current {
+            velocity,
+            ..Current::default()
+        });
+        scene
+    };
+    let scenes = [
+        ("a chain on its bed", shipped("oc4_chain")),
+        ("a rope", shipped("taut_polyester")),
+        ("a chain in a current", in_current(shipped("oc4_chain"))),
+        ("lines at a free point", shipped("bridle")),
+    ];
+    let integrators = INTEGRATORS.into_iter().chain([Integrator::QuasiStatic]);
+    for integrator in integrators {
+        for (name, scene) in &scenes {
+            if *name == "lines at a free point" && integrator == Integrator::AxialImplicit {
+                continue; // serves single lines
+            }
+            let mut scene = with_integrator(with_elements(scene.clone(), 20), integrator, 0.05);
+            let with = after(&scene, 3.0);
+            scene.solver.energy_ledger = false;
+            let mut without = following(&scene);
+            for _ in 0..60 {
+                without.advance(0.05).unwrap();
+            }
+            assert_eq!(without.state(), &with, "{name}, {integrator:?}");
+            assert_eq!(without.ledger().flow, Flow::default());
+            assert_eq!([without.energy_error(), without.power_residual()], [0.0; 2]);
+        }
+    }
 }
 
 /// Greatest distance of the nodes of a line from the images of those of another [m].

@@ -82,7 +82,8 @@ impl Setting {
         }
     }
 
-    /// The scene with this setting, its own mesh, integrator and step put aside.
+    /// The scene with this setting, its own mesh, integrator and step put aside. What the tool chooses keeps its energy ledger, as it does by
+    /// default; other settings keep none, as other codes do.
     pub fn apply(&self, scene: &Scene) -> Scene {
         let mut scene = scene.clone();
         let length = |line: &crate::scene::Line| -> f64 {
@@ -96,6 +97,7 @@ impl Setting {
             });
         }
         scene.solver.integrator = self.integrator;
+        scene.solver.energy_ledger = self.tolerance.is_some();
         // A step that is not asked for is limited by the integrator's own rules only.
         scene.solver.time_step_max = self.time_step_max.unwrap_or(scene.solver.time_step_max);
         scene.solver.tolerance = self.tolerance.unwrap_or(scene.solver.tolerance);

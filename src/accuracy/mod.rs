@@ -7,7 +7,7 @@
 //! resolution: nothing below that is a statement.
 //!
 //! With peers, all codes solve the peers' equations, damping that acts in compression too
-//! ([`crate::scene::Solver::negative_tension`]).
+//! ([`crate::scene::Solver::negative_tension`]); and none keeps an energy ledger, but moorline where it chooses its setting itself.
 
 mod converged;
 pub mod errors;

@@ -603,7 +603,11 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
         let (model, network) = (self.model, &self.model.networks[number]);
         let mut flow = Flow::default();
         let mut parted = ledger::parted_ends(network, self.state);
+        let books = model.solver.energy_ledger;
         let count = |passed: &Passed| {
+            if !books {
+                return;
+            }
             let [before, after] = passed.states;
             let now_parted = ledger::parted_ends(network, after);
             if now_parted != parted {
@@ -675,7 +679,11 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
             solves: done.solves,
         };
         let states = [self.state, &*next];
-        let flow = ledger::work_at_rest(self.model, &self.model.networks[number], states, times);
+        let network = &self.model.networks[number];
+        let flow = match self.model.solver.energy_ledger {
+            true => ledger::work_at_rest(self.model, network, states, times),
+            false => Flow::default(),
+        };
         Ok(Done { counters, flow })
     }
 

@@ -112,7 +112,7 @@ impl AxialWork {
     /// kernel does not mix.
     pub fn new(model: &Model, line: &Line, rho: f64) -> Option<AxialWork> {
         let water = Water::around(model, line);
-        let layout = Layout::new(line, water, model.solver.negative_tension)?;
+        let layout = Layout::new(line, water, &model.solver)?;
         let count = layout.rows().count();
         let column = |values: &[f64]| layout.fold.column(values, 1.0);
         let masses = [&line.nodes.mass_normal, &line.nodes.mass_tangent].map(|m| column(m));
@@ -206,6 +206,9 @@ impl AxialWork {
 
     /// Starts the books of the steps to come, the ends and the surface being where they are.
     pub fn open_books(&mut self) {
+        if !self.layout.books {
+            return;
+        }
         let turning = match self.turning.take() {
             Some(turning) if self.layout.surface.is_none() => turning,
             _ => self.turning_energy(),
@@ -222,8 +225,11 @@ impl AxialWork {
         unit.dispatch(Turning(self))
     }
 
-    /// Energy given by the held ends and lost between them since [`Self::load`].
+    /// Energy given by the held ends and lost between them since [`Self::load`]; none where it is not booked.
     pub fn flow(&mut self) -> Flow {
+        if !self.layout.books {
+            return Flow::default();
+        }
         let turning = self.turning_energy();
         self.turning = Some(turning);
         Flow {
@@ -339,26 +345,41 @@ impl AxialWork {
         unit.dispatch(AxialStep(self, step, ends))
     }
 
+    /// Lines in moving water and over rough beds book in passing.
     #[inline(always)]
     fn choose_step(&mut self, step: Step, ends: [Vector3<f64>; 2]) -> usize {
-        match (&self.rows.current, &self.rubbing, &self.layout.contact) {
-            (None, None, None) => self.step_vectors::<false, { under::NOTHING }>(step, ends),
-            (None, None, Some(_)) => self.step_vectors::<false, { under::LEVEL }>(step, ends),
-            (None, Some(_), _) => self.step_vectors::<false, { under::ROUGH }>(step, ends),
-            (Some(_), None, None) => self.step_vectors::<true, { under::NOTHING }>(step, ends),
-            (Some(_), None, Some(_)) => self.step_vectors::<true, { under::LEVEL }>(step, ends),
-            (Some(_), Some(_), _) => self.step_vectors::<true, { under::ROUGH }>(step, ends),
+        use under::{LEVEL, NOTHING, ROUGH};
+        let moving = self.rows.current.is_some();
+        match (moving, self.bed_under(), self.layout.books) {
+            (false, NOTHING, false) => self.step_vectors::<false, NOTHING, false>(step, ends),
+            (false, NOTHING, true) => self.step_vectors::<false, NOTHING, true>(step, ends),
+            (false, LEVEL, false) => self.step_vectors::<false, LEVEL, false>(step, ends),
+            (false, LEVEL, true) => self.step_vectors::<false, LEVEL, true>(step, ends),
+            (false, _, _) => self.step_vectors::<false, ROUGH, true>(step, ends),
+            (true, NOTHING, _) => self.step_vectors::<true, NOTHING, true>(step, ends),
+            (true, LEVEL, _) => self.step_vectors::<true, LEVEL, true>(step, ends),
+            (true, _, _) => self.step_vectors::<true, ROUGH, true>(step, ends),
+        }
+    }
+
+    /// What is under the nodes.
+    #[inline(always)]
+    fn bed_under(&self) -> u8 {
+        match (&self.rubbing, &self.layout.contact) {
+            (Some(_), _) => under::ROUGH,
+            (None, Some(_)) => under::LEVEL,
+            (None, None) => under::NOTHING,
         }
     }
 
     #[inline(always)]
-    fn step_vectors<const CURRENT: bool, const BED: u8>(
+    fn step_vectors<const CURRENT: bool, const BED: u8, const BOOKS: bool>(
         &mut self,
         step: Step,
         ends: [Vector3<f64>; 2],
     ) -> usize {
         let sizes = self.sizes(step);
-        self.choose_springs(step, &sizes);
+        self.choose_springs::<BOOKS>(step, &sizes);
         self.prepare_drag::<CURRENT>(step);
         self.prepare_nodes::<CURRENT>(&sizes);
         self.prepare_ends(step, ends);
@@ -373,8 +394,8 @@ impl AxialWork {
             passes += 1;
             self.assemble(&sizes);
             let before = self.solve_tensions();
-            self.find_velocities::<BED>(before, &sizes);
-            let found = self.look_over::<BED>(&sizes);
+            self.find_velocities::<BED, BOOKS>(before, &sizes);
+            let found = self.look_over::<BED, BOOKS>(&sizes);
             self.tension_peak = self.tension_peak.max(found.greatest);
             let bed_holds = BED != under::ROUGH || self.check_bed(step);
             let holds = self.holds::<BED>(&found, &sizes) && bed_holds;
@@ -390,7 +411,9 @@ impl AxialWork {
         if BED == under::ROUGH {
             self.keep_rub(step);
         }
-        self.book_ends(step);
+        if BOOKS {
+            self.book_ends(step);
+        }
         if CURRENT {
             self.book_current(step);
         }
@@ -400,18 +423,20 @@ impl AxialWork {
     }
 
     #[inline(always)]
-    fn choose_springs(&mut self, step: Step, sizes: &Sizes) {
+    fn choose_springs<const BOOKS: bool>(&mut self, step: Step, sizes: &Sizes) {
         let line = &mut self.layout;
         if line.creep.is_some() {
             line.renew_ghosts(self.parted);
             self.prepare_geometry();
-            return self.prepare_segments::<{ springs::CREEPING }>(step, sizes);
+            return self.prepare_segments::<{ springs::CREEPING }, BOOKS>(step, sizes);
         }
         line.renew_neighbours(self.parted);
         self.prepare_geometry();
         match self.layout.law {
-            StretchLaw::Engineering => self.prepare_segments::<{ springs::LINEAR }>(step, sizes),
-            _ => self.prepare_segments::<{ springs::CURVED }>(step, sizes),
+            StretchLaw::Engineering => {
+                self.prepare_segments::<{ springs::LINEAR }, BOOKS>(step, sizes);
+            }
+            _ => self.prepare_segments::<{ springs::CURVED }, BOOKS>(step, sizes),
         }
     }
 

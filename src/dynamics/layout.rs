@@ -20,6 +20,7 @@ use crate::physics::flow::{Profile, Stream};
 use crate::physics::friction::Friction;
 use crate::physics::seabed::ContactCoefficients;
 use crate::physics::stretch::{StretchLaw, total_tension};
+use crate::scene::Solver;
 
 /// Speed that only an unstable step reaches [m/s]: the fastest axial waves run at about this speed.
 const SPEED_MAX: f64 = 1e4;
@@ -41,6 +42,8 @@ pub(super) struct Layout {
     pub vector_unit: Arch,
     pub law: StretchLaw,
     pub negative_tension: bool,
+    /// Whether steps are booked in the energy ledger.
+    pub books: bool,
     /// Node positions at t_n [m].
     pub position: Field,
     /// Velocities at t_{n−½} [m/s].
@@ -300,7 +303,7 @@ impl NullaryFnOnce for AreSound<'_> {
 
 impl Layout {
     /// Arrays for a line; `None` where its sections have different strain measures, which the kernels do not mix.
-    pub fn new(line: &Line, water: Water<'_>, negative_tension: bool) -> Option<Layout> {
+    pub fn new(line: &Line, water: Water<'_>, solver: &Solver) -> Option<Layout> {
         let n = line.segment_count();
         let fold = Fold::new(n + 1);
         let keep = |values: &[f64]| fold.column(values, 0.0);
@@ -320,7 +323,8 @@ impl Layout {
             fold,
             vector_unit: Arch::new(),
             law: line.uniform_law()?,
-            negative_tension,
+            negative_tension: solver.negative_tension,
+            books: solver.energy_ledger,
             position: padded_positions(fold),
             velocity: Field::zeros(fold),
             velocity_before: Field::zeros(fold),

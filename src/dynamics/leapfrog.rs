@@ -29,6 +29,7 @@ use crate::model::{End, Line, LineState, Parting, WaveSpan};
 use crate::physics::friction_step::Landing;
 use crate::physics::morison::{self, DragCoefficients};
 use crate::physics::stretch::{StretchLaw, total_tension};
+use crate::scene::Solver;
 pub use sweep::Placed;
 use sweep::{Drift, Sweep};
 use winch::WinchWork;
@@ -231,11 +232,11 @@ impl LineWork {
         line: &Line,
         water: Water<'_>,
         held: [bool; 2],
-        negative_tension: bool,
+        solver: &Solver,
     ) -> Option<LineWork> {
         let winch = WinchWork::new(line);
         let line = line.winch.as_ref().map_or(line, |winch| winch.reel());
-        let layout = Layout::new(line, water, negative_tension)?;
+        let layout = Layout::new(line, water, solver)?;
         let inverse_mass: Vec<f64> = line
             .nodes
             .mass_normal
@@ -351,7 +352,9 @@ impl LineWork {
 
     /// Starts the books of the steps to come, the ends and the surface being where they are.
     pub fn open_books(&mut self) {
-        self.turning = self.turning_energy();
+        if self.layout.books {
+            self.turning = self.turning_energy();
+        }
     }
 
     /// Σ ½ (M_t − M_n)(v·t)² of all nodes but held ends, the velocities being those of t_{n−½} [J].
@@ -363,8 +366,11 @@ impl LineWork {
         unit.dispatch(Turning(self))
     }
 
-    /// Energy given by held ends and the current and lost between them since [`Self::open_books`].
+    /// Energy given by held ends and the current and lost between them since [`Self::open_books`]; none where it is not booked.
     pub fn flow(&mut self) -> Flow {
+        if !self.layout.books {
+            return Flow::default();
+        }
         let turned = self.turning_energy() - self.turning;
         Flow {
             numerical: 0.0,
@@ -548,7 +554,9 @@ impl LineWork {
             work.wind(t, step);
         }
         work.creep(step);
-        work.book_ends(step);
+        if work.layout.books {
+            work.book_ends(step);
+        }
         if work.layout.surface.is_some() {
             work.meet_surface(Some(step));
         }

@@ -118,7 +118,7 @@ impl NetworkWork {
                     .map(|point| model.points[point].free().is_none());
                 let data = &model.lines[line];
                 let water = Water::around(model, data);
-                LineWork::new(data, water, held, model.solver.negative_tension)
+                LineWork::new(data, water, held, &model.solver)
             })
             .collect::<Option<Vec<LineWork>>>()?;
         let points = vec![PointState::at_rest(Vector3::zeros()); network.free_points.len()];

@@ -483,6 +483,8 @@ pub struct Solver {
     pub integrator: Integrator,
     /// The peers' law: axial damping acts in compression too.
     pub negative_tension: bool,
+    /// Whether the energy that crosses the borders of a scene is booked, which a fifth of an explicit step's time goes into.
+    pub energy_ledger: bool,
     /// Upper limit of the internal time step [s].
     pub time_step_max: f64,
     /// Spectral radius at infinite frequency [-] of `generalised_alpha` (0 to 1, default 0.2) or `axial_implicit` (½ to 1, default 0.9);
@@ -630,6 +632,7 @@ impl Default for Solver {
             elements: None,
             integrator: Integrator::Auto,
             negative_tension: false,
+            energy_ledger: true,
             time_step_max: 0.05,
             spectral_radius: None,
             bossak: None,

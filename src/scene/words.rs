@@ -276,6 +276,9 @@ impl Scene {
                 }
             ),
         ];
+        if !solver.energy_ledger {
+            said.push("no energy ledger: `solver.energy_error` stays 0".into());
+        }
         if !output.channels.is_empty() {
             let channels = output.channels.join(", ");
             said.push(format!("further columns of `run`: {channels}"));

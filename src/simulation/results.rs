@@ -321,9 +321,17 @@ impl Simulation {
         *self.memo.energy.get_or_init(energy)
     }
 
-    /// Imbalance of the energy ledger since the start [J].
+    /// Whether an energy ledger is kept, as [`Solver::energy_ledger`](crate::scene::Solver::energy_ledger) says.
+    pub fn keeps_ledger(&self) -> bool {
+        self.model.solver.energy_ledger
+    }
+
+    /// Imbalance of the energy ledger since the start [J]; 0 where none is kept.
     pub fn energy_error(&self) -> f64 {
-        self.snapshot.ledger.error(self.energy().total())
+        match self.keeps_ledger() {
+            true => self.snapshot.ledger.error(self.energy().total()),
+            false => 0.0,
+        }
     }
 
     /// The energy ledger.
@@ -331,7 +339,7 @@ impl Simulation {
         &self.snapshot.ledger
     }
 
-    /// Imbalance of the energy ledger since the start, over the time since then [W].
+    /// Imbalance of the energy ledger since the start, over the time since then [W]; 0 where none is kept.
     pub fn power_residual(&self) -> f64 {
         let elapsed = self.time() - self.snapshot.start_time;
         if elapsed > 0.0 {

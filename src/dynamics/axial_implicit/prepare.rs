@@ -106,9 +106,13 @@ impl AxialWork {
         }
     }
 
-    /// The segments, from geometry and velocities at t_{n−½}.
+    /// The segments, from geometry and velocities at t_{n−½}; with `BOOKS` also what their books begin with.
     #[inline(always)]
-    pub(super) fn prepare_segments<const SPRINGS: u8>(&mut self, step: Step, sizes: &Sizes) {
+    pub(super) fn prepare_segments<const SPRINGS: u8, const BOOKS: bool>(
+        &mut self,
+        step: Step,
+        sizes: &Sizes,
+    ) {
         let half = Lanes::splat(0.5);
         let back = Lanes::splat(0.5 * step.drift - step.kick);
         let half_back = half * back;
@@ -131,9 +135,11 @@ impl AxialWork {
             // as if they went on stretching as they do
             let (_, total) = row.spring(along, sizes);
             row.taut = total.choose(Lanes::splat(1.0), Lanes::splat(-1.0));
-            let longer = back * (along + half_back * bend);
-            row.now = found.now;
-            row.before = (found.now + found.slope * share * longer).positive();
+            if BOOKS {
+                let longer = back * (along + half_back * bend);
+                row.now = found.now;
+                row.before = (found.now + found.slope * share * longer).positive();
+            }
         }
     }
 

@@ -100,9 +100,14 @@ impl AxialWork {
         before
     }
 
-    /// New velocities, into `velocity_before`, from T̄, that of the segments before those of the first row being `before` [N].
+    /// New velocities, into `velocity_before`, from T̄, that of the segments before those of the first row being `before` [N]; with `BOOKS` also
+    /// what the segments' impulses are.
     #[inline(always)]
-    pub(super) fn find_velocities<const BED: u8>(&mut self, before: Lanes, sizes: &Sizes) {
+    pub(super) fn find_velocities<const BED: u8, const BOOKS: bool>(
+        &mut self,
+        before: Lanes,
+        sizes: &Sizes,
+    ) {
         let (segments, kick) = (&self.rows.segments, sizes.kick);
         let pull = |at: usize| segments[at].direction.scale(kick * segments[at].tension);
         let mut below = segments[segments.len() - 1].direction.moved_up();
@@ -111,58 +116,69 @@ impl AxialWork {
             if at > 0 {
                 below = pull(at - 1);
             }
-            node.impulse = pull(at) - below;
-            let velocity = node.loose + node.inverse_mass::<BED>(node.impulse);
+            let impulse = pull(at) - below;
+            if BOOKS {
+                node.impulse = impulse;
+            }
+            let velocity = node.loose + node.inverse_mass::<BED>(impulse);
             self.layout.velocity_before.store(velocity, at + 1);
         }
         self.layout.velocity_before.wrap();
     }
 
-    /// What the new velocities say about the assumptions, and the books of the step.
+    /// What the new velocities say about the assumptions, and with `BOOKS` the books of the step.
     #[inline(always)]
-    pub(super) fn look_over<const BED: u8>(&mut self, sizes: &Sizes) -> Found {
+    pub(super) fn look_over<const BED: u8, const BOOKS: bool>(&mut self, sizes: &Sizes) -> Found {
         let mut found = Found::new();
         let line = &self.layout;
         for at in line.rows() {
             let new = &line.velocity_before;
             let relative = new.load(at + 1) - new.load(at);
-            found.check(&self.rows.segments[at - 1], relative, sizes);
+            found.check::<BOOKS>(&self.rows.segments[at - 1], relative, sizes);
+        }
+        if BED != under::LEVEL && !BOOKS {
+            return found;
         }
         for at in line.rows() {
-            let velocities = [&line.velocity, &line.velocity_before].map(|v| v.load(at));
-            let weight = line.weight.load(at);
-            found.look_at::<BED>(&self.rows.nodes[at - 1], velocities, weight, sizes);
+            let (node, new) = (&self.rows.nodes[at - 1], line.velocity_before.load(at));
+            if BED == under::LEVEL {
+                found.look_at(node, new);
+            }
+            if BOOKS {
+                let velocities = [line.velocity.load(at), new];
+                found.book_node(node, velocities, line.weight.load(at), sizes);
+            }
         }
         found
     }
 }
 
 impl Found {
-    /// Whether nodes are on the bed as they were taken to be. What is left of their momentum beside tension and weight is what water, damping and
-    /// bed took; what ½ vᵀMv has along the tangents beside what it has across them, these turning between the kicks, is booked at both
-    /// ends of the advance.
+    /// Whether nodes are on the bed as they were taken to be.
     #[inline(always)]
-    fn look_at<const BED: u8>(
+    fn look_at(&mut self, node: &NodeRow, velocity: Vectors) {
+        let touches = node.pushed(velocity.z);
+        self.landed = self.landed.max(Lanes::splat(0.0) - touches * node.touches);
+    }
+
+    /// Books what is left of the momentum of nodes beside tension and weight: water, damping and bed took it. What ½ vᵀMv has along the
+    /// tangents beside what it has across them, these turning between the kicks, is booked at both ends of the advance.
+    #[inline(always)]
+    fn book_node(
         &mut self,
         node: &NodeRow,
         [old, new]: [Vectors; 2],
         weight: Lanes,
         sizes: &Sizes,
     ) {
-        if BED == under::LEVEL {
-            let touches = node.pushed(new.z);
-            self.landed = self.landed.max(Lanes::splat(0.0) - touches * node.touches);
-        }
         let mut left = node.impulse - (new - old).scale(node.mass_normal);
         left.z = left.z - sizes.kick * weight;
         self.lost = self.lost + node.free * left.dot(old + new);
     }
 
-    /// Whether segments are as slack, and bent by as much, as they were taken to be; books what their dampers took, and what the averaging
-    /// dissipates: the work of the springs' part of T̄ less that of the mean of the tensions half a step before t_n and half a step after it, the slopes
-    /// being those of t_n. The averaging of ρ = 1 makes this mean, and dissipates nothing.
+    /// Whether segments are as slack, and bent by as much, as they were taken to be; with `BOOKS`, books them.
     #[inline(always)]
-    fn check(&mut self, segment: &SegmentRow, relative: Vectors, sizes: &Sizes) {
+    fn check<const BOOKS: bool>(&mut self, segment: &SegmentRow, relative: Vectors, sizes: &Sizes) {
         let (zero, drift) = (Lanes::splat(0.0), sizes.drift);
         let along = segment.direction.dot(relative);
         let across = relative.dot(relative) - along * along; // w²
@@ -182,8 +198,23 @@ impl Found {
         let bent = off * segment.inverse * Lanes::splat(0.5 / SHORT);
         self.bent = self.bent.max(bent.where_positive(taut));
         self.greatest = self.greatest.max(segment.tension);
+        if BOOKS {
+            self.book_segments(segment, [along, across], spring.positive(), sizes);
+        }
+    }
+
+    /// Books what dampers took, and what the averaging dissipates: the work of the springs' part of T̄ less that of the mean of the tensions half a
+    /// step before t_n and half a step after it, the slopes being those of t_n. The averaging of ρ = 1 makes this mean, and dissipates nothing.
+    #[inline(always)]
+    fn book_segments(
+        &mut self,
+        segment: &SegmentRow,
+        [along, across]: [Lanes; 2],
+        springs: Lanes,
+        sizes: &Sizes,
+    ) {
+        let drift = sizes.drift;
         let moved = sizes.kick * (segment.along + along);
-        let springs = spring.positive();
         self.lost = self.lost + (segment.tension - springs) * moved;
         if let Some(slope) = sizes.slope {
             let half = Lanes::splat(0.5) * drift;

@@ -266,9 +266,9 @@ struct Kicking {
 }
 
 impl NodeRows<'_> {
-    /// The velocities at t_{n+½} [m/s] of row number `at`.
+    /// The velocities at t_{n+½} [m/s] of row number `at`; with `BOOKS`, books the step.
     #[inline(always)]
-    fn kick<const AROUND: u8, const BED: bool, const PLAIN: bool>(
+    fn kick<const AROUND: u8, const BED: bool, const PLAIN: bool, const BOOKS: bool>(
         &self,
         at: usize,
         by: &Kicking,
@@ -300,12 +300,14 @@ impl NodeRows<'_> {
             let push = self.contact.push(at, by.z, [kicked.z, response.z], sizes);
             kicked = kicked + response.scale(push);
         }
-        let (both, interior) = (velocity + kicked, self.interior[at]);
-        let left = driven.scale(sizes.kick) - (kicked - velocity).scale(self.mass[at]);
-        sums.left = sums.left + interior * left.dot(both);
-        if AROUND == around::FLOWING {
-            let pressed = Lanes::splat(0.5) * by.press.dot(both);
-            sums.given = sums.given + interior * pressed;
+        if BOOKS {
+            let (both, interior) = (velocity + kicked, self.interior[at]);
+            let left = driven.scale(sizes.kick) - (kicked - velocity).scale(self.mass[at]);
+            sums.left = sums.left + interior * left.dot(both);
+            if AROUND == around::FLOWING {
+                let pressed = Lanes::splat(0.5) * by.press.dot(both);
+                sums.given = sums.given + interior * pressed;
+            }
         }
         kicked
     }
@@ -377,14 +379,21 @@ impl LineWork {
             None => sizes.drift,
             Some(_) => Lanes::splat(0.0),
         };
+        let books = self.layout.books;
         let mut swept = self.cut();
-        if PLAIN {
-            swept.pull();
+        match (PLAIN, books) {
+            (true, true) => swept.pull::<true>(),
+            (true, false) => swept.pull::<false>(),
+            (false, _) => {}
         }
         if AROUND != around::DRY || !PLAIN {
             swept.resist::<AROUND, PLAIN>(sizes);
         }
-        swept.kick::<AROUND, BED, PLAIN>(sizes, drift);
+        // lines that are not plain book in passing
+        match books || !PLAIN {
+            true => swept.kick::<AROUND, BED, PLAIN, true>(sizes, drift),
+            false => swept.kick::<AROUND, BED, PLAIN, false>(sizes, drift),
+        }
         let Sums {
             given,
             dragged,
@@ -412,15 +421,18 @@ impl Swept<'_> {
         self.moving.position.len() - 2
     }
 
-    /// Finds the pulls of the segments.
+    /// Finds the pulls of the segments, and with `BOOKS` what of them springs have.
     #[inline(always)]
-    fn pull(&mut self) {
+    fn pull<const BOOKS: bool>(&mut self) {
         for at in 1..=self.last() {
             let moving = &mut self.moving;
             let chord = moving.position[at + 1] - moving.position[at];
             let rate = moving.velocity[at + 1] - moving.velocity[at];
             let (pull, spring) = self.segments.pull(at, chord, rate);
-            (moving.pull[at], moving.spring[at]) = (pull, spring);
+            moving.pull[at] = pull;
+            if BOOKS {
+                moving.spring[at] = spring;
+            }
         }
     }
 
@@ -459,9 +471,9 @@ impl Swept<'_> {
         }
     }
 
-    /// Kicks the nodes, which then move for `drift` [s].
+    /// Kicks the nodes, which then move for `drift` [s]; with `BOOKS`, books the step.
     #[inline(always)]
-    fn kick<const AROUND: u8, const BED: bool, const PLAIN: bool>(
+    fn kick<const AROUND: u8, const BED: bool, const PLAIN: bool, const BOOKS: bool>(
         &mut self,
         sizes: Sizes,
         drift: Lanes,
@@ -473,7 +485,8 @@ impl Swept<'_> {
         for at in 1..=last {
             let (moving, nodes) = (&mut self.moving, &self.nodes);
             let (here, velocity) = (moving.position[at], moving.velocity[at]);
-            let (pull, spring) = (moving.pull[at], moving.spring[at]);
+            let pull = moving.pull[at];
+            let spring = if BOOKS { moving.spring[at] } else { pull };
             let mut by = Kicking {
                 z: here.z,
                 pull: pull - pull_low,
@@ -486,7 +499,8 @@ impl Swept<'_> {
             if AROUND == around::FLOWING && nodes.waves.is_some() {
                 by.press = moving.press[at];
             }
-            let kicked = nodes.kick::<AROUND, BED, PLAIN>(at, &by, velocity, sizes, &mut self.sums);
+            let sums = &mut self.sums;
+            let kicked = nodes.kick::<AROUND, BED, PLAIN, BOOKS>(at, &by, velocity, sizes, sums);
             moving.velocity_before[at] = kicked; // v_{n−3/2} has been read
             moving.position[at] = here + kicked.scale(drift);
             if !PLAIN {

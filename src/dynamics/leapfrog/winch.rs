@@ -428,7 +428,7 @@ mod tests {
     use super::*;
     use crate::dynamics::layout::Water;
     use crate::model::Model;
-    use crate::scene::Scene;
+    use crate::scene::{Scene, Solver};
     use approx::assert_relative_eq;
 
     const SCENE: &str = r#"
@@ -445,7 +445,7 @@ mod tests {
         let model = Model::new(&Scene::from_toml(SCENE).unwrap()).unwrap();
         let line = &model.lines[0];
         let water = Water::around(&model, line);
-        let mut work = LineWork::new(line, water, [true; 2], false).unwrap();
+        let mut work = LineWork::new(line, water, [true; 2], &Solver::default()).unwrap();
         let wild = |i: usize, k: f64| {
             let i = i as f64;
             Vector3::new(
