@@ -1,6 +1,6 @@
 //! The settings that a scene is tried with.
 
-use crate::scene::{ContactLaw, Integrator, Scene, Threads};
+use crate::scene::{ContactLaw, Integrator, Reconstruction, Scene, Threads};
 
 /// Elements of the longest line where a run costs next to nothing [-]. Close together: an explicit step must divide the communication
 /// step, so that a mesh a little finer may take one step more, and one a little coarser waste none.
@@ -17,16 +17,18 @@ const ELEMENTS_AXIAL: [usize; 22] = [
 /// Elements of the longest line, fully implicit [-].
 const ELEMENTS_IMPLICIT: [usize; 3] = [10, 20, 40];
 /// Steps to the shortest period, tensions implicit [-].
-const STEPS_AXIAL: [f64; 8] = [16.0, 20.0, 28.0, 40.0, 80.0, 160.0, 320.0, 640.0];
+const STEPS_AXIAL: [f64; 15] = [
+    8.0, 10.0, 11.5, 13.0, 14.5, 16.0, 18.0, 20.0, 23.0, 28.0, 40.0, 80.0, 160.0, 320.0, 640.0,
+];
 /// Steps to the shortest period, fully implicit [-].
 const STEPS_IMPLICIT: [f64; 3] = [20.0, 80.0, 320.0];
 /// Communication steps over the interval of the output that explicit runs are tried with [-].
-const COMMUNICATIONS: [usize; 6] = [1, 2, 3, 4, 8, 10];
+const COMMUNICATIONS: [usize; 8] = [1, 2, 3, 4, 8, 10, 13, 16];
 /// Elements up to which explicit runs are tried with more than the first of them [-]: what a communication step costs does not
 /// count on finer meshes.
 const COMMUNICATING_ELEMENTS: usize = 32;
 /// Communication steps to the shortest period, at least [-]: the motion in between is a cubic.
-const COMMUNICATIONS_PER_PERIOD: f64 = 16.0;
+const COMMUNICATIONS_PER_PERIOD: f64 = 8.0;
 /// Target errors of the tool's own choice [-].
 pub const TOLERANCES: [f64; 4] = [0.05, 0.02, 0.01, 0.005];
 /// Elements of the longest line in converged solutions, each with those that tell how far it has converged before it [-].
@@ -82,8 +84,8 @@ impl Setting {
         }
     }
 
-    /// The scene with this setting, its own mesh, integrator and step put aside. What the tool chooses keeps its energy ledger, as it does by
-    /// default; other settings keep none, as other codes do.
+    /// The scene with this setting, its own mesh, integrator and step put aside. What the tool chooses keeps its energy ledger, and is
+    /// told where the fairlead is, as by default; other settings keep none, and are told where it goes, as other codes are.
     pub fn apply(&self, scene: &Scene) -> Scene {
         let mut scene = scene.clone();
         let length = |line: &crate::scene::Line| -> f64 {
@@ -97,7 +99,10 @@ impl Setting {
             });
         }
         scene.solver.integrator = self.integrator;
-        scene.solver.energy_ledger = self.tolerance.is_some();
+        if self.tolerance.is_none() {
+            scene.solver.energy_ledger = false;
+            scene.solver.input_reconstruction = Reconstruction::Interpolate;
+        }
         // A step that is not asked for is limited by the integrator's own rules only.
         scene.solver.time_step_max = self.time_step_max.unwrap_or(scene.solver.time_step_max);
         scene.solver.tolerance = self.tolerance.unwrap_or(scene.solver.tolerance);

@@ -77,8 +77,8 @@ except ImportError:  # Windows has no such limits; there the clock on the wall e
     resource = None
 
 # Segments of a ladder when the scene names none [-]; a line on the bed is far out with fewer than 8.
-ELEMENTS = (4, 6, 8, 10, 14, 20, 28, 40, 56, 80)
-ELEMENTS_ON_BED = ELEMENTS[2:]
+ELEMENTS = (3, 4, 5, 6, 7, 8, 10, 12, 14, 17, 20, 24, 28, 34, 40, 48, 56, 68, 80)
+ELEMENTS_ON_BED = ELEMENTS[5:]
 # CPU time of a run when the scene names none [s], and how much longer the clock on the wall may take [-].
 TIME_LIMIT, WALL = 60.0, 20.0
 # Depth by which a scene is lowered where its motion reaches the surface [m].
@@ -406,7 +406,7 @@ def moordyn_runs(scene, elements, period, bedded):
         limits = {scheme: stable_step(scheme, modes) for scheme in ("RK2", "RK4", "Midpoint2")}
         scheme = min(limits, key=lambda name: (4 if name == "RK4" else 2) / limits[name])
         for part in (0.9, 0.6):
-            limit = min(part * limits[scheme], period / 20.0)
+            limit = min(part * limits[scheme], period / 8.0)
             host, step = moordyn_steps(limit, period, scene["interval"])
             label = f"n = {count}, {scheme}, dtM {step:.3g} s, host step {host:.3g} s"
             runs.append(
@@ -530,8 +530,11 @@ def cabledyn_runs(scene, elements, period, bedded):
         (180.0, 0.4, False, 1e-1),
         (180.0, 0.0, False, 1e-1),
         (90.0, 0.0, False, 1e-1),
+        (60.0, 0.0, False, 1e-1),
+        (40.0, 0.0, False, 1e-1),
     ]
-    free = [(30.0, 0.9, True, 1e-2), (20.0, 0.9, True, 1e-2), (30.0, 0.9, True, 1e-1), (20.0, 0.9, True, 1e-1)]
+    rates = (30.0, 20.0, 16.0, 12.0, 10.0, 8.0)
+    free = [(parts, 0.9, True, tolerance) for tolerance in (1e-2, 1e-1) for parts in rates]
     runs = []
     for count in elements:
         for parts, radius, reuse, tolerance in landing if bedded else free:

@@ -1,7 +1,8 @@
 //! One run of a scene: its histories and what they cost.
 //!
-//! A timed run is driven as a host drives it: before every communication step it is told displacement and velocity of what moves,
-//! made beforehand, and nothing of what comes. The converged solution follows the scene's motion exactly.
+//! A timed run is driven as a host drives it: before every communication step it is told displacement and velocity of what moves, made
+//! beforehand: where the step ends, as the peers are, or with [`Reconstruction::Smooth`] where it starts, and nothing of what comes. The
+//! converged solution follows the scene's motion exactly.
 
 use std::hint::black_box;
 
@@ -11,7 +12,7 @@ use nalgebra::Vector3;
 use super::errors::Histories;
 use super::ladder::Setting;
 use crate::model::{Line, Model, Moving, Role};
-use crate::scene::{Integrator, Scene};
+use crate::scene::{Integrator, Reconstruction, Scene};
 use crate::simulation::Simulation;
 
 /// Passes of one timing, the median of which counts: at most this many, and no more once they add up to this time [s].
@@ -72,12 +73,13 @@ impl Trial {
         let mut start =
             Simulation::new(&setting.apply(scene)).map_err(|error| error.to_string())?;
         let time = |index: usize| (index * setting.communication) as f64 * interval;
+        let ahead = start.model().solver.input_reconstruction == Reconstruction::Interpolate;
+        let told = |index: usize| time(index + usize::from(ahead));
         let said: Vec<Vec<Moving>> = (0..count)
-            .map(|index| start.model().moving(time(index)))
+            .map(|index| start.model().moving(told(index)))
             .collect();
-        if let Some(first) = said.first() {
-            tell(&mut start, first);
-        }
+        let first = start.model().moving(0.0);
+        tell(&mut start, &first);
         start.restart(0.0).map_err(|error| error.to_string())?;
         Ok(Trial {
             start,

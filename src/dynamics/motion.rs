@@ -11,6 +11,9 @@
 //! With velocities the polynomial is fitted to them and integrated from x_k. What a prediction missed by is made up over as long a time as it was
 //! for: after a step of 10 s that ends a metre beside the host, one of 1 ms must not leap back by a metre.
 //!
+//! A host that knows the motion, or that steps what moves the point first, says instead where it will be at t_k + h
+//! ([`Reconstruction::Interpolate`]): cubics through what it says then need no prediction.
+//!
 //! Source: divided differences, e.g. Hairer, Nørsett & Wanner (1993), Solving Ordinary Differential Equations I, eq. III.1.7;
 //! the choice of degree is made here. Valid for any sequence of step sizes: samples closer
 //! together than half the coming step are passed over, and all are dropped when the host steps back.
@@ -26,6 +29,7 @@ use serde::{Deserialize, Serialize};
 use crate::math::hermite::{self, Hermites};
 use crate::math::lanes::Lanes;
 use crate::model::{Kinematics, Pose};
+use crate::scene::Reconstruction;
 use differences::Differences;
 pub use foresight::{Clock, Foresight};
 use foresight::{Order, SAMPLES_MAX, Samples};
@@ -91,9 +95,13 @@ impl AxesPath {
         }
     }
 
-    /// Becomes the path `before` continued by a communication step from what the host says at its start.
+    /// Becomes the path `before` continued by a communication step from what the host says at its start; at its end where it is
+    /// [`Reconstruction::Interpolate`].
     #[inline(always)]
     pub fn extend(&mut self, before: &AxesPath, foresight: &Foresight, said: &Said) {
+        if foresight.reconstruction == Reconstruction::Interpolate {
+            return self.interpolate(before, foresight, said);
+        }
         let goes_on = foresight.order == Order::After && said.rated == before.rated;
         if !goes_on || !foresight.all {
             return self.turn(before, foresight, said);
@@ -116,6 +124,19 @@ impl AxesPath {
             return self.turn(before, foresight, said);
         };
         self.bridge(before, foresight, said, to);
+    }
+
+    /// [`AxesPath::extend`] to what the host says of the step's end. A velocity that it does not tell is the slope there of the parabola
+    /// through the last three places.
+    #[inline(always)]
+    fn interpolate(&mut self, before: &AxesPath, foresight: &Foresight, said: &Said) {
+        let [_, length, rate] = foresight.span;
+        let (slope_before, rate_before) = before.curve.secant();
+        let slope = (said.position - before.end[0]) * Lanes::splat(rate);
+        let bend = length * rate_before / (1.0 + length * rate_before);
+        let derived = slope + Lanes::splat(bend) * (slope - slope_before);
+        self.end = [said.position, said.rated.choose(said.velocity, derived)];
+        self.curve = Hermites::bridge(foresight.span, before.end, self.end);
     }
 
     /// [`AxesPath::extend`] where the host goes back in time or leaves samples behind that do not count, or tells the velocity along other axes
@@ -152,7 +173,7 @@ impl AxesPath {
         let ([position, velocity], [_, length, _]) = (to, foresight.span);
         let mut from = before.end;
         self.end = to;
-        if foresight.jumps {
+        if foresight.reconstruction == Reconstruction::Jump {
             from = [said.position, said.velocity];
             let reached = said.position + Lanes::splat(length) * said.velocity;
             self.end = [reached, said.velocity];
@@ -323,7 +344,6 @@ impl VesselPath {
 mod tests {
     use super::foresight::DEGREE_MAX;
     use super::*;
-    use crate::scene::Reconstruction;
     use approx::assert_relative_eq;
 
     /// What the host said about one axis of a point at one time.
@@ -444,20 +464,20 @@ mod tests {
     }
 
     /// Greatest distance between path and truth after a start-up, at a communication step h.
-    fn path_error(h: f64, with_velocity: bool) -> f64 {
+    fn path_error(h: f64, with_velocity: bool, reconstruction: Reconstruction) -> f64 {
         let mut path = Guided::at_rest(0.0, position(0.0));
         let mut worst: f64 = 0.0;
         for k in 0..(20.0 / h) as usize {
             let time = k as f64 * h;
-            let velocity = with_velocity.then(|| velocity(time));
-            path.extend(
-                Sample {
-                    velocity,
-                    ..sample(time, position(time))
-                },
-                h,
-                Reconstruction::Smooth,
-            );
+            let told = match reconstruction {
+                Reconstruction::Interpolate => time + h,
+                _ => time,
+            };
+            let said = Sample {
+                velocity: with_velocity.then(|| velocity(told)),
+                ..sample(time, position(told))
+            };
+            path.extend(said, h, reconstruction);
             if time > 5.0 {
                 let middle = time + 0.5 * h;
                 worst = worst.max((path.at(middle).value - position(middle)).abs());
@@ -489,10 +509,41 @@ mod tests {
     #[test]
     fn the_path_converges_at_third_order_or_better() {
         for with_velocity in [false, true] {
-            let errors = [0.4, 0.2, 0.1, 0.05].map(|h| path_error(h, with_velocity));
-            for pair in errors.windows(2) {
-                assert!((pair[0] / pair[1]).log2() > 2.9, "{errors:?}");
+            for reconstruction in [Reconstruction::Smooth, Reconstruction::Interpolate] {
+                let error = |h| path_error(h, with_velocity, reconstruction);
+                let errors = [0.4, 0.2, 0.1, 0.05].map(error);
+                for pair in errors.windows(2) {
+                    assert!((pair[0] / pair[1]).log2() > 2.9, "{errors:?}");
+                }
             }
+        }
+    }
+
+    #[test]
+    fn a_host_that_knows_what_comes_is_followed_a_tenth_as_far_off() {
+        for with_velocity in [false, true] {
+            let [blind, seeing] = [Reconstruction::Smooth, Reconstruction::Interpolate]
+                .map(|reconstruction| path_error(0.4, with_velocity, reconstruction));
+            assert!(seeing < 0.1 * blind, "{seeing}, {blind}");
+        }
+    }
+
+    #[test]
+    fn a_path_goes_through_what_a_host_says_of_the_ends_of_irregular_steps() {
+        let mut path = Guided::at_rest(0.0, position(0.0));
+        let mut time = 0.0;
+        for step in [0.3, 0.1, 1e-3, 2.0, 0.3, 0.3] {
+            let end = time + step;
+            let said = Sample {
+                velocity: Some(velocity(end)),
+                ..sample(time, position(end))
+            };
+            let before = path.at(time);
+            path.extend(said, step, Reconstruction::Interpolate);
+            assert_relative_eq!(path.at(time).value, before.value, epsilon = 1e-12);
+            assert_relative_eq!(path.at(end).value, position(end), epsilon = 1e-12);
+            assert_relative_eq!(path.at(end).slope, velocity(end), epsilon = 1e-9);
+            time = end;
         }
     }
 

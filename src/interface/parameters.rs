@@ -250,6 +250,7 @@ impl Parameter {
             Parameter::InputReconstruction => Some(match scene.solver.input_reconstruction {
                 Reconstruction::Smooth => 0.0,
                 Reconstruction::Jump => 1.0,
+                Reconstruction::Interpolate => 2.0,
             }),
         }
     }
@@ -281,12 +282,14 @@ impl Parameter {
             Parameter::Gravity => scene.gravity = value,
             Parameter::Tolerance => scene.solver.tolerance = value,
             Parameter::InputReconstruction => {
-                scene.solver.input_reconstruction = if value == 0.0 {
-                    Reconstruction::Smooth
-                } else if value == 1.0 {
-                    Reconstruction::Jump
-                } else {
-                    return Err(format!("{value} is neither 0 (smooth) nor 1 (jump)"));
+                scene.solver.input_reconstruction = match value {
+                    0.0 => Reconstruction::Smooth,
+                    1.0 => Reconstruction::Jump,
+                    2.0 => Reconstruction::Interpolate,
+                    _ => {
+                        let known = "0 (smooth), 1 (jump) nor 2 (interpolate)";
+                        return Err(format!("{value} is neither {known}"));
+                    }
                 };
             }
         }
@@ -397,7 +400,7 @@ impl Rows<'_> {
             ),
             (
                 "solver.input_reconstruction",
-                "path of a coupled point between communication points: 0 smooth, 1 constant velocity with a jump",
+                "path of a coupled point between communication points: 0 smooth, 1 constant velocity with a jump, 2 cubics through inputs that hold for the end of the step",
                 Unit::ONE,
                 Parameter::InputReconstruction,
             ),

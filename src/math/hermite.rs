@@ -92,6 +92,13 @@ impl Hermites {
         }
     }
 
+    /// Mean slopes over the span, and its inverse; 0 where the curves stand still.
+    #[inline(always)]
+    pub fn secant(&self) -> (Lanes, f64) {
+        let [_, b, c, d] = self.powers;
+        ((b + (c + d)) * Lanes::splat(self.rate), self.rate)
+    }
+
     /// The same values at all times.
     pub fn constant(values: Lanes) -> Hermites {
         let zero = Lanes::splat(0.0);

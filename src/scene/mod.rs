@@ -539,6 +539,9 @@ pub enum Reconstruction {
     Smooth,
     /// Constant velocity from where the host says the point is, as the peers do: jumps at communication points.
     Jump,
+    /// Cubics through what the host says, which holds for the end of the communication step: nothing is predicted. For hosts that know
+    /// the motion, or step what moves the point first.
+    Interpolate,
 }
 
 /// What `moorline run` and the FMU write.

@@ -10,6 +10,7 @@ use super::{Simulation, Snapshot};
 use crate::dynamics::StepError;
 use crate::dynamics::motion::{Clock, Foresight, HostPath, Said, VesselPath};
 use crate::model::{Line, Model, Point, Role};
+use crate::scene::Reconstruction;
 
 /// The paths of everything that a host moves, told at the same times.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
@@ -74,6 +75,10 @@ impl Paths {
         step: f64,
     ) -> Result<(), StepError> {
         let (time, changes) = (snapshot.state.time, &snapshot.inputs.length_changes);
+        let told = match model.solver.input_reconstruction {
+            Reconstruction::Interpolate => time + step,
+            _ => time,
+        };
         for (index, reel) in self.reels.iter_mut().enumerate() {
             let line = &model.lines[index];
             let Some(winch) = &line.winch else { continue };
@@ -82,7 +87,7 @@ impl Paths {
                 _ => {
                     winches::check(line, changes[index])
                         .map_err(|reason| out_of_bounds(line, time, reason))?;
-                    reel.extend(winch.speed_max, [time, changes[index]], foresight);
+                    reel.extend(winch.speed_max, [told, changes[index]], foresight);
                 }
             }
         }

@@ -125,7 +125,7 @@ impl Clock {
 #[derive(Debug, Clone)]
 pub struct Foresight {
     pub(super) order: Order,
-    pub(super) jumps: bool,
+    pub(super) reconstruction: Reconstruction,
     /// Start of the step [s], its length [s] and 1/length [1/s].
     pub(super) span: [f64; 3],
     /// What is left at the end of the step of what the path misses now, see [`Clock::left`].
@@ -179,7 +179,7 @@ impl Foresight {
         let zeros = [0.0; DEGREE_MAX + 1];
         Foresight {
             order: Order::Before,
-            jumps: false,
+            reconstruction: Reconstruction::Smooth,
             span: [f64::NAN; 3],
             left: None,
             picked: [0; SAMPLES_MAX],
@@ -198,7 +198,7 @@ impl Foresight {
     fn renew(&mut self, clock: &Clock, order: Order, step: f64, reconstruction: Reconstruction) {
         let (was_even, start) = (self.even, clock.times[0]);
         let rate = 1.0 / step;
-        (self.order, self.jumps) = (order, reconstruction == Reconstruction::Jump);
+        (self.order, self.reconstruction) = (order, reconstruction);
         self.span = [start, step, rate];
         self.left = clock.left(step);
         self.even = clock.even == SAMPLES_MAX - 1 && clock.keeps(step);
