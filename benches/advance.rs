@@ -176,7 +176,7 @@ fn main() {
         }
     }
     if wanted("implicit") {
-        for (elements, longest) in [(4, 0.5), (5, 0.5), (8, 0.25)] {
+        for (elements, longest) in [(4, 0.5), (5, 0.5), (6, 0.25), (8, 0.25)] {
             let scene = taut_implicit(elements, longest);
             for drive in drives {
                 row("taut, implicit", elements, &scene, drive, 0.5);

@@ -201,12 +201,17 @@ impl Simulation {
         }
         std::mem::swap(&mut self.snapshot.paths, &mut self.paths);
         self.memo.clear();
-        winches::follow(&mut self.model, &self.snapshot.state);
+        if !self.paths.reels.is_empty() {
+            winches::follow(&mut self.model, &self.snapshot.state);
+        }
         Ok(())
     }
 
     /// Parts the lines from their points that are to let go, and books what their ends bring along; returns who was parted before.
     fn let_go(&mut self) -> Option<(State, Ledger)> {
+        if !self.snapshot.inputs.releases.contains(&true) {
+            return None;
+        }
         let model = &*self.model;
         let lines = model.lines.iter().zip(&self.snapshot.inputs.releases);
         let states = self.snapshot.state.lines.iter();
@@ -227,10 +232,15 @@ impl Simulation {
                 }
             }
         }
+        let (states, flow) = (
+            [&before.0, &self.snapshot.state],
+            &mut self.snapshot.ledger.flow,
+        );
         for network in &model.networks {
-            let states = [&before.0, &self.snapshot.state];
-            self.snapshot.ledger.flow.given += ledger::joined_energy(model, network, states);
+            flow.given += ledger::joined_energy(model, network, states);
         }
+        let [held, free] = states.map(|state| self.work.turning_energy(model, state));
+        flow.lost += free - held;
         Some(before)
     }
 }

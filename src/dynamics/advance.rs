@@ -2,9 +2,10 @@
 
 use std::sync::Mutex;
 
+use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-use super::axial_implicit::AxialWork;
+use super::axial_implicit::{self, AxialWork};
 use super::beam::{self, BeamWork, Driven, Stuck, StuckReason};
 use super::crew::{Crew, Hands, Labour, Pace, Queue, lock};
 use super::implicit::{self, Scheme};
@@ -169,6 +170,22 @@ impl Workspace {
         sum
     }
 
+    /// What the books of the networks leave out until they are read, to be taken off what was lost [J]: see
+    /// [`AxialWork::defers_turning`].
+    pub fn turning_energy(&self, model: &Model, state: &State) -> f64 {
+        let mut sum = 0.0;
+        for ((_, solver), network) in self.networks.iter().zip(&model.networks) {
+            if let Solver::AxialImplicit(work) = solver
+                && work.defers_turning()
+            {
+                let index = network.lines[0];
+                let (line, shape) = (&model.lines[index], &state.lines[index]);
+                sum += axial_implicit::turning_energy(model, line, shape);
+            }
+        }
+        sum
+    }
+
     /// Gives a state at rest the accelerations that the implicit integrators start from.
     pub fn start(
         &mut self,
@@ -302,7 +319,8 @@ impl Workspace {
             }
         } else {
             for (number, network) in self.networks.iter_mut().enumerate() {
-                total.join(step.network(number, network, &mut self.implicit, &mut self.next)?);
+                let (implicit, next) = (&mut self.implicit, &mut self.next);
+                step.network(number, network, implicit, next, &mut total)?;
             }
         }
         self.next.time = state.time + length;
@@ -426,13 +444,13 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
             helper.made.clear();
             while let Some((network, (solver, outcome))) = queue.take(number + 1) {
                 let (implicit, next) = (&mut helper.implicit, &mut helper.next);
-                *outcome = Some(self.network(network, solver, implicit, next));
+                *outcome = Some(self.network_alone(network, solver, implicit, next));
                 helper.made.push(network);
             }
         };
         let lead = || {
             while let Some((network, (solver, outcome))) = queue.take(0) {
-                *outcome = Some(self.network(network, solver, implicit, next));
+                *outcome = Some(self.network_alone(network, solver, implicit, next));
             }
         };
         crew.run(helpers, help, lead);
@@ -455,24 +473,42 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
         }
     }
 
-    /// One network over the step.
+    /// What one network does over the step.
+    fn network_alone(
+        &self,
+        number: usize,
+        network: &mut (Choice, Solver),
+        implicit: &mut assembly::Workspace,
+        next: &mut State,
+    ) -> Result<Done, StepError> {
+        let mut done = Done::default();
+        self.network(number, network, implicit, next, &mut done)?;
+        Ok(done)
+    }
+
+    /// One network over the step; joins what it does to `total`.
     fn network(
         &self,
         number: usize,
         (choice, solver): &mut (Choice, Solver),
         implicit: &mut assembly::Workspace,
         next: &mut State,
-    ) -> Result<Done, StepError> {
+        total: &mut Done,
+    ) -> Result<(), StepError> {
         let step_max = choice.step_max;
-        match solver {
-            Solver::Leapfrog(work) => self.leapfrog(number, step_max, work, next),
-            Solver::AxialImplicit(work) => self.axial_implicit(number, step_max, work, next),
-            Solver::Implicit(scheme) => self.implicit(number, step_max, scheme, implicit, next),
-            Solver::Beam(work) => self.beam(number, step_max, work, next),
-            Solver::QuasiStatic => self.quasi_static(number, implicit, next),
-        }
+        total.join(match solver {
+            Solver::AxialImplicit(work) => {
+                return self.axial_implicit(number, step_max, work, next, total);
+            }
+            Solver::Leapfrog(work) => self.leapfrog(number, step_max, work, next)?,
+            Solver::Implicit(scheme) => self.implicit(number, step_max, scheme, implicit, next)?,
+            Solver::Beam(work) => self.beam(number, step_max, work, next)?,
+            Solver::QuasiStatic => self.quasi_static(number, implicit, next)?,
+        });
+        Ok(())
     }
 
+    #[inline(never)]
     fn leapfrog(
         &self,
         number: usize,
@@ -516,42 +552,37 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
         Err(self.diverged(network.lines[line], node))
     }
 
+    #[inline(never)]
     fn axial_implicit(
         &self,
         number: usize,
         step_max: f64,
         work: &mut AxialWork,
         next: &mut State,
-    ) -> Result<Done, StepError> {
+        total: &mut Done,
+    ) -> Result<(), StepError> {
         let index = self.model.networks[number].lines[0];
         let line = &self.model.lines[index];
         let transverse = work.transverse;
-        let tensions = self.state.lines[index].half_step.tension[0].iter();
-        let tension_now = tensions.fold(0.0, |a, &b| if b > a { b } else { a });
-        let expected = SNAP_GROWTH * tension_now;
+        let expected = SNAP_GROWTH
+            * match self.holds {
+                true => work.tension_before(),
+                false => {
+                    let tensions = self.state.lines[index].half_step.tension[0].iter();
+                    tensions.fold(0.0, |a, &b| if b > a { b } else { a })
+                }
+            };
         // what holds over the whole communication step is told without roots and quotients
         let step_max = match self.length * self.length * expected <= transverse * transverse {
             true => step_max,
             false => step_max.min(transverse / expected.sqrt()),
         };
         for retry in 0..=RETRIES_MAX {
-            if self.holds && retry == 0 {
-                work.resume();
-            } else {
-                work.load(&self.state.lines[index]);
-            }
-            work.load_waves(self.state.waves.as_ref(), index);
             let count = self.substeps(step_max, retry)?;
             let drift = self.length / count as f64;
+            self.set_out(index, drift, work, self.holds && retry == 0);
             let mut steps = self.state.lines[index].half_step.steps;
             let mut solves = 0;
-            for (end, &point) in [End::A, End::B].into_iter().zip(&line.ends) {
-                let k = (self.held)(point, self.start);
-                work.put_end(end, k.position, k.velocity - 0.5 * drift * k.acceleration);
-            }
-            work.set_time(self.start);
-            work.meet_surface(None);
-            work.open_books();
             for k in 1..=count {
                 let t = self.start + k as f64 * drift;
                 if let Some(stream) = self.model.stream(t - drift) {
@@ -559,32 +590,65 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
                 }
                 work.set_time(t - drift);
                 let [a, b] = line.ends;
-                let ends = [(self.held)(a, t).position, (self.held)(b, t).position];
+                let ends = [self.place(a, t), self.place(b, t)];
                 if let Some(partings) = &line.parting {
                     work.part_ends(partings, t - drift, Step::after(steps, drift));
                 }
                 solves += work.step(Step::after(steps, drift), ends);
                 steps = [drift, steps[0]];
             }
+            let (is_sound, flow) = (work.store(&mut next.lines[index], steps), work.flow());
             let stretch = drift * drift * work.tension_peak();
             let too_long = stretch > transverse * transverse || !work.is_settled();
-            let flow = work.flow();
-            let whole = work.broken_node().is_none() && flow.is_finite();
-            if whole && !(too_long && retry < RETRIES_MAX) {
-                work.store(&mut next.lines[index], steps);
-                return Ok(Done {
-                    counters: Counters {
-                        substeps: count,
-                        solves,
-                    },
-                    flow,
-                });
+            if is_sound && flow.is_finite() && !(too_long && retry < RETRIES_MAX) {
+                let counters = Counters {
+                    substeps: count,
+                    solves,
+                };
+                total.join(Done { counters, flow });
+                return Ok(());
             }
         }
         let node = work.broken_node();
         Err(self.diverged(index, node.unwrap_or_else(|| work.fastest_node())))
     }
 
+    /// Makes a line ready for steps of `drift` [s], of which it may still hold the state.
+    fn set_out(&self, index: usize, drift: f64, work: &mut AxialWork, holds: bool) {
+        if holds {
+            work.resume();
+        } else {
+            work.load(&self.state.lines[index]);
+        }
+        if self.state.waves.is_some() {
+            work.load_waves(self.state.waves.as_ref(), index);
+        }
+        let ends = [End::A, End::B].into_iter();
+        for (end, &point) in ends.zip(&self.model.lines[index].ends) {
+            if holds && self.is_fixed(point) {
+                continue; // it is there
+            }
+            let k = (self.held)(point, self.start);
+            work.put_end(end, k.position, k.velocity - 0.5 * drift * k.acceleration);
+        }
+        work.set_time(self.start);
+        work.meet_surface(None);
+        work.open_books();
+    }
+
+    fn is_fixed(&self, point: usize) -> bool {
+        matches!(self.model.points[point].role, Role::Fixed)
+    }
+
+    /// Where a held point is at `t` [s].
+    fn place(&self, point: usize, t: f64) -> Vector3<f64> {
+        match self.is_fixed(point) {
+            true => self.model.points[point].reference,
+            false => (self.held)(point, t).position,
+        }
+    }
+
+    #[inline(never)]
     fn implicit(
         &self,
         number: usize,
@@ -629,6 +693,7 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
         Ok(Done { counters, flow })
     }
 
+    #[inline(never)]
     fn beam(
         &self,
         number: usize,
@@ -665,6 +730,7 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
         })
     }
 
+    #[inline(never)]
     fn quasi_static(
         &self,
         number: usize,
@@ -692,6 +758,12 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
         if self.length <= step_max {
             return Ok(1 << retry);
         }
+        self.several(step_max, retry)
+    }
+
+    /// [`Self::substeps`] where one is too long.
+    #[inline(never)]
+    fn several(&self, step_max: f64, retry: u32) -> Result<usize, StepError> {
         // a span of exactly one limit must not become two steps by rounding
         let count = self.length / step_max * (1.0 - 1e-9);
         if count <= SUBSTEPS_MAX {

@@ -99,10 +99,10 @@ pub struct AxialWork {
     numerical: Lanes,
     /// Greatest T̄ since then [N].
     tension_peak: Lanes,
+    /// Greatest tension of the springs, and greatest T̄, when the state was handed back last [N].
+    tensions: [f64; 2],
     /// Whether the flags and the true stretch of all steps since then were found.
     settled: bool,
-    /// Σ ½ (M_t − M_n)(v·t)² where the last advance left it, while nothing has changed it [J].
-    turning: Option<f64>,
     /// Whether any node may be heavier along the line than across it, or lighter.
     turns: bool,
 }
@@ -143,8 +143,8 @@ impl AxialWork {
             given: 0.0,
             numerical: Lanes::splat(0.0),
             tension_peak: Lanes::splat(0.0),
+            tensions: [0.0; 2],
             settled: true,
-            turning: None,
             turns: line.nodes.mass_tangent != line.nodes.mass_normal || layout.surface.is_some(),
             layout,
         })
@@ -158,7 +158,6 @@ impl AxialWork {
 
     /// Takes over the state of a line.
     pub fn load(&mut self, state: &LineState) {
-        self.turning = None;
         self.layout.load(state);
         self.parted = state.parted;
         for end in ENDS {
@@ -206,14 +205,15 @@ impl AxialWork {
 
     /// Starts the books of the steps to come, the ends and the surface being where they are.
     pub fn open_books(&mut self) {
-        if !self.layout.books {
-            return;
+        if self.layout.books && self.layout.surface.is_some() {
+            self.lost[0] += self.turning_energy();
         }
-        let turning = match self.turning.take() {
-            Some(turning) if self.layout.surface.is_none() => turning,
-            _ => self.turning_energy(),
-        };
-        self.lost[0] += turning;
+    }
+
+    /// Whether the books leave out what [`turning_energy`] the state has: what one run of steps ends with the next one starts with, so that
+    /// it need not be known before the ledger is read. Where nodes dip into the water masses change too, and each run is booked for itself.
+    pub fn defers_turning(&self) -> bool {
+        self.turns && self.layout.surface.is_none()
     }
 
     /// Σ ½ (M_t − M_n)(v·t)² of all nodes but held ends, the velocities being those of t_{n−½} [J].
@@ -225,13 +225,16 @@ impl AxialWork {
         unit.dispatch(Turning(self))
     }
 
-    /// Energy given by the held ends and lost between them since [`Self::load`]; none where it is not booked.
+    /// Energy given by the held ends and lost between them since [`Self::load`]; see [`Self::defers_turning`]. None where it
+    /// is not booked.
     pub fn flow(&mut self) -> Flow {
         if !self.layout.books {
             return Flow::default();
         }
-        let turning = self.turning_energy();
-        self.turning = Some(turning);
+        let turning = match self.layout.surface {
+            Some(_) => self.turning_energy(),
+            None => 0.0,
+        };
         Flow {
             given: self.given + self.layout.lifted(),
             lost: self.lost.sum() - self.layout.joined() - turning,
@@ -245,20 +248,13 @@ impl AxialWork {
         self.settled
     }
 
-    /// Hands the state back after steps of `steps` [s].
-    pub fn store(&self, state: &mut LineState, steps: [f64; 2]) {
+    /// Hands the state back after steps of `steps` [s]. Whether all nodes have finite positions, and speeds that mooring lines reach.
+    pub fn store(&mut self, state: &mut LineState, steps: [f64; 2]) -> bool {
         state.parted = self.parted;
-        self.layout.store(state, steps);
-        let (count, rows) = (self.layout.segment_count, self.rows.segments.len());
-        let [now, before] = &mut state.half_step.tension;
-        now.resize(count, 0.0);
-        before.resize(count, 0.0);
-        let pieces = now.chunks_mut(rows).zip(before.chunks_mut(rows));
-        for (lane, (now, before)) in pieces.enumerate() {
-            for (row, kept) in self.rows.segments.iter().zip(now.iter_mut().zip(before)) {
-                (*kept.0, *kept.1) = (row.history[0][lane], row.history[1][lane]);
-            }
-        }
+        let unit = self.layout.vector_unit;
+        let is_sound;
+        (is_sound, self.tensions) = unit.dispatch(HandBack(self, state, steps));
+        is_sound
     }
 
     /// Takes over what waves do at the nodes of this line, by its number, over a span of time.
@@ -268,9 +264,6 @@ impl AxialWork {
 
     /// Meets the water's surface as it is at t_n. Where that is `after` a step, what joined with the water in it is booked.
     pub fn meet_surface(&mut self, after: Option<Step>) {
-        if self.layout.surface.is_none() {
-            return;
-        }
         if let Some(step) = after {
             self.layout
                 .leave_surface(step, self.parted.map(|parted| !parted));
@@ -302,11 +295,20 @@ impl AxialWork {
 
     /// Puts an end at a position [m] with the velocity [m/s] that the next step takes as lagged.
     pub fn put_end(&mut self, end: End, position: Vector3<f64>, velocity: Vector3<f64>) {
-        if !self.parted[end as usize] {
-            if self.layout.position.get(self.layout.end_slot(end)) != position {
-                self.turning = None;
-            }
-            self.layout.put_end(end, position, velocity);
+        if self.parted[end as usize] {
+            return;
+        }
+        let at = self.layout.end_slot(end);
+        if self.layout.position.get(at) == position {
+            return self.layout.velocity.set(at, velocity);
+        }
+        let jumps = self.defers_turning();
+        if jumps {
+            self.lost[0] -= self.turning_energy();
+        }
+        self.layout.put_end(end, position, velocity);
+        if jumps {
+            self.lost[0] += self.turning_energy();
         }
     }
 
@@ -340,9 +342,8 @@ impl AxialWork {
 
     /// One step; `ends` are the positions [m] of both ends after it. Returns the passes it took.
     pub fn step(&mut self, step: Step, ends: [Vector3<f64>; 2]) -> usize {
-        self.turning = None;
         let unit = self.layout.vector_unit;
-        unit.dispatch(AxialStep(self, step, ends))
+        unit.dispatch(AxialStep(self, &step, &ends))
     }
 
     /// Lines in moving water and over rough beds book in passing.
@@ -452,7 +453,9 @@ impl AxialWork {
             self.layout.position.wrap();
             self.layout.creep(step.drift);
         }
-        self.meet_surface(Some(step));
+        if self.layout.surface.is_some() {
+            self.meet_surface(Some(step));
+        }
     }
 
     /// Books what the held ends gave in the step; `velocity_before` holds the new velocities.
@@ -489,9 +492,14 @@ impl AxialWork {
         self.lost = self.lost + work;
     }
 
-    /// Greatest T̄ [N] since the state was loaded.
+    /// Greatest T̄ [N] between the last time the state was loaded and [`Self::store`].
     pub fn tension_peak(&self) -> f64 {
-        self.tension_peak.greatest()[0]
+        self.tensions[1]
+    }
+
+    /// Greatest tension [N] that [`Self::store`] handed back as that of t − Δt.
+    pub fn tension_before(&self) -> f64 {
+        self.tensions[0]
     }
 
     /// Index of the node that moves fastest.
@@ -506,15 +514,79 @@ impl AxialWork {
 }
 
 /// [`AxialWork::step`] for the vector unit of the machine.
-struct AxialStep<'a>(&'a mut AxialWork, Step, [Vector3<f64>; 2]);
+struct AxialStep<'a>(&'a mut AxialWork, &'a Step, &'a [Vector3<f64>; 2]);
 
 impl NullaryFnOnce for AxialStep<'_> {
     type Output = usize;
 
     #[inline(always)]
     fn call(self) -> usize {
-        self.0.choose_step(self.1, self.2)
+        self.0.choose_step(*self.1, *self.2)
     }
+}
+
+/// [`AxialWork::store`] for the vector unit of the machine; gives the greatest tensions too.
+struct HandBack<'a>(&'a AxialWork, &'a mut LineState, [f64; 2]);
+
+impl NullaryFnOnce for HandBack<'_> {
+    type Output = (bool, [f64; 2]);
+
+    #[inline(always)]
+    fn call(self) -> (bool, [f64; 2]) {
+        let HandBack(work, state, steps) = self;
+        let is_sound = work.layout.hand_back(state, steps);
+        let (count, rows) = (work.layout.segment_count, work.rows.segments.len());
+        let [now, before] = &mut state.half_step.tension;
+        now.resize(count, 0.0);
+        before.resize(count, 0.0);
+        let mut tensions = Tensions { now, before };
+        let mut greatest = Lanes::splat(0.0);
+        for (row, segment) in work.rows.segments.iter().enumerate() {
+            let of = &segment.history;
+            greatest = of[0].max(greatest);
+            tensions.take(row, 0, of);
+            tensions.take(rows + row, 1, of);
+            tensions.take(2 * rows + row, 2, of);
+            tensions.take(3 * rows + row, 3, of);
+        }
+        let peak = work.tension_peak.greatest()[0];
+        (is_sound, [greatest.greatest()[0], peak])
+    }
+}
+
+/// Tensions of the segments of a state at t − Δt and t − 2Δt [N].
+struct Tensions<'a> {
+    now: &'a mut [f64],
+    before: &'a mut [f64],
+}
+
+impl Tensions<'_> {
+    /// Takes over what a segment has `of` these in a lane; nothing if it is padding.
+    #[inline(always)]
+    fn take(&mut self, segment: usize, lane: usize, of: &[Lanes; 2]) {
+        let slots = (self.now.get_mut(segment), self.before.get_mut(segment));
+        if let (Some(now), Some(before)) = slots {
+            (*now, *before) = (of[0][lane], of[1][lane]);
+        }
+    }
+}
+
+/// Σ ½ (M_t − M_n)(v·t)² of the nodes of a line that nothing holds, the velocities being those that the leapfrog keeps [J].
+pub fn turning_energy(model: &Model, line: &Line, state: &LineState) -> f64 {
+    let memory = &state.half_step;
+    let velocity = match memory.velocity.is_empty() {
+        true => &state.velocity,
+        false => &memory.velocity,
+    };
+    let n = line.segment_count();
+    let [first, last] = ENDS.map(|end| usize::from(line.is_held(model, state, end)));
+    let turning = |i: usize| {
+        let chord = state.position[(i + 1).min(n)] - state.position[i.saturating_sub(1)];
+        let along = velocity[i].dot(&chord);
+        let excess = line.nodes.mass_tangent[i] - line.nodes.mass_normal[i];
+        0.5 * excess * along * along / chord.norm_squared().max(f64::MIN_POSITIVE)
+    };
+    (first..=n - last).map(turning).sum()
 }
 
 /// [`AxialWork::turning_energy`] for the vector unit of the machine.

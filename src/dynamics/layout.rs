@@ -13,7 +13,7 @@ use super::leapfrog::Step;
 use super::surface::SurfaceNow;
 use crate::math::fold::{Column, Field, Fold, Slot};
 use crate::math::hermite::Hermite;
-use crate::math::lanes::{LANES, Lanes, Vectors};
+use crate::math::lanes::{Lanes, Vectors};
 use crate::model::{Bottom, Contact, End, Line, LineState, Model, WaveSpan};
 use crate::physics::airy::{Orbit, cubics};
 use crate::physics::flow::{Profile, Stream};
@@ -285,7 +285,7 @@ impl ContactArrays {
     }
 }
 
-/// Whether [`Layout::is_sound`] of all rows, for the vector unit of the machine.
+/// Whether [`Layout::soundness`] of all rows is positive, for the vector unit of the machine.
 struct AreSound<'a>(&'a Layout);
 
 impl NullaryFnOnce for AreSound<'_> {
@@ -293,11 +293,48 @@ impl NullaryFnOnce for AreSound<'_> {
 
     #[inline(always)]
     fn call(self) -> bool {
-        let mut sound = true;
+        let mut sound = Lanes::splat(1.0);
         for row in self.0.rows() {
-            sound &= self.0.is_sound(row);
+            sound = sound.where_positive(self.0.soundness(row));
         }
-        sound
+        sound.all_positive()
+    }
+}
+
+/// Nodes of a state: positions [m], velocities at the time of these, and half a step and one and a half steps before [m/s].
+struct Nodes<'a> {
+    position: &'a mut [Vector3<f64>],
+    velocity: &'a mut [Vector3<f64>],
+    half: &'a mut [Vector3<f64>],
+    before: &'a mut [Vector3<f64>],
+}
+
+impl Nodes<'_> {
+    /// Takes over what a node has `of` these in a lane; nothing if it is padding.
+    #[inline(always)]
+    fn take(&mut self, node: usize, lane: usize, of: &[Vectors; 4]) {
+        let (velocity, half) = (self.velocity.get_mut(node), self.half.get_mut(node));
+        let before = self.before.get_mut(node);
+        if let (Some(place), Some(velocity), Some(half), Some(before)) =
+            (self.position.get_mut(node), velocity, half, before)
+        {
+            *place = of[0].get(lane);
+            *velocity = of[1].get(lane);
+            *half = of[2].get(lane);
+            *before = of[3].get(lane);
+        }
+    }
+}
+
+/// [`Layout::store`] for the vector unit of the machine.
+struct HandBack<'a>(&'a Layout, &'a mut LineState, [f64; 2]);
+
+impl NullaryFnOnce for HandBack<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn call(self) -> bool {
+        self.0.hand_back(self.1, self.2)
     }
 }
 
@@ -449,8 +486,15 @@ impl Layout {
         self.fold.slots().take(self.segment_count + 1)
     }
 
-    /// Hands them back after steps of `steps` [s], with velocities extrapolated to the time of the positions.
-    pub fn store(&self, state: &mut LineState, steps: [f64; 2]) {
+    /// Hands them back after steps of `steps` [s], with velocities extrapolated to the time of the positions. Whether all nodes have finite
+    /// positions, and speeds that mooring lines reach.
+    pub fn store(&self, state: &mut LineState, steps: [f64; 2]) -> bool {
+        self.vector_unit.dispatch(HandBack(self, state, steps))
+    }
+
+    /// [`Self::store`], wherever it is compiled into.
+    #[inline(always)]
+    pub fn hand_back(&self, state: &mut LineState, steps: [f64; 2]) -> bool {
         if let Some(creep) = &self.creep {
             creep.store(&mut state.creep);
         }
@@ -459,23 +503,25 @@ impl Layout {
         memory.velocity.resize(count, Vector3::zeros());
         memory.velocity_before.resize(count, Vector3::zeros());
         memory.steps = steps;
-        let extrapolation = Step::after(steps, steps[0]).extrapolation;
-        let rows = self.fold.rows();
-        let own = [&self.position, &self.velocity, &self.velocity_before];
-        let [positions, velocities, earlier] = own.map(|field| &field.rows(rows)[1..]);
-        for lane in 0..LANES {
-            let nodes = (lane * rows).min(count)..((lane + 1) * rows).min(count);
-            let places = state.position[nodes.clone()].iter_mut().zip(positions);
-            let speeds = state.velocity[nodes.clone()].iter_mut();
-            let halves = memory.velocity[nodes.clone()].iter_mut().zip(velocities);
-            let befores = memory.velocity_before[nodes].iter_mut().zip(earlier);
-            let nodes = places.zip(speeds).zip(halves.zip(befores));
-            for (((place, position), speed), ((last, half), (before, earlier))) in nodes {
-                *place = position.get(lane);
-                let (half, earlier) = (half.get(lane), earlier.get(lane));
-                *speed = half + extrapolation * (half - earlier);
-                (*last, *before) = (half, earlier);
-            }
+        let extrapolation = Lanes::splat(Step::after(steps, steps[0]).extrapolation);
+        let mut nodes = Nodes {
+            position: &mut state.position,
+            velocity: &mut state.velocity,
+            half: &mut memory.velocity,
+            before: &mut memory.velocity_before,
+        };
+        let (rows, mut sound) = (self.fold.rows(), Lanes::splat(1.0));
+        for row in 0..rows {
+            let at = row + 1;
+            let (half, before) = (self.velocity.load(at), self.velocity_before.load(at));
+            let velocity = half + (half - before).scale(extrapolation);
+            let of = [self.position.load(at), velocity, half, before];
+            sound = sound.where_positive(self.soundness(at));
+            // a loop over lanes would be made one of vectors, which cannot be written so
+            nodes.take(row, 0, &of);
+            nodes.take(rows + row, 1, &of);
+            nodes.take(2 * rows + row, 2, &of);
+            nodes.take(3 * rows + row, 3, &of);
         }
         if let Some(bottom) = self.bottom() {
             let places = state.position.iter().zip(self.fold.slots());
@@ -483,6 +529,7 @@ impl Layout {
                 *anchor = position + bottom.rub.get(at) / bottom.stick[at];
             }
         }
+        sound.all_positive()
     }
 
     /// The bed, where it is more than a level plane without friction.
@@ -812,13 +859,13 @@ impl Layout {
         }
     }
 
-    /// Whether all nodes of a row have a finite position, and a speed that mooring lines reach.
+    /// > 0 for the nodes of a row that have a finite position, and a speed that mooring lines reach [m²/s²].
     #[inline(always)]
-    pub fn is_sound(&self, row: usize) -> bool {
+    pub fn soundness(&self, row: usize) -> Lanes {
         let (position, velocity) = (self.position.load(row), self.velocity.load(row));
         let zero = (position.x + position.y + position.z) * Lanes::splat(0.0); // or not a number
         let fastest = Lanes::splat(SPEED_MAX * SPEED_MAX);
-        (fastest + zero - velocity.dot(velocity)).all_positive()
+        fastest + zero - velocity.dot(velocity)
     }
 
     /// Index of the node that moves fastest.

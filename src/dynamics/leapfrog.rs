@@ -720,9 +720,9 @@ impl LineWork {
     #[inline(always)]
     fn survey_rows(&self) -> Survey {
         let (line, flows) = (&self.layout, self.layout.flows());
-        let (mut greatest, mut is_sound) = (Lanes::splat(0.0), true);
+        let (mut greatest, mut sound) = (Lanes::splat(0.0), Lanes::splat(1.0));
         for row in line.rows() {
-            is_sound &= line.is_sound(row);
+            sound = sound.where_positive(line.soundness(row));
             let Some(water) = &self.water else { continue };
             let mut past = line.velocity.load(row);
             if flows {
@@ -734,7 +734,7 @@ impl LineWork {
         let square = (0..LANES).fold(0.0, |sum: f64, lane| sum.max(greatest[lane]));
         Survey {
             drag_rate: square.sqrt(),
-            is_sound,
+            is_sound: sound.all_positive(),
         }
     }
 

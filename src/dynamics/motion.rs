@@ -49,15 +49,28 @@ impl Said {
     /// Of N axes, the last of which stands for those that are not there too.
     #[inline(always)]
     pub fn new<const N: usize>(position: [f64; N], velocity: [Option<f64>; N]) -> Said {
+        Said::rated(position, rates(velocity))
+    }
+
+    /// [`Said::new`] from what [`rates`] makes of the velocities.
+    #[inline(always)]
+    pub fn rated<const N: usize>(position: [f64; N], [velocity, rated]: [[f64; N]; 2]) -> Said {
         let last = |lane: usize| lane.min(N - 1);
-        let rated = velocity.map(|rate| f64::from(u8::from(rate.is_some())));
-        let velocity = velocity.map(|rate| rate.unwrap_or(0.0));
         Said {
             position: Lanes::new(from_fn(|lane| position[last(lane)])),
             velocity: Lanes::new(from_fn(|lane| velocity[last(lane)])),
             rated: Lanes::new(from_fn(|lane| rated[last(lane)])),
         }
     }
+}
+
+/// Velocities where a host tells them, else 0 [m/s, rad/s]; and 1 where it does, else 0 [-].
+#[inline(always)]
+pub fn rates<const N: usize>(told: [Option<f64>; N]) -> [[f64; N]; 2] {
+    [
+        told.map(|rate| rate.unwrap_or(0.0)),
+        told.map(|rate| f64::from(u8::from(rate.is_some()))),
+    ]
 }
 
 /// The C1 path of something along four axes side by side, and the samples it is predicted from.
@@ -170,6 +183,23 @@ impl AxesPath {
     /// Lays the segments from the end of the path `before` to position [m, rad] and velocity [m/s, rad/s].
     #[inline(always)]
     fn bridge(&mut self, before: &AxesPath, foresight: &Foresight, said: &Said, to: [Lanes; 2]) {
+        if foresight.jumps || foresight.left.is_some() {
+            return self.bridge_over(before, foresight, said, to);
+        }
+        self.end = to;
+        self.curve = Hermites::bridge(foresight.span, before.end, to);
+    }
+
+    /// [`AxesPath::bridge`] where the path jumps to what the host says, or what it missed is made up over more than the step.
+    #[cold]
+    #[inline(never)]
+    fn bridge_over(
+        &mut self,
+        before: &AxesPath,
+        foresight: &Foresight,
+        said: &Said,
+        to: [Lanes; 2],
+    ) {
         let ([position, velocity], [_, length, _]) = (to, foresight.span);
         let mut from = before.end;
         self.end = to;
@@ -201,10 +231,12 @@ impl AxesPath {
         self.curve.at(t)
     }
 
-    /// The same at both ends of the present segments.
+    /// The same at both ends of the present segments; the last one is to the last bit where the next ones start.
     #[inline(always)]
     pub fn ends(&self) -> [[Lanes; 3]; 2] {
-        self.curve.ends()
+        let [start, [.., curvature]] = self.curve.ends();
+        let [position, velocity] = self.end;
+        [start, [position, velocity, curvature]]
     }
 
     /// Predicts position [m, rad] and velocity [m/s, rad/s] at the end of a step from what the host said of the position.

@@ -197,7 +197,7 @@ pub(super) struct Held {
     /// The same of these, along x, y and z: position [m], velocity [m/s] and acceleration [m/s²].
     hosted: Vec<[[Lanes; 3]; 2]>,
     ways: Vec<Way>,
-    /// Whether anything moves but by forces.
+    /// Whether anything moves but by forces, or as a host says.
     moves: bool,
     /// What bounds the errors of the ways of points on vessels, where these follow a motion of the scene that is no cubic.
     vessels: Vec<Option<Derivatives>>,
@@ -238,7 +238,9 @@ impl Held {
             span: [f64::NAN; 2],
             ends: references.map(|k| [k; 2]).collect(),
             hosted: vec![[[Lanes::splat(0.0); 3]; 2]; coupled.start],
-            moves: ways.iter().any(|way| !matches!(way, Way::Still)),
+            moves: ways
+                .iter()
+                .any(|way| !matches!(way, Way::Still | Way::Host(_))),
             ways,
             vessels: motions
                 .map(|motion| motion.filter(|_| follows_scene)?.derivatives())
@@ -250,13 +252,15 @@ impl Held {
     pub fn prepare(&mut self, at: &At, span: [f64; 2], steps: usize) {
         let goes_on = self.span[1] == span[0];
         self.span = span;
+        for (ends, path) in self.hosted.iter_mut().zip(&at.paths.points) {
+            *ends = path.0.ends();
+        }
         if !self.moves {
             return;
         }
         for (point, (way, ends)) in self.ways.iter_mut().zip(&mut self.ends).enumerate() {
             match way {
-                Way::Still => (),
-                Way::Host(path) => self.hosted[*path] = at.paths.points[*path].0.ends(),
+                Way::Still | Way::Host(_) => (),
                 Way::Worked => *ends = span.map(|t| at.point(point, t)),
                 Way::Bridged(bridge) => {
                     let Some(motion) = at.own_motion(point) else {
@@ -329,16 +333,19 @@ impl Held {
     pub fn point(&self, at: &At, point: usize, t: f64) -> Kinematics {
         let [start, end] = self.span;
         match &self.ways[point] {
-            Way::Host(path) if t == end => HostPath::kinematics(&self.hosted[*path][1]),
-            Way::Host(path) if t == start => HostPath::kinematics(&self.hosted[*path][0]),
-            Way::Host(path) => at.paths.points[*path].at(t),
+            Way::Host(path) if t == start || t == end => {
+                HostPath::kinematics(&self.hosted[*path][usize::from(t == end)])
+            }
             _ => self.other(at, point, t),
         }
     }
 
-    /// [`Held::point`] where the host does not say it.
+    /// [`Held::point`] but at the ends of what the host says.
     #[inline(never)]
     fn other(&self, at: &At, point: usize, t: f64) -> Kinematics {
+        if let Way::Host(path) = &self.ways[point] {
+            return at.paths.points[*path].at(t);
+        }
         let ([first, last], [start, end]) = (&self.ends[point], self.span);
         if t == end {
             return *last;

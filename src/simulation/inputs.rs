@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use super::Simulation;
+use crate::dynamics::motion::rates;
 use crate::math::attitude::angle_rates;
 use crate::model::{Body, Model};
 
@@ -35,8 +36,8 @@ impl Inputs {
 pub(super) struct PointInput {
     /// Displacement from the reference position [m].
     pub displacement: [f64; 3],
-    /// Velocity [m/s]; derived from the displacements where absent.
-    pub velocity: [Option<f64>; 3],
+    /// Velocity [m/s], and where it is told rather than derived from the displacements, as [`rates`] has them.
+    pub rates: [[f64; 3]; 2],
 }
 
 /// What a host has said about a vessel.
@@ -78,12 +79,13 @@ impl Simulation {
 
     /// Sets how a coupled point moves now [m/s]; axes without a velocity are derived from the displacements.
     pub fn set_velocity(&mut self, point: usize, velocity: [Option<f64>; 3]) {
-        self.snapshot.inputs.points[point].velocity = velocity;
+        self.snapshot.inputs.points[point].rates = rates(velocity);
     }
 
     /// Velocity of a coupled point as set [m/s].
     pub fn velocity(&self, point: usize) -> [Option<f64>; 3] {
-        self.snapshot.inputs.points[point].velocity
+        let [velocity, told] = self.snapshot.inputs.points[point].rates;
+        std::array::from_fn(|axis| (told[axis] > 0.0).then_some(velocity[axis]))
     }
 
     /// Sets where a vessel is now: displacement from its reference position [m]; roll, pitch and yaw added to those of its reference

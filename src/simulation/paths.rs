@@ -119,7 +119,7 @@ impl NullaryFnOnce for Extend<'_> {
                 break;
             };
             let place: [f64; 3] = (point.reference + Vector3::from(input.displacement)).into();
-            let said = Said::new(place, input.velocity);
+            let said = Said::rated(place, input.rates);
             path.0.extend(&before.0, self.foresight, &said);
         }
         let paths = self.paths.vessels.iter_mut().zip(&self.before.vessels);

@@ -43,8 +43,8 @@ pub struct NodeBending {
 /// What several outputs need of the present state, worked out when the first of them is read.
 #[derive(Debug, Clone)]
 pub(super) struct Memo {
-    /// Energy held [J].
-    energy: OnceLock<Energy>,
+    /// Energy held, and what is yet to be booked as lost [J].
+    energy: OnceLock<(Energy, f64)>,
     /// Force [N] and moment [N m] on every vessel.
     vessels: Vec<OnceLock<[f64; 6]>>,
 }
@@ -317,8 +317,17 @@ impl Simulation {
 
     /// Energy held, by kind.
     pub fn energy(&self) -> Energy {
-        let energy = || self.work.energy(&self.model, &self.snapshot.state);
-        *self.memo.energy.get_or_init(energy)
+        self.energies().0
+    }
+
+    /// Energy held, and what is yet to be booked as lost [J].
+    fn energies(&self) -> &(Energy, f64) {
+        let (model, state) = (&*self.model, &self.snapshot.state);
+        let found = || {
+            let turning = self.work.turning_energy(model, state);
+            (self.work.energy(model, state), -turning)
+        };
+        self.memo.energy.get_or_init(found)
     }
 
     /// Whether an energy ledger is kept, as [`Solver::energy_ledger`](crate::scene::Solver::energy_ledger) says.
@@ -329,14 +338,18 @@ impl Simulation {
     /// Imbalance of the energy ledger since the start [J]; 0 where none is kept.
     pub fn energy_error(&self) -> f64 {
         match self.keeps_ledger() {
-            true => self.snapshot.ledger.error(self.energy().total()),
+            true => self.ledger().error(self.energy().total()),
             false => 0.0,
         }
     }
 
     /// The energy ledger.
-    pub fn ledger(&self) -> &Ledger {
-        &self.snapshot.ledger
+    pub fn ledger(&self) -> Ledger {
+        let mut ledger = self.snapshot.ledger;
+        if self.keeps_ledger() {
+            ledger.flow.lost += self.energies().1;
+        }
+        ledger
     }
 
     /// Imbalance of the energy ledger since the start, over the time since then [W]; 0 where none is kept.
