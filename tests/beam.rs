@@ -444,6 +444,84 @@ fn a_beam_in_water_over_a_bed_has_a_ledger_that_closes() {
     );
 }
 
+/// A line of 20 m from a point at z = `anchor` [m] to a free point, as a cable or as a supple beam.
+fn tethered(model: &str, anchor: f64, point: &str) -> Scene {
+    let beam = "shear_stiffness = 1e6\ntorsional_stiffness = 500.0\nrotary_inertia = 0.01";
+    scene(&format!(
+        r#"
+        [water]
+        density = 1025.0
+        [seabed]
+        depth = 30.0
+        stiffness = 1e5
+        damping = 1e4
+        friction = 0.0
+        [line_types.tether]
+        model = "{model}"
+        mass = 2.0
+        diameter = 0.03
+        axial_stiffness = 1e6
+        axial_damping = 1e3
+        bending_stiffness = 500.0
+        drag_normal = 1.2
+        added_mass_normal = 1.0
+        {}
+        [[points]]
+        name = "anchor"
+        position = [0.0, 0.0, {anchor}]
+        kind = "fixed"
+        [[points]]
+        name = "free"
+        kind = "free"
+        {point}
+        [[lines]]
+        name = "tether"
+        from = "anchor"
+        to = "free"
+        sections = [{{ type = "tether", length = 20.0, elements = 20 }}]
+        [solver]
+        time_step_max = 0.005
+        "#,
+        if model == "beam" { beam } else { "" }
+    ))
+}
+
+#[test]
+fn a_buoy_on_a_beam_heaves_as_it_does_on_a_cable() {
+    let buoy =
+        "position = [14.0, 0.0, 0.0]\nmass = 300.0\nvolume = 1.0\ndrag_area = 0.5\nadded_mass = 0.5
+        force = { x = 500.0, z = { table = [[1.0, 0.0], [1.0, -3000.0]] } }";
+    let [beam, cable] = ["beam", "cable"].map(|model| {
+        let mut simulation = Simulation::new(&tethered(model, -12.0, buoy)).unwrap();
+        let places: Vec<Vector3<f64>> = (0..160)
+            .map(|_| {
+                simulation.advance(0.05).unwrap();
+                simulation.state().points[1].position
+            })
+            .collect();
+        (places, simulation)
+    });
+    let heights = beam.0.iter().map(|place| place.z);
+    let heave = heights.clone().fold(0.0, f64::max) - heights.fold(0.0, f64::min);
+    assert!(heave > 0.3, "{heave} m");
+    for (of_beam, of_cable) in beam.0.iter().zip(&cable.0) {
+        assert_relative_eq!(of_beam, of_cable, epsilon = 5e-3);
+    }
+    let ledger = beam.1.ledger().flow;
+    assert!(beam.1.energy_error().abs() < 1e-9 * (ledger.given.abs() + ledger.lost));
+}
+
+#[test]
+fn a_clump_at_the_end_of_a_beam_rests_on_the_bed() {
+    let clump = "position = [15.0, 0.0, -29.5]\nmass = 500.0\nvolume = 0.1\nforce = { x = 300.0 }";
+    let mut simulation = Simulation::new(&tethered("beam", -20.0, clump)).unwrap();
+    let at = |simulation: &Simulation| simulation.state().points[1].position;
+    let rest = at(&simulation);
+    assert_relative_eq!(rest.z, -30.0, epsilon = 0.02);
+    (0..20).for_each(|_| simulation.advance(0.1).unwrap());
+    assert_relative_eq!(at(&simulation), rest, epsilon = 1e-6);
+}
+
 #[test]
 fn a_saved_beam_replays_bit_for_bit() {
     let mut simulation = Simulation::new(&shipped("flying_spaghetti_3d")).unwrap();
