@@ -3,22 +3,12 @@
 mod common;
 
 use approx::assert_relative_eq;
-use common::{History, following, scene, shipped, with_elements};
+use common::{History, following, order_of, random, scene, shipped, with_elements};
 use moorline::dynamics::beam::BeamView;
 use moorline::scene::{Axis, InitialShape, Integrator, LineModel, PointKind, Scene, TimeFunction};
 use moorline::simulation::Simulation;
 use nalgebra::Vector3;
 use std::f64::consts::{PI, TAU};
-
-/// Slope of log(error) over log(size), by least squares.
-fn order(points: &[(f64, f64)]) -> f64 {
-    let logs: Vec<(f64, f64)> = points.iter().map(|(h, e)| (h.ln(), e.ln())).collect();
-    let count = logs.len() as f64;
-    let mx = logs.iter().map(|p| p.0).sum::<f64>() / count;
-    let my = logs.iter().map(|p| p.1).sum::<f64>() / count;
-    logs.iter().map(|p| (p.0 - mx) * (p.1 - my)).sum::<f64>()
-        / logs.iter().map(|p| (p.0 - mx).powi(2)).sum::<f64>()
-}
 
 /// The flying rod with n elements and a step [s].
 fn spaghetti(elements: usize, step: f64) -> Scene {
@@ -133,7 +123,7 @@ fn a_flying_rod_tends_to_the_converged_flight_at_second_order() {
         }
         errors.push((step, error.iter().map(|e| e * e).sum::<f64>().sqrt()));
     }
-    let slope = order(&errors);
+    let slope = order_of(&errors);
     assert!((slope - 2.0).abs() < 0.1, "order {slope:.3}: {errors:?}");
 }
 
@@ -179,7 +169,7 @@ fn the_statics_of_a_cantilever_tend_to_the_elastica_at_second_order() {
             (tip - Vector3::new(1.0 - shortening, deflection, 0.0)).norm()
         };
         let errors: Vec<(f64, f64)> = [8, 16, 32, 64].map(|n| (1.0 / n as f64, error(n))).into();
-        let slope = order(&errors);
+        let slope = order_of(&errors);
         assert!((slope - 2.0).abs() < 0.1, "order {slope:.3}: {errors:?}");
     }
 }
@@ -244,7 +234,7 @@ fn assert_frequency(stiffness: f64, ends: [&str; 2], exact: f64, shape: impl Fn(
             (1.0 / n as f64, (found / exact - 1.0).abs())
         })
         .into();
-    let slope = order(&errors);
+    let slope = order_of(&errors);
     assert!((slope - 2.0).abs() < 0.1, "order {slope:.3}: {errors:?}");
 }
 
@@ -444,6 +434,84 @@ fn a_beam_in_water_over_a_bed_has_a_ledger_that_closes() {
     );
 }
 
+/// A line of 20 m from a point at z = `anchor` [m] to a free point, as a cable or as a supple beam.
+fn tethered(model: &str, anchor: f64, point: &str) -> Scene {
+    let beam = "shear_stiffness = 1e6\ntorsional_stiffness = 500.0\nrotary_inertia = 0.01";
+    scene(&format!(
+        r#"
+        [water]
+        density = 1025.0
+        [seabed]
+        depth = 30.0
+        stiffness = 1e5
+        damping = 1e4
+        friction = 0.0
+        [line_types.tether]
+        model = "{model}"
+        mass = 2.0
+        diameter = 0.03
+        axial_stiffness = 1e6
+        axial_damping = 1e3
+        bending_stiffness = 500.0
+        drag_normal = 1.2
+        added_mass_normal = 1.0
+        {}
+        [[points]]
+        name = "anchor"
+        position = [0.0, 0.0, {anchor}]
+        kind = "fixed"
+        [[points]]
+        name = "free"
+        kind = "free"
+        {point}
+        [[lines]]
+        name = "tether"
+        from = "anchor"
+        to = "free"
+        sections = [{{ type = "tether", length = 20.0, elements = 20 }}]
+        [solver]
+        time_step_max = 0.005
+        "#,
+        if model == "beam" { beam } else { "" }
+    ))
+}
+
+#[test]
+fn a_buoy_on_a_beam_heaves_as_it_does_on_a_cable() {
+    let buoy =
+        "position = [14.0, 0.0, 0.0]\nmass = 300.0\nvolume = 1.0\ndrag_area = 0.5\nadded_mass = 0.5
+        force = { x = 500.0, z = { table = [[1.0, 0.0], [1.0, -3000.0]] } }";
+    let [beam, cable] = ["beam", "cable"].map(|model| {
+        let mut simulation = Simulation::new(&tethered(model, -12.0, buoy)).unwrap();
+        let places: Vec<Vector3<f64>> = (0..160)
+            .map(|_| {
+                simulation.advance(0.05).unwrap();
+                simulation.state().points[1].position
+            })
+            .collect();
+        (places, simulation)
+    });
+    let heights = beam.0.iter().map(|place| place.z);
+    let heave = heights.clone().fold(0.0, f64::max) - heights.fold(0.0, f64::min);
+    assert!(heave > 0.3, "{heave} m");
+    for (of_beam, of_cable) in beam.0.iter().zip(&cable.0) {
+        assert_relative_eq!(of_beam, of_cable, epsilon = 5e-3);
+    }
+    let ledger = beam.1.ledger().flow;
+    assert!(beam.1.energy_error().abs() < 1e-9 * (ledger.given.abs() + ledger.lost));
+}
+
+#[test]
+fn a_clump_at_the_end_of_a_beam_rests_on_the_bed() {
+    let clump = "position = [15.0, 0.0, -29.5]\nmass = 500.0\nvolume = 0.1\nforce = { x = 300.0 }";
+    let mut simulation = Simulation::new(&tethered("beam", -20.0, clump)).unwrap();
+    let at = |simulation: &Simulation| simulation.state().points[1].position;
+    let rest = at(&simulation);
+    assert_relative_eq!(rest.z, -30.0, epsilon = 0.02);
+    (0..20).for_each(|_| simulation.advance(0.1).unwrap());
+    assert_relative_eq!(at(&simulation), rest, epsilon = 1e-6);
+}
+
 #[test]
 fn a_saved_beam_replays_bit_for_bit() {
     let mut simulation = Simulation::new(&shipped("flying_spaghetti_3d")).unwrap();
@@ -559,16 +627,9 @@ fn a_sliding_collar_draws_a_bending_wire_to_its_published_span_at_second_order()
 }
 
 /// A repeatable number in 0 … 1.
-fn noise(seed: &mut u64) -> f64 {
-    *seed = seed
-        .wrapping_mul(6364136223846793005)
-        .wrapping_add(1442695040888963407);
-    (*seed >> 11) as f64 / (1u64 << 53) as f64
-}
-
 /// A beam over a bed in water, with a fairlead that moves; stiffnesses, lengths, ends and motions as the seed has them.
 fn any_beam(seed: &mut u64) -> Scene {
-    let mut decades = |low: f64, high: f64| 10.0_f64.powf(low + (high - low) * noise(seed));
+    let mut decades = |low: f64, high: f64| 10.0_f64.powf(low + (high - low) * random(seed));
     let (ea, ei) = (decades(6.0, 9.0), decades(0.0, 6.0));
     let (ga, gj) = (decades(6.0, 8.0), ei * decades(-0.5, 0.5));
     let (inertia, slack) = (decades(-5.0, 0.0), decades(-3.0, -0.9) + 0.99);
@@ -577,19 +638,19 @@ fn any_beam(seed: &mut u64) -> Scene {
     let clamp = |key: &str, given: bool, seed: &mut u64| match given {
         true => format!(
             "{key} = [{}, {}, {}]",
-            0.5 + noise(seed),
-            noise(seed) - 0.5,
-            noise(seed) - 0.5
+            0.5 + random(seed),
+            random(seed) - 0.5,
+            random(seed) - 0.5
         ),
         false => String::new(),
     };
     let stiff = ei > 1e4; // a bend at a clamp is √(EI/T) long, and elements must be shorter
-    let given = [0, 1].map(|_| noise(seed) < 0.5 && stiff);
+    let given = [0, 1].map(|_| random(seed) < 0.5 && stiff);
     let clamps = [
         clamp("clamped_a", given[0], seed),
         clamp("clamped_b", given[1], seed),
     ];
-    let b = [10.0 + 40.0 * noise(seed), 5.0 * noise(seed), -5.0];
+    let b = [10.0 + 40.0 * random(seed), 5.0 * random(seed), -5.0];
     let chord = (b[0] * b[0] + b[1] * b[1] + 15.0 * 15.0_f64).sqrt();
     scene(&format!(
         r#"

@@ -2,16 +2,10 @@
 
 mod common;
 
-use common::{modes, scene, shipped, with_elements};
+use common::{modes, order_of, scene, shipped, with_elements};
 use moorline::interface::{Interface, Layout};
 use moorline::scene::{FibreLaw, Integrator, Scene};
 use moorline::simulation::Simulation;
-
-/// Slope of log(error) over log(size) [-].
-fn fit_order(errors: &[(f64, f64)]) -> f64 {
-    let (sizes, errors): (Vec<f64>, Vec<f64>) = errors.iter().copied().unzip();
-    common::order(&sizes, &errors)
-}
 
 // ------------------------------------------------------------------ MotionSolve's collar
 
@@ -239,7 +233,7 @@ fn a_loaded_cantilever_tends_to_the_elastica_at_second_order() {
             let error = (-z / LENGTH - deflection).hypot(1.0 - x / LENGTH - shortening);
             (1.0 / elements as f64, error)
         });
-        let order = fit_order(&errors);
+        let order = order_of(&errors);
         assert!(
             (order - 2.0).abs() < 0.1,
             "{alpha}: order {order}, {errors:?}"
@@ -353,7 +347,7 @@ fn the_work_of_a_clamp_that_turns_is_in_the_ledger() {
         assert!(rod.ledger().flow.given > 0.05);
         (step, rod.energy_error().abs())
     });
-    assert!(fit_order(&errors) > 1.5, "{errors:?}");
+    assert!(order_of(&errors) > 1.5, "{errors:?}");
 }
 
 // ------------------------------------------------------------------ vibration
@@ -392,7 +386,7 @@ fn assert_second_order(exact: [f64; 3], found: impl Fn(usize) -> [f64; 3]) {
                 (found[mode] / exact[mode] - 1.0).abs(),
             )
         });
-        let order = fit_order(&errors);
+        let order = order_of(&errors);
         assert!(
             (order - 2.0).abs() < 0.1,
             "mode {mode}: order {order}, {errors:?}"
@@ -505,7 +499,7 @@ fn the_energy_error_of_a_driven_cable_falls_with_the_square_of_the_step() {
         }
         (step, simulation.energy_error().abs())
     });
-    let order = fit_order(&errors);
+    let order = order_of(&errors);
     assert!(order > 1.7, "{order}, {errors:?}");
 }
 

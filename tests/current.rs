@@ -558,19 +558,23 @@ fn every_mistake_in_a_current_is_refused_with_its_place() {
 
 #[test]
 fn a_current_does_not_act_on_beams_and_says_so() {
-    let mut scene = riser(8, SHEARED);
-    for line_type in scene.line_types.values_mut() {
+    let mut by_type = riser(8, SHEARED);
+    for line_type in by_type.line_types.values_mut() {
         line_type.model = LineModel::Beam;
     }
-    let mistakes = scene.mistakes();
-    let found = mistakes
-        .iter()
-        .find(|mistake| mistake.at == "water.current");
-    assert!(found.is_some_and(|mistake| {
-        mistake
-            .problem
-            .contains("beams are modelled in still water only")
-    }));
+    let mut by_integrator = riser(8, SHEARED);
+    by_integrator.solver.integrator = Integrator::Beam;
+    for scene in [by_type, by_integrator] {
+        let mistakes = scene.mistakes();
+        let found = mistakes
+            .iter()
+            .find(|mistake| mistake.at == "water.current");
+        assert!(found.is_some_and(|mistake| {
+            mistake
+                .problem
+                .contains("beams are modelled in still water only")
+        }));
+    }
 }
 
 #[test]

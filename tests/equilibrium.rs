@@ -1,23 +1,17 @@
 //! Static equilibrium of assembled lines, against closed forms, discrete solutions and random scenes.
 
+mod common;
+
+use common::*;
 use moorline::model::{End, Model, State};
-use moorline::scene::Scene;
 use moorline::statics::StaticsError;
 use moorline::statics::assembly::{Counters, Workspace, end_force};
 use moorline::statics::equilibrium::{continue_from, solve};
 use nalgebra::Vector3;
 
-fn model(text: &str) -> Model {
-    Model::new(&Scene::from_toml(text).unwrap()).unwrap()
-}
-
-fn at_reference(model: &Model) -> Vec<Vector3<f64>> {
-    model.points.iter().map(|point| point.reference).collect()
-}
-
 fn equilibrium(model: &Model) -> Result<(State, Counters), StaticsError> {
     let mut work = Workspace::new(model);
-    let state = solve(model, &at_reference(model), 0.0, &mut work)?;
+    let state = solve(model, &resting(&at_reference(model)), 0.0, &mut work)?;
     Ok((state, work.take_counters()))
 }
 
@@ -35,26 +29,6 @@ fn line(name: &str, ends: [&str; 2], length: f64, elements: usize) -> String {
 }
 
 const FIXED: &str = "kind = \"fixed\"";
-
-/// A number in 0 … 1.
-fn random(seed: &mut u64) -> f64 {
-    *seed = seed
-        .wrapping_mul(6364136223846793005)
-        .wrapping_add(1442695040888963407);
-    (*seed >> 11) as f64 / (1u64 << 53) as f64
-}
-
-/// Least-squares slope of ln(error) over ln(h).
-fn order(steps: &[f64], errors: &[f64]) -> f64 {
-    let n = steps.len() as f64;
-    let (x, y): (Vec<f64>, Vec<f64>) = (
-        steps.iter().map(|h| h.ln()).collect(),
-        errors.iter().map(|e| e.ln()).collect(),
-    );
-    let (mx, my) = (x.iter().sum::<f64>() / n, y.iter().sum::<f64>() / n);
-    let top: f64 = x.iter().zip(&y).map(|(x, y)| (x - mx) * (y - my)).sum();
-    top / x.iter().map(|x| (x - mx).powi(2)).sum::<f64>()
-}
 
 // ------------------------------------------------------------------ cable with a point load
 
@@ -244,7 +218,7 @@ fn collar(elements: usize, axial_stiffness: f64) -> Model {
 fn span_and_sag(model: &Model) -> [f64; 2] {
     let reference = at_reference(model);
     let mut work = Workspace::new(model);
-    let mut state = solve(model, &reference, 0.0, &mut work).unwrap();
+    let mut state = solve(model, &resting(&reference), 0.0, &mut work).unwrap();
     work.take_counters();
     for step in 1..=100 {
         continue_from(model, &mut state, &reference, 0.1 * step as f64, &mut work).unwrap();
@@ -371,10 +345,10 @@ fn continuing_from_a_state_finds_the_same_equilibrium_as_starting_anew() {
     let model = star([0, 1, 2], 1.0);
     let mut work = Workspace::new(&model);
     let mut points = at_reference(&model);
-    let mut state = solve(&model, &points, 0.0, &mut work).unwrap();
+    let mut state = solve(&model, &resting(&points), 0.0, &mut work).unwrap();
     points[0] += Vector3::new(-1.0, 2.0, -3.0);
     continue_from(&model, &mut state, &points, 0.0, &mut work).unwrap();
-    let anew = solve(&model, &points, 0.0, &mut work).unwrap();
+    let anew = solve(&model, &resting(&points), 0.0, &mut work).unwrap();
     assert!((state.points[3].position - anew.points[3].position).norm() < 1e-8);
 }
 
@@ -388,7 +362,7 @@ fn a_failure_leaves_the_state_as_it_was() {
             + &line("cable", ["a", "b"], 10.0, 10);
     let model = model(&text);
     let mut work = Workspace::new(&model);
-    let mut state = solve(&model, &at_reference(&model), 0.0, &mut work).unwrap();
+    let mut state = statics(&model);
     let before = state.clone();
     let far = [Vector3::zeros(), Vector3::new(60.0, 0.0, 0.0)];
     let error = continue_from(&model, &mut state, &far, 1.0, &mut work).unwrap_err();

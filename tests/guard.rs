@@ -16,7 +16,6 @@ use common::*;
 use moorline::simulation::Simulation;
 use moorline::statics::assembly::Workspace;
 use moorline::statics::equilibrium;
-use nalgebra::Vector3;
 
 /// Longest run [s].
 const SPAN: f64 = 20.0;
@@ -90,8 +89,8 @@ impl fmt::Display for Work {
 fn statics(simulation: &Simulation) -> usize {
     let model = simulation.model();
     let mut work = Workspace::new(model);
-    let places: Vec<Vector3<f64>> = model.points.iter().map(|point| point.reference).collect();
-    equilibrium::solve(model, &places, 0.0, &mut work).expect("a shipped scene has an equilibrium");
+    let points = resting(&at_reference(model));
+    equilibrium::solve(model, &points, 0.0, &mut work).expect("a shipped scene has an equilibrium");
     work.take_counters().solves
 }
 

@@ -1,22 +1,16 @@
 //! Fully implicit dynamics: order, dissipation, references, what happens when a step fails.
 
+mod common;
+
 use std::f64::consts::{PI, TAU};
 
+use common::*;
 use moorline::dynamics::implicit::{self, SPECTRAL_RADIUS, Scheme, Span};
 use moorline::dynamics::quasi_static;
 use moorline::model::{Kinematics, Model, State};
-use moorline::scene::Scene;
 use moorline::statics::assembly::{Counters, Workspace};
-use moorline::statics::equilibrium::{continue_from, solve};
+use moorline::statics::equilibrium::continue_from;
 use nalgebra::Vector3;
-
-fn model(text: &str) -> Model {
-    Model::new(&Scene::from_toml(text).unwrap()).unwrap()
-}
-
-fn at_reference(model: &Model) -> Vec<Vector3<f64>> {
-    model.points.iter().map(|point| point.reference).collect()
-}
 
 /// All held points stay where the scene puts them.
 fn at_rest(model: &Model) -> impl Fn(usize, f64) -> Kinematics {
@@ -75,10 +69,6 @@ fn run(
     (state, total)
 }
 
-fn statics(model: &Model) -> State {
-    solve(model, &at_reference(model), 0.0, &mut Workspace::new(model)).unwrap()
-}
-
 fn gap(a: &State, b: &State) -> f64 {
     let nodes = |state: &State| {
         state
@@ -92,18 +82,6 @@ fn gap(a: &State, b: &State) -> f64 {
         .zip(&nodes(b))
         .map(|(a, b)| (a - b).norm())
         .fold(0.0, f64::max)
-}
-
-/// Least-squares slope of ln(error) over ln(h).
-fn order(steps: &[f64], errors: &[f64]) -> f64 {
-    let n = steps.len() as f64;
-    let (x, y): (Vec<f64>, Vec<f64>) = (
-        steps.iter().map(|h| h.ln()).collect(),
-        errors.iter().map(|e| e.ln()).collect(),
-    );
-    let (mx, my) = (x.iter().sum::<f64>() / n, y.iter().sum::<f64>() / n);
-    let top: f64 = x.iter().zip(&y).map(|(x, y)| (x - mx) * (y - my)).sum();
-    top / x.iter().map(|x| (x - mx).powi(2)).sum::<f64>()
 }
 
 // ------------------------------------------------------------------ order in time

@@ -5,7 +5,7 @@ mod common;
 
 use std::process::Command;
 
-use common::{scene, shipped, with_elements};
+use common::{at_reference, random, resting, scene, shipped, with_elements};
 use moorline::model::{End, Model, State};
 use moorline::scene::Scene;
 use moorline::simulation::Simulation;
@@ -342,7 +342,7 @@ fn the_assembled_equilibrium_of_a_bridle_tends_to_the_catenaries_at_second_order
     let counts = [8.0, 16.0, 32.0, 64.0];
     let errors = counts.map(|n| {
         let model = Model::new(&bridle(n as usize, 2e7, "")).unwrap();
-        let places: Vec<Vector3<f64>> = model.points.iter().map(|point| point.reference).collect();
+        let places = resting(&at_reference(&model));
         let mut work = Workspace::new(&model);
         let exact = catenary_network::solve(&model, &places, 0.0, &mut work).unwrap();
         let assembled = equilibrium::solve(&model, &places, 0.0, &mut work).unwrap();
@@ -425,14 +425,6 @@ fn a_heavy_free_point_rests_on_the_bed_and_is_lifted_by_a_load() {
         }
     }
     assert!(count > 5 && lifted > -45.0, "{count} {lifted}");
-}
-
-/// A number in 0 … 1.
-fn random(seed: &mut u64) -> f64 {
-    *seed = seed
-        .wrapping_mul(6364136223846793005)
-        .wrapping_add(1442695040888963407);
-    (*seed >> 11) as f64 / (1u64 << 53) as f64
 }
 
 /// Two knots, sinking or floating, over a bed: each tied to an anchor, to a point above and to the other, slack to taut, in water.

@@ -9,7 +9,6 @@ use moorline::scene::{Integrator, Scene};
 use moorline::simulation::Simulation;
 use moorline::statics::assembly::Workspace;
 use moorline::statics::catenary::{self, Section};
-use moorline::statics::equilibrium;
 use nalgebra::Vector3;
 
 const RHO: f64 = 1025.0; // [kg/m³]
@@ -63,8 +62,7 @@ fn oblique_and(elements: usize, more: &str) -> Scene {
 
 fn statics(scene: &Scene) -> (Model, moorline::model::State) {
     let model = Model::new(scene).unwrap();
-    let points: Vec<Vector3<f64>> = model.points.iter().map(|point| point.reference).collect();
-    let state = equilibrium::solve(&model, &points, 0.0, &mut Workspace::new(&model)).unwrap();
+    let state = common::statics(&model);
     (model, state)
 }
 

@@ -604,6 +604,11 @@ fn waves_do_not_act_on_beams_or_quasi_static_lines_and_say_so() {
         .values_mut()
         .for_each(|line_type| line_type.model = LineModel::Beam);
     said(&scene, "beams are modelled in still water only");
+    let mut dry = system(Integrator::Auto, STORM);
+    for line_type in dry.line_types.values_mut() {
+        (line_type.model, line_type.diameter) = (LineModel::Beam, None);
+    }
+    said(&dry, "point \"knot\" is in the water at the end of a beam");
 }
 
 #[test]

@@ -18,6 +18,7 @@
 //! 54, 1683-1716, and Betsch & Steinmann (2003), Multibody Syst. Dyn. 8, 367-391 (directors, discrete gradient). Valid for turns below half a
 //! circle in a step.
 
+mod body;
 mod drive;
 mod measures;
 
@@ -33,8 +34,10 @@ use crate::physics::seabed::ContactCoefficients;
 use crate::physics::section::{
     Mixture, Section, Sextuple, corrected, join, response, split, strain, strain_gradient,
 };
+use crate::statics::assembly::damper_reach;
 use crate::statics::beam::{BeamEnd, Span, add_elements, folded};
 
+pub use body::Body;
 pub use drive::{Driven, attitude, drive, held};
 pub use measures::{BeamView, Momentum};
 
@@ -48,8 +51,6 @@ const SOLVES_MAX: usize = 30;
 const TURN_MAX: f64 = 1.0;
 /// |θ| beyond which a node turns too far in a step [-]: 2 tan(α/2) of 150°.
 const THETA_MAX: f64 = 7.5;
-/// Half the range of penetrations over which the seabed damper fades in, in static penetrations of the node [-].
-const DAMPER_FADE: f64 = 2.0;
 
 /// A beam over one step.
 #[derive(Debug, Clone, Copy)]
@@ -62,10 +63,8 @@ pub struct BeamStep<'a> {
     pub ends: [BeamEnd; 2],
     /// Where held unknowns of the ends are after the step.
     pub targets: [Section; 2],
-    /// Mass at the ends beside the line's own [kg].
-    pub end_mass: [f64; 2],
-    /// Weight less buoyancy at the ends beside the line's own [N].
-    pub end_weight: [f64; 2],
+    /// What is at its free ends.
+    pub bodies: [Option<Body<'a>>; 2],
     /// Length of the step [s].
     pub length: f64,
 }
@@ -190,7 +189,8 @@ impl BeamWork {
             self.theta[i] = dt * turning;
             self.now[i].position = shape.position[i] + dt * shape.velocity[i];
             self.tangent[i] = cayley(0.5 * dt * turning) * frame.column(2);
-            self.mass[i] = self.effective_mass(case, i, self.tangent[i]);
+            let height = shape.position[i].z + 0.5 * dt * shape.velocity[i].z;
+            self.mass[i] = self.effective_mass(case, i, self.tangent[i], height);
         }
         let last = self.before.len() - 1;
         for (end, node) in [0, last].into_iter().enumerate() {
@@ -210,15 +210,28 @@ impl BeamWork {
         self.turn();
     }
 
-    /// Mass of a node with its added mass, for a tangent [kg].
-    fn effective_mass(&self, case: &BeamStep, i: usize, tangent: Vector3<f64>) -> Matrix3<f64> {
-        let last = self.before.len() - 1;
-        let own = match i {
-            0 => case.end_mass[0],
-            i if i == last => case.end_mass[1],
-            _ => 0.0,
-        };
+    /// Mass of a node and what is there with their added mass [kg], for a tangent and a height [m].
+    fn effective_mass(
+        &self,
+        case: &BeamStep,
+        i: usize,
+        tangent: Vector3<f64>,
+        height: f64,
+    ) -> Matrix3<f64> {
+        let body = self.body(case, i);
+        let own = body.map_or(0.0, |body| body.point.at(height).mass);
         Matrix3::from_diagonal_element(own) + node_mass(case.nodes, i, tangent)
+    }
+
+    /// What is at a node besides the line.
+    fn body<'a>(&self, case: &BeamStep<'a>, i: usize) -> Option<Body<'a>> {
+        let last = self.before.len() - 1;
+        let [a, b] = case.bodies;
+        match i {
+            0 => a,
+            i if i == last => b,
+            _ => None,
+        }
     }
 
     /// Frames and means that follow from positions and θ.
@@ -282,10 +295,8 @@ impl BeamWork {
             self.add_surroundings(case, i);
         }
         let last = self.now.len() - 1;
-        let ends = case.ends.iter().zip(case.end_weight);
-        for (node, (end, weight)) in [0, last].into_iter().zip(ends) {
+        for (node, end) in [0, last].into_iter().zip(&case.ends) {
             self.chain.right[node] += end.load;
-            self.chain.right[node].z -= weight;
             (0..6)
                 .filter(|&unknown| end.held[unknown])
                 .for_each(|unknown| self.chain.hold(node, unknown, 0.0));
@@ -324,7 +335,7 @@ impl BeamWork {
         block += slope / dt;
     }
 
-    /// Water and seabed on a node.
+    /// Water and seabed on a node and on what is there.
     fn add_surroundings(&mut self, case: &BeamStep, i: usize) {
         let dt = case.length;
         if let Some(k) = drag_of(case.nodes, i) {
@@ -338,6 +349,18 @@ impl BeamWork {
             self.chain.right[i].z += contact.force;
             self.chain.diagonal[i][(2, 2)] += contact.slope;
         }
+        if let Some(body) = self.body(case, i) {
+            let step = body.over(self.places(i), dt);
+            let mut right = self.chain.right[i].fixed_rows_mut::<3>(0);
+            right += step.force();
+            let mut block = self.chain.diagonal[i].fixed_view_mut::<3, 3>(0, 0);
+            block += step.slope;
+        }
+    }
+
+    /// Where a node is before and after the step [m].
+    fn places(&self, i: usize) -> [&Vector3<f64>; 2] {
+        [&self.before[i].position, &self.now[i].position]
     }
 
     fn contact(&self, case: &BeamStep, i: usize) -> Option<ContactStep> {
@@ -346,14 +369,9 @@ impl BeamWork {
             stiffness: contact.stiffness[i],
             damping: contact.damping[i],
         };
-        let [before, after] =
-            [&self.before[i], &self.now[i]].map(|s| contact.level[i] - s.position.z);
-        let reach = if k.stiffness > 0.0 {
-            DAMPER_FADE * case.nodes.weight[i].abs() / k.stiffness
-        } else {
-            0.0
-        };
-        Some(contact_step(k, [before, after], reach, case.length))
+        let penetration = self.places(i).map(|place| contact.level[i] - place.z);
+        let reach = damper_reach(k.stiffness, case.nodes.weight[i]);
+        Some(contact_step(k, penetration, reach, case.length))
     }
 
     /// Energy that crossed the border of the beam in the step.
@@ -379,6 +397,11 @@ impl BeamWork {
             };
             if !held[..3].iter().all(|held| *held) {
                 flow.lost += self.node_loss(case, shape, i);
+            }
+            if let Some(body) = self.body(case, i) {
+                let step = body.over(self.places(i), dt);
+                let moved = self.now[i].position - self.before[i].position;
+                flow.add(body.flow(&step, &moved, dt));
             }
         }
         flow
@@ -422,11 +445,12 @@ impl BeamWork {
         if let Some(damping) = &case.nodes.mass_damping {
             lost += damping[i] / case.length * moved.norm_squared();
         }
-        // An added mass that turns with the line takes or gives what its constant value in the step leaves out.
+        // An added mass that turns with the line or dips takes or gives what its constant value in the step leaves out.
         let before = shape.velocity[i];
         let after = 2.0 / case.length * moved - before;
         let turned = |section: &Section, v: Vector3<f64>| {
-            let mass = self.effective_mass(case, i, section.frame.column(2).into_owned());
+            let (tangent, height) = (section.frame.column(2).into_owned(), section.position.z);
+            let mass = self.effective_mass(case, i, tangent, height);
             0.5 * v.dot(&((mass - self.mass[i]) * v))
         };
         lost + turned(&self.before[i], before) - turned(&self.now[i], after)

@@ -20,13 +20,16 @@
 //!
 //! The leapfrogs sum the flows of every internal step, forces at t_n times the mean of the velocities around it; energy is then
 //! exact at t − Δt/2, where the velocities live, and so E is taken there. The implicit integrators book the work of the forces by which
-//! they make a step ([`passed`]). Quasi-static networks hold no kinetic energy; the work of ends and loads is that of the mean of the
-//! forces before and after a step. Where they are closed-form catenaries, the whole of these counts, held ends included:
+//! they make a step ([`passed`]), and so do beams, whose laws are discrete gradients. Quasi-static networks hold no kinetic energy; the work of ends and
+//! loads is that of the mean of the forces before and after a step (`at_rest`). Where they are closed-form catenaries (`hanging`), the whole of
+//! these counts, held ends included:
 //!
 //! ∫ T²/(2EA) ds and ∫ w z ds, exact where the line hangs.
 //!
 //! Source: the discrete energy balance of the leapfrog, e.g. Hairer, Lubich & Wanner (2003), Acta Numerica 12, section 1.
 
+mod at_rest;
+mod hanging;
 pub mod passed;
 
 use nalgebra::Vector3;
@@ -34,14 +37,10 @@ use serde::{Deserialize, Serialize};
 
 use super::beam::{self, BeamView};
 use super::creep::{Creeping, Stretching};
-use super::leapfrog::segment_tension;
-use crate::model::{
-    ClosedForm, End, Line, LineState, Model, Network, PointState, Reel, State, Surface, WaterAlong,
-    joint,
-};
-use crate::statics::assembly::rubbing::{resting_node, resting_point};
-use crate::statics::assembly::{end_moment, end_shear};
-use crate::statics::equilibrium::current::drag_at_rest;
+use crate::model::{End, Line, LineState, Model, Network, Reel, State, Surface, WaterAlong, joint};
+
+pub use at_rest::work_at_rest;
+use hanging::catenary_energy;
 
 /// Energy that crossed the border of a network, or the rate at which it does.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
@@ -142,7 +141,7 @@ pub fn energy(model: &Model, network: &Network, state: &State) -> Energy {
         let (data, shape) = (&model.lines[line], &state.lines[line]);
         sum.add(match &shape.closed_form {
             Some(closed_form) => catenary_energy(data, shape, closed_form),
-            None => line_energy(data, state, line, model),
+            None => line_energy(model, state, line),
         });
     }
     for &point in &network.free_points {
@@ -164,20 +163,26 @@ pub fn energy(model: &Model, network: &Network, state: &State) -> Energy {
 
 /// Time from the velocities to the positions of a network that a leapfrog serves [s].
 fn half_step(state: &State, network: &Network) -> Option<f64> {
-    let memory = &state.lines[network.lines[0]].half_step;
-    (!memory.velocity.is_empty()).then(|| 0.5 * memory.steps[0])
+    let shape = &state.lines[network.lines[0]];
+    (!shape.half_step.velocity.is_empty()).then(|| velocities(shape).1)
 }
 
-fn line_energy(line: &Line, state: &State, index: usize, model: &Model) -> Energy {
-    let (shape, water) = (
-        &state.lines[index],
-        model.water_along(state, index, state.time),
-    );
+/// Velocities of the nodes of a line [m/s], and the time from then to their positions [s].
+fn velocities(shape: &LineState) -> (&[Vector3<f64>], f64) {
     let memory = &shape.half_step;
-    let (velocity, lag) = match memory.velocity.is_empty() {
+    match memory.velocity.is_empty() {
         true => (&shape.velocity, 0.0),
         false => (&memory.velocity, 0.5 * memory.steps[0]),
-    };
+    }
+}
+
+fn line_energy(model: &Model, state: &State, index: usize) -> Energy {
+    let (line, shape) = (&model.lines[index], &state.lines[index]);
+    if let Some(view) = BeamView::of(line, shape) {
+        return view.energy(beam::held(model, line));
+    }
+    let water = model.water_along(state, index, state.time);
+    let (velocity, lag) = velocities(shape);
     let then = shape.reel.map(|reel| line_before(line, shape, reel, lag));
     let line = then.as_ref().unwrap_or(line);
     let passing = passing(line, shape, lag);
@@ -189,9 +194,6 @@ fn line_energy(line: &Line, state: &State, index: usize, model: &Model) -> Energ
             place
         }
     };
-    if let Some(view) = BeamView::of(line, shape) {
-        return view.energy(beam::held(model, line));
-    }
     let n = line.segment_count();
     let mut energy = Energy::default();
     for i in 0..n {
@@ -211,9 +213,7 @@ fn line_energy(line: &Line, state: &State, index: usize, model: &Model) -> Energ
         _ => true,
     };
     for i in (0..=n).filter(|&i| free(i)) {
-        let [across, along] = squares(shape, i, velocity[i]);
-        let [normal, tangent] = line.nodes.masses(i, dry_part(line, shape, i, water));
-        energy.kinetic += 0.5 * (normal * across + tangent * along);
+        energy.kinetic += node_motion(line, shape, i, velocity[i], water);
         energy.gravitational += line.nodes.weight[i] * position(i).z;
     }
     if let Some(surface) = &line.surface {
@@ -259,10 +259,18 @@ fn passing(line: &Line, shape: &LineState, lag: f64) -> Vector3<f64> {
     lag * reel.half_step[1] / line.segments.length[last - 1] * chord
 }
 
-/// Squares of a velocity [m/s] of a node across and along the line [m²/s²].
-fn squares(shape: &LineState, i: usize, velocity: Vector3<f64>) -> [f64; 2] {
-    let along = velocity.dot(&tangent(shape, i));
-    [velocity.norm_squared() - along * along, along * along]
+/// Energy of motion of a node at a velocity [m/s], with what it carries along across and along the line [J].
+fn node_motion(
+    line: &Line,
+    shape: &LineState,
+    i: usize,
+    velocity: Vector3<f64>,
+    water: WaterAlong,
+) -> f64 {
+    let along = velocity.dot(&tangent(shape, i)).powi(2);
+    let across = velocity.norm_squared() - along;
+    let [normal, tangent] = line.nodes.masses(i, dry_part(line, shape, i, water));
+    0.5 * (normal * across + tangent * along)
 }
 
 /// Part of a node that is out of the water [-].
@@ -317,275 +325,19 @@ pub fn joined_energy(model: &Model, network: &Network, [before, after]: [&State;
     sum
 }
 
-/// Energy of motion and of weight of the half node at an end [J], when its velocity belongs to.
+/// Energy of motion and of weight of the half node at an end, at the time its velocity belongs to [J].
 fn end_energy(model: &Model, state: &State, index: usize, end: End) -> f64 {
     let (line, shape) = (&model.lines[index], &state.lines[index]);
     let water = model.water_along(state, index, state.time);
-    let (memory, i) = (&shape.half_step, line.end_node(end));
-    let (velocity, lag) = match memory.velocity.is_empty() {
-        true => (shape.velocity[i], 0.0),
-        false => (memory.velocity[i], 0.5 * memory.steps[0]),
-    };
-    let [across, along] = squares(shape, i, velocity);
-    let [normal, tangent] = line.nodes.masses(i, dry_part(line, shape, i, water));
-    0.5 * (normal * across + tangent * along)
+    let ((velocity, lag), i) = (velocities(shape), line.end_node(end));
+    let velocity = velocity[i];
+    node_motion(line, shape, i, velocity, water)
         + line.nodes.weight[i] * (shape.position[i].z - lag * velocity.z)
 }
 
-/// Energy of a whole line on its closed form.
-fn catenary_energy(line: &Line, shape: &LineState, closed_form: &ClosedForm) -> Energy {
-    let (segments, n) = (&line.segments, line.segment_count());
-    let mut section_end = 0.0;
-    let mut ends = line.sections.iter().map(|section| {
-        section_end += section.length;
-        (section_end, section.weight)
-    });
-    let (mut end, mut weight) = ends.next().unwrap_or((0.0, 0.0));
-    let pull = closed_form.end_force[0];
-    let horizontal = pull.xy().norm();
-    let mut vertical = pull.z; // upward part of the tension from A to B [N]
-    let mut energy = Energy::default();
-    for i in 0..n {
-        let (h, ea) = (segments.length[i], segments.axial_stiffness[i]);
-        while line.nodes.arc[i] + 0.5 * h > end {
-            (end, weight) = ends.next().unwrap_or((f64::INFINITY, weight));
-        }
-        let [low, high] = [i, i + 1].map(|node| {
-            let contact = line.nodes.contact.as_ref();
-            let height = shape.position[node].z;
-            let lies = contact.is_some_and(|contact| height <= contact.bed);
-            (height, closed_form.tension[node], lies)
-        });
-        let rising = (high.1 * high.1 - horizontal * horizontal).max(0.0).sqrt();
-        let hanging = match (low.2, high.2) {
-            (true, true) => 0.0,
-            (true, false) => rising / weight,
-            (false, true) => -vertical / weight,
-            (false, false) => h,
-        };
-        let part = Hanging {
-            length: if weight == 0.0 {
-                0.0
-            } else {
-                hanging.clamp(0.0, h)
-            },
-            weight,
-            axial_stiffness: ea,
-            horizontal,
-            vertical: if low.2 { 0.0 } else { vertical },
-        };
-        let rest = h - part.length;
-        let squares = part.squared_tension() + 0.5 * rest * (low.1 * low.1 + high.1 * high.1);
-        energy.axial += squares / (2.0 * ea);
-        let mean = if weight == 0.0 || low.2 {
-            low.0
-        } else {
-            high.0
-        };
-        energy.gravitational += weight * (part.height(low.0) + rest * mean);
-        vertical = part.vertical + weight * part.length;
-    }
-    energy
-}
-
-/// A piece of an elastic catenary that hangs free.
-struct Hanging {
-    /// Unstretched length [m].
-    length: f64,
-    /// Weight [N/m], not 0 unless there is no length.
-    weight: f64,
-    /// EA [N].
-    axial_stiffness: f64,
-    /// Horizontal tension [N].
-    horizontal: f64,
-    /// Upward part of the tension at its start [N].
-    vertical: f64,
-}
-
-impl Hanging {
-    fn end(&self) -> f64 {
-        self.vertical + self.weight * self.length
-    }
-
-    /// ∫ T² ds [N² m].
-    fn squared_tension(&self) -> f64 {
-        let (v0, v1) = (self.vertical, self.end());
-        self.length * (self.horizontal.powi(2) + (v0 * v0 + v0 * v1 + v1 * v1) / 3.0)
-    }
-
-    /// ∫ z ds [m²] from a height [m] at its start: z = z₀ + (T − T₀)/w + (V² − V₀²)/(2 EA w).
-    fn height(&self, start: f64) -> f64 {
-        if self.length == 0.0 {
-            return 0.0;
-        }
-        let (h, w, v0, v1) = (self.length, self.weight, self.vertical, self.end());
-        let tension = |v: f64| self.horizontal.hypot(v);
-        let turned = |v: f64| match self.horizontal > 0.0 {
-            true => self.horizontal.powi(2) * (v / self.horizontal).asinh(),
-            false => 0.0,
-        };
-        let area = |v: f64| v * tension(v) + turned(v);
-        let tensions = (area(v1) - area(v0)) / (2.0 * w); // ∫ T ds
-        let squares = h * (v0 * v0 + v0 * v1 + v1 * v1) / 3.0; // ∫ V² ds
-        let stretched = (squares - v0 * v0 * h) / (2.0 * self.axial_stiffness * w);
-        start * h + (tensions - tension(v0) * h) / w + stretched
-    }
-}
-
-/// Work given to and lost by a network at rest before and after a step from `t0` to `t1` [s].
-pub fn work_at_rest(
-    model: &Model,
-    network: &Network,
-    [before, after]: [&State; 2],
-    [t0, t1]: [f64; 2],
-) -> Flow {
-    let mut flow = Flow::default();
-    for &index in &network.lines {
-        let line = &model.lines[index];
-        for end in [End::A, End::B] {
-            let point = line.ends[usize::from(end == End::B)];
-            if model.points[point].free().is_some() {
-                continue;
-            }
-            let force =
-                |state: &State| force_at_rest(line, &state.lines[index], end, &state.points[point]);
-            let moved = after.points[point].position - before.points[point].position;
-            flow.given -= 0.5 * (force(before) + force(after)).dot(&moved);
-            if line.bending.is_some() {
-                flow.given -= clamp_work(line, index, end, [before, after]);
-            }
-        }
-        flow.given += current_work(model, index, [before, after], [t0, t1]);
-        let shapes = [before, after].map(|state| &state.lines[index]);
-        if let (Some(contact), true) = (
-            &line.nodes.contact,
-            shapes.iter().any(|shape| shape.closed_form.is_none()),
-        ) {
-            let level = line.bottom().is_none();
-            for i in (1..line.segment_count()).filter(|_| !level) {
-                let [low, high] = shapes.map(|shape| {
-                    let node = resting_node(line, shape, i, 0.0, 1.0).and_then(|node| node.push());
-                    node.map_or(Vector3::zeros(), |push| push.force)
-                });
-                let moved = shapes[1].position[i] - shapes[0].position[i];
-                flow.lost -= 0.5 * (low + high).dot(&moved);
-            }
-            for i in (1..line.segment_count()).filter(|_| level) {
-                let [z0, z1] = shapes.map(|shape| shape.position[i].z);
-                let push = |z: f64| contact.stiffness[i] * (contact.level[i] - z).max(0.0);
-                flow.lost -= 0.5 * (push(z0) + push(z1)) * (z1 - z0);
-            }
-        }
-    }
-    for &point in &network.free_points {
-        let loads = model.points[point].load_at(t0) + model.points[point].load_at(t1);
-        let moved = after.points[point].position - before.points[point].position;
-        flow.given += 0.5 * loads.dot(&moved);
-        let (line, _) = model.points[point].attached[0];
-        if after.lines[line].closed_form.is_none()
-            && let Some(free) = model.points[point].free()
-        {
-            let push = |state: &State| match model.bottom.as_deref() {
-                None => {
-                    let spring = free.bed_at_rest(state.points[point].position.z);
-                    spring.map_or(Vector3::zeros(), |(_, force)| force * Vector3::z())
-                }
-                Some(bottom) => {
-                    let resting = resting_point(free, bottom, &state.points[point], 0.0, 1.0);
-                    let push = resting.and_then(|point| point.push());
-                    push.map_or(Vector3::zeros(), |push| push.force)
-                }
-            };
-            flow.lost -= 0.5 * (push(before) + push(after)).dot(&moved);
-        }
-    }
-    flow
-}
-
-/// Work [J] of the drag of a current on the nodes of a line that moves from rest to rest.
-fn current_work(model: &Model, index: usize, states: [&State; 2], times: [f64; 2]) -> f64 {
-    let line = &model.lines[index];
-    let (Some(before), Some(after)) = (model.stream(times[0]), model.stream(times[1])) else {
-        return 0.0;
-    };
-    let free = |end: usize| model.points[line.ends[end]].free().is_some();
-    let [old, new] = states.map(|state| &state.lines[index].position);
-    let first = usize::from(!free(0));
-    let last = line.segment_count() - usize::from(!free(1));
-    let work = |i: usize| {
-        let force = drag_at_rest(line, old, i, before) + drag_at_rest(line, new, i, after);
-        0.5 * force.dot(&(new[i] - old[i]))
-    };
-    (first..=last).map(work).sum()
-}
-
-/// Work [J] of a line on the clamp at one of its ends, which turned between two states.
-fn clamp_work(line: &Line, index: usize, end: End, states: [&State; 2]) -> f64 {
-    let points = states.map(|state| &state.points[line.ends[usize::from(end == End::B)]]);
-    let shapes = states.map(|state| &state.lines[index].position);
-    let moment = |i: usize| end_moment(line, shapes[i], end, points[i]);
-    let turned = points[1].orientation * points[0].orientation.inverse();
-    0.5 * (moment(0) + moment(1)).dot(&turned.scaled_axis())
-}
-
-/// Force [N] of a line at rest on a held point, without the weight of its own half node, whose energy is not held, unless the line
-/// is a closed-form catenary.
-fn force_at_rest(line: &Line, shape: &LineState, end: End, point: &PointState) -> Vector3<f64> {
-    if let Some(closed_form) = &shape.closed_form {
-        return closed_form.end_force[usize::from(end == End::B)];
-    }
-    let (segment, sign) = match end {
-        End::A => (0, 1.0),
-        End::B => (line.segment_count() - 1, -1.0),
-    };
-    let ends = [shape.position[segment], shape.position[segment + 1]];
-    let still = [Vector3::zeros(); 2];
-    let tension = segment_tension(line, segment, ends, still, false);
-    let chord = (ends[1] - ends[0]).try_normalize(0.0);
-    let mut force = sign * tension * chord.unwrap_or_else(Vector3::zeros);
-    if let Some(surface) = &line.surface {
-        force.z -= surface.node(line.end_node(end), &shape.position).weight;
-    }
-    if line.bending.is_some() {
-        force += end_shear(line, [&shape.position, &[]], end, point);
-    }
-    force
-}
-
+/// Direction of a line at a node [-]: none where its neighbours coincide.
 fn tangent(shape: &LineState, i: usize) -> Vector3<f64> {
     let last = shape.position.len() - 1;
     let chord = shape.position[(i + 1).min(last)] - shape.position[i.saturating_sub(1)];
     chord.try_normalize(0.0).unwrap_or_else(Vector3::zeros)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use approx::assert_relative_eq;
-
-    #[test]
-    fn the_integrals_of_a_hanging_piece_are_those_of_its_shape() {
-        for weight in [3.0, -2.0] {
-            let piece = Hanging {
-                length: 8.0,
-                weight,
-                axial_stiffness: 400.0,
-                horizontal: 5.0,
-                vertical: -7.0,
-            };
-            let count = 200_000;
-            let step = piece.length / f64::from(count);
-            let (mut height, mut squares, mut heights) = (1.5, 0.0, 0.0);
-            for i in 0..count {
-                let v = piece.vertical + weight * step * (f64::from(i) + 0.5);
-                let tension = piece.horizontal.hypot(v);
-                let rise = step * (1.0 + tension / piece.axial_stiffness) * v / tension;
-                squares += step * tension * tension;
-                heights += step * (height + 0.5 * rise);
-                height += rise;
-            }
-            assert_relative_eq!(piece.squared_tension(), squares, max_relative = 1e-8);
-            assert_relative_eq!(piece.height(1.5), heights, max_relative = 1e-8);
-        }
-    }
 }

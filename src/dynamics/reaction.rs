@@ -223,42 +223,19 @@ mod tests {
 
     /// A weightless line along x whose first section has another mass [kg/m].
     fn model(elements: usize, other: f64) -> Model {
-        let half = 0.5 * LENGTH;
-        let each = elements / 2;
-        Model::new(
-            &Scene::from_toml(&format!(
-                r#"
-                [line_types.rope]
-                mass = {MASS}
-                weight = 0.0
-                axial_stiffness = {STIFFNESS}
-                axial_damping = 0.0
-                [line_types.other]
-                mass = {other}
-                weight = 0.0
-                axial_stiffness = {STIFFNESS}
-                axial_damping = 0.0
-                [[points]]
-                name = "a"
-                position = [0.0, 0.0, 0.0]
-                kind = "fixed"
-                [[points]]
-                name = "b"
-                position = [{LENGTH}, 0.0, 0.0]
-                kind = "coupled"
-                [[lines]]
-                name = "line"
-                from = "a"
-                to = "b"
-                sections = [
-                    {{ type = "other", length = {half}, elements = {each} }},
-                    {{ type = "rope", length = {half}, elements = {each} }},
-                ]
-                "#
-            ))
-            .unwrap(),
-        )
-        .unwrap()
+        let (half, each) = (0.5 * LENGTH, elements / 2);
+        let like = format!("weight = 0.0, axial_stiffness = {STIFFNESS}, axial_damping = 0.0");
+        let section = |kind| format!("{{ type = '{kind}', length = {half}, elements = {each} }}");
+        let scene = Scene::from_toml(&format!(
+            "line_types.rope = {{ mass = {MASS}, {like} }}
+            line_types.other = {{ mass = {other}, {like} }}
+            points = [{{ name = 'a', position = [0.0, 0.0, 0.0], kind = 'fixed' }},
+                      {{ name = 'b', position = [{LENGTH}, 0.0, 0.0], kind = 'coupled' }}]
+            lines = [{{ name = 'line', from = 'a', to = 'b', sections = [{}, {}] }}]",
+            section("other"),
+            section("rope")
+        ));
+        Model::new(&scene.unwrap()).unwrap()
     }
 
     /// The line at the turn of a harmonic motion of its end B along itself, u = U sin(ks)/sin(kL), where nothing moves.

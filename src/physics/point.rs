@@ -86,6 +86,26 @@ impl Sphere {
         }
     }
 
+    /// The same on the way from one height to another [m]: the mean of s, and its slope with the height at the end. The mean is exact, so that
+    /// it times the way is the change of ∫ s dz.
+    pub fn wetted_between(&self, from: f64, to: f64) -> Wetted {
+        let [low, high] = [from, to].map(|height| 0.5 * (1.0 - height / self.radius));
+        let [a, b] = [low, high].map(|u| u.clamp(0.0, 1.0));
+        let under = |u: f64| (u - 1.0).max(0.0);
+        // the divided difference of u³ − ½u⁴ between a and b
+        let mean = a * a + a * b + b * b - 0.5 * (a + b) * (a * a + b * b);
+        let part = match low == high {
+            true => mean,
+            false => (mean * (b - a) + under(high) - under(low)) / (high - low),
+        };
+        // ∫ t s' dt along the way, 0 ≤ t ≤ 1, by Simpson's rule
+        let slope = |height: f64| self.wetted(height).slope;
+        Wetted {
+            part,
+            slope: (2.0 * slope(0.5 * (from + to)) + slope(to)) / 6.0,
+        }
+    }
+
     /// u [-].
     fn depth(&self, height: f64) -> f64 {
         (0.5 * (1.0 - height / self.radius)).clamp(0.0, 1.0)
@@ -152,6 +172,29 @@ mod tests {
             let cap = PI * depth * depth * (3.0 * r - depth) / 3.0;
             let part = sphere().wetted(r - depth).part;
             assert_relative_eq!(2.0 * part, cap, max_relative = 1e-13);
+        }
+    }
+
+    #[test]
+    fn the_wet_part_between_two_heights_is_what_the_energy_changes_by() {
+        let s = sphere();
+        for (from, to) in HEIGHTS.into_iter().flat_map(|a| HEIGHTS.map(|b| (a, b))) {
+            let way = s.wetted_between(from, to);
+            let change = s.energy(to) - s.energy(from);
+            let work = s.buoyancy * way.part * (from - to);
+            assert_relative_eq!(work, change, epsilon = 1e-9);
+            let step = 1e-6;
+            let [low, high] = [to - step, to + step].map(|to| s.wetted_between(from, to).part);
+            let smooth = [from, to].map(|z| z.abs() < s.radius) == [true; 2];
+            if smooth {
+                let slope = (high - low) / (2.0 * step);
+                assert_relative_eq!(way.slope, slope, epsilon = 1e-8);
+            }
+        }
+        for height in HEIGHTS {
+            let part = s.wetted(height).part;
+            let still = s.wetted_between(height, height).part;
+            assert_relative_eq!(still, part, epsilon = 1e-15);
         }
     }
 

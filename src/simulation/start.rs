@@ -77,8 +77,8 @@ fn at_rest(model: &Model, time: f64, places: &[PointState]) -> Result<State, Sta
     }
     let mut work = assembly::Workspace::new(model);
     let mut state = match model.solver.integrator {
-        Integrator::QuasiStatic => catenary_network::solve_posed(model, places, time, &mut work)?,
-        _ => equilibrium::solve_posed(model, places, time, &mut work)?,
+        Integrator::QuasiStatic => catenary_network::solve(model, places, time, &mut work)?,
+        _ => equilibrium::solve(model, places, time, &mut work)?,
     };
     for (line, shape) in model.lines.iter().zip(&mut state.lines) {
         // free points are where they rest, which is not where the scene puts them

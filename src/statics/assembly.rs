@@ -37,8 +37,7 @@ use crate::statics::catenary::Catenary;
 
 pub(crate) use bending::{BendingWork, rates};
 pub use bending::{end_moment, end_shear, joint_damping_power};
-use contact::damper_reach;
-pub(crate) use contact::faded_push;
+pub(crate) use contact::{damper_reach, faded_push};
 pub(crate) use line::{LineWork, node_tangent};
 use places::{Place, blank_state};
 pub(crate) use places::{copy_network, place_ends};

@@ -17,7 +17,7 @@ use nalgebra::{Matrix3, Rotation3, Vector3};
 
 use crate::math::pivoted_chain::PivotedChain;
 use crate::math::rotation::{cayley, turned_to};
-use crate::model::{Beam, BeamElement, Model, Nodes, Point, PointState, State};
+use crate::model::{Beam, BeamElement, FreePoint, Model, Nodes, Point, PointState, State};
 use crate::physics::section::{
     Mixture, Response, Section, Sextuple, geometric_stiffness, join, response, split, strain,
     strain_gradient,
@@ -115,10 +115,8 @@ pub fn rest(model: &Model, index: usize, state: &mut State, t: f64) -> Result<()
         .collect();
     let end = |end: usize| {
         let point = &model.points[line.ends[end]];
-        let own = point.free().map_or(0.0, |free| free.weight);
-        let force = point.load_at(t) - own * Vector3::z();
         BeamEnd {
-            load: join(force, point.moment_at(t)),
+            load: join(point.load_at(t), point.moment_at(t)),
             ..end_hold(point, beam.clamped[end].is_some())
         }
     };
@@ -127,6 +125,7 @@ pub fn rest(model: &Model, index: usize, state: &mut State, t: f64) -> Result<()
         nodes: &line.nodes,
         rest: &shape.rest,
         ends: [end(0), end(1)],
+        bodies: line.ends.map(|point| model.points[point].free()),
     };
     turn_clamps_in(&case, &mut sections).map_err(|restless| refusal(&line.name, restless))?;
     let line_state = &mut state.lines[index];
@@ -205,6 +204,8 @@ pub struct BeamCase<'a> {
     pub rest: &'a [Sextuple],
     /// What holds and loads ends A and B.
     pub ends: [BeamEnd; 2],
+    /// What is there, where they are free: it weighs, floats and rests on the bed.
+    pub bodies: [Option<&'a FreePoint>; 2],
 }
 
 /// Why no equilibrium was found.
@@ -288,12 +289,13 @@ pub(crate) fn add_elements(
 /// Axial and shear stiffness that the search begins with [N].
 fn softest(case: &BeamCase) -> f64 {
     let weight: f64 = case.nodes.weight.iter().map(|w| w.abs()).sum();
+    let bodies: f64 = case.bodies.iter().flatten().map(|b| b.weight_max()).sum();
     let loads = case.ends.iter().map(|end| split(&end.load).0.norm());
     let bending = |element: &BeamElement| {
         element.law.bending.max(element.law.torsion) / element.length.powi(2)
     };
     let bending = case.beam.elements.iter().map(bending).fold(0.0, f64::max);
-    SOFTNESS * (weight + loads.sum::<f64>()).max(bending)
+    SOFTNESS * (weight + bodies + loads.sum::<f64>()).max(bending)
 }
 
 /// Force out of balance that the rounding of positions alone may leave [N].
@@ -332,8 +334,14 @@ fn energy(case: &BeamCase, sections: &[Section]) -> Energy {
             add(0.5 * contact.stiffness[i] * penetration * penetration);
         }
     }
-    for (node, end) in [0, sections.len() - 1].into_iter().zip(&case.ends) {
-        add(-split(&end.load).0.dot(&sections[node].position));
+    for (end, node) in [0, sections.len() - 1].into_iter().enumerate() {
+        let position = &sections[node].position;
+        add(-split(&case.ends[end].load).0.dot(position));
+        if let Some(body) = case.bodies[end] {
+            add(body.potential(position.z));
+            let bed = body.bed_at_rest(position.z);
+            add(bed.map_or(0.0, |(stiffness, push)| 0.5 * push * push / stiffness));
+        }
     }
     Energy { value, size }
 }
@@ -498,8 +506,19 @@ impl BeamStatics {
             }
         }
         let last = sections.len() - 1;
-        for (node, end) in [0, last].into_iter().zip(&case.ends) {
-            self.chain.right[node] += load * end.load;
+        for (end, node) in [0, last].into_iter().enumerate() {
+            self.chain.right[node] += load * case.ends[end].load;
+            let Some(body) = case.bodies[end] else {
+                continue;
+            };
+            let height = sections[node].position.z;
+            let at = body.at(height);
+            self.chain.right[node].z -= load * at.weight;
+            self.chain.diagonal[node][(2, 2)] += load * at.weight_slope;
+            if let Some((stiffness, push)) = body.bed_at_rest(height) {
+                self.chain.right[node].z += push;
+                self.chain.diagonal[node][(2, 2)] += stiffness;
+            }
         }
         if anchoring > 0.0 {
             self.anchor(case.beam, anchoring);

@@ -61,20 +61,6 @@ pub fn serves(model: &Model, network: &Network) -> bool {
 /// No equilibrium was found, or there is none.
 pub fn solve(
     model: &Model,
-    points: &[Vector3<f64>],
-    t: f64,
-    work: &mut Workspace,
-) -> Result<State, StaticsError> {
-    let points: Vec<PointState> = points.iter().copied().map(PointState::at_rest).collect();
-    solve_posed(model, &points, t, work)
-}
-
-/// [`solve`] with the orientations of all points, which clamped lines follow.
-///
-/// # Errors
-/// As there.
-pub fn solve_posed(
-    model: &Model,
     points: &[PointState],
     t: f64,
     work: &mut Workspace,
@@ -89,7 +75,7 @@ pub fn solve_posed(
     if (0..model.networks.len()).all(|number| solve_network(model, number, &mut state, t, work)) {
         return Ok(state);
     }
-    let mut state = equilibrium::solve_posed(model, points, t, work)?;
+    let mut state = equilibrium::solve(model, points, t, work)?;
     for number in 0..model.networks.len() {
         solve_network(model, number, &mut state, t, work);
     }

@@ -62,26 +62,12 @@ const JUMP_MAX: f64 = 0.1;
 /// Smallest increment of the loads on a softening line [-].
 const LOAD_INCREMENT_MIN: f64 = 1e-5;
 
-/// Finds the equilibrium of all lines at time `t` [s], for the positions of all points [m]: held ones as they are, free ones as a
-/// guess. Lines start on the shape the scene gives them, else on their catenary.
+/// Finds the equilibrium of all lines at time `t` [s], for the places of all points: held ones as they are, with the orientations that
+/// clamped lines follow, free ones as a guess. Lines start on the shape the scene gives them, else on their catenary.
 ///
 /// # Errors
 /// No equilibrium was found, or there is none.
 pub fn solve(
-    model: &Model,
-    points: &[Vector3<f64>],
-    t: f64,
-    work: &mut Workspace,
-) -> Result<State, StaticsError> {
-    let points: Vec<PointState> = points.iter().copied().map(PointState::at_rest).collect();
-    solve_posed(model, &points, t, work)
-}
-
-/// [`solve`] with the orientations of all points, which clamped lines follow.
-///
-/// # Errors
-/// As there.
-pub fn solve_posed(
     model: &Model,
     points: &[PointState],
     t: f64,

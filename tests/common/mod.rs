@@ -1,10 +1,11 @@
 //! What the tests of the dynamics share: scenes, histories and measures of error.
 #![allow(dead_code)] // each test file uses a part
 
-use moorline::model::Model;
+use moorline::model::{Model, PointState, State};
 use moorline::scene::{InitialShape, Integrator, Scene};
 use moorline::simulation::Simulation;
 use moorline::statics::assembly::Workspace;
+use moorline::statics::equilibrium;
 use moorline::statics::modes::Modes;
 use nalgebra::Vector3;
 
@@ -20,6 +21,27 @@ pub const PUBLIC_SCENES: [(&str, f64); 5] = [
 /// A scene from TOML text.
 pub fn scene(text: &str) -> Scene {
     Scene::from_toml(text).unwrap()
+}
+
+/// The model of a scene from TOML text.
+pub fn model(text: &str) -> Model {
+    Model::new(&scene(text)).unwrap()
+}
+
+/// Where the scene puts the points [m].
+pub fn at_reference(model: &Model) -> Vec<Vector3<f64>> {
+    model.points.iter().map(|point| point.reference).collect()
+}
+
+/// Points at rest at places [m].
+pub fn resting(places: &[Vector3<f64>]) -> Vec<PointState> {
+    places.iter().copied().map(PointState::at_rest).collect()
+}
+
+/// Equilibrium with the points where the scene puts them.
+pub fn statics(model: &Model) -> State {
+    let points = resting(&at_reference(model));
+    equilibrium::solve(model, &points, 0.0, &mut Workspace::new(model)).unwrap()
 }
 
 /// A scene of the folder `scenes`.
@@ -147,6 +169,12 @@ pub fn order(sizes: &[f64], errors: &[f64]) -> f64 {
         / logs.iter().map(|l| (l.0 - x).powi(2)).sum::<f64>()
 }
 
+/// [`order`] of pairs of size and error [-].
+pub fn order_of(pairs: &[(f64, f64)]) -> f64 {
+    let (sizes, errors): (Vec<f64>, Vec<f64>) = pairs.iter().copied().unzip();
+    order(&sizes, &errors)
+}
+
 /// Claims that errors fall with the resolution at an order ± 0.1.
 pub fn assert_order(claimed: f64, sizes: &[f64], errors: &[f64]) {
     let fitted = order(sizes, errors);
@@ -188,16 +216,26 @@ pub fn zero_crossings(samples: &[f64], step: f64) -> Vec<f64> {
     pairs.filter_map(crossing).collect()
 }
 
+/// A number in 0 … 1, and the next seed.
+pub fn random(seed: &mut u64) -> f64 {
+    let mut chance = Chance(*seed);
+    chance.next();
+    *seed = chance.0;
+    (*seed >> 11) as f64 / (1u64 << 53) as f64
+}
+
 /// A generator of numbers from a seed: Knuth's multiplier and increment of the linear congruential kind, upper bits.
 pub struct Chance(pub u64);
 
 impl Chance {
+    fn next(&mut self) {
+        let multiplied = self.0.wrapping_mul(6_364_136_223_846_793_005);
+        self.0 = multiplied.wrapping_add(1_442_695_040_888_963_407);
+    }
+
     /// A number below `count`.
     pub fn below(&mut self, count: usize) -> usize {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
+        self.next();
         ((self.0 >> 33) as usize) % count.max(1)
     }
 

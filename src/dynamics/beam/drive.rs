@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::{BeamStep, BeamWork, Stuck, beam_state};
+use super::{BeamStep, BeamWork, Body, Stuck, beam_state};
 use crate::dynamics::ledger::Flow;
 use crate::model::{Beam, Kinematics, Line, Model, State};
 use crate::physics::section::{Section, join};
@@ -45,8 +45,7 @@ pub fn drive<K: Fn(usize, f64) -> Kinematics>(
             nodes: &line.nodes,
             ends: ends.map(|end| end.hold),
             targets: ends.map(|end| end.target),
-            end_mass: ends.map(|end| end.mass),
-            end_weight: ends.map(|end| end.weight),
+            bodies: ends.map(|end| end.body),
             length: step,
         };
         let (solves, flow) = work.step(&case, &mut state.lines[index])?;
@@ -59,22 +58,21 @@ pub fn drive<K: Fn(usize, f64) -> Kinematics>(
 
 /// An end over one step.
 #[derive(Clone, Copy)]
-struct EndOfStep {
+struct EndOfStep<'a> {
     hold: BeamEnd,
     target: Section,
-    mass: f64,
-    weight: f64,
+    body: Option<Body<'a>>,
 }
 
-fn end_of_step<K: Fn(usize, f64) -> Kinematics>(
-    model: &Model,
+fn end_of_step<'a, K: Fn(usize, f64) -> Kinematics>(
+    model: &'a Model,
     beam: &Beam,
     index: usize,
     state: &State,
     held: &K,
     end: usize,
     [from, to]: [f64; 2],
-) -> EndOfStep {
+) -> EndOfStep<'a> {
     let number = model.lines[index].ends[end];
     let point = &model.points[number];
     let load = join(point.load_mean(from, to), point.moment_mean(from, to));
@@ -85,15 +83,19 @@ fn end_of_step<K: Fn(usize, f64) -> Kinematics>(
     let shape = beam_state(&state.lines[index]);
     let frame = |attitude: Matrix3<f64>| attitude * shape.carried[end];
     match point.free() {
-        Some(free) => EndOfStep {
-            hold,
-            target: Section {
-                position: state.points[number].position,
-                frame: frame(Matrix3::identity()),
-            },
-            mass: free.mass,
-            weight: free.weight,
-        },
+        Some(free) => {
+            let position = state.points[number].position;
+            let stream = model.stream(0.5 * (from + to));
+            let water = stream.map_or(Vector3::zeros(), |stream| stream.velocity(position.z));
+            EndOfStep {
+                hold,
+                target: Section {
+                    position,
+                    frame: frame(Matrix3::identity()),
+                },
+                body: Some(Body { point: free, water }),
+            }
+        }
         None => {
             let k = held(number, to);
             EndOfStep {
@@ -102,8 +104,7 @@ fn end_of_step<K: Fn(usize, f64) -> Kinematics>(
                     position: k.position,
                     frame: frame(attitude(&k)),
                 },
-                mass: 0.0,
-                weight: 0.0,
+                body: None,
             }
         }
     }

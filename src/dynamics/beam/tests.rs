@@ -1,5 +1,6 @@
 use super::*;
-use crate::model::{BeamElement, BeamState};
+use crate::model::{BeamElement, BeamState, FreePoint, PointContact};
+use crate::physics::point::Sphere;
 use crate::physics::section::SectionLaw;
 use approx::assert_relative_eq;
 
@@ -102,8 +103,7 @@ impl Flight {
             nodes: &self.nodes,
             ends,
             targets: [at(0), at(self.shape.position.len() - 1)],
-            end_mass: [0.0; 2],
-            end_weight: [0.0; 2],
+            bodies: [None; 2],
             length: dt,
         };
         let (solves, flow) = self.work.step(&case, &mut self.shape).unwrap();
@@ -225,8 +225,7 @@ fn the_ledger_of_a_damped_beam_in_water_over_a_bed_closes_to_rounding() {
             nodes: &flight.nodes,
             ends: [BeamEnd::clamped(), BeamEnd::free()],
             targets: [target(flight.time + 0.02); 2],
-            end_mass: [0.0; 2],
-            end_weight: [0.0; 2],
+            bodies: [None; 2],
             length: 0.02,
         };
         let (_, flow) = flight.work.step(&case, &mut flight.shape).unwrap();
@@ -237,6 +236,66 @@ fn the_ledger_of_a_damped_beam_in_water_over_a_bed_closes_to_rounding() {
         assert_relative_eq!(energy - start, given - lost, epsilon = 1e-8);
     }
     assert!(lost > 1.0 && flight.shape.position[20].z < -0.1);
+}
+
+/// A point that moves along all axes, of a mass [kg], with a volume [m³] and a bed at a height [m].
+fn body(mass: f64, volume: f64, bed: f64) -> FreePoint {
+    let (density, gravity) = (1000.0, 10.0);
+    FreePoint {
+        axes: [true; 3],
+        mass,
+        weight: gravity * (mass - density * volume),
+        sphere: Sphere::new([volume, 0.3, 0.5], density, gravity),
+        contact: Some(PointContact {
+            bed,
+            level: bed,
+            coefficients: ContactCoefficients {
+                stiffness: 2e4,
+                damping: 50.0,
+            },
+        }),
+    }
+}
+
+#[test]
+fn the_ledger_of_a_beam_with_a_buoy_and_a_clump_in_a_current_closes_to_rounding() {
+    let mut flight = Flight::new(12, 100.0, Vector3::zeros());
+    let (buoy, clump) = (body(20.0, 0.1, -9.0), body(40.0, 0.01, -0.4));
+    let bodies = [&buoy, &clump].map(|point| {
+        let water = Vector3::new(0.5, 0.3, 0.0);
+        Some(Body { point, water })
+    });
+    let held = |flight: &Flight| {
+        let ends = [(&buoy, 0), (&clump, 12)].map(|(point, node)| {
+            let height = flight.shape.position[node].z;
+            let squared = flight.shape.velocity[node].norm_squared();
+            0.5 * point.at(height).mass * squared + point.potential(height)
+        });
+        flight.view().energy(FREE).total() + ends[0] + ends[1]
+    };
+    let (start, mut flow) = (held(&flight), Flow::default());
+    let mut lowest = f64::INFINITY;
+    for _ in 0..150 {
+        let case = BeamStep {
+            beam: &flight.beam,
+            nodes: &flight.nodes,
+            ends: [BeamEnd::free(); 2],
+            targets: [Section {
+                position: Vector3::zeros(),
+                frame: Matrix3::identity(),
+            }; 2],
+            bodies,
+            length: 0.02,
+        };
+        flow.add(flight.work.step(&case, &mut flight.shape).unwrap().1);
+        assert_relative_eq!(
+            held(&flight) - start,
+            flow.given - flow.lost,
+            epsilon = 1e-8
+        );
+        lowest = flight.shape.position[12].z.min(lowest);
+    }
+    assert!(flow.lost > 1.0 && flow.given > 0.1 && lowest < -0.4);
 }
 
 #[test]
@@ -257,8 +316,7 @@ fn a_turn_of_more_than_half_a_circle_in_a_step_is_refused_and_changes_nothing() 
             position: Vector3::zeros(),
             frame: Matrix3::identity(),
         }; 2],
-        end_mass: [0.0; 2],
-        end_weight: [0.0; 2],
+        bodies: [None; 2],
         length: 1.0,
     };
     assert!(flight.work.step(&case, &mut flight.shape).is_err());

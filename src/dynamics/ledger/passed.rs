@@ -87,19 +87,19 @@ impl Passed<'_> {
     }
 
     /// Mean velocity of a node of a line over the step [m/s].
-    fn way(&self, line: usize, node: usize) -> Vector3<f64> {
+    fn velocity_mean(&self, line: usize, node: usize) -> Vector3<f64> {
         let [before, after] = self.states.map(|state| state.lines[line].position[node]);
         (after - before) / self.length()
     }
 
     /// The same of a point.
-    fn point_way(&self, point: usize) -> Vector3<f64> {
+    fn point_velocity_mean(&self, point: usize) -> Vector3<f64> {
         let [before, after] = self.states.map(|state| state.points[point].position);
         (after - before) / self.length()
     }
 
     /// Mean spin of a held point over the step [rad/s].
-    fn turn(&self, point: usize) -> Vector3<f64> {
+    fn spin_mean(&self, point: usize) -> Vector3<f64> {
         let [before, after] = self.states.map(|state| state.points[point].orientation);
         (after * before.inverse()).scaled_axis() / self.length()
     }
@@ -117,7 +117,7 @@ impl Passed<'_> {
                 shapes.map(|shape| shape.velocity[i]),
                 shapes.map(|shape| shape.acceleration[i]),
             ];
-            flow.add(self.carried(masses, v, a, self.way(index, i)));
+            flow.add(self.inertia_of(masses, v, a, self.velocity_mean(index, i)));
         }
         flow
     }
@@ -143,20 +143,21 @@ impl Passed<'_> {
             points.map(|point| point.velocity),
             points.map(|point| point.acceleration),
         ];
-        let mut flow = self.carried(masses, v, a, self.point_way(point));
+        let mut flow = self.inertia_of(masses, v, a, self.point_velocity_mean(point));
         let heights = points.map(|point| point.position.z);
         let weights = heights.map(|z| free.at(z).weight);
         flow.numerical += self.beyond_mean(weights) * (heights[1] - heights[0]);
         flow
     }
 
-    /// A mass before and after the step with its velocities [m/s] and accelerations [m/s²].
-    fn carried(
+    /// What a mass brings that changes, and what the scheme's inertia dissipates on it [J]: its velocities [m/s] and accelerations [m/s²] before and
+    /// after the step, and its mean velocity over it [m/s].
+    fn inertia_of(
         &self,
         [old, new]: [Mass; 2],
         [v0, v1]: [Vector3<f64>; 2],
         [a0, a1]: [Vector3<f64>; 2],
-        way: Vector3<f64>,
+        mean: Vector3<f64>,
     ) -> Flow {
         let Scheme {
             alpha_m, alpha_f, ..
@@ -169,7 +170,7 @@ impl Passed<'_> {
         Flow {
             given: 0.0,
             lost: -0.25 * (changed(&v0) + changed(&v1)),
-            numerical: self.length() * way.dot(&inertia) - gained,
+            numerical: self.length() * mean.dot(&inertia) - gained,
         }
     }
 
@@ -224,7 +225,7 @@ impl Passed<'_> {
             sum += self.beyond_mean(works);
         }
         for (end, point) in [End::A, End::B].into_iter().zip(line.ends) {
-            let turned = self.length() * self.turn(point);
+            let turned = self.length() * self.spin_mean(point);
             let works = [0, 1].map(|side| {
                 let at = &self.states[side].points[point];
                 0.0 - end_moment(line, shapes[side], end, at).dot(&turned)
@@ -309,7 +310,7 @@ impl Side<'_> {
         }
         for &point in &network.free_points {
             let load = self.model.points[point].load_at(self.t);
-            flow.given += load.dot(&self.passed.point_way(point));
+            flow.given += load.dot(&self.passed.point_velocity_mean(point));
             if let Some(free) = self.model.points[point].free() {
                 flow.add(self.point_power(free, point));
             }
@@ -329,7 +330,7 @@ impl Side<'_> {
         let mut flow = Flow::default();
         for i in 0..n {
             let segment = Segment::of(line, shape, i);
-            let [low, high] = [i, i + 1].map(|node| self.passed.way(index, node));
+            let [low, high] = [i, i + 1].map(|node| self.passed.velocity_mean(index, node));
             let (direction, unstretched) = (segment.direction, line.segments.length[i]);
             let stretching = direction.dot(&(high - low));
             let least = 0.0 - line.compression_max(i);
@@ -361,7 +362,11 @@ impl Side<'_> {
     /// Power that water, mass damping and seabed take from a node, and that moving water gives it [W].
     fn node_power(&self, index: usize, i: usize, water: WaterAlong) -> Flow {
         let (line, shape) = (&self.model.lines[index], &self.state.lines[index]);
-        let (nodes, velocity, way) = (&line.nodes, shape.velocity[i], self.passed.way(index, i));
+        let (nodes, velocity, mean) = (
+            &line.nodes,
+            shape.velocity[i],
+            self.passed.velocity_mean(index, i),
+        );
         let mut flow = Flow::default();
         let wet = 1.0 - dry_part(line, shape, i, water);
         if let Some(coefficients) = &nodes.drag {
@@ -375,14 +380,14 @@ impl Side<'_> {
             };
             let force = drag(k.times(wet), velocity - past, tangent(shape, i));
             flow.given += force.dot(&past);
-            flow.lost -= force.dot(&(way - past));
+            flow.lost -= force.dot(&(mean - past));
         }
         if let (Some(pressed), Some(waves)) = (&nodes.pressed, &water.waves) {
             let force = pressed.force(i, waves.at(i).acceleration, tangent(shape, i));
-            flow.given += wet * force.dot(&way);
+            flow.given += wet * force.dot(&mean);
         }
         if let Some(damping) = &nodes.mass_damping {
-            flow.lost += damping[i] * velocity.dot(&way);
+            flow.lost += damping[i] * velocity.dot(&mean);
         }
         let Some(contact) = &nodes.contact else {
             return flow;
@@ -391,14 +396,14 @@ impl Side<'_> {
         if line.bottom().is_some() {
             let push = resting_node(line, shape, i, reach, 1.0).and_then(|node| node.push());
             let force = push.map(|push| push.force + (self.friction - 1.0) * push.friction);
-            flow.lost -= force.map_or(0.0, |force| force.dot(&way));
+            flow.lost -= force.map_or(0.0, |force| force.dot(&mean));
         } else {
             let k = ContactCoefficients {
                 stiffness: contact.stiffness[i],
                 damping: contact.damping[i],
             };
             let penetration = contact.level[i] - shape.position[i].z;
-            flow.lost -= faded_push(k, penetration, velocity.z, reach) * way.z;
+            flow.lost -= faded_push(k, penetration, velocity.z, reach) * mean.z;
         }
         flow
     }
@@ -411,7 +416,7 @@ impl Side<'_> {
             return 0.0;
         };
         let n = line.segment_count();
-        let rise = |i: usize| self.passed.way(index, i).z;
+        let rise = |i: usize| self.passed.velocity_mean(index, i).z;
         let calm = |i: usize| surface.node(i, &shape.position).weight;
         let ends = [0, n].into_iter().zip(held).filter(|(_, held)| *held);
         let mut power: f64 = ends.map(|(i, _)| calm(i) * rise(i)).sum();
@@ -435,13 +440,13 @@ impl Side<'_> {
                 None => {
                     let shear = end_shear(line, [&shape.position, &shape.velocity], end, at);
                     let moment = end_moment(line, &shape.position, end, at);
-                    let way = self.passed.way(index, line.end_node(end));
-                    -shear.dot(&way) - moment.dot(&self.passed.turn(point))
+                    let mean = self.passed.velocity_mean(index, line.end_node(end));
+                    -shear.dot(&mean) - moment.dot(&self.passed.spin_mean(point))
                 }
             }
         };
         let nodes = 0..=line.segment_count();
-        let ways: Vec<_> = nodes.map(|i| self.passed.way(index, i)).collect();
+        let ways: Vec<_> = nodes.map(|i| self.passed.velocity_mean(index, i)).collect();
         Flow {
             given: [End::A, End::B].into_iter().zip(line.ends).map(given).sum(),
             lost: joint_damping_power(line, shape, line.clamps(&self.state.points), &ways),
@@ -452,10 +457,10 @@ impl Side<'_> {
     /// Power that moving water gives a free point, and that water and seabed take from it [W].
     fn point_power(&self, free: &FreePoint, point: usize) -> Flow {
         let (model, state) = (self.model, &self.state.points[point]);
-        let (z, velocity, way) = (
+        let (z, velocity, mean) = (
             state.position.z,
             state.velocity,
-            self.passed.point_way(point),
+            self.passed.point_velocity_mean(point),
         );
         let stream = model.stream(self.t);
         let mut water = stream.map_or(Vector3::zeros(), |stream| stream.velocity(z));
@@ -464,21 +469,21 @@ impl Side<'_> {
             let still = at.weight;
             at = free.at(z - orbit.elevation);
             water += orbit.velocity;
-            flow.given += free.pressed(at.wetted, orbit).dot(&way);
-            flow.given += (still - at.weight) * way.z;
+            flow.given += free.pressed(at.wetted, orbit).dot(&mean);
+            flow.given += (still - at.weight) * mean.z;
         }
         let drag = free.drag(at.wetted, velocity - water);
         flow.given += drag.dot(&water);
-        flow.lost -= drag.dot(&(way - water));
+        flow.lost -= drag.dot(&(mean - water));
         let reach = self.passed.work.point_reach(point);
         if let Some(bottom) = model.bottom.as_deref() {
             let push = resting_point(free, bottom, state, reach, 1.0);
             let push = push.and_then(|point| point.push());
             let force = push.map(|push| push.force + (self.friction - 1.0) * push.friction);
-            flow.lost -= force.map_or(0.0, |force| force.dot(&way));
+            flow.lost -= force.map_or(0.0, |force| force.dot(&mean));
         } else if let Some(contact) = &free.contact {
             let push = faded_push(contact.coefficients, contact.level - z, velocity.z, reach);
-            flow.lost -= push * way.z;
+            flow.lost -= push * mean.z;
         }
         flow
     }

@@ -8,6 +8,7 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::axis::Axis;
+use super::labels::{self, Label, Patch};
 
 /// Units of the drawing per pixel: the backend rounds to whole units, which would show as steps in a curve.
 const FINE: u32 = 4;
@@ -27,6 +28,8 @@ const LEGEND_ROW: u32 = 20;
 const SAMPLE: u32 = 26;
 /// Size of text [px].
 const TEXT: u32 = 13;
+/// Text size of words beside points [px].
+const LABEL: f64 = 12.0;
 /// Mean width of a letter over the text size, generous [-].
 const LETTER: f64 = 0.58;
 /// Most points drawn of a history; beyond, the least and greatest of every group stand for it.
@@ -254,30 +257,66 @@ impl Chart {
             };
         }
         let place = |point: &[f64; 2]| chart.backend_coord(&(point[0], point[1]));
-        for curve in &self.curves {
-            let labels = curve.points.iter().zip(&curve.labels);
-            for (point, label) in labels.filter(|(_, label)| !label.is_empty()) {
-                draw_label(area, label, curve.colour, place(point))?;
-            }
+        let (width, height) = chart.plotting_area().dim_in_pixel();
+        let (left, top) = chart.plotting_area().get_base_pixel();
+        let frame = Patch {
+            low: [left, top],
+            high: [left + width as i32, top + height as i32],
+        };
+        self.draw_labels(area, &frame, |point| place(point).into())
+    }
+
+    /// Words beside points, within a frame and clear of each other and of marks.
+    fn draw_labels(
+        &self,
+        area: &Area,
+        frame: &Patch,
+        place: impl Fn(&[f64; 2]) -> [i32; 2],
+    ) -> DrawResult {
+        let marks = self.curves.iter().filter(|c| c.stroke == Stroke::Marks);
+        let marks = marks.flat_map(|curve| &curve.points);
+        let marks: Vec<Patch> = marks
+            .map(|point| Patch::around(place(point), [fine(4); 2]))
+            .collect();
+        let words: Vec<(&Curve, &[f64; 2], &String)> = self
+            .curves
+            .iter()
+            .flat_map(|curve| {
+                let words = curve.points.iter().zip(&curve.labels);
+                words.map(move |(point, label)| (curve, point, label))
+            })
+            .filter(|(_, _, label)| !label.is_empty())
+            .collect();
+        let labels: Vec<Label> = words
+            .iter()
+            .map(|(_, point, label)| {
+                let letters = label.chars().count() as f64;
+                Label {
+                    point: place(point),
+                    size: [fine_f(LETTER * LABEL * letters) as i32, fine(14)],
+                }
+            })
+            .collect();
+        let places = labels::placed(frame, &marks, &labels, fine(6));
+        for ((curve, _, label), patch) in words.into_iter().zip(&places) {
+            draw_label(area, label, curve.colour, patch)?;
         }
         Ok(())
     }
 }
 
-/// Words right of a point, on white so that curves do not run through them.
-fn draw_label(area: &Area, label: &str, colour: [u8; 3], point: (i32, i32)) -> DrawResult {
-    const SIZE: f64 = 12.0;
+/// Words on white, so that curves do not run through them.
+fn draw_label(area: &Area, label: &str, colour: [u8; 3], patch: &Patch) -> DrawResult {
     let (left, top) = area.get_base_pixel();
-    let (x, y) = (point.0 - left + fine(7), point.1 - top);
-    let width = fine_f(LETTER * SIZE * label.chars().count() as f64) as i32;
-    let ground = [(x - fine(1), y - fine(7)), (x + width, y + fine(7))];
-    area.draw(&Rectangle::new(ground, WHITE.mix(0.7).filled()))?;
+    let [low, high] = [patch.low, patch.high].map(|[x, y]| (x - left, y - top));
+    area.draw(&Rectangle::new([low, high], WHITE.mix(0.7).filled()))?;
     let [r, g, b] = colour;
     let colour = RGBColor(r, g, b);
-    let text = text_style(SIZE)
+    let text = text_style(LABEL)
         .color(&colour)
         .pos(Pos::new(HPos::Left, VPos::Center));
-    area.draw_text(label, &text, (x, y))
+    let middle = (low.1 + high.1) / 2;
+    area.draw_text(label, &text, (low.0 + fine(1), middle))
 }
 
 /// Where every entry of a legend of this width [px] stands: left edge [px] and row.

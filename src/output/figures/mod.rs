@@ -9,6 +9,7 @@ mod chart;
 pub mod compared;
 mod flight;
 pub mod frontier;
+mod labels;
 
 use axis::{Axis, force_unit};
 use chart::{Chart, Curve, Stroke};

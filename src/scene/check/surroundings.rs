@@ -3,7 +3,7 @@
 use super::seabed::check_bed;
 use super::time::{Load, check_load_in_time};
 use super::{Bounds, Findings, quantity};
-use crate::scene::{Current, LineModel, Scene};
+use crate::scene::{Current, Integrator, LineModel, Scene};
 
 pub(super) fn check(scene: &Scene, findings: &mut Findings) {
     if scene.title.chars().any(char::is_control) {
@@ -81,9 +81,10 @@ fn check_current(scene: &Scene, current: &Current, findings: &mut Findings) {
     if let Some(factor) = &current.factor {
         check_load_in_time(findings, &format!("{at}.factor"), factor, Load::FACTOR);
     }
+    let all_beams = scene.solver.integrator == Integrator::Beam;
     for (name, line_type) in &scene.line_types {
         let drags = line_type.drag_normal.is_some() || line_type.drag_tangential.is_some();
-        if line_type.model == LineModel::Beam && drags {
+        if (all_beams || line_type.model == LineModel::Beam) && drags {
             let problem = format!(
                 "line type {name:?} is a beam, and beams are modelled in still water only: use the cable model, whose lines may bend \
                  too, or leave out the current or the drag coefficients"

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use super::{Bounds, Findings, quantity};
 use crate::scene::{
-    Integrator, LineModel, RegularWave, Scene, Sea, SpectrumKind, WaveComponents, Waves,
+    Integrator, LineModel, PointKind, RegularWave, Scene, Sea, SpectrumKind, WaveComponents, Waves,
 };
 
 /// Highest waves [m]: the highest ever measured had 32 m.
@@ -182,6 +182,20 @@ fn check_lines(scene: &Scene, findings: &mut Findings) {
         let problem = format!(
             "line type {name:?} is a beam, and beams are modelled in still water only: use the cable model, whose lines may bend too, or \
              leave out the waves"
+        );
+        return findings.say(at, problem);
+    }
+    let beams = || scene.lines.iter().filter(|line| scene.is_beam(line));
+    let wet = scene.points.iter().find(|point| {
+        let mut wets = [point.volume, point.drag_area].into_iter().flatten();
+        let wet = point.kind == PointKind::Free && wets.any(|value| value > 0.0);
+        wet && beams().any(|line| line.from == point.name || line.to == point.name)
+    });
+    if let Some(point) = wet {
+        let problem = format!(
+            "point {:?} is in the water at the end of a beam, and beams are modelled in still water only: use the cable model, or leave out \
+             the waves or the point's volume and drag area",
+            point.name
         );
         findings.say(at, problem);
     }

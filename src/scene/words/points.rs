@@ -11,13 +11,6 @@ impl Scene {
         if point.kind != PointKind::Free {
             return None;
         }
-        if self.ends_beam(point) {
-            let wet = self.radius(point).is_some();
-            return wet.then(|| {
-                "at the end of a beam only weight and buoyancy act, as if it were under water"
-                    .into()
-            });
-        }
         let said: Vec<String> = [self.water_in_words(point), self.bed_in_words(point)]
             .into_iter()
             .flatten()
@@ -28,12 +21,7 @@ impl Scene {
     /// Whether the water's surface acts on a free point.
     pub(super) fn surface_matters(&self) -> bool {
         let mut free = self.points.iter().filter(|p| p.kind == PointKind::Free);
-        free.any(|point| self.radius(point).is_some() && !self.ends_beam(point))
-    }
-
-    fn ends_beam(&self, point: &Point) -> bool {
-        let mut lines = self.lines.iter();
-        lines.any(|line| (line.from == point.name || line.to == point.name) && self.is_beam(line))
+        free.any(|point| self.radius(point).is_some())
     }
 
     /// Radius of the sphere that the water knows a point by [m]; `None` where it does nothing to it.

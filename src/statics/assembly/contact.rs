@@ -10,7 +10,7 @@ use crate::physics::seabed::ContactCoefficients;
 const DAMPER_FADE: f64 = 2.0;
 
 /// Half the range of penetrations over which the damper of a resting node fades in [m].
-pub(super) fn damper_reach(stiffness: f64, weight: f64) -> f64 {
+pub(crate) fn damper_reach(stiffness: f64, weight: f64) -> f64 {
     if stiffness > 0.0 {
         DAMPER_FADE * weight.abs() / stiffness
     } else {

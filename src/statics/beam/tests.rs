@@ -93,6 +93,7 @@ fn loaded(bench: &Bench, force: Vector3<f64>, moment: Vector3<f64>) -> Vec<Secti
         nodes: &bench.nodes,
         rest: &bench.rest,
         ends: [BeamEnd::clamped(), tip],
+        bodies: [None; 2],
     };
     let mut sections = bench.sections.clone();
     BeamStatics::new(sections.len())
@@ -225,6 +226,7 @@ fn a_beam_bent_far_from_rest_springs_back() {
         nodes: &bench.nodes,
         rest: &bench.rest,
         ends: [BeamEnd::clamped(), BeamEnd::free()],
+        bodies: [None; 2],
     };
     BeamStatics::new(n + 1).solve(&case, &mut sections).unwrap();
     assert_relative_eq!(sections[n].position, 10.0 * Vector3::x(), epsilon = 1e-7);
@@ -242,6 +244,7 @@ fn a_beam_that_nothing_holds_is_refused_and_left_where_it_was() {
         nodes: &bench.nodes,
         rest: &bench.rest,
         ends: [BeamEnd::free(), tip],
+        bodies: [None; 2],
     };
     let mut sections = bench.sections.clone();
     assert!(BeamStatics::new(7).solve(&case, &mut sections).is_err());
@@ -266,6 +269,7 @@ fn an_equilibrium_that_folds_its_elements_is_refused() {
         nodes: &bench.nodes,
         rest: &bench.rest,
         ends: [BeamEnd::clamped(), BeamEnd::clamped()],
+        bodies: [None; 2],
     };
     let refused = BeamStatics::new(3).solve(&case, &mut sections);
     assert!(

@@ -1,0 +1,87 @@
+//! A free point at the end of a beam over a step: mass, weight and buoyancy, drag, and the bed under it.
+//!
+//!   −w − B (1 − s̄)     weight w under water, buoyancy B of the whole, s̄ the mean of its wetted part over its way: the discrete
+//!                      gradient of the potential, so that the water's surface gives back what it took
+//!   f(v̄, s)            drag at the mean velocity through the water, with the wetted part in the middle of its way
+//!   F                  of the bed, as in `physics::contact_step`
+//!
+//! Its mass over the step is the one that the wetted part at the foreseen middle of the step gives it.
+//!
+//! Source: as in `physics::point`; discrete gradients, Gonzalez (1996), J. Nonlinear Sci. 6, 449-467. Valid as `physics::point` is, in
+//! water without waves.
+
+use nalgebra::{Matrix3, Vector3};
+
+use crate::dynamics::ledger::Flow;
+use crate::model::FreePoint;
+use crate::physics::contact_step::contact_step;
+use crate::statics::assembly::damper_reach;
+
+/// What is at a free end of a beam.
+#[derive(Debug, Clone, Copy)]
+pub struct Body<'a> {
+    /// The point.
+    pub point: &'a FreePoint,
+    /// Velocity of the water there over the step [m/s].
+    pub water: Vector3<f64>,
+}
+
+/// Mean forces on a body over a step.
+pub(super) struct BodyStep {
+    /// Of weight and buoyancy, upwards [N].
+    lift: f64,
+    /// Of the water [N].
+    drag: Vector3<f64>,
+    /// Of the bed, upwards [N].
+    push: f64,
+    /// −∂f/∂φ₁ of all [N/m].
+    pub(super) slope: Matrix3<f64>,
+}
+
+impl Body<'_> {
+    /// Over a step of a length [s] from one place to another [m].
+    pub(super) fn over(&self, [from, to]: [&Vector3<f64>; 2], length: f64) -> BodyStep {
+        let mut step = BodyStep {
+            lift: -self.point.weight,
+            drag: Vector3::zeros(),
+            push: 0.0,
+            slope: Matrix3::zeros(),
+        };
+        if let Some(sphere) = &self.point.sphere {
+            let way = sphere.wetted_between(from.z, to.z);
+            step.lift -= sphere.buoyancy * (1.0 - way.part);
+            step.slope[(2, 2)] -= sphere.buoyancy * way.slope;
+            let middle = sphere.wetted(0.5 * (from.z + to.z));
+            let velocity = (to - from) / length - self.water;
+            step.drag = sphere.drag(middle, velocity);
+            step.slope += sphere.drag_slope(middle, velocity) / length;
+            let mut by_height = step.slope.column_mut(2);
+            by_height += 0.5 * sphere.drag_slope_with_height(middle, velocity);
+        }
+        if let Some(contact) = &self.point.contact {
+            let reach = damper_reach(contact.coefficients.stiffness, self.point.weight);
+            let penetration = [from, to].map(|place| contact.level - place.z);
+            let bed = contact_step(contact.coefficients, penetration, reach, length);
+            step.push = bed.force;
+            step.slope[(2, 2)] += bed.slope;
+        }
+        step
+    }
+
+    /// Energy that crosses the border on a way [m] through a step of a length [s].
+    pub(super) fn flow(&self, step: &BodyStep, moved: &Vector3<f64>, length: f64) -> Flow {
+        let drift = length * self.water;
+        Flow {
+            given: step.drag.dot(&drift),
+            lost: -step.drag.dot(&(moved - drift)) - step.push * moved.z,
+            numerical: 0.0,
+        }
+    }
+}
+
+impl BodyStep {
+    /// All of them [N].
+    pub(super) fn force(&self) -> Vector3<f64> {
+        self.drag + (self.lift + self.push) * Vector3::z()
+    }
+}

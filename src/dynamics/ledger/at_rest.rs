@@ -1,0 +1,155 @@
+//! Work given to and lost by a network that goes from rest to rest: that of the mean of the forces before and after a step.
+//!
+//! Valid for steps over which the forces change little beside their slopes: the mean is exact for forces in proportion to the way.
+
+use nalgebra::Vector3;
+
+use super::Flow;
+use crate::dynamics::leapfrog::segment_tension;
+use crate::model::{End, FreePoint, Line, LineState, Model, Network, PointState, State};
+use crate::statics::assembly::rubbing::{resting_node, resting_point};
+use crate::statics::assembly::{end_moment, end_shear};
+use crate::statics::equilibrium::current::drag_at_rest;
+
+/// Work given to and lost by a network at rest before and after a step between two times [s], in [J].
+pub fn work_at_rest(
+    model: &Model,
+    network: &Network,
+    states: [&State; 2],
+    times: [f64; 2],
+) -> Flow {
+    let mut flow = Flow::default();
+    for &index in &network.lines {
+        flow.given += end_work(model, index, states) + current_work(model, index, states, times);
+        flow.lost -= bed_work(&model.lines[index], states.map(|state| &state.lines[index]));
+    }
+    for &point in &network.free_points {
+        let loads = times.map(|t| model.points[point].load_at(t));
+        flow.given += work(loads, states.map(|state| state.points[point].position));
+        let (line, _) = model.points[point].attached[0];
+        let on_elements = states[1].lines[line].closed_form.is_none();
+        if let (Some(free), true) = (model.points[point].free(), on_elements) {
+            flow.lost -= point_bed_work(model, free, states.map(|state| &state.points[point]));
+        }
+    }
+    flow
+}
+
+/// Work [J] of the mean of two forces [N] on the way between two places [m].
+fn work(forces: [Vector3<f64>; 2], [from, to]: [Vector3<f64>; 2]) -> f64 {
+    0.5 * (forces[0] + forces[1]).dot(&(to - from))
+}
+
+/// Work [J] of the held points at the ends of a line on it.
+fn end_work(model: &Model, index: usize, states: [&State; 2]) -> f64 {
+    let line = &model.lines[index];
+    let mut given = 0.0;
+    for (end, point) in [End::A, End::B].into_iter().zip(line.ends) {
+        if model.points[point].free().is_some() {
+            continue;
+        }
+        let points = states.map(|state| &state.points[point]);
+        let force =
+            |state: &State| force_of_line(line, &state.lines[index], end, &state.points[point]);
+        given -= work(states.map(force), points.map(|at| at.position));
+        if line.bending.is_some() {
+            let moment = |state: &State| {
+                end_moment(
+                    line,
+                    &state.lines[index].position,
+                    end,
+                    &state.points[point],
+                )
+            };
+            let moments = states.map(moment);
+            let turned = points[1].orientation * points[0].orientation.inverse();
+            given -= 0.5 * (moments[0] + moments[1]).dot(&turned.scaled_axis());
+        }
+    }
+    given
+}
+
+/// Work [J] of the drag of a current on the nodes of a line.
+fn current_work(model: &Model, index: usize, states: [&State; 2], times: [f64; 2]) -> f64 {
+    let line = &model.lines[index];
+    let (Some(before), Some(after)) = (model.stream(times[0]), model.stream(times[1])) else {
+        return 0.0;
+    };
+    let free = |end: usize| model.points[line.ends[end]].free().is_some();
+    let [old, new] = states.map(|state| &state.lines[index].position);
+    let nodes = usize::from(!free(0))..=line.segment_count() - usize::from(!free(1));
+    let on_node = |i: usize| {
+        let drags = [
+            drag_at_rest(line, old, i, before),
+            drag_at_rest(line, new, i, after),
+        ];
+        work(drags, [old[i], new[i]])
+    };
+    nodes.map(on_node).sum()
+}
+
+/// Work [J] of the bed on the inner nodes of a line; what lies of a closed-form catenary does not feel it.
+fn bed_work(line: &Line, shapes: [&LineState; 2]) -> f64 {
+    let Some(contact) = &line.nodes.contact else {
+        return 0.0;
+    };
+    if shapes.iter().all(|shape| shape.closed_form.is_some()) {
+        return 0.0;
+    }
+    let push = |shape: &LineState, i: usize| match line.bottom() {
+        None => {
+            let penetration = contact.level[i] - shape.position[i].z;
+            contact.stiffness[i] * penetration.max(0.0) * Vector3::z()
+        }
+        Some(_) => {
+            let push = resting_node(line, shape, i, 0.0, 1.0).and_then(|node| node.push());
+            push.map_or(Vector3::zeros(), |push| push.force)
+        }
+    };
+    let on_node = |i: usize| {
+        work(
+            shapes.map(|shape| push(shape, i)),
+            shapes.map(|shape| shape.position[i]),
+        )
+    };
+    (1..line.segment_count()).map(on_node).sum()
+}
+
+/// Work [J] of the bed on a free point.
+fn point_bed_work(model: &Model, free: &FreePoint, points: [&PointState; 2]) -> f64 {
+    let push = |at: &PointState| match model.bottom.as_deref() {
+        None => {
+            let spring = free.bed_at_rest(at.position.z);
+            spring.map_or(Vector3::zeros(), |(_, force)| force * Vector3::z())
+        }
+        Some(bottom) => {
+            let push = resting_point(free, bottom, at, 0.0, 1.0).and_then(|point| point.push());
+            push.map_or(Vector3::zeros(), |push| push.force)
+        }
+    };
+    work(points.map(push), points.map(|at| at.position))
+}
+
+/// Force [N] of a line on a held point, without the weight of its own half node, whose energy is not held, unless the line is a
+/// closed-form catenary.
+fn force_of_line(line: &Line, shape: &LineState, end: End, point: &PointState) -> Vector3<f64> {
+    if let Some(closed_form) = &shape.closed_form {
+        return closed_form.end_force[usize::from(end == End::B)];
+    }
+    let (segment, sign) = match end {
+        End::A => (0, 1.0),
+        End::B => (line.segment_count() - 1, -1.0),
+    };
+    let ends = [shape.position[segment], shape.position[segment + 1]];
+    let still = [Vector3::zeros(); 2];
+    let tension = segment_tension(line, segment, ends, still, false);
+    let chord = (ends[1] - ends[0]).try_normalize(0.0);
+    let mut force = sign * tension * chord.unwrap_or_else(Vector3::zeros);
+    if let Some(surface) = &line.surface {
+        force.z -= surface.node(line.end_node(end), &shape.position).weight;
+    }
+    if line.bending.is_some() {
+        force += end_shear(line, [&shape.position, &[]], end, point);
+    }
+    force
+}

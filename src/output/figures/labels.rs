@@ -1,0 +1,132 @@
+//! Where words beside points stand, so that none covers other words or a mark.
+//!
+//! Every label tries the places right and left of its point, then above and below it, farther and farther off, and takes the first that is free
+//! and inside the frame; where none is, the one that covers least. Those before it stay.
+
+/// A rectangle: its least and its greatest x and y [px].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Patch {
+    /// Upper left corner.
+    pub low: [i32; 2],
+    /// Lower right corner.
+    pub high: [i32; 2],
+}
+
+impl Patch {
+    /// Around a point, so far to either side.
+    pub fn around(point: [i32; 2], half: [i32; 2]) -> Patch {
+        Patch {
+            low: [point[0] - half[0], point[1] - half[1]],
+            high: [point[0] + half[0], point[1] + half[1]],
+        }
+    }
+
+    /// Area that two have in common [px²].
+    fn common(&self, other: &Patch) -> i64 {
+        let side = |axis: usize| {
+            let (low, high) = (
+                self.low[axis].max(other.low[axis]),
+                self.high[axis].min(other.high[axis]),
+            );
+            i64::from((high - low).max(0))
+        };
+        side(0) * side(1)
+    }
+
+    fn area(&self) -> i64 {
+        self.common(self)
+    }
+}
+
+/// Words and the point that they belong to.
+#[derive(Debug, Clone, Copy)]
+pub struct Label {
+    /// The point [px].
+    pub point: [i32; 2],
+    /// Width and height of the words [px].
+    pub size: [i32; 2],
+}
+
+/// Rows that a label may move away from its point.
+const ROWS: i32 = 6;
+
+/// Where labels stand in a frame, `gap` [px] off their points and clear of `marks`.
+pub fn placed(frame: &Patch, marks: &[Patch], labels: &[Label], gap: i32) -> Vec<Patch> {
+    let mut taken = marks.to_vec();
+    for label in labels {
+        let cover = |place: &Patch| {
+            let covered: i64 = taken.iter().map(|other| place.common(other)).sum();
+            covered + place.area() - place.common(frame)
+        };
+        // of equals the first
+        let best = places(label, gap).min_by_key(cover);
+        taken.extend(best);
+    }
+    taken.split_off(marks.len())
+}
+
+/// The places that a label tries, from the best on.
+fn places(label: &Label, gap: i32) -> impl Iterator<Item = Patch> {
+    let Label {
+        point: [x, y],
+        size: [width, height],
+    } = *label;
+    let half = [width / 2, height / 2];
+    let rows = (0..=ROWS).flat_map(|row| [-row, row]);
+    rows.flat_map(move |row| {
+        let sides = [gap + half[0], -gap - half[0], 0];
+        // straight over and under the point only where that is clear of it
+        let sides = sides
+            .into_iter()
+            .filter(move |side| *side != 0 || row.abs() > 0);
+        sides.map(move |side| Patch::around([x + side, y + row * height], half))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const FRAME: Patch = Patch {
+        low: [0, 0],
+        high: [300, 200],
+    };
+    const GAP: i32 = 7;
+
+    fn label(point: [i32; 2]) -> Label {
+        let size = [40, 14];
+        Label { point, size }
+    }
+
+    /// Marks at the points of labels, and where these stand.
+    fn stand(points: &[[i32; 2]]) -> (Vec<Patch>, Vec<Patch>) {
+        let marks: Vec<Patch> = points.iter().map(|p| Patch::around(*p, [4, 4])).collect();
+        let labels: Vec<Label> = points.iter().map(|p| label(*p)).collect();
+        let stand = placed(&FRAME, &marks, &labels, GAP);
+        (marks, stand)
+    }
+
+    #[test]
+    fn a_lonely_label_stands_right_of_its_point_and_left_of_it_at_the_right_edge() {
+        for (x, side) in [(100, 1), (290, -1)] {
+            let (_, stand) = stand(&[[x, 50]]);
+            let middle = [x + side * (GAP + 20), 50];
+            assert_eq!(stand, [Patch::around(middle, [20, 7])]);
+        }
+    }
+
+    #[test]
+    fn labels_of_crowded_points_cover_neither_each_other_nor_a_mark() {
+        let on_a_line = [[100, 50], [103, 52], [100, 60], [120, 50], [125, 51]];
+        let in_a_corner = [[290, 5], [295, 5], [292, 12], [280, 8]];
+        for points in [&on_a_line[..], &in_a_corner] {
+            let (marks, stand) = stand(points);
+            for (i, one) in stand.iter().enumerate() {
+                assert_eq!(one.common(&FRAME), one.area(), "{one:?} leaves the frame");
+                for other in stand[..i].iter().chain(&marks) {
+                    assert_eq!(one.common(other), 0, "{one:?} on {other:?}");
+                }
+            }
+        }
+    }
+}
