@@ -366,18 +366,30 @@ impl Solver {
                 Solver::Beam(Box::new(BeamWork::new(nodes)))
             }
             Integrator::AxialImplicit => {
-                let rho = model
-                    .solver
-                    .spectral_radius
-                    .unwrap_or(AXIAL_SPECTRAL_RADIUS)
-                    .max(AXIAL_RADIUS_MIN);
-                let line = &model.lines[network.lines[0]];
-                let work = AxialWork::new(model, line, rho);
+                let work = axial_work(model, network);
                 kernel(work.map(|work| Solver::AxialImplicit(Box::new(work))))
             }
             Integrator::Leapfrog => kernel(NetworkWork::new(model, network).map(Solver::Leapfrog)),
             _ => Solver::Implicit(Scheme::new(&model.solver)),
         }
+    }
+}
+
+/// Scratch of the axial-implicit leapfrog for a network of one line; `None` where it does not serve that.
+fn axial_work(model: &Model, network: &Network) -> Option<AxialWork> {
+    let rho = model
+        .solver
+        .spectral_radius
+        .unwrap_or(AXIAL_SPECTRAL_RADIUS)
+        .max(AXIAL_RADIUS_MIN);
+    AxialWork::new(model, &model.lines[network.lines[0]], rho)
+}
+
+/// New scratch for one that a motion without bound went through: numbers that are none would stay where no node is, and in masses of nodes
+/// that the water's surface seems not to meet.
+fn renew<W>(work: &mut W, new: Option<W>) {
+    if let Some(new) = new {
+        *work = new;
     }
 }
 
@@ -481,6 +493,7 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
         next: &mut State,
     ) -> Result<Done, StepError> {
         let (model, network) = (self.model, &self.model.networks[number]);
+        let mut broken = (0, 0);
         for retry in 0..=RETRIES_MAX {
             if self.holds && retry == 0 {
                 work.resume(network, self.state);
@@ -503,7 +516,8 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
                 step = Step::after(steps, drift);
             }
             let flow = work.flow();
-            if work.is_sound() && flow.is_finite() {
+            let is_sound = work.is_sound() && flow.is_finite();
+            if is_sound {
                 work.store(network, next, steps);
                 let counters = Counters {
                     substeps: count,
@@ -511,9 +525,23 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
                 };
                 return Ok(Done { counters, flow });
             }
+            broken = work.broken_node();
+            renew(work, NetworkWork::new(model, network));
         }
-        let (line, node) = work.broken_node();
+        let (line, node) = broken;
         Err(self.diverged(network.lines[line], node))
+    }
+
+    /// Longest axial-implicit step [s] of a line under the tensions that it may come to have; `transverse` is the longest over √T [s √N].
+    fn transverse_step(&self, line: usize, transverse: f64, step_max: f64) -> f64 {
+        let tensions = self.state.lines[line].half_step.tension[0].iter();
+        let tension_now = tensions.fold(0.0, |a, &b| if b > a { b } else { a });
+        let expected = SNAP_GROWTH * tension_now;
+        // what holds over the whole communication step is told without roots and quotients
+        match self.length * self.length * expected <= transverse * transverse {
+            true => step_max,
+            false => step_max.min(transverse / expected.sqrt()),
+        }
     }
 
     fn axial_implicit(
@@ -523,17 +551,11 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
         work: &mut AxialWork,
         next: &mut State,
     ) -> Result<Done, StepError> {
-        let index = self.model.networks[number].lines[0];
+        let network = &self.model.networks[number];
+        let (index, transverse) = (network.lines[0], work.transverse);
         let line = &self.model.lines[index];
-        let transverse = work.transverse;
-        let tensions = self.state.lines[index].half_step.tension[0].iter();
-        let tension_now = tensions.fold(0.0, |a, &b| if b > a { b } else { a });
-        let expected = SNAP_GROWTH * tension_now;
-        // what holds over the whole communication step is told without roots and quotients
-        let step_max = match self.length * self.length * expected <= transverse * transverse {
-            true => step_max,
-            false => step_max.min(transverse / expected.sqrt()),
-        };
+        let step_max = self.transverse_step(index, transverse, step_max);
+        let mut stuck = 0;
         for retry in 0..=RETRIES_MAX {
             if self.holds && retry == 0 {
                 work.resume();
@@ -569,7 +591,8 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
             let stretch = drift * drift * work.tension_peak();
             let too_long = stretch > transverse * transverse || !work.is_settled();
             let flow = work.flow();
-            let whole = work.broken_node().is_none() && flow.is_finite();
+            let broken = work.broken_node();
+            let whole = broken.is_none() && flow.is_finite();
             if whole && !(too_long && retry < RETRIES_MAX) {
                 work.store(&mut next.lines[index], steps);
                 return Ok(Done {
@@ -580,9 +603,12 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
                     flow,
                 });
             }
+            if !whole {
+                stuck = broken.unwrap_or_else(|| work.fastest_node());
+                renew(work, axial_work(self.model, network));
+            }
         }
-        let node = work.broken_node();
-        Err(self.diverged(index, node.unwrap_or_else(|| work.fastest_node())))
+        Err(self.diverged(index, stuck))
     }
 
     fn implicit(
