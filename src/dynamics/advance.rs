@@ -11,6 +11,7 @@ use super::implicit::{self, Scheme};
 use super::leapfrog::Step;
 use super::ledger::passed::{self, Passed};
 use super::ledger::{self, Energy, Flow};
+use super::limit::{drag_holds, drag_step};
 use super::motion::AxisPath;
 use super::network::NetworkWork;
 use super::sea::SeaWork;
@@ -502,7 +503,8 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
             }
             work.set_current(model, self.start);
             let longest = step_max / work.stiffening().sqrt();
-            let count = self.substeps(longest.min(1.0 / work.drag_rate(model, network)), retry)?;
+            let quick = drag_step(work.drag_rate(model, network));
+            let count = self.substeps(longest.min(quick), retry)?;
             let drift = self.length / count as f64;
             let mut steps = self.state.lines[network.lines[0]].half_step.steps;
             let mut step = Step::after(steps, drift);
@@ -517,7 +519,8 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
             }
             let flow = work.flow();
             let is_sound = work.is_sound() && flow.is_finite();
-            if is_sound {
+            let holds = drag_holds(work.drag_rate(model, network), drift);
+            if is_sound && (holds || retry == RETRIES_MAX) {
                 work.store(network, next, steps);
                 let counters = Counters {
                     substeps: count,
@@ -525,8 +528,10 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
                 };
                 return Ok(Done { counters, flow });
             }
-            broken = work.broken_node();
-            renew(work, NetworkWork::new(model, network));
+            if !is_sound {
+                broken = work.broken_node();
+                renew(work, NetworkWork::new(model, network));
+            }
         }
         let (line, node) = broken;
         Err(self.diverged(network.lines[line], node))
