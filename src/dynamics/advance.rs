@@ -12,6 +12,7 @@ use super::implicit::{self, Scheme};
 use super::leapfrog::Step;
 use super::ledger::passed::{self, Passed};
 use super::ledger::{self, Energy, Flow};
+use super::limit::{drag_holds, drag_step};
 use super::motion::AxisPath;
 use super::network::NetworkWork;
 use super::sea::SeaWork;
@@ -384,18 +385,30 @@ impl Solver {
                 Solver::Beam(Box::new(BeamWork::new(nodes)))
             }
             Integrator::AxialImplicit => {
-                let rho = model
-                    .solver
-                    .spectral_radius
-                    .unwrap_or(AXIAL_SPECTRAL_RADIUS)
-                    .max(AXIAL_RADIUS_MIN);
-                let line = &model.lines[network.lines[0]];
-                let work = AxialWork::new(model, line, rho);
+                let work = axial_work(model, network);
                 kernel(work.map(|work| Solver::AxialImplicit(Box::new(work))))
             }
             Integrator::Leapfrog => kernel(NetworkWork::new(model, network).map(Solver::Leapfrog)),
             _ => Solver::Implicit(Scheme::new(&model.solver)),
         }
+    }
+}
+
+/// Scratch of the axial-implicit leapfrog for a network of one line; `None` where it does not serve that.
+fn axial_work(model: &Model, network: &Network) -> Option<AxialWork> {
+    let rho = model
+        .solver
+        .spectral_radius
+        .unwrap_or(AXIAL_SPECTRAL_RADIUS)
+        .max(AXIAL_RADIUS_MIN);
+    AxialWork::new(model, &model.lines[network.lines[0]], rho)
+}
+
+/// New scratch for one that a motion without bound went through: numbers that are none would stay where no node is, and in masses of nodes
+/// that the water's surface seems not to meet.
+fn renew<W>(work: &mut W, new: Option<W>) {
+    if let Some(new) = new {
+        *work = new;
     }
 }
 
@@ -517,6 +530,7 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
         next: &mut State,
     ) -> Result<Done, StepError> {
         let (model, network) = (self.model, &self.model.networks[number]);
+        let mut broken = (0, 0);
         for retry in 0..=RETRIES_MAX {
             if self.holds && retry == 0 {
                 work.resume(network, self.state);
@@ -525,7 +539,8 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
             }
             work.set_current(model, self.start);
             let longest = step_max / work.stiffening().sqrt();
-            let count = self.substeps(longest.min(1.0 / work.drag_rate(model, network)), retry)?;
+            let quick = drag_step(work.drag_rate(model, network));
+            let count = self.substeps(longest.min(quick), retry)?;
             let drift = self.length / count as f64;
             let mut steps = self.state.lines[network.lines[0]].half_step.steps;
             let mut step = Step::after(steps, drift);
@@ -539,7 +554,9 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
                 step = Step::after(steps, drift);
             }
             let flow = work.flow();
-            if work.is_sound() && flow.is_finite() {
+            let is_sound = work.is_sound() && flow.is_finite();
+            let holds = drag_holds(work.drag_rate(model, network), drift);
+            if is_sound && (holds || retry == RETRIES_MAX) {
                 work.store(network, next, steps);
                 let counters = Counters {
                     substeps: count,
@@ -547,9 +564,30 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
                 };
                 return Ok(Done { counters, flow });
             }
+            if !is_sound {
+                broken = work.broken_node();
+                renew(work, NetworkWork::new(model, network));
+            }
         }
-        let (line, node) = work.broken_node();
+        let (line, node) = broken;
         Err(self.diverged(network.lines[line], node))
+    }
+
+    /// Longest axial-implicit step [s] of a line under the tensions that it may come to have.
+    fn transverse_step(&self, line: usize, work: &AxialWork, step_max: f64) -> f64 {
+        let tension_now = match self.holds {
+            true => work.tension_before(),
+            false => {
+                let tensions = self.state.lines[line].half_step.tension[0].iter();
+                tensions.fold(0.0, |a, &b| if b > a { b } else { a })
+            }
+        };
+        let (transverse, expected) = (work.transverse, SNAP_GROWTH * tension_now);
+        // what holds over the whole communication step is told without roots and quotients
+        match self.length * self.length * expected <= transverse * transverse {
+            true => step_max,
+            false => step_max.min(transverse / expected.sqrt()),
+        }
     }
 
     #[inline(never)]
@@ -561,22 +599,11 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
         next: &mut State,
         total: &mut Done,
     ) -> Result<(), StepError> {
-        let index = self.model.networks[number].lines[0];
+        let network = &self.model.networks[number];
+        let (index, transverse) = (network.lines[0], work.transverse);
         let line = &self.model.lines[index];
-        let transverse = work.transverse;
-        let expected = SNAP_GROWTH
-            * match self.holds {
-                true => work.tension_before(),
-                false => {
-                    let tensions = self.state.lines[index].half_step.tension[0].iter();
-                    tensions.fold(0.0, |a, &b| if b > a { b } else { a })
-                }
-            };
-        // what holds over the whole communication step is told without roots and quotients
-        let step_max = match self.length * self.length * expected <= transverse * transverse {
-            true => step_max,
-            false => step_max.min(transverse / expected.sqrt()),
-        };
+        let step_max = self.transverse_step(index, work, step_max);
+        let mut stuck = 0;
         for retry in 0..=RETRIES_MAX {
             let count = self.substeps(step_max, retry)?;
             let drift = self.length / count as f64;
@@ -600,7 +627,8 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
             let (is_sound, flow) = (work.store(&mut next.lines[index], steps), work.flow());
             let stretch = drift * drift * work.tension_peak();
             let too_long = stretch > transverse * transverse || !work.is_settled();
-            if is_sound && flow.is_finite() && !(too_long && retry < RETRIES_MAX) {
+            let whole = is_sound && flow.is_finite();
+            if whole && !(too_long && retry < RETRIES_MAX) {
                 let counters = Counters {
                     substeps: count,
                     solves,
@@ -608,9 +636,13 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
                 total.join(Done { counters, flow });
                 return Ok(());
             }
+            if !whole {
+                let broken = work.broken_node();
+                stuck = broken.unwrap_or_else(|| work.fastest_node());
+                renew(work, axial_work(self.model, network));
+            }
         }
-        let node = work.broken_node();
-        Err(self.diverged(index, node.unwrap_or_else(|| work.fastest_node())))
+        Err(self.diverged(index, stuck))
     }
 
     /// Makes a line ready for steps of `drift` [s], of which it may still hold the state.

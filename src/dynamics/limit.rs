@@ -12,9 +12,12 @@
 //! more weakly, below: a slack line without damping gathers energy in its shortest waves. Lines with little damping use 0.5 of the limit, ωΔt ≤ 1.
 //! A line that may part needs more damping to use more of it: a loose end cracks like a whip, slack and taut by turns.
 //!
-//! Transversely, waves of speed c = √(T/m) limit any variant, the axial-implicit one too: Δt < 0.6 h/c, or 1.2/ω with k = T/l. Quadratic drag,
-//! taken explicitly, wants Δt ≤ M_n/(K_n |v|). Lines that may come out of the water are taken with the mass that
+//! Transversely, waves of speed c = √(T/m) limit any variant, the axial-implicit one too: Δt < 0.6 h/c, or 1.2/ω with k = T/l. Lines that may come out of the water are taken with the mass that
 //! they have in air, and with the stiffness of their waterplane.
+//!
+//! Quadratic drag is taken explicitly, at v* = 1.5 v_{n−½} − 0.5 v_{n−3/2}. A velocity that changes its sign in every step has v* = 2v and drag 4K|v|v, which
+//! makes −v of it for K|v|Δt/M = ½; a steady one holds against disturbances, of which drag takes 2K|v|v*, up to the same limit. Beyond it velocities
+//! grow with every step, and the faster the greater they are: a communication step that ends beyond is made anew in shorter steps.
 //!
 //! Source: Belytschko, Liu & Moran (2000), Nonlinear Finite Elements for Continua and Structures, section 6.2.6 (damped
 //! central differences with lagged velocity). Contact is implicit and sets no limit.
@@ -38,6 +41,10 @@ const DAMPING_RATIO_WHIP: f64 = 0.1;
 const STEPS_PER_AXIAL_PERIOD: f64 = 92.0;
 /// Strain up to which a stiffening measure is stable [-]; beyond it the steps shorten as it stiffens.
 const STRAIN_EXPECTED: f64 = 0.05;
+/// Greatest K|v|Δt/M that explicit drag damps at [-].
+const DRAG_COURANT: f64 = 0.5;
+/// Part of it that a communication step starts with, as nodes may speed up in it [-].
+const DRAG_MARGIN: f64 = 0.8;
 /// Transverse Courant number of the axial-implicit leapfrog [-].
 const TRANSVERSE_COURANT: f64 = 0.6;
 
@@ -211,6 +218,16 @@ fn travel_time(line: &Line, masses: &[f64], force: impl Fn(usize) -> f64) -> f64
     (0..line.segment_count()).map(time).sum()
 }
 
+/// Step [s] to set out with where the greatest K|v|/M of all nodes is `rate` [1/s].
+pub fn drag_step(rate: f64) -> f64 {
+    DRAG_MARGIN * DRAG_COURANT / rate
+}
+
+/// Whether steps [s] at whose end the greatest K|v|/M is `rate` [1/s] were short enough for the drag.
+pub fn drag_holds(rate: f64, step: f64) -> bool {
+    rate * step <= DRAG_COURANT
+}
+
 /// Greatest stiffness that the water's surface gives a node [N/m].
 fn heave(line: &Line, node: usize) -> f64 {
     let surface = line.surface.as_ref();
@@ -244,4 +261,29 @@ pub fn transverse_step(line: &Line, tension: f64) -> f64 {
         limit = limit.min(TRANSVERSE_COURANT * 2.0 / omega);
     }
     limit
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dynamics::leapfrog::Step;
+
+    /// Speed of a node after 200 steps over what it was, K|v|Δt/M being `courant` at first; it starts in the velocity that flips.
+    fn flipping(courant: f64) -> f64 {
+        let step = Step::after([1.0; 2], 1.0);
+        let mut velocities = [1.0, -1.0];
+        for _ in 0..200 {
+            let [last, before] = velocities;
+            let now = last + step.extrapolation * (last - before);
+            velocities = [last - step.kick * courant * f64::abs(now) * now, last];
+        }
+        velocities[0].abs()
+    }
+
+    #[test]
+    fn explicit_drag_damps_up_to_its_limit_and_no_further() {
+        assert!(flipping(0.98 * DRAG_COURANT) < 0.5);
+        assert!(!(flipping(1.02 * DRAG_COURANT) < 1e3));
+        assert!(drag_holds(1.0, drag_step(1.0)) && !drag_holds(1.0, 1.01 * DRAG_COURANT));
+    }
 }

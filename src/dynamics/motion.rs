@@ -183,7 +183,8 @@ impl AxesPath {
     /// Lays the segments from the end of the path `before` to position [m, rad] and velocity [m/s, rad/s].
     #[inline(always)]
     fn bridge(&mut self, before: &AxesPath, foresight: &Foresight, said: &Said, to: [Lanes; 2]) {
-        if foresight.jumps || foresight.left.is_some() {
+        let jumps = foresight.reconstruction == Reconstruction::Jump;
+        if jumps || foresight.left.is_some() {
             return self.bridge_over(before, foresight, said, to);
         }
         self.end = to;

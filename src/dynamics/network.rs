@@ -169,6 +169,9 @@ impl NetworkWork {
 
     /// Goes on from the state that [`Self::store`] handed back last.
     pub fn resume(&mut self, network: &Network, state: &State) {
+        if !self.lines.iter().all(LineWork::keeps_survey) {
+            self.drag_rate = None;
+        }
         for (work, &line) in self.lines.iter_mut().zip(&network.lines) {
             work.resume(&state.lines[line]);
         }
@@ -228,14 +231,11 @@ impl NetworkWork {
     }
 
     /// Greatest ratio K |v| / M of all nodes [1/s].
-    pub fn drag_rate(&mut self, model: &Model, network: &Network) -> f64 {
-        let of_lines = match self.drag_rate.take() {
-            Some(rate) => rate,
-            None => {
-                let surveys = self.lines.iter().map(LineWork::survey);
-                surveys.fold(0.0, |rate: f64, line| rate.max(line.drag_rate))
-            }
-        };
+    pub fn drag_rate(&self, model: &Model, network: &Network) -> f64 {
+        let of_lines = self.drag_rate.unwrap_or_else(|| {
+            let surveys = self.lines.iter().map(LineWork::survey);
+            surveys.fold(0.0, |rate: f64, line| rate.max(line.drag_rate))
+        });
         let points = self.points.iter().zip(&network.free_points);
         points
             .filter_map(|(point, &index)| {
@@ -248,14 +248,13 @@ impl NetworkWork {
 
     /// Whether all nodes have finite positions and speeds such as mooring lines reach.
     pub fn is_sound(&mut self) -> bool {
-        let (mut rate, mut is_sound, mut keeps) = (0.0_f64, true, true);
+        let (mut rate, mut is_sound) = (0.0_f64, true);
         for line in &self.lines {
             let survey = line.survey();
             rate = rate.max(survey.drag_rate);
             is_sound &= survey.is_sound;
-            keeps &= line.keeps_survey();
         }
-        self.drag_rate = keeps.then_some(rate);
+        self.drag_rate = Some(rate);
         is_sound
     }
 
