@@ -820,7 +820,7 @@ const SETTINGS: &[Refusal] = &[
     (
         "[output]",
         "[solver]\ninput_reconstruction = \"smoth\"\n[output]",
-        "47:24: solver.input_reconstruction: unknown value `smoth`, did you mean `smooth`? (known values: smooth, jump)",
+        "47:24: solver.input_reconstruction: unknown value `smoth`, did you mean `smooth`? (known values: smooth, jump, interpolate)",
     ),
     (
         "duration = 60.0",
