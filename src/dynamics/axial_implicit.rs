@@ -302,7 +302,7 @@ impl AxialWork {
         if self.layout.position.get(at) == position {
             return self.layout.velocity.set(at, velocity);
         }
-        let jumps = self.defers_turning();
+        let jumps = self.layout.books && self.defers_turning();
         if jumps {
             self.lost[0] -= self.turning_energy();
         }
