@@ -211,7 +211,7 @@ fn axial_kernels(table: &mut String) {
                         portable,
                     )
                 });
-                let what = format!("axial-implicit alone{booked}, {count} in an advance");
+                let what = format!("axial-implicit alone{booked}; {count} in an advance");
                 note_kernel(table, (&what, 1), (name, elements, count), costs);
             }
         }

@@ -37,18 +37,20 @@ const SUITE: usize = 500;
 /// Scenes of the long run.
 const LONG: usize = 10_000;
 
-/// Least share of ledgers that close, by integrator, where a host's steps are equal and where they differ [-]: 0.05 below the lesser of what
-/// scenes 0..500 and 500..1500 were measured to have.
-const CLOSED_MIN: [(&str, f64, f64); 6] = [
-    ("AxialImplicit", 0.83, 0.81),
-    ("Bossak", 0.53, 0.48),
-    ("GeneralisedAlpha", 0.67, 0.65),
-    ("Leapfrog", 0.85, 0.92),
-    ("QuasiStatic", 0.90, 0.83),
-    ("several", 0.81, 0.77),
+/// Share of ledgers that close, by integrator, where a host's steps are equal and where they differ [-], as scenes 1500..10 000 were measured
+/// to have it.
+const CLOSED_SHARES: [(&str, f64, f64); 6] = [
+    ("AxialImplicit", 0.878, 0.869),
+    ("Bossak", 0.626, 0.578),
+    ("GeneralisedAlpha", 0.738, 0.754),
+    ("Leapfrog", 0.969, 0.963),
+    ("QuasiStatic", 0.953, 0.846),
+    ("several", 0.811, 0.815),
 ];
+/// Standard deviations by which a draw of scenes may miss it by chance [-].
+const BY_CHANCE: f64 = 3.0;
 /// Greatest error of a beam's ledger, over what it books [-].
-const BEAM: f64 = 1e-6;
+const BEAM: f64 = 1e-9;
 /// Least share of the scenes with any feature that run [-].
 const RUN_MIN: f64 = 0.5;
 
@@ -73,11 +75,15 @@ fn claim(numbers: Range<usize>) {
         let least = (RUN_MIN * *all as f64).floor() as usize;
         assert!(*ran > 0 && *ran >= least, "{feature}: {ran} of {all} run");
     }
-    for (integrator, equal, irregular) in CLOSED_MIN {
-        for (steps, least) in [("equal", equal), ("irregular", irregular)] {
+    for (integrator, equal, irregular) in CLOSED_SHARES {
+        for (steps, share) in [("equal", equal), ("irregular", irregular)] {
             let name = format!("{integrator}, {steps} steps");
-            let closed = survey.closed(&name);
-            assert!(closed >= least, "{name}: {closed} of all ledgers close");
+            let [closed, all] = survey.closed(&name);
+            let by_chance = BY_CHANCE * (share * (1.0 - share) / all).sqrt();
+            assert!(
+                closed >= (share - by_chance) * all,
+                "{name}: {closed} of {all} ledgers close"
+            );
         }
     }
     assert!(survey.worst("Beam") < BEAM);

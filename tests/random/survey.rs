@@ -157,17 +157,14 @@ impl Survey {
         self.fates.get(fate).copied().unwrap_or(0) as f64 / self.scenes as f64
     }
 
-    /// Share of the ledgers of an integrator that close [-].
-    pub fn closed(&self, integrator: &str) -> f64 {
+    /// How many ledgers of an integrator close, and how many there are [-].
+    pub fn closed(&self, integrator: &str) -> [f64; 2] {
         let errors = self
             .imbalance
             .get(integrator)
-            .map_or(&[][..], |errors| errors);
-        let closed = errors
-            .iter()
-            .filter(|(error, _)| error.abs() <= CLOSED)
-            .count();
-        closed as f64 / errors.len().max(1) as f64
+            .map_or(&[][..], Vec::as_slice);
+        let closed = errors.iter().filter(|(error, _)| error.abs() <= CLOSED);
+        [closed.count() as f64, errors.len() as f64]
     }
 
     /// Greatest error of the ledgers of an integrator, whatever a host's steps [-].
@@ -207,7 +204,8 @@ impl fmt::Display for Survey {
             errors.sort_by(|(a, _), (b, _)| a.abs().total_cmp(&b.abs()));
             let at = |share: f64| errors[(share * (errors.len() - 1) as f64) as usize];
             let (median, most, worst) = (at(0.5).0, at(0.9).0, at(1.0));
-            let closed = 100.0 * self.closed(integrator);
+            let [closed, all] = self.closed(integrator);
+            let closed = 100.0 * closed / all;
             writeln!(
                 f,
                 "{integrator}: {} ledgers, {closed:.1} % closed within {CLOSED}; half of them within {:.1e}, nine in ten within {:.1e}, \
