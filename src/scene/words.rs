@@ -17,7 +17,8 @@ use super::check::{integrator_name, number, quantity};
 use super::notes::{chord, length};
 use super::{
     Axis, ContactLaw, HarmonicMotion, InitialShape, Integrator, Line, LineModel, LineType,
-    MotionPath, NUMERICAL_DAMPING_RATIO, Point, PointForce, PointKind, Scene, Strain, TimeFunction,
+    MotionPath, NUMERICAL_DAMPING_RATIO, Point, PointForce, PointKind, Reconstruction, Scene,
+    Strain, TimeFunction,
 };
 use vessels::vessel_in_words;
 
@@ -276,6 +277,13 @@ impl Scene {
                 }
             ),
         ];
+        match solver.input_reconstruction {
+            Reconstruction::Smooth => {}
+            Reconstruction::Jump => said.push("coupled points jump to where a host says".into()),
+            Reconstruction::Interpolate => {
+                said.push("what a host says holds for the end of its step".into());
+            }
+        }
         if !solver.energy_ledger {
             said.push("no energy ledger: `solver.energy_error` stays 0".into());
         }
