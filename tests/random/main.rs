@@ -79,7 +79,7 @@ fn claim(numbers: Range<usize>) {
         for (steps, share) in [("equal", equal), ("irregular", irregular)] {
             let name = format!("{integrator}, {steps} steps");
             let [closed, all] = survey.closed(&name);
-            let by_chance = BY_CHANCE * (share * (1.0 - share) / all).sqrt();
+            let by_chance = BY_CHANCE * (share * (1.0 - share) / all.max(1.0)).sqrt();
             assert!(
                 closed >= (share - by_chance) * all,
                 "{name}: {closed} of {all} ledgers close"
