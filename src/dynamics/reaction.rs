@@ -145,14 +145,9 @@ impl HalfNode<'_> {
         let along = acceleration.dot(&inward) * inward;
         let [mass_normal, mass_tangent] = nodes.masses(node, self.dry.part);
         let mut load = -(mass_normal * (acceleration - along) + mass_tangent * along);
-        if let Some(drag) = &nodes.drag {
-            let coefficients = DragCoefficients {
-                normal: drag.normal[node],
-                tangent: drag.tangent[node],
-            }
-            .times(wet);
+        if nodes.drag.is_some() {
             let flow = self.water.velocity(node, self.place.z);
-            load += morison::drag(coefficients, velocity - flow, inward);
+            load += self.drag(velocity - flow, inward);
         }
         if let (Some(pressed), Some(waves)) = (&nodes.pressed, &self.water.waves) {
             load += wet * pressed.force(node, waves.at(node).acceleration, inward);
@@ -204,7 +199,32 @@ impl HalfNode<'_> {
         let share = nodes.length[self.node] / nodes.length[next];
         let change = share * (pull - passed_on + weight) - own;
         let ratio = own.norm_squared() / change.norm_squared().max(f64::MIN_POSITIVE);
-        ratio.powi(2).min(1.0) * (own + change / 3.0 - self.load(inward))
+        let bulge = self.bulge(
+            state.velocity[next],
+            [tangent, inward, inward + onward].map(|along| along.try_normalize(0.0).unwrap_or(inward)),
+        );
+        ratio.powi(2).min(1.0) * (own + change / 3.0 + bulge - self.load(inward))
+    }
+
+    /// What the drag in the middle of the last element adds to that of its ends, in still water [N]; `tangents` are those of the end, the
+    /// middle and the next node, and `velocity` [m/s] that of the next node.
+    fn bulge(&self, velocity: Vector3<f64>, tangents: [Vector3<f64>; 3]) -> Vector3<f64> {
+        let middle = 0.5 * (self.point.velocity + velocity);
+        let [end, half_way, next] = [(0, self.point.velocity), (1, middle), (2, velocity)]
+            .map(|(place, velocity)| self.drag(velocity, tangents[place]));
+        (2.0 * half_way - end - next) / 3.0
+    }
+
+    /// Drag of the half node at a velocity [m/s] relative to the water [N].
+    fn drag(&self, velocity: Vector3<f64>, tangent: Vector3<f64>) -> Vector3<f64> {
+        let Some(drag) = &self.line.nodes.drag else {
+            return Vector3::zeros();
+        };
+        let coefficients = DragCoefficients {
+            normal: drag.normal[self.node],
+            tangent: drag.tangent[self.node],
+        };
+        morison::drag(coefficients.times(1.0 - self.dry.part), velocity, tangent)
     }
 }
 
