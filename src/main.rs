@@ -48,7 +48,7 @@ enum Command {
         /// Folder for the results; made where it is missing
         #[arg(short, long, value_name = "DIR")]
         output: PathBuf,
-        /// Drive the run as a host does: set the motion at every multiple of H [s], then step by H; a row of results each
+        /// Drive the run as a host does: set the motion at every multiple of H [s], then step by H; a row of results each. With input_reconstruction = "interpolate" the motion set is that of the end of the step
         #[arg(long, value_name = "H", value_parser = cli::positive_number)]
         communication_step: Option<f64>,
         /// Set velocities beside displacements

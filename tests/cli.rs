@@ -401,6 +401,31 @@ fn a_run_driven_like_a_host_follows_the_exact_motion() {
 }
 
 #[test]
+fn a_run_whose_inputs_mean_the_end_of_a_step_is_told_the_motion_there() {
+    let folder = folder();
+    let solver = "[solver]\ninput_reconstruction = \"interpolate\"\n";
+    fs::write(folder.path().join("known.toml"), format!("{SCENE}{solver}")).unwrap();
+    let run = |output: &str, more: &[&str]| {
+        done(
+            folder.path(),
+            &[&["run", "known.toml", "-o", output], more].concat(),
+        );
+        table(&folder.path().join(output).join("results.csv"))
+    };
+    let (header, exact) = run("exact", &[]);
+    let (_, host) = run("host", &["--communication-step", "0.1", "--velocities"]);
+    let of = |name: &str| header.iter().position(|column| column == name).unwrap();
+    let (place, tension) = (of("fairlead.x"), of("line1.tension_b"));
+    assert_eq!(exact.len(), host.len());
+    for (exact, host) in exact.iter().zip(&host) {
+        assert_eq!(exact[place], host[place]);
+        // one step late the tension would be up to a quarter off
+        let off = (exact[tension] / host[tension] - 1.0).abs();
+        assert!(off < 0.02, "{exact:?} {host:?}");
+    }
+}
+
+#[test]
 fn a_communication_step_sets_the_rows() {
     let folder = folder();
     done(

@@ -75,7 +75,7 @@ fn halving_the_time_step_quarters_the_error() {
 }
 
 #[test]
-fn five_elements_keep_one_percent_of_the_tension_of_a_taut_rope() {
+fn five_elements_keep_all_but_seven_thousandths_of_the_tension_of_a_taut_rope() {
     let taut = |n| {
         let scene = with_elements(shipped("taut_polyester"), n);
         run(
@@ -83,9 +83,9 @@ fn five_elements_keep_one_percent_of_the_tension_of_a_taut_rope() {
             90.0,
         )
     };
-    // 0.025 with the load on the end's half node as it is at the end
+    // 0.025 with the load on the end's half node as it is at the end, 0.009 with one that is linear
     let error = taut(5).tension_error(&taut(160), samples(60.0));
-    assert!(error < 0.01, "{error}");
+    assert!(error < 0.007, "{error}");
 }
 
 /// The OC3 line with a fifth of its motion, so that it stays taut, while the nodes of its touchdown land and rise.
@@ -100,12 +100,12 @@ fn calm(step: f64) -> Scene {
 }
 
 #[test]
-fn halving_the_axial_implicit_step_of_a_line_that_lands_quarters_the_error() {
+fn halving_the_axial_implicit_step_of_a_line_that_lands_quarters_the_error_at_least() {
     let steps = [0.05, 0.025, 0.0125, 0.00625];
     let reference = run(&calm(SAMPLE / 256.0), 60.0);
     let found = steps.map(|step| run(&calm(step), 60.0));
     for errors in errors(&found, &reference) {
-        assert_order(2.0, &steps, &errors);
+        assert_order_at_least(2.0, &steps, &errors); // more, as less and less of the tension is averaged
     }
 }
 

@@ -188,7 +188,7 @@ fn a_line_that_dips_in_and_out_is_followed_to_second_order_in_time() {
                 .sqrt()
         });
         println!("{integrator:?}: {errors:?}");
-        assert_order(2.0, &steps, &errors);
+        assert_order_at_least(2.0, &steps, &errors);
     }
 }
 

@@ -9,7 +9,7 @@ use moorline::output::channels::Channels;
 use moorline::output::figures::ELEVATION;
 use moorline::output::record::{Column, Record};
 use moorline::output::{collect, make_folder, write_run};
-use moorline::scene::{Drive, Scene, Supplement};
+use moorline::scene::{Drive, Reconstruction, Scene, Supplement};
 use moorline::simulation::Simulation;
 
 use super::failure::Failure;
@@ -24,7 +24,8 @@ const FRAMES_MAX: usize = 240;
 pub enum Pace {
     /// Exactly.
     Scene,
-    /// The scene's motion as a host gives it, at communication points only.
+    /// The scene's motion as a host gives it, at communication points only: before every step where it starts, or where it ends if
+    /// that is what inputs are to mean.
     Host {
         /// Communication step [s].
         step: f64,
@@ -90,6 +91,7 @@ fn step_through(
         Pace::Host { step, .. } => step,
     };
     let times = Times::new(scene.output.duration, interval);
+    let ahead = usize::from(scene.solver.input_reconstruction == Reconstruction::Interpolate);
     let stride = times.frame_stride(scene.output.profile);
     record.add_row(0.0, recorder.row(simulation, 0.0));
     record.frames.push(collect::frame(simulation, 0.0));
@@ -98,7 +100,8 @@ fn step_through(
     let mut wall = Duration::ZERO;
     for index in 0..times.count {
         if let Pace::Host { velocities, .. } = pace {
-            set_motion(simulation, times.at(index), velocities);
+            let told = times.at(index + ahead);
+            set_motion(simulation, told, velocities);
         }
         let before = Instant::now();
         simulation.advance(times.step(index))?;

@@ -2,19 +2,25 @@
 //!
 //! With geometry q = d/l lagged at t_n and G(x)_i = (x_{i+1} − x_i)/L_i, the tension that drives v_{n−½} -> v_{n+½} is
 //!
-//! T̄ = [T^{n+1} + (2ρ+b)T^n + (ρ²+2ρb)T^{n−1} + ρ²b T^{n−2}]/N,  b = (1−ρ)/(2ρ),  N = (1+ρ)²(1+b),
+//! T̄ = σ[T^{n+1} + (2ρ+b)T^n + (ρ²+2ρb)T^{n−1} + ρ²b T^{n−2}]/N + (1−σ)T^n,  b = (1−ρ)/(2ρ),  N = (1+ρ)²(1+b),
 //!
-//! second order. In z, which takes a step to the next, T̄ is (z + ρ)²(z + b)/(N z²) T^n: at infinite frequency the motion is multiplied by −ρ and
-//! −b, and the spectral radius is ρ as long as b ≤ ρ, that is from ρ = ½, which damps most, to ρ = 1 (¼, ½, ¼). Below ½ it rises again, and
-//! below ⅓ it is more than 1. The new strain is linear in the new velocity, ε^{n+1} = ε^n + κ + Δt q·G(v), κ = Δt²(|G(v⁻)|² − (q·G(v⁻))²)/(2|G(r)|), so that
+//! second order. In z, which takes a step to the next, the first part is (z + ρ)²(z + b)/(N z²) T^n: averaged throughout, σ = 1, the motion
+//! is multiplied by −ρ and −b at infinite frequency, and the spectral radius is ρ as long as b ≤ ρ, that is from ρ = ½, which damps most, to
+//! ρ = 1 (¼, ½, ¼). Below ½ it rises again, and below ⅓ it is more than 1. Averaging makes waves late by (3σ−1)(ωΔt)²/24, and up to ωΔt = 2 they are stable
+//! without. So σ is max(⅓, 1 − 3.2/(ωΔt)²) with the line's greatest axial frequency ω, which is stable for all ρ from ½ to 1; it is 1 where springs may stiffen
+//! or creep, or an end has parted. The new strain is linear in the new velocity, ε^{n+1} = ε^n + κ + Δt q·G(v), κ = Δt²(|G(v⁻)|² − (q·G(v⁻))²)/(2|G(r)|), so that
 //!
-//! T̄ − k q·G(v) = EA b₁(ε^n + κ) + H + ½BA(1−θ) q·G(v⁻),  k = EA b₁Δt + ½BA(1+θ),  b₁ = 1/N,
+//! T̄ − k q·G(v) = EA b₁(ε^n + κ) + H + ½BA(1−θ) q·G(v⁻),  k = EA b₁Δt + ½BA(1+θ),  b₁ = σ/N,
 //!
 //! with the history terms H and θ = 0.2 min(1, r/4), where r = Δt max 2 (BA/L)(1/M_i + 1/M_{i+1}) says how hard the dampers are over a step: of
 //! second order, and no ringing of those that are. A row is off where the total would be negative. Eliminating v by the nodes'
-//! momentum leaves one scalar tridiagonal system in T̄. Drag C v is folded into the node's mass by θΔt C, θ = max(½, 1 − M/(Δt C)): trapezoidal,
-//! but where it outweighs inertia no more than that no velocity changes its sign by it, which would go on for ever. The seabed is folded in
-//! too, likewise (`bed`); flags of slack and contact are checked after the solve and the step repeated until they hold.
+//! momentum leaves one scalar tridiagonal system in T̄.
+//!
+//! Drag across the line, C v, is folded into the node's mass by θΔt C, θ = max(½, 1 − M/(Δt C)): trapezoidal, but where it outweighs inertia no
+//! more than that no velocity changes its sign by it, which would go on for ever. Drag along the line, K|u|u, is what T̄ has to balance, and averaged as T̄ is:
+//! the mean of those at t_{n−½} and t_{n+½}, the latter by a tangent at the extrapolated u. Taken at t_n alone, its harmonics of short periods appear
+//! 1/(1 − σ sin²(ωΔt/2)) times as great in T^n. The seabed is folded in too (`bed`); flags of slack and contact are checked after
+//! the solve and the step repeated until they hold.
 //!
 //! A step ([`AxialWork::step`]) goes over the rows of the folded line ([`crate::math::fold`]) once for each thing it finds out: geometry,
 //! segments, drag, inverse masses, contact (`prepare`), couplings; then, until the assumptions hold, the equations, T̄ by
@@ -22,9 +28,9 @@
 //! row, and keeps in memory what the next one goes on with: the processor, which waits for roots, quotients and sums, then works on several rows at
 //! once, and the compiler finds whole vectors, which it loses where much waits for much, or is carried from row to row.
 //!
-//! All of it is of second order in the step. What is left of the error of tension are axial waves that a line sends out when it snaps taut: with ωΔt they
-//! run late by (ωΔt)²/12, as with every scheme of second order that is stable whatever ωΔt, and reach up to where that is a turn, so that the RMS
-//! error falls with Δt^1.2 to Δt^1.6.
+//! All of it is of second order in the step. What is left of the error of tension are axial waves that a line sends out when it snaps taut: in steps
+//! much longer than theirs they run late by (ωΔt)²/12, as with every scheme of second order that is stable whatever ωΔt, and reach up to where
+//! that is a turn, so that the RMS error falls with Δt^1.2 to Δt^1.6.
 //!
 //! Source: Stern & Grinspun (2009), Implicit-explicit variational integration of highly oscillatory problems, Multiscale
 //! Model. Simul. 7, 1779-1794, with controllable dissipation added. The limit left is transverse:
@@ -42,7 +48,7 @@ use pulp::{Arch, NullaryFnOnce};
 use super::layout::{Layout, Water, interior};
 use super::leapfrog::Step;
 use super::ledger::Flow;
-use super::limit::transverse_step;
+use super::limit::{axial_frequency_squared, transverse_step};
 use crate::math::lanes::Lanes;
 use crate::model::{End, Line, LineState, Model, Parting, WaveSpan};
 use crate::physics::stretch::StretchLaw;
@@ -51,6 +57,10 @@ use rubbing::Rubbing;
 
 /// Passes over slack and contact flags, at most [-].
 const PASSES_MAX: usize = 8;
+/// Square of ωΔt up to which tensions need no averaging, 4, with some to spare [-].
+const EXPLICIT_PART: f64 = 3.2;
+/// Share of T̄ that is averaged at least: axial waves then run in time up to (ωΔt)⁴ [-].
+const SHARE_MIN: f64 = 1.0 / 3.0;
 /// Ends in the order of the line.
 const ENDS: [End; 2] = [End::A, End::B];
 
@@ -65,6 +75,18 @@ impl Weights {
         let n = (1.0 + rho) * (1.0 + rho) * (1.0 + b);
         Weights([1.0, 2.0 * rho + b, rho * (rho + 2.0 * b), rho * rho * b].map(|weight| weight / n))
     }
+
+    /// Those of a share σ [-] that is averaged, and the rest at the present.
+    fn shared(&self, share: f64) -> Weights {
+        let [new, now, last, before] = self.0.map(|weight| weight * share);
+        Weights([new, now + (1.0 - share), last, before])
+    }
+}
+
+/// Share σ of T̄ that is averaged in a step [-], axial waves having frequencies up to the one whose square is given [1/s²].
+fn averaged_share(frequency_squared: f64, step: Step) -> f64 {
+    let explicit = EXPLICIT_PART / (frequency_squared * step.kick * step.drift);
+    (1.0 - explicit).max(SHARE_MIN)
 }
 
 /// Bound on the rate at which axial dampers would take the velocities of a line's nodes away, all of it being where it is at home, in
@@ -85,7 +107,11 @@ pub struct AxialWork {
     layout: Layout,
     /// Longest step over √T [s √N].
     pub transverse: f64,
+    /// Weights of the averaging, and those of the step.
+    averaging: Weights,
     weights: Weights,
+    /// Square of the greatest frequency of axial waves, both ends being held [1/s²].
+    frequency_squared: f64,
     /// Greatest rate at which axial dampers would take velocities away [1/s].
     damping_rate: f64,
     rows: Rows,
@@ -125,7 +151,9 @@ impl AxialWork {
         };
         Some(AxialWork {
             transverse: transverse_step(line, 1.0),
+            averaging: Weights::new(rho),
             weights: Weights::new(rho),
+            frequency_squared: axial_frequency_squared(line),
             damping_rate: damping_rate(line),
             rows: Rows {
                 segments: layout
@@ -379,6 +407,7 @@ impl AxialWork {
         step: Step,
         ends: [Vector3<f64>; 2],
     ) -> usize {
+        self.choose_weights(step);
         let sizes = self.sizes(step);
         self.choose_springs::<BOOKS>(step, &sizes);
         self.prepare_drag::<CURRENT>(step);
@@ -421,6 +450,16 @@ impl AxialWork {
         std::mem::swap(&mut self.layout.velocity, &mut self.layout.velocity_before);
         self.move_on(step, ends);
         passes
+    }
+
+    /// Weights of as much averaging as the step needs.
+    #[inline(always)]
+    fn choose_weights(&mut self, step: Step) {
+        let share = match self.parted {
+            [false, false] => averaged_share(self.frequency_squared, step),
+            _ => 1.0,
+        };
+        self.weights = self.averaging.shared(share);
     }
 
     #[inline(always)]
@@ -483,8 +522,10 @@ impl AxialWork {
             let (flow, tangent) = (current.flow, node.tangent);
             let past = flow - mean;
             let [across, along] = node.drag;
+            let after = flow - line.velocity_before.load(at);
+            let drawn = along * after.dot(tangent) - node.drag_rest;
             let power =
-                across * past.dot(flow) + (along - across) * past.dot(tangent) * flow.dot(tangent);
+                across * past.dot(flow) + (drawn - across * past.dot(tangent)) * flow.dot(tangent);
             sum = sum + node.free * (power + current.press.dot(mean));
         }
         let work = sum * Lanes::splat(step.kick);

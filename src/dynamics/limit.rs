@@ -45,6 +45,8 @@ const STRAIN_EXPECTED: f64 = 0.05;
 const DRAG_COURANT: f64 = 0.5;
 /// Part of it that a communication step starts with, as nodes may speed up in it [-].
 const DRAG_MARGIN: f64 = 0.8;
+/// Halvings of the interval in which the square of a frequency is sought [-].
+const HALVINGS: usize = 30;
 /// Transverse Courant number of the axial-implicit leapfrog [-].
 const TRANSVERSE_COURANT: f64 = 0.6;
 
@@ -168,6 +170,40 @@ fn damped_limit(omega: f64, lag: f64, enough: f64) -> f64 {
     let damped = (zeta / enough).min(1.0);
     let safety = SAFETY_UNDAMPED + damped * (SAFETY - SAFETY_UNDAMPED);
     safety * 2.0 / omega * ((1.0 + zeta * zeta).sqrt() - zeta)
+}
+
+/// Square of the greatest frequency of axial waves in a line whose ends are held [1/s²], its nodes having the masses that they have in air and
+/// moving along it alone; infinite where its springs may be stiffer than its axial stiffness.
+pub fn axial_frequency_squared(line: &Line) -> f64 {
+    let law = |law: &StretchLaw| matches!(law, StretchLaw::Engineering | StretchLaw::Tabulated(_));
+    if line.segments.viscoelastic.is_some() || !line.segments.law.iter().all(law) {
+        return f64::INFINITY;
+    }
+    let nodes = 1..line.segment_count();
+    let mass = &line.nodes.mass;
+    let own = |i: usize| (stiffness(line, i - 1) + stiffness(line, i)) / mass[i];
+    let shared = |i: usize| match i {
+        1 => 0.0,
+        _ => stiffness(line, i - 1).powi(2) / (mass[i - 1] * mass[i]),
+    };
+    // λ is beyond all squares if no pivot of λ − A is negative
+    let is_beyond = |square: f64| {
+        let mut pivot = f64::INFINITY;
+        nodes.clone().all(|i| {
+            pivot = square - own(i) - shared(i) / pivot;
+            pivot > 0.0
+        })
+    };
+    let gershgorin = 2.0 * nodes.clone().map(own).fold(0.0, f64::max);
+    let (mut low, mut high) = (0.0, gershgorin);
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        match is_beyond(middle) {
+            true => high = middle,
+            false => low = middle,
+        }
+    }
+    high
 }
 
 /// Step [s] that resolves the first axial period 4L/c for a target error of tension [-].

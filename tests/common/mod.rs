@@ -184,6 +184,15 @@ pub fn assert_order(claimed: f64, sizes: &[f64], errors: &[f64]) {
     );
 }
 
+/// Claims that errors fall with the resolution at an order − 0.1 or a higher one.
+pub fn assert_order_at_least(claimed: f64, sizes: &[f64], errors: &[f64]) {
+    let fitted = order(sizes, errors);
+    assert!(
+        fitted >= claimed - 0.1,
+        "order {fitted:.3}, less than {claimed}: {errors:?} at {sizes:?}"
+    );
+}
+
 /// Circular frequency [rad/s] of one harmonic sampled every `step` [s]: q_{k+1} + q_{k−1} = 2 cos(ωh) q_k, by least squares.
 pub fn sampled_frequency(samples: &[f64], step: f64) -> f64 {
     let (mut product, mut square) = (0.0, 0.0);

@@ -143,7 +143,8 @@ impl AxialWork {
         }
     }
 
-    /// Drag over the velocity relative to the water, by the velocities extrapolated to t_n.
+    /// Drag of the velocity relative to the water: across the line by the velocities extrapolated to t_n, along it by those of t_{n−½} and
+    /// t_{n+½}, with the slope that it has where these are extrapolated to.
     #[inline(always)]
     pub(super) fn prepare_drag<const CURRENT: bool>(&mut self, step: Step) {
         let line = &self.layout;
@@ -152,16 +153,22 @@ impl AxialWork {
         };
         for at in line.rows() {
             let node = &mut self.rows.nodes[at - 1];
-            let mut now = line.velocity_now(at, step);
+            let (mut past, mut now) = (line.velocity.load(at), line.velocity_now(at, step));
             if CURRENT && let Some(current) = &mut self.rows.current {
                 let flow = line.water_velocity(at);
                 current[at - 1].flow = flow;
-                now = now - flow;
+                (past, now) = (past - flow, now - flow);
             }
             let speed = now.dot(node.tangent);
             let across = now - node.tangent.scale(speed);
             let normal = drag.normal.load(at) * across.dot(across).sqrt();
-            node.drag = [normal, drag.tangent.load(at) * speed.abs()];
+            let old = past.dot(node.tangent);
+            let new = speed + speed - old;
+            let mean = Lanes::splat(0.5) * (old.abs() * old + new.abs() * new);
+            let slope = new.abs().max(old.abs());
+            let tangent = drag.tangent.load(at);
+            node.drag = [normal, tangent * slope];
+            node.drag_rest = tangent * (mean - slope * new);
         }
     }
 
@@ -229,7 +236,7 @@ impl NodeRow {
         let [mut across, mut along] = [self.mass_normal, self.mass_tangent];
         if let Some([normal, tangent]) = drag {
             across = across + (half * normal).max(sizes.kick * normal - across);
-            along = along + (half * tangent).max(sizes.kick * tangent - along);
+            along = along + sizes.kick * tangent;
         }
         if let Some(damping) = damping {
             (across, along) = (across + half * damping, along + half * damping);
@@ -254,10 +261,11 @@ impl NodeRow {
         let mut along = zero - excess * (weight * self.tangent.z); // Δt b t·f
         self.fall = velocity;
         if let Some([normal, tangent]) = drag {
-            // f = −K_n u − (K_t − K_n)(u·t) t, and f·t = −K_t u·t
+            // f = −K_n u − (d − K_n u·t) t, and f·t = −d = −K_t u·t − rest
             let speed = past.dot(self.tangent);
+            let drawn = tangent * speed + self.drag_rest;
             self.fall = self.fall - past.scale(across * normal);
-            along = along - (excess * tangent + across * (tangent - normal)) * speed;
+            along = along - (across + excess) * drawn + across * normal * speed;
         }
         self.fall = self.fall + self.tangent.scale(along);
         self.fall.z = self.fall.z - across * weight;

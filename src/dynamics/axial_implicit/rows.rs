@@ -143,8 +143,10 @@ pub(super) struct NodeRow {
     pub mass_tangent: Lanes,
     /// 1 for nodes that nothing holds, 0 for held ends and padding.
     pub free: Lanes,
-    /// Drag over relative velocity, across and along the line [N s/m].
+    /// Drag over relative velocity, across and along the line [N s/m]: that in the middle of the step, and that after it; and what the latter
+    /// leaves out [N].
     pub drag: [Lanes; 2],
+    pub drag_rest: Lanes,
     /// a, with drag folded in [1/kg].
     pub across: Lanes,
     /// b [1/kg].
@@ -177,6 +179,7 @@ impl NodeRow {
             mass_tangent: one,
             free: zero,
             drag: [zero; 2],
+            drag_rest: zero,
             across: zero,
             excess: zero,
             tangent: Vectors::zero(),
