@@ -158,7 +158,7 @@ fn a_line_almost_without_mass_pulls_as_it_should() {
                 let what = format!("{mass} kg/m, wet {wet}, {integrator:?}");
                 sound(&what, &run, ledger, steps);
                 at_most(
-                    0.03,
+                    1e-5,
                     &format!("{what}, tension"),
                     run.tension_error(&truth, 4.0),
                 );
