@@ -371,24 +371,31 @@ fn a_second_run_replaces_the_first_and_gives_the_same_numbers() {
     assert_eq!(read(), first);
 }
 
+/// The table's head, and its rows of a run that follows the scene's motion exactly and of one driven as by a host in steps of `step` [s].
+fn exact_and_host(folder: &TempDir, scene: &str, step: &str) -> (Vec<String>, [Vec<Vec<f64>>; 2]) {
+    let run = |output: &str, more: &[&str]| {
+        done(
+            folder.path(),
+            &[&["run", scene, "-o", output], more].concat(),
+        );
+        table(&folder.path().join(output).join("results.csv"))
+    };
+    let (header, exact) = run("exact", &[]);
+    let (_, host) = run("host", &["--communication-step", step, "--velocities"]);
+    (header, [exact, host])
+}
+
+fn column(header: &[String], name: &str) -> usize {
+    header.iter().position(|column| column == name).unwrap()
+}
+
 #[test]
 fn a_run_driven_like_a_host_follows_the_exact_motion() {
     let folder = folder();
     let fine = SCENE.replace("interval = 0.1", "interval = 0.01");
     fs::write(folder.path().join("fine.toml"), fine).unwrap();
-    let run = |output: &str, more: &[&str]| {
-        done(
-            folder.path(),
-            &[&["run", "fine.toml", "-o", output], more].concat(),
-        );
-        table(&folder.path().join(output).join("results.csv"))
-    };
-    let (header, exact) = run("exact", &[]);
-    let (_, host) = run("host", &["--communication-step", "0.01", "--velocities"]);
-    let tension = header
-        .iter()
-        .position(|name| name == "line1.tension_b")
-        .unwrap();
+    let (header, [exact, host]) = exact_and_host(&folder, "fine.toml", "0.01");
+    let tension = column(&header, "line1.tension_b");
     assert_eq!(exact.len(), host.len());
     for (exact, host) in exact.iter().zip(&host) {
         // The same motion to the last bit; of the tension what the path between communication points costs.
@@ -405,17 +412,8 @@ fn a_run_whose_inputs_mean_the_end_of_a_step_is_told_the_motion_there() {
     let folder = folder();
     let solver = "[solver]\ninput_reconstruction = \"interpolate\"\n";
     fs::write(folder.path().join("known.toml"), format!("{SCENE}{solver}")).unwrap();
-    let run = |output: &str, more: &[&str]| {
-        done(
-            folder.path(),
-            &[&["run", "known.toml", "-o", output], more].concat(),
-        );
-        table(&folder.path().join(output).join("results.csv"))
-    };
-    let (header, exact) = run("exact", &[]);
-    let (_, host) = run("host", &["--communication-step", "0.1", "--velocities"]);
-    let of = |name: &str| header.iter().position(|column| column == name).unwrap();
-    let (place, tension) = (of("fairlead.x"), of("line1.tension_b"));
+    let (header, [exact, host]) = exact_and_host(&folder, "known.toml", "0.1");
+    let [place, tension] = ["fairlead.x", "line1.tension_b"].map(|name| column(&header, name));
     assert_eq!(exact.len(), host.len());
     for (exact, host) in exact.iter().zip(&host) {
         assert_eq!(exact[place], host[place]);
