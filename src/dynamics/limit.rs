@@ -173,7 +173,8 @@ fn damped_limit(omega: f64, lag: f64, enough: f64) -> f64 {
 }
 
 /// Square of the greatest frequency of axial waves in a line whose ends are held [1/s²], its nodes having the masses that they have in air and
-/// moving along it alone; infinite where its springs may be stiffer than its axial stiffness.
+/// moving along it alone; infinite where its springs may be stiffer than its axial stiffness. By bisection with Sturm's theorem (Golub & Van
+/// Loan 2013, Matrix Computations, section 8.4).
 pub fn axial_frequency_squared(line: &Line) -> f64 {
     let law = |law: &StretchLaw| matches!(law, StretchLaw::Engineering | StretchLaw::Tabulated(_));
     if line.segments.viscoelastic.is_some() || !line.segments.law.iter().all(law) {
@@ -301,8 +302,73 @@ pub fn transverse_step(line: &Line, tension: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use approx::assert_relative_eq;
+    use nalgebra::DMatrix;
+
     use super::*;
     use crate::dynamics::leapfrog::Step;
+    use crate::scene::Scene;
+
+    /// A line of sections of [mass per length [kg/m], length [m], elements], EA = 1 MN.
+    fn line(sections: &[(f64, f64, usize)], strain: &str) -> Line {
+        let types: String = (sections.iter().enumerate())
+            .map(|(k, (mass, _, _))| {
+                format!("line_types.t{k} = {{ mass = {mass}, weight = 0.0, axial_stiffness = 1e6, strain = '{strain}' }}\n")
+            })
+            .collect();
+        let list: Vec<_> = (sections.iter().enumerate())
+            .map(|(k, (_, length, n))| {
+                format!("{{ type = 't{k}', length = {length}, elements = {n} }}")
+            })
+            .collect();
+        let span: f64 = sections.iter().map(|(_, length, _)| length).sum();
+        let scene = Scene::from_toml(&format!(
+            "{types}points = [{{ name = 'a', position = [0.0, 0.0, 0.0], kind = 'fixed' }},
+                      {{ name = 'b', position = [{span}, 0.0, 0.0], kind = 'coupled' }}]
+            lines = [{{ name = 'line', from = 'a', to = 'b', sections = [{}] }}]",
+            list.join(", ")
+        ));
+        Model::new(&scene.unwrap()).unwrap().lines.remove(0)
+    }
+
+    #[test]
+    fn the_greatest_axial_frequency_of_equal_elements_is_that_of_a_lattice() {
+        for n in [2, 3, 4, 20] {
+            let (mass, length) = (2.0, 30.0 / n as f64);
+            let phase = std::f64::consts::FRAC_PI_2 * (n - 1) as f64 / n as f64;
+            let exact = 4.0 * 1e6 / (mass * length * length) * phase.sin().powi(2);
+            let found = axial_frequency_squared(&line(&[(mass, 30.0, n)], "engineering"));
+            assert_relative_eq!(found, exact, max_relative = 1e-8);
+        }
+        assert_eq!(
+            axial_frequency_squared(&line(&[(2.0, 30.0, 1)], "engineering")),
+            0.0
+        );
+        assert_eq!(
+            axial_frequency_squared(&line(&[(2.0, 30.0, 9)], "green")),
+            f64::INFINITY
+        );
+    }
+
+    #[test]
+    fn the_greatest_axial_frequency_of_several_sections_is_the_greatest_eigenvalue() {
+        let line = line(
+            &[(2.0, 10.0, 3), (40.0, 1.0, 2), (0.5, 30.0, 4)],
+            "engineering",
+        );
+        let (mass, last) = (&line.nodes.mass, line.segment_count() - 1);
+        let scaled = DMatrix::from_fn(last, last, |i, k| {
+            let (low, high) = (i.min(k), i.max(k));
+            let stiffness = match high - low {
+                0 => stiffness(&line, i) + stiffness(&line, i + 1),
+                1 => -stiffness(&line, high),
+                _ => 0.0,
+            };
+            stiffness / (mass[i + 1] * mass[k + 1]).sqrt()
+        });
+        let exact = scaled.symmetric_eigenvalues().max();
+        assert_relative_eq!(axial_frequency_squared(&line), exact, max_relative = 1e-8);
+    }
 
     /// Speed of a node after 200 steps over what it was, K|v|Δt/M being `courant` at first; it starts in the velocity that flips.
     fn flipping(courant: f64) -> f64 {

@@ -22,7 +22,7 @@
 //! The change as a whole is scaled by min(1, (|p_e|/|p_k − p_e|)⁴).
 //!
 //! On a taut rope that follows its fairlead (`taut_polyester`) the tension has 0.18 of its error with 3 elements, 0.2 with 4, 0.3 with 6 and 0.5 with 10; with 20 and
-//! more, where it is below 0.2 % either way, 1.2 to 1.6 times, for the plain half node's error then makes up for that of the waves along the
+//! more, where it is below 0.2 % either way, 1.1 to 1.4 times, for the plain half node's error then makes up for that of the waves along the
 //! line. A load that changes by more than itself, as to a next node that snaps or lands, is not linear: unscaled
 //! the error of chains that slacken in every turn grows by up to 6 %, scaled by 2 % at most. The law asks for one line on both sides of
 //! the next node and for still water, where the balance of a line at rest does not depend on it: it is left out where sections meet there, and
