@@ -77,7 +77,7 @@ except ImportError:  # Windows has no such limits; there the clock on the wall e
     resource = None
 
 # Segments of a ladder when the scene names none [-]; a line on the bed is far out with fewer than 8.
-ELEMENTS = (3, 4, 5, 6, 7, 8, 10, 14, 17, 20, 24, 28, 34, 40, 56, 80)
+ELEMENTS = (3, 4, 5, 6, 7, 8, 10, 12, 14, 17, 20, 24, 28, 34, 40, 48, 56, 68, 80)
 ELEMENTS_ON_BED = ELEMENTS[5:]
 # CPU time of a run when the scene names none [s], and how much longer the clock on the wall may take [-].
 TIME_LIMIT, WALL = 60.0, 20.0
@@ -531,6 +531,7 @@ def cabledyn_runs(scene, elements, period, bedded):
         (180.0, 0.0, False, 1e-1),
         (90.0, 0.0, False, 1e-1),
         (60.0, 0.0, False, 1e-1),
+        (40.0, 0.0, False, 1e-1),
     ]
     rates = (30.0, 20.0, 16.0, 12.0, 10.0, 8.0)
     free = [(parts, 0.9, True, tolerance) for tolerance in (1e-2, 1e-1) for parts in rates]

@@ -17,7 +17,9 @@ use crate::scene::{MotionPath, Point, PointKind, Scene};
 
 const SCRIPT: &str = include_str!("peers.py");
 /// Elements that the peers are tried with [-].
-const ELEMENTS: [usize; 16] = [3, 4, 5, 6, 7, 8, 10, 14, 17, 20, 24, 28, 34, 40, 56, 80];
+const ELEMENTS: [usize; 19] = [
+    3, 4, 5, 6, 7, 8, 10, 12, 14, 17, 20, 24, 28, 34, 40, 48, 56, 68, 80,
+];
 /// Those of them that a line on a seabed starts from: with fewer it means nothing.
 const ELEMENTS_ON_BED: usize = 5;
 /// Processor time that all passes of a single run of a peer may take [s].
