@@ -48,7 +48,7 @@ pub enum Error {
 pub struct Snapshot {
     state: State,
     inputs: Inputs,
-    paths: Paths,
+    paths: Box<Paths>,
     follows_scene: bool,
     counters: Counters,
     ledger: Ledger,
@@ -62,7 +62,7 @@ pub struct Simulation {
     snapshot: Snapshot,
     work: Workspace,
     /// The paths of the step that is made.
-    paths: Paths,
+    paths: Box<Paths>,
     foresight: Foresight,
     held: Held,
     memo: Memo,
@@ -191,7 +191,9 @@ impl Simulation {
         let held = |point: usize, t: f64| self.held.point(&at, point, t);
         let state = &mut self.snapshot.state;
         let advanced = self.work.advance(model, state, step, &held);
-        if let (Err(_), Some((state, ledger))) = (&advanced, before) {
+        if advanced.is_err()
+            && let Some((state, ledger)) = before
+        {
             (self.snapshot.state, self.snapshot.ledger) = (state, ledger);
         }
         let done = advanced?;

@@ -43,7 +43,7 @@ mod rubbing;
 mod solve;
 
 use nalgebra::Vector3;
-use pulp::{Arch, NullaryFnOnce};
+use pulp::NullaryFnOnce;
 
 use super::layout::{Layout, Water, interior};
 use super::leapfrog::Step;
@@ -61,6 +61,8 @@ const PASSES_MAX: usize = 8;
 const EXPLICIT_PART: f64 = 3.2;
 /// Share of T̄ that is averaged at least: axial waves then run in time up to (ωΔt)⁴ [-].
 const SHARE_MIN: f64 = 1.0 / 3.0;
+/// Rows of nodes that vectors of eight numbers do not pay for [-].
+const FEW_ROWS: usize = 2;
 /// Ends in the order of the line.
 const ENDS: [End; 2] = [End::A, End::B];
 
@@ -138,7 +140,7 @@ impl AxialWork {
     /// kernel does not mix.
     pub fn new(model: &Model, line: &Line, rho: f64) -> Option<AxialWork> {
         let water = Water::around(model, line);
-        let layout = Layout::new(line, water, &model.solver)?;
+        let layout = Layout::new(line, water, &model.solver, FEW_ROWS)?;
         let count = layout.rows().count();
         let column = |values: &[f64]| layout.fold.column(values, 1.0);
         let masses = [&line.nodes.mass_normal, &line.nodes.mass_tangent].map(|m| column(m));
@@ -181,7 +183,7 @@ impl AxialWork {
     /// Runs the kernel as it is compiled for any machine of the target, or for the widest vectors of this one, as is the default.
     /// Results do not depend on it.
     pub fn set_portable(&mut self, portable: bool) {
-        self.layout.vector_unit = if portable { Arch::Scalar } else { Arch::new() };
+        self.layout.set_portable(portable);
     }
 
     /// Takes over the state of a line.
@@ -232,6 +234,7 @@ impl AxialWork {
     }
 
     /// Starts the books of the steps to come, the ends and the surface being where they are.
+    #[inline]
     pub fn open_books(&mut self) {
         if self.layout.books && self.layout.surface.is_some() {
             self.lost[0] += self.turning_energy();
@@ -291,7 +294,14 @@ impl AxialWork {
     }
 
     /// Meets the water's surface as it is at t_n. Where that is `after` a step, what joined with the water in it is booked.
+    #[inline]
     pub fn meet_surface(&mut self, after: Option<Step>) {
+        if self.layout.surface.is_some() {
+            self.find_surface(after);
+        }
+    }
+
+    fn find_surface(&mut self, after: Option<Step>) {
         if let Some(step) = after {
             self.layout
                 .leave_surface(step, self.parted.map(|parted| !parted));
@@ -492,9 +502,7 @@ impl AxialWork {
             self.layout.position.wrap();
             self.layout.creep(step.drift);
         }
-        if self.layout.surface.is_some() {
-            self.meet_surface(Some(step));
-        }
+        self.meet_surface(Some(step));
     }
 
     /// Books what the held ends gave in the step; `velocity_before` holds the new velocities.
@@ -580,6 +588,7 @@ impl NullaryFnOnce for HandBack<'_> {
         let [now, before] = &mut state.half_step.tension;
         now.resize(count, 0.0);
         before.resize(count, 0.0);
+        let (now, before) = (&mut now[..count], &mut before[..count]);
         let mut tensions = Tensions { now, before };
         let mut greatest = Lanes::splat(0.0);
         for (row, segment) in work.rows.segments.iter().enumerate() {
@@ -605,9 +614,8 @@ impl Tensions<'_> {
     /// Takes over what a segment has `of` these in a lane; nothing if it is padding.
     #[inline(always)]
     fn take(&mut self, segment: usize, lane: usize, of: &[Lanes; 2]) {
-        let slots = (self.now.get_mut(segment), self.before.get_mut(segment));
-        if let (Some(now), Some(before)) = slots {
-            (*now, *before) = (of[0][lane], of[1][lane]);
+        if segment < self.now.len() {
+            (self.now[segment], self.before[segment]) = (of[0][lane], of[1][lane]);
         }
     }
 }

@@ -14,6 +14,7 @@ use super::surface::SurfaceNow;
 use crate::math::fold::{Column, Field, Fold, Slot};
 use crate::math::hermite::Hermite;
 use crate::math::lanes::{Lanes, Vectors};
+use crate::math::unit;
 use crate::model::{Bottom, Contact, End, Line, LineState, Model, WaveSpan};
 use crate::physics::airy::{Orbit, cubics};
 use crate::physics::flow::{Profile, Stream};
@@ -38,8 +39,10 @@ pub(super) struct Layout {
     last: [Slot; 2],
     /// Where nodes and segments stand.
     pub fold: Fold,
-    /// The widest vectors of this machine; results do not depend on it.
+    /// The vectors of the machine that kernels run with; results do not depend on it.
     pub vector_unit: Arch,
+    /// Rows that vectors of eight numbers do not pay for [-].
+    few_rows: usize,
     pub law: StretchLaw,
     pub negative_tension: bool,
     /// Whether steps are booked in the energy ledger.
@@ -309,19 +312,26 @@ struct Nodes<'a> {
     before: &'a mut [Vector3<f64>],
 }
 
-impl Nodes<'_> {
+impl<'a> Nodes<'a> {
+    /// So many of each, which the compiler is to see.
+    #[inline(always)]
+    fn first(self, count: usize) -> Nodes<'a> {
+        Nodes {
+            position: &mut self.position[..count],
+            velocity: &mut self.velocity[..count],
+            half: &mut self.half[..count],
+            before: &mut self.before[..count],
+        }
+    }
+
     /// Takes over what a node has `of` these in a lane; nothing if it is padding.
     #[inline(always)]
     fn take(&mut self, node: usize, lane: usize, of: &[Vectors; 4]) {
-        let (velocity, half) = (self.velocity.get_mut(node), self.half.get_mut(node));
-        let before = self.before.get_mut(node);
-        if let (Some(place), Some(velocity), Some(half), Some(before)) =
-            (self.position.get_mut(node), velocity, half, before)
-        {
-            *place = of[0].get(lane);
-            *velocity = of[1].get(lane);
-            *half = of[2].get(lane);
-            *before = of[3].get(lane);
+        if node < self.position.len() {
+            self.position[node] = of[0].get(lane);
+            self.velocity[node] = of[1].get(lane);
+            self.half[node] = of[2].get(lane);
+            self.before[node] = of[3].get(lane);
         }
     }
 }
@@ -339,8 +349,8 @@ impl NullaryFnOnce for HandBack<'_> {
 }
 
 impl Layout {
-    /// Arrays for a line; `None` where its sections have different strain measures, which the kernels do not mix.
-    pub fn new(line: &Line, water: Water<'_>, solver: &Solver) -> Option<Layout> {
+    /// Arrays for a line, whose kernel has no use for vectors of eight numbers over a few rows or less; `None` where its sections have different strain measures, which the kernels do not mix.
+    pub fn new(line: &Line, water: Water<'_>, solver: &Solver, few_rows: usize) -> Option<Layout> {
         let n = line.segment_count();
         let fold = Fold::new(n + 1);
         let keep = |values: &[f64]| fold.column(values, 0.0);
@@ -358,7 +368,8 @@ impl Layout {
             segment_count: n,
             last: [n, n - 1].map(|i| fold.slot(i)),
             fold,
-            vector_unit: Arch::new(),
+            vector_unit: unit::over_rows(fold.rows(), few_rows),
+            few_rows,
             law: line.uniform_law()?,
             negative_tension: solver.negative_tension,
             books: solver.energy_ledger,
@@ -389,6 +400,14 @@ impl Layout {
             creep,
             surface: SurfaceNow::new(line),
         })
+    }
+
+    /// Runs the kernels as they are compiled for any machine of the target, or for the best vectors of this one.
+    pub fn set_portable(&mut self, portable: bool) {
+        self.vector_unit = match portable {
+            true => Arch::Scalar,
+            false => unit::over_rows(self.fold.rows(), self.few_rows),
+        };
     }
 
     /// Takes over positions and velocities of a line; the ghosts are yet to be renewed. Padding starts anew: it may have met what a step
@@ -504,12 +523,13 @@ impl Layout {
         memory.velocity_before.resize(count, Vector3::zeros());
         memory.steps = steps;
         let extrapolation = Lanes::splat(Step::after(steps, steps[0]).extrapolation);
-        let mut nodes = Nodes {
+        let nodes = Nodes {
             position: &mut state.position,
             velocity: &mut state.velocity,
             half: &mut memory.velocity,
             before: &mut memory.velocity_before,
         };
+        let mut nodes = nodes.first(count);
         let (rows, mut sound) = (self.fold.rows(), Lanes::splat(1.0));
         for row in 0..rows {
             let at = row + 1;

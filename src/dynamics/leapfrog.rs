@@ -18,7 +18,7 @@ mod sweep;
 mod winch;
 
 use nalgebra::{Matrix3, Vector3};
-use pulp::{Arch, NullaryFnOnce};
+use pulp::NullaryFnOnce;
 
 use super::layout::{Layout, Water, interior, inverse_norm_of};
 use super::ledger::Flow;
@@ -33,6 +33,9 @@ use crate::scene::Solver;
 pub use sweep::Placed;
 use sweep::{Drift, Sweep};
 use winch::WinchWork;
+
+/// Rows of nodes that vectors of eight numbers do not pay for [-].
+const FEW_ROWS: usize = 5;
 
 /// A line and the scratch of its steps.
 #[derive(Debug, Clone)]
@@ -236,7 +239,7 @@ impl LineWork {
     ) -> Option<LineWork> {
         let winch = WinchWork::new(line);
         let line = line.winch.as_ref().map_or(line, |winch| winch.reel());
-        let layout = Layout::new(line, water, solver)?;
+        let layout = Layout::new(line, water, solver, FEW_ROWS)?;
         let inverse_mass: Vec<f64> = line
             .nodes
             .mass_normal
@@ -270,9 +273,9 @@ impl LineWork {
         })
     }
 
-    /// Sets for which vectors the kernels are compiled that run.
-    pub fn set_vector_unit(&mut self, unit: Arch) {
-        self.layout.vector_unit = unit;
+    /// As [`super::network::NetworkWork::set_portable`].
+    pub fn set_portable(&mut self, portable: bool) {
+        self.layout.set_portable(portable);
     }
 
     /// Takes over the state of a line.

@@ -143,13 +143,18 @@ impl AxesPath {
     /// through the last three places.
     #[inline(always)]
     fn interpolate(&mut self, before: &AxesPath, foresight: &Foresight, said: &Said) {
-        let [_, length, rate] = foresight.span;
-        let (slope_before, rate_before) = before.curve.secant();
-        let slope = (said.position - before.end[0]) * Lanes::splat(rate);
-        let bend = length * rate_before / (1.0 + length * rate_before);
-        let derived = slope + Lanes::splat(bend) * (slope - slope_before);
-        self.end = [said.position, said.rated.choose(said.velocity, derived)];
-        self.curve = Hermites::bridge(foresight.span, before.end, self.end);
+        let mut velocity = said.velocity;
+        if !said.rated.all_positive() {
+            let [_, length, rate] = foresight.span;
+            let (slope_before, rate_before) = before.curve.secant();
+            let slope = (said.position - before.end[0]) * Lanes::splat(rate);
+            let bend = length * rate_before / (1.0 + length * rate_before);
+            let derived = slope + Lanes::splat(bend) * (slope - slope_before);
+            velocity = said.rated.choose(said.velocity, derived);
+        }
+        let end = [said.position, velocity];
+        self.curve = Hermites::bridge(foresight.span, before.end, end);
+        self.end = end;
     }
 
     /// [`AxesPath::extend`] where the host goes back in time or leaves samples behind that do not count, or tells the velocity along other axes
@@ -236,8 +241,8 @@ impl AxesPath {
     #[inline(always)]
     pub fn ends(&self) -> [[Lanes; 3]; 2] {
         let [start, [.., curvature]] = self.curve.ends();
-        let [position, velocity] = self.end;
-        [start, [position, velocity, curvature]]
+        // not as a whole, which would be read again at once
+        [start, [self.end[0], self.end[1], curvature]]
     }
 
     /// Predicts position [m, rad] and velocity [m/s, rad/s] at the end of a step from what the host said of the position.

@@ -1,7 +1,6 @@
 //! A network of lines advanced by the explicit leapfrog: its lines, and the free points that join them.
 
 use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
-use pulp::Arch;
 
 use super::layout::Water;
 use super::leapfrog::{EndLoad, LineWork, Placed, Step};
@@ -151,10 +150,9 @@ impl NetworkWork {
     /// Runs the kernels as they are compiled for any machine of the target, or for the widest vectors of this one, as is the default.
     /// Results do not depend on it.
     pub fn set_portable(&mut self, portable: bool) {
-        let unit = if portable { Arch::Scalar } else { Arch::new() };
         self.lines
             .iter_mut()
-            .for_each(|line| line.set_vector_unit(unit));
+            .for_each(|line| line.set_portable(portable));
     }
 
     /// Takes over the state.

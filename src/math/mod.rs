@@ -12,3 +12,4 @@ pub mod pentadiagonal;
 pub mod pivoted_chain;
 pub mod random;
 pub mod rotation;
+pub mod unit;

@@ -187,6 +187,9 @@ impl Bridge {
     }
 }
 
+/// Where a point that a host moves is at both ends of a step, along x, y and z: position [m], velocity [m/s] and acceleration [m/s²].
+pub(super) type HostEnds = [[Lanes; 3]; 2];
+
 /// The ways of all points over a communication step.
 #[derive(Debug, Clone)]
 pub(super) struct Held {
@@ -194,8 +197,8 @@ pub(super) struct Held {
     span: [f64; 2],
     /// Where the points are then, but those that a host moves.
     ends: Vec<[Kinematics; 2]>,
-    /// The same of these, along x, y and z: position [m], velocity [m/s] and acceleration [m/s²].
-    hosted: Vec<[[Lanes; 3]; 2]>,
+    /// The same of these, told with their paths.
+    hosted: Vec<HostEnds>,
     ways: Vec<Way>,
     /// Whether anything moves but by forces, or as a host says.
     moves: bool,
@@ -248,12 +251,19 @@ impl Held {
         }
     }
 
+    /// Where the points that a host moves are at both ends of the next span, for those who know their paths.
+    pub fn hosted(&mut self) -> &mut [HostEnds] {
+        &mut self.hosted
+    }
+
     /// Makes ready for a span of time [s], in which as many internal steps are to be expected.
     pub fn prepare(&mut self, at: &At, span: [f64; 2], steps: usize) {
         let goes_on = self.span[1] == span[0];
         self.span = span;
-        for (ends, path) in self.hosted.iter_mut().zip(&at.paths.points) {
-            *ends = path.0.ends();
+        if at.follows_scene {
+            // and not a host: what the scene does not move rests
+            let paths = self.hosted.iter_mut().zip(&at.paths.points);
+            paths.for_each(|(ends, path)| *ends = path.0.ends());
         }
         if !self.moves {
             return;

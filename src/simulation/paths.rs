@@ -1,14 +1,16 @@
 //! The paths that points, vessels and winches follow between communication points.
 
 use nalgebra::Vector3;
-use pulp::{Arch, NullaryFnOnce};
+use pulp::NullaryFnOnce;
 use serde::{Deserialize, Serialize};
 
+use super::held::HostEnds;
 use super::inputs::{Inputs, PointInput};
 use super::winches::{self, ReelPath};
 use super::{Simulation, Snapshot};
 use crate::dynamics::StepError;
 use crate::dynamics::motion::{Clock, Foresight, HostPath, Said, VesselPath};
+use crate::math::unit;
 use crate::model::{Line, Model, Point, Role};
 use crate::scene::Reconstruction;
 
@@ -102,6 +104,8 @@ struct Extend<'a> {
     model: &'a Model,
     inputs: &'a Inputs,
     foresight: &'a Foresight,
+    /// Becomes where the points are at both ends of the step.
+    ends: &'a mut [HostEnds],
 }
 
 impl NullaryFnOnce for Extend<'_> {
@@ -110,17 +114,19 @@ impl NullaryFnOnce for Extend<'_> {
     #[inline(always)]
     fn call(self) {
         // loops, not closures, which would not be compiled for the vector unit
-        let mut paths = self.paths.points.iter_mut().zip(&self.before.points);
+        let paths = self.paths.points.iter_mut().zip(&self.before.points);
+        let mut paths = paths.zip(self.ends);
         for (point, input) in self.model.points.iter().zip(&self.inputs.points) {
             if !is_coupled(point) {
                 continue;
             }
-            let Some((path, before)) = paths.next() else {
+            let Some(((path, before), ends)) = paths.next() else {
                 break;
             };
             let place: [f64; 3] = (point.reference + Vector3::from(input.displacement)).into();
             let said = Said::rated(place, input.rates);
             path.0.extend(&before.0, self.foresight, &said);
+            *ends = path.0.ends();
         }
         let paths = self.paths.vessels.iter_mut().zip(&self.before.vessels);
         let vessels = self.model.vessels.iter().zip(&self.inputs.vessels);
@@ -146,27 +152,30 @@ impl Simulation {
     pub(super) fn extend_paths(&mut self, step: f64) -> Result<(), StepError> {
         let (model, snapshot, paths) = (&*self.model, &self.snapshot, &mut self.paths);
         let before = &snapshot.paths;
-        paths.clock = before.clock;
-        paths.reels.clone_from(&before.reels);
-        if snapshot.follows_scene && paths.reels.is_empty() {
+        if snapshot.follows_scene && before.reels.is_empty() {
             return Ok(());
         }
-        let reconstruction = model.solver.input_reconstruction;
-        let foresight = &mut self.foresight;
-        paths
-            .clock
-            .tell(snapshot.state.time, step, reconstruction, foresight);
+        let (time, foresight) = (snapshot.state.time, &mut self.foresight);
+        match model.solver.input_reconstruction {
+            Reconstruction::Interpolate => foresight.reach(time, step),
+            reconstruction => {
+                paths.clock = before.clock;
+                paths.clock.tell(time, step, reconstruction, foresight);
+            }
+        }
         if !snapshot.follows_scene {
             let inputs = &snapshot.inputs;
-            Arch::new().dispatch(Extend {
+            unit::of_four().dispatch(Extend {
                 paths,
                 before,
                 model,
                 inputs,
                 foresight,
+                ends: self.held.hosted(),
             });
         }
-        if !paths.reels.is_empty() {
+        if !before.reels.is_empty() {
+            paths.reels.clone_from(&before.reels);
             paths.extend_reels(model, snapshot, foresight, step)?;
             let reels = paths.reels.iter().map(|reel| reel.path);
             self.work.set_reels(reels);

@@ -49,7 +49,7 @@ pub(super) fn begin(
         Snapshot {
             state,
             inputs,
-            paths,
+            paths: Box::new(paths),
             follows_scene,
             counters,
             ledger,

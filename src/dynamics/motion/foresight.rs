@@ -195,6 +195,13 @@ impl Foresight {
         }
     }
 
+    /// Of a step from a time [s] on whose end a host tells, so that nothing is predicted; its length is in [s].
+    #[inline]
+    pub fn reach(&mut self, start: f64, step: f64) {
+        self.reconstruction = Reconstruction::Interpolate;
+        self.span = [start, step, 1.0 / step];
+    }
+
     fn renew(&mut self, clock: &Clock, order: Order, step: f64, reconstruction: Reconstruction) {
         let (was_even, start) = (self.even, clock.times[0]);
         let rate = 1.0 / step;
