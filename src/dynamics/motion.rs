@@ -109,18 +109,23 @@ impl AxesPath {
     }
 
     /// Becomes the path `before` continued by a communication step from what the host says at its start; at its end where it is
-    /// [`Reconstruction::Interpolate`].
+    /// [`Reconstruction::Interpolate`]. Returns its ends, as [`AxesPath::ends`]: read again at once, what was written would hold up the step.
     #[inline(always)]
-    pub fn extend(&mut self, before: &AxesPath, foresight: &Foresight, said: &Said) {
+    pub fn extend(
+        &mut self,
+        before: &AxesPath,
+        foresight: &Foresight,
+        said: &Said,
+    ) -> [[Lanes; 3]; 2] {
         if foresight.reconstruction == Reconstruction::Interpolate {
             return self.interpolate(before, foresight, said);
         }
         let goes_on = foresight.order == Order::After && said.rated == before.rated;
         if !goes_on || !foresight.all {
-            return self.turn(before, foresight, said);
+            self.turn(before, foresight, said);
+            return self.ends();
         }
-        // arrays are taken apart, so that they stay in registers: read again at once, at other places than they were written, they would
-        // hold up the step
+        // arrays are taken apart, so that they stay in registers
         let [a, b, c, d, e, _] = before.positions;
         let [v, w, x, y, z, _] = before.velocities;
         (self.rated, self.degree) = (before.rated, before.degree);
@@ -134,15 +139,22 @@ impl AxesPath {
             self.times_rated = 0;
             self.predict(foresight, [said.position, a, b, c, d, e])
         } else {
-            return self.turn(before, foresight, said);
+            self.turn(before, foresight, said);
+            return self.ends();
         };
         self.bridge(before, foresight, said, to);
+        self.ends()
     }
 
     /// [`AxesPath::extend`] to what the host says of the step's end. A velocity that it does not tell is the slope there of the parabola
     /// through the last three places.
     #[inline(always)]
-    fn interpolate(&mut self, before: &AxesPath, foresight: &Foresight, said: &Said) {
+    fn interpolate(
+        &mut self,
+        before: &AxesPath,
+        foresight: &Foresight,
+        said: &Said,
+    ) -> [[Lanes; 3]; 2] {
         let mut velocity = said.velocity;
         if !said.rated.all_positive() {
             let [_, length, rate] = foresight.span;
@@ -152,9 +164,10 @@ impl AxesPath {
             let derived = slope + Lanes::splat(bend) * (slope - slope_before);
             velocity = said.rated.choose(said.velocity, derived);
         }
-        let end = [said.position, velocity];
-        self.curve = Hermites::bridge(foresight.span, before.end, end);
-        self.end = end;
+        let curve = Hermites::bridge(foresight.span, before.end, [said.position, velocity]);
+        (self.curve, self.end) = (curve, [said.position, velocity]);
+        let [start, [.., curvature]] = curve.ends();
+        [start, [said.position, velocity, curvature]]
     }
 
     /// [`AxesPath::extend`] where the host goes back in time or leaves samples behind that do not count, or tells the velocity along other axes
@@ -241,8 +254,8 @@ impl AxesPath {
     #[inline(always)]
     pub fn ends(&self) -> [[Lanes; 3]; 2] {
         let [start, [.., curvature]] = self.curve.ends();
-        // not as a whole, which would be read again at once
-        [start, [self.end[0], self.end[1], curvature]]
+        let [position, velocity] = self.end;
+        [start, [position, velocity, curvature]]
     }
 
     /// Predicts position [m, rad] and velocity [m/s, rad/s] at the end of a step from what the host said of the position.

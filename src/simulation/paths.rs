@@ -125,8 +125,7 @@ impl NullaryFnOnce for Extend<'_> {
             };
             let place: [f64; 3] = (point.reference + Vector3::from(input.displacement)).into();
             let said = Said::rated(place, input.rates);
-            path.0.extend(&before.0, self.foresight, &said);
-            *ends = path.0.ends();
+            *ends = path.0.extend(&before.0, self.foresight, &said);
         }
         let paths = self.paths.vessels.iter_mut().zip(&self.before.vessels);
         let vessels = self.model.vessels.iter().zip(&self.inputs.vessels);
