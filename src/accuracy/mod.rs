@@ -278,9 +278,19 @@ impl Study {
         level: f64,
         codes: impl Fn(&Code) -> bool,
     ) -> Option<&Run> {
-        let good = self.runs.iter().filter(|run| codes(&run.code));
-        let good = good.filter(|run| run.errors.of(metric) <= level);
+        let good = self.within(metric, level, codes);
         good.min_by(|a, b| a.cost.total_cmp(&b.cost))
+    }
+
+    /// Runs among those that `codes` admits whose error is at most `level` [-].
+    fn within(
+        &self,
+        metric: Metric,
+        level: f64,
+        codes: impl Fn(&Code) -> bool,
+    ) -> impl Iterator<Item = &Run> {
+        let good = self.runs.iter().filter(move |run| codes(&run.code));
+        good.filter(move |run| run.errors.of(metric) <= level)
     }
 
     /// Runs of a code that none of its other runs beats in both cost and error, from the cheapest on.

@@ -325,3 +325,23 @@ impl Sub for Vectors {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn any_and_all_ask_every_lane_and_numbers_that_are_none_are_not_positive() {
+        let kinds = [1.0, 0.0, -0.0, -2.0, f64::NAN, f64::INFINITY];
+        for code in 0..kinds.len().pow(4) {
+            let values: [f64; LANES] =
+                from_fn(|lane| kinds[code / kinds.len().pow(lane as u32) % kinds.len()]);
+            let (lanes, count) = (
+                Lanes::new(values),
+                values.iter().filter(|x| **x > 0.0).count(),
+            );
+            assert_eq!(lanes.any_positive(), count > 0, "{values:?}");
+            assert_eq!(lanes.all_positive(), count == LANES, "{values:?}");
+        }
+    }
+}
