@@ -17,7 +17,7 @@ const ROUNDS: usize = 3;
 /// Passes over the named runs at most [-]: a new timing may make another run the cheapest.
 const PASSES_MAX: usize = 8;
 /// Cost of a run over that of the cheapest of its code, up to which it might be the cheapest itself [-].
-const CONTENDS: f64 = 1.5;
+const CONTENDER_COST: f64 = 1.5;
 
 impl Study {
     /// Times in rounds what the verdicts name.
@@ -67,7 +67,7 @@ impl Study {
     /// The runs of the same code as one of them that reach a level [-] of a metric too, at little more than its cost: with a luckier timing
     /// they might be the cheapest.
     fn contenders(&self, of: &Run, metric: Metric, level: f64) -> impl Iterator<Item = &Run> {
-        let (code, most) = (of.code.clone(), CONTENDS * of.cost);
+        let (code, most) = (of.code.clone(), CONTENDER_COST * of.cost);
         let alike = move |other: &Code| match &code {
             Code::Peer(_) => *other == code,
             _ => other.is_own(),

@@ -180,7 +180,7 @@ impl AxialWork {
         })
     }
 
-    /// Runs the kernel as it is compiled for any machine of the target, or for the widest vectors of this one, as is the default.
+    /// Runs the kernel as it is compiled for any machine of the target, or for the best vectors of this one, as is the default.
     /// Results do not depend on it.
     pub fn set_portable(&mut self, portable: bool) {
         self.layout.set_portable(portable);
@@ -297,11 +297,12 @@ impl AxialWork {
     #[inline]
     pub fn meet_surface(&mut self, after: Option<Step>) {
         if self.layout.surface.is_some() {
-            self.find_surface(after);
+            self.pierce_surface(after);
         }
     }
 
-    fn find_surface(&mut self, after: Option<Step>) {
+    /// [`Self::meet_surface`] of a line that may pierce it.
+    fn pierce_surface(&mut self, after: Option<Step>) {
         if let Some(step) = after {
             self.layout
                 .leave_surface(step, self.parted.map(|parted| !parted));

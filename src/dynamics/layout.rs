@@ -349,7 +349,8 @@ impl NullaryFnOnce for HandBack<'_> {
 }
 
 impl Layout {
-    /// Arrays for a line, whose kernel has no use for vectors of eight numbers over a few rows or less; `None` where its sections have different strain measures, which the kernels do not mix.
+    /// Arrays for a line, whose kernel has no use for vectors of eight numbers over `few_rows` or less; `None` where its sections have
+    /// different strain measures, which the kernels do not mix.
     pub fn new(line: &Line, water: Water<'_>, solver: &Solver, few_rows: usize) -> Option<Layout> {
         let n = line.segment_count();
         let fold = Fold::new(n + 1);

@@ -147,7 +147,7 @@ impl NetworkWork {
         })
     }
 
-    /// Runs the kernels as they are compiled for any machine of the target, or for the widest vectors of this one, as is the default.
+    /// Runs the kernels as they are compiled for any machine of the target, or for the best vectors of this one, as is the default.
     /// Results do not depend on it.
     pub fn set_portable(&mut self, portable: bool) {
         self.lines
