@@ -19,7 +19,7 @@ use super::sea::SeaWork;
 use super::{Choice, StepError, quasi_static};
 use crate::model::{End, Kinematics, Model, Network, Role, State};
 use crate::physics::airy::Waves;
-use crate::scene::{AXIAL_RADIUS_MIN, Integrator};
+use crate::scene::{AXIAL_RADIUS_MIN, Integrator, Reconstruction};
 use crate::statics::assembly::rubbing::{drop_anchors, hold_at_rest};
 use crate::statics::assembly::{self, copy_network};
 
@@ -305,6 +305,7 @@ impl Workspace {
             held,
             reels: &self.reels,
             holds: std::mem::take(&mut self.holds),
+            jumps: model.solver.input_reconstruction == Reconstruction::Jump,
         };
         let expected = self.labour.over(length);
         self.crew.call(expected - 1);
@@ -425,6 +426,8 @@ struct Communication<'a, K> {
     reels: &'a [AxisPath],
     /// Whether the leapfrogs hold the state.
     holds: bool,
+    /// Whether held points may set out from elsewhere than where the last step took them.
+    jumps: bool,
 }
 
 impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
@@ -656,10 +659,9 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
             work.load_waves(self.state.waves.as_ref(), index);
         }
         let ends = [End::A, End::B].into_iter();
-        for (end, &point) in ends.zip(&self.model.lines[index].ends) {
-            if holds && self.is_fixed(point) {
-                continue; // it is there
-            }
+        let ends = ends.zip(&self.model.lines[index].ends);
+        let places_them = self.jumps || work.starts();
+        for (end, &point) in ends.filter(|_| places_them) {
             let k = (self.held)(point, self.start);
             work.put_end(end, k.position, k.velocity - 0.5 * drift * k.acceleration);
         }
@@ -835,7 +837,9 @@ fn place_held(model: &Model, state: &mut State, held: &impl Fn(usize, f64) -> Ki
             let k = held(index, state.time);
             (point.position, point.velocity, point.acceleration) =
                 (k.position, k.velocity, k.acceleration);
-            (point.orientation, point.spin) = (k.orientation, k.spin);
+            if let Role::Carried { .. } = model.points[index].role {
+                (point.orientation, point.spin) = (k.orientation, k.spin);
+            }
         }
     }
     for (line, shape) in model.lines.iter().zip(&mut state.lines) {

@@ -22,6 +22,9 @@
 //! 1/(1 − σ sin²(ωΔt/2)) times as great in T^n. The seabed is folded in too (`bed`); flags of slack and contact are checked after
 //! the solve and the step repeated until they hold.
 //!
+//! A held end moves by the secant of its path, which so is its v_{n+½}. Only where it sets out, at rest or after a jump, v_{n−½} is
+//! V − ½Δt A of its path.
+//!
 //! A step ([`AxialWork::step`]) goes over the rows of the folded line ([`crate::math::fold`]) once for each thing it finds out: geometry,
 //! segments, drag, inverse masses, contact (`prepare`), couplings; then, until the assumptions hold, the equations, T̄ by
 //! [`crate::math::folded_tridiagonal`], velocities and what they say about the assumptions (`solve`). Each sweep has little to do in a
@@ -133,6 +136,8 @@ pub struct AxialWork {
     settled: bool,
     /// Whether any node may be heavier along the line than across it, or lighter.
     turns: bool,
+    /// Whether no step has been made yet.
+    starts: bool,
 }
 
 impl AxialWork {
@@ -175,6 +180,7 @@ impl AxialWork {
             tension_peak: Lanes::splat(0.0),
             tensions: [0.0; 2],
             settled: true,
+            starts: true,
             turns: line.nodes.mass_tangent != line.nodes.mass_normal || layout.surface.is_some(),
             layout,
         })
@@ -194,6 +200,7 @@ impl AxialWork {
             self.set_free(end, self.parted[end as usize]);
         }
         self.resume();
+        self.starts = state.half_step.velocity.is_empty();
         let count = self.layout.segment_count;
         if state.half_step.tension[0].len() == count {
             let [now, before] = &state.half_step.tension;
@@ -226,6 +233,12 @@ impl AxialWork {
         let zero = Lanes::splat(0.0);
         (self.lost, self.given, self.numerical) = (zero, 0.0, zero);
         (self.tension_peak, self.settled) = (zero, true);
+        self.starts = false;
+    }
+
+    /// Whether no step has been made yet, so that the ends are yet to be put where they set out.
+    pub fn starts(&self) -> bool {
+        self.starts
     }
 
     fn set_free(&mut self, end: End, free: bool) {
@@ -332,14 +345,15 @@ impl AxialWork {
         self.layout.set_time(t);
     }
 
-    /// Puts an end at a position [m] with the velocity [m/s] that the next step takes as lagged.
+    /// Puts an end at a position [m] with the velocity [m/s] that the next step takes as lagged. One that is there has the secant of its last
+    /// step, and keeps it.
     pub fn put_end(&mut self, end: End, position: Vector3<f64>, velocity: Vector3<f64>) {
         if self.parted[end as usize] {
             return;
         }
         let at = self.layout.end_slot(end);
-        if self.layout.position.get(at) == position {
-            return self.layout.velocity.set(at, velocity);
+        if self.layout.position.get(at) == position && !self.starts {
+            return;
         }
         let jumps = self.layout.books && self.defers_turning();
         if jumps {
@@ -387,7 +401,7 @@ impl AxialWork {
 
     /// Lines in moving water and over rough beds book in passing.
     #[inline(always)]
-    fn choose_step(&mut self, step: Step, ends: [Vector3<f64>; 2]) -> usize {
+    fn choose_step(&mut self, step: &Step, ends: &[Vector3<f64>; 2]) -> usize {
         use under::{LEVEL, NOTHING, ROUGH};
         let moving = self.rows.current.is_some();
         match (moving, self.bed_under(), self.layout.books) {
@@ -415,9 +429,10 @@ impl AxialWork {
     #[inline(always)]
     fn step_vectors<const CURRENT: bool, const BED: u8, const BOOKS: bool>(
         &mut self,
-        step: Step,
-        ends: [Vector3<f64>; 2],
+        step: &Step,
+        ends: &[Vector3<f64>; 2],
     ) -> usize {
+        let step = *step;
         self.choose_weights(step);
         let sizes = self.sizes(step);
         self.choose_springs::<BOOKS>(step, &sizes);
@@ -493,7 +508,7 @@ impl AxialWork {
 
     /// Moves nodes and all that goes with them from t_n to t_{n+1}.
     #[inline(always)]
-    fn move_on(&mut self, step: Step, ends: [Vector3<f64>; 2]) {
+    fn move_on(&mut self, step: Step, ends: &[Vector3<f64>; 2]) {
         self.layout.drift(step.drift);
         for end in self.held_ends() {
             let at = self.layout.end_slot(end);
@@ -571,7 +586,7 @@ impl NullaryFnOnce for AxialStep<'_> {
 
     #[inline(always)]
     fn call(self) -> usize {
-        self.0.choose_step(*self.1, *self.2)
+        self.0.choose_step(self.1, self.2)
     }
 }
 

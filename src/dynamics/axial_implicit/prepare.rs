@@ -217,7 +217,7 @@ impl AxialWork {
 
     /// Held ends move by the secant of their path and yield to no force.
     #[inline(always)]
-    pub(super) fn prepare_ends(&mut self, step: Step, ends: [Vector3<f64>; 2]) {
+    pub(super) fn prepare_ends(&mut self, step: Step, ends: &[Vector3<f64>; 2]) {
         for end in self.held_ends() {
             let at = self.layout.end_slot(end);
             let secant = (ends[end as usize] - self.layout.position.get(at)) / step.drift;
