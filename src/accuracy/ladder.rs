@@ -18,18 +18,19 @@ const ELEMENTS_AXIAL: [usize; 23] = [
 /// Elements of the longest line, fully implicit [-].
 const ELEMENTS_IMPLICIT: [usize; 3] = [10, 20, 40];
 /// Steps to the shortest period, tensions implicit [-].
-const STEPS_AXIAL: [f64; 15] = [
-    8.0, 10.0, 11.5, 13.0, 14.5, 16.0, 18.0, 20.0, 23.0, 28.0, 40.0, 80.0, 160.0, 320.0, 640.0,
+const STEPS_AXIAL: [f64; 20] = [
+    5.0, 5.7, 6.1, 6.6, 7.3, 8.0, 10.0, 11.5, 13.0, 14.5, 16.0, 18.0, 20.0, 23.0, 28.0, 40.0, 80.0,
+    160.0, 320.0, 640.0,
 ];
 /// Steps to the shortest period, fully implicit [-].
 const STEPS_IMPLICIT: [f64; 3] = [20.0, 80.0, 320.0];
 /// Communication steps over the interval of the output that explicit runs are tried with [-].
-const COMMUNICATIONS: [usize; 8] = [1, 2, 3, 4, 8, 10, 13, 16];
+const COMMUNICATIONS: [usize; 10] = [1, 2, 3, 4, 8, 10, 13, 16, 20, 28];
 /// Elements up to which explicit runs are tried with more than the first of them [-]: what a communication step costs does not
 /// count on finer meshes.
 const COMMUNICATING_ELEMENTS: usize = 32;
-/// Communication steps to the shortest period, at least [-]: the motion in between is a cubic.
-const COMMUNICATIONS_PER_PERIOD: f64 = 8.0;
+/// Communication steps to the shortest period, at least [-]: the motion in between is a cubic, and histories are read by cubics.
+const COMMUNICATIONS_PER_PERIOD: f64 = 5.0;
 /// Target errors of the tool's own choice [-].
 pub const TOLERANCES: [f64; 4] = [0.05, 0.02, 0.01, 0.005];
 /// Elements of the longest line in converged solutions, each with those that tell how far it has converged before it [-].

@@ -533,7 +533,7 @@ def cabledyn_runs(scene, elements, period, bedded):
         (60.0, 0.0, False, 1e-1),
         (40.0, 0.0, False, 1e-1),
     ]
-    rates = (30.0, 20.0, 16.0, 12.0, 10.0, 8.0)
+    rates = (30.0, 20.0, 16.0, 12.0, 10.0, 9.0, 8.0)
     free = [(parts, 0.9, True, tolerance) for tolerance in (1e-2, 1e-1) for parts in rates]
     runs = []
     for count in elements:
