@@ -266,7 +266,7 @@ impl Chart {
         self.draw_labels(area, &frame, |point| place(point).into())
     }
 
-    /// Words beside points, within a frame and clear of each other and of marks.
+    /// Words beside points, within a frame and clear of each other, of marks and, where there is room, of bold curves.
     fn draw_labels(
         &self,
         area: &Area,
@@ -275,9 +275,13 @@ impl Chart {
     ) -> DrawResult {
         let marks = self.curves.iter().filter(|c| c.stroke == Stroke::Marks);
         let marks = marks.flat_map(|curve| &curve.points);
-        let marks: Vec<Patch> = marks
+        let mut marks: Vec<Patch> = marks
             .map(|point| Patch::around(place(point), [fine(4); 2]))
             .collect();
+        for curve in self.curves.iter().filter(|c| c.stroke == Stroke::Bold) {
+            let points: Vec<[i32; 2]> = curve.points.iter().map(&place).collect();
+            marks.extend(labels::along(&points, fine(2)));
+        }
         let words: Vec<(&Curve, &[f64; 2], &String)> = self
             .curves
             .iter()

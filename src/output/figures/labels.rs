@@ -47,6 +47,19 @@ pub struct Label {
     pub size: [i32; 2],
 }
 
+/// Patches that cover a curve through points [px], so far to either side of it.
+pub fn along(points: &[[i32; 2]], half: i32) -> impl Iterator<Item = Patch> {
+    points.windows(2).flat_map(move |ends| {
+        let [from, to] = [ends[0], ends[1]];
+        let longest = (to[0] - from[0]).abs().max((to[1] - from[1]).abs());
+        let count = (longest / (2 * half)).max(1);
+        (0..=count).map(move |k| {
+            let at = |axis: usize| from[axis] + (to[axis] - from[axis]) * k / count;
+            Patch::around([at(0), at(1)], [half; 2])
+        })
+    })
+}
+
 /// Rows that a label may move away from its point.
 const ROWS: i32 = 6;
 
@@ -112,6 +125,17 @@ mod tests {
             let (_, stand) = stand(&[[x, 50]]);
             let middle = [x + side * (GAP + 20), 50];
             assert_eq!(stand, [Patch::around(middle, [20, 7])]);
+        }
+    }
+
+    #[test]
+    fn a_label_keeps_clear_of_a_curve_through_its_point() {
+        let curve = [[0, 120], [120, 60], [120, 20], [290, 20]];
+        let marks: Vec<Patch> = along(&curve, 2).collect();
+        for point in [[60, 90], [120, 40], [200, 20]] {
+            let stand = placed(&FRAME, &marks, &[label(point)], GAP);
+            let covered: i64 = marks.iter().map(|mark| stand[0].common(mark)).sum();
+            assert_eq!(covered, 0, "{point:?}: {stand:?}");
         }
     }
 

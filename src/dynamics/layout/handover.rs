@@ -1,0 +1,192 @@
+//! The state of a line taken over before steps, looked at and handed back after them.
+
+use nalgebra::Vector3;
+use pulp::NullaryFnOnce;
+
+use super::Layout;
+use crate::dynamics::leapfrog::Step;
+use crate::math::fold::{Field, Fold, Slot};
+use crate::math::lanes::{Lanes, Vectors};
+use crate::model::LineState;
+
+/// Speed that only an unstable step reaches [m/s]: the fastest axial waves run at about this speed.
+const SPEED_MAX: f64 = 1e4;
+
+/// Nodes of a state: positions [m], velocities at the time of these, and half a step and one and a half steps before [m/s].
+struct Nodes<'a> {
+    position: &'a mut [Vector3<f64>],
+    velocity: &'a mut [Vector3<f64>],
+    half: &'a mut [Vector3<f64>],
+    before: &'a mut [Vector3<f64>],
+}
+
+impl<'a> Nodes<'a> {
+    /// So many of each, which the compiler is to see.
+    #[inline(always)]
+    fn first(self, count: usize) -> Nodes<'a> {
+        Nodes {
+            position: &mut self.position[..count],
+            velocity: &mut self.velocity[..count],
+            half: &mut self.half[..count],
+            before: &mut self.before[..count],
+        }
+    }
+
+    /// Takes over what a node has `of` these in a lane; nothing if it is padding.
+    #[inline(always)]
+    fn take(&mut self, node: usize, lane: usize, of: &[Vectors; 4]) {
+        if node < self.position.len() {
+            self.position[node] = of[0].get(lane);
+            self.velocity[node] = of[1].get(lane);
+            self.half[node] = of[2].get(lane);
+            self.before[node] = of[3].get(lane);
+        }
+    }
+}
+
+/// [`Layout::store`] for the vector unit of the machine.
+struct HandBack<'a>(&'a Layout, &'a mut LineState, [f64; 2]);
+
+impl NullaryFnOnce for HandBack<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn call(self) -> bool {
+        self.0.hand_back(self.1, self.2)
+    }
+}
+
+/// Whether [`Layout::soundness`] of all rows is positive, for the vector unit of the machine.
+struct AreSound<'a>(&'a Layout);
+
+impl NullaryFnOnce for AreSound<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn call(self) -> bool {
+        let mut sound = Lanes::splat(1.0);
+        for row in self.0.rows() {
+            sound = sound.where_positive(self.0.soundness(row));
+        }
+        sound.all_positive()
+    }
+}
+
+/// Padding far away and apart: its chords are never zero.
+pub(super) fn padded_positions(fold: Fold) -> Field {
+    let mut position = Field::zeros(fold);
+    for (i, at) in fold.slots().enumerate() {
+        position.set(at, padding(i));
+    }
+    position
+}
+
+/// Where node `i` is if it is padding [m].
+fn padding(i: usize) -> Vector3<f64> {
+    i as f64 * Vector3::x()
+}
+
+impl Layout {
+    /// Takes over positions and velocities of a line; the ghosts are yet to be renewed. Padding starts anew: it may have met what a step
+    /// that was too long made of the nodes beside it.
+    pub fn load(&mut self, state: &LineState) {
+        if let Some(creep) = &mut self.creep {
+            creep.load(&state.creep);
+        }
+        let memory = &state.half_step;
+        let fresh = memory.velocity.is_empty();
+        let zero = Vector3::zeros();
+        for (i, at) in self.fold.slots().enumerate() {
+            let Some(position) = state.position.get(i) else {
+                self.position.set(at, padding(i));
+                self.velocity.set(at, zero);
+                self.velocity_before.set(at, zero);
+                continue;
+            };
+            self.position.set(at, *position);
+            let (velocity, before) = if fresh {
+                (state.velocity[i], state.velocity[i])
+            } else {
+                (memory.velocity[i], memory.velocity_before[i])
+            };
+            self.velocity.set(at, velocity);
+            self.velocity_before.set(at, before);
+        }
+    }
+
+    /// Hands them back after steps of `steps` [s], with velocities extrapolated to the time of the positions. Whether all nodes have finite
+    /// positions, and speeds that mooring lines reach.
+    pub fn store(&self, state: &mut LineState, steps: [f64; 2]) -> bool {
+        self.vector_unit.dispatch(HandBack(self, state, steps))
+    }
+
+    /// [`Self::store`], wherever it is compiled into.
+    #[inline(always)]
+    pub fn hand_back(&self, state: &mut LineState, steps: [f64; 2]) -> bool {
+        if let Some(creep) = &self.creep {
+            creep.store(&mut state.creep);
+        }
+        let memory = &mut state.half_step;
+        let count = state.position.len();
+        memory.velocity.resize(count, Vector3::zeros());
+        memory.velocity_before.resize(count, Vector3::zeros());
+        memory.steps = steps;
+        let extrapolation = Lanes::splat(Step::after(steps, steps[0]).extrapolation);
+        let nodes = Nodes {
+            position: &mut state.position,
+            velocity: &mut state.velocity,
+            half: &mut memory.velocity,
+            before: &mut memory.velocity_before,
+        };
+        let mut nodes = nodes.first(count);
+        let (rows, mut sound) = (self.fold.rows(), Lanes::splat(1.0));
+        for row in 0..rows {
+            let at = row + 1;
+            let (half, before) = (self.velocity.load(at), self.velocity_before.load(at));
+            let velocity = half + (half - before).scale(extrapolation);
+            let of = [self.position.load(at), velocity, half, before];
+            sound = sound.where_positive(self.soundness(at));
+            // a loop over lanes would be made one of vectors, which cannot be written so
+            nodes.take(row, 0, &of);
+            nodes.take(rows + row, 1, &of);
+            nodes.take(2 * rows + row, 2, &of);
+            nodes.take(3 * rows + row, 3, &of);
+        }
+        if let Some(bottom) = self.bottom() {
+            let places = state.position.iter().zip(self.fold.slots());
+            for (anchor, (position, at)) in state.anchor.iter_mut().zip(places) {
+                *anchor = position + bottom.rub.get(at) / bottom.stick[at];
+            }
+        }
+        sound.all_positive()
+    }
+
+    /// > 0 for the nodes of a row that have a finite position, and a speed that mooring lines reach [m²/s²].
+    #[inline(always)]
+    pub fn soundness(&self, row: usize) -> Lanes {
+        let (position, velocity) = (self.position.load(row), self.velocity.load(row));
+        let zero = (position.x + position.y + position.z) * Lanes::splat(0.0); // or not a number
+        let fastest = Lanes::splat(SPEED_MAX * SPEED_MAX);
+        fastest + zero - velocity.dot(velocity)
+    }
+
+    /// Index of the node that moves fastest.
+    pub fn fastest_node(&self) -> usize {
+        let speeds = self.nodes().map(|at| self.velocity.get(at).norm_squared());
+        let fastest = speeds.enumerate().max_by(|(_, a), (_, b)| a.total_cmp(b));
+        fastest.map_or(0, |(node, _)| node)
+    }
+
+    /// Index of the first node that has no finite position, or a speed that no mooring line reaches.
+    pub fn broken_node(&self) -> Option<usize> {
+        let broken = |at: Slot| {
+            let (position, velocity) = (self.position.get(at), self.velocity.get(at));
+            let slow = velocity.norm_squared() < SPEED_MAX * SPEED_MAX;
+            !slow || !position.iter().all(|value| value.is_finite())
+        };
+        match self.vector_unit.dispatch(AreSound(self)) {
+            true => None,
+            false => self.nodes().position(broken),
+        }
+    }
+}

@@ -1,0 +1,296 @@
+//! What moves the water around a line, and where the water's surface is on it.
+
+use nalgebra::Vector3;
+
+use super::Layout;
+use crate::dynamics::leapfrog::Step;
+use crate::math::fold::{Column, Field, Fold, Slot};
+use crate::math::hermite::Hermite;
+use crate::math::lanes::{Lanes, Vectors};
+use crate::model::{End, Line, Model, WaveSpan};
+use crate::physics::airy::{Orbit, cubics};
+use crate::physics::flow::{Profile, Stream};
+
+/// What moves the water around a line.
+#[derive(Debug, Clone, Copy)]
+pub struct Water<'a> {
+    /// Shape of the current, where the water flows.
+    pub profile: Option<&'a Profile>,
+    /// Whether waves act on the line.
+    pub waves: bool,
+}
+
+impl<'a> Water<'a> {
+    /// Around a line of a model.
+    pub fn around(model: &'a Model, line: &Line) -> Water<'a> {
+        Water {
+            profile: model.current.as_ref().map(|current| &current.profile),
+            waves: line.heaves(model),
+        }
+    }
+}
+
+/// The current at t_n.
+#[derive(Debug, Clone)]
+pub(in crate::dynamics) struct CurrentNow {
+    pub profile: Profile,
+    /// What multiplies it [-].
+    pub factor: f64,
+}
+
+impl CurrentNow {
+    fn stream(&self) -> Stream<'_> {
+        Stream {
+            profile: &self.profile,
+            factor: self.factor,
+        }
+    }
+}
+
+/// Motion of the water by waves over a span of time: coefficients of the powers of the part of the span that has passed.
+#[derive(Debug, Clone)]
+pub(in crate::dynamics) struct WaveArrays {
+    /// Of the velocity [m/s].
+    velocity: [Field; 4],
+    /// Of the acceleration [m/s²].
+    acceleration: [Field; 4],
+    /// Mass of the water that presses, across and along the line [kg].
+    normal: Column,
+    tangent: Column,
+    /// Start and end of the span [s].
+    times: [f64; 2],
+    /// Part of the span that has passed at t_n [-].
+    passed: f64,
+    /// Elevation of the surface over the nodes, and its rate, at both ends of the span [m, m/s].
+    surface: Vec<[[f64; 2]; 2]>,
+}
+
+impl WaveArrays {
+    pub(super) fn new(line: &Line, fold: Fold) -> WaveArrays {
+        let zeros = || Field::zeros(fold);
+        let pressed = line.nodes.pressed.as_ref();
+        let mass = |of: fn(&crate::model::Pressed) -> &Vec<f64>| {
+            let values = pressed.map_or(&[][..], |pressed| of(pressed));
+            fold.column(values, 0.0)
+        };
+        WaveArrays {
+            velocity: std::array::from_fn(|_| zeros()),
+            acceleration: std::array::from_fn(|_| zeros()),
+            normal: mass(|pressed| &pressed.normal),
+            tangent: mass(|pressed| &pressed.tangent),
+            times: [0.0; 2],
+            passed: 0.0,
+            surface: Vec::new(),
+        }
+    }
+
+    /// Goes on in time [s].
+    fn pass(&mut self, time: f64) {
+        let [t0, t1] = self.times;
+        if t1 > t0 {
+            self.passed += time / (t1 - t0);
+        }
+    }
+
+    /// Elevation of the surface over a node [m].
+    fn elevation(&self, node: usize) -> f64 {
+        let [[p0, m0], [p1, m1]] = self.surface[node];
+        let [t0, t1] = self.times;
+        if t1 <= t0 {
+            return p0;
+        }
+        let cubic = Hermite::new((t0, p0, m0), (t1, p1, m1));
+        cubic.at(t0 + self.passed * (t1 - t0)).value
+    }
+
+    /// Velocities of the water at the nodes at t_n [m/s].
+    #[inline(always)]
+    fn velocity(&self, at: usize) -> Vectors {
+        polynomial(&self.velocity, self.passed, at)
+    }
+
+    /// Forces of the accelerated water on nodes with these unit tangents [N].
+    #[inline(always)]
+    pub fn press(&self, at: usize, tangent: Vectors) -> Vectors {
+        let acceleration = polynomial(&self.acceleration, self.passed, at);
+        let normal = self.normal.load(at);
+        let excess = self.tangent.load(at) - normal;
+        acceleration.scale(normal) + tangent.scale(excess * acceleration.dot(tangent))
+    }
+
+    /// Force of the accelerated water on a node with this unit tangent [N].
+    pub fn press_of(&self, at: Slot, tangent: Vector3<f64>) -> Vector3<f64> {
+        let acceleration = self.value(&self.acceleration, at);
+        let excess = self.tangent[at] - self.normal[at];
+        self.normal[at] * acceleration + excess * acceleration.dot(&tangent) * tangent
+    }
+
+    fn value(&self, powers: &[Field; 4], at: Slot) -> Vector3<f64> {
+        let [p0, p1, p2, p3] = [0, 1, 2, 3].map(|power| powers[power].get(at));
+        p0 + self.passed * (p1 + self.passed * (p2 + self.passed * p3))
+    }
+}
+
+/// Velocities of the water at the nodes of a row at the heights z [m], in [m/s].
+#[inline(always)]
+pub(in crate::dynamics) fn water_flow(
+    current: Option<&CurrentNow>,
+    waves: Option<&WaveArrays>,
+    at: usize,
+    z: Lanes,
+) -> Vectors {
+    // closures would not be compiled for the vector unit of the kernel
+    let mut flow = Vectors::zero();
+    if let Some(current) = current {
+        let shape = current.profile.velocities(z);
+        flow = shape.scale(Lanes::splat(current.factor));
+    }
+    match waves {
+        Some(waves) => flow + waves.velocity(at),
+        None => flow,
+    }
+}
+
+#[inline(always)]
+fn polynomial(powers: &[Field; 4], passed: f64, at: usize) -> Vectors {
+    let u = Lanes::splat(passed);
+    let [p0, p1, p2, p3] = powers;
+    p0.load(at) + (p1.load(at) + (p2.load(at) + p3.load(at).scale(u)).scale(u)).scale(u)
+}
+
+impl Layout {
+    /// Finds where the surface crosses the line, and sets the weights of the nodes it crosses.
+    pub fn find_surface(&mut self) {
+        let Some(surface) = &mut self.surface else {
+            return;
+        };
+        if let Some(waves) = &self.waves {
+            for (i, level) in surface.level.iter_mut().enumerate() {
+                *level = waves.elevation(i);
+            }
+            surface.find_calm(self.fold, &self.position);
+        }
+        surface.find(self.fold, &self.position);
+        for i in surface.crossed() {
+            let now = surface.node(i);
+            let at = self.fold.slot(i);
+            self.weight[at] = now.weight;
+            if let Some(waves) = &mut self.waves {
+                [waves.normal[at], waves.tangent[at]] = now.pressed;
+            }
+            if let Some(drag) = &mut self.drag {
+                [drag.normal[at], drag.tangent[at]] = now.drag;
+            }
+        }
+    }
+
+    /// Books what joined with the water, except at ends that are held.
+    pub fn book_surface(&mut self, held: [bool; 2]) {
+        let Some(surface) = &mut self.surface else {
+            return;
+        };
+        let [first, last] = held.map(usize::from);
+        for i in first..=self.segment_count - last {
+            surface.book(i, self.fold, &self.velocity);
+        }
+    }
+
+    /// Goes on to the end of a step, and books what waves did with the buoyancy in it, except at ends that are held.
+    pub fn leave_surface(&mut self, step: Step, held: [bool; 2]) {
+        let (Some(surface), Some(waves)) = (&mut self.surface, &mut self.waves) else {
+            return;
+        };
+        let [first, last] = held.map(usize::from);
+        for i in first..=self.segment_count - last {
+            let at = self.fold.slot(i);
+            let velocities = self.velocity.get(at).z + self.velocity_before.get(at).z;
+            surface.book_lift(i, 0.5 * step.kick * velocities);
+        }
+        waves.pass(step.drift);
+    }
+
+    /// Work of waves on the buoyancy since the state was loaded [J].
+    pub fn lifted(&self) -> f64 {
+        self.surface.as_ref().map_or(0.0, |surface| surface.lifted)
+    }
+
+    /// Forgets what joined with the water.
+    pub fn clear_surface(&mut self) {
+        if let Some(surface) = &mut self.surface {
+            (surface.joined, surface.lifted) = (0.0, 0.0);
+        }
+    }
+
+    /// Buoyancy that an end lacks at t_n [N].
+    pub fn end_lack(&self, end: End) -> f64 {
+        let node = self.end_node(end);
+        let surface = self.surface.as_ref();
+        surface.map_or(0.0, |surface| surface.lack(node, self.waves.is_some()))
+    }
+
+    /// Energy of motion that joined with the water since the state was loaded [J].
+    pub fn joined(&self) -> f64 {
+        self.surface.as_ref().map_or(0.0, |surface| surface.joined)
+    }
+
+    /// Sets what multiplies the current at t_n [-].
+    pub fn set_current(&mut self, factor: f64) {
+        if let Some(current) = &mut self.current {
+            current.factor = factor;
+        }
+    }
+
+    /// Takes over what waves do at the nodes of line number `line` over a span of time.
+    pub fn load_waves(&mut self, span: Option<&WaveSpan>, line: usize) {
+        let (Some(waves), Some(span)) = (&mut self.waves, span) else {
+            return;
+        };
+        waves.times = span.times;
+        let [before, after] = &span.ends;
+        waves.surface.clear();
+        if self.surface.is_some() {
+            let of = |orbit: &Orbit| [orbit.elevation, orbit.rise];
+            let nodes = before.lines[line].iter().zip(&after.lines[line]);
+            waves.surface.extend(nodes.map(|(b, a)| [of(b), of(a)]));
+        }
+        let nodes = before.lines[line].iter().zip(&after.lines[line]);
+        for (at, (before, after)) in self.fold.slots().zip(nodes) {
+            let [velocity, acceleration] = cubics(before, after, span.times);
+            for power in 0..4 {
+                waves.velocity[power].set(at, velocity[power]);
+                waves.acceleration[power].set(at, acceleration[power]);
+            }
+        }
+    }
+
+    /// Sets the waves to those of t_n [s].
+    pub fn set_time(&mut self, t: f64) {
+        if let Some(waves) = &mut self.waves {
+            let [t0, t1] = waves.times;
+            waves.passed = if t1 > t0 { (t - t0) / (t1 - t0) } else { 0.0 };
+        }
+    }
+
+    /// Whether the water moves.
+    pub fn flows(&self) -> bool {
+        self.current.is_some() || self.waves.is_some()
+    }
+
+    /// Velocities of the water at the nodes [m/s].
+    #[inline(always)]
+    pub fn water_velocity(&self, at: usize) -> Vectors {
+        let z = self.position.load(at).z;
+        water_flow(self.current.as_ref(), self.waves.as_ref(), at, z)
+    }
+
+    /// Velocity of the water at a node [m/s].
+    pub fn water_velocity_of(&self, at: Slot) -> Vector3<f64> {
+        let flow = self.current.as_ref().map_or(Vector3::zeros(), |current| {
+            current.stream().velocity(self.position.get(at).z)
+        });
+        match &self.waves {
+            None => flow,
+            Some(waves) => flow + waves.value(&waves.velocity, at),
+        }
+    }
+}
