@@ -353,7 +353,7 @@ fn tidal(integrator: Integrator, step: f64) -> Scene {
 }
 
 #[test]
-fn the_ledger_of_a_line_in_a_changing_current_closes_at_second_order() {
+fn the_ledger_of_a_line_in_a_changing_current_closes_at_second_order_or_at_any_step() {
     for (integrator, coarse) in [
         (Integrator::Leapfrog, 4e-3),
         (Integrator::AxialImplicit, 4e-2),
@@ -371,8 +371,10 @@ fn the_ledger_of_a_line_in_a_changing_current_closes_at_second_order() {
         });
         assert!(errors[3] < 1e-6, "{integrator:?}: {errors:?}");
         // the explicit leapfrog closes to 4e-8 at its largest step, where the rounding of a hundred thousand sums shows
-        if integrator != Integrator::Leapfrog {
-            assert_order(2.0, &steps, &errors);
+        match integrator {
+            Integrator::AxialImplicit => assert_order(2.0, &steps, &errors),
+            Integrator::GeneralisedAlpha => assert!(errors[0] < 1e-8, "{errors:?}"), // what Newton's method leaves
+            _ => {}
         }
     }
 }

@@ -256,7 +256,7 @@ fn snapping(axial_stiffness: f64, contact: &str) -> Model {
 fn a_snapping_chain_stays_bounded_also_a_hundred_times_stiffer() {
     for (axial_stiffness, contact, solves) in [
         (1e4, "regularised", 2.5),
-        (1e6, "regularised", 5.0),
+        (1e6, "regularised", 5.5),
         (1e4, "as_given", 5.0),
     ] {
         let model = snapping(axial_stiffness, contact);
@@ -282,7 +282,7 @@ fn a_snapping_chain_stays_bounded_also_a_hundred_times_stiffer() {
                 .all(|r| r.z > -3.1 && r.z < 0.5)
         );
         assert!(
-            counters.solves as f64 <= solves * 2000.0 && counters.halvings <= 100,
+            counters.solves as f64 <= solves * 2000.0 && counters.halvings <= 250,
             "EA {axial_stiffness}, {contact}: {counters:?}"
         );
     }
@@ -368,6 +368,51 @@ fn a_falling_cable_that_snaps_taut_never_gains_energy() {
             energy(&model, &state) - lowest < 0.9 * drop,
             "EA {axial_stiffness}: nothing was lost"
         );
+    }
+}
+
+#[test]
+fn whatever_the_dissipation_no_snap_makes_energy_and_without_it_none_is_lost() {
+    for axial_stiffness in [1e4, 1e6] {
+        let mut model = falling(axial_stiffness);
+        model.lines[0].segments.axial_damping.fill(0.0);
+        let held = at_rest(&model);
+        for scheme in [
+            Scheme::generalised_alpha(0.5),
+            Scheme::generalised_alpha(0.8),
+            Scheme::generalised_alpha(1.0),
+            Scheme::bossak(-0.1, None),
+            Scheme::bossak(-0.3, None),
+        ] {
+            let mut state = statics(&model);
+            let lowest = energy(&model, &state);
+            state.lines[0].position = model.lines[0]
+                .given_shape(Vector3::zeros(), Vector3::new(9.5, 0.0, 0.0))
+                .unwrap();
+            let drop = energy(&model, &state) - lowest;
+            let mut work = Workspace::new(&model);
+            implicit::start(&model, 0, &mut state, &held, 0.0, &mut work);
+            for step in 0..500 {
+                let start = 0.01 * step as f64;
+                let span = Span {
+                    start,
+                    end: start + 0.01,
+                    step_max: 0.01,
+                };
+                implicit::advance(&model, 0, &mut state, &held, span, &scheme, &mut work).unwrap();
+                let above = energy(&model, &state) - lowest;
+                assert!(
+                    above < 1.001 * drop,
+                    "EA {axial_stiffness} {scheme:?}: {above} of {drop} J"
+                );
+                if scheme == Scheme::generalised_alpha(1.0) {
+                    assert!(
+                        above > 0.999 * drop,
+                        "EA {axial_stiffness}: {above} of {drop} J"
+                    );
+                }
+            }
+        }
     }
 }
 

@@ -228,7 +228,7 @@ fn halving_the_time_step_quarters_the_error_in_waves() {
 }
 
 #[test]
-fn the_ledger_closes_in_waves_at_second_order() {
+fn the_ledger_closes_in_waves_at_second_order_or_at_any_step() {
     for (integrator, coarse) in [
         (Integrator::Leapfrog, 4e-3),
         (Integrator::AxialImplicit, 4e-2),
@@ -245,8 +245,10 @@ fn the_ledger_closes_in_waves_at_second_order() {
             simulation.energy_error().abs() / flow.given
         });
         assert!(errors[3] < 1e-4, "{integrator:?}: {errors:?}");
-        if integrator != Integrator::Leapfrog {
-            assert_order(2.0, &steps, &errors);
+        match integrator {
+            Integrator::AxialImplicit => assert_order(2.0, &steps, &errors),
+            Integrator::GeneralisedAlpha => assert!(errors[0] < 1e-8, "{errors:?}"), // what Newton's method leaves
+            _ => {}
         }
     }
 }

@@ -21,18 +21,20 @@
 //! more, instead of switching on at touch, which Newton's method would not survive; what rests on the bed is not affected.
 //!
 //! Source: Chung & Hulbert (1993), J. Appl. Mech. 60, 371-375; Wood, Bossak & Zienkiewicz (1980), Int. J. Numer. Meth. Eng. 15,
-//! 1562-1566. Valid for ρ from 0 to 1. Where slack cables snap taut without damping, the old forces that α_f carries over feed
-//! the fastest axial modes: a dry cable of 20 segments that falls and snaps (EA/T = 1e4 and 1e6, Δt = 2 to 10 ms) gains energy
-//! without bound at ρ = 0.5 and loses it at ρ = 0.2, the default. With BA of 1e-3 s·EA both are stable up to EA/T = 1e4.
+//! 1562-1566. Valid for ρ from 0 to 1. As it is usually written the method gains energy without bound where slack cables snap taut without
+//! damping (a dry cable of 20 segments that falls, EA/T = 1e4 and 1e6, Δt = 2 to 10 ms, ρ = 0.5 and more): forces before and after a step are no
+//! measure of what a spring takes in between. The segments therefore pull as [`crate::statics::assembly`] has them over a step, by the
+//! discrete gradient of their energy; the same cable then never gains energy at any ρ, and keeps it at ρ = 1.
 
 use nalgebra::{Matrix3, Vector3};
 
 use super::ledger::passed::Passed;
 use super::{StepError, reaction};
+use crate::math::block_tridiagonal::Pivots;
 use crate::model::{Kinematics, Model, Network, PointState, State};
 use crate::scene::{Integrator, Solver};
 use crate::statics::assembly::{
-    Counters, Weights, Workspace, copy_network, for_free_points, place_ends,
+    Counters, Stretch, Weights, Workspace, copy_network, for_free_points, place_ends,
 };
 
 /// Spectral radius at infinite frequency where the scene gives none [-].
@@ -43,8 +45,10 @@ pub const BOSSAK_ALPHA: f64 = -0.3;
 const NEWTON_TOLERANCE: f64 = 1e-7;
 /// Newton iterations of a step.
 const ITERATIONS_MAX: usize = 15;
-/// Parts that a step may be cut into by halving: ten halvings.
-const PARTS_MAX: usize = 1024;
+/// Iterations after which one that is not half as long as the last is taken for one that goes in circles.
+const CIRCLING: usize = 5;
+/// Parts that a step may be cut into by halving: fourteen halvings.
+const PARTS_MAX: usize = 16384;
 
 /// Parameters of the integrator [-].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -82,6 +86,39 @@ impl Scheme {
         }
     }
 
+    /// What forces weigh before and after a step of `dt` [s], and what v' [1/s] and b' [1/s²] change by with r'.
+    fn weights(&self, dt: f64) -> ([Weights; 2], [f64; 2]) {
+        let Scheme {
+            alpha_m,
+            alpha_f,
+            beta,
+            gamma,
+        } = *self;
+        let (per_velocity, per_acceleration) = (gamma / (beta * dt), 1.0 / (beta * dt * dt));
+        let before = Weights {
+            force: alpha_f,
+            friction: 0.0,
+            inertia: alpha_f,
+            position: 0.0,
+            velocity: 0.0,
+            acceleration: 0.0,
+            stretch: Stretch::Before,
+            convex: false,
+        };
+        let after = Weights {
+            force: 1.0 - alpha_f,
+            friction: 1.0,
+            inertia: 1.0 - alpha_f,
+            position: 1.0 - alpha_f,
+            velocity: (1.0 - alpha_f) * per_velocity,
+            acceleration: (1.0 - alpha_m) * per_acceleration,
+            stretch: Stretch::OverStep,
+            convex: false,
+        };
+        let now = (1.0 - alpha_m) / (1.0 - alpha_f) * per_acceleration;
+        ([before, after], [per_velocity, now])
+    }
+
     /// What a scene's solver table asks for.
     pub fn new(solver: &Solver) -> Scheme {
         match (solver.integrator, solver.bossak) {
@@ -111,7 +148,7 @@ pub fn start<K: Fn(usize, f64) -> Kinematics>(
         position: 0.0,
         velocity: 0.0,
         acceleration: 1.0,
-        predicted: false,
+        stretch: Stretch::Now,
         convex: false,
     };
     work.fade_dampers(model, network, state, 0.0);
@@ -190,7 +227,7 @@ pub struct Span {
 /// velocity and acceleration of the points that forces do not move. `state.time` is left to the caller.
 ///
 /// # Errors
-/// Newton's method failed even in steps 1024 times smaller; the state is then as it was.
+/// Newton's method failed even in steps 16 384 times smaller; the state is then as it was.
 pub fn advance<K: Fn(usize, f64) -> Kinematics>(
     model: &Model,
     number: usize,
@@ -371,46 +408,21 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
         state: &mut State,
         work: &mut Workspace,
     ) -> bool {
-        let Scheme {
-            alpha_m,
-            alpha_f,
-            beta,
-            gamma,
-        } = *self.scheme;
         let dt = t1 - t0;
-        let old = Weights {
-            force: alpha_f,
-            friction: 0.0,
-            inertia: alpha_f,
-            position: 0.0,
-            velocity: 0.0,
-            acceleration: 0.0,
-            predicted: false,
-            convex: false,
-        };
+        let ([old, new], rates) = self.scheme.weights(dt);
         work.fade_dampers(self.model, self.network, state, dt);
         work.assemble_dynamic::<false>(self.model, self.network, state, t0, &old);
         work.remember(self.network);
         work.move_anchors(self.model, self.network, state);
         self.predict(state, dt);
         hold(self.model, self.network, state, self.held, t1);
-        let (per_velocity, per_acceleration) = (gamma / (beta * dt), 1.0 / (beta * dt * dt));
-        let new = Weights {
-            force: 1.0 - alpha_f,
-            friction: 1.0,
-            inertia: 1.0 - alpha_f,
-            position: 1.0 - alpha_f,
-            velocity: (1.0 - alpha_f) * per_velocity,
-            acceleration: (1.0 - alpha_m) * per_acceleration,
-            predicted: true,
-            convex: false,
-        };
         let tolerance = NEWTON_TOLERANCE * self.shortest_segment();
-        for _ in 0..ITERATIONS_MAX {
+        let mut last = f64::INFINITY;
+        for iteration in 0..ITERATIONS_MAX {
             work.assemble_dynamic::<true>(self.model, self.network, state, t1, &new);
             work.add_remembered(self.model, self.network);
             if !work.solve(self.model, self.network, self.number)
-                && !self.solve_convex(state, t1, &new, work)
+                && !self.solve_indefinite(state, t1, &new, work)
             {
                 return false;
             }
@@ -418,9 +430,15 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
             if !correction.is_finite() {
                 return false;
             }
-            let now = (1.0 - alpha_m) / (1.0 - alpha_f) * per_acceleration;
-            self.correct(state, work, per_velocity, now);
-            let consistent = work.predict_tensions(self.model, self.network, 1.0);
+            let circles = iteration >= CIRCLING && correction > 0.5 * last;
+            let part = if circles && correction > tolerance {
+                0.5
+            } else {
+                1.0
+            };
+            last = correction;
+            self.correct(state, work, part, rates);
+            let consistent = work.predict_tensions(self.model, self.network, part);
             if correction <= tolerance && consistent {
                 work.creep(self.model, self.network, state);
                 self.shift_accelerations(state, before);
@@ -430,19 +448,25 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
         false
     }
 
-    /// Solves once more where the exact tangent of lines that bend is indefinite, with one that is not.
-    fn solve_convex(&self, state: &State, t: f64, weights: &Weights, work: &mut Workspace) -> bool {
+    /// Solves once more where the exact tangent is not positive definite: with row exchanges, since stiff segments that turn within the step make it
+    /// unsymmetric, and with joints of lines that bend that are not indefinite.
+    fn solve_indefinite(
+        &self,
+        state: &State,
+        t: f64,
+        weights: &Weights,
+        work: &mut Workspace,
+    ) -> bool {
         let bends = |&line: &usize| self.model.lines[line].bending.is_some();
-        if !self.network.lines.iter().any(bends) {
-            return false;
+        if self.network.lines.iter().any(bends) {
+            let convex = Weights {
+                convex: true,
+                ..*weights
+            };
+            work.assemble_dynamic::<true>(self.model, self.network, state, t, &convex);
+            work.add_remembered(self.model, self.network);
         }
-        let convex = Weights {
-            convex: true,
-            ..*weights
-        };
-        work.assemble_dynamic::<true>(self.model, self.network, state, t, &convex);
-        work.add_remembered(self.model, self.network);
-        work.solve(self.model, self.network, self.number)
+        work.solve_with(self.model, self.network, self.number, Pivots::Any)
     }
 
     fn shortest_segment(&self) -> f64 {
@@ -499,19 +523,20 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
         &self,
         state: &mut State,
         work: &Workspace,
-        per_velocity: f64,
-        per_acceleration: f64,
+        part: f64,
+        [per_velocity, per_acceleration]: [f64; 2],
     ) {
         for &index in &self.network.lines {
             let nodes = &mut state.lines[index];
             for (i, x) in work.lines[index].solution().iter().enumerate() {
+                let x = part * x;
                 nodes.position[i] -= x;
                 nodes.velocity[i] -= per_velocity * x;
                 nodes.acceleration[i] -= per_acceleration * x;
             }
         }
         for &index in &self.network.free_points {
-            let (point, x) = (&mut state.points[index], work.points[index].solution);
+            let (point, x) = (&mut state.points[index], part * work.points[index].solution);
             point.position -= x;
             point.velocity -= per_velocity * x;
             point.acceleration -= per_acceleration * x;

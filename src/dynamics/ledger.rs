@@ -13,8 +13,8 @@
 //! its half node along, which counts as given.
 //!
 //! Dissipated: what an implicit integrator takes by its own damping, found from how it weighs the forces of a step and those of the past, by
-//! a formula for each of them that knows nothing of the balance. What it makes or loses beside that, where laws have kinks and geometry turns within a
-//! step, is no part of it.
+//! a formula for each of them that knows nothing of the balance. What it makes or loses beside that, where joints turn and surfaces are pierced within a
+//! step, is no part of it; segments are moved by the discrete gradient of their energy, which makes and loses nothing.
 //!
 //! E − E₀ − given + lost + dissipated is the error of the time integration.
 //!
@@ -199,7 +199,7 @@ fn line_energy(model: &Model, state: &State, index: usize) -> Energy {
     for i in 0..n {
         let strain = (position(i + 1) - position(i)).norm() / line.segments.length[i] - 1.0;
         energy.axial += match Creeping::of(line, shape, i) {
-            None => axial_energy(line, i, strain),
+            None => line.spring(i, strain).energy * line.segments.length[i],
             Some(creep) => {
                 let pair = |values: &[Vector3<f64>]| [values[i], values[i + 1]];
                 let now = Stretching::of(line, i, pair(&shape.position), pair(&shape.velocity));
@@ -279,24 +279,6 @@ fn dry_part(line: &Line, shape: &LineState, i: usize, water: WaterAlong) -> f64 
     surface.map_or(0.0, |surface| {
         surface.node_in(water, i, &shape.position).part
     })
-}
-
-/// Energy [J] of a segment at a strain [-]: that of its law while it pulls, and pushes no more than it can.
-pub(super) fn axial_energy(line: &Line, i: usize, strain: f64) -> f64 {
-    let data = &line.segments;
-    let (ea, length, push) = (
-        data.axial_stiffness[i],
-        data.length[i],
-        line.compression_max(i),
-    );
-    let law = data.law[i].at(strain);
-    if strain > 0.0 || ea * law.force > -push {
-        ea * law.energy * length
-    } else {
-        let ea = ea * data.law[i].at(0.0).slope; // the push stops growing by the slope at no strain
-        let limit = -push / ea;
-        (0.5 * push * push / ea + push * (limit - strain)) * length
-    }
 }
 
 /// How many ends of a network's lines have parted from their points.

@@ -6,10 +6,19 @@
 //! points; [`Chain::substitute`] gives the nodes between.
 //!
 //! Source: Golub & Van Loan (2013), Matrix Computations, 4th ed., section 4.5.1 (block tridiagonal) and 3.2 (LU).
-//! Nothing is pivoted: the matrices are positive definite, or close to it where damping makes them unsymmetric, and a pivot
-//! that is not positive is reported instead of used.
+//! Matrices that are positive definite, or close to it where damping makes them unsymmetric, need no row exchanges, and a pivot that is not
+//! positive is reported; others are eliminated with row exchanges inside of blocks, see [`Pivots`].
 
 use nalgebra::{Matrix3, Vector3};
+
+/// Which pivots an elimination takes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Pivots {
+    /// Positive ones, as they come; any other is reported.
+    Positive,
+    /// Of either sign, the greatest of the rows of a block; only one that is zero is reported.
+    Any,
+}
 
 /// Scratch of one chain; never read before it is written.
 #[derive(Debug, Clone)]
@@ -51,7 +60,7 @@ impl Chain {
         }
     }
 
-    /// Removes the nodes between the ends; `None` if a pivot is not positive. Where the first end is held
+    /// Removes the nodes between the ends; `None` if a pivot cannot be taken. Where the first end is held
     /// (`first_free` false), only bb and b of the result are meaningful.
     pub fn eliminate(
         &mut self,
@@ -59,6 +68,7 @@ impl Chain {
         coupling: &[Matrix3<f64>],
         right: &[Vector3<f64>],
         first_free: bool,
+        pivots: Pivots,
     ) -> Option<Ends> {
         let last = diagonal.len() - 1;
         self.bordered = first_free;
@@ -71,7 +81,7 @@ impl Chain {
             b: right[1],
         };
         for i in 1..last {
-            let pivot = Lu3::new(&ends.bb)?;
+            let pivot = Lu3::new(&ends.bb, pivots)?;
             let c = &coupling[i];
             let next = pivot.solve3(c);
             let solution = pivot.solve(ends.b);
@@ -111,8 +121,10 @@ impl Chain {
     }
 }
 
-/// LU factors of a 3×3 matrix with positive pivots; the pivots are stored inverted.
+/// LU factors of a 3×3 matrix; the pivots are stored inverted.
 pub(super) struct Lu3 {
+    /// Which rows of the matrix its rows are.
+    rows: [usize; 3],
     inverse: [f64; 3],
     l: [f64; 3], // l10, l20, l21
     u: [f64; 3], // u01, u02, u12
@@ -120,7 +132,15 @@ pub(super) struct Lu3 {
 
 impl Lu3 {
     #[inline(always)]
-    pub(super) fn new(m: &Matrix3<f64>) -> Option<Lu3> {
+    pub(super) fn new(m: &Matrix3<f64>, pivots: Pivots) -> Option<Lu3> {
+        match pivots {
+            Pivots::Positive => Lu3::positive(m),
+            Pivots::Any => Lu3::pivoted(m),
+        }
+    }
+
+    #[inline(always)]
+    fn positive(m: &Matrix3<f64>) -> Option<Lu3> {
         let d0 = positive(m[(0, 0)])?;
         let (l10, l20) = (m[(1, 0)] * d0, m[(2, 0)] * d0);
         let (u01, u02) = (m[(0, 1)], m[(0, 2)]);
@@ -129,9 +149,34 @@ impl Lu3 {
         let l21 = (m[(2, 1)] - l20 * u01) * d1;
         let d2 = positive(m[(2, 2)] - l20 * u02 - l21 * u12)?;
         Some(Lu3 {
+            rows: [0, 1, 2],
             inverse: [d0, d1, d2],
             l: [l10, l20, l21],
             u: [u01, u02, u12],
+        })
+    }
+
+    #[cold]
+    fn pivoted(m: &Matrix3<f64>) -> Option<Lu3> {
+        let (mut m, mut rows) = (*m, [0, 1, 2]);
+        let mut inverse = [0.0; 3];
+        for k in 0..3 {
+            let greatest = (k..3).max_by(|&a, &b| m[(a, k)].abs().total_cmp(&m[(b, k)].abs()))?;
+            m.swap_rows(k, greatest);
+            rows.swap(k, greatest);
+            inverse[k] = nonzero(m[(k, k)])?;
+            for i in k + 1..3 {
+                m[(i, k)] *= inverse[k];
+                for j in k + 1..3 {
+                    m[(i, j)] -= m[(i, k)] * m[(k, j)];
+                }
+            }
+        }
+        Some(Lu3 {
+            rows,
+            inverse,
+            l: [m[(1, 0)], m[(2, 0)], m[(2, 1)]],
+            u: [m[(0, 1)], m[(0, 2)], m[(1, 2)]],
         })
     }
 
@@ -139,11 +184,12 @@ impl Lu3 {
     pub(super) fn solve(&self, b: Vector3<f64>) -> Vector3<f64> {
         let [l10, l20, l21] = self.l;
         let [u01, u02, u12] = self.u;
-        let y1 = b.y - l10 * b.x;
-        let y2 = b.z - l20 * b.x - l21 * y1;
+        let [y0, b1, b2] = self.rows.map(|row| b[row]);
+        let y1 = b1 - l10 * y0;
+        let y2 = b2 - l20 * y0 - l21 * y1;
         let z = y2 * self.inverse[2];
         let y = (y1 - u12 * z) * self.inverse[1];
-        Vector3::new((b.x - u01 * y - u02 * z) * self.inverse[0], y, z)
+        Vector3::new((y0 - u01 * y - u02 * z) * self.inverse[0], y, z)
     }
 
     #[inline(always)]
@@ -157,6 +203,11 @@ impl Lu3 {
 #[inline(always)]
 fn positive(pivot: f64) -> Option<f64> {
     (pivot > 0.0 && pivot.is_finite()).then(|| 1.0 / pivot)
+}
+
+/// 1/pivot, if it has one.
+fn nonzero(pivot: f64) -> Option<f64> {
+    (pivot != 0.0 && pivot.is_finite()).then(|| 1.0 / pivot)
 }
 
 /// The dense system of the points that chains meet in, three unknowns each.
@@ -211,11 +262,18 @@ impl DenseSystem {
         self.right[held] = 0.0;
     }
 
-    /// Solves in place; false if a pivot is not positive.
-    pub fn solve(&mut self) -> bool {
+    /// Solves in place; false if a pivot cannot be taken.
+    pub fn solve(&mut self, pivots: Pivots) -> bool {
         let n = self.size;
         for k in 0..n {
-            let Some(inverse) = positive(self.matrix[k * n + k]) else {
+            let inverse = match pivots {
+                Pivots::Positive => positive(self.matrix[k * n + k]),
+                Pivots::Any => {
+                    self.exchange(k);
+                    nonzero(self.matrix[k * n + k])
+                }
+            };
+            let Some(inverse) = inverse else {
                 return false;
             };
             for i in k + 1..n {
@@ -236,6 +294,20 @@ impl DenseSystem {
             self.right[k] = sum / self.matrix[k * n + k];
         }
         true
+    }
+
+    /// Brings the row with the greatest entry of column `k` to row `k`, of those from there on.
+    fn exchange(&mut self, k: usize) {
+        let n = self.size;
+        let entry = |row: usize| self.matrix[row * n + k].abs();
+        let greatest = (k..n).max_by(|&a, &b| entry(a).total_cmp(&entry(b)));
+        let Some(greatest) = greatest.filter(|&row| row != k) else {
+            return;
+        };
+        for column in k..n {
+            self.matrix.swap(k * n + column, greatest * n + column);
+        }
+        self.right.swap(k, greatest);
     }
 
     /// Solution at a point, after [`DenseSystem::solve`].
@@ -299,10 +371,16 @@ mod tests {
         for nodes in [2, 3, 4, 9] {
             let system = random(nodes);
             let mut reference = dense(&system);
-            assert!(reference.solve());
+            assert!(reference.solve(Pivots::Positive));
             let mut chain = Chain::new(nodes);
             let ends = chain
-                .eliminate(&system.diagonal, &system.coupling, &system.right, true)
+                .eliminate(
+                    &system.diagonal,
+                    &system.coupling,
+                    &system.right,
+                    true,
+                    Pivots::Positive,
+                )
                 .unwrap();
             let mut points = DenseSystem::new(2);
             for (row, column, block) in [
@@ -315,7 +393,7 @@ mod tests {
             }
             points.add_right(0, ends.a);
             points.add_right(1, ends.b);
-            assert!(points.solve());
+            assert!(points.solve(Pivots::Positive));
             chain.substitute(points.solution(0), points.solution(1));
             for i in 0..nodes {
                 assert_relative_eq!(chain.solution()[i], reference.solution(i), epsilon = 1e-13);
@@ -333,10 +411,16 @@ mod tests {
         {
             reference.hold(point, axis);
         }
-        assert!(reference.solve());
+        assert!(reference.solve(Pivots::Positive));
         let mut chain = Chain::new(6);
         chain
-            .eliminate(&system.diagonal, &system.coupling, &system.right, false)
+            .eliminate(
+                &system.diagonal,
+                &system.coupling,
+                &system.right,
+                false,
+                Pivots::Positive,
+            )
             .unwrap();
         chain.substitute(Vector3::zeros(), Vector3::zeros());
         for i in 0..6 {
@@ -351,8 +435,54 @@ mod tests {
         let mut chain = Chain::new(5);
         assert!(
             chain
-                .eliminate(&system.diagonal, &system.coupling, &system.right, false)
+                .eliminate(
+                    &system.diagonal,
+                    &system.coupling,
+                    &system.right,
+                    false,
+                    Pivots::Positive
+                )
                 .is_none()
         );
+    }
+
+    #[test]
+    fn with_row_exchanges_indefinite_systems_are_solved_too() {
+        let mut system = random(5);
+        for block in &mut system.diagonal {
+            *block -= Matrix3::from_diagonal(&Vector3::new(9.0, 18.0, 9.5));
+        }
+        let ends = |pivots| {
+            let mut chain = Chain::new(5);
+            let System {
+                diagonal,
+                coupling,
+                right,
+            } = &system;
+            let ends = chain.eliminate(diagonal, coupling, right, true, pivots);
+            ends.map(|ends| (chain, ends))
+        };
+        assert!(ends(Pivots::Positive).is_none());
+        let (mut chain, ends) = ends(Pivots::Any).unwrap();
+        let mut points = DenseSystem::new(2);
+        points.add_block(0, 0, &ends.aa);
+        points.add_block(0, 1, &ends.ab);
+        points.add_block(1, 0, &ends.ba);
+        points.add_block(1, 1, &ends.bb);
+        points.add_right(0, ends.a);
+        points.add_right(1, ends.b);
+        assert!(points.solve(Pivots::Any));
+        chain.substitute(points.solution(0), points.solution(1));
+        let x = chain.solution();
+        for i in 0..5 {
+            let mut sum = system.diagonal[i] * x[i] - system.right[i];
+            if i > 0 {
+                sum += system.coupling[i - 1] * x[i - 1];
+            }
+            if i < 4 {
+                sum += system.coupling[i] * x[i + 1];
+            }
+            assert!(sum.norm() < 1e-10, "{i}: {sum}");
+        }
     }
 }

@@ -6,11 +6,11 @@
 //! couple neighbours only; the first end is a border that every node comes to couple with, the last end is the last node.
 //!
 //! Source: Golub & Van Loan (2013), Matrix Computations, 4th ed., section 4.3.5 (band Gaussian elimination), on blocks.
-//! Nothing is pivoted; a pivot that is not positive is reported instead of used.
+//! Row exchanges, where they are asked for, stay inside of blocks.
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::block_tridiagonal::{Ends, Lu3};
+use super::block_tridiagonal::{Ends, Lu3, Pivots};
 
 /// The blocks of a chain of n nodes.
 #[derive(Debug, Clone, Copy)]
@@ -84,13 +84,14 @@ impl Chain {
         }
     }
 
-    /// Removes the nodes between the ends; `None` if a pivot is not positive. Where the first end is held
+    /// Removes the nodes between the ends; `None` if a pivot cannot be taken. Where the first end is held
     /// (`first_free` false), only bb and b of the result are meaningful.
     pub fn eliminate(
         &mut self,
         blocks: Blocks,
         right: &[Vector3<f64>],
         first_free: bool,
+        pivots: Pivots,
     ) -> Option<Ends> {
         let last = blocks.diagonal.len() - 1;
         self.bordered = first_free;
@@ -105,7 +106,7 @@ impl Chain {
             let mut beyond = Row::new(&blocks, right, i + 2);
             let given = blocks.far.get(i).copied().unwrap_or_else(Matrix3::zeros);
             let back = given.transpose();
-            let pivot = Lu3::new(&row.own)?;
+            let pivot = Lu3::new(&row.own, pivots)?;
             let (next, far) = (pivot.solve3(&row.next), pivot.solve3(&given));
             let solution = pivot.solve(row.right);
             after.own -= after.last * next;
@@ -236,10 +237,10 @@ mod tests {
         for nodes in [2, 3, 4, 5, 12] {
             let system = System::random(nodes);
             let mut reference = system.dense();
-            assert!(reference.solve());
+            assert!(reference.solve(Pivots::Positive));
             let mut chain = Chain::new(nodes);
             let ends = chain
-                .eliminate(system.blocks(), &system.right, true)
+                .eliminate(system.blocks(), &system.right, true, Pivots::Positive)
                 .unwrap();
             let mut points = DenseSystem::new(2);
             for (row, column, block) in [
@@ -252,7 +253,7 @@ mod tests {
             }
             points.add_right(0, ends.a);
             points.add_right(1, ends.b);
-            assert!(points.solve());
+            assert!(points.solve(Pivots::Positive));
             chain.substitute(points.solution(0), points.solution(1));
             for i in 0..nodes {
                 assert_relative_eq!(chain.solution()[i], reference.solution(i), epsilon = 1e-13);
@@ -269,11 +270,11 @@ mod tests {
                 reference.hold(0, axis);
                 reference.hold(nodes - 1, axis);
             }
-            assert!(reference.solve());
+            assert!(reference.solve(Pivots::Positive));
             let mut chain = Chain::new(nodes);
             assert!(
                 chain
-                    .eliminate(system.blocks(), &system.right, false)
+                    .eliminate(system.blocks(), &system.right, false, Pivots::Positive)
                     .is_some()
             );
             chain.substitute(Vector3::zeros(), Vector3::zeros());
@@ -290,7 +291,7 @@ mod tests {
         let mut chain = Chain::new(6);
         assert!(
             chain
-                .eliminate(system.blocks(), &system.right, true)
+                .eliminate(system.blocks(), &system.right, true, Pivots::Positive)
                 .is_none()
         );
     }

@@ -26,6 +26,7 @@ use crate::physics::flow::{Profile, Stream};
 use crate::physics::point::{Sphere, Wetted};
 use crate::physics::seabed::ContactCoefficients;
 use crate::physics::stretch::StretchLaw;
+use crate::physics::stretch_step::Spring;
 use crate::physics::viscoelastic::Viscoelastic;
 use crate::scene::{InitialShape, PointForce, PointMoment, Solver, TimeFunction};
 
@@ -409,6 +410,37 @@ impl Line {
     /// Whether a current acts on it.
     pub fn drifts(&self, model: &Model) -> bool {
         self.nodes.drag.is_some() && model.current.is_some()
+    }
+
+    /// Segment `segment` at a strain [-] by its law alone, as if it could push.
+    #[inline(always)]
+    pub fn uncut_spring(&self, segment: usize, strain: f64) -> Spring {
+        let ea = self.segments.axial_stiffness[segment];
+        let at = self.segments.law[segment].at(strain);
+        Spring {
+            strain,
+            tension: ea * at.force,
+            slope: ea * at.slope,
+            energy: ea * at.energy,
+        }
+    }
+
+    /// Segment `segment` at a strain [-]: its law while it pulls, and no more than it can push.
+    #[inline(always)]
+    pub fn spring(&self, segment: usize, strain: f64) -> Spring {
+        let push = self.compression_max(segment);
+        let uncut = self.uncut_spring(segment, strain);
+        if strain > 0.0 || uncut.tension > -push {
+            return uncut;
+        }
+        let stiffness = self.uncut_spring(segment, 0.0).slope; // the push stops growing by the slope at no strain
+        let limit = -push / stiffness;
+        Spring {
+            strain,
+            tension: 0.0 - push,
+            slope: 0.0,
+            energy: 0.5 * push * push / stiffness + push * (limit - strain),
+        }
     }
 
     /// Whether an end is held: by a point that forces do not move, and that it has not parted from.

@@ -15,6 +15,7 @@ pub mod seabed;
 pub mod section;
 pub mod spectrum;
 pub mod stretch;
+pub mod stretch_step;
 pub mod surface;
 pub mod tension_table;
 pub mod viscoelastic;

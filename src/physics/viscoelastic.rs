@@ -18,6 +18,8 @@
 //! Source: the law of MoorDyn's `EA_s|EA_d`, `BA_s|BA_d` line types, `source/Line.cpp` of MoorDyn-C, after Hall, Duong & Lozon (2023), IOWTC2023, on
 //! semi-taut moorings with polyester ropes; closed forms derived here. Valid for small strain and EA_d > EA_s > 0, BA_s > 0.
 
+use super::stretch_step::Mean;
+
 /// The law of a segment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Viscoelastic {
@@ -39,13 +41,104 @@ pub struct Viscoelastic {
     pub contraction: f64,
 }
 
-/// What a step leaves behind.
+/// What a step comes to.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Creep {
-    /// Slow strain ε₁ at its end [-].
+pub struct CreepStep {
+    /// Slow strain ε₁' at its end [-].
     pub slow: f64,
     /// Its slope with the strain at the end of the step [-].
-    pub slope: f64,
+    pub slow_slope: f64,
+    /// Tension over the step, and what the dampers take.
+    pub mean: Mean,
+}
+
+/// How the fast part pulls over a step.
+struct Pull {
+    /// [N]
+    tension: f64,
+    /// Its slope with the strain afterwards [N].
+    slope: f64,
+}
+
+/// Both parts over a step.
+struct Series {
+    /// Strains of the slow and of the fast part before [-].
+    before: [f64; 2],
+    /// BA_s/Δt and BA_d/Δt [N].
+    dampers: [f64; 2],
+    /// The slow part pulls with `offset` + `pull` ε₁' over the step [N].
+    offset: f64,
+    pull: f64,
+}
+
+impl Series {
+    fn of(law: &Viscoelastic, strain: f64, slow: f64, dt: f64) -> Series {
+        let slow_damper = law.slow / law.contraction / dt;
+        Series {
+            before: [slow, strain - slow],
+            dampers: [slow_damper, law.fast_damping / dt],
+            offset: (0.5 * law.slow - slow_damper) * slow,
+            pull: 0.5 * law.slow + slow_damper,
+        }
+    }
+
+    /// The step at whose end the parts have these strains [-], as the fast one pulls.
+    fn step(&self, after: [f64; 2], fast: Pull) -> CreepStep {
+        let slow_slope = fast.slope / (self.pull + fast.slope);
+        let moved = [0, 1].map(|part| after[part] - self.before[part]);
+        let pulled = after[1].max(0.0) - self.before[1].max(0.0);
+        CreepStep {
+            slow: after[0],
+            slow_slope,
+            mean: Mean {
+                tension: fast.tension,
+                slope: self.pull * slow_slope,
+                taken: self.dampers[0] * moved[0] * moved[0] + self.dampers[1] * pulled * moved[1],
+            },
+        }
+    }
+}
+
+/// Discrete gradient of ½EA max(e, 0)² and its slope with the strain afterwards [N].
+fn gradient(ea: f64, [before, after]: [f64; 2]) -> Mean {
+    let moved = after - before;
+    match (before > 0.0, after > 0.0) {
+        (false, false) => Mean::default(),
+        (true, true) => Mean {
+            tension: 0.5 * ea * (before + after),
+            slope: 0.5 * ea,
+            taken: 0.0,
+        },
+        (true, false) => {
+            let tension = -0.5 * ea * before * before / moved;
+            Mean {
+                tension,
+                slope: -tension / moved,
+                taken: 0.0,
+            }
+        }
+        (false, true) => {
+            let tension = 0.5 * ea * after * after / moved;
+            Mean {
+                tension,
+                slope: (ea * after - tension) / moved,
+                taken: 0.0,
+            }
+        }
+    }
+}
+
+/// The negative and the positive root of a x² − b x + c for a > 0; c is not positive but for rounding.
+fn roots([a, b, c]: [f64; 3]) -> [f64; 2] {
+    let c = c.min(0.0);
+    let greater = 0.5 * (b.abs() + (b * b - 4.0 * a * c).sqrt());
+    if greater == 0.0 {
+        return [0.0; 2];
+    }
+    match b < 0.0 {
+        true => [-greater / a, -c / greater],
+        false => [c / greater, greater / a],
+    }
 }
 
 impl Viscoelastic {
@@ -104,24 +197,108 @@ impl Viscoelastic {
         }
     }
 
-    /// The slow strain after a step of `dt` [s] between two strains [-].
-    #[inline(always)]
-    pub fn creep(&self, [before, now]: [f64; 2], slow: f64, dt: f64) -> Creep {
-        let (mean, change) = (0.5 * (before + now), now - before);
-        let share = self.yielding / (1.0 + 0.5 * dt * (self.fast + self.slow) * self.yielding);
-        let pull = self.fast * mean - (self.fast + self.slow) * slow;
-        let crept = slow + share * (dt * pull + self.fast_damping * change);
-        let impulse = dt * self.elastic(mean, 0.5 * (slow + crept)) + self.damping * change;
-        if impulse > 0.0 {
-            return Creep {
-                slow: crept,
-                slope: share * (0.5 * dt * self.fast + self.fast_damping),
-            };
+    /// A step of `dt` [s] between two strains [-].
+    pub fn step(&self, strains: [f64; 2], slow: f64, dt: f64) -> CreepStep {
+        if self.yielding == 0.0 {
+            return self.plain_step(strains, gradient(self.fast, strains), dt);
         }
         let half = 0.5 * dt * self.contraction;
-        Creep {
-            slow: (slow * (1.0 - half) / (1.0 + half)).max(0.0),
-            slope: 0.0,
+        let contracted = (slow * (1.0 - half) / (1.0 + half)).max(0.0);
+        let series = Series::of(self, strains[0], slow, dt);
+        let ([_, before], [_, damper]) = (series.before, series.dampers);
+        let pulls = |after: f64| {
+            let spring = gradient(self.fast, [before, after]);
+            spring.tension + damper * (after.max(0.0) - before.max(0.0))
+        };
+        // the slow part pulls with nothing where it contracts by itself, but where it would go on beyond no strain
+        let resists = if contracted > 0.0 {
+            0.0
+        } else {
+            series.offset.max(0.0)
+        };
+        if pulls(strains[1] - contracted) <= resists {
+            return self.slack(strains, [slow, contracted]);
+        }
+        let held = self.held(strains, slow, dt);
+        if before >= 0.0 && held.slow <= strains[1] {
+            return held;
+        }
+        let reach = series.offset + series.pull * strains[1]; // R
+        let after = if before > 0.0 {
+            // ½EA_d e² = (R + D e − P e') (e − e')
+            let free = reach + damper * before;
+            let constant = before * (free - 0.5 * self.fast * before);
+            roots([series.pull, free + series.pull * before, constant])[0]
+        } else {
+            // ½EA_d e'² = (R − (P + D) e') (e' − e)
+            let both = series.pull + damper;
+            roots([
+                0.5 * self.fast + both,
+                reach + both * before,
+                before * reach,
+            ])[1]
+        };
+        let damps = if after > 0.0 { damper } else { 0.0 };
+        let slope = gradient(self.fast, [before, after]).slope + damps;
+        let tension = pulls(after);
+        let crept = (tension - series.offset) / series.pull;
+        series.step([crept, after], Pull { tension, slope })
+    }
+
+    /// A step as if the fast part could push at its end, which is what [`Viscoelastic::step`] comes to where it pulls throughout.
+    pub fn held(&self, strains: [f64; 2], slow: f64, dt: f64) -> CreepStep {
+        let (damper, stiffness) = (self.fast_damping / dt, 0.5 * self.fast);
+        let slope = stiffness + damper;
+        let before = (strains[0] - slow).max(0.0);
+        let kept = (stiffness - damper) * before;
+        if self.yielding == 0.0 {
+            return CreepStep {
+                slow: 0.0,
+                slow_slope: 0.0,
+                mean: Mean {
+                    tension: kept + slope * strains[1],
+                    slope,
+                    taken: damper * (strains[1] - before) * (strains[1] - strains[0]),
+                },
+            };
+        }
+        let series = Series::of(self, strains[0], slow, dt);
+        let crept = (kept + slope * strains[1] - series.offset) / (series.pull + slope);
+        let after = strains[1] - crept;
+        let tension = kept + slope * after;
+        series.step([crept, after], Pull { tension, slope })
+    }
+
+    /// A step without memory, of a spring that has a mean tension.
+    fn plain_step(&self, strains: [f64; 2], spring: Mean, dt: f64) -> CreepStep {
+        let pulled = strains.map(|strain| strain.max(0.0));
+        let (damper, change) = (self.fast_damping / dt, strains[1] - strains[0]);
+        let damped = damper * (pulled[1] - pulled[0]);
+        if spring.tension + damped <= 0.0 {
+            return self.slack(strains, [0.0; 2]);
+        }
+        let damps = if strains[1] > 0.0 { damper } else { 0.0 };
+        CreepStep {
+            slow: 0.0,
+            slow_slope: 0.0,
+            mean: Mean {
+                tension: spring.tension + damped,
+                slope: spring.slope + damps,
+                taken: damped * change,
+            },
+        }
+    }
+
+    /// A step in which nothing is carried, between two strains of the rope and of its slow part [-].
+    fn slack(&self, [before, after]: [f64; 2], slow: [f64; 2]) -> CreepStep {
+        CreepStep {
+            slow: slow[1],
+            slow_slope: 0.0,
+            mean: Mean {
+                tension: 0.0,
+                slope: 0.0,
+                taken: self.energy(before, slow[0]) - self.energy(after, slow[1]),
+            },
         }
     }
 
@@ -174,7 +351,7 @@ mod tests {
         let [mut storage, mut loss] = [0.0; 2];
         let settled = (40.0 / (omega * 2.0)).ceil() as usize + 3;
         for k in 0..(settled + 1) * steps {
-            let crept = law.creep([strain(k), strain(k + 1)], slow, dt).slow;
+            let crept = law.step([strain(k), strain(k + 1)], slow, dt).slow;
             let rate = (strain(k + 1) - strain(k)) / dt;
             let tension = law.elastic(0.5 * (strain(k) + strain(k + 1)), 0.5 * (slow + crept))
                 + law.damping * rate;
@@ -240,7 +417,7 @@ mod tests {
             max_relative = 1e-12
         );
         for k in 1..=2000 {
-            slow = law.creep([strain, strain], slow, dt).slow;
+            slow = law.step([strain, strain], slow, dt).slow;
             let fading = (-(k as f64) * dt / tau).exp();
             let exact = strain * (1.424e8 + (1.586e8 - 1.424e8) * fading);
             assert_relative_eq!(law.elastic(strain, slow), exact, max_relative = 1e-6);
@@ -264,12 +441,83 @@ mod tests {
         assert!(law.loss(-0.01, -0.1, 0.002, 0.0) > 0.0);
     }
 
+    /// Ropes with all, one and none of the dampers, and steps that stay taut, slacken, snap and stay slack, with what a slack one has kept.
+    fn all_steps() -> impl Iterator<Item = (Viscoelastic, [f64; 2], f64, f64)> {
+        let laws = [0.0, 1.1e7, 4.0e8].map(rope).into_iter();
+        let laws = laws.chain([Viscoelastic::plain(1.0e8, 1.0e5)]);
+        let strains = [-0.05, -1e-3, -1e-7, 0.0, 1e-7, 1e-3, 2e-3, 0.05];
+        laws.flat_map(move |law| {
+            strains.into_iter().flat_map(move |before| {
+                let steps = [1e-5, 0.01, 5.0].into_iter();
+                let slows: &[f64] = if law.yielding > 0.0 {
+                    &[0.0, 1e-3]
+                } else {
+                    &[0.0]
+                };
+                steps.flat_map(move |dt| {
+                    slows.iter().flat_map(move |&slow| {
+                        strains.map(move |after| (law, [before, after], slow, dt))
+                    })
+                })
+            })
+        })
+    }
+
+    #[test]
+    fn what_a_step_gives_is_held_or_taken_and_nothing_is_made() {
+        for (law, strains, slow, dt) in all_steps() {
+            let step = law.step(strains, slow, dt);
+            let [before, after] = [(strains[0], slow), (strains[1], step.slow)];
+            let held = law.energy(after.0, after.1) - law.energy(before.0, before.1);
+            let given = step.mean.tension * (strains[1] - strains[0]);
+            let scale = law.energy(after.0, after.1) + law.energy(before.0, before.1) + given.abs();
+            let case = (strains, slow, dt, step);
+            assert!(
+                (given - held - step.mean.taken).abs() <= 1e-9 * scale,
+                "{case:?}"
+            );
+            assert!(step.mean.tension >= 0.0, "{case:?}");
+            assert!(step.mean.taken >= -1e-9 * scale, "{case:?}");
+        }
+    }
+
+    #[test]
+    fn slopes_of_a_step_are_those_of_what_it_comes_to() {
+        for (law, [before, after], slow, dt) in all_steps() {
+            let h = 1e-7 * f64::abs(after).max(1e-4);
+            let at = |part: f64| law.step([before, after + part * h], slow, dt);
+            let [low, middle, high] = [-1.0, 0.0, 1.0].map(at);
+            let sides = [low, high].map(|side| (side.mean.slope, side.slow_slope));
+            let rate = |difference: f64| difference / (2.0 * h);
+            for (slope, measured, least, most) in [
+                (
+                    middle.mean.slope,
+                    rate(high.mean.tension - low.mean.tension),
+                    sides[0].0.min(sides[1].0),
+                    sides[0].0.max(sides[1].0),
+                ),
+                (
+                    middle.slow_slope,
+                    rate(high.slow - low.slow),
+                    sides[0].1.min(sides[1].1),
+                    sides[0].1.max(sides[1].1),
+                ),
+            ] {
+                let scale = 1e-3 * most.abs().max(slope.abs()) + 1e-6;
+                assert!(
+                    measured > least - scale && measured < most + scale,
+                    "{before} {after} {slow} {dt}: {slope} {measured} {low:?} {high:?}"
+                );
+            }
+        }
+    }
+
     #[test]
     fn a_slack_rope_contracts_by_itself() {
         let law = rope(1.1e7);
         let mut slow = 0.001;
         for _ in 0..100 {
-            slow = law.creep([-0.01, -0.01], slow, 0.01).slow;
+            slow = law.step([-0.01, -0.01], slow, 0.01).slow;
         }
         let exact = 0.001 * (-law.slow / 4.0e9_f64).exp();
         assert_relative_eq!(slow, exact, max_relative = 1e-5);
@@ -278,7 +526,7 @@ mod tests {
     #[test]
     fn a_segment_without_memory_is_a_spring_and_a_damper() {
         let law = Viscoelastic::plain(1.0e8, 1.0e5);
-        assert_eq!(law.creep([0.01, 0.02], 0.0, 0.1).slow, 0.0);
+        assert_eq!(law.step([0.01, 0.02], 0.0, 0.1).slow, 0.0);
         assert_eq!(law.elastic(0.01, law.rest(0.01)), 1.0e6);
     }
 }

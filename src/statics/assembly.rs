@@ -27,11 +27,12 @@ mod parted;
 mod places;
 mod points;
 pub mod rubbing;
+mod stretch;
 mod surface;
 
 use nalgebra::Vector3;
 
-use crate::math::block_tridiagonal::DenseSystem;
+use crate::math::block_tridiagonal::{DenseSystem, Pivots};
 use crate::model::{End, Model, Network, PointState, State};
 use crate::statics::catenary::Catenary;
 
@@ -42,6 +43,7 @@ pub(crate) use line::{LineWork, node_tangent};
 use places::{Place, blank_state};
 pub(crate) use places::{copy_network, place_ends};
 pub(crate) use points::{PointWork, for_free_points};
+pub(crate) use stretch::{stretch_step, stretched};
 
 /// Scratch of the implicit solvers for a whole model. Nothing in it is read before it is written.
 #[derive(Debug, Clone)]
@@ -157,10 +159,21 @@ pub(crate) struct Weights {
     pub velocity: f64,
     /// c_m: of ∂R/∂a [1/s²].
     pub acceleration: f64,
-    /// Whether a segment is taut, and its geometric stiffness, come from the tension that was predicted.
-    pub predicted: bool,
+    /// When the segments pull.
+    pub stretch: Stretch,
     /// Whether the tangent must not be indefinite, rather than exact.
     pub convex: bool,
+}
+
+/// When the segments of a moving line pull.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Stretch {
+    /// Now.
+    Now,
+    /// Before a step, for what it carries over.
+    Before,
+    /// Over the step to where the nodes now are: whether they are taut, and their geometric stiffness, come from the tension that was predicted.
+    OverStep,
 }
 
 /// Compression that is taken for rounding [-], as a strain.
@@ -245,6 +258,17 @@ impl Workspace {
     /// Solves J x = R for the nodes of all lines, ends included, and the free points; false if J is not positive definite.
     /// The correction of the positions is −x.
     pub(crate) fn solve(&mut self, model: &Model, network: &Network, number: usize) -> bool {
+        self.solve_with(model, network, number, Pivots::Positive)
+    }
+
+    /// The same where J need not be positive definite: false if one of the `pivots` cannot be taken.
+    pub(crate) fn solve_with(
+        &mut self,
+        model: &Model,
+        network: &Network,
+        number: usize,
+        pivots: Pivots,
+    ) -> bool {
         self.counters.solves += 1;
         let system = &mut self.systems[number];
         system.clear();
@@ -252,7 +276,7 @@ impl Workspace {
             let work = &mut self.lines[index];
             let [a, b] = model.lines[index].ends.map(|point| self.points[point].slot);
             let [a, b] = [a.filter(|_| !work.parted[0]), b.filter(|_| !work.parted[1])];
-            let Some(ends) = work.eliminate(a.is_some() || work.parted[0]) else {
+            let Some(ends) = work.eliminate(a.is_some() || work.parted[0], pivots) else {
                 return false;
             };
             let Some(ends) = work.eliminate_parted(ends) else {
@@ -280,7 +304,7 @@ impl Workspace {
                 system.hold(self.points[index].slot.unwrap_or(0), axis);
             }
         });
-        if !system.solve() {
+        if !system.solve(pivots) {
             return false;
         }
         for (slot, &index) in network.free_points.iter().enumerate() {
@@ -326,6 +350,7 @@ impl Workspace {
         for &index in &network.lines {
             self.lines[index].fade_dampers(&model.lines[index], &state.lines[index], dt);
             self.lines[index].parted = state.lines[index].parted;
+            self.lines[index].begin(&model.lines[index], &state.lines[index]);
             if let Some(creep) = &mut self.lines[index].creep {
                 creep.begin(&model.lines[index], &state.lines[index], dt);
             }
@@ -455,7 +480,7 @@ pub fn end_force(
         position: 0.0,
         velocity: 0.0,
         acceleration: 0.0,
-        predicted: false,
+        stretch: Stretch::Now,
         convex: false,
     };
     let negative_tension = model.solver.negative_tension;

@@ -24,6 +24,7 @@ use super::StaticsError;
 use super::assembly::{Workspace, for_free_points, place_ends};
 use super::catenary::Catenary;
 use super::{equilibrium, guess};
+use crate::math::block_tridiagonal::Pivots;
 use crate::model::{ClosedForm, Line, LineState, Model, Network, PointState, State};
 use crate::physics::stretch::StretchLaw;
 
@@ -200,7 +201,7 @@ impl HungNetwork {
                 system.hold(slot, axis);
             }
         }
-        if !system.solve() {
+        if !system.solve(Pivots::Positive) {
             return None;
         }
         let of_point = |point: usize| match work.points[point].slot {
@@ -375,7 +376,7 @@ impl<'a> Problem<'a> {
             if residual <= tolerance + 4.0 * f64::EPSILON * stiffest * farthest {
                 return true;
             }
-            let whole = work.systems[self.number].solve() && self.step(state, work);
+            let whole = work.systems[self.number].solve(Pivots::Positive) && self.step(state, work);
             let [most, _] = RELAXATION;
             relaxation = if whole {
                 (1e-3 * relaxation).max(least)

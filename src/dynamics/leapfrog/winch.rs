@@ -23,7 +23,6 @@
 use nalgebra::Vector3;
 
 use super::{LineWork, Step};
-use crate::dynamics::ledger::axial_energy;
 use crate::dynamics::motion::AxisPath;
 use crate::math::fold::{Column, Field, Fold, Slot};
 use crate::model::{End, Line, LineState, Passage, Reel, Winch};
@@ -159,7 +158,7 @@ impl LineWork {
         let ends = [layout.end_slot(End::B), layout.end_neighbour(End::B)];
         let [end, near] = ends.map(|at| layout.position.get(at));
         let chord = end - near;
-        winch.density = axial_energy(&winch.line, i, chord.norm() / length - 1.0) / length;
+        winch.density = winch.line.spring(i, chord.norm() / length - 1.0).energy;
     }
 
     /// Winds on to `t` [s], the end of a step, after the end was put where it is then: books what the winch gives, and gives the end the
@@ -282,7 +281,7 @@ impl LineWork {
         };
         let axial = |i: usize| {
             let strain = (place(i + 1) - place(i)).norm() / line.segments.length[i] - 1.0;
-            axial_energy(line, i, strain)
+            line.spring(i, strain).energy * line.segments.length[i]
         };
         let carried = |i: usize| {
             let nodes = &line.nodes;

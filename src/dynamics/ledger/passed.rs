@@ -6,9 +6,11 @@
 //!   ¼ (v'ᵀ(M' − M)v' + vᵀ(M' − M)v),   which masses bring that turn with their line or dip into the water, and
 //!   (r' − r)·inertia − ½ (v + v')·½(M + M')(v' − v),   the dissipation of the scheme.
 //!
-//! On each spring, joint and weight that changes it dissipates (½ − α_f)(s' − s)·(r' − r), s being what that resists with: what its weights do beyond the
-//! mean of both. Over all of a linear system that nothing drives the two sum to no less than nothing; of one that is driven they may have
-//! either sign. What the mean does beyond what is stored, where springs slacken or turn within the step, is the error of the integration.
+//! On each joint and weight that changes it dissipates (½ − α_f)(s' − s)·(r' − r), s being what that resists with: what its weights do beyond the
+//! mean of both. Segments pull by the discrete gradient of their energy in the place of that mean ([`crate::physics::stretch_step`]): what it does is
+//! held or taken to the last bit, and (½ − α_f)(N' q' − N q)·(d' − d) is dissipated. Over all of a linear system that nothing drives these
+//! sum to no less than nothing; of one that is driven they may have either sign. What the mean does on joints and surfaces beyond what is
+//! stored is the error of the integration.
 //!
 //! Source: the discrete balance of Newmark's approximations, as in Krenk (2006), Comput. Methods Appl. Mech. Eng. 195, 6110-6124.
 
@@ -16,14 +18,14 @@ use nalgebra::Vector3;
 
 use super::super::implicit::Scheme;
 use super::{Flow, dry_part, tangent};
-use crate::dynamics::creep::{Creeping, Stretching};
+use crate::dynamics::reaction::tension;
 use crate::model::{End, FreePoint, Line, LineState, Model, Network, State, WaterAlong, joint};
 use crate::physics::morison::{DragCoefficients, drag};
 use crate::physics::seabed::ContactCoefficients;
-use crate::physics::stretch::total_tension;
 use crate::statics::assembly::rubbing::{resting_node, resting_point};
 use crate::statics::assembly::{
-    Workspace, end_moment, end_shear, faded_push, joint_damping_power, rates,
+    Workspace, end_moment, end_shear, faded_push, joint_damping_power, rates, stretch_step,
+    stretched,
 };
 
 /// A step that an implicit integrator has made.
@@ -58,7 +60,8 @@ pub fn flow(model: &Model, network: &Network, passed: &Passed) -> Flow {
     }
     for &line in &network.lines {
         flow.add(passed.inertia(model, line));
-        flow.numerical += passed.spring_dissipation(model, line);
+        flow.add(passed.stretching(model, line));
+        flow.numerical += passed.weight_and_joint_dissipation(model, line);
     }
     for &point in &network.free_points {
         flow.add(passed.point_inertia(model, point));
@@ -179,21 +182,38 @@ impl Passed<'_> {
         (0.5 - self.scheme.alpha_f) * (new - old)
     }
 
-    /// What the scheme dissipates on the springs and joints of a line, and on the buoyancy that it lacks out of the water [J].
-    fn spring_dissipation(&self, model: &Model, index: usize) -> f64 {
+    /// What the springs of a line take from its held ends, what they do not keep, and what the scheme dissipates on them [J].
+    fn stretching(&self, model: &Model, index: usize) -> Flow {
+        let line = &model.lines[index];
+        let shapes = self.states.map(|state| &state.lines[index]);
+        let n = line.segment_count();
+        let [a, b] = [End::A, End::B].map(|end| line.is_held(model, shapes[1], end));
+        let way = |node: usize| shapes[1].position[node] - shapes[0].position[node];
+        let mut flow = Flow::default();
+        for i in 0..n {
+            let (ends, step) = stretch_step(line, shapes, i, self.length());
+            let change = ends[1].force() - ends[0].force();
+            let beyond = (0.5 - self.scheme.alpha_f) * change;
+            let stretched = way(i + 1) - way(i);
+            flow.numerical += beyond.dot(&stretched);
+            flow.lost += step.mean.taken * line.segments.length[i];
+            let force = step.force() + beyond;
+            if i == 0 && a {
+                flow.given -= force.dot(&way(0));
+            }
+            if i + 1 == n && b {
+                flow.given += force.dot(&way(n));
+            }
+        }
+        flow
+    }
+
+    /// What the scheme dissipates on the joints of a line, and on the buoyancy that it lacks out of the water [J].
+    fn weight_and_joint_dissipation(&self, model: &Model, index: usize) -> f64 {
         let line = &model.lines[index];
         let shapes = self.states.map(|state| &state.lines[index]);
         let way = |i: usize| shapes[1].position[i] - shapes[0].position[i];
         let mut sum = 0.0;
-        for i in 0..line.segment_count() {
-            let stretched = way(i + 1) - way(i);
-            let ends = shapes.map(|shape| Segment::of(line, shape, i));
-            let works = [0, 1].map(|side| {
-                let force = ends[side].elastic.max(0.0 - line.compression_max(i));
-                force * ends[side].direction.dot(&stretched)
-            });
-            sum += self.beyond_mean(works);
-        }
         if let Some(surface) = &line.surface {
             for i in 0..=line.segment_count() {
                 let weights = shapes.map(|shape| surface.node(i, &shape.position).weight);
@@ -261,42 +281,6 @@ impl Mass {
     }
 }
 
-/// A segment at one end of a step.
-struct Segment {
-    direction: Vector3<f64>,
-    /// Strain [-] and its rate [1/s].
-    now: Stretching,
-    /// Forces of its spring and of its damper [N].
-    elastic: f64,
-    damping: f64,
-    creep: Option<Creeping>,
-}
-
-impl Segment {
-    fn of(line: &Line, shape: &LineState, i: usize) -> Segment {
-        let segments = &line.segments;
-        let pair = |values: &[Vector3<f64>]| [values[i], values[i + 1]];
-        let [low, high] = pair(&shape.position);
-        let now = Stretching::of(line, i, [low, high], pair(&shape.velocity));
-        let creep = Creeping::of(line, shape, i);
-        let (elastic, damping) = match &creep {
-            Some(creep) => creep.forces(now),
-            None => (
-                segments.axial_stiffness[i] * segments.law[i].at(now.strain).force,
-                segments.axial_damping[i] * now.rate,
-            ),
-        };
-        let direction = (high - low).try_normalize(0.0);
-        Segment {
-            direction: direction.unwrap_or_else(Vector3::zeros),
-            now,
-            elastic,
-            damping,
-            creep,
-        }
-    }
-}
-
 impl Side<'_> {
     /// Power of the forces at this end on the mean velocities of the step [W].
     fn power(&self, network: &Network) -> Flow {
@@ -328,28 +312,18 @@ impl Side<'_> {
         let after = &self.passed.states[1].lines[index];
         let [a, b] = [End::A, End::B].map(|end| line.is_held(model, after, end));
         let mut flow = Flow::default();
-        for i in 0..n {
-            let segment = Segment::of(line, shape, i);
+        let damped = if shape.creep.is_empty() { n } else { 0 }; // a memory has its dampers in what is taken over the step
+        for i in 0..damped {
+            let segment = stretched(line, shape, i);
+            let damping = tension(line, shape, i, negative) - segment.spring.tension;
+            let force = damping * segment.direction();
             let [low, high] = [i, i + 1].map(|node| self.passed.velocity_mean(index, node));
-            let (direction, unstretched) = (segment.direction, line.segments.length[i]);
-            let stretching = direction.dot(&(high - low));
-            let least = 0.0 - line.compression_max(i);
-            let elastic = segment.elastic.max(least);
-            if let Some(creep) = &segment.creep {
-                let rate = stretching / unstretched;
-                let now = Stretching {
-                    rate,
-                    ..segment.now
-                };
-                flow.lost += creep.loss(now, elastic) * unstretched;
-            }
-            let tension = total_tension(segment.elastic, segment.damping, least, negative);
-            flow.lost += (tension - elastic) * stretching;
+            flow.lost += force.dot(&(high - low));
             if i == 0 && a {
-                flow.given -= tension * direction.dot(&low);
+                flow.given -= force.dot(&low);
             }
             if i + 1 == n && b {
-                flow.given += tension * direction.dot(&high);
+                flow.given += force.dot(&high);
             }
         }
         for i in usize::from(a)..=n - usize::from(b) {

@@ -7,7 +7,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::{LineWork, Weights};
-use crate::math::block_tridiagonal::Ends;
+use crate::math::block_tridiagonal::{Ends, Pivots};
 use crate::math::pentadiagonal::{Blocks, Chain};
 use crate::model::{Bending, End, Line, LineState, PointState, joint};
 use crate::physics::bending::Hessian;
@@ -136,14 +136,15 @@ impl LineWork {
         }
     }
 
-    /// Removes the nodes between the ends from the system; `None` if it is not positive definite.
-    pub(super) fn eliminate(&mut self, first_free: bool) -> Option<Ends> {
+    /// Removes the nodes between the ends from the system; `None` if a pivot cannot be taken.
+    pub(super) fn eliminate(&mut self, first_free: bool, pivots: Pivots) -> Option<Ends> {
         let Some(work) = self.bending.as_mut().filter(|work| work.active) else {
             return self.chain.eliminate(
                 &self.diagonal,
                 &self.coupling,
                 &self.residual,
                 first_free,
+                pivots,
             );
         };
         for (i, coupling) in self.coupling.iter().enumerate() {
@@ -156,7 +157,8 @@ impl LineWork {
             below: &work.below,
             far: &work.far,
         };
-        work.chain.eliminate(blocks, &self.residual, first_free)
+        work.chain
+            .eliminate(blocks, &self.residual, first_free, pivots)
     }
 
     /// The whole solution from that of the ends.

@@ -1,7 +1,10 @@
 //! Viscoelastic segments in the implicit integrators: their memory at the end of a step is a function of the strain there.
 
+use super::Stretch;
 use super::line::Geometry;
+use super::stretch::Response;
 use crate::model::{Line, LineState};
+use crate::physics::stretch_step::Mean;
 use crate::physics::viscoelastic::Viscoelastic;
 
 /// What a line knows of its memory in a step.
@@ -12,17 +15,8 @@ pub(super) struct CreepWork {
     start: Vec<[f64; 2]>,
     /// Length of the step [s].
     dt: f64,
-}
-
-/// How a segment responds to its strain.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Response {
-    /// Elastic force [N].
-    pub elastic: f64,
-    /// Its slope with the strain [N].
-    pub tangent: f64,
-    /// Damping of the strain rate [N s].
-    pub damping: f64,
+    /// Whether the line has a memory: it has none at rest.
+    pub moves: bool,
 }
 
 impl CreepWork {
@@ -33,12 +27,14 @@ impl CreepWork {
             start: vec![[0.0; 2]; laws.len()],
             laws,
             dt: 0.0,
+            moves: false,
         })
     }
 
     /// Begins a step of `dt` [s] from a state.
     pub fn begin(&mut self, line: &Line, state: &LineState, dt: f64) {
         self.dt = dt;
+        self.moves = !state.creep.is_empty();
         for (i, start) in self.start.iter_mut().enumerate() {
             *start = [strain(line, state, i), memory(state, i)];
         }
@@ -52,7 +48,7 @@ impl CreepWork {
         state: &LineState,
         i: usize,
         strain: f64,
-        at_end: bool,
+        when: Stretch,
     ) -> Response {
         if state.creep.is_empty() {
             let ea = line.segments.axial_stiffness[i];
@@ -63,17 +59,32 @@ impl CreepWork {
             };
         }
         let law = &self.laws[i];
-        let (slow, slope) = if at_end {
+        let (slow, slope) = if when == Stretch::OverStep {
             let [before, slow] = self.start[i];
-            let creep = law.creep([before, strain], slow, self.dt);
-            (creep.slow, creep.slope)
+            let creep = law.step([before, strain], slow, self.dt);
+            (creep.slow, creep.slow_slope)
         } else {
             (memory(state, i), 0.0)
         };
         Response {
             elastic: law.elastic(strain, slow),
             tangent: law.stiffness + law.memory * slope,
-            damping: law.damping,
+            damping: if when == Stretch::Now {
+                law.damping
+            } else {
+                0.0
+            },
+        }
+    }
+
+    /// Tension of segment `i` over the step to a strain [-], as if it could push where it `keeps` pulling by the last solution.
+    #[inline(always)]
+    pub fn mean(&self, i: usize, strain: f64, keeps: bool) -> Mean {
+        let ([before, slow], law) = (self.start[i], &self.laws[i]);
+        let strains = [before, strain];
+        match keeps {
+            true => law.held(strains, slow, self.dt).mean,
+            false => law.step(strains, slow, self.dt).mean,
         }
     }
 
@@ -85,7 +96,7 @@ impl CreepWork {
         for (i, law) in self.laws.iter().enumerate() {
             let [before, slow] = self.start[i];
             state.creep[i] = law
-                .creep([before, strain(line, state, i)], slow, self.dt)
+                .step([before, strain(line, state, i)], slow, self.dt)
                 .slow;
         }
     }

@@ -5,11 +5,13 @@ use nalgebra::{Matrix3, Vector3};
 use super::bending::Parts;
 use super::creep::CreepWork;
 use super::parted::Parted;
-use super::{BendingWork, StaticCase, Weights, surface};
+use super::stretch::StepEnd;
+use super::{BendingWork, StaticCase, Stretch, Weights, surface};
 use crate::math::block_tridiagonal::Chain;
 use crate::model::{Dry, Line, LineState, Model, WaterAlong};
 use crate::physics::morison::{DragCoefficients, drag, drag_slope};
 use crate::physics::stretch::total_tension;
+use crate::physics::stretch_step::Stretched;
 
 /// Scratch of a line.
 #[derive(Debug, Clone)]
@@ -28,6 +30,8 @@ pub(crate) struct LineWork {
     pub slope: Vec<f64>,
     /// Its direction q [-].
     pub direction: Vec<Vector3<f64>>,
+    /// Segments at the start of the step.
+    pub(super) start: Vec<Stretched>,
     /// What the time integrator carries over from the last step, per node [N].
     pub history: Vec<Vector3<f64>>,
     /// Half the range of penetrations over which the seabed damper fades in, per node [m].
@@ -55,9 +59,9 @@ pub(crate) struct LineWork {
 /// A segment as it lies.
 pub(super) struct Geometry {
     /// Length [m].
-    length: f64,
+    pub(super) length: f64,
     /// Direction [-]; zero where both nodes coincide.
-    direction: Vector3<f64>,
+    pub(super) direction: Vector3<f64>,
     /// l/l₀ − 1 [-], without the cancellation of the subtraction.
     pub(super) strain: f64,
 }
@@ -77,7 +81,7 @@ impl Geometry {
 
     /// q qᵀ.
     #[inline(always)]
-    fn along(&self) -> Matrix3<f64> {
+    pub(super) fn along(&self) -> Matrix3<f64> {
         self.direction * self.direction.transpose()
     }
 }
@@ -94,6 +98,7 @@ impl LineWork {
             elastic: vec![0.0; n],
             slope: vec![0.0; n],
             direction: vec![Vector3::zeros(); n],
+            start: vec![Stretched::default(); n],
             history: vec![Vector3::zeros(); n + 1],
             reach: vec![0.0; n + 1],
             push: vec![0.0; n],
@@ -258,20 +263,12 @@ impl LineWork {
         i: usize,
     ) {
         let unstretched = line.segments.length[i];
-        let (ea, ba) = (
-            line.segments.axial_stiffness[i],
-            line.segments.axial_damping[i],
-        );
         let g = Geometry::new(state.position[i], state.position[i + 1], unstretched);
         let rate = state.velocity[i + 1] - state.velocity[i]; // ġ [m/s]
-        let stretch = line.segments.law[i].at(g.strain);
-        let (mut elastic, mut tangent, mut ba) = (ea * stretch.force, ea * stretch.slope, ba);
-        if let Some(creep) = &self.creep {
-            let taken = creep.respond(line, state, i, g.strain, weights.predicted);
-            (elastic, tangent, ba) = (taken.elastic, taken.tangent, taken.damping);
-        }
+        let response = self.respond(line, state, i, g.strain, weights.stretch);
+        let (elastic, ba) = (response.elastic, response.damping);
         let total = elastic + ba * g.direction.dot(&rate) / unstretched;
-        let predicted = weights.predicted && !negative_tension;
+        let predicted = weights.stretch == Stretch::OverStep && !negative_tension;
         let least = 0.0 - self.push[i];
         let taut = match (negative_tension, predicted) {
             (true, _) => elastic > least,
@@ -283,13 +280,17 @@ impl LineWork {
             false if taut => total,
             false => least,
         };
+        let pull = if predicted { self.tension[i] } else { tension };
         let mut stiffness = Matrix3::zeros();
         if TANGENT && g.length > 0.0 {
             let damps = taut || negative_tension;
-            let spring = if taut { tangent / unstretched } else { 0.0 };
+            let spring = if taut {
+                response.tangent / unstretched
+            } else {
+                0.0
+            };
             let damper = if damps { ba / unstretched } else { 0.0 };
             let along = weights.position * spring + weights.velocity * damper;
-            let pull = if predicted { self.tension[i] } else { tension };
             let least = if weights.convex { 0.0 } else { least };
             let across = weights.position * pull.max(least) / g.length;
             stiffness = Matrix3::from_diagonal_element(across) + (along - across) * g.along();
@@ -303,7 +304,16 @@ impl LineWork {
             self.tension[i] = tension;
         }
         (self.elastic[i], self.direction[i]) = (total, g.direction);
-        let force = weights.force * tension * g.direction;
+        let mut force = weights.force * tension * g.direction;
+        if weights.stretch == Stretch::OverStep {
+            let end = StepEnd {
+                keeps: taut && total <= least,
+                excess: pull.max(least) - tension,
+            };
+            let beyond = self.beyond_mean(line, i, &g, response, end);
+            force += beyond.force;
+            stiffness += beyond.stiffness;
+        }
         self.add_segment(i, force, stiffness);
     }
 

@@ -16,7 +16,7 @@ const FORCES: Weights = Weights {
     position: 0.0,
     velocity: 0.0,
     acceleration: 0.0,
-    predicted: false,
+    stretch: crate::statics::assembly::Stretch::Now,
     convex: false,
 };
 
