@@ -13,7 +13,8 @@
 //! that would push carries nothing, and its slow part contracts by itself, BA_s ε̇₁ = −EA₁ ε₁. For BA_d = 0 this is the standard linear
 //! solid: storage EA_d − (EA_d − EA_s)/(1 + ω²τ²) and loss (EA_d − EA_s) ωτ/(1 + ω²τ²) at the circular frequency ω, τ = BA_s/(EA_d + EA₁).
 //!
-//! The slow spring holds ½EA₁ ε₁², the fast one ½EA_d (ε − ε₁)² while it is stretched; what work goes beyond that is lost.
+//! The slow spring holds ½EA₁ ε₁², the fast one ½EA_d e² of e = ε − ε₁ while it is stretched; what work goes beyond that is lost. A step within which the fast
+//! one slackens or snaps makes nothing of it: there it pulls with the discrete gradient of its energy, and its damper with BA_d (e'₊ − e₊)/Δt.
 //!
 //! Source: the law of MoorDyn's `EA_s|EA_d`, `BA_s|BA_d` line types, `source/Line.cpp` of MoorDyn-C, after Hall, Duong & Lozon (2023), IOWTC2023, on
 //! semi-taut moorings with polyester ropes; closed forms derived here. Valid for small strain and EA_d > EA_s > 0, BA_s > 0.
