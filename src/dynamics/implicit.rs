@@ -47,8 +47,8 @@ const NEWTON_TOLERANCE: f64 = 1e-7;
 const ITERATIONS_MAX: usize = 15;
 /// Iterations after which one that is not half as long as the last is taken for one that goes in circles.
 const CIRCLING: usize = 5;
-/// Parts that a step may be cut into by halving: fourteen halvings.
-const PARTS_MAX: usize = 16384;
+/// Parts that a step may be cut into by halving: twelve halvings.
+const PARTS_MAX: usize = 4096;
 
 /// Parameters of the integrator [-].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -227,7 +227,7 @@ pub struct Span {
 /// velocity and acceleration of the points that forces do not move. `state.time` is left to the caller.
 ///
 /// # Errors
-/// Newton's method failed even in steps 16 384 times smaller; the state is then as it was.
+/// Newton's method failed even in steps 4096 times smaller; the state is then as it was.
 pub fn advance<K: Fn(usize, f64) -> Kinematics>(
     model: &Model,
     number: usize,
