@@ -256,7 +256,7 @@ fn snapping(axial_stiffness: f64, contact: &str) -> Model {
 fn a_snapping_chain_stays_bounded_also_a_hundred_times_stiffer() {
     for (axial_stiffness, contact, solves) in [
         (1e4, "regularised", 2.5),
-        (1e6, "regularised", 5.5),
+        (1e6, "regularised", 4.0),
         (1e4, "as_given", 5.0),
     ] {
         let model = snapping(axial_stiffness, contact);
@@ -282,7 +282,7 @@ fn a_snapping_chain_stays_bounded_also_a_hundred_times_stiffer() {
                 .all(|r| r.z > -3.1 && r.z < 0.5)
         );
         assert!(
-            counters.solves as f64 <= solves * 2000.0 && counters.halvings <= 250,
+            counters.solves as f64 <= solves * 2000.0 && counters.halvings <= 60,
             "EA {axial_stiffness}, {contact}: {counters:?}"
         );
     }
@@ -330,42 +330,62 @@ fn energy(model: &Model, state: &State) -> f64 {
     of_nodes + of_segments
 }
 
+/// Energies of a falling cable [J].
+struct Fall {
+    /// At rest in the end.
+    lowest: f64,
+    /// In a straight line through the ends, where it sets out.
+    first: f64,
+    /// After every step.
+    then: Vec<f64>,
+}
+
+/// Lets a cable fall for a number of steps of 10 ms.
+fn fall(model: &Model, scheme: Scheme, steps: usize) -> Fall {
+    let held = at_rest(model);
+    let mut state = statics(model);
+    let lowest = energy(model, &state);
+    state.lines[0].position = model.lines[0]
+        .given_shape(Vector3::zeros(), Vector3::new(9.5, 0.0, 0.0))
+        .unwrap();
+    let first = energy(model, &state);
+    let mut work = Workspace::new(model);
+    implicit::start(model, 0, &mut state, &held, 0.0, &mut work);
+    assert!(
+        (state.lines[0].acceleration[7].z + model.gravity).abs() < 1e-9,
+        "it falls freely at first"
+    );
+    let step = |number: usize| {
+        let [start, end] = [number, number + 1].map(|n| 0.01 * n as f64);
+        let span = Span {
+            start,
+            end,
+            step_max: 0.01,
+        };
+        implicit::advance(model, 0, &mut state, &held, span, &scheme, &mut work).unwrap();
+        energy(model, &state)
+    };
+    Fall {
+        lowest,
+        first,
+        then: (0..steps).map(step).collect(),
+    }
+}
+
 #[test]
 fn a_falling_cable_that_snaps_taut_never_gains_energy() {
     for axial_stiffness in [1e4, 1e6, 1e8] {
         let model = falling(axial_stiffness);
-        let held = at_rest(&model);
-        let mut state = statics(&model);
-        let lowest = energy(&model, &state);
-        state.lines[0].position = model.lines[0]
-            .given_shape(Vector3::zeros(), Vector3::new(9.5, 0.0, 0.0))
-            .unwrap();
-        let first = energy(&model, &state);
-        let mut work = Workspace::new(&model);
-        implicit::start(&model, 0, &mut state, &held, 0.0, &mut work);
+        let fall = fall(&model, Scheme::generalised_alpha(SPECTRAL_RADIUS), 1000);
+        let drop = fall.first - fall.lowest;
+        let highest = fall.then.iter().copied().fold(f64::MIN, f64::max);
         assert!(
-            (state.lines[0].acceleration[7].z + model.gravity).abs() < 1e-9,
-            "it falls freely at first"
-        );
-        let scheme = Scheme::generalised_alpha(SPECTRAL_RADIUS);
-        let mut highest = first;
-        for step in 0..1000 {
-            let start = 0.01 * step as f64;
-            let span = Span {
-                start,
-                end: start + 0.01,
-                step_max: 0.01,
-            };
-            implicit::advance(&model, 0, &mut state, &held, span, &scheme, &mut work).unwrap();
-            highest = energy(&model, &state).max(highest);
-        }
-        let drop = first - lowest;
-        assert!(
-            highest - first < 1e-3 * drop,
-            "EA {axial_stiffness}: {first} J grew to {highest} J"
+            highest - fall.first < 1e-3 * drop,
+            "EA {axial_stiffness}: {} J grew to {highest} J",
+            fall.first
         );
         assert!(
-            energy(&model, &state) - lowest < 0.9 * drop,
+            fall.then[999] - fall.lowest < 0.9 * drop,
             "EA {axial_stiffness}: nothing was lost"
         );
     }
@@ -376,7 +396,6 @@ fn whatever_the_dissipation_no_snap_makes_energy_and_without_it_none_is_lost() {
     for axial_stiffness in [1e4, 1e6] {
         let mut model = falling(axial_stiffness);
         model.lines[0].segments.axial_damping.fill(0.0);
-        let held = at_rest(&model);
         for scheme in [
             Scheme::generalised_alpha(0.5),
             Scheme::generalised_alpha(0.8),
@@ -384,33 +403,13 @@ fn whatever_the_dissipation_no_snap_makes_energy_and_without_it_none_is_lost() {
             Scheme::bossak(-0.1, None),
             Scheme::bossak(-0.3, None),
         ] {
-            let mut state = statics(&model);
-            let lowest = energy(&model, &state);
-            state.lines[0].position = model.lines[0]
-                .given_shape(Vector3::zeros(), Vector3::new(9.5, 0.0, 0.0))
-                .unwrap();
-            let drop = energy(&model, &state) - lowest;
-            let mut work = Workspace::new(&model);
-            implicit::start(&model, 0, &mut state, &held, 0.0, &mut work);
-            for step in 0..500 {
-                let start = 0.01 * step as f64;
-                let span = Span {
-                    start,
-                    end: start + 0.01,
-                    step_max: 0.01,
-                };
-                implicit::advance(&model, 0, &mut state, &held, span, &scheme, &mut work).unwrap();
-                let above = energy(&model, &state) - lowest;
-                assert!(
-                    above < 1.001 * drop,
-                    "EA {axial_stiffness} {scheme:?}: {above} of {drop} J"
-                );
-                if scheme == Scheme::generalised_alpha(1.0) {
-                    assert!(
-                        above > 0.999 * drop,
-                        "EA {axial_stiffness}: {above} of {drop} J"
-                    );
-                }
+            let lossless = scheme == Scheme::generalised_alpha(1.0);
+            let told = format!("EA {axial_stiffness}, {scheme:?}");
+            let fall = fall(&model, scheme, 500);
+            for energy in fall.then {
+                let kept = (energy - fall.lowest) / (fall.first - fall.lowest);
+                assert!(kept < 1.001, "{told}: {kept} of the energy");
+                assert!(!lossless || kept > 0.999, "{told}: {kept} of the energy");
             }
         }
     }

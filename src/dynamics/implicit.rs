@@ -45,7 +45,7 @@ pub const BOSSAK_ALPHA: f64 = -0.3;
 const NEWTON_TOLERANCE: f64 = 1e-7;
 /// Newton iterations of a step.
 const ITERATIONS_MAX: usize = 15;
-/// Iterations after which one that is not half as long as the last is taken for one that goes in circles.
+/// Iterations after which corrections that fall too slowly are taken for ones that go in circles.
 const CIRCLING: usize = 5;
 /// Parts that a step may be cut into by halving: twelve halvings.
 const PARTS_MAX: usize = 4096;
@@ -417,7 +417,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
         self.predict(state, dt);
         hold(self.model, self.network, state, self.held, t1);
         let tolerance = NEWTON_TOLERANCE * self.shortest_segment();
-        let mut last = f64::INFINITY;
+        let (mut last, mut part) = (f64::INFINITY, 1.0);
         for iteration in 0..ITERATIONS_MAX {
             work.assemble_dynamic::<true>(self.model, self.network, state, t1, &new);
             work.add_remembered(self.model, self.network);
@@ -430,12 +430,10 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
             if !correction.is_finite() {
                 return false;
             }
-            let circles = iteration >= CIRCLING && correction > 0.5 * last;
-            let part = if circles && correction > tolerance {
-                0.5
-            } else {
-                1.0
-            };
+            // A part p of Newton's step leaves 1 − p of it where forces are smooth: corrections midway between that and the last go in circles.
+            let left_over = (1.0 - 0.5 * part) * last;
+            let circles = iteration >= CIRCLING && correction > left_over.max(tolerance);
+            part = if circles { 0.5 } else { 1.0 };
             last = correction;
             self.correct(state, work, part, rates);
             let consistent = work.predict_tensions(self.model, self.network, part);
