@@ -491,7 +491,8 @@ impl AxialWork {
     #[inline(always)]
     fn choose_springs<const BOOKS: bool>(&mut self, step: Step, sizes: &Sizes) {
         let line = &mut self.layout;
-        if line.creep.is_some() {
+        if let Some(creep) = &mut line.creep {
+            creep.prepare(step.drift);
             line.renew_ghosts(self.parted);
             self.prepare_geometry();
             return self.prepare_segments::<{ springs::CREEPING }, BOOKS>(step, sizes);
@@ -516,9 +517,24 @@ impl AxialWork {
         }
         if self.layout.creep.is_some() {
             self.layout.position.wrap();
-            self.layout.creep(step.drift);
+            self.creep(step);
         }
         self.meet_surface(Some(step));
+    }
+
+    /// Takes the memory of viscoelastic segments to t_{n+1}, where the nodes now are, and books what their dampers took and what the averaging
+    /// dissipates: the work of T̄ less that of the tension which the memory has over the step.
+    #[inline(always)]
+    fn creep(&mut self, step: Step) {
+        let (half, kick) = (Lanes::splat(0.5), Lanes::splat(step.kick));
+        for at in self.layout.rows() {
+            let crept = self.layout.creep(at, step);
+            let (velocity, row) = (&self.layout.velocity, &self.rows.segments[at - 1]);
+            let along = row.direction.dot(velocity.load(at + 1) - velocity.load(at));
+            let moved = half * kick * (row.along + along);
+            self.lost = self.lost + crept.taken;
+            self.numerical = self.numerical + (row.tension - crept.tension) * moved;
+        }
     }
 
     /// Books what the held ends gave in the step; `velocity_before` holds the new velocities.

@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 
+use super::leapfrog::Step;
 use crate::math::fold::{Column, Fold, Slot};
 use crate::math::lanes::Lanes;
 use crate::model::{Line, LineState};
@@ -50,6 +51,19 @@ impl Creeping {
         Some(Creeping { law, slow })
     }
 
+    /// The same at the time of the velocities: half a step before where a leapfrog serves.
+    pub fn at_velocities(line: &Line, state: &LineState, i: usize) -> Option<Creeping> {
+        let now = Creeping::of(line, state, i)?;
+        let before = state.half_step.creep.get(i);
+        let slow = before.copied().unwrap_or(now.slow);
+        Some(Creeping { slow, ..now })
+    }
+
+    /// Energy per unstretched length [N] at a strain [-].
+    pub fn energy(&self, strain: f64) -> f64 {
+        self.law.energy(strain, self.slow)
+    }
+
     /// Elastic and damping force [N].
     pub fn forces(&self, now: Stretching) -> (f64, f64) {
         let elastic = self.law.elastic(now.strain, self.slow);
@@ -61,37 +75,49 @@ impl Creeping {
         let (elastic, damping) = self.forces(now);
         total_tension(elastic, damping, 0.0 - push, negative_tension)
     }
-
-    /// Energy per unstretched length [N] at a strain [-] that was passed `lag` [s] ago.
-    pub fn energy(&self, strain: f64, now: Stretching, lag: f64) -> f64 {
-        let rate = self.law.creep_rate(now.strain, now.rate, self.slow);
-        self.law.energy(strain, self.slow - lag * rate)
-    }
 }
 
 /// Laws and memory of a line's segments, laid out for the leapfrog kernels; padding has none.
 #[derive(Debug, Clone)]
 pub(super) struct CreepArrays {
-    /// Number of segments.
-    count: usize,
+    laws: Vec<Viscoelastic>,
     /// K [N] and C [N s].
     pub stiffness: Column,
     pub damping: Column,
     /// G [N].
     memory: Column,
-    /// EA₁ and EA_d [N].
-    slow_stiffness: Column,
+    /// EA_d [N].
     fast_stiffness: Column,
-    /// BA_d [N s].
+    /// BA_s and BA_d [N s].
+    slow_damping: Column,
     fast_damping: Column,
-    /// 1/B [1/(N s)].
-    yielding: Column,
-    /// EA₁/BA_s [1/s].
-    contraction: Column,
+    /// How the memory goes on over a step, and that step [s].
+    relaxation: Relaxing,
+    step: f64,
     /// Strain at t_n [-].
     pub strain: Column,
     /// Slow strain at t_n [-].
     slow: Column,
+    /// Strain and slow strain at t_{n−½} [-].
+    half: [Column; 2],
+}
+
+/// [`Relaxation`] of the segments.
+#[derive(Debug, Clone)]
+struct Relaxing {
+    kept: Column,
+    first: Column,
+    last: Column,
+    slack: Column,
+}
+
+/// What viscoelastic segments do from t_{n−½} to t_{n+½}.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Crept {
+    /// Tension by the discrete gradient of the springs' energy [N].
+    pub tension: Lanes,
+    /// Energy that dampers take [J], or per unstretched length [N].
+    pub taken: Lanes,
 }
 
 impl CreepArrays {
@@ -106,31 +132,66 @@ impl CreepArrays {
             let values: Vec<f64> = laws.iter().map(value).collect();
             fold.column(&values, 0.0)
         };
+        let zero = || fold.column(&[], 0.0);
         CreepArrays {
-            count: laws.len(),
+            laws: laws.to_vec(),
             stiffness: each(|law| law.stiffness),
             damping: each(|law| law.damping),
             memory: each(|law| law.memory),
-            slow_stiffness: each(|law| law.slow),
             fast_stiffness: each(|law| law.fast),
+            slow_damping: each(|law| law.slow_damping()),
             fast_damping: each(|law| law.fast_damping),
-            yielding: each(|law| law.yielding),
-            contraction: each(|law| law.contraction),
-            strain: each(|_| 0.0),
-            slow: each(|_| 0.0),
+            relaxation: Relaxing {
+                kept: zero(),
+                first: zero(),
+                last: zero(),
+                slack: zero(),
+            },
+            step: 0.0,
+            strain: zero(),
+            slow: zero(),
+            half: [zero(), zero()],
         }
     }
 
-    /// Takes over the slow strains of a line.
-    pub fn load(&mut self, slow: &[f64]) {
-        self.slow.fill(0.0);
-        self.slow.assign(slow);
+    /// Prepares steps of `dt` [s].
+    #[inline]
+    pub fn prepare(&mut self, dt: f64) {
+        if dt != self.step {
+            self.relax(dt);
+        }
     }
 
-    /// Hands them back.
-    pub fn store(&self, slow: &mut Vec<f64>) {
-        slow.clear();
-        slow.extend(self.slow.values(self.count));
+    fn relax(&mut self, dt: f64) {
+        self.step = dt;
+        let of = &mut self.relaxation;
+        for (at, law) in self.strain.fold().slots().zip(&self.laws) {
+            let relaxation = law.relaxation(dt);
+            of.kept[at] = relaxation.kept;
+            of.first[at] = relaxation.first;
+            of.last[at] = relaxation.last;
+            of.slack[at] = relaxation.slack;
+        }
+    }
+
+    /// Takes over the slow strains of a line [-], at t_n and half a step before, and its strains then [-].
+    pub fn load(&mut self, [slow, half]: [&[f64]; 2], strains: impl Iterator<Item = f64>) {
+        for (column, values) in [(&mut self.slow, slow), (&mut self.half[1], half)] {
+            column.fill(0.0);
+            column.assign(values);
+        }
+        self.half[0].fill(0.0);
+        for (at, strain) in self.half[0].fold().slots().zip(strains) {
+            self.half[0][at] = strain;
+        }
+    }
+
+    /// Hands the slow strains back.
+    pub fn store(&self, slow: &mut Vec<f64>, half: &mut Vec<f64>) {
+        for (values, column) in [(slow, &self.slow), (half, &self.half[1])] {
+            values.clear();
+            values.extend(column.values(self.laws.len()));
+        }
     }
 
     /// [`Viscoelastic::elastic`] at t_n.
@@ -145,64 +206,60 @@ impl CreepArrays {
         self.stiffness[at] * strain + self.memory[at] * self.slow[at]
     }
 
-    /// [`Viscoelastic::loss`] at t_n.
+    /// Elastic force [N] after the step at the strain of t_n, and its slope with the strain then [N].
     #[inline(always)]
-    pub fn loss(&self, at: usize, strain: Lanes, rate: Lanes, tension: Lanes) -> Lanes {
+    pub fn ahead(&self, at: usize, strain: Lanes) -> (Lanes, Lanes) {
         let load = |values: &Column| values.load(at);
-        let (slow, slow_stiffness) = (load(&self.slow), load(&self.slow_stiffness));
-        let fast_stiffness = load(&self.fast_stiffness);
-        let total = self.elastic(at, strain) + load(&self.damping) * rate;
-        let pull = fast_stiffness * (strain - slow) - slow_stiffness * slow;
-        let yielding = load(&self.yielding) * (pull + load(&self.fast_damping) * rate);
-        let slack = Lanes::splat(0.0) - load(&self.contraction) * slow;
-        let creep = total.choose(yielding, slack);
-        let fast = fast_stiffness * (strain - slow).positive();
-        tension * rate - slow_stiffness * slow * creep - fast * (rate - creep)
-    }
-
-    /// Elastic force [N] after a step of `dt` [s] at the strain of t_n, and its slope with the strain then [N].
-    #[inline(always)]
-    pub fn ahead(&self, at: usize, strain: Lanes, dt: f64) -> (Lanes, Lanes) {
-        let load = |values: &Column| values.load(at);
-        let (slow, memory) = (load(&self.slow), load(&self.memory));
-        let share = self.share(at, dt);
-        let both = load(&self.fast_stiffness) + load(&self.slow_stiffness);
-        let pull = load(&self.fast_stiffness) * strain - both * slow;
-        let crept = slow + share * Lanes::splat(dt) * pull;
-        let half = Lanes::splat(0.5 * dt);
-        let slope = share * (half * load(&self.fast_stiffness) + load(&self.fast_damping));
+        let (of, memory) = (&self.relaxation, load(&self.memory));
+        let last = load(&of.last);
+        let crept = load(&of.kept) * load(&self.slow) + (load(&of.first) + last) * strain;
         let stiffness = load(&self.stiffness);
         (
             stiffness * strain + memory * crept,
-            stiffness + memory * slope,
+            stiffness + memory * last,
         )
     }
 
-    /// 1/(B + ½Δt (EA_d + EA₁)) [1/(N s)].
+    /// Takes the memory from t_n to t_{n+1} by [`Viscoelastic::relaxation`], to strains of half a step after t_n and a whole one; what both halves around
+    /// t_n come to.
     #[inline(always)]
-    fn share(&self, at: usize, dt: f64) -> Lanes {
+    pub fn advance(&mut self, at: usize, strains: [Lanes; 2], step: Step) -> Crept {
         let load = |values: &Column| values.load(at);
-        let yielding = load(&self.yielding);
-        let both = load(&self.fast_stiffness) + load(&self.slow_stiffness);
-        yielding * (Lanes::splat(1.0) + Lanes::splat(0.5 * dt) * both * yielding).recip()
+        let (of, half) = (&self.relaxation, Lanes::splat(0.5));
+        let (slow, before, now) = (load(&self.slow), load(&self.strain), strains[1]);
+        let crept = load(&of.kept) * slow + load(&of.first) * before + load(&of.last) * now;
+        let twice = load(&self.stiffness) * (before + now) + load(&self.memory) * (slow + crept);
+        let impulse =
+            half * Lanes::splat(step.drift) * twice + load(&self.damping) * (now - before);
+        let slack = (load(&of.slack) * slow).positive();
+        let after = impulse.choose(crept, slack);
+        self.slow.store(after, at);
+        self.pass_half(at, [strains[0], half * (slow + after)], step.kick)
     }
 
-    /// [`Viscoelastic::creep`] from t_n to the strain after a step of `dt` [s].
+    /// Goes on by a step of `kick` [s] to a strain and a slow strain of half a step later: the fast part pulls with the discrete gradient of its energy
+    /// and with its damper, as in [`Viscoelastic::step`].
     #[inline(always)]
-    pub fn advance(&mut self, at: usize, now: Lanes, dt: f64) {
+    fn pass_half(&mut self, at: usize, after: [Lanes; 2], kick: f64) -> Crept {
         let load = |values: &Column| values.load(at);
-        let (slow, before) = (load(&self.slow), load(&self.strain));
-        let (half, step, one) = (Lanes::splat(0.5), Lanes::splat(dt), Lanes::splat(1.0));
-        let (mean, change) = (half * (before + now), now - before);
-        let both = load(&self.fast_stiffness) + load(&self.slow_stiffness);
-        let pull = load(&self.fast_stiffness) * mean - both * slow;
-        let moved = step * pull + load(&self.fast_damping) * change;
-        let crept = slow + self.share(at, dt) * moved;
-        let elastic = load(&self.stiffness) * mean + load(&self.memory) * half * (slow + crept);
-        let impulse = step * elastic + load(&self.damping) * change;
-        let part = half * step * load(&self.contraction);
-        let slack = (slow * (one - part) * (one + part).recip()).positive();
-        self.slow.store(impulse.choose(crept, slack), at);
+        let (half, rate) = (Lanes::splat(0.5), Lanes::splat(1.0 / kick));
+        let before = self.half.each_ref().map(load);
+        let crept = after[1] - before[1];
+        let fast = [before, after].map(|[strain, slow]| strain - slow);
+        let [pulled, pulls] = fast.map(Lanes::positive);
+        let (change, pull) = (fast[1] - fast[0], pulls - pulled);
+        let least = Lanes::splat(f64::MIN_POSITIVE);
+        let share = pull.abs() * (change.abs() + least).recip();
+        let mean = half * load(&self.fast_stiffness) * (pulled + pulls);
+        let tension = (mean * share + load(&self.fast_damping) * pull * rate).positive();
+        let of_slow = load(&self.slow_damping) * crept * crept * rate;
+        for (column, value) in self.half.iter_mut().zip(after) {
+            column.store(value, at);
+        }
+        Crept {
+            tension,
+            taken: of_slow + tension * change - mean * pull,
+        }
     }
 }
 
@@ -217,25 +274,53 @@ mod tests {
             Viscoelastic::plain(1.0e8, 1.0e5),
             Viscoelastic::new([1.0e8, 3.0e8], [1.0e8, 0.0]),
         ];
-        for (before, now, rate) in [(0.01, 0.012, 0.1), (-0.01, -0.02, -0.5), (0.003, 0.01, 0.0)] {
+        let step = Step::after([0.02; 2], 0.02);
+        for (before, now) in [(0.01, 0.012), (-0.01, -0.02), (0.003, 0.01)] {
             let fold = Fold::new(laws.len() + 1); // one row
             let mut arrays = CreepArrays::of(&laws, fold);
             arrays.strain.fill(before);
             let slow = [0.002, 0.0, 0.001];
-            arrays.load(&slow);
-            let (now_lanes, rate_lanes) = (Lanes::splat(now), Lanes::splat(rate));
-            let tension = Lanes::splat(1.0e5);
-            let loss = arrays.loss(1, now_lanes, rate_lanes, tension);
-            arrays.advance(1, now_lanes, 0.02);
+            arrays.load([&slow; 2], [before; 3].into_iter());
+            let halfway = 0.5 * (before + now);
+            arrays.prepare(step.drift);
+            arrays.advance(1, [halfway, now].map(Lanes::splat), step);
             for (i, law) in laws.iter().enumerate() {
-                let creep = law.step([before, now], slow[i], 0.02);
-                approx::assert_relative_eq!(
-                    arrays.slow[fold.slot(i)],
-                    creep.slow,
-                    max_relative = 1e-13
-                );
-                let exact = law.loss(now, rate, slow[i], 1.0e5);
-                approx::assert_relative_eq!(loss[i], exact, max_relative = 1e-12);
+                let of = law.relaxation(0.02);
+                let crept = of.kept * slow[i] + of.first * before + of.last * now;
+                let exact = if now > 0.0 { crept } else { of.slack * slow[i] };
+                approx::assert_relative_eq!(arrays.slow[fold.slot(i)], exact, max_relative = 1e-13);
+            }
+        }
+    }
+
+    #[test]
+    fn what_halves_of_steps_pull_by_is_held_or_taken_however_fast_the_rope_relaxes() {
+        for damping in [[4.0e9, 1.1e7], [1.0e6, 0.0], [1.0e2, 1.0e3]] {
+            let law = [Viscoelastic::new([1.4e8, 2.0e8], damping)];
+            let mut arrays = CreepArrays::of(&law, Fold::new(2));
+            let strain = |k: f64| 0.01 + 1e-4 * k;
+            let rest = [law[0].rest(strain(0.0))];
+            arrays.load([&rest; 2], [strain(0.0)].into_iter());
+            let (mut steps, mut held) = ([0.0; 2], law[0].energy(strain(0.0), rest[0]));
+            for k in 0..20 {
+                let step = Step::after(steps, 0.02);
+                arrays.strain.fill(strain(k as f64));
+                let before = arrays.half.each_ref().map(|of| of.load(1)[0]);
+                let ahead = [0.5, 1.0].map(|part| Lanes::splat(strain(k as f64 + part)));
+                arrays.prepare(step.drift);
+                let crept = arrays.advance(1, ahead, step);
+                let after = arrays.half.each_ref().map(|of| of.load(1)[0]);
+                let given = crept.tension[0] * (after[0] - before[0]);
+                let now = law[0].energy(after[0], after[1]);
+                if k > 1 {
+                    let off = given - crept.taken[0] - (now - held);
+                    assert!(
+                        off.abs() < 1e-6 * given,
+                        "{damping:?}, {k}: {off} of {given}"
+                    );
+                    assert!(crept.taken[0] > 0.0);
+                }
+                (steps, held) = ([0.02, steps[0]], now);
             }
         }
     }

@@ -10,7 +10,7 @@ mod water;
 use nalgebra::Vector3;
 use pulp::Arch;
 
-use super::creep::CreepArrays;
+use super::creep::{CreepArrays, Crept};
 use super::leapfrog::Step;
 use super::surface::SurfaceNow;
 use crate::math::fold::{Column, Field, Fold, Slot};
@@ -319,13 +319,6 @@ impl Layout {
         kinetic + (self.weight[at] - lack) * height
     }
 
-    /// Strain rate at t_n [1/s].
-    #[inline(always)]
-    pub fn strain_rate(&self, at: usize, direction: Vectors, step: Step) -> Lanes {
-        let relative = self.velocity_now(at + 1, step) - self.velocity_now(at, step);
-        direction.dot(relative) * self.inverse_length.load(at)
-    }
-
     /// Strain of the segments [-].
     #[inline(always)]
     pub fn strain(&self, at: usize) -> Lanes {
@@ -334,13 +327,24 @@ impl Layout {
         chord.dot(chord) * inverse_l * inverse_length - Lanes::splat(1.0)
     }
 
-    /// Takes the memory of viscoelastic segments from t_n to t_{n+1}, `drift` [s] later, where the nodes now are.
-    pub fn creep(&mut self, drift: f64) {
-        if let Some(mut creep) = self.creep.take() {
-            for at in self.rows() {
-                creep.advance(at, self.strain(at), drift);
-            }
-            self.creep = Some(creep);
+    /// Takes the memory of viscoelastic segments from t_n to t_{n+1}, where the nodes now are, with the velocities of the step. Returns the tension that
+    /// they have over it [N], and what their dampers take [J].
+    #[inline(always)]
+    pub fn creep(&mut self, at: usize, step: Step) -> Crept {
+        let lag = Lanes::splat(0.5 * step.drift);
+        let (chord, inverse_l) = self.chord(at);
+        let half = chord - (self.velocity.load(at + 1) - self.velocity.load(at)).scale(lag);
+        let inverse = self.inverse_length.load(at);
+        let strain = |length: Lanes| length * inverse - Lanes::splat(1.0);
+        let strains = [
+            strain(half.dot(half).sqrt()),
+            strain(chord.dot(chord) * inverse_l),
+        ];
+        let creep = self.creep.as_mut().expect("this line creeps");
+        let crept = creep.advance(at, strains, step);
+        Crept {
+            taken: crept.taken * inverse.recip(),
+            ..crept
         }
     }
 

@@ -139,14 +139,14 @@ impl NullaryFnOnce for SurveyRows<'_> {
 }
 
 /// [`LineWork::pull_beforehand`] for the vector unit of the machine.
-struct PullSegments<'a>(&'a mut LineWork, Step);
+struct PullSegments<'a>(&'a mut LineWork);
 
 impl NullaryFnOnce for PullSegments<'_> {
     type Output = ();
 
     #[inline(always)]
     fn call(self) {
-        self.0.choose_segment_pass(self.1);
+        self.0.choose_segment_pass();
     }
 }
 
@@ -451,10 +451,10 @@ impl LineWork {
 
     /// Tensions from positions at t_n and velocities at t_{n−½}, where they must be known before the sweep: of lines that are not
     /// plain, and of segments at free points.
-    pub fn pull_beforehand(&mut self, step: Step) {
+    pub fn pull_beforehand(&mut self) {
         if !self.plain {
             self.layout.renew_ghosts(self.parted);
-            self.layout.vector_unit.dispatch(PullSegments(self, step));
+            self.layout.vector_unit.dispatch(PullSegments(self));
             return;
         }
         for end in [End::A, End::B] {
@@ -485,9 +485,9 @@ impl LineWork {
     }
 
     #[inline(always)]
-    fn choose_segment_pass(&mut self, step: Step) {
+    fn choose_segment_pass(&mut self) {
         if self.layout.creep.is_some() {
-            return self.creeping_segment_pass(step);
+            return self.creeping_segment_pass();
         }
         let line = &self.layout;
         for at in line.rows() {
@@ -510,7 +510,7 @@ impl LineWork {
 
     /// [`LineWork::choose_segment_pass`] of a line with viscoelastic segments.
     #[inline(always)]
-    fn creeping_segment_pass(&mut self, step: Step) {
+    fn creeping_segment_pass(&mut self) {
         let mut creep = self.layout.creep.take().expect("this line creeps");
         let line = &self.layout;
         for at in line.rows() {
@@ -528,20 +528,24 @@ impl LineWork {
             } else {
                 (elastic + damping).positive()
             };
-            let now = line.strain_rate(at, direction, step);
-            let loss = creep.loss(at, strain, now, tension);
-            self.lost = self.lost + loss * Lanes::splat(step.kick) * inverse_length.recip();
             self.pull.store(direction.scale(tension), at);
             self.spring.store(direction.scale(tension), at);
         }
         self.layout.creep = Some(creep);
     }
 
-    /// Takes the memory of viscoelastic segments to t_{n+1}.
+    /// Takes the memory of viscoelastic segments to t_{n+1}, and books what their dampers took.
     fn creep(&mut self, step: Step) {
-        if self.layout.creep.is_some() {
-            self.layout.renew_ghosts(self.parted);
-            self.layout.creep(step.drift);
+        if self.layout.creep.is_none() {
+            return;
+        }
+        self.layout.renew_ghosts(self.parted);
+        let rows = self.layout.rows();
+        if let Some(creep) = &mut self.layout.creep {
+            creep.prepare(step.drift);
+        }
+        for at in rows {
+            self.lost = self.lost + self.layout.creep(at, step).taken;
         }
     }
 

@@ -36,7 +36,7 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use super::beam::{self, BeamView};
-use super::creep::{Creeping, Stretching};
+use super::creep::Creeping;
 use crate::model::{End, Line, LineState, Model, Network, Reel, State, Surface, WaterAlong, joint};
 
 pub use at_rest::work_at_rest;
@@ -198,13 +198,9 @@ fn line_energy(model: &Model, state: &State, index: usize) -> Energy {
     let mut energy = Energy::default();
     for i in 0..n {
         let strain = (position(i + 1) - position(i)).norm() / line.segments.length[i] - 1.0;
-        energy.axial += match Creeping::of(line, shape, i) {
+        energy.axial += match Creeping::at_velocities(line, shape, i) {
             None => line.spring(i, strain).energy * line.segments.length[i],
-            Some(creep) => {
-                let pair = |values: &[Vector3<f64>]| [values[i], values[i + 1]];
-                let now = Stretching::of(line, i, pair(&shape.position), pair(&shape.velocity));
-                creep.energy(strain, now, lag) * line.segments.length[i]
-            }
+            Some(creep) => creep.energy(strain) * line.segments.length[i],
         };
     }
     let free = |i: usize| match i {

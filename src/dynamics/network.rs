@@ -282,7 +282,7 @@ impl NetworkWork {
             if let Some(partings) = &model.lines[line].parting {
                 work.part_ends(partings, t, step);
             }
-            work.pull_beforehand(step);
+            work.pull_beforehand();
             work.weigh_reel();
         }
         if !self.points.is_empty() {

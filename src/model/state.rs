@@ -114,6 +114,8 @@ pub struct HalfStep {
     pub steps: [f64; 2],
     /// Elastic segment tensions at t − Δt and t − 2Δt [N]; kept by the axial-implicit leapfrog only.
     pub tension: [Vec<f64>; 2],
+    /// Slow strains of viscoelastic segments at t − Δt/2 [-]; none before the first step.
+    pub creep: Vec<f64>,
 }
 
 impl PointState {
@@ -143,6 +145,18 @@ impl PointState {
 }
 
 impl LineState {
+    /// Chords of the segments at the time of the leapfrogs' velocities, half a step before that of the positions [m].
+    pub fn chords_before(&self) -> impl Iterator<Item = Vector3<f64>> {
+        let memory = &self.half_step;
+        let velocity = match memory.velocity.is_empty() {
+            true => &self.velocity,
+            false => &memory.velocity,
+        };
+        let nodes = self.position.windows(2).zip(velocity.windows(2));
+        let lag = 0.5 * memory.steps[0];
+        nodes.map(move |(r, v)| r[1] - r[0] - lag * (v[1] - v[0]))
+    }
+
     /// Gives a line that is a beam, and rests on its positions, what beams have besides; its points have turned by `attitude` [-].
     pub fn become_beam(&mut self, line: &Line, attitude: [Matrix3<f64>; 2]) {
         self.beam = line
@@ -231,6 +245,7 @@ clone_in_place!(ClosedForm {
 clone_in_place!(HalfStep {
     velocity,
     velocity_before,
+    creep,
     steps,
     tension
 });

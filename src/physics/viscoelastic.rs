@@ -9,9 +9,14 @@
 //!   T = K ε + C ε̇ + G ε₁,  K = BA_s EA_d/B,  C = BA_s BA_d/B,  G = (BA_d EA₁ − BA_s EA_d)/B,
 //!   B ε̇₁ = EA_d (ε − ε₁) − EA₁ ε₁ + BA_d ε̇.
 //!
-//! The trapezoidal rule closes a step Δt: ε₁' = ε₁ + [Δt (EA_d ε̄ − (EA_d + EA₁) ε₁) + BA_d Δε]/(B + ½Δt (EA_d + EA₁)), ε̄ the mean strain. A rope
-//! that would push carries nothing, and its slow part contracts by itself, BA_s ε̇₁ = −EA₁ ε₁. For BA_d = 0 this is the standard linear
-//! solid: storage EA_d − (EA_d − EA_s)/(1 + ω²τ²) and loss (EA_d − EA_s) ωτ/(1 + ω²τ²) at the circular frequency ω, τ = BA_s/(EA_d + EA₁).
+//! The trapezoidal rule closes a step Δt of the implicit integrators: ε₁' = ε₁ + [Δt (EA_d ε̄ − (EA_d + EA₁) ε₁) + BA_d Δε]/(B + ½Δt (EA_d + EA₁)), ε̄ the
+//! mean strain. It keeps the books of the dampers exactly, but rings where Δt is many times the relaxation time τ = B/(EA_d + EA₁); leapfrogs, whose forces do not
+//! wait for its end, take the exact solution for a constant strain rate, z = Δt/τ, r = EA_d/(EA_d + EA₁), p = r + (BA_d/B − r)(1 − e⁻ᶻ)/z:
+//!
+//!   ε₁' = e⁻ᶻ ε₁ + (r (1 − e⁻ᶻ) − p) ε + p ε'.
+//!
+//! A rope that would push carries nothing, and its slow part contracts by itself, BA_s ε̇₁ = −EA₁ ε₁. For BA_d = 0 this is the standard linear
+//! solid: storage EA_d − (EA_d − EA_s)/(1 + ω²τ²) and loss (EA_d − EA_s) ωτ/(1 + ω²τ²) at the circular frequency ω.
 //!
 //! The slow spring holds ½EA₁ ε₁², the fast one ½EA_d e² of e = ε − ε₁ while it is stretched; what work goes beyond that is lost. A step within which the fast
 //! one slackens or snaps makes nothing of it: there it pulls with the discrete gradient of its energy, and its damper with BA_d (e'₊ − e₊)/Δt.
@@ -53,6 +58,20 @@ pub struct CreepStep {
     pub mean: Mean,
 }
 
+/// How the memory goes on over a step in which the strain rate is constant: ε₁' = `kept` ε₁ + `first` ε + `last` ε', or `slack` ε₁ where
+/// nothing is carried.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Relaxation {
+    /// e⁻ᶻ [-].
+    pub kept: f64,
+    /// Of the strain before, r (1 − e⁻ᶻ) − p [-].
+    pub first: f64,
+    /// Of the strain afterwards, p [-].
+    pub last: f64,
+    /// What a slack rope keeps [-].
+    pub slack: f64,
+}
+
 /// How the fast part pulls over a step.
 struct Pull {
     /// [N]
@@ -74,7 +93,7 @@ struct Series {
 
 impl Series {
     fn of(law: &Viscoelastic, strain: f64, slow: f64, dt: f64) -> Series {
-        let slow_damper = law.slow / law.contraction / dt;
+        let slow_damper = law.slow_damping() / dt;
         Series {
             before: [slow, strain - slow],
             dampers: [slow_damper, law.fast_damping / dt],
@@ -173,6 +192,14 @@ impl Viscoelastic {
         }
     }
 
+    /// Slow damper BA_s [N s]; 0 of a segment without memory.
+    pub fn slow_damping(&self) -> f64 {
+        match self.contraction {
+            0.0 => 0.0,
+            contraction => self.slow / contraction,
+        }
+    }
+
     /// Slow strain [-] of a segment at rest at a strain [-].
     pub fn rest(&self, strain: f64) -> f64 {
         if self.yielding == 0.0 {
@@ -187,14 +214,25 @@ impl Viscoelastic {
         self.stiffness * strain + self.memory * slow
     }
 
-    /// Rate of the slow strain [1/s] at a strain [-] that changes at a rate [1/s].
-    #[inline(always)]
-    pub fn creep_rate(&self, strain: f64, rate: f64, slow: f64) -> f64 {
-        if self.elastic(strain, slow) + self.damping * rate > 0.0 {
-            let pull = self.fast * (strain - slow) - self.slow * slow;
-            self.yielding * (pull + self.fast_damping * rate)
-        } else {
-            -self.contraction * slow
+    /// What becomes of the memory in `dt` [s].
+    pub fn relaxation(&self, dt: f64) -> Relaxation {
+        let both = self.fast + self.slow;
+        let z = dt * both * self.yielding;
+        if z == 0.0 {
+            return Relaxation {
+                kept: 1.0,
+                first: 0.0,
+                last: 0.0,
+                slack: 1.0,
+            };
+        }
+        let (share, gone) = (self.fast / both, -(-z).exp_m1());
+        let last = share + (self.fast_damping * self.yielding - share) * gone / z;
+        Relaxation {
+            kept: (-z).exp(),
+            first: share * gone - last,
+            last,
+            slack: (-dt * self.contraction).exp(),
         }
     }
 
@@ -309,14 +347,6 @@ impl Viscoelastic {
         let fast = (strain - slow).max(0.0);
         0.5 * (self.slow * slow * slow + self.fast * fast * fast)
     }
-
-    /// Power per unstretched length [N/s] that a tension [N] gives and the springs do not keep.
-    #[inline(always)]
-    pub fn loss(&self, strain: f64, rate: f64, slow: f64, tension: f64) -> f64 {
-        let creep = self.creep_rate(strain, rate, slow);
-        let fast = (strain - slow).max(0.0);
-        tension * rate - self.slow * slow * creep - self.fast * fast * (rate - creep)
-    }
 }
 
 #[cfg(test)]
@@ -399,10 +429,11 @@ mod tests {
             0.02 * 1.424e8,
             max_relative = 1e-12
         );
+        let rest = law.rest(0.02);
         assert_relative_eq!(
-            law.creep_rate(0.02, 0.0, law.rest(0.02)),
-            0.0,
-            epsilon = 1e-12
+            law.step([0.02; 2], rest, 1.0).slow,
+            rest,
+            max_relative = 1e-12
         );
     }
 
@@ -423,23 +454,6 @@ mod tests {
             let exact = strain * (1.424e8 + (1.586e8 - 1.424e8) * fading);
             assert_relative_eq!(law.elastic(strain, slow), exact, max_relative = 1e-6);
         }
-    }
-
-    #[test]
-    fn what_is_lost_is_what_both_dampers_take_and_never_negative() {
-        let law = rope(1.1e7);
-        for (strain, rate, slow) in [(0.01, 0.02, 0.0), (0.02, -0.001, 0.0015), (0.001, 0.1, 0.0)] {
-            let tension = law.elastic(strain, slow) + law.damping * rate;
-            assert!(tension > 0.0);
-            let creep = law.creep_rate(strain, rate, slow);
-            let dampers = 4.0e9 * creep * creep + 1.1e7 * (rate - creep) * (rate - creep);
-            assert_relative_eq!(
-                law.loss(strain, rate, slow, tension),
-                dampers,
-                max_relative = 1e-9
-            );
-        }
-        assert!(law.loss(-0.01, -0.1, 0.002, 0.0) > 0.0);
     }
 
     /// Ropes with all, one and none of the dampers, and steps that stay taut, slacken, snap and stay slack, with what a slack one has kept.
@@ -511,6 +525,38 @@ mod tests {
                 );
             }
         }
+    }
+
+    #[test]
+    fn the_memory_of_a_constant_strain_rate_is_what_many_short_steps_come_to() {
+        let (before, after, slow) = (0.01, 0.013, 0.002);
+        for (fast_damping, dt) in [(0.0, 5.0), (1.1e7, 5.0), (4.0e8, 60.0), (1.1e7, 1e4)] {
+            let law = rope(fast_damping);
+            let of_parts = |parts: usize| {
+                let strain = |k: usize| before + (after - before) * k as f64 / parts as f64;
+                (0..parts).fold(slow, |slow, k| {
+                    law.step([strain(k), strain(k + 1)], slow, dt / parts as f64)
+                        .slow
+                })
+            };
+            let relaxed = law.relaxation(dt);
+            let exact = relaxed.kept * slow + relaxed.first * before + relaxed.last * after;
+            assert_relative_eq!(exact, of_parts(20_000), max_relative = 1e-6);
+            assert!((of_parts(200) - exact).abs() < 1e-2 * exact);
+        }
+    }
+
+    #[test]
+    fn a_memory_far_faster_than_a_step_follows_and_does_not_ring() {
+        let law = Viscoelastic::new([1.4e8, 2.0e8], [1.0e3, 0.0]);
+        let relaxed = law.relaxation(0.05);
+        assert!(relaxed.kept < 1e-100);
+        let rest = law.rest(0.01);
+        assert_relative_eq!(
+            (relaxed.first + relaxed.last) * 0.01,
+            rest,
+            max_relative = 1e-12
+        );
     }
 
     #[test]

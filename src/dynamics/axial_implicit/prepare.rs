@@ -47,9 +47,9 @@ impl AxialWork {
 
     /// Springs of a row of segments.
     #[inline(always)]
-    fn springs<const SPRINGS: u8>(&mut self, at: usize, step: Step) -> Springs {
+    fn springs<const SPRINGS: u8>(&mut self, at: usize) -> Springs {
         if SPRINGS == springs::CREEPING {
-            return self.creeping(at, step);
+            return self.creeping(at);
         }
         let row = &self.rows.segments[at - 1];
         let (stiffness, longer) = (row.axial_stiffness, row.length - row.unstretched_length);
@@ -71,19 +71,15 @@ impl AxialWork {
         }
     }
 
-    /// Viscoelastic springs; books what is lost in the step.
+    /// Viscoelastic springs.
     #[inline(always)]
-    fn creeping(&mut self, at: usize, step: Step) -> Springs {
-        let direction = self.rows.segments[at - 1].direction;
+    fn creeping(&mut self, at: usize) -> Springs {
         let strain = self.layout.strain(at);
-        let rate = self.layout.strain_rate(at, direction, step);
         let creep = self.layout.creep.as_mut().expect("this line creeps");
         creep.strain.store(strain, at);
         let now = creep.elastic(at, strain);
-        let loss = creep.loss(at, strain, rate, now.positive());
         let inverse = self.layout.inverse_length.load(at);
-        self.lost = self.lost + loss * inverse.recip() * Lanes::splat(step.kick);
-        let (coming, stiffness) = creep.ahead(at, strain, step.drift);
+        let (coming, stiffness) = creep.ahead(at, strain);
         let b1 = Lanes::splat(self.weights.0[0]);
         Springs {
             now,
@@ -119,7 +115,7 @@ impl AxialWork {
         let [_, h0, h1, h2] = self.weights.0.map(Lanes::splat);
         let share = Lanes::splat(1.0 / self.weights.0[0]);
         for at in self.layout.rows() {
-            let found = self.springs::<SPRINGS>(at, step);
+            let found = self.springs::<SPRINGS>(at);
             let velocity = &self.layout.velocity;
             let relative = velocity.load(at + 1) - velocity.load(at);
             let row = &mut self.rows.segments[at - 1];
@@ -138,7 +134,7 @@ impl AxialWork {
             if BOOKS {
                 let longer = back * (along + half_back * bend);
                 row.now = found.now;
-                row.before = (found.now + found.slope * share * longer).positive();
+                row.before = found.now + found.slope * share * longer;
             }
         }
     }

@@ -53,7 +53,7 @@ pub(super) struct SegmentRow {
     /// Lengths l at t_n [m], and 1/l.
     pub length: Lanes,
     pub inverse: Lanes,
-    /// Tension of the springs at t_n as if they pushed too, and that half a step before [N].
+    /// Tension of the springs at t_n and half a step before, as if they pushed too [N].
     pub now: Lanes,
     pub before: Lanes,
     /// q·(v_{i+1} − v_i) at t_{n−½} [m/s].

@@ -203,8 +203,9 @@ impl Found {
         }
     }
 
-    /// Books what dampers took, and what the averaging dissipates: the work of the springs' part of T̄ less that of the mean of the tensions half a
-    /// step before t_n and half a step after it, the slopes being those of t_n. The averaging of ρ = 1 makes this mean, and dissipates nothing.
+    /// Books what dampers took, and what the averaging dissipates: the work of the springs' part of T̄ less that of the discrete gradient of their energy
+    /// from half a step before t_n to half a step after it, the slopes being those of t_n. That is ½(T₋ + T₊)(T₊ − T₋)/(U₊ − U₋), U being what T would
+    /// be if springs pushed: the mean of both but in segments that slacken or snap. The averaging of ρ = 1 makes this mean, and dissipates nothing.
     #[inline(always)]
     fn book_segments(
         &mut self,
@@ -213,16 +214,19 @@ impl Found {
         springs: Lanes,
         sizes: &Sizes,
     ) {
-        let drift = sizes.drift;
+        let Some(slope) = sizes.slope else {
+            return; // booked with their memory
+        };
+        let (half, least) = (Lanes::splat(0.5), Lanes::splat(f64::MIN_POSITIVE));
         let moved = sizes.kick * (segment.along + along);
         self.lost = self.lost + (segment.tension - springs) * moved;
-        if let Some(slope) = sizes.slope {
-            let half = Lanes::splat(0.5) * drift;
-            let longer = half * (along + Lanes::splat(0.5) * half * across * segment.inverse);
-            let after = (segment.now + segment.stiffness * slope * longer).positive();
-            let centred = Lanes::splat(0.5) * (segment.before + after);
-            self.numerical = self.numerical + (springs - centred) * moved;
-        }
+        let ahead = half * sizes.drift;
+        let longer = ahead * (along + half * ahead * across * segment.inverse);
+        let after = segment.now + segment.stiffness * slope * longer;
+        let (pulled, pulls) = (segment.before.positive(), after.positive());
+        let share = (pulls - pulled).abs() * ((after - segment.before).abs() + least).recip();
+        let centred = half * (pulled + pulls) * share;
+        self.numerical = self.numerical + (springs - centred) * moved;
     }
 }
 

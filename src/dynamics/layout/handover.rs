@@ -90,11 +90,18 @@ impl Layout {
     /// Takes over positions and velocities of a line; the ghosts are yet to be renewed. Padding starts anew: it may have met what a step
     /// that was too long made of the nodes beside it.
     pub fn load(&mut self, state: &LineState) {
-        if let Some(creep) = &mut self.creep {
-            creep.load(&state.creep);
-        }
         let memory = &state.half_step;
         let fresh = memory.velocity.is_empty();
+        if let Some(creep) = &mut self.creep {
+            let half = match fresh {
+                true => &state.creep,
+                false => &memory.creep,
+            };
+            let chords = state.chords_before();
+            let slots = chords.zip(self.fold.slots());
+            let strains = slots.map(|(l, at)| l.norm() * self.inverse_length[at] - 1.0);
+            creep.load([&state.creep, half], strains);
+        }
         let zero = Vector3::zeros();
         for (i, at) in self.fold.slots().enumerate() {
             let Some(position) = state.position.get(i) else {
@@ -124,7 +131,7 @@ impl Layout {
     #[inline(always)]
     pub fn hand_back(&self, state: &mut LineState, steps: [f64; 2]) -> bool {
         if let Some(creep) = &self.creep {
-            creep.store(&mut state.creep);
+            creep.store(&mut state.creep, &mut state.half_step.creep);
         }
         let memory = &mut state.half_step;
         let count = state.position.len();
