@@ -134,7 +134,7 @@ impl AxialWork {
             if BOOKS {
                 let longer = back * (along + half_back * bend);
                 row.now = found.now;
-                row.before = found.now + found.slope * share * longer;
+                row.more_before = found.slope * share * longer;
             }
         }
     }

@@ -53,9 +53,9 @@ pub(super) struct SegmentRow {
     /// Lengths l at t_n [m], and 1/l.
     pub length: Lanes,
     pub inverse: Lanes,
-    /// Tension of the springs at t_n and half a step before, as if they pushed too [N].
+    /// Tension of the springs at t_n as if they pushed too, and by how much it was more half a step before [N].
     pub now: Lanes,
-    pub before: Lanes,
+    pub more_before: Lanes,
     /// q·(v_{i+1} − v_i) at t_{n−½} [m/s].
     pub along: Lanes,
     /// dT̄/d(q·(v_{i+1} − v_i)) of the springs [N s/m].
@@ -88,7 +88,7 @@ impl SegmentRow {
             length: zero,
             inverse: zero,
             now: zero,
-            before: zero,
+            more_before: zero,
             along: zero,
             stiffness: zero,
             elastic: zero,

@@ -217,15 +217,19 @@ impl Found {
         let Some(slope) = sizes.slope else {
             return; // booked with their memory
         };
-        let (half, least) = (Lanes::splat(0.5), Lanes::splat(f64::MIN_POSITIVE));
+        let half = Lanes::splat(0.5);
         let moved = sizes.kick * (segment.along + along);
         self.lost = self.lost + (segment.tension - springs) * moved;
         let ahead = half * sizes.drift;
+        let before = segment.now + segment.more_before;
         let longer = ahead * (along + half * ahead * across * segment.inverse);
         let after = segment.now + segment.stiffness * slope * longer;
-        let (pulled, pulls) = (segment.before.positive(), after.positive());
-        let share = (pulls - pulled).abs() * ((after - segment.before).abs() + least).recip();
-        let centred = half * (pulled + pulls) * share;
+        let (pulled, pulls) = (before.positive(), after.positive());
+        let mut centred = half * (pulled + pulls);
+        if (Lanes::splat(0.0) - before * after).any_positive() {
+            let change = (after - before).abs() + Lanes::splat(f64::MIN_POSITIVE);
+            centred = centred * (pulls - pulled).abs() * change.recip();
+        }
         self.numerical = self.numerical + (springs - centred) * moved;
     }
 }
