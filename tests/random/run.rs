@@ -75,16 +75,6 @@ pub struct Account {
     pub time: f64,
 }
 
-impl Account {
-    /// Error of its ledger, or what the damping of the integrators brought if that is more [-].
-    pub fn worst(&self) -> f64 {
-        match self.created > self.imbalance.abs() {
-            true => self.created,
-            false => self.imbalance,
-        }
-    }
-}
-
 /// Runs a case; the error is the claim that does not hold.
 pub fn run(case: &Case) -> Result<Account, String> {
     catch_unwind(AssertUnwindSafe(|| watched(case))).unwrap_or_else(|panic| {

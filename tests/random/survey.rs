@@ -54,6 +54,28 @@ pub fn shrunk(number: usize) -> Option<(Case, String)> {
     }
 }
 
+/// What the energy ledger of a scene says.
+#[derive(Debug, Clone, Copy)]
+pub struct Books {
+    pub scene: usize,
+    /// Error of the ledger, over what it books [-].
+    pub imbalance: f64,
+    /// What the damping of integrators brought, over the same [-].
+    pub created: f64,
+}
+
+impl Books {
+    /// Whether the ledger closes.
+    pub fn close(&self) -> bool {
+        self.imbalance.abs() <= CLOSED
+    }
+
+    /// Whether the damping of integrators brought nothing, either.
+    pub fn are_sound(&self) -> bool {
+        self.close() && self.created <= CLOSED
+    }
+}
+
 /// What became of scenes.
 #[derive(Debug, Default)]
 pub struct Survey {
@@ -63,8 +85,8 @@ pub struct Survey {
     pub fates: BTreeMap<&'static str, usize>,
     /// By feature: how many ran for the whole span or as far as they may cost, of how many.
     pub features: BTreeMap<&'static str, [usize; 2]>,
-    /// The worse of the error of the energy ledger and of what damping of integrators brought, by integrator [-].
-    pub imbalance: BTreeMap<String, Vec<(f64, usize)>>,
+    /// What energy ledgers say, by integrator.
+    pub books: BTreeMap<String, Vec<Books>>,
     /// Scenes that break a claim, with the claim.
     pub broken: Vec<(usize, String)>,
     /// Reasons given by scenes that could not be run.
@@ -108,7 +130,11 @@ impl Survey {
             Ok(account) => account,
             Err(claim) => return self.broken.push((number, claim)),
         };
-        let worst = account.worst();
+        let books = Books {
+            scene: number,
+            imbalance: account.imbalance,
+            created: account.created,
+        };
         let (fate, reason) = match account.fate {
             Fate::Ran => ("ran", None),
             Fate::Costly => ("too dear", None),
@@ -142,10 +168,7 @@ impl Survey {
                 "equal steps"
             };
             let name = format!("{name}, {steps}");
-            self.imbalance
-                .entry(name)
-                .or_default()
-                .push((worst, number));
+            self.books.entry(name).or_default().push(books);
         }
         if account.dearest > self.dearest.0 {
             self.dearest = (account.dearest, number);
@@ -157,23 +180,20 @@ impl Survey {
         self.fates.get(fate).copied().unwrap_or(0) as f64 / self.scenes as f64
     }
 
-    /// How many ledgers of an integrator close, and how many there are [-].
-    pub fn closed(&self, integrator: &str) -> [f64; 2] {
-        let errors = self
-            .imbalance
-            .get(integrator)
-            .map_or(&[][..], Vec::as_slice);
-        let closed = errors.iter().filter(|(error, _)| error.abs() <= CLOSED);
-        [closed.count() as f64, errors.len() as f64]
+    /// How many ledgers of an integrator close, how many of these are sound, and how many there are [-].
+    pub fn closed(&self, integrator: &str) -> [f64; 3] {
+        let books = self.books.get(integrator).map_or(&[][..], Vec::as_slice);
+        let count = |which: fn(&Books) -> bool| books.iter().filter(|book| which(book)).count();
+        [count(Books::close), count(Books::are_sound), books.len()].map(|count| count as f64)
     }
 
     /// Greatest error of the ledgers of an integrator, whatever a host's steps [-].
     pub fn worst(&self, integrator: &str) -> f64 {
-        let ledgers = self.imbalance.iter();
-        let errors = ledgers.filter(|(name, _)| name.starts_with(integrator));
-        let sizes = errors
-            .flat_map(|(_, errors)| errors)
-            .map(|(error, _)| error.abs());
+        let ledgers = self.books.iter();
+        let books = ledgers.filter(|(name, _)| name.starts_with(integrator));
+        let sizes = books
+            .flat_map(|(_, books)| books)
+            .map(|book| book.imbalance.abs().max(book.created));
         sizes.fold(0.0, f64::max)
     }
 }
@@ -199,31 +219,31 @@ impl fmt::Display for Survey {
         for (feature, [ran, all]) in &self.features {
             writeln!(f, "{ran:6} {all:6} {feature}")?;
         }
-        for (integrator, errors) in &self.imbalance {
-            let mut errors = errors.clone();
-            errors.sort_by(|(a, _), (b, _)| a.abs().total_cmp(&b.abs()));
-            let at = |share: f64| errors[(share * (errors.len() - 1) as f64) as usize];
-            let (median, most, worst) = (at(0.5).0, at(0.9).0, at(1.0));
-            let [closed, all] = self.closed(integrator);
-            let closed = 100.0 * closed / all;
+        for (integrator, books) in &self.books {
+            let mut books = books.clone();
+            books.sort_by(|a, b| a.imbalance.abs().total_cmp(&b.imbalance.abs()));
+            let at = |share: f64| books[(share * (books.len() - 1) as f64) as usize];
+            let (median, most, worst) = (at(0.5), at(0.9), at(1.0));
+            let [closed, sound, all] = self.closed(integrator);
             writeln!(
                 f,
-                "{integrator}: {} ledgers, {closed:.1} % closed within {CLOSED}; half of them within {:.1e}, nine in ten within {:.1e}, \
-                 worst {:+.1e} in scene {}",
-                errors.len(),
-                median.abs(),
-                most.abs(),
-                worst.0,
-                worst.1
+                "{integrator}: {all} ledgers, {:.1} % close within {CLOSED}, {:.1} % with nothing brought; half of them within {:.1e}, \
+                 nine in ten within {:.1e}, worst {:+.1e} in scene {}",
+                100.0 * closed / all,
+                100.0 * sound / all,
+                median.imbalance.abs(),
+                most.imbalance.abs(),
+                worst.imbalance,
+                worst.scene
             )?;
         }
-        for (integrator, errors) in &self.imbalance {
-            let open = errors.iter().filter(|(error, _)| error.abs() > CLOSED);
-            let mut open: Vec<_> = open.collect();
-            open.sort_by_key(|(_, scene)| *scene);
-            writeln!(f, "{integrator}: open in")?;
-            for (error, scene) in open {
-                write!(f, " {scene} ({:+.1} %)", 100.0 * error)?;
+        for (integrator, books) in &self.books {
+            let mut open: Vec<_> = books.iter().filter(|book| !book.are_sound()).collect();
+            open.sort_by_key(|book| book.scene);
+            writeln!(f, "{integrator}: open in, and brought")?;
+            for book in open {
+                let (error, brought) = (100.0 * book.imbalance, 100.0 * book.created.max(0.0));
+                write!(f, " {} ({error:+.1} %, {brought:.1} %)", book.scene)?;
             }
             writeln!(f)?;
         }

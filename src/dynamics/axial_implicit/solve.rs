@@ -226,9 +226,10 @@ impl Found {
         let after = segment.now + segment.stiffness * slope * longer;
         let (pulled, pulls) = (before.positive(), after.positive());
         let mut centred = half * (pulled + pulls);
-        if (Lanes::splat(0.0) - before * after).any_positive() {
-            let change = (after - before).abs() + Lanes::splat(f64::MIN_POSITIVE);
-            centred = centred * (pulls - pulled).abs() * change.recip();
+        let kinks = Lanes::splat(0.0) - before * after;
+        if kinks.any_positive() {
+            let share = (pulls - pulled).abs() * (after - before).abs().recip();
+            centred = kinks.choose(centred * share, centred);
         }
         self.numerical = self.numerical + (springs - centred) * moved;
     }
