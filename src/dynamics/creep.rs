@@ -248,10 +248,9 @@ impl CreepArrays {
         let fast = [before, after].map(|[strain, slow]| strain - slow);
         let [pulled, pulls] = fast.map(Lanes::positive);
         let (change, pull) = (fast[1] - fast[0], pulls - pulled);
-        let least = Lanes::splat(f64::MIN_POSITIVE);
-        let share = pull.abs() * (change.abs() + least).recip();
         let mean = half * load(&self.fast_stiffness) * (pulled + pulls);
-        let tension = (mean * share + load(&self.fast_damping) * pull * rate).positive();
+        let gradient = mean * fast[0].positive_secant(fast[1]);
+        let tension = (gradient + load(&self.fast_damping) * pull * rate).positive();
         let of_slow = load(&self.slow_damping) * crept * crept * rate;
         for (column, value) in self.half.iter_mut().zip(after) {
             column.store(value, at);

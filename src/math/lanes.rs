@@ -67,6 +67,14 @@ impl Lanes {
         Lanes(from_fn(|i| if self.0[i] > 0.0 { self.0[i] } else { 0.0 }))
     }
 
+    /// Slope of the secant of max(x, 0) from these values to others; 0 where both are the same.
+    #[inline(always)]
+    pub fn positive_secant(self, other: Lanes) -> Lanes {
+        let least = Lanes::splat(f64::MIN_POSITIVE);
+        let rise = (other.positive() - self.positive()).abs();
+        rise * ((other - self).abs() + least).recip()
+    }
+
     /// x where `gate` > 0, else 0.
     #[inline(always)]
     pub fn where_positive(self, gate: Lanes) -> Lanes {

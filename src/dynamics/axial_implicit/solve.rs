@@ -224,12 +224,10 @@ impl Found {
         let before = segment.now + segment.more_before;
         let longer = ahead * (along + half * ahead * across * segment.inverse);
         let after = segment.now + segment.stiffness * slope * longer;
-        let (pulled, pulls) = (before.positive(), after.positive());
-        let mut centred = half * (pulled + pulls);
+        let mut centred = half * (before.positive() + after.positive());
         let kinks = Lanes::splat(0.0) - before * after;
         if kinks.any_positive() {
-            let share = (pulls - pulled).abs() * (after - before).abs().recip();
-            centred = kinks.choose(centred * share, centred);
+            centred = kinks.choose(centred * before.positive_secant(after), centred);
         }
         self.numerical = self.numerical + (springs - centred) * moved;
     }
