@@ -73,7 +73,7 @@ fn the_fall_over_a_fold_of_half_a_metre_converges() {
 fn a_whip_crack_gains_no_energy() {
     for (integrator, gain, ledger) in [
         (Integrator::Leapfrog, 2e-3, 0.25),
-        (Integrator::AxialImplicit, 0.08, 1.0),
+        (Integrator::AxialImplicit, 0.08, 0.01),
         (Integrator::GeneralisedAlpha, 1e-3, 1e-6),
     ] {
         for elements in [40, 80] {
