@@ -6,8 +6,8 @@ mod common;
 use std::process::Command;
 
 use common::{at_reference, random, resting, scene, shipped, with_elements};
-use moorline::model::{End, Model, State};
-use moorline::scene::Scene;
+use moorline::model::{Body, End, Model, State};
+use moorline::scene::{Reconstruction, Scene, Strain};
 use moorline::simulation::Simulation;
 use moorline::statics::assembly::Workspace;
 use moorline::statics::catenary::{self, Bed, Catenary, Section};
@@ -305,7 +305,10 @@ fn imbalance(simulation: &Simulation, point: usize, mass: f64) -> f64 {
 fn the_lines_of_a_bridle_carry_the_weight_of_its_knot() {
     for stiffness in [1e4, 2e7, 1e10, 1e13] {
         let mut total = 0;
-        let mut simulation = Simulation::new(&bridle(10, stiffness, "")).unwrap();
+        // without a ledger, which would halve the steps that draw the lines taut
+        let mut scene = bridle(10, stiffness, "");
+        scene.solver.energy_ledger = false;
+        let mut simulation = Simulation::new(&scene).unwrap();
         for step in 0..=60 {
             let phase = 0.1 * f64::from(step);
             simulation.set_displacement(
@@ -532,4 +535,103 @@ fn a_cable_of_green_strain_rests_on_its_elements() {
         );
         simulation.advance(1.0).unwrap();
     }
+}
+
+/// The moored line of another strain measure, which has no closed form, with an axial damping [N s].
+fn on_elements(axial_damping: f64) -> Simulation {
+    let mut scene = moored();
+    for kind in scene.line_types.values_mut() {
+        kind.strain = Strain::Green;
+        kind.axial_damping = Some(axial_damping);
+        kind.drag_normal = Some(1.2);
+        kind.added_mass_normal = Some(1.0);
+    }
+    Simulation::new(&scene).unwrap()
+}
+
+#[test]
+fn a_line_on_its_elements_is_at_rest_however_fast_it_was_moved_there() {
+    let mut lines = [0.0, 1e7].map(on_elements);
+    for step in 0..8 {
+        let phase = 0.8 * f64::from(step + 1);
+        let away = [3.0 * phase.sin(), 1.0, 2.0 * phase.cos() - 2.0];
+        for simulation in &mut lines {
+            simulation.set_body(
+                Body::Point(1),
+                [away[0], away[1], away[2], 0.0, 0.0, 0.0],
+                [Some(0.0); 6],
+            );
+            simulation.advance(0.1).unwrap();
+        }
+        let [plain, damped] = &lines;
+        for end in [End::A, End::B] {
+            assert_eq!(plain.line_end_force(0, end), damped.line_end_force(0, end));
+        }
+        assert_eq!(plain.tensions(0), damped.tensions(0));
+        assert!(
+            plain.state().lines[0]
+                .velocity
+                .iter()
+                .all(|v| v.norm() == 0.0)
+        );
+    }
+}
+
+// ------------------------------------------------------------------ energy
+
+/// Error of the energy ledger over all that the ends gave and took [-], after 12 steps in which a point goes round within a reach [m]; with the equilibria
+/// that were found on the way.
+fn ledger(scene: &Scene, point: usize, reach: f64) -> (f64, usize) {
+    let mut scene = scene.clone();
+    scene.solver.input_reconstruction = Reconstruction::Interpolate;
+    let mut simulation = Simulation::new(&scene).unwrap();
+    let (mut turnover, mut given, mut substeps) = (0.0, 0.0, 0);
+    for number in 1..=12 {
+        let phase = 0.9 * f64::from(number);
+        let away = [phase.sin(), 0.4 * (phase.cos() - 1.0), 0.3 * phase.sin()].map(|a| reach * a);
+        simulation.set_displacement(point, away);
+        simulation.advance(1.0).unwrap();
+        let now = simulation.ledger().flow.given;
+        turnover += (now - given).abs();
+        given = now;
+        substeps += simulation.counters().substeps;
+    }
+    (simulation.energy_error().abs() / turnover, substeps)
+}
+
+#[test]
+fn the_ledger_of_a_line_that_rubs_on_the_bed_closes_in_short_steps_and_in_long_ones() {
+    let (error, equilibria) = ledger(&moored(), 1, 0.5);
+    assert!(error < 2e-3 && equilibria == 12, "{error:e}, {equilibria}");
+    let (error, equilibria) = ledger(&moored(), 1, 12.0);
+    assert!(
+        error < 0.02 && (13..100).contains(&equilibria),
+        "{error:e}, {equilibria}"
+    );
+}
+
+/// The bridle in a current that only its knot feels.
+fn bridle_in_current() -> Scene {
+    let mut scene = bridle(
+        8,
+        2e7,
+        "[water]\ndensity = 1025.0\n[water.current]\nvelocity = [1.5, 0.0, 0.0]\n",
+    );
+    let knot = scene
+        .points
+        .iter_mut()
+        .find(|point| point.name == "knot")
+        .unwrap();
+    knot.drag_area = Some(4.0);
+    scene
+}
+
+#[test]
+fn a_free_point_feels_a_current_that_its_lines_do_not() {
+    let simulation = Simulation::new(&bridle_in_current()).unwrap();
+    let push = 0.5 * 1025.0 * 4.0 * 1.5 * 1.5; // ½ρ C_d A u² [N]
+    let knot = Vector3::from(simulation.end_force(3));
+    assert!((knot.x + push).abs() < 1e-6 * push, "{knot}");
+    let (error, _) = ledger(&bridle_in_current(), 2, 3.0);
+    assert!(error < 0.02, "{error:e}");
 }

@@ -15,6 +15,7 @@ use super::ledger::{self, Energy, Flow};
 use super::limit::{drag_holds, drag_step};
 use super::motion::AxisPath;
 use super::network::NetworkWork;
+use super::quasi_static::Halving;
 use super::sea::SeaWork;
 use super::{Choice, StepError, quasi_static};
 use crate::model::{End, Kinematics, Model, Network, Role, State};
@@ -771,18 +772,16 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
         work: &mut assembly::Workspace,
         next: &mut State,
     ) -> Result<Done, StepError> {
-        copy_network(self.model, &self.model.networks[number], self.state, next);
-        let times = [self.start, self.start + self.length];
-        let done = quasi_static::advance(self.model, number, next, self.held, times, work)?;
+        let (model, times) = (self.model, [self.start, self.start + self.length]);
+        let mut attempt = |halving| {
+            copy_network(model, &model.networks[number], self.state, next);
+            quasi_static::advance(model, number, next, self.held, times, halving, work)
+        };
+        let (done, flow) =
+            attempt(Halving::ForcesAndEnergy).or_else(|_| attempt(Halving::Forces))?;
         let counters = Counters {
             substeps: done.steps,
             solves: done.solves,
-        };
-        let states = [self.state, &*next];
-        let network = &self.model.networks[number];
-        let flow = match self.model.solver.energy_ledger {
-            true => ledger::work_at_rest(self.model, network, states, times),
-            false => Flow::default(),
         };
         Ok(Done { counters, flow })
     }
@@ -830,7 +829,7 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
     }
 }
 
-/// Puts held points, and the velocities of the nodes at all lines' ends, where they are at the time of `state`.
+/// Puts held points, and the velocities of the nodes at all lines' ends but quasi-static ones, where they are at the time of `state`.
 fn place_held(model: &Model, state: &mut State, held: &impl Fn(usize, f64) -> Kinematics) {
     for (index, point) in state.points.iter_mut().enumerate() {
         if !matches!(model.points[index].role, Role::Fixed | Role::Free(_)) {
@@ -841,6 +840,9 @@ fn place_held(model: &Model, state: &mut State, held: &impl Fn(usize, f64) -> Ki
                 (point.orientation, point.spin) = (k.orientation, k.spin);
             }
         }
+    }
+    if model.solver.integrator == Integrator::QuasiStatic {
+        return;
     }
     for (line, shape) in model.lines.iter().zip(&mut state.lines) {
         let last = shape.position.len() - 1;

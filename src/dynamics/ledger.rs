@@ -21,7 +21,7 @@
 //! The leapfrogs sum the flows of every internal step, forces at t_n times the mean of the velocities around it; energy is then
 //! exact at t − Δt/2, where the velocities live, and so E is taken there. The implicit integrators book the work of the forces by which
 //! they make a step ([`passed`]), and so do beams, whose laws are discrete gradients. Quasi-static networks hold no kinetic energy; the work of ends and
-//! loads is that of the mean of the forces before and after a step (`at_rest`). Where they are closed-form catenaries (`hanging`), the whole of
+//! loads is that of the mean of the forces before and after a step (`at_rest`). Where they are closed-form catenaries, the whole of
 //! these counts, held ends included:
 //!
 //! ∫ T²/(2EA) ds and ∫ w z ds, exact where the line hangs.
@@ -29,7 +29,6 @@
 //! Source: the discrete energy balance of the leapfrog, e.g. Hairer, Lubich & Wanner (2003), Acta Numerica 12, section 1.
 
 mod at_rest;
-mod hanging;
 pub mod passed;
 
 use nalgebra::Vector3;
@@ -40,7 +39,6 @@ use super::creep::Creeping;
 use crate::model::{End, Line, LineState, Model, Network, Reel, State, Surface, WaterAlong, joint};
 
 pub use at_rest::work_at_rest;
-use hanging::catenary_energy;
 
 /// Energy that crossed the border of a network, or the rate at which it does.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
@@ -74,6 +72,11 @@ impl Energy {
     /// The sum of all kinds [J].
     pub fn total(&self) -> f64 {
         self.kinetic + self.axial + self.bending + self.shear + self.torsion + self.gravitational
+    }
+
+    /// The sum of all kinds but motion [J].
+    pub fn at_rest(&self) -> f64 {
+        self.total() - self.kinetic
     }
 
     /// Adds another energy, kind by kind.
@@ -138,9 +141,12 @@ impl Ledger {
 pub fn energy(model: &Model, network: &Network, state: &State) -> Energy {
     let mut sum = Energy::default();
     for &line in &network.lines {
-        let (data, shape) = (&model.lines[line], &state.lines[line]);
-        sum.add(match &shape.closed_form {
-            Some(closed_form) => catenary_energy(data, shape, closed_form),
+        sum.add(match &state.lines[line].closed_form {
+            Some(closed_form) => Energy {
+                axial: closed_form.axial_energy,
+                gravitational: closed_form.gravitational_energy,
+                ..Energy::default()
+            },
             None => line_energy(model, state, line),
         });
     }

@@ -1,105 +1,84 @@
 //! Quasi-static stepping: at the end of every step the lines are in equilibrium.
 //!
-//! Positions are the equilibrium for the held points and the loads at that time, found from the one before; velocities are
-//! differences over the step, and there is no acceleration. Flexible lines of engineering strain are closed-form catenaries, joined at
-//! free points; others, and those that find no rest that way, are chains of elements. Valid where motions are slow beside the lowest natural period
-//! and drag is small beside weight.
+//! Positions are the equilibrium for the held points and the loads at that time, found from the one before. Nothing moves: nodes have neither
+//! velocity nor acceleration, and so there is no damping, no inertia and no drag but that of a current. Flexible lines of engineering
+//! strain are closed-form catenaries, joined at free points; others, and those that find no rest that way, are chains of elements. Valid where motions
+//! are slow beside the lowest natural period and drag is small beside weight.
+//!
+//! A step is one equilibrium. It is halved where none is found, and, as long as an energy ledger is kept, where the mean of the forces before and
+//! after it tells the work of the ends too badly for the energy to be accounted for: where forces change much within a step, or where the lines
+//! went over to another equilibrium. Where halves without an equilibrium are met on that account, the step is made again for the forces alone.
+
+use nalgebra::Vector3;
 
 use super::StepError;
+use super::ledger::{self, Flow, work_at_rest};
 use crate::model::{Kinematics, Model, Network, PointState, State};
-use crate::statics::assembly::{Counters, Workspace, copy_network, place_ends};
+use crate::statics::assembly::{Counters, Workspace, copy_network};
 use crate::statics::catenary_network::solve_network;
 use crate::statics::equilibrium::continue_network;
 use crate::statics::{StaticsError, catenary_network};
 
 /// Parts that a step may be cut into by halving: six halvings.
 const PARTS_MAX: usize = 64;
+/// Energy of a part that may be unaccounted for, over its work [-]: what is made going one way is lost coming back.
+const OPEN_MAX: f64 = 0.1;
+/// Energy that rounding may bring, over what is held [-].
+const ROUNDING: f64 = 1e-9;
+
+/// What halves a step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Halving {
+    /// No equilibrium at its end.
+    Forces,
+    /// That, or an energy that is not accounted for.
+    ForcesAndEnergy,
+}
+
+/// A network on its way from equilibrium to equilibrium.
+struct Path<'a, K> {
+    model: &'a Model,
+    number: usize,
+    network: &'a Network,
+    held: &'a K,
+}
 
 /// Advances one network from its state at `t0` to the equilibrium at `t1` [s]; `held` gives the positions of the points that forces do
-/// not move. `state.time` is left to the caller.
+/// not move. `state.time` is left to the caller. Returns the work of the solver, and the energy that was given and lost.
 ///
 /// # Errors
-/// There is no equilibrium at some time of the step; the state is then as it was.
+/// There is no equilibrium at some time of the step; the state is then that of the last one found.
 pub fn advance<K: Fn(usize, f64) -> Kinematics>(
     model: &Model,
     number: usize,
     state: &mut State,
     held: &K,
     [t0, t1]: [f64; 2],
+    halving: Halving,
     work: &mut Workspace,
-) -> Result<Counters, StepError> {
-    let network = &model.networks[number];
-    let mut start = std::mem::take(&mut work.start);
-    copy_network(model, network, state, &mut start);
+) -> Result<(Counters, Flow), StepError> {
+    let path = Path {
+        model,
+        number,
+        network: &model.networks[number],
+        held,
+    };
+    let mut before = std::mem::take(&mut work.start);
+    copy_network(model, path.network, state, &mut before);
     work.counters = Counters::default();
-    let mut result = Ok(());
-    if catenary_network::serves(model, network) && hang(model, number, state, held, [t0, t1], work)
-    {
-        work.counters.steps += 1;
-    } else {
-        copy_network(model, network, &start, state);
-        result = continue_elements(model, number, state, held, [t0, t1], work);
-        match &result {
-            Ok(()) => lay_down(model, number, state, t1, work),
-            Err(_) => copy_network(model, network, &start, state),
-        }
-    }
-    if result.is_ok() {
-        difference(model, network, &start, state, t1 - t0);
-    }
-    work.start = start;
-    result.map(|()| work.take_counters())
-}
-
-/// Puts a network on its catenaries at `t1` [s], its free points guessed to have moved on as before; whether that was possible.
-fn hang<K: Fn(usize, f64) -> Kinematics>(
-    model: &Model,
-    number: usize,
-    state: &mut State,
-    held: &K,
-    [t0, t1]: [f64; 2],
-    work: &mut Workspace,
-) -> bool {
-    let network = &model.networks[number];
-    for point in network
-        .lines
-        .iter()
-        .flat_map(|&line| model.lines[line].ends)
-    {
-        if model.points[point].free().is_none() {
-            state.points[point] = PointState::held(&held(point, t1));
-        }
-    }
-    for &point in &network.free_points {
-        let point = &mut state.points[point];
-        point.position += (t1 - t0) * point.velocity;
-    }
-    solve_network(model, number, state, t1, work)
-}
-
-/// Takes a network that rests on its elements at time `t` [s] to its catenaries, which lie close by, where it has them.
-fn lay_down(model: &Model, number: usize, state: &mut State, t: f64, work: &mut Workspace) {
-    if !solve_network(model, number, state, t, work) {
-        for &line in &model.networks[number].lines {
-            state.lines[line].closed_form = None;
-        }
-    }
-}
-
-/// Follows the equilibrium of a network's elements from `t0` to `t1` [s], in parts where it must.
-fn continue_elements<K: Fn(usize, f64) -> Kinematics>(
-    model: &Model,
-    number: usize,
-    state: &mut State,
-    held: &K,
-    [t0, t1]: [f64; 2],
-    work: &mut Workspace,
-) -> Result<(), StepError> {
+    let mut flow = Flow::default();
     let (mut done, mut parts) = (0, PARTS_MAX);
+    let mut result = Ok(());
     while done < PARTS_MAX {
-        let time = t0 + (t1 - t0) * (done + parts) as f64 / PARTS_MAX as f64;
-        match continue_network(model, number, state, |point| held(point, time), time, work) {
-            Ok(()) => {
+        let [from, to] = [done, done + parts].map(|part| part as f64 / PARTS_MAX as f64);
+        let times = [t0 + (t1 - t0) * from, t1 - (t1 - t0) * (1.0 - to)];
+        let booked = path.rest(&before, state, times, work);
+        let booked = booked.map(|()| path.book([&before, state], times));
+        match booked {
+            Ok((booked, is_open)) if !is_open || parts == 1 || halving == Halving::Forces => {
+                flow.add(booked);
+                path.stop(&before, state, times[1] - times[0]);
+                copy_network(model, path.network, state, &mut before);
                 work.counters.steps += 1;
                 done += parts;
                 if done % (2 * parts) == 0 && parts < PARTS_MAX {
@@ -107,47 +86,111 @@ fn continue_elements<K: Fn(usize, f64) -> Kinematics>(
                 }
             }
             Err(error) if parts == 1 => {
-                return Err(failure(model, &model.networks[number], time, &error));
+                result = Err(path.failure(times[1], &error));
+                break;
             }
-            Err(_) => {
+            _ => {
+                copy_network(model, path.network, &before, state);
                 work.counters.halvings += 1;
                 parts /= 2;
             }
         }
     }
-    Ok(())
+    work.start = before;
+    result.map(|()| (work.take_counters(), flow))
 }
 
-fn failure(model: &Model, network: &Network, time: f64, error: &StaticsError) -> StepError {
-    let (line, node) = match error {
-        StaticsError::LimitLoad { line, segment, .. } => (line.clone(), *segment),
-        _ => (model.lines[network.lines[0]].name.clone(), 0),
-    };
-    StepError {
-        time,
-        line,
-        node,
-        reason: error.to_string(),
-        advice: "lower solver.time_step_max, or use a dynamic integrator if the lines lose their hold here",
+impl<K: Fn(usize, f64) -> Kinematics> Path<'_, K> {
+    /// Takes the network from its rest `before`, which `state` has too, to that at the end of a part of the step [s].
+    fn rest(
+        &self,
+        before: &State,
+        state: &mut State,
+        times: [f64; 2],
+        work: &mut Workspace,
+    ) -> Result<(), StaticsError> {
+        if catenary_network::serves(self.model, self.network) && self.hang(state, times, work) {
+            return Ok(());
+        }
+        copy_network(self.model, self.network, before, state);
+        let ([_, end], held) = (times, self.held);
+        continue_network(
+            self.model,
+            self.number,
+            state,
+            |point| held(point, end),
+            end,
+            work,
+        )?;
+        self.lay_down(state, end, work);
+        Ok(())
     }
-}
 
-/// Velocities over a step of `dt` [s].
-fn difference(model: &Model, network: &Network, before: &State, state: &mut State, dt: f64) {
-    for &index in &network.lines {
-        let (old, new) = (&before.lines[index], &mut state.lines[index]);
-        for ((v, r), r_old) in new
-            .velocity
-            .iter_mut()
-            .zip(&new.position)
-            .zip(&old.position)
+    /// Puts the network on its catenaries, its free points guessed to have moved on as before; whether that was possible.
+    fn hang(&self, state: &mut State, [start, end]: [f64; 2], work: &mut Workspace) -> bool {
+        let model = self.model;
+        for point in self
+            .network
+            .lines
+            .iter()
+            .flat_map(|&line| model.lines[line].ends)
         {
-            *v = (r - r_old) / dt;
+            if model.points[point].free().is_none() {
+                state.points[point] = PointState::held(&(self.held)(point, end));
+            }
         }
-        for point in model.lines[index].ends {
-            let (old, new) = (&before.points[point], &mut state.points[point]);
-            new.velocity = (new.position - old.position) / dt;
+        for &point in &self.network.free_points {
+            let point = &mut state.points[point];
+            point.position += (end - start) * point.velocity;
+        }
+        solve_network(model, self.number, state, end, work)
+    }
+
+    /// Takes the network, which rests on its elements at time `t` [s], to its catenaries, which lie close by, where it has them.
+    fn lay_down(&self, state: &mut State, t: f64, work: &mut Workspace) {
+        if !solve_network(self.model, self.number, state, t, work) {
+            for &line in &self.network.lines {
+                state.lines[line].closed_form = None;
+            }
         }
     }
-    place_ends(model, network, state);
+
+    /// Energy given and lost between two states at rest, where a ledger is kept, and whether it accounts badly for what they hold.
+    fn book(&self, states: [&State; 2], times: [f64; 2]) -> (Flow, bool) {
+        if !self.model.solver.energy_ledger {
+            return (Flow::default(), false);
+        }
+        let flow = work_at_rest(self.model, self.network, states, times);
+        let [before, after] = states.map(|state| ledger::energy(self.model, self.network, state));
+        let open = after.at_rest() - before.at_rest() - flow.given + flow.lost;
+        let work = flow.given.abs() + flow.lost.abs();
+        let held = after.at_rest() - after.gravitational + after.gravitational.abs();
+        (flow, open.abs() > OPEN_MAX * work + ROUNDING * held)
+    }
+
+    /// Leaves the nodes at rest after a part of the step of `dt` [s]; free points keep the rate at which they moved, for the next guess.
+    fn stop(&self, before: &State, state: &mut State, dt: f64) {
+        for &point in &self.network.free_points {
+            let way = state.points[point].position - before.points[point].position;
+            state.points[point].velocity = way / dt;
+        }
+        for &line in &self.network.lines {
+            state.lines[line].velocity.fill(Vector3::zeros());
+            state.lines[line].acceleration.fill(Vector3::zeros());
+        }
+    }
+
+    fn failure(&self, time: f64, error: &StaticsError) -> StepError {
+        let (line, node) = match error {
+            StaticsError::LimitLoad { line, segment, .. } => (line.clone(), *segment),
+            _ => (self.model.lines[self.network.lines[0]].name.clone(), 0),
+        };
+        StepError {
+            time,
+            line,
+            node,
+            reason: error.to_string(),
+            advice: "communicate more often, or use a dynamic integrator if the lines lose their hold here",
+        }
+    }
 }

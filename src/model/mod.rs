@@ -549,6 +549,11 @@ impl FreePoint {
             .max(buoyancy.abs())
     }
 
+    /// Drag [N] of a current at a height z [m], at rest.
+    pub fn drag_at_rest(&self, z: f64, stream: Stream) -> Vector3<f64> {
+        self.drag(self.at(z).wetted, -stream.velocity(z))
+    }
+
     /// Stiffness [N/m] and upward force [N] of the bed's spring at a height z [m], at rest.
     pub fn bed_at_rest(&self, z: f64) -> Option<(f64, f64)> {
         let contact = self.contact.as_ref()?;

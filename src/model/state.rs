@@ -93,6 +93,8 @@ impl Reel {
 pub struct ClosedForm {
     /// Effective tension at every node [N].
     pub tension: Vec<f64>,
+    /// Horizontal part of it [N]: grows towards end B on a bed with friction, and nowhere else.
+    pub horizontal: Vec<f64>,
     /// Forces of the line on the points at ends A and B [N].
     pub end_force: [Vector3<f64>; 2],
     /// Unstretched length on the bed [m].
@@ -101,6 +103,10 @@ pub struct ClosedForm {
     pub stretched_length: f64,
     /// Greatest vertical distance below the chord between the ends [m].
     pub sag: f64,
+    /// Energy of the stretch of the whole line, held ends included [J].
+    pub axial_energy: f64,
+    /// Energy of its weight above z = 0, held ends included [J].
+    pub gravitational_energy: f64,
 }
 
 /// Memory of the leapfrogs. Empty where another integrator runs.
@@ -130,6 +136,17 @@ impl PointState {
             spin: zero,
             half_step: [zero; 2],
             anchor: None,
+        }
+    }
+
+    /// The point there, without motion.
+    pub fn stopped(self) -> PointState {
+        let zero = Vector3::zeros();
+        PointState {
+            velocity: zero,
+            acceleration: zero,
+            spin: zero,
+            ..self
         }
     }
 }
@@ -237,10 +254,13 @@ clone_in_place!(LineState {
 });
 clone_in_place!(ClosedForm {
     tension,
+    horizontal,
     end_force,
     laid_length,
     stretched_length,
-    sag
+    sag,
+    axial_energy,
+    gravitational_energy
 });
 clone_in_place!(HalfStep {
     velocity,

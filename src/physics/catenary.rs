@@ -58,6 +58,7 @@
 //! # Ok::<(), moorline::physics::catenary::CatenaryError>(())
 //! ```
 
+mod energy;
 mod flight;
 mod root;
 mod sections;
@@ -65,8 +66,9 @@ mod shape;
 mod touchdown;
 mod uniform;
 
+pub use energy::CatenaryEnergy;
 use sections::Sections;
-use shape::{Kind, Shape};
+use shape::{Kind, Piece, Shape};
 use touchdown::Touchdown;
 use uniform::{Held, Uniform};
 
@@ -260,6 +262,7 @@ fn suspended_shape(section: &Section, held: &Held, span: f64, rise: f64) -> Shap
             Kind::Slack {
                 x,
                 z,
+                weight: section.weight,
                 on_bed: false,
             },
         );
@@ -342,6 +345,7 @@ fn suspend_weightless(sections: &[Section], span: f64, rise: f64, shape: &mut Sh
                 Kind::Slack {
                     x: span / length,
                     z: rise / length,
+                    weight: section.weight,
                     on_bed: false,
                 },
             );
@@ -493,6 +497,11 @@ impl Catenary {
     /// The material point at `s` metres of unstretched length from end A [m]; beyond an end, that end.
     pub fn at(&self, s: f64) -> Point {
         self.shape.at(s)
+    }
+
+    /// What the line holds, weighed from end A up.
+    pub fn energy(&self) -> CatenaryEnergy {
+        self.shape.pieces.iter().map(Piece::energy).sum()
     }
 
     /// Evaluations of the equation that was solved [-].

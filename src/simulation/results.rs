@@ -11,6 +11,7 @@ use crate::dynamics::beam::{BeamView, Momentum};
 use crate::dynamics::ledger::{Energy, Ledger};
 use crate::dynamics::reaction;
 use crate::model::{ClosedForm, End, Line, LineState, Role, joint};
+use crate::scene::Integrator;
 use crate::statics::catenary::Catenary;
 use crate::statics::{self, assembly, catenary_network};
 
@@ -161,11 +162,15 @@ impl Simulation {
             End::B => model.lines[line].ends[1],
         };
         let negative = model.solver.negative_tension;
+        let mut point = state.points[point];
+        if model.solver.integrator == Integrator::QuasiStatic {
+            point = point.stopped();
+        }
         reaction::end_force(
             &model.lines[line],
             &state.lines[line],
             end,
-            &state.points[point],
+            &point,
             model.water_along(state, line, state.time),
             negative,
         )

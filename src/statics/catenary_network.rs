@@ -43,9 +43,14 @@ const RELAXATION: [f64; 2] = [1.0, 1e-13];
 /// Displacement of the difference quotients, over the length of the line [-].
 const DIFFERENCE: f64 = 1e-9;
 
-/// Whether every line of a network has a closed form; in a current, lines with drag have none.
+/// Whether every line of a network has a closed form and nothing of it feels a current.
 pub fn serves(model: &Model, network: &Network) -> bool {
     let mut lines = network.lines.iter().map(|&line| &model.lines[line]);
+    let points = network.free_points.iter();
+    let mut spheres = points.filter_map(|&point| model.points[point].free()?.sphere.as_ref());
+    if model.current.is_some() && spheres.any(|sphere| sphere.drag > 0.0) {
+        return false;
+    }
     lines.all(|line| {
         let mut sections = line.sections.iter();
         line.bending.is_none()
@@ -261,11 +266,14 @@ fn draw(line: &Line, solved: &Catenary, state: &mut State, index: usize) {
     let shape = &mut state.lines[index];
     let closed_form = shape.closed_form.get_or_insert_with(ClosedForm::default);
     closed_form.tension.resize(line.nodes.arc.len(), 0.0);
-    let nodes = shape.position.iter_mut().zip(&mut closed_form.tension);
-    for ((r, tension), &s) in nodes.zip(&line.nodes.arc) {
+    closed_form.horizontal.resize(line.nodes.arc.len(), 0.0);
+    let tensions = closed_form.tension.iter_mut();
+    let tensions = tensions.zip(&mut closed_form.horizontal);
+    let nodes = shape.position.iter_mut().zip(&line.nodes.arc);
+    for ((r, &s), (tension, horizontal)) in nodes.zip(tensions) {
         let point = solved.at(s);
         *r = a + point.x * plane.along + point.z * Vector3::z();
-        *tension = point.tension;
+        (*tension, *horizontal) = (point.tension, point.horizontal);
     }
     let last = closed_form.tension.len() - 1;
     (closed_form.tension[0], closed_form.tension[last]) = (solved.tension_a(), solved.tension_b());
@@ -273,6 +281,11 @@ fn draw(line: &Line, solved: &Catenary, state: &mut State, index: usize) {
     closed_form.laid_length = solved.laid_length() + 0.0; // an empty sum is −0
     closed_form.stretched_length = solved.stretched_length();
     closed_form.sag = solved.sag();
+    let energy = solved.energy();
+    let weights = line.sections.iter();
+    let weight: f64 = weights.map(|section| section.weight * section.length).sum();
+    closed_form.axial_energy = energy.axial;
+    closed_form.gravitational_energy = energy.gravitational + weight * a.z;
     shape.velocity.fill(Vector3::zeros());
     shape.acceleration.fill(Vector3::zeros());
 }

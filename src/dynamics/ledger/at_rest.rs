@@ -6,7 +6,9 @@ use nalgebra::Vector3;
 
 use super::Flow;
 use crate::dynamics::leapfrog::segment_tension;
-use crate::model::{End, FreePoint, Line, LineState, Model, Network, PointState, State};
+use crate::model::{
+    ClosedForm, End, FreePoint, Line, LineState, Model, Network, PointState, State,
+};
 use crate::statics::assembly::rubbing::{resting_node, resting_point};
 use crate::statics::assembly::{end_moment, end_shear};
 use crate::statics::equilibrium::current::drag_at_rest;
@@ -23,13 +25,21 @@ pub fn work_at_rest(
         flow.given += end_work(model, index, states) + current_work(model, index, states, times);
         flow.lost -= bed_work(&model.lines[index], states.map(|state| &state.lines[index]));
     }
-    for &point in &network.free_points {
-        let loads = times.map(|t| model.points[point].load_at(t));
-        flow.given += work(loads, states.map(|state| state.points[point].position));
-        let (line, _) = model.points[point].attached[0];
-        let on_elements = states[1].lines[line].closed_form.is_none();
-        if let (Some(free), true) = (model.points[point].free(), on_elements) {
-            flow.lost -= point_bed_work(model, free, states.map(|state| &state.points[point]));
+    for &index in &network.free_points {
+        let (point, at) = (
+            &model.points[index],
+            states.map(|state| &state.points[index]),
+        );
+        let Some(free) = point.free() else { continue };
+        let force = |k: usize| {
+            let stream = model.stream(times[k]);
+            let drag = stream.map(|stream| free.drag_at_rest(at[k].position.z, stream));
+            point.load_at(times[k]) + drag.unwrap_or_default()
+        };
+        flow.given += work([0, 1].map(force), at.map(|at| at.position));
+        let (line, _) = point.attached[0];
+        if states[1].lines[line].closed_form.is_none() {
+            flow.lost -= point_bed_work(model, free, at);
         }
     }
     flow
@@ -88,13 +98,14 @@ fn current_work(model: &Model, index: usize, states: [&State; 2], times: [f64; 2
     nodes.map(on_node).sum()
 }
 
-/// Work [J] of the bed on the inner nodes of a line; what lies of a closed-form catenary does not feel it.
+/// Work [J] of the bed on a line: on the inner nodes, or along what lies of a closed-form catenary.
 fn bed_work(line: &Line, shapes: [&LineState; 2]) -> f64 {
     let Some(contact) = &line.nodes.contact else {
         return 0.0;
     };
-    if shapes.iter().all(|shape| shape.closed_form.is_some()) {
-        return 0.0;
+    if let [Some(before), Some(after)] = shapes.map(|shape| shape.closed_form.as_ref()) {
+        let positions = shapes.map(|shape| &shape.position[..]);
+        return friction_work(contact.bed, positions, [before, after]);
     }
     let push = |shape: &LineState, i: usize| match line.bottom() {
         None => {
@@ -113,6 +124,25 @@ fn bed_work(line: &Line, shapes: [&LineState; 2]) -> f64 {
         )
     };
     (1..line.segment_count()).map(on_node).sum()
+}
+
+/// Work [J] along a bed at a height [m] of the friction by which the horizontal tension of closed-form catenaries grows: that of a
+/// segment acts on the one of its nodes that lies, or on both.
+fn friction_work(bed: f64, positions: [&[Vector3<f64>]; 2], shapes: [&ClosedForm; 2]) -> f64 {
+    let on_segment = |i: usize| {
+        let force = |k: usize| {
+            let [low, high] = [shapes[k].horizontal[i], shapes[k].horizontal[i + 1]];
+            let along = (positions[k][i + 1] - positions[k][i]).try_normalize(0.0);
+            (low - high) * along.unwrap_or_else(Vector3::zeros)
+        };
+        let forces = [0, 1].map(force);
+        let lies = |&node: &usize| positions.iter().all(|at| at[node].z <= bed);
+        let laid = [i, i + 1].into_iter().filter(lies);
+        let works = laid.map(|node| work(forces, [0, 1].map(|k| positions[k][node])));
+        let (count, sum) = works.fold((0.0, 0.0), |(count, sum), work| (count + 1.0, sum + work));
+        if count > 0.0 { sum / count } else { 0.0 }
+    };
+    (0..positions[0].len() - 1).map(on_segment).sum()
 }
 
 /// Work [J] of the bed on a free point.

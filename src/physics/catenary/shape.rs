@@ -12,10 +12,16 @@ pub(super) enum Kind {
     Laid {
         tension: f64,
         growth: f64,
+        weight: f64,
         axial_stiffness: f64,
     },
     /// Nothing: no tension, so the shape is one of many; drawn straight, advancing (x, z) per metre [-].
-    Slack { x: f64, z: f64, on_bed: bool },
+    Slack {
+        x: f64,
+        z: f64,
+        weight: f64,
+        on_bed: bool,
+    },
 }
 
 /// A piece of the line with what carries it and where it starts.
@@ -40,6 +46,7 @@ impl Piece {
                 tension,
                 growth,
                 axial_stiffness,
+                ..
             } => (
                 length * (1.0 + (tension + 0.5 * growth * length) / axial_stiffness),
                 0.0,
@@ -132,6 +139,7 @@ impl Shape {
                 Kind::Slack {
                     x: 1.0,
                     z: 0.0,
+                    weight: section.weight,
                     on_bed: true,
                 },
             );
@@ -141,6 +149,7 @@ impl Shape {
                 Kind::Laid {
                     tension,
                     growth,
+                    weight: section.weight,
                     axial_stiffness: section.axial_stiffness,
                 },
             );
@@ -159,16 +168,25 @@ impl Shape {
                         piece.kind = Kind::Slack {
                             x,
                             z,
+                            weight: flight.weight,
                             on_bed: false,
                         };
                     }
                 }
                 Kind::Laid {
-                    tension, growth, ..
+                    tension,
+                    growth,
+                    weight,
+                    ..
                 } if *tension <= nothing => {
                     *tension = 0.0;
                     if *growth == 0.0 {
-                        piece.kind = Kind::Slack { x, z, on_bed: true };
+                        piece.kind = Kind::Slack {
+                            x,
+                            z,
+                            weight: *weight,
+                            on_bed: true,
+                        };
                     }
                 }
                 _ => {}
@@ -191,9 +209,15 @@ impl Shape {
         self.end = (0.0, 0.0, 0.0);
         for piece in pieces {
             let kind = match piece.kind {
-                Kind::Slack { x, z, on_bed } => Kind::Slack {
+                Kind::Slack {
+                    x,
+                    z,
+                    weight,
+                    on_bed,
+                } => Kind::Slack {
                     x: x * factor,
                     z,
+                    weight,
                     on_bed,
                 },
                 kind => kind,

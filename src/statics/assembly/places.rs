@@ -68,6 +68,7 @@ pub(crate) fn copy_network(model: &Model, network: &Network, from: &State, to: &
         to_line.parted = from_line.parted;
         to_line.beam.clone_from(&from_line.beam);
         to_line.anchor.clone_from(&from_line.anchor);
+        to_line.closed_form.clone_from(&from_line.closed_form);
         for point in model.lines[index].ends {
             to.points[point] = from.points[point];
         }

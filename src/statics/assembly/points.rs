@@ -58,7 +58,7 @@ impl PointWork {
         self.diagonal[(2, 2)] += case.load * at.weight_slope;
         if let (Some(sphere), Some(stream)) = (&free.sphere, stream) {
             let past = -stream.velocity(z);
-            force += sphere.drag(at.wetted, past);
+            force += free.drag_at_rest(z, stream);
             let by_height = sphere.drag_slope_with_height(at.wetted, past)
                 - sphere.drag_slope(at.wetted, past) * stream.shear(z);
             self.diagonal
