@@ -645,3 +645,30 @@ fn what_hangs_from_a_softened_bed_pulls_as_over_a_rigid_one() {
         }
     }
 }
+
+#[test]
+fn an_end_that_lets_go_comes_to_rest_on_a_bed_that_rubs() {
+    for integrator in ALL {
+        let chain = scene(
+            r#"
+            water.density = 1025.0
+            seabed = { depth = 100.0, stiffness = 3e6, damping = 3e5, friction = 0.5 }
+            line_types.chain = { mass = 100.0, diameter = 0.07, axial_stiffness = 5.0e7, axial_damping = 1.0e6, drag_normal = 1.2, added_mass_normal = 1.0 }
+            points = [{ name = "anchor", position = [0.0, 0.0, -100.0], kind = "fixed" },
+                      { name = "top", position = [90.0, 0.0, -60.0], kind = "coupled" }]
+            lines = [{ name = "line", from = "anchor", to = "top", break = { at = "b", time = 1.0 },
+                       sections = [{ type = "chain", length = 110.0, elements = 10 }] }]
+            "#,
+        );
+        let mut simulation = Simulation::new(&with_integrator(chain, integrator, 0.05)).unwrap();
+        run(&mut simulation, 0.5, 60.0);
+        let lowest = simulation
+            .profile(0)
+            .iter()
+            .fold(0.0, |a: f64, node| a.min(node.z));
+        assert!(
+            (-100.5..-100.0).contains(&lowest),
+            "{integrator:?}: {lowest} m"
+        );
+    }
+}

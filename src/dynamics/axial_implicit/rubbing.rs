@@ -98,9 +98,10 @@ impl Node {
 }
 
 impl AxialWork {
-    /// Numbers of the nodes between the ends.
-    fn inner_nodes(&self) -> std::ops::Range<usize> {
-        1..self.layout.segment_count
+    /// Numbers of the nodes that nothing holds: those between the ends, and ends that have parted.
+    fn loose_nodes(&self) -> std::ops::Range<usize> {
+        let [a, b] = self.parted;
+        usize::from(!a)..self.layout.segment_count + usize::from(b)
     }
 
     /// New velocity of a node [m/s].
@@ -110,7 +111,7 @@ impl AxialWork {
 
     /// Finds out how the nodes stand to the bed, and what they are first taken to do there.
     pub(super) fn meet_bed(&mut self, step: Step) {
-        for i in self.inner_nodes() {
+        for i in self.loose_nodes() {
             let at = self.layout.slot(i);
             let (penetration, normal) = self.layout.stand(at);
             let velocity = self.layout.velocity.get(at);
@@ -196,6 +197,16 @@ impl AxialWork {
         mode == Mode::Slides && (rub - before).norm() <= RUB_TOLERANCE * push
     }
 
+    /// What the segments beside a node pull it by [N].
+    fn pull_on(&self, i: usize) -> Vector3<f64> {
+        let pull = |segment: usize| self.rows.pull(self.layout.slot(segment));
+        let before = i.checked_sub(1).map_or(Vector3::zeros(), pull);
+        match i < self.layout.segment_count {
+            true => pull(i) - before,
+            false => -before,
+        }
+    }
+
     /// The friction [N s] that a node moved with, in the pass that gave it `velocity` [m/s].
     fn needed(&self, i: usize, node: &Node, velocity: Vector3<f64>, step: Step) -> Vector3<f64> {
         let Some(rubbing) = &self.rubbing else {
@@ -206,8 +217,8 @@ impl AxialWork {
             Mode::Off => Vector3::zeros(),
             Mode::Slides => stand.rub,
             Mode::Sticks => {
-                let [before, at] = [i - 1, i].map(|i| self.layout.slot(i));
-                let impulse = step.kick * (self.rows.pull(at) - self.rows.pull(before));
+                let at = self.layout.slot(i);
+                let impulse = step.kick * self.pull_on(i);
                 let fall = self.rows.nodes[at.row - 1].fall.get(at.lane);
                 node.flat(node.mass_times(velocity - fall) - impulse)
             }
@@ -253,7 +264,7 @@ impl AxialWork {
     /// Compares what the nodes do with what they were taken to do; false if that asks for another pass.
     pub(super) fn check_bed(&mut self, step: Step) -> bool {
         let mut holds = true;
-        for i in self.inner_nodes() {
+        for i in self.loose_nodes() {
             let velocity = self.new_velocity(i);
             if !self.rest(i, velocity, step) {
                 self.settle_on(i);
@@ -265,7 +276,7 @@ impl AxialWork {
 
     /// Remembers the friction of the step.
     pub(super) fn keep_rub(&mut self, step: Step) {
-        for i in self.inner_nodes() {
+        for i in self.loose_nodes() {
             let Some(node) = self.node(i) else {
                 return;
             };
