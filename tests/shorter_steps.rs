@@ -100,3 +100,42 @@ fn a_step_that_failed_leaves_nothing_to_those_after_it() {
         assert_eq!(forces[0], forces[1], "{integrator:?}");
     }
 }
+
+/// A fat light hose upright in the water that is drawn up and down along itself.
+fn hose(integrator: Integrator) -> Scene {
+    let hose = scene(
+        r#"
+        water = { density = 1025.0, surface = false }
+        line_types.hose = { mass = 1.0, diameter = 0.1, axial_stiffness = 1.0e5, drag_normal = 1.2, drag_tangential = 0.4, added_mass_normal = 1.0 }
+        points = [{ name = "low", position = [0.0, 0.0, -150.0], kind = "coupled" },
+                  { name = "high", position = [0.0, 0.0, -49.0], kind = "coupled" }]
+        lines = [{ name = "hose", from = "low", to = "high", sections = [{ type = "hose", length = 100.0, elements = 10 }] }]
+        motion = { low = { z = [[4.0, 6.0]] }, high = { z = [[4.0, 6.0]] } }
+        "#,
+    );
+    with_integrator(hose, integrator, 0.05)
+}
+
+#[test]
+fn drag_along_a_line_that_is_light_beside_the_water_it_displaces_shortens_the_steps() {
+    let tensions = |integrator| -> Vec<f64> {
+        let mut simulation = following(&hose(integrator));
+        let advance = |_| {
+            simulation.advance(0.1).unwrap();
+            simulation.tension_b(0)
+        };
+        (0..200).map(advance).collect()
+    };
+    let reference = tensions(Integrator::GeneralisedAlpha);
+    let found = tensions(Integrator::Leapfrog);
+    let mean = reference.iter().sum::<f64>() / 200.0;
+    let rms = |values: &[f64]| (values.iter().map(|v| v * v).sum::<f64>() / 200.0).sqrt();
+    let swing: Vec<f64> = reference.iter().map(|v| v - mean).collect();
+    let error: Vec<f64> = found.iter().zip(&reference).map(|(a, b)| a - b).collect();
+    assert!(
+        rms(&error) < 0.02 * rms(&swing),
+        "{} N of {} N",
+        rms(&error),
+        rms(&swing)
+    );
+}

@@ -87,7 +87,7 @@ struct WaterWork {
     inverse_mass_excess: Column,
     /// M_t − M_n [kg]; of ends as [`LineWork::set_mass_excess`] says.
     mass_excess: Column,
-    /// The greater drag coefficient over the mass of a node that is wholly in the water [1/m].
+    /// Drag coefficient over mass of a node that is wholly in the water, across or along the line, whichever is greater [1/m].
     drag_over_mass: Column,
 }
 
@@ -103,9 +103,15 @@ impl WaterWork {
             || excess.iter().any(|excess| *excess != 0.0);
         let drag = layout.drag.as_ref();
         let over_mass = nodes.drag.as_ref().map_or(Vec::new(), |drag| {
-            let each = drag.normal.iter().zip(&drag.tangent);
-            let rates = each.zip(&nodes.mass_normal);
-            rates.map(|((n, t), mass)| n.max(*t) / mass).collect()
+            let over = |drag: &[f64], mass: &[f64]| -> Vec<f64> {
+                drag.iter()
+                    .zip(mass)
+                    .map(|(drag, mass)| drag / mass)
+                    .collect()
+            };
+            let across = over(&drag.normal, &nodes.mass_normal);
+            let along = over(&drag.tangent, &nodes.mass_tangent);
+            across.iter().zip(along).map(|(a, b)| a.max(b)).collect()
         });
         wet.then(|| WaterWork {
             drag_over_mass: layout.fold.column(&over_mass, 0.0),
