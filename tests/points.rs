@@ -163,3 +163,29 @@ fn a_buoy_on_a_slack_line_floats_where_its_weight_is_its_buoyancy_and_stays_ther
         assert!((z[1200] - z[0]).abs() < 1e-9 * 200.0, "{}", z[1200] - z[0]);
     }
 }
+
+#[test]
+fn a_drogue_in_a_current_pulls_by_its_drag_whatever_the_step() {
+    let (area, speed) = (1.0, 2.0);
+    let drag = 0.5 * RHO * area * speed * speed;
+    for integrator in BOTH {
+        for step in [0.01, 0.1] {
+            let drogue = scene(&format!(
+                r#"
+                water = {{ density = {RHO}, current = {{ velocity = [{speed}, 0.0, 0.0] }} }}
+                line_types.rope = {{ mass = 0.1, weight = 0.0, diameter = 1e-6, axial_stiffness = 1.0e5, axial_damping = 100.0 }}
+                points = [{{ name = "top", position = [0.0, 0.0, -20.0], kind = "fixed" }},
+                          {{ name = "drogue", position = [20.0, 0.0, -20.0], kind = "free", mass = 1.0, volume = {}, drag_area = {area} }}]
+                lines = [{{ name = "rope", from = "top", to = "drogue", initial = "straight", sections = [{{ type = "rope", length = 20.0, elements = 4 }}] }}]
+                "#,
+                1.0 / RHO
+            ));
+            let mut simulation =
+                Simulation::new(&with_integrator(drogue, integrator, step)).unwrap();
+            for _ in 0..100 {
+                simulation.advance(0.1).unwrap();
+            }
+            assert_relative_eq!(simulation.tension_b(0), drag, max_relative = 1e-3);
+        }
+    }
+}

@@ -543,12 +543,12 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
             }
             work.set_current(model, self.start);
             let longest = step_max / work.stiffening().sqrt();
-            let quick = drag_step(work.drag_rate(model, network));
-            let count = self.substeps(longest.min(quick), retry)?;
+            let quick = drag_step(work.drag_rate(model, network, self.start));
+            let count = self.substeps(network.lines[0], longest.min(quick), retry)?;
             let drift = self.length / count as f64;
             let mut steps = self.state.lines[network.lines[0]].half_step.steps;
             let mut step = Step::after(steps, drift);
-            work.put_ends(self.start, step, self.held);
+            work.put_ends(self.start, steps[0], self.held);
             work.start_reels(network, self.state, self.reels, step);
             work.begin();
             for k in 0..count {
@@ -559,7 +559,10 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
             }
             let flow = work.flow();
             let is_sound = work.is_sound() && flow.is_finite();
-            let holds = drag_holds(work.drag_rate(model, network), drift);
+            let holds = drag_holds(
+                work.drag_rate(model, network, self.start + self.length),
+                drift,
+            );
             if is_sound && (holds || retry == RETRIES_MAX) {
                 work.store(network, next, steps);
                 let counters = Counters {
@@ -609,7 +612,7 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
         let step_max = self.transverse_step(index, work, step_max);
         let mut stuck = 0;
         for retry in 0..=RETRIES_MAX {
-            let count = self.substeps(step_max, retry)?;
+            let count = self.substeps(index, step_max, retry)?;
             let drift = self.length / count as f64;
             self.set_out(index, drift, work, self.holds && retry == 0);
             let mut steps = self.state.lines[index].half_step.steps;
@@ -692,6 +695,7 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
         work: &mut assembly::Workspace,
         next: &mut State,
     ) -> Result<Done, StepError> {
+        self.substeps(self.model.networks[number].lines[0], step_max, 0)?;
         copy_network(self.model, &self.model.networks[number], self.state, next);
         let end = self.start + self.length;
         let span = implicit::Span {
@@ -743,7 +747,7 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
             reason: StuckReason::Diverged,
         };
         for retry in 0..=RETRIES_MAX {
-            let count = self.substeps(step_max, retry)?;
+            let count = self.substeps(index, step_max, retry)?;
             copy_network(model, network, self.state, next);
             match beam::drive(model, index, next, self.held, span, count, work) {
                 Ok(Driven { solves, flow }) => {
@@ -786,34 +790,34 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
         Ok(Done { counters, flow })
     }
 
-    /// Equal steps no longer than `step_max` [s], halved `retry` times.
-    fn substeps(&self, step_max: f64, retry: u32) -> Result<usize, StepError> {
+    /// Equal steps no longer than `step_max` [s], halved `retry` times, of the network with a line.
+    fn substeps(&self, line: usize, step_max: f64, retry: u32) -> Result<usize, StepError> {
         if self.length <= step_max {
             return Ok(1 << retry);
         }
-        self.several(step_max, retry)
+        self.several(line, step_max, retry)
     }
 
     /// [`Self::substeps`] where one is too long.
     #[inline(never)]
-    fn several(&self, step_max: f64, retry: u32) -> Result<usize, StepError> {
+    fn several(&self, line: usize, step_max: f64, retry: u32) -> Result<usize, StepError> {
         // a span of exactly one limit must not become two steps by rounding
         let count = self.length / step_max * (1.0 - 1e-9);
         if count <= SUBSTEPS_MAX {
             let whole = count as usize; // rounded down
             return Ok((whole + usize::from(count > whole as f64)) << retry);
         }
-        Err(self.too_many(step_max, count.ceil()))
+        Err(self.too_many(line, step_max, count.ceil()))
     }
 
     #[cold]
-    fn too_many(&self, step_max: f64, count: f64) -> StepError {
+    fn too_many(&self, line: usize, step_max: f64, count: f64) -> StepError {
         StepError {
             time: self.start,
-            line: self.model.lines[0].name.clone(),
+            line: self.model.lines[line].name.clone(),
             node: 0,
             reason: format!("steps of {step_max:.1e} s would be needed, {count:.0e} of them"),
-            advice: "check masses, lengths and stiffnesses, or use solver.integrator = \"generalised_alpha\"",
+            advice: "check solver.time_step_max, masses, lengths and stiffnesses, or use solver.integrator = \"generalised_alpha\"",
         }
     }
 

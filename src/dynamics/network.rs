@@ -68,13 +68,13 @@ impl LineEnd {
         LineEnd { tie, placed }
     }
 
-    /// Finds where the point is at `t` [s], and its velocity half a step earlier.
+    /// Finds where the point is at `t` [s], and its velocity half a step of `length` [s] earlier.
     #[inline]
     fn find(
         &mut self,
         points: &[PointState],
         t: f64,
-        step: Step,
+        length: f64,
         held: &impl Fn(usize, f64) -> Kinematics,
     ) {
         self.placed = match self.tie {
@@ -83,7 +83,7 @@ impl LineEnd {
                 let k = held(point, t);
                 Placed {
                     position: k.position,
-                    velocity: k.velocity - 0.5 * step.drift * k.acceleration,
+                    velocity: k.velocity - 0.5 * length * k.acceleration,
                 }
             }
             Tie::Free(free) => Placed {
@@ -228,17 +228,23 @@ impl NetworkWork {
         lines.fold(1.0, f64::max)
     }
 
-    /// Greatest ratio K |v| / M of all nodes [1/s].
-    pub fn drag_rate(&self, model: &Model, network: &Network) -> f64 {
+    /// Greatest ratio K |v| / M of all nodes and free points at time `t` [s], v relative to the water [1/s].
+    pub fn drag_rate(&self, model: &Model, network: &Network, t: f64) -> f64 {
         let of_lines = self.drag_rate.unwrap_or_else(|| {
             let surveys = self.lines.iter().map(LineWork::survey);
             surveys.fold(0.0, |rate: f64, line| rate.max(line.drag_rate))
         });
-        let points = self.points.iter().zip(&network.free_points);
+        let points = self.points.iter().zip(&network.free_points).enumerate();
         points
-            .filter_map(|(point, &index)| {
+            .filter_map(|(free, (point, &index))| {
                 let sphere = model.points[index].free()?.sphere?;
-                let rate = sphere.drag * point.velocity.norm();
+                let stream = model.stream(t);
+                let mut past = point.half_step[0];
+                past -= stream.map_or(Vector3::zeros(), |now| now.velocity(point.position.z));
+                past -= self
+                    .waves_at(free, t)
+                    .map_or(Vector3::zeros(), |w| w.velocity);
+                let rate = sphere.drag * past.norm();
                 (rate > 0.0).then(|| rate / tied_mass(model, index))
             })
             .fold(of_lines, f64::max)
@@ -291,7 +297,7 @@ impl NetworkWork {
         let after = t + step.drift;
         for (work, ends) in self.lines.iter_mut().zip(&mut self.ends) {
             for end in ends.iter_mut() {
-                end.find(&self.points, after, step, held);
+                end.find(&self.points, after, step.drift, held);
             }
             work.advance(after, step, &[ends[0].placed, ends[1].placed]);
         }
@@ -338,11 +344,11 @@ impl NetworkWork {
         flow
     }
 
-    /// Puts every line's ends where their points are at `t` [s], with velocities half a step earlier.
-    pub fn put_ends(&mut self, t: f64, step: Step, held: &impl Fn(usize, f64) -> Kinematics) {
+    /// Puts every line's ends where their points are at `t` [s], with velocities half of the last step [s] earlier, as those of the nodes are.
+    pub fn put_ends(&mut self, t: f64, last: f64, held: &impl Fn(usize, f64) -> Kinematics) {
         for (work, ends) in self.lines.iter_mut().zip(&mut self.ends) {
             for end in ends.iter_mut() {
-                end.find(&self.points, t, step, held);
+                end.find(&self.points, t, last, held);
             }
             work.put_ends(&[ends[0].placed, ends[1].placed]);
         }
