@@ -141,9 +141,9 @@ impl Motion {
         })
     }
 
-    /// Whether it has no kink within a span of time [s].
+    /// Whether it has no kink after the start of a span of time [s] and up to its end, where [`Self::pose`] tells how it goes on.
     pub fn is_smooth(&self, [start, end]: [f64; 2]) -> bool {
-        let within = |kink: f64| kink > start && kink < end;
+        let within = |kink: f64| kink > start && kink <= end;
         match self {
             Motion::Harmonic { ramp: None, .. } => true,
             Motion::Harmonic {
@@ -151,7 +151,7 @@ impl Motion {
             } => !within(0.0) && !within(*ramp),
             Motion::Table(rows) => {
                 let next = rows.partition_point(|row| row.time <= start);
-                rows.get(next).is_none_or(|row| row.time >= end)
+                rows.get(next).is_none_or(|row| row.time > end)
             }
         }
     }
@@ -310,5 +310,14 @@ mod tests {
         assert_relative_eq!(motion.at(2.0).position.x, f64::sin(2.0), epsilon = 1e-14);
         assert_relative_eq!(motion.at(2.04).position.x, f64::sin(2.04), epsilon = 1e-5);
         assert_derivatives(&motion, 2.05, 1e-5);
+    }
+
+    #[test]
+    fn a_span_that_ends_in_a_kink_is_not_smooth_and_one_that_starts_there_is() {
+        let row = |t: f64| [t, t, 0.0, 0.0, 0.0, 0.0, 0.0];
+        let motion = Motion::Table(table(&[0.0, 0.5, 1.0, 1.5].map(row)));
+        assert!(motion.is_smooth([0.5, 0.9]) && !motion.is_smooth([0.5, 1.0]));
+        let motion = swinging(Some(20.0));
+        assert!(motion.is_smooth([20.0, 21.0]) && !motion.is_smooth([19.0, 20.0]));
     }
 }
