@@ -1,6 +1,7 @@
 //! Scene -> Model.
 
 mod beam;
+mod reach;
 mod resting;
 mod spacing;
 mod waves;
@@ -9,6 +10,7 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 
+use self::reach::may_touch_bed;
 use super::{
     Bending, Bottom, Contact, Current, Drag, End, FreePoint, Line, Model, Motion, Network, Nodes,
     Parting, Point, PointContact, Pressed, Role, Section, Segments, Surface, Vessel, Winch, mesh,
@@ -222,11 +224,9 @@ fn point_contact(
     dry: f64,
 ) -> Option<PointContact> {
     let bed = scene.seabed.as_ref()?;
-    let place = |name: &String| scene.points.iter().position(|point| point.name == *name);
     let in_reach = scene.lines.iter().any(|line| {
         let tied = line.from == point.name || line.to == point.name;
-        let ends = place(&line.from).zip(place(&line.to));
-        tied && ends.is_some_and(|(a, b)| contact_in_reach(scene, [a, b], line))
+        tied && may_touch_bed(scene, line)
     });
     if !axes[2] || dry == 0.0 || bed.stiffness <= 0.0 || !in_reach {
         return None;
@@ -418,7 +418,7 @@ fn build_line(
         name: line.name.clone(),
         ends,
         segments: segments(&parts),
-        nodes: nodes(scene, &parts, contact_in_reach(scene, ends, line)),
+        nodes: nodes(scene, &parts, may_touch_bed(scene, line)),
         bending: None,
         surface: None,
         sections: sections.collect(),
@@ -609,7 +609,7 @@ fn segments(parts: &[SegmentPart]) -> Segments {
     }
 }
 
-fn nodes(scene: &Scene, parts: &[SegmentPart], contact_in_reach: bool) -> Nodes {
+fn nodes(scene: &Scene, parts: &[SegmentPart], may_touch_bed: bool) -> Nodes {
     let lump = |density: &dyn Fn(&LineLaw) -> f64| lumped(parts, density);
     let length = lump(&|_| 1.0);
     let weight = lump(&|law| law.weight);
@@ -624,7 +624,7 @@ fn nodes(scene: &Scene, parts: &[SegmentPart], contact_in_reach: bool) -> Nodes 
         tangent: lump(&|law| law.displaced + law.added_tangent),
     });
     let mass_normal = lump(&|law| law.mass + law.added_normal);
-    let contact = (contact_in_reach && any(&|law| law.contact.is_some())).then(|| {
+    let contact = (may_touch_bed && any(&|law| law.contact.is_some())).then(|| {
         let stiffness = lump(&|law| law.contact.map_or(0.0, |contact| contact.stiffness));
         let damping = lump(&|law| law.contact.map_or(0.0, |contact| contact.damping));
         contact(scene, &length, [&weight, &mass_normal], stiffness, damping)
@@ -699,19 +699,6 @@ fn contact(
         bottom: None,
         stick: Vec::new(),
     }
-}
-
-/// Whether a line could ever touch the bed: its lowest possible point, stretched by half, hangs from its lower end.
-fn contact_in_reach(scene: &Scene, ends: [usize; 2], line: &scene::Line) -> bool {
-    let Some(bed) = &scene.seabed else {
-        return false;
-    };
-    if !bed.is_level() {
-        return true;
-    }
-    let length: f64 = line.sections.iter().map(|section| section.length).sum();
-    let lowest_end = ends.map(|end| scene.points[end].position[2]);
-    lowest_end[0].min(lowest_end[1]) - 1.5 * length <= -bed.depth
 }
 
 /// Refuses a beam that shares a free point with another line.
