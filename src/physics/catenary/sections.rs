@@ -41,6 +41,9 @@ const FRICTION_HALVINGS_MAX: usize = 60;
 /// Where the vertical tension at a section's end is below this share of the unknown one, it becomes the unknown [-].
 const REFERENCE_SHARE: f64 = 1e-3;
 
+/// Bound on the unknowns that a flight is solved for in turn.
+const PASSES_MAX: usize = 8;
+
 /// A line of sections between two held ends.
 pub(super) struct Sections {
     sections: Vec<Section>,
@@ -263,8 +266,10 @@ impl Sections {
     fn take_off(&self, from: &Departure, memory: &mut Option<(f64, usize)>) -> (Departure, Touch) {
         let reach = |vertical: f64| 2.0 * (vertical.abs() + from.horizontal + self.weights);
         let (mut start, mut reference) = memory.unwrap_or((0.0, from.section));
-        // a second pass is enough: it only moves the reference to where V is small
+        let mut passes = 0;
+        // a second pass is enough as a rule: it only moves the reference to where V is small
         loop {
+            passes += 1;
             let root = root::increasing(
                 |vertical| {
                     let flown = self.fly(&Departure {
@@ -286,7 +291,7 @@ impl Sections {
             };
             let flown = self.fly(&departure);
             let better = self.better_reference(&departure, from, &flown);
-            if better.is_none() || start == root.at {
+            if better.is_none() || start == root.at || passes == PASSES_MAX {
                 *memory = Some((root.at, reference));
                 return (departure, flown.touch);
             }
@@ -306,7 +311,9 @@ impl Sections {
         let ends_on_bed =
             run.end == self.sections.len() && self.bed.is_some_and(|bed| self.rise <= bed.height);
         let (mut start, mut reference) = memory.unwrap_or((0.5 * (run.last - run.first), run.end));
+        let mut passes = 0;
         loop {
+            passes += 1;
             let lower = self.before[reference] - run.last;
             let upper = self.before[reference] - run.first;
             let all_lifted = self.leave(from, &run, upper, reference);
@@ -333,7 +340,7 @@ impl Sections {
             let departure = self.leave(from, &run, root.at, reference);
             let flown = self.fly(&departure);
             let better = self.better_reference(&departure, from, &flown);
-            if better.is_none() || start == root.at {
+            if better.is_none() || start == root.at || passes == PASSES_MAX {
                 *memory = Some((root.at, reference));
                 return (departure, flown.touch);
             }
