@@ -5,7 +5,7 @@ mod common;
 use common::*;
 use moorline::model::Model;
 use moorline::scene::Scene;
-use moorline::simulation::Simulation;
+use moorline::simulation::{Simulation, pilot};
 
 fn open(mut scene: Scene) -> Scene {
     for section in scene.lines.iter_mut().flat_map(|line| &mut line.sections) {
@@ -84,4 +84,35 @@ fn the_mesh_is_told_with_its_reasons() {
         "{cable}"
     );
     assert!(cable.contains("at the touchdown"), "{cable}");
+}
+
+/// A slack chain of 710 m whose top hangs 29 m above a bed on which the rest lies.
+fn mostly_laid() -> Scene {
+    scene(
+        r#"
+        seabed = { depth = 200.0, stiffness = 3e6, damping = 3e5 }
+        line_types.chain = { mass = 100.0, weight = 860.0, diameter = 0.1, axial_stiffness = 5.4e8 }
+        points = [{ name = "anchor", position = [0.0, 0.0, -200.0], kind = "fixed" },
+                  { name = "top", position = [682.4, 0.0, -171.3], kind = "coupled" }]
+        lines = [{ name = "line", from = "anchor", to = "top", sections = [{ type = "chain", length = 711.0 }] }]
+        "#,
+    )
+}
+
+#[test]
+fn a_line_at_rest_has_as_many_elements_as_its_static_tension_needs() {
+    let tension_error = |scene: &Scene| {
+        let simulation = Simulation::by_rules(scene).unwrap();
+        simulation.tension_b(0) / simulation.catenary(0).unwrap().tension_b() - 1.0
+    };
+    let scene = mostly_laid();
+    assert!(tension_error(&scene).abs() > 0.05); // 40 elements, by the rule
+    let settled = pilot::settle(&scene).unwrap();
+    assert!(tension_error(&settled.scene).abs() < 0.02);
+    let [before, after] = settled.rest.unwrap().errors;
+    assert!(before > 0.05 && after < 0.02 && settled.elements > 40);
+    assert!(settled.in_words()[0].contains("at rest"));
+    let mut still = open(shipped("oc3_catenary"));
+    still.motion.clear();
+    assert!(pilot::settle(&still).is_none());
 }

@@ -18,13 +18,14 @@
 //!
 //! All this is bounded, by a work of the order of a second, and the same on every machine. Beyond that the number of elements is extrapolated
 //! from the last one tried, with an error that falls as 1/n. A scene whose motion is not known, whose elements are given or that needs another
-//! integrator keeps the rule that elements follow from the tolerance alone.
+//! integrator keeps the rule that elements follow from the tolerance alone. Whatever motion or rule ask for, elements are added until the tension at
+//! rest is within the tolerance of the closed-form catenary, where there is one to compare with.
 
 use super::{Error, Simulation};
 use crate::dynamics::AXIAL_IMPLICIT_COST;
 use crate::model::mesh::line_elements;
 use crate::model::{Model, Network, Role};
-use crate::scene::{Integrator, MotionPath, Scene};
+use crate::scene::{InitialShape, Integrator, MotionPath, Scene};
 
 /// Elements of a line alone that are tried [-].
 const LADDER: [usize; 13] = [5, 7, 10, 14, 20, 28, 40, 56, 80, 112, 160, 224, 320];
@@ -50,6 +51,8 @@ const DURATION: f64 = 200.0;
 const SAMPLES: f64 = 25.0;
 /// Standard deviation of a tension below which it does not move, over its mean [-].
 const STILL: f64 = 1e-6;
+/// Part of an error at rest that the most elements must take away to be worth it, where they do not keep the tolerance [-].
+const GAIN: f64 = 0.5;
 /// Elements below those of the rung that are worth a trial, over them [-].
 const FEWER: f64 = 0.93;
 
@@ -77,6 +80,17 @@ pub struct Settled {
     pub tried: bool,
     /// Time of the scene that was tried [s].
     pub duration: f64,
+    /// What asked for more elements than motion or rule, if anything did.
+    pub rest: Option<Rest>,
+}
+
+/// Why a line at rest needs more elements than its motion, or a rule, asks for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rest {
+    /// Elements that motion or rule ask for [-].
+    pub fewer: usize,
+    /// Errors of the tension at the driven end with those and with the ones that are taken, over that of the catenary [-].
+    pub errors: [f64; 2],
 }
 
 impl Settled {
@@ -88,13 +102,23 @@ impl Settled {
             .map(|trial| format!("{} with {}", percent(trial.error), trial.elements))
             .collect();
         let solver = &self.scene.solver;
-        let mut said = vec![format!(
-            "{} elements a line alone for the target error of {} %, tried on {:.0} s of the scene's motion: errors of {}",
-            self.elements,
-            100.0 * solver.tolerance,
-            self.duration,
-            tried.join(", ")
-        )];
+        let target = format!("for the target error of {} %", 100.0 * solver.tolerance);
+        let mut said = Vec::new();
+        if !tried.is_empty() {
+            said.push(format!(
+                "{} elements a line alone {target}, tried on {:.0} s of the scene's motion: errors of {}",
+                self.rest.map_or(self.elements, |rest| rest.fewer),
+                self.duration,
+                tried.join(", ")
+            ));
+        }
+        if let Some(rest) = self.rest {
+            let [before, after] = rest.errors.map(percent);
+            said.push(format!(
+                "{} elements a line alone {target}: at rest the tension would miss that of the catenary by {before} with {}, and misses it by {after}",
+                self.elements, rest.fewer
+            ));
+        }
         if !self.tried {
             said.push(format!(
                 "that is extrapolated, trials being bounded: about {} is expected",
@@ -111,10 +135,15 @@ impl Settled {
     }
 }
 
-/// Tries a scene; none where there is nothing to choose or no motion to try it with.
+/// Tries a scene; none where there is nothing to choose or all is as rules say.
 pub fn settle(scene: &Scene) -> Option<Settled> {
+    tried_in_motion(scene).or_else(|| tried_at_rest(scene))
+}
+
+fn tried_in_motion(scene: &Scene) -> Option<Settled> {
     let mut search = Search::new(scene)?;
-    let (elements, error, tried) = search.mesh()?;
+    let (moving, error, tried) = search.mesh()?;
+    let (elements, rest) = elements_at_rest(scene, moving);
     let settled = if tried {
         search.with_integrator(elements)
     } else {
@@ -130,7 +159,76 @@ pub fn settle(scene: &Scene) -> Option<Settled> {
         error,
         tried,
         duration: search.scene.output.duration,
+        rest,
     })
+}
+
+/// The scene with more elements than the rule gives, where it needs them at rest.
+fn tried_at_rest(scene: &Scene) -> Option<Settled> {
+    if !is_open(scene) || scene.solver.integrator == Integrator::QuasiStatic {
+        return None;
+    }
+    let by_rule = line_elements(scene.solver.tolerance).round() as usize;
+    let (elements, rest) = elements_at_rest(scene, by_rule);
+    let rest = rest?;
+    Some(Settled {
+        scene: with_elements(scene, elements),
+        trials: Vec::new(),
+        elements,
+        error: rest.errors[1],
+        tried: true,
+        duration: 0.0,
+        rest: Some(rest),
+    })
+}
+
+/// Elements of a line alone, no fewer than `least`, whose tension at rest keeps the tolerance, and why where they are more. As `least` where
+/// more do not help.
+fn elements_at_rest(scene: &Scene, least: usize) -> (usize, Option<Rest>) {
+    let aim = AIM * scene.solver.tolerance;
+    let Some(first) = error_at_rest(&with_elements(scene, least)) else {
+        return (least, None);
+    };
+    let (mut elements, mut error) = (least, first);
+    while error > aim && (elements as f64) < ELEMENTS_MAX {
+        let more = (2.0 * elements as f64).min(ELEMENTS_MAX) as usize;
+        let Some(now) = error_at_rest(&with_elements(scene, more)) else {
+            return (least, None);
+        };
+        (elements, error) = (more, now);
+    }
+    if error > aim && error > (1.0 - GAIN) * first {
+        return (least, None);
+    }
+    let rest = Rest {
+        fewer: least,
+        errors: [first, error],
+    };
+    (elements, (elements > least).then_some(rest))
+}
+
+/// Greatest error of the tension at the driven ends of lines at rest against their closed-form catenaries [-]; none where no line has one.
+fn error_at_rest(scene: &Scene) -> Option<f64> {
+    let simulation = Simulation::by_rules(scene).ok()?;
+    let model = simulation.model();
+    let errors = scene.lines.iter().enumerate().filter_map(|(line, said)| {
+        let (built, exact) = (&model.lines[line], simulation.catenary(line)?);
+        if built.bends() || built.drifts(model) || said.initial != InitialShape::Static {
+            return None;
+        }
+        let [found, exact] = match driven(model, line) {
+            0 => [simulation.tension_a(line), exact.tension_a()],
+            _ => [simulation.tension_b(line), exact.tension_b()],
+        };
+        Some((found - exact).abs() / exact)
+    });
+    errors.reduce(f64::max).filter(|error| error.is_finite())
+}
+
+fn with_elements(scene: &Scene, elements: usize) -> Scene {
+    let mut scene = scene.clone();
+    scene.solver.elements = Some(elements);
+    scene
 }
 
 /// The scene with the mesh that it has now, whatever is set of it later: as [`settle`] finds it, or by rule. None where all elements are
@@ -202,9 +300,7 @@ impl Search {
 
     /// The scene with so many elements.
     fn with(&self, elements: usize) -> Scene {
-        let mut scene = self.scene.clone();
-        scene.solver.elements = Some(elements);
-        scene
+        with_elements(&self.scene, elements)
     }
 
     /// The same with steps that add little to the error of the mesh.
