@@ -110,7 +110,7 @@ fn damping_rate(line: &Line) -> f64 {
 #[derive(Debug, Clone)]
 pub struct AxialWork {
     layout: Layout,
-    /// Longest step over √T [s √N].
+    /// Longest step times √T [s √N].
     pub transverse: f64,
     /// Weights of the averaging, and those of the step.
     averaging: Weights,

@@ -1,4 +1,4 @@
-//! Viscoelastic segments one by one: tension, energy and loss from a line's state.
+//! Viscoelastic segments of the leapfrogs: one by one, tension and energy from a line's state; in rows, their memories over steps.
 
 use nalgebra::Vector3;
 

@@ -121,7 +121,7 @@ pub enum Body {
 pub enum Role {
     /// Never moves.
     Fixed,
-    /// The host moves it; [`Model::motion`] of the scene drives it in `moorline run`.
+    /// The host moves it; the motion of the scene drives it in `moorline run`.
     Coupled {
         /// The scene's motion for it.
         motion: Option<Motion>,

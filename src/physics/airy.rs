@@ -239,11 +239,6 @@ impl Waves {
         deviation(&self.components)
     }
 
-    /// Height below which nothing moves [m].
-    pub fn lowest_reach(&self) -> f64 {
-        self.reach.first().copied().unwrap_or(0.0)
-    }
-
     /// How many components, of the lowest frequencies, move the water at a height [m].
     pub fn reaching(&self, z: f64) -> usize {
         self.reach.partition_point(|reach| *reach <= z)

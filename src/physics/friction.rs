@@ -96,11 +96,6 @@ impl Friction {
             lying * self.axial * self.axial + (1.0 - lying) * self.transverse * self.transverse;
         Vector2::new(along.sqrt(), self.transverse) * normal_force
     }
-
-    /// Whether it is the same in all directions.
-    pub fn is_isotropic(&self) -> bool {
-        self.axial == self.transverse
-    }
 }
 
 /// The friction at a node that `holding` [N] would hold, in the ellipse of the axes `limits` [N].

@@ -225,8 +225,8 @@ impl Simulation {
         self.snapshot.state.lines[line].closed_form.as_ref()
     }
 
-    /// Elastic catenary of the reference configuration, where the line's ends are held and its strain is small or
-    /// engineering strain.
+    /// Elastic catenary of the reference configuration, where the line's ends are held, its strain is engineering strain, a bed
+    /// in reach is level, and it does not come out of the water.
     pub fn catenary(&self, line: usize) -> Option<&Catenary> {
         self.catenaries[line].as_ref()
     }
@@ -397,7 +397,7 @@ fn laid_length(line: &Line, state: &LineState) -> f64 {
     (0..=n).map(|i| share(i) * line.nodes.length[i]).sum()
 }
 
-/// Greatest vertical distance of the nodes below the chord of the ends, or below the lower end where that is vertical [m].
+/// Greatest vertical distance of the nodes below the chord of the ends, or below the lower end beyond it and where it is vertical [m].
 fn sag(nodes: &[Vector3<f64>]) -> f64 {
     let (a, b) = (nodes[0], nodes[nodes.len() - 1]);
     let across = Vector3::new(b.x - a.x, b.y - a.y, 0.0);
