@@ -305,6 +305,78 @@ fn statics_as_json_has_the_documented_keys_and_balances() {
     assert_eq!(json["vessels"], serde_json::json!([]));
 }
 
+/// The number in this column, from 1, of the row of a table that begins with `name`.
+fn cell(text: &str, name: &str, column: usize) -> f64 {
+    let row = text.lines().find_map(|line| line.strip_prefix(name));
+    let cells = row.unwrap_or_else(|| panic!("{name} in {text}"));
+    let cell = cells.split_whitespace().nth(column - 1);
+    cell.unwrap_or_else(|| panic!("{name} in {text}"))
+        .parse()
+        .unwrap()
+}
+
+fn public_scene(name: &str) -> String {
+    format!("{}/scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"))
+}
+
+#[test]
+fn statics_solves_the_equilibrium_whatever_shape_a_run_starts_on() {
+    let folder = folder();
+    // A parabola as deep as the catenary carries almost three times its tension.
+    let output = moorline(folder.path(), &["statics", &public_scene("seafem11")]);
+    assert_eq!(output.status.code(), Some(0));
+    assert!(
+        err(&output).contains("lines[0].initial: runs start on this shape"),
+        "{}",
+        err(&output)
+    );
+    // The catenary of SeaFEM case 11, to what 22 elements leave.
+    let horizontal = cell(&out(&output), "line1 horizontal force at end B [N]", 1);
+    assert!(
+        (horizontal / 17.00889855 - 1.0).abs() < 1e-3,
+        "{horizontal}"
+    );
+    let straight = SCENE.replace(
+        "name = \"line1\"",
+        "name = \"line1\"\ninitial = \"straight\"",
+    );
+    fs::write(folder.path().join("straight.toml"), straight).unwrap();
+    let json = |scene: &str| done(folder.path(), &["statics", scene, "--json"]);
+    assert_eq!(json("straight.toml"), json("scene.toml"));
+}
+
+#[test]
+fn a_run_that_starts_at_speed_shows_the_equilibrium_at_rest() {
+    let folder = folder();
+    let moved = ["--move", "fairlead.x=5,12", "--duration", "0.1"];
+    let scene = public_scene("oc3_catenary");
+    let run = done(
+        folder.path(),
+        &[["run", &scene, "-o", "out"].as_slice(), &moved].concat(),
+    );
+    let statics = done(folder.path(), &["statics", &scene]);
+    for name in [
+        "line1 tension at end B [N]",
+        "line1 horizontal force at end B [N]",
+    ] {
+        // The mesh depends on the motion.
+        let ratio = cell(&run, name, 1) / cell(&statics, name, 1);
+        assert!((ratio - 1.0).abs() < 1e-3, "{name}: {ratio}");
+    }
+}
+
+#[test]
+fn what_flies_freely_has_no_equilibrium_to_show() {
+    let folder = folder();
+    let scene = public_scene("flying_spaghetti");
+    refused(folder.path(), &["statics", &scene], 1, &["line \"rod\""]);
+    let run = done(
+        folder.path(),
+        &["run", &scene, "-o", "out", "--duration", "0.2"],
+    );
+    assert!(run.starts_with("no static equilibrium\n"), "{run}");
+}
+
 #[test]
 fn run_writes_its_files_and_nothing_else() {
     let folder = folder();

@@ -48,6 +48,7 @@ pub fn run(
     }
     make_folder(folder)?;
     let mut simulation = simulate(&loaded)?;
+    let still = simulation.in_equilibrium().ok();
     let start = match pace {
         Pace::Scene => simulation.follow_scene(),
         Pace::Host { velocities, .. } => {
@@ -64,7 +65,9 @@ pub fn run(
         variables: recorded(&interface).collect(),
         channels,
     };
-    let record = step_through(&loaded.scene, &mut simulation, &recorder, pace)?;
+    let columns = recorder.columns(simulation.model());
+    let record = collect::record(&loaded.scene, &simulation, still.as_ref(), columns);
+    let record = step_through(&loaded.scene, &mut simulation, &recorder, pace, record)?;
     write_run(
         &record,
         folder,
@@ -78,14 +81,14 @@ pub fn run(
     ))
 }
 
-/// Steps from the start to the scene's duration, a row and where wanted a shape at every step.
+/// Steps from the start to the scene's duration, and adds a row and where wanted a shape at every step to the record.
 fn step_through(
     scene: &Scene,
     simulation: &mut Simulation,
     recorder: &Recorder<'_>,
     pace: Pace,
+    mut record: Record,
 ) -> Result<Record, Failure> {
-    let mut record = collect::record(scene, simulation, recorder.columns(simulation.model()));
     let interval = match pace {
         Pace::Scene => scene.output.interval,
         Pace::Host { step, .. } => step,

@@ -84,8 +84,8 @@ pub struct Catenary {
 pub struct LineRecord {
     /// Name, the stem of its variables.
     pub name: String,
-    /// The discretised line in static equilibrium at t = 0.
-    pub equilibrium: StaticLine,
+    /// The discretised line in static equilibrium; `None` where the lines have none, such as beams in free flight.
+    pub equilibrium: Option<StaticLine>,
     /// The closed form beside it; `None` where the line has none.
     pub catenary: Option<Catenary>,
 }

@@ -60,10 +60,10 @@ fn line(name: &str, side: f64) -> LineRecord {
     };
     LineRecord {
         name: name.to_string(),
-        equilibrium: StaticLine {
+        equilibrium: Some(StaticLine {
             tension_b: 911_120.0,
             ..figures
-        },
+        }),
         catenary: Some(Catenary {
             figures,
             profile: shape(side, 0.0).iter().map(|node| node.position).collect(),
