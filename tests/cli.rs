@@ -408,6 +408,12 @@ fn run_writes_its_files_and_nothing_else() {
     assert_eq!(rows[10][0], 1.0);
     let (units, _) = header_of_units(&folder.path().join("out/results.units.csv"));
     assert_eq!(units, header);
+    let text = fs::read_to_string(folder.path().join("out/results.csv")).unwrap();
+    let last = text.lines().last().unwrap().split(',');
+    let steps = last
+        .zip(&header)
+        .find(|(_, name)| *name == "solver.substeps");
+    assert!(steps.unwrap().0.parse::<usize>().is_ok(), "{text}");
 }
 
 /// Names and units of the columns.

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use moorline::interface::{Binding, Causality, Interface, Layout, Variable};
+use moorline::interface::{Binding, Causality, Interface, Kind, Layout, Variable};
 use moorline::model::{Body, Model, Moving};
 use moorline::output::channels::Channels;
 use moorline::output::figures::ELEVATION;
@@ -153,6 +153,7 @@ impl Recorder<'_> {
             unit: "m".to_string(),
             description: "elevation of the surface at x = y = 0".to_string(),
         }));
+            whole: false,
         all.extend(self.channels.columns());
         all
     }
@@ -240,6 +241,7 @@ pub fn columns(variables: &[&Variable]) -> Vec<Column> {
             unit: variable.unit.name.to_string(),
             description: variable.description.clone(),
         })
+            whole: variable.kind != Kind::Float64,
         .collect()
 }
 

@@ -16,6 +16,8 @@ pub struct Column {
     pub unit: String,
     /// What it is, in a sentence.
     pub description: String,
+    /// Whether its values are whole numbers: counts and truth values.
+    pub whole: bool,
 }
 
 /// A line's node at one instant.
@@ -146,6 +148,7 @@ impl Record {
             name: "time".to_string(),
             unit: "s".to_string(),
             description: "simulated time".to_string(),
+            whole: false,
         };
         Record {
             title: title.into(),
@@ -233,6 +236,7 @@ mod tests {
             name: name.to_string(),
             unit: "N".to_string(),
             description: String::new(),
+            whole: false,
         }
     }
 

@@ -15,6 +15,7 @@ fn columns() -> Vec<Column> {
         name: name.to_string(),
         unit: unit.to_string(),
         description: description.to_string(),
+        whole: false,
     };
     vec![
         of("fairlead.x", "m", "displacement"),
