@@ -729,6 +729,34 @@ fn a_closed_pipe_ends_the_program_in_silence() {
     assert_eq!(err(&output), "");
 }
 
+#[test]
+fn dynamics_is_another_name_of_the_integrator() {
+    let folder = folder();
+    let scene = |solver: &str| {
+        fs::write(
+            folder.path().join("s.toml"),
+            format!("{SCENE}[solver]\n{solver}\n"),
+        )
+        .unwrap();
+    };
+    scene("dynamics = \"quasi_static\"");
+    assert!(done(folder.path(), &["check", "s.toml"]).contains("quasi-static: an equilibrium"));
+    scene("dynamics = \"quasistatic\"");
+    refused(
+        folder.path(),
+        &["check", "s.toml"],
+        2,
+        &["s.toml:31:12", "quasi_static"],
+    );
+    scene("dynamics = \"quasi_static\"\nintegrator = \"auto\"");
+    refused(
+        folder.path(),
+        &["check", "s.toml"],
+        2,
+        &["`integrator` is given twice"],
+    );
+}
+
 /// Adds the keys of all tables in it, arrays of tables included.
 fn collect_keys(value: &serde_json::Value, keys: &mut Vec<String>) {
     match value {
