@@ -730,6 +730,30 @@ fn a_closed_pipe_ends_the_program_in_silence() {
 }
 
 #[test]
+fn what_a_deck_leaves_to_its_host_is_refused_beside_a_scene() {
+    let folder = folder();
+    for command in [
+        ["check"].as_slice(),
+        &["statics"],
+        &["run", "-o", "r"],
+        &["fmu", "-o", "x.fmu"],
+    ] {
+        let refused = |more: &[&str], part: &str| {
+            let arguments = [command, &["scene.toml"], more].concat();
+            refused(
+                folder.path(),
+                &arguments,
+                2,
+                &["scene.toml: a scene gives", part],
+            );
+        };
+        refused(&["--depth", "300"], "`seabed.depth`");
+        refused(&["--at", "platform=1,2,3"], "`position`");
+    }
+    assert_eq!(names(folder.path()), ["scene.toml"]);
+}
+
+#[test]
 fn dynamics_is_another_name_of_the_integrator() {
     let folder = folder();
     let scene = |solver: &str| {
