@@ -1,6 +1,6 @@
 //! The command line: parse, call, print, exit code.
 //!
-//! Exit codes: 0 done, 2 the input is wrong, 1 the computation failed.
+//! Exit codes: 0 done, 2 the input is wrong, 1 the computation failed, 130 interrupted.
 
 mod cli;
 
@@ -20,7 +20,8 @@ struct Arguments {
     command: Command,
 }
 
-const EXIT_CODES: &str = "Exit codes: 0 done, 2 the input is wrong, 1 the computation failed.";
+const EXIT_CODES: &str =
+    "Exit codes: 0 done, 2 the input is wrong, 1 the computation failed, 130 interrupted.";
 
 #[derive(Debug, Subcommand)]
 enum Command {

@@ -730,6 +730,14 @@ fn a_closed_pipe_ends_the_program_in_silence() {
 }
 
 #[test]
+fn a_file_that_cannot_be_written_where_it_is_wanted_is_wrong_input() {
+    let folder = folder();
+    let deck = format!("{}/tests/decks/oc3.map", env!("CARGO_MANIFEST_DIR"));
+    let arguments = ["convert", &deck, "--depth", "320", "-o", "nowhere/x.toml"];
+    refused(folder.path(), &arguments, 2, &["cannot write nowhere"]);
+}
+
+#[test]
 fn what_a_deck_leaves_to_its_host_is_refused_beside_a_scene() {
     let folder = folder();
     for command in [
@@ -751,6 +759,41 @@ fn what_a_deck_leaves_to_its_host_is_refused_beside_a_scene() {
         refused(&["--at", "platform=1,2,3"], "`position`");
     }
     assert_eq!(names(folder.path()), ["scene.toml"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_run_says_so_and_leaves_no_empty_folder() {
+    let folder = folder();
+    let child = Command::new(env!("CARGO_BIN_EXE_moorline"))
+        .args(["run", "scene.toml", "-o", "new/out", "--duration", "90000"])
+        .current_dir(folder.path())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    while !folder.path().join("new/out").exists() {
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    // The folder is tried before the signal is listened to.
+    std::thread::sleep(std::time::Duration::from_millis(200));
+    let pid = child.id().to_string();
+    assert!(
+        Command::new("kill")
+            .args(["-INT", &pid])
+            .status()
+            .unwrap()
+            .success()
+    );
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130), "{}", err(&output));
+    assert!(
+        err(&output).ends_with("interrupted: nothing was written\n"),
+        "{}",
+        err(&output)
+    );
+    assert_eq!(names(folder.path()), ["scene.toml"]);
+    assert!(!folder.path().join("new").exists());
 }
 
 #[test]

@@ -7,13 +7,14 @@ use std::time::{Duration, Instant};
 use moorline::interface::{Binding, Interface, Kind, Layout, Variable};
 use moorline::model::Body;
 use moorline::output::record::{Frame, Node, Record};
-use moorline::output::{collect, make_folder, write_run};
+use moorline::output::{collect, write_run};
 use moorline::scene::{LoadedScene, Places, Scene, TOML};
 use moorline::simulation::Simulation;
 use moorline_host::{FmiVersion, Fmu, HostError, Slave};
 
 use super::failure::Failure;
 use super::fmu::package;
+use super::folder::Folder;
 use super::run::{Times, columns, recorded, scene_input};
 use super::summary::run_summary;
 use super::{print, progress, simulate};
@@ -24,7 +25,7 @@ const SCENE: &str = include_str!("../../scenes/demo.toml");
 /// Packages the built-in scene, drives the FMU, shows and writes what comes out.
 pub fn demo(folder: &Path) -> Result<(), Failure> {
     let loaded = built_in_scene()?;
-    make_folder(folder)?;
+    let _open = Folder::open(folder)?;
     let target = folder.join("demo.fmu");
     package(&loaded, &target, FmiVersion::Two)?;
     let reference = simulate(&loaded)?;

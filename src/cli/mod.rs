@@ -6,6 +6,7 @@ pub mod convert;
 pub mod demo;
 mod failure;
 pub mod fmu;
+mod folder;
 pub mod run;
 pub mod statics;
 mod summary;

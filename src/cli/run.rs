@@ -8,11 +8,12 @@ use moorline::model::{Body, Model, Moving};
 use moorline::output::channels::Channels;
 use moorline::output::figures::ELEVATION;
 use moorline::output::record::{Column, Record};
-use moorline::output::{collect, make_folder, write_run};
+use moorline::output::{collect, write_run};
 use moorline::scene::{Drive, Reconstruction, Scene, Supplement};
 use moorline::simulation::Simulation;
 
 use super::failure::Failure;
+use super::folder::Folder;
 use super::summary::run_summary;
 use super::{print, progress, read_scene, simulate};
 
@@ -46,7 +47,7 @@ pub fn run(
     if !drive.is_empty() {
         loaded.scene.drive(drive).map_err(Failure::Argument)?;
     }
-    make_folder(folder)?;
+    let _open = Folder::open(folder)?;
     let mut simulation = simulate(&loaded)?;
     let still = simulation.in_equilibrium().ok();
     let start = match pace {
@@ -152,8 +153,8 @@ impl Recorder<'_> {
             name: ELEVATION.to_string(),
             unit: "m".to_string(),
             description: "elevation of the surface at x = y = 0".to_string(),
-        }));
             whole: false,
+        }));
         all.extend(self.channels.columns());
         all
     }
@@ -240,8 +241,8 @@ pub fn columns(variables: &[&Variable]) -> Vec<Column> {
             name: variable.name.clone(),
             unit: variable.unit.name.to_string(),
             description: variable.description.clone(),
-        })
             whole: variable.kind != Kind::Float64,
+        })
         .collect()
 }
 
