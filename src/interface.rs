@@ -191,11 +191,11 @@ pub enum Binding {
 /// Results of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LineResult {
-    /// Axial tension at end B [N].
+    /// Size of the force at end B [N].
     TensionB,
-    /// Axial tension at end A [N].
+    /// Size of the force at end A [N].
     TensionA,
-    /// Greatest axial tension along the line [N].
+    /// Greatest of the axial tension along the line and the forces at its ends [N].
     TensionMax,
     /// Unstretched length that lies on the seabed [m].
     LaidLength,

@@ -1,6 +1,6 @@
 //! The command line: parse, call, print, exit code.
 //!
-//! Exit codes: 0 done, 2 the input is wrong, 1 the computation failed.
+//! Exit codes: 0 done, 2 the input is wrong, 1 the computation failed, 130 interrupted.
 
 mod cli;
 
@@ -20,7 +20,8 @@ struct Arguments {
     command: Command,
 }
 
-const EXIT_CODES: &str = "Exit codes: 0 done, 2 the input is wrong, 1 the computation failed.";
+const EXIT_CODES: &str =
+    "Exit codes: 0 done, 2 the input is wrong, 1 the computation failed, 130 interrupted.";
 
 #[derive(Debug, Subcommand)]
 enum Command {
@@ -84,7 +85,7 @@ enum Command {
     },
     /// Speed against error on this machine: meshes, integrators and steps against a converged solution
     Accuracy {
-        /// Scene files; the five public scenes where none is given
+        /// Scenes of moorline, or decks of MoorDyn or MAP++; the five public scenes where none is given
         scenes: Vec<PathBuf>,
         /// Folder for tables and figures; made where it is missing
         #[arg(short, long, value_name = "DIR", default_value = "moorline-accuracy")]
@@ -93,6 +94,10 @@ enum Command {
         /// environment, that can import moordyn and cabledyn
         #[arg(long, value_name = "PYTHON")]
         peers: Option<PathBuf>,
+        #[command(flatten)]
+        moved: Moved,
+        #[command(flatten)]
+        host: FromHost,
     },
     /// Package the built-in scene as an FMU, drive it as a host does, show what comes out
     Demo {
@@ -182,7 +187,12 @@ fn main() -> ExitCode {
             scenes,
             output,
             peers,
-        } => cli::accuracy::accuracy(&scenes, &output, peers.as_deref()),
+            moved,
+            host,
+        } => {
+            let (host, moved) = (host.into(), moved.into());
+            cli::accuracy::accuracy(&scenes, &host, &moved, &output, peers.as_deref())
+        }
         Command::Demo { output } => cli::demo::demo(&output),
     };
     match result {

@@ -21,7 +21,7 @@ use crate::dynamics::ledger::{self, Ledger};
 use crate::dynamics::motion::Foresight;
 use crate::dynamics::{Choice, StepError};
 use crate::model::{Line, LineState, Model, State};
-use crate::scene::{Scene, SceneError};
+use crate::scene::{InitialShape, Scene, SceneError};
 use crate::statics::StaticsError;
 use crate::statics::catenary::Catenary;
 use held::{At, Held};
@@ -87,7 +87,7 @@ impl Simulation {
     pub fn by_rules(scene: &Scene) -> Result<Simulation, Error> {
         let model = Arc::new(Model::new(scene)?);
         let inputs = Inputs::new(&model);
-        let (snapshot, work) = start::begin(&model, 0.0, inputs, false)?;
+        let (snapshot, work) = start::begin(&model, 0.0, inputs, false, start::Shapes::AsGiven)?;
         let lines = model.lines.iter();
         Ok(Simulation {
             catenaries: lines.map(|line| reference_catenary(&model, line)).collect(),
@@ -101,12 +101,29 @@ impl Simulation {
         })
     }
 
+    /// This mooring in static equilibrium at its reference positions: no shape that a line is given to start on, no motion, no waves.
+    ///
+    /// # Errors
+    /// An equilibrium that does not exist.
+    pub fn in_equilibrium(&self) -> Result<Simulation, Error> {
+        let mut still = self.clone();
+        still.snapshot.inputs = Inputs::new(&self.model);
+        let model = Arc::make_mut(&mut still.model);
+        model.waves = None;
+        // the shape that a beam is given may be the one that bends nothing, and is where its search begins
+        for line in model.lines.iter_mut().filter(|line| line.beam.is_none()) {
+            line.initial = InitialShape::Static;
+        }
+        still.begin(0.0, false, start::Shapes::Equilibrium)?;
+        Ok(still)
+    }
+
     /// Starts again at rest, with coupled points that follow the scene's own motion exactly instead of what a host sets.
     ///
     /// # Errors
     /// As [`Simulation::new`]; the simulation is then as it was.
     pub fn follow_scene(&mut self) -> Result<(), Error> {
-        self.begin(self.time(), true)
+        self.begin(self.time(), true, start::Shapes::AsGiven)
     }
 
     /// Starts again at rest, at a start time [s] and the displacements set so far.
@@ -114,10 +131,16 @@ impl Simulation {
     /// # Errors
     /// As [`Simulation::new`]; the simulation is then as it was.
     pub fn restart(&mut self, start_time: f64) -> Result<(), Error> {
-        self.begin(start_time, self.snapshot.follows_scene)
+        let follows_scene = self.snapshot.follows_scene;
+        self.begin(start_time, follows_scene, start::Shapes::AsGiven)
     }
 
-    fn begin(&mut self, time: f64, follows_scene: bool) -> Result<(), Error> {
+    fn begin(
+        &mut self,
+        time: f64,
+        follows_scene: bool,
+        shapes: start::Shapes,
+    ) -> Result<(), Error> {
         let inputs = self.snapshot.inputs.clone();
         let mut model = self.model.clone();
         winches::lay_out(
@@ -125,7 +148,7 @@ impl Simulation {
             &inputs.length_changes,
             follows_scene.then_some(time),
         )?;
-        (self.snapshot, self.work) = start::begin(&model, time, inputs, follows_scene)?;
+        (self.snapshot, self.work) = start::begin(&model, time, inputs, follows_scene, shapes)?;
         self.paths.clone_from(&self.snapshot.paths);
         self.model = model;
         self.held = Held::new(&self.model, follows_scene);

@@ -305,6 +305,78 @@ fn statics_as_json_has_the_documented_keys_and_balances() {
     assert_eq!(json["vessels"], serde_json::json!([]));
 }
 
+/// The number in this column, from 1, of the row of a table that begins with `name`.
+fn cell(text: &str, name: &str, column: usize) -> f64 {
+    let row = text.lines().find_map(|line| line.strip_prefix(name));
+    let cells = row.unwrap_or_else(|| panic!("{name} in {text}"));
+    let cell = cells.split_whitespace().nth(column - 1);
+    cell.unwrap_or_else(|| panic!("{name} in {text}"))
+        .parse()
+        .unwrap()
+}
+
+fn public_scene(name: &str) -> String {
+    format!("{}/scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"))
+}
+
+#[test]
+fn statics_solves_the_equilibrium_whatever_shape_a_run_starts_on() {
+    let folder = folder();
+    // A parabola as deep as the catenary carries almost three times its tension.
+    let output = moorline(folder.path(), &["statics", &public_scene("seafem11")]);
+    assert_eq!(output.status.code(), Some(0));
+    assert!(
+        err(&output).contains("lines[0].initial: runs start on this shape"),
+        "{}",
+        err(&output)
+    );
+    // The catenary of SeaFEM case 11, to what 22 elements leave.
+    let horizontal = cell(&out(&output), "line1 horizontal force at end B [N]", 1);
+    assert!(
+        (horizontal / 17.00889855 - 1.0).abs() < 1e-3,
+        "{horizontal}"
+    );
+    let straight = SCENE.replace(
+        "name = \"line1\"",
+        "name = \"line1\"\ninitial = \"straight\"",
+    );
+    fs::write(folder.path().join("straight.toml"), straight).unwrap();
+    let json = |scene: &str| done(folder.path(), &["statics", scene, "--json"]);
+    assert_eq!(json("straight.toml"), json("scene.toml"));
+}
+
+#[test]
+fn a_run_that_starts_at_speed_shows_the_equilibrium_at_rest() {
+    let folder = folder();
+    let moved = ["--move", "fairlead.x=5,12", "--duration", "0.1"];
+    let scene = public_scene("oc3_catenary");
+    let run = done(
+        folder.path(),
+        &[["run", &scene, "-o", "out"].as_slice(), &moved].concat(),
+    );
+    let statics = done(folder.path(), &["statics", &scene]);
+    for name in [
+        "line1 tension at end B [N]",
+        "line1 horizontal force at end B [N]",
+    ] {
+        // The mesh depends on the motion.
+        let ratio = cell(&run, name, 1) / cell(&statics, name, 1);
+        assert!((ratio - 1.0).abs() < 1e-3, "{name}: {ratio}");
+    }
+}
+
+#[test]
+fn what_flies_freely_has_no_equilibrium_to_show() {
+    let folder = folder();
+    let scene = public_scene("flying_spaghetti");
+    refused(folder.path(), &["statics", &scene], 1, &["line \"rod\""]);
+    let run = done(
+        folder.path(),
+        &["run", &scene, "-o", "out", "--duration", "0.2"],
+    );
+    assert!(run.starts_with("no static equilibrium\n"), "{run}");
+}
+
 #[test]
 fn run_writes_its_files_and_nothing_else() {
     let folder = folder();
@@ -336,6 +408,12 @@ fn run_writes_its_files_and_nothing_else() {
     assert_eq!(rows[10][0], 1.0);
     let (units, _) = header_of_units(&folder.path().join("out/results.units.csv"));
     assert_eq!(units, header);
+    let text = fs::read_to_string(folder.path().join("out/results.csv")).unwrap();
+    let last = text.lines().last().unwrap().split(',');
+    let steps = last
+        .zip(&header)
+        .find(|(_, name)| *name == "solver.substeps");
+    assert!(steps.unwrap().0.parse::<usize>().is_ok(), "{text}");
 }
 
 /// Names and units of the columns.
@@ -649,4 +727,250 @@ fn a_closed_pipe_ends_the_program_in_silence() {
     let output = child.wait_with_output().unwrap();
     assert_eq!(output.status.code(), Some(0));
     assert_eq!(err(&output), "");
+}
+
+/// The scene with a motion that is studied in a moment.
+fn short_study(folder: &Path) {
+    let wet = format!("[water]\ndensity = 1025.0\n\n{SCENE}").replacen("title", "# title", 1);
+    let wet = wet
+        .replace("# title = \"a rope between two poles\"\n", "")
+        .replace(", elements = 8", "")
+        .replace(
+            "mass = 0.05",
+            "mass = 20.0\ndiameter = 0.1\ndrag_normal = 1.2\nadded_mass_normal = 1.0",
+        );
+    fs::write(folder.join("short.toml"), wet).unwrap();
+}
+
+const STUDIED: [&str; 5] = [
+    "accuracy.csv",
+    "overview.svg",
+    "short.svg",
+    "summary.md",
+    "verdicts.csv",
+];
+
+#[test]
+fn a_study_is_written_to_its_end_whatever_becomes_of_standard_output() {
+    let folder = folder();
+    short_study(folder.path());
+    let mut child = Command::new(env!("CARGO_BIN_EXE_moorline"))
+        .args(["accuracy", "short.toml", "-o", "out"])
+        .current_dir(folder.path())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(child.stdout.take());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!((output.status.code(), err(&output).as_str()), (Some(0), ""));
+    assert_eq!(names(&folder.path().join("out")), STUDIED);
+}
+
+#[test]
+fn a_study_of_a_scene_without_title_or_bed_speaks_of_neither() {
+    let folder = folder();
+    short_study(folder.path());
+    let text = done(folder.path(), &["accuracy", "short.toml", "-o", "out"]);
+    assert!(text.contains("\nshort\nconverged solution"), "{text}");
+    assert!(!text.contains("bed"), "{text}");
+}
+
+#[test]
+fn a_study_takes_decks_and_motion_as_a_run_does() {
+    let folder = folder();
+    short_study(folder.path());
+    let accuracy = |more: &[&str], part: &str| {
+        let arguments = [["accuracy", "short.toml", "-o", "out"].as_slice(), more].concat();
+        refused(folder.path(), &arguments, 2, &[part]);
+    };
+    accuracy(&["--move", "buoy.x=1,5"], "short: `buoy` is no vessel");
+    accuracy(&["--motion", "none.csv"], "none.csv");
+    accuracy(&["--depth", "300"], "`seabed.depth`");
+    let public = ["accuracy", "--depth", "300"];
+    refused(folder.path(), &public, 2, &["--depth and --at"]);
+    assert_eq!(names(folder.path()), ["scene.toml", "short.toml"]);
+}
+
+/// A program that answers to `-c` as Python does that has the peers, and to nothing else.
+#[cfg(unix)]
+fn python_in_vain(folder: &Path) -> String {
+    use std::os::unix::fs::PermissionsExt;
+    let path = folder.join("python");
+    fs::write(&path, "#!/bin/sh\n[ \"$1\" = -c ] && echo ready\n").unwrap();
+    fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).unwrap();
+    path.display().to_string()
+}
+
+#[cfg(unix)]
+#[test]
+fn peers_that_give_nothing_are_a_computation_that_failed_after_all_else_is_written() {
+    let folder = folder();
+    short_study(folder.path());
+    let python = python_in_vain(folder.path());
+    let arguments = ["accuracy", "short.toml", "-o", "out", "--peers", &python];
+    let output = moorline(folder.path(), &arguments);
+    assert_eq!(output.status.code(), Some(1), "{}", err(&output));
+    assert!(err(&output).contains("no peer gave a result"));
+    assert!(out(&output).contains("no result: peers: "));
+    let mut written = STUDIED.map(str::to_string).to_vec();
+    written.insert(2, "peers.py".to_string());
+    assert_eq!(names(&folder.path().join("out")), written);
+}
+
+#[cfg(unix)]
+#[test]
+fn what_is_no_python_is_refused_at_once() {
+    let folder = folder();
+    for program in ["true", "false", "echo"] {
+        let program = format!("/bin/{program}");
+        let arguments = ["accuracy", "scene.toml", "-o", "out", "--peers", &program];
+        refused(folder.path(), &arguments, 2, &["no Python interpreter"]);
+    }
+    assert_eq!(names(folder.path()), ["scene.toml"]);
+}
+
+/// Files cannot be made in /proc, not even by root.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_folder_that_takes_no_files_is_refused_before_any_work() {
+    let folder = folder();
+    let part = "cannot write into the folder /proc: ";
+    for command in ["run", "accuracy"] {
+        refused(
+            folder.path(),
+            &[command, "scene.toml", "-o", "/proc"],
+            2,
+            &[part],
+        );
+    }
+    refused(folder.path(), &["demo", "-o", "/proc"], 2, &[part]);
+}
+
+#[test]
+fn a_file_that_cannot_be_written_where_it_is_wanted_is_wrong_input() {
+    let folder = folder();
+    let deck = format!("{}/tests/decks/oc3.map", env!("CARGO_MANIFEST_DIR"));
+    let arguments = ["convert", &deck, "--depth", "320", "-o", "nowhere/x.toml"];
+    refused(folder.path(), &arguments, 2, &["cannot write nowhere"]);
+}
+
+#[test]
+fn what_a_deck_leaves_to_its_host_is_refused_beside_a_scene() {
+    let folder = folder();
+    for command in [
+        ["check"].as_slice(),
+        &["statics"],
+        &["run", "-o", "r"],
+        &["fmu", "-o", "x.fmu"],
+    ] {
+        let refused = |more: &[&str], part: &str| {
+            let arguments = [command, &["scene.toml"], more].concat();
+            refused(
+                folder.path(),
+                &arguments,
+                2,
+                &["scene.toml: a scene gives", part],
+            );
+        };
+        refused(&["--depth", "300"], "`seabed.depth`");
+        refused(&["--at", "platform=1,2,3"], "`position`");
+    }
+    assert_eq!(names(folder.path()), ["scene.toml"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_run_says_so_and_leaves_no_empty_folder() {
+    let folder = folder();
+    let child = Command::new(env!("CARGO_BIN_EXE_moorline"))
+        .args(["run", "scene.toml", "-o", "new/out", "--duration", "90000"])
+        .current_dir(folder.path())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    while !folder.path().join("new/out").exists() {
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    // The folder is tried before the signal is listened to.
+    std::thread::sleep(std::time::Duration::from_millis(200));
+    let pid = child.id().to_string();
+    assert!(
+        Command::new("kill")
+            .args(["-INT", &pid])
+            .status()
+            .unwrap()
+            .success()
+    );
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130), "{}", err(&output));
+    assert!(
+        err(&output).ends_with("interrupted: nothing was written\n"),
+        "{}",
+        err(&output)
+    );
+    assert_eq!(names(folder.path()), ["scene.toml"]);
+    assert!(!folder.path().join("new").exists());
+}
+
+#[test]
+fn dynamics_is_another_name_of_the_integrator() {
+    let folder = folder();
+    let scene = |solver: &str| {
+        fs::write(
+            folder.path().join("s.toml"),
+            format!("{SCENE}[solver]\n{solver}\n"),
+        )
+        .unwrap();
+    };
+    scene("dynamics = \"quasi_static\"");
+    assert!(done(folder.path(), &["check", "s.toml"]).contains("quasi-static: an equilibrium"));
+    scene("dynamics = \"quasistatic\"");
+    refused(
+        folder.path(),
+        &["check", "s.toml"],
+        2,
+        &["s.toml:31:12", "quasi_static"],
+    );
+    scene("dynamics = \"quasi_static\"\nintegrator = \"auto\"");
+    refused(
+        folder.path(),
+        &["check", "s.toml"],
+        2,
+        &["`integrator` is given twice"],
+    );
+}
+
+/// Adds the keys of all tables in it, arrays of tables included.
+fn collect_keys(value: &serde_json::Value, keys: &mut Vec<String>) {
+    match value {
+        serde_json::Value::Object(table) => {
+            for (key, value) in table {
+                keys.push(key.clone());
+                collect_keys(value, keys);
+            }
+        }
+        serde_json::Value::Array(values) => {
+            values.iter().for_each(|value| collect_keys(value, keys))
+        }
+        _ => {}
+    }
+}
+
+#[test]
+fn every_key_of_the_json_is_documented() {
+    let page = include_str!("../docs/json.md");
+    let folder = folder();
+    for scene in ["storm_moored_semi", "power_cable"] {
+        let text = done(folder.path(), &["statics", &public_scene(scene), "--json"]);
+        let mut keys = Vec::new();
+        collect_keys(&serde_json::from_str(&text).unwrap(), &mut keys);
+        for key in keys {
+            let written = ["`", "."].map(|before| {
+                ["`", "[]`"].map(|after| page.contains(&format!("{before}{key}{after}")))
+            });
+            assert!(written.concat().contains(&true), "{key}");
+        }
+    }
 }

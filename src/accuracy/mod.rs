@@ -192,7 +192,7 @@ pub fn study(
         title: scene.title.clone(),
         negative_tension: scene.solver.negative_tension,
         on_bed: scene.seabed.is_some(),
-        converged: label(&converged.setting, &converged.fine),
+        converged: label(&converged.setting, &converged.fine, scene.seabed.is_some()),
         uncertainty: converged.uncertainty,
         runs: Vec::new(),
         failed: Vec::new(),
@@ -257,7 +257,7 @@ impl Study {
             match trial.and_then(|trial| run(&trial)) {
                 Ok(timed) => self.runs.push(Run::new(
                     code(setting),
-                    label(setting, &timed),
+                    label(setting, &timed, self.on_bed),
                     timed.cost,
                     judge.errors(&timed.histories, &converged.histories),
                     How::Own(*setting),
@@ -328,13 +328,13 @@ fn code(setting: &Setting) -> Code {
     }
 }
 
-/// Mesh and step of a run, in words.
-fn label(setting: &Setting, timed: &Timed) -> String {
+/// Mesh and step of a run, in words; what became of the bed, where there is one.
+fn label(setting: &Setting, timed: &Timed, on_bed: bool) -> String {
     let communication = timed.communication.map_or(String::new(), |step| {
         format!(", communication step {}", seconds(step))
     });
     let bed = match setting.contact {
-        Some(ContactLaw::AsGiven) => ", bed as given",
+        Some(ContactLaw::AsGiven) if on_bed => ", bed as given",
         _ => "",
     };
     let step = format!("step {}{communication}{bed}", seconds(timed.step));

@@ -16,6 +16,9 @@ use super::{Code, Failed, How, Run, Study};
 use crate::scene::{MotionPath, Point, PointKind, Scene};
 
 const SCRIPT: &str = include_str!("peers.py");
+/// Imports all that the script needs, and says [`READY`] where it has it.
+const PROBE: &str = "import numpy, cmoordyn, cabledyn; from cabledyn._lib import _lib; cmoordyn.create; cabledyn.CableDyn; print('ready')";
+const READY: &str = "ready";
 /// Elements that the peers are tried with [-].
 const ELEMENTS: [usize; 19] = [
     3, 4, 5, 6, 7, 8, 10, 12, 14, 17, 20, 24, 28, 34, 40, 48, 56, 68, 80,
@@ -166,13 +169,19 @@ impl Peers {
         let found = inside.into_iter().find(|file| file.is_file());
         let python = found.unwrap_or_else(|| place.to_path_buf());
         let asked = Command::new(&python)
-            .args(["-c", "import moordyn, cabledyn"])
+            .args(["-c", PROBE])
             .output()
             .map_err(|_| PeerError::NoPython(python.clone()))?;
-        if !asked.status.success() {
+        let told = String::from_utf8_lossy(&asked.stdout);
+        if !told.lines().any(|line| line == READY) {
             let said = String::from_utf8_lossy(&asked.stderr);
-            let said = said.lines().last().unwrap_or("no message").to_string();
-            return Err(PeerError::NoPackages { python, said });
+            return Err(match said.lines().last() {
+                Some(said) if !asked.status.success() => PeerError::NoPackages {
+                    python,
+                    said: said.to_string(),
+                },
+                _ => PeerError::NoPython(python),
+            });
         }
         let script = folder.join("peers.py");
         match std::fs::write(&script, SCRIPT) {

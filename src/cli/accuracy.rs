@@ -5,10 +5,12 @@ use std::path::{Path, PathBuf};
 use moorline::accuracy::{Code, LEVELS, Metric, Peers, Run, Slow, Study, Verdict, study};
 use moorline::output::accuracy::{summary, write_runs, write_verdicts};
 use moorline::output::figures::frontier;
-use moorline::output::{make_folder, write_file};
-use moorline::scene::{Integrator, Scene, Supplement};
+use moorline::output::report::rounded;
+use moorline::output::write_file;
+use moorline::scene::{Drive, Integrator, Scene, Supplement};
 
 use super::failure::Failure;
+use super::folder::Folder;
 use super::summary::Table;
 use super::{print, progress, read_scene};
 
@@ -42,15 +44,23 @@ const INTEGRATORS: [Integrator; 4] = [
 /// Error of RMS tension with which the quasi-static mode is enough [-].
 const ENOUGH: f64 = 0.02;
 
-/// Studies scenes, prints what each level of error costs and writes tables and figures into a folder.
-pub fn accuracy(paths: &[PathBuf], folder: &Path, python: Option<&Path>) -> Result<(), Failure> {
-    let scenes = scenes(paths)?;
-    make_folder(folder)?;
+/// Studies scenes, moved as they say themselves or as is given beside them, prints what each level of error costs and writes tables and
+/// figures into a folder.
+pub fn accuracy(
+    paths: &[PathBuf],
+    supplement: &Supplement,
+    drive: &Drive,
+    folder: &Path,
+    python: Option<&Path>,
+) -> Result<(), Failure> {
+    let scenes = scenes(paths, supplement, drive)?;
+    let _open = Folder::open(folder)?;
     let peers = python.map(|python| Peers::find(python, folder)).transpose();
     let peers = peers.map_err(|error| Failure::Argument(error.to_string()))?;
     stay_on_one_core();
     let machine = processor();
-    print(&format!("on {machine}\n\n"))?;
+    // Results are written whatever becomes of standard output, which its reader may close.
+    let mut printed = print(&format!("on {machine}\n\n"));
     let mut studies = Vec::new();
     for (name, scene) in &scenes {
         let bar = progress(1);
@@ -60,12 +70,18 @@ pub fn accuracy(paths: &[PathBuf], folder: &Path, python: Option<&Path>) -> Resu
         });
         bar.finish_and_clear();
         let done = done.map_err(|error| Failure::Computation(error.to_string()))?;
-        print(&told(&done))?;
         studies.push(done);
         // After every scene: an interrupted run keeps what it has.
         write_studies(&machine, &studies, folder)?;
+        let last = studies.last().map(told).unwrap_or_default();
+        printed = printed.and_then(|()| print(&last));
     }
-    print(&format!("written to {}\n", folder.display()))
+    printed = printed.and_then(|()| print(&format!("written to {}\n", folder.display())));
+    if python.is_some() && studies.iter().all(|study| study.peers().is_empty()) {
+        let text = "no peer gave a result: the reasons stand at \"no result\" above";
+        return Err(Failure::Computation(text.to_string()));
+    }
+    printed
 }
 
 fn write_studies(machine: &str, studies: &[Study], folder: &Path) -> Result<(), Failure> {
@@ -87,22 +103,33 @@ fn write_studies(machine: &str, studies: &[Study], folder: &Path) -> Result<(), 
     Ok(())
 }
 
-fn scenes(paths: &[PathBuf]) -> Result<Vec<(String, Scene)>, Failure> {
+fn scenes(
+    paths: &[PathBuf],
+    supplement: &Supplement,
+    drive: &Drive,
+) -> Result<Vec<(String, Scene)>, Failure> {
+    let mut scenes: Vec<(String, Scene)> = Vec::new();
     if paths.is_empty() {
-        let built_in = PUBLIC.iter().map(|(name, text)| {
+        if !supplement.is_empty() {
+            let text = "the public scenes leave nothing to a host: give the deck that --depth and --at are for";
+            return Err(Failure::Argument(text.to_string()));
+        }
+        for (name, text) in PUBLIC {
             let scene = Scene::from_toml(text).expect("the public scenes are tested");
-            ((*name).to_string(), scene)
-        });
-        return Ok(built_in.collect());
+            scenes.push((name.to_string(), scene));
+        }
     }
-    let read = |path: &PathBuf| {
+    for path in paths {
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
-        Ok((
-            name.into_owned(),
-            read_scene(path, &Supplement::default())?.scene,
-        ))
-    };
-    paths.iter().map(read).collect()
+        scenes.push((name.into_owned(), read_scene(path, supplement)?.scene));
+    }
+    if !drive.is_empty() {
+        for (name, scene) in &mut scenes {
+            let moved = scene.drive(drive);
+            moved.map_err(|problem| Failure::Argument(format!("{name}: {problem}")))?;
+        }
+    }
+    Ok(scenes)
 }
 
 /// Keeps this thread, and the peers that it starts, on one core; where the system does not let it, the times still count.
@@ -124,7 +151,11 @@ fn processor() -> String {
 /// A study in tables: what reaches each level and how many times dearer the peers are, what each integrator needs, moorline's own choice,
 /// and where equilibria are enough.
 fn told(study: &Study) -> String {
-    let mut text = format!("{}: {}\n", study.name, study.title);
+    let mut text = study.name.clone();
+    if !study.title.is_empty() {
+        text.push_str(&format!(": {}", study.title));
+    }
+    text.push('\n');
     text.push_str(&format!("converged solution: {}; ", study.converged));
     let limits = Metric::ALL.map(|m| format!("{} {:.2} %", m.title(), percent(study, m)));
     text.push_str(&format!("its uncertainty: {}\n", limits.join(", ")));
@@ -270,10 +301,7 @@ fn slower(slow: &[Slow]) -> String {
     let head: Vec<&str> = head.into_iter().chain(titles).collect();
     let mut table = Table::new(&head);
     for one in slow {
-        let mut row = vec![
-            format!("{} times as long", one.factor),
-            format!("{:.4} s", one.period).replace(".0000", ""),
-        ];
+        let mut row = vec![format!("{} times as long", one.factor), period(one)];
         row.extend(Metric::ALL.map(|metric| format!("{:.2} %", 100.0 * one.errors.of(metric))));
         table.text_row(row);
     }
@@ -281,18 +309,22 @@ fn slower(slow: &[Slow]) -> String {
     let sentence = match enough {
         Some(one) if one.factor == 1.0 => "the quasi-static mode is enough here".to_string(),
         Some(one) => format!(
-            "the quasi-static mode is enough for {} % of RMS tension from periods {} times as long on, {:.4} s",
+            "the quasi-static mode is enough for {} % of RMS tension from periods {} times as long on, {}",
             100.0 * ENOUGH,
             one.factor,
-            one.period
+            period(one)
         ),
         None => format!(
-            "the quasi-static mode is not enough for {} % of RMS tension, not even with periods of {:.4} s",
+            "the quasi-static mode is not enough for {} % of RMS tension, not even with periods of {}",
             100.0 * ENOUGH,
-            last.period
+            period(last)
         ),
     };
     format!("{table}{sentence}\n")
+}
+
+fn period(slow: &Slow) -> String {
+    format!("{} s", rounded(slow.period, 5))
 }
 
 fn cost(run: Option<&Run>) -> String {

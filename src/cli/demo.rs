@@ -7,13 +7,14 @@ use std::time::{Duration, Instant};
 use moorline::interface::{Binding, Interface, Kind, Layout, Variable};
 use moorline::model::Body;
 use moorline::output::record::{Frame, Node, Record};
-use moorline::output::{collect, make_folder, write_run};
+use moorline::output::{collect, write_run};
 use moorline::scene::{LoadedScene, Places, Scene, TOML};
 use moorline::simulation::Simulation;
 use moorline_host::{FmiVersion, Fmu, HostError, Slave};
 
 use super::failure::Failure;
 use super::fmu::package;
+use super::folder::Folder;
 use super::run::{Times, columns, recorded, scene_input};
 use super::summary::run_summary;
 use super::{print, progress, simulate};
@@ -24,7 +25,7 @@ const SCENE: &str = include_str!("../../scenes/demo.toml");
 /// Packages the built-in scene, drives the FMU, shows and writes what comes out.
 pub fn demo(folder: &Path) -> Result<(), Failure> {
     let loaded = built_in_scene()?;
-    make_folder(folder)?;
+    let _open = Folder::open(folder)?;
     let target = folder.join("demo.fmu");
     package(&loaded, &target, FmiVersion::Two)?;
     let reference = simulate(&loaded)?;
@@ -66,7 +67,7 @@ fn drive(target: &Path, scene: &Scene, reference: &Simulation) -> Result<Record,
         .map_err(|mistake| HostError::Description(mistake.to_string()))?;
     let fmu = Fmu::open(target)?;
     let mut host = Host::new(&fmu, &interface, reference)?;
-    let mut record = collect::record(scene, reference, columns(&host.recorded));
+    let mut record = collect::record(scene, reference, Some(reference), columns(&host.recorded));
     let times = Times::new(scene.output.duration, scene.output.interval);
     host.slave.enter_initialization(0.0, Some(times.end))?;
     host.set_motion(0.0)?;
@@ -164,11 +165,14 @@ impl<'a> Host<'a> {
             // The built-in scene has one line at each fairlead: the point's force is the line's.
             let fairlead = &model.points[built.ends[1]].name;
             let mut force = |axis: &str| self.slave.real(&format!("{fairlead}.{axis}"));
-            line.equilibrium.horizontal = force("fx")?.hypot(force("fy")?);
+            let horizontal = force("fx")?.hypot(force("fy")?);
             let mut read = |quantity: &str| self.slave.real(&format!("{}.{quantity}", line.name));
-            line.equilibrium.tension_b = read("tension_b")?;
-            line.equilibrium.sag = read("sag")?;
-            line.equilibrium.laid_length = read("laid_length")?;
+            if let Some(equilibrium) = &mut line.equilibrium {
+                equilibrium.horizontal = horizontal;
+                equilibrium.tension_b = read("tension_b")?;
+                equilibrium.sag = read("sag")?;
+                equilibrium.laid_length = read("laid_length")?;
+            }
             if let Some(catenary) = &mut line.catenary {
                 catenary.figures.tension_b = read("catenary_tension_b")?;
                 catenary.figures.horizontal = read("catenary_horizontal")?;

@@ -10,7 +10,7 @@ use moorline::output::package::PackageError;
 use moorline::scene::{LoadError, LoadedScene, SceneError};
 use moorline::simulation;
 
-/// The input is wrong.
+/// The input is wrong, or a path that is to be read or written.
 const INPUT: u8 = 2;
 /// The computation failed.
 const COMPUTATION: u8 = 1;
@@ -53,6 +53,19 @@ impl Failure {
         match error {
             PackageError::Scene(mistake) => Failure::of_scene(mistake, loaded),
             error => Failure::Computation(error.to_string()),
+        }
+    }
+
+    /// A file that was not written: its path is wrong, or the disk is full or broken.
+    pub fn of_file(kind: ErrorKind, text: String) -> Failure {
+        match kind {
+            ErrorKind::NotFound
+            | ErrorKind::PermissionDenied
+            | ErrorKind::ReadOnlyFilesystem
+            | ErrorKind::IsADirectory
+            | ErrorKind::NotADirectory
+            | ErrorKind::InvalidFilename => Failure::Argument(text),
+            _ => Failure::Computation(text),
         }
     }
 
@@ -108,11 +121,11 @@ impl From<StepError> for Failure {
 
 impl From<OutputError> for Failure {
     fn from(error: OutputError) -> Self {
-        match error {
-            OutputError::File { .. } => Failure::Computation(error.to_string()),
-            OutputError::Folder { .. } | OutputError::NotAFolder { .. } => {
-                Failure::Argument(error.to_string())
-            }
+        match &error {
+            OutputError::File { source, .. } => Failure::of_file(source.kind(), error.to_string()),
+            OutputError::Folder { .. }
+            | OutputError::Closed { .. }
+            | OutputError::NotAFolder { .. } => Failure::Argument(error.to_string()),
         }
     }
 }

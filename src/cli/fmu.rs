@@ -61,7 +61,8 @@ pub fn package(loaded: &LoadedScene, target: &Path, version: FmiVersion) -> Resu
     .map_err(|failure| match failure {
         PackageFailure::Package(error) => Failure::of_package(error, loaded),
         PackageFailure::Target(problem) => {
-            Failure::Computation(format!("cannot write {}: {problem}", target.display()))
+            let text = format!("cannot write {}: {problem}", target.display());
+            Failure::of_file(problem.kind(), text)
         }
     })
 }

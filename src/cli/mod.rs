@@ -6,6 +6,7 @@ pub mod convert;
 pub mod demo;
 mod failure;
 pub mod fmu;
+mod folder;
 pub mod run;
 pub mod statics;
 mod summary;
@@ -14,7 +15,7 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use indicatif::{ProgressBar, ProgressStyle};
-use moorline::scene::{LoadedScene, Supplement, load_with};
+use moorline::scene::{LoadedScene, Note, Supplement, load_with};
 use moorline::simulation::Simulation;
 
 use failure::Failure;
@@ -22,11 +23,13 @@ use failure::Failure;
 /// Reads a scene file with what a deck leaves to its host; remarks on it go to standard error.
 fn read_scene(path: &Path, supplement: &Supplement) -> Result<LoadedScene, Failure> {
     let loaded = load_with(path, supplement)?;
-    for note in &loaded.notes {
-        // A remark that nobody can read is no reason to stop.
-        let _ = writeln!(io::stderr(), "note: {}: {note}", path.display());
-    }
+    loaded.notes.iter().for_each(|note| remark(path, note));
     Ok(loaded)
+}
+
+/// Says a remark on a scene on standard error. One that nobody can read is no reason to stop.
+fn remark(path: &Path, note: &Note) {
+    let _ = writeln!(io::stderr(), "note: {}: {note}", path.display());
 }
 
 /// The simulation of a scene, in static equilibrium.

@@ -3,16 +3,17 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use moorline::interface::{Binding, Causality, Interface, Layout, Variable};
+use moorline::interface::{Binding, Causality, Interface, Kind, Layout, Variable};
 use moorline::model::{Body, Model, Moving};
 use moorline::output::channels::Channels;
 use moorline::output::figures::ELEVATION;
 use moorline::output::record::{Column, Record};
-use moorline::output::{collect, make_folder, write_run};
+use moorline::output::{collect, write_run};
 use moorline::scene::{Drive, Reconstruction, Scene, Supplement};
 use moorline::simulation::Simulation;
 
 use super::failure::Failure;
+use super::folder::Folder;
 use super::summary::run_summary;
 use super::{print, progress, read_scene, simulate};
 
@@ -46,8 +47,9 @@ pub fn run(
     if !drive.is_empty() {
         loaded.scene.drive(drive).map_err(Failure::Argument)?;
     }
-    make_folder(folder)?;
+    let _open = Folder::open(folder)?;
     let mut simulation = simulate(&loaded)?;
+    let still = simulation.in_equilibrium().ok();
     let start = match pace {
         Pace::Scene => simulation.follow_scene(),
         Pace::Host { velocities, .. } => {
@@ -64,7 +66,9 @@ pub fn run(
         variables: recorded(&interface).collect(),
         channels,
     };
-    let record = step_through(&loaded.scene, &mut simulation, &recorder, pace)?;
+    let columns = recorder.columns(simulation.model());
+    let record = collect::record(&loaded.scene, &simulation, still.as_ref(), columns);
+    let record = step_through(&loaded.scene, &mut simulation, &recorder, pace, record)?;
     write_run(
         &record,
         folder,
@@ -78,14 +82,14 @@ pub fn run(
     ))
 }
 
-/// Steps from the start to the scene's duration, a row and where wanted a shape at every step.
+/// Steps from the start to the scene's duration, and adds a row and where wanted a shape at every step to the record.
 fn step_through(
     scene: &Scene,
     simulation: &mut Simulation,
     recorder: &Recorder<'_>,
     pace: Pace,
+    mut record: Record,
 ) -> Result<Record, Failure> {
-    let mut record = collect::record(scene, simulation, recorder.columns(simulation.model()));
     let interval = match pace {
         Pace::Scene => scene.output.interval,
         Pace::Host { step, .. } => step,
@@ -149,6 +153,7 @@ impl Recorder<'_> {
             name: ELEVATION.to_string(),
             unit: "m".to_string(),
             description: "elevation of the surface at x = y = 0".to_string(),
+            whole: false,
         }));
         all.extend(self.channels.columns());
         all
@@ -236,6 +241,7 @@ pub fn columns(variables: &[&Variable]) -> Vec<Column> {
             name: variable.name.clone(),
             unit: variable.unit.name.to_string(),
             description: variable.description.clone(),
+            whole: variable.kind != Kind::Float64,
         })
         .collect()
 }

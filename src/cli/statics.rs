@@ -4,11 +4,11 @@ use std::fmt::Write;
 use std::path::Path;
 
 use moorline::output::{collect, json};
-use moorline::scene::Supplement;
+use moorline::scene::{InitialShape, Note, Supplement};
 
 use super::failure::Failure;
 use super::summary::{Table, static_table};
-use super::{print, read_scene, simulate};
+use super::{print, read_scene, remark, simulate};
 
 /// Solves the equilibrium and prints it.
 pub fn statics(path: &Path, supplement: &Supplement, as_json: bool) -> Result<(), Failure> {
@@ -16,14 +16,23 @@ pub fn statics(path: &Path, supplement: &Supplement, as_json: bool) -> Result<()
     if let Some(water) = &mut loaded.scene.water {
         water.waves = None; // an equilibrium is that of the sea at rest
     }
-    let simulation = simulate(&loaded)?;
+    let simulation = simulate(&loaded)?
+        .in_equilibrium()
+        .map_err(|error| Failure::of_simulation(error, &loaded))?;
+    for (index, line) in loaded.scene.lines.iter().enumerate() {
+        if line.initial != InitialShape::Static {
+            let at = format!("lines[{index}].initial");
+            let text = "runs start on this shape, not in the equilibrium that is shown".to_string();
+            remark(path, &Note { at, text });
+        }
+    }
     let statics = collect::statics(&loaded.scene, &simulation);
     if as_json {
         let mut bytes = Vec::new();
         json::write(&statics, &mut bytes).expect("memory takes any text");
         return print(&String::from_utf8(bytes).expect("JSON is UTF-8"));
     }
-    let record = collect::record(&loaded.scene, &simulation, Vec::new());
+    let record = collect::record(&loaded.scene, &simulation, Some(&simulation), Vec::new());
     let mut points = Table::new(&["force of the lines [N]", "x", "y", "z"]);
     for point in &statics.points {
         points.row(&point.name, &point.force);

@@ -69,13 +69,16 @@ impl fmt::Display for Table {
     }
 }
 
-/// The lines in equilibrium beside the closed-form catenary.
+/// The lines in equilibrium beside the closed-form catenary; those that have an equilibrium.
 pub fn static_table(record: &Record) -> Table {
     let mut table = Table::new(&["static equilibrium", "solved", "catenary", "difference"]);
     for line in &record.lines {
+        let Some(equilibrium) = &line.equilibrium else {
+            continue;
+        };
         let closed = line.catenary.as_ref().map(|catenary| &catenary.figures);
         let mut add = |name: &str, figure: fn(&StaticLine) -> f64| {
-            let solved = figure(&line.equilibrium);
+            let solved = figure(equilibrium);
             let mut cells = vec![format!("{} {name}", line.name), rounded(solved, DIGITS)];
             if let Some(closed) = closed {
                 cells.push(rounded(figure(closed), DIGITS));
@@ -87,7 +90,7 @@ pub fn static_table(record: &Record) -> Table {
         add("horizontal force at end B [N]", |line| line.horizontal);
         add("sag [m]", |line| line.sag);
         add("length on the seabed [m]", |line| line.laid_length);
-        if let Some(bending) = &line.equilibrium.bending {
+        if let Some(bending) = &equilibrium.bending {
             for (name, value) in [
                 ("greatest curvature [1/m]", bending.curvature),
                 ("greatest moment [N m]", bending.moment),
@@ -125,5 +128,10 @@ pub fn run_summary(record: &Record) -> String {
             rounded(factor, 3)
         )
     });
-    format!("{}\n{table}\n{cost}", static_table(record))
+    let still = record.lines.iter().any(|line| line.equilibrium.is_some());
+    let still = match still {
+        true => static_table(record).to_string(),
+        false => "no static equilibrium\n".to_string(),
+    };
+    format!("{still}\n{table}\n{cost}")
 }

@@ -394,7 +394,7 @@ impl Rows<'_> {
             ),
             (
                 "solver.tolerance",
-                "target error of fairlead tension; sets the number of elements where the scene leaves it open",
+                "target error of fairlead tension; sets integrator and steps where the scene leaves them open; elements stay those of the packaged scene",
                 Unit::ONE,
                 Parameter::Tolerance,
             ),

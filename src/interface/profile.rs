@@ -45,7 +45,7 @@ pub(super) fn push(variables: &mut Vec<Variable>, model: &Model, layout: Layout)
         }
         push(
             "tension",
-            "axial tension",
+            "effective tension (at the ends the size of the line's force)",
             Unit::NEWTON,
             ProfileQuantity::Tension,
         );

@@ -31,6 +31,10 @@ pub(super) fn row(
 
 pub(super) const AXES: [&str; 3] = ["x", "y", "z"];
 
+/// What a velocity is that no host tells.
+const UNTOLD: &str =
+    "if never set, derived from the displacements, or 0 where solver.input_reconstruction is 1";
+
 pub(super) fn point(variables: &mut Vec<Variable>, point: usize, name: &str) {
     let body = Body::Point(point);
     for (axis, label) in AXES.iter().enumerate() {
@@ -45,7 +49,7 @@ pub(super) fn point(variables: &mut Vec<Variable>, point: usize, name: &str) {
     for (axis, label) in AXES.iter().enumerate() {
         variables.push(row(
             format!("{name}.v{label}"),
-            format!("velocity of {name} along global {label}; derived from the displacements if never set"),
+            format!("velocity of {name} along global {label}; {UNTOLD}"),
             Causality::Input,
             Unit::METRE_PER_SECOND,
             Binding::Velocity { body, axis },
@@ -88,9 +92,7 @@ pub(super) fn vessel(variables: &mut Vec<Variable>, vessel: usize, name: &str) {
             _ => ("angular velocity", Unit::RADIAN_PER_SECOND),
         };
         let along = AXES[axis % 3];
-        let meaning = format!(
-            "{what} of {name}, component {along} in global axes; derived from the displacements if never set"
-        );
+        let meaning = format!("{what} of {name}, component {along} in global axes; {UNTOLD}");
         let binding = Binding::Velocity { body, axis };
         let name = format!("{name}.{label}");
         variables.push(row(name, meaning, Causality::Input, unit, binding));
@@ -145,11 +147,19 @@ pub(super) fn winch(variables: &mut Vec<Variable>, index: usize, line: &scene::L
 
 pub(super) fn line(variables: &mut Vec<Variable>, line: usize, name: &str) {
     let results = [
-        ("tension_b", "axial tension at end B", LineResult::TensionB),
-        ("tension_a", "axial tension at end A", LineResult::TensionA),
+        (
+            "tension_b",
+            "size of the line's force at end B, with weight, drag and inertia of the last half segment",
+            LineResult::TensionB,
+        ),
+        (
+            "tension_a",
+            "size of the line's force at end A, with weight, drag and inertia of the last half segment",
+            LineResult::TensionA,
+        ),
         (
             "tension_max",
-            "greatest axial tension along the line",
+            "greatest of the axial tension along the line and the forces at its ends",
             LineResult::TensionMax,
         ),
         (

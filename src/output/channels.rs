@@ -141,6 +141,7 @@ fn column(name: &str, source: Source, model: &Model) -> Column {
         name: name.to_string(),
         unit: unit.to_string(),
         description: format!("{what}, {place}"),
+        whole: false,
     }
 }
 

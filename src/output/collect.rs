@@ -13,12 +13,18 @@ use crate::simulation::{NodeBending, Simulation};
 /// Points of a catenary's drawn shape [-].
 const CATENARY_POINTS: usize = 201;
 
-/// The lines, points and surroundings of a simulation that stands in static equilibrium, without rows or frames.
-pub fn record(scene: &Scene, simulation: &Simulation, columns: Vec<Column>) -> Record {
+/// The lines, points and surroundings of a simulation, without rows or frames. `still` is the same in static equilibrium, where there is
+/// one: see [`Simulation::in_equilibrium`].
+pub fn record(
+    scene: &Scene,
+    simulation: &Simulation,
+    still: Option<&Simulation>,
+    columns: Vec<Column>,
+) -> Record {
     let model = simulation.model();
     let mut record = Record::new(&scene.title, columns);
     record.lines = (0..model.lines.len())
-        .map(|line| line_record(simulation, line))
+        .map(|line| line_record(simulation, still, line))
         .collect();
     let coupled = |point: &&crate::model::Point| matches!(point.role, Role::Coupled { .. });
     record.points = model
@@ -34,18 +40,10 @@ pub fn record(scene: &Scene, simulation: &Simulation, columns: Vec<Column>) -> R
     record
 }
 
-fn line_record(simulation: &Simulation, line: usize) -> LineRecord {
-    let model = simulation.model();
-    let [x, y, _] = simulation.line_end_force(line, End::B).into();
+fn line_record(simulation: &Simulation, still: Option<&Simulation>, line: usize) -> LineRecord {
     LineRecord {
-        name: model.lines[line].name.clone(),
-        equilibrium: StaticLine {
-            tension_b: simulation.tension_b(line),
-            horizontal: x.hypot(y),
-            sag: simulation.sag(line),
-            laid_length: simulation.laid_length(line),
-            bending: greatest_bending(simulation, line),
-        },
+        name: simulation.model().lines[line].name.clone(),
+        equilibrium: still.map(|still| line_at_rest(still, line)),
         catenary: simulation.catenary(line).map(|catenary| Catenary {
             figures: StaticLine {
                 tension_b: catenary.tension_b(),
@@ -56,6 +54,17 @@ fn line_record(simulation: &Simulation, line: usize) -> LineRecord {
             },
             profile: catenary_profile(simulation, line),
         }),
+    }
+}
+
+fn line_at_rest(simulation: &Simulation, line: usize) -> StaticLine {
+    let [x, y, _] = simulation.line_end_force(line, End::B).into();
+    StaticLine {
+        tension_b: simulation.tension_b(line),
+        horizontal: x.hypot(y),
+        sag: simulation.sag(line),
+        laid_length: simulation.laid_length(line),
+        bending: greatest_bending(simulation, line),
     }
 }
 

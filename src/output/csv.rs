@@ -8,7 +8,7 @@
 
 use std::io::{self, Write};
 
-use super::record::Record;
+use super::record::{Column, Record};
 
 /// Header of `profile.csv`.
 const PROFILE_HEADER: [&str; 8] = ["time", "line", "node", "s", "x", "y", "z", "tension"];
@@ -20,8 +20,12 @@ const PROFILE_HEADER: [&str; 8] = ["time", "line", "node", "s", "x", "y", "z", "
 pub fn write_results(record: &Record, out: impl Write) -> io::Result<()> {
     let mut table = csv::Writer::from_writer(out);
     table.write_record(record.columns().iter().map(|column| &column.name))?;
+    let written = |(column, &value): (&Column, &f64)| match column.whole && value.is_finite() {
+        true => format!("{value:.0}"),
+        false => shortest(value),
+    };
     for row in record.rows() {
-        table.write_record(row.iter().map(|&value| shortest(value)))?;
+        table.write_record(record.columns().iter().zip(row).map(written))?;
     }
     table.flush()
 }
@@ -105,6 +109,22 @@ mod tests {
         assert_eq!(table.headers().unwrap(), &csv::StringRecord::from(names));
         let rows: Vec<Vec<f64>> = table.deserialize().collect::<Result<_, _>>().unwrap();
         assert!(rows.iter().map(Vec::as_slice).eq(record.rows()));
+    }
+
+    #[test]
+    fn a_count_is_written_as_a_whole_number() {
+        let column = |name: &str, whole: bool| Column {
+            name: name.to_string(),
+            unit: "1".to_string(),
+            description: String::new(),
+            whole,
+        };
+        let mut record = Record::new("", vec![column("steps", true), column("x", false)]);
+        record.add_row(0.5, [15.0, 15.0]);
+        let mut bytes = Vec::new();
+        write_results(&record, &mut bytes).unwrap();
+        let text = String::from_utf8(bytes).unwrap();
+        assert_eq!(text, "time,steps,x\n0.5,15,15.0\n");
     }
 
     #[test]

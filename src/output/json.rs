@@ -1,44 +1,6 @@
-//! The static equilibrium as JSON: what `moorline statics --json` prints.
+//! The static equilibrium as JSON: what `moorline statics --json` prints, as `docs/json.md` has it:
 //!
-//! The layout is stable: keys may be added, those below are neither renamed nor removed. SI units, global axes, z up, z = 0
-//! at still water. Numbers have the fewest digits that read back to the same bits; what is not finite is `null`.
-//!
-//! | key | unit | meaning |
-//! |---|---|---|
-//! | `title` | | title of the scene |
-//! | `lines[]` | | lines in the order of the scene |
-//! | `lines[].name` | | name of the line |
-//! | `lines[].end_a`, `end_b` | | end A (`from`, anchor) and end B (`to`, fairlead) |
-//! | `….force` | N | x, y, z of the force that the line applies to what holds this end |
-//! | `….tension` | N | axial tension at this end |
-//! | `lines[].horizontal` | N | horizontal part of the force at end B, not negative |
-//! | `lines[].vertical` | N | pull of the line on end B downwards; negative where it lifts |
-//! | `lines[].laid_length` | m | unstretched length that lies on the seabed |
-//! | `lines[].stretched_length` | m | length of the line under tension |
-//! | `lines[].sag` | m | greatest vertical distance below the chord between the two ends |
-//! | `lines[].catenary` | | closed-form elastic catenary of the line with bed friction, beside the above; `null` where it has none: an end is free, the strain is not engineering strain, or the line comes out of the water |
-//! | `….tension_a`, `tension_b` | N | axial tension at its ends |
-//! | `….horizontal`, `vertical`, `laid_length`, `sag` | N, m | as of the line |
-//! | `lines[].profile[]` | | nodes from end A to end B |
-//! | `….s` | m | unstretched arc length from end A |
-//! | `….x`, `y`, `z` | m | position |
-//! | `….tension` | N | effective tension |
-//! | `….curvature` | 1/m | curvature; only on lines with bending stiffness, as the moment |
-//! | `….moment` | N m | bending moment |
-//! | `points[]` | | points in the order of the scene |
-//! | `points[].name` | | name of the point |
-//! | `points[].kind` | | `fixed`, `coupled`, `prescribed` or `free` |
-//! | `points[].position` | m | x, y, z in equilibrium |
-//! | `points[].force` | N | x, y, z of the force that all lines together apply to the point |
-//! | `vessels[]` | | vessels in the order of the scene; empty where the scene has none |
-//! | `vessels[].name` | | name of the vessel |
-//! | `vessels[].force` | N, N m | force and moment that the mooring applies, about the vessel's origin |
-//! | `vessels[].stiffness` | N/m, N, N m | 6×6 rows: minus the change of `force` with each displacement and small rotation along and about the global axes through the vessel's origin; `null` where that has no answer: beams |
-//! | `vessels[].elements` | | `force` and `stiffness` again, of the lines' elements everywhere |
-//!
-//! `vessels[].force` and `.stiffness` are those of the closed-form catenaries, bed friction included, of every line that has one and
-//! meets only such lines at free points; those of the elements elsewhere. `lines[]`, `points[]` and `vessels[].elements` are those of the elements, unless
-//! the scene is quasi-static.
+#![doc = include_str!("../../docs/json.md")]
 
 use std::io::{self, Write};
 
@@ -106,7 +68,7 @@ pub struct Catenary {
 pub struct End {
     /// Force of the line on what holds this end [N].
     pub force: [f64; 3],
-    /// Axial tension [N].
+    /// Size of that force [N].
     pub tension: f64,
 }
 

@@ -39,6 +39,14 @@ pub enum OutputError {
         /// What has the name.
         path: PathBuf,
     },
+    /// A folder takes no files.
+    #[error("cannot write into the folder {}: {source}", .path.display())]
+    Closed {
+        /// The folder.
+        path: PathBuf,
+        /// What the operating system said.
+        source: io::Error,
+    },
     /// A file could not be written.
     #[error("cannot write {}: {source}", .path.display())]
     File {
@@ -63,6 +71,33 @@ pub fn make_folder(path: &Path) -> Result<(), OutputError> {
         path: path.to_path_buf(),
         source,
     })
+}
+
+/// Makes a folder as [`make_folder`] does, and sees that it takes files.
+///
+/// # Errors
+/// As there, and where it takes none.
+pub fn open_folder(path: &Path) -> Result<(), OutputError> {
+    make_folder(path)?;
+    let probe = partial_name(&path.join("probe"));
+    let tried = File::create(&probe).and_then(|_| fs::remove_file(&probe));
+    tried.map_err(|source| OutputError::Closed {
+        path: path.to_path_buf(),
+        source,
+    })
+}
+
+/// Removes what this process has not written to its end in a folder of a run.
+pub fn remove_partial(folder: &Path) {
+    let ending = partial_ending();
+    for folder in [folder.to_path_buf(), folder.join(vtk::FRAME_FOLDER)] {
+        for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+            if entry.file_name().to_string_lossy().ends_with(&ending) {
+                // A remainder that cannot be removed does not look complete.
+                let _ = fs::remove_file(entry.path());
+            }
+        }
+    }
 }
 
 /// Writes a file under a temporary name beside it and renames it when it is whole: an interrupted run leaves the old file or
@@ -157,8 +192,12 @@ fn write_shapes(record: &record::Record, folder: &Path) -> Result<(), OutputErro
 /// `results.csv` -> `results.csv.1234.partial`, with the number of the process: two runs do not write into one another.
 fn partial_name(path: &Path) -> PathBuf {
     let mut name = path.file_name().unwrap_or_default().to_os_string();
-    name.push(format!(".{}.partial", std::process::id()));
+    name.push(partial_ending());
     path.with_file_name(name)
+}
+
+fn partial_ending() -> String {
+    format!(".{}.partial", std::process::id())
 }
 
 #[cfg(test)]

@@ -16,6 +16,8 @@ pub struct Column {
     pub unit: String,
     /// What it is, in a sentence.
     pub description: String,
+    /// Whether its values are whole numbers: counts and truth values.
+    pub whole: bool,
 }
 
 /// A line's node at one instant.
@@ -84,8 +86,8 @@ pub struct Catenary {
 pub struct LineRecord {
     /// Name, the stem of its variables.
     pub name: String,
-    /// The discretised line in static equilibrium at t = 0.
-    pub equilibrium: StaticLine,
+    /// The discretised line in static equilibrium; `None` where the lines have none, such as beams in free flight.
+    pub equilibrium: Option<StaticLine>,
     /// The closed form beside it; `None` where the line has none.
     pub catenary: Option<Catenary>,
 }
@@ -146,6 +148,7 @@ impl Record {
             name: "time".to_string(),
             unit: "s".to_string(),
             description: "simulated time".to_string(),
+            whole: false,
         };
         Record {
             title: title.into(),
@@ -233,6 +236,7 @@ mod tests {
             name: name.to_string(),
             unit: "N".to_string(),
             description: String::new(),
+            whole: false,
         }
     }
 

@@ -82,18 +82,22 @@ fn statics(record: &Record) -> String {
         .flat_map(|line| {
             figures.map(|(name, figure)| {
                 let closed = line.catenary.as_ref().map(|c| figure(&c.figures));
-                let solved = figure(&line.equilibrium);
+                let solved = line.equilibrium.as_ref().map(figure);
+                let said = |value: Option<f64>| {
+                    value.map_or("none".to_string(), |value| rounded(value, DIGITS))
+                };
+                let both = solved.zip(closed);
                 vec![
                     format!("{}: {name}", line.name),
-                    rounded(solved, DIGITS),
-                    closed.map_or("none".to_string(), |value| rounded(value, DIGITS)),
-                    closed.map_or(String::new(), |value| difference(solved, value)),
+                    said(solved),
+                    said(closed),
+                    both.map_or(String::new(), |(solved, closed)| difference(solved, closed)),
                 ]
             })
         })
         .collect();
     table(
-        "The discretised lines at t = 0 beside the closed-form elastic catenary of the reference configuration.",
+        "The discretised lines at rest in the reference configuration beside the closed-form elastic catenary.",
         &["", "equilibrium", "catenary", "difference"],
         &rows,
     )

@@ -15,6 +15,7 @@ fn columns() -> Vec<Column> {
         name: name.to_string(),
         unit: unit.to_string(),
         description: description.to_string(),
+        whole: false,
     };
     vec![
         of("fairlead.x", "m", "displacement"),
@@ -60,10 +61,10 @@ fn line(name: &str, side: f64) -> LineRecord {
     };
     LineRecord {
         name: name.to_string(),
-        equilibrium: StaticLine {
+        equilibrium: Some(StaticLine {
             tension_b: 911_120.0,
             ..figures
-        },
+        }),
         catenary: Some(Catenary {
             figures,
             profile: shape(side, 0.0).iter().map(|node| node.position).collect(),

@@ -159,6 +159,11 @@ impl de::Error for ReadError {
         ReadError::other(format!("unknown value `{variant}`{suggestion}"))
     }
 
+    fn duplicate_field(field: &'static str) -> Self {
+        // TOML has no key twice, so that the other one is another name of it.
+        ReadError::other(format!("`{field}` is given twice, under both of its names"))
+    }
+
     fn missing_field(field: &'static str) -> Self {
         ReadError {
             steps: Vec::new(),

@@ -64,6 +64,14 @@ pub enum LoadError {
         /// What is wrong, and what would be right.
         problem: String,
     },
+    /// A scene, with something beside it that only decks need.
+    #[error("{}: {problem}", path.display())]
+    NotADeck {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong, and what would be right.
+        problem: &'static str,
+    },
     /// Text with mistakes, in the order of the file.
     #[error("{}", place_first(source_text, mistakes))]
     Scene {

@@ -479,7 +479,8 @@ pub struct Solver {
     pub tolerance: f64,
     /// Elements of a line alone [-], where its sections leave their number open; chosen from the tolerance where absent.
     pub elements: Option<usize>,
-    /// Time integrator.
+    /// Time integrator; `dynamics` is another name of the key.
+    #[serde(alias = "dynamics")]
     pub integrator: Integrator,
     /// The peers' law: axial damping acts in compression too.
     pub negative_tension: bool,

@@ -62,6 +62,13 @@ pub struct Supplement {
     pub positions: BTreeMap<String, [f64; 3]>,
 }
 
+impl Supplement {
+    /// Whether nothing is given.
+    pub fn is_empty(&self) -> bool {
+        *self == Supplement::default()
+    }
+}
+
 /// What a reader makes of a file.
 pub(super) struct Reading {
     /// What kind of file it is.
@@ -107,7 +114,7 @@ pub fn load(path: &Path) -> Result<LoadedScene, LoadError> {
 /// As [`load`], with what a deck leaves to its host.
 ///
 /// # Errors
-/// As [`load`].
+/// As [`load`]; and where the file is a scene, which leaves nothing to its host.
 pub fn load_with(path: &Path, supplement: &Supplement) -> Result<LoadedScene, LoadError> {
     let text = read_text(path)?;
     let loaded = match deck_of(&text) {
@@ -118,6 +125,17 @@ pub fn load_with(path: &Path, supplement: &Supplement) -> Result<LoadedScene, Lo
         }),
     };
     match loaded {
+        Ok((.., TOML, _)) if !supplement.is_empty() => Err(LoadError::NotADeck {
+            path: path.to_path_buf(),
+            problem: match supplement.depth {
+                Some(_) => {
+                    "a scene gives the depth of its water itself, as `seabed.depth`: a depth beside it is for decks"
+                }
+                None => {
+                    "a scene gives the places of its vessels itself, as `position`: places beside it are for decks"
+                }
+            },
+        }),
         Ok((scene, notes, format, places)) => Ok(LoadedScene {
             scene,
             text,

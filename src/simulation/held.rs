@@ -488,7 +488,14 @@ mod tests {
     fn a_carried_point_is_bridged_along_the_path_of_a_host_too() {
         let scene = Scene::from_toml(SCENE).unwrap();
         let model = Model::new(&scene).unwrap();
-        let (snapshot, _) = start::begin(&model, 0.0, Inputs::new(&model), false).unwrap();
+        let (snapshot, _) = start::begin(
+            &model,
+            0.0,
+            Inputs::new(&model),
+            false,
+            start::Shapes::AsGiven,
+        )
+        .unwrap();
         let mut paths = snapshot.paths.clone();
         let [place, angles] = &mut paths.vessels[0].0;
         for (path, first) in [(place, 0.0), (angles, 3e-4)] {

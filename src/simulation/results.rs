@@ -176,12 +176,12 @@ impl Simulation {
         )
     }
 
-    /// Axial tension at end A [N].
+    /// Size of the force at end A [N].
     pub fn tension_a(&self, line: usize) -> f64 {
         self.line_end_force(line, End::A).norm()
     }
 
-    /// Axial tension at end B [N].
+    /// Size of the force at end B [N].
     pub fn tension_b(&self, line: usize) -> f64 {
         self.line_end_force(line, End::B).norm()
     }

@@ -15,12 +15,22 @@ use crate::scene::{InitialShape, Integrator};
 use crate::statics::catenary::{self, Bed, Catenary};
 use crate::statics::{self, StaticsError, assembly, catenary_network, equilibrium};
 
+/// What becomes of beams that are given a shape to start on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Shapes {
+    /// They start on it.
+    AsGiven,
+    /// They come to rest from it.
+    Equilibrium,
+}
+
 /// A simulation at rest at a time [s], with its scratch.
 pub(super) fn begin(
     model: &Model,
     time: f64,
     inputs: Inputs,
     follows_scene: bool,
+    shapes: Shapes,
 ) -> Result<(Snapshot, Workspace), Error> {
     let paths = Paths::at_rest(model, time, &inputs, follows_scene);
     let at = At::new(model, &paths, follows_scene);
@@ -38,7 +48,7 @@ pub(super) fn begin(
             shape.become_viscoelastic(line);
         }
     }
-    rest_beams(model, &mut state, time, |point| {
+    rest_beams(model, &mut state, time, shapes, |point| {
         beam::attitude(&held(point, time))
     })?;
     let mut work = Workspace::new(model, &state, |line| static_tension(model, &state, line));
@@ -95,17 +105,18 @@ fn at_rest(model: &Model, time: f64, places: &[PointState]) -> Result<State, Sta
     Ok(state)
 }
 
-/// Gives beams their frames at time `t` [s], and rest where no shape is given; `attitude` tells how a point has turned.
+/// Gives beams their frames at time `t` [s], and rest where no shape is given or all are to be at rest; `attitude` tells how a point has turned.
 fn rest_beams(
     model: &Model,
     state: &mut State,
     t: f64,
+    shapes: Shapes,
     attitude: impl Fn(usize) -> Matrix3<f64>,
 ) -> Result<(), StaticsError> {
     for (index, line) in model.lines.iter().enumerate() {
         if line.beam.is_some() {
             state.lines[index].become_beam(line, line.ends.map(&attitude));
-            if line.initial == InitialShape::Static {
+            if line.initial == InitialShape::Static || shapes == Shapes::Equilibrium {
                 statics::beam::rest(model, index, state, t)?;
             }
         }

@@ -294,7 +294,8 @@ impl Chart {
         let labels: Vec<Label> = words
             .iter()
             .map(|(_, point, label)| {
-                let letters = label.chars().count() as f64;
+                // A letter more: × and % are wide, and words side by side need a gap.
+                let letters = (label.chars().count() + 1) as f64;
                 Label {
                     point: place(point),
                     size: [fine_f(LETTER * LABEL * letters) as i32, fine(14)],

@@ -381,6 +381,7 @@ mod tests {
             name: name.to_string(),
             unit: String::new(),
             description: String::new(),
+            whole: false,
         });
         let mut record = Record::new("", columns.into());
         record.lines = sample.lines;
@@ -399,6 +400,7 @@ mod tests {
             name: ELEVATION.to_string(),
             unit: "m".to_string(),
             description: String::new(),
+            whole: false,
         };
         let mut record = Record::new("", vec![column]);
         record.add_row(0.0, [1.5]);
