@@ -284,7 +284,7 @@ fn step_cost(model: &Model, state: &State, size: f64, lines: usize, portable: bo
     let held = sway(state);
     let step = Step::after([size; 2], size);
     for work in &mut works {
-        work.put_ends(state.time, step, &held);
+        work.put_ends(state.time, size, &held);
     }
     let (mut t, mut best) = (state.time, f64::INFINITY);
     for _ in 0..REPETITIONS {

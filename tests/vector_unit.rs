@@ -34,7 +34,7 @@ fn swayed(name: &str, elements: usize, steps: usize, portable: bool) -> State {
         }
     };
     let step = Step::after([size; 2], size);
-    work.put_ends(start.time, step, &held);
+    work.put_ends(start.time, size, &held);
     for k in 0..steps {
         work.step(model, network, start.time + k as f64 * size, step, &held);
     }

@@ -42,8 +42,7 @@ pub struct Choice {
 impl Choice {
     /// Integrator and step, and why.
     pub fn in_words(&self) -> String {
-        let milli = |step: f64| format!("{:.3} ms", 1e3 * step);
-        let (step, explicit) = (milli(self.step_max), milli(self.explicit_limit));
+        let (step, explicit) = (seconds(self.step_max), seconds(self.explicit_limit));
         match self.integrator {
             Integrator::Leapfrog if self.step_max < self.explicit_limit => {
                 format!("explicit steps of at most {step}; axial waves would allow {explicit}")
@@ -109,6 +108,18 @@ impl Choice {
             transverse_limit,
         }
     }
+}
+
+/// A time [s] in the multiple of the second that fits, in four digits.
+fn seconds(time: f64) -> String {
+    let (scale, unit) = match time {
+        t if t >= 1.0 => (1.0, "s"),
+        t if t >= 1e-3 => (1e3, "ms"),
+        t if t >= 1e-6 => (1e6, "µs"),
+        _ => (1e9, "ns"),
+    };
+    let rounded = format!("{:.3e}", scale * time);
+    format!("{} {unit}", rounded.parse().unwrap_or(scale * time))
 }
 
 /// Steps that a network would take [s].

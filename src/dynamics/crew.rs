@@ -348,11 +348,17 @@ impl Labour {
             true => format!("{}, waves on {}", count(steps), count(sea)),
             false => count(steps),
         };
-        if let Threads::Number(_) = self.asked {
-            return format!("{shared}, as given");
-        }
         if self.parts < 2 && self.heaving < 2 {
             return format!("{shared}: there is one system of lines");
+        }
+        if let Threads::Number(asked) = self.asked {
+            return match steps.max(sea) < asked {
+                true => format!(
+                    "{shared}, of the {asked} given: there are {} systems of lines",
+                    self.parts
+                ),
+                false => format!("{shared}, as given"),
+            };
         }
         let time = micro((self.rate * length).max(self.least));
         let waves = match self.asking > 0.0 {

@@ -47,6 +47,7 @@ pub use tension_strain::TensionStrain;
 pub use threads::Threads;
 pub use time_function::{HarmonicMotion, MotionFile, MotionPath, MotionRow, TimeFunction};
 pub use waves::{RegularWave, Sea, SpectrumKind, WaveComponents, Waves};
+pub(crate) use words::percent;
 
 /// Standard gravity [m/s²], the default of [`Scene::gravity`].
 pub const STANDARD_GRAVITY: f64 = 9.80665;

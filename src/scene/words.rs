@@ -262,8 +262,8 @@ impl Scene {
         let mut said = vec![
             integrator,
             format!(
-                "target error of fairlead tension {} %",
-                significant(100.0 * solver.tolerance)
+                "target error of fairlead tension {}",
+                percent(solver.tolerance)
             ),
             tension.to_string(),
             format!(
@@ -356,6 +356,11 @@ pub(super) fn paragraph(text: &mut String, indent: &str, sentence: &str) {
 fn significant(value: f64) -> String {
     let rounded: f64 = format!("{value:.4e}").parse().unwrap_or(value);
     number(rounded)
+}
+
+/// A part of a whole [-] in percent.
+pub(crate) fn percent(part: f64) -> String {
+    format!("{} %", significant(100.0 * part))
 }
 
 /// How much longer a line is than the distance between its ends, both in metres.

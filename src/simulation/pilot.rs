@@ -25,7 +25,7 @@ use super::{Error, Simulation};
 use crate::dynamics::AXIAL_IMPLICIT_COST;
 use crate::model::mesh::line_elements;
 use crate::model::{Model, Network, Role};
-use crate::scene::{InitialShape, Integrator, MotionPath, Scene};
+use crate::scene::{InitialShape, Integrator, MotionPath, Scene, percent};
 
 /// Elements of a line alone that are tried [-].
 const LADDER: [usize; 13] = [5, 7, 10, 14, 20, 28, 40, 56, 80, 112, 160, 224, 320];
@@ -96,13 +96,13 @@ pub struct Rest {
 impl Settled {
     /// What was found, in words: one sentence each.
     pub fn in_words(&self) -> Vec<String> {
-        let percent = |part: f64| format!("{:.2} %", 100.0 * part);
+        let rounded = |part: f64| format!("{:.2} %", 100.0 * part);
         let tried = self.trials.iter().rev().take(4).rev();
         let tried: Vec<String> = tried
-            .map(|trial| format!("{} with {}", percent(trial.error), trial.elements))
+            .map(|trial| format!("{} with {}", rounded(trial.error), trial.elements))
             .collect();
         let solver = &self.scene.solver;
-        let target = format!("for the target error of {} %", 100.0 * solver.tolerance);
+        let target = format!("for the target error of {}", percent(solver.tolerance));
         let mut said = Vec::new();
         if !tried.is_empty() {
             said.push(format!(
@@ -113,7 +113,7 @@ impl Settled {
             ));
         }
         if let Some(rest) = self.rest {
-            let [before, after] = rest.errors.map(percent);
+            let [before, after] = rest.errors.map(rounded);
             said.push(format!(
                 "{} elements a line alone {target}: at rest the tension would miss that of the catenary by {before} with {}, and misses it by {after}",
                 self.elements, rest.fewer
@@ -122,12 +122,12 @@ impl Settled {
         if !self.tried {
             said.push(format!(
                 "that is extrapolated, trials being bounded: about {} is expected",
-                percent(self.error)
+                rounded(self.error)
             ));
         }
         if solver.integrator == Integrator::AxialImplicit {
             said.push(format!(
-                "axial tension implicit with steps of at most {} s: cheaper than explicit ones, and as near",
+                "steps up to {} s with the axial tension implicit are cheaper than explicit ones, and as near; the limit that holds stands below",
                 solver.time_step_max
             ));
         }

@@ -6,7 +6,7 @@ use super::{LineLaw, line_law};
 use crate::model::mesh::{Place, Refinement, line_elements};
 use crate::model::{Line, Model, Point, Role, Vessel};
 use crate::physics::catenary::{self, Bed, Catenary};
-use crate::scene::{self, PointKind, Scene};
+use crate::scene::{self, PointKind, Scene, percent};
 
 /// Elements over √(EI/T) [-].
 const ELEMENTS_PER_BEND: f64 = 2.0;
@@ -251,8 +251,10 @@ fn reasons(scene: &Scene, model: &Model, line: &scene::Line, built: &Line, share
     let mut reasons = match scene.solver.elements {
         Some(elements) => format!("of the {elements} of a line alone"),
         None => {
-            let percent = 100.0 * scene.solver.tolerance;
-            format!("for the target error of {percent} %")
+            format!(
+                "for the target error of {}",
+                percent(scene.solver.tolerance)
+            )
         }
     };
     if share < alone(scene) {
