@@ -18,6 +18,8 @@ const HANDICAPS: [Terms; 2] = [
         1.0 / BETTER,
     ],
 ];
+/// Step over the time between the first two samples, above which they make no line [-].
+const UNJUDGED_MAX: f64 = 2.0;
 
 /// Divided differences of the samples that count.
 pub(super) struct Differences {
@@ -96,8 +98,10 @@ impl Differences {
     #[inline(never)]
     fn degree_of_any(&self, known: usize, degree: &mut Lanes) -> Lanes {
         if known <= 2 {
-            // two samples can judge no line, but a host that moves a point goes on moving it
-            return Lanes::splat(known as f64 - 1.0);
+            // two samples can judge no line, but a host that moves a point goes on moving it, as far as that tells
+            let far = |stretch: &[Terms; JUDGED]| stretch[0][0] > UNJUDGED_MAX;
+            let line = known == 2 && !self.stretch.as_ref().is_some_and(far);
+            return Lanes::splat(f64::from(u8::from(line)));
         }
         (0..LANES).for_each(|axis| degree[axis] = self.judge(known, degree[axis], axis));
         *degree
