@@ -4,19 +4,30 @@
 //! would jump, which is the commonest noise of coupled simulations. Instead the point follows one C1 curve: on every
 //! communication step a cubic Hermite segment from where the path is to where the point is predicted to be.
 //!
-//! The prediction extrapolates the polynomial through the newest samples, of the degree 0 … 3 that would have predicted the
-//! last two samples best from the older ones: smooth motion gets the third degree (error O(h⁴)), noise and jumps a low one. A degree
-//! is kept until another would have been better by more than a factor: two of them often do equally well, where a harmonic motion is
+//! The prediction extrapolates the polynomial P through the newest samples at their own times, of the degree k = 0 … 3 that can be expected
+//! to miss the end of the step by least: its remainder there is P[t_0 … t_{k+1}] (t − t_0) … (t − t_k), with the divided difference of the
+//! last two sets of samples. Smooth motion gets the third degree (error O(h⁴)), noise and jumps a low one. On equal steps this is by how much each
+//! degree would have missed the last two samples; from rest it is always that, since what jumps within a short step does not go on like
+//! that. A degree is kept until another would be better by more than a factor: two of them often do equally well, where a harmonic motion is
 //! sampled symmetrically, and rounding of the host's times would then choose between them.
-//! With velocities the polynomial is fitted to them and integrated from x_k. What a prediction missed by is made up over as long a time as it was
-//! for: after a step of 10 s that ends a metre beside the host, one of 1 ms must not leap back by a metre.
+//! With velocities the polynomial is fitted to them and integrated from x_k.
+//!
+//! What a prediction missed by, e = path − P at t_k with its rate ė, is made up within the coming step if that is no shorter than the last. Else
+//! a step of 1 ms after one of 10 s that ended a metre beside the host would leap back by a metre. There e goes to nothing along a cubic over a
+//! time T: as long as the step was that missed, less what has passed since, so that the path converges as on equal steps; but once that
+//! step is out of sight, no longer than it takes with |ë| ≤ a:
+//!
+//! T = (√(ė² + 6a|e|) − |ė|)/a   where e ė < 0 and ė² ≤ 2a|e|,   else (2|ė| + √(4ė² + 6a|e|))/a
+//!
+//! from ë = −6e/T² − 4ė/T at the start and 6e/T² + 2ė/T at the end. With a = 0.2 m/s² (0.02 rad/s²), and half the mean acceleration of P
+//! over the step besides, the path is five metres further 12 s after a step of minutes.
 //!
 //! A host that knows the motion, or that steps what moves the point first, says instead where it will be at t_k + h
 //! ([`Reconstruction::Interpolate`]): cubics through what it says then need no prediction.
 //!
-//! Source: divided differences, e.g. Hairer, Nørsett & Wanner (1993), Solving Ordinary Differential Equations I, eq. III.1.7;
-//! the choice of degree is made here. Valid for any sequence of step sizes: samples closer
-//! together than half the coming step are passed over, and all are dropped when the host steps back.
+//! Source: divided differences and their remainder, e.g. Hairer, Nørsett & Wanner (1993), Solving Ordinary Differential Equations I, eq. III.1.7;
+//! the choice of degree, and of T, is made here. Valid for any sequence of step sizes: of two samples closer together than a thirtieth of
+//! the longest step in sight the older one is passed over, and all are dropped when the host steps back.
 
 mod differences;
 mod foresight;
@@ -27,12 +38,19 @@ use nalgebra::{Vector3, Vector6};
 use serde::{Deserialize, Serialize};
 
 use crate::math::hermite::{self, Hermites};
-use crate::math::lanes::Lanes;
+use crate::math::lanes::{LANES, Lanes};
 use crate::model::{Kinematics, Pose};
 use crate::scene::Reconstruction;
 use differences::Differences;
 pub use foresight::{Clock, Foresight};
 use foresight::{Order, SAMPLES_MAX, Samples};
+
+/// Acceleration that what a prediction missed by may be made up with in any case [m/s²]: a fiftieth of g.
+const EASE: f64 = 0.2;
+/// The same of angles [rad/s²], on levers of some ten metres.
+const EASE_OF_ANGLES: f64 = 0.02;
+/// The share of the motion's own acceleration that it may take besides [-].
+const SHARE: f64 = 0.5;
 
 /// What a host says of up to four axes at a time.
 #[derive(Debug, Clone, Copy)]
@@ -43,6 +61,8 @@ pub struct Said {
     pub velocity: Lanes,
     /// 1 along those of which the host tells the velocity, else 0 [-].
     pub rated: Lanes,
+    /// Acceleration that hardly anything feels along them [m/s², rad/s²].
+    ease: f64,
 }
 
 impl Said {
@@ -60,6 +80,7 @@ impl Said {
             position: Lanes::new(from_fn(|lane| position[last(lane)])),
             velocity: Lanes::new(from_fn(|lane| velocity[last(lane)])),
             rated: Lanes::new(from_fn(|lane| rated[last(lane)])),
+            ease: EASE,
         }
     }
 }
@@ -176,7 +197,7 @@ impl AxesPath {
     #[inline(never)]
     fn turn(&mut self, before: &AxesPath, foresight: &Foresight, said: &Said) {
         let (order, forgets) = (foresight.order, foresight.order == Order::Before);
-        let again = usize::from(order == Order::Again);
+        let again = usize::from(matches!(order, Order::Instead | Order::Again));
         let known = match forgets || said.rated != before.rated {
             true => 0,
             false => before.times_rated.saturating_sub(again),
@@ -198,15 +219,16 @@ impl AxesPath {
         self.bridge(before, foresight, said, to);
     }
 
-    /// Lays the segments from the end of the path `before` to position [m, rad] and velocity [m/s, rad/s].
+    /// Lays the segments from the end of the path `before` to what is predicted.
     #[inline(always)]
-    fn bridge(&mut self, before: &AxesPath, foresight: &Foresight, said: &Said, to: [Lanes; 2]) {
+    fn bridge(&mut self, before: &AxesPath, foresight: &Foresight, said: &Said, to: Prediction) {
         let jumps = foresight.reconstruction == Reconstruction::Jump;
-        if jumps || foresight.left.is_some() {
+        if jumps || foresight.late.is_some() {
             return self.bridge_over(before, foresight, said, to);
         }
-        self.end = to;
-        self.curve = Hermites::bridge(foresight.span, before.end, to);
+        let [position, velocity, _] = to;
+        self.end = [position, velocity];
+        self.curve = Hermites::bridge(foresight.span, before.end, self.end);
     }
 
     /// [`AxesPath::bridge`] where the path jumps to what the host says, or what it missed is made up over more than the step.
@@ -217,22 +239,25 @@ impl AxesPath {
         before: &AxesPath,
         foresight: &Foresight,
         said: &Said,
-        to: [Lanes; 2],
+        to: Prediction,
     ) {
-        let ([position, velocity], [_, length, _]) = (to, foresight.span);
+        let ([position, velocity, velocity_before], [_, length, _]) = (to, foresight.span);
         let mut from = before.end;
-        self.end = to;
+        self.end = [position, velocity];
         if foresight.reconstruction == Reconstruction::Jump {
             from = [said.position, said.velocity];
             let reached = said.position + Lanes::splat(length) * said.velocity;
             self.end = [reached, said.velocity];
-        } else if let Some(left) = foresight.left {
-            let missed = [from[0] - said.position, from[1] - velocity];
-            let [place, speed] = left.map(|[a, b]| {
-                let [a, b] = [a, b].map(Lanes::splat);
-                a * missed[0] + b * missed[1]
-            });
-            self.end = [position + place, velocity + speed];
+        } else if let Some(late) = foresight.late {
+            let missed = [from[0] - said.position, from[1] - velocity_before];
+            for axis in 0..LANES {
+                let change = (velocity[axis] - velocity_before[axis]).abs();
+                let acceleration = said.ease + SHARE * change / length;
+                let missed = missed.map(|lanes| lanes[axis]);
+                let left = left(missed, length, late, acceleration);
+                self.end[0][axis] += left[0];
+                self.end[1][axis] += left[1];
+            }
         }
         self.curve = Hermites::bridge(foresight.span, from, self.end);
     }
@@ -258,29 +283,60 @@ impl AxesPath {
         [start, [position, velocity, curvature]]
     }
 
-    /// Predicts position [m, rad] and velocity [m/s, rad/s] at the end of a step from what the host said of the position.
+    /// Predicts from what the host said of the position.
     #[inline(always)]
-    fn predict(&mut self, foresight: &Foresight, samples: Samples) -> [Lanes; 2] {
+    fn predict(&mut self, foresight: &Foresight, samples: Samples) -> Prediction {
         let differences = Differences::new(foresight, samples);
         let degree = differences.degree(foresight.count, &mut self.degree);
-        let slope = differences.sum(degree, &foresight.slope);
+        let slope = |terms| differences.sum(degree, terms) * Lanes::splat(foresight.unit[1]);
         [
             differences.sum(degree, &foresight.value),
-            slope * Lanes::splat(foresight.unit[1]),
+            slope(&foresight.slope),
+            slope(&foresight.slope_before),
         ]
     }
 
     /// Predicts from what it said of the velocity, and the position [m, rad] at the start of a step.
     #[inline(always)]
-    fn rate(&mut self, foresight: &Foresight, said: &Said, samples: Samples) -> [Lanes; 2] {
+    fn rate(&mut self, foresight: &Foresight, said: &Said, samples: Samples) -> Prediction {
         let differences = Differences::new(foresight, samples);
         let degree = differences.degree(foresight.known(self.times_rated), &mut self.degree);
         let rise = differences.sum(degree, &foresight.integral);
         [
             said.position + rise * Lanes::splat(foresight.unit[0]),
             differences.sum(degree, &foresight.value),
+            said.velocity,
         ]
     }
+}
+
+/// Position [m, rad] and velocity [m/s, rad/s] at the end of a step, and the velocity at its start.
+type Prediction = [Lanes; 3];
+
+/// What is left after a step [s] of a distance [m, rad] and a velocity [m/s, rad/s] by which a path misses its host, along the cubic from both to none
+/// over the shortest time, of those from `soon` to `late` [s], in which an acceleration [m/s², rad/s²] does it.
+fn left(missed: [f64; 2], step: f64, [soon, late]: [f64; 2], acceleration: f64) -> [f64; 2] {
+    let time = time_to_meet(missed, acceleration).max(soon).min(late);
+    if time <= step {
+        return [0.0; 2];
+    }
+    let ([distance, velocity], s) = (missed, step / time);
+    let rest = 1.0 - s;
+    [
+        rest * rest * ((1.0 + 2.0 * s) * distance + step * velocity),
+        rest * ((1.0 - 3.0 * s) * velocity - 6.0 * s / time * distance),
+    ]
+}
+
+/// Time over which a cubic brings a distance and a velocity to nothing and nowhere accelerates by more than `most`.
+fn time_to_meet([distance, velocity]: [f64; 2], most: f64) -> f64 {
+    let (reach, speed) = (6.0 * most * distance.abs(), velocity.abs());
+    if distance * velocity < 0.0 && 3.0 * speed * speed <= reach {
+        // on its way, and able to brake: 6d/T² + 2v/T at the end is the most
+        return ((speed * speed + reach).sqrt() - speed) / most;
+    }
+    // −6d/T² − 4v/T at the start is no more than with both of one sign
+    (2.0 * speed + (4.0 * speed * speed + reach).sqrt()) / most
 }
 
 /// The path of something along one axis.
@@ -369,7 +425,10 @@ impl VesselPath {
         [vx, vy, vz, wx, wy, wz]: [Option<f64>; 6],
     ) {
         let place = Said::new([x, y, z], [vx, vy, vz]);
-        let angles = Said::new([roll, pitch, yaw], [wx, wy, wz]);
+        let angles = Said {
+            ease: EASE_OF_ANGLES,
+            ..Said::new([roll, pitch, yaw], [wx, wy, wz])
+        };
         let paths = self.0.iter_mut().zip(&before.0);
         for ((path, before), said) in paths.zip([place, angles]) {
             path.extend(before, foresight, &said);
@@ -677,15 +736,120 @@ mod tests {
         assert_relative_eq!(path.at(2.0).value, 1.0, epsilon = 1e-12);
     }
 
-    #[test]
-    fn irregular_steps_stay_close_to_the_motion() {
+    /// Greatest distance of position, velocity and acceleration from the truth after a start-up, in steps that repeat.
+    fn path_errors(steps: &[f64], with_velocity: bool) -> [f64; 3] {
         let mut path = Guided::at_rest(0.0, position(0.0));
-        let mut time = 0.0;
-        for k in 0..400 {
-            let step = [0.05, 0.08, 0.06, 0.3, 0.01][k % 5];
-            path.extend(sample(time, position(time)), step, Reconstruction::Smooth);
+        let (mut time, mut worst) = (0.0, [0.0_f64; 3]);
+        for step in steps.iter().cycle() {
+            let said = Sample {
+                velocity: with_velocity.then(|| velocity(time)),
+                ..sample(time, position(time))
+            };
+            path.extend(said, *step, Reconstruction::Smooth);
+            for part in [0.0, 0.25, 0.5, 0.75, 1.0] {
+                let t = time + part * step;
+                let is = path.at(t);
+                let acceleration = -1.25 * (0.5 * t).sin() - 0.98 * (0.7 * t).cos();
+                let misses = [
+                    is.value - position(t),
+                    is.slope - velocity(t),
+                    is.curvature - acceleration,
+                ];
+                for (worst, miss) in worst.iter_mut().zip(misses) {
+                    *worst = worst.max(f64::from(time > 8.0) * miss.abs());
+                }
+            }
             time += step;
-            assert!((path.at(time).value - position(time)).abs() < 0.9, "{time}");
+            if time > 30.0 {
+                break;
+            }
+        }
+        worst
+    }
+
+    #[test]
+    fn irregular_steps_converge_at_the_order_of_equal_ones() {
+        for steps in [&[1.0, 0.4, 1.3, 0.15, 0.7][..], &[1.0, 0.05], &[1.0, 0.001]] {
+            for with_velocity in [false, true] {
+                let errors = |h: f64| {
+                    let scaled: Vec<f64> = steps.iter().map(|step| h * step).collect();
+                    path_errors(&scaled, with_velocity)
+                };
+                let errors = [0.4, 0.2, 0.1, 0.05].map(errors);
+                for pair in errors.windows(2) {
+                    for (quantity, order) in [2.9, 2.5, 1.5].into_iter().enumerate() {
+                        let fall = (pair[0][quantity] / pair[1][quantity]).log2();
+                        assert!(
+                            fall > order,
+                            "{steps:?} {with_velocity} {quantity}: {errors:?}"
+                        );
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn short_steps_between_long_ones_cost_no_accuracy() {
+        for with_velocity in [false, true] {
+            let alone = path_errors(&[0.2], with_velocity);
+            for short in [0.1, 0.02, 0.01, 1e-3, 1e-4, 1e-6] {
+                for steps in [
+                    &[0.2, short][..],
+                    &[0.2, short, short, short],
+                    &[0.2, 0.2, short],
+                ] {
+                    let errors = path_errors(steps, with_velocity);
+                    for (error, alone) in errors.into_iter().zip(alone) {
+                        assert!(error < 2.0 * alone, "{steps:?} {with_velocity}: {errors:?}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn after_a_long_step_the_path_arrives_in_seconds_and_hardly_feels_it() {
+        let mut path = Guided::at_rest(0.0, 0.0);
+        path.extend(sample(0.0, 0.0), 100.0, Reconstruction::Smooth);
+        for k in 0..150 {
+            let time = 100.0 + 0.1 * f64::from(k);
+            path.extend(sample(time, 5.0), 0.1, Reconstruction::Smooth);
+            for t in [time, time + 0.1] {
+                let is = path.at(t);
+                assert!(is.curvature.abs() < 1.01 * EASE, "{is:?} at {t} s");
+                assert!(is.value < 5.0 + 1e-9, "{is:?} at {t} s");
+            }
+        }
+        assert_relative_eq!(path.at(115.0).value, 5.0, epsilon = 1e-9);
+    }
+
+    #[test]
+    fn after_long_steps_a_motion_is_found_again_in_seconds() {
+        for long in [10.0, 100.0] {
+            for count in [1, 2, 5] {
+                let mut path = Guided::at_rest(0.0, position(0.0));
+                let mut time = 0.0;
+                for k in 0..count + 200 {
+                    let step = if k < count { long } else { 0.1 };
+                    path.extend(sample(time, position(time)), step, Reconstruction::Smooth);
+                    time += step;
+                }
+                let error = (path.at(time).value - position(time)).abs();
+                assert!(error < 1e-3, "{error} m after {count} steps of {long} s");
+            }
+        }
+    }
+
+    #[test]
+    fn samples_that_are_kept_are_not_crowded_by_short_steps() {
+        let (mut clock, mut foresight) = (Clock::new(0.0), Foresight::none());
+        let mut time = 0.0;
+        for k in 0..60 {
+            let step = [0.2, 1e-3, 1e-5, 1e-5, 0.13][k % 5];
+            clock.tell(time, step, Reconstruction::Smooth, &mut foresight);
+            time += step;
+            assert!(k < 15 || foresight.count == SAMPLES_MAX, "{clock:?}");
         }
     }
 

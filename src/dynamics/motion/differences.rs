@@ -1,4 +1,4 @@
-//! The polynomials through the newest samples, and the degree that would have predicted them best.
+//! The polynomials through the newest samples, and the degree that is to be expected to predict best.
 
 use super::foresight::{DEGREE_MAX, Foresight, JUDGED, Reciprocals, SAMPLES_MAX, Samples, Terms};
 use crate::math::lanes::{LANES, Lanes};
@@ -18,12 +18,17 @@ const HANDICAPS: [Terms; 2] = [
         1.0 / BETTER,
     ],
 ];
+/// Step over the time between the first two samples, above which they make no line [-].
+const UNJUDGED_MAX: f64 = 2.0;
+
 /// Divided differences of the samples that count.
 pub(super) struct Differences {
     /// Of the newest samples, by order from 0 on.
     newest: [Lanes; DEGREE_MAX + 1],
     /// By how much polynomials of every degree through the samples before would have missed the newest ones.
     miss: [[Lanes; DEGREE_MAX + 1]; JUDGED],
+    /// What that is to be multiplied by for the end of the step, where the host does not keep its step.
+    stretch: Option<[Terms; JUDGED]>,
 }
 
 impl Differences {
@@ -49,21 +54,25 @@ impl Differences {
         // the remainder of the polynomial of degree k is the difference of order k + 1 times its nodes' distances
         let [[r0, r1, r2, r3], [s0, s1, s2, s3]] = foresight.reach;
         let miss = |next: Lanes, reach: f64| over(next, reach).abs();
+        let newest = miss(ps, r3);
+        // where a sample is passed over, there is no other difference of fourth order
+        let before = if foresight.all { miss(qt, s3) } else { newest };
         Differences {
             newest: [a, p, pq, pr],
             miss: [
-                [miss(p, r0), miss(pq, r1), miss(pr, r2), miss(ps, r3)],
-                [miss(q, s0), miss(qr, s1), miss(qs, s2), miss(qt, s3)],
+                [miss(p, r0), miss(pq, r1), miss(pr, r2), newest],
+                [miss(q, s0), miss(qr, s1), miss(qs, s2), before],
             ],
+            stretch: (!foresight.even).then_some(foresight.stretch),
         }
     }
 
-    /// The degrees given, or the ones that are set instead, because they would have predicted the newest samples clearly better from the
-    /// ones older than each; of the `known` newest samples.
+    /// The degrees given, or the ones that are set instead, because they can be expected to predict clearly better; of the `known` newest
+    /// samples.
     #[inline(always)]
     pub(super) fn degree(&self, known: usize, degree: &mut Lanes) -> Lanes {
-        if known < SAMPLES_MAX {
-            return self.degree_of_few(known, degree);
+        if known < SAMPLES_MAX || self.stretch.is_some() {
+            return self.degree_of_any(known, degree);
         }
         let [newest, before] = &self.miss;
         let error = |k: usize| newest[k] + before[k];
@@ -84,27 +93,36 @@ impl Differences {
         *degree
     }
 
-    /// [`Differences::degree`] where there are fewer samples than that looks at.
+    /// [`Differences::degree`] of any number of samples, any times apart.
     #[cold]
     #[inline(never)]
-    fn degree_of_few(&self, known: usize, degree: &mut Lanes) -> Lanes {
+    fn degree_of_any(&self, known: usize, degree: &mut Lanes) -> Lanes {
         if known <= 2 {
-            // two samples can judge no line, but a host that moves a point goes on moving it
-            return Lanes::splat(known as f64 - 1.0);
+            // two samples can judge no line, but a host that moves a point goes on moving it, as far as that tells
+            let far = |stretch: &[Terms; JUDGED]| stretch[0][0] > UNJUDGED_MAX;
+            let line = known == 2 && !self.stretch.as_ref().is_some_and(far);
+            return Lanes::splat(f64::from(u8::from(line)));
         }
         (0..LANES).for_each(|axis| degree[axis] = self.judge(known, degree[axis], axis));
         *degree
     }
 
-    /// The degree along an axis that would have predicted the newest samples best, the present one being `degree`.
+    /// The degree along an axis that can be expected to predict best, the present one being `degree`.
     #[cold]
     #[inline(never)]
     fn judge(&self, known: usize, degree: f64, axis: usize) -> f64 {
         let judged = JUDGED.min(known - 2);
         let highest = DEGREE_MAX.min(known - 1 - judged);
-        let errors = self.miss[..judged].iter();
-        let error = |k: usize| -> f64 { errors.clone().map(|miss| miss[k][axis]).sum() };
         let kept = degree as usize;
+        // what rests and jumps within a short step does not go on like that over a longer one
+        let stretch = self.stretch.filter(|_| kept > 0);
+        let stretch = stretch.unwrap_or([[1.0; DEGREE_MAX + 1]; JUDGED]);
+        let error = |k: usize| -> f64 {
+            let errors = self.miss.iter().zip(&stretch).take(judged);
+            errors
+                .map(|(miss, stretch)| miss[k][axis] * stretch[k])
+                .sum()
+        };
         let (kept, mut best, mut least) = match kept <= highest {
             true => (kept, kept, error(kept)),
             false => (0, 0, f64::INFINITY),
