@@ -23,7 +23,7 @@ use pulp::NullaryFnOnce;
 use super::layout::{Layout, Water, interior, inverse_norm_of};
 use super::ledger::Flow;
 use super::limit::expected_slope;
-use crate::math::fold::{Column, Field};
+use crate::math::fold::{Column, Field, Slot};
 use crate::math::lanes::{LANES, Lanes};
 use crate::model::{End, Line, LineState, Parting, WaveSpan};
 use crate::physics::friction_step::Landing;
@@ -87,8 +87,10 @@ struct WaterWork {
     inverse_mass_excess: Column,
     /// M_t − M_n [kg]; of ends as [`LineWork::set_mass_excess`] says.
     mass_excess: Column,
-    /// Drag coefficient over mass of a node that is wholly in the water, across or along the line, whichever is greater [1/m].
+    /// Drag coefficient over mass of a node that is wholly in the water, across the line [1/m].
     drag_over_mass: Column,
+    /// The same along the line, where it is greater at some node [1/m].
+    drag_over_mass_along: Option<Column>,
 }
 
 impl WaterWork {
@@ -102,19 +104,20 @@ impl WaterWork {
             || layout.waves.is_some()
             || excess.iter().any(|excess| *excess != 0.0);
         let drag = layout.drag.as_ref();
-        let over_mass = nodes.drag.as_ref().map_or(Vec::new(), |drag| {
-            let over = |drag: &[f64], mass: &[f64]| -> Vec<f64> {
-                drag.iter()
-                    .zip(mass)
-                    .map(|(drag, mass)| drag / mass)
-                    .collect()
-            };
-            let across = over(&drag.normal, &nodes.mass_normal);
-            let along = over(&drag.tangent, &nodes.mass_tangent);
-            across.iter().zip(along).map(|(a, b)| a.max(b)).collect()
-        });
+        let over_mass = |drag: Option<&[f64]>, mass: &[f64]| -> Vec<f64> {
+            let pairs = drag.unwrap_or_default().iter().zip(mass);
+            pairs.map(|(drag, mass)| drag / mass).collect()
+        };
+        let given = nodes.drag.as_ref();
+        let across = over_mass(given.map(|drag| &drag.normal[..]), &nodes.mass_normal);
+        let along = over_mass(given.map(|drag| &drag.tangent[..]), &nodes.mass_tangent);
+        let counts = along
+            .iter()
+            .zip(&across)
+            .any(|(along, across)| along > across);
         wet.then(|| WaterWork {
-            drag_over_mass: layout.fold.column(&over_mass, 0.0),
+            drag_over_mass: layout.fold.column(&across, 0.0),
+            drag_over_mass_along: counts.then(|| layout.fold.column(&along, 0.0)),
             drag_normal: drag.map_or(zeros.clone(), |drag| drag.normal.clone()),
             drag_tangent: drag.map_or(zeros, |drag| drag.tangent.clone()),
             inverse_mass_excess: layout.fold.column(&excess, 0.0),
@@ -126,7 +129,7 @@ impl WaterWork {
 /// What a look over the nodes tells.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Survey {
-    /// Greatest ratio K |v| / M [1/s], v relative to the water: explicit drag wants Δt below its inverse.
+    /// Greatest ratio K |v| / M [1/s], v relative to the water, or of its part along the line: explicit drag wants Δt below its inverse.
     pub drag_rate: f64,
     /// Whether all positions are finite, and all speeds such as mooring lines reach.
     pub is_sound: bool,
@@ -745,10 +748,27 @@ impl LineWork {
             greatest = rate.dot(rate).max(greatest);
         }
         let square = (0..LANES).fold(0.0, |sum: f64, lane| sum.max(greatest[lane]));
+        let along = self
+            .water
+            .as_ref()
+            .map_or(0.0, |water| self.drag_rate_along(water));
         Survey {
-            drag_rate: square.sqrt(),
+            drag_rate: square.sqrt().max(along),
             is_sound: sound.all_positive(),
         }
+    }
+
+    /// Greatest ratio K |v·t| / M along the line [1/s], where that may exceed the one across it.
+    fn drag_rate_along(&self, water: &WaterWork) -> f64 {
+        let Some(over_mass) = &water.drag_over_mass_along else {
+            return 0.0;
+        };
+        let line = &self.layout;
+        let rate = |(i, at): (usize, Slot)| {
+            let past = line.velocity.get(at) - line.water_velocity_of(at);
+            over_mass[at] * past.dot(&line.tangent_of(i)).abs()
+        };
+        line.nodes().enumerate().map(rate).fold(0.0, f64::max)
     }
 
     /// Whether its nodes move as they did when they were surveyed last and [`Self::resume`] went on from there, and nothing else matters to a survey.
