@@ -1,9 +1,10 @@
 //! Which lines could ever meet the seabed: the others are made without contact.
 //!
-//! Every node of lines that hang together by free points is within their length of each fixed point that holds them, stretched by half. What
-//! a host or a path moves, and what may come loose, can get anywhere.
+//! Every node of lines that hang together by free points is within their length of each point that holds them, stretched by half; of one at its own
+//! line's end within the length of that line. Vessels keep about their height. What else a host or a path moves, and what may come loose, can get
+//! anywhere.
 
-use crate::scene::{Line, PointKind, Scene};
+use crate::scene::{Line, Point, PointKind, Scene};
 
 /// Stretched over unstretched length that a line is taken to reach at most [-].
 const STRETCH_MAX: f64 = 1.5;
@@ -14,19 +15,41 @@ pub(super) fn may_touch_bed(scene: &Scene, line: &Line) -> bool {
         return false;
     };
     let tied = tied(scene, line);
-    let ends = tied.iter().flat_map(|line| [&line.from, &line.to]);
-    let points = ends.filter_map(|name| scene.points.iter().find(|point| point.name == *name));
+    let lengths: f64 = tied.iter().map(|line| length_max(line)).sum();
     let (mut moves, mut reach) = (false, f64::NEG_INFINITY);
-    let length: f64 = tied.iter().map(|line| length_max(line)).sum();
-    for point in points {
-        match point.kind {
-            PointKind::Free => {}
-            PointKind::Fixed => reach = reach.max(point.position[2] - STRETCH_MAX * length),
-            PointKind::Coupled | PointKind::Prescribed => moves = true,
+    for other in &tied {
+        // from an end of the line itself no further than along it
+        let length = if other.name == line.name {
+            length_max(line)
+        } else {
+            lengths
+        };
+        for end in [&other.from, &other.to] {
+            match scene.points.iter().find(|point| point.name == *end) {
+                Some(point) if point.kind == PointKind::Free => {}
+                Some(point) => match height(scene, point) {
+                    Some(height) => reach = reach.max(height - STRETCH_MAX * length),
+                    None => moves = true,
+                },
+                None => {}
+            }
         }
     }
     let parts = |line: &&Line| line.release.is_some() || line.parting.is_some();
     !bed.is_level() || moves || tied.iter().any(parts) || reach <= -bed.depth
+}
+
+/// Least height of a point that is fixed or rides on a vessel, which keeps about its place [m]; none of one that may get anywhere.
+fn height(scene: &Scene, point: &Point) -> Option<f64> {
+    let [x, y, z] = point.position;
+    match (&point.kind, &point.on) {
+        (PointKind::Fixed, _) => Some(z),
+        (_, Some(name)) => {
+            let vessel = scene.vessels.iter().find(|vessel| vessel.name == *name)?;
+            Some(vessel.position[2] - x.hypot(y).hypot(z))
+        }
+        _ => None,
+    }
 }
 
 /// A line and all that hang together with it by free points.
@@ -92,6 +115,12 @@ mod tests {
     fn a_line_far_above_the_bed_is_made_without_it() {
         assert!(!touches(&hung("kind = 'fixed'", "", "")));
         assert!(!touches(&hung("kind = 'free'", "", "")));
+        let vessel = "[[vessels]]\nname = 'barge'\nposition = [0.0, 0.0, -5.0]";
+        assert!(!touches(&hung(
+            "kind = 'coupled', on = 'barge'",
+            "",
+            vessel
+        )));
     }
 
     #[test]
@@ -107,8 +136,10 @@ mod tests {
 
     #[test]
     fn a_line_reaches_as_far_as_those_it_hangs_together_with_and_what_a_winch_pays_out() {
-        let longer = "[[lines]]\nname = 'other'\nfrom = 'end'\nto = 'top'\nsections = [{ type = 'rope', length = 50.0 }]";
-        assert!(touches(&hung("kind = 'free'", "", longer)));
+        let ends = "kind = 'free' }, { name = 'low', position = [5.0, 0.0, -20.0], kind = 'free'";
+        let longer = "[[lines]]\nname = 'other'\nfrom = 'end'\nto = 'low'\nsections = [{ type = 'rope', length = 50.0 }]";
+        let scene = hung(ends, "", longer);
+        assert!(!touches(&scene) && may_touch_bed(&scene, &scene.lines[1]));
         let winch = "winch = { end = 'b', length_max = 60.0 }";
         assert!(touches(&hung("kind = 'fixed'", winch, "")));
     }
