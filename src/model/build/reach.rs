@@ -1,7 +1,7 @@
 //! Which lines could ever meet the seabed: the others are made without contact.
 //!
-//! Every node of lines that hang together by free points is within their length of each point that holds them, stretched by half; of one at its own
-//! line's end within the length of that line. Vessels keep about their height. What else a host or a path moves, and what may come loose, can get
+//! Lines reach below the lowest point that holds one of their own ends by their length, stretched by half; those between free points below the lowest
+//! that holds any of the lines they hang together with, by the length of all of these. Vessels keep about their height. What else a host or a path moves, and what may come loose, can get
 //! anywhere.
 
 use crate::scene::{Line, Point, PointKind, Scene};
@@ -15,28 +15,27 @@ pub(super) fn may_touch_bed(scene: &Scene, line: &Line) -> bool {
         return false;
     };
     let tied = tied(scene, line);
-    let lengths: f64 = tied.iter().map(|line| length_max(line)).sum();
-    let (mut moves, mut reach) = (false, f64::NEG_INFINITY);
-    for other in &tied {
-        // from an end of the line itself no further than along it
-        let length = if other.name == line.name {
-            length_max(line)
-        } else {
-            lengths
-        };
-        for end in [&other.from, &other.to] {
-            match scene.points.iter().find(|point| point.name == *end) {
-                Some(point) if point.kind == PointKind::Free => {}
-                Some(point) => match height(scene, point) {
-                    Some(height) => reach = reach.max(height - STRETCH_MAX * length),
-                    None => moves = true,
-                },
-                None => {}
-            }
+    let own = held_heights(scene, &[line]);
+    let (held, length) = match own.is_empty() {
+        false => (own, length_max(line)),
+        true => {
+            let length = tied.iter().map(|line| length_max(line)).sum();
+            (held_heights(scene, &tied), length)
         }
-    }
+    };
+    let lowest = held.iter().flatten().copied().fold(f64::INFINITY, f64::min);
+    let moves = held_heights(scene, &tied).contains(&None);
     let parts = |line: &&Line| line.release.is_some() || line.parting.is_some();
-    !bed.is_level() || moves || tied.iter().any(parts) || reach <= -bed.depth
+    let reaches = held.is_empty() || lowest - STRETCH_MAX * length <= -bed.depth;
+    !bed.is_level() || moves || reaches || tied.iter().any(parts)
+}
+
+/// Least heights of the points that hold lines at their ends [m]; none of one that may get anywhere.
+fn held_heights(scene: &Scene, lines: &[&Line]) -> Vec<Option<f64>> {
+    let ends = lines.iter().flat_map(|line| [&line.from, &line.to]);
+    let points = ends.filter_map(|name| scene.points.iter().find(|point| point.name == *name));
+    let held = points.filter(|point| point.kind != PointKind::Free);
+    held.map(|point| height(scene, point)).collect()
 }
 
 /// Least height of a point that is fixed or rides on a vessel, which keeps about its place [m]; none of one that may get anywhere.
