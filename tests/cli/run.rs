@@ -1,0 +1,162 @@
+//! `moorline run`: its files, and motion as a host gives it.
+
+use std::fs;
+use std::path::Path;
+
+use tempfile::TempDir;
+
+use super::{SCENE, done, folder, names, refused, table};
+
+#[test]
+fn a_run_that_blows_up_is_a_computation_that_failed_and_leaves_no_results() {
+    let folder = folder();
+    let wild = SCENE.replace("[[0.05, 2.0]], ramp = 1.0", "[[1.0e7, 0.02]]");
+    let wild = wild.replace("duration = 1.0", "duration = 60.0");
+    fs::write(folder.path().join("wild.toml"), wild).unwrap();
+    let parts = ["error: t = ", " s, line", "try"];
+    refused(folder.path(), &["run", "wild.toml", "-o", "r"], 1, &parts);
+    assert_eq!(names(folder.path()), ["scene.toml", "wild.toml"]);
+}
+
+#[test]
+fn run_writes_its_files_and_nothing_else() {
+    let folder = folder();
+    done(folder.path(), &["run", "scene.toml", "-o", "out"]);
+    let shapes = (0..11).map(|i| format!("out/vtk/lines_{i:05}.vtp"));
+    let mut expected: Vec<String> = [
+        "force.svg",
+        "lines.pvd",
+        "profile.svg",
+        "report.html",
+        "results.csv",
+        "results.units.csv",
+        "tension.svg",
+    ]
+    .map(|name| format!("out/{name}"))
+    .into_iter()
+    .chain(shapes)
+    .chain(["scene.toml".to_string()])
+    .collect();
+    expected.sort();
+    assert_eq!(names(folder.path()), expected);
+    let (header, rows) = table(&folder.path().join("out/results.csv"));
+    assert_eq!(
+        header[..4],
+        ["time", "fairlead.x", "fairlead.y", "fairlead.z"]
+    );
+    assert!(header.contains(&"line1.tension_b".to_string()));
+    assert_eq!(rows.len(), 11);
+    assert_eq!(rows[10][0], 1.0);
+    let (units, _) = header_of_units(&folder.path().join("out/results.units.csv"));
+    assert_eq!(units, header);
+    let text = fs::read_to_string(folder.path().join("out/results.csv")).unwrap();
+    let last = text.lines().last().unwrap().split(',');
+    let steps = last
+        .zip(&header)
+        .find(|(_, name)| *name == "solver.substeps");
+    assert!(steps.unwrap().0.parse::<usize>().is_ok(), "{text}");
+}
+
+/// Names and units of the columns.
+fn header_of_units(path: &Path) -> (Vec<String>, Vec<String>) {
+    let mut reader = csv::Reader::from_path(path).unwrap();
+    let rows = reader.records().map(Result::unwrap);
+    rows.map(|row| (row[0].to_string(), row[1].to_string()))
+        .unzip()
+}
+
+#[test]
+fn profiles_are_written_where_the_scene_asks() {
+    let folder = folder();
+    fs::write(
+        folder.path().join("p.toml"),
+        format!("{SCENE}profile = true\n"),
+    )
+    .unwrap();
+    done(folder.path(), &["run", "p.toml", "-o", "out"]);
+    let text = fs::read_to_string(folder.path().join("out/profile.csv")).unwrap();
+    assert!(text.starts_with("time,line,node,s,x,y,z,tension\n0.0,line1,0,0.0,0.0,0.0,0.0,"));
+    assert_eq!(text.lines().count(), 1 + 11 * 9);
+}
+
+#[test]
+fn a_second_run_replaces_the_first_and_gives_the_same_numbers() {
+    let folder = folder();
+    let read = || fs::read(folder.path().join("out/results.csv")).unwrap();
+    done(folder.path(), &["run", "scene.toml", "-o", "out"]);
+    let first = read();
+    fs::write(folder.path().join("out/results.csv"), "left over").unwrap();
+    done(folder.path(), &["run", "scene.toml", "-o", "out"]);
+    assert_eq!(read(), first);
+}
+
+/// The table's head, and its rows of a run that follows the scene's motion exactly and of one driven as by a host in steps of `step` [s].
+fn exact_and_host(folder: &TempDir, scene: &str, step: &str) -> (Vec<String>, [Vec<Vec<f64>>; 2]) {
+    let run = |output: &str, more: &[&str]| {
+        done(
+            folder.path(),
+            &[&["run", scene, "-o", output], more].concat(),
+        );
+        table(&folder.path().join(output).join("results.csv"))
+    };
+    let (header, exact) = run("exact", &[]);
+    let (_, host) = run("host", &["--communication-step", step, "--velocities"]);
+    (header, [exact, host])
+}
+
+fn column(header: &[String], name: &str) -> usize {
+    header.iter().position(|column| column == name).unwrap()
+}
+
+#[test]
+fn a_run_driven_like_a_host_follows_the_exact_motion() {
+    let folder = folder();
+    let fine = SCENE.replace("interval = 0.1", "interval = 0.01");
+    fs::write(folder.path().join("fine.toml"), fine).unwrap();
+    let (header, [exact, host]) = exact_and_host(&folder, "fine.toml", "0.01");
+    let tension = column(&header, "line1.tension_b");
+    assert_eq!(exact.len(), host.len());
+    for (exact, host) in exact.iter().zip(&host) {
+        // The same motion to the last bit; of the tension what the path between communication points costs.
+        assert_eq!(exact[..7], host[..7]);
+        assert!(
+            (exact[tension] / host[tension] - 1.0).abs() < 0.01,
+            "{exact:?} {host:?}"
+        );
+    }
+}
+
+#[test]
+fn a_run_whose_inputs_mean_the_end_of_a_step_is_told_the_motion_there() {
+    let folder = folder();
+    let solver = "[solver]\ninput_reconstruction = \"interpolate\"\n";
+    fs::write(folder.path().join("known.toml"), format!("{SCENE}{solver}")).unwrap();
+    let (header, [exact, host]) = exact_and_host(&folder, "known.toml", "0.1");
+    let [place, tension] = ["fairlead.x", "line1.tension_b"].map(|name| column(&header, name));
+    assert_eq!(exact.len(), host.len());
+    for (exact, host) in exact.iter().zip(&host) {
+        assert_eq!(exact[place], host[place]);
+        // one step late the tension would be up to a quarter off
+        let off = (exact[tension] / host[tension] - 1.0).abs();
+        assert!(off < 0.02, "{exact:?} {host:?}");
+    }
+}
+
+#[test]
+fn a_communication_step_sets_the_rows() {
+    let folder = folder();
+    done(
+        folder.path(),
+        &[
+            "run",
+            "scene.toml",
+            "-o",
+            "out",
+            "--communication-step",
+            "0.3",
+        ],
+    );
+    let (_, rows) = table(&folder.path().join("out/results.csv"));
+    let times: Vec<f64> = rows.iter().map(|row| row[0]).collect();
+    assert_eq!(times, [0.0, 0.3, 0.6, 3.0 * 0.3, 1.0]);
+}
