@@ -127,7 +127,8 @@ pub fn rest(model: &Model, index: usize, state: &mut State, t: f64) -> Result<()
         ends: [end(0), end(1)],
         bodies: line.ends.map(|point| model.points[point].free()),
     };
-    turn_clamps_in(&case, &mut sections).map_err(|restless| refusal(&line.name, restless))?;
+    turn_clamps_in(&case, &mut sections)
+        .map_err(|restless| refusal(&line.name, &case, restless))?;
     let line_state = &mut state.lines[index];
     for (i, section) in sections.iter().enumerate() {
         line_state.position[i] = section.position;
@@ -176,9 +177,11 @@ fn turn_clamps_in(case: &BeamCase, sections: &mut Vec<Section>) -> Result<usize,
     Ok(solves + work.solve(case, sections)?)
 }
 
-fn refusal(line: &str, restless: Restless) -> StaticsError {
+fn refusal(line: &str, case: &BeamCase, restless: Restless) -> StaticsError {
     let line = line.to_string();
+    let flies = case.ends.iter().all(|end| end.held == [false; 6]);
     match restless {
+        Restless::Imbalance { residual, .. } if flies => StaticsError::BeamFlies { line, residual },
         Restless::Imbalance {
             node,
             residual,

@@ -49,7 +49,7 @@ pub enum StaticsError {
     /// The search for the equilibrium of a beam ended without one.
     #[error(
         "line \"{line}\", node {node}: no equilibrium of the beam found in {iterations} solves, {residual:.3e} N are out of balance; \
-         use more elements, hold the beam at its ends, or give it a shape to start from"
+         use more elements, or hold the beam at its ends"
     )]
     BeamNotConverged {
         /// Name of the line.
@@ -60,6 +60,17 @@ pub enum StaticsError {
         residual: f64,
         /// Linear solves spent [-].
         iterations: usize,
+    },
+    /// Nothing holds a beam, and forces act on it.
+    #[error(
+        "line \"{line}\": no equilibrium: nothing holds this beam, and {residual:.3e} N are out of balance; hold an end of it, or `run` it \
+         from its `initial` shape"
+    )]
+    BeamFlies {
+        /// Name of the line.
+        line: String,
+        /// Greatest force out of balance [N].
+        residual: f64,
     },
     /// The equilibrium of a beam bends or twists an element beyond what its ends can tell.
     #[error(
