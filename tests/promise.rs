@@ -258,6 +258,17 @@ fn a_packaged_scene_keeps_its_mesh_whatever_is_set_later() {
 }
 
 #[test]
+fn what_hardly_moves_need_not_be_right_to_a_part_of_what_little_it_does() {
+    let elements = |amplitude: f64| {
+        let settled = pilot::settle(&moved("oc3_catenary", [amplitude, 1.0])).unwrap();
+        println!("{amplitude}: {:?}", settled.trials);
+        settled.elements
+    };
+    let [little, less, still] = [0.1, 1e-3, 1e-6].map(elements);
+    assert!(less <= little && still <= less, "{little}, {less}, {still}");
+}
+
+#[test]
 fn what_was_tried_is_told_in_words() {
     let words = pilot::settle(&moved("taut_polyester", [1.0, 1.0]))
         .unwrap()

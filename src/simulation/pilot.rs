@@ -49,8 +49,8 @@ const PERIODS: f64 = 20.0;
 const DURATION: f64 = 200.0;
 /// Samples in a period of the fastest sine, at least [-].
 const SAMPLES: f64 = 25.0;
-/// Standard deviation of a tension below which it does not move, over its mean [-].
-const STILL: f64 = 1e-6;
+/// Standard deviation of a tension that its errors are told over at least, over its mean [-].
+const STILL: f64 = 0.01;
 /// Part of an error at rest that the most elements must take away to be worth it, where they do not keep the tolerance [-].
 const GAIN: f64 = 0.5;
 /// Elements below those of the rung that are worth a trial, over them [-].
@@ -61,7 +61,8 @@ const FEWER: f64 = 0.93;
 pub struct Trial {
     /// Elements of a line alone [-].
     pub elements: usize,
-    /// Estimated RMS error of the tension at the driven end, over the standard deviation of the line that moves most [-].
+    /// Estimated RMS error of the tension at the driven end, over the standard deviation of the line that moves most, or a hundredth of the
+    /// mean of the one that pulls most [-].
     pub error: f64,
 }
 
@@ -551,17 +552,12 @@ fn estimated(coarse: &Run, middle: &Run, fine: &Run) -> f64 {
 }
 
 /// RMS of the difference of two runs, of the line where it is greatest, over the greatest standard deviation of a line's tension in the
-/// second [-]: lines that hardly move need not be right to a part of what little they do.
+/// second, or a hundredth of its mean if that is more [-]: lines that hardly move need not be right to a part of what little they do.
 fn distance(run: &Run, reference: &Run) -> f64 {
     let spread = |tension: &Vec<f64>| {
         let mean = tension.iter().sum::<f64>() / tension.len() as f64;
         let wave: Vec<f64> = tension.iter().map(|value| value - mean).collect();
-        let spread = rms(wave.iter().copied());
-        if spread > STILL * mean.abs() {
-            spread
-        } else {
-            0.0
-        }
+        rms(wave.iter().copied()).max(STILL * mean.abs())
     };
     let scale = reference.tension.iter().map(spread).fold(0.0, f64::max);
     if scale == 0.0 {
