@@ -29,12 +29,12 @@ use crate::math::pivoted_chain::PivotedChain;
 use crate::math::rotation::{cayley, cayley_vector, skew, spin_of_cayley};
 use crate::model::{Beam, LineState, Nodes};
 use crate::physics::contact_step::{ContactStep, contact_step};
+use crate::physics::fading_damper::damper_reach;
 use crate::physics::morison::{DragCoefficients, drag, drag_slope};
 use crate::physics::seabed::ContactCoefficients;
 use crate::physics::section::{
     Mixture, Section, Sextuple, corrected, join, response, split, strain, strain_gradient,
 };
-use crate::statics::assembly::damper_reach;
 use crate::statics::beam::{BeamEnd, Span, add_elements, folded};
 
 pub use body::Body;

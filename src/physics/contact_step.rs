@@ -4,11 +4,11 @@
 //!
 //!   F = (V(p₁) − V(p₀))/(p₁ − p₀),   V(p) = ½ k max(p, 0)²,
 //!
-//! and the damper's c s(p̄) (p₁ − p₀)/Δt, with p̄ the mean and s the cubic step that rises from 0 at p̄ = −r to 1 at p̄ = r. Their sum pushes only.
+//! and the damper's c s(p̄) (p₁ − p₀)/Δt, with p̄ the mean and s as in `fading_damper`. Their sum pushes only.
 //!
-//! Source: discrete gradients, Gonzalez (1996), J. Nonlinear Sci. 6, 449-467; the damper fades in as in the implicit solver of the lines,
-//! since one that switches on breaks Newton's method. Valid as `seabed` is.
+//! Source: discrete gradients, Gonzalez (1996), J. Nonlinear Sci. 6, 449-467. Valid as `seabed` is.
 
+use super::fading_damper::fade;
 use super::seabed::ContactCoefficients;
 
 /// What the bed does to a node over a step.
@@ -56,15 +56,6 @@ fn spring(stiffness: f64, before: f64, after: f64) -> (f64, f64) {
             (force, (stiffness * after.max(0.0) - force) / moved)
         }
     }
-}
-
-/// s(p̄) [-] and its slope [1/m].
-fn fade(penetration: f64, reach: f64) -> (f64, f64) {
-    if reach <= 0.0 {
-        return (f64::from(u8::from(penetration > 0.0)), 0.0);
-    }
-    let u = (0.5 * (penetration / reach + 1.0)).clamp(0.0, 1.0);
-    (u * u * (3.0 - 2.0 * u), 3.0 * u * (1.0 - u) / reach)
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@ pub mod airy;
 pub mod bending;
 pub mod catenary;
 pub mod contact_step;
+pub mod fading_damper;
 pub mod flow;
 pub mod friction;
 pub mod friction_step;

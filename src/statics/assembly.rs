@@ -34,11 +34,11 @@ use nalgebra::Vector3;
 
 use crate::math::block_tridiagonal::{DenseSystem, Pivots};
 use crate::model::{End, Model, Network, PointState, State};
+use crate::physics::fading_damper::damper_reach;
 use crate::statics::catenary::Catenary;
 
 pub(crate) use bending::{BendingWork, rates};
 pub use bending::{end_moment, end_shear, joint_damping_power};
-pub(crate) use contact::{damper_reach, faded_push};
 pub(crate) use line::{LineWork, node_tangent};
 use places::{Place, blank_state};
 pub(crate) use places::{copy_network, place_ends};

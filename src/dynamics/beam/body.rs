@@ -15,7 +15,7 @@ use nalgebra::{Matrix3, Vector3};
 use crate::dynamics::ledger::Flow;
 use crate::model::FreePoint;
 use crate::physics::contact_step::contact_step;
-use crate::statics::assembly::damper_reach;
+use crate::physics::fading_damper::damper_reach;
 
 /// What is at a free end of a beam.
 #[derive(Debug, Clone, Copy)]

@@ -4,72 +4,8 @@ use nalgebra::Vector3;
 
 use super::{LineWork, Weights};
 use crate::model::{Line, LineState};
+use crate::physics::fading_damper::{FadingContact, damper_reach};
 use crate::physics::seabed::ContactCoefficients;
-
-/// Half the range of penetrations over which the seabed damper fades in, in static penetrations of the node [-].
-const DAMPER_FADE: f64 = 2.0;
-
-/// Half the range of penetrations over which the damper of a resting node fades in [m].
-pub(crate) fn damper_reach(stiffness: f64, weight: f64) -> f64 {
-    if stiffness > 0.0 {
-        DAMPER_FADE * weight.abs() / stiffness
-    } else {
-        0.0
-    }
-}
-
-/// The contact of `physics::seabed` with a damper that fades in over ± `reach` of penetration instead of switching on at
-/// touch: f = max(0, k max(p, 0) − c s(p) ż), s the cubic step. A switching damper breaks Newton; where nothing moves the
-/// force is the same.
-pub(super) struct SmoothContact {
-    /// Upward force [N].
-    pub force: f64,
-    /// Its slope with penetration [N/m].
-    pub stiffness: f64,
-    /// Minus its slope with ż [N s/m].
-    pub damping: f64,
-}
-
-impl SmoothContact {
-    /// `None` where the bed does not act.
-    #[inline(always)]
-    pub(super) fn new(
-        k: ContactCoefficients,
-        penetration: f64,
-        velocity: f64,
-        reach: f64,
-    ) -> Option<SmoothContact> {
-        if penetration <= -reach {
-            return None;
-        }
-        let u = if reach > 0.0 {
-            (0.5 * (penetration / reach + 1.0)).min(1.0)
-        } else {
-            1.0
-        };
-        let (fade, slope) = (
-            u * u * (3.0 - 2.0 * u),
-            6.0 * u * (1.0 - u) / (2.0 * reach.max(f64::MIN_POSITIVE)),
-        );
-        let spring = if penetration > 0.0 { k.stiffness } else { 0.0 };
-        let force = spring * penetration - k.damping * fade * velocity;
-        (force > 0.0).then_some(SmoothContact {
-            force,
-            stiffness: spring - k.damping * slope * velocity,
-            damping: k.damping * fade,
-        })
-    }
-}
-
-/// Upward force [N] of a level bed whose damper fades in over ± `reach` of penetration [m].
-pub(crate) fn faded_push(
-    k: ContactCoefficients,
-    penetration: f64,
-    velocity: f64,
-    reach: f64,
-) -> f64 {
-    SmoothContact::new(k, penetration, velocity, reach).map_or(0.0, |bed| bed.force)
-}
 
 impl LineWork {
     /// The bed's springs under nodes at rest.
@@ -120,7 +56,7 @@ impl LineWork {
             };
             let penetration = contact.level[i] - state.position[i].z;
             let velocity = state.velocity[i].z;
-            let Some(bed) = SmoothContact::new(k, penetration, velocity, self.reach[i]) else {
+            let Some(bed) = FadingContact::new(k, penetration, velocity, self.reach[i]) else {
                 continue;
             };
             self.residual[i].z -= weights.force * bed.force;

@@ -2,10 +2,10 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::contact::SmoothContact;
 use super::{StaticCase, Weights};
 use crate::model::{Bottom, FreePoint, Model, Network, Point, PointState};
 use crate::physics::airy::Orbit;
+use crate::physics::fading_damper::FadingContact;
 use crate::physics::flow::Stream;
 
 /// Scratch of a point.
@@ -111,7 +111,7 @@ impl PointWork {
         }
         if let (Some(contact), None) = (&free.contact, bottom)
             && let Some(bed) =
-                SmoothContact::new(contact.coefficients, contact.level - z, v.z, self.reach)
+                FadingContact::new(contact.coefficients, contact.level - z, v.z, self.reach)
         {
             force.z += bed.force;
             if TANGENT {

@@ -14,9 +14,9 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::contact::SmoothContact;
 use super::{LineWork, PointWork, StaticCase, Weights, node_tangent};
 use crate::model::{Bottom, FreePoint, Line, LineState, Model, Network, PointState, State};
+use crate::physics::fading_damper::FadingContact;
 use crate::physics::friction::{Axes, Friction, held};
 use crate::physics::ground::Touch;
 use crate::physics::seabed::ContactCoefficients;
@@ -94,7 +94,7 @@ impl<'a> Resting<'a> {
             turning,
         } = self.touch;
         let rise = normal.dot(&self.velocity);
-        let bed = SmoothContact::new(self.coefficients, penetration, rise, self.reach)?;
+        let bed = FadingContact::new(self.coefficients, penetration, rise, self.reach)?;
         let by_place = bed.stiffness * slope - bed.damping * turning.transpose() * self.velocity;
         let by_velocity = -bed.damping * normal;
         let mut push = Push {

@@ -3,10 +3,8 @@
 use approx::assert_relative_eq;
 use nalgebra::{Matrix3, Rotation3, Unit};
 
-use super::contact::SmoothContact;
 use super::*;
 use crate::model::{Bending, LineState};
-use crate::physics::seabed::ContactCoefficients;
 use crate::scene::Scene;
 
 const FORCES: Weights = Weights {
@@ -379,28 +377,6 @@ fn rotating_the_world_rotates_the_forces() {
     let greatest = before.iter().map(|r| r.amax()).fold(0.0, f64::max);
     for (before, after) in before.iter().zip(&after) {
         assert_relative_eq!(turn * before, *after, epsilon = 1e-13 * greatest);
-    }
-}
-
-#[test]
-fn the_seabed_damper_fades_in_and_never_pulls() {
-    let k = ContactCoefficients {
-        stiffness: 1e4,
-        damping: 2e3,
-    };
-    let reach = damper_reach(k.stiffness, 50.0);
-    assert_relative_eq!(reach, 0.01);
-    assert!(SmoothContact::new(k, -reach, -1.0, reach).is_none());
-    assert!(SmoothContact::new(k, 0.5 * reach, 1.0, reach).is_none());
-    for penetration in [-0.5 * reach, 0.3 * reach, 3.0 * reach] {
-        let force = |p: f64, v: f64| SmoothContact::new(k, p, v, reach).unwrap().force;
-        let at = SmoothContact::new(k, penetration, -0.1, reach).unwrap();
-        let h = 1e-8;
-        let slope = |low: f64, high: f64| (high - low) / (2.0 * h);
-        let stiffness = slope(force(penetration - h, -0.1), force(penetration + h, -0.1));
-        let damping = -slope(force(penetration, -0.1 - h), force(penetration, -0.1 + h));
-        assert_relative_eq!(stiffness, at.stiffness, max_relative = 1e-5);
-        assert_relative_eq!(damping, at.damping, max_relative = 1e-5);
     }
 }
 

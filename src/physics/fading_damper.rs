@@ -1,0 +1,118 @@
+//! Contact with the seabed whose damper fades in with the penetration, instead of switching on at touch.
+//!
+//! f = max(0, k max(p, 0) − c s(p) ż),   s = 3u² − 2u³,   u = ½ (1 + p/r) between 0 and 1,
+//!
+//! so that the damper is off at p = −r, whole from p = r on, and smooth between. A damper that switches breaks Newton's method: an iterate that
+//! lifts a node is let go, and falls back. r is [`damper_reach`] at least, two penetrations of the node at rest, and what it moves in a step. Where nothing
+//! moves the force is that of `seabed`.
+//!
+//! Source: the cubic step as a C¹ switch; contact as in `seabed`, and valid as that is, for r well below the length of a segment.
+
+use super::seabed::ContactCoefficients;
+
+/// Half the range of penetrations over which the damper fades in, in static penetrations of the node [-].
+const DAMPER_FADE: f64 = 2.0;
+
+/// Half the range of penetrations over which the damper of a resting node fades in [m].
+pub fn damper_reach(stiffness: f64, weight: f64) -> f64 {
+    if stiffness > 0.0 {
+        DAMPER_FADE * weight.abs() / stiffness
+    } else {
+        0.0
+    }
+}
+
+/// s [-] at a penetration [m] and its slope [1/m].
+#[inline(always)]
+pub fn fade(penetration: f64, reach: f64) -> (f64, f64) {
+    if reach <= 0.0 {
+        return (f64::from(u8::from(penetration > 0.0)), 0.0);
+    }
+    let u = (0.5 * (penetration / reach + 1.0)).clamp(0.0, 1.0);
+    (u * u * (3.0 - 2.0 * u), 3.0 * u * (1.0 - u) / reach)
+}
+
+/// What a bed whose damper fades does to a node.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct FadingContact {
+    /// Upward force [N].
+    pub force: f64,
+    /// Its slope with penetration [N/m].
+    pub stiffness: f64,
+    /// Minus its slope with ż [N s/m].
+    pub damping: f64,
+}
+
+impl FadingContact {
+    /// At a penetration [m] and vertical velocity ż [m/s], the damper fading in over ± `reach` [m]; `None` where the bed does not act.
+    #[inline(always)]
+    pub fn new(
+        k: ContactCoefficients,
+        penetration: f64,
+        velocity: f64,
+        reach: f64,
+    ) -> Option<FadingContact> {
+        if penetration <= -reach {
+            return None;
+        }
+        let (fade, slope) = fade(penetration, reach);
+        let spring = if penetration > 0.0 { k.stiffness } else { 0.0 };
+        let force = spring * penetration - k.damping * fade * velocity;
+        (force > 0.0).then_some(FadingContact {
+            force,
+            stiffness: spring - k.damping * slope * velocity,
+            damping: k.damping * fade,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::physics::seabed::normal_force;
+    use approx::assert_relative_eq;
+
+    const K: ContactCoefficients = ContactCoefficients {
+        stiffness: 1e4,
+        damping: 2e3,
+    };
+    const REACH: f64 = 0.01;
+
+    fn force(penetration: f64, velocity: f64) -> f64 {
+        FadingContact::new(K, penetration, velocity, REACH).map_or(0.0, |bed| bed.force)
+    }
+
+    #[test]
+    fn the_damper_is_off_above_its_reach_and_whole_below() {
+        assert_relative_eq!(damper_reach(K.stiffness, 50.0), REACH);
+        assert_eq!(FadingContact::new(K, -REACH, -1.0, REACH), None);
+        for penetration in [1.001 * REACH, 3.0 * REACH] {
+            assert_relative_eq!(
+                force(penetration, -0.1),
+                normal_force(K, penetration, -0.1),
+                max_relative = 1e-12
+            );
+        }
+        assert_eq!(fade(1e-9, 0.0), (1.0, 0.0));
+        assert_eq!(fade(-1e-9, 0.0), (0.0, 0.0));
+    }
+
+    #[test]
+    fn it_never_pulls_and_rests_as_without_a_damper() {
+        assert_eq!(FadingContact::new(K, 0.5 * REACH, 1.0, REACH), None);
+        assert_relative_eq!(force(0.5 * REACH, 0.0), 0.5 * REACH * K.stiffness);
+    }
+
+    #[test]
+    fn the_slopes_equal_central_differences() {
+        for penetration in [-0.5 * REACH, 0.3 * REACH, 3.0 * REACH] {
+            let at = FadingContact::new(K, penetration, -0.1, REACH).expect("it pushes");
+            let h = 1e-8;
+            let slope = |low: f64, high: f64| (high - low) / (2.0 * h);
+            let stiffness = slope(force(penetration - h, -0.1), force(penetration + h, -0.1));
+            let damping = -slope(force(penetration, -0.1 - h), force(penetration, -0.1 + h));
+            assert_relative_eq!(stiffness, at.stiffness, max_relative = 1e-5);
+            assert_relative_eq!(damping, at.damping, max_relative = 1e-5);
+        }
+    }
+}
