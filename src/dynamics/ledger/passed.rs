@@ -20,12 +20,12 @@ use super::super::implicit::Scheme;
 use super::{Flow, dry_part, tangent};
 use crate::dynamics::reaction::tension;
 use crate::model::{End, FreePoint, Line, LineState, Model, Network, State, WaterAlong, joint};
+use crate::physics::fading_damper::FadingContact;
 use crate::physics::morison::{DragCoefficients, drag};
 use crate::physics::seabed::ContactCoefficients;
 use crate::statics::assembly::rubbing::{resting_node, resting_point};
 use crate::statics::assembly::{
-    Workspace, end_moment, end_shear, faded_push, joint_damping_power, rates, stretch_step,
-    stretched,
+    Workspace, end_moment, end_shear, joint_damping_power, rates, stretch_step, stretched,
 };
 
 /// A step that an implicit integrator has made.
@@ -230,11 +230,10 @@ impl Passed<'_> {
         };
         let shapes = self.states.map(|state| &state.lines[index].position);
         let clamps = self.states.map(|state| line.clamps(&state.points));
-        let nodes = 0..=line.segment_count();
-        let ways: Vec<_> = nodes.clone().map(|i| shapes[1][i] - shapes[0][i]).collect();
+        let (last, way) = (line.segment_count(), |i| shapes[1][i] - shapes[0][i]);
         let mut sum = 0.0;
-        for i in nodes.filter(|&i| bending.joint[i] > 0.0) {
-            let turned = rates(&ways, i);
+        for i in (0..=last).filter(|&i| bending.joint[i] > 0.0) {
+            let turned = rates(i, last, way);
             let works = [0, 1].map(|side| {
                 let turn = joint(clamps[side], shapes[side], i);
                 turn.map_or(0.0, |turn| {
@@ -377,7 +376,8 @@ impl Side<'_> {
                 damping: contact.damping[i],
             };
             let penetration = contact.level[i] - shape.position[i].z;
-            flow.lost -= faded_push(k, penetration, velocity.z, reach) * mean.z;
+            let bed = FadingContact::new(k, penetration, velocity.z, reach);
+            flow.lost -= bed.map_or(0.0, |bed| bed.force) * mean.z;
         }
         flow
     }
@@ -419,11 +419,11 @@ impl Side<'_> {
                 }
             }
         };
-        let nodes = 0..=line.segment_count();
-        let ways: Vec<_> = nodes.map(|i| self.passed.velocity_mean(index, i)).collect();
+        let clamps = line.clamps(&self.state.points);
+        let passing = |node| self.passed.velocity_mean(index, node);
         Flow {
             given: [End::A, End::B].into_iter().zip(line.ends).map(given).sum(),
-            lost: joint_damping_power(line, shape, line.clamps(&self.state.points), &ways),
+            lost: joint_damping_power(line, shape, clamps, passing),
             numerical: 0.0,
         }
     }
@@ -456,8 +456,9 @@ impl Side<'_> {
             let force = push.map(|push| push.force + (self.friction - 1.0) * push.friction);
             flow.lost -= force.map_or(0.0, |force| force.dot(&mean));
         } else if let Some(contact) = &free.contact {
-            let push = faded_push(contact.coefficients, contact.level - z, velocity.z, reach);
-            flow.lost -= push * mean.z;
+            let (k, penetration) = (contact.coefficients, contact.level - z);
+            let bed = FadingContact::new(k, penetration, velocity.z, reach);
+            flow.lost -= bed.map_or(0.0, |bed| bed.force) * mean.z;
         }
         flow
     }

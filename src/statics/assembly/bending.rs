@@ -117,9 +117,9 @@ impl LineWork {
                 };
                 stiff.times(parts.position)
             });
-            if let Some(damping) = &bending.damping {
+            if let Some(damping) = moving(bending, velocity) {
                 let damper = turn.damper(damping[i]);
-                let drag = damper.product(rates(velocity, i));
+                let drag = damper.product(rates(i, last, |node| velocity[node]));
                 (first, second) = (first + drag[0], second + drag[1]);
                 tangent = tangent.map(|stiff| stiff.plus(&damper.times(parts.velocity)));
             }
@@ -197,21 +197,39 @@ impl BendingWork {
     }
 }
 
-/// Rates of the vectors that meet at a node [m/s]; zero where a clamp or nothing moves.
-pub(crate) fn rates(velocity: &[Vector3<f64>], node: usize) -> [Vector3<f64>; 2] {
-    let rate = |from: Option<usize>| match from {
-        Some(i) if i + 1 < velocity.len() => velocity[i + 1] - velocity[i],
-        _ => Vector3::zeros(),
-    };
-    [rate(node.checked_sub(1)), rate(Some(node))]
+/// The dampers of the joints [N m²·s], where there are velocities that they may resist.
+fn moving<'a>(bending: &'a Bending, velocity: &[Vector3<f64>]) -> Option<&'a [f64]> {
+    let damping = bending.damping.as_deref();
+    damping.filter(|_| !velocity.is_empty())
 }
 
-/// Power that the dampers of a line's joints take [W] from nodes that move at `passing` [m/s] while they resist the velocities of a state.
+/// Rates [m/s] of the vectors that meet at a node, those up to `last` moving as `velocity` tells; zero where a clamp or nothing moves.
+pub(crate) fn rates(
+    node: usize,
+    last: usize,
+    velocity: impl Fn(usize) -> Vector3<f64>,
+) -> [Vector3<f64>; 2] {
+    let rate = |from: usize| velocity(from + 1) - velocity(from);
+    [
+        if node > 0 {
+            rate(node - 1)
+        } else {
+            Vector3::zeros()
+        },
+        if node < last {
+            rate(node)
+        } else {
+            Vector3::zeros()
+        },
+    ]
+}
+
+/// Power that the dampers of a line's joints take [W] from nodes that pass at velocities [m/s] while they resist the velocities of a state.
 pub fn joint_damping_power(
     line: &Line,
     state: &LineState,
     clamps: [Option<Vector3<f64>>; 2],
-    passing: &[Vector3<f64>],
+    passing: impl Fn(usize) -> Vector3<f64>,
 ) -> f64 {
     let Some(damping) = line
         .bending
@@ -220,12 +238,14 @@ pub fn joint_damping_power(
     else {
         return 0.0;
     };
+    let last = line.segment_count();
     let power = |(i, damping): (usize, &f64)| {
         let Some(turn) = joint(clamps, &state.position, i) else {
             return 0.0;
         };
-        let drag = turn.damper(*damping).product(rates(&state.velocity, i));
-        let passing = rates(passing, i);
+        let resisted = rates(i, last, |node| state.velocity[node]);
+        let drag = turn.damper(*damping).product(resisted);
+        let passing = rates(i, last, &passing);
         drag[0].dot(&passing[0]) + drag[1].dot(&passing[1])
     };
     damping.iter().enumerate().map(power).sum()
@@ -257,8 +277,10 @@ pub fn end_shear(
             continue;
         };
         let mut slope = turn.energy(bending.joint[node], bending.rest[node]).slope;
-        if let Some(damping) = &bending.damping {
-            let drag = turn.damper(damping[node]).product(rates(velocity, node));
+        if let Some(damping) = moving(bending, velocity) {
+            let drag = turn
+                .damper(damping[node])
+                .product(rates(node, last, |i| velocity[i]));
             slope = [slope[0] + drag[0], slope[1] + drag[1]];
         }
         // the slope with the end's own segment
