@@ -13,8 +13,8 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use moorline::dynamics::axial_implicit::AxialWork;
-use moorline::dynamics::leapfrog::Step;
 use moorline::dynamics::network::NetworkWork;
+use moorline::dynamics::step::Step;
 use moorline::math::lanes::{LANES, Lanes};
 use moorline::model::{End, Kinematics, Model, State};
 use moorline::scene::{Integrator, Scene};

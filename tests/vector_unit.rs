@@ -4,8 +4,8 @@ mod common;
 
 use common::*;
 use moorline::dynamics::axial_implicit::AxialWork;
-use moorline::dynamics::leapfrog::Step;
 use moorline::dynamics::network::NetworkWork;
+use moorline::dynamics::step::Step;
 use moorline::model::{End, Kinematics, LineState, State};
 use moorline::scene::Integrator;
 use moorline::simulation::Simulation;

@@ -49,9 +49,9 @@ use nalgebra::Vector3;
 use pulp::NullaryFnOnce;
 
 use super::layout::{Layout, Water, interior};
-use super::leapfrog::Step;
 use super::ledger::Flow;
 use super::limit::{axial_frequency_squared, transverse_step};
+use super::step::Step;
 use crate::math::lanes::Lanes;
 use crate::model::{End, Line, LineState, Model, Parting, WaveSpan};
 use crate::physics::stretch::StretchLaw;
@@ -200,7 +200,7 @@ impl AxialWork {
             self.set_free(end, self.parted[end as usize]);
         }
         self.resume();
-        self.starts = state.half_step.velocity.is_empty();
+        self.starts = state.half_step.is_unset();
         let count = self.layout.segment_count;
         if state.half_step.tension[0].len() == count {
             let [now, before] = &state.half_step.tension;
@@ -654,11 +654,7 @@ impl Tensions<'_> {
 
 /// Σ ½ (M_t − M_n)(v·t)² of the nodes of a line that nothing holds, the velocities being those that the leapfrog keeps [J].
 pub fn turning_energy(model: &Model, line: &Line, state: &LineState) -> f64 {
-    let memory = &state.half_step;
-    let velocity = match memory.velocity.is_empty() {
-        true => &state.velocity,
-        false => &memory.velocity,
-    };
+    let (velocity, _) = state.velocities_before();
     let n = line.segment_count();
     let [first, last] = ENDS.map(|end| usize::from(line.is_held(model, state, end)));
     let turning = |i: usize| {

@@ -9,6 +9,7 @@
 //! Lines that bend, mix strain measures or have nodes without mass are integrated fully implicitly whatever that costs. Beams have an
 //! integrator of their own.
 
+use super::cost::{AXIAL_IMPLICIT_COST, IMPLICIT_COST};
 use super::limit::{
     axial_accuracy_step, explicit_step, free_point_step, heave_step, point_accuracy_step,
     transverse_period, transverse_step,
@@ -16,10 +17,6 @@ use super::limit::{
 use crate::model::{Line, Model, Network};
 use crate::scene::Integrator;
 
-/// Cost of an axial-implicit step over that of an explicit one [-].
-pub const AXIAL_IMPLICIT_COST: f64 = 3.0;
-/// Cost of a step of generalised-α over that of an explicit one [-].
-const IMPLICIT_COST: f64 = 50.0;
 /// Part of the transverse limit that no line needs to go below for accuracy: where axial waves are much faster than that,
 /// the line stretches quasi-statically [-].
 const AXIAL_RESOLUTION_MIN: f64 = 0.125;

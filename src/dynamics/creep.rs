@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::leapfrog::Step;
+use super::step::Step;
 use crate::math::fold::{Column, Fold, Slot};
 use crate::math::lanes::Lanes;
 use crate::model::{Line, LineState};

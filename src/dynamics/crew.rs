@@ -20,28 +20,14 @@ use std::time::Instant;
 use rayon_core::{ThreadPool, ThreadPoolBuilder};
 
 use super::Choice;
+use super::cost::{COMPONENT, node_time};
 use crate::model::{Model, Network};
 use crate::scene::{Integrator, Threads};
-use crate::statics::catenary_network;
 
 /// Name of the threads: a host that looks for its own knows these by it.
 const THREAD_NAME: &str = "moorline";
 /// Work that `auto` gives every thread at least [ns].
 const WORTH: f64 = 25e3;
-/// Time of an explicit step at a node [ns].
-const EXPLICIT_NODE: f64 = 12.0;
-/// Time of an axial-implicit step at a node [ns].
-const AXIAL_IMPLICIT_NODE: f64 = 40.0;
-/// Time of a fully implicit step at a node [ns].
-const IMPLICIT_NODE: f64 = 700.0;
-/// Time of a step of a beam at a node [ns].
-const BEAM_NODE: f64 = 4000.0;
-/// Time of an equilibrium at a node, where there is no closed form [ns].
-const EQUILIBRIUM_NODE: f64 = 1500.0;
-/// Time of a closed-form catenary at a node [ns].
-const CATENARY_NODE: f64 = 100.0;
-/// Time to sum a wave component at a node [ns].
-const COMPONENT: f64 = 5.0;
 
 thread_local! {
     static HELPS: Cell<bool> = const { Cell::new(false) };
@@ -376,18 +362,6 @@ impl Labour {
                 _ => ", as long as steps are not found to be as fast on one",
             }
         )
-    }
-}
-
-/// Time of a step at a node of a network [ns], roughly.
-fn node_time(model: &Model, network: &Network, integrator: Integrator) -> f64 {
-    match integrator {
-        Integrator::Leapfrog | Integrator::Auto => EXPLICIT_NODE,
-        Integrator::AxialImplicit => AXIAL_IMPLICIT_NODE,
-        Integrator::GeneralisedAlpha | Integrator::Bossak => IMPLICIT_NODE,
-        Integrator::Beam => BEAM_NODE,
-        Integrator::QuasiStatic if catenary_network::serves(model, network) => CATENARY_NODE,
-        Integrator::QuasiStatic => EQUILIBRIUM_NODE,
     }
 }
 

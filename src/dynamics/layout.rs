@@ -11,7 +11,7 @@ use nalgebra::Vector3;
 use pulp::Arch;
 
 use super::creep::{CreepArrays, Crept};
-use super::leapfrog::Step;
+use super::step::Step;
 use super::surface::SurfaceNow;
 use crate::math::fold::{Column, Field, Fold, Slot};
 use crate::math::lanes::{Lanes, Vectors};
@@ -307,8 +307,7 @@ impl Layout {
         let velocity = self.velocity.get(at);
         let chord = self.position.get(other) - self.position.get(at);
         let tangent = chord.try_normalize(0.0).unwrap_or_else(Vector3::zeros);
-        let lag = step.kick - 0.5 * step.drift; // from the velocities to the positions
-        let height = self.position.get(at).z - lag * velocity.z;
+        let height = self.position.get(at).z - step.lag() * velocity.z;
         let axial = velocity.dot(&tangent).powi(2);
         let kinetic = 0.5 * (across * (velocity.norm_squared() - axial) + along * axial);
         // the surface holds the energy of the buoyancy that is lacking by itself

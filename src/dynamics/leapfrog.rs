@@ -23,6 +23,7 @@ use pulp::NullaryFnOnce;
 use super::layout::{Layout, Water, interior, inverse_norm_of};
 use super::ledger::Flow;
 use super::limit::expected_slope;
+use super::step::Step;
 use crate::math::fold::{Column, Field, Slot};
 use crate::math::lanes::{LANES, Lanes};
 use crate::model::{End, Line, LineState, Parting, WaveSpan};
@@ -189,33 +190,6 @@ impl NullaryFnOnce for PutEnds<'_> {
     fn call(self) {
         let PutEnds(work, ends) = self;
         work.layout.place_ends(ends, work.parted);
-    }
-}
-
-/// Sizes of a step.
-#[derive(Debug, Clone, Copy)]
-pub struct Step {
-    /// Δt of the positions, t_n to t_{n+1} [s].
-    pub drift: f64,
-    /// Δt of the velocities, t_{n−½} to t_{n+½}: the mean of this step and the one before [s].
-    pub kick: f64,
-    /// Weight of v_{n−½} − v_{n−3/2} in the velocity extrapolated to t_n [-].
-    pub extrapolation: f64,
-}
-
-impl Step {
-    /// A step of `drift` [s] after steps of `last` and, before it, `earlier` [s]; 0 where there was none.
-    pub fn after([last, earlier]: [f64; 2], drift: f64) -> Step {
-        let extrapolation = if last > 0.0 && earlier > 0.0 {
-            last / (last + earlier)
-        } else {
-            0.0
-        };
-        Step {
-            drift,
-            kick: 0.5 * (last + drift),
-            extrapolation,
-        }
     }
 }
 

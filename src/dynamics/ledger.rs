@@ -170,16 +170,7 @@ pub fn energy(model: &Model, network: &Network, state: &State) -> Energy {
 /// Time from the velocities to the positions of a network that a leapfrog serves [s].
 fn half_step(state: &State, network: &Network) -> Option<f64> {
     let shape = &state.lines[network.lines[0]];
-    (!shape.half_step.velocity.is_empty()).then(|| velocities(shape).1)
-}
-
-/// Velocities of the nodes of a line [m/s], and the time from then to their positions [s].
-fn velocities(shape: &LineState) -> (&[Vector3<f64>], f64) {
-    let memory = &shape.half_step;
-    match memory.velocity.is_empty() {
-        true => (&shape.velocity, 0.0),
-        false => (&memory.velocity, 0.5 * memory.steps[0]),
-    }
+    (!shape.half_step.is_unset()).then(|| shape.velocities_before().1)
 }
 
 fn line_energy(model: &Model, state: &State, index: usize) -> Energy {
@@ -188,7 +179,7 @@ fn line_energy(model: &Model, state: &State, index: usize) -> Energy {
         return view.energy(beam::held(model, line));
     }
     let water = model.water_along(state, index, state.time);
-    let (velocity, lag) = velocities(shape);
+    let (velocity, lag) = shape.velocities_before();
     let then = shape.reel.map(|reel| line_before(line, shape, reel, lag));
     let line = then.as_ref().unwrap_or(line);
     let passing = passing(line, shape, lag);
@@ -313,7 +304,7 @@ pub fn joined_energy(model: &Model, network: &Network, [before, after]: [&State;
 fn end_energy(model: &Model, state: &State, index: usize, end: End) -> f64 {
     let (line, shape) = (&model.lines[index], &state.lines[index]);
     let water = model.water_along(state, index, state.time);
-    let ((velocity, lag), i) = (velocities(shape), line.end_node(end));
+    let ((velocity, lag), i) = (shape.velocities_before(), line.end_node(end));
     let velocity = velocity[i];
     node_motion(line, shape, i, velocity, water)
         + line.nodes.weight[i] * (shape.position[i].z - lag * velocity.z)

@@ -306,7 +306,7 @@ mod tests {
     use nalgebra::DMatrix;
 
     use super::*;
-    use crate::dynamics::leapfrog::Step;
+    use crate::dynamics::step::Step;
     use crate::scene::Scene;
 
     /// A line of sections of [mass per length [kg/m], length [m], elements], EA = 1 MN.

@@ -4,6 +4,7 @@ pub mod advance;
 pub mod axial_implicit;
 pub mod beam;
 mod choice;
+mod cost;
 mod creep;
 mod crew;
 pub mod implicit;
@@ -16,9 +17,11 @@ pub mod network;
 pub mod quasi_static;
 pub mod reaction;
 mod sea;
+pub mod step;
 mod surface;
 
-pub use choice::{AXIAL_IMPLICIT_COST, Choice};
+pub use choice::Choice;
+pub use cost::AXIAL_IMPLICIT_COST;
 pub use crew::{as_helper, is_helper};
 
 /// Why a step could not be made. The state is as it was before.

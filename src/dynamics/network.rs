@@ -3,9 +3,10 @@
 use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 
 use super::layout::Water;
-use super::leapfrog::{EndLoad, LineWork, Placed, Step};
+use super::leapfrog::{EndLoad, LineWork, Placed};
 use super::ledger::Flow;
 use super::motion::AxisPath;
+use super::step::Step;
 use crate::model::{
     End, FreePoint, Kinematics, Model, Network, PointAtHeight, PointState, Role, State,
 };
@@ -200,8 +201,7 @@ impl NetworkWork {
         self.point_flow = Flow::default();
         for (point, &index) in self.points.iter_mut().zip(&network.free_points) {
             *point = state.points[index];
-            if self.lines.is_empty() || state.lines[network.lines[0]].half_step.velocity.is_empty()
-            {
+            if self.lines.is_empty() || state.lines[network.lines[0]].half_step.is_unset() {
                 point.half_step = [point.velocity; 2];
             }
         }
@@ -312,7 +312,7 @@ impl NetworkWork {
         step: Step,
     ) {
         for (work, &line) in self.lines.iter_mut().zip(&network.lines) {
-            let fresh = state.lines[line].half_step.velocity.is_empty();
+            let fresh = state.lines[line].half_step.is_unset();
             work.start_reel(paths.get(line), state.time, fresh, step);
         }
     }
@@ -393,7 +393,7 @@ impl NetworkWork {
             let excess = |v: &Vector3<f64>| v.dot(&(load.mass * v)) - load.across * v.dot(v);
             self.point_flow.lost -= 0.5 * (excess(&last) - excess(&velocity));
             let surface = |t: f64| self.waves_at(free, t).map_or(0.0, |w| w.elevation);
-            let before = t - 0.5 * (2.0 * step.kick - step.drift);
+            let before = t - step.lag();
             let surfaces = [before, t + 0.5 * step.drift].map(surface);
             let brought = mass_work(
                 law,
@@ -489,8 +489,7 @@ fn mass_work(
     [last, velocity]: [Vector3<f64>; 2],
     step: Step,
 ) -> f64 {
-    let last_drift = 2.0 * step.kick - step.drift;
-    let low = height - 0.5 * last_drift * last.z - before;
+    let low = height - step.lag() * last.z - before;
     let high = height + 0.5 * step.drift * velocity.z - after;
     let [low, high] = [low, high].map(|z| law.at(z).mass);
     0.5 * (at.mass - low) * last.norm_squared() + 0.5 * (high - at.mass) * velocity.norm_squared()

@@ -124,6 +124,13 @@ pub struct HalfStep {
     pub creep: Vec<f64>,
 }
 
+impl HalfStep {
+    /// Whether no leapfrog has made a step from this state yet.
+    pub fn is_unset(&self) -> bool {
+        self.velocity.is_empty()
+    }
+}
+
 impl PointState {
     /// At rest at a position [m].
     pub fn at_rest(position: Vector3<f64>) -> PointState {
@@ -162,15 +169,19 @@ impl PointState {
 }
 
 impl LineState {
-    /// Chords of the segments at the time of the leapfrogs' velocities, half a step before that of the positions [m].
-    pub fn chords_before(&self) -> impl Iterator<Item = Vector3<f64>> {
+    /// The velocities that a leapfrog goes on from [m/s], and the time from then to the positions [s].
+    pub fn velocities_before(&self) -> (&[Vector3<f64>], f64) {
         let memory = &self.half_step;
-        let velocity = match memory.velocity.is_empty() {
-            true => &self.velocity,
-            false => &memory.velocity,
-        };
+        match memory.is_unset() {
+            true => (&self.velocity, 0.0),
+            false => (&memory.velocity, 0.5 * memory.steps[0]),
+        }
+    }
+
+    /// Chords of the segments at the time of those velocities [m].
+    pub fn chords_before(&self) -> impl Iterator<Item = Vector3<f64>> {
+        let (velocity, lag) = self.velocities_before();
         let nodes = self.position.windows(2).zip(velocity.windows(2));
-        let lag = 0.5 * memory.steps[0];
         nodes.map(move |(r, v)| r[1] - r[0] - lag * (v[1] - v[0]))
     }
 

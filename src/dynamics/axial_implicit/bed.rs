@@ -14,7 +14,7 @@
 //!
 //! Source: the θ-method, e.g. Hairer & Wanner (1996), Solving Ordinary Differential Equations II, section IV.3. Stable for any k and c.
 
-use crate::dynamics::leapfrog::Step;
+use crate::dynamics::step::Step;
 use crate::math::lanes::Lanes;
 
 /// How nodes meet the bed in a step.
@@ -52,7 +52,7 @@ impl Bed {
     ) -> Bed {
         let (one, half) = (Lanes::splat(1.0), Lanes::splat(0.5));
         let (kick, drift) = (Lanes::splat(step.kick), Lanes::splat(step.drift));
-        let before = Lanes::splat(2.0 * step.kick - step.drift); // the last step may have been of another length
+        let before = Lanes::splat(step.last()); // the last step may have been of another length
         let hardness = kick * (stiffness * drift + damping) * yields;
         let (theta, over) = if (hardness - one - one).any_positive() {
             let theta = (one - (hardness + Lanes::splat(f64::MIN_POSITIVE)).recip()).max(half);

@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 use super::AxialWork;
 use super::bed::Bed;
 use super::rows::{NodeRow, Sizes, springs};
-use crate::dynamics::leapfrog::Step;
+use crate::dynamics::step::Step;
 use crate::math::lanes::{Lanes, Vectors};
 
 /// Weight of the new strain rate over the old one in the axial damping, at most [-].
@@ -110,7 +110,7 @@ impl AxialWork {
         sizes: &Sizes,
     ) {
         let half = Lanes::splat(0.5);
-        let back = Lanes::splat(0.5 * step.drift - step.kick);
+        let back = Lanes::splat(-step.lag());
         let half_back = half * back;
         let [_, h0, h1, h2] = self.weights.0.map(Lanes::splat);
         let share = Lanes::splat(1.0 / self.weights.0[0]);

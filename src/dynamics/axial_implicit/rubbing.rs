@@ -16,7 +16,7 @@ use nalgebra::{Vector2, Vector3};
 
 use super::AxialWork;
 use super::bed::Bed;
-use crate::dynamics::leapfrog::Step;
+use crate::dynamics::step::Step;
 use crate::math::lanes::Lanes;
 use crate::physics::friction::{Axes, held};
 

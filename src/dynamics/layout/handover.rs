@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use pulp::NullaryFnOnce;
 
 use super::Layout;
-use crate::dynamics::leapfrog::Step;
+use crate::dynamics::step::Step;
 use crate::math::fold::{Field, Fold, Slot};
 use crate::math::lanes::{Lanes, Vectors};
 use crate::model::LineState;
@@ -91,7 +91,7 @@ impl Layout {
     /// that was too long made of the nodes beside it.
     pub fn load(&mut self, state: &LineState) {
         let memory = &state.half_step;
-        let fresh = memory.velocity.is_empty();
+        let fresh = memory.is_unset();
         if let Some(creep) = &mut self.creep {
             let half = match fresh {
                 true => &state.creep,

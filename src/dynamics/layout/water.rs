@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use super::Layout;
-use crate::dynamics::leapfrog::Step;
+use crate::dynamics::step::Step;
 use crate::math::fold::{Column, Field, Fold, Slot};
 use crate::math::hermite::Hermite;
 use crate::math::lanes::{Lanes, Vectors};

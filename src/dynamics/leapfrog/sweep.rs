@@ -12,10 +12,11 @@
 use nalgebra::Vector3;
 use pulp::NullaryFnOnce;
 
-use super::{LineWork, Step};
+use super::LineWork;
 use crate::dynamics::layout::{
     CurrentNow, LENGTH2_MIN, Layout, WaveArrays, inverse_norm, water_flow,
 };
+use crate::dynamics::step::Step;
 use crate::math::lanes::{Lanes, Vectors};
 use crate::model::End;
 

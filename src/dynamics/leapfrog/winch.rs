@@ -22,8 +22,9 @@
 
 use nalgebra::Vector3;
 
-use super::{LineWork, Step};
+use super::LineWork;
 use crate::dynamics::motion::AxisPath;
+use crate::dynamics::step::Step;
 use crate::math::fold::{Column, Field, Fold, Slot};
 use crate::model::{End, Line, LineState, Passage, Reel, Winch};
 
@@ -131,7 +132,7 @@ impl LineWork {
             winch.reel.half_step = [winch.reel.change, path.at(t).slope];
         }
         let reel = winch.reel;
-        self.transport(reel, step.kick - 0.5 * step.drift);
+        self.transport(reel, step.lag());
     }
 
     /// Gives the end the velocity of its material half a step, `lag` [s], before the time of the positions.
@@ -182,7 +183,7 @@ impl LineWork {
         let velocities = [layout.velocity_before.get(at), layout.velocity.get(at)];
         let [before, after] = velocities.map(|velocity| velocity.z);
         let height = layout.position.get(at).z - step.drift * after; // at t_n
-        let lag = step.kick - 0.5 * step.drift;
+        let lag = step.lag();
         let heights = [height - lag * before, height + 0.5 * step.drift * after];
         winch.given += winch.density * (halves[1] - halves[0]);
         winch.given += winch.taken_up(halves, velocities, heights);
