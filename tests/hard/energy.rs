@@ -63,7 +63,7 @@ fn undamped_ropes_that_slacken_gain_no_energy() {
             let scene = by(undamped_swing(elements), integrator, 0.005);
             let run = Run::of(&scene, 60.0, 0.1);
             let what = format!("undamped swing of {elements}, {integrator:?}");
-            sound(&what, &run, 2e-2, 800.0);
+            sound(&what, &run, 2e-2, 1000.0);
             at_most(1e-3, &format!("{what}, gain"), run.energy_gain());
         }
     }
