@@ -197,7 +197,7 @@ impl BendingWork {
     }
 }
 
-/// The dampers of the joints [N m²·s], where there are velocities that they may resist.
+/// The dampers of the joints [N m s], where there are velocities that they may resist.
 fn moving<'a>(bending: &'a Bending, velocity: &[Vector3<f64>]) -> Option<&'a [f64]> {
     let damping = bending.damping.as_deref();
     damping.filter(|_| !velocity.is_empty())
