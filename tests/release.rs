@@ -309,7 +309,7 @@ fn an_end_that_may_let_go_limits_the_step_as_the_half_node_that_it_becomes() {
         (sections[0].length, sections[0].elements) = (100.0, Some(10));
         sections.push(short);
         let simulation = Simulation::new(&scene).unwrap();
-        simulation.choices().next().unwrap().explicit_limit
+        simulation.choices().next().unwrap().explicit.step
     };
     // half of 2/ω, with ω² = 2 Σk/M
     let inner = (2.0 * (1.0e5 + 1.0e6) / (20.0 * 5.5_f64)).sqrt();

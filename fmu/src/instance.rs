@@ -190,7 +190,7 @@ impl Instance {
                     lines.join(", "),
                     choice.integrator,
                     choice.step_max,
-                    choice.explicit_limit,
+                    choice.explicit.step,
                     choice.transverse_limit
                 )
             });

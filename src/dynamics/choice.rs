@@ -11,8 +11,8 @@
 
 use super::cost::{AXIAL_IMPLICIT_COST, IMPLICIT_COST};
 use super::limit::{
-    axial_accuracy_step, explicit_step, free_point_step, heave_step, point_accuracy_step,
-    transverse_period, transverse_step,
+    ExplicitLimit, axial_accuracy_step, explicit_limit, free_point_limit, heave_step,
+    point_accuracy_step, transverse_period, transverse_step,
 };
 use crate::model::{Line, Model, Network};
 use crate::scene::Integrator;
@@ -30,8 +30,8 @@ pub struct Choice {
     pub integrator: Integrator,
     /// Largest internal step [s].
     pub step_max: f64,
-    /// Explicit axial limit [s].
-    pub explicit_limit: f64,
+    /// What bounds explicit steps.
+    pub explicit: ExplicitLimit,
     /// Transverse limit at three times the static tension [s].
     pub transverse_limit: f64,
 }
@@ -39,9 +39,9 @@ pub struct Choice {
 impl Choice {
     /// Integrator and step, and why.
     pub fn in_words(&self) -> String {
-        let (step, explicit) = (seconds(self.step_max), seconds(self.explicit_limit));
+        let (step, explicit) = (seconds(self.step_max), seconds(self.explicit.step));
         match self.integrator {
-            Integrator::Leapfrog if self.step_max < self.explicit_limit => {
+            Integrator::Leapfrog if self.step_max < self.explicit.step => {
                 format!("explicit steps of at most {step}; axial waves would allow {explicit}")
             }
             Integrator::Leapfrog => {
@@ -51,7 +51,7 @@ impl Choice {
                 "axial tension implicit, steps of at most {step}: explicit ones, {AXIAL_IMPLICIT_COST} times cheaper, would be limited to \
                  {explicit} by axial waves"
             ),
-            Integrator::GeneralisedAlpha if IMPLICIT_COST * self.explicit_limit < self.step_max => {
+            Integrator::GeneralisedAlpha if IMPLICIT_COST * self.explicit.step < self.step_max => {
                 format!(
                     "fully implicit steps of at most {step}: explicit ones, {IMPLICIT_COST} times cheaper, would be limited to {explicit}"
                 )
@@ -67,11 +67,13 @@ impl Choice {
             let lines = network.lines.iter().map(|&line| limit(&model.lines[line]));
             lines.fold(f64::INFINITY, f64::min)
         };
-        let explicit_limit = network
-            .free_points
-            .iter()
-            .map(|&point| free_point_step(model, point))
-            .fold(least(&explicit_step), f64::min);
+        let lines = network.lines.iter();
+        let of_lines = lines.map(|&line| explicit_limit(&model.lines[line]));
+        let points = network.free_points.iter();
+        let of_points = points.map(|&point| free_point_limit(model, point));
+        let explicit = of_lines
+            .chain(of_points)
+            .fold(ExplicitLimit::none(), ExplicitLimit::or);
         let transverse_limit = network
             .lines
             .iter()
@@ -83,7 +85,7 @@ impl Choice {
         let longest = model.solver.time_step_max;
         let asked = model.solver.integrator;
         let steps = Steps {
-            explicit: explicit_limit.min(longest),
+            explicit: explicit.step.min(longest),
             axial: accurate.min(least(&heave_step)).min(longest),
             implicit: implicit_step(model, network),
         };
@@ -101,7 +103,7 @@ impl Choice {
         Choice {
             integrator,
             step_max: step_max.min(longest),
-            explicit_limit,
+            explicit,
             transverse_limit,
         }
     }

@@ -9,7 +9,7 @@
 //!
 //! Before the sweep free points take the pull of the segments at them, and after it beds that slope or rub look after the nodes one by one.
 //!
-//! One force evaluation a step, second order, stable below [`super::limit::explicit_step`] whatever the seabed.
+//! One force evaluation a step, second order, stable below [`super::limit::explicit_limit`] whatever the seabed.
 //!
 //! Source: Verlet's scheme as in Hairer, Lubich & Wanner (2003), Acta Numerica 12, 399-450; the inverse of
 //! M_n I + (M_t − M_n) t tᵀ by Sherman & Morrison (1950); contact: backward Euler on the penetrating spring and damper.

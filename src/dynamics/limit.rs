@@ -21,6 +21,12 @@
 //! makes −v of it for K|v|Δt/M = ½; a steady one holds against disturbances, of which drag takes 2K|v|v*, up to the same limit. Beyond it velocities
 //! grow with every step, and the faster the greater they are: a communication step that ends beyond is made anew in shorter steps.
 //!
+//! In the shortest wave velocities change their sign in every step for springs, dampers, damping by mass (α) and drag alike, so that these add up:
+//!
+//! ω²Δt²/4 + (ζω + ½α + 2K|v|/M)Δt ≤ 1,
+//!
+//! which is the first limit where neither α nor drag is, and the last where nothing else is ([`ExplicitLimit`]).
+//!
 //! Source: Belytschko, Liu & Moran (2000), Nonlinear Finite Elements for Continua and Structures, section 6.2.6 (damped
 //! central differences with lagged velocity). Contact is implicit and sets no limit.
 
@@ -52,22 +58,98 @@ const HALVINGS: usize = 30;
 /// Transverse Courant number of the axial-implicit leapfrog [-].
 const TRANSVERSE_COURANT: f64 = 0.6;
 
-/// Explicit axial step limit [s] of a line, with safety; infinite for a line without nodes that may move.
-pub fn explicit_step(line: &Line) -> f64 {
+/// What bounds explicit steps: the node whose shortest wave is the quickest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ExplicitLimit {
+    /// Longest step without drag, with safety [s].
+    pub step: f64,
+    /// ω²/4 [1/s²].
+    springs: f64,
+    /// ζω + ½α [1/s].
+    dampers: f64,
+}
+
+impl ExplicitLimit {
+    /// Of what no step is too long for.
+    pub fn none() -> ExplicitLimit {
+        ExplicitLimit {
+            step: f64::INFINITY,
+            springs: 0.0,
+            dampers: 0.0,
+        }
+    }
+
+    /// For a circular frequency ω [rad/s], BA/EA [s] and α [1/s]; the full safety from the damping ratio `enough` on.
+    fn new(omega: f64, lag: f64, alpha: f64, enough: f64) -> ExplicitLimit {
+        let dampers = 0.5 * (omega * omega * lag + alpha);
+        let damped = match omega > 0.0 {
+            true => (dampers / omega / enough).min(1.0),
+            false => 1.0,
+        };
+        let safety = SAFETY_UNDAMPED + damped * (SAFETY - SAFETY_UNDAMPED);
+        let mut limit = ExplicitLimit {
+            step: f64::INFINITY,
+            springs: 0.25 * omega * omega,
+            dampers,
+        };
+        limit.step = safety * limit.stable(0.0);
+        limit
+    }
+
+    /// The one that allows less.
+    pub fn or(self, other: ExplicitLimit) -> ExplicitLimit {
+        if other.step < self.step { other } else { self }
+    }
+
+    /// The same where springs are so many times stiffer [-] than was expected.
+    pub fn stiffened(self, times: f64) -> ExplicitLimit {
+        ExplicitLimit {
+            step: self.step / times.sqrt(),
+            springs: times * self.springs,
+            ..self
+        }
+    }
+
+    /// Step [s] to set out with where the greatest K|v|/M of all nodes is `rate` [1/s].
+    pub fn with_drag(&self, rate: f64) -> f64 {
+        self.step.min(self.stable(rate / DRAG_MARGIN))
+    }
+
+    /// Whether steps [s] at whose end the greatest K|v|/M is `rate` [1/s] were short enough.
+    pub fn holds(&self, rate: f64, step: f64) -> bool {
+        step <= self.stable(rate)
+    }
+
+    /// Longest stable step [s], without safety.
+    fn stable(&self, rate: f64) -> f64 {
+        let linear = self.dampers + rate / DRAG_COURANT;
+        2.0 / (linear + (linear * linear + 4.0 * self.springs).sqrt())
+    }
+}
+
+/// Explicit step limit of a line; none for a line without nodes that may move.
+pub fn explicit_limit(line: &Line) -> ExplicitLimit {
     if let Some(winch) = &line.winch {
-        return explicit_step(winch.reel()).min(reeled_step(winch.reel()));
+        return explicit_limit(winch.reel()).or(reeled_limit(winch.reel()));
     }
     let (segments, enough) = (&line.segments, damping_enough(line));
-    let mut limit = f64::INFINITY;
+    let mut limit = ExplicitLimit::none();
     for i in loose_nodes(line) {
         let spring: f64 = beside(line, i)
             .map(|segment| stiffness(line, segment))
             .sum();
         let lags = beside(line, i).map(|segment| lag(segments, segment));
         let omega = ((2.0 * spring + heave(line, i)) / line.least_mass(i)).sqrt();
-        limit = limit.min(damped_limit(omega, lags.fold(0.0, f64::max), enough));
+        let lag = lags.fold(0.0, f64::max);
+        limit = limit.or(ExplicitLimit::new(omega, lag, fading(line, i), enough));
     }
     limit
+}
+
+/// Rate α at which damping by mass takes the velocity of a node [1/s].
+fn fading(line: &Line, node: usize) -> f64 {
+    let damping = line.nodes.mass_damping.as_ref();
+    damping.map_or(0.0, |damping| damping[node] / line.least_mass(node))
 }
 
 /// Nodes that no point holds, or that one may let go of.
@@ -85,30 +167,29 @@ fn beside(line: &Line, node: usize) -> Range<usize> {
     node.saturating_sub(1)..(node + 1).min(line.segment_count())
 }
 
-/// Explicit step limit [s] of the node before the end segment of a line on a winch when that is shortest, wherever it may be.
-fn reeled_step(reel: &Line) -> f64 {
+/// Explicit step limit of the node before the end segment of a line on a winch when that is shortest, wherever it may be.
+fn reeled_limit(reel: &Line) -> ExplicitLimit {
     let limit = |i: usize| {
         let (left, right) = (stiffness(reel, i - 1), stiffness(reel, i) / SHORTEST);
         let mass = 0.5 * (1.0 + SHORTEST) * reel.least_mass(i);
         let lag = lag(&reel.segments, i - 1).max(lag(&reel.segments, i));
-        damped_limit(
-            (2.0 * (left + right) / mass).sqrt(),
-            lag,
-            DAMPING_RATIO_ENOUGH,
-        )
+        let omega = (2.0 * (left + right) / mass).sqrt();
+        ExplicitLimit::new(omega, lag, fading(reel, i), DAMPING_RATIO_ENOUGH)
     };
     let nodes = 1..reel.segment_count();
-    nodes.map(limit).fold(f64::INFINITY, f64::min)
+    nodes
+        .map(limit)
+        .fold(ExplicitLimit::none(), ExplicitLimit::or)
 }
 
-/// Explicit step limit [s] of a free point with all that is tied to it, with safety; infinite without a line.
-pub fn free_point_step(model: &Model, point: usize) -> f64 {
+/// Explicit step limit of a free point with all that is tied to it; none without a line.
+pub fn free_point_limit(model: &Model, point: usize) -> ExplicitLimit {
     let Some(free) = model.points[point].free() else {
-        return f64::INFINITY;
+        return ExplicitLimit::none();
     };
     let own = free.sphere.map_or(0.0, |sphere| sphere.stiffness_max());
     let mut alone = 0.0_f64; // greatest k/M of one line, should all others part
-    let mut enough = DAMPING_RATIO_ENOUGH;
+    let (mut enough, mut alpha) = (DAMPING_RATIO_ENOUGH, 0.0_f64);
     let (mut mass, mut sum, mut longest) = (free.mass, 0.5 * own, 0.0_f64);
     for &(index, end) in &model.points[point].attached {
         let line = &model.lines[index];
@@ -123,9 +204,11 @@ pub fn free_point_step(model: &Model, point: usize) -> f64 {
             alone = lone_rates(model, point);
         }
         longest = longest.max(lag(&line.segments, segment));
+        alpha = alpha.max(fading(line, node));
         enough = enough.max(damping_enough(line));
     }
-    damped_limit((2.0 * (sum / mass).max(alone)).sqrt(), longest, enough)
+    let omega = (2.0 * (sum / mass).max(alone)).sqrt();
+    ExplicitLimit::new(omega, longest, alpha, enough)
 }
 
 /// Greatest ratio of a segment's stiffness to the mass of its half node [1/s²] among the lines at a point.
@@ -164,14 +247,6 @@ fn damping_enough(line: &Line) -> f64 {
         None => DAMPING_RATIO_ENOUGH,
         Some(_) => DAMPING_RATIO_WHIP,
     }
-}
-
-/// Limit for a circular frequency ω [rad/s] and BA/EA [s], with safety, the full one from the damping ratio `enough` on.
-fn damped_limit(omega: f64, lag: f64, enough: f64) -> f64 {
-    let zeta = 0.5 * omega * lag;
-    let damped = (zeta / enough).min(1.0);
-    let safety = SAFETY_UNDAMPED + damped * (SAFETY - SAFETY_UNDAMPED);
-    safety * 2.0 / omega * ((1.0 + zeta * zeta).sqrt() - zeta)
 }
 
 /// Square of the greatest frequency of axial waves in a line whose ends are held [1/s²], its nodes having the masses that they have in air and
@@ -255,16 +330,6 @@ fn travel_time(line: &Line, masses: &[f64], force: impl Fn(usize) -> f64) -> f64
         lengths[i] * (mass / length / force(i)).sqrt()
     };
     (0..line.segment_count()).map(time).sum()
-}
-
-/// Step [s] to set out with where the greatest K|v|/M of all nodes is `rate` [1/s].
-pub fn drag_step(rate: f64) -> f64 {
-    DRAG_MARGIN * DRAG_COURANT / rate
-}
-
-/// Whether steps [s] at whose end the greatest K|v|/M is `rate` [1/s] were short enough for the drag.
-pub fn drag_holds(rate: f64, step: f64) -> bool {
-    rate * step <= DRAG_COURANT
 }
 
 /// Greatest stiffness that the water's surface gives a node [N/m].
@@ -384,11 +449,52 @@ mod tests {
         velocities[0].abs()
     }
 
+    /// Size of the shortest wave after 400 steps of a part of what is stable, over that at its start [-]: springs, dampers, damping by mass, and
+    /// drag that a steady velocity makes linear, of a rate K|v|/M.
+    fn shortest_wave([omega, lag, alpha, rate]: [f64; 4], part: f64) -> f64 {
+        let limit = ExplicitLimit::new(omega, lag, alpha, DAMPING_RATIO_ENOUGH);
+        let size = part * limit.stable(rate);
+        let step = Step::after([size; 2], size);
+        let (mut place, mut velocities) = (-1.0, [2.0 / size, -2.0 / size]);
+        for _ in 0..400 {
+            place += size * velocities[0];
+            let [last, before] = velocities;
+            let now = last + step.extrapolation * (last - before);
+            let springs = omega * omega * (place + lag * last);
+            velocities = [
+                last - step.kick * (springs + alpha * last + 2.0 * rate * now),
+                last,
+            ];
+        }
+        place.abs()
+    }
+
+    #[test]
+    fn springs_dampers_and_drag_share_the_limit_of_the_shortest_wave() {
+        let cases = [
+            [10.0, 0.0, 0.0, 0.0],
+            [10.0, 0.05, 0.0, 0.0],
+            [10.0, 0.0, 8.0, 0.0],
+            [10.0, 0.0, 0.0, 3.0],
+            [10.0, 0.05, 8.0, 3.0],
+            [0.1, 0.0, 0.0, 3.0],
+        ];
+        for case in cases {
+            let [below, beyond] = [0.98, 1.02].map(|part| shortest_wave(case, part));
+            assert!(
+                below < 10.0 && !(beyond < 1e3),
+                "{case:?}: {below}, {beyond}"
+            );
+        }
+    }
+
     #[test]
     fn explicit_drag_damps_up_to_its_limit_and_no_further() {
         assert!(flipping(0.98 * DRAG_COURANT) < 0.5);
         let beyond = flipping(1.02 * DRAG_COURANT);
         assert!(beyond > 1e3 || beyond.is_nan());
-        assert!(drag_holds(1.0, drag_step(1.0)) && !drag_holds(1.0, 1.01 * DRAG_COURANT));
+        let alone = ExplicitLimit::none();
+        assert!(alone.holds(1.0, alone.with_drag(1.0)));
+        assert!(!alone.holds(1.0, 1.01 * DRAG_COURANT));
     }
 }

@@ -420,7 +420,7 @@ impl Search {
         if model.networks.iter().any(free) || model.lines.iter().any(|line| line.winch.is_some()) {
             return None;
         }
-        let limits = simulation.choices().map(|choice| choice.explicit_limit);
+        let limits = simulation.choices().map(|choice| choice.explicit.step);
         let limit = limits.fold(scene.solver.time_step_max, f64::min);
         let output = &scene.output;
         let steps = (output.interval / limit).ceil() * output.duration / output.interval;

@@ -10,7 +10,6 @@ use crate::dynamics::beam::{self, BeamWork, Driven, Stuck, StuckReason};
 use crate::dynamics::implicit::{self, Scheme};
 use crate::dynamics::ledger::passed::{self, Passed};
 use crate::dynamics::ledger::{self, Flow};
-use crate::dynamics::limit::{drag_holds, drag_step};
 use crate::dynamics::motion::AxisPath;
 use crate::dynamics::network::NetworkWork;
 use crate::dynamics::quasi_static::{self, Halving};
@@ -114,7 +113,7 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
             Solver::AxialImplicit(work) => {
                 return self.axial_implicit(number, step_max, work, next, total);
             }
-            Solver::Leapfrog(work) => self.leapfrog(number, step_max, work, next)?,
+            Solver::Leapfrog(work) => self.leapfrog(number, choice, work, next)?,
             Solver::Implicit(scheme) => self.implicit(number, step_max, scheme, implicit, next)?,
             Solver::Beam(work) => self.beam(number, step_max, work, next)?,
             Solver::QuasiStatic => self.quasi_static(number, implicit, next)?,
@@ -126,7 +125,7 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
     fn leapfrog(
         &self,
         number: usize,
-        step_max: f64,
+        choice: &Choice,
         work: &mut NetworkWork,
         next: &mut State,
     ) -> Result<Done, StepError> {
@@ -139,9 +138,11 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
                 work.load(network, self.state);
             }
             work.set_current(model, self.start);
-            let longest = step_max / work.stiffening().sqrt();
-            let quick = drag_step(work.drag_rate(model, network, self.start));
-            let count = self.substeps(network.lines[0], longest.min(quick), retry)?;
+            let (stiffening, limit) = (work.stiffening(), choice.explicit);
+            let limit = limit.stiffened(stiffening);
+            let longest = choice.step_max / stiffening.sqrt();
+            let longest = longest.min(limit.with_drag(work.drag_rate(model, network, self.start)));
+            let count = self.substeps(network.lines[0], longest, retry)?;
             let drift = self.length / count as f64;
             let mut steps = self.state.lines[network.lines[0]].half_step.steps;
             let mut step = Step::after(steps, drift);
@@ -156,10 +157,8 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
             }
             let flow = work.flow();
             let is_sound = work.is_sound() && flow.is_finite();
-            let holds = drag_holds(
-                work.drag_rate(model, network, self.start + self.length),
-                drift,
-            );
+            let end = self.start + self.length;
+            let holds = limit.holds(work.drag_rate(model, network, end), drift);
             if is_sound && (holds || retry == RETRIES_MAX) {
                 work.store(network, next, steps);
                 let counters = Counters {
