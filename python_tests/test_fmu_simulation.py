@@ -251,6 +251,44 @@ def test_the_communication_step_may_vary(slave):
     assert math.isfinite(one.get("line1.tension_b"))
 
 
+def test_a_last_step_of_rounding_changes_nothing(slave):
+    """A host that adds tenths and cuts its last step to the end of its run asks for 2e-14 s more."""
+    one = slave().initialize()
+    time, steps, rows = 0.0, [], []
+    while time < 10.0:
+        steps.append(min(0.1, 10.0 - time))
+        for name, value in swing(time).items():
+            one.expect(one.set(name, value))
+        one.expect(one.step(time, steps[-1]))
+        time += steps[-1]
+        rows.append(one.outputs())
+    assert steps[-1] < 1e-13 and rows[-1].pop("solver.substeps") == 0
+    assert rows[-2].pop("solver.substeps") > 0
+    assert rows[-1] == pytest.approx(rows[-2], rel=1e-9)
+    if one.version == 3:
+        assert (one.get("time"), one.reached.value) == (10.0, 10.0)
+
+
+def test_steps_too_short_to_be_made_add_up(slave):
+    """Across a saved state, too; and the simulation goes on as without them."""
+    one, other = slave().initialize(), slave().initialize()
+    rows = one.run(20, drive=swing)
+    assert same(rows, other.run(20, drive=swing))
+    time = 1.0
+    for _ in range(8):
+        one.expect(one.step(time, 3e-7))
+        time += 3e-7
+        state = one.save()
+        status, copy = one.deserialize(one.serialize(state))
+        one.expect(status)
+        one.expect(one.restore(copy))
+        one.free_state(state), one.free_state(copy)
+    other.expect(other.step(1.0, 2.4e-6))
+    for name, value in one.outputs().items():
+        if name != "solver.substeps":
+            assert value == pytest.approx(other.get(name), rel=1e-4, abs=1e-3), name
+
+
 def test_a_simulation_may_start_at_any_time(slave):
     one = slave()
     one.expect(one.enter(start=100.0, stop=100.2))

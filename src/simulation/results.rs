@@ -110,7 +110,7 @@ impl Simulation {
         let mut hung = self.clone();
         hung.snapshot.state.waves = None;
         hung.memo.clear();
-        let (model, time) = (&*self.model, self.time());
+        let (model, time) = (&*self.model, self.snapshot.state.time);
         let mut work = assembly::Workspace::new(model);
         for number in 0..model.networks.len() {
             let state = &mut hung.snapshot.state;
@@ -123,7 +123,7 @@ impl Simulation {
     fn vessel_origin(&self, vessel: usize) -> Vector3<f64> {
         let snapshot = &self.snapshot;
         let at = held::At::new(&self.model, &snapshot.paths, snapshot.follows_scene);
-        at.frame(vessel, self.time()).origin.position
+        at.frame(vessel, snapshot.state.time).origin.position
     }
 
     /// Moment [N m] of the lines that are clamped to a point on what holds it, in global axes.

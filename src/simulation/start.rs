@@ -64,6 +64,7 @@ pub(super) fn begin(
             counters,
             ledger,
             start_time: time,
+            ahead: 0.0,
         },
         work,
     ))
