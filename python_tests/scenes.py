@@ -42,6 +42,18 @@ interval = 0.05
 
 CHAIN_PROFILE = CHAIN.replace("interval = 0.05", "interval = 0.05\nprofile = true")
 
+CURRENT = CHAIN.replace("density = 1025.0", "density = 1025.0\ncurrent = { velocity = [1.0, 0.5, 0.0] }")
+
+# Given by its weight and off the bed: water acts by its flow alone.
+CURRENT_ALONE = CURRENT.replace("mass = 113.35", "weight = 975.0").replace("[seabed]\ndepth = 200.0\n", "").replace(
+    "length = 835.35", "length = 820.0")
+
+WAVES = CHAIN.replace("[seabed]", """\
+[water.waves]
+regular = { height = 6.0, period = 10.0, direction = 0.3, phase = 0.7 }
+
+[seabed]""")
+
 TWO_ROPES = """\
 title = "two ropes in air, one of two sections, and a span between two driven points"
 gravity = 9.81

@@ -224,7 +224,7 @@ pub enum SolverResult {
     Substeps,
     /// Energy that the integrator made or lost [J].
     EnergyError,
-    /// Power that the energy balance misses in the last step [W].
+    /// The same over the time since the start [W].
     PowerResidual,
 }
 

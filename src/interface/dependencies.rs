@@ -1,8 +1,9 @@
 //! What the static solution, and so every output during initialization, depends on.
 //!
 //! Lines that share free points are one network; a network depends on the displacements of the coupled points that it
-//! hangs on and on the parameters that enter its equilibrium. Velocities, drag, added mass, rotary inertia and damping do not: nothing
-//! moves. The closed-form catenary is that of the reference configuration and so depends on no displacement.
+//! hangs on and on the parameters that enter its equilibrium. Velocities, rotary inertia and damping do not: nothing moves. Drag does where
+//! the water flows, added mass in waves, whose load on its last half segment a line's force holds from the start. The closed-form catenary
+//! is that of the reference configuration, in still water, and so depends on no displacement.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -111,14 +112,18 @@ impl Scope<'_> {
             }
             Parameter::SectionLength { line, .. } => self.lines.contains(line),
             Parameter::WaterDensity => {
-                self.types().any(|name| self.is_buoyant(name))
-                    || self.free_points().any(|point| point.volume.is_some())
+                self.types()
+                    .any(|name| self.is_buoyant(name) || self.is_pushed(name))
+                    || self.free_points().any(|point| {
+                        point.volume.is_some() || (self.flows() && point.drag_area.is_some())
+                    })
             }
             Parameter::SeabedDepth => true,
             Parameter::Gravity => {
                 self.types()
                     .any(|name| scene.line_types[name].weight.is_none())
                     || self.emerges()
+                    || self.is_in_waves()
                     || self
                         .free_points()
                         .any(|point| point.mass.is_some() || point.volume.is_some())
@@ -140,21 +145,21 @@ impl Scope<'_> {
             Property::AxialStiffness | Property::StaticStiffness | Property::Weight => true,
             Property::Mass => self.scene.line_types[name].weight.is_none(),
             Property::Diameter => {
-                self.is_buoyant(name) || (self.scene.seabed.is_some() && !self.closed_form)
+                self.is_buoyant(name)
+                    || self.is_pushed(name)
+                    || (self.scene.seabed.is_some() && !self.closed_form)
             }
             Property::BendingStiffness
             | Property::ShearStiffness
             | Property::TorsionalStiffness => !self.closed_form,
+            Property::DragNormal | Property::DragTangential => self.flows(),
+            Property::AddedMassNormal | Property::AddedMassTangential => self.is_in_waves(),
             Property::RotaryInertia
             | Property::DynamicStiffness
             | Property::StaticDamping
             | Property::DynamicDamping
             | Property::AxialDamping
-            | Property::DampingRatio
-            | Property::DragNormal
-            | Property::DragTangential
-            | Property::AddedMassNormal
-            | Property::AddedMassTangential => false,
+            | Property::DampingRatio => false,
         }
     }
 
@@ -164,6 +169,23 @@ impl Scope<'_> {
         self.scene.water.is_some()
             && line_type.diameter.is_some()
             && (line_type.weight.is_none() || self.emerges())
+    }
+
+    /// Whether the water moves, which closed forms know nothing of.
+    fn flows(&self) -> bool {
+        let water = self.scene.water.as_ref();
+        !self.closed_form
+            && water.is_some_and(|water| water.current.is_some() || water.waves.is_some())
+    }
+
+    fn is_in_waves(&self) -> bool {
+        let water = self.scene.water.as_ref();
+        !self.closed_form && water.is_some_and(|water| water.waves.is_some())
+    }
+
+    /// Whether moving water pushes a line type.
+    fn is_pushed(&self, name: &str) -> bool {
+        self.flows() && self.scene.line_types[name].diameter.is_some()
     }
 
     /// Whether a line may come out of the water, which closed forms never do.
