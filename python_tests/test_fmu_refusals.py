@@ -30,6 +30,15 @@ def test_inputs_that_are_not_finite_are_refused_and_the_state_kept(slave):
     one.run(3, start=0.15)
 
 
+def test_inputs_that_no_arithmetic_can_carry_are_refused(slave):
+    """What a host forgot to initialise, before and after initialization."""
+    one = slave()
+    refused(one, one.set("fairlead.z", 1e300), "fairlead.z", "beyond 1e12")
+    one.initialize(fairlead__z=0.1)
+    refused(one, one.set("fairlead.vx", -1e155), "fairlead.vx", "beyond 1e12")
+    one.run(3)
+
+
 def test_parameters_out_of_range_are_refused_by_their_key(slave):
     one = slave()
     refused(one, one.set("chain.mass", -1.0), "chain", "mass")

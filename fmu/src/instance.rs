@@ -33,6 +33,9 @@ impl From<&str> for Refusal {
 
 type Outcome = Result<(), Refusal>;
 
+/// What an input may be at most [m, rad, m/s, rad/s]: beyond this, squares and cubes of it would overflow.
+const INPUT_MAX: f64 = 1e12;
+
 /// Difference between the host's clock and ours that is rounding, relative to the step [-].
 const TIME_TOLERANCE: f64 = 1e-6;
 
@@ -448,6 +451,9 @@ impl Instance {
         if !value.is_finite() {
             return named(&format!("{value} is not a finite number; nothing was set"));
         }
+        if variable.causality == Causality::Input && value.abs() > INPUT_MAX {
+            return named(&format!("{value} is beyond {INPUT_MAX:e}; nothing was set"));
+        }
         Ok(())
     }
 
@@ -493,11 +499,7 @@ impl Instance {
                     "derivatives of order {order} are not used: order 1 would be right"
                 )));
             }
-            if !value.is_finite() {
-                return Err(named(format!(
-                    "{value} is not a finite number; nothing was set"
-                )));
-            }
+            self.check_settable(variable, value)?;
             match variable.binding {
                 // The rates of roll, pitch and yaw are no angular velocity: the path through the poses has its own.
                 Binding::Displacement { body, axis } if axis < 3 => {
