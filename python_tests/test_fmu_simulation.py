@@ -327,3 +327,28 @@ def test_velocities_only_count_once_they_are_given(slave):
     given = slave().initialize()
     rows = given.run(20, drive=lambda t: {**swing(t), "fairlead.vx": 1.4 * math.cos(0.7 * t)})
     assert not same(plain, rows)
+
+
+def test_velocities_that_are_never_but_zero_are_not_told(slave):
+    """Dymola and others write every input at every communication point, 0 to those that nothing is connected to."""
+    names = [f"fairlead.v{a}" for a in "xyz"]
+    zeros = dict.fromkeys(names, 0.0)
+    plain = slave().initialize().run(20, drive=swing)
+    zeroed = slave().initialize().run(20, drive=lambda t: {**zeros, **swing(t)})
+    assert same(plain, zeroed)
+
+
+def test_a_vessel_is_told_its_velocity_without_its_angular_velocity(slave):
+    """Those that nothing is connected to stay 0 whatever the angles do."""
+
+    def drive(velocity, angular):
+        return lambda t: {
+            "barge.x": 2.0 * math.sin(0.7 * t), "barge.yaw": 0.1 * math.sin(0.6 * t),
+            **({"barge.vx": 1.4 * math.cos(0.7 * t), "barge.vy": 0.0, "barge.vz": 0.0} if velocity else {}),
+            **({"barge.wx": 0.0, "barge.wy": 0.0, "barge.wz": 0.0} if angular else {}),
+        }
+
+    told = slave("BARGE").initialize().run(20, drive=drive(True, False))
+    zeroed = slave("BARGE").initialize().run(20, drive=drive(True, True))
+    assert same(told, zeroed)
+    assert not same(told, slave("BARGE").initialize().run(20, drive=drive(False, False)))

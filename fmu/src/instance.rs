@@ -410,9 +410,12 @@ impl Instance {
             let binding = &Self::variable(&self.interface, reference)?.binding;
             match *binding {
                 Binding::Displacement { body, axis } => {
-                    self.inputs[slot(&self.scene, body)].displacement[axis] = value;
-                    if self.phase == Phase::Initialization {
-                        self.simulation = None;
+                    let input = &mut self.inputs[slot(&self.scene, body)];
+                    let before = std::mem::replace(&mut input.displacement[axis], value);
+                    match self.phase {
+                        Phase::Step => input.has_moved[axis / 3] |= value != before,
+                        Phase::Initialization => self.simulation = None,
+                        _ => {}
                     }
                 }
                 Binding::Velocity { body, axis } => {
@@ -420,6 +423,7 @@ impl Instance {
                     input.velocity[axis] = value;
                     // Hosts write the start value 0 of every input: that is not yet a velocity.
                     input.has_velocity[axis] |= self.phase == Phase::Step || value != 0.0;
+                    input.has_speed[axis / 3] |= value != 0.0;
                 }
                 Binding::Release { line } => self.releases[line] = value != 0.0,
                 Binding::LengthChange { line } => {
@@ -509,8 +513,10 @@ impl Instance {
             }
         }
         for (body, axis, value) in targets {
-            self.inputs[body].velocity[axis] = value;
-            self.inputs[body].has_velocity[axis] = true;
+            let input = &mut self.inputs[body];
+            input.velocity[axis] = value;
+            input.has_velocity[axis] = true;
+            input.has_speed[axis / 3] |= value != 0.0;
         }
         Ok(())
     }
@@ -715,11 +721,7 @@ fn same_bits(these: &[f64], those: &[f64]) -> bool {
 fn hand_over(inputs: &[BodyInput], simulation: &mut Simulation) {
     for (index, input) in inputs.iter().enumerate() {
         let body = simulation.model().body(index);
-        let mut velocity = [None; 6];
-        for (axis, velocity) in velocity.iter_mut().enumerate() {
-            *velocity = input.has_velocity[axis].then_some(input.velocity[axis]);
-        }
-        simulation.set_body(body, input.displacement, velocity);
+        simulation.set_body(body, input.displacement, input.told());
     }
 }
 

@@ -29,6 +29,22 @@ pub(crate) struct BodyInput {
     pub(crate) velocity: [f64; 6],
     /// Whether the host gives the velocity.
     pub(crate) has_velocity: [bool; 6],
+    /// Whether it has moved since the start, along and about the axes.
+    pub(crate) has_moved: [bool; 2],
+    /// Whether any velocity was ever another than 0, along and about the axes.
+    pub(crate) has_speed: [bool; 2],
+}
+
+impl BodyInput {
+    /// What the host says of the velocity; nothing along or about all axes where it says nothing but 0 of what has moved. Hosts that write all
+    /// inputs at every communication point write 0 to those that nothing is connected to.
+    pub(crate) fn told(&self) -> [Option<f64>; 6] {
+        std::array::from_fn(|axis| {
+            let kind = axis / 3;
+            let tells = self.has_speed[kind] || !self.has_moved[kind];
+            (tells && self.has_velocity[axis]).then_some(self.velocity[axis])
+        })
+    }
 }
 
 /// All that changes in an instance.
@@ -138,6 +154,21 @@ mod tests {
         }
         let longer = [bytes.as_slice(), b"x"].concat();
         assert!(Snapshot::from_bytes(&longer, "token").is_err());
+    }
+
+    #[test]
+    fn zero_is_a_velocity_only_of_what_rests_or_was_ever_faster() {
+        let mut input = BodyInput {
+            has_velocity: [true, true, true, true, false, true],
+            ..BodyInput::default()
+        };
+        assert_eq!(input.told()[..4], [Some(0.0); 4]);
+        assert_eq!(input.told()[4], None);
+        input.has_moved = [true, false];
+        assert_eq!(input.told()[..3], [None; 3]);
+        assert_eq!(input.told()[3], Some(0.0));
+        input.has_speed = [true, false];
+        assert_eq!(input.told()[..4], [Some(0.0); 4]);
     }
 
     #[test]

@@ -32,8 +32,7 @@ pub(super) fn row(
 pub(super) const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// What a velocity is that no host tells.
-const UNTOLD: &str =
-    "if never set, derived from the displacements, or 0 where solver.input_reconstruction is 1";
+const UNTOLD: &str = "if never set but to 0, derived from displacements that change, or 0 where solver.input_reconstruction is 1";
 
 pub(super) fn point(variables: &mut Vec<Variable>, point: usize, name: &str) {
     let body = Body::Point(point);
