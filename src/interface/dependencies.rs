@@ -9,12 +9,17 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::parameters::Property;
 use super::{Binding, Interface, LineResult, Parameter, Variable};
-use crate::model::Model;
+use crate::model::{Body, Model};
 use crate::scene::Scene;
 
 /// Fills [`Variable::initial_dependencies`] of all outputs and calculated parameters.
 pub(super) fn fill(variables: &mut [Variable], scene: &Scene, model: &Model) {
-    let knowns: Vec<(u32, Binding)> = variables
+    let attached_to = |body: Body| -> Vec<usize> {
+        let points = (0..model.points.len()).filter(|&point| model.moves_with(point, body));
+        let attached = points.flat_map(|point| &model.points[point].attached);
+        attached.map(|(line, _)| *line).collect()
+    };
+    let knowns: Vec<Known> = variables
         .iter()
         .enumerate()
         .filter(|(_, variable)| {
@@ -23,17 +28,19 @@ pub(super) fn fill(variables: &mut [Variable], scene: &Scene, model: &Model) {
                 Binding::Displacement { .. } | Binding::LengthChange { .. } | Binding::Parameter(_)
             )
         })
-        .map(|(index, variable)| (Interface::reference(index), variable.binding.clone()))
+        .map(|(index, variable)| Known {
+            reference: Interface::reference(index),
+            binding: variable.binding.clone(),
+            moves: match variable.binding {
+                Binding::Displacement { body, .. } => attached_to(body),
+                _ => Vec::new(),
+            },
+        })
         .collect();
     let mut known_scopes: BTreeMap<(BTreeSet<usize>, bool), Vec<u32>> = BTreeMap::new();
     for variable in variables {
         let (lines, closed_form) = match &variable.binding {
-            Binding::EndForce { body, .. } => {
-                let points =
-                    (0..model.points.len()).filter(|&point| model.moves_with(point, *body));
-                let attached = points.flat_map(|point| &model.points[point].attached);
-                (networks_of(model, attached.map(|(line, _)| *line)), false)
-            }
+            Binding::EndForce { body, .. } => (networks_of(model, attached_to(*body)), false),
             Binding::Line { line, result } if is_catenary(*result) => {
                 (BTreeSet::from([*line]), true)
             }
@@ -51,10 +58,8 @@ pub(super) fn fill(variables: &mut [Variable], scene: &Scene, model: &Model) {
                     lines,
                     closed_form: *closed_form,
                 };
-                let of_scope = knowns
-                    .iter()
-                    .filter(|(_, binding)| scope.depends_on(binding));
-                of_scope.map(|(reference, _)| *reference).collect()
+                let of_scope = knowns.iter().filter(|known| scope.depends_on(known));
+                of_scope.map(|known| known.reference).collect()
             })
             .clone();
     }
@@ -81,6 +86,14 @@ fn networks_of(model: &Model, lines: impl IntoIterator<Item = usize>) -> BTreeSe
         .collect()
 }
 
+/// What a host may set before the simulation starts.
+struct Known {
+    reference: u32,
+    binding: Binding,
+    /// Lines at the points that it moves.
+    moves: Vec<usize>,
+}
+
 /// The lines whose equilibrium a variable is read from.
 struct Scope<'a> {
     scene: &'a Scene,
@@ -90,13 +103,10 @@ struct Scope<'a> {
 }
 
 impl Scope<'_> {
-    fn depends_on(&self, known: &Binding) -> bool {
-        match known {
-            Binding::Displacement { body, .. } => {
-                let points = &self.model.points;
-                let moved = (0..points.len()).filter(|&point| self.model.moves_with(point, *body));
-                let mut attached = moved.flat_map(|point| &points[point].attached);
-                !self.closed_form && attached.any(|(line, _)| self.lines.contains(line))
+    fn depends_on(&self, known: &Known) -> bool {
+        match &known.binding {
+            Binding::Displacement { .. } => {
+                !self.closed_form && known.moves.iter().any(|line| self.lines.contains(line))
             }
             Binding::LengthChange { line } => !self.closed_form && self.lines.contains(line),
             Binding::Parameter(parameter) => self.depends_on_parameter(parameter),
