@@ -205,6 +205,36 @@ fn the_stiffness_of_elements_is_the_slope_of_their_force() {
     assert_is_slope(&OC3.scene(20, ""), 1e-4, 1e-3);
 }
 
+/// A light umbilical in a current of 2 m/s.
+fn umbilical() -> Scene {
+    let text = r#"
+        water = { density = 1025.0, surface = false, current = { velocity = [2.0, 0.0, 0.0] } }
+        vessels = [{ name = "barge", position = [0.0, 0.0, 0.0], attitude = [0.05, -0.1, 0.4] }]
+        line_types.umbilical = { mass = 10.0, diameter = 0.1, axial_stiffness = 1e7, drag_normal = 1.2 }
+        points = [
+          { name = "end", position = [0.0, 0.0, -100.0], kind = "fixed" },
+          { name = "hang", position = [56.0, -22.0, -4.0], kind = "coupled", on = "barge" },
+        ]
+        lines = [{ name = "umbilical", from = "end", to = "hang", sections = [{ type = "umbilical", length = 150.0, elements = 60 }] }]
+        "#;
+    Scene::from_toml(text).unwrap()
+}
+
+#[test]
+fn the_stiffness_in_a_current_knows_how_the_drag_changes() {
+    let scene = umbilical();
+    let stiffness = matrix(posed(&scene, [0.0; 6]).vessel_stiffness(0).unwrap());
+    // as `differences`, which adds nothing to the angles of the reference attitude
+    let mut level = scene.clone();
+    level.vessels[0].attitude = [0.0; 3];
+    assert_is_slope(&level, 1e-2, 1e-3);
+    let force = |z: f64| posed(&scene, [0.0, 0.0, z, 0.0, 0.0, 0.0]).vessel_force(0)[0];
+    let slope = (force(-0.05) - force(0.05)) / 0.1;
+    approx::assert_relative_eq!(stiffness[(0, 2)], slope, max_relative = 1e-3);
+    // drag is not conservative
+    assert!((stiffness[(0, 2)] - stiffness[(2, 0)]).abs() > 0.5 * stiffness[(2, 2)].abs());
+}
+
 #[test]
 fn the_stiffness_of_catenaries_is_the_slope_of_their_force() {
     let solver = "integrator = \"quasi_static\"";

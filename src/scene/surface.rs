@@ -1,14 +1,15 @@
 //! Which lines may come out of the water.
 
 use super::notes::{length, reference_position};
-use super::{Line, Point, PointKind, Scene};
+use super::{Line, MotionPath, Point, PointKind, Scene};
 
 /// Standard deviations of the elevation that a trough of waves is deep [-].
 const TROUGH: f64 = 3.0;
 
 impl Scene {
     /// Whether a line knows the water's surface: as `water.surface` says; else where one of its ends lies above z = 0, or above the troughs of waves, in the reference
-    /// configuration, or where it is buoyant or hangs on a free point that floats, and long enough to come up. Beams never do.
+    /// configuration or where the scene's own motion takes it, or where it is buoyant or hangs on a free point that floats, and long enough to come
+    /// up. Beams never do.
     pub fn meets_surface(&self, line: &Line) -> bool {
         let Some(water) = &self.water else {
             return false;
@@ -22,7 +23,8 @@ impl Scene {
     fn comes_up(&self, line: &Line) -> bool {
         let end = |name: &str| {
             let point = self.points.iter().find(|point| point.name == name)?;
-            Some((reference_position(self, point)?[2], self.floats(point)))
+            let height = reference_position(self, point)?[2] + self.rise(point);
+            Some((height, self.floats(point)))
         };
         let (Some((a, a_floats)), Some((b, b_floats))) = (end(&line.from), end(&line.to)) else {
             return false;
@@ -44,6 +46,21 @@ impl Scene {
         let waves = self.water.as_ref().and_then(|water| water.waves.as_ref());
         let trough = waves.map_or(0.0, |waves| -TROUGH * waves.deviation());
         highest > trough
+    }
+
+    /// How far the scene's own motion lifts a point at most [m].
+    fn rise(&self, point: &Point) -> f64 {
+        let body = point.on.as_ref().unwrap_or(&point.name);
+        let path = point.motion.as_ref().or_else(|| self.motion.get(body));
+        let Some([_, _, z, roll, pitch, _]) = path.map(MotionPath::greatest) else {
+            return 0.0;
+        };
+        let [x, y, height] = point.position;
+        let arm = match point.on {
+            Some(_) => x.hypot(y).hypot(height),
+            None => 0.0,
+        };
+        z + arm * (roll + pitch).min(2.0) // no farther than to the other side
     }
 
     /// Whether a free point is lighter than the water it displaces.
@@ -69,6 +86,7 @@ mod tests {
               {{ name = "a", position = [0.0, 0.0, {a}], kind = "fixed" }},
               {{ name = "b", position = [10.0, 0.0, {b}], {end} }},
             ]
+            vessels = [{{ name = "barge", position = [0.0, 0.0, 0.0] }}]
             lines = [{{ name = "line", from = "a", to = "b", sections = [{{ type = "rope", length = 30.0 }}] }}]
             "#
         );
@@ -93,6 +111,39 @@ mod tests {
         assert!(knows(&scene("", heavy, [-20.0, -5.0], buoy)));
         assert!(!knows(&scene("", heavy, [-40.0, -5.0], buoy)));
         assert!(!knows(&scene("", heavy, [-20.0, -5.0], clump)));
+    }
+
+    #[test]
+    fn a_line_knows_the_surface_where_the_scenes_motion_lifts_an_end_out() {
+        let held = "kind = \"coupled\"";
+        let mut scene = scene("", "mass = 20.0", [-20.0, -2.0], held);
+        assert!(!knows(&scene));
+        for (path, lifts) in [
+            ("z = [[1.5, 10.0]]", false),
+            ("z = [[1.5, 10.0], [1.0, 7.0]]", true),
+            ("x = [[9.0, 10.0]]", false),
+            ("table = [[0.0, 0.0, 0.0, 0.0], [5.0, 0.0, 0.0, 2.1]]", true),
+            (
+                "table = [[0.0, 0.0, 0.0, 0.0], [5.0, 0.0, 0.0, -2.1]]",
+                false,
+            ),
+        ] {
+            let moved = toml::from_str(path).unwrap();
+            scene.motion.insert("b".to_string(), moved);
+            assert_eq!(knows(&scene), lifts, "{path}");
+        }
+    }
+
+    #[test]
+    fn a_line_knows_the_surface_where_a_vessel_rolls_its_end_out() {
+        let held = "kind = \"coupled\", on = \"barge\"";
+        let mut scene = scene("", "mass = 20.0", [-20.0, -2.0], held);
+        assert!(!knows(&scene));
+        for (roll, lifts) in [(0.1, false), (0.25, true)] {
+            let path = toml::from_str(&format!("roll = [[{roll}, 10.0]]")).unwrap();
+            scene.motion.insert("barge".to_string(), path);
+            assert_eq!(knows(&scene), lifts);
+        }
     }
 
     #[test]

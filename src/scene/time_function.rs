@@ -244,6 +244,25 @@ impl MotionPath {
         }
     }
 
+    /// Greatest displacements [m], if any is above 0, and sizes of rotations [rad], all sines being taken to be in phase.
+    pub fn greatest(&self) -> [f64; 6] {
+        match self {
+            MotionPath::Harmonic(motion) => motion.axes().map(|(_, sines)| {
+                let amplitudes = sines.iter().filter_map(|sine| sine.first());
+                amplitudes.map(|amplitude| amplitude.abs()).sum()
+            }),
+            MotionPath::File(MotionFile { rows, .. }) | MotionPath::Table(rows) => {
+                std::array::from_fn(|axis| {
+                    let values = rows.iter().map(|row| row[1 + axis]);
+                    match axis {
+                        0..3 => values.fold(0.0, f64::max),
+                        _ => values.map(f64::abs).fold(0.0, f64::max),
+                    }
+                })
+            }
+        }
+    }
+
     /// Whether it rotates.
     pub fn turns(&self) -> bool {
         match self {

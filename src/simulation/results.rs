@@ -5,15 +5,19 @@ use std::sync::OnceLock;
 use nalgebra::{Vector3, Vector6};
 use serde::Serialize;
 
-use super::{Simulation, held};
+use super::{Simulation, held, start};
 use crate::dynamics::advance::Counters;
 use crate::dynamics::beam::{BeamView, Momentum};
 use crate::dynamics::ledger::{Energy, Ledger};
 use crate::dynamics::reaction;
-use crate::model::{ClosedForm, End, Line, LineState, Role, joint};
+use crate::math::attitude::angle_rates;
+use crate::model::{Body, ClosedForm, End, Line, LineState, Network, Role, joint};
 use crate::scene::Integrator;
 use crate::statics::catenary::Catenary;
 use crate::statics::{self, assembly, catenary_network};
+
+/// How far a vessel in a current goes to either side to tell its stiffness [m, rad].
+const ASIDE: f64 = 1e-3;
 
 /// A node of a line's profile.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -94,13 +98,70 @@ impl Simulation {
     /// Stiffness of the mooring on a vessel as it is now: minus the change of the static part of [`Simulation::vessel_force`], in [N/m]
     /// and [N], and moment, in [N] and [N m], with displacement along and small rotation about the global axes through the vessel's
     /// origin; rows of force. `None` where the lines are not stable as they are, or one of them is a beam. See
-    /// [`statics::stiffness`].
+    /// [`statics::stiffness`]. Where a current drags lines, its force changes with them: the stiffness is then that of equilibria on both sides
+    /// of the pose that is set.
     pub fn vessel_stiffness(&self, vessel: usize) -> Option<[[f64; 6]; 6]> {
         let (model, state) = (&*self.model, &self.snapshot.state);
         let mut work = assembly::Workspace::new(model);
         let origin = self.vessel_origin(vessel);
         let stiffness = statics::stiffness::of_vessel(model, state, vessel, origin, &mut work)?;
-        Some(stiffness.transpose().into()) // an array of columns
+        match self.drifts(vessel) {
+            true => self.stiffness_in_current(vessel),
+            false => Some(stiffness.transpose().into()), // an array of columns
+        }
+    }
+
+    /// Whether a current acts on anything that hangs together with a vessel.
+    fn drifts(&self, vessel: usize) -> bool {
+        let model = &*self.model;
+        let holds = |network: &&Network| {
+            let mut lines = network.lines.iter();
+            lines.any(|&line| {
+                let ends = model.lines[line].ends.iter();
+                ends.clone()
+                    .any(|&point| model.moves_with(point, Body::Vessel(vessel)))
+            })
+        };
+        let dragged = |network: &Network| {
+            let points = network.free_points.iter();
+            let mut free = points.filter_map(|&point| model.points[point].free());
+            let mut lines = network.lines.iter();
+            lines.any(|&line| model.lines[line].drifts(model))
+                || model.current.is_some() && free.any(|free| free.sphere.is_some())
+        };
+        model.networks.iter().filter(holds).any(dragged)
+    }
+
+    fn stiffness_in_current(&self, vessel: usize) -> Option<[[f64; 6]; 6]> {
+        let mut stiffness = [[0.0; 6]; 6];
+        for axis in 0..6 {
+            let aside =
+                |way: f64| Some(self.at_rest_aside(vessel, axis, way)?.vessel_force(vessel));
+            let [below, above] = [aside(-ASIDE)?, aside(ASIDE)?];
+            for (row, force) in stiffness.iter_mut().enumerate() {
+                force[axis] = (below[row] - above[row]) / (2.0 * ASIDE);
+            }
+        }
+        Some(stiffness)
+    }
+
+    /// The mooring in equilibrium with a vessel moved along, or turned about, a global axis from the pose that is set [m, rad].
+    fn at_rest_aside(&self, vessel: usize, axis: usize, way: f64) -> Option<Simulation> {
+        let mut aside = self.clone();
+        let mut pose = self.pose(vessel);
+        if axis < 3 {
+            pose[axis] += way;
+        } else {
+            let mut spin = Vector3::zeros();
+            spin[axis - 3] = way;
+            let angles = Vector3::from_row_slice(&pose[3..]) + self.model.vessels[vessel].attitude;
+            let turn = angle_rates(angles, spin)?;
+            (0..3).for_each(|angle| pose[3 + angle] += turn[angle]);
+        }
+        aside.set_pose(vessel, pose);
+        let time = self.snapshot.state.time;
+        aside.begin(time, false, start::Shapes::Equilibrium).ok()?;
+        Some(aside)
     }
 
     /// Force [N, N m] and stiffness [N/m, N, N m] of the mooring on a vessel were it at rest as it is now, every network that has one on
