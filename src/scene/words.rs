@@ -241,7 +241,17 @@ impl Scene {
         let integrator = match solver.integrator {
             Integrator::Auto => "integrator chosen from the step limits".to_string(),
             Integrator::QuasiStatic => {
-                "quasi-static: an equilibrium at every output, no inertia, no drag".to_string()
+                let flows = self.water.as_ref().is_some_and(|w| w.current.is_some());
+                let drag = match flows {
+                    true => "no drag but the current's",
+                    false => "no drag",
+                };
+                let rub = self.seabed.as_ref().is_some_and(|bed| bed.friction.acts());
+                let laid = match rub {
+                    true => ", friction of the bed laid anew in each",
+                    false => "",
+                };
+                format!("quasi-static: an equilibrium at every output, no inertia, {drag}{laid}")
             }
             other => format!("integrator {}", integrator_name(other)),
         };
