@@ -311,12 +311,12 @@ fn an_end_that_may_let_go_limits_the_step_as_the_half_node_that_it_becomes() {
         let simulation = Simulation::new(&scene).unwrap();
         simulation.choices().next().unwrap().explicit.step
     };
-    // half of 2/ω, with ω² = 2 Σk/M
+    // 0.38 of 2/ω, with ω² = 2 Σk/M
     let inner = (2.0 * (1.0e5 + 1.0e6) / (20.0 * 5.5_f64)).sqrt();
     let end = (2.0 * 1.0e6 / (20.0 * 0.5_f64)).sqrt();
-    assert_relative_eq!(limit(""), 1.0 / inner, max_relative = 1e-9);
-    assert_relative_eq!(limit("release = \"a\""), 1.0 / inner, max_relative = 1e-9);
-    assert_relative_eq!(limit("release = \"b\""), 1.0 / end, max_relative = 1e-9);
+    assert_relative_eq!(limit(""), 0.76 / inner, max_relative = 1e-9);
+    assert_relative_eq!(limit("release = \"a\""), 0.76 / inner, max_relative = 1e-9);
+    assert_relative_eq!(limit("release = \"b\""), 0.76 / end, max_relative = 1e-9);
 }
 
 #[test]

@@ -158,6 +158,16 @@ fn note_points(scene: &Scene, notes: &mut Vec<Note>) {
             let text = "above z = 0, but the water is taken to fill all space for its lines, so that they are submerged there too";
             say(notes, format!("{at}.position"), text);
         }
+        let lifted = reference_position(scene, point).map_or(0.0, |place| place[2]);
+        let lifted = lifted + scene.rise(point);
+        let open = scene.water.as_ref().is_some_and(|w| w.surface.is_none());
+        if open && !above && lifted > 0.0 && blind {
+            let text = format!(
+                "the scene's motion takes it to z = {lifted:.3} m, but the water is taken to fill all space for its lines, so that they are submerged \
+                 there too; `surface = true` in [water] ends it at z = 0"
+            );
+            say(notes, at.clone(), text);
+        }
         let bed = scene.seabed.as_ref().filter(|bed| !bed.is_level());
         if let (Some(bed), Some([x, y, z])) = (bed, reference_position(scene, point))
             && z < bed.lowest_at([x, y]) - BURIED

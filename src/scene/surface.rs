@@ -8,8 +8,7 @@ const TROUGH: f64 = 3.0;
 
 impl Scene {
     /// Whether a line knows the water's surface: as `water.surface` says; else where one of its ends lies above z = 0, or above the troughs of waves, in the reference
-    /// configuration or where the scene's own motion takes it, or where it is buoyant or hangs on a free point that floats, and long enough to come
-    /// up. Beams never do.
+    /// configuration, or where it is buoyant or hangs on a free point that floats, and long enough to come up. Beams never do.
     pub fn meets_surface(&self, line: &Line) -> bool {
         let Some(water) = &self.water else {
             return false;
@@ -23,8 +22,7 @@ impl Scene {
     fn comes_up(&self, line: &Line) -> bool {
         let end = |name: &str| {
             let point = self.points.iter().find(|point| point.name == name)?;
-            let height = reference_position(self, point)?[2] + self.rise(point);
-            Some((height, self.floats(point)))
+            Some((reference_position(self, point)?[2], self.floats(point)))
         };
         let (Some((a, a_floats)), Some((b, b_floats))) = (end(&line.from), end(&line.to)) else {
             return false;
@@ -49,7 +47,7 @@ impl Scene {
     }
 
     /// How far the scene's own motion lifts a point at most [m].
-    fn rise(&self, point: &Point) -> f64 {
+    pub(super) fn rise(&self, point: &Point) -> f64 {
         let body = point.on.as_ref().unwrap_or(&point.name);
         let path = point.motion.as_ref().or_else(|| self.motion.get(body));
         let Some([_, _, z, roll, pitch, _]) = path.map(MotionPath::greatest) else {
@@ -114,36 +112,29 @@ mod tests {
     }
 
     #[test]
-    fn a_line_knows_the_surface_where_the_scenes_motion_lifts_an_end_out() {
-        let held = "kind = \"coupled\"";
-        let mut scene = scene("", "mass = 20.0", [-20.0, -2.0], held);
-        assert!(!knows(&scene));
-        for (path, lifts) in [
-            ("z = [[1.5, 10.0]]", false),
-            ("z = [[1.5, 10.0], [1.0, 7.0]]", true),
-            ("x = [[9.0, 10.0]]", false),
-            ("table = [[0.0, 0.0, 0.0, 0.0], [5.0, 0.0, 0.0, 2.1]]", true),
-            (
-                "table = [[0.0, 0.0, 0.0, 0.0], [5.0, 0.0, 0.0, -2.1]]",
-                false,
-            ),
+    fn the_scenes_motion_lifts_a_point_by_its_amplitudes_or_its_highest_row() {
+        let mut scene = scene("", "mass = 20.0", [-20.0, -2.0], "kind = \"coupled\"");
+        assert_eq!(scene.rise(&scene.points[1]), 0.0);
+        for (path, rise) in [
+            ("z = [[1.5, 10.0], [-1.0, 7.0]]", 2.5),
+            ("x = [[9.0, 10.0]]", 0.0),
+            ("table = [[0.0, 0.0, 0.0, 0.0], [5.0, 0.0, 0.0, 2.1]]", 2.1),
+            ("table = [[0.0, 0.0, 0.0, 0.0], [5.0, 0.0, 0.0, -2.1]]", 0.0),
         ] {
             let moved = toml::from_str(path).unwrap();
             scene.motion.insert("b".to_string(), moved);
-            assert_eq!(knows(&scene), lifts, "{path}");
+            assert_eq!(scene.rise(&scene.points[1]), rise, "{path}");
         }
     }
 
     #[test]
-    fn a_line_knows_the_surface_where_a_vessel_rolls_its_end_out() {
+    fn a_vessel_lifts_a_point_by_its_arm_as_it_rolls() {
         let held = "kind = \"coupled\", on = \"barge\"";
         let mut scene = scene("", "mass = 20.0", [-20.0, -2.0], held);
-        assert!(!knows(&scene));
-        for (roll, lifts) in [(0.1, false), (0.25, true)] {
-            let path = toml::from_str(&format!("roll = [[{roll}, 10.0]]")).unwrap();
-            scene.motion.insert("barge".to_string(), path);
-            assert_eq!(knows(&scene), lifts);
-        }
+        let path = toml::from_str("roll = [[0.1, 10.0]]\nz = [[0.5, 9.0]]").unwrap();
+        scene.motion.insert("barge".to_string(), path);
+        let rise = 0.5 + 0.1 * f64::hypot(10.0, 2.0);
+        approx::assert_relative_eq!(scene.rise(&scene.points[1]), rise, max_relative = 1e-12);
     }
 
     #[test]
