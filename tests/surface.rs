@@ -2,6 +2,7 @@
 
 mod common;
 
+use approx::assert_relative_eq;
 use common::*;
 use moorline::model::{End, Model};
 use moorline::physics::surface::emerged;
@@ -289,7 +290,10 @@ fn a_line_under_water_does_not_feel_that_it_knows_the_surface() {
             }
             history
         });
-        assert_eq!(tensions[0], tensions[1], "{integrator:?}");
+        // but for rounding: lines that know it are laid out otherwise
+        for (with, without) in tensions[0].iter().zip(&tensions[1]) {
+            assert_relative_eq!(with, without, max_relative = 1e-10);
+        }
     }
 }
 

@@ -145,11 +145,11 @@ impl AxialWork {
     /// kernel does not mix.
     pub fn new(model: &Model, line: &Line, rho: f64) -> Option<AxialWork> {
         let water = Water::around(model, line);
-        let layout = Layout::new(line, water, &model.solver, FEW_ROWS)?;
+        let layout = Layout::new(line, water, &model.solver, FEW_ROWS, true)?;
         let count = layout.rows().count();
         let column = |values: &[f64]| layout.fold.column(values, 1.0);
         let masses = [&line.nodes.mass_normal, &line.nodes.mass_tangent].map(|m| column(m));
-        let free = interior(layout.segment_count);
+        let free = interior(layout.fold, layout.segment_count);
         let node = |at: usize| NodeRow {
             mass_normal: masses[0].load(at),
             mass_tangent: masses[1].load(at),
@@ -243,7 +243,9 @@ impl AxialWork {
 
     fn set_free(&mut self, end: End, free: bool) {
         let at = self.layout.end_slot(end);
-        self.rows.nodes[at.row - 1].free[at.lane] = f64::from(u8::from(free));
+        if self.layout.has_row(at) {
+            self.rows.nodes[at.row - 1].free[at.lane] = f64::from(u8::from(free));
+        }
     }
 
     /// Starts the books of the steps to come, the ends and the surface being where they are.

@@ -88,11 +88,20 @@ pub(super) fn inverse_norm_of(square: f64) -> f64 {
 }
 
 impl Layout {
-    /// Arrays for a line, whose kernel has no use for vectors of eight numbers over `few_rows` or less; `None` where its sections have
-    /// different strain measures, which the kernels do not mix.
-    pub fn new(line: &Line, water: Water<'_>, solver: &Solver, few_rows: usize) -> Option<Layout> {
+    /// Arrays for a line, whose kernel has no use for vectors of eight numbers over `few_rows` or less, and whose end B is where it is put
+    /// as long as it is `held` and does not part; `None` where its sections have different strain measures, which the kernels do not mix.
+    pub fn new(
+        line: &Line,
+        water: Water<'_>,
+        solver: &Solver,
+        few_rows: usize,
+        held: bool,
+    ) -> Option<Layout> {
         let n = line.segment_count();
-        let fold = Fold::new(n + 1);
+        let fold = match held && is_plain_at_b(line) {
+            true => Fold::without_last(n + 1),
+            false => Fold::new(n + 1),
+        };
         let keep = |values: &[f64]| fold.column(values, 0.0);
         let nodes = &line.nodes;
         let inverse_lengths: Vec<f64> = line.segments.length.iter().map(|l| 1.0 / l).collect();
@@ -171,9 +180,7 @@ impl Layout {
     #[inline(always)]
     pub fn renew_neighbours(&mut self, parted: [bool; 2]) {
         self.position.wrap();
-        let first = self.velocity.load(1);
-        self.velocity
-            .store(first.moved_down(), self.fold.rows() + 1);
+        self.velocity.wrap_after();
         self.part_ghosts(parted);
     }
 
@@ -181,8 +188,8 @@ impl Layout {
     #[inline(always)]
     pub fn part_ghosts(&mut self, parted: [bool; 2]) {
         for end in [End::A, End::B] {
-            if parted[end as usize] {
-                let at = self.end_slot(end);
+            let at = self.end_slot(end);
+            if parted[end as usize] && self.has_row(at) {
                 let beyond = if end == End::A {
                     at.before()
                 } else {
@@ -240,6 +247,12 @@ impl Layout {
             End::A => 0,
             End::B => self.segment_count,
         }
+    }
+
+    /// Whether a node has a row, or stands behind the last one.
+    #[inline(always)]
+    pub fn has_row(&self, at: Slot) -> bool {
+        at.row <= self.fold.rows()
     }
 
     /// Where the node at an end stands.
@@ -380,9 +393,17 @@ impl Layout {
     }
 }
 
+/// Whether nothing is worked out for the node at end B of a line where a point holds it: it does not part, and neither winch nor water's surface,
+/// rough bed or memory know it.
+fn is_plain_at_b(line: &Line) -> bool {
+    let parts = line.parting.is_some_and(|[_, b]| b.may_part());
+    let knows = line.surface.is_some() || line.bottom().is_some() || line.winch.is_some();
+    !parts && !knows && line.segments.viscoelastic.is_none()
+}
+
 /// 1 for nodes between the ends, 0 elsewhere.
-pub(super) fn interior(segment_count: usize) -> Column {
+pub(super) fn interior(fold: Fold, segment_count: usize) -> Column {
     let mut interior = vec![1.0; segment_count + 1];
     (interior[0], interior[segment_count]) = (0.0, 0.0);
-    Fold::new(segment_count + 1).column(&interior, 0.0)
+    fold.column(&interior, 0.0)
 }

@@ -221,8 +221,9 @@ impl LineWork {
         solver: &Solver,
     ) -> Option<LineWork> {
         let winch = WinchWork::new(line);
+        let is_held = held[1] && winch.is_none();
         let line = line.winch.as_ref().map_or(line, |winch| winch.reel());
-        let layout = Layout::new(line, water, solver, FEW_ROWS)?;
+        let layout = Layout::new(line, water, solver, FEW_ROWS, is_held)?;
         let inverse_mass: Vec<f64> = line
             .nodes
             .mass_normal
@@ -243,7 +244,7 @@ impl LineWork {
             water: WaterWork::new(line, &layout),
             spring: Field::zeros(layout.fold),
             turning: 0.0,
-            interior: interior(layout.segment_count),
+            interior: interior(layout.fold, layout.segment_count),
             tied: held,
             parted: [false; 2],
             half_places: [Vector3::zeros(); 2],

@@ -14,6 +14,9 @@
 //! The nodes before and after those of a row are those of the rows before and after it: no lane is shifted, and no vector is read that
 //! overlaps two that were written. The ghost rows repeat the rows m and 1, moved on by a lane, and are renewed by `wrap` when these
 //! have changed. Nodes beyond the last one are padding. Segment i, which lies between the nodes i and i + 1, stands where node i does.
+//!
+//! The last lane of the last ghost row repeats nothing: node 4m stands there, and `wrap` leaves it alone. A chain whose last node needs no row, since
+//! nothing is worked out for it, has one row less where its segments fill their rows ([`Fold::without_last`]).
 
 use nalgebra::Vector3;
 use std::ops::{Index, IndexMut};
@@ -43,6 +46,11 @@ impl Fold {
         }
     }
 
+    /// For `count` nodes, of which the last needs no row.
+    pub fn without_last(count: usize) -> Fold {
+        Fold::new(count - 1)
+    }
+
     /// Number of rows without ghosts [-].
     pub fn rows(self) -> usize {
         self.rows
@@ -56,16 +64,19 @@ impl Fold {
     /// Where node `i` stands.
     pub fn slot(self, i: usize) -> Slot {
         // quicker than a division, and steps ask for their ends
-        let lane = (1..=LANES).map(|k| usize::from(i >= k * self.rows)).sum();
+        let lane = (1..LANES).map(|k| usize::from(i >= k * self.rows)).sum();
         Slot {
             row: i - lane * self.rows + 1,
             lane,
         }
     }
 
-    /// Where the nodes stand, from the first to the last that there is room for.
+    /// Where the nodes stand, from the first to the last that there is room for, and to the one behind these.
     pub fn slots(self) -> impl Iterator<Item = Slot> {
-        (0..LANES).flat_map(move |lane| (1..=self.rows).map(move |row| Slot { row, lane }))
+        let rows = 1..=self.rows;
+        let inner =
+            (0..LANES).flat_map(move |lane| rows.clone().map(move |row| Slot { row, lane }));
+        inner.chain(std::iter::once(self.slot(self.room())))
     }
 
     /// A number for every node, and `padding` behind them.
@@ -154,7 +165,7 @@ impl Column {
     pub fn wrap(&mut self) {
         let last = self.rows.len() - 1;
         self.rows[0] = self.rows[last - 1].moved_up();
-        self.rows[last] = self.rows[1].moved_down();
+        self.rows[last] = self.rows[1].moved_down_before(self.rows[last]);
     }
 
     /// How it is folded.
@@ -233,7 +244,14 @@ impl Field {
     pub fn wrap(&mut self) {
         let last = self.rows.len() - 1;
         self.rows[0] = self.rows[last - 1].moved_up();
-        self.rows[last] = self.rows[1].moved_down();
+        self.wrap_after();
+    }
+
+    /// Renews the ghosts behind the last nodes of the lanes.
+    #[inline(always)]
+    pub fn wrap_after(&mut self) {
+        let last = self.rows.len() - 1;
+        self.rows[last] = self.rows[1].moved_down_before(self.rows[last]);
     }
 }
 
@@ -256,6 +274,21 @@ mod tests {
                 assert!(i == 0 || column[at.before()] == i as f64 - 1.0);
                 assert!(i + 1 == count || column[at.after()] == i as f64 + 1.0);
             }
+        }
+    }
+
+    #[test]
+    fn a_last_node_without_a_row_stands_behind_the_others() {
+        for count in 2..30 {
+            let fold = Fold::without_last(count);
+            assert!(fold.room() + 1 >= count);
+            let values: Vec<f64> = (0..count).map(|i| i as f64).collect();
+            let mut column = fold.column(&values, -1.0);
+            column.wrap();
+            assert!(column.values(count).eq(values));
+            let last = fold.slot(count - 1);
+            assert_eq!(last.row > fold.rows(), fold.room() == count - 1);
+            assert_eq!(column[last.before()], count as f64 - 2.0);
         }
     }
 

@@ -169,10 +169,22 @@ impl Lanes {
         Lanes([self.0[3], self.0[0], self.0[1], self.0[2]])
     }
 
+    /// Lane k takes the number of lane k − 1, and lane 0 that of the same lane of another.
+    #[inline(always)]
+    pub fn moved_up_after(self, first: Lanes) -> Lanes {
+        Lanes([first.0[0], self.0[0], self.0[1], self.0[2]])
+    }
+
     /// Lane k takes the number of lane k + 1, and lane 3 that of lane 0.
     #[inline(always)]
     pub fn moved_down(self) -> Lanes {
         Lanes([self.0[1], self.0[2], self.0[3], self.0[0]])
+    }
+
+    /// Lane k takes the number of lane k + 1, and lane 3 that of the same lane of another.
+    #[inline(always)]
+    pub fn moved_down_before(self, last: Lanes) -> Lanes {
+        Lanes([self.0[1], self.0[2], self.0[3], last.0[3]])
     }
 
     /// The first three lanes.
@@ -283,13 +295,23 @@ impl Vectors {
         }
     }
 
-    /// As [`Lanes::moved_down`].
+    /// As [`Lanes::moved_up_after`].
     #[inline(always)]
-    pub fn moved_down(self) -> Vectors {
+    pub fn moved_up_after(self, first: Vectors) -> Vectors {
         Vectors {
-            x: self.x.moved_down(),
-            y: self.y.moved_down(),
-            z: self.z.moved_down(),
+            x: self.x.moved_up_after(first.x),
+            y: self.y.moved_up_after(first.y),
+            z: self.z.moved_up_after(first.z),
+        }
+    }
+
+    /// As [`Lanes::moved_down_before`].
+    #[inline(always)]
+    pub fn moved_down_before(self, last: Vectors) -> Vectors {
+        Vectors {
+            x: self.x.moved_down_before(last.x),
+            y: self.y.moved_down_before(last.y),
+            z: self.z.moved_down_before(last.z),
         }
     }
 

@@ -217,6 +217,10 @@ impl AxialWork {
         for end in self.held_ends() {
             let at = self.layout.end_slot(end);
             let secant = (ends[end as usize] - self.layout.position.get(at)) / step.drift;
+            if !self.layout.has_row(at) {
+                self.layout.velocity_before.set(at, secant); // where the new velocities go
+                continue;
+            }
             let node = &mut self.rows.nodes[at.row - 1];
             node.fall.set(at.lane, secant);
             node.loose.set(at.lane, secant);

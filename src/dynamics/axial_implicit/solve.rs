@@ -51,7 +51,7 @@ impl AxialWork {
     pub(super) fn weigh_nodes<const BED: u8>(&mut self) {
         let segments = &self.rows.segments;
         let direction = |at: usize| segments[at].direction;
-        let mut q = direction(segments.len() - 1).moved_up();
+        let mut q = direction(segments.len() - 1).moved_up_after(Vectors::zero());
         for (at, node) in self.rows.nodes.iter_mut().enumerate() {
             if at > 0 {
                 q = direction(at - 1);
@@ -71,8 +71,14 @@ impl AxialWork {
             segment.assemble(relative, [low.forms, high.forms], sizes);
         }
         let (low, high) = (&nodes[last], &nodes[0]);
-        let relative = high.loose.moved_down() - low.loose;
-        let forms = [low.forms, high.forms.map(Lanes::moved_down)];
+        // behind the last node there is none, or an end that moves as it is put
+        let zero = Lanes::splat(0.0);
+        let behind = self.layout.velocity_before.load(nodes.len() + 1);
+        let relative = high.loose.moved_down_before(behind) - low.loose;
+        let forms = [
+            low.forms,
+            high.forms.map(|form| form.moved_down_before(zero)),
+        ];
         self.rows.segments[last].assemble(relative, forms, sizes);
     }
 
@@ -110,8 +116,8 @@ impl AxialWork {
     ) {
         let (segments, kick) = (&self.rows.segments, sizes.kick);
         let pull = |at: usize| segments[at].direction.scale(kick * segments[at].tension);
-        let mut below = segments[segments.len() - 1].direction.moved_up();
-        below = below.scale(kick * before);
+        let last = segments[segments.len() - 1].direction;
+        let mut below = last.moved_up_after(Vectors::zero()).scale(kick * before);
         for (at, node) in self.rows.nodes.iter_mut().enumerate() {
             if at > 0 {
                 below = pull(at - 1);

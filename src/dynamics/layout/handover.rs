@@ -148,16 +148,17 @@ impl Layout {
         let mut nodes = nodes.first(count);
         let (rows, mut sound) = (self.fold.rows(), Lanes::splat(1.0));
         for row in 0..rows {
-            let at = row + 1;
-            let (half, before) = (self.velocity.load(at), self.velocity_before.load(at));
-            let velocity = half + (half - before).scale(extrapolation);
-            let of = [self.position.load(at), velocity, half, before];
-            sound = sound.where_positive(self.soundness(at));
+            let values = self.motion(row + 1, extrapolation);
+            sound = sound.where_positive(self.soundness(row + 1));
             // a loop over lanes would be made one of vectors, which cannot be written so
-            nodes.take(row, 0, &of);
-            nodes.take(rows + row, 1, &of);
-            nodes.take(2 * rows + row, 2, &of);
-            nodes.take(3 * rows + row, 3, &of);
+            nodes.take(row, 0, &values);
+            nodes.take(rows + row, 1, &values);
+            nodes.take(2 * rows + row, 2, &values);
+            nodes.take(3 * rows + row, 3, &values);
+        }
+        if count > 4 * rows {
+            // the one behind them
+            nodes.take(4 * rows, 3, &self.motion(rows + 1, extrapolation));
         }
         if let Some(bottom) = self.bottom() {
             let places = state.position.iter().zip(self.fold.slots());
@@ -166,6 +167,14 @@ impl Layout {
             }
         }
         sound.all_positive()
+    }
+
+    /// Positions of the nodes of a row [m], and their velocities now, half a step before and three halves before [m/s].
+    #[inline(always)]
+    fn motion(&self, row: usize, extrapolation: Lanes) -> [Vectors; 4] {
+        let (half, before) = (self.velocity.load(row), self.velocity_before.load(row));
+        let velocity = half + (half - before).scale(extrapolation);
+        [self.position.load(row), velocity, half, before]
     }
 
     /// > 0 for the nodes of a row that have a finite position, and a speed that mooring lines reach [m²/s²].

@@ -481,8 +481,9 @@ impl Swept<'_> {
     ) {
         let last = self.last();
         let mut low = self.moving.position[0];
-        let mut pull_low = self.moving.pull[last].moved_up();
-        let mut spring_low = self.moving.spring[last].moved_up();
+        let none = Vectors::zero();
+        let mut pull_low = self.moving.pull[last].moved_up_after(none);
+        let mut spring_low = self.moving.spring[last].moved_up_after(none);
         for at in 1..=last {
             let (moving, nodes) = (&mut self.moving, &self.nodes);
             let (here, velocity) = (moving.position[at], moving.velocity[at]);
