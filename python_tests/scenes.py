@@ -96,6 +96,8 @@ to = "buoy2"
 sections = [{ type = "wire", length = 12.0 }]
 """
 
+TWO_ROPES_ON_THREADS = TWO_ROPES + "\n[solver]\nthreads = 2\n"
+
 ELASTIC = """\
 title = "two elements of a soft cord: cheap enough for many steps"
 

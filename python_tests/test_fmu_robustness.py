@@ -104,6 +104,28 @@ def test_eight_threads_with_an_instance_each_get_the_same_bits(library, version)
     assert rows[0] is not None and all(row == rows[0] for row in rows)
 
 
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="only some systems fork")
+def test_a_forked_process_makes_threads_of_its_own(package, version, tmp_path):
+    unpack(package("TWO_ROPES_ON_THREADS", version), tmp_path)
+    child("""
+        import os, signal, sys
+        from fmu_calls import Library, Slave
+        one = Slave(Library(sys.argv[1])).initialize()
+        rows = one.run(3)
+        read, write = os.pipe()
+        forked = os.fork()
+        if not forked:
+            signal.alarm(30)  # rather than wait for ever
+        rows = repr(one.run(3, start=0.15))
+        one.free()
+        if not forked:
+            os.write(write, rows.encode())
+            os._exit(0)
+        assert os.waitpid(forked, 0)[1] == 0
+        assert os.read(read, 1 << 20).decode() == rows
+        """, tmp_path)
+
+
 def test_instances_do_not_disturb_each_other(slave):
     alone = slave().initialize().run(20, drive=swing)
     one, other = slave().initialize(), slave().initialize(chain__mass=150.0)

@@ -6,13 +6,15 @@
 //! over what others have not begun, so that a thread that wakes late, or is taken away, costs little.
 //!
 //! Threads are made when they are first needed, wait asleep, and have ended when their crew is dropped: a host that frees an
-//! instance may unload the library. Where a host allows no threads everything is done on its own.
+//! instance may unload the library. Where a host allows no threads everything is done on its own. A process that was forked has none of the
+//! threads of the one that it is a copy of, and makes its own.
 //!
 //! A second thread pays where half of the work takes longer than to wake it and to wait for it, and where the machine has a core to spare.
 //! So `auto` gives every thread [`WORTH`] of work at least, as told from the nodes and the internal steps; and every so often it times a few
 //! steps on one thread against as many on all, in turns, and keeps to one where that is as fast ([`Pace`]).
 
 use std::cell::Cell;
+use std::process;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::Instant;
@@ -68,6 +70,8 @@ struct Pool {
     /// Present until it is dropped.
     threads: Option<ThreadPool>,
     handles: Vec<JoinHandle<()>>,
+    /// The process whose threads they are.
+    process: u32,
 }
 
 impl Clone for Crew {
@@ -119,7 +123,8 @@ impl Crew {
         if size == 0 {
             return None;
         }
-        let has = self.pool.as_ref().map_or(0, |pool| pool.handles.len());
+        let own = self.pool.as_ref().filter(|pool| pool.is_here());
+        let has = own.map_or(0, |pool| pool.handles.len());
         if has < size && !self.refused {
             self.pool = None;
             self.pool = Pool::new(size);
@@ -134,6 +139,7 @@ impl Pool {
         let mut pool = Pool {
             threads: None,
             handles: Vec::with_capacity(size),
+            process: process::id(),
         };
         let handles = &mut pool.handles;
         let built = ThreadPoolBuilder::new()
@@ -147,10 +153,20 @@ impl Pool {
         pool.threads = built.ok();
         pool.threads.is_some().then_some(pool)
     }
+
+    /// Whether this process has its threads.
+    fn is_here(&self) -> bool {
+        self.process == process::id()
+    }
 }
 
 impl Drop for Pool {
     fn drop(&mut self) {
+        if !self.is_here() {
+            // no one is there to end; what they held is lost to this process
+            std::mem::forget((self.threads.take(), std::mem::take(&mut self.handles)));
+            return;
+        }
         self.threads = None; // tells them to end
         for handle in self.handles.drain(..) {
             // one that panicked has ended too
