@@ -165,7 +165,8 @@ impl Column {
     pub fn wrap(&mut self) {
         let last = self.rows.len() - 1;
         self.rows[0] = self.rows[last - 1].moved_up();
-        self.rows[last] = self.rows[1].moved_down_before(self.rows[last]);
+        // the sum keeps a compiler from storing lane by lane, for which whole loads would wait
+        self.rows[last] = self.rows[1].moved_down_before(self.rows[last]) + Lanes::splat(0.0);
     }
 
     /// How it is folded.
@@ -251,7 +252,8 @@ impl Field {
     #[inline(always)]
     pub fn wrap_after(&mut self) {
         let last = self.rows.len() - 1;
-        self.rows[last] = self.rows[1].moved_down_before(self.rows[last]);
+        // stored as a whole, see Column::wrap
+        self.rows[last] = self.rows[1].moved_down_before(self.rows[last]) + Vectors::zero();
     }
 }
 
