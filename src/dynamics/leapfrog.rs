@@ -181,7 +181,7 @@ impl NullaryFnOnce for Turning<'_> {
 }
 
 /// [`LineWork::put_ends`] for the vector unit of the machine.
-struct PutEnds<'a>(&'a mut LineWork, &'a [Placed; 2]);
+struct PutEnds<'a>(&'a mut LineWork, [&'a Placed; 2]);
 
 impl NullaryFnOnce for PutEnds<'_> {
     type Output = ();
@@ -534,7 +534,7 @@ impl LineWork {
     }
 
     /// A step from t_n to `t` [s], with the ends going where `ends` says.
-    pub fn advance(&mut self, t: f64, step: Step, ends: &[Placed; 2]) {
+    pub fn advance(&mut self, t: f64, step: Step, ends: [&Placed; 2]) {
         let (unit, work, size) = (self.layout.vector_unit, self, &step);
         unit.dispatch(Sweep { work, size, ends });
         if work.settled.is_some() {
@@ -637,7 +637,7 @@ impl LineWork {
     }
 
     /// Puts the ends somewhere that have not parted from their points.
-    pub fn put_ends(&mut self, ends: &[Placed; 2]) {
+    pub fn put_ends(&mut self, ends: [&Placed; 2]) {
         self.layout.vector_unit.dispatch(PutEnds(self, ends));
     }
 

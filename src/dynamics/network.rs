@@ -299,7 +299,7 @@ impl NetworkWork {
             for end in ends.iter_mut() {
                 end.find(&self.points, after, step.drift, held);
             }
-            work.advance(after, step, &[ends[0].placed, ends[1].placed]);
+            work.advance(after, step, [&ends[0].placed, &ends[1].placed]);
         }
     }
 
@@ -350,7 +350,7 @@ impl NetworkWork {
             for end in ends.iter_mut() {
                 end.find(&self.points, t, last, held);
             }
-            work.put_ends(&[ends[0].placed, ends[1].placed]);
+            work.put_ends([&ends[0].placed, &ends[1].placed]);
         }
     }
 

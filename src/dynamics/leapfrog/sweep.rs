@@ -43,7 +43,7 @@ mod around {
 pub(super) struct Sweep<'a> {
     pub work: &'a mut LineWork,
     pub size: &'a Step,
-    pub ends: &'a [Placed; 2],
+    pub ends: [&'a Placed; 2],
 }
 
 impl NullaryFnOnce for Sweep<'_> {
@@ -63,7 +63,7 @@ impl NullaryFnOnce for Sweep<'_> {
 pub(super) struct Drift<'a> {
     pub work: &'a mut LineWork,
     pub size: &'a Step,
-    pub ends: &'a [Placed; 2],
+    pub ends: [&'a Placed; 2],
 }
 
 impl NullaryFnOnce for Drift<'_> {
@@ -80,10 +80,10 @@ impl NullaryFnOnce for Drift<'_> {
 impl Layout {
     /// Puts the ends that have not parted from their points where these are.
     #[inline(always)]
-    pub(super) fn place_ends(&mut self, ends: &[Placed; 2], parted: [bool; 2]) {
+    pub(super) fn place_ends(&mut self, ends: [&Placed; 2], parted: [bool; 2]) {
         for end in [End::A, End::B] {
             if !parted[end as usize] {
-                let Placed { position, velocity } = ends[end as usize];
+                let Placed { position, velocity } = *ends[end as usize];
                 self.put_end(end, position, velocity);
             }
         }
