@@ -210,6 +210,43 @@ fn one_of_two_lines_at_a_free_point_lets_go_and_the_other_carries_on() {
 }
 
 #[test]
+fn an_end_that_could_let_go_and_does_not_moves_as_one_that_cannot() {
+    let water = "[water]\ndensity = 1025.0";
+    let ways = ["", "break = { at = \"a\", time = 1.0 }"];
+    for (integrator, way, elements) in INTEGRATORS
+        .into_iter()
+        .flat_map(|integrator| ways.map(|way| (integrator, way)))
+        .flat_map(|(integrator, way)| [4, 24, 25].map(|elements| (integrator, way, elements)))
+    {
+        let runs = ["", "release = \"b\"\n"].map(|release| {
+            let mut scene = chain(&format!("{release}{way}"), water);
+            scene.lines[0].sections[0].elements = Some(elements);
+            let mut simulation =
+                Simulation::new(&with_integrator(scene, integrator, 1e-3)).unwrap();
+            let mut history = Vec::new();
+            for step in 1..=40 {
+                let t = 0.05 * f64::from(step);
+                simulation.set_displacement(1, [t.sin(), 0.0, 0.5 * t * t]);
+                simulation.advance(0.05).unwrap();
+                history.push(simulation.tension_b(0));
+            }
+            assert_eq!(simulation.parted(0), [!way.is_empty(), false]);
+            (
+                history,
+                simulation.energy().total(),
+                simulation.energy_error(),
+            )
+        });
+        let [(held, energy, error), (may, other_energy, other_error)] = &runs;
+        for (held, may) in held.iter().zip(may) {
+            assert_relative_eq!(held, may, max_relative = 1e-6);
+        }
+        assert_relative_eq!(energy, other_energy, max_relative = 1e-9);
+        assert!((error - other_error).abs() < 1e-9 * energy.abs());
+    }
+}
+
+#[test]
 fn a_release_replays_bit_for_bit_from_a_snapshot() {
     for integrator in INTEGRATORS {
         let keys = "release = \"b\"\nbreak = { at = \"a\", time = 0.6 }";
