@@ -435,7 +435,15 @@ impl LineWork {
 
     /// Tensions from positions at t_n and velocities at t_{n−½}, where they must be known before the sweep: of lines that are not
     /// plain, and of segments at free points.
+    #[inline]
     pub fn pull_beforehand(&mut self) {
+        let sweep_does = self.plain && self.tied == [true; 2];
+        if !sweep_does {
+            self.pull_first();
+        }
+    }
+
+    fn pull_first(&mut self) {
         if !self.plain {
             self.layout.renew_ghosts(self.parted);
             self.layout.vector_unit.dispatch(PullSegments(self));
@@ -612,8 +620,12 @@ impl LineWork {
             if self.is_parted(end) {
                 continue;
             }
+            let way = self.end_way(end, step);
+            if way == Vector3::zeros() {
+                continue; // as of anchors
+            }
             let (segment, sign) = self.layout.end_segment(end);
-            let (way, pull) = (self.end_way(end, step), sign * self.pull.get(segment));
+            let pull = sign * self.pull.get(segment);
             self.lost[0] += (sign * self.spring.get(segment) - pull).dot(&way);
             if held[end as usize] {
                 self.given += self.layout.end_lack(end) * way.z - pull.dot(&way);

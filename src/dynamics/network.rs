@@ -326,6 +326,7 @@ impl NetworkWork {
     }
 
     /// Sets current and waves to those of `t` [s].
+    #[inline]
     pub fn set_current(&mut self, model: &Model, t: f64) {
         if model.waves.is_some() {
             self.lines.iter_mut().for_each(|line| line.set_time(t));

@@ -150,6 +150,7 @@ impl LineWork {
     }
 
     /// After the tensions of t_n: what a length of the end segment holds.
+    #[inline]
     pub fn weigh_reel(&mut self) {
         let Some(winch) = &mut self.winch else {
             return;
