@@ -13,7 +13,7 @@ mod common;
 
 use approx::assert_relative_eq;
 use common::*;
-use moorline::scene::{Integrator, Rayleigh, Scene};
+use moorline::scene::{Integrator, Rayleigh, Reconstruction, Scene};
 use moorline::simulation::Simulation;
 
 const G: f64 = 9.80665;
@@ -210,6 +210,27 @@ fn the_ledger_closes_through_splits() {
         "{errors:?}"
     );
     assert!(errors[0] < 1e-5 && errors[3] < 3e-7, "{errors:?}");
+}
+
+/// Error of the ledger over what was lost in 10 s of paying out while the fairlead jumps every 0.1 s, at a step [s].
+fn jumping_ledger_error(step: f64) -> f64 {
+    let mut scene = with_integrator(chain(100.0, 25, WINCH), Integrator::Leapfrog, step);
+    scene.solver.input_reconstruction = Reconstruction::Jump;
+    let mut simulation = Simulation::new(&scene).unwrap();
+    for step in 0..100 {
+        let t = 0.1 * f64::from(step);
+        simulation.set_displacement(1, [(1.1 * t).sin(), 0.0, (1.3 * t).sin()]);
+        simulation.set_length_change(0, 0.9 * t);
+        simulation.advance(0.1).unwrap();
+    }
+    simulation.energy_error().abs() / simulation.ledger().flow.lost
+}
+
+#[test]
+fn the_ledger_closes_where_a_winch_jumps() {
+    let errors = [2e-3, 1e-3, 5e-4, 2.5e-4].map(jumping_ledger_error);
+    println!("ledger, jumps: {errors:?}");
+    assert!(errors[0] < 0.05 && errors[3] < 2e-3, "{errors:?}");
 }
 
 /// Tension at the fairlead [N] every 0.1 s of 20 s in which the fairlead sways above a deep bed and the winch pays out a length [m], at a step [s].

@@ -347,17 +347,13 @@ impl AxialWork {
         self.layout.set_time(t);
     }
 
-    /// Puts an end at a position [m] with the velocity [m/s] that the next step takes as lagged. One that is there has the secant of its last
-    /// step, and keeps it.
+    /// Puts an end at a position [m] with the velocity [m/s] that the next step takes as lagged.
     pub fn put_end(&mut self, end: End, position: Vector3<f64>, velocity: Vector3<f64>) {
         if self.parted[end as usize] {
             return;
         }
-        let at = self.layout.end_slot(end);
-        if self.layout.position.get(at) == position && !self.starts {
-            return;
-        }
-        let jumps = self.layout.books && self.defers_turning();
+        let moves = self.layout.position.get(self.layout.end_slot(end)) != position;
+        let jumps = moves && self.layout.books && self.defers_turning();
         if jumps {
             self.lost[0] -= self.turning_energy();
         }
@@ -365,6 +361,11 @@ impl AxialWork {
         if jumps {
             self.lost[0] += self.turning_energy();
         }
+    }
+
+    /// As [`Layout::set_out_anew`].
+    pub fn set_out_anew(&mut self, lag: f64) {
+        self.layout.set_out_anew(lag);
     }
 
     /// Parts the ends from their points that the tensions of t_n, `t` [s], are too much for, or the time has come for.

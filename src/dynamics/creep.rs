@@ -186,6 +186,11 @@ impl CreepArrays {
         }
     }
 
+    /// Sets the strain of a segment at t_{n−½} [-].
+    pub fn set_out(&mut self, at: Slot, strain: f64) {
+        self.half[0][at] = strain;
+    }
+
     /// Hands the slow strains back.
     pub fn store(&self, slow: &mut Vec<f64>, half: &mut Vec<f64>) {
         for (values, column) in [(slow, &self.slow), (half, &self.half[1])] {

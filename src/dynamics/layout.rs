@@ -241,6 +241,29 @@ impl Layout {
         self.velocity.set(at, velocity);
     }
 
+    /// Where a node was `lag` [s] ago by its velocity [m].
+    pub fn place_before(&self, at: Slot, lag: f64) -> Vector3<f64> {
+        self.position.get(at) - lag * self.velocity.get(at)
+    }
+
+    /// Makes viscoelastic segments at the ends take these to have come as they go on, from where they were `lag` [s] ago: what jumps does not flow
+    /// through dampers.
+    pub fn set_out_anew(&mut self, lag: f64) {
+        let Some(mut creep) = self.creep.take() else {
+            return;
+        };
+        for end in [End::A, End::B] {
+            let (segment, _) = self.end_segment(end);
+            let places = [self.end_slot(end), self.end_neighbour(end)];
+            let [place, near] = places.map(|at| self.place_before(at, lag));
+            creep.set_out(
+                segment,
+                (near - place).norm() * self.inverse_length[segment] - 1.0,
+            );
+        }
+        self.creep = Some(creep);
+    }
+
     /// The node at an end.
     pub fn end_node(&self, end: End) -> usize {
         match end {

@@ -271,10 +271,8 @@ impl LineWork {
             let at = self.layout.end_slot(end);
             self.interior[at] = f64::from(u8::from(self.is_parted(end)));
             self.set_mass_excess(end);
-            let [velocity, place] =
-                [&self.layout.velocity, &self.layout.position].map(|of| of.get(at));
-            self.half_places[end as usize] = place - 0.5 * state.half_step.steps[0] * velocity;
         }
+        self.set_out_anew(state.half_step.steps[0]);
         self.layout.still();
         self.clear_flow();
     }
@@ -651,6 +649,14 @@ impl LineWork {
     /// Puts the ends somewhere that have not parted from their points.
     pub fn put_ends(&mut self, ends: [&Placed; 2]) {
         self.layout.vector_unit.dispatch(PutEnds(self, ends));
+    }
+
+    /// Makes the ends take their ways from where they were half the `last` step [s] ago, as they go on now: how they came there is no part of them.
+    pub fn set_out_anew(&mut self, last: f64) {
+        let lag = 0.5 * last;
+        let ends = [End::A, End::B].map(|end| self.layout.end_slot(end));
+        self.half_places = ends.map(|at| self.layout.place_before(at, lag));
+        self.layout.set_out_anew(lag);
     }
 
     /// What the end brings to a free point, after [`Self::pull_beforehand`]; `velocity` [m/s] is the point's at t_n.

@@ -147,7 +147,7 @@ pub fn energy(model: &Model, network: &Network, state: &State) -> Energy {
                 gravitational: closed_form.gravitational_energy,
                 ..Energy::default()
             },
-            None => line_energy(model, state, line),
+            None => line_energy(model, state, line, &state.lines[line]),
         });
     }
     for &point in &network.free_points {
@@ -173,8 +173,9 @@ fn half_step(state: &State, network: &Network) -> Option<f64> {
     (!shape.half_step.is_unset()).then(|| shape.velocities_before().1)
 }
 
-fn line_energy(model: &Model, state: &State, index: usize) -> Energy {
-    let (line, shape) = (&model.lines[index], &state.lines[index]);
+/// Energy held by a line of this shape in the sea of a state.
+fn line_energy(model: &Model, state: &State, index: usize, shape: &LineState) -> Energy {
+    let line = &model.lines[index];
     if let Some(view) = BeamView::of(line, shape) {
         return view.energy(beam::held(model, line));
     }
@@ -222,6 +223,37 @@ fn line_energy(model: &Model, state: &State, index: usize) -> Energy {
             .sum();
     }
     energy
+}
+
+/// Energy [J] that a leapfrog's line gets from held ends that jump to `ends`, positions [m] and velocities [m/s] at the time of the other
+/// velocities, while its nodes stay where they are. `moved` is room for its shape.
+pub fn jump_energy(
+    model: &Model,
+    state: &State,
+    index: usize,
+    ends: [[Vector3<f64>; 2]; 2],
+    moved: &mut LineState,
+) -> f64 {
+    let (line, shape) = (&model.lines[index], &state.lines[index]);
+    let (lag, last) = (shape.velocities_before().1, shape.position.len() - 1);
+    moved.clone_from(shape);
+    for ((end, i), [position, velocity]) in [(End::A, 0), (End::B, last)].into_iter().zip(ends) {
+        if !line.is_held(model, shape, end) {
+            continue;
+        }
+        moved.position[i] = position;
+        if lag > 0.0 {
+            moved.half_step.velocity[i] = velocity;
+        }
+    }
+    if let Some(reel) = shape.reel.filter(|_| lag > 0.0) {
+        let then = line_before(line, moved, reel, lag);
+        let passing = passing(&then, moved, lag) / lag;
+        moved.half_step.velocity[last] -= passing;
+    }
+    let shapes = [&*moved, shape];
+    let [after, before] = shapes.map(|shape| line_energy(model, state, index, shape).total());
+    after - before
 }
 
 /// Energy of the buoyancy that a line lacks whose nodes are at `position` [m] [J].

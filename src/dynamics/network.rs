@@ -355,6 +355,12 @@ impl NetworkWork {
         }
     }
 
+    /// As [`LineWork::set_out_anew`].
+    pub fn set_out_anew(&mut self, last: f64) {
+        let lines = self.lines.iter_mut();
+        lines.for_each(|line| line.set_out_anew(last));
+    }
+
     /// Motion of the water by waves at a free point, by its place in the network, at `t` [s].
     fn waves_at(&self, free: usize, t: f64) -> Option<Orbit> {
         let [before, after] = self.waves.get(free)?;

@@ -147,6 +147,14 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
             let mut steps = self.state.lines[network.lines[0]].half_step.steps;
             let mut step = Step::after(steps, drift);
             work.put_ends(self.start, steps[0], self.held);
+            let mut jumped = 0.0;
+            if self.jumps {
+                work.set_out_anew(steps[0]);
+                let lines = network.lines.iter();
+                jumped = lines
+                    .map(|&line| self.jump_energy(line, steps[0], next))
+                    .sum();
+            }
             work.start_reels(network, self.state, self.reels, step);
             work.begin();
             for k in 0..count {
@@ -155,7 +163,8 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
                 steps = [drift, steps[0]];
                 step = Step::after(steps, drift);
             }
-            let flow = work.flow();
+            let mut flow = work.flow();
+            flow.given += jumped;
             let is_sound = work.is_sound() && flow.is_finite();
             let end = self.start + self.length;
             let holds = limit.holds(work.drag_rate(model, network, end), drift);
@@ -211,6 +220,7 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
             let count = self.substeps(index, step_max, retry)?;
             let drift = self.length / count as f64;
             self.set_out(index, drift, work, self.holds && retry == 0);
+            let jumped = self.jump_energy(index, drift, next);
             let mut steps = self.state.lines[index].half_step.steps;
             let mut solves = 0;
             for k in 1..=count {
@@ -227,7 +237,8 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
                 solves += work.step(Step::after(steps, drift), ends);
                 steps = [drift, steps[0]];
             }
-            let (is_sound, flow) = (work.store(&mut next.lines[index], steps), work.flow());
+            let (is_sound, mut flow) = (work.store(&mut next.lines[index], steps), work.flow());
+            flow.given += jumped;
             let stretch = drift * drift * work.tension_peak();
             let too_long = stretch > transverse * transverse || !work.is_settled();
             let whole = is_sound && flow.is_finite();
@@ -265,9 +276,25 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
             let k = (self.held)(point, self.start);
             work.put_end(end, k.position, k.velocity - 0.5 * drift * k.acceleration);
         }
+        if self.jumps {
+            work.set_out_anew(self.state.lines[index].velocities_before().1);
+        }
         work.set_time(self.start);
         work.meet_surface(None);
         work.open_books();
+    }
+
+    /// What held ends give a leapfrog's line where they set out from elsewhere than where the last step took them, with velocities half a step of
+    /// `drift` [s] earlier [J]. What comes next writes over the line in `next`.
+    fn jump_energy(&self, index: usize, drift: f64, next: &mut State) -> f64 {
+        if !self.jumps || !self.model.solver.energy_ledger {
+            return 0.0;
+        }
+        let ends = self.model.lines[index].ends.map(|point| {
+            let k = (self.held)(point, self.start);
+            [k.position, k.velocity - 0.5 * drift * k.acceleration]
+        });
+        ledger::jump_energy(self.model, self.state, index, ends, &mut next.lines[index])
     }
 
     fn is_fixed(&self, point: usize) -> bool {
