@@ -108,6 +108,47 @@ fn a_tabulated_rope_keeps_its_energy() {
     }
 }
 
+/// A rope that is soft at first, and forty times as stiff when it is drawn taut, as its fairlead makes it in every swing; moved by one integrator with
+/// steps of at most `step` [s].
+fn snapping(integrator: Integrator, step: f64) -> Simulation {
+    let table = "tension_strain = [[0.0, 0.0], [0.01, 1.0e5], [0.02, 8.0e5], [0.04, 4.0e6]]
+        diameter = 0.12
+        damping_ratio = 0.02
+        drag_normal = 1.2
+        drag_tangential = 0.05
+        added_mass_normal = 1.0";
+    let motion = "fairlead = { x = [[4.0, 8.0]], z = [[3.0, 8.0, 1.57]] }";
+    let mut scene = rope(table, 219.0, motion);
+    scene.line_types.get_mut("rope").unwrap().weight = None;
+    scene.water = Some(scene::Water::still(1025.0));
+    scene.lines[0].sections[0].length = 222.0;
+    following(&with_integrator(scene, integrator, step))
+}
+
+#[test]
+fn a_rope_that_snaps_taut_is_held_by_the_stiffness_that_it_comes_to() {
+    let reference = History::record(&mut snapping(Integrator::Leapfrog, 2e-4), 0.1, 400);
+    for (integrator, step, steps) in [
+        (Integrator::Leapfrog, 0.05, 20_000),
+        (Integrator::AxialImplicit, 0.05, 1500),
+        (Integrator::AxialImplicit, 0.0125, 5000),
+    ] {
+        let mut simulation = snapping(integrator, step);
+        let history = History::record(&mut simulation, 0.1, 400);
+        let error = history.tension_error(&reference, 300);
+        let flow = simulation.ledger().flow;
+        let ledger = simulation.energy_error().abs() / (flow.given.abs() + flow.lost);
+        println!(
+            "{integrator:?}, {step} s: {error:.4}, ledger {ledger:.1e}, {} steps, {} solves",
+            history.substeps, history.solves
+        );
+        assert!(
+            error < 0.09 && ledger < 1e-3 && history.substeps < steps,
+            "{integrator:?}, {step}"
+        );
+    }
+}
+
 #[test]
 fn a_table_that_does_not_rise_is_refused_with_its_row() {
     let mistake = |table: &str| {

@@ -16,6 +16,10 @@
 //! second order, and no ringing of those that are. A row is off where the total would be negative. Eliminating v by the nodes'
 //! momentum leaves one scalar tridiagonal system in T̄.
 //!
+//! Springs whose tension is not proportional to strain are laid along the tangent of their curve where the segments are about to come to, and after each pass
+//! where they came to, until the tension there is that of the curve: along the tangent at t_n a rope that stiffens would be held, as it snaps taut, by the
+//! slope of its first pull.
+//!
 //! Drag across the line, C v, is folded into the node's mass by θΔt C, θ = max(½, 1 − M/(Δt C)): trapezoidal, but where it outweighs inertia no
 //! more than that no velocity changes its sign by it, which would go on for ever. Drag along the line, K|u|u, is what T̄ has to balance, and averaged as T̄ is:
 //! the mean of those at t_{n−½} and t_{n+½}, the latter by a tangent at the extrapolated u. Taken at t_n alone, its harmonics of short periods appear
@@ -449,7 +453,7 @@ impl AxialWork {
         }
         self.weigh_nodes::<BED>();
         let mut passes = 0;
-        let found = loop {
+        let mut found = loop {
             passes += 1;
             self.assemble(&sizes);
             let before = self.solve_tensions();
@@ -464,6 +468,9 @@ impl AxialWork {
             }
             self.weigh_nodes::<BED>();
         };
+        if BOOKS && self.is_curved() {
+            found.numerical = self.dissipated_by_curves(step, &sizes);
+        }
         let half = Lanes::splat(0.5);
         self.lost = self.lost + half * found.lost;
         self.numerical = self.numerical + half * found.numerical;

@@ -9,6 +9,8 @@
 //!        some of it back). The added mass of a free point or node that dips into the water brings ½ v² of what joins it, which counts
 //!        as a negative loss; so does ½ vᵀṀv of nodes whose added mass differs along and across the line, which turns.
 //!
+//! A held end that jumps, at a communication point, gives what the line has more afterwards, all else being where it was: no time passes, and no damper moves.
+//!
 //! The springs of viscoelastic segments count as held, what their dampers take as lost. An end that parts from a held point brings the energy of
 //! its half node along, which counts as given.
 //!

@@ -112,7 +112,7 @@ impl AxialWork {
         let half = Lanes::splat(0.5);
         let back = Lanes::splat(-step.lag());
         let half_back = half * back;
-        let [_, h0, h1, h2] = self.weights.0.map(Lanes::splat);
+        let [b1, h0, h1, h2] = self.weights.0.map(Lanes::splat);
         let share = Lanes::splat(1.0 / self.weights.0[0]);
         for at in self.layout.rows() {
             let found = self.springs::<SPRINGS>(at);
@@ -124,11 +124,19 @@ impl AxialWork {
             row.along = along;
             let tension = found.now.positive();
             row.history = [tension, t1];
-            row.elastic = found.ahead + h0 * tension + h1 * t1 + h2 * t2;
+            let memory = h0 * tension + h1 * t1 + h2 * t2;
+            row.elastic = found.ahead + memory;
+            if SPRINGS == springs::CURVED {
+                row.memory = memory;
+            }
             row.stiffness = found.slope * sizes.drift;
             let bend = (relative.dot(relative) - along * along) * row.inverse;
             row.curvature = half * row.stiffness * sizes.drift * bend;
             // as if they went on stretching as they do
+            if SPRINGS == springs::CURVED {
+                let inverse = self.layout.inverse_length.load(at);
+                row.follow(&self.layout.law, along, inverse, [b1, sizes.drift]);
+            }
             let (_, total) = row.spring(along, sizes);
             row.taut = total.choose(Lanes::splat(1.0), Lanes::splat(-1.0));
             if BOOKS {

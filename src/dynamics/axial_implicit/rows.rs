@@ -7,6 +7,7 @@ use crate::dynamics::layout::Layout;
 use crate::math::fold::Slot;
 use crate::math::folded_tridiagonal::{Eliminated, Equations};
 use crate::math::lanes::{Lanes, Vectors};
+use crate::physics::stretch::StretchLaw;
 
 /// What springs pull by: kinds of them.
 pub(super) mod springs {
@@ -62,6 +63,8 @@ pub(super) struct SegmentRow {
     pub stiffness: Lanes,
     /// Part of T̄ that springs have without any further strain [N].
     pub elastic: Lanes,
+    /// The part of it that tensions before have [N].
+    pub memory: Lanes,
     /// EA·b₁ times the strain by transverse motion [N].
     pub curvature: Lanes,
     /// 1 where the segment is taut, −1 where it is slack.
@@ -92,6 +95,7 @@ impl SegmentRow {
             along: zero,
             stiffness: zero,
             elastic: zero,
+            memory: zero,
             curvature: zero,
             taut: zero,
             history: [zero; 2],
@@ -123,6 +127,31 @@ impl SegmentRow {
             upper: zero - k * to_after,
             right: known + resistance * self.direction.dot(relative),
         };
+    }
+
+    /// Lays the springs along the tangent of their curve where a stretching velocity [m/s] takes them in a step of `drift` [s], `share` being b₁ and
+    /// `inverse` 1/L [1/m]. Returns their force there [N].
+    #[inline(always)]
+    pub fn follow(
+        &mut self,
+        law: &StretchLaw,
+        along: Lanes,
+        inverse: Lanes,
+        [share, drift]: [Lanes; 2],
+    ) -> Lanes {
+        let least = Lanes::splat(f64::MIN_POSITIVE);
+        let softness = (self.stiffness + least).recip();
+        let bend = (self.curvature * softness).where_positive(self.stiffness);
+        let strain = (self.length + drift * (along + bend)) * inverse - Lanes::splat(1.0);
+        // slack ones go on along the slope of the first pull
+        let (pulling, scale) = (strain.positive(), share * self.axial_stiffness);
+        let slope = pulling.map(|e| law.at(e).slope);
+        let stretch = pulling.map(|e| law.at(e).force) + slope * (strain - pulling);
+        let force = self.memory + scale * self.unstretched_length * stretch;
+        self.stiffness = scale * drift * slope;
+        self.curvature = self.stiffness * bend;
+        self.elastic = force - self.stiffness * (along + bend);
+        force
     }
 
     /// Force of the springs [N] at a stretching velocity [m/s], and what is > 0 where the segment is taut with it.

@@ -4,8 +4,10 @@
 
 use super::AxialWork;
 use super::rows::{NodeRow, SegmentRow, Sizes, under};
+use crate::dynamics::step::Step;
 use crate::math::folded_tridiagonal::Eliminated;
 use crate::math::lanes::{Lanes, Vectors};
+use crate::physics::stretch::StretchLaw;
 
 /// Change of tension by the true stretch, relative to the greatest tension, that asks for another pass [-].
 const STRETCH_TOLERANCE: f64 = 1e-3;
@@ -13,6 +15,9 @@ const STRETCH_TOLERANCE: f64 = 1e-3;
 const FLAT: f64 = 1e-3;
 /// Shortest that a segment may get, over its length, for the same [-].
 const SHORT: f64 = 0.9;
+
+/// Strain over a step above which its energies tell the mean tension [-].
+const STRETCH_TOLD: f64 = 1e-9;
 
 /// What a pass found.
 #[derive(Debug, Clone, Copy)]
@@ -227,8 +232,8 @@ impl Found {
         let moved = sizes.kick * (segment.along + along);
         self.lost = self.lost + (segment.tension - springs) * moved;
         let ahead = half * sizes.drift;
-        let before = segment.now + segment.more_before;
         let longer = ahead * (along + half * ahead * across * segment.inverse);
+        let before = segment.now + segment.more_before;
         let after = segment.now + segment.stiffness * slope * longer;
         let mut centred = half * (before.positive() + after.positive());
         let kinks = Lanes::splat(0.0) - before * after;
@@ -251,7 +256,66 @@ impl AxialWork {
             self.revise_contact();
         }
         let revised = stretched && self.revise_segments(sizes, tolerance);
-        !(landed || revised)
+        let curved = self.is_curved() && self.follow_curve(sizes, tolerance);
+        !(landed || revised || curved)
+    }
+
+    /// Whether springs have tensions that are not proportional to their strain, and no memory.
+    #[inline(always)]
+    pub(super) fn is_curved(&self) -> bool {
+        self.layout.law != StretchLaw::Engineering && self.layout.creep.is_none()
+    }
+
+    /// What [`Found::book_segments`] books as dissipated by the averaging, twice [J], for springs that are curved: the discrete gradient is that of their
+    /// own energy, by the lengths that segments have half a step before t_n and after it.
+    #[inline(always)]
+    pub(super) fn dissipated_by_curves(&self, step: Step, sizes: &Sizes) -> Lanes {
+        let (one, half) = (Lanes::splat(1.0), Lanes::splat(0.5));
+        let [lag, ahead] = [-step.lag(), 0.5 * step.drift].map(Lanes::splat);
+        let (line, law) = (&self.layout, &self.layout.law);
+        let mut twice = Lanes::splat(0.0);
+        for (row, segment) in self.rows.segments.iter().enumerate() {
+            let relative = [&line.velocity, &line.velocity_before]
+                .map(|of| of.load(row + 2) - of.load(row + 1));
+            let chord = segment.direction.scale(segment.length);
+            let inverse = line.inverse_length.load(row + 1);
+            let strain = |moved: Vectors| {
+                let chord = chord + moved;
+                chord.dot(chord).sqrt() * inverse - one
+            };
+            let before = strain(relative[0].scale(lag));
+            let after = strain(relative[1].scale(ahead));
+            let [held, holds] = [before, after].map(|e| e.map(|e| law.at(e.max(0.0)).energy));
+            let middle = (half * (before + after)).map(|e| law.at(e.max(0.0)).force);
+            let stretched = after - before;
+            let tells = stretched.abs() - Lanes::splat(STRETCH_TOLD);
+            let secant = (holds - held) * tells.choose(stretched, one).recip();
+            let scale = segment.axial_stiffness * segment.unstretched_length;
+            let centred = scale * tells.choose(secant, middle);
+            let along = segment.direction.dot(relative[1]);
+            let (spring, _) = segment.spring(along, sizes);
+            let moved = sizes.kick * (segment.along + along);
+            twice = twice + (spring.positive() - centred) * moved;
+        }
+        twice
+    }
+
+    /// Lays the springs' tension along the tangent of its curve where the last pass found that segments come to; whether that asks for another pass.
+    #[inline(always)]
+    fn follow_curve(&mut self, sizes: &Sizes, tolerance: Lanes) -> bool {
+        let (velocity, law) = (&self.layout.velocity_before, &self.layout.law);
+        let share = Lanes::splat(self.weights.0[0]);
+        let mut again = Lanes::splat(0.0);
+        for (row, segment) in self.rows.segments.iter_mut().enumerate() {
+            let relative = velocity.load(row + 2) - velocity.load(row + 1);
+            let along = segment.direction.dot(relative);
+            let inverse = self.layout.inverse_length.load(row + 1);
+            let (spring, _) = segment.spring(along, sizes);
+            let curve = segment.follow(law, along, inverse, [share, sizes.drift]);
+            let off = (curve.positive() - spring.positive()).abs() - tolerance;
+            again = again.max(off.where_positive(segment.taut));
+        }
+        again.any_positive()
     }
 
     /// Takes the nodes to meet the bed as the last pass found.
