@@ -13,8 +13,8 @@
 //! too how many ledgers close to which it brought no more than that. Beams conserve energy: their ledgers close in every scene. Lines that slacken and snap
 //! do so by a kink in their tension law, which no fixed step of a leapfrog resolves where they are as stiff and as little damped as these may be; the implicit
 //! integrators book all that they do, but may bring energy where their steps are halved and doubled in turns, or an end lets go; and a quasi-static
-//! line may jump from one equilibrium to another: of these, the shares are claimed. Jumps of driven points between communication points do work
-//! that no velocity tells, and have no part in it.
+//! line may jump from one equilibrium to another: of these, the shares are claimed. Held points that jump to where a host says pull stiff lines by more than steps
+//! resolve which are as long as waves allow that these do not make; they are told apart.
 
 mod dice;
 mod drive;
@@ -37,22 +37,38 @@ const SUITE: usize = 500;
 /// Scenes of the long run.
 const LONG: usize = 10_000;
 
-/// Shares of ledgers that close, and of those to which integrators brought nothing, where a host's steps are equal and where they differ [-], as scenes
-/// 0..10 000 were measured to have them.
-const CLOSED_SHARES: [(&str, [f64; 2], [f64; 2]); 6] = [
-    ("AxialImplicit", [0.971, 0.968], [0.961, 0.950]),
-    ("Bossak", [0.998, 0.965], [0.997, 0.932]),
-    ("GeneralisedAlpha", [0.997, 0.967], [0.991, 0.964]),
-    ("Leapfrog", [0.975, 0.975], [0.983, 0.983]),
-    ("QuasiStatic", [0.980, 0.980], [0.975, 0.975]),
-    ("several", [0.968, 0.953], [0.956, 0.941]),
+/// Shares of ledgers that close, and of those to which integrators brought nothing, where a host's steps are equal, where they differ, and where held
+/// points jump to where it says [-], as scenes 0..10 000 were measured to have them.
+const CLOSED_SHARES: [(&str, [[f64; 2]; 3]); 6] = [
+    (
+        "AxialImplicit",
+        [[0.974, 0.971], [0.968, 0.959], [0.768, 0.766]],
+    ),
+    ("Bossak", [[0.998, 0.965], [0.999, 0.932], [0.989, 0.899]]),
+    (
+        "GeneralisedAlpha",
+        [[0.997, 0.966], [0.991, 0.969], [0.997, 0.980]],
+    ),
+    ("Leapfrog", [[0.975, 0.975], [0.983, 0.983], [0.926, 0.926]]),
+    (
+        "QuasiStatic",
+        [[0.980, 0.980], [0.975, 0.975], [0.965, 0.965]],
+    ),
+    ("several", [[0.980, 0.962], [0.956, 0.942], [0.874, 0.865]]),
 ];
+/// Share of scenes that are too dear to run, as measured on the same [-].
+const TOO_DEAR: f64 = 0.172;
 /// Standard deviations by which a draw of scenes may miss it by chance [-].
 const BY_CHANCE: f64 = 3.0;
 /// Greatest error of a beam's ledger, over what it books [-].
 const BEAM: f64 = 1e-9;
 /// Least share of the scenes with any feature that run [-].
 const RUN_MIN: f64 = 0.5;
+
+/// By how much a share may be missed by chance in so many draws [-].
+fn by_chance(share: f64, draws: f64) -> f64 {
+    BY_CHANCE * (share * (1.0 - share) / draws.max(1.0)).sqrt()
+}
 
 /// Claims what holds for all scenes of these numbers.
 fn claim(numbers: Range<usize>) {
@@ -70,22 +86,26 @@ fn claim(numbers: Range<usize>) {
     }
     assert!(survey.share("ran") > 0.65, "{:?}", survey.fates);
     assert!(survey.share("refused") < 0.05, "{:?}", survey.fates);
-    assert!(survey.share("too dear") < 0.18, "{:?}", survey.fates);
+    let scenes = survey.scenes as f64;
+    let too_dear = TOO_DEAR + by_chance(TOO_DEAR, scenes);
+    assert!(survey.share("too dear") < too_dear, "{:?}", survey.fates);
     for (feature, [ran, all]) in &survey.features {
         let least = (RUN_MIN * *all as f64).floor() as usize;
         assert!(*ran > 0 && *ran >= least, "{feature}: {ran} of {all} run");
     }
-    for (integrator, equal, irregular) in CLOSED_SHARES {
-        for (steps, shares) in [("equal", equal), ("irregular", irregular)] {
-            let name = format!("{integrator}, {steps} steps");
+    for (integrator, shares) in CLOSED_SHARES {
+        for (steps, shares) in ["equal steps", "irregular steps", "jumps"]
+            .into_iter()
+            .zip(shares)
+        {
+            let name = format!("{integrator}, {steps}");
             let [closed, sound, all] = survey.closed(&name);
             for (count, share, what) in [
                 (closed, shares[0], "close"),
                 (sound, shares[1], "close with nothing brought"),
             ] {
-                let by_chance = BY_CHANCE * (share * (1.0 - share) / all.max(1.0)).sqrt();
                 assert!(
-                    count >= (share - by_chance) * all,
+                    count >= (share - by_chance(share, all)) * all,
                     "{name}: {count} of {all} ledgers {what}"
                 );
             }

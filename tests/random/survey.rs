@@ -154,7 +154,7 @@ impl Survey {
             *ran += usize::from(reason.is_none());
             *all += 1;
         }
-        if reason.is_none() && account.time > 0.0 && !features::jumps(&case.scene) {
+        if reason.is_none() && account.time > 0.0 {
             let mut names = account.integrators;
             names.sort();
             names.dedup();
@@ -162,10 +162,10 @@ impl Survey {
                 [name] => name,
                 _ => "several",
             };
-            let steps = if case.drive.is_irregular() {
-                "irregular steps"
-            } else {
-                "equal steps"
+            let steps = match (features::jumps(&case.scene), case.drive.is_irregular()) {
+                (true, _) => "jumps",
+                (_, true) => "irregular steps",
+                _ => "equal steps",
             };
             let name = format!("{name}, {steps}");
             self.books.entry(name).or_default().push(books);
