@@ -237,10 +237,15 @@ pub fn jump_energy(
     moved: &mut LineState,
 ) -> f64 {
     let (line, shape) = (&model.lines[index], &state.lines[index]);
-    let (lag, last) = (shape.velocities_before().1, shape.position.len() - 1);
+    let ((velocities, lag), last) = (shape.velocities_before(), shape.position.len() - 1);
+    let places = [0, last].map(|i| [shape.position[i], velocities[i]]);
+    let is_held = |end: End| line.is_held(model, shape, end);
+    if (0..2).all(|side| places[side] == ends[side] || !is_held([End::A, End::B][side])) {
+        return 0.0;
+    }
     moved.clone_from(shape);
     for ((end, i), [position, velocity]) in [(End::A, 0), (End::B, last)].into_iter().zip(ends) {
-        if !line.is_held(model, shape, end) {
+        if !is_held(end) {
             continue;
         }
         moved.position[i] = position;

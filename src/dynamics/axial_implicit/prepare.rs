@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 
 use super::AxialWork;
 use super::bed::Bed;
-use super::rows::{NodeRow, Sizes, springs};
+use super::rows::{NodeRow, Sizes, pulled, springs};
 use crate::dynamics::step::Step;
 use crate::math::lanes::{Lanes, Vectors};
 
@@ -63,11 +63,12 @@ impl AxialWork {
         }
         let law = &self.layout.law;
         let strain = longer * self.layout.inverse_length.load(at);
-        let stretched = row.unstretched_length * strain.map(|e| law.at(e).force);
+        let [force, slope] = pulled(law, strain);
+        let stretched = row.unstretched_length * force;
         Springs {
             now: stiffness * stretched,
             ahead: share * stretched,
-            slope: share * strain.map(|e| law.at(e).slope),
+            slope: share * slope,
         }
     }
 

@@ -6,8 +6,11 @@ use super::bed::Bed;
 use crate::dynamics::layout::Layout;
 use crate::math::fold::Slot;
 use crate::math::folded_tridiagonal::{Eliminated, Equations};
-use crate::math::lanes::{Lanes, Vectors};
+use crate::math::lanes::{LANES, Lanes, Vectors};
 use crate::physics::stretch::StretchLaw;
+
+/// Strain below which slack springs go on along their tangent: further down measures of strain bend back [-].
+const SHORTEST: f64 = -0.2;
 
 /// What springs pull by: kinds of them.
 pub(super) mod springs {
@@ -42,6 +45,17 @@ pub(super) struct Sizes {
     pub push: Lanes,
 }
 
+/// Force over EA [-] of four segments by the law of their springs, and its slope with the strain.
+#[inline(always)]
+pub(super) fn pulled(law: &StretchLaw, strain: Lanes) -> [Lanes; 2] {
+    let mut found = [Lanes::splat(0.0); 2];
+    for lane in 0..LANES {
+        let stretch = law.at(strain[lane]);
+        (found[0][lane], found[1][lane]) = (stretch.force, stretch.slope);
+    }
+    found
+}
+
 /// Segments, each between its node and the one after.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SegmentRow {
@@ -61,7 +75,7 @@ pub(super) struct SegmentRow {
     pub along: Lanes,
     /// dT̄/d(q·(v_{i+1} − v_i)) of the springs [N s/m].
     pub stiffness: Lanes,
-    /// Part of T̄ that springs have without any further strain [N].
+    /// Part of T̄ that springs have at no stretching velocity, along the tangent they are laid along [N].
     pub elastic: Lanes,
     /// The part of it that tensions before have [N].
     pub memory: Lanes,
@@ -143,10 +157,12 @@ impl SegmentRow {
         let softness = (self.stiffness + least).recip();
         let bend = (self.curvature * softness).where_positive(self.stiffness);
         let strain = (self.length + drift * (along + bend)) * inverse - Lanes::splat(1.0);
-        // slack ones go on along the slope of the first pull
-        let (pulling, scale) = (strain.positive(), share * self.axial_stiffness);
-        let slope = pulling.map(|e| law.at(e).slope);
-        let stretch = pulling.map(|e| law.at(e).force) + slope * (strain - pulling);
+        let (pulling, scale) = (
+            strain.max(Lanes::splat(SHORTEST)),
+            share * self.axial_stiffness,
+        );
+        let [stretch, slope] = pulled(law, pulling);
+        let stretch = stretch + slope * (strain - pulling);
         let force = self.memory + scale * self.unstretched_length * stretch;
         self.stiffness = scale * drift * slope;
         self.curvature = self.stiffness * bend;

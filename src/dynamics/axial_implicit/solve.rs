@@ -3,7 +3,7 @@
 //! Loops name the rows by index: with iterators the compiler would see that it may take four rows at once, and take them lane by lane.
 
 use super::AxialWork;
-use super::rows::{NodeRow, SegmentRow, Sizes, under};
+use super::rows::{NodeRow, SegmentRow, Sizes, pulled, under};
 use crate::dynamics::step::Step;
 use crate::math::folded_tridiagonal::Eliminated;
 use crate::math::lanes::{Lanes, Vectors};
@@ -270,7 +270,7 @@ impl AxialWork {
     /// own energy, by the lengths that segments have half a step before t_n and after it.
     #[inline(always)]
     pub(super) fn dissipated_by_curves(&self, step: Step, sizes: &Sizes) -> Lanes {
-        let (one, half) = (Lanes::splat(1.0), Lanes::splat(0.5));
+        let [zero, half, one] = [0.0, 0.5, 1.0].map(Lanes::splat);
         let [lag, ahead] = [-step.lag(), 0.5 * step.drift].map(Lanes::splat);
         let (line, law) = (&self.layout, &self.layout.law);
         let mut twice = Lanes::splat(0.0);
@@ -286,12 +286,14 @@ impl AxialWork {
             let before = strain(relative[0].scale(lag));
             let after = strain(relative[1].scale(ahead));
             let [held, holds] = [before, after].map(|e| e.map(|e| law.at(e.max(0.0)).energy));
-            let middle = (half * (before + after)).map(|e| law.at(e.max(0.0)).force);
             let stretched = after - before;
             let tells = stretched.abs() - Lanes::splat(STRETCH_TOLD);
-            let secant = (holds - held) * tells.choose(stretched, one).recip();
-            let scale = segment.axial_stiffness * segment.unstretched_length;
-            let centred = scale * tells.choose(secant, middle);
+            let mut secant = (holds - held) * tells.choose(stretched, one).recip();
+            if (zero - tells).any_positive() {
+                let [force, _] = pulled(law, (half * (before + after)).positive());
+                secant = tells.choose(secant, force);
+            }
+            let centred = segment.axial_stiffness * segment.unstretched_length * secant;
             let along = segment.direction.dot(relative[1]);
             let (spring, _) = segment.spring(along, sizes);
             let moved = sizes.kick * (segment.along + along);
@@ -311,9 +313,14 @@ impl AxialWork {
             let along = segment.direction.dot(relative);
             let inverse = self.layout.inverse_length.load(row + 1);
             let (spring, _) = segment.spring(along, sizes);
-            let curve = segment.follow(law, along, inverse, [share, sizes.drift]);
+            let mut laid = *segment;
+            let curve = laid.follow(law, along, inverse, [share, sizes.drift]);
             let off = (curve.positive() - spring.positive()).abs() - tolerance;
-            again = again.max(off.where_positive(segment.taut));
+            let off = off.where_positive(segment.taut);
+            if off.any_positive() {
+                *segment = laid; // else the books tell what the step was made with
+            }
+            again = again.max(off);
         }
         again.any_positive()
     }
