@@ -367,7 +367,7 @@ impl AxialWork {
         }
     }
 
-    /// As [`Layout::set_out_anew`].
+    /// Makes viscoelastic segments at the ends take these to have come as they go on, from where they were `lag` [s] ago.
     pub fn set_out_anew(&mut self, lag: f64) {
         self.layout.set_out_anew(lag);
     }
