@@ -10,11 +10,13 @@
 //! without. So σ is max(⅓, 1 − 3.2/(ωΔt)²) with the line's greatest axial frequency ω, which is stable for all ρ from ½ to 1; it is 1 where springs may stiffen
 //! or creep, or an end has parted. The new strain is linear in the new velocity, ε^{n+1} = ε^n + κ + Δt q·G(v), κ = Δt²(|G(v⁻)|² − (q·G(v⁻))²)/(2|G(r)|), so that
 //!
-//! T̄ − k q·G(v) = EA b₁(ε^n + κ) + H + ½BA(1−θ) q·G(v⁻),  k = EA b₁Δt + ½BA(1+θ),  b₁ = σ/N,
+//! S^{n+1} = EA(ε^n + κ + Δt q·G(v)),  C = ½BA[(1+θ) q·G(v) + (1−θ) q·G(v⁻)],  T̄ = b₁(S^{n+1} + C) + Σ h_i (S^i + C)⁺,
 //!
-//! with the history terms H and θ = 0.2 min(1, r/4), where r = Δt max 2 (BA/L)(1/M_i + 1/M_{i+1}) says how hard the dampers are over a step: of
-//! second order, and no ringing of those that are. A row is off where the total would be negative. Eliminating v by the nodes'
-//! momentum leaves one scalar tridiagonal system in T̄.
+//! S being the springs' tension as if they pushed too, C the dampers' over the step, b₁ = σ/N the weight of T^{n+1} and h_i those of the tensions before. Dampers
+//! draw segments before they are taut, and what is averaged is max(0, S + C): a spring that pushes is remembered where the damper pulls more. (Averaging
+//! max(0, S) and adding C goes to b₁S + C there, however short the steps are.) θ = 0.2 min(1, r/4), where r = Δt max 2 (BA/L)(1/M_i + 1/M_{i+1}) says how
+//! hard the dampers are over a step: of second order, and no ringing of those that are. A row is off where the total would be negative. Eliminating v by
+//! the nodes' momentum leaves one scalar tridiagonal system in T̄.
 //!
 //! Springs whose tension is not proportional to strain are laid along the tangent of their curve where the segments are about to come to, and after each pass
 //! where they came to, until the tension there is that of the curve: along the tangent at t_n a rope that stiffens would be held, as it snaps taut, by the
@@ -23,7 +25,7 @@
 //! Drag across the line, C v, is folded into the node's mass by θΔt C, θ = max(½, 1 − M/(Δt C)): trapezoidal, but where it outweighs inertia no
 //! more than that no velocity changes its sign by it, which would go on for ever. Drag along the line, K|u|u, is what T̄ has to balance, and averaged as T̄ is:
 //! the mean of those at t_{n−½} and t_{n+½}, the latter by a tangent at the extrapolated u. Taken at t_n alone, its harmonics of short periods appear
-//! 1/(1 − σ sin²(ωΔt/2)) times as great in T^n. The seabed is folded in too (`bed`); flags of slack and contact are checked after
+//! 1/(1 − σ sin²(ωΔt/2)) times as great in T^n. The seabed is folded in too (`bed`); flags of slack, memory and contact are checked after
 //! the solve and the step repeated until they hold.
 //!
 //! A held end moves by the secant of its path, which so is its v_{n+½}. Only where it sets out, at rest or after a jump, v_{n−½} is
@@ -140,6 +142,8 @@ pub struct AxialWork {
     settled: bool,
     /// Whether any node may be heavier along the line than across it, or lighter.
     turns: bool,
+    /// Whether springs up to t_n may push, of which not all is in T̄ then.
+    forgets: bool,
     /// Whether no step has been made yet.
     starts: bool,
 }
@@ -184,6 +188,7 @@ impl AxialWork {
             tension_peak: Lanes::splat(0.0),
             tensions: [0.0; 2],
             settled: true,
+            forgets: false,
             starts: true,
             turns: line.nodes.mass_tangent != line.nodes.mass_normal || layout.surface.is_some(),
             layout,
@@ -209,10 +214,10 @@ impl AxialWork {
         if state.half_step.tension[0].len() == count {
             let [now, before] = &state.half_step.tension;
             for row in &mut self.rows.segments {
-                row.history = [Lanes::splat(0.0); 2]; // of padding
+                row.history = [Lanes::splat(0.0); 3]; // of padding
             }
             for (at, tensions) in self.layout.fold.slots().zip(now.iter().zip(before)) {
-                let [own, own_before] = &mut self.rows.segments[at.row - 1].history;
+                let [own, own_before, _] = &mut self.rows.segments[at.row - 1].history;
                 (own[at.lane], own_before[at.lane]) = (*tensions.0, *tensions.1);
             }
             return;
@@ -227,8 +232,7 @@ impl AxialWork {
                 }
                 Some(creep) => creep.elastic(at, strain),
             };
-            let tension = tension.positive();
-            self.rows.segments[at - 1].history = [tension; 2];
+            self.rows.segments[at - 1].history = [tension; 3];
         }
     }
 
@@ -655,7 +659,7 @@ struct Tensions<'a> {
 impl Tensions<'_> {
     /// Takes over what a segment has `of` these in a lane; nothing if it is padding.
     #[inline(always)]
-    fn take(&mut self, segment: usize, lane: usize, of: &[Lanes; 2]) {
+    fn take(&mut self, segment: usize, lane: usize, of: &[Lanes; 3]) {
         if segment < self.now.len() {
             (self.now[segment], self.before[segment]) = (of[0][lane], of[1][lane]);
         }

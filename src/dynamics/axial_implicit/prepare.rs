@@ -42,6 +42,7 @@ impl AxialWork {
                 Some(_) => None,
             },
             push: Lanes::splat(push),
+            weights: self.weights.0.map(Lanes::splat),
         }
     }
 
@@ -113,19 +114,20 @@ impl AxialWork {
         let half = Lanes::splat(0.5);
         let back = Lanes::splat(-step.lag());
         let half_back = half * back;
-        let [b1, h0, h1, h2] = self.weights.0.map(Lanes::splat);
+        let [b1, ..] = sizes.weights;
         let share = Lanes::splat(1.0 / self.weights.0[0]);
+        let mut least = Lanes::splat(f64::INFINITY);
         for at in self.layout.rows() {
             let found = self.springs::<SPRINGS>(at);
             let velocity = &self.layout.velocity;
             let relative = velocity.load(at + 1) - velocity.load(at);
             let row = &mut self.rows.segments[at - 1];
             let along = row.direction.dot(relative);
-            let [t1, t2] = row.history;
+            let [last, before, _] = row.history;
             row.along = along;
-            let tension = found.now.positive();
-            row.history = [tension, t1];
-            let memory = h0 * tension + h1 * t1 + h2 * t2;
+            row.history = [found.now, last, before];
+            row.least = found.now.min(last).min(before);
+            let memory = row.all_remembered(sizes);
             row.elastic = found.ahead + memory;
             if SPRINGS == springs::CURVED {
                 row.memory = memory;
@@ -138,12 +140,34 @@ impl AxialWork {
                 let inverse = self.layout.inverse_length.load(at);
                 row.follow(&self.layout.law, along, inverse, [b1, sizes.drift]);
             }
-            let (_, total) = row.spring(along, sizes);
+            let pull = (Lanes::splat(1.0) - sizes.push) * row.axial_damping * along;
+            least = least.min(row.least + pull);
+            let total = row.spring(along) + pull;
             row.taut = total.choose(Lanes::splat(1.0), Lanes::splat(-1.0));
             if BOOKS {
                 let longer = back * (along + half_back * bend);
-                row.now = found.now;
                 row.more_before = found.slope * share * longer;
+            }
+        }
+        let forgot = std::mem::replace(
+            &mut self.forgets,
+            (Lanes::splat(0.0) - least).any_positive(),
+        );
+        if forgot || self.forgets {
+            self.remember_segments(sizes);
+        }
+    }
+
+    /// Remembers the springs up to t_n, some of which push in this step or did in the last one.
+    #[inline(always)]
+    fn remember_segments(&mut self, sizes: &Sizes) {
+        for row in &mut self.rows.segments {
+            (row.memory, row.damping) = (row.all_remembered(sizes), row.axial_damping);
+            let pull = row.pull(row.along, sizes);
+            if (Lanes::splat(0.0) - row.least - pull).any_positive() {
+                row.remember(row.along, sizes);
+                let total = row.spring(row.along) + row.pull(row.along, sizes);
+                row.taut = total.choose(Lanes::splat(1.0), Lanes::splat(-1.0));
             }
         }
     }

@@ -43,6 +43,8 @@ pub(super) struct Sizes {
     pub slope: Option<Lanes>,
     /// 1 where dampers act in slack segments, else 0 [-].
     pub push: Lanes,
+    /// Weights of T^{n+1}, T^n, T^{n−1} and T^{n−2} in T̄ [-].
+    pub weights: [Lanes; 4],
 }
 
 /// Force over EA [-] of four segments by the law of their springs, and its slope with the strain.
@@ -68,8 +70,7 @@ pub(super) struct SegmentRow {
     /// Lengths l at t_n [m], and 1/l.
     pub length: Lanes,
     pub inverse: Lanes,
-    /// Tension of the springs at t_n as if they pushed too, and by how much it was more half a step before [N].
-    pub now: Lanes,
+    /// By how much the tension of the springs was more half a step before t_n, as if they pushed too [N].
     pub more_before: Lanes,
     /// q·(v_{i+1} − v_i) at t_{n−½} [m/s].
     pub along: Lanes,
@@ -77,14 +78,18 @@ pub(super) struct SegmentRow {
     pub stiffness: Lanes,
     /// Part of T̄ that springs have at no stretching velocity, along the tangent they are laid along [N].
     pub elastic: Lanes,
-    /// The part of it that tensions before have [N].
+    /// The part of it that the springs up to t_n have [N], kept where springs are curved or [`super::AxialWork::forgets`].
     pub memory: Lanes,
+    /// What of BA/L acts in T̄ [N s/m].
+    pub damping: Lanes,
     /// EA·b₁ times the strain by transverse motion [N].
     pub curvature: Lanes,
     /// 1 where the segment is taut, −1 where it is slack.
     pub taut: Lanes,
-    /// Elastic tensions at t_{n−1} and t_{n−2} [N]; once a step is prepared, at t_n and t_{n−1}.
-    pub history: [Lanes; 2],
+    /// Tensions of the springs at t_{n−1} and t_{n−2} as if they pushed too [N]; once a step is prepared, at t_n, t_{n−1} and t_{n−2}.
+    pub history: [Lanes; 3],
+    /// The least of them, or less than any tension where one of them is not in T̄ as it is, with its damper [N].
+    pub least: Lanes,
     /// Rows of the system in T̄ [N], and what elimination makes of them.
     pub equations: Equations,
     pub eliminated: Eliminated,
@@ -104,15 +109,16 @@ impl SegmentRow {
             direction: Vectors::zero(),
             length: zero,
             inverse: zero,
-            now: zero,
             more_before: zero,
             along: zero,
             stiffness: zero,
             elastic: zero,
             memory: zero,
+            damping: line.axial_damping.load(at) * inverse,
             curvature: zero,
             taut: zero,
-            history: [zero; 2],
+            history: [zero; 3],
+            least: zero,
             equations: Equations::unit(),
             eliminated: Eliminated::start(),
             tension: zero,
@@ -129,8 +135,8 @@ impl SegmentRow {
         sizes: &Sizes,
     ) {
         let (zero, one, push) = (Lanes::splat(0.0), Lanes::splat(1.0), sizes.push);
-        let damping = self.axial_damping * sizes.damping[0];
-        let damped = self.axial_damping * sizes.damping[1] * self.along;
+        let damping = self.damping * sizes.damping[0];
+        let damped = self.damping * sizes.damping[1] * self.along;
         let springs = self.elastic + self.curvature;
         let resistance = self.taut.choose(self.stiffness + damping, push * damping);
         let known = self.taut.choose(springs + damped, push * damped);
@@ -170,13 +176,70 @@ impl SegmentRow {
         force
     }
 
-    /// Force of the springs [N] at a stretching velocity [m/s], and what is > 0 where the segment is taut with it.
+    /// Force of the springs in T̄ [N] at a stretching velocity [m/s].
     #[inline(always)]
-    pub fn spring(&self, along: Lanes, sizes: &Sizes) -> (Lanes, Lanes) {
-        let spring = self.elastic + self.curvature + self.stiffness * along;
-        let rate = sizes.damping[0] * along + sizes.damping[1] * self.along;
-        let damper = self.axial_damping * rate;
-        (spring, spring + (Lanes::splat(1.0) - sizes.push) * damper)
+    pub fn spring(&self, along: Lanes) -> Lanes {
+        self.elastic + self.curvature + self.stiffness * along
+    }
+
+    /// Stretching velocity that the damper acts on in a step that ends with one [m/s].
+    #[inline(always)]
+    pub fn rate(&self, along: Lanes, sizes: &Sizes) -> Lanes {
+        sizes.damping[0] * along + sizes.damping[1] * self.along
+    }
+
+    /// Part that the springs up to t_n have in T̄ [N], and the damper's share in it [-], where it pulls with `pull` [N]: springs that push more
+    /// than that have none, and no damper with them.
+    #[inline(always)]
+    fn remembered(&self, pull: Lanes, sizes: &Sizes) -> [Lanes; 2] {
+        let [mut share, weights @ ..] = sizes.weights;
+        let mut memory = Lanes::splat(0.0);
+        for (weight, tension) in weights.into_iter().zip(self.history) {
+            let total = tension + pull;
+            memory = memory + (weight * tension).where_positive(total);
+            share = share + weight.where_positive(total);
+        }
+        [memory, share.max(sizes.push)]
+    }
+
+    /// Part that the springs up to t_n have in T̄ where none of them pushes [N].
+    #[inline(always)]
+    pub fn all_remembered(&self, sizes: &Sizes) -> Lanes {
+        let [_, h0, h1, h2] = sizes.weights;
+        let [now, last, before] = self.history;
+        h0 * now + h1 * last + h2 * before
+    }
+
+    /// Remembers the springs up to t_n with the damper at a stretching velocity [m/s].
+    #[inline(always)]
+    pub fn remember(&mut self, rate: Lanes, sizes: &Sizes) {
+        let pull = (Lanes::splat(1.0) - sizes.push) * self.axial_damping * rate;
+        let [memory, share] = self.remembered(pull, sizes);
+        self.elastic = self.elastic + (memory - self.memory);
+        (self.memory, self.damping) = (memory, share * self.axial_damping);
+        self.least = Lanes::splat(f64::NEG_INFINITY);
+    }
+
+    /// What the damper adds, at a stretching velocity [m/s], to what tells whether the segment is taut [N].
+    #[inline(always)]
+    pub fn pull(&self, rate: Lanes, sizes: &Sizes) -> Lanes {
+        (Lanes::splat(1.0) - sizes.push) * self.damping * rate
+    }
+
+    /// What is > 0 where the segment is taut at a stretching velocity [m/s], and by how much more T̄ has of springs up to t_n and of the damper than is
+    /// remembered [N].
+    #[inline(always)]
+    pub fn total(&self, along: Lanes, sizes: &Sizes) -> [Lanes; 2] {
+        let (zero, rate) = (Lanes::splat(0.0), self.rate(along, sizes));
+        let pull = self.pull(rate, sizes);
+        let total = self.spring(along) + pull;
+        if !(zero - self.least - pull).any_positive() {
+            return [total, zero];
+        }
+        let all = (Lanes::splat(1.0) - sizes.push) * self.axial_damping * rate;
+        let [memory, share] = self.remembered(all, sizes);
+        let more = memory - self.memory + (share * all - pull);
+        [total + more, more]
     }
 }
 

@@ -28,6 +28,8 @@ pub(super) struct Found {
     /// Most that T̄ changes by the true stretch [N], told for segments that turn little; > 0 where one turns more.
     bent: Lanes,
     turned: Lanes,
+    /// Least of the tensions before, with the pull of the dampers [N]; below any where one of them is not in T̄.
+    least: Lanes,
     /// Greatest T̄ [N].
     pub greatest: Lanes,
     /// Twice the energy lost, and dissipated by the averaging of tensions [J].
@@ -43,6 +45,7 @@ impl Found {
             flipped: zero,
             bent: zero,
             turned: zero,
+            least: Lanes::splat(f64::INFINITY),
             greatest: zero,
             lost: zero,
             numerical: zero,
@@ -193,8 +196,10 @@ impl Found {
         let (zero, drift) = (Lanes::splat(0.0), sizes.drift);
         let along = segment.direction.dot(relative);
         let across = relative.dot(relative) - along * along; // w²
-        let (spring, total) = segment.spring(along, sizes);
-        let taut = total.choose(Lanes::splat(1.0), Lanes::splat(-1.0));
+        let spring = segment.spring(along);
+        let pull = segment.pull(segment.rate(along, sizes), sizes);
+        let taut = (spring + pull).choose(Lanes::splat(1.0), Lanes::splat(-1.0));
+        self.least = self.least.min(segment.least + pull);
         self.flipped = self.flipped.max(zero - taut * segment.taut);
         // transverse stretch over Δt²: w²/2L (1 − O(Δt²w²/L²)/4), L the length without it
         let l = segment.length;
@@ -233,8 +238,9 @@ impl Found {
         self.lost = self.lost + (segment.tension - springs) * moved;
         let ahead = half * sizes.drift;
         let longer = ahead * (along + half * ahead * across * segment.inverse);
-        let before = segment.now + segment.more_before;
-        let after = segment.now + segment.stiffness * slope * longer;
+        let [now, ..] = segment.history;
+        let before = now + segment.more_before;
+        let after = now + segment.stiffness * slope * longer;
         let mut centred = half * (before.positive() + after.positive());
         let kinks = Lanes::splat(0.0) - before * after;
         if kinks.any_positive() {
@@ -255,9 +261,11 @@ impl AxialWork {
         if landed {
             self.revise_contact();
         }
+        let recalled = (Lanes::splat(0.0) - found.least).any_positive()
+            && self.recall_segments(sizes, tolerance);
         let revised = stretched && self.revise_segments(sizes, tolerance);
         let curved = self.is_curved() && self.follow_curve(sizes, tolerance);
-        !(landed || revised || curved)
+        !(landed || recalled || revised || curved)
     }
 
     /// Whether springs have tensions that are not proportional to their strain, and no memory.
@@ -295,7 +303,7 @@ impl AxialWork {
             }
             let centred = segment.axial_stiffness * segment.unstretched_length * secant;
             let along = segment.direction.dot(relative[1]);
-            let (spring, _) = segment.spring(along, sizes);
+            let spring = segment.spring(along);
             let moved = sizes.kick * (segment.along + along);
             twice = twice + (spring.positive() - centred) * moved;
         }
@@ -312,7 +320,7 @@ impl AxialWork {
             let relative = velocity.load(row + 2) - velocity.load(row + 1);
             let along = segment.direction.dot(relative);
             let inverse = self.layout.inverse_length.load(row + 1);
-            let (spring, _) = segment.spring(along, sizes);
+            let spring = segment.spring(along);
             let mut laid = *segment;
             let curve = laid.follow(law, along, inverse, [share, sizes.drift]);
             let off = (curve.positive() - spring.positive()).abs() - tolerance;
@@ -335,6 +343,35 @@ impl AxialWork {
         }
     }
 
+    /// Remembers the springs up to t_n as the last pass found that dampers pull; whether that asks for another pass.
+    #[inline(always)]
+    fn recall_segments(&mut self, sizes: &Sizes, tolerance: Lanes) -> bool {
+        let (zero, one) = (Lanes::splat(0.0), Lanes::splat(1.0));
+        let velocity = &self.layout.velocity_before;
+        if !self.forgets {
+            for segment in &mut self.rows.segments {
+                segment.memory = segment.all_remembered(sizes);
+            }
+            self.forgets = true;
+        }
+        let mut recalled = false;
+        for (row, segment) in self.rows.segments.iter_mut().enumerate() {
+            let relative = velocity.load(row + 2) - velocity.load(row + 1);
+            let along = segment.direction.dot(relative);
+            let [total, more] = segment.total(along, sizes);
+            let taut = total.choose(one, zero - one);
+            let again = (more.abs() - tolerance)
+                .where_positive(taut)
+                .max(zero - taut * segment.taut);
+            if again.any_positive() {
+                segment.remember(segment.rate(along, sizes), sizes);
+                segment.taut = taut;
+                recalled = true;
+            }
+        }
+        recalled
+    }
+
     /// Takes the segments to be slack and bent as the last pass found, true stretch by transverse motion included; whether that asks for another pass.
     #[inline(always)]
     fn revise_segments(&mut self, sizes: &Sizes, tolerance: Lanes) -> bool {
@@ -345,7 +382,7 @@ impl AxialWork {
         for (row, segment) in self.rows.segments.iter_mut().enumerate() {
             let relative = velocity.load(row + 2) - velocity.load(row + 1);
             let along = segment.direction.dot(relative);
-            let (_, total) = segment.spring(along, sizes);
+            let [total, _] = segment.total(along, sizes);
             let taut = total.choose(one, zero - one);
             // l1 − l0 less its part along the segment, exact: (2 l0 Δt a + Δt²|Δv|²)/(l0 + l1) − Δt a
             let l = segment.length;
