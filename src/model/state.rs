@@ -118,7 +118,7 @@ pub struct HalfStep {
     pub velocity_before: Vec<Vector3<f64>>,
     /// The last step and the one before [s]; 0 before the first step, where `velocity` is that of t itself.
     pub steps: [f64; 2],
-    /// Elastic segment tensions at t − Δt and t − 2Δt [N]; kept by the axial-implicit leapfrog only.
+    /// Tensions of the segments' springs at t − Δt and t − 2Δt as if they pushed too [N]; kept by the axial-implicit leapfrog only.
     pub tension: [Vec<f64>; 2],
     /// Slow strains of viscoelastic segments at t − Δt/2 [-]; none before the first step.
     pub creep: Vec<f64>,
