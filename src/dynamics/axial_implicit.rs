@@ -464,13 +464,15 @@ impl AxialWork {
             self.find_velocities::<BED, BOOKS>(before, &sizes);
             let found = self.look_over::<BED, BOOKS>(&sizes);
             self.tension_peak = self.tension_peak.max(found.greatest);
-            let bed_holds = BED != under::ROUGH || self.check_bed(step);
-            let holds = self.holds::<BED>(&found, &sizes) && bed_holds;
+            let bed_holds = self.bed_holds::<BED>(&found, step);
+            let holds = self.segments_hold(&found, &sizes) && bed_holds;
             if holds || passes == PASSES_MAX {
                 self.settled &= holds;
                 break found;
             }
-            self.weigh_nodes::<BED>();
+            if !bed_holds {
+                self.weigh_nodes::<BED>();
+            }
         };
         if BOOKS && self.is_curved() {
             found.numerical = self.dissipated_by_curves(step, &sizes);

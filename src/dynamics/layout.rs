@@ -383,26 +383,11 @@ impl Layout {
         }
     }
 
-    /// Unit vectors along the chord of the neighbouring nodes.
-    #[inline(always)]
-    pub fn tangent(&self, at: usize) -> Vectors {
-        let chord = self.position.load(at + 1) - self.position.load(at - 1);
-        chord.scale(inverse_norm(chord.dot(chord)))
-    }
-
     /// Vectors along the segments, and the inverse of their lengths.
     #[inline(always)]
     pub fn chord(&self, at: usize) -> (Vectors, Lanes) {
         let chord = self.position.load(at + 1) - self.position.load(at);
         (chord, inverse_norm(chord.dot(chord)))
-    }
-
-    /// Velocities extrapolated to t_n [m/s].
-    #[inline(always)]
-    pub fn velocity_now(&self, at: usize, step: Step) -> Vectors {
-        let velocity = self.velocity.load(at);
-        velocity
-            + (velocity - self.velocity_before.load(at)).scale(Lanes::splat(step.extrapolation))
     }
 
     /// Moves the nodes from t_n to t_{n+1}.

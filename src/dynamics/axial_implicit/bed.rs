@@ -53,13 +53,18 @@ impl Bed {
         let (one, half) = (Lanes::splat(1.0), Lanes::splat(0.5));
         let (kick, drift) = (Lanes::splat(step.kick), Lanes::splat(step.drift));
         let before = Lanes::splat(step.last()); // the last step may have been of another length
+        let even = Lanes::splat(1.0 / step.kick);
         let hardness = kick * (stiffness * drift + damping) * yields;
         let (theta, over) = if (hardness - one - one).any_positive() {
             let theta = (one - (hardness + Lanes::splat(f64::MIN_POSITIVE)).recip()).max(half);
-            let span = theta * drift + (one - theta) * before;
-            (theta, span.recip())
+            let over = if step.last() == step.drift {
+                even
+            } else {
+                (theta * drift + (one - theta) * before).recip()
+            };
+            (theta, over)
         } else {
-            (half, Lanes::splat(1.0 / step.kick))
+            (half, even)
         };
         let (ahead, rest) = (theta * drift, one - theta);
         let start = (penetration + rest * before * rise).positive();

@@ -7,6 +7,7 @@ use nalgebra::Vector3;
 use super::AxialWork;
 use super::bed::Bed;
 use super::rows::{NodeRow, Sizes, pulled, springs};
+use crate::dynamics::layout::inverse_norm;
 use crate::dynamics::step::Step;
 use crate::math::lanes::{Lanes, Vectors};
 
@@ -22,9 +23,6 @@ struct Springs {
     ahead: Lanes,
     slope: Lanes,
 }
-
-/// What water does to nodes: drag over relative velocity, across and along the line [N s/m].
-type Drag = [Lanes; 2];
 
 impl AxialWork {
     /// Sizes of a step.
@@ -93,14 +91,21 @@ impl AxialWork {
     /// Directions of segments and tangents of nodes.
     #[inline(always)]
     pub(super) fn prepare_geometry(&mut self) {
-        let line = &self.layout;
+        let (line, last) = (&self.layout, self.layout.fold.rows());
+        let position = line.position.rows(last);
+        let (segments, nodes) = (
+            &mut self.rows.segments[..last],
+            &mut self.rows.nodes[..last],
+        );
         for at in line.rows() {
-            let (chord, inverse) = line.chord(at);
-            let segment = &mut self.rows.segments[at - 1];
-            segment.direction = chord.scale(inverse);
-            segment.length = chord.dot(chord) * inverse;
-            segment.inverse = inverse;
-            self.rows.nodes[at - 1].tangent = line.tangent(at);
+            let (before, here, after) = (position[at - 1], position[at], position[at + 1]);
+            let segment = &mut segments[at - 1];
+            let chord = after - here;
+            segment.inverse = inverse_norm(chord.dot(chord));
+            segment.direction = chord.scale(segment.inverse);
+            segment.length = chord.dot(chord) * segment.inverse;
+            let chord = after - before;
+            nodes[at - 1].tangent = chord.scale(inverse_norm(chord.dot(chord)));
         }
     }
 
@@ -126,7 +131,8 @@ impl AxialWork {
             let [last, before, _] = row.history;
             row.along = along;
             row.history = [found.now, last, before];
-            row.least = found.now.min(last).min(before);
+            row.margins[0] = found.now.min(last).min(before);
+            row.margins[1] = Lanes::splat(f64::INFINITY);
             let memory = row.all_remembered(sizes);
             row.elastic = found.ahead + memory;
             if SPRINGS == springs::CURVED {
@@ -141,7 +147,7 @@ impl AxialWork {
                 row.follow(&self.layout.law, along, inverse, [b1, sizes.drift]);
             }
             let pull = (Lanes::splat(1.0) - sizes.push) * row.axial_damping * along;
-            least = least.min(row.least + pull);
+            least = least.min(row.margins[0] + pull);
             let total = row.spring(along) + pull;
             row.taut = total.choose(Lanes::splat(1.0), Lanes::splat(-1.0));
             if BOOKS {
@@ -164,7 +170,7 @@ impl AxialWork {
         for row in &mut self.rows.segments {
             (row.memory, row.damping) = (row.all_remembered(sizes), row.axial_damping);
             let pull = row.pull(row.along, sizes);
-            if (Lanes::splat(0.0) - row.least - pull).any_positive() {
+            if (Lanes::splat(0.0) - row.margins[0] - pull).any_positive() {
                 row.remember(row.along, sizes);
                 let total = row.spring(row.along) + row.pull(row.along, sizes);
                 row.taut = total.choose(Lanes::splat(1.0), Lanes::splat(-1.0));
@@ -176,13 +182,18 @@ impl AxialWork {
     /// t_{n+½}, with the slope that it has where these are extrapolated to.
     #[inline(always)]
     pub(super) fn prepare_drag<const CURRENT: bool>(&mut self, step: Step) {
-        let line = &self.layout;
+        let (line, last) = (&self.layout, self.layout.fold.rows());
         let Some(drag) = &line.drag else {
             return;
         };
+        let [normals, tangents] = [&drag.normal, &drag.tangent].map(|of| of.rows(last));
+        let [velocity, before] = [&line.velocity, &line.velocity_before].map(|of| of.rows(last));
+        let nodes = &mut self.rows.nodes[..last];
+        let extrapolation = Lanes::splat(step.extrapolation);
         for at in line.rows() {
-            let node = &mut self.rows.nodes[at - 1];
-            let (mut past, mut now) = (line.velocity.load(at), line.velocity_now(at, step));
+            let node = &mut nodes[at - 1];
+            let mut past = velocity[at];
+            let mut now = past + (past - before[at]).scale(extrapolation);
             if CURRENT && let Some(current) = &mut self.rows.current {
                 let flow = line.water_velocity(at);
                 current[at - 1].flow = flow;
@@ -190,12 +201,12 @@ impl AxialWork {
             }
             let speed = now.dot(node.tangent);
             let across = now - node.tangent.scale(speed);
-            let normal = drag.normal.load(at) * across.dot(across).sqrt();
+            let normal = normals[at] * across.dot(across).sqrt();
             let old = past.dot(node.tangent);
             let new = speed + speed - old;
             let mean = Lanes::splat(0.5) * (old.abs() * old + new.abs() * new);
             let slope = new.abs().max(old.abs());
-            let tangent = drag.tangent.load(at);
+            let tangent = tangents[at];
             node.drag = [normal, tangent * slope];
             node.drag_rest = tangent * (mean - slope * new);
         }
@@ -204,10 +215,12 @@ impl AxialWork {
     /// Inverse masses, and the velocities that nodes would come to without tension and bed.
     #[inline(always)]
     pub(super) fn prepare_nodes<const CURRENT: bool>(&mut self, sizes: &Sizes) {
-        let line = &self.layout;
+        let (line, last) = (&self.layout, self.layout.fold.rows());
+        let (velocities, weight) = (line.velocity.rows(last), line.weight.rows(last));
+        let (nodes, drawn) = (&mut self.rows.nodes[..last], line.drag.is_some());
         for at in line.rows() {
-            let node = &mut self.rows.nodes[at - 1];
-            let velocity = line.velocity.load(at);
+            let node = &mut nodes[at - 1];
+            let velocity = velocities[at];
             let (mut past, mut press) = (velocity, None);
             if CURRENT && let Some(current) = &mut self.rows.current {
                 let current = &mut current[at - 1];
@@ -217,10 +230,9 @@ impl AxialWork {
                     press = Some(current.press);
                 }
             }
-            let drag = line.drag.as_ref().map(|_| node.drag);
             let damping = line.mass_damping.as_ref().map(|d| d.load(at));
-            node.invert(drag, damping, sizes);
-            node.fall(line.weight.load(at), [velocity, past], drag, sizes);
+            node.invert(drawn, damping, sizes);
+            node.fall(weight[at], [velocity, past], drawn, sizes);
             node.press(press, velocity, damping, sizes);
             node.loose = node.fall;
         }
@@ -229,14 +241,17 @@ impl AxialWork {
     /// Lets the nodes meet the level bed.
     #[inline(always)]
     pub(super) fn prepare_contact(&mut self, step: Step) {
-        let line = &self.layout;
+        let (line, last) = (&self.layout, self.layout.fold.rows());
         let Some(contact) = &line.contact else {
             return;
         };
-        for at in line.rows() {
-            let node = &mut self.rows.nodes[at - 1];
-            let penetration = contact.level.load(at) - line.position.load(at).z;
-            let rise = line.velocity.load(at).z;
+        let (position, velocity) = (line.position.rows(last), line.velocity.rows(last));
+        let level = contact.level.rows(last);
+        let nodes = &mut self.rows.nodes[..last];
+        for at in 1..last + 1 {
+            let node = &mut nodes[at - 1];
+            let penetration = level[at] - position[at].z;
+            let rise = velocity[at].z;
             let yields = node.across + node.lift() * node.tangent.z;
             node.bed = Bed::new(contact.law(at), penetration, rise, yields, step);
             node.touches = node.pushed(rise);
@@ -262,12 +277,13 @@ impl AxialWork {
 }
 
 impl NodeRow {
-    /// Inverts the masses with what drag and damping [N s/m] add to them; what is held yields to no force.
+    /// Inverts the masses with what drag, if water draws at the nodes, and damping [N s/m] add to them; what is held yields to no force.
     #[inline(always)]
-    fn invert(&mut self, drag: Option<Drag>, damping: Option<Lanes>, sizes: &Sizes) {
+    fn invert(&mut self, drawn: bool, damping: Option<Lanes>, sizes: &Sizes) {
         let half = Lanes::splat(0.5) * sizes.kick;
         let [mut across, mut along] = [self.mass_normal, self.mass_tangent];
-        if let Some([normal, tangent]) = drag {
+        if drawn {
+            let [normal, tangent] = self.drag;
             across = across + (half * normal).max(sizes.kick * normal - across);
             along = along + sizes.kick * tangent;
         }
@@ -280,20 +296,15 @@ impl NodeRow {
         self.held = Lanes::splat(0.0);
     }
 
-    /// Lets the nodes fall under their weight [N], with the drag at velocities `past` the water, from `velocity` [m/s].
+    /// Lets the nodes fall under their weight [N] from `velocity` [m/s], `drawn` by the drag at velocities `past` the water or not.
     #[inline(always)]
-    fn fall(
-        &mut self,
-        weight: Lanes,
-        [velocity, past]: [Vectors; 2],
-        drag: Option<Drag>,
-        sizes: &Sizes,
-    ) {
+    fn fall(&mut self, weight: Lanes, [velocity, past]: [Vectors; 2], drawn: bool, sizes: &Sizes) {
         let (across, excess) = (self.across * sizes.kick, self.excess * sizes.kick);
         let zero = Lanes::splat(0.0);
         let mut along = zero - excess * (weight * self.tangent.z); // Δt b t·f
         self.fall = velocity;
-        if let Some([normal, tangent]) = drag {
+        if drawn {
+            let [normal, tangent] = self.drag;
             // f = −K_n u − (d − K_n u·t) t, and f·t = −d = −K_t u·t − rest
             let speed = past.dot(self.tangent);
             let drawn = tangent * speed + self.drag_rest;

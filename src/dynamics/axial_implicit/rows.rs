@@ -88,8 +88,8 @@ pub(super) struct SegmentRow {
     pub taut: Lanes,
     /// Tensions of the springs at t_{n−1} and t_{n−2} as if they pushed too [N]; once a step is prepared, at t_n, t_{n−1} and t_{n−2}.
     pub history: [Lanes; 3],
-    /// The least of them, or less than any tension where one of them is not in T̄ as it is, with its damper [N].
-    pub least: Lanes,
+    /// How far the damper may pull less than 0, and more, before T̄ has more or fewer of them [N].
+    pub margins: [Lanes; 2],
     /// Rows of the system in T̄ [N], and what elimination makes of them.
     pub equations: Equations,
     pub eliminated: Eliminated,
@@ -118,7 +118,7 @@ impl SegmentRow {
             curvature: zero,
             taut: zero,
             history: [zero; 3],
-            least: zero,
+            margins: [zero; 2],
             equations: Equations::unit(),
             eliminated: Eliminated::start(),
             tension: zero,
@@ -217,7 +217,21 @@ impl SegmentRow {
         let [memory, share] = self.remembered(pull, sizes);
         self.elastic = self.elastic + (memory - self.memory);
         (self.memory, self.damping) = (memory, share * self.axial_damping);
-        self.least = Lanes::splat(f64::NEG_INFINITY);
+        let (zero, most) = (Lanes::splat(0.0), Lanes::splat(f64::INFINITY));
+        let mut margins = [most; 2];
+        for tension in self.history {
+            let total = tension + pull;
+            margins[0] = margins[0].min(total.choose(tension, most));
+            margins[1] = margins[1].min(total.choose(most, zero - tension));
+        }
+        self.margins = margins.map(|margin| share * margin);
+    }
+
+    /// < 0 where T̄ has other springs up to t_n than are remembered, the damper pulling with `pull` [N].
+    #[inline(always)]
+    pub fn margin(&self, pull: Lanes) -> Lanes {
+        let [less, more] = self.margins;
+        (less + pull).min(more - pull)
     }
 
     /// What the damper adds, at a stretching velocity [m/s], to what tells whether the segment is taut [N].
@@ -233,7 +247,7 @@ impl SegmentRow {
         let (zero, rate) = (Lanes::splat(0.0), self.rate(along, sizes));
         let pull = self.pull(rate, sizes);
         let total = self.spring(along) + pull;
-        if !(zero - self.least - pull).any_positive() {
+        if !(zero - self.margin(pull)).any_positive() {
             return [total, zero];
         }
         let all = (Lanes::splat(1.0) - sizes.push) * self.axial_damping * rate;

@@ -25,11 +25,11 @@ pub(super) struct Found {
     /// > 0 where the bed pushes other nodes than assumed, or other segments are slack.
     landed: Lanes,
     flipped: Lanes,
-    /// Most that T̄ changes by the true stretch [N], told for segments that turn little; > 0 where one turns more.
+    /// 2·[`SHORT`] times the most that T̄ changes by the true stretch [N], told for segments that turn little; > 0 where one turns more.
     bent: Lanes,
     turned: Lanes,
-    /// Least of the tensions before, with the pull of the dampers [N]; below any where one of them is not in T̄.
-    least: Lanes,
+    /// Least margin of segments [N]: < 0 where T̄ has other springs up to t_n than are remembered.
+    margin: Lanes,
     /// Greatest T̄ [N].
     pub greatest: Lanes,
     /// Twice the energy lost, and dissipated by the averaging of tensions [J].
@@ -45,7 +45,7 @@ impl Found {
             flipped: zero,
             bent: zero,
             turned: zero,
-            least: Lanes::splat(f64::INFINITY),
+            margin: Lanes::splat(f64::INFINITY),
             greatest: zero,
             lost: zero,
             numerical: zero,
@@ -57,7 +57,7 @@ impl AxialWork {
     /// Finds what couples the segments through their nodes.
     #[inline(always)]
     pub(super) fn weigh_nodes<const BED: u8>(&mut self) {
-        let segments = &self.rows.segments;
+        let segments = &self.rows.segments[..self.rows.nodes.len()];
         let direction = |at: usize| segments[at].direction;
         let mut q = direction(segments.len() - 1).moved_up_after(Vectors::zero());
         for (at, node) in self.rows.nodes.iter_mut().enumerate() {
@@ -122,7 +122,11 @@ impl AxialWork {
         before: Lanes,
         sizes: &Sizes,
     ) {
-        let (segments, kick) = (&self.rows.segments, sizes.kick);
+        let (rows, kick) = (self.rows.nodes.len(), sizes.kick);
+        let (segments, new) = (
+            &self.rows.segments[..rows],
+            self.layout.velocity_before.rows_mut(rows),
+        );
         let pull = |at: usize| segments[at].direction.scale(kick * segments[at].tension);
         let last = segments[segments.len() - 1].direction;
         let mut below = last.moved_up_after(Vectors::zero()).scale(kick * before);
@@ -135,7 +139,7 @@ impl AxialWork {
                 node.impulse = impulse;
             }
             let velocity = node.loose + node.inverse_mass::<BED>(impulse);
-            self.layout.velocity_before.store(velocity, at + 1);
+            new[at + 1] = velocity;
         }
         self.layout.velocity_before.wrap();
     }
@@ -144,23 +148,24 @@ impl AxialWork {
     #[inline(always)]
     pub(super) fn look_over<const BED: u8, const BOOKS: bool>(&mut self, sizes: &Sizes) -> Found {
         let mut found = Found::new();
-        let line = &self.layout;
-        for at in line.rows() {
-            let new = &line.velocity_before;
-            let relative = new.load(at + 1) - new.load(at);
-            found.check::<BOOKS>(&self.rows.segments[at - 1], relative, sizes);
+        let (line, last) = (&self.layout, self.layout.fold.rows());
+        let (segments, nodes) = (&self.rows.segments[..last], &self.rows.nodes[..last]);
+        let [old, new] = [&line.velocity, &line.velocity_before].map(|of| of.rows(last));
+        // no inclusive range, which has more to do in every row; what is found keeps the compiler from taking four rows at once
+        for at in 1..last + 1 {
+            found.check::<BOOKS>(&segments[at - 1], new[at + 1] - new[at], sizes);
         }
         if BED != under::LEVEL && !BOOKS {
             return found;
         }
+        let weight = line.weight.rows(last);
         for at in line.rows() {
-            let (node, new) = (&self.rows.nodes[at - 1], line.velocity_before.load(at));
+            let node = &nodes[at - 1];
             if BED == under::LEVEL {
-                found.look_at(node, new);
+                found.look_at(node, new[at]);
             }
             if BOOKS {
-                let velocities = [line.velocity.load(at), new];
-                found.book_node(node, velocities, line.weight.load(at), sizes);
+                found.book_node(node, [old[at], new[at]], weight[at], sizes);
             }
         }
         found
@@ -198,21 +203,20 @@ impl Found {
         let across = relative.dot(relative) - along * along; // w²
         let spring = segment.spring(along);
         let pull = segment.pull(segment.rate(along, sizes), sizes);
-        let taut = (spring + pull).choose(Lanes::splat(1.0), Lanes::splat(-1.0));
-        self.least = self.least.min(segment.least + pull);
-        self.flipped = self.flipped.max(zero - taut * segment.taut);
+        let total = spring + pull;
+        self.margin = self.margin.min(segment.margin(pull));
+        self.flipped = self.flipped.max(zero - total * segment.taut);
         // transverse stretch over Δt²: w²/2L (1 − O(Δt²w²/L²)/4), L the length without it
         let l = segment.length;
         let longer = l + drift * along;
         let square = drift * drift * across;
         let turned =
             (square - Lanes::splat(FLAT) * longer * longer).max(Lanes::splat(SHORT) * l - longer);
-        self.turned = self.turned.max(turned.where_positive(taut));
+        self.turned = self.turned.max(turned.where_positive(total));
         let push = segment.stiffness * drift * across;
         let twice = segment.curvature * longer;
         let off = (push - twice - twice).abs() + Lanes::splat(0.25 * FLAT) * push;
-        let bent = off * segment.inverse * Lanes::splat(0.5 / SHORT);
-        self.bent = self.bent.max(bent.where_positive(taut));
+        self.bent = self.bent.max((off * segment.inverse).where_positive(total));
         self.greatest = self.greatest.max(segment.tension);
         if BOOKS {
             self.book_segments(segment, [along, across], spring.positive(), sizes);
@@ -251,21 +255,35 @@ impl Found {
 }
 
 impl AxialWork {
-    /// Corrects what a pass found not to be as assumed; false if another pass is needed.
+    /// Corrects how the nodes meet the bed where a pass found it not to be as assumed; false if that asks for another pass.
     #[inline(always)]
-    pub(super) fn holds<const BED: u8>(&mut self, found: &Found, sizes: &Sizes) -> bool {
-        let tolerance = Lanes::splat(STRETCH_TOLERANCE) * found.greatest.greatest();
-        let off = found.bent - tolerance;
-        let stretched = off.max(found.flipped).max(found.turned).any_positive();
+    pub(super) fn bed_holds<const BED: u8>(&mut self, found: &Found, step: Step) -> bool {
+        if BED == under::ROUGH {
+            return self.check_bed(step);
+        }
         let landed = BED == under::LEVEL && found.landed.any_positive();
         if landed {
             self.revise_contact();
         }
-        let recalled = (Lanes::splat(0.0) - found.least).any_positive()
-            && self.recall_segments(sizes, tolerance);
-        let revised = stretched && self.revise_segments(sizes, tolerance);
+        !landed
+    }
+
+    /// Corrects what a pass found of the segments not to be as assumed; false if that asks for another pass.
+    #[inline(always)]
+    pub(super) fn segments_hold(&mut self, found: &Found, sizes: &Sizes) -> bool {
+        let tolerance = Lanes::splat(STRETCH_TOLERANCE) * found.greatest.greatest();
+        let off = found.bent - Lanes::splat(2.0 * SHORT) * tolerance;
+        let stretched = off.max(found.flipped).max(found.turned).any_positive();
+        let recalls = (Lanes::splat(0.0) - found.margin).any_positive();
+        if recalls && !self.forgets {
+            for segment in &mut self.rows.segments {
+                segment.memory = segment.all_remembered(sizes);
+            }
+            self.forgets = true;
+        }
+        let revised = (stretched || recalls) && self.revise_segments(sizes, tolerance);
         let curved = self.is_curved() && self.follow_curve(sizes, tolerance);
-        !(landed || recalled || revised || curved)
+        !(revised || curved)
     }
 
     /// Whether springs have tensions that are not proportional to their strain, and no memory.
@@ -343,36 +361,8 @@ impl AxialWork {
         }
     }
 
-    /// Remembers the springs up to t_n as the last pass found that dampers pull; whether that asks for another pass.
-    #[inline(always)]
-    fn recall_segments(&mut self, sizes: &Sizes, tolerance: Lanes) -> bool {
-        let (zero, one) = (Lanes::splat(0.0), Lanes::splat(1.0));
-        let velocity = &self.layout.velocity_before;
-        if !self.forgets {
-            for segment in &mut self.rows.segments {
-                segment.memory = segment.all_remembered(sizes);
-            }
-            self.forgets = true;
-        }
-        let mut recalled = false;
-        for (row, segment) in self.rows.segments.iter_mut().enumerate() {
-            let relative = velocity.load(row + 2) - velocity.load(row + 1);
-            let along = segment.direction.dot(relative);
-            let [total, more] = segment.total(along, sizes);
-            let taut = total.choose(one, zero - one);
-            let again = (more.abs() - tolerance)
-                .where_positive(taut)
-                .max(zero - taut * segment.taut);
-            if again.any_positive() {
-                segment.remember(segment.rate(along, sizes), sizes);
-                segment.taut = taut;
-                recalled = true;
-            }
-        }
-        recalled
-    }
-
-    /// Takes the segments to be slack and bent as the last pass found, true stretch by transverse motion included; whether that asks for another pass.
+    /// Takes the segments to be slack and bent as the last pass found, true stretch by transverse motion included, and remembers the springs up to t_n as
+    /// dampers pull; whether that asks for another pass.
     #[inline(always)]
     fn revise_segments(&mut self, sizes: &Sizes, tolerance: Lanes) -> bool {
         let (zero, one, drift) = (Lanes::splat(0.0), Lanes::splat(1.0), sizes.drift);
@@ -382,7 +372,7 @@ impl AxialWork {
         for (row, segment) in self.rows.segments.iter_mut().enumerate() {
             let relative = velocity.load(row + 2) - velocity.load(row + 1);
             let along = segment.direction.dot(relative);
-            let [total, _] = segment.total(along, sizes);
+            let [total, more] = segment.total(along, sizes);
             let taut = total.choose(one, zero - one);
             // l1 − l0 less its part along the segment, exact: (2 l0 Δt a + Δt²|Δv|²)/(l0 + l1) − Δt a
             let l = segment.length;
@@ -391,9 +381,12 @@ impl AxialWork {
             let transverse =
                 square * (l + longer + Lanes::splat(f64::MIN_POSITIVE)).recip() - drift * along;
             let curvature = segment.stiffness * transverse * per_drift;
-            let off = (curvature - segment.curvature).abs() - tolerance;
+            let off = (curvature - segment.curvature).abs().max(more.abs()) - tolerance;
             let again = (zero - taut * segment.taut).max(off.where_positive(taut));
             if again.any_positive() {
+                if self.forgets {
+                    segment.remember(segment.rate(along, sizes), sizes);
+                }
                 (segment.curvature, segment.taut) = (curvature, taut);
                 revised = true;
             }
