@@ -111,7 +111,7 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
         let step_max = choice.step_max;
         total.join(match solver {
             Solver::AxialImplicit(work) => {
-                return self.axial_implicit(number, step_max, work, next, total);
+                return self.axial_implicit(number, choice, work, next, total);
             }
             Solver::Leapfrog(work) => self.leapfrog(number, choice, work, next)?,
             Solver::Implicit(scheme) => self.implicit(number, step_max, scheme, implicit, next)?,
@@ -186,7 +186,7 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
     }
 
     /// Longest axial-implicit step [s] of a line under the tensions that it may come to have.
-    fn transverse_step(&self, line: usize, work: &AxialWork, step_max: f64) -> f64 {
+    fn transverse_step(&self, line: usize, work: &AxialWork, longest: f64) -> f64 {
         let tension_now = match self.holds {
             true => work.tension_before(),
             false => {
@@ -197,8 +197,8 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
         let (transverse, expected) = (work.transverse, SNAP_GROWTH * tension_now);
         // what holds over the whole communication step is told without roots and quotients
         match self.length * self.length * expected <= transverse * transverse {
-            true => step_max,
-            false => step_max.min(transverse / expected.sqrt()),
+            true => longest,
+            false => longest.min(transverse / expected.sqrt()),
         }
     }
 
@@ -206,7 +206,7 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
     fn axial_implicit(
         &self,
         number: usize,
-        step_max: f64,
+        choice: &Choice,
         work: &mut AxialWork,
         next: &mut State,
         total: &mut Done,
@@ -214,10 +214,13 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
         let network = &self.model.networks[number];
         let (index, transverse) = (network.lines[0], work.transverse);
         let line = &self.model.lines[index];
-        let step_max = self.transverse_step(index, work, step_max);
+        let mut longest = self.transverse_step(index, work, choice.longest);
         let mut stuck = 0;
         for retry in 0..=RETRIES_MAX {
-            let count = self.substeps(index, step_max, retry)?;
+            if retry > 0 {
+                longest = longest.min(choice.step_max); // a snap came
+            }
+            let count = self.substeps(index, longest, retry)?;
             let drift = self.length / count as f64;
             self.set_out(index, drift, work, self.holds && retry == 0);
             let jumped = self.jump_energy(index, drift, next);
