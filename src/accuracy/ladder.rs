@@ -11,9 +11,10 @@ const ELEMENTS: [usize; 29] = [
 ];
 /// Elements of the longest line in dearer explicit runs [-].
 const ELEMENTS_FINE: [usize; 7] = [71, 79, 95, 111, 159, 227, 319];
-/// Elements of the longest line, tensions implicit [-].
-const ELEMENTS_AXIAL: [usize; 23] = [
-    3, 4, 5, 6, 7, 8, 9, 11, 13, 15, 19, 23, 27, 31, 35, 39, 43, 47, 55, 63, 79, 111, 159,
+/// Elements of the longest line, tensions implicit [-]: as close together as those that peers are tried with.
+const ELEMENTS_AXIAL: [usize; 28] = [
+    3, 4, 5, 6, 7, 8, 9, 11, 13, 15, 19, 23, 27, 31, 35, 39, 43, 47, 55, 63, 71, 79, 87, 95, 103,
+    111, 135, 159,
 ];
 /// Elements of the longest line, fully implicit [-].
 const ELEMENTS_IMPLICIT: [usize; 3] = [10, 20, 40];

@@ -20,8 +20,8 @@ const SCRIPT: &str = include_str!("peers.py");
 const PROBE: &str = "import numpy, cmoordyn, cabledyn; from cabledyn._lib import _lib; cmoordyn.create; cabledyn.CableDyn; print('ready')";
 const READY: &str = "ready";
 /// Elements that the peers are tried with [-].
-const ELEMENTS: [usize; 19] = [
-    3, 4, 5, 6, 7, 8, 10, 12, 14, 17, 20, 24, 28, 34, 40, 48, 56, 68, 80,
+const ELEMENTS: [usize; 23] = [
+    3, 4, 5, 6, 7, 8, 10, 12, 14, 17, 20, 24, 28, 34, 40, 44, 48, 52, 56, 62, 68, 74, 80,
 ];
 /// Those of them that a line on a seabed starts from: with fewer it means nothing.
 const ELEMENTS_ON_BED: usize = 5;
@@ -31,7 +31,7 @@ const TIME_LIMIT: f64 = 60.0;
 /// A finer mesh pays as long as it lowers some error to less than this part of the least so far [-].
 const PAYS: f64 = 0.95;
 /// So many meshes in a row that do not pay end their family of settings [-].
-const IDLE_MAX: usize = 2;
+const IDLE_MAX: usize = 3;
 
 /// A Python interpreter that can import the peers' packages.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -235,13 +235,7 @@ where
         let first = (place.floor() as usize)
             .saturating_sub(1)
             .min(values.len() - 4);
-        let u = place - first as f64;
-        let weights = [
-            -(u - 1.0) * (u - 2.0) * (u - 3.0) / 6.0,
-            u * (u - 2.0) * (u - 3.0) / 2.0,
-            -u * (u - 1.0) * (u - 3.0) / 2.0,
-            u * (u - 1.0) * (u - 2.0) / 6.0,
-        ];
+        let weights = cubic([0.0, 1.0, 2.0, 3.0], place - first as f64);
         let [a, b, c, d] = [0, 1, 2, 3].map(|point| values[first + point] * weights[point]);
         a + b + c + d
     };
@@ -281,14 +275,37 @@ fn moved(model: &Model, point: usize) -> bool {
     )
 }
 
-/// Position half-way along a line [m].
+/// Position half-way along a line [m]: by a cubic through four nodes, on a chord where there are fewer.
 fn middle(simulation: &Simulation, line: usize) -> Vector3<f64> {
     let arc = &simulation.model().lines[line].nodes.arc;
     let profile = simulation.state().lines[line].position.as_slice();
-    let half = 0.5 * arc[arc.len() - 1];
-    let after = arc.partition_point(|s| *s < half).clamp(1, arc.len() - 1);
-    let part = (half - arc[after - 1]) / (arc[after] - arc[after - 1]);
-    profile[after - 1] + part * (profile[after] - profile[after - 1])
+    half_way(arc, profile)
+}
+
+fn half_way(arc: &[f64], profile: &[Vector3<f64>]) -> Vector3<f64> {
+    let last = arc.len() - 1;
+    let half = 0.5 * arc[last];
+    let after = arc.partition_point(|s| *s < half).clamp(1, last);
+    if last < 3 {
+        let part = (half - arc[after - 1]) / (arc[after] - arc[after - 1]);
+        return profile[after - 1] + part * (profile[after] - profile[after - 1]);
+    }
+    let nodes = [0, 1, 2, 3].map(|node| node + after.saturating_sub(2).min(last - 3));
+    let weights = cubic(nodes.map(|node| arc[node]), half);
+    let terms = nodes
+        .iter()
+        .zip(weights)
+        .map(|(node, weight)| profile[*node] * weight);
+    terms.sum()
+}
+
+/// What the values at four places count for at another, on the cubic through them [-].
+fn cubic(places: [f64; 4], at: f64) -> [f64; 4] {
+    let share = |own: f64| {
+        let others = places.iter().filter(|other| **other != own);
+        others.map(|other| (at - other) / (own - other)).product()
+    };
+    places.map(share)
 }
 
 #[cfg(test)]
@@ -306,5 +323,23 @@ mod tests {
             assert!((value - right).abs() < 1e-12 * right.abs().max(1.0));
         }
         assert_eq!(resampled(&values, 1.0, 7), values[1..]);
+    }
+
+    #[test]
+    fn a_line_is_read_half_way_along_whatever_its_number_of_elements() {
+        let curve = |s: f64| Vector3::new(s, 0.2 * s * s, 0.1 * s - 0.04 * s * s * s);
+        for elements in 3..9 {
+            let even = |node: usize| node as f64 / elements as f64;
+            for uneven in [0.0, 0.3] {
+                let arc: Vec<f64> = (0..=elements)
+                    .map(|node| even(node) * (1.0 + uneven * (even(node) - 1.0)))
+                    .collect();
+                let profile: Vec<_> = arc.iter().map(|s| curve(*s)).collect();
+                let lies = (half_way(&arc, &profile) - curve(0.5)).norm();
+                assert!(lies < 1e-15, "{elements}: {lies:e}");
+            }
+        }
+        let chord = half_way(&[0.0, 1.0], &[curve(0.0), curve(1.0)]);
+        assert_eq!(chord, 0.5 * (curve(0.0) + curve(1.0)));
     }
 }
