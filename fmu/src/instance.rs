@@ -188,13 +188,10 @@ impl Instance {
                     .map(|&line| simulation.model().lines[line].name.as_str())
                     .collect();
                 format!(
-                    "{}: integrator {:?}, internal steps of at most {:.3e} s \
-                     (explicit limit {:.3e} s, transverse limit {:.3e} s)",
+                    "{}: integrator {:?}, {}",
                     lines.join(", "),
                     choice.integrator,
-                    choice.step_max,
-                    choice.explicit.step,
-                    choice.transverse_limit
+                    choice.in_words()
                 )
             });
         }
