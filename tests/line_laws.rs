@@ -342,13 +342,13 @@ fn a_viscoelastic_rope_replays_bit_for_bit_from_its_snapshot() {
         ));
         let run = |simulation: &mut Simulation| {
             (0..50).for_each(|_| simulation.advance(0.1).unwrap());
-            simulation.tension_b(0).to_bits()
+            simulation.snapshot().clone()
         };
         run(&mut simulation);
         let bytes = postcard::to_stdvec(simulation.snapshot()).unwrap();
         let first = run(&mut simulation);
         simulation.restore(postcard::from_bytes(&bytes).unwrap());
-        assert_eq!(run(&mut simulation), first);
+        assert!(run(&mut simulation) == first, "{integrator:?}");
     }
 }
 

@@ -272,7 +272,7 @@ impl LineWork {
             self.interior[at] = f64::from(u8::from(self.is_parted(end)));
             self.set_mass_excess(end);
         }
-        self.set_out_anew(state.half_step.steps[0]);
+        self.set_out(0.5 * state.half_step.steps[0]);
         self.layout.still();
         self.clear_flow();
     }
@@ -654,9 +654,14 @@ impl LineWork {
     /// Makes the ends take their ways from where they were half the `last` step [s] ago, as they go on now: how they came there is no part of them.
     pub fn set_out_anew(&mut self, last: f64) {
         let lag = 0.5 * last;
+        self.set_out(lag);
+        self.layout.set_out_anew(lag);
+    }
+
+    /// Notes where the ends were `lag` [s] ago.
+    fn set_out(&mut self, lag: f64) {
         let ends = [End::A, End::B].map(|end| self.layout.end_slot(end));
         self.half_places = ends.map(|at| self.layout.place_before(at, lag));
-        self.layout.set_out_anew(lag);
     }
 
     /// What the end brings to a free point, after [`Self::pull_beforehand`]; `velocity` [m/s] is the point's at t_n.
