@@ -94,10 +94,11 @@ impl Choice {
             .max(AXIAL_RESOLUTION_MIN * transverse_limit)
             .min(transverse_limit);
         let longest = model.solver.time_step_max;
+        let longest_axial = least(&heave_step).min(longest);
         let asked = model.solver.integrator;
         let steps = Steps {
             explicit: explicit.step.min(longest),
-            axial: accurate.min(least(&heave_step)).min(longest),
+            axial: accurate.min(longest_axial),
             implicit: implicit_step(model, network),
         };
         let integrator = match asked {
@@ -107,7 +108,7 @@ impl Choice {
         let step_max = match integrator {
             Integrator::Leapfrog => steps.explicit,
             Integrator::AxialImplicit if asked == Integrator::Auto => steps.axial,
-            Integrator::AxialImplicit => transverse_limit.min(least(&heave_step)),
+            Integrator::AxialImplicit => transverse_limit.min(longest_axial),
             Integrator::GeneralisedAlpha if asked == Integrator::Auto => steps.implicit,
             _ => longest,
         };
@@ -116,7 +117,7 @@ impl Choice {
             integrator,
             step_max,
             longest: match asked {
-                Integrator::AxialImplicit => longest.min(least(&heave_step)),
+                Integrator::AxialImplicit => longest_axial,
                 _ => step_max,
             },
             explicit,
