@@ -116,3 +116,43 @@ fn a_line_at_rest_has_as_many_elements_as_its_static_tension_needs() {
     still.motion.clear();
     assert!(pilot::settle(&still).is_none());
 }
+
+/// Axial damping of the segments of a rope of 100 m with a damping ratio of 0.1 [N s], with a key of its section and one of the solver.
+fn damping_of(section: &str, solver: &str) -> Vec<f64> {
+    let model = model(&format!(
+        r#"
+        line_types.rope = {{ mass = 4.0, axial_stiffness = 1e6, damping_ratio = 0.1 }}
+        points = [{{ name = "a", position = [0.0, 0.0, 0.0], kind = "fixed" }},
+                  {{ name = "b", position = [99.0, 0.0, 0.0], kind = "coupled" }}]
+        lines = [{{ name = "line", from = "a", to = "b", sections = [{{ type = "rope", length = 100.0{section} }}] }}]
+        solver = {{ {solver} }}
+        "#
+    ));
+    model.lines[0].segments.axial_damping.clone()
+}
+
+#[test]
+fn a_damping_ratio_is_one_damping_on_every_mesh() {
+    let expected = 0.1 * (100.0 / 40.0) * 2e3; // ζ L/40 √(EA m)
+    for (section, solver) in [
+        ("", ""),
+        ("", "tolerance = 0.005"),
+        ("", "elements = 320"),
+        (", elements = 7", ""),
+    ] {
+        for damping in damping_of(section, solver) {
+            approx::assert_relative_eq!(damping, expected, max_relative = 1e-14);
+        }
+    }
+}
+
+#[test]
+fn a_damping_ratio_of_stated_elements_refers_to_those() {
+    let expected = 0.1 * (100.0 / 20.0) * 2e3;
+    for elements in [5, 20, 80] {
+        let given = format!(", elements = {elements}, damping_elements = 20");
+        for damping in damping_of(&given, "") {
+            approx::assert_relative_eq!(damping, expected, max_relative = 1e-14);
+        }
+    }
+}

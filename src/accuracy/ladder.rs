@@ -268,6 +268,7 @@ mod tests {
             line_type: "chain".into(),
             length,
             elements: Some(3),
+            damping_elements: None,
         };
         let scene = Scene {
             lines: vec![

@@ -52,8 +52,10 @@ impl Model {
         let bottom = scene.seabed.as_ref().and_then(bottom).map(Arc::new);
         let mut lines = Vec::with_capacity(scene.lines.len());
         let elements = spacing::elements(scene);
+        let damped = spacing::damping_lengths(scene);
         for (index, line) in scene.lines.iter().enumerate() {
-            let mut built = build_line(scene, index, line, (&points, &vessels), elements[index])?;
+            let sizes = (elements[index], &damped[index][..]);
+            let mut built = build_line(scene, index, line, (&points, &vessels), sizes)?;
             rest_as_it_lies(&mut built, &points, line.rest_shape);
             lay_on(&mut built, bottom.as_ref());
             resting::sink(&mut built, &points);
@@ -246,8 +248,7 @@ pub(super) struct LineLaw {
     law: StretchLaw,
     axial_stiffness: f64,                 // EA [N], at rest
     viscoelastic: Option<[f64; 2]>,       // EA_d [N], BA_s [N s]
-    axial_damping: f64,                   // BA [N s], without the damping ratio's part
-    damping_ratio: f64,                   // ζ [-]
+    axial_damping: f64,                   // BA [N s]
     mass: f64,                            // m [kg/m]
     displaced: f64,                       // ρA [kg/m]
     added_normal: f64,                    // ρA·C_an [kg/m]
@@ -262,9 +263,10 @@ pub(super) struct LineLaw {
     contact: Option<ContactCoefficients>, // [N/m², N s/m²]
 }
 
-/// ζ as given; the numerical one where the line type says nothing of axial damping.
-fn damping_ratio(line_type: &LineType) -> f64 {
-    let open = if line_type.leaves_damping_open() {
+/// ζ as given; [`scene::NUMERICAL_DAMPING_RATIO`] for cables whose type leaves the axial damping open.
+fn damping_ratio(scene: &Scene, line_type: &LineType) -> f64 {
+    let beam = line_type.model == LineModel::Beam || scene.solver.integrator == Integrator::Beam;
+    let open = if line_type.leaves_damping_open() && !beam {
         scene::NUMERICAL_DAMPING_RATIO
     } else {
         0.0
@@ -306,7 +308,8 @@ fn stretch_law(line_type: &LineType) -> (StretchLaw, f64) {
     (law, stiffness.unwrap_or(0.0))
 }
 
-fn line_law(scene: &Scene, line_type: &LineType) -> LineLaw {
+/// The law of a line type, whose damping ratio refers to segments of the length `damped` [m].
+fn line_law(scene: &Scene, line_type: &LineType, damped: f64) -> LineLaw {
     let density = scene.water.as_ref().map_or(0.0, |water| water.density);
     let displaced = line_type
         .diameter
@@ -321,6 +324,7 @@ fn line_law(scene: &Scene, line_type: &LineType) -> LineLaw {
         .rayleigh
         .map(|r| rayleigh::coefficients(r.ratios, r.frequencies));
     let (law, ea) = stretch_law(line_type);
+    let fast = line_type.dynamic_stiffness.unwrap_or(ea); // EA in fast motion [N]
     let drag = line_type.diameter.and_then(|diameter| {
         let (normal, tangent) = (
             line_type.drag_normal.unwrap_or(0.0),
@@ -350,8 +354,8 @@ fn line_law(scene: &Scene, line_type: &LineType) -> LineLaw {
             .axial_damping
             .or(line_type.dynamic_damping)
             .unwrap_or(0.0)
-            + rayleigh.map_or(0.0, |r| r.stiffness * ea),
-        damping_ratio: damping_ratio(line_type),
+            + rayleigh.map_or(0.0, |r| r.stiffness * ea)
+            + damping_ratio(scene, line_type) * damped * (fast * mass).sqrt(),
         mass,
         displaced,
         added_normal: displaced * line_type.added_mass_normal.unwrap_or(0.0),
@@ -367,13 +371,14 @@ fn line_law(scene: &Scene, line_type: &LineType) -> LineLaw {
     }
 }
 
-/// A line of the scene that is to have so many elements [-] where the scene leaves them open.
+/// A line of the scene that is to have so many elements [-] where the scene leaves them open; damping ratios refer to segments of the
+/// lengths `damped` [m], one per section.
 fn build_line(
     scene: &Scene,
     index: usize,
     line: &scene::Line,
     (points, vessels): (&[Point], &[Vessel]),
-    elements: f64,
+    (elements, damped): (f64, &[f64]),
 ) -> Result<Line, SceneError> {
     let point = |key: &str, name: &str| {
         scene
@@ -389,14 +394,14 @@ fn build_line(
     };
     let ends = [point("from", &line.from)?, point("to", &line.to)?];
     let mut laws = Vec::with_capacity(line.sections.len());
-    for (number, section) in line.sections.iter().enumerate() {
+    for ((number, section), damped) in line.sections.iter().enumerate().zip(damped) {
         let line_type = scene.line_types.get(&section.line_type).ok_or_else(|| {
             SceneError::new(
                 format!("lines[{index}].sections[{number}].type"),
                 format!("there is no line type \"{}\"", section.line_type),
             )
         })?;
-        laws.push(line_law(scene, line_type));
+        laws.push(line_law(scene, line_type, *damped));
     }
     check_mixture(index, &laws)?;
     let wanted = spacing::refinements(scene, line, ends.map(|end| &points[end]), vessels, &laws);
@@ -578,19 +583,7 @@ pub(super) struct SegmentPart<'a> {
 }
 
 fn segments(parts: &[SegmentPart]) -> Segments {
-    let damping = |part: &SegmentPart| {
-        let LineLaw {
-            axial_stiffness: ea,
-            axial_damping,
-            damping_ratio,
-            mass,
-            viscoelastic,
-            ..
-        } = part.law;
-        let ea = viscoelastic.map_or(*ea, |[fast, _]| fast);
-        axial_damping + damping_ratio * part.length * (ea * mass).sqrt()
-    };
-    let axial_damping: Vec<f64> = parts.iter().map(damping).collect();
+    let axial_damping: Vec<f64> = parts.iter().map(|part| part.law.axial_damping).collect();
     let viscoelastic = |(part, damping): (&SegmentPart, &f64)| match part.law.viscoelastic {
         Some([fast, slow_damping]) => {
             Viscoelastic::new([part.law.axial_stiffness, fast], [slow_damping, *damping])

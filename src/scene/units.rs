@@ -73,6 +73,7 @@ const UNITS: &[(&str, &str, &str)] = &[
     ("InitialShape", "nodes", "m"),
     ("Strain", "logarithmic", "-"),
     ("Section", "length", "m"),
+    ("Section", "damping_elements", "-"),
     ("Solver", "tolerance", "-"),
     ("Solver", "time_step_max", "s"),
     ("Solver", "spectral_radius", "-"),

@@ -16,9 +16,9 @@ use std::fmt::Write;
 use super::check::{integrator_name, number, quantity};
 use super::notes::{chord, length};
 use super::{
-    Axis, ContactLaw, HarmonicMotion, InitialShape, Integrator, Line, LineModel, LineType,
-    MotionPath, NUMERICAL_DAMPING_RATIO, Point, PointForce, PointKind, Reconstruction, Scene,
-    Strain, TimeFunction,
+    Axis, ContactLaw, DAMPING_ELEMENTS, HarmonicMotion, InitialShape, Integrator, Line, LineModel,
+    LineType, MotionPath, NUMERICAL_DAMPING_RATIO, Point, PointForce, PointKind, Reconstruction,
+    Scene, Strain, TimeFunction,
 };
 use vessels::vessel_in_words;
 
@@ -120,6 +120,19 @@ impl Scene {
         )
     }
 
+    /// Numbers of elements that the damping ratio of a line type refers to.
+    fn damping_elements_in_words(&self, name: &str) -> String {
+        let sections = self.lines.iter().flat_map(|line| &line.sections);
+        let own = sections.filter(|section| section.line_type == name);
+        let mut elements: Vec<usize> = own
+            .map(|section| section.damping_elements.unwrap_or(DAMPING_ELEMENTS))
+            .collect();
+        elements.sort_unstable();
+        elements.dedup();
+        let elements: Vec<String> = elements.iter().map(usize::to_string).collect();
+        elements.join(" or ")
+    }
+
     fn line_type_in_words(&self, name: &str, line_type: &LineType) -> String {
         let mass = self.mass(line_type);
         let weight = significant(self.weight(line_type));
@@ -138,7 +151,8 @@ impl Scene {
         parts.push(stretch::in_words(line_type, mass));
         let section = self.section_in_words(line_type);
         parts.extend(section.or_else(|| bending::stiffness_in_words(line_type)));
-        parts.push(damping_in_words(line_type));
+        let damped = self.damping_elements_in_words(name);
+        parts.push(damping_in_words(line_type, &damped));
         if self.water.is_some() {
             parts.push(water_forces_in_words(line_type));
         }
@@ -401,16 +415,21 @@ fn strain_in_words(strain: Strain) -> String {
     }
 }
 
-fn damping_in_words(line_type: &LineType) -> String {
+/// "axial damping of 0.05 of critical of one of 40 elements of a line, the same on every mesh".
+fn damping_ratio_in_words(ratio: f64, elements: &str) -> String {
+    format!(
+        "axial damping of {} of critical of one of {elements} elements of a line, the same on every mesh",
+        number(ratio)
+    )
+}
+
+fn damping_in_words(line_type: &LineType, elements: &str) -> String {
     let mut parts = Vec::new();
     if let Some(damping) = line_type.axial_damping {
         parts.push(format!("axial damping {}", quantity(damping, "N s")));
     }
     if let Some(ratio) = line_type.damping_ratio {
-        parts.push(format!(
-            "axial damping {} of critical in each segment",
-            number(ratio)
-        ));
+        parts.push(damping_ratio_in_words(ratio, elements));
     }
     if let Some(rayleigh) = &line_type.rayleigh {
         let [ratio_1, ratio_2] = rayleigh.ratios.map(number);
@@ -422,8 +441,8 @@ fn damping_in_words(line_type: &LineType) -> String {
     match (parts.is_empty(), line_type.model) {
         (false, _) => parts.join(" and "),
         (true, LineModel::Cable) if line_type.leaves_damping_open() => format!(
-            "axial damping {} of critical in each segment (moorline's own choice)",
-            number(NUMERICAL_DAMPING_RATIO)
+            "{} (moorline's own choice)",
+            damping_ratio_in_words(NUMERICAL_DAMPING_RATIO, elements)
         ),
         (true, _) => "no damping of its own".to_string(),
     }

@@ -291,6 +291,7 @@ impl Layout<'_> {
                 line_type: format!("type{kind}"),
                 length: (slack * chord * share / total).clamp(1e-15, 1e6),
                 elements: (!chosen).then_some(elements),
+                damping_elements: None,
             }
         };
         let sections: Vec<Section> = shares.iter().map(section).collect();

@@ -50,6 +50,12 @@ fn an_openfast_deck_is_read_as_three_lines_on_a_vessel() {
         (third.sections[0].length, third.sections[0].elements),
         (330.0, Some(16))
     );
+    // -zeta refers to the deck's own segments, whatever mesh moorline takes later
+    let damped = |line: usize| scene.lines[line].sections[0].damping_elements;
+    assert_eq!(
+        (damped(0), damped(2)),
+        (scene.lines[0].sections[0].elements, None)
+    );
     let seabed = scene.seabed.unwrap();
     assert_eq!(
         (seabed.depth, seabed.stiffness, seabed.damping),

@@ -23,8 +23,6 @@ use crate::scene::{
 struct Part {
     law: SectionLaw,
     damping: SectionLaw,
-    damping_ratio: f64,           // of a segment's critical axial damping [-]
-    mass: f64,                    // [kg/m]
     rotary_inertia: Vector3<f64>, // about the three directors [kg m]
 }
 
@@ -80,14 +78,10 @@ fn assemble(line: &Line, parts: &[Part], lengths: &[Vec<f64>]) -> Beam {
     };
     for (part, lengths) in parts.iter().zip(lengths) {
         for &length in lengths {
-            let axial = part.damping_ratio * length * (part.law.axial * part.mass).sqrt();
             beam.elements.push(BeamElement {
                 length,
                 law: part.law,
-                damping: SectionLaw {
-                    axial: part.damping.axial + axial,
-                    ..part.damping
-                },
+                damping: part.damping,
             });
             let half = 0.5 * length * part.rotary_inertia;
             if let Some(last) = beam.rotary_inertia.last_mut() {
@@ -136,14 +130,12 @@ fn part(name: &str, line_type: &LineType, law: &LineLaw) -> Result<Part, SceneEr
     });
     Ok(Part {
         damping: SectionLaw {
-            axial: law.axial_damping, // Rayleigh's part included
+            axial: law.axial_damping, // parts of Rayleigh's and of a ratio included
             shear: slowed * section.shear,
             bending: slowed * section.bending,
             torsion: slowed * section.torsion,
         },
         law: section,
-        damping_ratio: line_type.damping_ratio.unwrap_or(0.0),
-        mass: law.mass,
         rotary_inertia: rotary_inertia(name, line_type, law.mass)?,
     })
 }

@@ -23,9 +23,37 @@ const ROUNDING: f64 = 1e-9;
 /// Elements that every line is to have [-]: those of a line alone for the longest of lines that meet at free points, shares by length
 /// for the others.
 pub(super) fn elements(scene: &Scene) -> Vec<f64> {
+    let alone = alone(scene);
+    let pairs = lengths(scene).into_iter().zip(longest(scene));
+    pairs.map(|(own, longest)| alone * own / longest).collect()
+}
+
+/// Lengths of the segments that damping ratios refer to [m], one per section of every line.
+pub(super) fn damping_lengths(scene: &Scene) -> Vec<Vec<f64>> {
+    let of_section = |section: &scene::Section, longest: f64| match section.damping_elements {
+        Some(elements) => section.length / elements as f64,
+        None => longest / scene::DAMPING_ELEMENTS as f64,
+    };
+    let lines = scene.lines.iter().zip(longest(scene));
+    lines
+        .map(|(line, longest)| {
+            let sections = line.sections.iter();
+            sections
+                .map(|section| of_section(section, longest))
+                .collect()
+        })
+        .collect()
+}
+
+/// Unstretched lengths of all lines [m].
+fn lengths(scene: &Scene) -> Vec<f64> {
     let length = |line: &scene::Line| line.sections.iter().map(|s| s.length).sum::<f64>();
-    let lengths: Vec<f64> = scene.lines.iter().map(length).collect();
-    let mut longest = lengths.clone();
+    scene.lines.iter().map(length).collect()
+}
+
+/// For every line the length of the longest of those that it meets at free points, itself included [m].
+fn longest(scene: &Scene) -> Vec<f64> {
+    let mut longest = lengths(scene);
     let free: Vec<Vec<usize>> = scene
         .points
         .iter()
@@ -46,9 +74,7 @@ pub(super) fn elements(scene: &Scene) -> Vec<f64> {
             break;
         }
     }
-    let alone = alone(scene);
-    let pairs = lengths.iter().zip(&longest);
-    pairs.map(|(own, longest)| alone * own / longest).collect()
+    longest
 }
 
 /// Elements of a line alone [-].
@@ -264,7 +290,8 @@ fn reasons(scene: &Scene, model: &Model, line: &scene::Line, built: &Line, share
         .sections
         .iter()
         .map(|section| scene.line_types.get(&section.line_type));
-    let laws: Vec<LineLaw> = types.flatten().map(|kind| line_law(scene, kind)).collect();
+    let laws = types.flatten().map(|kind| line_law(scene, kind, 0.0)); // damping does not matter here
+    let laws: Vec<LineLaw> = laws.collect();
     if laws.len() < line.sections.len() || built.beam.is_some() {
         return reasons;
     }

@@ -64,6 +64,25 @@ fn check_sections(findings: &mut Findings, at: &str, line: &Line, scene: &Scene)
             ),
             _ => {}
         }
+        check_damping_elements(findings, &at, section, scene);
+    }
+}
+
+/// The elements that a damping ratio refers to, where there is a ratio.
+fn check_damping_elements(findings: &mut Findings, at: &str, section: &Section, scene: &Scene) {
+    let Some(elements) = section.damping_elements else {
+        return;
+    };
+    let at = format!("{at}.damping_elements");
+    let line_type = scene.line_types.get(&section.line_type);
+    if line_type.is_some_and(|kind| kind.damping_ratio.is_none()) {
+        let problem = format!(
+            "line type \"{}\" has no `damping_ratio`, which alone it acts on: leave it out",
+            section.line_type
+        );
+        findings.say(at, problem);
+    } else if elements == 0 {
+        findings.say(at, "0 elements: give 1 or more, or leave it out");
     }
 }
 

@@ -201,6 +201,7 @@ impl Builder<'_> {
                 line_type: self.types[line.line_type.value.as_str()].clone(),
                 length: line.length.value,
                 elements: None,
+                damping_elements: None,
             };
             let ids = self.deck.lines.iter().map(|line| line.id.value);
             let name = format!("line{}", repeated(line.id.value, turn, ids));

@@ -442,10 +442,13 @@ impl<'d> Builder<'d> {
     }
 
     fn line(&mut self, line: &Line) -> scene::Line {
+        let name = &self.types[line.line_type.value.as_str()];
+        let ratio = self.scene.line_types[name].damping_ratio.is_some();
         let section = Section {
             line_type: self.types[line.line_type.value.as_str()].clone(),
             length: line.length.value,
             elements: Some(line.segments.value),
+            damping_elements: ratio.then_some(line.segments.value),
         };
         let bends = self.scene.line_types[&section.line_type]
             .bending_stiffness
