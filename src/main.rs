@@ -116,6 +116,9 @@ struct FromHost {
     /// Reference position of a vessel [m], where a deck leaves it to its host; may be given several times
     #[arg(long, value_name = "NAME=X,Y,Z", value_parser = cli::convert::placed_vessel)]
     at: Vec<(String, [f64; 3])>,
+    /// Join all coupled points of a deck to one vessel of this name, with its origin at (0, 0, 0)
+    #[arg(long, value_name = "NAME")]
+    vessel: Option<String>,
 }
 
 impl From<FromHost> for Supplement {
@@ -123,6 +126,7 @@ impl From<FromHost> for Supplement {
         Supplement {
             depth: host.depth,
             positions: host.at.into_iter().collect(),
+            vessel: host.vessel,
         }
     }
 }

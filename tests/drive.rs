@@ -93,7 +93,6 @@ fn a_motion_file_moves_the_vessel_of_a_deck_for_as_long_as_it_lasts() {
     assert_eq!(*columns["time"].last().unwrap(), 4.0);
     assert!(columns["vessel.z"].iter().any(|z| z.abs() > 0.3));
     assert!(columns["vessel.pitch"].iter().any(|a| a.abs() > 0.01));
-    assert_eq!(columns["FairTen1"], columns["line1.tension_b"]);
     let tension = &columns["FairTen1"];
     let (low, high) = tension
         .iter()
@@ -139,6 +138,45 @@ fn regular_motion_of_a_deck_is_that_of_a_scene_that_says_it() {
     assert_eq!(code, 0, "{error}");
     assert_eq!(results(&folder.path().join("out")), by_flag);
     assert_eq!(*by_flag["time"].last().unwrap(), 4.0);
+}
+
+#[test]
+fn coupled_points_of_a_deck_move_as_the_one_vessel_that_is_given() {
+    let words = ["4    vessel ", "5    Vessel ", "6    VES    "];
+    let points = words.iter().fold(DECK.to_string(), |deck, word| {
+        assert!(deck.contains(word));
+        deck.replace(word, &format!("{}    Coupled ", &word[..1]))
+    });
+    let moved = [
+        "--move",
+        "barge.pitch=0.02,6",
+        "--move",
+        "barge.z=0.5,8",
+        "--duration",
+        "2",
+    ];
+    let said = refused(&points, &[], &moved);
+    assert!(
+        said.contains("`barge` is no vessel or coupled point")
+            && said.contains("use --vessel barge"),
+        "{said}"
+    );
+    let said = refused(&points, &[], &["--move", "point4.pitch=0.02,6"]);
+    assert!(
+        said.contains("`point4` is a point, and points do not turn")
+            && said.contains("use --vessel NAME"),
+        "{said}"
+    );
+    let joined = run(
+        &points,
+        &[],
+        &[moved.as_slice(), &["--vessel", "barge"]].concat(),
+    );
+    let given = moved.map(|word| word.replace("barge", "vessel"));
+    let own = run(DECK, &[], &given.each_ref().map(String::as_str));
+    assert!(joined["barge.my"].iter().any(|moment| *moment != 0.0));
+    assert_eq!(joined["barge.my"], own["vessel.my"]);
+    assert_eq!(joined["FairTen1"], own["FairTen1"]);
 }
 
 #[test]
@@ -235,7 +273,10 @@ fn what_cannot_move_or_be_read_is_refused_with_file_line_and_what_would_be_right
     let turning = "time,x,y,z,roll,pitch,yaw\n0,0,0,0,0,0,0\n";
     let points = VERSION_1.replace("3     Fairlead ", "3     Coupled  ");
     let said = with_file(&points, turning);
-    assert!(said.contains("points do not turn"), "{said}");
+    assert!(
+        said.contains("points do not turn") && said.contains("use --vessel NAME"),
+        "{said}"
+    );
     let several = with_file(C_STYLE, "time,x,y,z\n0,0,0,0\n");
     assert!(
         several.contains("the columns must name what moves, such as body1.x"),

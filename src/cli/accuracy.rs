@@ -111,7 +111,7 @@ fn scenes(
     let mut scenes: Vec<(String, Scene)> = Vec::new();
     if paths.is_empty() {
         if !supplement.is_empty() {
-            let text = "the public scenes leave nothing to a host: give the deck that --depth and --at are for";
+            let text = "the public scenes leave nothing to a host: give the deck that --depth, --at and --vessel are for";
             return Err(Failure::Argument(text.to_string()));
         }
         for (name, text) in PUBLIC {

@@ -1,7 +1,9 @@
 //! Output channels by MoorDyn's names, as columns beside moorline's own.
 //!
-//! Tensions of inner nodes are the mean of the two segments beside them, those of the ends the size of the end's force, as
-//! in MoorDyn. Positions are global, and forces at a point are those of the lines on it.
+//! Tensions are those of segments, as in MoorDyn-C: of the last one at an end, of the two beside an inner node in the mean. Positions
+//! are global, and forces at a point are those of the lines on it.
+//!
+//! Source: MoorDyn-C, `Line.hpp`, `getNodeTen`.
 
 use super::record::Column;
 use crate::model::Model;
@@ -133,7 +135,7 @@ fn column(name: &str, source: Source, model: &Model) -> Column {
         Quantity::Velocity(axis) => ("m/s", format!("velocity along {}", letter(axis))),
         Quantity::Force(axis) => ("N", format!("force of the lines along {}", letter(axis))),
         Quantity::Tension => match source {
-            Source::Node { .. } => ("N", "tension".to_string()),
+            Source::Node { .. } => ("N", "tension of the segments beside it".to_string()),
             Source::Point { .. } => ("N", "size of the force of the lines".to_string()),
         },
     };
@@ -158,7 +160,7 @@ fn value(source: Source, simulation: &Simulation) -> f64 {
             match quantity {
                 Quantity::Position(axis) => shape.position[node][axis],
                 Quantity::Velocity(axis) => shape.velocity[node][axis],
-                Quantity::Tension | Quantity::Force(_) => simulation.tensions(line)[node],
+                Quantity::Tension | Quantity::Force(_) => simulation.segment_tension(line, node),
             }
         }
         Source::Point { point, quantity } => match quantity {
@@ -225,11 +227,11 @@ mod tests {
         let profile = simulation.profile(0);
         let force = simulation.end_force(1);
         let expected = [
-            simulation.tension_b(0),
-            simulation.tension_a(0),
+            simulation.segment_tension(0, 10),
+            simulation.segment_tension(0, 0),
             profile[4].z,
             15.0,
-            profile[4].tension,
+            simulation.segment_tension(0, 4),
             force[0],
             simulation.tension_b(0),
             0.0,
@@ -238,7 +240,30 @@ mod tests {
         let units: Vec<String> = channels.columns().map(|column| column.unit).collect();
         assert_eq!(units, ["N", "N", "m", "m", "N", "N", "N", "m/s"]);
         let first = channels.columns().next().unwrap();
-        assert_eq!(first.description, "tension, node 10 of line1");
+        assert_eq!(
+            first.description,
+            "tension of the segments beside it, node 10 of line1"
+        );
+    }
+
+    /// A taut rope hanging straight down: T(z) is the weight below, so that the last segment has half a segment's weight less than the
+    /// point above it.
+    #[test]
+    fn a_tension_at_an_end_is_that_of_the_last_segment_and_not_the_force_on_the_point() {
+        let (mut scene, _) = simulation(&["FairTen1", "AnchTen1", "L1N1T", "L1N10T"]);
+        scene.points[1].position = [0.0, 0.0, 21.0];
+        let simulation = Simulation::new(&scene).unwrap();
+        let channels = Channels::new(&scene, simulation.model()).unwrap();
+        let values = channels.values(&simulation);
+        let (above, below) = (simulation.tension_b(0), simulation.tension_a(0));
+        let segment = 0.2 * 2.0 * scene.gravity; // weight [N]
+        let close = |value: f64, expected: f64| {
+            assert!((value / expected - 1.0).abs() < 1e-9, "{value} {expected}");
+        };
+        close(values[0], above - 0.5 * segment);
+        close(values[1], below + 0.5 * segment);
+        close(values[2], below + segment);
+        assert_eq!(values[3], values[0]);
     }
 
     #[test]

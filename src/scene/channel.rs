@@ -9,7 +9,7 @@ use super::Scene;
 /// What a channel writes.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Channel {
-    /// `FairTen`, `AnchTen`: tension at an end of a line [N].
+    /// `FairTen`, `AnchTen`: tension of the segment at an end of a line [N].
     EndTension {
         /// Name of the line.
         line: String,
@@ -62,7 +62,7 @@ pub enum Quantity {
     Velocity(usize),
     /// `Fx`: force of the lines on a point [N].
     Force(usize),
-    /// `T`, `Ten`: tension of a node, or size of the force on a point [N].
+    /// `T`, `Ten`: tension of the segments beside a node, or size of the force on a point [N].
     Tension,
 }
 
@@ -112,6 +112,18 @@ impl Channel {
             )),
             _ => Err(unknown()),
         }
+    }
+
+    /// Whether a name is that of the tension of a line.
+    pub(super) fn is_tension(name: &str) -> bool {
+        matches!(
+            Channel::parse(name),
+            Ok(Channel::EndTension { .. }
+                | Channel::Node {
+                    quantity: Quantity::Tension,
+                    ..
+                })
+        )
     }
 
     /// Finds what the channel speaks of in a scene.

@@ -92,6 +92,11 @@ impl Scene {
         }
         for body in drive.regular.iter().map(|regular| &regular.body) {
             self.must_move(body)?;
+            let turns = drive
+                .regular
+                .iter()
+                .any(|other| other.body == *body && other.axis > 2);
+            self.must_turn(body, turns)?;
             if taken.contains(body) {
                 return Err(format!(
                     "`{body}` moves by the file already: it cannot move regularly too"
@@ -115,8 +120,12 @@ impl Scene {
         let known = self.moved_by_a_host();
         match moves {
             Moves::Named(bodies) => {
-                for (body, _) in &bodies {
+                for (body, rows) in &bodies {
+                    let turns = rows
+                        .iter()
+                        .any(|row| row[4..].iter().any(|angle| *angle != 0.0));
                     self.must_move(body)
+                        .and_then(|()| self.must_turn(body, turns))
                         .map_err(|problem| format!("{file}, line 1: {problem}"))?;
                 }
                 Ok(bodies)
@@ -132,7 +141,8 @@ impl Scene {
                 }
                 if turns && self.vessels.is_empty() {
                     return Err(format!(
-                        "{file}, line 1: points do not turn: the header must be \"time,x,y,z\""
+                        "{file}, line 1: points do not turn: the header must be \"time,x,y,z\"{}",
+                        self.joined_in_words("NAME")
                     ));
                 }
                 let bodies = known.iter().map(|body| (body.to_string(), rows.clone()));
@@ -158,9 +168,31 @@ impl Scene {
             return Ok(());
         }
         Err(format!(
-            "`{body}` is no vessel or coupled point: {}",
-            self.movable_in_words()
+            "`{body}` is no vessel or coupled point: {}{}",
+            self.movable_in_words(),
+            self.joined_in_words(body)
         ))
+    }
+
+    /// Points follow no rotation.
+    fn must_turn(&self, body: &str, turns: bool) -> Result<(), String> {
+        if !turns || self.vessels.iter().any(|vessel| vessel.name == body) {
+            return Ok(());
+        }
+        Err(format!(
+            "`{body}` is a point, and points do not turn{}",
+            self.joined_in_words("NAME")
+        ))
+    }
+
+    /// How coupled points become one vessel, where the scene has some and no vessel.
+    fn joined_in_words(&self, vessel: &str) -> String {
+        if !self.vessels.is_empty() || self.moved_by_a_host().is_empty() {
+            return String::new();
+        }
+        format!(
+            "; to move the coupled points of a deck as one vessel, use --vessel {vessel} (in a scene, [[vessels]] and `on` of the points)"
+        )
     }
 
     fn movable_in_words(&self) -> String {

@@ -79,6 +79,37 @@ pub(super) struct Vessels<'s> {
 }
 
 impl Vessels<'_> {
+    /// The vessel that takes all coupled points, where one is given.
+    pub(super) fn of_all(&self) -> Option<&str> {
+        self.supplement.vessel.as_deref()
+    }
+
+    /// The vessel that a deck means where it speaks of one without a name.
+    pub(super) fn of_the_deck(&self) -> &str {
+        self.of_all().unwrap_or("vessel")
+    }
+
+    /// The vessel of all coupled points has a name of its own and a place that is known.
+    pub(super) fn check_given(
+        &self,
+        mut others: impl Iterator<Item = String>,
+        findings: &mut Findings,
+    ) {
+        let Some(name) = self.of_all() else { return };
+        if others.any(|other| other == name) {
+            let problem = format!(
+                "the vessel of all coupled points cannot be `{name}`, which the file has already: give it another name"
+            );
+            findings.mistake("", 0..0, problem);
+        }
+        if self.supplement.positions.contains_key(name) {
+            let problem = format!(
+                "`{name}` takes the coupled points where they are, with its origin at (0, 0, 0): give no position for it"
+            );
+            findings.mistake("", 0..0, problem);
+        }
+    }
+
     /// The vessel of a name, made where it is missing at a position [m] and attitude [rad].
     pub(super) fn board(
         &self,
@@ -103,10 +134,17 @@ impl Vessels<'_> {
         name.to_string()
     }
 
-    /// Positions of vessels that the deck does not have are slips.
+    /// Positions of vessels that the deck does not have are slips, and so is a vessel that nothing rides on.
     pub(super) fn check(&self, scene: &Scene, findings: &mut Findings) {
+        let has = |name: &str| scene.vessels.iter().any(|vessel| vessel.name == *name);
+        if let Some(name) = self.of_all().filter(|name| !has(name)) {
+            let problem = format!(
+                "the vessel `{name}` is given for all coupled points, but the file has none: leave it out"
+            );
+            findings.mistake("", 0..0, problem);
+        }
         for name in self.supplement.positions.keys() {
-            if scene.vessels.iter().all(|vessel| vessel.name != *name) {
+            if !has(name) {
                 let known: Vec<&str> = scene
                     .vessels
                     .iter()

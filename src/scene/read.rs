@@ -60,6 +60,8 @@ pub struct Supplement {
     pub depth: Option<f64>,
     /// Reference positions [m] of vessels by name, such as those of the turbines of a farm.
     pub positions: BTreeMap<String, [f64; 3]>,
+    /// Name of the one vessel that all coupled points of the deck ride on, its origin at (0, 0, 0) and its axes the global ones.
+    pub vessel: Option<String>,
 }
 
 impl Supplement {
@@ -127,11 +129,14 @@ pub fn load_with(path: &Path, supplement: &Supplement) -> Result<LoadedScene, Lo
     match loaded {
         Ok((.., TOML, _)) if !supplement.is_empty() => Err(LoadError::NotADeck {
             path: path.to_path_buf(),
-            problem: match supplement.depth {
-                Some(_) => {
+            problem: match (supplement.depth, &supplement.vessel) {
+                (Some(_), _) => {
                     "a scene gives the depth of its water itself, as `seabed.depth`: a depth beside it is for decks"
                 }
-                None => {
+                (None, Some(_)) => {
+                    "a scene gives its vessels itself, as [[vessels]] and `on` of its points: a vessel beside it is for decks"
+                }
+                (None, None) => {
                     "a scene gives the places of its vessels itself, as `position`: places beside it are for decks"
                 }
             },
@@ -188,6 +193,7 @@ fn deck_scene(reading: Reading, text: &str, folder: &Path) -> Result<Checked, Ve
     let mut of_files = read_water(&mut scene, folder);
     of_files.extend(read_tables(&mut scene, folder));
     of_files.extend(read_soundings(&mut scene, folder));
+    let cut = cut_tables(&mut scene);
     let mistakes = all_mistakes(&scene, of_files);
     let mistakes: Vec<SceneError> = mistakes
         .into_iter()
@@ -197,7 +203,7 @@ fn deck_scene(reading: Reading, text: &str, folder: &Path) -> Result<Checked, Ve
         return Err(in_order(mistakes));
     }
     let mut notes = findings.notes(text);
-    let of_scene = scene.notes().into_iter();
+    let of_scene = cut.into_iter().chain(scene.notes());
     notes.extend(of_scene.map(|note| places.locate_note(text, note)));
     Ok((scene, notes, format, places))
 }
@@ -267,6 +273,25 @@ fn read_tables(scene: &mut Scene, folder: &Path) -> Vec<SceneError> {
         }
     }
     mistakes
+}
+
+/// Tables of decks may say what MoorDyn does not use: rows below zero strain. Returns a note for each that has some.
+fn cut_tables(scene: &mut Scene) -> Vec<Note> {
+    let mut notes = Vec::new();
+    for (name, line_type) in &mut scene.line_types {
+        let table = line_type.tension_strain.as_mut();
+        let below = table.map_or(0, |table| table.cut_below_zero());
+        if below > 0 {
+            let text = format!(
+                "rows below zero strain in the table of tension, {below} of them, are left out: a slack line carries nothing"
+            );
+            notes.push(Note {
+                at: format!("line_types.{}.tension_strain", path::quoted(name)),
+                text,
+            });
+        }
+    }
+    notes
 }
 
 /// Reads the files of waves and current, whose rows take their place; returns what is wrong with them.

@@ -13,6 +13,7 @@ mod winch;
 use std::f64::consts::PI;
 use std::fmt::Write;
 
+use super::channel::Channel;
 use super::check::{integrator_name, number, quantity};
 use super::notes::{chord, length};
 use super::{
@@ -24,6 +25,11 @@ use vessels::vessel_in_words;
 
 /// Widest line of the text, in characters.
 const WIDTH: usize = 110;
+
+/// What the tensions among the channels are, beside the variables of a line.
+const TENSIONS_OF_CHANNELS: &str = "tensions among them are those of segments, as in MoorDyn-C: of the last one for FairTen, of the first for \
+     AnchTen, of the two beside an inner node in the mean; `tension_a` and `tension_b` of a line are the forces on the points at its \
+     ends, with the weight, drag and inertia of half a segment";
 
 impl Scene {
     /// What the scene models and what it does not, in sentences; one line per line type, point and line.
@@ -314,6 +320,9 @@ impl Scene {
         if !output.channels.is_empty() {
             let channels = output.channels.join(", ");
             said.push(format!("further columns of `run`: {channels}"));
+            if output.channels.iter().any(|name| Channel::is_tension(name)) {
+                said.push(TENSIONS_OF_CHANNELS.into());
+            }
         }
         said
     }

@@ -310,6 +310,24 @@ impl Simulation {
             .collect()
     }
 
+    /// Tension of node `i` of a line as MoorDyn-C writes it [N], damping within the line included: at an end that of the end's segment, in
+    /// between the size of the mean of the two segments beside the node, as vectors. [`Simulation::tension_a`] and
+    /// [`Simulation::tension_b`] are the forces on the points at the ends, with the half segment's weight, drag and inertia.
+    pub fn segment_tension(&self, line: usize, i: usize) -> f64 {
+        let (model, state) = (&self.model.lines[line], &self.snapshot.state.lines[line]);
+        let n = model.segment_count();
+        let segment = |i: usize| -> Vector3<f64> {
+            let chord = state.position[i + 1] - state.position[i];
+            let tension = reaction::tension(model, state, i, self.model.solver.negative_tension);
+            chord.try_normalize(0.0).unwrap_or_default() * tension
+        };
+        match i {
+            0 => segment(0).norm(),
+            i if i >= n => segment(n - 1).norm(),
+            i => (0.5 * (segment(i - 1) + segment(i))).norm(),
+        }
+    }
+
     /// Curvature [1/m] and bending moment [N m] at every node, where the line has bending stiffness; zero at hinges and pinned ends.
     pub fn bending(&self, line: usize) -> Option<Vec<NodeBending>> {
         let (data, state) = (&self.model.lines[line], &self.snapshot.state);

@@ -117,6 +117,7 @@ fn what_a_deck_leaves_to_its_host_is_refused_beside_a_scene() {
         };
         refused(&["--depth", "300"], "`seabed.depth`");
         refused(&["--at", "platform=1,2,3"], "`position`");
+        refused(&["--vessel", "platform"], "[[vessels]]");
     }
     assert_eq!(names(folder.path()), ["scene.toml"]);
 }

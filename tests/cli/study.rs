@@ -65,7 +65,7 @@ fn a_study_takes_decks_and_motion_as_a_run_does() {
     accuracy(&["--motion", "none.csv"], "none.csv");
     accuracy(&["--depth", "300"], "`seabed.depth`");
     let public = ["accuracy", "--depth", "300"];
-    refused(folder.path(), &public, 2, &["--depth and --at"]);
+    refused(folder.path(), &public, 2, &["--depth, --at and --vessel"]);
     assert_eq!(names(folder.path()), ["scene.toml", "short.toml"]);
 }
 

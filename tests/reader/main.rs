@@ -6,6 +6,7 @@ mod common;
 mod garbage;
 mod read;
 mod refusals;
+mod traps;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -36,6 +37,7 @@ fn supplement() -> Supplement {
     Supplement {
         depth: Some(320.0),
         positions: [at("turbine1", 0.0), at("turbine2", 1000.0)].into(),
+        ..Supplement::default()
     }
 }
 

@@ -49,6 +49,9 @@ pub(super) fn scene(
         findings,
         types: BTreeMap::new(),
     };
+    builder
+        .vessels
+        .check_given(std::iter::empty(), builder.findings);
     builder.needs_depth();
     builder.line_types();
     for turn in builder.turns() {
@@ -167,10 +170,12 @@ impl Builder<'_> {
             Kind::Fix => fixed,
             Kind::Vessel => Point {
                 kind: PointKind::Coupled,
-                on: Some(
-                    self.vessels
-                        .board(&mut self.scene, "vessel", [0.0; 3], [0.0; 3]),
-                ),
+                on: Some(self.vessels.board(
+                    &mut self.scene,
+                    self.vessels.of_the_deck(),
+                    [0.0; 3],
+                    [0.0; 3],
+                )),
                 ..fixed
             },
             Kind::Connect => Point {

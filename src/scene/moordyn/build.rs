@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::deck::{Attachment, Body, Deck, Line, LineEnd, LineType, Point, Property, Rod};
+use crate::scene::channel::Channel;
 use crate::scene::from_deck::{self, SEA_WATER, Vessels, place_position};
 use crate::scene::rows::{Findings, Placed};
 use crate::scene::{
@@ -39,6 +40,9 @@ pub(super) fn scene(
         findings,
         types: BTreeMap::new(),
     };
+    builder
+        .vessels
+        .check_given(names_of_vessels(deck), builder.findings);
     builder.line_types();
     builder.points();
     builder.rods();
@@ -55,6 +59,21 @@ pub(super) fn scene(
     findings.mistakes.is_empty().then_some(scene)
 }
 
+/// Vessels that the bodies and turbines of a deck become.
+fn names_of_vessels(deck: &Deck) -> impl Iterator<Item = String> {
+    let turbines = deck
+        .points
+        .iter()
+        .filter_map(|point| match point.attachment.value {
+            Attachment::Turbine(number) => Some(format!("turbine{number}")),
+            _ => None,
+        });
+    let bodies = deck.bodies.iter();
+    bodies
+        .map(|body| format!("body{}", body.id.value))
+        .chain(turbines)
+}
+
 /// A number of a property; refusals have left no other.
 fn plain(property: &Property) -> f64 {
     match property {
@@ -67,6 +86,9 @@ fn plain(property: &Property) -> f64 {
 fn given(value: f64) -> Option<f64> {
     (value != 0.0).then_some(value)
 }
+
+/// Share of the depth by which positions typed with few digits may miss the seabed [-].
+const ROUNDING: f64 = 1e-9;
 
 /// File of the components of waves.
 const WAVES_FILE: &str = "wave_frequencies.txt";
@@ -187,11 +209,14 @@ impl<'d> Builder<'d> {
                 kind: PointKind::Free,
                 ..free
             },
-            Attachment::Coupled => scene::Point {
+            Attachment::Coupled if self.vessels.of_all().is_none() => scene::Point {
                 kind: PointKind::Coupled,
                 ..free
             },
-            Attachment::Vessel => self.aboard(free, "vessel", origin, origin),
+            Attachment::Coupled | Attachment::Vessel => {
+                let name = self.vessels.of_the_deck().to_string();
+                self.aboard(free, &name, origin, origin)
+            }
             Attachment::Turbine(number) => {
                 self.needs_position(number, attachment);
                 self.aboard(free, &format!("turbine{number}"), origin, origin)
@@ -324,6 +349,7 @@ impl<'d> Builder<'d> {
             Property::Named(_) => None,
             _ => Some(plain(&depth.value)),
         });
+        let given = given.map(|depth| self.down_to_the_anchors(depth));
         let Some(depth) = from_deck::depth(given, supplement, &self.scene.points, self.findings)
         else {
             return;
@@ -346,6 +372,30 @@ impl<'d> Builder<'d> {
         seabed.friction = self.friction();
         seabed.file = self.soundings();
         self.scene.seabed = Some(seabed);
+    }
+
+    /// The water of a deck [m] reaches down to its deepest anchor, whatever WtrDpth says.
+    fn down_to_the_anchors(&mut self, depth: f64) -> f64 {
+        let points = self.scene.points.iter().enumerate();
+        let anchors = points.filter(|(_, point)| point.kind == PointKind::Fixed);
+        let deepest = anchors.min_by(|(_, a), (_, b)| a.position[2].total_cmp(&b.position[2]));
+        let Some((_, anchor)) = deepest else {
+            return depth;
+        };
+        let anchored = -anchor.position[2];
+        if !depth.is_finite() || anchored <= depth + ROUNDING * depth.abs().max(1.0) {
+            return depth;
+        }
+        let text = format!(
+            "WtrDpth {depth} m is less than the depth of {}, {anchored} m: the water is taken to be {anchored} m deep everywhere",
+            anchor.name
+        );
+        let given = self.deck.options.depth.as_ref();
+        match given {
+            Some(given) => self.findings.remark(given.span.start, text),
+            None => self.findings.remark_on_all(text),
+        }
+        anchored
     }
 
     /// Waves and current in files beside the deck.
@@ -511,6 +561,17 @@ impl<'d> Builder<'d> {
                     "the output {:?} names no object, and MoorDyn writes none for it: left out",
                     placed.value
                 );
+                self.findings.remark(placed.span.start, text);
+                continue;
+            }
+            let known = Channel::parse(&placed.value).and_then(|it| it.check(&self.scene));
+            let twice = self.scene.output.channels.contains(&placed.value);
+            let problem = match known {
+                Err(problem) => Some(problem),
+                Ok(()) => twice.then(|| "it stands there already".to_string()),
+            };
+            if let Some(problem) = problem {
+                let text = format!("the output {:?} is left out: {problem}", placed.value);
                 self.findings.remark(placed.span.start, text);
                 continue;
             }

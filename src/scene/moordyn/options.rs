@@ -21,6 +21,8 @@ const UNNEEDED: &[&str] = &[
     "ICTHRESH",
     "FILEIC",
     "ICGENDYNAMIC",
+    "GENDYNAMICIC",
+    "ICFILE",
     "WRITELOG",
     "WRITEUNITS",
     "DISABLEOUTPUT",
@@ -91,10 +93,60 @@ fn is_unneeded(key: &str) -> bool {
     UNNEEDED.iter().any(|known| known.eq_ignore_ascii_case(key))
 }
 
-/// Reads the rows of OPTIONS.
+/// Keys that name a file with a state to start from.
+const STATE_FILES: [&str; 2] = ["FILEIC", "ICFILE"];
+
+/// A row of OPTIONS.
+struct Choice {
+    key: Placed<String>,
+    value: Placed<String>,
+}
+
+impl Choice {
+    /// Whether another row says the same thing.
+    fn repeats(&self, other: &Choice) -> bool {
+        let (a, b) = (&self.key.value, &other.key.value);
+        let several = [Meaning::Friction, Meaning::Surroundings].map(Some);
+        let same =
+            meaning(a).is_some() && meaning(a) == meaning(b) && !several.contains(&meaning(a));
+        same || a.eq_ignore_ascii_case(b)
+    }
+}
+
+/// Reads the rows of OPTIONS. MoorDyn goes on where it does not know a key, and takes the last of several values: so does this, with
+/// remarks.
 pub(super) fn read(rows: &[Row<'_>], findings: &mut Findings) -> Options {
     let mut options = Options::default();
-    let mut seen: Vec<String> = Vec::new();
+    let choices = choices(rows, findings);
+    for (index, Choice { key, value }) in choices.iter().enumerate() {
+        let later = choices[index + 1..].iter().rev();
+        if let Some(last) = later.clone().find(|later| later.repeats(&choices[index])) {
+            let text = format!(
+                "{} {} is given again below: the last value, {}, counts",
+                key.value, value.value, last.value.value
+            );
+            findings.remark(key.span.start, text);
+        } else if let Some(meaning) = meaning(&key.value) {
+            take(&mut options, meaning, &key.value, value.clone(), findings);
+        } else if is_unneeded(&key.value) {
+            remark_on_state_file(key, value, findings);
+            options.unneeded.push(key.clone());
+        } else if meaning(&value.value).is_some() || is_unneeded(&value.value) {
+            let problem = format!(
+                "an option is written as value and key, here {} {}",
+                shown(&key.value),
+                value.value
+            );
+            findings.mistake("OPTIONS", key.span.clone(), problem);
+        } else {
+            findings.remark(key.span.start, unknown(&key.value));
+        }
+    }
+    options
+}
+
+fn choices(rows: &[Row<'_>], findings: &mut Findings) -> Vec<Choice> {
+    let mut choices = Vec::new();
     for row in rows.iter().take(ROWS_MAX) {
         let fields = row.fields();
         let [value, key, ..] = fields.as_slice() else {
@@ -105,37 +157,30 @@ pub(super) fn read(rows: &[Row<'_>], findings: &mut Findings) -> Options {
             findings.mistake("OPTIONS", row.span(), problem);
             continue;
         };
-        let upper = key.text.to_uppercase();
-        let value = Placed {
-            value: value.text.to_string(),
-            span: value.span.clone(),
-        };
-        if meaning(key.text).is_none() && !is_unneeded(key.text) {
-            findings.mistake("OPTIONS", key.span.clone(), unknown(&value.value, key.text));
-        } else if seen.contains(&upper) {
-            let problem = format!("a second value of {}: give one", key.text);
-            findings.mistake("OPTIONS", key.span.clone(), problem);
-        } else if let Some(meaning) = meaning(key.text) {
-            take(&mut options, meaning, key.text, value, findings);
-        } else {
-            options.unneeded.push(Placed {
-                value: key.text.to_string(),
-                span: key.span.clone(),
-            });
-        }
-        seen.push(upper);
+        let [key, value] = [key, value].map(|field| Placed {
+            value: field.text.to_string(),
+            span: field.span.clone(),
+        });
+        choices.push(Choice { key, value });
     }
-    options
+    choices
 }
 
-fn unknown(value: &str, key: &str) -> String {
-    if meaning(value).is_some() || is_unneeded(value) {
-        return format!(
-            "an option is written as value and key, here {} {}",
-            shown(key),
-            value
+/// MoorDyn would start from the state in the file.
+fn remark_on_state_file(key: &Placed<String>, value: &Placed<String>, findings: &mut Findings) {
+    let names_one = STATE_FILES
+        .iter()
+        .any(|file| key.value.eq_ignore_ascii_case(file));
+    if names_one && number(&value.value) != Ok(0.0) {
+        let text = format!(
+            "{} {}: the state in this file is not read, the run starts from equilibrium",
+            key.value, value.value
         );
+        findings.remark(key.span.start, text);
     }
+}
+
+fn unknown(key: &str) -> String {
     let known: Vec<&str> = NEEDED
         .iter()
         .map(|(key, _)| *key)
@@ -143,7 +188,7 @@ fn unknown(value: &str, key: &str) -> String {
         .collect();
     let meant = nearest(key, known.iter().copied());
     let meant = meant.map_or(String::new(), |known| format!(", did you mean {known}?"));
-    format!("unknown option {}{meant}", shown(key))
+    format!("the option {} is not known and left out{meant}", shown(key))
 }
 
 fn take(

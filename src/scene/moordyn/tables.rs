@@ -170,6 +170,23 @@ pub(super) fn read(sections: &Sections<'_>, findings: &mut Findings) -> Deck {
 }
 
 fn missing_sections(sections: &Sections<'_>, findings: &mut Findings) {
+    if sections.rows(Kind::Lines).is_empty() {
+        let has = |kind: Kind| !sections.rows(kind).is_empty();
+        let what = match (has(Kind::Rods), has(Kind::Bodies)) {
+            (true, true) => "rods and bodies",
+            (true, false) => "rods",
+            (false, true) => "bodies",
+            (false, false) => "",
+        };
+        if !what.is_empty() {
+            let problem = format!(
+                "no lines in LINES: {what} without lines are a deck of MoorDyn, but moorline models lines, and what they hang on \
+                 only with them"
+            );
+            let span = sections.get(Kind::Lines).map_or(0..0, |s| s.header.span());
+            return findings.mistake("", span, problem);
+        }
+    }
     for kind in [Kind::LineTypes, Kind::Points, Kind::Lines] {
         let problem = match sections.get(kind) {
             None => format!("no section {}: a deck needs it", kind.name()),
@@ -506,10 +523,10 @@ fn attachment(cells: &mut Cells<'_, '_>, column: usize) -> Placed<Attachment> {
     let (letters, id, tail) = decomposed(&word.value);
     let pinned = ["PINNED", "PIN"].contains(&tail.as_str());
     let value = match (letters.as_str(), id, tail.as_str()) {
-        ("FIXED" | "FIX" | "ANCHOR", None, "") => Some(Attachment::Fixed),
-        ("COUPLED" | "CPLD", None, "") => Some(Attachment::Coupled),
-        ("VESSEL" | "VES" | "FAIRLEAD", None, "") => Some(Attachment::Vessel),
-        ("FREE" | "CONNECT" | "CONNECTION" | "POINT" | "CON" | "P" | "C", None, "") => {
+        ("FIXED" | "FIX" | "ANCHOR", _, "") => Some(Attachment::Fixed),
+        ("COUPLED" | "CPLD", _, "") => Some(Attachment::Coupled),
+        ("VESSEL" | "VES" | "FAIRLEAD", _, "") => Some(Attachment::Vessel),
+        ("FREE" | "CONNECT" | "CONNECTION" | "POINT" | "CON" | "P" | "C", _, "") => {
             Some(Attachment::Free)
         }
         ("PINNED" | "PIN", None, "") => Some(Attachment::Pinned(None)),
@@ -529,6 +546,20 @@ fn attachment(cells: &mut Cells<'_, '_>, column: usize) -> Placed<Attachment> {
         cells.wrong(column, problem);
         Attachment::Fixed
     });
+    let numbered = match value {
+        Attachment::Fixed => "Fixed",
+        Attachment::Coupled => "Coupled",
+        Attachment::Vessel => "Vessel",
+        Attachment::Free => "Free",
+        _ => "",
+    };
+    if let Some(id) = id.filter(|_| !numbered.is_empty()) {
+        let text = format!(
+            "{}: {:?} is read as {numbered}, as in MoorDyn, where the number {id} behind it means nothing",
+            cells.place, word.value
+        );
+        cells.findings.remark(word.span.start, text);
+    }
     Placed {
         value,
         span: word.span,
