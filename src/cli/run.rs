@@ -7,6 +7,7 @@ use moorline::interface::{Binding, Causality, Interface, Kind, Layout, Variable}
 use moorline::model::{Body, Model, Moving};
 use moorline::output::channels::Channels;
 use moorline::output::figures::ELEVATION;
+use moorline::output::left_tables::LeftTables;
 use moorline::output::record::{Column, Record};
 use moorline::output::{collect, write_run};
 use moorline::scene::{Drive, Reconstruction, Scene, Supplement};
@@ -15,7 +16,7 @@ use moorline::simulation::Simulation;
 use super::failure::Failure;
 use super::folder::Folder;
 use super::summary::run_summary;
-use super::{print, progress, read_scene, simulate};
+use super::{print, progress, read_scene, remark, simulate};
 
 /// Shapes kept of a run whose scene does not ask for all of them [-].
 const FRAMES_MAX: usize = 240;
@@ -45,7 +46,11 @@ pub fn run(
 ) -> Result<(), Failure> {
     let mut loaded = read_scene(path, supplement)?;
     if !drive.is_empty() {
+        let known = loaded.scene.notes();
         loaded.scene.drive(drive).map_err(Failure::Argument)?;
+        let notes = loaded.scene.notes().into_iter();
+        let new = notes.filter(|note| !known.contains(note));
+        new.for_each(|note| remark(path, &note));
     }
     let _open = Folder::open(folder)?;
     let mut simulation = simulate(&loaded)?;
@@ -68,7 +73,21 @@ pub fn run(
     };
     let columns = recorder.columns(simulation.model());
     let record = collect::record(&loaded.scene, &simulation, still.as_ref(), columns);
-    let record = step_through(&loaded.scene, &mut simulation, &recorder, pace, record)?;
+    let mut left = LeftTables::new(&loaded.scene);
+    let mut look = |simulation: &Simulation, time: f64| {
+        left.look(simulation, time)
+            .iter()
+            .for_each(|note| remark(path, note));
+    };
+    look(&simulation, 0.0);
+    let record = step_through(
+        &loaded.scene,
+        &mut simulation,
+        &recorder,
+        pace,
+        record,
+        &mut look,
+    )?;
     write_run(
         &record,
         folder,
@@ -82,13 +101,14 @@ pub fn run(
     ))
 }
 
-/// Steps from the start to the scene's duration, and adds a row and where wanted a shape at every step to the record.
+/// Steps from the start to the scene's duration, and adds a row and where wanted a shape at every step to the record; `look` sees every row.
 fn step_through(
     scene: &Scene,
     simulation: &mut Simulation,
     recorder: &Recorder<'_>,
     pace: Pace,
     mut record: Record,
+    look: &mut impl FnMut(&Simulation, f64),
 ) -> Result<Record, Failure> {
     let interval = match pace {
         Pace::Scene => scene.output.interval,
@@ -115,6 +135,7 @@ fn step_through(
         let row = recorder.row(simulation, now);
         check_finite(now, record.columns(), &row)?;
         record.add_row(now, row);
+        look(simulation, now);
         record.flight.extend(collect::flight(simulation, now));
         if (index + 1) % stride == 0 || index + 1 == times.count {
             record.frames.push(collect::frame(simulation, now));

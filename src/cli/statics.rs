@@ -3,6 +3,7 @@
 use std::fmt::Write;
 use std::path::Path;
 
+use moorline::output::left_tables::LeftTables;
 use moorline::output::{collect, json};
 use moorline::scene::{InitialShape, Note, Supplement};
 
@@ -25,6 +26,9 @@ pub fn statics(path: &Path, supplement: &Supplement, as_json: bool) -> Result<()
             let text = "runs start on this shape, not in the equilibrium that is shown".to_string();
             remark(path, &Note { at, text });
         }
+    }
+    for note in LeftTables::new(&loaded.scene).look(&simulation, 0.0) {
+        remark(path, &note);
     }
     let statics = collect::statics(&loaded.scene, &simulation);
     if as_json {

@@ -12,4 +12,5 @@ pub mod pentadiagonal;
 pub mod pivoted_chain;
 pub mod random;
 pub mod rotation;
+pub mod shape_preserving;
 pub mod unit;

@@ -5,6 +5,7 @@ use std::f64::consts::{PI, TAU};
 use nalgebra::{UnitQuaternion, Vector3, Vector6};
 
 use crate::math::hermite::Hermite;
+use crate::math::shape_preserving::{Ends, slopes};
 use crate::scene::{MotionPath, MotionRow};
 
 /// Where a driven point is, and how it moves.
@@ -56,7 +57,7 @@ pub enum Motion {
         /// Duration of the cosine ramp [s].
         ramp: Option<f64>,
     },
-    /// Cubic through the rows of a table, with slopes by the parabola through three neighbours; constant outside.
+    /// Cubic through the rows of a table with the slopes of [`crate::math::shape_preserving`]; constant outside.
     Table(Vec<TableRow>),
 }
 
@@ -216,24 +217,16 @@ fn ramped(k: Pose, t: f64, ramp: f64) -> Pose {
 }
 
 fn table(rows: &[MotionRow]) -> Vec<TableRow> {
-    let point = |row: &MotionRow| (row[0], Vector6::from_column_slice(&row[1..]));
-    (0..rows.len())
-        .map(|i| {
-            let (time, displacement) = point(&rows[i]);
-            let slope = if i == 0 || i + 1 == rows.len() {
-                Vector6::zeros()
-            } else {
-                let ((t0, p0), (t2, p2)) = (point(&rows[i - 1]), point(&rows[i + 1]));
-                let (h0, h1) = (time - t0, t2 - time);
-                ((displacement - p0) * (h1 / h0) + (p2 - displacement) * (h0 / h1)) / (h0 + h1)
-            };
-            TableRow {
-                time,
-                displacement,
-                slope,
-            }
-        })
-        .collect()
+    let column = |axis: usize| -> Vec<f64> { rows.iter().map(|row| row[axis]).collect() };
+    let times = column(0);
+    let slopes: [Vec<f64>; 6] =
+        std::array::from_fn(|axis| slopes(&times, &column(1 + axis), Ends::Flat));
+    let row = |(i, row): (usize, &MotionRow)| TableRow {
+        time: row[0],
+        displacement: Vector6::from_column_slice(&row[1..]),
+        slope: Vector6::from_fn(|axis, _| slopes[axis][i]),
+    };
+    rows.iter().enumerate().map(row).collect()
 }
 
 fn interpolate(rows: &[TableRow], t: f64) -> Pose {
@@ -310,6 +303,26 @@ mod tests {
         assert_relative_eq!(motion.at(2.0).position.x, f64::sin(2.0), epsilon = 1e-14);
         assert_relative_eq!(motion.at(2.04).position.x, f64::sin(2.04), epsilon = 1e-5);
         assert_derivatives(&motion, 2.05, 1e-5);
+    }
+
+    #[test]
+    fn a_table_that_holds_moves_and_holds_stays_between_its_rows() {
+        let row = |t: f64, x: f64| [t, x, 0.0, 0.0, 0.0, 0.0, 0.0];
+        let rows = [
+            row(0.0, 0.0),
+            row(30.0, 0.0),
+            row(32.0, 5.0),
+            row(60.0, 5.0),
+        ];
+        let motion = Motion::Table(table(&rows));
+        for i in -10..=7000 {
+            let x = motion.at(0.01 * f64::from(i)).position.x;
+            assert!((0.0..=5.0).contains(&x), "{x} m");
+        }
+        for t in [29.0, 30.0, 31.0, 32.0, 33.0] {
+            let (low, high) = (motion.at(t - 1e-9).velocity, motion.at(t + 1e-9).velocity);
+            assert_relative_eq!(low, high, epsilon = 1e-7);
+        }
     }
 
     #[test]

@@ -5,17 +5,28 @@
 //! ```
 //!
 //! n is the unit normal and p the distance below the surface along it, exact on a plane. On a grid h is the bicubic Hermite interpolant: it takes the
-//! soundings at the grid's points; its slopes there are those of the parabola through the neighbouring soundings, at the edges of
-//! the chord. So h is continuously differentiable, runs straight through soundings in a straight line, and reproduces planes.
+//! soundings at the grid's points, with the slopes of [`crate::math::shape_preserving`] along x and along y, at the edges those of
+//! the chord, and with the mean of the slope of h_x along y and of h_y along x as its twist. At every point the two slopes, and then the twist, are
+//! reduced until the control points of all cells around it lie within the soundings of their cell, or beyond by a twentieth of their range. A
+//! bicubic is a convex combination of its control points: so the surface lies there too. It is continuously differentiable, since cells share what is
+//! reduced, and reproduces planes.
 //! A bilinear surface would need a normal that is not its gradient to be smooth, and a node that slides
 //! without friction would gain or lose energy with every crossing of a cell; here the normal is the gradient's, and the force k p n is conservative but for p
 //! times the curvature of the surface. Outside the grid the surface goes on as at its edge.
 //!
-//! Source: bicubic interpolation as in Press et al. (2007), Numerical Recipes, 3rd ed., section 3.6.3; slopes by the three-point formula on
-//! uneven points. Like every cubic through given slopes it may overshoot beside a step, by a part of that step.
-//! Valid where penetrations are small beside the radius of curvature.
+//! Source: bicubic interpolation as in Press et al. (2007), Numerical Recipes, 3rd ed., section 3.6.3; convex hull of a Bézier net as in Farin
+//! (2002), Curves and Surfaces for CAGD, 5th ed., chapter 14. Valid where penetrations are small beside the radius of curvature. A summit between
+//! soundings of nearly equal height is cut off.
 
 use nalgebra::{Matrix3, Vector3};
+
+use crate::math::shape_preserving::{Ends, slopes, smooth_slopes};
+
+/// Slopes at the rows of a table.
+type Law = fn(&[f64], &[f64], Ends) -> Vec<f64>;
+
+/// By how much the surface may leave the soundings of a cell, over their range [-].
+const EXCURSION_MAX: f64 = 0.05;
 
 /// Surface of a seabed.
 #[derive(Debug, Clone, PartialEq)]
@@ -138,26 +149,75 @@ impl Grid {
         if x.is_empty() || y.is_empty() || !increasing(x) || !increasing(y) || !complete {
             return None;
         }
-        let along_x = |rows: &[Vec<f64>]| -> Vec<Vec<f64>> {
-            rows.iter().map(|row| slopes(x, row)).collect()
-        };
         let column =
             |rows: &[Vec<f64>], i: usize| -> Vec<f64> { rows.iter().map(|row| row[i]).collect() };
-        let hx = along_x(heights);
-        let hy: Vec<Vec<f64>> = (0..x.len())
-            .map(|i| slopes(y, &column(heights, i)))
-            .collect();
-        let hxy: Vec<Vec<f64>> = (0..x.len()).map(|i| slopes(y, &column(&hx, i))).collect();
-        let node = |j: usize, i: usize| [heights[j][i], hx[j][i], hy[i][j], hxy[i][j]];
-        let nodes = (0..y.len())
-            .flat_map(|j| (0..x.len()).map(move |i| (j, i)))
-            .map(|(j, i)| node(j, i))
-            .collect();
-        Some(Grid {
+        let along_x = |rows: &[Vec<f64>], law: Law| -> Vec<Vec<f64>> {
+            rows.iter().map(|row| law(x, row, Ends::Chord)).collect()
+        };
+        let along_y = |rows: &[Vec<f64>], law: Law| -> Vec<Vec<f64>> {
+            (0..x.len())
+                .map(|i| law(y, &column(rows, i), Ends::Chord))
+                .collect()
+        };
+        let hx = along_x(heights, slopes);
+        let hy = along_y(heights, slopes); // a row for every x
+        let (xy, yx) = (
+            along_y(&hx, smooth_slopes),
+            along_x(
+                &(0..y.len()).map(|j| column(&hy, j)).collect::<Vec<_>>(),
+                smooth_slopes,
+            ),
+        );
+        let mut grid = Grid {
             x: x.to_vec(),
             y: y.to_vec(),
-            nodes,
-        })
+            nodes: Vec::with_capacity(x.len() * y.len()),
+        };
+        for j in 0..y.len() {
+            for i in 0..x.len() {
+                let twist = 0.5 * (xy[i][j] + yx[j][i]);
+                let corners = grid.corners(heights, [i, j]);
+                let [hx, hy, hxy] = limit(&corners, [hx[j][i], hy[i][j], twist]);
+                grid.nodes.push([heights[j][i], hx, hy, hxy]);
+            }
+        }
+        Some(grid)
+    }
+
+    /// The cells around a node.
+    fn corners(&self, heights: &[Vec<f64>], [i, j]: [usize; 2]) -> Vec<Corner> {
+        let beside = |line: &[f64], at: usize| -> Vec<(usize, f64)> {
+            let known = [at.checked_sub(1), Some(at + 1)].into_iter().flatten();
+            let known = known.filter(|other| *other < line.len());
+            let found: Vec<_> = known
+                .map(|other| (other, (line[other] - line[at]) / 3.0))
+                .collect();
+            if found.is_empty() {
+                vec![(at, 0.0)]
+            } else {
+                found
+            }
+        };
+        let mut corners = Vec::with_capacity(4);
+        for (other_i, reach_x) in beside(&self.x, i) {
+            for (other_j, reach_y) in beside(&self.y, j) {
+                let soundings = [(i, j), (other_i, j), (i, other_j), (other_i, other_j)];
+                let change = soundings
+                    .map(|(i, j)| heights[j][i])
+                    .map(|z| z - heights[j][i]);
+                let (low, high) = change
+                    .into_iter()
+                    .fold((0.0_f64, 0.0_f64), |(low, high), z| {
+                        (low.min(z), high.max(z))
+                    });
+                let margin = EXCURSION_MAX * (high - low);
+                corners.push(Corner {
+                    reach: [reach_x, reach_y],
+                    bounds: [low - margin, high + margin],
+                });
+            }
+        }
+        corners
     }
 
     fn relief(&self, x: f64, y: f64) -> Relief {
@@ -182,20 +242,46 @@ impl Grid {
     }
 }
 
-/// Slopes of the parabolas through three neighbouring values, at the edges those of the chord.
-fn slopes(line: &[f64], values: &[f64]) -> Vec<f64> {
-    let chord = |i: usize| (values[i + 1] - values[i]) / (line[i + 1] - line[i]);
-    let last = line.len() - 1;
-    let slope = |i: usize| match i {
-        _ if last == 0 => 0.0,
-        0 => chord(0),
-        i if i == last => chord(last - 1),
-        i => {
-            let (before, after) = (line[i] - line[i - 1], line[i + 1] - line[i]);
-            (after * chord(i - 1) + before * chord(i)) / (before + after)
+/// Limits what a node of a grid gives to a cell, over the sides of the cell from that node: control points of the cell's Bézier net.
+///
+/// A bicubic is a convex combination of its net. So it stays within bounds that hold for the points z + a, z + b and z + a + b + c of
+/// each of its corners, with a = h_x Δx/3, b = h_y Δy/3 and c = h_xy Δx Δy/9, signed into the cell.
+struct Corner {
+    /// Δx/3 and Δy/3, signed into the cell [m].
+    reach: [f64; 2],
+    /// Bounds of height less that of the corner [m].
+    bounds: [f64; 2],
+}
+
+impl Corner {
+    /// The greatest part, up to 1, of a change [m] that keeps the bounds.
+    fn part(&self, change: f64) -> f64 {
+        let [low, high] = self.bounds;
+        let bound = if change > 0.0 { high } else { low };
+        if change.abs() > bound.abs() {
+            bound / change
+        } else {
+            1.0
         }
-    };
-    (0..=last).map(slope).collect()
+    }
+}
+
+/// Limits h_x and h_y [-] and h_xy [1/m] of a node so that every cell around it stays within its bounds.
+fn limit(corners: &[Corner], [hx, hy, hxy]: [f64; 3]) -> [f64; 3] {
+    let least = |part: &dyn Fn(&Corner) -> f64| corners.iter().map(part).fold(1.0, f64::min);
+    let hx = hx * least(&|at| at.part(hx * at.reach[0]));
+    let hy = hy * least(&|at| at.part(hy * at.reach[1]));
+    let both = least(&|at| at.part(hx * at.reach[0] + hy * at.reach[1]));
+    let (hx, hy) = (both * hx, both * hy);
+    let twist = least(&|at| {
+        let sum = hx * at.reach[0] + hy * at.reach[1];
+        let rest = Corner {
+            reach: at.reach,
+            bounds: at.bounds.map(|bound| bound - sum),
+        };
+        rest.part(hxy * at.reach[0] * at.reach[1])
+    });
+    [hx, hy, twist * hxy]
 }
 
 /// Weights of value and slope.
@@ -256,6 +342,7 @@ impl Cell {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::random::Random;
     use approx::assert_relative_eq;
 
     const X: [f64; 4] = [-10.0, 0.0, 15.0, 40.0];
@@ -338,6 +425,96 @@ mod tests {
         for x in &X[1..3] {
             let (low, high) = (ground.normal(x - 1e-9, 12.0), ground.normal(x + 1e-9, 12.0));
             assert_relative_eq!(low, high, epsilon = 1e-8);
+        }
+    }
+
+    #[test]
+    fn a_surface_stays_within_a_twentieth_of_the_soundings_of_its_cell() {
+        let mut random = Random::new(5);
+        for round in 0..3000 {
+            let mut line = |count: usize| -> Vec<f64> {
+                let mut at = 0.0;
+                let mut next = || {
+                    at += match round % 3 {
+                        0 => 1.0,
+                        _ => 10_f64.powf(3.0 * random.unit() - 1.0),
+                    };
+                    at
+                };
+                (0..count).map(|_| next()).collect()
+            };
+            let (x, y) = (line(2 + round % 6), line(2 + round / 6 % 6));
+            let mut level = 0.0;
+            let mut sounding = || {
+                if round % 2 == 0 || random.unit() < 0.4 {
+                    level = -100.0 * random.unit();
+                }
+                level
+            };
+            let rows: Vec<Vec<f64>> = y
+                .iter()
+                .map(|_| x.iter().map(|_| sounding()).collect())
+                .collect();
+            let grid = Grid::new(&x, &y, &rows).unwrap();
+            for (j, i) in (0..y.len() - 1).flat_map(|j| (0..x.len() - 1).map(move |i| (j, i))) {
+                let corners = [
+                    rows[j][i],
+                    rows[j][i + 1],
+                    rows[j + 1][i],
+                    rows[j + 1][i + 1],
+                ];
+                let low = corners.into_iter().fold(f64::INFINITY, f64::min);
+                let high = corners.into_iter().fold(f64::NEG_INFINITY, f64::max);
+                let margin = 0.05 * (high - low) + 1e-10;
+                for (u, v) in (0..=12).flat_map(|u| (0..=12).map(move |v| (u, v))) {
+                    let part = |line: &[f64], at: usize, part: i32| {
+                        line[at] + (line[at + 1] - line[at]) * f64::from(part) / 12.0
+                    };
+                    let h = grid.relief(part(&x, i, u), part(&y, j, v)).height;
+                    assert!(
+                        h >= low - margin && h <= high + margin,
+                        "round {round}: {h} m between {low} and {high} m"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_step_between_soundings_stays_between_them() {
+        let rows = [100.0, 100.0, 90.0, 90.0].map(|depth: f64| -depth).to_vec();
+        let grid = Grid::new(
+            &[0.0, 300.0, 310.0, 600.0],
+            &[-100.0, 100.0],
+            &[rows.clone(), rows],
+        );
+        let ground = Ground::Grid(grid.unwrap());
+        for i in 0..6000 {
+            let h = ground.height(0.1 * f64::from(i), 33.0);
+            assert!((-100.5..=-89.5).contains(&h), "{h} m");
+        }
+    }
+
+    #[test]
+    fn a_smooth_slope_is_met_with_an_error_that_falls_with_its_order() {
+        let height =
+            |x: f64, y: f64| -100.0 + 0.3 * x + 0.2 * y + 2.0 * (0.05 * x).sin() * (0.04 * y).cos();
+        let error = |count: usize| {
+            let line: Vec<f64> = (0..=count)
+                .map(|i| 100.0 * i as f64 / count as f64)
+                .collect();
+            let rows: Vec<Vec<f64>> = line
+                .iter()
+                .map(|&y| line.iter().map(|&x| height(x, y)).collect())
+                .collect();
+            let grid = Grid::new(&line, &line, &rows).unwrap();
+            let places = (0..400).map(|i| (30.0 + 0.1 * f64::from(i), 65.0 - 0.09 * f64::from(i)));
+            let errors = places.map(|(x, y)| (grid.relief(x, y).height - height(x, y)).abs());
+            errors.fold(0.0, f64::max)
+        };
+        let errors = [10, 20, 40, 80].map(error);
+        for pair in errors.windows(2) {
+            assert!(pair[0] > 8.0 * pair[1], "{errors:?}");
         }
     }
 

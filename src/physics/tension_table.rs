@@ -1,25 +1,17 @@
 //! Tension of a line given at some strains: a monotone curve through the rows of a table.
 //!
-//! Between two rows the tension is the cubic Hermite polynomial with slopes m_k at the rows. With the secants δ_k over the spans h_k,
+//! Between two rows the tension is the cubic Hermite polynomial with the slopes of [`rising_slopes`]. The least slope at the first row lets a line
+//! at rest resist the first pull. The curve is continuous with its slope, rises wherever the table rises, and goes on beyond the last row with
+//! the last slope (MoorDyn stays at the last tension there). Below zero strain it goes on with the first slope, which a line that cannot push does not
+//! feel. Its energy is the exact integral.
 //!
-//!   m_k = (w₁ + w₂)/(w₁/δ_{k−1} + w₂/δ_k),  w₁ = 2h_k + h_{k−1},  w₂ = h_k + 2h_{k−1},
-//!
-//! and at the ends the slope of the parabola through three rows, kept between δ/10 and 3δ: the least such slope lets a line at rest resist
-//! the first pull. The curve is continuous with its slope, rises wherever the table rises, and goes on beyond the last row with the last slope. Below
-//! zero strain it goes on with the first one, which a line that cannot push does not feel. Its energy is the exact integral.
-//!
-//! Source: Fritsch & Carlson (1980), SIAM J. Numer. Anal. 17, 238-246, condition 0 ≤ m ≤ 3δ for a monotone cubic; slopes by Fritsch &
-//! Butland (1984), SIAM J. Sci. Stat. Comput. 5, 300-304. Valid for rows that begin at (0, 0) and rise in strain and in tension.
+//! Source: [`crate::math::shape_preserving`]. Valid for rows that begin at (0, 0) and rise in strain and in tension.
 
 use std::sync::Arc;
 
 use super::stretch::Stretch;
 use crate::math::hermite::Hermite;
-
-/// Least slope at the ends of the table, over the secant there [-].
-const END_SLOPE_MIN: f64 = 0.1;
-/// Greatest slope of a monotone cubic at its ends, over its secant [-].
-const END_SLOPE_MAX: f64 = 3.0;
+use crate::math::shape_preserving::rising_slopes;
 
 /// The curve through a table, over its steepest slope EA.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,7 +36,9 @@ impl TensionTable {
     /// Through rows of strain [-] and tension [N]; with it the steepest slope EA [N], which its values are divided by.
     pub fn through(rows: &[[f64; 2]]) -> (TensionTable, f64) {
         assert!(rows.len() > 1, "a curve goes through two rows at least");
-        let slopes = slopes(rows);
+        let (strains, tensions): (Vec<f64>, Vec<f64>) =
+            rows.iter().map(|row| (row[0], row[1])).unzip();
+        let slopes = rising_slopes(&strains, &tensions);
         let mut pieces: Vec<Piece> = rows
             .windows(2)
             .zip(slopes.windows(2))
@@ -127,35 +121,6 @@ impl Piece {
             ends
         }
     }
-}
-
-/// Slopes of the curve at the rows [N].
-fn slopes(rows: &[[f64; 2]]) -> Vec<f64> {
-    let spans: Vec<f64> = rows
-        .windows(2)
-        .map(|pair| pair[1][0] - pair[0][0])
-        .collect();
-    let rises = rows.windows(2).map(|pair| pair[1][1] - pair[0][1]);
-    let secants: Vec<f64> = rises.zip(&spans).map(|(rise, span)| rise / span).collect();
-    let last = secants.len() - 1;
-    let end = |near: usize, next: usize| {
-        if last == 0 {
-            return secants[0];
-        }
-        let (h, secant) = (spans[near], secants[near]);
-        let parabola = secant + h / (h + spans[next]) * (secant - secants[next]);
-        parabola.clamp(END_SLOPE_MIN * secant, END_SLOPE_MAX * secant)
-    };
-    let between = |k: usize| {
-        let (before, after) = (spans[k - 1], spans[k]);
-        let weights = [2.0 * after + before, after + 2.0 * before];
-        (weights[0] + weights[1]) / (weights[0] / secants[k - 1] + weights[1] / secants[k])
-    };
-    let inner = (1..=last).map(between);
-    std::iter::once(end(0, 1.min(last)))
-        .chain(inner)
-        .chain([end(last, last.saturating_sub(1))])
-        .collect()
 }
 
 #[cfg(test)]

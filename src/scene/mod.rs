@@ -24,6 +24,7 @@ mod read;
 mod rows;
 mod seabed;
 mod surface;
+mod table_ends;
 mod tension_strain;
 mod threads;
 mod time_function;

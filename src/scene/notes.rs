@@ -6,6 +6,7 @@ use nalgebra::Vector3;
 
 use super::check::{breaking, coefficients, number, quantity};
 use super::path::quoted;
+use super::table_ends;
 use super::{Integrator, Line, LineModel, LineType, Point, PointKind, Scene, Waves};
 use crate::math::attitude::Attitude;
 
@@ -42,6 +43,7 @@ impl Scene {
             note_waves(self, waves, &mut notes);
         }
         note_whole(self, &mut notes);
+        notes.extend(table_ends::notes(self));
         notes
     }
 }

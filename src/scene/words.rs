@@ -2,6 +2,7 @@
 
 mod beam;
 mod bending;
+mod motions;
 mod parting;
 mod points;
 mod seabed;
@@ -17,10 +18,11 @@ use super::channel::Channel;
 use super::check::{integrator_name, number, quantity};
 use super::notes::{chord, length};
 use super::{
-    Axis, ContactLaw, DAMPING_ELEMENTS, HarmonicMotion, InitialShape, Integrator, Line, LineModel,
-    LineType, MotionPath, NUMERICAL_DAMPING_RATIO, Point, PointForce, PointKind, Reconstruction,
-    Scene, Strain, TimeFunction,
+    Axis, ContactLaw, DAMPING_ELEMENTS, InitialShape, Integrator, Line, LineModel, LineType,
+    NUMERICAL_DAMPING_RATIO, Point, PointForce, PointKind, Reconstruction, Scene, Strain,
+    TimeFunction,
 };
+use motions::motion_in_words;
 use vessels::vessel_in_words;
 
 /// Widest line of the text, in characters.
@@ -534,39 +536,4 @@ fn load_in_words(function: &TimeFunction, unit: &str) -> String {
         TimeFunction::Ramp(numbers) => rise("rising straight", *numbers),
         TimeFunction::Table(rows) => format!("from a table of {} rows", rows.len()),
     }
-}
-
-fn motion_in_words(motion: &MotionPath) -> String {
-    match motion {
-        MotionPath::File(file) => format!("follows the {} rows of {}", file.rows.len(), file.file),
-        MotionPath::Table(rows) => format!("follows a table of {} rows", rows.len()),
-        MotionPath::Harmonic(harmonic) => harmonic_in_words(harmonic),
-    }
-}
-
-fn harmonic_in_words(harmonic: &HarmonicMotion) -> String {
-    let axes = [("x", &harmonic.x), ("y", &harmonic.y), ("z", &harmonic.z)];
-    let waves: Vec<String> = axes
-        .iter()
-        .flat_map(|(axis, components)| components.iter().map(move |component| (axis, component)))
-        .filter_map(|(axis, component)| {
-            let (amplitude, period) = (component.first()?, component.get(1)?);
-            Some(format!(
-                "{} every {} along {axis}",
-                quantity(amplitude.abs(), "m"),
-                quantity(*period, "s")
-            ))
-        })
-        .collect();
-    if waves.is_empty() {
-        return "stays where it is".to_string();
-    }
-    let ramp = harmonic
-        .ramp
-        .map(|ramp| format!(", growing over {}", quantity(ramp, "s")));
-    format!(
-        "swings by {}{}",
-        waves.join(" and "),
-        ramp.unwrap_or_default()
-    )
 }

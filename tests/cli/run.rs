@@ -5,7 +5,7 @@ use std::path::Path;
 
 use tempfile::TempDir;
 
-use super::{SCENE, done, folder, names, refused, table};
+use super::{SCENE, done, folder, moorline, names, refused, table};
 
 #[test]
 fn a_run_that_blows_up_is_a_computation_that_failed_and_leaves_no_results() {
@@ -159,4 +159,75 @@ fn a_communication_step_sets_the_rows() {
     let (_, rows) = table(&folder.path().join("out/results.csv"));
     let times: Vec<f64> = rows.iter().map(|row| row[0]).collect();
     assert_eq!(times, [0.0, 0.3, 0.6, 3.0 * 0.3, 1.0]);
+}
+
+/// What a command says on standard error.
+fn remarks(folder: &TempDir, scene: &str, arguments: &[&str]) -> String {
+    fs::write(folder.path().join("left.toml"), scene).unwrap();
+    let output = moorline(folder.path(), &[&["run", "left.toml"], arguments].concat());
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.success(), "{said}");
+    said
+}
+
+#[test]
+fn a_run_that_leaves_a_table_is_remarked_on_once_with_its_name_and_its_time() {
+    let folder = folder();
+    let scene = SCENE
+        .replace("mass = 0.05", "mass = 0.5\ndiameter = 0.01")
+        .replace(
+            "axial_stiffness = 2505.0",
+            "tension_strain = [[0.0, 0.0], [0.001, 2.5]]",
+        )
+        .replace(
+            "x = [[0.05, 2.0]], ramp = 1.0",
+            "table = [[0.0, 0.0, 0.0, 0.0], [0.5, 0.4, 0.0, 0.0]]",
+        )
+        .replace("position = [0.0, 0.0, 0.0]", "position = [0.0, 0.0, -20.0]")
+        .replace(
+            "position = [14.0, 0.0, 0.0]",
+            "position = [14.0, 0.0, -20.0]",
+        )
+        + "[water]\ndensity = 1025.0\ncurrent = { profile = [[0.0, 0.1, 0.0], [-10.0, 0.0, 0.0]] }\n\
+           [seabed]\ndepth = 21.0\ngrid = { x = [0.0, 5.0], y = [-5.0, 5.0], depth = [[21.0, 21.1], [21.0, 21.0]] }\n";
+    let said = remarks(&folder, &scene, &["-o", "out"]);
+    for part in [
+        "line_types.rope.tension_strain: line1 is strained by ",
+        "where MoorDyn stays at the last tension",
+        "water.current.profile: line1 is at z = -20.00 m at t = 0 s, below the lowest row at -10 m",
+        "seabed.grid: line1 lies at (",
+        "motion.fairlead: the table ends at 0.5 s, the run at 1 s: in between it stays at its last row",
+    ] {
+        assert_eq!(said.matches(part).count(), 1, "{part}\n{said}");
+    }
+}
+
+#[test]
+fn a_run_that_stays_within_its_tables_says_nothing_of_them() {
+    let folder = folder();
+    let scene = SCENE
+        .replace(
+            "axial_stiffness = 2505.0",
+            "tension_strain = [[0.0, 0.0], [0.5, 1252.5]]",
+        )
+        .replace(
+            "x = [[0.05, 2.0]], ramp = 1.0",
+            "table = [[0.0, 0.0, 0.0, 0.0], [1.0, 0.1, 0.0, 0.0]]",
+        );
+    let said = remarks(&folder, &scene, &["-o", "out"]);
+    assert!(!said.contains("table") && !said.contains("row"), "{said}");
+    fs::write(
+        folder.path().join("m.csv"),
+        "time,x,y,z\n0,0,0,0\n0.4,0.1,0,0\n",
+    )
+    .unwrap();
+    let said = remarks(
+        &folder,
+        &scene,
+        &["--motion", "m.csv", "--duration", "1", "-o", "out"],
+    );
+    assert!(
+        said.contains("motion.fairlead: the table ends at 0.4 s"),
+        "{said}"
+    );
 }

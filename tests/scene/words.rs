@@ -98,3 +98,37 @@ fn notes_speak_of_what_is_unused_or_strange() {
         );
     }
 }
+
+#[test]
+fn a_motion_is_described_with_its_rotations_whatever_it_is_made_of() {
+    let with = |motion: &str| {
+        let text = format!(
+            "[line_types.rope]\nmass = 1.0\naxial_stiffness = 1e4\n\
+             [[vessels]]\nname = \"ship\"\n\
+             [[points]]\nname = \"a\"\nposition = [0.0, 0.0, 0.0]\nkind = \"fixed\"\n\
+             [[points]]\nname = \"b\"\nposition = [9.0, 0.0, 0.0]\nkind = \"coupled\"\non = \"ship\"\n\
+             [[lines]]\nname = \"l\"\nfrom = \"a\"\nto = \"b\"\nsections = [{{ type = \"rope\", length = 10.0 }}]\n\
+             [motion]\nship = {motion}\n[output]\nduration = 1.0\ninterval = 0.1\n"
+        );
+        let words = Scene::from_toml(&text).unwrap().in_words();
+        words.split_whitespace().collect::<Vec<_>>().join(" ")
+    };
+    for (motion, said) in [
+        (
+            "{ pitch = [[0.05, 10.0]] }",
+            "it swings by 0.05 rad every 10 s in pitch",
+        ),
+        (
+            "{ x = [[2.5, 12.0]], pitch = [[0.05, 10.0]] }",
+            "it swings by 2.5 m every 12 s along x and 0.05 rad every 10 s in pitch",
+        ),
+        (
+            "{ table = [[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0, 0.0, 0.1, 0.0]] }",
+            "it follows a table of 2 rows: pitch from 0 to 0.1 rad",
+        ),
+    ] {
+        let words = with(motion);
+        assert!(words.contains(said), "{said}\n{words}");
+        assert!(!words.contains("stays where it is"), "{words}");
+    }
+}

@@ -1,6 +1,7 @@
 //! Vessels and the points on them in words.
 
-use super::{motion_in_words, significant};
+use super::motions::motion_in_words;
+use super::significant;
 use crate::scene::check::number;
 use crate::scene::{Scene, Vessel};
 
