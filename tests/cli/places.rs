@@ -157,7 +157,7 @@ fn outputs_follow_links_and_replace_nothing_but_regular_files() {
     make_pipe(&at("pipe"));
     symlink("/dev/null", at("null")).unwrap();
     symlink("real.toml", at("link.toml")).unwrap();
-    for target in ["pipe", "null", "/dev/null"] {
+    for target in ["pipe", "null"] {
         let what =
             format!("cannot write {target}: it is a device or a pipe: give the name of a file");
         refused(
