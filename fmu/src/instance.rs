@@ -73,7 +73,7 @@ impl Instance {
     pub(crate) fn new(
         version: FmiVersion,
         token: Option<&str>,
-        resources: Option<&str>,
+        resources: Option<&[u8]>,
         logging: bool,
     ) -> Result<Instance, Refusal> {
         let text = resources::read_scene(resources)?;
@@ -287,6 +287,7 @@ impl Instance {
                         ))
                     })?;
                     Interface::read(variable, simulation, own)?;
+                    check_result(variable, own, self.time)?;
                 }
             }
         }
@@ -689,6 +690,17 @@ fn slot(scene: &Scene, body: Body) -> usize {
     }
 }
 
+/// An output that is not finite is no result.
+fn check_result(variable: &Variable, values: &[f64], time: f64) -> Outcome {
+    match values.iter().find(|value| !value.is_finite()) {
+        None => Ok(()),
+        Some(value) => Err(Refusal(format!(
+            "{}: {value} at t = {time} s is no result; look at the inputs and the start time, or try a smaller solver.time_step_max",
+            variable.name
+        ))),
+    }
+}
+
 /// Static equilibrium at the given displacements of the bodies [m, rad], always from the same first guess.
 fn statics(
     scene: &Scene,
@@ -757,7 +769,13 @@ mod tests {
         std::fs::write(folder.path().join("scene.toml"), SCENE).unwrap();
         let scene = Scene::from_toml(SCENE).unwrap();
         let token = Description::new(SCENE, &scene, version).unwrap().token;
-        Instance::new(version, Some(&token), folder.path().to_str(), true).unwrap()
+        Instance::new(
+            version,
+            Some(&token),
+            folder.path().to_str().map(str::as_bytes),
+            true,
+        )
+        .unwrap()
     }
 
     fn reference(instance: &Instance, name: &str) -> u32 {
