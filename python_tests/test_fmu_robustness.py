@@ -216,6 +216,46 @@ def test_no_output_is_ever_no_number_with_ok(slave):
                 assert status == OK or name in one.messages[-1][2]
 
 
+@pytest.mark.parametrize("value", [1e6, 1e8, 1e11])
+def test_a_displacement_beyond_the_scene_is_refused_before_anything_is_solved(slave, value):
+    one = slave()
+    one.expect(one.enter())
+    one.expect(one.set("fairlead.x", value))
+    began = time.perf_counter()
+    assert one.exit() == ERROR
+    assert "fairlead.x" in one.messages[-1][2] and "size of the scene" in one.messages[-1][2]
+    one = slave().initialize()
+    before = one.outputs()
+    one.expect(one.set("fairlead.x", value))
+    assert one.step(0.0, 0.05) == ERROR
+    assert "size of the scene" in one.messages[-1][2]
+    assert one.outputs() == before
+    one.expect(one.set("fairlead.x", 0.1))
+    one.expect(one.step(0.0, 0.05))
+    assert time.perf_counter() - began < 5.0
+
+
+def test_a_host_that_samples_too_coarsely_is_warned_once(slave):
+    """A fast circle of the fairlead: 12 points a period are too few without velocities, and enough with them."""
+    period, warned = 2.0, {}
+    for points, velocities in ((12, False), (60, False), (60, True)):
+        one, step = slave(logging=True).initialize(), period / points
+        for k in range(10 * points):
+            phase = 2.0 * math.pi * k / points
+            grown = min(k / (3.0 * points), 1.0)
+            one.expect(one.set("fairlead.x", grown * math.sin(phase)))
+            one.expect(one.set("fairlead.z", 0.5 * grown * math.cos(phase)))
+            if velocities:
+                one.expect(one.set("fairlead.vx", grown * math.cos(phase) * 2.0 * math.pi / period))
+                one.expect(one.set("fairlead.vz", -0.5 * grown * math.sin(phase) * 2.0 * math.pi / period))
+            one.expect(one.step(k * step, step))
+        warnings = [text for _, _, text in one.messages if "solver.input_error" in text]
+        warned[points, velocities] = (len(warnings), one.get("solver.input_error"))
+        assert all("12 communication steps a period" in text for text in warnings)
+    assert warned[12, False][0] == 1 and warned[12, False][1] > 0.02, warned
+    assert warned[60, False][0] == 0 and warned[60, False][1] < 0.02, warned
+
+
 def test_no_output_no_file_and_no_dependence_on_locale_or_folder(package, version, tmp_path):
     unpack(package("CHAIN", version), tmp_path / "fmu")
     before = sorted(p for p in tmp_path.rglob("*"))

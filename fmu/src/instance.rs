@@ -65,6 +65,7 @@ pub(crate) struct Instance {
     /// Statics with the present parameters and inputs, or where the last step ended; `None` while they are not known.
     simulation: Option<Simulation>,
     has_warned_of_time: bool,
+    has_warned_of_inputs: bool,
     step_status: Status,
 }
 
@@ -106,6 +107,7 @@ impl Instance {
             time: 0.0,
             simulation: None,
             has_warned_of_time: false,
+            has_warned_of_inputs: false,
             step_status: Status::Ok,
         })
     }
@@ -215,6 +217,7 @@ impl Instance {
         self.time = 0.0;
         self.simulation = None;
         self.has_warned_of_time = false;
+        self.has_warned_of_inputs = false;
         self.step_status = Status::Ok;
         Ok(())
     }
@@ -580,6 +583,12 @@ impl Instance {
         }
         simulation.advance(step).map_err(|e| e.to_string())?;
         self.time = at + step; // the host's clock, so that rounding does not add up
+        if !self.has_warned_of_inputs
+            && let Some(warning) = simulation.input_warning()
+        {
+            self.has_warned_of_inputs = true;
+            self.log.push(Topic::Warning, || warning);
+        }
         Ok(())
     }
 
