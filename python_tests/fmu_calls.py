@@ -103,7 +103,8 @@ class Slave:
         self.messages = []
         keep = lambda status, category, text: self.messages.append((status, category.decode(), text.decode()))
         token = (library.description.token if token is None else token).encode()
-        resources = (resource_location(library) if resources is None else resources).encode()
+        resources = resource_location(library) if resources is None else resources
+        resources = resources if isinstance(resources, bytes) else resources.encode()
         instantiate = library.function("Instantiate" if self.version == 2 else "InstantiateCoSimulation")
         instantiate.restype = c_void_p
         if self.version == 2:

@@ -48,7 +48,8 @@ def test_names_and_causalities_are_those_that_hosts_rely_on(library, version):
     assert d.names("input") == [f"fairlead.{a}" for a in ("x", "y", "z", "vx", "vy", "vz")]
     assert d.names("output") == [
         "fairlead.fx", "fairlead.fy", "fairlead.fz", "line1.tension_b", "line1.tension_a", "line1.tension_max",
-        "line1.laid_length", "line1.sag", "solver.substeps", "solver.energy_error", "solver.power_residual"]
+        "line1.laid_length", "line1.sag", "solver.substeps", "solver.energy_error", "solver.power_residual",
+        "solver.input_error"]
     assert d.names("calculatedParameter") == [
         "line1.catenary_sag", "line1.catenary_horizontal", "line1.catenary_tension_b"]
     assert set(d.names("parameter")) == {

@@ -11,11 +11,12 @@ import subprocess
 import sys
 import textwrap
 import threading
+import time
 
 import fmpy
 import pytest
 
-from fmu_calls import Library, Slave, unpack
+from fmu_calls import ERROR, OK, Library, Slave, unpack
 
 HERE = pathlib.Path(__file__).resolve().parent
 
@@ -161,6 +162,98 @@ def test_the_library_can_be_loaded_and_unloaded_a_hundred_times(package, version
         import os
         assert len(os.listdir("/proc/self/task")) == 1, "no thread of the library lives on"
         """, tmp_path)
+
+
+def test_a_library_whose_instances_had_threads_can_be_unloaded(package, version, tmp_path):
+    unpack(package("TWO_ROPES_ON_THREADS", version), tmp_path)
+    child("""
+        import _ctypes, os, sys
+        from fmu_calls import Library, Slave
+        for _ in range(5):
+            library = Library(sys.argv[1])
+            one = Slave(library).initialize()
+            one.run(5)
+            assert len(os.listdir("/proc/self/task")) == 2, "one thread of the library"
+            one.free()
+            assert len(os.listdir("/proc/self/task")) == 1, "no thread of the library lives on"
+            _ctypes.dlclose(library.dll._handle)
+            with open("/proc/self/maps") as file:
+                assert sys.argv[1] not in file.read(), "nothing keeps the library loaded"
+        """, tmp_path)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="only some systems have paths that are no text")
+def test_a_path_that_is_not_utf_8_works(package, version, tmp_path):
+    library = Library(unpack(package("CHAIN", version), tmp_path / "fmu"))
+    folder = os.fsencode(tmp_path) + b"/odd \xff\xfe"
+    shutil.copytree(os.fsencode(library.folder / "resources"), folder)
+    forms = [folder, b"file://" + folder, b"file://" + folder.replace(b"\xff\xfe", b"%FF%FE")]
+    for location in forms[:1] if version == 3 else forms:
+        one = Slave(library, resources=location)
+        assert one.handle, (location, one.messages)
+        one.free()
+
+
+def test_a_uri_of_another_scheme_is_refused_by_name(library, version):
+    one = Slave(library("CHAIN", version), resources="http://example.org/resources")
+    assert not one.handle
+    assert 'is a URI of scheme "http"' in one.messages[-1][2]
+
+
+def test_no_output_is_ever_no_number_with_ok(slave):
+    for start in (1e9, 1e12, 1e15, 1e300):
+        one = slave()
+        if one.enter(start) != OK or one.exit() != OK:
+            continue
+        for k in range(3):
+            if one.step(start + 0.05 * k, 0.05) != OK:
+                break
+            for name in one.library.description.names("output"):
+                variable = one.library.description.variables[name]
+                kind = "integer" if variable["type"] in ("Integer", "Int32") else "real"
+                status, values = one.get_references([variable["reference"]], variable["size"], kind)
+                assert status != OK or all(map(math.isfinite, values)), (start, name, values)
+                assert status == OK or name in one.messages[-1][2]
+
+
+@pytest.mark.parametrize("value", [1e6, 1e8, 1e11])
+def test_a_displacement_beyond_the_scene_is_refused_before_anything_is_solved(slave, value):
+    one = slave()
+    one.expect(one.enter())
+    one.expect(one.set("fairlead.x", value))
+    began = time.perf_counter()
+    assert one.exit() == ERROR
+    assert "fairlead.x" in one.messages[-1][2] and "size of the scene" in one.messages[-1][2]
+    one = slave().initialize()
+    before = one.outputs()
+    one.expect(one.set("fairlead.x", value))
+    assert one.step(0.0, 0.05) == ERROR
+    assert "size of the scene" in one.messages[-1][2]
+    assert one.outputs() == before
+    one.expect(one.set("fairlead.x", 0.1))
+    one.expect(one.step(0.0, 0.05))
+    assert time.perf_counter() - began < 5.0
+
+
+def test_a_host_that_samples_too_coarsely_is_warned_once(slave):
+    """A fast circle of the fairlead: 12 points a period are too few without velocities, and enough with them."""
+    period, warned = 2.0, {}
+    for points, velocities in ((12, False), (60, False), (60, True)):
+        one, step = slave(logging=True).initialize(), period / points
+        for k in range(10 * points):
+            phase = 2.0 * math.pi * k / points
+            grown = min(k / (3.0 * points), 1.0)
+            one.expect(one.set("fairlead.x", grown * math.sin(phase)))
+            one.expect(one.set("fairlead.z", 0.5 * grown * math.cos(phase)))
+            if velocities:
+                one.expect(one.set("fairlead.vx", grown * math.cos(phase) * 2.0 * math.pi / period))
+                one.expect(one.set("fairlead.vz", -0.5 * grown * math.sin(phase) * 2.0 * math.pi / period))
+            one.expect(one.step(k * step, step))
+        warnings = [text for _, _, text in one.messages if "solver.input_error" in text]
+        warned[points, velocities] = (len(warnings), one.get("solver.input_error"))
+        assert all("12 communication steps a period" in text for text in warnings)
+    assert warned[12, False][0] == 1 and warned[12, False][1] > 0.02, warned
+    assert warned[60, False][0] == 0 and warned[60, False][1] < 0.02, warned
 
 
 def test_no_output_no_file_and_no_dependence_on_locale_or_folder(package, version, tmp_path):

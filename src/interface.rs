@@ -226,6 +226,8 @@ pub enum SolverResult {
     EnergyError,
     /// The same over the time since the start [W].
     PowerResidual,
+    /// Error of tension that the extrapolation of the inputs causes, over the range of tension [-].
+    InputError,
 }
 
 /// What a profile gives at each node.
@@ -390,6 +392,7 @@ impl Interface {
                     SolverResult::Substeps => simulation.substeps() as f64,
                     SolverResult::EnergyError => simulation.energy_error(),
                     SolverResult::PowerResidual => simulation.power_residual(),
+                    SolverResult::InputError => simulation.input_error(),
                 }
             }
             Binding::Profile {

@@ -5,10 +5,12 @@
 //! [`Simulation::follow_scene`].
 
 mod held;
+mod input_error;
 mod inputs;
 mod paths;
 pub mod pilot;
 mod results;
+mod scale;
 mod start;
 mod winches;
 
@@ -25,9 +27,11 @@ use crate::scene::{InitialShape, Scene, SceneError};
 use crate::statics::StaticsError;
 use crate::statics::catenary::Catenary;
 use held::{At, Held};
+use input_error::InputRecord;
 use inputs::Inputs;
 use paths::Paths;
 use results::Memo;
+use scale::Scale;
 
 pub use results::{NodeBending, ProfileNode};
 pub(crate) use start::reference_catenary;
@@ -59,6 +63,7 @@ pub struct Snapshot {
     counters: Counters,
     ledger: Ledger,
     start_time: f64,
+    input_record: InputRecord,
     /// By how much the host is ahead of the state, less than [`STEP_MIN`] [s].
     ahead: f64,
 }
@@ -74,6 +79,7 @@ pub struct Simulation {
     foresight: Foresight,
     held: Held,
     memo: Memo,
+    scale: Scale,
     catenaries: Vec<Option<Catenary>>,
 }
 
@@ -103,6 +109,7 @@ impl Simulation {
             foresight: Foresight::none(),
             held: Held::new(&model, false),
             memo: Memo::new(model.vessels.len()),
+            scale: Scale::new(&model),
             snapshot,
             work,
             model,
@@ -150,6 +157,7 @@ impl Simulation {
         shapes: start::Shapes,
     ) -> Result<(), Error> {
         let inputs = self.snapshot.inputs.clone();
+        self.scale.check_start(&self.model, &inputs)?;
         let mut model = self.model.clone();
         winches::lay_out(
             &mut model,
@@ -219,8 +227,10 @@ impl Simulation {
             self.snapshot.counters = Counters::default();
             return Ok(());
         }
+        self.check_inputs(step)?;
         self.extend_paths(step)?;
         let before = self.let_go();
+        let record = self.record_inputs();
         let model = &*self.model;
         let follows_scene = self.snapshot.follows_scene;
         let at = At::new(model, &self.paths, follows_scene);
@@ -237,6 +247,7 @@ impl Simulation {
         }
         let done = advanced?;
         self.snapshot.counters = done.counters;
+        self.snapshot.input_record = record;
         self.snapshot.ahead = 0.0;
         if self.keeps_ledger() {
             self.snapshot.ledger.flow.add(done.flow);
@@ -247,6 +258,17 @@ impl Simulation {
             winches::follow(&mut self.model, &self.snapshot.state);
         }
         Ok(())
+    }
+
+    /// Refuses inputs that lead too far in a step [s].
+    fn check_inputs(&self, step: f64) -> Result<(), StepError> {
+        let (snapshot, time) = (&self.snapshot, self.snapshot.state.time);
+        match snapshot.follows_scene {
+            true => Ok(()),
+            false => self
+                .scale
+                .check_step(&self.model, &snapshot.inputs, time, step),
+        }
     }
 
     /// Parts the lines from their points that are to let go, and books what their ends bring along; returns who was parted before.

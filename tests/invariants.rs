@@ -341,7 +341,7 @@ fn a_step_that_fails_leaves_state_and_future_as_they_were() {
         let fairlead = simulation.model().point_index("fairlead").unwrap();
         simulation.advance(0.05).unwrap();
         let mut spared = simulation.clone();
-        simulation.set_displacement(fairlead, [1e12, 0.0, 0.0]);
+        simulation.set_displacement(fairlead, [3e5, 0.0, 0.0]);
         simulation.advance(0.05).unwrap_err();
         for simulation in [&mut simulation, &mut spared] {
             simulation.set_displacement(fairlead, [0.1, 0.0, 0.0]);

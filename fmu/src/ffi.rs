@@ -16,6 +16,8 @@ use moorline_host::fmi2::{fmi2CallbackFunctions, fmi2CallbackLogger};
 use moorline_host::fmi3::fmi3LogMessageCallback;
 use moorline_host::{FmiVersion, Status};
 
+#[cfg(unix)]
+use crate::aside;
 use crate::instance::{Instance, Refusal};
 use crate::log::Topic;
 use crate::saved::Snapshot;
@@ -176,6 +178,8 @@ pub(crate) fn instantiate(
     sink: Sink,
     make: impl FnOnce() -> Result<Instance, Refusal>,
 ) -> *mut c_void {
+    #[cfg(unix)]
+    moorline::dynamics::make_threads_aside(aside::run);
     match guard(make) {
         Ok(Ok(instance)) => Box::into_raw(Box::new(Handle {
             instance,
@@ -351,6 +355,18 @@ pub(crate) unsafe fn text<'a>(pointer: *const c_char) -> Option<&'a str> {
     }
     // SAFETY: not null; the caller promises the rest.
     unsafe { CStr::from_ptr(pointer) }.to_str().ok()
+}
+
+/// A path or URI of the host, in whatever encoding; `None` if it is null.
+///
+/// # Safety
+/// As for [`text`].
+pub(crate) unsafe fn location<'a>(pointer: *const c_char) -> Option<&'a [u8]> {
+    if pointer.is_null() {
+        return None;
+    }
+    // SAFETY: not null; the caller promises the rest.
+    Some(unsafe { CStr::from_ptr(pointer) }.to_bytes())
 }
 
 /// The host's list of texts.

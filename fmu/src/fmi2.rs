@@ -95,7 +95,7 @@ unsafe extern "C" fn fmi2Instantiate(
             Instance::new(
                 VERSION,
                 ffi::text(fmuGUID),
-                ffi::text(fmuResourceLocation),
+                ffi::location(fmuResourceLocation),
                 loggingOn != 0,
             )
             .map_err(|Refusal(why)| Refusal(format!("fmi2Instantiate: {why}")))

@@ -176,7 +176,7 @@ unsafe extern "C" fn fmi3InstantiateCoSimulation(
         Instance::new(
             VERSION,
             ffi::text(instantiationToken),
-            ffi::text(resourcePath),
+            ffi::location(resourcePath),
             loggingOn,
         )
         .map_err(|Refusal(why)| Refusal(format!("fmi3InstantiateCoSimulation: {why}")))

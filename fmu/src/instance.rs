@@ -65,6 +65,7 @@ pub(crate) struct Instance {
     /// Statics with the present parameters and inputs, or where the last step ended; `None` while they are not known.
     simulation: Option<Simulation>,
     has_warned_of_time: bool,
+    has_warned_of_inputs: bool,
     step_status: Status,
 }
 
@@ -73,7 +74,7 @@ impl Instance {
     pub(crate) fn new(
         version: FmiVersion,
         token: Option<&str>,
-        resources: Option<&str>,
+        resources: Option<&[u8]>,
         logging: bool,
     ) -> Result<Instance, Refusal> {
         let text = resources::read_scene(resources)?;
@@ -106,6 +107,7 @@ impl Instance {
             time: 0.0,
             simulation: None,
             has_warned_of_time: false,
+            has_warned_of_inputs: false,
             step_status: Status::Ok,
         })
     }
@@ -215,6 +217,7 @@ impl Instance {
         self.time = 0.0;
         self.simulation = None;
         self.has_warned_of_time = false;
+        self.has_warned_of_inputs = false;
         self.step_status = Status::Ok;
         Ok(())
     }
@@ -287,6 +290,7 @@ impl Instance {
                         ))
                     })?;
                     Interface::read(variable, simulation, own)?;
+                    check_result(variable, own, self.time)?;
                 }
             }
         }
@@ -579,6 +583,12 @@ impl Instance {
         }
         simulation.advance(step).map_err(|e| e.to_string())?;
         self.time = at + step; // the host's clock, so that rounding does not add up
+        if !self.has_warned_of_inputs
+            && let Some(warning) = simulation.input_warning()
+        {
+            self.has_warned_of_inputs = true;
+            self.log.push(Topic::Warning, || warning);
+        }
         Ok(())
     }
 
@@ -689,6 +699,17 @@ fn slot(scene: &Scene, body: Body) -> usize {
     }
 }
 
+/// An output that is not finite is no result.
+fn check_result(variable: &Variable, values: &[f64], time: f64) -> Outcome {
+    match values.iter().find(|value| !value.is_finite()) {
+        None => Ok(()),
+        Some(value) => Err(Refusal(format!(
+            "{}: {value} at t = {time} s is no result; look at the inputs and the start time, or try a smaller solver.time_step_max",
+            variable.name
+        ))),
+    }
+}
+
 /// Static equilibrium at the given displacements of the bodies [m, rad], always from the same first guess.
 fn statics(
     scene: &Scene,
@@ -757,7 +778,13 @@ mod tests {
         std::fs::write(folder.path().join("scene.toml"), SCENE).unwrap();
         let scene = Scene::from_toml(SCENE).unwrap();
         let token = Description::new(SCENE, &scene, version).unwrap().token;
-        Instance::new(version, Some(&token), folder.path().to_str(), true).unwrap()
+        Instance::new(
+            version,
+            Some(&token),
+            folder.path().to_str().map(str::as_bytes),
+            true,
+        )
+        .unwrap()
     }
 
     fn reference(instance: &Instance, name: &str) -> u32 {

@@ -2,88 +2,128 @@
 //!
 //! Source: RFC 8089 (file URIs) with its appendix E on common deviations; FMI 2.0.4 section 2.1.5, FMI 3.0.2 section 2.3.1.
 
+use std::io::Read;
 use std::path::PathBuf;
 
 use moorline::output::package::SCENE_FILE;
+use moorline::scene::input_file;
 
 /// The text of the FMU's scene.
 ///
 /// # Errors
 /// Where it was looked for.
-pub(crate) fn read_scene(location: Option<&str>) -> Result<String, String> {
+pub(crate) fn read_scene(location: Option<&[u8]>) -> Result<String, String> {
     let location = location
         .filter(|location| !location.is_empty())
         .ok_or("the host gave no resource location, and the scene is in the resources")?;
     let files: Vec<PathBuf> = candidates(location, cfg!(windows))?
         .into_iter()
-        .map(|folder| PathBuf::from(folder).join(SCENE_FILE))
-        .collect();
+        .map(|folder| Ok(path_of(folder)?.join(SCENE_FILE)))
+        .collect::<Result<_, String>>()?;
     let file = files
         .iter()
         .find(|file| file.is_file())
         .unwrap_or(&files[0]);
-    std::fs::read_to_string(file)
-        .map_err(|e| format!("{}: {e} (resource location \"{location}\")", file.display()))
+    let said = format!(
+        " (resource location \"{}\")",
+        String::from_utf8_lossy(location)
+    );
+    let mut text = String::new();
+    input_file::open(file, "a scene file", input_file::SIZE_MAX)
+        .map_err(|unopened| unopened.at(file, "") + &said)?
+        .read_to_string(&mut text)
+        .map_err(|e| format!("{}: {e}{said}", file.display()))?;
+    Ok(text)
+}
+
+/// A path of these bytes, which on Unix need not be UTF-8.
+#[cfg(unix)]
+fn path_of(bytes: Vec<u8>) -> Result<PathBuf, String> {
+    use std::os::unix::ffi::OsStringExt;
+    Ok(std::ffi::OsString::from_vec(bytes).into())
+}
+
+/// A path of these bytes.
+#[cfg(not(unix))]
+fn path_of(bytes: Vec<u8>) -> Result<PathBuf, String> {
+    let text = String::from_utf8(bytes)
+        .map_err(|error| format!("the resource location is not UTF-8 text: {error}"))?;
+    Ok(text.into())
+}
+
+/// The scheme of a URI that has `//` behind it; a drive letter is none.
+fn scheme(location: &[u8]) -> Option<&str> {
+    let end = location.windows(3).position(|three| three == b"://")?;
+    let scheme = std::str::from_utf8(&location[..end]).ok()?;
+    let letters = |c: char| c.is_ascii_alphanumeric() || "+-.".contains(c);
+    let begins = scheme.starts_with(|c: char| c.is_ascii_alphabetic());
+    (end > 1 && begins && scheme.chars().all(letters)).then_some(scheme)
 }
 
 /// Folders that a resource location may mean, the likeliest first; never empty.
-fn candidates(location: &str, windows: bool) -> Result<Vec<String>, String> {
-    let Some(scheme) = location.get(..5) else {
-        return Ok(vec![location.to_string()]);
-    };
-    if !scheme.eq_ignore_ascii_case("file:") {
-        return Ok(vec![location.to_string()]);
+fn candidates(location: &[u8], windows: bool) -> Result<Vec<Vec<u8>>, String> {
+    let is_file = location
+        .get(..5)
+        .is_some_and(|scheme| scheme.eq_ignore_ascii_case(b"file:"));
+    if !is_file {
+        return match scheme(location) {
+            Some(scheme) => Err(format!(
+                "the resource location \"{}\" is a URI of scheme \"{scheme}\": file:///path or a path would be right",
+                String::from_utf8_lossy(location)
+            )),
+            None => Ok(vec![location.to_vec()]),
+        };
     }
     let raw = path_of_uri(&location[5..], windows)?;
     // A host that does not escape may name a folder that holds a per cent sign.
     let mut folders = vec![raw.clone()];
-    if let Some(decoded) = percent_decoded(&raw)
-        && decoded != raw
-    {
+    let decoded = percent_decoded(&raw);
+    if decoded != raw {
         folders.insert(0, decoded);
     }
     Ok(folders)
 }
 
 /// The path in what follows `file:`, still escaped.
-fn path_of_uri(rest: &str, windows: bool) -> Result<String, String> {
-    let path = match rest.strip_prefix("//") {
-        None => rest.to_string(),                         // file:/p, or file:p
-        Some(rest) if is_drive(rest) => rest.to_string(), // file://C:/p, one slash short
+fn path_of_uri(rest: &[u8], windows: bool) -> Result<Vec<u8>, String> {
+    let path = match rest.strip_prefix(b"//") {
+        None => rest,                         // file:/p, or file:p
+        Some(rest) if is_drive(rest) => rest, // file://C:/p, one slash short
         Some(rest) => {
-            let (host, path) = rest.split_at(rest.find('/').unwrap_or(rest.len()));
-            if host.is_empty() || host.eq_ignore_ascii_case("localhost") {
-                path.to_string()
+            let end = rest.iter().position(|byte| *byte == b'/');
+            let (host, path) = rest.split_at(end.unwrap_or(rest.len()));
+            if host.is_empty() || host.eq_ignore_ascii_case(b"localhost") {
+                path
             } else if windows {
-                format!("//{host}{path}") // a share
+                return Ok([b"//", host, path].concat()); // a share
             } else {
                 return Err(format!(
-                    "the resource location names the host \"{host}\": file:///path or a path would be right"
+                    "the resource location names the host \"{}\": file:///path or a path would be right",
+                    String::from_utf8_lossy(host)
                 ));
             }
         }
     };
-    let single = path.trim_start_matches('/');
+    let slashes = path.iter().take_while(|byte| **byte == b'/').count();
+    let single = &path[slashes..];
     if is_drive(single) && windows {
-        return Ok(single.to_string());
+        return Ok(single.to_vec());
     }
-    if !windows && path.starts_with("//") {
-        return Ok(format!("/{single}")); // file:////p
+    if !windows && slashes > 1 {
+        return Ok([b"/", single].concat()); // file:////p
     }
-    Ok(path)
+    Ok(path.to_vec())
 }
 
 /// Whether a path begins with a drive letter.
-fn is_drive(path: &str) -> bool {
-    let mut characters = path.chars();
-    characters.next().is_some_and(|c| c.is_ascii_alphabetic())
-        && matches!(characters.next(), Some(':' | '|'))
+fn is_drive(path: &[u8]) -> bool {
+    matches!(path, [letter, b':' | b'|', ..] if letter.is_ascii_alphabetic())
 }
 
-/// Replaces %XX; `None` if the result is not UTF-8. A per cent sign without two digits stays.
-fn percent_decoded(text: &str) -> Option<String> {
+/// Replaces %XX. A per cent sign without two digits stays.
+fn percent_decoded(text: &[u8]) -> Vec<u8> {
     let mut bytes = Vec::with_capacity(text.len());
-    let mut rest = text.as_bytes();
+    let mut rest = text;
     while let [first, tail @ ..] = rest {
         let digits = tail
             .get(..2)
@@ -99,7 +139,7 @@ fn percent_decoded(text: &str) -> Option<String> {
             }
         }
     }
-    String::from_utf8(bytes).ok()
+    bytes
 }
 
 fn hex(digit: u8) -> Option<u8> {
@@ -113,7 +153,8 @@ mod tests {
     use super::*;
 
     fn first(location: &str, windows: bool) -> String {
-        candidates(location, windows).unwrap().remove(0)
+        let folder = candidates(location.as_bytes(), windows).unwrap().remove(0);
+        String::from_utf8(folder).unwrap()
     }
 
     #[test]
@@ -153,21 +194,53 @@ mod tests {
     #[test]
     fn a_folder_with_an_unescaped_per_cent_sign_is_the_second_choice() {
         assert_eq!(
-            candidates("file:///data/50%25", false).unwrap(),
-            ["/data/50%", "/data/50%25"]
+            candidates(b"file:///data/50%25", false).unwrap(),
+            [b"/data/50%".to_vec(), b"/data/50%25".to_vec()]
         );
     }
 
     #[test]
     fn another_host_and_a_missing_location_are_refused_in_words() {
-        let message = read_scene(Some("file://elsewhere/a")).unwrap_err();
+        let message = read_scene(Some(b"file://elsewhere/a")).unwrap_err();
         assert!(message.contains("elsewhere"), "{message}");
         assert!(
             read_scene(None)
                 .unwrap_err()
                 .contains("no resource location")
         );
-        let message = read_scene(Some("/does/not/exist")).unwrap_err();
+        let message = read_scene(Some(b"/does/not/exist")).unwrap_err();
         assert!(message.contains("/does/not/exist"), "{message}");
+    }
+
+    #[test]
+    fn a_uri_of_another_scheme_is_refused_by_its_name() {
+        for location in ["http://a.b/resources", "FTP://a", "s3+x://bucket/a"] {
+            let message = read_scene(Some(location.as_bytes())).unwrap_err();
+            let scheme = location.split(':').next().unwrap();
+            let wanted = format!("is a URI of scheme \"{scheme}\"");
+            assert!(message.contains(&wanted), "{message}");
+        }
+        // a folder may be called so
+        assert_eq!(first("./http:/a", false), "./http:/a");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_path_that_is_not_utf_8_is_read() {
+        use std::os::unix::ffi::OsStrExt;
+        let folder = tempfile::tempdir().unwrap();
+        let place = folder.path().join(std::ffi::OsStr::from_bytes(b"odd \xff"));
+        std::fs::create_dir(&place).unwrap();
+        std::fs::write(place.join(SCENE_FILE), "title = \"\"").unwrap();
+        let path = place.as_os_str().as_bytes();
+        let escaped = [
+            b"file://",
+            folder.path().as_os_str().as_bytes(),
+            b"/odd%20%FF",
+        ]
+        .concat();
+        for location in [path, &[b"file://", path].concat(), &escaped] {
+            assert_eq!(read_scene(Some(location)).unwrap(), "title = \"\"");
+        }
     }
 }

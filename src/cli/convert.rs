@@ -4,7 +4,7 @@ use std::io::Write;
 use std::path::Path;
 
 use moorline::model::Model;
-use moorline::output::write_file;
+use moorline::output::{check_file, write_file};
 use moorline::scene::{Supplement, TOML, load_with};
 
 use super::failure::Failure;
@@ -12,6 +12,7 @@ use super::print;
 
 /// Reads a deck with what it leaves to its host, and writes the same system as a scene with comments.
 pub fn convert(path: &Path, target: &Path, supplement: &Supplement) -> Result<(), Failure> {
+    check_file(target)?;
     let loaded = load_with(path, supplement)?;
     if loaded.format == TOML {
         let text = format!("{} is a scene of moorline already", path.display());

@@ -52,6 +52,7 @@ impl Failure {
     pub fn of_package(error: PackageError, loaded: &LoadedScene) -> Failure {
         match error {
             PackageError::Scene(mistake) => Failure::of_scene(mistake, loaded),
+            PackageError::Output(error) => error.into(),
             error => Failure::Computation(error.to_string()),
         }
     }
@@ -64,7 +65,8 @@ impl Failure {
             | ErrorKind::ReadOnlyFilesystem
             | ErrorKind::IsADirectory
             | ErrorKind::NotADirectory
-            | ErrorKind::InvalidFilename => Failure::Argument(text),
+            | ErrorKind::InvalidFilename
+            | ErrorKind::InvalidInput => Failure::Argument(text),
             _ => Failure::Computation(text),
         }
     }

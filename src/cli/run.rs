@@ -11,7 +11,7 @@ use moorline::output::left_tables::LeftTables;
 use moorline::output::record::{Column, Record};
 use moorline::output::{collect, write_run};
 use moorline::scene::{Drive, Reconstruction, Scene, Supplement};
-use moorline::simulation::Simulation;
+use moorline::simulation::{Simulation, pilot};
 
 use super::failure::Failure;
 use super::folder::Folder;
@@ -45,6 +45,12 @@ pub fn run(
     pace: Pace,
 ) -> Result<(), Failure> {
     let mut loaded = read_scene(path, supplement)?;
+    if let Pace::Host { .. } = pace
+        && let Some(packaged) = pilot::frozen(&loaded.scene)
+    {
+        // the elements of the FMU, which know nothing of this run's motion and duration
+        loaded.scene = packaged;
+    }
     if !drive.is_empty() {
         let known = loaded.scene.notes();
         loaded.scene.drive(drive).map_err(Failure::Argument)?;
@@ -53,7 +59,11 @@ pub fn run(
         new.for_each(|note| remark(path, &note));
     }
     let _open = Folder::open(folder)?;
-    let mut simulation = simulate(&loaded)?;
+    let mut simulation = match pace {
+        Pace::Scene => simulate(&loaded)?,
+        Pace::Host { .. } => Simulation::by_rules(&loaded.scene)
+            .map_err(|error| Failure::of_simulation(error, &loaded))?,
+    };
     let still = simulation.in_equilibrium().ok();
     let start = match pace {
         Pace::Scene => simulation.follow_scene(),

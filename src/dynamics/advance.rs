@@ -17,7 +17,7 @@ use crate::physics::airy::Waves;
 use crate::scene::{Integrator, Reconstruction};
 use crate::statics::assembly;
 use crate::statics::assembly::rubbing::{drop_anchors, hold_at_rest};
-use communication::{Communication, Solver};
+use communication::{Communication, Solver, within_guard};
 use threads::{Helpers, Outcome};
 
 /// Rounding of times, over a step [-].
@@ -204,13 +204,18 @@ impl Workspace {
             }
             return done;
         }
+        self.check_length(model, state, [part, length], held)?;
         let end = state.time + length;
         let mut total = Done::default();
         self.before.clone_from(state);
         loop {
             self.renew_waves(model, waves, state, part);
-            match self.pass(model, state, part, held) {
-                Ok(done) => total.add(done),
+            let passed = self.pass(model, state, part, held).and_then(|done| {
+                total.add(done);
+                within_guard(model, state.time, total.counters.substeps)
+            });
+            match passed {
+                Ok(()) => {}
                 Err(error) => {
                     state.clone_from(&self.before);
                     return Err(error);
@@ -223,6 +228,31 @@ impl Workspace {
             }
             part = self.sea.reach(model, waves, state, left);
         }
+    }
+
+    /// Refuses a communication step of `whole` [s] in parts of `part` [s] that would take too many internal steps: the guard is of the communication
+    /// step, however many parts it has.
+    #[cold]
+    #[inline(never)]
+    fn check_length(
+        &self,
+        model: &Model,
+        state: &State,
+        [part, whole]: [f64; 2],
+        held: &(impl Fn(usize, f64) -> Kinematics + Sync),
+    ) -> Result<(), StepError> {
+        let step = Communication {
+            model,
+            state,
+            start: state.time,
+            length: whole,
+            held,
+            reels: &self.reels,
+            holds: false,
+            jumps: false,
+        };
+        let mut choices = self.choices().enumerate();
+        choices.try_for_each(|(number, choice)| step.check_length(number, choice, part))
     }
 
     /// Asks the waves anew where a span of theirs is over; whether it was.

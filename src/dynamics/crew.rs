@@ -15,7 +15,7 @@
 
 use std::cell::Cell;
 use std::process;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::Instant;
 
@@ -25,6 +25,18 @@ use super::Choice;
 use super::cost::{COMPONENT, node_time};
 use crate::model::{Model, Network};
 use crate::scene::{Integrator, Threads};
+
+/// Runs work on a thread of its own and returns when it is done; work that is not run is not run at all.
+pub type Aside = fn(&mut (dyn FnMut() + Send));
+
+static ASIDE: OnceLock<Aside> = OnceLock::new();
+
+/// Lets threads be made by a thread that [`Aside`] makes and ends: the standard library leaves something on a thread that makes another which
+/// keeps a library loaded for as long as that thread lives, and a thread of a host may live longer than the instances.
+pub fn make_threads_aside(aside: Aside) {
+    // a second instance sets the same
+    let _ = ASIDE.set(aside);
+}
 
 /// Name of the threads: a host that looks for its own knows these by it.
 const THREAD_NAME: &str = "moorline";
@@ -127,7 +139,7 @@ impl Crew {
         let has = own.map_or(0, |pool| pool.handles.len());
         if has < size && !self.refused {
             self.pool = None;
-            self.pool = Pool::new(size);
+            self.pool = Pool::aside(size);
             self.refused = self.pool.is_none();
         }
         self.pool.as_ref()?.threads.as_ref()
@@ -135,6 +147,15 @@ impl Crew {
 }
 
 impl Pool {
+    fn aside(size: usize) -> Option<Pool> {
+        let Some(aside) = ASIDE.get() else {
+            return Pool::new(size);
+        };
+        let mut pool = None;
+        aside(&mut || pool = Pool::new(size));
+        pool
+    }
+
     fn new(size: usize) -> Option<Pool> {
         let mut pool = Pool {
             threads: None,

@@ -22,7 +22,7 @@ mod surface;
 
 pub use choice::Choice;
 pub use cost::AXIAL_IMPLICIT_COST;
-pub use crew::{as_helper, is_helper};
+pub use crew::{Aside, as_helper, is_helper, make_threads_aside};
 
 /// Why a step could not be made. The state is as it was before.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

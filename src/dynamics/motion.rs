@@ -283,6 +283,12 @@ impl AxesPath {
         [start, [position, velocity, curvature]]
     }
 
+    /// The newest two samples of the position along the first three axes, and where the present segments end [m, rad].
+    pub fn newest(&self) -> ([Vector3<f64>; 2], Vector3<f64>) {
+        let [last, second, ..] = &self.positions;
+        ([last.xyz(), second.xyz()], self.end[0].xyz())
+    }
+
     /// Predicts from what the host said of the position.
     #[inline(always)]
     fn predict(&mut self, foresight: &Foresight, samples: Samples) -> Prediction {

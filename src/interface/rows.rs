@@ -277,4 +277,11 @@ pub(super) fn solver(variables: &mut Vec<Variable>) {
         Unit::WATT,
         Binding::Solver(SolverResult::PowerResidual),
     ));
+    variables.push(row(
+        "solver.input_error".into(),
+        "estimated error of tension, over its variation, from extrapolating the displacements between communication points".into(),
+        Causality::Output,
+        Unit::ONE,
+        Binding::Solver(SolverResult::InputError),
+    ));
 }

@@ -81,7 +81,7 @@ pub fn make_folder(path: &Path) -> Result<(), OutputError> {
 pub fn open_folder(path: &Path) -> Result<(), OutputError> {
     make_folder(path)?;
     let probe = partial_name(&path.join("probe"));
-    let tried = File::create(&probe).and_then(|_| fs::remove_file(&probe));
+    let tried = create(&probe).and_then(|_| fs::remove_file(&probe));
     tried.map_err(|source| OutputError::Closed {
         path: path.to_path_buf(),
         source,
@@ -102,16 +102,16 @@ pub fn remove_partial(folder: &Path) {
 }
 
 /// Writes a file under a temporary name beside it and renames it when it is whole: an interrupted run leaves the old file or
-/// none, never half of one.
+/// none, never half of one. A link stays, and what it leads to is written; what is no regular file is never replaced.
 ///
 /// # Errors
-/// Where the operating system refuses; the temporary file is then removed.
+/// Something that is no regular file, or where the operating system refuses; the temporary file is then removed.
 pub fn write_file(
     path: &Path,
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<(), OutputError> {
     let made = replace_file(path, |partial| {
-        let mut file = BufWriter::new(File::create(partial)?);
+        let mut file = BufWriter::new(create(partial)?);
         write(&mut file)?;
         file.flush()
     });
@@ -121,16 +121,68 @@ pub fn write_file(
     })
 }
 
-/// Lets `write` make a file under a temporary name beside `path`, and gives it that name when it is whole.
+/// Sees that a file could be written under a name: what has the name now is a regular file, a link to one, or nothing, and the folder exists.
 ///
 /// # Errors
-/// Those of `write`, and where the operating system refuses the new name; the temporary file is then removed.
-pub fn replace_file<E: From<io::Error>>(
-    path: &Path,
-    write: impl FnOnce(&Path) -> Result<(), E>,
-) -> Result<(), E> {
+/// What is in the way.
+pub fn check_file(path: &Path) -> Result<(), OutputError> {
+    let target = target_of(path).and_then(|target| {
+        let folder = target
+            .parent()
+            .filter(|folder| !folder.as_os_str().is_empty());
+        match folder {
+            Some(folder) if !folder.is_dir() => Err(io::Error::new(
+                io::ErrorKind::NotFound,
+                format!("there is no folder {}", folder.display()),
+            )),
+            _ => Ok(()),
+        }
+    });
+    target.map_err(|source| OutputError::File {
+        path: path.to_path_buf(),
+        source,
+    })
+}
+
+/// The regular file, or the free name, that a path leads to; links are followed.
+fn target_of(path: &Path) -> io::Result<PathBuf> {
+    let mut target = path.to_path_buf();
+    for _ in 0..LINKS_MAX {
+        let found = match fs::symlink_metadata(&target) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(target),
+            found => found?,
+        };
+        if found.is_symlink() {
+            let next = fs::read_link(&target)?;
+            target = target.parent().unwrap_or(Path::new("")).join(next);
+            continue;
+        }
+        let what = if found.is_dir() {
+            "a folder"
+        } else if found.is_file() {
+            return Ok(target);
+        } else {
+            "a device or a pipe"
+        };
+        let problem = format!("it is {what}: give the name of a file");
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, problem));
+    }
+    let problem = format!("more than {LINKS_MAX} links lead from it");
+    Err(io::Error::new(io::ErrorKind::InvalidInput, problem))
+}
+
+/// A new file for writing, in place of what an ended process may have left under a temporary name.
+fn create(partial: &Path) -> io::Result<File> {
+    // where nothing is left there is nothing to remove
+    let _ = fs::remove_file(partial);
+    File::create_new(partial)
+}
+
+/// Lets `write` make a file under a temporary name beside the file that `path` leads to, and gives it that name when it is whole.
+fn replace_file(path: &Path, write: impl FnOnce(&Path) -> io::Result<()>) -> io::Result<()> {
+    let path = &target_of(path)?;
     let partial = partial_name(path);
-    let made = write(&partial).and_then(|()| Ok(fs::rename(&partial, path)?));
+    let made = write(&partial).and_then(|()| fs::rename(&partial, path));
     if made.is_err() {
         // The first failure is the one to tell; a remainder that cannot be removed does not look complete.
         let _ = fs::remove_file(&partial);
@@ -138,6 +190,8 @@ pub fn replace_file<E: From<io::Error>>(
     made
 }
 
+/// Links that are followed to a file, at most [-].
+const LINKS_MAX: usize = 40;
 /// Most shapes written for ParaView [-]; of more, evenly chosen ones stand for all.
 const VTK_FRAMES_MAX: usize = 240;
 
@@ -218,6 +272,42 @@ mod tests {
         assert!(error.to_string().contains("results.csv: disk full"));
         assert_eq!(fs::read(&path).unwrap(), b"old");
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_link_is_followed_and_what_is_no_regular_file_is_not_replaced() {
+        use std::os::unix::{fs::symlink, net::UnixListener};
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        let write = |name: &str| write_file(&at(name), |w| w.write_all(b"new"));
+        fs::write(at("real"), "old").unwrap();
+        symlink("real", at("link")).unwrap();
+        symlink(at("link"), at("second")).unwrap();
+        symlink("later", at("dangling")).unwrap();
+        symlink("loop", at("loop")).unwrap();
+        symlink("/dev/null", at("null")).unwrap();
+        let _socket = UnixListener::bind(at("socket")).unwrap();
+        write("second").unwrap();
+        write("dangling").unwrap();
+        for name in ["real", "later"] {
+            assert_eq!(fs::read(at(name)).unwrap(), b"new");
+        }
+        for name in ["link", "second", "dangling"] {
+            assert!(fs::symlink_metadata(at(name)).unwrap().is_symlink());
+        }
+        for name in ["socket", "null", "loop"] {
+            let problem = write(name).unwrap_err().to_string();
+            let wanted = ["device or a pipe", "links lead from it"];
+            assert!(
+                wanted.iter().any(|part| problem.contains(part)),
+                "{problem}"
+            );
+            assert!(check_file(&at(name)).is_err());
+        }
+        assert!(!fs::symlink_metadata(at("socket")).unwrap().is_file());
+        assert!(!fs::metadata("/dev/null").unwrap().is_file());
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 8);
     }
 
     #[test]

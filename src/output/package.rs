@@ -12,6 +12,7 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
 use super::description::{Description, MODEL_IDENTIFIER};
+use super::{OutputError, write_file};
 use crate::scene::{LoadedScene, Scene, SceneError};
 use crate::simulation::pilot;
 
@@ -35,7 +36,7 @@ pub enum PackageError {
         /// Folder of the program.
         folder: PathBuf,
     },
-    /// A file cannot be read or written.
+    /// A file cannot be read.
     #[error("{}: {problem}", path.display())]
     File {
         /// The file.
@@ -43,6 +44,9 @@ pub enum PackageError {
         /// The system's message.
         problem: std::io::Error,
     },
+    /// The FMU cannot be written.
+    #[error(transparent)]
+    Output(#[from] OutputError),
     /// FMI names no folder for this platform.
     #[error("FMI names no binaries folder for this platform")]
     Platform,
@@ -77,7 +81,7 @@ pub fn find_library() -> Result<PathBuf, PackageError> {
         })
 }
 
-/// Packages a scene with the FMU library into `target`. Its mesh is the one that it has now, whatever a host sets later.
+/// Packages a scene with the FMU library into `target`, which has its name when it is whole. Its mesh is the one that it has now, whatever a host sets later.
 ///
 /// # Errors
 /// A scene that cannot be described, a library that cannot be read, a target that cannot be written.
@@ -100,7 +104,8 @@ pub fn write_fmu(
     let description = Description::new(&text, scene, version)?;
     let binary = fs::read(library).map_err(fail(library))?;
     let bytes = container(&description.xml, &text, version, &binary)?;
-    fs::write(target, bytes).map_err(fail(target))
+    write_file(target, |out| out.write_all(&bytes))?;
+    Ok(())
 }
 
 /// The user's own text where it alone says the whole scene; else, with motion files or in another format, the scene

@@ -13,14 +13,10 @@
 //! skipped.
 //! Source of the second: documentation of MoorDyn, "Seafloor/Bathymetry File", and the reader of MoorPy.
 
-use std::fs::File;
-use std::io::{ErrorKind, Read};
 use std::path::Path;
 
-use super::DepthGrid;
+use super::{DepthGrid, input_file};
 
-/// Longest file that is read [bytes].
-const SIZE_MAX: u64 = 64 << 20;
 /// Words that name the sizes in a file of MoorDyn's kind, in capitals.
 const SIZES: [&str; 2] = ["NGRIDX", "NGRIDY"];
 
@@ -30,21 +26,10 @@ const SIZES: [&str; 2] = ["NGRIDX", "NGRIDY"];
 /// The file, the line and what would be right.
 pub(super) fn read(path: &Path) -> Result<DepthGrid, String> {
     let name = path.display();
-    if path.is_dir() {
-        return Err(format!("{name} is a folder, not a file of soundings"));
-    }
-    let file = File::open(path).map_err(|error| match error.kind() {
-        ErrorKind::NotFound => {
-            format!("{name}: no such file (it is looked for beside the scene)")
-        }
-        _ => format!("{name} cannot be opened: {error}"),
-    })?;
-    let mut text = String::new();
-    let read = file.take(SIZE_MAX + 1).read_to_string(&mut text);
-    let size = read.map_err(|error| format!("{name} cannot be read as text: {error}"))?;
-    if size as u64 > SIZE_MAX {
-        return Err(format!("{name}: longer than {} MiB", SIZE_MAX >> 20));
-    }
+    let looked_for = " (it is looked for beside the scene)";
+    let bytes = input_file::read_table(path, "a file of soundings", looked_for)?;
+    let text = String::from_utf8(bytes)
+        .map_err(|error| format!("{name} cannot be read as text: {error}"))?;
     parse(&text).map_err(|problem| format!("{name}{problem}"))
 }
 

@@ -13,6 +13,7 @@ mod document;
 mod drive;
 mod error;
 mod from_deck;
+pub mod input_file;
 mod map;
 mod moordyn;
 mod motion_file;

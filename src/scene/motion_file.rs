@@ -1,11 +1,10 @@
 //! Motion tables in CSV files: a header row, then time, x, y, z, and for vessels roll, pitch, yaw; or time and columns that say
 //! what they move, such as `platform.x` and `buoy.z`.
 
-use std::fs::File;
-use std::io::BufReader;
 use std::path::Path;
 
 use super::MotionRow;
+use super::input_file::{self, InputFile};
 
 /// Columns of a motion file, in order; the last three may be left out together.
 const COLUMNS: [&str; 7] = ["time", "x", "y", "z", "roll", "pitch", "yaw"];
@@ -51,21 +50,17 @@ pub(super) fn read_moves(path: &Path) -> Result<Moves, String> {
 
 fn read_any(path: &Path, names: bool) -> Result<Moves, String> {
     let name = path.display();
-    if path.is_dir() {
-        return Err(format!("{name} is a folder, not a CSV file"));
-    }
-    let file = File::open(path).map_err(|error| match error.kind() {
-        std::io::ErrorKind::NotFound if names => format!("{name}: no such file"),
-        std::io::ErrorKind::NotFound => {
-            format!("{name}: no such file (it is looked for beside the scene)")
-        }
-        _ => format!("{name} cannot be opened: {error}"),
-    })?;
+    let looked_for = match names {
+        true => "",
+        false => " (it is looked for beside the scene)",
+    };
+    let file = input_file::open(path, "a CSV file", input_file::MOTION_SIZE_MAX)
+        .map_err(|unopened| unopened.at(path, looked_for))?;
     let mut reader = csv::ReaderBuilder::new()
         .flexible(true)
         .comment(Some(b'#'))
         .trim(csv::Trim::All)
-        .from_reader(BufReader::new(file));
+        .from_reader(file.by_rows());
     let header = reader
         .headers()
         .map_err(|error| format!("{name}: {}", in_words(&error)))?
@@ -89,7 +84,7 @@ fn read_any(path: &Path, names: bool) -> Result<Moves, String> {
 
 /// Rows of numbers in ascending time, as many as the header has columns.
 fn read_rows(
-    reader: &mut csv::Reader<BufReader<File>>,
+    reader: &mut csv::Reader<InputFile>,
     header: &csv::StringRecord,
 ) -> Result<Vec<Vec<f64>>, String> {
     let mut rows: Vec<Vec<f64>> = Vec::new();

@@ -1,8 +1,7 @@
 //! TOML text -> Scene, file of any kind -> Scene, Scene -> TOML text.
 
 use std::collections::BTreeMap;
-use std::fs::File;
-use std::io::{ErrorKind, Read};
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use miette::NamedSource;
@@ -13,12 +12,9 @@ use super::notes::Note;
 use super::places::Places;
 use super::rows::{Findings, MISTAKES_MAX};
 use super::{
-    LoadError, MotionPath, Scene, SceneError, WaveComponents, bathymetry_file, document, map,
-    moordyn, motion_file, path, tension_strain, water_file,
+    LoadError, MotionPath, Scene, SceneError, WaveComponents, bathymetry_file, document,
+    input_file, map, moordyn, motion_file, path, tension_strain, water_file,
 };
-
-/// Longest scene file that is read [bytes].
-const SIZE_MAX: u64 = 256 << 20;
 
 /// A scene and the file it came from.
 #[derive(Debug, Clone)]
@@ -411,16 +407,10 @@ fn read_text(path: &Path) -> Result<String, LoadError> {
         path: path.to_path_buf(),
         problem,
     };
-    if path.is_dir() {
-        return Err(unreadable("is a folder, not a scene file".into()));
-    }
-    let file = File::open(path).map_err(|error| match error.kind() {
-        ErrorKind::NotFound => unreadable("no such file".into()),
-        _ => unreadable(format!("cannot be opened: {error}")),
-    })?;
+    let mut file = input_file::open(path, "a scene file", input_file::SIZE_MAX)
+        .map_err(|unopened| unreadable(unopened.problem))?;
     let mut bytes = Vec::new();
-    file.take(SIZE_MAX + 1)
-        .read_to_end(&mut bytes)
+    file.read_to_end(&mut bytes)
         .map_err(|error| unreadable(format!("cannot be read: {error}")))?;
     if let Some(byte) = bytes.iter().position(|byte| *byte == 0) {
         return Err(LoadError::NotText {
@@ -428,12 +418,6 @@ fn read_text(path: &Path) -> Result<String, LoadError> {
             byte,
             problem: format!("a binary file (byte {byte} is 0), not a TOML scene"),
         });
-    }
-    if bytes.len() as u64 > SIZE_MAX {
-        return Err(unreadable(format!(
-            "longer than {} MiB: no scene",
-            SIZE_MAX >> 20
-        )));
     }
     String::from_utf8(bytes).or_else(|error| {
         let latin: String = error.as_bytes().iter().map(|byte| char::from(*byte)).collect();

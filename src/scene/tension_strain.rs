@@ -7,10 +7,8 @@ use serde::de::{self, Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
+use super::input_file;
 use super::rows::{Row, number, shown};
-
-/// Most bytes of a table's file.
-const SIZE_MAX: u64 = 1 << 20;
 
 /// Tension over strain: `[[strain, tension], …]` or `{ file = "rope.csv" }`, which stands relative to the scene's folder.
 #[derive(Debug, Clone, PartialEq)]
@@ -114,19 +112,8 @@ impl<'de> Visitor<'de> for TableVisitor {
 /// The file, the line and what would be right.
 pub(super) fn read(path: &Path) -> Result<Vec<[f64; 2]>, String> {
     let name = path.display();
-    let metadata = std::fs::metadata(path).map_err(|error| match error.kind() {
-        std::io::ErrorKind::NotFound => {
-            format!(
-                "{name}: no such file (it is looked for beside the file that names it); it must hold two columns, strain [-] and \
-                 tension [N]"
-            )
-        }
-        _ => format!("{name} cannot be opened: {error}"),
-    })?;
-    if !metadata.is_file() || metadata.len() > SIZE_MAX {
-        return Err(format!("{name} is no table of strain and tension"));
-    }
-    let bytes = std::fs::read(path).map_err(|error| format!("{name} cannot be read: {error}"))?;
+    let looked_for = " (it is looked for beside the file that names it); it must hold two columns, strain [-] and tension [N]";
+    let bytes = input_file::read_table(path, "a table of strain and tension", looked_for)?;
     let text = String::from_utf8_lossy(&bytes);
     let mut rows: Vec<[f64; 2]> = Vec::new();
     for row in Row::all(&text) {

@@ -3,6 +3,8 @@
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::path::Path;
 
+use super::input_file;
+
 /// Most rows that are read.
 const ROWS_MAX: usize = 100_000;
 /// Lines above the rows of a current, which are not read.
@@ -72,12 +74,8 @@ pub(super) fn profile(path: &Path) -> Result<Vec<[f64; 3]>, String> {
 /// Numbers of every line that has some, with the number of the line; the first `head` lines are skipped.
 fn rows(path: &Path, head: usize) -> Result<Vec<(usize, Vec<f64>)>, String> {
     let name = path.display();
-    let bytes = std::fs::read(path).map_err(|error| match error.kind() {
-        std::io::ErrorKind::NotFound => {
-            format!("{name}: no such file (it is looked for beside the scene)")
-        }
-        _ => format!("{name} cannot be read: {error}"),
-    })?;
+    let looked_for = " (it is looked for beside the scene)";
+    let bytes = input_file::read_table(path, "a table of numbers", looked_for)?;
     let text = String::from_utf8_lossy(&bytes);
     let mut rows = Vec::new();
     for (index, line) in text.lines().enumerate().skip(head) {

@@ -68,6 +68,11 @@ impl Paths {
         }
     }
 
+    /// Times from the newest sample to now, `time` [s], and from the one before to the newest [s], where both are known and in order.
+    pub fn gaps(&self, time: f64) -> Option<[f64; 2]> {
+        self.clock.gaps(time)
+    }
+
     /// Continues the paths of the winches by a step [s].
     fn extend_reels(
         &mut self,

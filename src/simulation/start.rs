@@ -3,6 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::held::At;
+use super::input_error::InputRecord;
 use super::inputs::Inputs;
 use super::paths::Paths;
 use super::{Error, Snapshot};
@@ -64,6 +65,7 @@ pub(super) fn begin(
             counters,
             ledger,
             start_time: time,
+            input_record: InputRecord::default(),
             ahead: 0.0,
         },
         work,

@@ -17,8 +17,14 @@ fn an_fmu_that_cannot_be_placed_is_refused() {
             &[part],
         );
     };
-    fmu(".", ". is a folder: give the name of a file");
-    fmu("nowhere/x.fmu", "nowhere: there is no such folder");
+    fmu(
+        ".",
+        "cannot write .: it is a folder: give the name of a file",
+    );
+    fmu(
+        "nowhere/x.fmu",
+        "cannot write nowhere/x.fmu: there is no folder nowhere",
+    );
     assert_eq!(names(folder.path()), ["scene.toml"]);
 }
 

@@ -101,6 +101,13 @@ fn a_file_that_cannot_be_written_where_it_is_wanted_is_wrong_input() {
 #[cfg(unix)]
 #[test]
 fn an_interrupted_run_says_so_and_leaves_no_empty_folder() {
+    for signal in ["-INT", "-TERM"] {
+        interrupt(signal);
+    }
+}
+
+#[cfg(unix)]
+fn interrupt(signal: &str) {
     let folder = folder();
     let child = Command::new(env!("CARGO_BIN_EXE_moorline"))
         .args(["run", "scene.toml", "-o", "new/out", "--duration", "90000"])
@@ -117,7 +124,7 @@ fn an_interrupted_run_says_so_and_leaves_no_empty_folder() {
     let pid = child.id().to_string();
     assert!(
         Command::new("kill")
-            .args(["-INT", &pid])
+            .args([signal, &pid])
             .status()
             .unwrap()
             .success()
@@ -131,4 +138,107 @@ fn an_interrupted_run_says_so_and_leaves_no_empty_folder() {
     );
     assert_eq!(names(folder.path()), ["scene.toml"]);
     assert!(!folder.path().join("new").exists());
+}
+
+/// A pipe with a name, which nobody writes into or reads from.
+#[cfg(unix)]
+fn make_pipe(path: &std::path::Path) {
+    let made = Command::new("mkfifo").arg(path).status().unwrap();
+    assert!(made.success());
+}
+
+#[cfg(unix)]
+#[test]
+fn outputs_follow_links_and_replace_nothing_but_regular_files() {
+    use std::os::unix::fs::{FileTypeExt, symlink};
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    let deck = format!("{}/tests/decks/oc3.map", env!("CARGO_MANIFEST_DIR"));
+    make_pipe(&at("pipe"));
+    symlink("/dev/null", at("null")).unwrap();
+    symlink("real.toml", at("link.toml")).unwrap();
+    for target in ["pipe", "null"] {
+        let what =
+            format!("cannot write {target}: it is a device or a pipe: give the name of a file");
+        refused(
+            folder.path(),
+            &["fmu", "scene.toml", "-o", target],
+            2,
+            &[&what],
+        );
+        let convert = ["convert", &deck, "--depth", "320", "-o", target];
+        refused(folder.path(), &convert, 2, &[&what]);
+    }
+    let convert = ["convert", &deck, "--depth", "320", "-o", "link.toml"];
+    let result = moorline(folder.path(), &convert);
+    assert_eq!(result.status.code(), Some(0), "{}", err(&result));
+    assert!(fs::symlink_metadata(at("link.toml")).unwrap().is_symlink());
+    assert!(
+        fs::read_to_string(at("real.toml"))
+            .unwrap()
+            .contains("[[lines]]")
+    );
+    assert!(
+        fs::symlink_metadata(at("pipe"))
+            .unwrap()
+            .file_type()
+            .is_fifo()
+    );
+    assert!(!fs::metadata("/dev/null").unwrap().is_file());
+}
+
+#[cfg(unix)]
+#[test]
+fn results_in_a_folder_replace_no_pipe() {
+    let folder = folder();
+    fs::create_dir(folder.path().join("out")).unwrap();
+    make_pipe(&folder.path().join("out/results.csv"));
+    let run = ["run", "scene.toml", "-o", "out"];
+    refused(
+        folder.path(),
+        &run,
+        2,
+        &["out/results.csv: it is a device or a pipe"],
+    );
+}
+
+#[cfg(unix)]
+#[test]
+fn inputs_that_are_no_regular_files_are_refused_at_once() {
+    let folder = folder();
+    let pipe = folder.path().join("pipe");
+    make_pipe(&pipe);
+    let zero = std::path::Path::new("/dev/zero");
+    for device in [zero, &pipe] {
+        let name = device.to_str().unwrap();
+        let what = format!("{name} is a device or a pipe, not a CSV file");
+        let run = ["run", "scene.toml", "-o", "out", "--motion", name];
+        refused(folder.path(), &run, 2, &[&what]);
+        let scene = SCENE.replace(
+            "fairlead = { x = [[0.05, 2.0]], ramp = 1.0 }",
+            &format!("fairlead = {{ file = \"{name}\" }}"),
+        );
+        fs::write(folder.path().join("moved.toml"), scene).unwrap();
+        refused(
+            folder.path(),
+            &["check", "moved.toml"],
+            2,
+            &["is a device or a pipe"],
+        );
+        let what = "is a device or a pipe, not a scene file";
+        refused(folder.path(), &["check", name], 2, &[what]);
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_scene_comes_from_standard_input() {
+    let folder = folder();
+    let output = Command::new(env!("CARGO_BIN_EXE_moorline"))
+        .args(["check", "/dev/stdin"])
+        .current_dir(folder.path())
+        .stdin(fs::File::open(folder.path().join("scene.toml")).unwrap())
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(0), "{}", err(&output));
 }

@@ -25,8 +25,24 @@ const AXIAL_SPECTRAL_RADIUS: f64 = 0.9;
 const SNAP_GROWTH: f64 = 1.5;
 /// Internal steps of a communication step, at most [-].
 const SUBSTEPS_MAX: f64 = 1e7;
+/// Parts of a communication step in waves, at most [-]: each asks the waves at every node.
+const PARTS_MAX: f64 = 1e5;
 /// A failed step is tried again with half the internal step, at most so often [-].
 const RETRIES_MAX: u32 = 6;
+
+/// Refuses internal steps [-] of a communication step that are too many, counted up to a time [s].
+pub(super) fn within_guard(model: &Model, time: f64, count: usize) -> Result<(), StepError> {
+    if count as f64 <= SUBSTEPS_MAX {
+        return Ok(());
+    }
+    Err(StepError {
+        time,
+        line: model.lines[0].name.clone(),
+        node: 0,
+        reason: format!("more than {SUBSTEPS_MAX:.0e} internal steps in one communication step"),
+        advice: "use shorter communication steps",
+    })
+}
 
 /// An integrator and its scratch.
 #[derive(Debug, Clone)]
@@ -414,6 +430,26 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
             solves: done.solves,
         };
         Ok(Done { counters, flow })
+    }
+
+    /// Refuses a communication step that would take a network too many internal steps, none longer than `part` [s].
+    pub(super) fn check_length(
+        &self,
+        number: usize,
+        choice: &Choice,
+        part: f64,
+    ) -> Result<(), StepError> {
+        let longest = match choice.integrator {
+            Integrator::QuasiStatic => part,
+            Integrator::AxialImplicit => part.min(choice.longest),
+            _ => part.min(choice.step_max),
+        };
+        let line = self.model.networks[number].lines[0];
+        let parts = self.length / part;
+        if parts > PARTS_MAX {
+            return Err(self.too_many(line, part, parts.ceil()));
+        }
+        self.substeps(line, longest, 0).map(drop)
     }
 
     /// Equal steps no longer than `step_max` [s], halved `retry` times, of the network with a line.

@@ -75,6 +75,12 @@ impl Clock {
         }
     }
 
+    /// Times from the newest sample to `time` [s], and from the one before to the newest [s], where both are known and in order.
+    pub fn gaps(&self, time: f64) -> Option<[f64; 2]> {
+        let gaps = [time - self.times[0], self.times[0] - self.times[1]];
+        (self.count > 1 && gaps.iter().all(|&gap| gap > 0.0)).then_some(gaps)
+    }
+
     /// A host speaks at a time [s] of a step from then on [s]: `foresight` becomes what all paths need to continue by it, whatever it was.
     pub fn tell(
         &mut self,

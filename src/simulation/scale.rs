@@ -1,0 +1,154 @@
+//! The size of a scene, and how far inputs may lead from it.
+//!
+//! Beyond some thousand times the size of a scene the equations still have solutions, of rounding: such inputs are a wrong unit or a host that has
+//! lost its stability, and are refused before anything is solved.
+
+use nalgebra::Vector3;
+
+use super::inputs::Inputs;
+use crate::dynamics::StepError;
+use crate::model::{Body, End, Model, Role};
+use crate::scene::SceneError;
+
+/// Greatest displacement over the size of the scene [-].
+const REACH: f64 = 1000.0;
+/// Greatest angle [rad]: a thousand turns.
+const TURNS_MAX: f64 = 6283.0;
+const AXES: [&str; 6] = ["x", "y", "z", "roll", "pitch", "yaw"];
+const RATES: [&str; 6] = ["vx", "vy", "vz", "wx", "wy", "wz"];
+
+/// What lengths of a scene inputs are compared with.
+#[derive(Debug, Clone)]
+pub(super) struct Scale {
+    /// Greatest length of a line or distance between two points [m].
+    pub size: f64,
+    /// Greatest distance of a line's end from the origin of each vessel [m].
+    pub levers: Vec<f64>,
+}
+
+impl Scale {
+    /// Of a model.
+    pub fn new(model: &Model) -> Scale {
+        let lengths = model.lines.iter().map(|line| {
+            let sections = line.sections.iter();
+            sections.map(|section| section.length).sum::<f64>()
+        });
+        let places = || model.points.iter().map(|point| point.reference);
+        let least = places().fold(Vector3::repeat(f64::INFINITY), |a, b| a.inf(&b));
+        let most = places().fold(Vector3::repeat(f64::NEG_INFINITY), |a, b| a.sup(&b));
+        let extent = if model.points.is_empty() {
+            0.0
+        } else {
+            (most - least).norm()
+        };
+        let mut levers = vec![0.0_f64; model.vessels.len()];
+        for point in &model.points {
+            if let Role::Carried { vessel, arm } = &point.role {
+                levers[*vessel] = levers[*vessel].max(arm.norm());
+            }
+        }
+        Scale {
+            size: lengths.fold(extent, f64::max),
+            levers,
+        }
+    }
+
+    /// Refuses inputs of a step of `length` [s] that lead too far, before anything is solved: the body and what is wrong.
+    fn check(&self, model: &Model, inputs: &Inputs, length: f64) -> Result<(), (Body, String)> {
+        let reach = REACH * self.size;
+        for (index, point) in model.points.iter().enumerate() {
+            if let Role::Coupled { .. } = point.role {
+                let input = &inputs.points[index];
+                let body = Body::Point(index);
+                check_axes(
+                    &point.name,
+                    &input.displacement,
+                    &input.rates[0],
+                    length,
+                    reach,
+                )
+                .map_err(|problem| (body, problem))?;
+            }
+        }
+        for (index, vessel) in model.vessels.iter().enumerate() {
+            let input = &inputs.vessels[index];
+            let rates = input.velocity.map(|rate| rate.unwrap_or(0.0));
+            check_axes(&vessel.name, &input.pose, &rates, length, reach)
+                .map_err(|problem| (Body::Vessel(index), problem))?;
+        }
+        Ok(())
+    }
+
+    /// Refuses the inputs of a start.
+    pub fn check_start(&self, model: &Model, inputs: &Inputs) -> Result<(), SceneError> {
+        self.check(model, inputs, 0.0)
+            .map_err(|(_, problem)| SceneError::new("", problem))
+    }
+
+    /// Refuses the inputs of a step of `length` [s] from a time [s].
+    pub fn check_step(
+        &self,
+        model: &Model,
+        inputs: &Inputs,
+        time: f64,
+        length: f64,
+    ) -> Result<(), StepError> {
+        let refused = |(body, reason): (Body, String)| {
+            let mut points = (0..model.points.len()).filter(|&point| model.moves_with(point, body));
+            let ends = points.find_map(|point| model.points[point].attached.first().copied());
+            let (line, end) = ends.unwrap_or((0, End::A));
+            StepError {
+                time,
+                line: model.lines[line].name.clone(),
+                node: model.lines[line].end_node(end),
+                reason,
+                advice: "check the units of the motion, and whether the host is stable",
+            }
+        };
+        self.check(model, inputs, length).map_err(refused)
+    }
+}
+
+/// Refuses displacements [m, rad] beyond `reach` [m], and velocities [m/s, rad/s] that lead beyond it in a step of `length` [s].
+#[inline]
+fn check_axes(
+    name: &str,
+    place: &[f64],
+    rates: &[f64],
+    length: f64,
+    reach: f64,
+) -> Result<(), String> {
+    for (axis, (&value, &rate)) in place.iter().zip(rates).enumerate() {
+        let limit = if axis < 3 { reach } else { TURNS_MAX };
+        // no number is within any limit
+        let (is_near, is_slow) = (value.abs() <= limit, (rate * length).abs() <= limit);
+        if !(is_near && is_slow && rate.is_finite()) {
+            return Err(beyond(name, axis, [value, rate, length], limit, is_near));
+        }
+    }
+    Ok(())
+}
+
+#[cold]
+fn beyond(
+    name: &str,
+    axis: usize,
+    [value, rate, length]: [f64; 3],
+    limit: f64,
+    is_near: bool,
+) -> String {
+    let (unit, why) = match axis < 3 {
+        true => ("m", format!("{REACH} times the size of the scene")),
+        false => ("rad", "a thousand turns".to_string()),
+    };
+    match is_near {
+        false => format!(
+            "{name}.{} = {value:e} {unit} is beyond {limit:.4e} {unit}, {why}",
+            AXES[axis]
+        ),
+        true => format!(
+            "{name}.{} = {rate:e} {unit}/s leads beyond {limit:.4e} {unit}, {why}, in a step of {length} s",
+            RATES[axis]
+        ),
+    }
+}
