@@ -139,6 +139,10 @@ pub(crate) struct StaticCase {
     pub stick: f64,
     /// Part of the limit of friction that holds: [`rubbing::AT_REST`], or [`rubbing::SLIDING`] where nodes at rest at that limit are to slide on [-].
     pub limit: f64,
+    /// Whether friction goes by the normal forces of the last assembly that did not keep them.
+    pub keeps_pressure: bool,
+    /// Whether no correction turns a segment by more than is sensible, however many corrections that takes.
+    pub cautious: bool,
     /// Least radius with which lines pierce the water's surface [m].
     pub breadth: f64,
 }

@@ -45,8 +45,14 @@ const STEP_TOLERANCE: f64 = 1e-12;
 const STEP_MAX: f64 = 0.2;
 /// Solves of one Newton iteration with predicted tensions.
 const NEWTON_SOLVES_MAX: usize = 40;
+/// The same where no segment may turn by much at once.
+const CAUTIOUS_SOLVES_MAX: usize = 200;
 /// Solves of one minimisation.
 const DESCENT_SOLVES_MAX: usize = 200;
+/// Force out of balance that a minimisation leaves to Newton's method, over the sum of the loads, and where nodes that stick and nodes that
+/// slide must be told apart [-].
+const ROUGH_SHARE: f64 = 1e-6;
+const FINE_SHARE: f64 = 1e-10;
 /// Cuts of one step of a minimisation.
 const CUTS_MAX: usize = 12;
 /// EA over the sum of the loads in the soft problem [-].
@@ -55,6 +61,8 @@ const SOFT_STIFFNESS: f64 = 50.0;
 const INSTABILITY: f64 = 1e-12;
 /// Load steps on a softening line.
 const LOAD_STEPS_MAX: usize = 200;
+/// Least growth of a part of a case that is tried [-].
+const GROWTH_MIN: f64 = 1.1;
 /// Strain over the limit strain from which a failure is put down to the limit [-].
 const NEAR_LIMIT: f64 = 0.5;
 /// Greatest growth of the strain over the limit strain in one load step beyond the limit [-].
@@ -245,6 +253,8 @@ impl<'a> Problem<'a> {
             bends: self.bends,
             stick: 1.0,
             limit: rubbing::AT_REST,
+            keeps_pressure: false,
+            cautious: false,
             breadth: 0.0,
         }
     }
@@ -305,12 +315,12 @@ impl<'a> Problem<'a> {
         }
         if self.meets_surface() {
             self.restart(guess, state, work);
-            if self.thin_gradually(state, work) && self.strain_over_limit(state).0 <= 1.0 {
+            if self.thin_gradually(guess, state, work) && self.strain_over_limit(state).0 <= 1.0 {
                 return Ok(());
             }
         }
         self.restart(guess, state, work);
-        if self.stiffen_gradually(state, work) && self.strain_over_limit(state).0 <= 1.0 {
+        if self.stiffen_gradually(state, work, full) && self.strain_over_limit(state).0 <= 1.0 {
             return Ok(());
         }
         Err(self.not_converged(state, work, start))
@@ -331,6 +341,18 @@ impl<'a> Problem<'a> {
             residual,
             tolerance: self.tolerance(state, work, f64::INFINITY),
             iterations: work.counters.solves - start,
+            advice: self.advice(),
+        }
+    }
+
+    /// What may help where no equilibrium is found.
+    fn advice(&self) -> &'static str {
+        if !self.network.free_points.is_empty() {
+            "bring the free points' reference positions closer to where they will rest, or use more elements"
+        } else if self.rubs() {
+            "use another number of elements, or less friction of the seabed"
+        } else {
+            "use another number of elements"
         }
     }
 
@@ -340,10 +362,10 @@ impl<'a> Problem<'a> {
         let mut relaxation: f64 = 1.0;
         let mut step = f64::INFINITY;
         let (mut balanced, mut refused) = (0, 0);
-        let solves_max = if self.bends {
-            bending::NEWTON_SOLVES_MAX
-        } else {
-            NEWTON_SOLVES_MAX
+        let solves_max = match (self.bends, case.cautious) {
+            (true, _) => bending::NEWTON_SOLVES_MAX,
+            (_, true) => CAUTIOUS_SOLVES_MAX,
+            _ => NEWTON_SOLVES_MAX,
         };
         for _ in 0..solves_max {
             case.tension_min = relaxation * self.force;
@@ -372,7 +394,7 @@ impl<'a> Problem<'a> {
                 return false;
             }
             let mut part = (STEP_MAX * self.reach(state) / step).min(1.0);
-            if self.bends {
+            if self.bends || case.cautious {
                 part = part.min(self.turning_part(state, work));
             }
             work.predict_tensions(self.model, self.network, part);
@@ -494,8 +516,8 @@ impl<'a> Problem<'a> {
         place_ends(self.model, self.network, state);
     }
 
-    /// From a soft network, whose energy is minimised, to the true one.
-    fn stiffen_gradually(&self, state: &mut State, work: &mut Workspace) -> bool {
+    /// From a soft network, whose energy is minimised, to that of the `full` case.
+    fn stiffen_gradually(&self, state: &mut State, work: &mut Workspace, full: StaticCase) -> bool {
         let mut stiffness = SOFT_STIFFNESS * self.force;
         let lines = self
             .network
@@ -507,12 +529,15 @@ impl<'a> Problem<'a> {
             .copied()
             .fold(0.0, f64::max);
         loop {
-            let case = self.case(stiffness);
-            self.descend(state, work, case);
+            let soft = StaticCase {
+                stiffness_max: stiffness,
+                ..full
+            };
+            self.descend(state, work, soft);
             self.remember_tensions(work);
             let mut trial = std::mem::take(&mut work.trial);
             copy_network(self.model, self.network, state, &mut trial);
-            let found = self.newton(state, work, self.case(f64::INFINITY));
+            let found = self.newton(state, work, full);
             if !found {
                 copy_network(self.model, self.network, &trial, state);
             }
@@ -522,6 +547,33 @@ impl<'a> Problem<'a> {
             }
             stiffness *= 10.0;
         }
+    }
+
+    /// Follows the equilibrium of a case that grows from its `first` part, by a factor of `growth` or where that fails of less, to the
+    /// whole; whether it came there. The state is that of the last part that was found.
+    fn raise(
+        &self,
+        state: &mut State,
+        work: &mut Workspace,
+        [first, growth]: [f64; 2],
+        case: impl Fn(f64) -> StaticCase,
+    ) -> bool {
+        let mut found = std::mem::take(&mut work.trial);
+        copy_network(self.model, self.network, state, &mut found);
+        let (mut reached, mut factor) = (first / growth, growth);
+        while reached < 1.0 && factor >= GROWTH_MIN {
+            let part = (factor * reached).min(1.0);
+            if self.newton(state, work, case(part)) {
+                reached = part;
+                factor = factor.powf(1.5).min(growth);
+                copy_network(self.model, self.network, state, &mut found);
+            } else {
+                factor = factor.sqrt();
+                self.restart(&found, state, work);
+            }
+        }
+        work.trial = found;
+        reached >= 1.0
     }
 
     fn remember_tensions(&self, work: &mut Workspace) {
@@ -537,7 +589,13 @@ impl<'a> Problem<'a> {
         for _ in 0..DESCENT_SOLVES_MAX {
             case.anchoring = relaxation * self.force / self.length + self.rounding_stiffness(&case);
             work.assemble_static(self.model, self.network, state, &case);
-            if work.greatest_residual(self.network).0 <= 1e-6 * self.force {
+            let accepted = if case.keeps_pressure {
+                let tolerance = self.tolerance(state, work, case.stiffness_max);
+                tolerance.max(FINE_SHARE * self.force)
+            } else {
+                ROUGH_SHARE * self.force
+            };
+            if work.greatest_residual(self.network).0 <= accepted {
                 return;
             }
             if !work.solve(self.model, self.network, self.number) {

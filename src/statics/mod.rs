@@ -34,7 +34,7 @@ pub enum StaticsError {
     /// The iteration ended without an equilibrium.
     #[error(
         "{place}: no equilibrium found in {iterations} solves: {residual:.3e} N are out of balance, {tolerance:.3e} N would be \
-         allowed; bring the free points' reference positions closer to where they will rest, or use more elements"
+         allowed; {advice}"
     )]
     NotConverged {
         /// Where the imbalance is greatest: line and node, or point.
@@ -45,6 +45,8 @@ pub enum StaticsError {
         tolerance: f64,
         /// Linear solves spent [-].
         iterations: usize,
+        /// What may help.
+        advice: &'static str,
     },
     /// The search for the equilibrium of a beam ended without one.
     #[error(

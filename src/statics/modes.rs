@@ -45,6 +45,8 @@ impl Modes {
             bends: true,
             stick: 1.0,
             limit: rubbing::AT_REST,
+            keeps_pressure: false,
+            cautious: false,
             breadth: 0.0,
         };
         work.assemble_static(model, network, state, &case);

@@ -274,6 +274,8 @@ impl Problem<'_> {
             bends: lines().any(|line| line.bending.is_some()),
             stick: 1.0,
             limit: rubbing::SLIDING,
+            keeps_pressure: false,
+            cautious: false,
             breadth: 0.0,
         };
         work.assemble_static(self.model, self.network, self.state, &case);

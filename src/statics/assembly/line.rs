@@ -46,6 +46,8 @@ pub(crate) struct LineWork {
     pub bending: Option<BendingWork>,
     /// Friction of the bed at the last assembly, per node [N]; empty over a level bed without friction.
     pub rubbed: Vec<Vector3<f64>>,
+    /// Normal force that friction at rest may go by, per node [N]; empty like `rubbed`.
+    pub pressed: Vec<f64>,
     /// Memory of viscoelastic segments, where the line has any.
     pub(super) creep: Option<CreepWork>,
     /// Whether ends A and B have parted from their points.
@@ -106,6 +108,7 @@ impl LineWork {
             dry: vec![Dry::default(); if line.surface.is_some() { n + 1 } else { 0 }],
             bending: line.bending.as_ref().map(|_| BendingWork::new(n + 1)),
             rubbed: vec![Vector3::zeros(); line.bottom().map_or(0, |_| n + 1)],
+            pressed: vec![0.0; line.bottom().map_or(0, |_| n + 1)],
             creep: CreepWork::new(line),
             parted: [false; 2],
             loose: None,

@@ -27,6 +27,8 @@ pub(crate) struct PointWork {
     pub reach: f64,
     /// Friction of the bed at the last assembly [N].
     pub rubbed: Vector3<f64>,
+    /// Normal force that friction at rest may go by [N].
+    pub pressed: f64,
 }
 impl PointWork {
     /// Scratch of a point that is held, until it gets a slot.
@@ -40,6 +42,7 @@ impl PointWork {
             history: Vector3::zeros(),
             reach: 0.0,
             rubbed: Vector3::zeros(),
+            pressed: 0.0,
         }
     }
 
@@ -207,6 +210,8 @@ mod tests {
             breadth: 0.0,
             stick: 1.0,
             limit: 1.0,
+            keeps_pressure: false,
+            cautious: false,
         };
         for z in HEIGHTS {
             let residual = |state: &PointState| {

@@ -60,6 +60,8 @@ pub struct Rub<'a> {
     pub stick: f64,
     /// Part of the limit of friction that holds [-].
     pub limit: f64,
+    /// Normal force that the limit is taken from in place of the present one [N]: friction then has a potential, which is convex.
+    pub normal_force: Option<f64>,
 }
 
 /// What the bed does to a node.
@@ -69,6 +71,8 @@ pub struct Push {
     pub force: Vector3<f64>,
     /// The part of it that friction has [N].
     pub friction: Vector3<f64>,
+    /// Normal force [N].
+    normal_force: f64,
     /// Minus the slopes of the rest of the force and of the friction with place [N/m].
     stiffness: [Matrix3<f64>; 2],
     /// Minus their slopes with velocity [N s/m].
@@ -76,11 +80,15 @@ pub struct Push {
 }
 
 impl<'a> Resting<'a> {
-    /// Without velocity, and with a part `limit` of the limit of friction.
-    fn at_rest(self, limit: f64) -> Resting<'a> {
+    /// Without velocity, with the part of the limit of friction that a case holds, and the normal force `pressed` [N] where the case keeps it.
+    fn at_rest(self, case: &StaticCase, pressed: f64) -> Resting<'a> {
         Resting {
             velocity: Vector3::zeros(),
-            rub: self.rub.map(|rub| Rub { limit, ..rub }),
+            rub: self.rub.map(|rub| Rub {
+                limit: case.limit,
+                normal_force: case.keeps_pressure.then_some(pressed),
+                ..rub
+            }),
             ..self
         }
     }
@@ -100,6 +108,7 @@ impl<'a> Resting<'a> {
         let mut push = Push {
             force: bed.force * normal,
             friction: Vector3::zeros(),
+            normal_force: bed.force,
             stiffness: [
                 -normal * by_place.transpose() - bed.force * turning,
                 Matrix3::zeros(),
@@ -109,10 +118,14 @@ impl<'a> Resting<'a> {
         if let Some(rub) = &self.rub {
             let axes = Axes::new(normal, rub.tangent);
             let wanted = rub.stick * axes.components(&(rub.anchor - self.place));
-            let limits = rub.limit * rub.friction.limits(&axes, bed.force);
+            let normal_force = rub.normal_force.unwrap_or(bed.force);
+            let limits = rub.limit * rub.friction.limits(&axes, normal_force);
             let held = held(wanted, [1.0, 1.0].into(), limits);
             let slope = held.slope(limits);
-            let grows = axes.vector(&(held.force - slope * wanted)) / bed.force;
+            let grows = match rub.normal_force {
+                None => axes.vector(&(held.force - slope * wanted)) / bed.force,
+                Some(_) => Vector3::zeros(),
+            };
             let [along, across] = [axes.along, axes.across];
             let sheared = along * (slope.m11 * along + slope.m12 * across).transpose()
                 + across * (slope.m21 * along + slope.m22 * across).transpose();
@@ -160,6 +173,7 @@ pub fn resting_node<'a>(
             anchor: *anchor,
             stick: part * contact.stick[i],
             limit: 1.0,
+            normal_force: None,
         }),
     })
 }
@@ -187,6 +201,7 @@ pub fn resting_point<'a>(
             anchor,
             stick: part * POINT_STICK * contact.coefficients.stiffness,
             limit: 1.0,
+            normal_force: None,
         }),
     })
 }
@@ -203,9 +218,12 @@ impl LineWork {
         for i in 0..state.position.len() {
             let still = Vector3::zeros();
             let push = resting_node(line, state, i, 0.0, case.stick)
-                .map(|resting| resting.at_rest(case.limit))
+                .map(|resting| resting.at_rest(case, self.pressed[i]))
                 .and_then(|node| node.push());
             self.rubbed[i] = push.map_or(still, |push| push.friction);
+            if !case.keeps_pressure {
+                self.pressed[i] = push.map_or(0.0, |push| push.normal_force);
+            }
             if let Some(push) = push {
                 self.residual[i] -= push.force;
                 self.diagonal[i] += push.stiffness[0] + push.stiffness[1];
@@ -243,9 +261,12 @@ impl PointWork {
         case: &StaticCase,
     ) {
         let push = resting_point(free, bottom, state, 0.0, case.stick)
-            .map(|resting| resting.at_rest(case.limit))
+            .map(|resting| resting.at_rest(case, self.pressed))
             .and_then(|point| point.push());
         self.rubbed = push.map_or(Vector3::zeros(), |push| push.friction);
+        if !case.keeps_pressure {
+            self.pressed = push.map_or(0.0, |push| push.normal_force);
+        }
         if let Some(push) = push {
             self.residual -= push.force;
             self.diagonal += push.stiffness[0] + push.stiffness[1];
@@ -326,6 +347,8 @@ pub(crate) fn hold_at_rest(
         breadth: 0.0,
         stick: 1.0,
         limit: AT_REST,
+        keeps_pressure: false,
+        cautious: false,
     };
     work.assemble_static(model, network, state, &case);
     work.move_anchors(model, network, state);
@@ -425,6 +448,7 @@ mod tests {
                 anchor: under - slid,
                 stick: 2e5,
                 limit: 1.0,
+                normal_force: None,
             }),
         }
     }

@@ -10,7 +10,13 @@
 //! all beyond the point where no tension is left. The stiffness of sticking is raised little by little on the way. Free
 //! points have their anchors where they rest without friction.
 //!
-//! Source: derived here; the path is that of Jonkman (2007), NREL/TP-500-41958, section 2.5.
+//! Newton's method may go round between nodes that stick and nodes that slide: a change of one node's normal force changes what its
+//! neighbours hold. Where it does, the normal forces that limit friction are kept for a while. Friction then has the potential
+//! ∫ |f| d|r − a|, which is convex like that of springs, weight and seabed, and the sum of all is minimised with steps along which it falls; the
+//! normal forces follow, and Newton's method ends the search.
+//!
+//! Source: derived here; the path is that of Jonkman (2007), NREL/TP-500-41958, section 2.5; the problem with kept normal forces is that of
+//! Tresca's friction, Wriggers (2006), Computational Contact Mechanics, 2nd ed., chapter 5.
 
 use super::{Problem, StaticCase};
 use crate::model::State;
@@ -21,8 +27,8 @@ use crate::statics::assembly::{Workspace, copy_network, for_free_points, rubbing
 /// displacement mobilises, and no node that slides is ever without a taut neighbour to hold it [-].
 const SOFTEST: f64 = 1e-6;
 const GROWTH: f64 = 3.0;
-/// Least growth that is tried [-].
-const GROWTH_MIN: f64 = 1.1;
+/// Rounds of normal forces and friction.
+const ROUNDS_MAX: usize = 20;
 
 impl Problem<'_> {
     /// Whether the bed may hold any of it by friction.
@@ -40,29 +46,39 @@ impl Problem<'_> {
     pub(super) fn rub(&self, state: &mut State, work: &mut Workspace) -> Result<(), StaticsError> {
         let start = work.counters.solves;
         self.lay(state);
-        let mut found = std::mem::take(&mut work.trial);
-        copy_network(self.model, self.network, state, &mut found);
-        let (mut reached, mut growth) = (SOFTEST / GROWTH, GROWTH);
-        while reached < 1.0 && growth >= GROWTH_MIN {
-            let stick = (growth * reached).min(1.0);
-            let case = StaticCase {
-                stick,
-                ..self.case(f64::INFINITY)
-            };
-            if self.newton(state, work, case) {
-                reached = stick;
-                growth = growth.powf(1.5).min(GROWTH);
-                copy_network(self.model, self.network, state, &mut found);
-            } else {
-                growth = growth.sqrt();
-                self.restart(&found, state, work);
-            }
-        }
-        work.trial = found;
-        if reached < 1.0 {
+        let case = |stick| StaticCase {
+            stick,
+            ..self.case(f64::INFINITY)
+        };
+        let raised = self.raise(state, work, [SOFTEST, GROWTH], case);
+        if !raised && !self.settle_pressure(state, work) {
             return Err(self.not_converged(state, work, start));
         }
         Ok(())
+    }
+
+    /// Minimises the potential energy that the network has under kept normal forces, which are then those of what was found, until Newton's
+    /// method finds the equilibrium from there; whether it did.
+    fn settle_pressure(&self, state: &mut State, work: &mut Workspace) -> bool {
+        let full = self.case(f64::INFINITY);
+        let mut found = std::mem::take(&mut work.trial);
+        let settled = (0..ROUNDS_MAX).any(|_| {
+            work.assemble_static(self.model, self.network, state, &full);
+            let kept = StaticCase {
+                keeps_pressure: true,
+                ..full
+            };
+            self.descend(state, work, kept);
+            copy_network(self.model, self.network, state, &mut found);
+            self.restart(&found, state, work);
+            let settled = self.newton(state, work, full);
+            if !settled {
+                self.restart(&found, state, work);
+            }
+            settled
+        });
+        work.trial = found;
+        settled
     }
 
     /// Anchors of lines laid from end A on the path they lie on.
