@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 
 use approx::assert_relative_eq;
 use common::*;
-use moorline::scene::{Integrator, Scene};
+use moorline::scene::{InitialShape, Integrator, Scene, Strain};
 use moorline::simulation::Simulation;
 
 const RHO: f64 = 1025.0; // [kg/m³]
@@ -152,7 +152,7 @@ fn a_buoy_on_a_slack_line_floats_where_its_weight_is_its_buoyancy_and_stays_ther
         "mass = 400.0, volume = 1.0, drag_area = 1.0, added_mass = 0.5",
         "",
     );
-    scene.lines[0].initial = moorline::scene::InitialShape::Static;
+    scene.lines[0].initial = InitialShape::Static;
     scene.line_types.get_mut("thread").unwrap().weight = Some(0.01);
     for integrator in BOTH {
         let scene = with_integrator(scene.clone(), integrator, 0.05);
@@ -187,5 +187,79 @@ fn a_drogue_in_a_current_pulls_by_its_drag_whatever_the_step() {
             }
             assert_relative_eq!(simulation.tension_b(0), drag, max_relative = 1e-3);
         }
+    }
+}
+
+/// A free point between two straight ropes, and a third rope 5 km away that starts as `far` says.
+fn beside(near: &str, far: &str) -> Scene {
+    scene(&format!(
+        r#"
+        line_types.rope = {{ mass = 10.0, axial_stiffness = 1e6, axial_damping = 1e4 }}
+        points = [
+          {{ name = "a", position = [0.0, 0.0, 0.0], kind = "fixed" }},
+          {{ name = "b", position = [100.0, 0.0, 0.0], kind = "fixed" }},
+          {{ name = "p", position = [50.0, 0.0, -10.0], kind = "free", mass = 100.0 }},
+          {{ name = "fa", position = [5000.0, 0.0, 0.0], kind = "fixed" }},
+          {{ name = "fb", position = [5100.0, 0.0, 0.0], kind = "fixed" }},
+        ]
+        lines = [
+          {{ name = "la", from = "a", to = "p", sections = [{{ type = "rope", length = 60.0, elements = 8 }}], initial = {near} }},
+          {{ name = "lb", from = "p", to = "b", sections = [{{ type = "rope", length = 60.0, elements = 8 }}], initial = "straight" }},
+          {{ name = "far", from = "fa", to = "fb", sections = [{{ type = "rope", length = 110.0, elements = 8 }}], initial = {far} }},
+        ]
+        "#
+    ))
+}
+
+#[test]
+fn a_line_of_another_network_does_not_decide_where_a_free_point_starts() {
+    for integrator in [Integrator::Auto, Integrator::QuasiStatic] {
+        for near in [r#""straight""#, r#""static""#] {
+            let [alone, beside] = [r#""straight""#, r#""static""#].map(|far| {
+                let mut scene = beside(near, far);
+                scene.solver.integrator = integrator;
+                let mut simulation = Simulation::new(&scene).unwrap();
+                let start = simulation.state().points[2].position;
+                let rests = near.contains("static");
+                assert_eq!(start.z != -10.0, rests, "{near}: z = {} m", start.z);
+                for _ in 0..20 {
+                    simulation.advance(0.1).unwrap();
+                }
+                (start, simulation.state().lines[..2].to_vec())
+            });
+            assert!(alone == beside, "{integrator:?}, {near}");
+        }
+    }
+}
+
+#[test]
+fn a_network_whose_lines_have_shapes_of_their_own_needs_no_equilibrium_to_start() {
+    // a softening measure that cannot carry the clump: no equilibrium exists
+    let mut scene = beside(r#""straight""#, r#""static""#);
+    let mut weak = scene.line_types["rope"].clone();
+    (weak.strain, weak.axial_stiffness) = (Strain::Logarithmic(0.5), Some(2e3));
+    scene.line_types.insert("weak".into(), weak);
+    for line in &mut scene.lines[..2] {
+        line.sections[0].line_type = "weak".into();
+    }
+    let simulation = Simulation::new(&scene).unwrap();
+    assert!(simulation.in_equilibrium().is_err());
+    assert_eq!(simulation.state().points[2].position.z, -10.0);
+    scene.lines[0].initial = InitialShape::Static;
+    assert!(Simulation::new(&scene).is_err());
+}
+
+#[test]
+fn check_tells_where_each_free_point_starts() {
+    for (near, words) in [
+        (r#""static""#, "starts in static equilibrium"),
+        (
+            r#""straight""#,
+            "starts at its position, as no line of its network is `static`",
+        ),
+    ] {
+        let said = beside(near, r#""static""#).in_words();
+        let said = said.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(said.contains(&format!("mass 100 kg, {words}")), "{said}");
     }
 }

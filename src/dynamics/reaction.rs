@@ -19,14 +19,17 @@
 //!
 //! (h/3)(d_m − ½(d_e + d_k)).
 //!
-//! The change as a whole is scaled by min(1, (|p_e|/|p_k − p_e|)⁴).
+//! Velocities of d are those relative to the water, that of the middle being the mean of the ends', so that a line in a current has the end forces of one that is towed
+//! in still water. Where the line bends, S adds to T q on both sides of the next node; the push of the bed is known at both nodes and counts as their weight does.
+//!
+//! The change as a whole is scaled by min(1, (|p_e|/|p_k − p_e|)⁴), and at the surface by |p_e|²/(|p_e|² + 16 |Δ|²), Δ being the part of the load, buoyancy included,
+//! that p_e would gain or lose were the end as far out of the water as the next node.
 //!
 //! On a taut rope that follows its fairlead (`taut_polyester`) the tension has 0.18 of its error with 3 elements, 0.2 with 4, 0.3 with 6 and 0.5 with 10; with 20 and
 //! more, where it is below 0.2 % either way, 1.1 to 1.4 times, for the plain half node's error then makes up for that of the waves along the
 //! line. A load that changes by more than itself, as to a next node that snaps or lands, is not linear: unscaled
 //! the error of chains that slacken in every turn grows by up to 6 %, scaled by 2 % at most. The law asks for one line on both sides of
-//! the next node and for still water, where the balance of a line at rest does not depend on it: it is left out where sections meet there, and
-//! where the line bends, is on a winch, or is out of the water or on the bed with one of the two nodes.
+//! the next node: it is left out where sections meet there, and where the line is on a winch.
 //!
 //! Source: the node's own equation of motion, as for the interior nodes; the loads are derived here from the Taylor series of T q.
 
@@ -35,9 +38,12 @@ use nalgebra::Vector3;
 use super::beam::BeamView;
 use super::creep::{Creeping, Stretching};
 use super::leapfrog::segment_tension;
-use crate::model::{Contact, Dry, End, Line, LineState, PointState, Reel, Surface, WaterAlong};
+use crate::model::{Bending, Dry, End, Line, LineState, PointState, Reel, WaterAlong};
 use crate::physics::morison::{self, DragCoefficients};
-use crate::statics::assembly::end_shear;
+use crate::statics::assembly::shear;
+
+/// Weight of what the load gains or loses at the surface in the scale of the change, over the load itself, both squared [-].
+const ABRUPT: f64 = 16.0;
 
 /// Tension of segment `i` [N]; on a closed-form catenary the mean of its ends'.
 pub fn tension(line: &Line, state: &LineState, i: usize, negative_tension: bool) -> f64 {
@@ -103,21 +109,20 @@ pub fn end_force(
     });
     let half = HalfNode {
         line,
+        end,
         node,
         place: state.position[node],
         point,
         water,
         dry,
     };
-    let pull = tension(line, state, segment, negative_tension) * inward;
-    let mut force = pull + half.load(inward);
+    let pull =
+        tension(line, state, segment, negative_tension) * inward + half.shear(state, segment);
+    let mut force = pull + half.load(inward, dry.part);
     if let (Some(reel), End::B) = (state.reel, end) {
         force -= passing(line, reel) * chord / line.segments.length[segment];
     }
     force.z -= nodes.weight[node] + dry.weight;
-    if line.bending.is_some() {
-        force += end_shear(line, [&state.position, &state.velocity], end, point);
-    }
     if let Some(contact) = &nodes.contact {
         force += contact.push(node, state.position[node], point.velocity);
     }
@@ -134,6 +139,7 @@ pub fn end_force(
 /// The half node at an end.
 struct HalfNode<'a> {
     line: &'a Line,
+    end: End,
     node: usize,
     place: Vector3<f64>,
     point: &'a PointState,
@@ -142,20 +148,28 @@ struct HalfNode<'a> {
 }
 
 impl HalfNode<'_> {
-    /// What acts on it beside its weight and the bed [N]: inertia, water and damping in proportion to mass.
-    fn load(&self, inward: Vector3<f64>) -> Vector3<f64> {
+    /// Shear of a segment on its node towards this end [N].
+    fn shear(&self, state: &LineState, segment: usize) -> Vector3<f64> {
+        if self.line.bending.is_none() {
+            return Vector3::zeros();
+        }
+        let nodes = [&*state.position, &*state.velocity];
+        shear(self.line, nodes, segment, (self.end, self.point))
+    }
+
+    /// What acts on it beside its weight and the bed [N] were a part `dry` of it [-] out of the water: inertia, water and damping in
+    /// proportion to mass.
+    fn load(&self, inward: Vector3<f64>, dry: f64) -> Vector3<f64> {
         let (nodes, node) = (&self.line.nodes, self.node);
         let (velocity, acceleration) = (self.point.velocity, self.point.acceleration);
-        let wet = 1.0 - self.dry.part;
         let along = acceleration.dot(&inward) * inward;
-        let [mass_normal, mass_tangent] = nodes.masses(node, self.dry.part);
+        let [mass_normal, mass_tangent] = nodes.masses(node, dry);
         let mut load = -(mass_normal * (acceleration - along) + mass_tangent * along);
         if nodes.drag.is_some() {
-            let flow = self.water.velocity(node, self.place.z);
-            load += self.drag(velocity - flow, inward);
+            load += self.drag(velocity - self.flow(), inward, dry);
         }
         if let (Some(pressed), Some(waves)) = (&nodes.pressed, &self.water.waves) {
-            load += wet * pressed.force(node, waves.at(node).acceleration, inward);
+            load += (1.0 - dry) * pressed.force(node, waves.at(node).acceleration, inward);
         }
         if let Some(damping) = &nodes.mass_damping {
             load -= damping[node] * velocity;
@@ -163,27 +177,24 @@ impl HalfNode<'_> {
         load
     }
 
+    /// Velocity of the water [m/s].
+    fn flow(&self) -> Vector3<f64> {
+        self.water.velocity(self.node, self.place.z)
+    }
+
     /// Whether its load may be taken as linear to the `next` node.
     fn may_be_linear(&self, state: &LineState, next: usize) -> bool {
-        let (line, node) = (self.line, self.node);
-        if line.segment_count() < 2
-            || line.bending.is_some()
-            || state.reel.is_some()
-            || !self.water.is_still()
-            || !line.nodes.is_alike(node, next)
-        {
-            return false;
-        }
-        let place = state.position[next];
-        let is_dry = |surface: &Surface| {
-            let dry = surface.node_in(self.water, next, &state.position);
-            self.dry.part > 0.0 || dry.part > 0.0
+        let line = self.line;
+        let far = match self.end {
+            End::A => line.segment_count(),
+            End::B => 0,
         };
-        let lies = |contact: &Contact| {
-            let own = contact.push(node, self.place, self.point.velocity);
-            own + contact.push(next, place, state.velocity[next]) != Vector3::zeros()
-        };
-        !line.surface.as_ref().is_some_and(is_dry) && !line.nodes.contact.as_ref().is_some_and(lies)
+        // the clamp of the other end turns the next node's segment too
+        let is_clamped = |bending: &Bending| bending.joint[far] > 0.0 && next.abs_diff(far) < 2;
+        line.segment_count() > 1
+            && state.reel.is_none()
+            && !line.bending.as_ref().is_some_and(is_clamped)
+            && line.nodes.is_alike(self.node, next)
     }
 
     /// What a load that is linear to the `next` node and the one `after` adds to the force at the end [N], whose segment pulls `inward`.
@@ -197,32 +208,48 @@ impl HalfNode<'_> {
         let nodes = &self.line.nodes;
         let chord = state.position[after] - state.position[next];
         let onward = chord.try_normalize(0.0).unwrap_or(inward);
-        let passed_on = tension(self.line, state, next.min(after), negative_tension) * onward;
-        let tangent = 3.0 * inward - onward;
-        let own = self.load(tangent.try_normalize(0.0).unwrap_or(inward));
-        let weight = nodes.weight[next] * Vector3::z();
+        let segment = next.min(after);
+        let passed_on = tension(self.line, state, segment, negative_tension) * onward
+            + self.shear(state, segment);
+        let tangents = [3.0 * inward - onward, inward, inward + onward]
+            .map(|along| along.try_normalize(0.0).unwrap_or(inward));
+        let own = self.load(tangents[0], self.dry.part);
+        let mut borne = nodes.weight[next] * Vector3::z();
+        if let Some(contact) = &nodes.contact {
+            borne -= contact.push(next, state.position[next], state.velocity[next]);
+        }
         let share = nodes.length[self.node] / nodes.length[next];
-        let change = share * (pull - passed_on + weight) - own;
+        let mut at_surface = 1.0;
+        if let Some(surface) = &self.line.surface {
+            let dry = surface.node_in(self.water, next, &state.position);
+            borne.z += dry.weight;
+            let lack = (share * dry.weight - self.dry.weight).abs();
+            let jump = (self.load(tangents[0], dry.part) - own).norm() + lack;
+            let square = own.norm_squared();
+            at_surface = square / (square + ABRUPT * jump * jump).max(f64::MIN_POSITIVE);
+        }
+        let change = share * (pull - passed_on + borne) - own;
         let ratio = own.norm_squared() / change.norm_squared().max(f64::MIN_POSITIVE);
-        let bulge = self.bulge(
-            state.velocity[next],
-            [tangent, inward, inward + onward]
-                .map(|along| along.try_normalize(0.0).unwrap_or(inward)),
-        );
-        ratio.powi(2).min(1.0) * (own + change / 3.0 + bulge - self.load(inward))
+        let bulge = self.bulge(state, next, tangents);
+        let added = own + change / 3.0 + bulge - self.load(inward, self.dry.part);
+        at_surface * ratio.powi(2).min(1.0) * added
     }
 
-    /// What the drag in the middle of the last element adds to that of its ends, in still water [N]; `tangents` are those of the end, the
-    /// middle and the next node, and `velocity` [m/s] that of the next node.
-    fn bulge(&self, velocity: Vector3<f64>, tangents: [Vector3<f64>; 3]) -> Vector3<f64> {
-        let middle = 0.5 * (self.point.velocity + velocity);
-        let [end, half_way, next] = [(0, self.point.velocity), (1, middle), (2, velocity)]
-            .map(|(place, velocity)| self.drag(velocity, tangents[place]));
+    /// What the drag in the middle of the last element adds to that of its ends [N]; `tangents` are those of the end, the middle and the
+    /// `next` node.
+    fn bulge(&self, state: &LineState, next: usize, tangents: [Vector3<f64>; 3]) -> Vector3<f64> {
+        let flow = self.water.velocity(next, state.position[next].z);
+        let (past, last) = (
+            self.point.velocity - self.flow(),
+            state.velocity[next] - flow,
+        );
+        let [end, half_way, next] = [(0, past), (1, 0.5 * (past + last)), (2, last)]
+            .map(|(place, velocity)| self.drag(velocity, tangents[place], self.dry.part));
         (2.0 * half_way - end - next) / 3.0
     }
 
-    /// Drag of the half node at a velocity [m/s] relative to the water [N].
-    fn drag(&self, velocity: Vector3<f64>, tangent: Vector3<f64>) -> Vector3<f64> {
+    /// Drag of the half node at a velocity [m/s] relative to the water were a part `dry` of it [-] out of the water [N].
+    fn drag(&self, velocity: Vector3<f64>, tangent: Vector3<f64>, dry: f64) -> Vector3<f64> {
         let Some(drag) = &self.line.nodes.drag else {
             return Vector3::zeros();
         };
@@ -230,7 +257,7 @@ impl HalfNode<'_> {
             normal: drag.normal[self.node],
             tangent: drag.tangent[self.node],
         };
-        morison::drag(coefficients.times(1.0 - self.dry.part), velocity, tangent)
+        morison::drag(coefficients.times(1.0 - dry), velocity, tangent)
     }
 }
 

@@ -613,6 +613,12 @@ impl Model {
         self.lines[line].beam.is_some().then_some(line)
     }
 
+    /// Whether a network starts in static equilibrium: where any of its own lines does.
+    pub fn starts_at_rest(&self, network: usize) -> bool {
+        let mut lines = self.networks[network].lines.iter();
+        lines.any(|&line| self.lines[line].initial == InitialShape::Static)
+    }
+
     /// Index of the line called `name`.
     pub fn line_index(&self, name: &str) -> Option<usize> {
         self.lines.iter().position(|line| line.name == name)

@@ -195,6 +195,9 @@ impl Scene {
         if let Some(sea) = self.sea_in_words(point) {
             write!(said, ", {sea}").expect("a String takes all");
         }
+        if let Some(start) = self.start_in_words(point) {
+            write!(said, ", {start}").expect("a String takes all");
+        }
         if let Some(force) = &point.force {
             write!(said, ", {}", force_in_words(force)).expect("a String takes all");
         }

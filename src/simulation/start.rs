@@ -16,7 +16,7 @@ use crate::scene::{InitialShape, Integrator};
 use crate::statics::catenary::{self, Bed, Catenary};
 use crate::statics::{self, StaticsError, assembly, catenary_network, equilibrium};
 
-/// What becomes of beams that are given a shape to start on.
+/// What becomes of lines that are given a shape to start on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Shapes {
     /// They start on it.
@@ -39,7 +39,7 @@ pub(super) fn begin(
     let places: Vec<PointState> = (0..model.points.len())
         .map(|point| PointState::held(&held(point, time)))
         .collect();
-    let mut state = at_rest(model, time, &places)?;
+    let mut state = at_rest(model, time, &places, shapes)?;
     for ((line, shape), reel) in model.lines.iter().zip(&mut state.lines).zip(&paths.reels) {
         let change = reel.path.at(time).value;
         shape.reel = line.winch.as_ref().map(|_| Reel::at_rest(change));
@@ -72,40 +72,50 @@ pub(super) fn begin(
     ))
 }
 
-/// In static equilibrium, or on the shapes the scene gives. Quasi-static lines start on their catenaries; those that will move
-/// start where their elements are at rest.
-fn at_rest(model: &Model, time: f64, places: &[PointState]) -> Result<State, StaticsError> {
-    let given = |line: &Line, points: &[PointState]| {
-        let [a, b] = line.ends.map(|point| points[point].position);
-        line.given_shape(a, b)
-    };
-    let shapes = model.lines.iter().map(|line| given(line, places));
-    if let Some(shapes) = shapes.collect::<Option<Vec<_>>>() {
-        return Ok(State {
-            time,
-            points: places.to_vec(),
-            lines: shapes.into_iter().map(LineState::at_rest).collect(),
-            waves: None,
-        });
-    }
+/// Every network in static equilibrium or, where all its lines have shapes of their own, on these, with its free points where the scene puts
+/// them. Quasi-static lines start on their catenaries; those that will move start where their elements are at rest.
+fn at_rest(
+    model: &Model,
+    time: f64,
+    places: &[PointState],
+    shapes: Shapes,
+) -> Result<State, StaticsError> {
     let mut work = assembly::Workspace::new(model);
-    let mut state = match model.solver.integrator {
-        Integrator::QuasiStatic => catenary_network::solve(model, places, time, &mut work)?,
-        _ => equilibrium::solve(model, places, time, &mut work)?,
-    };
-    for (line, shape) in model.lines.iter().zip(&mut state.lines) {
-        // free points are where they rest, which is not where the scene puts them
-        if let Some(mut nodes) = given(line, &state.points) {
-            for end in [End::A, End::B] {
-                let point = line.ends[usize::from(end == End::B)];
-                if model.points[point].free().is_some() {
-                    nodes[line.end_node(end)] = state.points[point].position;
-                }
+    let mut state = equilibrium::hang(model, places, time, &mut work)?;
+    for number in 0..model.networks.len() {
+        if shapes == Shapes::AsGiven && !model.starts_at_rest(number) {
+            continue;
+        }
+        match model.solver.integrator {
+            Integrator::QuasiStatic => {
+                catenary_network::rest(model, number, &mut state, &mut work)?;
             }
-            *shape = LineState::at_rest(nodes);
+            _ => equilibrium::rest(model, number, &mut state, &mut work)?,
+        }
+        if shapes == Shapes::AsGiven {
+            take_shapes(model, number, &mut state);
         }
     }
     Ok(state)
+}
+
+/// Puts the lines of a network that have shapes of their own back on these, between its points as they are now.
+fn take_shapes(model: &Model, number: usize, state: &mut State) {
+    for &index in &model.networks[number].lines {
+        let line = &model.lines[index];
+        let [a, b] = line.ends.map(|point| state.points[point].position);
+        let Some(mut nodes) = line.given_shape(a, b) else {
+            continue;
+        };
+        // free points are where they rest, which is not where the scene puts them
+        for end in [End::A, End::B] {
+            let point = line.ends[usize::from(end == End::B)];
+            if model.points[point].free().is_some() {
+                nodes[line.end_node(end)] = state.points[point].position;
+            }
+        }
+        state.lines[index] = LineState::at_rest(nodes);
+    }
 }
 
 /// Gives beams their frames at time `t` [s], and rest where no shape is given or all are to be at rest; `attitude` tells how a point has turned.

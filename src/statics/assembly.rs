@@ -38,7 +38,7 @@ use crate::physics::fading_damper::damper_reach;
 use crate::statics::catenary::Catenary;
 
 pub(crate) use bending::{BendingWork, rates};
-pub use bending::{end_moment, end_shear, joint_damping_power};
+pub use bending::{end_moment, end_shear, joint_damping_power, shear};
 pub(crate) use line::{LineWork, node_tangent};
 use places::{Place, blank_state};
 pub(crate) use places::{copy_network, place_ends};

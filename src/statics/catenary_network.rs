@@ -25,7 +25,7 @@ use super::assembly::{Workspace, for_free_points, place_ends};
 use super::catenary::Catenary;
 use super::{equilibrium, guess};
 use crate::math::block_tridiagonal::Pivots;
-use crate::model::{ClosedForm, Line, LineState, Model, Network, PointState, State};
+use crate::model::{ClosedForm, Line, Model, Network, PointState, State};
 use crate::physics::stretch::StretchLaw;
 
 /// Accepted force out of balance, over the greatest force [-].
@@ -60,8 +60,7 @@ pub fn serves(model: &Model, network: &Network) -> bool {
     })
 }
 
-/// As [`equilibrium::solve`], with every network on closed-form catenaries that can be; the others, and those whose free
-/// points find no rest on catenaries, in equilibrium of their elements.
+/// As [`equilibrium::solve`], with every network on closed-form catenaries that can be.
 ///
 /// # Errors
 /// No equilibrium was found, or there is none.
@@ -71,21 +70,30 @@ pub fn solve(
     t: f64,
     work: &mut Workspace,
 ) -> Result<State, StaticsError> {
-    let blank = |line: &Line| LineState::at_rest(vec![Vector3::zeros(); line.segment_count() + 1]);
-    let mut state = State {
-        time: t,
-        points: points.to_vec(),
-        lines: model.lines.iter().map(blank).collect(),
-        waves: None,
-    };
-    if (0..model.networks.len()).all(|number| solve_network(model, number, &mut state, t, work)) {
-        return Ok(state);
-    }
-    let mut state = equilibrium::solve(model, points, t, work)?;
+    let mut state = equilibrium::hang(model, points, t, work)?;
     for number in 0..model.networks.len() {
-        solve_network(model, number, &mut state, t, work);
+        rest(model, number, &mut state, work)?;
     }
     Ok(state)
+}
+
+/// As [`equilibrium::rest`], on closed-form catenaries where that is possible; a network whose free points find no rest on these is
+/// brought to rest on its elements first.
+///
+/// # Errors
+/// No equilibrium was found, or there is none.
+pub fn rest(
+    model: &Model,
+    number: usize,
+    state: &mut State,
+    work: &mut Workspace,
+) -> Result<(), StaticsError> {
+    let time = state.time;
+    if !solve_network(model, number, state, time, work) {
+        equilibrium::rest(model, number, state, work)?;
+        solve_network(model, number, state, time, work);
+    }
+    Ok(())
 }
 
 /// Moves the free points of a network from where they are in `state` to where they rest at time `t` [s], and puts its lines on

@@ -81,6 +81,23 @@ pub fn solve(
     t: f64,
     work: &mut Workspace,
 ) -> Result<State, StaticsError> {
+    let mut state = hang(model, points, t, work)?;
+    for number in 0..model.networks.len() {
+        rest(model, number, &mut state, work)?;
+    }
+    Ok(state)
+}
+
+/// Puts all lines between their points on the shape the scene gives them, else on their catenary, at time `t` [s].
+///
+/// # Errors
+/// A place is not finite.
+pub fn hang(
+    model: &Model,
+    points: &[PointState],
+    t: f64,
+    work: &mut Workspace,
+) -> Result<State, StaticsError> {
     let places: Vec<Vector3<f64>> = points.iter().map(|point| point.position).collect();
     check_finite(model, &places)?;
     let mut state = State {
@@ -97,12 +114,23 @@ pub fn solve(
             line.given_shape(a, b).unwrap_or(position),
         ));
     }
-    for number in 0..model.networks.len() {
-        if model.beam_of(number).is_none() {
-            Problem::new(model, number, t).solve(&mut state, work)?;
-        }
-    }
     Ok(state)
+}
+
+/// Brings one network to rest from how [`hang`] leaves it. Beams have an equilibrium of their own.
+///
+/// # Errors
+/// No equilibrium was found, or there is none.
+pub fn rest(
+    model: &Model,
+    number: usize,
+    state: &mut State,
+    work: &mut Workspace,
+) -> Result<(), StaticsError> {
+    if model.beam_of(number).is_some() {
+        return Ok(());
+    }
+    Problem::new(model, number, state.time).solve(state, work)
 }
 
 /// Moves the held points of every network to `points` [m] and finds the equilibrium at time `t` [s] closest to `state`.

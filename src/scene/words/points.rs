@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::significant;
-use crate::scene::{Axis, Point, PointKind, Scene};
+use crate::scene::{Axis, InitialShape, Line, Point, PointKind, Scene};
 
 impl Scene {
     /// What water and bed do to a free point; nothing where neither does anything.
@@ -16,6 +16,49 @@ impl Scene {
             .flatten()
             .collect();
         (!said.is_empty()).then(|| said.join("; "))
+    }
+
+    /// Where a free point starts.
+    pub(super) fn start_in_words(&self, point: &Point) -> Option<&'static str> {
+        if point.kind != PointKind::Free {
+            return None;
+        }
+        let network = self.network_of(point);
+        let mut shapes = network.iter().map(|line| &line.initial);
+        Some(match shapes.any(|shape| *shape == InitialShape::Static) {
+            true => "starts in static equilibrium",
+            false => "starts at its position, as no line of its network is `static`",
+        })
+        .filter(|_| !network.is_empty())
+    }
+
+    /// The lines that hang together with a free point, through it and others.
+    fn network_of(&self, point: &Point) -> Vec<&Line> {
+        let free: Vec<&str> = self
+            .points
+            .iter()
+            .filter(|point| point.kind == PointKind::Free)
+            .map(|point| point.name.as_str())
+            .collect();
+        let mut joined = vec![point.name.as_str()];
+        let (mut network, mut rest): (Vec<&Line>, Vec<&Line>) =
+            (vec![], self.lines.iter().collect());
+        loop {
+            let (reached, beyond): (Vec<&Line>, _) = rest.into_iter().partition(|line| {
+                [&line.from, &line.to]
+                    .iter()
+                    .any(|end| joined.contains(&end.as_str()))
+            });
+            if reached.is_empty() {
+                return network;
+            }
+            let ends = reached
+                .iter()
+                .flat_map(|line| [line.from.as_str(), line.to.as_str()]);
+            joined.extend(ends.filter(|end| free.contains(end)));
+            network.extend(reached);
+            rest = beyond;
+        }
     }
 
     /// Whether the water's surface acts on a free point.

@@ -251,26 +251,41 @@ pub fn joint_damping_power(
     damping.iter().enumerate().map(power).sum()
 }
 
-/// Force [N] of the joints at and next to an end of a line on the point there: the shear. Without velocities nothing damps.
+/// Shear [N] of a line at its end: the force of the joints there and at the next node on the `point`. Without velocities nothing damps.
 pub fn end_shear(
     line: &Line,
-    [position, velocity]: [&[Vector3<f64>]; 2],
+    nodes: [&[Vector3<f64>]; 2],
     end: End,
     point: &PointState,
+) -> Vector3<f64> {
+    let segment = match end {
+        End::A => 0,
+        End::B => line.segment_count() - 1,
+    };
+    shear(line, nodes, segment, (end, point))
+}
+
+/// Shear [N] of segment `i` of a line: the force of the joints at both of its nodes on the one towards `end`, where the line may be clamped
+/// as the `point` is turned; the other end is taken as pinned. Without velocities nothing damps.
+pub fn shear(
+    line: &Line,
+    [position, velocity]: [&[Vector3<f64>]; 2],
+    i: usize,
+    (end, point): (End, &PointState),
 ) -> Vector3<f64> {
     let Some(bending) = &line.bending else {
         return Vector3::zeros();
     };
     let clamp = line.clamp(end, point);
     let last = position.len() - 1;
-    let (clamps, joints) = match end {
-        End::A => ([clamp, None], [(0, 1.0), (1, 1.0)]),
-        End::B => ([None, clamp], [(last, -1.0), (last - 1, -1.0)]),
+    let clamps = match end {
+        End::A => [clamp, None],
+        End::B => [None, clamp],
     };
     let mut force = Vector3::zeros();
-    for (node, sign) in joints {
-        let own = node == 0 || node == last;
-        if own && clamp.is_none() || bending.joint[node] == 0.0 {
+    for (node, side) in [(i, 1), (i + 1, 0)] {
+        let open = node == 0 && clamps[0].is_none() || node == last && clamps[1].is_none();
+        if open || bending.joint[node] == 0.0 {
             continue;
         }
         let Some(turn) = joint(clamps, position, node) else {
@@ -283,10 +298,12 @@ pub fn end_shear(
                 .product(rates(node, last, |i| velocity[i]));
             slope = [slope[0] + drag[0], slope[1] + drag[1]];
         }
-        // the slope with the end's own segment
-        force += sign * slope[usize::from((end == End::A) == own)];
+        force += slope[side];
     }
-    force
+    match end {
+        End::A => force,
+        End::B => -force,
+    }
 }
 
 /// Moment [N m] of a line on what it is clamped to at an end.
