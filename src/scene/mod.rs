@@ -8,6 +8,7 @@
 mod bathymetry_file;
 pub mod channel;
 mod check;
+mod columns;
 mod commented;
 mod document;
 mod drive;

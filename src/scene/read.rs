@@ -314,17 +314,17 @@ fn read_motions(scene: &mut Scene, folder: &Path) -> Vec<SceneError> {
         .enumerate()
         .filter_map(|(i, point)| {
             let motion = point.motion.as_mut()?;
-            Some((format!("points[{i}].motion.file"), motion))
+            Some((format!("points[{i}].motion.file"), &point.name, motion))
         });
     let of_run = scene
         .motion
         .iter_mut()
-        .map(|(name, motion)| (format!("motion.{}.file", path::quoted(name)), motion));
+        .map(|(name, motion)| (format!("motion.{}.file", path::quoted(name)), name, motion));
     let mut mistakes = Vec::new();
-    for (at, motion) in of_points.chain(of_run) {
+    for (at, body, motion) in of_points.chain(of_run) {
         if let MotionPath::File(file) = motion {
-            match motion_file::read(&folder.join(&file.file)) {
-                Ok(rows) => file.rows = rows,
+            match motion_file::read(&folder.join(&file.file), body) {
+                Ok((rows, columns)) => (file.rows, file.columns) = (rows, columns),
                 Err(problem) => mistakes.push(SceneError::new(at, problem)),
             }
         }

@@ -62,7 +62,7 @@ impl Scene {
     }
 
     /// Mass per unstretched length [kg/m]: the given one, else weight/gravity.
-    fn mass(&self, line_type: &LineType) -> f64 {
+    pub(in crate::scene) fn mass(&self, line_type: &LineType) -> f64 {
         let of_weight = || line_type.weight.map(|weight| weight / self.gravity);
         line_type.mass.or_else(of_weight).unwrap_or(0.0)
     }
@@ -510,7 +510,12 @@ fn load_in_words(function: &TimeFunction, unit: &str) -> String {
 
 fn motion_in_words(motion: &MotionPath) -> String {
     match motion {
-        MotionPath::File(file) => format!("follows the {} rows of {}", file.rows.len(), file.file),
+        MotionPath::File(file) => format!(
+            "follows the {} rows of {}, read as {}",
+            file.rows.len(),
+            file.file,
+            file.columns
+        ),
         MotionPath::Table(rows) => format!("follows a table of {} rows", rows.len()),
         MotionPath::Harmonic(harmonic) => harmonic_in_words(harmonic),
     }
