@@ -10,6 +10,7 @@ mod paths;
 pub mod pilot;
 mod results;
 mod start;
+mod watch;
 mod winches;
 
 use std::sync::Arc;
@@ -31,6 +32,7 @@ use results::Memo;
 
 pub use results::{NodeBending, ProfileNode};
 pub(crate) use start::reference_catenary;
+pub use watch::Watch;
 
 /// The shortest step that is made [s]. A host that cuts its last step to the end of its run asks for what its clock has summed up in
 /// rounding, some 1e-14 s. Over less than this, accelerations and rates of strain would be rounding of coordinates: the fairlead's force of a

@@ -9,13 +9,13 @@ use moorline::output::channels::Channels;
 use moorline::output::figures::ELEVATION;
 use moorline::output::record::{Column, Record};
 use moorline::output::{collect, write_run};
-use moorline::scene::{Drive, Reconstruction, Scene, Supplement};
-use moorline::simulation::Simulation;
+use moorline::scene::{Drive, LoadedScene, Reconstruction, Supplement};
+use moorline::simulation::{Simulation, Watch};
 
 use super::failure::Failure;
 use super::folder::Folder;
 use super::summary::run_summary;
-use super::{print, progress, read_scene, simulate};
+use super::{print, progress, read_scene, remark_all, simulate};
 
 /// Shapes kept of a run whose scene does not ask for all of them [-].
 const FRAMES_MAX: usize = 240;
@@ -45,7 +45,11 @@ pub fn run(
 ) -> Result<(), Failure> {
     let mut loaded = read_scene(path, supplement)?;
     if !drive.is_empty() {
+        let known = loaded.scene.plausibility();
         loaded.scene.drive(drive).map_err(Failure::Argument)?;
+        let mut notes = loaded.scene.plausibility();
+        notes.retain(|note| !known.contains(note));
+        remark_all(&loaded, notes);
     }
     let _open = Folder::open(folder)?;
     let mut simulation = simulate(&loaded)?;
@@ -68,7 +72,7 @@ pub fn run(
     };
     let columns = recorder.columns(simulation.model());
     let record = collect::record(&loaded.scene, &simulation, still.as_ref(), columns);
-    let record = step_through(&loaded.scene, &mut simulation, &recorder, pace, record)?;
+    let record = step_through(&loaded, &mut simulation, &recorder, pace, record)?;
     write_run(
         &record,
         folder,
@@ -84,12 +88,13 @@ pub fn run(
 
 /// Steps from the start to the scene's duration, and adds a row and where wanted a shape at every step to the record.
 fn step_through(
-    scene: &Scene,
+    loaded: &LoadedScene,
     simulation: &mut Simulation,
     recorder: &Recorder<'_>,
     pace: Pace,
     mut record: Record,
 ) -> Result<Record, Failure> {
+    let scene = &loaded.scene;
     let interval = match pace {
         Pace::Scene => scene.output.interval,
         Pace::Host { step, .. } => step,
@@ -101,6 +106,8 @@ fn step_through(
     record.frames.push(collect::frame(simulation, 0.0));
     record.flight.extend(collect::flight(simulation, 0.0));
     let bar = progress(times.count as u64);
+    let mut watch = Watch::new(scene, simulation);
+    remark_all(loaded, watch.look(simulation));
     let mut wall = Duration::ZERO;
     for index in 0..times.count {
         if let Pace::Host { velocities, .. } = pace {
@@ -110,6 +117,10 @@ fn step_through(
         let before = Instant::now();
         simulation.advance(times.step(index))?;
         wall += before.elapsed();
+        let notes = watch.look(simulation);
+        if !notes.is_empty() {
+            bar.suspend(|| remark_all(loaded, notes));
+        }
         record.counters.substeps += simulation.substeps() as u64;
         let now = times.at(index + 1);
         let row = recorder.row(simulation, now);

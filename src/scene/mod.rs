@@ -21,6 +21,7 @@ mod nearest;
 mod notes;
 mod path;
 mod places;
+mod plausibility;
 mod read;
 mod rows;
 mod seabed;

@@ -38,6 +38,14 @@ pub struct LoadedScene {
 }
 
 impl LoadedScene {
+    /// Gives a note that was found later its place in the file.
+    pub fn locate_note(&self, note: Note) -> Note {
+        if self.format != TOML {
+            return self.places.locate_note(&self.text, note);
+        }
+        with_lines(&self.text, vec![note]).remove(0)
+    }
+
     /// Gives a mistake that was found later its place in the file.
     pub fn locate(&self, mistake: SceneError) -> SceneError {
         if self.format != TOML {
@@ -120,7 +128,7 @@ pub fn load_with(path: &Path, supplement: &Supplement) -> Result<LoadedScene, Lo
     let loaded = match deck_of(&text) {
         Some(read) => deck_scene(read(&text, supplement), &text, folder_of(path)),
         None => scene_of(&text, path).map(|scene| {
-            let notes = scene.notes();
+            let notes = with_lines(&text, scene.notes());
             (scene, notes, TOML, Places::default())
         }),
     };
@@ -197,7 +205,9 @@ fn deck_scene(reading: Reading, text: &str, folder: &Path) -> Result<Checked, Ve
         return Err(in_order(mistakes));
     }
     let mut notes = findings.notes(text);
-    let of_scene = scene.notes().into_iter();
+    // the reader of MoorDyn's decks notes diameters itself, with narrower limits
+    let noted = |note: &Note| format.starts_with("MoorDyn") && note.at.ends_with(".diameter");
+    let of_scene = scene.notes().into_iter().filter(|note| !noted(note));
     notes.extend(of_scene.map(|note| places.locate_note(text, note)));
     Ok((scene, notes, format, places))
 }
@@ -216,6 +226,17 @@ fn scene_of(text: &str, path: &Path) -> Result<Scene, Vec<SceneError>> {
     } else {
         Err(document.place(mistakes))
     }
+}
+
+/// Notes on a scene with the lines of its text where their keys stand.
+fn with_lines(text: &str, mut notes: Vec<Note>) -> Vec<Note> {
+    if let Ok(document) = Document::parse(text) {
+        for note in &mut notes {
+            let span = path::locate(&document.root, &note.at);
+            note.line = span.map(|span| path::line_column(text, span.start).0);
+        }
+    }
+    notes
 }
 
 /// The folder that a scene's files stand in.
