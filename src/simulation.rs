@@ -12,6 +12,7 @@ pub mod pilot;
 mod results;
 mod scale;
 mod start;
+mod watch;
 mod winches;
 
 use std::sync::Arc;
@@ -35,6 +36,7 @@ use scale::Scale;
 
 pub use results::{NodeBending, ProfileNode};
 pub(crate) use start::reference_catenary;
+pub use watch::Watch;
 
 /// The shortest step that is made [s]. A host that cuts its last step to the end of its run asks for what its clock has summed up in
 /// rounding, some 1e-14 s. Over less than this, accelerations and rates of strain would be rounding of coordinates: the fairlead's force of a

@@ -7,8 +7,8 @@
 use moorline::interface::{Binding, Causality, Interface, Kind, Variable};
 use moorline::model::{Body, Model};
 use moorline::output::description::{Description, VERSION, time_reference};
-use moorline::scene::Scene;
-use moorline::simulation::Simulation;
+use moorline::scene::{Note, Scene};
+use moorline::simulation::{Simulation, Watch};
 use moorline_host::{FmiVersion, Status};
 
 use crate::log::{Log, Topic};
@@ -66,6 +66,10 @@ pub(crate) struct Instance {
     simulation: Option<Simulation>,
     has_warned_of_time: bool,
     has_warned_of_inputs: bool,
+    /// Notes on the scene that are in the log.
+    noted: Vec<Note>,
+    /// Observes the steps, where warnings are logged.
+    watch: Option<Watch>,
     step_status: Status,
 }
 
@@ -88,7 +92,7 @@ impl Instance {
                 description.token
             )));
         }
-        Ok(Instance {
+        let mut instance = Instance {
             inputs: vec![BodyInput::default(); scene.points.len() + scene.vessels.len()],
             start_displacements: vec![[0.0; 6]; scene.points.len() + scene.vessels.len()],
             time_reference: (version == FmiVersion::Three)
@@ -108,8 +112,34 @@ impl Instance {
             simulation: None,
             has_warned_of_time: false,
             has_warned_of_inputs: false,
+            noted: Vec::new(),
+            watch: None,
             step_status: Status::Ok,
-        })
+        };
+        instance.log_plausibility();
+        Ok(instance)
+    }
+
+    /// Notes on the scene with its present parameters, each once.
+    fn log_plausibility(&mut self) {
+        if !self.log.keeps(Topic::Warning) {
+            return;
+        }
+        for note in self.scene.plausibility() {
+            if !self.noted.contains(&note) {
+                self.log.push(Topic::Warning, || note.to_string());
+                self.noted.push(note);
+            }
+        }
+    }
+
+    /// Notes on the present state of the simulation, each once.
+    fn log_watch(&mut self) {
+        if let (Some(watch), Some(simulation)) = (&mut self.watch, &self.simulation) {
+            for note in watch.look(simulation) {
+                self.log.push(Topic::Warning, || note.to_string());
+            }
+        }
     }
 
     fn expect_phase(&self, allowed: &[Phase]) -> Outcome {
@@ -174,6 +204,11 @@ impl Instance {
         self.solve_statics()?;
         self.phase = Phase::Step;
         self.log_choices();
+        self.log_plausibility();
+        let watched = self.simulation.as_ref();
+        let watched = watched.filter(|_| self.log.keeps(Topic::Warning));
+        self.watch = watched.map(|simulation| Watch::new(&self.scene, simulation));
+        self.log_watch();
         Ok(())
     }
 
@@ -218,6 +253,7 @@ impl Instance {
         self.simulation = None;
         self.has_warned_of_time = false;
         self.has_warned_of_inputs = false;
+        self.watch = None;
         self.step_status = Status::Ok;
         Ok(())
     }
@@ -589,6 +625,7 @@ impl Instance {
             self.has_warned_of_inputs = true;
             self.log.push(Topic::Warning, || warning);
         }
+        self.log_watch();
         Ok(())
     }
 
@@ -667,6 +704,9 @@ impl Instance {
                     simulation.restore(state.clone());
                     simulation
                 });
+        if let (Some(watch), Some(simulation)) = (&mut self.watch, &self.simulation) {
+            watch.resume(simulation);
+        }
         self.start_displacements
             .clone_from(&snapshot.start_displacements);
         self.start_length_changes
@@ -774,17 +814,16 @@ mod tests {
     "#;
 
     fn instance(version: FmiVersion) -> Instance {
+        instance_of(SCENE, version)
+    }
+
+    fn instance_of(text: &str, version: FmiVersion) -> Instance {
         let folder = tempfile::tempdir().unwrap();
-        std::fs::write(folder.path().join("scene.toml"), SCENE).unwrap();
-        let scene = Scene::from_toml(SCENE).unwrap();
-        let token = Description::new(SCENE, &scene, version).unwrap().token;
-        Instance::new(
-            version,
-            Some(&token),
-            folder.path().to_str().map(str::as_bytes),
-            true,
-        )
-        .unwrap()
+        std::fs::write(folder.path().join("scene.toml"), text).unwrap();
+        let scene = Scene::from_toml(text).unwrap();
+        let token = Description::new(text, &scene, version).unwrap().token;
+        let path = folder.path().to_str().map(str::as_bytes);
+        Instance::new(version, Some(&token), path, true).unwrap()
     }
 
     fn reference(instance: &Instance, name: &str) -> u32 {
@@ -828,6 +867,39 @@ mod tests {
                 .iter()
                 .all(|(topic, _)| *topic == Topic::Event)
         );
+    }
+
+    /// Warnings in the log.
+    fn warnings(instance: &mut Instance) -> Vec<String> {
+        let messages = instance.log.take().into_iter();
+        let warnings = messages.filter(|(topic, _)| *topic == Topic::Warning);
+        warnings.map(|(_, text)| text).collect()
+    }
+
+    #[test]
+    fn slips_of_units_jumps_and_strained_lines_are_each_logged_once() {
+        let text = format!("gravity = 32.2\n{SCENE}");
+        let mut instance = instance_of(&text, FmiVersion::Two);
+        let said = warnings(&mut instance);
+        assert!(
+            said.len() == 1 && said[0].starts_with("gravity: 32.2 m/s²"),
+            "{said:?}"
+        );
+        instance.enter_initialization().unwrap();
+        instance.exit_initialization().unwrap();
+        assert_eq!(warnings(&mut instance), [""; 0]);
+        let start = instance.snapshot();
+        for (step, x) in [-1.5, 0.0, 1.8, 1.8].into_iter().enumerate() {
+            set(&mut instance, "hand.x", x).unwrap();
+            instance.do_step(step as f64, 1.0).unwrap();
+        }
+        let said = warnings(&mut instance);
+        assert_eq!(said.len(), 2, "{said:?}");
+        assert!(said[0].contains("hand has moved by 1.5"), "{said:?}");
+        assert!(said[1].contains("rope is strained by"), "{said:?}");
+        instance.restore(&start).unwrap();
+        instance.do_step(0.0, 1.0).unwrap();
+        assert_eq!(warnings(&mut instance), [""; 0]);
     }
 
     #[test]

@@ -70,9 +70,14 @@ impl Log {
         Ok(())
     }
 
+    /// Whether messages of a topic are kept.
+    pub(crate) fn keeps(&self, topic: Topic) -> bool {
+        self.enabled[topic as usize]
+    }
+
     /// Keeps a message if its category is on.
     pub(crate) fn push(&mut self, topic: Topic, message: impl FnOnce() -> String) {
-        if self.enabled[topic as usize] {
+        if self.keeps(topic) {
             self.messages.push((topic, message()));
         }
     }

@@ -8,10 +8,10 @@ use moorline::interface::{Causality, Interface, Layout};
 use moorline::model::Model;
 use moorline::output::channels::Channels;
 use moorline::scene::{Scene, Supplement, TOML, load_with};
-use moorline::simulation::{Simulation, pilot};
+use moorline::simulation::{Simulation, Watch, pilot};
 
 use super::failure::Failure;
-use super::print;
+use super::{noted, print};
 
 /// Reads a scene, makes it discrete, and says what it models, what surprises, and which variables a host finds.
 pub fn check(path: &Path, supplement: &Supplement) -> Result<(), Failure> {
@@ -30,7 +30,11 @@ pub fn check(path: &Path, supplement: &Supplement) -> Result<(), Failure> {
     text.push_str("elements\n");
     let chosen = settled.iter().flat_map(|found| found.in_words());
     let chosen = model.mesh_in_words(scene).into_iter().chain(chosen);
-    for line in chosen.chain(steps_in_words(scene)) {
+    let simulation = Simulation::new(scene).ok();
+    let steps = simulation
+        .iter()
+        .flat_map(|started| steps_in_words(scene, started));
+    for line in chosen.chain(steps) {
         writeln!(text, "  {line}").expect("a string takes any text");
     }
     text.push_str("\nvariables of the FMU\n");
@@ -46,17 +50,19 @@ pub fn check(path: &Path, supplement: &Supplement) -> Result<(), Failure> {
                 .expect("a string takes any text");
         }
     }
-    for note in &loaded.notes {
-        writeln!(text, "note: {note}").expect("a string takes any text");
+    let at_rest = simulation
+        .iter()
+        .flat_map(|started| Watch::new(scene, started).look(started));
+    let later = at_rest.chain(loaded.scene.advice());
+    let later = later.map(|note| loaded.locate_note(note));
+    for note in loaded.notes.iter().cloned().chain(later) {
+        writeln!(text, "{}", noted(path, &note)).expect("a string takes any text");
     }
     print(&text)
 }
 
-/// Integrator and step of every network, each in a sentence once; nothing where the scene has no equilibrium to start from.
-fn steps_in_words(scene: &Scene) -> Vec<String> {
-    let Ok(simulation) = Simulation::new(scene) else {
-        return Vec::new();
-    };
+/// Integrator and step of every network, each in a sentence once.
+fn steps_in_words(scene: &Scene, simulation: &Simulation) -> Vec<String> {
     let mut said: Vec<String> = simulation.choices().map(Choice::in_words).collect();
     said.dedup();
     let threads = simulation.threads_in_words(scene.output.interval);

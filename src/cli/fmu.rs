@@ -5,10 +5,11 @@ use std::path::Path;
 use moorline::output::check_file;
 use moorline::output::package::{find_library, write_fmu};
 use moorline::scene::{LoadedScene, Supplement};
+use moorline::simulation::Watch;
 use moorline_host::FmiVersion;
 
 use super::failure::Failure;
-use super::{print, read_scene, simulate};
+use super::{print, read_scene, remark_all, simulate};
 
 /// Packages a scene for the FMI version "2" or "3".
 pub fn fmu(
@@ -20,7 +21,11 @@ pub fn fmu(
     let loaded = read_scene(path, supplement)?;
     check_file(target)?;
     // A scene without an equilibrium would make an FMU that no host can start.
-    simulate(&loaded)?;
+    let simulation = simulate(&loaded)?;
+    remark_all(
+        &loaded,
+        Watch::new(&loaded.scene, &simulation).look(&simulation),
+    );
     let version = match version {
         "3" => FmiVersion::Three,
         _ => FmiVersion::Two,

@@ -29,7 +29,22 @@ fn read_scene(path: &Path, supplement: &Supplement) -> Result<LoadedScene, Failu
 
 /// Says a remark on a scene on standard error. One that nobody can read is no reason to stop.
 fn remark(path: &Path, note: &Note) {
-    let _ = writeln!(io::stderr(), "note: {}: {note}", path.display());
+    let _ = writeln!(io::stderr(), "{}", noted(path, note));
+}
+
+/// A remark with its file and, where it has one, its line.
+fn noted(path: &Path, note: &Note) -> String {
+    match note.line {
+        Some(line) => format!("note: {}:{line}: {note}", path.display()),
+        None => format!("note: {}: {note}", path.display()),
+    }
+}
+
+/// Remarks that were found after the scene was read.
+fn remark_all(loaded: &LoadedScene, notes: Vec<Note>) {
+    for note in notes {
+        remark(&loaded.path, &loaded.locate_note(note));
+    }
 }
 
 /// The simulation of a scene, in static equilibrium.

@@ -10,13 +10,13 @@ use moorline::output::figures::ELEVATION;
 use moorline::output::left_tables::LeftTables;
 use moorline::output::record::{Column, Record};
 use moorline::output::{collect, write_run};
-use moorline::scene::{Drive, Reconstruction, Scene, Supplement};
-use moorline::simulation::{Simulation, pilot};
+use moorline::scene::{Drive, LoadedScene, Note, Reconstruction, Supplement};
+use moorline::simulation::{Simulation, Watch, pilot};
 
 use super::failure::Failure;
 use super::folder::Folder;
 use super::summary::run_summary;
-use super::{print, progress, read_scene, remark, simulate};
+use super::{print, progress, read_scene, remark_all, simulate};
 
 /// Shapes kept of a run whose scene does not ask for all of them [-].
 const FRAMES_MAX: usize = 240;
@@ -54,9 +54,9 @@ pub fn run(
     if !drive.is_empty() {
         let known = loaded.scene.notes();
         loaded.scene.drive(drive).map_err(Failure::Argument)?;
-        let notes = loaded.scene.notes().into_iter();
-        let new = notes.filter(|note| !known.contains(note));
-        new.for_each(|note| remark(path, &note));
+        let mut notes = loaded.scene.notes();
+        notes.retain(|note| !known.contains(note));
+        remark_all(&loaded, notes);
     }
     let _open = Folder::open(folder)?;
     let mut simulation = match pace {
@@ -84,20 +84,13 @@ pub fn run(
     let columns = recorder.columns(simulation.model());
     let record = collect::record(&loaded.scene, &simulation, still.as_ref(), columns);
     let mut left = LeftTables::new(&loaded.scene);
+    let mut watch = Watch::new(&loaded.scene, &simulation);
     let mut look = |simulation: &Simulation, time: f64| {
-        left.look(simulation, time)
-            .iter()
-            .for_each(|note| remark(path, note));
+        let mut notes = left.look(simulation, time);
+        notes.extend(watch.look(simulation));
+        notes
     };
-    look(&simulation, 0.0);
-    let record = step_through(
-        &loaded.scene,
-        &mut simulation,
-        &recorder,
-        pace,
-        record,
-        &mut look,
-    )?;
+    let record = step_through(&loaded, &mut simulation, &recorder, pace, record, &mut look)?;
     write_run(
         &record,
         folder,
@@ -113,13 +106,14 @@ pub fn run(
 
 /// Steps from the start to the scene's duration, and adds a row and where wanted a shape at every step to the record; `look` sees every row.
 fn step_through(
-    scene: &Scene,
+    loaded: &LoadedScene,
     simulation: &mut Simulation,
     recorder: &Recorder<'_>,
     pace: Pace,
     mut record: Record,
-    look: &mut impl FnMut(&Simulation, f64),
+    look: &mut impl FnMut(&Simulation, f64) -> Vec<Note>,
 ) -> Result<Record, Failure> {
+    let scene = &loaded.scene;
     let interval = match pace {
         Pace::Scene => scene.output.interval,
         Pace::Host { step, .. } => step,
@@ -131,6 +125,7 @@ fn step_through(
     record.frames.push(collect::frame(simulation, 0.0));
     record.flight.extend(collect::flight(simulation, 0.0));
     let bar = progress(times.count as u64);
+    remark_all(loaded, look(simulation, 0.0));
     let mut wall = Duration::ZERO;
     for index in 0..times.count {
         if let Pace::Host { velocities, .. } = pace {
@@ -145,7 +140,10 @@ fn step_through(
         let row = recorder.row(simulation, now);
         check_finite(now, record.columns(), &row)?;
         record.add_row(now, row);
-        look(simulation, now);
+        let notes = look(simulation, now);
+        if !notes.is_empty() {
+            bar.suspend(|| remark_all(loaded, notes));
+        }
         record.flight.extend(collect::flight(simulation, now));
         if (index + 1) % stride == 0 || index + 1 == times.count {
             record.frames.push(collect::frame(simulation, now));

@@ -6,10 +6,11 @@ use std::path::Path;
 use moorline::output::left_tables::LeftTables;
 use moorline::output::{collect, json};
 use moorline::scene::{InitialShape, Note, Supplement};
+use moorline::simulation::Watch;
 
 use super::failure::Failure;
 use super::summary::{Table, static_table};
-use super::{print, read_scene, remark, simulate};
+use super::{print, read_scene, remark, remark_all, simulate};
 
 /// Solves the equilibrium and prints it.
 pub fn statics(path: &Path, supplement: &Supplement, as_json: bool) -> Result<(), Failure> {
@@ -20,11 +21,15 @@ pub fn statics(path: &Path, supplement: &Supplement, as_json: bool) -> Result<()
     let simulation = simulate(&loaded)?
         .in_equilibrium()
         .map_err(|error| Failure::of_simulation(error, &loaded))?;
+    remark_all(
+        &loaded,
+        Watch::new(&loaded.scene, &simulation).look(&simulation),
+    );
     for (index, line) in loaded.scene.lines.iter().enumerate() {
         if line.initial != InitialShape::Static {
             let at = format!("lines[{index}].initial");
-            let text = "runs start on this shape, not in the equilibrium that is shown".to_string();
-            remark(path, &Note { at, text });
+            let text = "runs start on this shape, not in the equilibrium that is shown";
+            remark(path, &loaded.locate_note(Note::new(at, text)));
         }
     }
     for note in LeftTables::new(&loaded.scene).look(&simulation, 0.0) {

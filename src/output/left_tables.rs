@@ -51,7 +51,7 @@ impl<'s> LeftTables<'s> {
 
     fn say(&mut self, at: String, text: String, notes: &mut Vec<Note>) {
         if self.left.insert(at.clone()) {
-            notes.push(Note { at, text });
+            notes.push(Note::new(at, text));
         }
     }
 

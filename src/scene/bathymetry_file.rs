@@ -9,12 +9,14 @@
 //!                                         y₂  d₂₁ d₂₂ d₂₃
 //! ```
 //!
-//! Both are the same table of depths, positive downwards [m]; what stands in the first corner of the CSV does not count. Lines that are blank or begin with # are
-//! skipped.
+//! Both are the same table of depths, positive downwards [m]; a unit in brackets in the first corner of the CSV, such as `y/x [km]`, is that of
+//! all its numbers, and nothing else there counts. Between semicolons, decimals may have commas. Lines that are blank or begin with # are skipped.
 //! Source of the second: documentation of MoorDyn, "Seafloor/Bathymetry File", and the reader of MoorPy.
 
 use std::path::Path;
 
+use super::columns::Separator;
+use super::units::{self, Quantity};
 use super::{DepthGrid, input_file};
 
 /// Words that name the sizes in a file of MoorDyn's kind, in capitals.
@@ -35,7 +37,7 @@ pub(super) fn read(path: &Path) -> Result<DepthGrid, String> {
 
 /// The soundings in a text; problems begin with a comma and a line, or a colon.
 fn parse(text: &str) -> Result<DepthGrid, String> {
-    let rows: Vec<(usize, Vec<&str>)> = text
+    let rows: Vec<(usize, Vec<String>)> = text
         .trim_start_matches('\u{feff}')
         .lines()
         .enumerate()
@@ -51,19 +53,35 @@ fn parse(text: &str) -> Result<DepthGrid, String> {
     }
 }
 
-fn words(line: &str) -> Vec<&str> {
-    if line.contains([',', ';']) {
-        line.split([',', ';']).map(str::trim).collect()
-    } else {
-        line.split_whitespace().collect()
+fn words(line: &str) -> Vec<String> {
+    let separator = Separator::of(line);
+    let decimal = |word: &str| match separator.number(word) {
+        Ok(_) if separator == Separator::Semicolon => word.replace(',', "."),
+        _ => word.to_string(),
+    };
+    separator.cells(line).into_iter().map(decimal).collect()
+}
+
+/// Unit in the corner of a table [m]; 1 where there is none.
+fn corner_unit(corner: &str) -> Result<f64, String> {
+    let mut factor = None;
+    for unit in units::bracketed(corner) {
+        let own = units::factor(unit, Quantity::Length)?;
+        if factor.is_some_and(|other| other != own) {
+            return Err(format!(
+                "{corner:?} has several units: one for all numbers would be right"
+            ));
+        }
+        factor = Some(own);
     }
+    Ok(factor.unwrap_or(1.0))
 }
 
 /// Below the sizes of the grid.
-fn moordyn_table(rows: &[(usize, Vec<&str>)]) -> Result<DepthGrid, String> {
+fn moordyn_table(rows: &[(usize, Vec<String>)]) -> Result<DepthGrid, String> {
     let mut sizes = [0; 2];
     for (size, (row, key)) in sizes.iter_mut().zip(rows[1..].iter().zip(SIZES)) {
-        let is_size = |word: &&str| word.to_uppercase() == key;
+        let is_size = |word: &String| word.to_uppercase() == key;
         let number = row.1.iter().find_map(|word| word.parse::<usize>().ok());
         *size = number
             .filter(|_| row.1.iter().any(is_size))
@@ -87,13 +105,16 @@ fn moordyn_table(rows: &[(usize, Vec<&str>)]) -> Result<DepthGrid, String> {
 
 /// A row of x behind `skipped` words, and rows of y with its depths.
 fn table(
-    header: &(usize, Vec<&str>),
-    rows: &[(usize, Vec<&str>)],
+    header: &(usize, Vec<String>),
+    rows: &[(usize, Vec<String>)],
     skipped: usize,
 ) -> Result<DepthGrid, String> {
-    let numbers = |line: usize, words: &[&str]| -> Result<Vec<f64>, String> {
-        let number = |word: &&str| match word.parse::<f64>() {
-            Ok(value) if value.is_finite() => Ok(value),
+    let corner = header.1.iter().take(skipped).map(|word| corner_unit(word));
+    let factor = corner.last().unwrap_or(Ok(1.0)); // none where nothing is skipped
+    let factor = factor.map_err(|problem| format!(", line {}: {problem}", header.0))?;
+    let numbers = |line: usize, words: &[String]| -> Result<Vec<f64>, String> {
+        let number = |word: &String| match word.parse::<f64>() {
+            Ok(value) if value.is_finite() => Ok(value * factor),
             _ => Err(format!(
                 ", line {line}: expected a finite number [m], found {word:?}"
             )),
@@ -139,6 +160,26 @@ mod tests {
                        -50 90 95 100\n50 91 96 104.5\n";
         assert_eq!(parse(csv), Ok(grid()));
         assert_eq!(parse(moordyn), Ok(grid()));
+    }
+
+    #[test]
+    fn a_unit_in_the_corner_is_that_of_all_numbers_and_decimals_may_have_commas() {
+        for text in [
+            "y/x [km], -0.1, 0, 0.25\n-0.05, 0.09, 0.095, 0.1\n0.05, 0.091, 0.096, 0.1045\n",
+            "y [m]/x [m]; -100; 0; 250\n-50; 90,0; 95; 100\n50; 91; 96; 104,5\n",
+        ] {
+            let found = parse(text).unwrap();
+            let of =
+                |grid: &DepthGrid| [grid.x.clone(), grid.y.clone(), grid.depth.concat()].concat();
+            for (found, wanted) in of(&found).iter().zip(of(&grid())) {
+                assert!((found - wanted).abs() <= 1e-13 * wanted.abs(), "{text}");
+            }
+        }
+        let unknown = parse("y/x [mile], 0, 1\n0, 5, 6\n1, 5, 6\n").unwrap_err();
+        assert!(
+            unknown.starts_with(", line 1: unknown unit \"mile\""),
+            "{unknown}"
+        );
     }
 
     #[test]

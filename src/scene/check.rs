@@ -17,7 +17,6 @@ use super::{Scene, SceneError};
 
 pub(super) use line_types::coefficients;
 pub(super) use settings::integrator_name;
-pub(super) use waves::breaking;
 
 impl Scene {
     /// Finds the first mistake.

@@ -130,6 +130,18 @@ impl Scene {
                 }
                 Ok(bodies)
             }
+            Moves::Recorded(bodies) => {
+                let moved = |body: &&(String, _)| known.contains(&body.0.as_str());
+                let own: Vec<_> = bodies.iter().filter(moved).cloned().collect();
+                match (own.is_empty(), bodies.first()) {
+                    (true, Some((body, _))) => {
+                        self.must_move(body)
+                            .map_err(|problem| format!("{file}, line 1: {problem}"))?;
+                        Ok(own)
+                    }
+                    _ => Ok(own),
+                }
+            }
             Moves::One { rows, turns } => {
                 let alike = known.len() == 1 || self.vessels.is_empty();
                 if !alike || known.is_empty() {

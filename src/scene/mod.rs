@@ -8,6 +8,7 @@
 mod bathymetry_file;
 pub mod channel;
 mod check;
+mod columns;
 mod commented;
 mod document;
 mod drive;
@@ -21,6 +22,7 @@ mod nearest;
 mod notes;
 mod path;
 mod places;
+mod plausibility;
 mod read;
 mod rows;
 mod seabed;

@@ -1,19 +1,32 @@
-//! Motion tables in CSV files: a header row, then time, x, y, z, and for vessels roll, pitch, yaw; or time and columns that say
-//! what they move, such as `platform.x` and `buoy.z`.
+//! Motion tables in text files: a header row, then time, x, y, z, and for vessels roll, pitch, yaw; or time and columns that name
+//! what they move, such as `platform.x` and `buoy.z`; or the results of a run. Between the columns stand commas, semicolons, tabs or
+//! blanks; units stand in the header, in a row below it, or in a file `….units.csv` beside it, and are SI where there are none.
 
+use std::collections::BTreeMap;
+use std::io::{BufRead, BufReader};
 use std::path::Path;
 
-use super::MotionRow;
-use super::input_file::{self, InputFile};
+use super::columns::{Heading, Lines, Separator, is_number};
+use super::rows::shown;
+use super::units::{self, Quantity};
+use super::{MotionRow, input_file};
 
-/// Columns of a motion file, in order; the last three may be left out together.
-const COLUMNS: [&str; 7] = ["time", "x", "y", "z", "roll", "pitch", "yaw"];
+/// Axes of a motion, in order.
+pub(super) const AXES: [&str; 6] = ["x", "y", "z", "roll", "pitch", "yaw"];
 
-/// Columns of a motion without rotation.
-const TRANSLATION: usize = 4;
+/// What else headers call the axes, in lower case.
+const SYNONYMS: [[&str; 2]; 6] = [
+    ["surge", "ptfmsurge"],
+    ["sway", "ptfmsway"],
+    ["heave", "ptfmheave"],
+    ["rx", "ptfmroll"],
+    ["ry", "ptfmpitch"],
+    ["rz", "ptfmyaw"],
+];
 
 /// Most rows that are read: a day at 100 Hz.
 const ROWS_MAX: usize = 8_640_000;
+
 
 /// What a motion file moves.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,16 +40,29 @@ pub(super) enum Moves {
     },
     /// Bodies by name, in the order of the file, with rows of time [s], displacement x, y, z [m] and rotation [rad].
     Named(Vec<(String, Vec<MotionRow>)>),
+    /// The same from the results of a run, which may have bodies that nothing moves.
+    Recorded(Vec<(String, Vec<MotionRow>)>),
 }
 
-/// Rows of time [s], displacement x, y, z [m] and rotation [rad] of one body.
+/// Rows of time [s], displacement x, y, z [m] and rotation [rad] of one body, and how they were read.
 ///
 /// # Errors
 /// The file, the line and what would be right.
-pub(super) fn read(path: &Path) -> Result<Vec<MotionRow>, String> {
-    match read_any(path, false)? {
-        Moves::One { rows, .. } => Ok(rows),
-        Moves::Named(_) => unreachable!("a header with names was refused"),
+pub(super) fn read(path: &Path, body: &str) -> Result<(Vec<MotionRow>, String), String> {
+    let (moves, columns) = read_any(path, false)?;
+    let bodies = match moves {
+        Moves::One { rows, .. } => return Ok((rows, columns)),
+        Moves::Named(bodies) | Moves::Recorded(bodies) => bodies,
+    };
+    let names: Vec<String> = bodies.iter().map(|(name, _)| name.clone()).collect();
+    let mut bodies = bodies.into_iter();
+    match bodies.find(|(name, _)| name == body) {
+        Some((_, rows)) => Ok((rows, format!("those of {body} in {columns}"))),
+        None => Err(format!(
+            "{}, line 1: no column moves `{body}`: there are columns of {}",
+            path.display(),
+            names.join(", ")
+        )),
     }
 }
 
@@ -45,10 +71,10 @@ pub(super) fn read(path: &Path) -> Result<Vec<MotionRow>, String> {
 /// # Errors
 /// The file, the line and what would be right.
 pub(super) fn read_moves(path: &Path) -> Result<Moves, String> {
-    read_any(path, true)
+    Ok(read_any(path, true)?.0)
 }
 
-fn read_any(path: &Path, names: bool) -> Result<Moves, String> {
+fn read_any(path: &Path, names: bool) -> Result<(Moves, String), String> {
     let name = path.display();
     let looked_for = match names {
         true => "",
@@ -56,172 +82,595 @@ fn read_any(path: &Path, names: bool) -> Result<Moves, String> {
     };
     let file = input_file::open(path, "a CSV file", input_file::MOTION_SIZE_MAX)
         .map_err(|unopened| unopened.at(path, looked_for))?;
-    let mut reader = csv::ReaderBuilder::new()
-        .flexible(true)
-        .comment(Some(b'#'))
-        .trim(csv::Trim::All)
-        .from_reader(file.by_rows());
-    let header = reader
-        .headers()
-        .map_err(|error| format!("{name}: {}", in_words(&error)))?
-        .clone();
-    let bodies = if one_body(&header) {
-        None
-    } else if names {
-        Some(named_columns(&header).map_err(|problem| format!("{name}, line 1: {problem}"))?)
-    } else {
-        return Err(format!("{name}, line 1: {}", wrong_header(&header, "")));
-    };
-    let rows = read_rows(&mut reader, &header).map_err(|problem| format!("{name}{problem}"))?;
-    Ok(match bodies {
-        None => Moves::One {
-            turns: header.len() > TRANSLATION,
-            rows: rows.iter().map(|row| motion_row(row)).collect(),
-        },
-        Some(columns) => Moves::Named(split(&columns, &rows)),
-    })
+    let beside = units_beside(path)?;
+    parse(BufReader::new(file), &beside).map_err(|problem| format!("{name}{problem}"))
 }
 
-/// Rows of numbers in ascending time, as many as the header has columns.
-fn read_rows(
-    reader: &mut csv::Reader<InputFile>,
-    header: &csv::StringRecord,
-) -> Result<Vec<Vec<f64>>, String> {
-    let mut rows: Vec<Vec<f64>> = Vec::new();
-    for record in reader.records() {
-        let record = record.map_err(|error| format!(": {}", in_words(&error)))?;
-        let line = record.position().map_or(0, csv::Position::line);
-        let row = row(&record, header).map_err(|problem| format!(", line {line}: {problem}"))?;
-        if let Some(last) = rows.last()
-            && row[0] <= last[0]
-        {
+/// The motion in a text, and how it was read; problems begin with a comma and a line, or a colon.
+fn parse(
+    input: impl BufRead,
+    beside: &BTreeMap<String, String>,
+) -> Result<(Moves, String), String> {
+    let mut lines = Lines::new(input);
+    let (line, first) = lines.next()?.unwrap_or((1, String::new()));
+    let separator = Separator::of(&first);
+    let cells = separator.cells(&first);
+    let bare = cells.iter().all(|cell| is_number(cell));
+    let on_line = |problem: String| format!(", line {line}: {problem}");
+    let (mut table, mut row) = if bare {
+        let table = Table::without_header(separator, &first).map_err(on_line)?;
+        (table, Some((line, first)))
+    } else {
+        let table = Table::of_header(separator, &first, beside).map_err(on_line)?;
+        (table, lines.next()?)
+    };
+    if let Some((line, text)) = &row
+        && !bare
+        && table
+            .take_units(text)
+            .map_err(|problem| format!(", line {line}: {problem}"))?
+    {
+        row = lines.next()?;
+    }
+    let rows = table.rows(row, &mut lines)?;
+    let said = table.in_words();
+    Ok((table.moves(&rows), said))
+}
+
+/// Units of columns by name, in the file that a run writes beside its results; none where there is no such file.
+fn units_beside(path: &Path) -> Result<BTreeMap<String, String>, String> {
+    let path = path.with_extension("units.csv");
+    if !path.is_file() {
+        return Ok(BTreeMap::new());
+    }
+    let unreadable = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
+    let bytes = input_file::read_table(&path, "a table of units", "")?;
+    let text = String::from_utf8_lossy(&bytes);
+    let mut table = csv::ReaderBuilder::new()
+        .flexible(true)
+        .from_reader(text.as_bytes());
+    let mut units = BTreeMap::new();
+    for record in table.records() {
+        let record = record.map_err(|error| unreadable(&error))?;
+        if let (Some(name), Some(unit)) = (record.get(0), record.get(1)) {
+            units.insert(name.to_string(), unit.to_string());
+        }
+    }
+    Ok(units)
+}
+
+/// A column that is read.
+#[derive(Debug)]
+struct Column {
+    /// Its place in a row, from 0.
+    place: usize,
+    /// Its name in messages.
+    name: String,
+    /// Body that it moves, where the file names one.
+    body: Option<String>,
+    /// 0 of the time, 1 to 6 of the axes.
+    entry: usize,
+    /// Its unit as written, or the SI unit.
+    unit: String,
+    /// One of its unit in SI units.
+    factor: f64,
+}
+
+impl Column {
+    fn quantity(&self) -> Quantity {
+        match self.entry {
+            0 => Quantity::Time,
+            1..=3 => Quantity::Length,
+            _ => Quantity::Angle,
+        }
+    }
+
+    fn set_unit(&mut self, unit: &str) -> Result<(), String> {
+        let factor = units::factor(unit, self.quantity());
+        self.factor = factor.map_err(|problem| format!("column {}: {problem}", self.name))?;
+        self.unit = units::bare(unit).to_string();
+        Ok(())
+    }
+}
+
+/// How a file is laid out.
+#[derive(Debug)]
+struct Table {
+    separator: Separator,
+    /// Columns that are read.
+    columns: Vec<Column>,
+    /// Columns of a row, read or not.
+    width: usize,
+    has_header: bool,
+    /// Whether it holds the results of a run.
+    is_recorded: bool,
+    /// Whether any unit stands in the header.
+    has_units: bool,
+    /// Whether a row below the header has the units.
+    has_unit_row: bool,
+    /// Mark of the decimals between semicolons, once one was found.
+    decimal: Option<char>,
+}
+
+impl Table {
+    fn new(separator: Separator, width: usize, has_header: bool) -> Table {
+        Table {
+            separator,
+            columns: Vec::new(),
+            width,
+            has_header,
+            is_recorded: false,
+            has_units: false,
+            has_unit_row: false,
+            decimal: None,
+        }
+    }
+
+    fn add(&mut self, place: usize, name: &str, body: Option<&str>, entry: usize) {
+        let mut column = Column {
+            place,
+            name: name.to_string(),
+            body: body.map(str::to_string),
+            entry,
+            unit: String::new(),
+            factor: 1.0,
+        };
+        column.unit = column.quantity().si().to_string();
+        self.columns.push(column);
+    }
+
+    /// Columns by their places: time, x, y, z and perhaps roll, pitch, yaw, between blanks.
+    fn without_header(separator: Separator, row: &str) -> Result<Table, String> {
+        let width = separator.cells(row).len();
+        let between_blanks = matches!(separator, Separator::Tab | Separator::Blank);
+        if !between_blanks || ![4, 7].contains(&width) {
+            return Err(wrong_header(row, ""));
+        }
+        let mut table = Table::new(separator, width, false);
+        table.add(0, "time", None, 0);
+        for (axis, name) in AXES.iter().enumerate().take(width - 1) {
+            table.add(1 + axis, name, None, 1 + axis);
+        }
+        Ok(table)
+    }
+
+    fn of_header(
+        separator: Separator,
+        row: &str,
+        beside: &BTreeMap<String, String>,
+    ) -> Result<Table, String> {
+        let headings = separator.headings(row);
+        if !headings.first().is_some_and(|first| is_time(&first.name)) {
+            return Err(wrong_header(row, ""));
+        }
+        let mut table = Table::new(separator, headings.len(), true);
+        table.is_recorded = headings
+            .iter()
+            .any(|heading| heading.name == "solver.substeps");
+        table.add(0, &headings[0].name, None, 0);
+        for (place, Heading { name, .. }) in headings.iter().enumerate().skip(1) {
+            let (body, axis) = match name.rsplit_once('.') {
+                Some((body, axis)) if !body.is_empty() => (Some(body), axis_number(axis)),
+                Some(_) => (None, None),
+                None => (None, axis_of(name)),
+            };
+            match axis {
+                Some(axis) => table.add(place, name, body, 1 + axis),
+                None if table.is_recorded => {}
+                None => return Err(unknown_column(row, body.is_some())),
+            }
+        }
+        table.check(row)?;
+        for column in &mut table.columns {
+            let heading = &headings[column.place];
+            if let Some(unit) = heading.unit.as_ref().or(beside.get(&heading.name)) {
+                column.set_unit(unit)?;
+                table.has_units |= heading.unit.is_some();
+            }
+        }
+        Ok(table)
+    }
+
+    /// Refuses columns twice, columns with and without names, and those of half a motion.
+    fn check(&self, row: &str) -> Result<(), String> {
+        for (i, column) in self.columns.iter().enumerate() {
+            let same = |other: &&Column| other.entry == column.entry && other.body == column.body;
+            if let Some(other) = self.columns[..i].iter().find(same) {
+                return Err(match other.name == column.name {
+                    true => format!("there are two columns {}", column.name),
+                    false => format!("{} and {} are the same", other.name, column.name),
+                });
+            }
+        }
+        let moved = &self.columns[1..];
+        let named = moved.iter().filter(|column| column.body.is_some()).count();
+        if named == moved.len() && named > 0 {
+            return Ok(());
+        }
+        let complete = [3, 6].contains(&moved.len());
+        let translation = || moved.iter().all(|column| column.entry <= 3);
+        match named == 0 && complete && (moved.len() == 6 || translation()) {
+            true => Ok(()),
+            false => Err(unknown_column(row, named > 0)),
+        }
+    }
+
+    /// Takes the units from the row below the header, where that is a row of units.
+    fn take_units(&mut self, row: &str) -> Result<bool, String> {
+        let cells = self.separator.cells(row);
+        let is_units = cells.len() == self.width
+            && cells.iter().all(|cell| !is_number(cell))
+            && cells.iter().any(|cell| !cell.is_empty());
+        if !is_units {
+            return Ok(false);
+        }
+        for column in &mut self.columns {
+            let before = (self.has_units && self.has_header).then_some(column.factor);
+            column.set_unit(cells[column.place])?;
+            if let Some(before) = before.filter(|before| *before != column.factor) {
+                return Err(format!(
+                    "column {}: the unit {} is not that of the header, {before} in SI units",
+                    column.name, column.unit
+                ));
+            }
+        }
+        self.has_unit_row = true;
+        Ok(true)
+    }
+
+    /// Rows of the columns that are read, in SI units and ascending time.
+    fn rows(
+        &mut self,
+        mut row: Option<(usize, String)>,
+        lines: &mut Lines<impl BufRead>,
+    ) -> Result<Vec<Vec<f64>>, String> {
+        let mut rows: Vec<Vec<f64>> = Vec::new();
+        while let Some((line, text)) = row {
+            let values = self
+                .row(&text)
+                .map_err(|problem| format!(", line {line}: {problem}"))?;
+            if let Some(last) = rows.last()
+                && values[0] <= last[0]
+            {
+                return Err(format!(
+                    ", line {line}: time {} s does not come after {} s",
+                    values[0], last[0]
+                ));
+            }
+            if rows.len() == ROWS_MAX {
+                return Err(format!(": more than {ROWS_MAX} rows"));
+            }
+            rows.push(values);
+            row = lines.next()?;
+        }
+        if rows.is_empty() {
+            return Err(": no rows below the header".to_string());
+        }
+        Ok(rows)
+    }
+
+    fn row(&mut self, text: &str) -> Result<Vec<f64>, String> {
+        let cells = self.separator.cells(text);
+        if cells.len() != self.width {
+            let names: Vec<&str> = self
+                .columns
+                .iter()
+                .map(|column| column.name.as_str())
+                .collect();
+            let twice = self.separator == Separator::Comma && cells.len() > self.width;
             return Err(format!(
-                ", line {line}: time {} s does not come after {} s",
-                row[0], last[0]
+                "expected {} numbers ({}), found {}{}",
+                self.width,
+                names.join(", "),
+                cells.len(),
+                match twice {
+                    true => "; decimal commas are read where `;` stands between the columns",
+                    false => "",
+                }
             ));
         }
-        if rows.len() == ROWS_MAX {
-            return Err(format!(": more than {ROWS_MAX} rows"));
+        let separator = self.separator;
+        let mut values = Vec::with_capacity(self.columns.len());
+        for column in &self.columns {
+            let cell = cells[column.place];
+            let number = separator.number(cell).and_then(|value| {
+                self.decimal = one_decimal(separator, self.decimal, cell)?;
+                Ok(value)
+            });
+            let number = number.map_err(|problem| format!("column {}: {problem}", column.name))?;
+            values.push(number * column.factor);
         }
-        rows.push(row);
+        Ok(values)
     }
-    if rows.is_empty() {
-        return Err(": no rows below the header".to_string());
-    }
-    Ok(rows)
-}
 
-/// Whether the header is that of one body; units may follow the names, as in `x [m]`.
-fn one_body(header: &csv::StringRecord) -> bool {
-    let complete = [TRANSLATION, COLUMNS.len()].contains(&header.len());
-    complete
-        && header
+    /// "columns between semicolons: time [s], x [m], pitch [deg]; decimal commas".
+    fn in_words(&self) -> String {
+        let mut columns: Vec<String> = Vec::new();
+        for Column { name, unit, .. } in &self.columns {
+            columns.push(format!("{name} [{unit}]"));
+        }
+        let mut said = format!(
+            "columns between {}: {}",
+            self.separator.in_words(),
+            columns.join(", ")
+        );
+        for (is_so, words) in [
+            (
+                !self.has_header,
+                "; no header, so columns count by their places",
+            ),
+            (self.has_unit_row, "; units from the row below the header"),
+            (self.decimal == Some(','), "; decimal commas"),
+            (
+                self.is_recorded,
+                "; results of a run, whose other columns are left out",
+            ),
+        ] {
+            said.push_str(if is_so { words } else { "" });
+        }
+        said
+    }
+
+    /// The rows by what they move.
+    fn moves(&self, rows: &[Vec<f64>]) -> Moves {
+        let of = |body: Option<&str>| {
+            let columns = self.columns.iter().enumerate();
+            let own =
+                columns.filter(|(_, column)| column.entry == 0 || column.body.as_deref() == body);
+            let own: Vec<(usize, usize)> = own.map(|(i, column)| (i, column.entry)).collect();
+            let motion = |row: &Vec<f64>| {
+                let mut motion = [0.0; 7];
+                own.iter().for_each(|(i, entry)| motion[*entry] = row[*i]);
+                motion
+            };
+            rows.iter().map(motion).collect::<Vec<MotionRow>>()
+        };
+        let mut names: Vec<&str> = Vec::new();
+        for body in self
+            .columns
             .iter()
-            .zip(COLUMNS)
-            .all(|(column, wanted)| is_column(column, wanted))
+            .filter_map(|column| column.body.as_deref())
+        {
+            if !names.contains(&body) {
+                names.push(body);
+            }
+        }
+        if names.is_empty() {
+            let turns = self.columns.iter().any(|column| column.entry > 3);
+            return Moves::One {
+                rows: of(None),
+                turns,
+            };
+        }
+        let bodies = names
+            .into_iter()
+            .map(|name| (name.to_string(), of(Some(name))));
+        match self.is_recorded {
+            true => Moves::Recorded(bodies.collect()),
+            false => Moves::Named(bodies.collect()),
+        }
+    }
 }
 
-fn is_column(column: &str, wanted: &str) -> bool {
-    let first = without_unit(column).to_lowercase();
-    first == wanted || (wanted == "time" && first == "t")
+/// The mark of decimals that a file has, once a cell shows one.
+///
+/// # Errors
+/// A cell with the other one: a comma or point of thousands looks the same.
+fn one_decimal(
+    separator: Separator,
+    known: Option<char>,
+    cell: &str,
+) -> Result<Option<char>, String> {
+    if separator != Separator::Semicolon {
+        return Ok(None);
+    }
+    let own = cell.chars().find(|c| [',', '.'].contains(c));
+    match (known, own) {
+        (Some(known), Some(own)) if known != own => Err(format!(
+            "{} has a decimal {own:?}, and the numbers before it have {known:?}",
+            shown(cell)
+        )),
+        _ => Ok(known.or(own)),
+    }
 }
 
-fn without_unit(column: &str) -> &str {
-    let first = column.split([' ', '[', '(', '/']).next().unwrap_or("");
-    first.trim_start_matches('\u{feff}')
+fn is_time(name: &str) -> bool {
+    ["time", "t"].contains(&name.to_lowercase().as_str())
 }
 
-fn wrong_header(header: &csv::StringRecord, more: &str) -> String {
-    let found: Vec<&str> = header.iter().take(8).collect();
+fn wrong_header(row: &str, more: &str) -> String {
+    let found: String = row.chars().take(80).collect();
     format!(
-        "the header must be \"time,x,y,z\" [s, m] or \"time,x,y,z,roll,pitch,yaw\" [s, m, rad]{more}, found \"{}\"",
-        found.join(",")
+        "the header must be \"time,x,y,z\" [s, m] or \"time,x,y,z,roll,pitch,yaw\" [s, m, rad]{more}, found \"{found}\""
     )
 }
 
-/// What every column after the time moves: a body by name, and along which of the six axes.
-fn named_columns(header: &csv::StringRecord) -> Result<Vec<(String, usize)>, String> {
-    let wrong = || {
-        wrong_header(
-            header,
-            ", or the time and columns such as \"platform.x\" [m] and \"platform.pitch\" [rad]",
-        )
-    };
-    if !header.get(0).is_some_and(|first| is_column(first, "time")) || header.len() < 2 {
-        return Err(wrong());
-    }
-    let mut columns: Vec<(String, usize)> = Vec::new();
-    for text in header.iter().skip(1) {
-        let (body, axis) = without_unit(text).rsplit_once('.').ok_or_else(wrong)?;
-        let column = (body.to_string(), axis_number(axis).ok_or_else(wrong)?);
-        if body.is_empty() {
-            return Err(wrong());
-        }
-        if columns.contains(&column) {
-            return Err(format!("there are two columns {text}"));
-        }
-        columns.push(column);
-    }
-    Ok(columns)
+/// What is said of columns that are no motion.
+fn unknown_column(row: &str, named: bool) -> String {
+    wrong_header(
+        row,
+        match named {
+            true => {
+                ", or the time and columns such as \"platform.x\" [m] and \"platform.pitch\" [rad]"
+            }
+            false => "",
+        },
+    )
 }
 
 /// The number of an axis by its name: x, y, z, roll, pitch, yaw.
 pub(super) fn axis_number(name: &str) -> Option<usize> {
-    COLUMNS[1..].iter().position(|axis| *axis == name)
+    AXES.iter().position(|axis| *axis == name)
 }
 
-/// A table by the bodies it moves.
-fn split(columns: &[(String, usize)], rows: &[Vec<f64>]) -> Vec<(String, Vec<MotionRow>)> {
-    let mut bodies: Vec<(String, Vec<MotionRow>)> = Vec::new();
-    for (name, _) in columns {
-        if bodies.iter().any(|(known, _)| known == name) {
-            continue;
-        }
-        let of_body = rows.iter().map(|row| {
-            let mut moved = [0.0; 7];
-            moved[0] = row[0];
-            for ((_, axis), value) in columns.iter().zip(&row[1..]).filter(|(c, _)| c.0 == *name) {
-                moved[axis + 1] = *value;
-            }
-            moved
-        });
-        bodies.push((name.clone(), of_body.collect()));
-    }
-    bodies
-}
-
-fn motion_row(values: &[f64]) -> MotionRow {
-    let mut row = [0.0; 7];
-    row[..values.len()].copy_from_slice(values);
-    row
-}
-
-fn row(record: &csv::StringRecord, header: &csv::StringRecord) -> Result<Vec<f64>, String> {
-    if record.len() != header.len() {
-        let names: Vec<&str> = header.iter().map(without_unit).collect();
-        return Err(format!(
-            "expected {} numbers ({}), found {}",
-            header.len(),
-            names.join(", "),
-            record.len()
-        ));
-    }
-    let number = |(field, column): (&str, &str)| match field.parse::<f64>() {
-        Ok(value) if value.is_finite() => Ok(value),
-        _ => Err(format!(
-            "column {}: expected a finite number, found {field:?}",
-            without_unit(column)
-        )),
+/// The number of an axis by any of its names, in any case.
+fn axis_of(name: &str) -> Option<usize> {
+    let name = name.to_lowercase();
+    let synonym = || {
+        SYNONYMS
+            .iter()
+            .position(|names| names.contains(&name.as_str()))
     };
-    record.iter().zip(header).map(number).collect()
+    axis_number(&name).or_else(synonym)
 }
 
-fn in_words(error: &csv::Error) -> String {
-    match error.kind() {
-        csv::ErrorKind::Utf8 { pos, .. } => {
-            let line = pos.as_ref().map_or(0, csv::Position::line);
-            format!("line {line} is not UTF-8 text")
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+    use std::fs;
+
+    fn of(text: &str) -> Result<(Moves, String), String> {
+        parse(text.as_bytes(), &BTreeMap::new())
+    }
+
+    fn one(text: &str) -> (Vec<MotionRow>, String) {
+        match of(text) {
+            Ok((Moves::One { rows, .. }, said)) => (rows, said),
+            other => panic!("{text}: {other:?}"),
         }
-        _ => error.to_string(),
+    }
+
+    #[test]
+    fn the_same_motion_is_read_in_every_layout_and_each_is_named() {
+        let wanted = vec![
+            [0.0, 0.5, 0.0, -1.25, 0.0, 0.1, 0.0],
+            [0.1, 0.75, 0.0, -1.5, 0.0, 0.2, 0.0],
+        ];
+        for (text, said) in [
+            (
+                "time,x,y,z,roll,pitch,yaw\n0,.5,0,-1.25,0,.1,0\n.1,.75,0,-1.5,0,.2,0\n",
+                "between commas: time [s], x [m]",
+            ),
+            (
+                "Time,Surge,Sway,Heave,Roll,Pitch,Yaw\n0,.5,0,-1.25,0,.1,0\n.1,.75,0,-1.5,0,.2,0\n",
+                "Surge [m], Sway [m]",
+            ),
+            (
+                "T;Z;X;Y;Yaw;Pitch;Roll\n0;-1,25;0,5;0;0;0,1;0\n0,1;-1,5;0,75;0;0;0,2;0\n",
+                "between semicolons: T [s], Z [m], X [m], Y [m], Yaw [rad], Pitch [rad], Roll [rad]; decimal commas",
+            ),
+            (
+                "0 .5 0 -1.25 0 .1 0\n.1 .75 0 -1.5 0 .2 0\n",
+                "between blanks: time [s], x [m], y [m], z [m], roll [rad], pitch [rad], yaw [rad]; no header",
+            ),
+            (
+                "# t x\n0\t.5\t0\t-1.25\t0\t.1\t0\n\n.1\t.75\t0\t-1.5\t0\t.2\t0\n",
+                "between tabs",
+            ),
+            ("time\tPtfm Surge\n", ""),
+            (
+                "time x y z roll pitch yaw\n(s) (mm) (m) (cm) (rad) (mrad) (deg)\n0 500 0 -125 0 100 0\n.1 750 0 -150 0 200 0\n",
+                "z [cm], roll [rad], pitch [mrad], yaw [deg]; units from the row below the header",
+            ),
+            (
+                "time [ms];x [m];y;z;roll;pitch;yaw\n0;0.5;0;-1.25;0;0.1;0\n100;0.75;0;-1.5;0;0.2;0\n",
+                "time [ms]",
+            ),
+        ] {
+            if said.is_empty() {
+                assert!(of(text).unwrap_err().contains("line 1: "));
+                continue;
+            }
+            let (rows, words) = one(text);
+            for (row, wanted) in rows.iter().flatten().zip(wanted.iter().flatten()) {
+                assert_relative_eq!(*row, *wanted, max_relative = 1e-14);
+            }
+            assert!(words.contains(said), "{text}: {words}");
+        }
+    }
+
+    #[test]
+    fn degrees_in_a_header_are_degrees() {
+        for text in [
+            "time,x,y,z,roll,pitch [deg],yaw\n0,0,0,0,0,5,0\n",
+            "t,surge,sway,heave,roll/deg,pitch/deg,yaw/deg\n0,0,0,0,0,5,0\n",
+            "t;x;y;z;roll;pitch;yaw\ns;m;m;m;deg;deg;deg\n0;0;0;0;0;5;0\n",
+            "t;x;y;z;roll (deg);pitch (deg);yaw (deg)\ns;m;m;m;deg;deg;deg\n0;0;0;0;0;5;0\n",
+        ] {
+            let pitch = one(text).0[0][5];
+            assert_relative_eq!(pitch, 5.0_f64.to_radians(), max_relative = 1e-15);
+        }
+        let Ok((Moves::Named(bodies), said)) = of("t [s],barge.pitch [deg]\n0,5\n") else {
+            panic!("the header names a body");
+        };
+        assert_relative_eq!(
+            bodies[0].1[0][5],
+            5.0_f64.to_radians(),
+            max_relative = 1e-15
+        );
+        assert!(said.contains("barge.pitch [deg]"));
+    }
+
+    #[test]
+    fn broken_files_are_refused_with_their_line_and_what_would_be_right() {
+        for (text, problem) in [
+            (
+                "time,x [furlong],y,z\n0,0,0,0\n",
+                ", line 1: column x: unknown unit \"furlong\": one of m, mm, cm, km, ft, in would be right",
+            ),
+            (
+                "time,x [deg],y,z\n0,0,0,0\n",
+                ", line 1: column x: unknown unit \"deg\"",
+            ),
+            (
+                "time;x;y;z\ns;m;m;mile\n0;0;0;0\n",
+                ", line 2: column z: unknown unit \"mile\"",
+            ),
+            (
+                "time;x [mm];y;z\ns;m;m;m\n0;0;0;0\n",
+                ", line 2: column x: the unit m is not that of the header",
+            ),
+            (
+                "time,x,y,z\n0,0,0,5,0,0\n",
+                ", line 2: expected 4 numbers (time, x, y, z), found 6; decimal commas are read where `;`",
+            ),
+            ("time x y z\n0 0,5 0 0\n", ", line 2: expected 4 numbers"),
+            (
+                "time;x;y;z\n0;0,5;0;0\n1;0.5;0;0\n",
+                ", line 3: column x: \"0.5\" has a decimal '.', and the numbers before it have ','",
+            ),
+            ("0 0 0\n", ", line 1: the header must be"),
+            ("0;0;0;0\n", ", line 1: the header must be"),
+            (
+                "time,surge,x,y\n0,0,0,0\n",
+                ", line 1: surge and x are the same",
+            ),
+            ("time,x,y,roll\n0,0,0,0\n", ", line 1: the header must be"),
+            ("time,x,y,z\ns,m,m,m\n", ": no rows below the header"),
+        ] {
+            let found = of(text).unwrap_err();
+            let found_hint = text == "time x y z\n0 0,5 0 0\n" && found.contains("decimal commas");
+            assert!(found.starts_with(problem) || found_hint, "{text}: {found}");
+        }
+    }
+
+    #[test]
+    fn the_results_of_a_run_move_the_body_in_question() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("results.csv");
+        let text = "time,barge.x,barge.vx,barge.pitch,buoy.z,line1.tension_b,solver.substeps\n0,1,9,2,3,1e5,4\n1,2,9,3,4,1e5,4\n";
+        fs::write(&path, text).unwrap();
+        let (rows, said) = read(&path, "barge").unwrap();
+        assert_eq!(rows[1], [1.0, 2.0, 0.0, 0.0, 0.0, 3.0, 0.0]);
+        assert!(
+            said.starts_with("those of barge in columns between commas: time [s], barge.x [m]"),
+            "{said}"
+        );
+        assert!(said.contains("results of a run"), "{said}");
+        fs::write(
+            folder.path().join("results.units.csv"),
+            "name,unit,description\ntime,s,time\nbarge.pitch,deg,\"pitch, in degrees\"\n",
+        )
+        .unwrap();
+        let (rows, said) = read(&path, "barge").unwrap();
+        assert_relative_eq!(rows[0][5], 2.0_f64.to_radians(), max_relative = 1e-15);
+        assert!(said.contains("barge.pitch [deg]"), "{said}");
+        let problem = read(&path, "fairlead").unwrap_err();
+        assert!(
+            problem
+                .ends_with("line 1: no column moves `fairlead`: there are columns of barge, buoy"),
+            "{problem}"
+        );
     }
 }

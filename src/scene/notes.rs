@@ -1,10 +1,11 @@
 //! What is no mistake but may surprise.
 
+use std::f64::consts::PI;
 use std::fmt;
 
 use nalgebra::Vector3;
 
-use super::check::{breaking, coefficients, number, quantity};
+use super::check::{coefficients, number, quantity};
 use super::path::quoted;
 use super::table_ends;
 use super::{Integrator, Line, LineModel, LineType, Point, PointKind, Scene, Waves};
@@ -17,6 +18,19 @@ pub struct Note {
     pub at: String,
     /// The remark.
     pub text: String,
+    /// Line of the file [-], from 1, where the key has one.
+    pub line: Option<usize>,
+}
+
+impl Note {
+    /// A remark without a line of a file.
+    pub fn new(at: impl Into<String>, text: impl Into<String>) -> Note {
+        Note {
+            at: at.into(),
+            text: text.into(),
+            line: None,
+        }
+    }
 }
 
 impl fmt::Display for Note {
@@ -25,18 +39,15 @@ impl fmt::Display for Note {
     }
 }
 
-/// Chord over unstretched length from which a line is suspiciously tight [-].
-const CHORD_RATIO: f64 = 1.5;
+/// Part of critical that the suggested axial damping damps the first axial mode of a line by [-].
+const FIRST_MODE_RATIO: f64 = 0.01;
 
 impl Scene {
-    /// Says what is no mistake but may surprise.
+    /// Says what is no mistake but may surprise; [`Scene::plausibility`] first.
     pub fn notes(&self) -> Vec<Note> {
-        let mut notes = Vec::new();
+        let mut notes = self.plausibility();
         for (name, line_type) in &self.line_types {
             note_line_type(self, name, line_type, &mut notes);
-        }
-        for (i, line) in self.lines.iter().enumerate() {
-            note_chord(self, line, &format!("lines[{i}]"), &mut notes);
         }
         note_points(self, &mut notes);
         if let Some(waves) = self.water.as_ref().and_then(|water| water.waves.as_ref()) {
@@ -46,13 +57,63 @@ impl Scene {
         notes.extend(table_ends::notes(self));
         notes
     }
+
+    /// Suggestions for keys that are left open, which only `moorline check` says.
+    pub fn advice(&self) -> Vec<Note> {
+        let mut notes = Vec::new();
+        if self.solver.integrator == Integrator::QuasiStatic {
+            return notes;
+        }
+        for (name, line_type) in &self.line_types {
+            let at = format!("line_types.{}", quoted(name));
+            let longest = self.longest_of(name);
+            if !line_type.leaves_damping_open() || longest == 0.0 {
+                continue;
+            }
+            let text = match line_type.model {
+                LineModel::Beam => "no damping within the line: waves along it ring on".to_string(),
+                LineModel::Cable => {
+                    let open = "no `axial_damping`: moorline's own fades as meshes get finer, so that waves along the line ring on and converge slowly";
+                    match self.damping_of_first_mode(line_type, longest) {
+                        Some(damping) => format!(
+                            "{open}; `axial_damping = {damping:.1e}` [N s] would damp the first axial mode of {} by {} %",
+                            quantity(longest, "m"),
+                            number(100.0 * FIRST_MODE_RATIO)
+                        ),
+                        None => open.to_string(),
+                    }
+                }
+            };
+            say(&mut notes, at, text);
+        }
+        notes
+    }
+
+    /// Length of the longest line with a section of a line type [m]; 0 where there is none.
+    fn longest_of(&self, name: &str) -> f64 {
+        let has = |line: &&Line| {
+            line.sections
+                .iter()
+                .any(|section| section.line_type == name)
+        };
+        self.lines
+            .iter()
+            .filter(has)
+            .map(length)
+            .fold(0.0, f64::max)
+    }
+
+    /// Damping BA [N s] that is [`FIRST_MODE_RATIO`] of critical in the first axial mode of a line of a length [m]: a quarter of a wave
+    /// along it, ω = ½π√(EA/m)/L, BA = 2ζ·EA/ω.
+    fn damping_of_first_mode(&self, line_type: &LineType, length: f64) -> Option<f64> {
+        let (ea, mass) = (line_type.axial_stiffness?, self.mass(line_type));
+        let damping = 4.0 * FIRST_MODE_RATIO / PI * length * (ea * mass).sqrt();
+        (damping > 0.0 && damping.is_finite()).then_some(damping)
+    }
 }
 
 fn say(notes: &mut Vec<Note>, at: impl Into<String>, text: impl Into<String>) {
-    notes.push(Note {
-        at: at.into(),
-        text: text.into(),
-    });
+    notes.push(Note::new(at, text));
 }
 
 fn note_line_type(scene: &Scene, name: &str, line_type: &LineType, notes: &mut Vec<Note>) {
@@ -84,15 +145,6 @@ fn note_line_type(scene: &Scene, name: &str, line_type: &LineType, notes: &mut V
     }
     if scene.seabed.is_some() && scene.weight(line_type) < 0.0 {
         let text = "lighter than the water: it floats up from the seabed";
-        say(notes, at.clone(), text);
-    }
-    if line_type.leaves_damping_open() && scene.solver.integrator != Integrator::QuasiStatic {
-        let text = match line_type.model {
-            LineModel::Cable => {
-                "no `axial_damping`: moorline's own fades as meshes get finer, so that waves along the line ring on and converge slowly"
-            }
-            LineModel::Beam => "no damping within the line: waves along it ring on",
-        };
         say(notes, at, text);
     }
 }
@@ -124,21 +176,6 @@ pub(super) fn chord(scene: &Scene, line: &Line) -> Option<f64> {
 /// Unstretched length of a line [m].
 pub(super) fn length(line: &Line) -> f64 {
     line.sections.iter().map(|section| section.length).sum()
-}
-
-fn note_chord(scene: &Scene, line: &Line, at: &str, notes: &mut Vec<Note>) {
-    let length = length(line);
-    if let Some(chord) = chord(scene, line)
-        && chord > CHORD_RATIO * length
-    {
-        let text = format!(
-            "its ends are {} m apart, and it is {} m long unstretched: it is strained by at least {:.0} %",
-            number(chord),
-            number(length),
-            100.0 * (chord / length - 1.0)
-        );
-        say(notes, at, text);
-    }
 }
 
 /// Depth under a seabed that is no level plane from which a point is told of [m].
@@ -201,17 +238,6 @@ fn note_points(scene: &Scene, notes: &mut Vec<Note>) {
 
 fn note_waves(scene: &Scene, waves: &Waves, notes: &mut Vec<Note>) {
     let at = "water.waves";
-    for sea in &waves.seas {
-        let regular = sea.regular.as_ref().and_then(|wave| {
-            let height = 2.0 * wave.half_height()?;
-            breaking(scene, height, wave.period)
-        });
-        let spectrum = sea.significant_height.zip(sea.peak_period);
-        let spectrum = spectrum.and_then(|(height, period)| breaking(scene, height, period));
-        if let Some(text) = regular.or(spectrum) {
-            say(notes, at, text);
-        }
-    }
     if waves.ramp().is_none() {
         let text = "no `ramp`: lines at rest are in the full sea from the start, and swing in";
         say(notes, at, text);

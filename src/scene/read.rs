@@ -34,6 +34,14 @@ pub struct LoadedScene {
 }
 
 impl LoadedScene {
+    /// Gives a note that was found later its place in the file.
+    pub fn locate_note(&self, note: Note) -> Note {
+        if self.format != TOML {
+            return self.places.locate_note(&self.text, note);
+        }
+        with_lines(&self.text, vec![note]).remove(0)
+    }
+
     /// Gives a mistake that was found later its place in the file.
     pub fn locate(&self, mistake: SceneError) -> SceneError {
         if self.format != TOML {
@@ -118,7 +126,7 @@ pub fn load_with(path: &Path, supplement: &Supplement) -> Result<LoadedScene, Lo
     let loaded = match deck_of(&text) {
         Some(read) => deck_scene(read(&text, supplement), &text, folder_of(path)),
         None => scene_of(&text, path).map(|scene| {
-            let notes = scene.notes();
+            let notes = with_lines(&text, scene.notes());
             (scene, notes, TOML, Places::default())
         }),
     };
@@ -199,7 +207,10 @@ fn deck_scene(reading: Reading, text: &str, folder: &Path) -> Result<Checked, Ve
         return Err(in_order(mistakes));
     }
     let mut notes = findings.notes(text);
-    let of_scene = cut.into_iter().chain(scene.notes());
+    // the reader of MoorDyn's decks notes diameters itself, with narrower limits
+    let noted = |note: &Note| format.starts_with("MoorDyn") && note.at.ends_with(".diameter");
+    let of_scene = scene.notes().into_iter().filter(|note| !noted(note));
+    let of_scene = cut.into_iter().chain(of_scene);
     notes.extend(of_scene.map(|note| places.locate_note(text, note)));
     Ok((scene, notes, format, places))
 }
@@ -218,6 +229,17 @@ fn scene_of(text: &str, path: &Path) -> Result<Scene, Vec<SceneError>> {
     } else {
         Err(document.place(mistakes))
     }
+}
+
+/// Notes on a scene with the lines of its text where their keys stand.
+fn with_lines(text: &str, mut notes: Vec<Note>) -> Vec<Note> {
+    if let Ok(document) = Document::parse(text) {
+        for note in &mut notes {
+            let span = path::locate(&document.root, &note.at);
+            note.line = span.map(|span| path::line_column(text, span.start).0);
+        }
+    }
+    notes
 }
 
 /// The folder that a scene's files stand in.
@@ -281,10 +303,8 @@ fn cut_tables(scene: &mut Scene) -> Vec<Note> {
             let text = format!(
                 "rows below zero strain in the table of tension, {below} of them, are left out: a slack line carries nothing"
             );
-            notes.push(Note {
-                at: format!("line_types.{}.tension_strain", path::quoted(name)),
-                text,
-            });
+            let at = format!("line_types.{}.tension_strain", path::quoted(name));
+            notes.push(Note::new(at, text));
         }
     }
     notes
@@ -335,17 +355,17 @@ fn read_motions(scene: &mut Scene, folder: &Path) -> Vec<SceneError> {
         .enumerate()
         .filter_map(|(i, point)| {
             let motion = point.motion.as_mut()?;
-            Some((format!("points[{i}].motion.file"), motion))
+            Some((format!("points[{i}].motion.file"), &point.name, motion))
         });
     let of_run = scene
         .motion
         .iter_mut()
-        .map(|(name, motion)| (format!("motion.{}.file", path::quoted(name)), motion));
+        .map(|(name, motion)| (format!("motion.{}.file", path::quoted(name)), name, motion));
     let mut mistakes = Vec::new();
-    for (at, motion) in of_points.chain(of_run) {
+    for (at, body, motion) in of_points.chain(of_run) {
         if let MotionPath::File(file) = motion {
-            match motion_file::read(&folder.join(&file.file)) {
-                Ok(rows) => file.rows = rows,
+            match motion_file::read(&folder.join(&file.file), body) {
+                Ok((rows, columns)) => (file.rows, file.columns) = (rows, columns),
                 Err(problem) => mistakes.push(SceneError::new(at, problem)),
             }
         }

@@ -170,12 +170,12 @@ impl Findings {
 
     /// The remarks with the numbers of their lines, in the order of the file; those on the whole file first.
     pub(super) fn notes(&self, source: &str) -> Vec<Note> {
-        let note = |remark: &Remark| Note {
-            at: match remark.byte {
+        let note = |remark: &Remark| {
+            let at = match remark.byte {
                 Some(byte) => format!("file line {}", path::line_column(source, byte).0),
                 None => "file".to_string(),
-            },
-            text: remark.text.clone(),
+            };
+            Note::new(at, &remark.text)
         };
         let mut remarks = self.remarks.clone();
         remarks.sort_by_key(|remark| remark.byte);

@@ -64,7 +64,7 @@ fn note_motion(at: String, motion: &MotionPath, duration: f64) -> Option<Note> {
         ));
     }
     let text = said.join("; ");
-    (!text.is_empty()).then_some(Note { at, text })
+    (!text.is_empty()).then_some(Note::new(at, text))
 }
 
 /// One that has come to rest when it ends, or ends with a jump, is meant so.
@@ -81,7 +81,7 @@ fn note_function(at: String, function: &TimeFunction, duration: f64) -> Option<N
     let [end, run] = [last[0], duration].map(|time| quantity(time, "s"));
     let text =
         format!("the table ends at {end}, the run at {run}: in between its last value holds");
-    Some(Note { at, text })
+    Some(Note::new(at, text))
 }
 
 #[cfg(test)]

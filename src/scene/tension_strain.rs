@@ -8,7 +8,8 @@ use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
 use super::input_file;
-use super::rows::{Row, number, shown};
+use super::rows::{Field, Row, number, shown};
+use super::units::{self, Quantity};
 
 /// Tension over strain: `[[strain, tension], …]` or `{ file = "rope.csv" }`, which stands relative to the scene's folder.
 #[derive(Debug, Clone, PartialEq)]
@@ -106,7 +107,8 @@ impl<'de> Visitor<'de> for TableVisitor {
     }
 }
 
-/// Rows of strain [-] and tension [N] of a file: two columns between blanks or commas, below any lines that begin with no number.
+/// Rows of strain [-] and tension [N] of a file: two columns between blanks, commas or semicolons, below any lines that begin with no number.
+/// Two units in brackets in the last of these, such as `(-) (kN)`, are those of the columns.
 ///
 /// # Errors
 /// The file, the line and what would be right.
@@ -116,16 +118,22 @@ pub(super) fn read(path: &Path) -> Result<Vec<[f64; 2]>, String> {
     let bytes = input_file::read_table(path, "a table of strain and tension", looked_for)?;
     let text = String::from_utf8_lossy(&bytes);
     let mut rows: Vec<[f64; 2]> = Vec::new();
+    let mut heading = (1, "");
     for row in Row::all(&text) {
         let line = text[..row.span().start].matches('\n').count() + 1;
         let row = row.before('#');
-        let cells = row.split(|c| c.is_whitespace() || c == ',' || c == ';');
-        let numbers: Vec<Result<f64, String>> =
-            cells.iter().map(|cell| number(cell.text)).collect();
+        // between semicolons, a comma is that of decimals
+        let decimal = row.text.contains(';');
+        let cells = row.split(|c| c.is_whitespace() || c == if decimal { ';' } else { ',' });
+        let value = |cell: &Field<'_>| match decimal {
+            true => number(&cell.text.replacen(',', ".", 1)),
+            false => number(cell.text),
+        };
+        let numbers: Vec<Result<f64, String>> = cells.iter().map(value).collect();
         match numbers.as_slice() {
             [] => {}
             [Ok(strain), Ok(tension)] => rows.push([*strain, *tension]),
-            [Err(_), ..] if rows.is_empty() => {}
+            [Err(_), ..] if rows.is_empty() => heading = (line, row.text),
             _ => {
                 return Err(format!(
                     "{name}, line {line}: {} is no row of strain [-] and tension [N]",
@@ -137,7 +145,24 @@ pub(super) fn read(path: &Path) -> Result<Vec<[f64; 2]>, String> {
     if rows.is_empty() {
         return Err(format!("{name}: no rows of strain [-] and tension [N]"));
     }
+    in_units_of(heading.1, &mut rows)
+        .map_err(|problem| format!("{name}, line {}: {problem}", heading.0))?;
     Ok(rows)
+}
+
+/// Takes rows from the units of a heading to SI units.
+fn in_units_of(heading: &str, rows: &mut [[f64; 2]]) -> Result<(), String> {
+    let [strain, tension] = units::bracketed(heading)[..] else {
+        return Ok(());
+    };
+    let factors = [
+        units::factor(strain, Quantity::Number)?,
+        units::factor(tension, Quantity::Force)?,
+    ];
+    for row in rows {
+        *row = [row[0] * factors[0], row[1] * factors[1]];
+    }
+    Ok(())
 }
 
 #[cfg(test)]
@@ -150,6 +175,14 @@ mod tests {
         let text = "----Polyester----\nStrain Tension\n(-) (N)\n0.0 0.0\n1.0D-2, 4e5 # first\n\n0.02\t9e5\n";
         std::fs::write(&path, text).unwrap();
         assert_eq!(read(&path).unwrap(), [[0.0, 0.0], [0.01, 4e5], [0.02, 9e5]]);
+        std::fs::write(&path, "strain [%]; tension [kN]\n0;0\n1,0;400\n2;900,0\n").unwrap();
+        assert_eq!(read(&path).unwrap(), [[0.0, 0.0], [0.01, 4e5], [0.02, 9e5]]);
+        std::fs::write(&path, "strain tension\n(-) (lbf)\n0 0\n1 2\n").unwrap();
+        let unknown = read(&path).unwrap_err();
+        assert!(
+            unknown.contains("line 2: unknown unit \"lbf\""),
+            "{unknown}"
+        );
         std::fs::write(&path, "0 0\n0.1 five\n").unwrap();
         let problem = read(&path).unwrap_err();
         std::fs::remove_file(&path).unwrap();

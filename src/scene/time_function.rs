@@ -199,6 +199,8 @@ pub struct MotionFile {
     pub file: String,
     /// Its rows, filled in by the reader.
     pub rows: Vec<MotionRow>,
+    /// Its columns, separators and units, filled in by the reader.
+    pub columns: String,
 }
 
 /// x(t) = ramp(t)·Σ amplitude·sin(2π t/period + phase), per axis.
@@ -315,6 +317,7 @@ impl TryFrom<MotionText> for MotionPath {
             (Some(file), None) => Ok(MotionPath::File(MotionFile {
                 file,
                 rows: Vec::new(),
+                columns: String::new(),
             })),
             (None, Some(rows)) => Ok(MotionPath::Table(rows.iter().map(|row| row.0).collect())),
             (None, None) if !swings => {

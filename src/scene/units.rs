@@ -1,4 +1,6 @@
-//! Units of the scene's numbers, so that a message can say "expected a number [m]".
+//! Units of the scene's numbers, so that a message can say "expected a number [m]", and units in the headers of tables.
+
+use std::f64::consts::PI;
 
 /// (struct, key, unit) of every number and list of numbers in a scene.
 const UNITS: &[(&str, &str, &str)] = &[
@@ -93,9 +95,127 @@ pub(super) fn unit(owner: &str, key: &str) -> Option<&'static str> {
         .map(|(_, _, unit)| *unit)
 }
 
+/// What a column of a table measures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Quantity {
+    Time,
+    Length,
+    Angle,
+    Speed,
+    Force,
+    Number,
+}
+
+/// Units that the header of a table may have, and what one of them is in SI units; the first of each quantity is the SI unit.
+const HEADER_UNITS: &[(Quantity, &[&str], f64)] = &[
+    (Quantity::Time, &["s", "sec", "seconds"], 1.0),
+    (Quantity::Time, &["ms"], 1e-3),
+    (Quantity::Time, &["min"], 60.0),
+    (Quantity::Time, &["h"], 3600.0),
+    (Quantity::Length, &["m"], 1.0),
+    (Quantity::Length, &["mm"], 1e-3),
+    (Quantity::Length, &["cm"], 1e-2),
+    (Quantity::Length, &["km"], 1e3),
+    (Quantity::Length, &["ft"], 0.3048),
+    (Quantity::Length, &["in"], 0.0254),
+    (Quantity::Angle, &["rad", "radians"], 1.0),
+    (Quantity::Angle, &["deg", "degrees", "°"], PI / 180.0),
+    (Quantity::Angle, &["mrad"], 1e-3),
+    (Quantity::Speed, &["m/s"], 1.0),
+    (Quantity::Speed, &["cm/s"], 1e-2),
+    (Quantity::Speed, &["ft/s"], 0.3048),
+    (Quantity::Force, &["N"], 1.0),
+    (Quantity::Force, &["kN"], 1e3),
+    (Quantity::Force, &["MN"], 1e6),
+    (Quantity::Number, &["-", "1", "m/m"], 1.0),
+    (Quantity::Number, &["%"], 1e-2),
+];
+
+impl Quantity {
+    /// Its SI unit.
+    pub(super) fn si(self) -> &'static str {
+        self.units().next().map_or("-", |(names, _)| names[0])
+    }
+
+    fn units(self) -> impl Iterator<Item = (&'static [&'static str], f64)> {
+        let units = HEADER_UNITS.iter().filter(move |(of, ..)| *of == self);
+        units.map(|(_, names, factor)| (*names, *factor))
+    }
+}
+
+/// A unit of a header, with or without brackets, in SI units. Case counts only where it tells units apart.
+///
+/// # Errors
+/// Units that there are of the quantity.
+pub(super) fn factor(text: &str, quantity: Quantity) -> Result<f64, String> {
+    let unit = bare(text);
+    let find = |same: &dyn Fn(&str) -> bool| {
+        let mut units = quantity.units();
+        units.find(|(names, _)| names.iter().any(|name| same(name)))
+    };
+    // mN and MN are not the same, nor ms and Ms
+    let loose = |name: &str| {
+        let prefixed = name == "MN" || name == "ms" || name == "mm";
+        !prefixed && name.to_lowercase() == unit.to_lowercase()
+    };
+    let found = find(&|name| name == unit).or_else(|| find(&loose));
+    found.map(|(_, factor)| factor).ok_or_else(|| {
+        let known: Vec<&str> = quantity.units().map(|(names, _)| names[0]).collect();
+        format!(
+            "unknown unit {}: one of {} would be right",
+            super::rows::shown(unit),
+            known.join(", ")
+        )
+    })
+}
+
+/// The groups in square and round brackets of a heading, such as the units in `y [km] / x [km]`.
+pub(super) fn bracketed(heading: &str) -> Vec<&str> {
+    let groups = heading.split(['[', '(']).skip(1);
+    groups
+        .filter_map(|group| group.split([']', ')']).next())
+        .collect()
+}
+
+/// A unit without brackets.
+pub(super) fn bare(text: &str) -> &str {
+    text.trim()
+        .trim_matches(['[', ']', '(', ')', '{', '}'])
+        .trim()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn units_of_headers_are_read_in_brackets_and_without_and_others_are_refused() {
+        for (text, quantity, value) in [
+            ("[deg]", Quantity::Angle, PI / 180.0),
+            ("(DEG)", Quantity::Angle, PI / 180.0),
+            ("°", Quantity::Angle, PI / 180.0),
+            ("rad", Quantity::Angle, 1.0),
+            ("mm", Quantity::Length, 1e-3),
+            ("Km", Quantity::Length, 1e3),
+            ("ms", Quantity::Time, 1e-3),
+            ("kN", Quantity::Force, 1e3),
+            ("KN", Quantity::Force, 1e3),
+            ("MN", Quantity::Force, 1e6),
+            ("(-)", Quantity::Number, 1.0),
+        ] {
+            assert_eq!(factor(text, quantity), Ok(value), "{text}");
+        }
+        for (text, quantity) in [
+            ("mN", Quantity::Force),
+            ("Ms", Quantity::Time),
+            ("furlong", Quantity::Length),
+            ("deg", Quantity::Length),
+            ("", Quantity::Angle),
+        ] {
+            let problem = factor(text, quantity).unwrap_err();
+            assert!(problem.contains("would be right"), "{text}: {problem}");
+        }
+    }
 
     /// Lines of the body of `pub struct name` in the source.
     fn body(source: &'static str, name: &str) -> Option<&'static str> {

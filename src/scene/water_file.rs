@@ -4,6 +4,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 use std::path::Path;
 
 use super::input_file;
+use super::units::{self, Quantity};
 
 /// Most rows that are read.
 const ROWS_MAX: usize = 100_000;
@@ -17,7 +18,7 @@ const CURRENT_HEAD: usize = 3;
 /// The file, the line and what would be right.
 pub(super) fn components(path: &Path) -> Result<Vec<[f64; 4]>, String> {
     let mut components = Vec::new();
-    for (line, row) in rows(path, 0)? {
+    for (line, row) in rows(path, &text_of(path)?, 0)? {
         let wrong = |problem: &str| format!("{}, line {line}: {problem}", path.display());
         let (frequency, real, imaginary, direction) = match row.as_slice() {
             [frequency, real, imaginary] => (*frequency, *real, *imaginary, 0.0),
@@ -52,10 +53,12 @@ pub(super) fn components(path: &Path) -> Result<Vec<[f64; 4]>, String> {
 /// The file, the line and what would be right.
 pub(super) fn profile(path: &Path) -> Result<Vec<[f64; 3]>, String> {
     let mut profile = Vec::new();
-    for (line, row) in rows(path, CURRENT_HEAD)? {
+    let text = text_of(path)?;
+    let (above, flow) = profile_units(path, &text)?;
+    for (line, row) in rows(path, &text, CURRENT_HEAD)? {
         let wrong = |problem: &str| format!("{}, line {line}: {problem}", path.display());
         match row.as_slice() {
-            [z, x, y, 0.0] => profile.push([*z, *x, *y]),
+            [z, x, y, 0.0] => profile.push([above * z, flow * x, flow * y]),
             [_, _, _, _] => {
                 return Err(wrong(
                     "a profile that flows up or down is not modelled: write vz 0",
@@ -71,12 +74,35 @@ pub(super) fn profile(path: &Path) -> Result<Vec<[f64; 3]>, String> {
     Ok(profile)
 }
 
-/// Numbers of every line that has some, with the number of the line; the first `head` lines are skipped.
-fn rows(path: &Path, head: usize) -> Result<Vec<(usize, Vec<f64>)>, String> {
-    let name = path.display();
+/// The text of a file.
+fn text_of(path: &Path) -> Result<String, String> {
     let looked_for = " (it is looked for beside the scene)";
     let bytes = input_file::read_table(path, "a table of numbers", looked_for)?;
-    let text = String::from_utf8_lossy(&bytes);
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
+}
+
+/// Units of heights [m] and velocities [m/s], which stand in the last line of headings.
+fn profile_units(path: &Path, text: &str) -> Result<(f64, f64), String> {
+    let heading = text.lines().nth(CURRENT_HEAD - 1).unwrap_or_default();
+    let [above, flow @ ..] = &units::bracketed(heading)[..] else {
+        return Ok((1.0, 1.0));
+    };
+    let wrong = |problem: String| format!("{}, line {CURRENT_HEAD}: {problem}", path.display());
+    let of = |unit: &str, quantity| units::factor(unit, quantity).map_err(wrong);
+    if flow.len() != 3 {
+        return Ok((1.0, 1.0));
+    }
+    if flow.iter().any(|unit| *unit != flow[0]) {
+        return Err(wrong(
+            "the velocities have several units: one would be right".into(),
+        ));
+    }
+    Ok((of(above, Quantity::Length)?, of(flow[0], Quantity::Speed)?))
+}
+
+/// Numbers of every line that has some, with the number of the line; the first `head` lines are skipped.
+fn rows(path: &Path, text: &str, head: usize) -> Result<Vec<(usize, Vec<f64>)>, String> {
+    let name = path.display();
     let mut rows = Vec::new();
     for (index, line) in text.lines().enumerate().skip(head) {
         let content = line.split('#').next().unwrap_or_default();
@@ -143,6 +169,15 @@ mod tests {
         let text = format!("{head}-50.0 0.1 0.2 0\n0.0 1.0 0 0\n");
         let rows = of(&text, profile).unwrap();
         assert_eq!(rows, vec![[-50.0, 0.1, 0.2], [0.0, 1.0, 0.0]]);
+        let knots = head.replace("(m/s)", "(knots)");
+        let unknown = of(&format!("{knots}0.0 1.0 0 0\n"), profile).unwrap_err();
+        assert!(
+            unknown.contains("line 3: unknown unit \"knots\""),
+            "{unknown}"
+        );
+        let slow = head.replace("(m/s)", "(cm/s)");
+        let rows_slow = of(&format!("{slow}-50.0 10 20 0\n0.0 100 0 0\n"), profile).unwrap();
+        assert_eq!(rows_slow, vec![[-50.0, 0.1, 0.2], [0.0, 1.0, 0.0]]);
         let rising = of(&format!("{head}0 1 0 0.5\n"), profile).unwrap_err();
         assert!(
             rising.contains("line 4") && rising.contains("up or down"),

@@ -70,7 +70,7 @@ impl Scene {
     }
 
     /// Mass per unstretched length [kg/m]: the given one, else weight/gravity.
-    fn mass(&self, line_type: &LineType) -> f64 {
+    pub(in crate::scene) fn mass(&self, line_type: &LineType) -> f64 {
         let of_weight = || line_type.weight.map(|weight| weight / self.gravity);
         line_type.mass.or_else(of_weight).unwrap_or(0.0)
     }

@@ -1,7 +1,5 @@
 //! Waves.
 
-use std::f64::consts::TAU;
-
 use super::{Bounds, Findings, quantity};
 use crate::scene::{
     Integrator, LineModel, PointKind, RegularWave, Scene, Sea, SpectrumKind, WaveComponents, Waves,
@@ -199,26 +197,4 @@ fn check_lines(scene: &Scene, findings: &mut Findings) {
         );
         findings.say(at, problem);
     }
-}
-
-/// Height over length from which a wave breaks in deep water (Michell 1893) [-].
-const BREAKING_DEEP: f64 = 0.142;
-/// Height over depth from which a wave breaks in shallow water (McCowan 1894) [-].
-const BREAKING_SHALLOW: f64 = 0.78;
-
-/// What is said of waves that would break before they are so high; `None` of others.
-pub(in crate::scene) fn breaking(scene: &Scene, height: f64, period: f64) -> Option<String> {
-    let deep = BREAKING_DEEP * scene.gravity * period * period / TAU;
-    let limit = match &scene.seabed {
-        Some(bed) => deep.min(BREAKING_SHALLOW * bed.depth),
-        None => deep,
-    };
-    (height > limit).then(|| {
-        format!(
-            "a wave of {} and {} breaks: {} would be the highest, and linear waves are much lower still",
-            quantity(height, "m"),
-            quantity(period, "s"),
-            quantity((100.0 * limit).round() / 100.0, "m")
-        )
-    })
 }

@@ -1,18 +1,10 @@
 //! What is right in a deck but often meant otherwise.
 
-use std::f64::consts::PI;
-
 use super::deck::{Attachment, Deck, LineType, Property, Version};
 use super::sections::{Kind, Sections};
 use super::tables::columns_of;
+use crate::scene::plausibility::{DECK_DENSITY_MAX, dense};
 use crate::scene::rows::{Findings, compare_header};
-
-/// Density of steel [kg/m³].
-const STEEL: f64 = 7850.0;
-
-/// Steel of a chain over that of one straight bar of its links [-]: two bars side by side, bends and perhaps studs make
-/// somewhat more than three.
-const CHAIN: std::ops::Range<f64> = 2.7..4.0;
 
 /// BA [N s] below which a ratio without its minus sign is likelier.
 const RATIO_LIKE: f64 = 10.0;
@@ -86,24 +78,9 @@ fn chain_diameter(kind: &LineType, findings: &mut Findings) {
     if diameter <= 0.0 || mass <= 0.0 {
         return;
     }
-    let density = mass / (0.25 * PI * diameter * diameter);
-    let name = &kind.name.value;
-    let steel_diameter = (mass / (0.25 * PI * STEEL)).sqrt();
-    let as_steel = format!(
-        "Diam counts for buoyancy and drag as that of a cylinder of the line's volume ({steel_diameter:.4} m, were it of steel)"
-    );
-    let at = kind.diameter.span.start;
-    if CHAIN.contains(&(density / STEEL)) {
-        let text = format!(
-            "{name}: mass and Diam {diameter} m fit a chain whose bar has this diameter, for the density comes out as \
-             {density:.0} kg/m³, far from steel; {as_steel}"
-        );
-        findings.remark(at, text);
-    } else if density > 1.2 * STEEL {
-        let text = format!(
-            "{name}: mass and Diam {diameter} m make a density of {density:.0} kg/m³, more than steel; {as_steel}"
-        );
-        findings.remark(at, text);
+    if let Some(text) = dense(diameter, mass, DECK_DENSITY_MAX, "Diam") {
+        let text = format!("{}: {text}", kind.name.value);
+        findings.remark(kind.diameter.span.start, text);
     }
 }
 

@@ -22,7 +22,12 @@ pub(super) fn motion_in_words(motion: &MotionPath) -> String {
     };
     match motion {
         MotionPath::File(file) => follows(
-            format!("the {} rows of {}", file.rows.len(), file.file),
+            format!(
+                "the {} rows of {}, read as {},",
+                file.rows.len(),
+                file.file,
+                file.columns
+            ),
             &file.rows,
         ),
         MotionPath::Table(rows) => follows(format!("a table of {} rows", rows.len()), rows),

@@ -1,0 +1,481 @@
+//! Values that a scene may have but a mooring seldom has: most of them are slips of units. Each rule notes the key and the usual range.
+
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+use super::check::{number, quantity};
+use super::notes::{Note, chord, length, reference_position};
+use super::path::quoted;
+use super::{
+    Line, LineType, MotionPath, Point, PointKind, Scene, Sea, Strain, WaveComponents, Waves,
+};
+
+/// Density of water [kg/m³]: warm fresh water has 990, brine in tanks 1100.
+const WATER_DENSITY: [f64; 2] = [900.0, 1100.0];
+/// Gravity [m/s²]: 9.76 to 9.84 on Earth, and 10 by way of rounding.
+const GRAVITY: [f64; 2] = [9.0, 10.0];
+/// Speed of axial waves √(EA/m) [m/s]: 350 in a chain of a 1:50 model, 5200 in solid steel, 5700 in carbon fibre with its coat.
+const WAVE_SPEED: [f64; 2] = [300.0, 6000.0];
+/// Strain under the line's own weight [-]: steel bears 0.003, nylon breaks at 0.2 to 0.3.
+const WEIGHT_STRAIN: f64 = 0.2;
+/// Strain [-] beyond which ropes of polyester and steel break or yield.
+const STRAIN: f64 = 0.05;
+/// Strain between the ends [-] of lines at a free point, whose position is a first guess: the equilibrium shows theirs.
+const FIRST_GUESS_STRAIN: f64 = 0.5;
+/// Mass over volume of the diameter [kg/m³]: foam has 200, steel 7850, lead 11 340. The upper limit is the geometric mean of steel and of
+/// the bar's diameter of a chain, three times steel.
+const MASS_PER_VOLUME: [f64; 2] = [200.0, 14_000.0];
+/// Weight in water over volume of the diameter [kg/m³] of a line whose mass is not given, without sign: ropes that nearly float have 30.
+const EXCESS_MIN: f64 = 1.0;
+/// Density of steel [kg/m³].
+const STEEL: f64 = 7850.0;
+/// Density on decks [kg/m³] above which the diameter is unlikely to be that of the volume: steel with a margin for rounded numbers.
+pub(super) const DECK_DENSITY_MAX: f64 = 1.2 * STEEL;
+/// Steel of a chain over that of one straight bar of its links [-]: two bars side by side, bends and perhaps studs make
+/// somewhat more than three.
+const CHAIN: std::ops::Range<f64> = 2.7..4.0;
+/// Normal drag coefficient [-] from which it refers to the bar of a chain (2.4 on the bar, 1.3 on the volume-equivalent diameter): the
+/// diameter is then the bar's by intention, as in several published systems.
+const DRAG_ON_BAR: f64 = 1.8;
+/// Drag and added-mass coefficients [-]: 3.8 is measured in model chains.
+const COEFFICIENT_MAX: f64 = 5.0;
+/// Distance of a fairlead from its vessel's origin [m]: the longest vessel is 488 m long.
+const FAIRLEAD_DISTANCE: f64 = 300.0;
+/// Height over length from which a wave breaks in deep water (Michell 1893) [-].
+const BREAKING_DEEP: f64 = 0.142;
+/// Height over depth from which a wave breaks in shallow water (McCowan 1894) [-].
+const BREAKING_SHALLOW: f64 = 0.78;
+/// Height above the seabed, over the length of the line [-], below which an end is on the seabed.
+const ON_SEABED: f64 = 0.02;
+
+/// A rule: notes on what it finds.
+type Rule = fn(&Scene, &mut Vec<Note>);
+
+/// The rules, in the order of a scene.
+const RULES: [Rule; 11] = [
+    gravity,
+    water_density,
+    wave_steepness,
+    sea_angles,
+    line_type_properties,
+    point_coefficients,
+    fairlead_distance,
+    line_strain,
+    weight_strain,
+    swapped_ends,
+    motion_angles,
+];
+
+impl Scene {
+    /// Notes on values that are far from those of moorings, most of them slips of units.
+    pub fn plausibility(&self) -> Vec<Note> {
+        let mut notes = Vec::new();
+        RULES.iter().for_each(|rule| rule(self, &mut notes));
+        notes
+    }
+}
+
+fn say(notes: &mut Vec<Note>, at: impl Into<String>, text: impl Into<String>) {
+    notes.push(Note::new(at, text));
+}
+
+/// Whether a value lies outside a range.
+fn outside(value: f64, [lower, upper]: [f64; 2]) -> bool {
+    !(lower..=upper).contains(&value)
+}
+
+fn gravity(scene: &Scene, notes: &mut Vec<Note>) {
+    if scene.gravity != 0.0 && outside(scene.gravity, GRAVITY) {
+        let text = format!(
+            "{} is unusual: 9.80665 m/s² is usual, and 0 without gravity",
+            quantity(scene.gravity, "m/s²")
+        );
+        say(notes, "gravity", text);
+    }
+}
+
+fn water_density(scene: &Scene, notes: &mut Vec<Note>) {
+    if let Some(water) = &scene.water
+        && outside(water.density, WATER_DENSITY)
+    {
+        let text = format!(
+            "{} is unusual: 1000 to 1030 kg/m³ is usual",
+            quantity(water.density, "kg/m³")
+        );
+        say(notes, "water.density", text);
+    }
+}
+
+/// Key path of a sea.
+fn sea_path(waves: &Waves, index: usize) -> String {
+    match waves.seas.len() {
+        1 => "water.waves".to_string(),
+        _ => format!("water.waves[{index}]"),
+    }
+}
+
+fn seas(scene: &Scene) -> impl Iterator<Item = (String, &Sea)> {
+    let waves = scene.water.as_ref().and_then(|water| water.waves.as_ref());
+    let seas = waves.into_iter().flat_map(|waves| {
+        let seas = waves.seas.iter().enumerate();
+        seas.map(|(index, sea)| (sea_path(waves, index), sea))
+    });
+    seas
+}
+
+fn wave_steepness(scene: &Scene, notes: &mut Vec<Note>) {
+    for (at, sea) in seas(scene) {
+        let regular = sea.regular.as_ref().and_then(|wave| {
+            let height = 2.0 * wave.half_height()?;
+            Some((format!("{at}.regular"), height, wave.period))
+        });
+        let spectrum = sea.significant_height.zip(sea.peak_period);
+        let spectrum =
+            spectrum.map(|(height, period)| (format!("{at}.significant_height"), height, period));
+        let rows = match &sea.components {
+            Some(WaveComponents::Rows(rows)) => rows.as_slice(),
+            _ => &[],
+        };
+        let rows = rows
+            .iter()
+            .enumerate()
+            .map(|(row, [amplitude, period, ..])| {
+                (format!("{at}.components[{row}]"), 2.0 * amplitude, *period)
+            });
+        let steep = regular.into_iter().chain(spectrum).chain(rows);
+        let mut steep =
+            steep.filter_map(|(at, height, period)| Some((at, breaking(scene, height, period)?)));
+        if let Some((at, text)) = steep.next() {
+            say(notes, at, text);
+        }
+    }
+}
+
+/// What is said of a wave that would break before it is so high, from a seventh of its length on; `None` of others.
+fn breaking(scene: &Scene, height: f64, period: f64) -> Option<String> {
+    if scene.gravity <= 0.0 || period.is_nan() || period <= 0.0 {
+        return None;
+    }
+    let deep = scene.gravity * period * period / TAU; // length in deep water [m]
+    let limit = match &scene.seabed {
+        Some(seabed) => {
+            // Fenton & McKee 1990, within 2 %
+            let shortening = (TAU * seabed.depth / deep)
+                .powf(0.75)
+                .tanh()
+                .powf(2.0 / 3.0);
+            (BREAKING_DEEP * deep * shortening).min(BREAKING_SHALLOW * seabed.depth)
+        }
+        None => BREAKING_DEEP * deep,
+    };
+    (height > limit).then(|| {
+        format!(
+            "a wave of {} and {} breaks: {} would be the highest, and linear waves are much lower still",
+            quantity(height, "m"),
+            quantity(period, "s"),
+            quantity((100.0 * limit).round() / 100.0, "m")
+        )
+    })
+}
+
+/// What is said of an angle beyond a turn.
+fn degrees(angle: f64) -> String {
+    format!(
+        "{} is more than a turn of 6.283 rad: {} degrees are {:.4} rad",
+        quantity(angle, "rad"),
+        number(angle),
+        angle.to_radians()
+    )
+}
+
+fn sea_angles(scene: &Scene, notes: &mut Vec<Note>) {
+    for (at, sea) in seas(scene) {
+        let regular = sea.regular.iter().flat_map(|wave| {
+            [
+                (format!("{at}.regular.direction"), wave.direction),
+                (format!("{at}.regular.phase"), wave.phase),
+            ]
+        });
+        let mean = sea
+            .direction
+            .map(|angle| (format!("{at}.direction"), angle));
+        for (at, angle) in regular.chain(mean) {
+            if angle.abs() > TAU {
+                say(notes, at, degrees(angle));
+            }
+        }
+        if let Some(WaveComponents::Rows(rows)) = &sea.components {
+            let beyond = |row: &&[f64; 4]| row[2..].iter().any(|angle| angle.abs() > TAU);
+            if let Some(row) = rows.iter().find(beyond) {
+                let angle = if row[2].abs() > TAU { row[2] } else { row[3] };
+                say(notes, format!("{at}.components"), degrees(angle));
+            }
+        }
+    }
+}
+
+fn line_type_properties(scene: &Scene, notes: &mut Vec<Note>) {
+    for (name, line_type) in &scene.line_types {
+        let at = format!("line_types.{}", quoted(name));
+        // without water a scene is a bench test, of any material
+        if scene.water.is_some() {
+            wave_speed(scene, line_type, &at, notes);
+            mass_per_volume(scene, line_type, &at, notes);
+        }
+        for (key, value) in [
+            ("drag_normal", line_type.drag_normal),
+            ("drag_tangential", line_type.drag_tangential),
+            ("added_mass_normal", line_type.added_mass_normal),
+            ("added_mass_tangential", line_type.added_mass_tangential),
+        ] {
+            coefficient(format!("{at}.{key}"), value, notes);
+        }
+    }
+}
+
+fn coefficient(at: String, value: Option<f64>, notes: &mut Vec<Note>) {
+    if let Some(value) = value.filter(|value| outside(*value, [0.0, COEFFICIENT_MAX])) {
+        let text = format!("{} is unusual: 0 to 5 is usual", number(value));
+        say(notes, at, text);
+    }
+}
+
+/// Stiffness EA of a line type [N], of tables that of the last row, and its key.
+fn stiffness(line_type: &LineType) -> Option<(f64, &'static str)> {
+    let table = line_type.tension_strain.as_ref().and_then(|table| {
+        let [strain, tension] = table.rows.last()?;
+        (*strain > 0.0).then(|| (tension / strain, "tension_strain"))
+    });
+    let of = |key: &'static str| move |value: f64| (value, key);
+    let given = line_type.axial_stiffness.map(of("axial_stiffness"));
+    let slow = line_type.static_stiffness.map(of("static_stiffness"));
+    given.or(table).or(slow).filter(|(ea, _)| *ea > 0.0)
+}
+
+fn wave_speed(scene: &Scene, line_type: &LineType, at: &str, notes: &mut Vec<Note>) {
+    let mass = scene.mass(line_type);
+    let Some((ea, key)) = stiffness(line_type).filter(|_| mass > 0.0 && mass.is_finite()) else {
+        return;
+    };
+    let speed = (ea / mass).sqrt();
+    if outside(speed, WAVE_SPEED) {
+        let text = format!(
+            "EA of {ea:.3e} N and a mass of {} make axial waves travel at {speed:.0} m/s: 300 to 6000 m/s is usual, with EA in N and the mass in kg/m",
+            quantity(significant(mass), "kg/m")
+        );
+        say(notes, format!("{at}.{key}"), text);
+    }
+}
+
+/// A number with four digits.
+fn significant(value: f64) -> f64 {
+    format!("{value:.3e}").parse().unwrap_or(value)
+}
+
+fn mass_per_volume(scene: &Scene, line_type: &LineType, at: &str, notes: &mut Vec<Note>) {
+    let Some(diameter) = line_type.diameter.filter(|diameter| *diameter > 0.0) else {
+        return;
+    };
+    let at = format!("{at}.diameter");
+    let on_bar = line_type
+        .drag_normal
+        .is_some_and(|drag| drag >= DRAG_ON_BAR);
+    let mass = scene.mass(line_type);
+    let density = mass / (0.25 * PI * diameter * diameter);
+    if mass == 0.0 || !density.is_finite() {
+        return;
+    }
+    let light = match line_type.mass {
+        Some(_) => density < MASS_PER_VOLUME[0],
+        None => density.abs() < EXCESS_MIN,
+    };
+    if light {
+        let text = format!(
+            "a mass of {} and a diameter of {} make {density:.3} kg/m³: 200 to 12 000 kg/m³ is usual, with the diameter in m",
+            quantity(significant(mass), "kg/m"),
+            quantity(diameter, "m")
+        );
+        say(notes, at, text);
+    } else if let Some(text) = dense(diameter, mass, MASS_PER_VOLUME[1], "diameter")
+        && !on_bar
+    {
+        say(notes, at, text);
+    }
+}
+
+/// What is said of a diameter [m] and a mass [kg/m] that make a density above a limit [kg/m³]: the diameter counts as that of a cylinder
+/// of the line's volume, not that of a chain's bar.
+pub(super) fn dense(diameter: f64, mass: f64, limit: f64, key: &str) -> Option<String> {
+    let density = mass / (0.25 * PI * diameter * diameter);
+    if density <= limit {
+        return None;
+    }
+    let steel_diameter = (mass / (0.25 * PI * STEEL)).sqrt();
+    let as_steel = format!(
+        "{key} counts for buoyancy and drag as that of a cylinder of the line's volume ({steel_diameter:.4} m, were it of steel)"
+    );
+    Some(if CHAIN.contains(&(density / STEEL)) {
+        format!(
+            "mass and {key} {diameter} m fit a chain whose bar has this diameter, for the density comes out as {density:.0} kg/m³, far \
+             from steel; {as_steel}"
+        )
+    } else {
+        format!(
+            "mass and {key} {diameter} m make a density of {density:.0} kg/m³, more than steel; {as_steel}"
+        )
+    })
+}
+
+fn point_coefficients(scene: &Scene, notes: &mut Vec<Note>) {
+    for (i, point) in scene.points.iter().enumerate() {
+        coefficient(format!("points[{i}].added_mass"), point.added_mass, notes);
+    }
+}
+
+fn fairlead_distance(scene: &Scene, notes: &mut Vec<Note>) {
+    for (i, point) in scene.points.iter().enumerate() {
+        let [x, y, z] = point.position;
+        let distance = x.hypot(y).hypot(z);
+        if let Some(vessel) = &point.on
+            && distance > FAIRLEAD_DISTANCE
+        {
+            let text = format!(
+                "{distance:.0} m from the origin of {vessel}: positions of points on a vessel are in its own frame, usually within its size"
+            );
+            say(notes, format!("points[{i}].position"), text);
+        }
+    }
+}
+
+impl Scene {
+    /// Strain [-] beyond which a line is noted: 5 %, or where its tables of tension end; none where a measure of large strains is chosen.
+    pub fn usual_strain(&self, line: &Line) -> f64 {
+        let of_type = |line_type: &LineType| match (&line_type.tension_strain, line_type.strain) {
+            (_, Strain::Green | Strain::Logarithmic(_)) => f64::INFINITY,
+            (Some(table), _) => table.rows.last().map_or(STRAIN, |row| row[0].max(STRAIN)),
+            (None, Strain::Engineering) => STRAIN,
+        };
+        let types = line.sections.iter();
+        types
+            .filter_map(|section| self.line_types.get(&section.line_type))
+            .map(of_type)
+            .fold(STRAIN, f64::max)
+    }
+}
+
+fn line_strain(scene: &Scene, notes: &mut Vec<Note>) {
+    for (i, line) in scene.lines.iter().enumerate() {
+        let length = length(line);
+        let ends_here = |point: &Point| point.name == line.from || point.name == line.to;
+        let mut free = scene.points.iter().filter(|p| p.kind == PointKind::Free);
+        let strain_max = match free.any(ends_here) {
+            true => FIRST_GUESS_STRAIN.max(scene.usual_strain(line)),
+            false => scene.usual_strain(line),
+        };
+        if let Some(chord) = chord(scene, line)
+            && chord > (1.0 + strain_max) * length
+        {
+            let text = format!(
+                "its ends are {} m apart, and it is {} m long unstretched: it is strained by at least {:.0} %",
+                number(chord),
+                number(length),
+                100.0 * (chord / length - 1.0)
+            );
+            say(notes, format!("lines[{i}]"), text);
+        }
+    }
+}
+
+fn weight_strain(scene: &Scene, notes: &mut Vec<Note>) {
+    for (i, line) in scene.lines.iter().enumerate() {
+        if scene.usual_strain(line).is_infinite() {
+            continue;
+        }
+        let types = line.sections.iter().filter_map(|section| {
+            let line_type = scene.line_types.get(&section.line_type)?;
+            Some((line_type, scene.weight(line_type).abs() * section.length))
+        });
+        let weight: f64 = types.clone().map(|(_, weight)| weight).sum();
+        let softest = types
+            .filter_map(|(line_type, _)| stiffness(line_type))
+            .map(|(ea, _)| ea)
+            .fold(f64::INFINITY, f64::min);
+        if weight > WEIGHT_STRAIN * softest {
+            let text = format!(
+                "its weight of {weight:.3e} N strains it by up to {:.0} %, with EA {softest:.3e} N: less than 20 % is usual, with EA in N",
+                100.0 * weight / softest
+            );
+            say(notes, format!("lines[{i}]"), text);
+        }
+    }
+}
+
+/// A line runs from its anchor, end A, to its fairlead, end B: outputs and closed forms have their names by this.
+fn swapped_ends(scene: &Scene, notes: &mut Vec<Note>) {
+    let Some(seabed) = &scene.seabed else {
+        return;
+    };
+    let find = |name: &str| scene.points.iter().find(|point| point.name == name);
+    let moves = |point: &Point| point.kind == PointKind::Coupled;
+    for (i, line) in scene.lines.iter().enumerate() {
+        let (Some(a), Some(b)) = (find(&line.from), find(&line.to)) else {
+            continue;
+        };
+        let (Some(from), Some(to)) = (reference_position(scene, a), reference_position(scene, b))
+        else {
+            continue;
+        };
+        let lies = |[x, y, z]: [f64; 3]| z < seabed.lowest_at([x, y]) + ON_SEABED * length(line);
+        if b.kind == PointKind::Fixed && moves(a) && to[2] < from[2] && lies(to) && !lies(from) {
+            let text = format!(
+                "end B, {}, is on the seabed and end A, {}, is the one that moves: a line runs from its anchor to its fairlead, so that `tension_b` \
+                 is the fairlead's; here it is the anchor's",
+                line.to, line.from
+            );
+            say(notes, format!("lines[{i}].to"), text);
+        }
+    }
+}
+
+/// Angles of the scene's motion: greatest rotations, and phases.
+fn motion_angles(scene: &Scene, notes: &mut Vec<Note>) {
+    let of_points = scene
+        .points
+        .iter()
+        .enumerate()
+        .filter_map(|(i, point)| Some((format!("points[{i}].motion"), point.motion.as_ref()?)));
+    let of_run = scene.motion.iter();
+    let of_run = of_run.map(|(name, motion)| (format!("motion.{}", quoted(name)), motion));
+    for (at, motion) in of_points.chain(of_run) {
+        let greatest = motion.greatest();
+        for (axis, limit) in [(3, FRAC_PI_2), (4, FRAC_PI_2), (5, TAU)] {
+            let (name, angle) = (super::motion_file::AXES[axis], greatest[axis]);
+            if angle > limit {
+                let text = format!(
+                    "{name} reaches {}, {:.0} degrees: {} degrees are {:.4} rad",
+                    quantity(significant(angle), "rad"),
+                    angle.to_degrees(),
+                    number(significant(angle)),
+                    angle.to_radians()
+                );
+                let key = match motion {
+                    MotionPath::Harmonic(_) => format!("{at}.{name}"),
+                    MotionPath::File(_) => format!("{at}.file"),
+                    MotionPath::Table(_) => format!("{at}.table"),
+                };
+                say(notes, key, text);
+            }
+        }
+        if let MotionPath::Harmonic(harmonic) = motion {
+            for (name, sines) in harmonic.axes() {
+                let mut phases = sines.iter().filter_map(|sine| sine.get(2));
+                if let Some(phase) = phases.find(|phase| phase.abs() > TAU) {
+                    say(
+                        notes,
+                        format!("{at}.{name}"),
+                        format!("phase: {}", degrees(*phase)),
+                    );
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,122 @@
+//! Notes on what is likely a slip in a run: ends that jump, and lines that are strained beyond what lines bear.
+
+use nalgebra::Vector3;
+
+use super::Simulation;
+use crate::scene::{Note, Scene};
+
+/// Part of its unstretched length [-] that the end of a line may move by in one communication step.
+const JUMP: f64 = 0.1;
+
+/// Observes a simulation at its communication points; each note is given once.
+#[derive(Debug, Clone)]
+pub struct Watch {
+    lines: Vec<Watched>,
+    has_jumped: bool,
+}
+
+#[derive(Debug, Clone)]
+struct Watched {
+    /// Where its ends were at the last communication point [m].
+    ends: [Vector3<f64>; 2],
+    /// Strain that is noted [-]; infinite where it was noted, or where large strains are meant.
+    strain_max: f64,
+}
+
+impl Watch {
+    /// Begins to observe a simulation of a scene, in its present state.
+    pub fn new(scene: &Scene, simulation: &Simulation) -> Watch {
+        let lines = scene.lines.iter().enumerate();
+        let watched = lines.map(|(index, line)| Watched {
+            ends: ends(simulation, index),
+            strain_max: scene.usual_strain(line),
+        });
+        Watch {
+            lines: watched.collect(),
+            has_jumped: false,
+        }
+    }
+
+    /// Continues from a state that no step led to, such as one that was restored.
+    pub fn resume(&mut self, simulation: &Simulation) {
+        for (index, watched) in self.lines.iter_mut().enumerate() {
+            watched.ends = ends(simulation, index);
+        }
+    }
+
+    /// Notes on the present state that were not given before; nothing is allocated where there are none.
+    pub fn look(&mut self, simulation: &Simulation) -> Vec<Note> {
+        let mut notes = Vec::new();
+        for (index, watched) in self.lines.iter_mut().enumerate() {
+            let now = ends(simulation, index);
+            let before = std::mem::replace(&mut watched.ends, now);
+            if let Some(note) = jump(simulation, index, before, now).filter(|_| !self.has_jumped) {
+                self.has_jumped = true;
+                notes.push(note);
+            }
+            if watched.strain_max.is_finite() {
+                let strain = strain(simulation, index);
+                if strain > watched.strain_max {
+                    notes.push(strained(simulation, index, strain, watched.strain_max));
+                    watched.strain_max = f64::INFINITY;
+                }
+            }
+        }
+        notes
+    }
+}
+
+/// Positions of the points at the ends of a line [m].
+fn ends(simulation: &Simulation, line: usize) -> [Vector3<f64>; 2] {
+    let points = &simulation.snapshot.state.points;
+    simulation.model.lines[line]
+        .ends
+        .map(|point| points[point].position)
+}
+
+/// A note on an end that a host or a given path moved by a large part of the line in one step.
+fn jump(
+    simulation: &Simulation,
+    line: usize,
+    before: [Vector3<f64>; 2],
+    now: [Vector3<f64>; 2],
+) -> Option<Note> {
+    let (model, data) = (&simulation.model, &simulation.model.lines[line]);
+    let length = data.unstretched_length();
+    let moved = |end: usize| (now[end] - before[end]).norm();
+    let prescribed = |end: &usize| model.points[data.ends[*end]].free().is_none();
+    let mut jumps = [0, 1].into_iter().filter(prescribed);
+    let end = jumps.find(|end| moved(*end) > JUMP * length)?;
+    let text = format!(
+        "at t = {} s, {} has moved by {:.3} m in one communication step, more than a tenth of {}, which is {length:.6} m long: a path \
+         without jumps, or shorter steps, is usual; said once",
+        simulation.time(),
+        model.points[data.ends[end]].name,
+        moved(end),
+        data.name
+    );
+    Some(Note::new(format!("lines[{line}]"), text))
+}
+
+/// Greatest strain of a line's segments [-], without the one that a winch changes.
+fn strain(simulation: &Simulation, line: usize) -> f64 {
+    let data = &simulation.model.lines[line];
+    let nodes = &simulation.snapshot.state.lines[line].position;
+    let lengths = &data.segments.length;
+    let count = lengths.len() - usize::from(data.winch.is_some());
+    let pairs = nodes.windows(2).zip(lengths).take(count);
+    pairs
+        .map(|(pair, length)| (pair[1] - pair[0]).norm() / length - 1.0)
+        .fold(0.0, f64::max)
+}
+
+fn strained(simulation: &Simulation, line: usize, strain: f64, limit: f64) -> Note {
+    let text = format!(
+        "at t = {} s, {} is strained by {:.1} %: less than {:.0} % is usual, with EA in N and lengths in m; said once",
+        simulation.time(),
+        simulation.model.lines[line].name,
+        100.0 * strain,
+        100.0 * limit
+    );
+    Note::new(format!("lines[{line}]"), text)
+}
