@@ -68,13 +68,13 @@ fn passing(line: &Line, reel: Reel) -> f64 {
     density * reel.rate.powi(2) + nodes.mass_tangent[node] * reel.acceleration
 }
 
-/// Force [N] of the line on the point at one of its ends, in water that moves or rests.
+/// Force [N] of the line on the point at one of its ends, in water that moves or rests, with `moments` [N m] on its ends.
 pub fn end_force(
     line: &Line,
     state: &LineState,
     end: End,
     point: &PointState,
-    water: WaterAlong,
+    (water, moments): (WaterAlong, [Vector3<f64>; 2]),
     negative_tension: bool,
 ) -> Vector3<f64> {
     if state.parted[usize::from(end == End::B)] {
@@ -116,7 +116,8 @@ pub fn end_force(
     }
     force.z -= nodes.weight[node] + dry.weight;
     if line.bending.is_some() {
-        force += end_shear(line, [&state.position, &state.velocity], end, point);
+        let motion = [&state.position[..], &state.velocity];
+        force += end_shear(line, motion, end, point, moments);
     }
     if let Some(contact) = &nodes.contact {
         force += contact.push(node, state.position[node], point.velocity);
@@ -278,8 +279,8 @@ mod tests {
     }
 
     fn pull(model: &Model, state: &LineState, point: &PointState) -> Vector3<f64> {
-        let water = WaterAlong::default();
-        -end_force(&model.lines[0], state, End::B, point, water, false)
+        let loads = (WaterAlong::default(), [Vector3::zeros(); 2]);
+        -end_force(&model.lines[0], state, End::B, point, loads, false)
     }
 
     #[test]
