@@ -255,6 +255,124 @@ fn the_root_of_a_cantilever_feels_the_load_and_its_moment() {
     assert!((moments[0].curvature * EI / root - 1.0).abs() < 1e-12);
 }
 
+// ------------------------------------------------------------------ moments on free ends
+
+/// A weightless cantilever along x under a moment about y [N m] at its tip, in time.
+fn turned(moment: &str, elements: usize, solver: &'static str) -> Simulation {
+    let rod = Cantilever {
+        elements,
+        load: [0.0; 3],
+        clamp: [1.0, 0.0, 0.0],
+        solver,
+    };
+    let mut rod = rod.scene();
+    rod.points[1].force = None;
+    rod.points[1].moment = Some(toml::from_str(&format!("y = {moment}")).unwrap());
+    Simulation::new(&rod).unwrap()
+}
+
+#[test]
+fn a_moment_on_the_free_end_bends_a_cable_to_a_circle_at_second_order() {
+    // at large angles an end without torsion turns out of the plane, towards the axis of its moment
+    for angle in [0.3, 0.9, 1.5] {
+        let curvature = angle / LENGTH;
+        let errors = [10, 20, 40, 80].map(|elements| {
+            let rod = turned(&(curvature * EI).to_string(), elements, "");
+            let nodes = rod.bending(0).unwrap();
+            for node in &nodes {
+                let error = node.curvature / curvature - 1.0;
+                let step = angle / elements as f64;
+                assert!(error.abs() <= 0.3 * step * step, "{angle}: {error}");
+            }
+            let free = nodes.last().unwrap();
+            assert!((free.moment / (curvature * EI) - 1.0).abs() < 1e-9);
+            let [x, _, z] = tip(&rod);
+            let exact = [angle.sin() / curvature, (angle.cos() - 1.0) / curvature];
+            (1.0 / elements as f64, (x - exact[0]).hypot(z - exact[1]))
+        });
+        let order = order_of(&errors);
+        assert!(
+            (order - 2.0).abs() < 0.1,
+            "{angle}: order {order}, {errors:?}"
+        );
+    }
+}
+
+#[test]
+fn the_root_of_a_cantilever_feels_the_moment_on_its_tip_and_no_force() {
+    let rod = turned("2.0", 40, "");
+    let moment = rod.end_moment(0);
+    assert!((moment.y - 2.0).abs() < 2e-9, "{moment}");
+    for point in [0, 1] {
+        for force in rod.end_force(point) {
+            assert!(force.abs() < 1e-8, "{force} N");
+        }
+    }
+}
+
+#[test]
+fn a_cable_at_rest_under_an_end_moment_stays_there_in_every_integrator_that_bends_lines() {
+    for solver in [
+        "integrator = 'generalised_alpha'",
+        "integrator = 'bossak'",
+        "integrator = 'quasi_static'",
+        "",
+    ] {
+        let mut rod = turned("2.0", 20, solver);
+        let start = tip(&rod);
+        assert!(start[2] < -0.3 * LENGTH);
+        for _ in 0..20 {
+            rod.advance(0.05).unwrap();
+        }
+        for (now, then) in tip(&rod).into_iter().zip(start) {
+            assert!((now - then).abs() < 1e-8, "{solver}: {now}, {then}");
+        }
+    }
+}
+
+#[test]
+fn the_work_of_an_end_moment_is_in_the_ledger() {
+    for (solver, tolerance) in [
+        ("integrator = 'generalised_alpha'", 2e-3),
+        ("integrator = 'bossak'", 2e-3),
+        ("integrator = 'quasi_static'", 1e-3),
+    ] {
+        let mut rod = turned("{ ramp = [0.0, 0.0, 2.0, 2.0] }", 20, solver);
+        for _ in 0..400 {
+            rod.advance(0.005).unwrap();
+        }
+        let (given, error) = (rod.ledger().flow.given, rod.energy_error());
+        let bent = rod.energy().bending;
+        assert!(
+            bent > 0.5 * 2.0 * 2.0 * LENGTH / EI * 0.8,
+            "{solver}: {bent} J"
+        );
+        assert!(given > 0.9 * bent, "{solver}: {given} of {bent} J");
+        assert!(
+            error.abs() < tolerance * given,
+            "{solver}: {error} of {given} J"
+        );
+    }
+}
+
+#[test]
+fn the_part_of_a_moment_along_a_cable_does_nothing_and_check_says_so() {
+    let mut rod = Cantilever {
+        elements: 10,
+        load: [0.0; 3],
+        clamp: [1.0, 0.0, 0.0],
+        solver: "",
+    }
+    .scene();
+    rod.points[1].force = None;
+    rod.points[1].moment = Some(toml::from_str("x = 2.0").unwrap());
+    assert!(rod.in_words().replace("\n", " ").contains("no torsion"));
+    let rod = Simulation::new(&rod).unwrap();
+    let [x, y, z] = tip(&rod);
+    assert!((x - LENGTH).abs() < 1e-9 && y.abs() < 1e-9 && z.abs() < 1e-9);
+    assert_eq!(rod.bending(0).unwrap().last().unwrap().moment, 0.0);
+}
+
 /// A column clamped at its foot buckles at π²EI/(4L²).
 #[test]
 fn a_column_stands_below_its_euler_load_and_bends_above() {

@@ -3,7 +3,7 @@
 //! Held:  E = Σ ½ vᵀM v + Σ EA·W(ε)·L + Σ ½B(|κb| − k₀)² + Σ w z + Σ C  over free nodes, segments that carry force, joints, free
 //!        points and segments out of the water, C being the energy of the buoyancy that these lack, by kind in [`Energy`].
 //! Given: the work of the held ends on the line, −∫ (T q + S)·V + M·Ω dt with the shear S of lines that bend and the moment M on
-//!        clamps that turn, and of point loads; the work Σ f·u dt of the drag f on the way of the water u; the work of the water that
+//!        clamps that turn, of point loads, and of moments on the ends of lines that bend; the work Σ f·u dt of the drag f on the way of the water u; the work of the water that
 //!        waves accelerate, and of the buoyancy by which a wave exceeds the still water at a free point.
 //! Lost:  drag at the velocity through the water, axial, bending and mass damping, and what the seabed takes (its springs give
 //!        some of it back). The added mass of a free point or node that dips into the water brings ½ v² of what joins it, which counts

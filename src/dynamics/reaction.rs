@@ -74,13 +74,13 @@ fn passing(line: &Line, reel: Reel) -> f64 {
     density * reel.rate.powi(2) + nodes.mass_tangent[node] * reel.acceleration
 }
 
-/// Force [N] of the line on the point at one of its ends, in water that moves or rests.
+/// Force [N] of the line on the point at one of its ends, in water that moves or rests, with `moments` [N m] on its ends.
 pub fn end_force(
     line: &Line,
     state: &LineState,
     end: End,
     point: &PointState,
-    water: WaterAlong,
+    (water, moments): (WaterAlong, [Vector3<f64>; 2]),
     negative_tension: bool,
 ) -> Vector3<f64> {
     if state.parted[usize::from(end == End::B)] {
@@ -115,6 +115,7 @@ pub fn end_force(
         point,
         water,
         dry,
+        moments,
     };
     let pull =
         tension(line, state, segment, negative_tension) * inward + half.shear(state, segment);
@@ -145,6 +146,8 @@ struct HalfNode<'a> {
     point: &'a PointState,
     water: WaterAlong<'a>,
     dry: Dry,
+    /// On the line's ends [N m].
+    moments: [Vector3<f64>; 2],
 }
 
 impl HalfNode<'_> {
@@ -154,7 +157,8 @@ impl HalfNode<'_> {
             return Vector3::zeros();
         }
         let nodes = [&*state.position, &*state.velocity];
-        shear(self.line, nodes, segment, (self.end, self.point))
+        let at = (self.end, self.point);
+        shear(self.line, nodes, segment, at, self.moments)
     }
 
     /// What acts on it beside its weight and the bed [N] were a part `dry` of it [-] out of the water: inertia, water and damping in
@@ -305,8 +309,8 @@ mod tests {
     }
 
     fn pull(model: &Model, state: &LineState, point: &PointState) -> Vector3<f64> {
-        let water = WaterAlong::default();
-        -end_force(&model.lines[0], state, End::B, point, water, false)
+        let loads = (WaterAlong::default(), [Vector3::zeros(); 2]);
+        -end_force(&model.lines[0], state, End::B, point, loads, false)
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::{End, Line, PointState};
+use super::{End, Line, Model, PointState};
 use crate::physics::bending::{Direction, Turn, compression_max, in_series};
 
 /// Lumped bending stiffness: every node is a joint between the segments that meet there, a clamped end one between the clamp and
@@ -99,6 +99,23 @@ impl Line {
         self.bending
             .as_ref()
             .map_or(0.0, |bending| bending.compression_max[segment])
+    }
+}
+
+impl Model {
+    /// Moments on ends A and B of a line that bends at time `t` [s], in [N m]: those of its free points, where it bends up to them.
+    pub fn end_moments(&self, line: &Line, t: f64) -> [Vector3<f64>; 2] {
+        let Some(bending) = &line.bending else {
+            return [Vector3::zeros(); 2];
+        };
+        let last = bending.stiffness.len() - 1;
+        [0, 1].map(|side| {
+            let bends = bending.stiffness[side * last] > 0.0;
+            match bends && bending.clamps[side].is_none() {
+                true => self.points[line.ends[side]].moment_at(t),
+                false => Vector3::zeros(),
+            }
+        })
     }
 }
 

@@ -101,7 +101,7 @@ pub struct Point {
     pub role: Role,
     /// Load in time.
     pub load: Option<PointForce>,
-    /// Moment in time, on the ends of beams.
+    /// Moment in time, on the end of a line that bends.
     pub moment: Option<PointMoment>,
     /// (line, end) pairs that meet here.
     pub attached: Vec<(usize, End)>,

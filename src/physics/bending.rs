@@ -13,6 +13,14 @@
 //! Two directions that meet where stiffness changes bend in series: 1/B = l₁/(2EI₁) + l₂/(2EI₂), and nothing where one of them is
 //! a hinge. A clamp is a direction that is held.
 //!
+//! A moment M on an end of a line turns its last segment, of the end-to-end vector e and direction q: a turn δθ = q × δq across the line takes the work
+//! M·δθ = (M × q)·δe/l, and so M is a couple of forces ± f on the segment's two nodes,
+//!
+//! f = M × e/|e|²,   ∂f/∂e = ([M]ₓ − 2 (M × q) qᵀ)/l²,
+//!
+//! which bends a line by M/EI there, with an error in (κl)². The part of M along the line does no work, for nothing here resists torsion; its
+//! ∂f/∂e is the unsymmetric one, that of a load without a potential.
+//!
 //! Also here: EI of a solid round section and of a bundle of loose fibres, and the compression a segment can carry. A bundle of N equal loose strands of
 //! area A/N, d' = d/√N each, that slide on each other: N·(A/N)²E/4π = EI/N. The other reading, EI/N², is one strand of them alone.
 //! A chain of segments of length l buckles in its shortest wave, a zigzag, at 4EI/l²: the bending energy of a zigzag of
@@ -20,7 +28,7 @@
 //! so a segment carries no more; without EI that is the rope that does not push at all.
 //!
 //! Source: Bergou, Wardetzky, Robinson, Audoly & Grinspun (2008), Discrete Elastic Rods, ACM Trans. Graph. 27(3), eq. 1 and
-//! section 4.2 (κb and the bending energy); second derivatives, series stiffness, fibres and zigzag derived here. The limit of compression is what
+//! section 4.2 (κb and the bending energy); second derivatives, series stiffness, couple, fibres and zigzag derived here. The limit of compression is what
 //! OrcaFlex offers as "segment Euler load", there π²EI/l².
 //! Valid for slender lines, l̄ well below the radius of curvature, and for φ < 180°, where the energy is infinite. A rest curvature has a
 //! size but no direction, as in a line that is free to twist: its force is not smooth where the line is straight.
@@ -225,6 +233,27 @@ impl Turn {
     }
 }
 
+/// A moment on an end of a line, as forces on the two nodes of its segment.
+#[derive(Debug, Clone, Copy)]
+pub struct Couple {
+    /// On the second node, and against it on the first [N].
+    pub force: Vector3<f64>,
+    /// ∂f/∂e [N/m].
+    pub slope: Matrix3<f64>,
+}
+
+impl Couple {
+    /// Of a moment M [N m] on a segment of the end-to-end vector e [m].
+    pub fn new(moment: Vector3<f64>, chord: Vector3<f64>) -> Couple {
+        let per_square = 1.0 / chord.norm_squared().max(f64::MIN_POSITIVE);
+        let turned = per_square * moment.cross(&chord);
+        Couple {
+            force: turned,
+            slope: per_square * (moment.cross_matrix() - 2.0 * turned * chord.transpose()),
+        }
+    }
+}
+
 /// P = I − q qᵀ.
 #[inline(always)]
 fn across(direction: &Direction) -> Matrix3<f64> {
@@ -316,6 +345,32 @@ mod tests {
                 close(difference(1, 0), column(&exact.mixed));
                 close(difference(1, 1), column(&exact.second));
             }
+        }
+    }
+
+    #[test]
+    fn a_couple_does_the_work_of_its_moment_and_none_about_the_line() {
+        let (moment, e) = (Vector3::new(3.0, -1.0, 2.0), PAIRS[0][0]);
+        let couple = Couple::new(moment, e);
+        let spin = Vector3::new(0.2, 0.5, -0.4);
+        let across = spin - spin.dot(&e) / e.norm_squared() * e;
+        let work = couple.force.dot(&across.cross(&e));
+        assert_relative_eq!(work, moment.dot(&across), max_relative = 1e-14);
+        assert!(couple.force.dot(&e).abs() < 1e-14);
+        assert!(Couple::new(e, e).force.norm() < 1e-15);
+        let h = 1e-6;
+        for axis in 0..3 {
+            let force = |h: f64| {
+                let mut e = e;
+                e[axis] += h;
+                Couple::new(moment, e).force
+            };
+            let difference = (force(h) - force(-h)) / (2.0 * h);
+            assert_relative_eq!(
+                couple.slope.column(axis).into_owned(),
+                difference,
+                epsilon = 1e-8
+            );
         }
     }
 

@@ -15,6 +15,7 @@ mod drive;
 mod error;
 mod from_deck;
 pub mod input_file;
+pub mod keys;
 mod map;
 mod moordyn;
 mod motion_file;
@@ -26,6 +27,7 @@ mod plausibility;
 mod read;
 mod rows;
 mod seabed;
+mod slips;
 mod surface;
 mod table_ends;
 mod tension_strain;
@@ -216,6 +218,12 @@ pub struct LineType {
 }
 
 impl LineType {
+    /// Whether there is a bending stiffness: as given, else that of the solid section.
+    pub fn bends(&self) -> bool {
+        let of_section = self.solid_section.is_some();
+        self.bending_stiffness.map_or(of_section, |ei| ei > 0.0)
+    }
+
     /// Whether nothing is said of the axial damping, so that segments have [`NUMERICAL_DAMPING_RATIO`]; beams then have none.
     pub fn leaves_damping_open(&self) -> bool {
         self.axial_damping.is_none()
@@ -307,7 +315,7 @@ pub struct Point {
     pub added_mass: Option<f64>,
     /// Point load in time.
     pub force: Option<PointForce>,
-    /// Moment in time, on the end of a beam at a free point.
+    /// Moment in time, on the end of a line that bends at a free point.
     pub moment: Option<PointMoment>,
     /// Its prescribed displacement in time, `kind = "prescribed"` only.
     pub motion: Option<MotionPath>,
@@ -609,6 +617,11 @@ impl Point {
 }
 
 impl Line {
+    /// Whether one of its ends is at the point of a name.
+    pub fn joins(&self, point: &str) -> bool {
+        self.from == point || self.to == point
+    }
+
     /// A line between two points that starts in equilibrium.
     pub fn between(
         name: impl Into<String>,

@@ -27,7 +27,6 @@ const SYNONYMS: [[&str; 2]; 6] = [
 /// Most rows that are read: a day at 100 Hz.
 const ROWS_MAX: usize = 8_640_000;
 
-
 /// What a motion file moves.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Moves {

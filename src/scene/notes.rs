@@ -8,7 +8,9 @@ use nalgebra::Vector3;
 use super::check::{coefficients, number, quantity};
 use super::path::quoted;
 use super::table_ends;
-use super::{Integrator, Line, LineModel, LineType, Point, PointKind, Scene, Waves};
+use super::{
+    Integrator, Line, LineModel, LineType, Point, PointKind, Reconstruction, Scene, Waves,
+};
 use crate::math::attitude::Attitude;
 
 /// A remark on a scene that can be used as it is.
@@ -131,6 +133,11 @@ fn note_line_type(scene: &Scene, name: &str, line_type: &LineType, notes: &mut V
         let text = format!("without [water], {} change nothing", given.join(", "));
         say(notes, at.clone(), text);
     }
+    let resting = idle_at_rest(scene, line_type);
+    if scene.solver.integrator == Integrator::QuasiStatic && !resting.is_empty() {
+        let text = format!("quasi-static: {} change nothing", resting.join(", "));
+        say(notes, at.clone(), text);
+    }
     if scene.water.is_some() && line_type.drag_normal.is_none() {
         let flows = scene.water.as_ref().is_some_and(|w| w.current.is_some());
         let waves = scene.water.as_ref().is_some_and(|w| w.waves.is_some());
@@ -147,6 +154,39 @@ fn note_line_type(scene: &Scene, name: &str, line_type: &LineType, notes: &mut V
         let text = "lighter than the water: it floats up from the seabed";
         say(notes, at, text);
     }
+}
+
+/// Keys of a line type that act on what moves, and so on nothing at rest.
+fn idle_at_rest(scene: &Scene, line_type: &LineType) -> Vec<&'static str> {
+    let water = scene.water.as_ref();
+    let still = water.is_some_and(|water| water.current.is_none());
+    let wet = water.is_some();
+    let keys = [
+        ("axial_damping", line_type.axial_damping.is_some()),
+        ("damping_ratio", line_type.damping_ratio.is_some()),
+        ("rayleigh", line_type.rayleigh.is_some()),
+        ("dynamic_stiffness", line_type.dynamic_stiffness.is_some()),
+        ("static_damping", line_type.static_damping.is_some()),
+        ("dynamic_damping", line_type.dynamic_damping.is_some()),
+        ("rotary_inertia", line_type.rotary_inertia.is_some()),
+        ("drag_normal", still && line_type.drag_normal.is_some()),
+        (
+            "drag_tangential",
+            still && line_type.drag_tangential.is_some(),
+        ),
+        (
+            "added_mass_normal",
+            wet && line_type.added_mass_normal.is_some(),
+        ),
+        (
+            "added_mass_tangential",
+            wet && line_type.added_mass_tangential.is_some(),
+        ),
+    ];
+    keys.into_iter()
+        .filter(|(_, given)| *given)
+        .map(|(key, _)| key)
+        .collect()
 }
 
 /// Where a point is in the reference configuration, global axes [m]; `None` on a vessel that there is not.
@@ -229,6 +269,20 @@ fn note_points(scene: &Scene, notes: &mut Vec<Note>) {
             let text = "without [water], a drag area changes nothing";
             say(notes, format!("{at}.drag_area"), text);
         }
+        if point.added_mass.is_some() && scene.water.is_none() {
+            let text = "without [water], an added mass changes nothing";
+            say(notes, format!("{at}.added_mass"), text);
+        }
+        let rests = scene.solver.integrator == Integrator::QuasiStatic && scene.water.is_some();
+        if point.added_mass.is_some() && rests {
+            let text = "quasi-static: an added mass changes nothing";
+            say(notes, format!("{at}.added_mass"), text);
+        }
+        let flows = scene.water.as_ref().is_some_and(|w| w.current.is_some());
+        if point.drag_area.is_some() && rests && !flows {
+            let text = "quasi-static, without a current: a drag area changes nothing";
+            say(notes, format!("{at}.drag_area"), text);
+        }
         if point.added_mass.is_some() && point.volume.is_none() {
             let text = "without a volume, an added mass is none: it is a part of the mass of displaced water";
             say(notes, format!("{at}.added_mass"), text);
@@ -254,6 +308,18 @@ fn note_waves(scene: &Scene, waves: &Waves, notes: &mut Vec<Note>) {
 }
 
 fn note_whole(scene: &Scene, notes: &mut Vec<Note>) {
+    let mut points = scene.points.iter();
+    if scene.solver.input_reconstruction != Reconstruction::Smooth
+        && scene.vessels.is_empty()
+        && points.all(|point| point.kind != PointKind::Coupled)
+    {
+        let text = "nothing is coupled to a host: `input_reconstruction` changes nothing";
+        say(notes, "solver.input_reconstruction", text);
+    }
+    if scene.solver.negative_tension && scene.solver.integrator == Integrator::QuasiStatic {
+        let text = "quasi-static: without damping `negative_tension` changes nothing";
+        say(notes, "solver.negative_tension", text);
+    }
     if scene.gravity == 0.0 {
         say(notes, "gravity", "0: lines and points are weightless");
     }

@@ -11,6 +11,7 @@ use toml::de::{DeTable, DeValue};
 use super::notes::Note;
 use super::places::Places;
 use super::rows::{Findings, MISTAKES_MAX};
+use super::slips::slip;
 use super::{
     LoadError, MotionPath, Scene, SceneError, WaveComponents, bathymetry_file, document,
     input_file, map, moordyn, motion_file, path, tension_strain, water_file,
@@ -415,10 +416,12 @@ fn syntax_mistake(text: &str, error: &toml::de::Error) -> SceneError {
             span: Some(span),
         };
     }
+    let span = error.span().unwrap_or(0..0);
+    let said = slip(text, span.start).unwrap_or_else(|| error.message().replace('\n', ", "));
     SceneError {
         at: String::new(),
-        problem: format!("not TOML: {}", error.message().replace('\n', ", ")),
-        span: Some(error.span().unwrap_or(0..0)),
+        problem: format!("not TOML: {said}"),
+        span: Some(span),
     }
 }
 

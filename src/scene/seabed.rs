@@ -159,7 +159,7 @@ impl<'de> Deserialize<'de> for Friction {
 /// The table that tells the directions apart.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, rename = "Friction")]
-struct Directions {
+pub(super) struct Directions {
     transverse: f64,
     axial: f64,
 }

@@ -284,7 +284,7 @@ fn turning(rows: &[MotionRow]) -> bool {
     deny_unknown_fields,
     expecting = "{ x = [[amplitude, period], …], z = …, ramp = … }, { table = [[t, x, y, z], …] } or { file = \"motion.csv\" }"
 )]
-struct MotionText {
+pub(super) struct MotionText {
     file: Option<String>,
     table: Option<Vec<TableRow>>,
     x: Option<Vec<Vec<f64>>>,

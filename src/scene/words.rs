@@ -203,6 +203,11 @@ impl Scene {
         }
         if let Some(moment) = &point.moment {
             write!(said, ", {}", beam::moment_in_words(moment)).expect("a String takes all");
+            let mut lines = self.lines.iter();
+            if lines.any(|line| bending::bends(self, line) && line.joins(&point.name)) {
+                said +=
+                    ", of which the part along the line does nothing, for a cable has no torsion";
+            }
         }
         if let Some(motion) = &point.motion {
             write!(said, ", {}", motion_in_words(motion)).expect("a String takes all");

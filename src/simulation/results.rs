@@ -232,7 +232,10 @@ impl Simulation {
             &state.lines[line],
             end,
             &point,
-            model.water_along(state, line, state.time),
+            (
+                model.water_along(state, line, state.time),
+                model.end_moments(&model.lines[line], state.time),
+            ),
             negative,
         )
     }
@@ -328,7 +331,8 @@ impl Simulation {
         }
     }
 
-    /// Curvature [1/m] and bending moment [N m] at every node, where the line has bending stiffness; zero at hinges and pinned ends.
+    /// Curvature [1/m] and bending moment [N m] at every node, where the line has bending stiffness; zero at hinges and at pinned ends
+    /// without a moment on them.
     pub fn bending(&self, line: usize) -> Option<Vec<NodeBending>> {
         let (data, state) = (&self.model.lines[line], &self.snapshot.state);
         if let Some(view) = BeamView::of(data, &state.lines[line]) {
@@ -349,7 +353,21 @@ impl Simulation {
                 moment: bending.joint[i] * (bend - bending.rest[i]).abs(),
             })
         };
-        Some((0..nodes.len()).map(at).collect())
+        let mut found: Vec<_> = (0..nodes.len()).map(at).collect();
+        let last = nodes.len() - 1;
+        let moments = self.model.end_moments(data, state.time);
+        for (moment, (node, segment)) in moments.into_iter().zip([(0, 0), (last, last - 1)]) {
+            if moment != Vector3::zeros() {
+                let chord = nodes[segment + 1] - nodes[segment];
+                let along = chord.try_normalize(0.0).unwrap_or_else(Vector3::zeros);
+                let across = (moment - moment.dot(&along) * along).norm();
+                found[node] = NodeBending {
+                    curvature: across / bending.stiffness[segment],
+                    moment: across,
+                };
+            }
+        }
+        Some(found)
     }
 
     /// Nodes of a line with their tensions, from end A to end B; those that a winch has not paid out are at the winch.

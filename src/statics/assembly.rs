@@ -37,8 +37,9 @@ use crate::model::{End, Model, Network, PointState, State};
 use crate::physics::fading_damper::damper_reach;
 use crate::statics::catenary::Catenary;
 
+use bending::Parts;
 pub(crate) use bending::{BendingWork, rates};
-pub use bending::{end_moment, end_shear, joint_damping_power, shear};
+pub use bending::{end_moment, end_moment_power, end_shear, joint_damping_power, shear};
 pub(crate) use line::{LineWork, node_tangent};
 use places::{Place, blank_state};
 pub(crate) use places::{copy_network, place_ends};
@@ -194,6 +195,15 @@ impl Workspace {
         for &index in &network.lines {
             let (line, shape) = (&model.lines[index], &state.lines[index]);
             self.lines[index].assemble_static(line, shape, line.clamps(&state.points), case);
+            if line.bending.is_some() && case.bends {
+                let moments = model.end_moments(line, case.time);
+                let parts = Parts {
+                    force: case.load,
+                    position: case.load,
+                    ..Parts::AT_REST
+                };
+                self.lines[index].add_end_moments(&shape.position, moments, &parts);
+            }
         }
         let stream = model.stream(case.time);
         for_free_points(model, network, |index, free| {
@@ -229,6 +239,11 @@ impl Workspace {
                 weights,
                 negative_tension,
             );
+            if line.bending.is_some() {
+                let parts = Parts::of_step(weights, TANGENT);
+                let moments = model.end_moments(line, t);
+                self.lines[index].add_end_moments(&line_state.position, moments, &parts);
+            }
         }
         for_free_points(model, network, |index, free| {
             let point = &mut self.points[index];
@@ -504,6 +519,11 @@ pub fn end_force(
         &weights,
         negative_tension,
     );
+    if line_model.bending.is_some() {
+        let moments = model.end_moments(line_model, state.time);
+        let parts = Parts::of_step(&weights, false);
+        line_work.add_end_moments(&line_state.position, moments, &parts);
+    }
     -line_work.residual[line_model.end_node(end)]
 }
 

@@ -256,6 +256,11 @@ impl<'a> Problem<'a> {
         for_free_points(model, network, |index, free| {
             force += free.weight_max() + model.points[index].load_at(time).norm();
         });
+        for line in lines.clone().filter(|line| line.bending.is_some()) {
+            let moments = model.end_moments(line, time);
+            force +=
+                moments.map(|moment| moment.norm()).iter().sum::<f64>() / line.unstretched_length();
+        }
         Problem {
             model,
             network,

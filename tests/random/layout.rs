@@ -320,21 +320,28 @@ impl Layout<'_> {
         if self.plan.resists == Resists::Stretch {
             return;
         }
-        if dice.chance(0.2) {
-            line.rest_shape = RestShape::Initial;
-        }
+        let lies = dice.chance(0.2);
         let bends = |section: Option<&Section>| {
             let kind = section.and_then(|section| self.scene.line_types.get(&section.line_type));
             kind.is_some_and(|kind: &LineType| {
                 kind.solid_section.is_some() || kind.bending_stiffness > Some(0.0)
             })
         };
+        if lies && line.sections.iter().any(|section| bends(Some(section))) {
+            line.rest_shape = RestShape::Initial;
+        }
         let mut clamp = |section: Option<&Section>| {
             let towards = chord.normalize() + Vector3::from([0.0; 3].map(|_| dice.within(0.3)));
             (bends(section) && dice.chance(0.4)).then(|| towards.into())
         };
         line.clamped_a = clamp(line.sections.first());
         line.clamped_b = clamp(line.sections.last());
+        let turned = |name: &str| {
+            let mut points = self.scene.points.iter();
+            points.any(|point| point.name == name && point.moment.is_some())
+        };
+        line.clamped_a = line.clamped_a.filter(|_| !turned(&line.from));
+        line.clamped_b = line.clamped_b.filter(|_| !turned(&line.to));
     }
 
     /// What lets go of a line, or pays it out.

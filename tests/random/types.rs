@@ -120,7 +120,8 @@ fn bending(dice: &mut Dice, plan: &Plan, kind: &mut LineType, diameter: f64) {
         Resists::Bending if dice.chance(0.3) => {
             kind.solid_section = Some(solid(dice, diameter, axial));
             kind.fibres = dice.maybe(0.5, |dice| dice.whole(1, 200));
-            kind.fibre_law = dice.pick(&[FibreLaw::Linear, FibreLaw::Squared]);
+            let law = dice.pick(&[FibreLaw::Linear, FibreLaw::Squared]);
+            kind.fibre_law = kind.fibres.map_or(FibreLaw::Linear, |_| law);
         }
         Resists::Bending => {
             let stiffness = (rod * dice.log(1e-4, 1.0)).clamp(1e-15, 1e15);

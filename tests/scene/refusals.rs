@@ -1,6 +1,6 @@
 //! Every mistake once: what is written instead, and what is said about it.
 
-use crate::{Refusal, assert_refused};
+use crate::{Refusal, SCENE, assert_refused, said};
 
 #[test]
 fn a_slip_in_syntax_a_key_or_a_type_is_refused_with_what_is_accepted() {
@@ -11,12 +11,22 @@ const SLIPS: &[Refusal] = &[
     (
         "gravity = 9.81",
         "gravity = 9.81 m",
-        "2:11: not TOML: string values must be quoted, expected literal string",
+        "2:11: not TOML: `9.81 m` has a unit: numbers stand alone",
+    ),
+    (
+        "gravity = 9.81",
+        "gravity = 9,81",
+        "2:12: not TOML: `9,81` has a decimal comma: numbers have a point, 9.81",
+    ),
+    (
+        "kind = \"fixed\"",
+        "kind = fixed",
+        "19:8: not TOML: `fixed` is a word without quotes: write \"fixed\"",
     ),
     (
         "gravity = 9.81",
         "gravity =",
-        "2:10: not TOML: string values must be quoted, expected literal string",
+        "2:10: not TOML: no value stands after `gravity =`",
     ),
     (
         "mass = 100.0",
@@ -500,7 +510,7 @@ const POINTS: &[Refusal] = &[
     (
         "fairlead = { x = [[1.0, 10.0]] }",
         "farlead = { x = [[1.0, 10.0]] }",
-        "44:11: motion.farlead: no coupled point or vessel is called `farlead`, did you mean `fairlead`? (coupled points and vessels: fairlead)",
+        "44:11: motion.farlead: no vessel or coupled point is called `farlead`; there is `fairlead`",
     ),
     (
         "fairlead = { x = [[1.0, 10.0]] }",
@@ -563,7 +573,7 @@ const STIFF: &[Refusal] = &[
     (
         "kind = \"fixed\"",
         "kind = \"fixed\"\nmoment = { x = 3.0 }",
-        "20:10: points[0].moment: a moment turns the end of a beam at a free point, and this one is fixed",
+        "20:10: points[0].moment: a moment turns the end of a line that bends at a free point, and this one is fixed",
     ),
 ];
 
@@ -843,3 +853,27 @@ const SETTINGS: &[Refusal] = &[
         "48:12: output.interval: 60 s in steps of 1e-6 s is more than 1e7 steps: give a longer interval or a shorter duration",
     ),
 ];
+
+#[test]
+fn a_motion_under_a_name_that_nothing_has_says_what_there_is() {
+    let text = SCENE
+        .replace("kind = \"coupled\"", "kind = \"coupled\"\non = \"semi\"")
+        .replace(
+            "fairlead = { x = [[1.0, 10.0]] }",
+            "platform = { x = [[1.0, 10.0]], pitch = [[0.1, 10.0]] }",
+        )
+        + "[[vessels]]\nname = \"semi\"\n";
+    let wanted =
+        "motion.platform: no vessel or coupled point is called `platform`; there is `semi`";
+    assert!(said(&text).ends_with(wanted), "{}", said(&text));
+}
+
+#[test]
+fn a_moment_that_nothing_takes_is_refused() {
+    let moment = "kind = \"free\"\nmoment = { y = 3.0 }";
+    let loose = SCENE.replace("kind = \"free\"", moment);
+    assert!(said(&loose).contains("points[1].moment: no line that bends ends at this point"));
+    let stiff = "axial_stiffness = 1.0e8\nbending_stiffness = 1.0e3";
+    let two = loose.replace("axial_stiffness = 1.0e8", stiff);
+    assert!(said(&two).contains("`line1` and `line2` both bend and end at this point"));
+}

@@ -10,7 +10,7 @@ use crate::model::{
     ClosedForm, End, FreePoint, Line, LineState, Model, Network, PointState, State,
 };
 use crate::statics::assembly::rubbing::{resting_node, resting_point};
-use crate::statics::assembly::{end_moment, end_shear};
+use crate::statics::assembly::{end_moment, end_moment_power, end_shear};
 use crate::statics::equilibrium::current::drag_at_rest;
 
 /// Work given to and lost by a network at rest before and after a step between two times [s], in [J].
@@ -22,7 +22,8 @@ pub fn work_at_rest(
 ) -> Flow {
     let mut flow = Flow::default();
     for &index in &network.lines {
-        flow.given += end_work(model, index, states) + current_work(model, index, states, times);
+        flow.given +=
+            end_work(model, index, states, times) + current_work(model, index, states, times);
         flow.lost -= bed_work(&model.lines[index], states.map(|state| &state.lines[index]));
     }
     for &index in &network.free_points {
@@ -50,18 +51,30 @@ fn work(forces: [Vector3<f64>; 2], [from, to]: [Vector3<f64>; 2]) -> f64 {
     0.5 * (forces[0] + forces[1]).dot(&(to - from))
 }
 
-/// Work [J] of the held points at the ends of a line on it.
-fn end_work(model: &Model, index: usize, states: [&State; 2]) -> f64 {
+/// Work [J] of the held points at the ends of a line on it, and of the moments on free ones.
+fn end_work(model: &Model, index: usize, states: [&State; 2], times: [f64; 2]) -> f64 {
     let line = &model.lines[index];
-    let mut given = 0.0;
+    let moments = times.map(|t| model.end_moments(line, t));
+    let shapes = states.map(|state| &state.lines[index].position);
+    let way = |i: usize| shapes[1][i] - shapes[0][i];
+    let mean = |k: usize| 0.5 * end_moment_power(shapes[k], moments[k], way);
+    let mut given = mean(0) + mean(1);
     for (end, point) in [End::A, End::B].into_iter().zip(line.ends) {
         if model.points[point].free().is_some() {
             continue;
         }
         let points = states.map(|state| &state.points[point]);
-        let force =
-            |state: &State| force_of_line(line, &state.lines[index], end, &state.points[point]);
-        given -= work(states.map(force), points.map(|at| at.position));
+        let force = |k: usize| {
+            let state = states[k];
+            force_of_line(
+                line,
+                &state.lines[index],
+                end,
+                &state.points[point],
+                moments[k],
+            )
+        };
+        given -= work([0, 1].map(force), points.map(|at| at.position));
         if line.bending.is_some() {
             let moment = |state: &State| {
                 end_moment(
@@ -162,7 +175,13 @@ fn point_bed_work(model: &Model, free: &FreePoint, points: [&PointState; 2]) -> 
 
 /// Force [N] of a line on a held point, without the weight of its own half node, whose energy is not held, unless the line is a
 /// closed-form catenary.
-fn force_of_line(line: &Line, shape: &LineState, end: End, point: &PointState) -> Vector3<f64> {
+fn force_of_line(
+    line: &Line,
+    shape: &LineState,
+    end: End,
+    point: &PointState,
+    moments: [Vector3<f64>; 2],
+) -> Vector3<f64> {
     if let Some(closed_form) = &shape.closed_form {
         return closed_form.end_force[usize::from(end == End::B)];
     }
@@ -179,7 +198,7 @@ fn force_of_line(line: &Line, shape: &LineState, end: End, point: &PointState) -
         force.z -= surface.node(line.end_node(end), &shape.position).weight;
     }
     if line.bending.is_some() {
-        force += end_shear(line, [&shape.position, &[]], end, point);
+        force += end_shear(line, [&shape.position, &[]], end, point, moments);
     }
     force
 }

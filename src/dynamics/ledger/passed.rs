@@ -25,7 +25,8 @@ use crate::physics::morison::{DragCoefficients, drag};
 use crate::physics::seabed::ContactCoefficients;
 use crate::statics::assembly::rubbing::{resting_node, resting_point};
 use crate::statics::assembly::{
-    Workspace, end_moment, end_shear, joint_damping_power, rates, stretch_step, stretched,
+    Workspace, end_moment, end_moment_power, end_shear, joint_damping_power, rates, stretch_step,
+    stretched,
 };
 
 /// A step that an implicit integrator has made.
@@ -403,16 +404,18 @@ impl Side<'_> {
         power
     }
 
-    /// Power of the shear at held ends, and that of the joints' dampers [W].
+    /// Power of the shear at held ends and of the moments on free ones, and that of the joints' dampers [W].
     fn bending_power(&self, index: usize) -> Flow {
         let (model, line) = (self.model, &self.model.lines[index]);
         let shape = &self.state.lines[index];
+        let moments = model.end_moments(line, self.t);
         let given = |(end, point): (End, usize)| {
             let at = &self.state.points[point];
             match model.points[point].free() {
                 Some(_) => 0.0,
                 None => {
-                    let shear = end_shear(line, [&shape.position, &shape.velocity], end, at);
+                    let motion = [&shape.position[..], &shape.velocity];
+                    let shear = end_shear(line, motion, end, at, moments);
                     let moment = end_moment(line, &shape.position, end, at);
                     let mean = self.passed.velocity_mean(index, line.end_node(end));
                     -shear.dot(&mean) - moment.dot(&self.passed.spin_mean(point))
@@ -421,8 +424,10 @@ impl Side<'_> {
         };
         let clamps = line.clamps(&self.state.points);
         let passing = |node| self.passed.velocity_mean(index, node);
+        let ends = [End::A, End::B].into_iter().zip(line.ends);
         Flow {
-            given: [End::A, End::B].into_iter().zip(line.ends).map(given).sum(),
+            given: ends.map(given).sum::<f64>()
+                + end_moment_power(&shape.position, moments, passing),
             lost: joint_damping_power(line, shape, clamps, passing),
             numerical: 0.0,
         }

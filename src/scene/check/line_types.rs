@@ -3,7 +3,7 @@
 use super::{Bounds, Findings, check_name, quantity};
 use crate::scene::path::quoted;
 use crate::scene::{
-    Integrator, LineModel, LineType, Rayleigh, Scene, SolidSection, Strain, TensionStrain,
+    FibreLaw, Integrator, LineModel, LineType, Rayleigh, Scene, SolidSection, Strain, TensionStrain,
 };
 
 pub(super) fn check(scene: &Scene, findings: &mut Findings) {
@@ -299,7 +299,7 @@ fn check_solid_section(findings: &mut Findings, at: &str, section: &SolidSection
 /// Bending of cables, and what beams need beside it.
 fn check_bending(findings: &mut Findings, at: &str, line_type: &LineType, scene: &Scene) {
     check_stiffnesses(findings, at, line_type);
-    let bends = line_type.solid_section.is_some() || line_type.bending_stiffness > Some(0.0);
+    let bends = line_type.bends();
     match line_type.fibres {
         Some(0) => findings.say(
             format!("{at}.fibres"),
@@ -308,6 +308,10 @@ fn check_bending(findings: &mut Findings, at: &str, line_type: &LineType, scene:
         Some(_) if !bends => findings.say(
             format!("{at}.fibres"),
             "fibres share a bending stiffness: give `bending_stiffness` [N m²] or `solid_section` too",
+        ),
+        None if line_type.fibre_law != FibreLaw::Linear => findings.say(
+            format!("{at}.fibre_law"),
+            "the law divides the bending stiffness by the number of `fibres`: give that too, or leave the law out",
         ),
         _ => {}
     }

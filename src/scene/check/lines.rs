@@ -1,7 +1,9 @@
 //! Lines, their sections, their start, and whether anything holds them.
 
 use super::{Bounds, Findings, quantity, unknown};
-use crate::scene::{InitialShape, Integrator, Line, LineModel, PointKind, Scene, Section};
+use crate::scene::{
+    InitialShape, Integrator, Line, LineModel, LineType, PointKind, RestShape, Scene, Section,
+};
 
 /// Most elements of a section.
 const ELEMENTS_MAX: usize = 100_000;
@@ -121,11 +123,7 @@ fn check_parting(findings: &mut Findings, at: &str, line: &Line, scene: &Scene) 
     }
     let bends = |section: &Section| {
         let line_type = scene.line_types.get(&section.line_type);
-        line_type.is_some_and(|kind| {
-            kind.model == LineModel::Beam
-                || kind.solid_section.is_some()
-                || kind.bending_stiffness > Some(0.0)
-        })
+        line_type.is_some_and(|kind| kind.model == LineModel::Beam || kind.bends())
     };
     if line.sections.iter().any(bends) {
         findings.say(
@@ -216,6 +214,14 @@ fn check_nodes(
 
 /// Directions of clamped ends, which only lines that bend can have.
 fn check_clamps(findings: &mut Findings, at: &str, line: &Line, scene: &Scene) {
+    let of_section = |section: &Section| scene.line_types.get(&section.line_type);
+    let mut types = line.sections.iter().map(of_section);
+    if line.rest_shape != RestShape::Straight
+        && types.all(|line_type| line_type.is_some_and(|line_type| !line_type.bends()))
+    {
+        let problem = "every shape of a perfectly flexible line bends nothing: leave it out, or give a type of the line a `bending_stiffness` [N m²]";
+        findings.say(format!("{at}.rest_shape"), problem);
+    }
     let sections = [line.sections.first(), line.sections.last()];
     let ends = [("clamped_a", line.clamped_a), ("clamped_b", line.clamped_b)];
     for ((key, direction), section) in ends.into_iter().zip(sections) {
@@ -230,10 +236,7 @@ fn check_clamps(findings: &mut Findings, at: &str, line: &Line, scene: &Scene) {
             findings.say(at.clone(), "[0, 0, 0] is no direction");
         }
         let line_type = section.and_then(|section| scene.line_types.get(&section.line_type));
-        let bends = line_type.is_none_or(|line_type| {
-            line_type.bending_stiffness > Some(0.0) || line_type.solid_section.is_some()
-        });
-        if !bends {
+        if !line_type.is_none_or(LineType::bends) {
             let problem = "a perfectly flexible line cannot be clamped: give its type a `bending_stiffness` [N m²]";
             findings.say(at, problem);
         }

@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 use super::time::{Load, check_load_in_time, check_motion};
 use super::{Bounds, Findings, check_names, quantity, unknown};
 use crate::scene::path::quoted;
-use crate::scene::{Point, PointKind, Scene, TimeFunction};
+use crate::scene::{LineType, Point, PointKind, Scene, Section, TimeFunction};
 
 pub(super) fn check(scene: &Scene, findings: &mut Findings) {
     let mut taken = BTreeMap::new();
@@ -22,7 +22,7 @@ pub(super) fn check(scene: &Scene, findings: &mut Findings) {
         check_place(findings, &at, point, scene);
         check_freedom(findings, &at, point);
         check_carrier(findings, &at, point, scene);
-        check_load(findings, &at, point);
+        check_load(findings, &at, point, scene);
         check_own_motion(findings, &at, point);
     }
     check_unconnected(scene, findings);
@@ -146,7 +146,7 @@ fn check_carrier(findings: &mut Findings, at: &str, point: &Point, scene: &Scene
     }
 }
 
-fn check_load(findings: &mut Findings, at: &str, point: &Point) {
+fn check_load(findings: &mut Findings, at: &str, point: &Point, scene: &Scene) {
     if let Some(force) = &point.force {
         let axes = [&force.x, &force.y, &force.z];
         check_axes(findings, &format!("{at}.force"), axes, Load::FORCE);
@@ -155,13 +155,48 @@ fn check_load(findings: &mut Findings, at: &str, point: &Point) {
         let at = format!("{at}.moment");
         let axes = [&moment.x, &moment.y, &moment.z];
         check_axes(findings, &at, axes, Load::MOMENT);
-        if point.kind != PointKind::Free {
-            let problem = format!(
-                "a moment turns the end of a beam at a free point, and this one is {}",
-                kind_in_words(point.kind)
-            );
+        if let Some(problem) = untaken(point, scene) {
             findings.say(at, problem);
         }
+    }
+}
+
+/// Why nothing at a point takes its moment.
+fn untaken(point: &Point, scene: &Scene) -> Option<String> {
+    if point.kind != PointKind::Free {
+        return Some(format!(
+            "a moment turns the end of a line that bends at a free point, and this one is {}",
+            kind_in_words(point.kind)
+        ));
+    }
+    let bends = |section: Option<&Section>| {
+        let line_type = section.and_then(|section| scene.line_types.get(&section.line_type));
+        line_type.is_some_and(LineType::bends)
+    };
+    let ends = scene.lines.iter().flat_map(|line| {
+        let [first, last] = [line.sections.first(), line.sections.last()];
+        [
+            (line, "A", &line.from, first, line.clamped_a),
+            (line, "B", &line.to, last, line.clamped_b),
+        ]
+    });
+    let mut taking = ends.filter(|(line, _, name, section, _)| {
+        **name == point.name && (scene.is_beam(line) || bends(*section))
+    });
+    match (taking.next(), taking.next()) {
+        (None, _) => Some(
+            "no line that bends ends at this point: give the type of one a `bending_stiffness` [N m²], or leave the moment out"
+                .into(),
+        ),
+        (Some((one, ..)), Some((other, ..))) => Some(format!(
+            "`{}` and `{}` both bend and end at this point, each free to turn: a moment turns the end of one line, so put it on a point of that alone",
+            one.name, other.name
+        )),
+        (Some((line, end, .., Some(_))), None) => Some(format!(
+            "end {end} of `{}` is clamped, and does not turn: leave out the clamp or the moment",
+            line.name
+        )),
+        (Some(_), None) => None,
     }
 }
 
@@ -233,16 +268,12 @@ fn check_run_motion(scene: &Scene, findings: &mut Findings) {
             check_motion(findings, &at, motion);
             continue;
         }
-        if motion.turns() {
-            let problem = "a point does not turn: only vessels have `roll`, `pitch` and `yaw`";
-            findings.say(at.clone(), problem);
-        }
         match scene.points.iter().find(|point| point.name == *name) {
             None => {
-                let driven = coupled.clone().chain(vessels.clone());
-                let what = "coupled point or vessel";
-                let problem = unknown(what, "coupled points and vessels", name, driven);
-                findings.say(at.clone(), problem);
+                findings.say(
+                    at.clone(),
+                    nothing_driven(name, coupled.clone(), vessels.clone()),
+                );
             }
             Some(point) if point.kind != PointKind::Coupled => {
                 let problem = format!(
@@ -258,8 +289,34 @@ fn check_run_motion(scene: &Scene, findings: &mut Findings) {
                     format!("`{name}` rides on the vessel `{vessel}`: write the motion of that");
                 findings.say(at.clone(), problem);
             }
+            Some(_) if motion.turns() => {
+                let problem = "a point does not turn: only vessels have `roll`, `pitch` and `yaw`";
+                findings.say(at.clone(), problem);
+            }
             Some(_) => {}
         }
         check_motion(findings, &at, motion);
+    }
+}
+
+/// "no vessel or coupled point is called `platform`; there is `semi`", with the near one first.
+fn nothing_driven<'a>(
+    name: &str,
+    coupled: impl Iterator<Item = &'a str> + Clone,
+    vessels: impl Iterator<Item = &'a str> + Clone,
+) -> String {
+    let known: Vec<&str> = vessels.chain(coupled).collect();
+    let what = "vessel or coupled point";
+    match known[..] {
+        [] => {
+            format!("no {what} is called `{name}`, and there is none: nothing is moved by a host")
+        }
+        [one] => format!("no {what} is called `{name}`; there is `{one}`"),
+        _ => unknown(
+            what,
+            "vessels and coupled points",
+            name,
+            known.iter().copied(),
+        ),
     }
 }

@@ -98,10 +98,7 @@ fn unserved(line: &Line, scene: &Scene) -> Option<&'static str> {
         return Some("a line on a winch starts \"static\" or \"straight\"");
     }
     let other = |kind: &LineType| {
-        kind.model == LineModel::Beam
-            || kind.solid_section.is_some()
-            || kind.bending_stiffness > Some(0.0)
-            || kind.dynamic_stiffness.is_some()
+        kind.model == LineModel::Beam || kind.bends() || kind.dynamic_stiffness.is_some()
     };
     let mut sections = line.sections.iter();
     sections

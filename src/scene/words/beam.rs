@@ -70,7 +70,7 @@ impl Scene {
     }
 }
 
-/// A moment on the end of a beam.
+/// A moment on the end of a line that bends.
 pub(super) fn moment_in_words(moment: &PointMoment) -> String {
     let axes = [("x", &moment.x), ("y", &moment.y), ("z", &moment.z)];
     let said: Vec<String> = axes

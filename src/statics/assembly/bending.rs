@@ -2,7 +2,7 @@
 //!
 //! A joint at node i has the slopes g₁ and g₂ of its energy with the vectors e₁ and e₂ of its two segments, and so
 //! R_{i−1} −= g₁, R_i += g₁ − g₂, R_{i+1} += g₂; J likewise from the second derivatives. A clamp takes the place of a segment
-//! that nothing moves.
+//! that nothing moves. A moment on an end is a couple of forces ± f on the nodes of its segment, and its slope a part of that segment's block.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -10,7 +10,7 @@ use super::{LineWork, Weights};
 use crate::math::block_tridiagonal::{Ends, Pivots};
 use crate::math::pentadiagonal::{Blocks, Chain};
 use crate::model::{Bending, End, Line, LineState, PointState, joint};
-use crate::physics::bending::Hessian;
+use crate::physics::bending::{Couple, Hessian};
 
 /// Scratch of a line that bends.
 #[derive(Debug, Clone)]
@@ -136,6 +136,25 @@ impl LineWork {
         }
     }
 
+    /// Adds the moments [N m] on the ends of a line that bends; with no slope where the tangent must not be indefinite.
+    pub(super) fn add_end_moments(
+        &mut self,
+        position: &[Vector3<f64>],
+        moments: [Vector3<f64>; 2],
+        parts: &Parts,
+    ) {
+        for (couple, i) in couples(position, moments) {
+            self.residual[i] += parts.force * couple.force;
+            self.residual[i + 1] -= parts.force * couple.force;
+            if parts.tangent && !parts.convex {
+                let slope = parts.position * couple.slope;
+                self.diagonal[i] -= slope;
+                self.diagonal[i + 1] -= slope;
+                self.coupling[i] += slope;
+            }
+        }
+    }
+
     /// Removes the nodes between the ends from the system; `None` if a pivot cannot be taken.
     pub(super) fn eliminate(&mut self, first_free: bool, pivots: Pivots) -> Option<Ends> {
         let Some(work) = self.bending.as_mut().filter(|work| work.active) else {
@@ -203,6 +222,29 @@ fn moving<'a>(bending: &'a Bending, velocity: &[Vector3<f64>]) -> Option<&'a [f6
     damping.filter(|_| !velocity.is_empty())
 }
 
+/// The couples of moments [N m] on the ends of a line, with their segments.
+fn couples(
+    position: &[Vector3<f64>],
+    moments: [Vector3<f64>; 2],
+) -> impl Iterator<Item = (Couple, usize)> {
+    let segments = [0, position.len() - 2];
+    let acting = moments.into_iter().zip(segments);
+    acting
+        .filter(|(moment, _)| *moment != Vector3::zeros())
+        .map(|(moment, i)| (Couple::new(moment, position[i + 1] - position[i]), i))
+}
+
+/// Power [W], or work [J], of moments [N m] on the ends of a line whose nodes pass at velocities [m/s], or by ways [m].
+pub fn end_moment_power(
+    position: &[Vector3<f64>],
+    moments: [Vector3<f64>; 2],
+    passing: impl Fn(usize) -> Vector3<f64>,
+) -> f64 {
+    couples(position, moments)
+        .map(|(couple, i)| couple.force.dot(&(passing(i + 1) - passing(i))))
+        .sum()
+}
+
 /// Rates [m/s] of the vectors that meet at a node, those up to `last` moving as `velocity` tells; zero where a clamp or nothing moves.
 pub(crate) fn rates(
     node: usize,
@@ -251,27 +293,31 @@ pub fn joint_damping_power(
     damping.iter().enumerate().map(power).sum()
 }
 
-/// Shear [N] of a line at its end: the force of the joints there and at the next node on the `point`. Without velocities nothing damps.
+/// Force [N] of the joints at and next to an end of a line, and of the moments [N m] on its ends, on the point there: the shear. Without
+/// velocities nothing damps.
 pub fn end_shear(
     line: &Line,
     nodes: [&[Vector3<f64>]; 2],
     end: End,
     point: &PointState,
+    moments: [Vector3<f64>; 2],
 ) -> Vector3<f64> {
     let segment = match end {
         End::A => 0,
         End::B => line.segment_count() - 1,
     };
-    shear(line, nodes, segment, (end, point))
+    shear(line, nodes, segment, (end, point), moments)
 }
 
-/// Shear [N] of segment `i` of a line: the force of the joints at both of its nodes on the one towards `end`, where the line may be clamped
-/// as the `point` is turned; the other end is taken as pinned. Without velocities nothing damps.
+/// Shear [N] of segment `i` of a line: the force of the joints at both of its nodes, and of the moments [N m] on the line's ends, on the
+/// node towards `end`, where the line may be clamped as the `point` is turned; the other end is taken as pinned. Without velocities nothing
+/// damps.
 pub fn shear(
     line: &Line,
     [position, velocity]: [&[Vector3<f64>]; 2],
     i: usize,
     (end, point): (End, &PointState),
+    moments: [Vector3<f64>; 2],
 ) -> Vector3<f64> {
     let Some(bending) = &line.bending else {
         return Vector3::zeros();
@@ -283,6 +329,11 @@ pub fn shear(
         End::B => [None, clamp],
     };
     let mut force = Vector3::zeros();
+    for (couple, segment) in couples(position, moments) {
+        if segment == i {
+            force -= couple.force;
+        }
+    }
     for (node, side) in [(i, 1), (i + 1, 0)] {
         let open = node == 0 && clamps[0].is_none() || node == last && clamps[1].is_none();
         if open || bending.joint[node] == 0.0 {

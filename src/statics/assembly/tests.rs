@@ -227,6 +227,28 @@ fn the_stiffness_is_the_slope_of_the_residual_where_lines_bend_push_and_are_clam
 }
 
 #[test]
+fn the_stiffness_is_the_slope_of_the_residual_where_a_moment_turns_an_end() {
+    let mut model = network("", "mass = 2.0\ndiameter = 0.05");
+    stiffen(&mut model);
+    let about = |moment| Some(crate::scene::TimeFunction::Constant(moment));
+    model.points[1].moment = Some(crate::scene::PointMoment {
+        x: None,
+        y: about(40.0),
+        z: about(-25.0),
+    });
+    let mut state = random_state(&model, 0.5);
+    for nodes in &mut state.lines {
+        nodes.velocity.fill(Vector3::zeros());
+        // in the plane across the moment, so that it has a potential and the blocks of J are symmetric
+        nodes.position.iter_mut().for_each(|r| {
+            let axis = Vector3::new(0.0, 40.0, -25.0).normalize();
+            *r -= r.dot(&axis) * axis;
+        });
+    }
+    assert_tangent(&model, &state, Varied::Position);
+}
+
+#[test]
 fn the_damping_is_the_slope_of_the_residual_where_lines_bend() {
     let mut model = network("", "mass = 2.0\ndiameter = 0.05");
     stiffen(&mut model);

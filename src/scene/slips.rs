@@ -1,0 +1,237 @@
+//! Slips of the pen in TOML, by what they look like: words without quotes, decimal commas, units after numbers.
+
+/// Returns what a line of text that is no TOML looks like, and what would be right, where it is a slip known here.
+pub(super) fn slip(text: &str, place: usize) -> Option<String> {
+    let start = text[..place.min(text.len())]
+        .rfind('\n')
+        .map_or(0, |end| end + 1);
+    let line = text[start..].lines().next()?;
+    if let Some(quote) = line.chars().find(|c| "“”„‘’«»".contains(*c)) {
+        return Some(format!(
+            "{quote} is a typographic quotation mark: words stand in straight ones, as in name = \"anchor\""
+        ));
+    }
+    if line.trim_start().starts_with('[') && !line.contains(['=', ',']) {
+        return None; // the header of a table
+    }
+    let tokens = tokens(line);
+    tokens
+        .iter()
+        .find_map(odd)
+        .or_else(|| unjoined(line, &tokens))
+}
+
+/// What stands between two delimiters of a line, outside of quotes.
+struct Token<'t> {
+    text: &'t str,
+    /// The delimiters on both sides; a space at the ends of the line.
+    before: char,
+    after: char,
+    /// The token before.
+    last: &'t str,
+    /// Whether the innermost bracket is a square one.
+    in_array: bool,
+}
+
+fn tokens(line: &str) -> Vec<Token<'_>> {
+    let (mut found, mut open, mut quote) = (Vec::new(), Vec::new(), None);
+    let (mut start, mut before, mut last) = (0, ' ', "");
+    let ends = line.char_indices().chain([(line.len(), ' ')]);
+    for (place, c) in ends {
+        match (quote, c) {
+            (Some(other), _) if place < line.len() => {
+                if c == other {
+                    quote = None;
+                }
+                continue;
+            }
+            (None, '"' | '\'') => {
+                quote = Some(c);
+                continue;
+            }
+            (_, '=' | ',' | '[' | ']' | '{' | '}' | '#') => {}
+            _ if place == line.len() => {}
+            _ => continue,
+        }
+        let text = line[start..place].trim();
+        found.push(Token {
+            text,
+            before,
+            after: c,
+            last,
+            in_array: open.last() == Some(&'['),
+        });
+        match c {
+            '[' | '{' => open.push(c),
+            ']' | '}' => drop(open.pop()),
+            '#' => break,
+            _ => {}
+        }
+        (start, before, last) = (place + c.len_utf8(), c, text);
+    }
+    found
+}
+
+/// What is odd about a value.
+fn odd(token: &Token) -> Option<String> {
+    let text = token.text;
+    let is_number =
+        |text: &str| text.parse::<f64>().is_ok() && text.contains(|c: char| c.is_ascii_digit());
+    if token.before == ','
+        && !token.in_array
+        && token.after != '='
+        && is_number(token.last)
+        && is_number(text)
+    {
+        return Some(format!(
+            "`{},{text}` has a decimal comma: numbers have a point, {}.{text}",
+            token.last, token.last
+        ));
+    }
+    if token.before == '=' && text.is_empty() && !matches!(token.after, '[' | '{') {
+        return Some(format!("no value stands after `{} =`", token.last));
+    }
+    let value = token.before == '=' || token.in_array && matches!(token.before, ',' | '[');
+    if !value || token.after == '=' || text.is_empty() || text.starts_with(['"', '\'']) {
+        return None;
+    }
+    let lower = text.to_lowercase();
+    if ["true", "false"].contains(&lower.as_str()) {
+        return (lower != text).then(|| format!("`{text}` is written `{lower}`"));
+    }
+    if is_number(text) {
+        return unfinished(text);
+    }
+    if lower.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c)) {
+        return not_a_number(text, &lower);
+    }
+    let word = lower.starts_with(char::is_alphabetic)
+        && !lower.contains(['"', '\'', '.'])
+        && !["inf", "nan"].contains(&lower.as_str());
+    word.then(|| format!("`{text}` is a word without quotes: write \"{text}\""))
+}
+
+/// A number that other languages write so.
+fn unfinished(text: &str) -> Option<String> {
+    let bare = text.trim_start_matches(['+', '-']);
+    let sign = &text[..text.len() - bare.len()];
+    let (whole, rest) = bare.split_once('.')?;
+    let digits = rest.len() - rest.trim_start_matches(|c: char| c.is_ascii_digit()).len();
+    (whole.is_empty() || digits == 0).then(|| {
+        let whole = if whole.is_empty() { "0" } else { whole };
+        let zero = if digits == 0 { "0" } else { "" };
+        format!("`{text}` lacks a digit beside its point: write {sign}{whole}.{zero}{rest}")
+    })
+}
+
+fn not_a_number(text: &str, lower: &str) -> Option<String> {
+    let exponent = lower.replacen('d', "e", 1);
+    if exponent.parse::<f64>().is_ok() {
+        return Some(format!(
+            "`{text}` has its exponent after a d: write {exponent}"
+        ));
+    }
+    let (number, rest) = text.split_once(char::is_whitespace)?;
+    number.parse::<f64>().ok()?;
+    Some(match rest.trim().parse::<f64>() {
+        Ok(_) => format!("`{text}` lacks a comma between its numbers"),
+        Err(_) if rest.contains('.') || rest.trim().contains(' ') => return None,
+        Err(_) => format!(
+            "`{text}` has a unit: numbers stand alone, and the page of the scene format names the unit of each"
+        ),
+    })
+}
+
+/// A line without its `=`.
+fn unjoined(line: &str, tokens: &[Token]) -> Option<String> {
+    let first = tokens.first()?;
+    if first.after == '=' || line.trim_start().starts_with('[') {
+        return None;
+    }
+    let (key, value) = first.text.split_once([':', ' '])?;
+    let is_key = !key.is_empty()
+        && key
+            .chars()
+            .all(|c| c.is_ascii_alphanumeric() || "_-.".contains(c));
+    (is_key && !value.trim().is_empty()).then(|| {
+        format!(
+            "no `=` between a key and its value: write {key} = {}",
+            value.trim()
+        )
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_slip_is_called_by_what_it_looks_like() {
+        for (line, wanted) in [
+            (
+                "kind = fixed",
+                "`fixed` is a word without quotes: write \"fixed\"",
+            ),
+            (
+                "points = [{ name = \"a\", kind = fixed }]",
+                "`fixed` is a word",
+            ),
+            ("free = [x, z]", "`x` is a word"),
+            ("profile = True", "`True` is written `true`"),
+            (
+                "gravity = 9,81",
+                "`9,81` has a decimal comma: numbers have a point, 9.81",
+            ),
+            (
+                "water = { density = 1025,0 }",
+                "`1025,0` has a decimal comma",
+            ),
+            ("gravity = 9.81 m/s", "`9.81 m/s` has a unit"),
+            ("position = [1.0 2.0, 3.0]", "`1.0 2.0` lacks a comma"),
+            (
+                "gravity = .5",
+                "`.5` lacks a digit beside its point: write 0.5",
+            ),
+            (
+                "gravity = -5.",
+                "`-5.` lacks a digit beside its point: write -5.0",
+            ),
+            (
+                "gravity = 1.e5",
+                "`1.e5` lacks a digit beside its point: write 1.0e5",
+            ),
+            (
+                "axial_stiffness = 1d5",
+                "`1d5` has its exponent after a d: write 1e5",
+            ),
+            ("gravity =", "no value stands after `gravity =`"),
+            ("name = “a”", "“ is a typographic"),
+            (
+                "gravity 9.81",
+                "no `=` between a key and its value: write gravity = 9.81",
+            ),
+            (
+                "kind: \"fixed\"",
+                "no `=` between a key and its value: write kind",
+            ),
+        ] {
+            let said = slip(&format!("title = \"a, b\"\n{line} # c\n"), 18);
+            let said = said.unwrap_or_else(|| panic!("{line}"));
+            assert!(said.starts_with(wanted), "{line}: {said}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_slip_is_left_to_the_parser() {
+        for line in [
+            "[[points]]",
+            "position = [1, 2.5, -3e-4]",
+            "water = { density = 1025.0, surface = true }",
+            "title = 'a = fixed, 1,5'",
+            "",
+            "[line_types.chain]",
+        ] {
+            assert_eq!(slip(line, 0), None, "{line}");
+        }
+    }
+}
