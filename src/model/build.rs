@@ -162,7 +162,10 @@ fn vessel(scene: &Scene, vessel: &scene::Vessel) -> Vessel {
         vessel.name.clone(),
         Vector3::from(vessel.position),
         Vector3::from(vessel.attitude),
-        scene.motion.get(&vessel.name).map(Motion::new),
+        scene
+            .motion
+            .get(&vessel.name)
+            .map(|path| (Motion::new(path), vessel.motion_angles)),
     )
 }
 

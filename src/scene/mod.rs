@@ -36,6 +36,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+pub use crate::math::attitude::Order as AngleOrder;
 pub use drive::{Drive, RegularMotion};
 pub use error::{LoadError, SceneError};
 pub use notes::Note;
@@ -368,6 +369,9 @@ pub struct Vessel {
     /// Reference attitude: roll, pitch, yaw [rad], body to global by yaw about z, then pitch about y', then roll about x''.
     #[serde(default)]
     pub attitude: [f64; 3],
+    /// Order of the rotations by roll, pitch and yaw in the motion that a run gives it, `[motion]` or beside the scene.
+    #[serde(default, skip_serializing_if = "AngleOrder::is_zyx")]
+    pub motion_angles: AngleOrder,
 }
 
 /// A line from end A (anchor) to end B (fairlead).

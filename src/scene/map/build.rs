@@ -6,8 +6,8 @@ use super::deck::{Coordinate, Deck, Kind, Node};
 use crate::scene::from_deck::{self, SEA_WATER, Vessels};
 use crate::scene::rows::{Findings, Placed, ROWS_MAX};
 use crate::scene::{
-    self, Friction, Places, Point, PointForce, PointKind, Scene, Seabed, Section, Supplement,
-    TimeFunction, Water,
+    self, AngleOrder, Friction, Places, Point, PointForce, PointKind, Scene, Seabed, Section,
+    Supplement, TimeFunction, Water,
 };
 
 /// A deck on its way to a scene.
@@ -44,7 +44,10 @@ pub(super) fn scene(
             water: Some(Water::still(SEA_WATER)),
             ..Scene::default()
         },
-        vessels: Vessels { supplement },
+        vessels: Vessels {
+            supplement,
+            motion_angles: AngleOrder::Zyx,
+        },
         places,
         findings,
         types: BTreeMap::new(),

@@ -6,8 +6,8 @@ use super::deck::{Attachment, Body, Deck, Line, LineEnd, LineType, Point, Proper
 use crate::scene::from_deck::{self, SEA_WATER, Vessels, place_position};
 use crate::scene::rows::{Findings, Placed};
 use crate::scene::{
-    self, Current, Friction, Output, Places, PointForce, PointKind, Scene, Sea, Seabed, Section,
-    Supplement, TensionStrain, TimeFunction, Water, Waves,
+    self, AngleOrder, Current, Friction, Output, Places, PointForce, PointKind, Scene, Sea, Seabed,
+    Section, Supplement, TensionStrain, TimeFunction, Water, Waves,
 };
 
 /// A deck on its way to a scene.
@@ -34,7 +34,10 @@ pub(super) fn scene(
             title: deck.title.clone(),
             ..Scene::default()
         },
-        vessels: Vessels { supplement },
+        vessels: Vessels {
+            supplement,
+            motion_angles: AngleOrder::Xyz,
+        },
         places,
         findings,
         types: BTreeMap::new(),
