@@ -13,7 +13,7 @@ use crate::model::{End, Line, LineState, Model, PointState, Reel, State};
 use crate::physics::stretch::StretchLaw;
 use crate::scene::{InitialShape, Integrator};
 use crate::statics::catenary::{self, Bed, Catenary};
-use crate::statics::{self, StaticsError, assembly, catenary_network, equilibrium};
+use crate::statics::{self, StaticsError, assembly, catenary_network, equilibrium, guess};
 
 /// What becomes of beams that are given a shape to start on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -75,7 +75,10 @@ pub(super) fn begin(
 fn at_rest(model: &Model, time: f64, places: &[PointState]) -> Result<State, StaticsError> {
     let given = |line: &Line, points: &[PointState]| {
         let [a, b] = line.ends.map(|point| points[point].position);
-        line.given_shape(a, b)
+        match line.initial {
+            InitialShape::Catenary => Some(guess::catenary_or_chord(model, line, a, b)),
+            _ => line.given_shape(a, b),
+        }
     };
     let shapes = model.lines.iter().map(|line| given(line, places));
     if let Some(shapes) = shapes.collect::<Option<Vec<_>>>() {

@@ -445,12 +445,12 @@ const POINTS: &[Refusal] = &[
     (
         r#"kind = "fixed""#,
         "kind = \"fixed\"\nmass = 3.0",
-        r#"20:8: points[0].mass: only a free point has `mass`, and this one is fixed: leave it out or write kind = "free""#,
+        r#"20:8: points[0].mass: a fixed point has no `mass`, which would act on the ground alone: leave it out or write kind = "free""#,
     ),
     (
         r#"kind = "fixed""#,
         "kind = \"fixed\"\nvolume = 3.0",
-        r#"20:10: points[0].volume: only a free point has `volume`, and this one is fixed: leave it out or write kind = "free""#,
+        r#"20:10: points[0].volume: a fixed point has no `volume`, which would act on the ground alone: leave it out or write kind = "free""#,
     ),
     (
         r#"kind = "free""#,

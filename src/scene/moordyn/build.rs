@@ -6,8 +6,8 @@ use super::deck::{Attachment, Body, Deck, Line, LineEnd, LineType, Point, Proper
 use crate::scene::from_deck::{self, SEA_WATER, Vessels, place_position};
 use crate::scene::rows::{Findings, Placed};
 use crate::scene::{
-    self, AngleOrder, Current, Friction, Output, Places, PointForce, PointKind, Scene, Sea, Seabed,
-    Section, Supplement, TensionStrain, TimeFunction, Water, Waves,
+    self, AngleOrder, Current, Friction, InitialShape, Output, Places, PointForce, PointKind,
+    Scene, Sea, Seabed, Section, Supplement, TensionStrain, TimeFunction, Water, Waves,
 };
 
 /// A deck on its way to a scene.
@@ -165,7 +165,7 @@ impl<'d> Builder<'d> {
                 &point.attachment,
                 position,
             );
-            if made.kind == PointKind::Free {
+            if made.kind != PointKind::Fixed {
                 made.mass = given(point.mass.value);
                 made.volume = given(point.volume.value);
                 made.drag_area = given(point.drag_area.value);
@@ -465,6 +465,9 @@ impl<'d> Builder<'d> {
         });
         let mut made =
             scene::Line::between(format!("line{}", line.id.value), from, to, vec![section]);
+        if self.deck.options.starts_at_once.is_some() {
+            made.initial = InitialShape::Catenary;
+        }
         made.clamped_a = clamped_a;
         made.clamped_b = clamped_b;
         made
