@@ -600,7 +600,7 @@ fn a_seafloor_file_of_moordyn_c_is_read_as_heights_of_the_bed() {
     let error = moorline::scene::load(&folder.join("deck.dat")).unwrap_err();
     let said = error.list();
     assert!(
-        said.contains("deck.dat:26:1: OPTIONS, bathymetry: "),
+        said.contains("deck.dat:27:1: OPTIONS, bathymetry: "),
         "{said}"
     );
     assert!(

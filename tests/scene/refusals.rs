@@ -156,7 +156,7 @@ const SLIPS: &[Refusal] = &[
     (
         "elements = 10",
         "elements = 10 }]\ninitial = [{ parabola = 2.0",
-        "42:11: lines[1].initial: expected one of `static`, `straight`, `parabola`, `nodes`, found an array",
+        "42:11: lines[1].initial: expected one of `static`, `catenary`, `straight`, `parabola`, `nodes`, found an array",
     ),
     (
         "elements = 10",
@@ -752,7 +752,7 @@ const LINES: &[Refusal] = &[
     (
         "length = 80.0 }]",
         "length = 80.0 }]\ninitial = \"straigt\"",
-        "36:11: lines[0].initial: unknown value `straigt`, did you mean `straight`? (known values: static, straight, parabola, nodes)",
+        "36:11: lines[0].initial: unknown value `straigt`, did you mean `straight`? (known values: static, catenary, straight, parabola, nodes)",
     ),
 ];
 
