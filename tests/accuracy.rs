@@ -183,3 +183,15 @@ fn an_interpreter_that_is_not_there_is_named() {
     let error = Peers::find(missing, folder.path()).unwrap_err();
     assert!(matches!(&error, PeerError::NoPython(named) if named == missing));
 }
+
+#[test]
+fn a_quasi_static_scene_is_studied_through_equilibria_alone() {
+    let mut scene = Scene::from_toml(ROPE).unwrap();
+    scene.solver.integrator = Integrator::QuasiStatic;
+    let study = study("rope", &scene, None, &mut |_, _| ()).unwrap();
+    let own = |code: &Code| *code == Code::Own(Integrator::QuasiStatic);
+    assert!(!study.runs.is_empty() && study.runs.iter().all(|run| own(&run.code)));
+    assert!(study.slow.is_empty() && study.failed.is_empty());
+    let rms = study.runs.iter().map(|run| run.errors.of(Metric::Rms));
+    assert!(rms.fold(0.0, f64::max) < 1e-9);
+}

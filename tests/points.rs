@@ -263,3 +263,120 @@ fn check_tells_where_each_free_point_starts() {
         assert!(said.contains(&format!("mass 100 kg, {words}")), "{said}");
     }
 }
+
+const BODY: &str = "mass = 9000.0, volume = 1.2, drag_area = 2.5, added_mass = 0.7";
+
+/// A rope from the ground to a fairlead that heaves by 0.8 m in 5 s, driven as `fairlead` says beside its name.
+fn heaving_fairlead(fairlead: &str, rest: &str) -> Scene {
+    scene(&format!(
+        r#"
+        water.density = {RHO}
+        line_types.rope = {{ mass = 30.0, diameter = 0.12, axial_stiffness = 2e7, axial_damping = 1e5, drag_normal = 1.2 }}
+        points = [
+          {{ name = "anchor", position = [80.0, 0.0, -90.0], kind = "fixed" }},
+          {{ name = "fairlead", {fairlead} }},
+        ]
+        lines = [{{ name = "rope", from = "anchor", to = "fairlead", sections = [{{ type = "rope", length = 118.0, elements = 6 }}] }}]
+        {rest}
+        "#
+    ))
+}
+
+/// Force of the fairlead with a body over that without one, 3.7 s after the start, along z [N].
+fn own_force(fairlead: &str, rest: &str) -> [f64; 3] {
+    let force = |body: &str| {
+        let mut simulation = following(&heaving_fairlead(&format!("{fairlead}{body}"), rest));
+        for _ in 0..37 {
+            simulation.advance(0.1).unwrap();
+        }
+        simulation.end_force(1)
+    };
+    let [with, without] = [force(&format!(", {BODY}")), force("")];
+    std::array::from_fn(|axis| with[axis] - without[axis])
+}
+
+/// −(m − ρV)g − ½ρ CdA |v|v − (m + ρV Ca)a of the heave after a time [s], in [N].
+fn own_law(t: f64, moves: bool) -> f64 {
+    let omega = 2.0 * PI / 5.0;
+    let (v, a) = (
+        0.8 * omega * (omega * t).cos(),
+        -0.8 * omega * omega * (omega * t).sin(),
+    );
+    let still = -(9000.0 - RHO * 1.2) * G;
+    match moves {
+        true => still - 0.5 * RHO * 2.5 * v.abs() * v - (9000.0 + 0.7 * RHO * 1.2) * a,
+        false => still,
+    }
+}
+
+#[test]
+fn mass_of_a_driven_point_is_part_of_the_force_on_what_drives_it() {
+    let place = "position = [0.0, 0.0, -10.0]";
+    let motion = "{ z = [[0.8, 5.0]] }";
+    let vessel = "vessels = [{ name = 'ship', position = [-3.0, 0.0, -4.0] }]";
+    let solver = "solver.integrator = 'quasi_static'";
+    let coupled = format!("{place}, kind = 'coupled'");
+    let run = format!("motion.fairlead = {motion}");
+    let cases = [
+        (coupled.clone(), run.clone(), true),
+        (
+            format!("{place}, kind = 'prescribed', motion = {motion}"),
+            String::new(),
+            true,
+        ),
+        (
+            "position = [3.0, 0.0, -6.0], kind = 'coupled', on = 'ship'".to_string(),
+            format!("{vessel}\nmotion.ship = {motion}"),
+            true,
+        ),
+        (coupled, format!("{run}\n{solver}"), false),
+    ];
+    for (fairlead, rest, moves) in cases {
+        let [x, y, z] = own_force(&fairlead, &rest);
+        assert!(x.abs() < 1e-6 && y.abs() < 1e-6, "{fairlead}: {x} {y} N");
+        assert_relative_eq!(z, own_law(3.7, moves), max_relative = 1e-9);
+    }
+}
+
+#[test]
+fn mass_on_a_vessel_has_a_moment_and_a_stiffness_about_its_origin() {
+    let on = "position = [3.0, 2.0, -6.0], kind = 'coupled', on = 'ship'";
+    let vessel = "vessels = [{ name = 'ship', position = [-3.0, 0.0, -4.0] }]";
+    let of = |body: &str| {
+        let simulation =
+            Simulation::new(&heaving_fairlead(&format!("{on}{body}"), vessel)).unwrap();
+        (
+            simulation.vessel_force(0),
+            simulation.vessel_stiffness(0).unwrap(),
+        )
+    };
+    let ([force, stiffness], [bare, soft]) = {
+        let (with, without) = (of(&format!(", {BODY}")), of(""));
+        (
+            [vec![with.0.to_vec()], with.1.map(Vec::from).to_vec()],
+            [vec![without.0.to_vec()], without.1.map(Vec::from).to_vec()],
+        )
+    };
+    let w = (9000.0 - RHO * 1.2) * G;
+    let expected = [0.0, 0.0, -w, -2.0 * w, 3.0 * w, 0.0];
+    for axis in 0..6 {
+        assert_relative_eq!(
+            force[0][axis] - bare[0][axis],
+            expected[axis],
+            epsilon = 1e-6 * w
+        );
+    }
+    // it hangs 6 m under the origin, as a pendulum
+    let turning = [
+        (3, 3, 6.0),
+        (4, 4, 6.0),
+        (3, 5, 3.0),
+        (4, 5, 2.0),
+        (2, 2, 0.0),
+        (5, 5, 0.0),
+    ];
+    for (row, column, arm) in turning {
+        let change = stiffness[row][column] - soft[row][column];
+        assert_relative_eq!(change, arm * w, epsilon = 1e-6 * w);
+    }
+}

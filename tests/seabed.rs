@@ -578,6 +578,38 @@ fn a_deck_with_bathymetry_and_friction_is_read_and_converted_with_them() {
 }
 
 #[test]
+fn a_seafloor_file_of_moordyn_c_is_read_as_heights_of_the_bed() {
+    let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("seafloor_c");
+    std::fs::create_dir_all(&folder).unwrap();
+    let deck = include_str!("decks/openfast_v2.dat")
+        .replace("2.0e6    kbot", "110 WtrDpth\nbed.txt SeafloorFile");
+    std::fs::write(folder.join("deck.dat"), deck).unwrap();
+    let heights =
+        "2 2\n-900 900\n-900 900\n-900 -900 -100\n-900 900 -100\n900 -900 -110\n900 900 -110\n";
+    std::fs::write(folder.join("bed.txt"), heights).unwrap();
+    let loaded = moorline::scene::load(&folder.join("deck.dat"))
+        .unwrap_or_else(|error| panic!("{}", error.list()));
+    let grid = loaded.scene.seabed.unwrap().grid.unwrap();
+    assert_eq!((grid.x, grid.y), (vec![-900.0, 900.0], vec![-900.0, 900.0]));
+    assert_eq!(grid.depth, [[100.0, 110.0], [100.0, 110.0]]);
+    std::fs::write(
+        folder.join("bed.txt"),
+        "2 2\n-900 900\n-900 900\n-900 -900 -100\n",
+    )
+    .unwrap();
+    let error = moorline::scene::load(&folder.join("deck.dat")).unwrap_err();
+    let said = error.list();
+    assert!(
+        said.contains("deck.dat:27:1: OPTIONS, bathymetry: "),
+        "{said}"
+    );
+    assert!(
+        said.contains("bed.txt: no height at x = 900 m, y = -900 m"),
+        "{said}"
+    );
+}
+
+#[test]
 fn a_vessel_is_held_by_nodes_that_stick_and_let_go_by_nodes_that_slide() {
     let stiffness = |mu: f64| {
         let mut scene = chain(&format!("friction = {mu}"), 575.0, 60);

@@ -18,6 +18,10 @@ const ELEMENTS_AXIAL: [usize; 28] = [
 ];
 /// Elements of the longest line, fully implicit [-].
 const ELEMENTS_IMPLICIT: [usize; 3] = [10, 20, 40];
+/// Elements of the longest line, without dynamics [-].
+const ELEMENTS_STATIC: [usize; 4] = [10, 20, 40, 80];
+/// The same of converged solutions [-].
+const CONVERGED_ELEMENTS_STATIC: [usize; 3] = [80, 160, 320];
 /// Steps to the shortest period, tensions implicit [-].
 const STEPS_AXIAL: [f64; 20] = [
     5.0, 5.7, 6.1, 6.6, 7.3, 8.0, 10.0, 11.5, 13.0, 14.5, 16.0, 18.0, 20.0, 23.0, 28.0, 40.0, 80.0,
@@ -136,6 +140,9 @@ impl Setting {
 
 /// The ladder of a scene whose motion has this shortest period [s].
 pub fn ladder(scene: &Scene, period: f64) -> Vec<Setting> {
+    if is_quasi_static(scene) {
+        return ELEMENTS_STATIC.map(quasi_static).into();
+    }
     let interval = scene.output.interval;
     let mut settings: Vec<Setting> = TOLERANCES.map(Setting::chosen).into();
     settings.extend(explicit(period, interval));
@@ -164,9 +171,17 @@ pub fn ladder(scene: &Scene, period: f64) -> Vec<Setting> {
         let again: Vec<Setting> = settings.iter().filter(cheap).copied().collect();
         settings.extend(again.into_iter().map(Setting::on_bed_as_given));
     }
-    let static_lines = |n: usize| Setting::new(n, Integrator::QuasiStatic, None);
-    settings.extend([10, 40].map(static_lines));
+    settings.extend([10, 40].map(quasi_static));
     settings
+}
+
+/// Whether a scene is one of equilibria: dynamics is no measure of it then.
+pub fn is_quasi_static(scene: &Scene) -> bool {
+    scene.solver.integrator == Integrator::QuasiStatic
+}
+
+fn quasi_static(elements: usize) -> Setting {
+    Setting::new(elements, Integrator::QuasiStatic, None)
 }
 
 fn implicit(
@@ -227,7 +242,10 @@ fn stepping(wanted: f64, interval: f64) -> (usize, f64) {
 /// Families of settings for a converged solution, in the order they are tried: the first that serves the scene is taken. Each holds one or
 /// more sequences of finer and finer settings, the best of which is followed to its end: a bed may be softened with the mesh, or have the
 /// scene's own coefficients.
-pub fn converged(scene: &Scene, period: f64) -> [Vec<Vec<Setting>>; 3] {
+pub fn converged(scene: &Scene, period: f64) -> Vec<Vec<Vec<Setting>>> {
+    if is_quasi_static(scene) {
+        return vec![vec![CONVERGED_ELEMENTS_STATIC.map(quasi_static).into()]];
+    }
     let meshes = if scene.solver.negative_tension {
         CONVERGED_ELEMENTS_PEERS
     } else {
@@ -247,7 +265,7 @@ pub fn converged(scene: &Scene, period: f64) -> [Vec<Vec<Setting>>; 3] {
     let implicit =
         |n: usize, steps: f64| Setting::new(n, Integrator::Auto, stepped(steps)).on_bed_as_given();
     let finest = CONVERGED_ELEMENTS_IMPLICIT;
-    [
+    vec![
         both,
         vec![meshes[..2].iter().map(explicit).collect()],
         vec![vec![

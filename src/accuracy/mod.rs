@@ -196,7 +196,10 @@ pub fn study(
         uncertainty: converged.uncertainty,
         runs: Vec::new(),
         failed: Vec::new(),
-        slow: slow::slow(&scene),
+        slow: match ladder::is_quasi_static(&scene) {
+            true => Vec::new(),
+            false => slow::slow(&scene),
+        },
     };
     study.climb(&scene, &settings, &judge, &converged.fine, &mut |done| {
         progress(first + done, total);

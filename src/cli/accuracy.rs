@@ -293,7 +293,7 @@ fn choices(study: &Study) -> Table {
 /// Where the quasi-static mode is enough.
 fn slower(slow: &[Slow]) -> String {
     let Some(last) = slow.last() else {
-        return "the quasi-static mode was not compared: it serves single sines in still water\n"
+        return "the quasi-static mode was not compared with dynamics: the scene is quasi-static itself, or no sum of sines in still water\n"
             .to_string();
     };
     let head = ["quasi-static, periods", "shortest"];

@@ -42,7 +42,7 @@ pub fn statics(path: &Path, supplement: &Supplement, as_json: bool) -> Result<()
         return print(&String::from_utf8(bytes).expect("JSON is UTF-8"));
     }
     let record = collect::record(&loaded.scene, &simulation, Some(&simulation), Vec::new());
-    let mut points = Table::new(&["force of the lines [N]", "x", "y", "z"]);
+    let mut points = Table::new(&["force of the mooring [N]", "x", "y", "z"]);
     for point in &statics.points {
         points.row(&point.name, &point.force);
     }

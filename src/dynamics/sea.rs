@@ -181,7 +181,7 @@ fn left(state: &State, step: f64) -> f64 {
 
 /// Whether waves act on a point.
 fn heaves(point: &Point) -> bool {
-    point.free().is_some_and(|free| free.sphere.is_some())
+    point.body().is_some_and(|body| body.sphere.is_some())
 }
 
 /// Height of the highest place that waves act on [m].

@@ -164,7 +164,10 @@ fn vessel(scene: &Scene, vessel: &scene::Vessel) -> Vessel {
         vessel.name.clone(),
         Vector3::from(vessel.position),
         Vector3::from(vessel.attitude),
-        scene.motion.get(&vessel.name).map(Motion::new),
+        scene
+            .motion
+            .get(&vessel.name)
+            .map(|path| (Motion::new(path), vessel.motion_angles)),
     )
 }
 
@@ -192,8 +195,19 @@ fn build_point(scene: &Scene, vessels: &[Vessel], point: &scene::Point) -> Point
         role,
         load: point.force.clone(),
         moment: point.moment.clone(),
+        own: (point.kind != PointKind::Free && has_mass_or_water(point)).then(|| FreePoint {
+            axes: [false; 3],
+            contact: None,
+            ..free_point(scene, point)
+        }),
         attached: Vec::new(),
     }
+}
+
+/// Whether a point has anything that forces act on.
+fn has_mass_or_water(point: &scene::Point) -> bool {
+    let sizes = [point.mass, point.volume, point.drag_area];
+    sizes.iter().flatten().any(|size| *size > 0.0)
 }
 
 fn free_point(scene: &Scene, point: &scene::Point) -> FreePoint {

@@ -1,4 +1,4 @@
-//! Shapes a line may be given at the start; the static one is for `statics` to find.
+//! Shapes a line may be given at the start; equilibria and catenaries are for `statics` to find.
 
 use nalgebra::Vector3;
 
@@ -6,7 +6,8 @@ use super::Line;
 use crate::scene::InitialShape;
 
 impl Line {
-    /// Node positions [m] of the start shape the user gave, between ends at `a` and `b` [m]; `None` for the static one.
+    /// Node positions [m] of the start shape the user gave, between ends at `a` and `b` [m]; `None` for the static one and for
+    /// the catenary.
     pub fn given_shape(&self, a: Vector3<f64>, b: Vector3<f64>) -> Option<Vec<Vector3<f64>>> {
         let length = self.unstretched_length();
         let on_chord = |sag: f64| {
@@ -20,7 +21,7 @@ impl Line {
                 .collect()
         };
         match &self.initial {
-            InitialShape::Static => None,
+            InitialShape::Static | InitialShape::Catenary => None,
             InitialShape::Straight => Some(on_chord(0.0)),
             InitialShape::Parabola(sag) => Some(on_chord(*sag)),
             InitialShape::Nodes(nodes) => {

@@ -103,6 +103,8 @@ pub struct Point {
     pub load: Option<PointForce>,
     /// Moment in time, on the end of a line that bends.
     pub moment: Option<PointMoment>,
+    /// Mass, and what the water does to it, of a point that forces do not move; along no axis, and without contact.
+    pub own: Option<FreePoint>,
     /// (line, end) pairs that meet here.
     pub attached: Vec<(usize, End)>,
 }
@@ -137,6 +139,17 @@ pub enum Role {
     Prescribed(Motion),
     /// Forces move it.
     Free(FreePoint),
+}
+
+/// Forces on a point with mass in moving water.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PointForces {
+    /// What the point is at its height over the surface.
+    pub at: PointAtHeight,
+    /// Velocity relative to the water [m/s].
+    pub past: Vector3<f64>,
+    /// Load, weight, buoyancy, drag and the force of waves [N].
+    pub sum: Vector3<f64>,
 }
 
 /// A point that forces move.
@@ -532,6 +545,28 @@ impl FreePoint {
         mass * wetted.part * orbit.acceleration
     }
 
+    /// Forces at a place and velocity of the point under a `load` [N], in a current and waves.
+    pub fn forces(
+        &self,
+        load: Vector3<f64>,
+        state: &PointState,
+        (stream, waves): (Option<Stream>, Option<Orbit>),
+    ) -> PointForces {
+        let z = state.position.z;
+        let mut past =
+            state.velocity - stream.map_or(Vector3::zeros(), |stream| stream.velocity(z));
+        let at = self.at(z - waves.map_or(0.0, |orbit| orbit.elevation));
+        let mut sum = load - at.weight * Vector3::z();
+        if let Some(orbit) = &waves {
+            past -= orbit.velocity;
+            sum += self.pressed(at.wetted, orbit);
+        }
+        if let Some(sphere) = &self.sphere {
+            sum += sphere.drag(at.wetted, past);
+        }
+        PointForces { at, past, sum }
+    }
+
     /// Energy of weight and buoyancy at a height z [m], in [J].
     pub fn potential(&self, z: f64) -> f64 {
         match &self.sphere {
@@ -569,6 +604,29 @@ impl Point {
             Role::Free(free) => Some(free),
             _ => None,
         }
+    }
+
+    /// What has mass or is in the water at the point, whether forces move it or not.
+    pub fn body(&self) -> Option<&FreePoint> {
+        self.free().or(self.own.as_ref())
+    }
+
+    /// Force [N] of the point itself, without its lines, on what holds it: its load, weight and buoyancy, drag, the force of waves and
+    /// inertia. Zero of a free point.
+    pub fn own_force(
+        &self,
+        state: &PointState,
+        t: f64,
+        water: (Option<Stream>, Option<Orbit>),
+    ) -> Vector3<f64> {
+        if self.free().is_some() {
+            return Vector3::zeros();
+        }
+        let load = self.load_at(t);
+        let forces = self.own.as_ref().map(|own| own.forces(load, state, water));
+        forces.map_or(load, |forces| {
+            forces.sum - forces.at.mass * state.acceleration
+        })
     }
 
     /// Point load at time `t` [s], in [N].

@@ -7,7 +7,7 @@ use super::{Body, Model, Role};
 pub struct Moving {
     /// What moves.
     pub body: Body,
-    /// Its displacement [m] and angles [rad] from its reference.
+    /// Its displacement [m] and angles [rad] from its reference, those of a vessel in the order Z-Y-X.
     pub pose: [f64; 6],
     /// Its velocity [m/s] and angular velocity [rad/s].
     pub velocity: [f64; 6],
@@ -32,12 +32,12 @@ impl Model {
         });
         let vessels = self.vessels.iter().enumerate();
         let vessels = vessels.filter_map(|(index, vessel)| {
-            let pose = vessel.motion.as_ref()?.pose(time);
-            let frame = vessel.frame(&pose);
+            let pose = vessel.motion()?.pose(time);
+            let frame = vessel.frame_of_motion(&pose);
             let (v, w) = (frame.origin.velocity, frame.attitude.spin);
             Some(Moving {
                 body: Body::Vessel(index),
-                pose: pose.value.into(),
+                pose: vessel.pose_for_host(&pose, &frame),
                 velocity: [v.x, v.y, v.z, w.x, w.y, w.z],
             })
         });

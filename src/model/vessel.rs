@@ -3,7 +3,7 @@
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::{Kinematics, Motion, Pose};
-use crate::math::attitude::Attitude;
+use crate::math::attitude::{Attitude, Order};
 
 /// A frame that carries points.
 #[derive(Debug, Clone)]
@@ -15,7 +15,9 @@ pub struct Vessel {
     /// Reference roll, pitch and yaw [rad].
     pub attitude: Vector3<f64>,
     /// The scene's motion for it.
-    pub motion: Option<Motion>,
+    motion: Option<Motion>,
+    /// Order of the angles of that motion.
+    order: Order,
     /// Rotation [-] from body axes to global ones in the reference attitude, a unit quaternion.
     reference_rotation: UnitQuaternion<f64>,
 }
@@ -35,20 +37,53 @@ impl Vessel {
         name: String,
         position: Vector3<f64>,
         attitude: Vector3<f64>,
-        motion: Option<Motion>,
+        motion: Option<(Motion, Order)>,
     ) -> Vessel {
-        let [roll, pitch, yaw] = attitude.into();
+        let (motion, order) = motion.unzip();
         Vessel {
             name,
             position,
             attitude,
             motion,
-            reference_rotation: UnitQuaternion::from_euler_angles(roll, pitch, yaw),
+            order: order.unwrap_or_default(),
+            reference_rotation: Order::Zyx.rotation(attitude),
         }
     }
 
-    /// The frame displaced by a pose: x, y, z [m] from the reference position; roll, pitch and yaw [rad] added to the reference angles.
+    /// The scene's motion for it.
+    pub fn motion(&self) -> Option<&Motion> {
+        self.motion.as_ref()
+    }
+
+    /// The frame displaced by a pose that a host gives: x, y, z [m] from the reference position; roll, pitch and yaw [rad] in the order Z-Y-X,
+    /// added to the reference angles.
     pub fn frame(&self, pose: &Pose) -> Frame {
+        self.turned(Order::Zyx, self.attitude, pose)
+    }
+
+    /// The same displaced by a pose of the scene's motion, whose angles may be of the order X-Y-Z, as the reference angles then are.
+    pub fn frame_of_motion(&self, pose: &Pose) -> Frame {
+        let reference = match self.order {
+            Order::Zyx => self.attitude,
+            order => order.angles(&self.reference_rotation, self.attitude),
+        };
+        self.turned(self.order, reference, pose)
+    }
+
+    /// Displacement [m] and angles [rad] that a host would give where the scene's motion has this pose and frame.
+    pub fn pose_for_host(&self, pose: &Pose, frame: &Frame) -> [f64; 6] {
+        let mut value = pose.value;
+        if self.order != Order::Zyx {
+            let near = self.attitude + value.fixed_rows::<3>(3);
+            let angles = Order::Zyx.angles(&frame.attitude.rotation, near);
+            value
+                .fixed_rows_mut::<3>(3)
+                .copy_from(&(angles - self.attitude));
+        }
+        value.into()
+    }
+
+    fn turned(&self, order: Order, reference: Vector3<f64>, pose: &Pose) -> Frame {
         let turn = |six: &nalgebra::Vector6<f64>| Vector3::new(six[3], six[4], six[5]);
         let moved = pose.kinematics();
         Frame {
@@ -57,7 +92,8 @@ impl Vessel {
                 ..moved
             },
             attitude: Attitude::new(
-                self.attitude + turn(&pose.value),
+                order,
+                reference + turn(&pose.value),
                 turn(&pose.rate),
                 turn(&pose.acceleration),
             ),

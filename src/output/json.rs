@@ -99,7 +99,7 @@ pub struct Point {
     pub kind: &'static str,
     /// Position [m].
     pub position: [f64; 3],
-    /// Force of all lines on the point [N].
+    /// Force on the point [N], of all lines and, where forces do not move it, of its own mass and load.
     pub force: [f64; 3],
 }
 

@@ -1,17 +1,20 @@
-//! Soundings from a file: a table in CSV, or a bathymetry of the kind that MoorDyn and MoorPy read.
+//! Soundings from a file: a table in CSV, or a file of the kind that MoorDyn-F and MoorPy read, or one that MoorDyn-C reads.
 //!
 //! ```text
-//! CSV:  y/x, x₁, x₂, …          MoorDyn:  --- MoorPy Bathymetry Input File ---
-//!       y₁,  d₁₁, d₁₂, …                  nGridX 3
-//!       y₂,  d₂₁, d₂₂, …                  nGridY 2
-//!                                         x₁  x₂  x₃
-//!                                         y₁  d₁₁ d₁₂ d₁₃
-//!                                         y₂  d₂₁ d₂₂ d₂₃
+//! CSV:  y/x, x₁, x₂, …     MoorDyn-F:  --- MoorPy Bathymetry Input File ---     MoorDyn-C:  3 2
+//!       y₁,  d₁₁, d₁₂, …               nGridX 3                                             x₁ x₂ x₃
+//!       y₂,  d₂₁, d₂₂, …               nGridY 2                                             y₁ y₂
+//!                                      x₁  x₂  x₃                                           x₁ y₁ z₁₁
+//!                                      y₁  d₁₁ d₁₂ d₁₃                                      x₂ y₁ z₁₂
+//!                                      y₂  d₂₁ d₂₂ d₂₃                                      … one row for every x and y, in any order
 //! ```
 //!
-//! Both are the same table of depths, positive downwards [m]; a unit in brackets in the first corner of the CSV, such as `y/x [km]`, is that of
-//! all its numbers, and nothing else there counts. Between semicolons, decimals may have commas. Lines that are blank or begin with # are skipped.
-//! Source of the second: documentation of MoorDyn, "Seafloor/Bathymetry File", and the reader of MoorPy.
+//! The first two are the same table of depths, positive downwards [m]; a unit in brackets in the first corner of the CSV, such as `y/x [km]`, is
+//! that of all its numbers, and nothing else there counts. Between semicolons, decimals may have commas. The third has heights of the seabed,
+//! negative below the water [m]. The kind is recognised by the first row: a rule of dashes begins the second, two whole numbers begin
+//! the third. Lines that are blank or begin with # are skipped.
+//! Source of the second: documentation of MoorDyn, "Seafloor/Bathymetry File", and the reader of MoorPy; of the third: MoorDyn-C,
+//! `source/Seafloor.cpp`, where a row off the listed x and y is put at the next lower ones and a missing row is a height of 0: both are refused here.
 
 use std::path::Path;
 
@@ -19,8 +22,11 @@ use super::columns::Separator;
 use super::units::{self, Quantity};
 use super::{DepthGrid, input_file};
 
-/// Words that name the sizes in a file of MoorDyn's kind, in capitals.
+/// Words that name the sizes in a file of MoorDyn-F's kind, in capitals.
 const SIZES: [&str; 2] = ["NGRIDX", "NGRIDY"];
+
+/// A line of the file by its number, and its words.
+type Row = (usize, Vec<String>);
 
 /// The soundings in a file.
 ///
@@ -37,7 +43,7 @@ pub(super) fn read(path: &Path) -> Result<DepthGrid, String> {
 
 /// The soundings in a text; problems begin with a comma and a line, or a colon.
 fn parse(text: &str) -> Result<DepthGrid, String> {
-    let rows: Vec<(usize, Vec<String>)> = text
+    let rows: Vec<Row> = text
         .trim_start_matches('\u{feff}')
         .lines()
         .enumerate()
@@ -48,6 +54,8 @@ fn parse(text: &str) -> Result<DepthGrid, String> {
     let first = rows.first().ok_or(": no soundings in it")?;
     if first.1[0].starts_with("---") {
         moordyn_table(&rows)
+    } else if let Some(sizes) = counts(&first.1) {
+        moordyn_c_heights(&rows, sizes)
     } else {
         table(&rows[0], &rows[1..], 1)
     }
@@ -78,7 +86,7 @@ fn corner_unit(corner: &str) -> Result<f64, String> {
 }
 
 /// Below the sizes of the grid.
-fn moordyn_table(rows: &[(usize, Vec<String>)]) -> Result<DepthGrid, String> {
+fn moordyn_table(rows: &[Row]) -> Result<DepthGrid, String> {
     let mut sizes = [0; 2];
     for (size, (row, key)) in sizes.iter_mut().zip(rows[1..].iter().zip(SIZES)) {
         let is_size = |word: &String| word.to_uppercase() == key;
@@ -103,28 +111,96 @@ fn moordyn_table(rows: &[(usize, Vec<String>)]) -> Result<DepthGrid, String> {
     Ok(grid)
 }
 
+/// The numbers of x and of y, where a first row is these two whole numbers.
+fn counts(words: &[String]) -> Option<[usize; 2]> {
+    let [x, y] = words else { return None };
+    Some([x.parse().ok()?, y.parse().ok()?])
+}
+
+/// The numbers of x and of y, then both lists, then a row of x, y and height for every place.
+fn moordyn_c_heights(rows: &[Row], sizes: [usize; 2]) -> Result<DepthGrid, String> {
+    let list = |index: usize, axis: &str| -> Result<Vec<f64>, String> {
+        let wanted = sizes[index];
+        let (line, words) = rows
+            .get(1 + index)
+            .ok_or_else(|| format!(": no row of {wanted} {axis} below the two counts"))?;
+        if words.len() != wanted {
+            return Err(format!(
+                ", line {line}: expected {wanted} {axis}, as many as line {} says, found {} numbers",
+                rows[0].0,
+                words.len()
+            ));
+        }
+        numbers(*line, words, 1.0)
+    };
+    let (x, y) = (list(0, "x")?, list(1, "y")?);
+    if x.is_empty() || y.is_empty() {
+        return Err(": no soundings in it".into());
+    }
+    let mut heights = vec![vec![None; x.len()]; y.len()];
+    for (line, words) in rows.iter().skip(3) {
+        let [place_x, place_y, height] = numbers(*line, words, 1.0)?[..] else {
+            let found = words.len();
+            return Err(format!(
+                ", line {line}: expected x, y and the height z of the seabed, found {found} numbers"
+            ));
+        };
+        let index = |list: &[f64], place: f64, axis: &str| {
+            let found = list.iter().position(|known| *known == place);
+            found.ok_or_else(|| {
+                format!(", line {line}: {axis} = {place} m is not in the list of {axis}")
+            })
+        };
+        let cell = &mut heights[index(&y, place_y, "y")?][index(&x, place_x, "x")?];
+        if cell.replace(height).is_some() {
+            return Err(format!(
+                ", line {line}: a second height at x = {place_x} m, y = {place_y} m"
+            ));
+        }
+    }
+    if heights
+        .iter()
+        .flatten()
+        .flatten()
+        .all(|height| *height > 0.0)
+        && rows.len() > 3
+    {
+        return Err(
+            ": every height is above the water: z is that of the seabed, negative below z = 0"
+                .into(),
+        );
+    }
+    let mut depth = Vec::with_capacity(y.len());
+    for (row, y) in heights.iter().zip(&y) {
+        let cell = |(height, x): (&Option<f64>, &f64)| {
+            let missing = || format!(": no height at x = {x} m, y = {y} m");
+            height.map(|height| -height).ok_or_else(missing)
+        };
+        depth.push(row.iter().zip(&x).map(cell).collect::<Result<_, _>>()?);
+    }
+    Ok(DepthGrid { x, y, depth })
+}
+
+/// The words of a line as finite numbers [m], `factor` being one of their unit in metres.
+fn numbers(line: usize, words: &[String], factor: f64) -> Result<Vec<f64>, String> {
+    let number = |word: &String| match word.parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok(value * factor),
+        _ => Err(format!(
+            ", line {line}: expected a finite number [m], found {word:?}"
+        )),
+    };
+    words.iter().map(number).collect()
+}
+
 /// A row of x behind `skipped` words, and rows of y with its depths.
-fn table(
-    header: &(usize, Vec<String>),
-    rows: &[(usize, Vec<String>)],
-    skipped: usize,
-) -> Result<DepthGrid, String> {
+fn table(header: &Row, rows: &[Row], skipped: usize) -> Result<DepthGrid, String> {
     let corner = header.1.iter().take(skipped).map(|word| corner_unit(word));
     let factor = corner.last().unwrap_or(Ok(1.0)); // none where nothing is skipped
     let factor = factor.map_err(|problem| format!(", line {}: {problem}", header.0))?;
-    let numbers = |line: usize, words: &[String]| -> Result<Vec<f64>, String> {
-        let number = |word: &String| match word.parse::<f64>() {
-            Ok(value) if value.is_finite() => Ok(value * factor),
-            _ => Err(format!(
-                ", line {line}: expected a finite number [m], found {word:?}"
-            )),
-        };
-        words.iter().map(number).collect()
-    };
-    let x = numbers(header.0, &header.1[skipped..])?;
+    let x = numbers(header.0, &header.1[skipped..], factor)?;
     let (mut y, mut depth) = (Vec::new(), Vec::new());
     for (line, words) in rows {
-        let row = numbers(*line, words)?;
+        let row = numbers(*line, words, factor)?;
         if row.len() != x.len() + 1 {
             return Err(format!(
                 ", line {line}: expected y and {} depths, found {} numbers",
@@ -154,12 +230,15 @@ mod tests {
     }
 
     #[test]
-    fn a_table_in_csv_and_a_file_of_moordyns_kind_hold_the_same_soundings() {
+    fn a_table_in_csv_and_files_of_both_moordyns_hold_the_same_soundings() {
         let csv = "# survey\ny/x, -100, 0, 250\n-50, 90, 95, 100\n\n50, 91, 96, 104.5\n";
         let moordyn = "--- MoorPy Bathymetry Input File v1.0 ---\nnGridX 3\nnGridY 2\n-100 0 250\n\
                        -50 90 95 100\n50 91 96 104.5\n";
         assert_eq!(parse(csv), Ok(grid()));
         assert_eq!(parse(moordyn), Ok(grid()));
+        let moordyn_c = "3 2\n-100 0 250\n-50.0 50.0\n-100 -50 -90\n0 -50 -95\n250 -50 -100\n\
+                         250 50 -104.5\n-100 50 -91\n0 50 -96\n";
+        assert_eq!(parse(moordyn_c), Ok(grid()));
     }
 
     #[test]
@@ -201,6 +280,28 @@ mod tests {
             (
                 "---\nnGridX 2\nnGridY 2\n0 1\n0 5 6\n",
                 ": nGridX and nGridY say 2 by 2, and 2 by 1 soundings are there",
+            ),
+            ("2 2\n", ": no row of 2 x below the two counts"),
+            (
+                "2 2\n0 1\n0\n0 0 -9\n",
+                ", line 3: expected 2 y, as many as line 1 says, found 1 numbers",
+            ),
+            (
+                "2 1\n0 1\n0\n0 0 -9\n1 0\n",
+                ", line 5: expected x, y and the height z of the seabed, found 2 numbers",
+            ),
+            (
+                "2 1\n0 1\n0\n0 0 -9\n2 0 -9\n",
+                ", line 5: x = 2 m is not in the list of x",
+            ),
+            (
+                "2 1\n0 1\n0\n0 0 -9\n0 0 -8\n",
+                ", line 5: a second height at x = 0 m, y = 0 m",
+            ),
+            ("2 1\n0 1\n0\n0 0 -9\n", ": no height at x = 1 m, y = 0 m"),
+            (
+                "2 1\n0 1\n0\n0 0 9\n1 0 9\n",
+                ": every height is above the water: z is that of the seabed, negative below z = 0",
             ),
         ] {
             assert_eq!(parse(text), Err(problem.to_string()));

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::rows::{Findings, Placed};
-use super::{Places, Point, PointKind, Scene, Supplement, Vessel};
+use super::{AngleOrder, Places, Point, PointKind, Scene, Supplement, Vessel};
 
 /// Density of sea water [kg/m³] of a deck that gives none.
 pub(super) const SEA_WATER: f64 = 1025.0;
@@ -76,6 +76,8 @@ pub(super) fn depth(
 /// Puts vessels into a scene, each once, where the supplement or else the deck has them.
 pub(super) struct Vessels<'s> {
     pub supplement: &'s Supplement,
+    /// Order of the angles of motions that such decks are given.
+    pub motion_angles: AngleOrder,
 }
 
 impl Vessels<'_> {
@@ -129,6 +131,7 @@ impl Vessels<'_> {
                 name: name.to_string(),
                 position,
                 attitude,
+                motion_angles: self.motion_angles,
             });
         }
         name.to_string()

@@ -42,6 +42,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+pub use crate::math::attitude::Order as AngleOrder;
 pub use drive::{Drive, RegularMotion};
 pub use error::{LoadError, SceneError};
 pub use notes::Note;
@@ -305,13 +306,13 @@ pub struct Point {
     pub on: Option<String>,
     /// Axes along which a free point may move; all where absent.
     pub free: Option<Vec<Axis>>,
-    /// Own mass [kg], free points only.
+    /// Own mass [kg]; not of fixed points. Of points that are not free it adds to the force on what holds them.
     pub mass: Option<f64>,
-    /// Own displaced volume [m³], free points only.
+    /// Own displaced volume [m³]; not of fixed points.
     pub volume: Option<f64>,
-    /// Drag coefficient times area CdA [m²], free points only.
+    /// Drag coefficient times area CdA [m²]; not of fixed points.
     pub drag_area: Option<f64>,
-    /// Added-mass coefficient Ca [-], on the displaced volume; free points only.
+    /// Added-mass coefficient Ca [-], on the displaced volume; not of fixed points.
     pub added_mass: Option<f64>,
     /// Point load in time.
     pub force: Option<PointForce>,
@@ -383,6 +384,9 @@ pub struct Vessel {
     /// Reference attitude: roll, pitch, yaw [rad], body to global by yaw about z, then pitch about y', then roll about x''.
     #[serde(default)]
     pub attitude: [f64; 3],
+    /// Order of the rotations by roll, pitch and yaw in the motion that a run gives it, `[motion]` or beside the scene.
+    #[serde(default, skip_serializing_if = "AngleOrder::is_zyx")]
+    pub motion_angles: AngleOrder,
 }
 
 /// A line from end A (anchor) to end B (fairlead).
@@ -482,6 +486,8 @@ pub enum InitialShape {
     /// Static equilibrium.
     #[default]
     Static,
+    /// On its own closed-form catenary between its points where the scene has them, straight where it has none.
+    Catenary,
     /// Straight between its ends.
     Straight,
     /// A parabola that hangs this far [m] below the middle of the chord.

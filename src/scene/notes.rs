@@ -11,7 +11,7 @@ use super::table_ends;
 use super::{
     Integrator, Line, LineModel, LineType, Point, PointKind, Reconstruction, Scene, Waves,
 };
-use crate::math::attitude::Attitude;
+use crate::math::attitude::Order;
 
 /// A remark on a scene that can be used as it is.
 #[derive(Debug, Clone, PartialEq)]
@@ -198,8 +198,7 @@ pub(super) fn reference_position(scene: &Scene, point: &Point) -> Option<[f64; 3
         .vessels
         .iter()
         .find(|vessel| vessel.name == *carrier)?;
-    let still = Vector3::zeros();
-    let turn = Attitude::new(vessel.attitude.into(), still, still).rotation;
+    let turn = Order::Zyx.rotation(vessel.attitude.into());
     Some((Vector3::from(vessel.position) + turn * Vector3::from(point.position)).into())
 }
 

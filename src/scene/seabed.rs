@@ -20,7 +20,7 @@ pub struct Seabed {
     /// Slope dz/dx and dz/dy of a plane through (0, 0, −depth) [-].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub slope: Option<[f64; 2]>,
-    /// File of soundings, a table in CSV or a bathymetry of MoorDyn's kind, relative to the scene; read into `grid`.
+    /// File of soundings, a table in CSV or a bathymetry file of MoorDyn-F or MoorDyn-C, relative to the scene; read into `grid`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub file: Option<String>,
     /// How stiffness and damping are used.

@@ -242,6 +242,10 @@ impl Scene {
         let fit = fit_in_words(length, chord);
         let start = match &line.initial {
             InitialShape::Static => "starts in static equilibrium".to_string(),
+            InitialShape::Catenary => {
+                "starts on the catenary between its ends, or straight where it has none, at rest"
+                    .to_string()
+            }
             InitialShape::Straight => "starts straight, at rest".to_string(),
             InitialShape::Parabola(sag) => {
                 format!(

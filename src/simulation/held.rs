@@ -78,13 +78,22 @@ impl<'a> At<'a> {
 
     /// The motion of the scene that a vessel follows.
     fn vessel_motion(&self, vessel: usize) -> Option<&'a Motion> {
-        let motion = self.model.vessels[vessel].motion.as_ref();
+        let motion = self.model.vessels[vessel].motion();
         motion.filter(|_| self.follows_scene)
     }
 
     /// A vessel at time `t` [s].
     pub fn frame(&self, vessel: usize, t: f64) -> Frame {
-        self.model.vessels[vessel].frame(&self.pose(vessel, t))
+        self.frame_at(vessel, &self.pose(vessel, t))
+    }
+
+    /// A vessel at a pose of what it follows.
+    fn frame_at(&self, vessel: usize, pose: &Pose) -> Frame {
+        let data = &self.model.vessels[vessel];
+        match self.vessel_motion(vessel) {
+            Some(_) => data.frame_of_motion(pose),
+            None => data.frame(pose),
+        }
     }
 
     fn pose(&self, vessel: usize, t: f64) -> Pose {
@@ -232,7 +241,7 @@ impl Held {
             }
         });
         let ways: Vec<Way> = ways.collect();
-        let motions = model.vessels.iter().map(|vessel| vessel.motion.as_ref());
+        let motions = model.vessels.iter().map(|vessel| vessel.motion());
         let references = model.points.iter().map(|point| Kinematics {
             position: point.reference,
             ..Kinematics::default()
@@ -298,9 +307,7 @@ impl Held {
     fn prepare_vessel(&mut self, at: &At, vessel: usize, span: [f64; 2], most: usize) {
         let model = at.model;
         let poses = span.map(|t| at.pose(vessel, t));
-        let frames = poses
-            .each_ref()
-            .map(|pose| model.vessels[vessel].frame(pose));
+        let frames = poses.each_ref().map(|pose| at.frame_at(vessel, pose));
         let length = span[1] - span[0];
         let smooth = at
             .vessel_motion(vessel)

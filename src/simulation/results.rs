@@ -11,7 +11,9 @@ use crate::dynamics::beam::{BeamView, Momentum};
 use crate::dynamics::ledger::{Energy, Ledger};
 use crate::dynamics::reaction;
 use crate::math::attitude::angle_rates;
-use crate::model::{Body, ClosedForm, End, Line, LineState, Network, Role, joint};
+use crate::model::{
+    Body, ClosedForm, End, Line, LineState, Network, Point, PointState, Role, joint,
+};
 use crate::scene::Integrator;
 use crate::statics::catenary::Catenary;
 use crate::statics::{self, assembly, catenary_network};
@@ -129,7 +131,11 @@ impl Simulation {
             lines.any(|&line| model.lines[line].drifts(model))
                 || model.current.is_some() && free.any(|free| free.sphere.is_some())
         };
+        let rides = |point: &Point| matches!(point.role, Role::Carried { vessel: carrier, .. } if carrier == vessel);
+        let wet = |point: &Point| point.own.as_ref().is_some_and(|own| own.sphere.is_some());
         model.networks.iter().filter(holds).any(dragged)
+            || model.current.is_some()
+                && model.points.iter().any(|point| rides(point) && wet(point))
     }
 
     fn stiffness_in_current(&self, vessel: usize) -> Option<[[f64; 6]; 6]> {
@@ -205,14 +211,30 @@ impl Simulation {
         attached.iter().filter_map(moment).sum()
     }
 
-    /// Force of the mooring on a point [N]: what a vessel feels there.
+    /// Force of the mooring on a point [N]: what a vessel feels there, of the lines and, where forces do not move the point, of its own mass.
     pub fn end_force(&self, point: usize) -> [f64; 3] {
-        let attached = &self.model.points[point].attached;
-        attached
-            .iter()
+        let (model, state) = (&*self.model, &self.snapshot.state);
+        let data = &model.points[point];
+        let lines = data.attached.iter();
+        let of_lines: Vector3<f64> = lines
             .map(|&(line, end)| self.line_end_force(line, end))
-            .sum::<Vector3<f64>>()
-            .into()
+            .sum();
+        if data.own.is_none() && data.load.is_none() {
+            return of_lines.into();
+        }
+        let time = state.time;
+        let water = (model.stream(time), state.waves_at_point(point, time));
+        let own = data.own_force(&self.point_as_it_acts(point), time, water);
+        (of_lines + own).into()
+    }
+
+    /// A point as its forces are found: at rest in quasi-static runs.
+    fn point_as_it_acts(&self, point: usize) -> PointState {
+        let state = self.snapshot.state.points[point];
+        match self.model.solver.integrator {
+            Integrator::QuasiStatic => state.stopped(),
+            _ => state,
+        }
     }
 
     /// Force of one line on the point at its end [N].
@@ -223,10 +245,7 @@ impl Simulation {
             End::B => model.lines[line].ends[1],
         };
         let negative = model.solver.negative_tension;
-        let mut point = state.points[point];
-        if model.solver.integrator == Integrator::QuasiStatic {
-            point = point.stopped();
-        }
+        let point = self.point_as_it_acts(point);
         reaction::end_force(
             &model.lines[line],
             &state.lines[line],

@@ -14,7 +14,7 @@ use crate::model::{End, Line, LineState, Model, PointState, Reel, State};
 use crate::physics::stretch::StretchLaw;
 use crate::scene::{InitialShape, Integrator};
 use crate::statics::catenary::{self, Bed, Catenary};
-use crate::statics::{self, StaticsError, assembly, catenary_network, equilibrium};
+use crate::statics::{self, StaticsError, assembly, catenary_network, equilibrium, guess};
 
 /// What becomes of lines that are given a shape to start on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -104,7 +104,7 @@ fn take_shapes(model: &Model, number: usize, state: &mut State) {
     for &index in &model.networks[number].lines {
         let line = &model.lines[index];
         let [a, b] = line.ends.map(|point| state.points[point].position);
-        let Some(mut nodes) = line.given_shape(a, b) else {
+        let Some(mut nodes) = guess::start_shape(model, line, a, b) else {
             continue;
         };
         // free points are where they rest, which is not where the scene puts them

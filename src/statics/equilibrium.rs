@@ -111,7 +111,7 @@ pub fn hang(
         let mut position = vec![a; line.segment_count() + 1];
         guess::hang(model, line, a, b, &mut position, &mut work.tension);
         state.lines.push(LineState::at_rest(
-            line.given_shape(a, b).unwrap_or(position),
+            guess::start_shape(model, line, a, b).unwrap_or(position),
         ));
     }
     Ok(state)

@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 
 use super::catenary::{self, Bed, Catenary, Section};
 use crate::model::{Line, Model};
+use crate::scene::InitialShape;
 
 /// Puts the nodes of a line between its ends at `a` and `b` [m] on its closed-form catenary, with the tensions of its segments [N].
 /// Where there is none, because an end lies under the bed, on a parabola of about the right length.
@@ -16,19 +17,10 @@ pub(crate) fn hang(
     tension: &mut [f64],
 ) {
     let chord = b - a;
-    let span = chord.xy().norm();
-    match closed_form(model, line, a, span, chord.z) {
+    match closed_form(model, line, a, chord.xy().norm(), chord.z) {
         Some(solved) => {
-            let along = if span > 0.0 {
-                Vector3::new(chord.x, chord.y, 0.0) / span
-            } else {
-                Vector3::x()
-            };
             let arc = &line.nodes.arc;
-            for (r, &s) in position.iter_mut().zip(arc) {
-                let point = solved.at(s);
-                *r = a + point.x * along + point.z * Vector3::z();
-            }
+            draw(&solved, arc, a, chord, position);
             for (i, tension) in tension.iter_mut().enumerate() {
                 *tension = solved.at(0.5 * (arc[i] + arc[i + 1])).tension;
             }
@@ -47,6 +39,57 @@ pub(crate) fn hang(
     }
     let last = position.len() - 1;
     (position[0], position[last]) = (a, b);
+}
+
+/// Nodes [m] of the shape that the scene gives a line at the start, between ends at `a` and `b` [m]; `None` for the static one.
+pub(crate) fn start_shape(
+    model: &Model,
+    line: &Line,
+    a: Vector3<f64>,
+    b: Vector3<f64>,
+) -> Option<Vec<Vector3<f64>>> {
+    match line.initial {
+        InitialShape::Catenary => Some(catenary_or_chord(model, line, a, b)),
+        _ => line.given_shape(a, b),
+    }
+}
+
+/// Nodes [m] of a line on its closed-form catenary between ends at `a` and `b` [m], on their chord where it has none.
+fn catenary_or_chord(
+    model: &Model,
+    line: &Line,
+    a: Vector3<f64>,
+    b: Vector3<f64>,
+) -> Vec<Vector3<f64>> {
+    let chord = b - a;
+    let (arc, length) = (&line.nodes.arc, line.unstretched_length());
+    let mut position: Vec<_> = arc.iter().map(|s| a + s / length * chord).collect();
+    if let Some(solved) = closed_form(model, line, a, chord.xy().norm(), chord.z) {
+        draw(&solved, arc, a, chord, &mut position);
+    }
+    let last = position.len() - 1;
+    (position[0], position[last]) = (a, b);
+    position
+}
+
+/// Puts nodes at the lengths `arc` [m] along a catenary that begins at `a` [m], in the plane of its `chord` [m].
+fn draw(
+    solved: &Catenary,
+    arc: &[f64],
+    a: Vector3<f64>,
+    chord: Vector3<f64>,
+    position: &mut [Vector3<f64>],
+) {
+    let span = chord.xy().norm();
+    let along = if span > 0.0 {
+        Vector3::new(chord.x, chord.y, 0.0) / span
+    } else {
+        Vector3::x()
+    };
+    for (r, &s) in position.iter_mut().zip(arc) {
+        let point = solved.at(s);
+        *r = a + point.x * along + point.z * Vector3::z();
+    }
 }
 
 /// The catenary of a line, from end A at `a` over a span and a rise [m].

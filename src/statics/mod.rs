@@ -5,7 +5,7 @@ pub mod beam;
 pub use crate::physics::catenary;
 pub mod catenary_network;
 pub mod equilibrium;
-mod guess;
+pub(crate) mod guess;
 pub mod modes;
 pub mod stiffness;
 

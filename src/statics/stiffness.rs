@@ -21,11 +21,13 @@
 //! Source: derived here. Valid where the equilibrium is stable. A line that lies slack on the bed resists nothing sideways; anchoring springs of a part of 10⁻¹⁵ to 10⁻⁹ of its
 //! axial stiffness then keep it where it is. Beams have no tangent here.
 
+use std::ops::SubAssign;
+
 use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
 
 use super::assembly::{LineWork, StaticCase, Workspace, rubbing};
 use super::catenary_network::{self, HungNetwork};
-use crate::model::{Body, End, Line, Model, Network, State};
+use crate::model::{Body, End, Line, Model, Network, Role, State};
 use crate::physics::bending::{Direction, Hessian, Turn};
 
 /// Springs on every unknown, over the greatest axial stiffness of a segment [-]; each is tried where the one before did not do.
@@ -41,7 +43,7 @@ pub fn of_vessel(
     origin: Vector3<f64>,
     work: &mut Workspace,
 ) -> Option<Matrix6<f64>> {
-    let mut sum = Matrix6::zeros();
+    let mut sum = of_own_weights(model, state, vessel, origin);
     for number in 0..model.networks.len() {
         let problem = Problem {
             model,
@@ -66,6 +68,37 @@ pub fn of_vessel(
         };
     }
     Some(sum)
+}
+
+/// The same of the points themselves that ride on it: their loads, and their weight less buoyancy.
+fn of_own_weights(
+    model: &Model,
+    state: &State,
+    vessel: usize,
+    origin: Vector3<f64>,
+) -> Matrix6<f64> {
+    let mut sum = Matrix6::zeros();
+    let rides =
+        |role: &Role| matches!(role, Role::Carried { vessel: carrier, .. } if *carrier == vessel);
+    for (point, at) in model.points.iter().zip(&state.points) {
+        if !rides(&point.role) {
+            continue;
+        }
+        let own = point.own.as_ref().map(|own| own.at(at.position.z));
+        let [weight, slope] = own.map_or([0.0; 2], |own| [own.weight, own.weight_slope]);
+        let force = point.load_at(state.time) - weight * Vector3::z();
+        let arm = at.position - origin;
+        for axis in 0..6 {
+            let motion = Motion::along(axis);
+            let swing = motion.spin.cross(&arm);
+            let change = -slope * (motion.shift + swing).z * Vector3::z();
+            let turning = arm.cross(&change) + swing.cross(&force);
+            let mut column = sum.column_mut(axis);
+            column.fixed_rows_mut::<3>(0).sub_assign(change);
+            column.fixed_rows_mut::<3>(3).sub_assign(turning);
+        }
+    }
+    sum
 }
 
 /// One of the six motions of a vessel, of unit size.

@@ -4,8 +4,8 @@ use std::f64::consts::{PI, TAU};
 
 use moorline::scene::channel::LineEnd;
 use moorline::scene::{
-    Axis, Break, InitialShape, Integrator, Line, LineType, Point, PointForce, PointKind,
-    PointMoment, RestShape, Scene, Section, TimeFunction, Vessel, Winch,
+    AngleOrder, Axis, Break, InitialShape, Integrator, Line, LineType, Point, PointForce,
+    PointKind, PointMoment, RestShape, Scene, Section, TimeFunction, Vessel, Winch,
 };
 use nalgebra::{Rotation3, Vector3};
 
@@ -119,6 +119,7 @@ impl Layout<'_> {
             let reach = 0.1 * self.plan.size;
             let offset = [0.0; 3].map(|_| dice.within(reach));
             let vessel = Vessel {
+                motion_angles: AngleOrder::Zyx,
                 name: format!("vessel{number}"),
                 position: (place + Vector3::from(offset)).into(),
                 attitude: [0.0; 3].map(|_: f64| {

@@ -85,3 +85,34 @@ fn a_run_of_a_deck_writes_its_channels_beside_moorlines_columns() {
     assert!(column("Con3Fx").iter().all(|force| *force > 0.0));
     assert!(column("L1NBVz").iter().all(|speed| speed.abs() < 1e-3));
 }
+
+#[test]
+fn a_map_deck_runs_through_equilibria_without_trials_of_elements() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("oc3.map"), MAP).unwrap();
+    let motion = "time,x,y,z\n0,0,0,0\n10,4,0,0\n20,4,0,0\n";
+    fs::write(folder.path().join("motion.csv"), motion).unwrap();
+    let moved = ["--depth", "320", "--motion", "motion.csv"];
+    let arguments = [&["run", "oc3.map", "-o", "out"], &moved[..]].concat();
+    let (code, said, error) = moorline(folder.path(), &arguments);
+    assert_eq!(code, 0, "{error}");
+    assert!(error.contains("quasi-static, as MAP++ is"), "{error}");
+    let report = fs::read_to_string(folder.path().join("out/report.html")).unwrap();
+    assert!(
+        !report.contains("tried on") && !said.contains("tried on"),
+        "{said}"
+    );
+    let mut table = csv::Reader::from_path(folder.path().join("out/results.csv")).unwrap();
+    let header = table.headers().unwrap().clone();
+    let index = header.iter().position(|name| name == "line1.tension_b");
+    let last = table.records().last().unwrap().unwrap();
+    let tension: f64 = last[index.unwrap()].parse().unwrap();
+    let mut moved = deep();
+    moved
+        .positions
+        .insert("vessel".to_string(), [4.0, 0.0, 0.0]);
+    let there = load_bytes(MAP.as_bytes(), &moved).unwrap_or_else(|e| panic!("{}", e.list()));
+    let exact = Simulation::new(&there.scene).unwrap();
+    let exact = exact.catenary(0).unwrap().tension_b();
+    assert!((tension / exact - 1.0).abs() < 1e-6, "{tension} {exact}");
+}

@@ -2,7 +2,10 @@
 
 use std::fs;
 
-use moorline::scene::{Friction, LoadedScene, PointKind, Scene, TimeFunction, load, load_with};
+use moorline::scene::{
+    Drive, Friction, InitialShape, Integrator, LoadedScene, PointKind, Scene, TimeFunction, load,
+    load_with,
+};
 
 use crate::*;
 
@@ -407,4 +410,241 @@ fn a_converted_deck_says_units_and_lines_of_the_file() {
     ] {
         assert!(text.contains(part), "{part}\n{text}");
     }
+}
+
+fn loaded(text: &str) -> LoadedScene {
+    load_text(text).unwrap_or_else(|error| panic!("{}", error.list()))
+}
+
+#[test]
+fn a_map_deck_is_quasi_static_and_says_so() {
+    let loaded = load_with(&deck("oc3.map"), &deep()).unwrap();
+    assert_eq!(loaded.scene.solver.integrator, Integrator::QuasiStatic);
+    let said = notes(&loaded);
+    assert!(said.contains("quasi-static, as MAP++ is"), "{said}");
+    assert!(
+        loaded
+            .scene
+            .in_words()
+            .contains("quasi-static: an equilibrium")
+    );
+    let converted = loaded.to_commented_toml();
+    assert!(
+        converted.contains("integrator = \"quasi_static\""),
+        "{converted}"
+    );
+}
+
+#[test]
+fn mass_of_a_coupled_point_in_a_deck_reaches_the_force_on_what_moves_it() {
+    let text = with(
+        C_STYLE,
+        "2     Coupled   -30.0   0.0     -8.0    0      0 ",
+        "2     Coupled   -30.0   0.0     -8.0   9000   0.9",
+    );
+    let text = with(
+        &text,
+        "5.0     0.0     15.0    0      0 ",
+        "5.0 0.0 15.0 400 0.1",
+    );
+    let text = with(
+        &text,
+        "3     Fixed     -120.0  0.0     -60.0   0      0 ",
+        "3 Fixed -120 0 -60 700 0",
+    );
+    let (light, heavy) = (loaded(C_STYLE), loaded(&text));
+    let coupled = point(&heavy.scene, "point2");
+    assert_eq!((coupled.mass, coupled.volume), (Some(9000.0), Some(0.9)));
+    assert_eq!(point(&heavy.scene, "point7").mass, Some(400.0));
+    assert_eq!(point(&heavy.scene, "point3").mass, None);
+    let said = notes(&heavy);
+    assert!(
+        said.contains("point 3: mass, volume and drag of a fixed point"),
+        "{said}"
+    );
+    assert!(!said.contains("point 2: mass"), "{said}");
+    let force = |loaded: &LoadedScene| {
+        let simulation = Simulation::new(&loaded.scene).unwrap();
+        let index = simulation.model().point_index("point2").unwrap();
+        simulation.end_force(index)[2]
+    };
+    let own = force(&heavy) - force(&light);
+    assert!(
+        (own + (9000.0 - 1028.0 * 0.9) * 9.81).abs() < 1e-6,
+        "{own} N"
+    );
+    let words = heavy.scene.in_words();
+    let words = words.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(
+        words.contains("add to the force of its lines on what moves it"),
+        "{words}"
+    );
+}
+
+#[test]
+fn a_deck_that_gives_no_time_to_come_to_rest_starts_from_its_positions() {
+    let buoy = "ID      LineType   UnstrLen";
+    let free = "7 free 150 0 -60 500 0.2 0 0\n---------------------- LINES --------------------------------------\n";
+    let text = with(
+        OPENFAST,
+        "---------------------- LINES --------------------------------------\n",
+        free,
+    );
+    assert!(text.contains(buoy));
+    let text = with(
+        &text,
+        "1        chain        1         4      340.0 ",
+        "1 chain 1 7 195",
+    );
+    let text = with(
+        &text,
+        "2        chain        2 ",
+        "4 chain 7 4 150 10 -\n2 chain 2 ",
+    );
+    let text = with(&text, "L1N10T", "L1N9T");
+    let at_once = loaded(&with(&text, "60.0     TmaxIC", "0 TmaxIC"));
+    let rested = loaded(&text);
+    let start = |loaded: &LoadedScene| {
+        let simulation = Simulation::new(&loaded.scene).unwrap();
+        let index = simulation.model().point_index("point7").unwrap();
+        let place: [f64; 3] = simulation.state().points[index].position.into();
+        (place, simulation)
+    };
+    assert_ne!(start(&rested).0, [150.0, 0.0, -60.0]);
+    let (place, simulation) = start(&at_once);
+    assert_eq!(place, [150.0, 0.0, -60.0]);
+    let lines = &at_once.scene.lines;
+    assert!(
+        lines
+            .iter()
+            .all(|line| line.initial == InitialShape::Catenary)
+    );
+    // a line between held points lies on its closed form
+    let line = simulation.model().line_index("line2").unwrap();
+    let catenary = simulation.catenary(line).unwrap();
+    for node in simulation.profile(line) {
+        let z = -100.0 + catenary.at(node.s).z;
+        assert!((node.z - z).abs() < 1e-9, "{} {z}", node.z);
+    }
+    let said = notes(&at_once);
+    assert!(
+        said.contains("TmaxIC 0: runs start with free points where the file has them"),
+        "{said}"
+    );
+    assert!(!said.contains("dtIC, TmaxIC"), "{said}");
+    let words = at_once.scene.in_words();
+    let words = words.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(
+        words.contains("starts on the catenary between its ends"),
+        "{words}"
+    );
+    let converted = Scene::from_toml(&at_once.to_commented_toml()).unwrap();
+    assert_eq!(converted, at_once.scene);
+}
+
+#[test]
+fn a_deck_with_friction_says_how_much_of_it_holds_at_rest() {
+    let said = notes(&loaded(C_STYLE));
+    assert!(said.contains("friction at rest: "), "{said}");
+    let said = notes(&read("openfast_v2.dat"));
+    assert!(!said.contains("friction at rest: "), "{said}");
+}
+
+type Matrix = [[f64; 3]; 3];
+
+fn product(a: Matrix, b: Matrix) -> Matrix {
+    std::array::from_fn(|i| std::array::from_fn(|j| (0..3).map(|k| a[i][k] * b[k][j]).sum()))
+}
+
+/// Rotations by roll, pitch and yaw [rad] about x, y and z.
+fn elementary([roll, pitch, yaw]: [f64; 3]) -> [Matrix; 3] {
+    let ((sr, cr), (sp, cp), (sy, cy)) = (roll.sin_cos(), pitch.sin_cos(), yaw.sin_cos());
+    [
+        [[1.0, 0.0, 0.0], [0.0, cr, -sr], [0.0, sr, cr]],
+        [[cp, 0.0, sp], [0.0, 1.0, 0.0], [-sp, 0.0, cp]],
+        [[cy, -sy, 0.0], [sy, cy, 0.0], [0.0, 0.0, 1.0]],
+    ]
+}
+
+#[test]
+fn the_motion_of_a_decks_vessel_turns_it_as_moordyn_does_and_an_fmu_as_it_says() {
+    let turned = with(
+        C_STYLE,
+        "1    Coupled     0      0    -20     0       0      90 ",
+        "1    Coupled     0      0    -20     10     -20     90 ",
+    );
+    let reference = [10.0, -20.0, 90.0].map(f64::to_radians);
+    let motion = [20.0, -30.0, 40.0].map(f64::to_radians);
+    let arm = [5.0, 0.0, 15.0];
+    let placed = |turn: Matrix| -> [f64; 3] {
+        let at = [2.0, 0.0, -20.0];
+        std::array::from_fn(|i| at[i] + (0..3).map(|k| turn[i][k] * arm[k]).sum::<f64>())
+    };
+    let [x, y, z] = elementary(std::array::from_fn(|i| reference[i] + motion[i]));
+    let expected = placed(product(x, product(y, z)));
+    let mut loaded = loaded(&turned);
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("motion.csv");
+    let [roll, pitch, yaw] = motion;
+    let named = "time,body1.x,body1.roll,body1.pitch,body1.yaw\n";
+    let row = |t: u8| format!("{t},2,{roll},{pitch},{yaw}\n");
+    fs::write(&file, format!("{named}{}{}", row(0), row(9))).unwrap();
+    let drive = Drive {
+        file: Some(file),
+        ..Drive::default()
+    };
+    loaded.scene.drive(&drive).unwrap();
+    for line in &mut loaded.scene.lines {
+        line.initial = InitialShape::Straight; // where the body is does not depend on an equilibrium
+    }
+    let mut simulation = Simulation::new(&loaded.scene).unwrap();
+    let index = simulation.model().point_index("point7").unwrap();
+    let near = |simulation: &Simulation, wanted: [f64; 3]| {
+        let place = simulation.state().points[index].position;
+        for axis in 0..3 {
+            assert!(
+                (place[axis] - wanted[axis]).abs() < 1e-9,
+                "{place} {wanted:?}"
+            );
+        }
+    };
+    simulation.follow_scene().unwrap();
+    near(&simulation, expected);
+    simulation.advance(0.1).unwrap();
+    near(&simulation, expected);
+    // the moment is that of the force at this place
+    let force = simulation.end_force(index);
+    let [_, _, _, mx, ..] = simulation.vessel_force(0);
+    let origin = [2.0, 0.0, -20.0];
+    let moment = (expected[1] - origin[1]) * force[2] - (expected[2] - origin[2]) * force[1];
+    assert!(
+        (mx - moment).abs() < 1e-6 * moment.abs().max(1.0),
+        "{mx} {moment}"
+    );
+    // a host is given the same attitude in the FMU's order
+    let mut host = Simulation::new(&loaded.scene).unwrap();
+    for moving in host.model().moving(0.0) {
+        host.set_body(moving.body, moving.pose, [None; 6]);
+    }
+    host.restart(0.0).unwrap();
+    near(&host, expected);
+    let attitude = loaded.scene.vessels[0].attitude;
+    host.set_pose(0, [2.0, 0.0, 0.0, roll, pitch, yaw]);
+    host.restart(0.0).unwrap();
+    let [x, y, z] = elementary(std::array::from_fn(|i| attitude[i] + motion[i]));
+    near(&host, placed(product(z, product(y, x))));
+}
+
+#[test]
+fn the_words_for_a_deck_name_both_orders_of_angles() {
+    let words = loaded(C_STYLE).scene.in_words();
+    let words = words.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(
+        words.contains("Rx(roll)·Ry(pitch)·Rz(yaw), as in MoorDyn"),
+        "{words}"
+    );
+    assert!(
+        words.contains("of the FMU by Rz(yaw)·Ry(pitch)·Rx(roll)"),
+        "{words}"
+    );
 }

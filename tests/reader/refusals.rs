@@ -237,6 +237,14 @@ fn a_count_of_rows_that_is_wrong_is_refused_as_moordyn_v1_would_lose_some() {
 }
 
 #[test]
+fn a_free_body_is_not_refused_as_if_a_host_moved_it() {
+    let deck = with(C_STYLE, "1    Coupled     0", "1    Free     0");
+    let said = said(&with(&deck, "90      0    0|0|0", "90      7e3    0|0|0"));
+    assert!(said.contains("a free body is not modelled"), "{said}");
+    assert!(!said.contains("host that moves it"), "{said}");
+}
+
+#[test]
 fn bodies_and_rods_that_move_are_refused_with_what_to_do() {
     let refusals = [
         (

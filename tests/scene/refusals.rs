@@ -166,7 +166,7 @@ const SLIPS: &[Refusal] = &[
     (
         "elements = 10",
         "elements = 10 }]\ninitial = [{ parabola = 2.0",
-        "42:11: lines[1].initial: expected one of `static`, `straight`, `parabola`, `nodes`, found an array",
+        "42:11: lines[1].initial: expected one of `static`, `catenary`, `straight`, `parabola`, `nodes`, found an array",
     ),
     (
         "elements = 10",
@@ -455,12 +455,12 @@ const POINTS: &[Refusal] = &[
     (
         r#"kind = "fixed""#,
         "kind = \"fixed\"\nmass = 3.0",
-        r#"20:8: points[0].mass: only a free point has `mass`, and this one is fixed: leave it out or write kind = "free""#,
+        r#"20:8: points[0].mass: a fixed point has no `mass`, which would act on the ground alone: leave it out or write kind = "free""#,
     ),
     (
         r#"kind = "fixed""#,
         "kind = \"fixed\"\nvolume = 3.0",
-        r#"20:10: points[0].volume: only a free point has `volume`, and this one is fixed: leave it out or write kind = "free""#,
+        r#"20:10: points[0].volume: a fixed point has no `volume`, which would act on the ground alone: leave it out or write kind = "free""#,
     ),
     (
         r#"kind = "free""#,
@@ -762,7 +762,7 @@ const LINES: &[Refusal] = &[
     (
         "length = 80.0 }]",
         "length = 80.0 }]\ninitial = \"straigt\"",
-        "36:11: lines[0].initial: unknown value `straigt`, did you mean `straight`? (known values: static, straight, parabola, nodes)",
+        "36:11: lines[0].initial: unknown value `straigt`, did you mean `straight`? (known values: static, catenary, straight, parabola, nodes)",
     ),
 ];
 

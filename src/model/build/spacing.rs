@@ -176,8 +176,8 @@ fn path(scene: &Scene, vessels: &[Vessel], point: &Point) -> Vec<Vector3<f64>> {
         | Role::Prescribed(motion) => Some(point.reference + motion.at(t).position),
         Role::Carried { vessel, arm } => {
             let vessel = &vessels[*vessel];
-            let pose = vessel.motion.as_ref()?.pose(t);
-            Some(vessel.carry(&vessel.frame(&pose), *arm).position)
+            let pose = vessel.motion()?.pose(t);
+            Some(vessel.carry(&vessel.frame_of_motion(&pose), *arm).position)
         }
         _ => None,
     };

@@ -140,6 +140,13 @@ fn check_start(findings: &mut Findings, at: &str, line: &Line, scene: &Scene) {
     });
     match &line.initial {
         InitialShape::Static => {}
+        InitialShape::Catenary => {
+            if line.rest_shape == RestShape::Initial {
+                let problem = "the catenary is no shape that is free of bending: give a line with rest_shape = \"initial\" a shape that is \
+                               \"straight\", { parabola = sag } or { nodes = … }";
+                findings.say(at, problem);
+            }
+        }
         InitialShape::Straight => {
             if line.from != line.to && ends[0].is_some() && ends[0] == ends[1] {
                 let problem = "the two ends have the same position, so no straight line joins them: \

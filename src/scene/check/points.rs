@@ -52,7 +52,7 @@ fn check_place(findings: &mut Findings, at: &str, point: &Point, scene: &Scene) 
     }
 }
 
-/// Keys that only a free point may have.
+/// Keys that only some kinds of points may have.
 fn check_freedom(findings: &mut Findings, at: &str, point: &Point) {
     findings.number_if(
         format!("{at}.mass"),
@@ -78,9 +78,8 @@ fn check_freedom(findings: &mut Findings, at: &str, point: &Point) {
         Bounds::NotNegative(1e3),
         "-",
     );
-    if point.kind != PointKind::Free {
+    if point.kind == PointKind::Fixed {
         let given = [
-            ("free", point.free.is_some()),
             ("mass", point.mass.is_some()),
             ("volume", point.volume.is_some()),
             ("drag_area", point.drag_area.is_some()),
@@ -88,10 +87,18 @@ fn check_freedom(findings: &mut Findings, at: &str, point: &Point) {
         ];
         for (key, _) in given.iter().filter(|(_, given)| *given) {
             let problem = format!(
-                "only a free point has `{key}`, and this one is {}: leave it out or write kind = \"free\"",
-                kind_in_words(point.kind)
+                "a fixed point has no `{key}`, which would act on the ground alone: leave it out or write kind = \"free\""
             );
             findings.say(format!("{at}.{key}"), problem);
+        }
+    }
+    if point.kind != PointKind::Free {
+        if point.free.is_some() {
+            let problem = format!(
+                "only a free point has `free`, and this one is {}: leave it out or write kind = \"free\"",
+                kind_in_words(point.kind)
+            );
+            findings.say(format!("{at}.free"), problem);
         }
         return;
     }

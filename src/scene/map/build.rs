@@ -6,8 +6,8 @@ use super::deck::{Coordinate, Deck, Kind, Node};
 use crate::scene::from_deck::{self, SEA_WATER, Vessels};
 use crate::scene::rows::{Findings, Placed, ROWS_MAX};
 use crate::scene::{
-    self, Friction, Places, Point, PointForce, PointKind, Scene, Seabed, Section, Supplement,
-    TimeFunction, Water,
+    self, AngleOrder, Friction, Integrator, Places, Point, PointForce, PointKind, Scene, Seabed,
+    Section, Solver, Supplement, TimeFunction, Water,
 };
 
 /// A deck on its way to a scene.
@@ -42,9 +42,16 @@ pub(super) fn scene(
         scene: Scene {
             title: deck.title.clone(),
             water: Some(Water::still(SEA_WATER)),
+            solver: Solver {
+                integrator: Integrator::QuasiStatic,
+                ..Solver::default()
+            },
             ..Scene::default()
         },
-        vessels: Vessels { supplement },
+        vessels: Vessels {
+            supplement,
+            motion_angles: AngleOrder::Zyx,
+        },
         places,
         findings,
         types: BTreeMap::new(),
@@ -169,6 +176,8 @@ impl Builder<'_> {
         match node.kind.value {
             Kind::Fix => fixed,
             Kind::Vessel => Point {
+                mass: (node.mass.value != 0.0).then_some(node.mass.value),
+                volume: (node.volume.value != 0.0).then_some(node.volume.value),
                 kind: PointKind::Coupled,
                 on: Some(self.vessels.board(
                     &mut self.scene,
@@ -281,8 +290,9 @@ impl Builder<'_> {
 
     fn remarks(&mut self) {
         self.findings.remark_on_all(
-            "MAP++ uses neither CIntDamp, Ca, Cdn nor Cdt, and they are left out: a run in time needs the damping, drag \
-             and added mass of the lines in the scene",
+            "quasi-static, as MAP++ is: an equilibrium at every communication point, without inertia, damping and drag; for dynamics \
+             write another `integrator` in [solver] of the scene that `moorline convert` makes, and damping, drag and added mass of the \
+             lines, for MAP++ uses neither CIntDamp, Ca, Cdn nor Cdt and they are left out",
         );
         self.findings.remark_on_all(format!(
             "density and gravity are not in a MAP++ file: {SEA_WATER} kg/m³ and {} m/s² are taken",

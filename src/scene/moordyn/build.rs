@@ -7,8 +7,8 @@ use crate::scene::channel::Channel;
 use crate::scene::from_deck::{self, SEA_WATER, Vessels, place_position};
 use crate::scene::rows::{Findings, Placed};
 use crate::scene::{
-    self, Current, Friction, Output, Places, PointForce, PointKind, Scene, Sea, Seabed, Section,
-    Supplement, TensionStrain, TimeFunction, Water, Waves,
+    self, AngleOrder, Current, Friction, InitialShape, Output, Places, PointForce, PointKind,
+    Scene, Sea, Seabed, Section, Supplement, TensionStrain, TimeFunction, Water, Waves,
 };
 
 /// A deck on its way to a scene.
@@ -35,7 +35,10 @@ pub(super) fn scene(
             title: deck.title.clone(),
             ..Scene::default()
         },
-        vessels: Vessels { supplement },
+        vessels: Vessels {
+            supplement,
+            motion_angles: AngleOrder::Xyz,
+        },
         places,
         findings,
         types: BTreeMap::new(),
@@ -184,7 +187,7 @@ impl<'d> Builder<'d> {
                 &point.attachment,
                 position,
             );
-            if made.kind == PointKind::Free {
+            if made.kind != PointKind::Fixed {
                 made.mass = given(point.mass.value);
                 made.volume = given(point.volume.value);
                 made.drag_area = given(point.drag_area.value);
@@ -515,6 +518,9 @@ impl<'d> Builder<'d> {
         });
         let mut made =
             scene::Line::between(format!("line{}", line.id.value), from, to, vec![section]);
+        if self.deck.options.starts_at_once.is_some() {
+            made.initial = InitialShape::Catenary;
+        }
         made.clamped_a = clamped_a;
         made.clamped_b = clamped_b;
         made

@@ -1,5 +1,7 @@
 //! What a deck says, in its own terms: plain data with places, nothing interpreted.
 
+use std::ops::Range;
+
 use crate::scene::rows::Placed;
 
 /// Which grammar a deck is written in.
@@ -199,6 +201,8 @@ pub(super) struct Options {
     pub soundings: Option<Placed<String>>,
     /// dtOut [s].
     pub output_interval: Option<Placed<f64>>,
+    /// Where it says that MoorDyn has no time to come to rest in before it starts.
+    pub starts_at_once: Option<Range<usize>>,
     /// Waves and currents, where asked for: key and value.
     pub surroundings: Vec<(String, Placed<String>)>,
     /// Keys that need nothing here.

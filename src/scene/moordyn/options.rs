@@ -13,8 +13,6 @@ const UNNEEDED: &[&str] = &[
     "TSCHEME",
     "DTIC",
     "ICDT",
-    "TMAXIC",
-    "ICTMAX",
     "CDSCALEIC",
     "ICDFAC",
     "THRESHIC",
@@ -57,6 +55,8 @@ const NEEDED: &[(&str, Meaning)] = &[
     ("CV", Meaning::FrictionDamping),
     ("STATDYNFRICSCALE", Meaning::StaticFriction),
     ("MC", Meaning::StaticFriction),
+    ("TMAXIC", Meaning::Relaxation),
+    ("ICTMAX", Meaning::Relaxation),
     ("DTOUT", Meaning::OutputInterval),
     ("WAVEKIN", Meaning::Surroundings),
     ("WATERKIN", Meaning::Surroundings),
@@ -78,6 +78,7 @@ enum Meaning {
     FrictionDamping,
     StaticFriction,
     OutputInterval,
+    Relaxation,
     Soundings,
     Surroundings,
 }
@@ -231,13 +232,16 @@ fn take(
             }
             Err(problem) => findings.mistake(format!("OPTIONS, {key}"), value.span, problem),
         },
-        // 0 asks for none.
-        Meaning::Surroundings | Meaning::Soundings if number(&value.value) == Ok(0.0) => {
+        // 0 asks for none of these, and other times to come to rest in change nothing here.
+        Meaning::Surroundings | Meaning::Soundings | Meaning::Relaxation
+            if (number(&value.value) == Ok(0.0)) != (meaning == Meaning::Relaxation) =>
+        {
             options.unneeded.push(Placed {
                 value: key.to_string(),
                 span: value.span,
             })
         }
+        Meaning::Relaxation => options.starts_at_once = Some(value.span),
         Meaning::Soundings => options.soundings = Some(value),
         Meaning::Surroundings => options.surroundings.push((key.to_string(), value)),
     }

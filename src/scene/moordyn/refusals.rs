@@ -141,8 +141,11 @@ fn bodies_in_motion(deck: &Deck, findings: &mut Findings) {
 /// Mass, volume and drag of a body that the host moves.
 fn bodies_with_mass(deck: &Deck, findings: &mut Findings) {
     for body in &deck.bodies {
-        if body.attachment.value == Attachment::Fixed {
-            continue;
+        if !matches!(
+            body.attachment.value,
+            Attachment::Coupled | Attachment::Vessel
+        ) {
+            continue; // fixed, or refused as it moves
         }
         let [_, _, drag, _] = &body.parts;
         let drag = drag

@@ -28,7 +28,8 @@ pub(super) fn remark(deck: &Deck, sections: &Sections<'_>, findings: &mut Findin
     unneeded_options(deck, findings);
     friction(deck, findings);
     line_files(deck, findings);
-    masses_of_held_points(deck, findings);
+    masses_of_fixed_points(deck, findings);
+    start(deck, findings);
 }
 
 fn headers(deck: &Deck, sections: &Sections<'_>, findings: &mut Findings) {
@@ -97,6 +98,12 @@ fn unneeded_options(deck: &Deck, findings: &mut Findings) {
 }
 
 fn friction(deck: &Deck, findings: &mut Findings) {
+    let mut coefficients = deck.options.friction.iter();
+    if let Some((_, coefficient)) = coefficients.find(|(_, coefficient)| coefficient.value > 0.0) {
+        let text = "friction at rest: here every line lies as one that was laid from its end A and hauled at its end B, with all the friction that \
+                    holds against that, as in MAP++; a line at rest has none in MoorDyn";
+        findings.remark(coefficient.span.start, text);
+    }
     if let Some(damping) = &deck.options.friction_damping {
         let text = "friction here sticks and lets go at its limit: it needs no damping to fade in with, which in MoorDyn lets a line at rest creep";
         findings.remark(damping.span.start, text);
@@ -112,6 +119,15 @@ fn friction(deck: &Deck, findings: &mut Findings) {
     }
 }
 
+/// Where runs start: MoorDyn comes to rest from the positions in the file, in no time where `TmaxIC` is 0.
+fn start(deck: &Deck, findings: &mut Findings) {
+    if let Some(span) = &deck.options.starts_at_once {
+        let text = "TmaxIC 0: runs start with free points where the file has them and every line on its catenary between its ends, or straight \
+                    where it has none, as in MoorDyn; leave it out to start from equilibrium";
+        findings.remark(span.start, text);
+    }
+}
+
 fn line_files(deck: &Deck, findings: &mut Findings) {
     let mut lines = deck.lines.iter();
     if let Some(line) = lines.find(|line| line.outputs.value.chars().any(char::is_alphabetic)) {
@@ -122,10 +138,18 @@ fn line_files(deck: &Deck, findings: &mut Findings) {
     }
 }
 
-/// MoorDyn adds the weight and inertia of a point to the force on what moves it.
-fn masses_of_held_points(deck: &Deck, findings: &mut Findings) {
+/// What is fixed has no mass in a scene.
+fn masses_of_fixed_points(deck: &Deck, findings: &mut Findings) {
+    let fixed = |id: usize| {
+        let body = deck.bodies.iter().find(|body| body.id.value == id);
+        body.is_some_and(|body| body.attachment.value == Attachment::Fixed)
+    };
     for point in &deck.points {
-        let free = point.attachment.value == Attachment::Free;
+        let fixed = match point.attachment.value {
+            Attachment::Fixed => true,
+            Attachment::Body(id) => fixed(id),
+            _ => false,
+        };
         let sizes = [
             &point.mass,
             &point.volume,
@@ -133,11 +157,10 @@ fn masses_of_held_points(deck: &Deck, findings: &mut Findings) {
             &point.added_mass,
         ];
         if let Some(given) = sizes.iter().find(|size| size.value != 0.0)
-            && !free
+            && fixed
         {
             let text = format!(
-                "point {}: mass, volume and drag of a point that the forces do not move are left out of the force on what \
-                 holds it",
+                "point {}: mass, volume and drag of a fixed point are left out of the force on the ground, which MoorDyn adds them to",
                 point.id.value
             );
             findings.remark(given.span.start, text);

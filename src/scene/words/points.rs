@@ -6,10 +6,14 @@ use super::significant;
 use crate::scene::{Axis, InitialShape, Line, Point, PointKind, Scene};
 
 impl Scene {
-    /// What water and bed do to a free point; nothing where neither does anything.
+    /// What water and bed do to a point; nothing where neither does anything.
     pub(super) fn sea_in_words(&self, point: &Point) -> Option<String> {
         if point.kind != PointKind::Free {
-            return None;
+            let own = point.mass.is_some() || point.volume.is_some() || point.drag_area.is_some();
+            let text = "which add to the force of its lines on what moves it".to_string();
+            let said = [self.water_in_words(point), own.then_some(text)];
+            let said: Vec<String> = said.into_iter().flatten().collect();
+            return (!said.is_empty()).then(|| said.join(", "));
         }
         let said: Vec<String> = [self.water_in_words(point), self.bed_in_words(point)]
             .into_iter()

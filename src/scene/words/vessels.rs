@@ -3,7 +3,7 @@
 use super::motions::motion_in_words;
 use super::significant;
 use crate::scene::check::number;
-use crate::scene::{Scene, Vessel};
+use crate::scene::{AngleOrder, Scene, Vessel};
 
 /// "platform: moved by the host, its origin at (0, 0, 0) m, carries fairlead1 and fairlead2; in `run` it stays where it is".
 pub(super) fn vessel_in_words(scene: &Scene, vessel: &Vessel) -> String {
@@ -28,5 +28,12 @@ pub(super) fn vessel_in_words(scene: &Scene, vessel: &Vessel) -> String {
     };
     let motion = scene.motion.get(&vessel.name).map(motion_in_words);
     let motion = motion.unwrap_or_else(|| "stays where it is".to_string());
-    format!("{said}, carries {carried}; in `run` it {motion}")
+    let angles = match vessel.motion_angles {
+        AngleOrder::Zyx => "",
+        AngleOrder::Xyz => {
+            "; roll, pitch and yaw of a motion in `run` turn it by Rx(roll)·Ry(pitch)·Rz(yaw), as in MoorDyn, those of the FMU by \
+             Rz(yaw)·Ry(pitch)·Rx(roll)"
+        }
+    };
+    format!("{said}, carries {carried}; in `run` it {motion}{angles}")
 }

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::{StaticCase, Weights};
-use crate::model::{Bottom, FreePoint, Model, Network, Point, PointState};
+use crate::model::{Bottom, FreePoint, Model, Network, Point, PointForces, PointState};
 use crate::physics::airy::Orbit;
 use crate::physics::fading_damper::FadingContact;
 use crate::physics::flow::Stream;
@@ -89,28 +89,22 @@ impl PointWork {
         weights: &Weights,
     ) {
         let (z, a) = (state.position.z, state.acceleration);
-        let v = state.velocity;
-        let (stream, waves) = water;
-        let mut past = v - stream.map_or(Vector3::zeros(), |stream| stream.velocity(z));
-        let at = free.at(z - waves.map_or(0.0, |orbit| orbit.elevation));
-        let mut force = load - at.weight * Vector3::z();
-        if let Some(orbit) = &waves {
-            past -= orbit.velocity;
-            force += free.pressed(at.wetted, orbit);
-        }
+        let (v, stream) = (state.velocity, water.0);
+        let PointForces {
+            at,
+            past,
+            sum: mut force,
+        } = free.forces(load, state, water);
         self.diagonal = Matrix3::from_diagonal_element(weights.acceleration * at.mass);
-        if let Some(sphere) = &free.sphere {
-            force += sphere.drag(at.wetted, past);
-            if TANGENT {
-                let slope = sphere.drag_slope(at.wetted, past);
-                self.diagonal += weights.velocity * slope;
-                let mut by_height = sphere.drag_slope_with_height(at.wetted, past);
-                by_height -= stream.map_or(Vector3::zeros(), |stream| slope * stream.shear(z));
-                by_height.z += at.weight_slope;
-                let by_height = weights.position * by_height + weights.inertia * at.mass_slope * a;
-                self.diagonal
-                    .set_column(2, &(self.diagonal.column(2) + by_height));
-            }
+        if let (Some(sphere), true) = (&free.sphere, TANGENT) {
+            let slope = sphere.drag_slope(at.wetted, past);
+            self.diagonal += weights.velocity * slope;
+            let mut by_height = sphere.drag_slope_with_height(at.wetted, past);
+            by_height -= stream.map_or(Vector3::zeros(), |stream| slope * stream.shear(z));
+            by_height.z += at.weight_slope;
+            let by_height = weights.position * by_height + weights.inertia * at.mass_slope * a;
+            self.diagonal
+                .set_column(2, &(self.diagonal.column(2) + by_height));
         }
         if let (Some(contact), None) = (&free.contact, bottom)
             && let Some(bed) =
