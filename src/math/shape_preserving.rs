@@ -151,8 +151,8 @@ impl<'a> Limiter<'a> {
         let mut k = 0;
         while k < self.spans.len() {
             let mut back = false;
-            if !(limited[k] && limited[k + 1]) && !self.is_supported(k, [slopes[k], slopes[k + 1]])
-            {
+            let settled = limited[k] && limited[k + 1];
+            if !settled && !self.is_supported(k, [slopes[k], slopes[k + 1]]) {
                 for row in [k, k + 1] {
                     back |= row == k && !limited[row];
                     limited[row] = true;

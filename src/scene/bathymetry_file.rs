@@ -194,8 +194,8 @@ fn numbers(line: usize, words: &[String], factor: f64) -> Result<Vec<f64>, Strin
 
 /// A row of x behind `skipped` words, and rows of y with its depths.
 fn table(header: &Row, rows: &[Row], skipped: usize) -> Result<DepthGrid, String> {
-    let corner = header.1.iter().take(skipped).map(|word| corner_unit(word));
-    let factor = corner.last().unwrap_or(Ok(1.0)); // none where nothing is skipped
+    let corner = header.1[..skipped].last(); // none where nothing is skipped
+    let factor = corner.map_or(Ok(1.0), |word| corner_unit(word));
     let factor = factor.map_err(|problem| format!(", line {}: {problem}", header.0))?;
     let x = numbers(header.0, &header.1[skipped..], factor)?;
     let (mut y, mut depth) = (Vec::new(), Vec::new());

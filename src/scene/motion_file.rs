@@ -532,7 +532,7 @@ mod tests {
 
     #[test]
     fn the_same_motion_is_read_in_every_layout_and_each_is_named() {
-        let wanted = vec![
+        let wanted = [
             [0.0, 0.5, 0.0, -1.25, 0.0, 0.1, 0.0],
             [0.1, 0.75, 0.0, -1.5, 0.0, 0.2, 0.0],
         ];

@@ -115,11 +115,10 @@ fn sea_path(waves: &Waves, index: usize) -> String {
 
 fn seas(scene: &Scene) -> impl Iterator<Item = (String, &Sea)> {
     let waves = scene.water.as_ref().and_then(|water| water.waves.as_ref());
-    let seas = waves.into_iter().flat_map(|waves| {
+    waves.into_iter().flat_map(|waves| {
         let seas = waves.seas.iter().enumerate();
         seas.map(|(index, sea)| (sea_path(waves, index), sea))
-    });
-    seas
+    })
 }
 
 fn wave_steepness(scene: &Scene, notes: &mut Vec<Note>) {
