@@ -11,7 +11,7 @@ from runs import driven, packaged
 
 FOLDER = pathlib.Path(__file__).resolve().parent.parent / "tests" / "decks"
 OF_HOST = {"farm.dat": ["--at", "turbine1=0,0,0", "--at", "turbine2=1000,0,0"], "oc3.map": ["--depth", 320]}
-FILES = sorted(path.name for path in FOLDER.iterdir())
+FILES = sorted(path.name for path in FOLDER.iterdir() if path.is_file())
 SYSTEMS = ["oc3", "oc4", "volturnus", "taut", "buoyed", "clump"]
 STEP = 0.05  # communication step [s]
 

@@ -202,7 +202,7 @@ fn swinging(integrator: Integrator, towed: bool) -> Scene {
         let drawn = if towed { 1.0 } else { 0.0 };
         let row = |k: i32| {
             let t = 0.5 * f64::from(k);
-            let sway = swing * (0.7 * t).sin() * (t / 5.0).clamp(0.0, 1.0);
+            let sway = swing * (0.7 * t).sin();
             [
                 t,
                 sway - drawn * x * t,

@@ -225,7 +225,7 @@ fn lying(bed: &str, ends: [&str; 2], elements: usize, length: f64) -> Scene {
     scene(&format!(
         r#"
         seabed = {{ depth = 20.0, {bed} }}
-        line_types.chain = {{ mass = 100.0, diameter = 0.1, axial_stiffness = 1e7, damping_ratio = 0.2 }}
+        line_types.chain = {{ mass = 100.0, diameter = 0.1, axial_stiffness = 1e7, damping_ratio = 0.4 }}
         points = [
           {{ name = "a", position = [0.0, 0.0, -20.0], {a} }},
           {{ name = "b", position = [{length}, 0.0, -20.0], {b} }},

@@ -25,7 +25,7 @@ fn hoist(step: f64) -> Scene {
         [line_types.rope]
         mass = 20.0
         axial_stiffness = 2.0e7
-        damping_ratio = 0.3
+        damping_ratio = 0.6 # 0.3 of one of 20 elements
         [[points]]
         name = "weight"
         position = [0.0, 0.0, -40.0]

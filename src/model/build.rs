@@ -262,7 +262,8 @@ pub(super) struct LineLaw {
     law: StretchLaw,
     axial_stiffness: f64,                 // EA [N], at rest
     viscoelastic: Option<[f64; 2]>,       // EA_d [N], BA_s [N s]
-    axial_damping: f64,                   // BA [N s]
+    axial_damping: f64,                   // BA [N s], at least
+    numerical_damping: f64,               // BA over the length of a segment, at least [N s/m]
     mass: f64,                            // m [kg/m]
     displaced: f64,                       // ρA [kg/m]
     added_normal: f64,                    // ρA·C_an [kg/m]
@@ -277,15 +278,20 @@ pub(super) struct LineLaw {
     contact: Option<ContactCoefficients>, // [N/m², N s/m²]
 }
 
-/// ζ as given; [`scene::NUMERICAL_DAMPING_RATIO`] for cables whose type leaves the axial damping open.
+/// ζ of a line at the elements that damping ratios refer to: as given, or the numerical one.
 fn damping_ratio(scene: &Scene, line_type: &LineType) -> f64 {
+    let open = numerical_ratio(scene, line_type);
+    line_type.damping_ratio.unwrap_or(open)
+}
+
+/// ζ of every segment, at least: [`scene::NUMERICAL_DAMPING_RATIO`] for cables whose type leaves the axial damping open.
+fn numerical_ratio(scene: &Scene, line_type: &LineType) -> f64 {
     let beam = line_type.model == LineModel::Beam || scene.solver.integrator == Integrator::Beam;
-    let open = if line_type.leaves_damping_open() && !beam {
+    if line_type.leaves_damping_open() && !beam {
         scene::NUMERICAL_DAMPING_RATIO
     } else {
         0.0
-    };
-    line_type.damping_ratio.unwrap_or(open)
+    }
 }
 
 /// EI of a cable's section [N m²]: as given or of its solid section, shared by its strands. Beams have their own.
@@ -339,6 +345,7 @@ fn line_law(scene: &Scene, line_type: &LineType, damped: f64) -> LineLaw {
         .map(|r| rayleigh::coefficients(r.ratios, r.frequencies));
     let (law, ea) = stretch_law(line_type);
     let fast = line_type.dynamic_stiffness.unwrap_or(ea); // EA in fast motion [N]
+    let critical = (fast * mass).sqrt(); // critical damping of a segment over its length [N s/m]
     let drag = line_type.diameter.and_then(|diameter| {
         let (normal, tangent) = (
             line_type.drag_normal.unwrap_or(0.0),
@@ -369,7 +376,8 @@ fn line_law(scene: &Scene, line_type: &LineType, damped: f64) -> LineLaw {
             .or(line_type.dynamic_damping)
             .unwrap_or(0.0)
             + rayleigh.map_or(0.0, |r| r.stiffness * ea)
-            + damping_ratio(scene, line_type) * damped * (fast * mass).sqrt(),
+            + damping_ratio(scene, line_type) * damped * critical,
+        numerical_damping: numerical_ratio(scene, line_type) * critical,
         mass,
         displaced,
         added_normal: displaced * line_type.added_mass_normal.unwrap_or(0.0),
@@ -597,7 +605,11 @@ pub(super) struct SegmentPart<'a> {
 }
 
 fn segments(parts: &[SegmentPart]) -> Segments {
-    let axial_damping: Vec<f64> = parts.iter().map(|part| part.law.axial_damping).collect();
+    let damping = |part: &SegmentPart| {
+        let numerical = part.law.numerical_damping * part.length;
+        part.law.axial_damping.max(numerical)
+    };
+    let axial_damping: Vec<f64> = parts.iter().map(damping).collect();
     let viscoelastic = |(part, damping): (&SegmentPart, &f64)| match part.law.viscoelastic {
         Some([fast, slow_damping]) => {
             Viscoelastic::new([part.law.axial_stiffness, fast], [slow_damping, *damping])

@@ -10,10 +10,10 @@ use serde::forward_to_deserialize_any;
 use super::seabed::Directions;
 use super::time_function::MotionText;
 use super::{
-    Axis, Bossak, Break, ContactLaw, Current, DepthGrid, FibreLaw, InitialShape, Integrator, Line,
-    LineModel, LineType, Output, Point, PointForce, PointKind, PointMoment, Rayleigh,
-    Reconstruction, RegularWave, RestShape, Scene, Sea, Seabed, Section, SolidSection, Solver,
-    SpectrumKind, Strain, TensionStrain, TimeFunction, Vessel, Water, Winch, channel,
+    AngleOrder, Axis, Bossak, Break, ContactLaw, Current, DepthGrid, FibreLaw, InitialShape,
+    Integrator, Line, LineModel, LineType, Output, Point, PointForce, PointKind, PointMoment,
+    Rayleigh, Reconstruction, RegularWave, RestShape, Scene, Sea, Seabed, Section, SolidSection,
+    Solver, SpectrumKind, Strain, TensionStrain, TimeFunction, Vessel, Water, Winch, channel,
 };
 
 /// A table of the scene format, or a choice of words, by the name of its type.
@@ -62,6 +62,7 @@ pub fn choices() -> Vec<Known> {
         ("InitialShape", known::<InitialShape>()),
         ("Integrator", known::<Integrator>()),
         ("Reconstruction", known::<Reconstruction>()),
+        ("AngleOrder", known::<AngleOrder>()),
         ("ContactLaw", known::<ContactLaw>()),
         ("SpectrumKind", known::<SpectrumKind>()),
         ("LineEnd", known::<channel::LineEnd>()),

@@ -61,7 +61,7 @@ pub const STANDARD_GRAVITY: f64 = 9.80665;
 /// Elements of a line alone that a damping ratio refers to [-]: those that the default tolerance gives. The damping BA that follows is one
 /// of the line and the same on every mesh, so that finer meshes have a limit.
 pub const DAMPING_ELEMENTS: usize = 40;
-/// Axial damping of a line whose type leaves it open, as a part of critical of one of [`DAMPING_ELEMENTS`] elements [-]. A line that slackens and snaps
+/// Axial damping of a line whose type leaves it open, as a part of critical of one of [`DAMPING_ELEMENTS`] elements and of every longer one [-]. A line that slackens and snaps
 /// without any is driven by the kink of its own tension law when the step is explicit; codes of that kind damp the
 /// highest axial frequencies, which no mesh resolves, by as much (linear bulk viscosity).
 pub const NUMERICAL_DAMPING_RATIO: f64 = 0.02;
@@ -474,7 +474,7 @@ pub struct Section {
     pub length: f64,
     /// Number of elements; chosen from the tolerance where absent.
     pub elements: Option<usize>,
-    /// Number of elements that the line type's `damping_ratio` refers to; where absent, the section's share of
+    /// Number of elements that the line type's `damping_ratio` refers to [-]; where absent, the section's share of
     /// [`DAMPING_ELEMENTS`] of the longest line of its network.
     pub damping_elements: Option<usize>,
 }

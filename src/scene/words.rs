@@ -464,7 +464,7 @@ fn damping_in_words(line_type: &LineType, elements: &str) -> String {
     match (parts.is_empty(), line_type.model) {
         (false, _) => parts.join(" and "),
         (true, LineModel::Cable) if line_type.leaves_damping_open() => format!(
-            "{} (moorline's own choice)",
+            "{}, and of every longer segment (moorline's own choice)",
             damping_ratio_in_words(NUMERICAL_DAMPING_RATIO, elements)
         ),
         (true, _) => "no damping of its own".to_string(),

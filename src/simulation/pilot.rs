@@ -61,8 +61,8 @@ const FEWER: f64 = 0.93;
 pub struct Trial {
     /// Elements of a line alone [-].
     pub elements: usize,
-    /// Estimated RMS error of the tension at the driven end over its standard deviation, or over a hundredth of its mean [-], of the line
-    /// where it is greatest.
+    /// Estimated RMS error of the tension at the driven end, over the standard deviation of the line that moves most, or a hundredth of the
+    /// mean of the one that pulls most [-].
     pub error: f64,
 }
 
@@ -551,20 +551,21 @@ fn estimated(coarse: &Run, middle: &Run, fine: &Run) -> f64 {
     (smooth * whole).max(distance(middle, fine))
 }
 
-/// RMS of the difference of two runs over the standard deviation of a line's tension in the second, or over a hundredth of its mean if that
-/// is more [-], of the line where that is greatest: a line that hardly moves need not be right to a part of what little it does.
+/// RMS of the difference of two runs, of the line where it is greatest, over the greatest standard deviation of a line's tension in the
+/// second, or a hundredth of its mean if that is more [-]: lines that hardly move need not be right to a part of what little they do.
 fn distance(run: &Run, reference: &Run) -> f64 {
+    let spread = |tension: &Vec<f64>| {
+        let mean = tension.iter().sum::<f64>() / tension.len() as f64;
+        let wave: Vec<f64> = tension.iter().map(|value| value - mean).collect();
+        rms(wave.iter().copied()).max(STILL * mean.abs())
+    };
+    let scale = reference.tension.iter().map(spread).fold(0.0, f64::max);
+    if scale == 0.0 {
+        return 0.0;
+    }
     let lines = run.tension.iter().zip(&reference.tension);
-    let errors = lines.map(|(own, right)| {
-        let mean = right.iter().sum::<f64>() / right.len() as f64;
-        let deviation = rms(right.iter().map(|value| value - mean));
-        let wrong = rms(own.iter().zip(right).map(|(a, b)| a - b));
-        match deviation.max(STILL * mean.abs()) {
-            0.0 => 0.0,
-            scale => wrong / scale,
-        }
-    });
-    errors.fold(0.0, f64::max)
+    let wrong = lines.map(|(own, right)| rms(own.iter().zip(right).map(|(a, b)| a - b)));
+    wrong.fold(0.0, f64::max) / scale
 }
 
 fn rms(values: impl ExactSizeIterator<Item = f64>) -> f64 {

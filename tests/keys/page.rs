@@ -42,6 +42,7 @@ const NAMES: &[(&str, &str)] = &[
     ("InitialShape", "`initial`"),
     ("Integrator", "`integrator`"),
     ("Reconstruction", "`input_reconstruction`"),
+    ("AngleOrder", "`motion_angles`"),
     ("ContactLaw", "`contact`"),
     ("SpectrumKind", "`spectrum`"),
     ("LineEnd", "an end"),

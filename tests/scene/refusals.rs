@@ -56,7 +56,7 @@ const SLIPS: &[Refusal] = &[
     (
         "length = 150.0",
         "lenght = 150.0",
-        "41:31: lines[1].sections[0].lenght: unknown key `lenght`, did you mean `length`? (known keys: type, length, elements)",
+        "41:31: lines[1].sections[0].lenght: unknown key `lenght`, did you mean `length`? (known keys: type, length, elements, damping_elements)",
     ),
     (
         "[seabed]",
