@@ -285,7 +285,7 @@ def test_steps_too_short_to_be_made_add_up(slave):
         one.free_state(state), one.free_state(copy)
     other.expect(other.step(1.0, 2.4e-6))
     for name, value in one.outputs().items():
-        if name != "solver.substeps":
+        if name not in ("solver.substeps", "solver.input_error"):  # of the last step made
             assert value == pytest.approx(other.get(name), rel=1e-4, abs=1e-3), name
 
 
