@@ -241,13 +241,14 @@ def test_a_host_that_samples_too_coarsely_is_warned_once(slave):
     for points, velocities in ((12, False), (60, False), (60, True)):
         one, step = slave(logging=True).initialize(), period / points
         for k in range(10 * points):
-            phase = 2.0 * math.pi * k / points
-            grown = min(k / (3.0 * points), 1.0)
+            phase, ramp = 2.0 * math.pi * k / points, 0.5 * math.pi * min(k / (3.0 * points), 1.0)
+            grown, growth = math.sin(ramp) ** 2, math.sin(2.0 * ramp) * 0.5 * math.pi / (3.0 * period)
             one.expect(one.set("fairlead.x", grown * math.sin(phase)))
             one.expect(one.set("fairlead.z", 0.5 * grown * math.cos(phase)))
             if velocities:
-                one.expect(one.set("fairlead.vx", grown * math.cos(phase) * 2.0 * math.pi / period))
-                one.expect(one.set("fairlead.vz", -0.5 * grown * math.sin(phase) * 2.0 * math.pi / period))
+                speed = grown * 2.0 * math.pi / period
+                one.expect(one.set("fairlead.vx", growth * math.sin(phase) + speed * math.cos(phase)))
+                one.expect(one.set("fairlead.vz", 0.5 * (growth * math.cos(phase) - speed * math.sin(phase))))
             one.expect(one.step(k * step, step))
         warnings = [text for _, _, text in one.messages if "solver.input_error" in text]
         warned[points, velocities] = (len(warnings), one.get("solver.input_error"))
