@@ -438,21 +438,16 @@ fn strain_in_words(strain: Strain) -> String {
     }
 }
 
-/// "axial damping of 0.05 of critical of one of 40 elements of a line, the same on every mesh".
-fn damping_ratio_in_words(ratio: f64, elements: &str) -> String {
-    format!(
-        "axial damping of {} of critical of one of {elements} elements of a line, the same on every mesh",
-        number(ratio)
-    )
-}
-
 fn damping_in_words(line_type: &LineType, elements: &str) -> String {
     let mut parts = Vec::new();
     if let Some(damping) = line_type.axial_damping {
         parts.push(format!("axial damping {}", quantity(damping, "N s")));
     }
     if let Some(ratio) = line_type.damping_ratio {
-        parts.push(damping_ratio_in_words(ratio, elements));
+        parts.push(format!(
+            "axial damping {} of critical of one of {elements} elements of a line, the same on every mesh",
+            number(ratio)
+        ));
     }
     if let Some(rayleigh) = &line_type.rayleigh {
         let [ratio_1, ratio_2] = rayleigh.ratios.map(number);
@@ -464,8 +459,8 @@ fn damping_in_words(line_type: &LineType, elements: &str) -> String {
     match (parts.is_empty(), line_type.model) {
         (false, _) => parts.join(" and "),
         (true, LineModel::Cable) if line_type.leaves_damping_open() => format!(
-            "{}, and of every longer segment (moorline's own choice)",
-            damping_ratio_in_words(NUMERICAL_DAMPING_RATIO, elements)
+            "axial damping {} of critical in each segment, and no less than with {elements} elements (moorline's own choice)",
+            number(NUMERICAL_DAMPING_RATIO)
         ),
         (true, _) => "no damping of its own".to_string(),
     }
