@@ -109,8 +109,9 @@ fn a_line_at_rest_has_as_many_elements_as_its_static_tension_needs() {
     assert!(tension_error(&scene).abs() > 0.05); // 40 elements, by the rule
     let settled = pilot::settle(&scene).unwrap();
     assert!(tension_error(&settled.scene).abs() < 0.02);
-    let [before, after] = settled.rest.unwrap().errors;
-    assert!(before > 0.05 && after < 0.02 && settled.elements > 40);
+    let mesh = &settled.meshes[0];
+    let [before, after] = mesh.rest.unwrap().errors;
+    assert!(before > 0.05 && after < 0.02 && mesh.elements > 40);
     assert!(settled.in_words()[0].contains("at rest"));
     let mut still = open(shipped("oc3_catenary"));
     still.motion.clear();

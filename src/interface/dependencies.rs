@@ -141,10 +141,7 @@ impl Scope<'_> {
             Parameter::Tolerance => {
                 !self.closed_form
                     && scene.solver.elements.is_none()
-                    && self.lines.iter().any(|&line| {
-                        let sections = &scene.lines[line].sections;
-                        sections.iter().any(|section| section.elements.is_none())
-                    })
+                    && self.lines.iter().any(|&line| scene.lines[line].is_open())
             }
             Parameter::InputReconstruction => false,
         }

@@ -36,6 +36,11 @@ use crate::scene::{
 /// Segments that a winch pays out, at most.
 const REEL_SEGMENTS_MAX: f64 = 1e5;
 
+/// Elements of every line over those of a line alone [-]: its length over that of the longest line that it meets at free points.
+pub fn line_shares(scene: &Scene) -> Vec<f64> {
+    spacing::shares(scene)
+}
+
 impl Model {
     /// Makes a scene discrete.
     ///

@@ -33,6 +33,7 @@ use crate::scene::{InitialShape, PointForce, PointMoment, Solver, TimeFunction};
 pub use beam::{Beam, BeamElement, BeamState};
 pub use bending::{Bending, joint};
 pub use bottom::Bottom;
+pub use build::line_shares;
 pub use motion::{Derivatives, Kinematics, Motion, Pose};
 pub use moving::Moving;
 pub use sea::{WaterAlong, WaveSpan, WavesAlong, WavesAt};

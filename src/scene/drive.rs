@@ -76,15 +76,18 @@ impl Drive {
 }
 
 impl Scene {
-    /// Takes motions and the duration from a drive.
+    /// Takes motions and the duration from a drive. Returns how its motion file was read, in words.
     ///
     /// # Errors
     /// The file and line, or the body, and what would be right.
-    pub fn drive(&mut self, drive: &Drive) -> Result<(), String> {
-        let mut end = None;
+    pub fn drive(&mut self, drive: &Drive) -> Result<Option<String>, String> {
+        let (mut end, mut words) = (None, None);
         let mut taken: Vec<String> = Vec::new();
         if let Some(file) = &drive.file {
-            for (body, rows) in self.bodies_of(read_moves(file)?, &file.display().to_string())? {
+            let name = file.display().to_string();
+            let (moves, columns) = read_moves(file)?;
+            words = Some(format!("motion from {name}, {columns}"));
+            for (body, rows) in self.bodies_of(moves, &name)? {
                 end = rows.last().map(|row| row[0]);
                 self.motion.insert(body.clone(), MotionPath::Table(rows));
                 taken.push(body);
@@ -111,7 +114,7 @@ impl Scene {
         }
         match self.mistakes().into_iter().next() {
             Some(mistake) => Err(format!("{}: {}", mistake.at, mistake.problem)),
-            None => Ok(()),
+            None => Ok(words),
         }
     }
 

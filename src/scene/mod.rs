@@ -401,6 +401,9 @@ pub struct Line {
     pub to: String,
     /// Sections from A to B.
     pub sections: Vec<Section>,
+    /// Number of elements [-] of the whole line, in place of the solver's; sections that have a number of their own keep it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub elements: Option<usize>,
     /// Shape at the start.
     #[serde(default)]
     pub initial: InitialShape,
@@ -420,6 +423,17 @@ pub struct Line {
     /// What pays out and hauls in the line at one of its ends.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub winch: Option<Winch>,
+}
+
+impl Line {
+    /// Whether the number of elements of any of its sections is left open.
+    pub fn is_open(&self) -> bool {
+        self.elements.is_none()
+            && self
+                .sections
+                .iter()
+                .any(|section| section.elements.is_none())
+    }
 }
 
 /// A winch: `{ end = "b", length_max = 40.0, speed_max = 0.5, path = { ramp = [10.0, 0.0, 60.0, 20.0] } }`.
@@ -640,6 +654,7 @@ impl Line {
             from: from.into(),
             to: to.into(),
             sections,
+            elements: None,
             initial: InitialShape::Static,
             rest_shape: RestShape::Straight,
             clamped_a: None,

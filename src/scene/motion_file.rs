@@ -65,12 +65,12 @@ pub(super) fn read(path: &Path, body: &str) -> Result<(Vec<MotionRow>, String), 
     }
 }
 
-/// The motion of one body, or of bodies that the header names.
+/// The motion of one body, or of bodies that the header names, and how it was read.
 ///
 /// # Errors
 /// The file, the line and what would be right.
-pub(super) fn read_moves(path: &Path) -> Result<Moves, String> {
-    Ok(read_any(path, true)?.0)
+pub(super) fn read_moves(path: &Path) -> Result<(Moves, String), String> {
+    read_any(path, true)
 }
 
 fn read_any(path: &Path, names: bool) -> Result<(Moves, String), String> {

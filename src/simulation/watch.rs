@@ -1,5 +1,8 @@
-//! Notes on what is likely a slip in a run: ends that jump, and lines that are strained beyond what lines bear.
+//! Notes on what is likely a slip in a run: ends that jump, lines that are strained beyond what lines bear, tables that are left.
 
+mod left_tables;
+
+use left_tables::LeftTables;
 use nalgebra::Vector3;
 
 use super::Simulation;
@@ -13,6 +16,7 @@ const JUMP: f64 = 0.1;
 pub struct Watch {
     lines: Vec<Watched>,
     has_jumped: bool,
+    tables: LeftTables,
 }
 
 #[derive(Debug, Clone)]
@@ -34,6 +38,7 @@ impl Watch {
         Watch {
             lines: watched.collect(),
             has_jumped: false,
+            tables: LeftTables::new(scene),
         }
     }
 
@@ -62,6 +67,7 @@ impl Watch {
                 }
             }
         }
+        self.tables.look(simulation, &mut notes);
         notes
     }
 }

@@ -25,7 +25,19 @@ const ROUNDING: f64 = 1e-9;
 pub(super) fn elements(scene: &Scene) -> Vec<f64> {
     let alone = alone(scene);
     let pairs = lengths(scene).into_iter().zip(longest(scene));
-    pairs.map(|(own, longest)| alone * own / longest).collect()
+    let lines = scene.lines.iter().zip(pairs);
+    lines
+        .map(|(line, (own, longest))| match line.elements {
+            Some(elements) => elements as f64,
+            None => alone * own / longest,
+        })
+        .collect()
+}
+
+/// Length of every line over that of the longest one that it meets at free points [-].
+pub(super) fn shares(scene: &Scene) -> Vec<f64> {
+    let pairs = lengths(scene).into_iter().zip(longest(scene));
+    pairs.map(|(own, longest)| own / longest).collect()
 }
 
 /// Lengths of the segments that damping ratios refer to [m], one per section of every line.
@@ -274,16 +286,17 @@ fn reasons(scene: &Scene, model: &Model, line: &scene::Line, built: &Line, share
     {
         return "as given".to_string();
     }
-    let mut reasons = match scene.solver.elements {
-        Some(elements) => format!("of the {elements} of a line alone"),
-        None => {
+    let mut reasons = match (line.elements, scene.solver.elements) {
+        (Some(elements), _) => format!("of the {elements} that the line is given"),
+        (None, Some(elements)) => format!("of the {elements} of a line alone"),
+        (None, None) => {
             format!(
                 "for the target error of {}",
                 percent(scene.solver.tolerance)
             )
         }
     };
-    if share < alone(scene) {
+    if line.elements.is_none() && share < alone(scene) {
         reasons += ", in proportion to the longest line it is tied to";
     }
     let types = line

@@ -46,6 +46,12 @@ fn check_sections(findings: &mut Findings, at: &str, line: &Line, scene: &Scene)
         let problem = "no sections: write sections = [{ type = …, length = … }]";
         findings.say(format!("{at}.sections"), problem);
     }
+    check_elements(findings, at, line.elements);
+    let given = |section: &Section| section.elements.is_some();
+    if line.elements.is_some() && !line.sections.is_empty() && line.sections.iter().all(given) {
+        let problem = "every section of the line has its own number of elements: leave this one out, or those";
+        findings.say(format!("{at}.elements"), problem);
+    }
     for (i, section) in line.sections.iter().enumerate() {
         let at = format!("{at}.sections[{i}]");
         if !scene.line_types.contains_key(&section.line_type) {
@@ -55,19 +61,19 @@ fn check_sections(findings: &mut Findings, at: &str, line: &Line, scene: &Scene)
         }
         let length = Bounds::Positive(1e6);
         findings.number(format!("{at}.length"), section.length, length, "m");
-        match section.elements {
-            Some(0) => findings.say(
-                format!("{at}.elements"),
-                "0 elements: give 1 or more, or leave it out to have it chosen",
-            ),
-            Some(n) if n > ELEMENTS_MAX => findings.say(
-                format!("{at}.elements"),
-                format!("{n} elements are more than {ELEMENTS_MAX}"),
-            ),
-            _ => {}
-        }
+        check_elements(findings, &at, section.elements);
         check_damping_elements(findings, &at, section, scene);
     }
+}
+
+/// The number of elements of a line or of a section, where it is given.
+fn check_elements(findings: &mut Findings, at: &str, elements: Option<usize>) {
+    let problem = match elements {
+        Some(0) => "0 elements: give 1 or more, or leave it out to have it chosen".to_string(),
+        Some(n) if n > ELEMENTS_MAX => format!("{n} elements are more than {ELEMENTS_MAX}"),
+        _ => return,
+    };
+    findings.say(format!("{at}.elements"), problem);
 }
 
 /// The elements that a damping ratio refers to, where there is a ratio.

@@ -1,0 +1,78 @@
+//! Elements that a line needs at rest, where its closed-form catenary tells the tension that is right.
+
+use super::{AIM, ELEMENTS_MAX, Mesh, Networks, Rest};
+use crate::scene::{InitialShape, Scene};
+use crate::simulation::Simulation;
+
+use super::search::driven;
+
+/// Part of an error at rest that the most elements must take away to be worth it, where they do not keep the tolerance [-].
+const GAIN: f64 = 0.5;
+
+/// Adds elements to the meshes whose tension at rest does not keep the tolerance; none where more do not help.
+pub(super) fn refine(scene: &Scene, networks: &Networks, meshes: &mut [Mesh]) {
+    let aim = AIM * scene.solver.tolerance;
+    let mut elements: Vec<usize> = meshes.iter().map(|mesh| mesh.elements).collect();
+    let Some(first) = errors(scene, networks, &elements) else {
+        return;
+    };
+    let mut now = first.clone();
+    let lacks = |elements: usize, error: f64| error > aim && (elements as f64) < ELEMENTS_MAX;
+    while let wanting = elements.iter().zip(&now).zip(&networks.open)
+        && wanting
+            .into_iter()
+            .any(|((&n, &error), open)| *open && lacks(n, error))
+    {
+        for ((n, error), open) in elements.iter_mut().zip(&now).zip(&networks.open) {
+            if *open && lacks(*n, *error) {
+                *n = (2.0 * *n as f64).min(ELEMENTS_MAX) as usize;
+            }
+        }
+        match errors(scene, networks, &elements) {
+            Some(errors) => now = errors,
+            None => return,
+        }
+    }
+    for (i, mesh) in meshes.iter_mut().enumerate() {
+        let helps = now[i] <= aim || now[i] <= (1.0 - GAIN) * first[i];
+        if elements[i] > mesh.elements && helps {
+            mesh.rest = Some(Rest {
+                fewer: mesh.elements,
+                errors: [first[i], now[i]],
+            });
+            mesh.elements = elements[i];
+        }
+    }
+}
+
+/// Greatest error of the tension at the driven ends of the lines of every network at rest against their closed-form catenaries [-], 0 where no
+/// line of a network has one; none where no line at all has one.
+fn errors(scene: &Scene, networks: &Networks, elements: &[usize]) -> Option<Vec<f64>> {
+    let simulation = Simulation::by_rules(&networks.with_elements(scene, elements)).ok()?;
+    let model = simulation.model();
+    let of_line = |line: usize| {
+        let (built, exact) = (&model.lines[line], simulation.catenary(line)?);
+        if built.bends() || built.drifts(model) || scene.lines[line].initial != InitialShape::Static
+        {
+            return None;
+        }
+        let [found, exact] = match driven(model, line) {
+            0 => [simulation.tension_a(line), exact.tension_a()],
+            _ => [simulation.tension_b(line), exact.tension_b()],
+        };
+        Some((found - exact).abs() / exact)
+    };
+    let errors: Vec<Option<f64>> = networks
+        .lines
+        .iter()
+        .map(|lines| {
+            lines
+                .iter()
+                .filter_map(|&line| of_line(line))
+                .reduce(f64::max)
+        })
+        .collect();
+    errors.iter().find_map(|error| *error)?;
+    let known = |error: Option<f64>| error.filter(|error| error.is_finite()).unwrap_or(0.0);
+    Some(errors.into_iter().map(known).collect())
+}

@@ -1,0 +1,468 @@
+//! The meshes, integrator and step of a scene, by trial runs.
+
+use super::{AIM, ELEMENTS_MAX, Mesh, Networks, Trial};
+use crate::dynamics::AXIAL_IMPLICIT_COST;
+use crate::model::{Model, Network, Role};
+use crate::scene::{Integrator, MotionPath, Scene};
+use crate::simulation::{Error, Simulation};
+
+/// Elements of a line alone that are tried [-].
+const LADDER: [usize; 13] = [5, 7, 10, 14, 20, 28, 40, 56, 80, 112, 160, 224, 320];
+/// Part of the tolerance that an estimated error is to keep where the elements are extrapolated and the steps follow a rule [-].
+const AIM_UNTRIED: f64 = 0.7;
+/// Explicit steps of an element that all trials may take [-].
+const WORK_MAX: f64 = 1e8;
+/// Tolerance that the steps of the ladder are chosen by, over the scene's [-].
+const FINER: f64 = 0.25;
+/// Part of the cost below which another step is worth taking [-].
+const WORTH: f64 = 0.8;
+/// Halvings of the longest axial-implicit step that are tried [-].
+const HALVINGS: u32 = 8;
+/// Periods of the slowest sine that are tried, after the ramp [-].
+const PERIODS: f64 = 20.0;
+/// Time that is tried where the motion is a table, or of no period [s].
+const DURATION: f64 = 200.0;
+/// Samples in a period of the fastest sine, at least [-].
+const SAMPLES: f64 = 25.0;
+/// Standard deviation of a tension that its errors are relative to at least, over its mean [-].
+const STILL: f64 = 0.01;
+/// Elements below those of the rung that are worth a trial, over them [-].
+const FEWER: f64 = 0.93;
+
+/// The state of the search.
+pub(super) struct Search<'a> {
+    networks: &'a Networks,
+    /// The scene, as long and with such samples as is tried.
+    scene: Scene,
+    /// First sample that counts.
+    from: usize,
+    /// What is known of every network.
+    ladders: Vec<Ladder>,
+    /// Explicit steps of an element so far [-].
+    work: f64,
+}
+
+/// The trials of a network.
+#[derive(Debug, Clone)]
+struct Ladder {
+    lines: Vec<usize>,
+    runs: Vec<Run>,
+    trials: Vec<Trial>,
+    /// Elements whose error is small enough, once there are such [-].
+    found: Option<usize>,
+}
+
+/// What the lines of a network did in one run.
+#[derive(Debug, Clone)]
+struct Run {
+    elements: usize,
+    /// Tension at the driven end of every line after the start [N].
+    tension: Vec<Vec<f64>>,
+}
+
+/// What all lines did in one run.
+struct Record {
+    /// Tension at the driven end of every line after the start [N].
+    tension: Vec<Vec<f64>>,
+    /// Cost in explicit steps of an element [-].
+    work: f64,
+}
+
+impl Ladder {
+    fn new(lines: &[usize]) -> Ladder {
+        Ladder {
+            lines: lines.to_vec(),
+            runs: Vec::new(),
+            trials: Vec::new(),
+            found: None,
+        }
+    }
+
+    /// This network's part of a run.
+    fn part(&self, elements: usize, record: &Record) -> Run {
+        let lines = self.lines.iter();
+        Run {
+            elements,
+            tension: lines.map(|&line| record.tension[line].clone()).collect(),
+        }
+    }
+
+    /// Takes a finer run, and judges the mesh of half its elements.
+    fn climb(&mut self, run: Run, aim: f64) {
+        self.runs.push(run);
+        let [.., coarse, middle, fine] = &self.runs[..] else {
+            return;
+        };
+        let trial = Trial {
+            elements: coarse.elements,
+            error: estimated(coarse, middle, fine),
+        };
+        if trial.error <= aim {
+            self.found = Some(trial.elements);
+        }
+        self.trials.push(trial);
+    }
+
+    /// Error of a run [-], of the order that the last three runs have, 1 where nothing tells one.
+    fn error(&self, run: &Run) -> Option<f64> {
+        let [.., coarse, middle, fine] = &self.runs[..] else {
+            return None;
+        };
+        let smooth = estimated(coarse, middle, fine) / distance(coarse, fine);
+        Some(distance(run, fine) * if smooth.is_finite() { smooth } else { 1.0 })
+    }
+
+    /// Elements between a rung that is too coarse and the next, which is not, where they are worth a trial.
+    fn between(&self, aim: f64) -> Option<usize> {
+        let [.., before, found] = &self.trials[..] else {
+            return None;
+        };
+        self.found?;
+        let order = (before.error / found.error).ln()
+            / (found.elements as f64 / before.elements as f64).ln();
+        let wanted = before.elements as f64 * (before.error / aim).powf(1.0 / order);
+        let elements = wanted.ceil() as usize;
+        (elements as f64 <= FEWER * found.elements as f64).then_some(elements)
+    }
+
+    /// The mesh that the trials tell, with the error where it was tried between rungs; none before the first trial.
+    fn mesh(&self, between: Option<Trial>, tolerance: f64) -> Option<Mesh> {
+        let last = self.trials.last()?;
+        let (elements, error) = match (self.found, between) {
+            (Some(_), Some(trial)) => (trial.elements, trial.error),
+            (Some(_), None) => (last.elements, last.error),
+            (None, _) => {
+                let wanted = last.elements as f64 * last.error / (AIM_UNTRIED * tolerance);
+                let wanted = wanted.min(ELEMENTS_MAX);
+                let error = last.error * last.elements as f64 / wanted;
+                (wanted.ceil() as usize, error)
+            }
+        };
+        Some(Mesh {
+            lines: self.lines.clone(),
+            trials: self.trials.clone(),
+            elements,
+            error,
+            tried: self.found.is_some(),
+            rest: None,
+        })
+    }
+}
+
+impl<'a> Search<'a> {
+    pub(super) fn new(scene: &Scene, networks: &'a Networks) -> Option<Search<'a>> {
+        let leapfrog = matches!(
+            scene.solver.integrator,
+            Integrator::Auto | Integrator::Leapfrog | Integrator::AxialImplicit
+        );
+        if !leapfrog {
+            return None;
+        }
+        let pace = Pace::of(scene)?;
+        let output = &scene.output;
+        let mut scene = scene.clone();
+        scene.output.duration = output.duration.min(pace.duration);
+        scene.output.interval = output.interval.min(pace.shortest / SAMPLES);
+        let start = (0.5 * scene.output.duration).max(pace.ramp.min(0.75 * scene.output.duration));
+        Some(Search {
+            from: (start / scene.output.interval) as usize,
+            scene,
+            ladders: networks
+                .lines
+                .iter()
+                .map(|lines| Ladder::new(lines))
+                .collect(),
+            networks,
+            work: 0.0,
+        })
+    }
+
+    /// The scene, as long and with such samples as is tried.
+    pub(super) fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// The scene with so many elements in every network.
+    fn with(&self, elements: &[usize]) -> Scene {
+        self.networks.with_elements(&self.scene, elements)
+    }
+
+    /// The same with steps that add little to the error of the mesh.
+    fn rung(&self, elements: &[usize]) -> Scene {
+        let mut scene = self.with(elements);
+        scene.solver.tolerance *= FINER;
+        scene
+    }
+
+    /// The mesh of every network; none where the trials tell nothing.
+    pub(super) fn meshes(&mut self) -> Option<Vec<Mesh>> {
+        let tolerance = self.scene.solver.tolerance;
+        self.climb(AIM * tolerance);
+        let between = self.between(AIM * tolerance);
+        let ladders = self.ladders.iter().zip(between);
+        ladders
+            .map(|(ladder, between)| ladder.mesh(between, tolerance))
+            .collect()
+    }
+
+    /// Runs the scene with more and more elements in those networks that need them.
+    fn climb(&mut self, aim: f64) {
+        let mut last = 0.0;
+        for rung in LADDER {
+            let open = self.ladders.iter().any(|ladder| ladder.found.is_none());
+            if !open || self.work + 2.0 * last > WORK_MAX {
+                break;
+            }
+            let elements = self
+                .ladders
+                .iter()
+                .map(|ladder| ladder.found.unwrap_or(rung));
+            let elements: Vec<usize> = elements.collect();
+            let record = match self.run(&self.rung(&elements)) {
+                Ok(Some(record)) => Some(record),
+                Ok(None) => break,
+                Err(_) => None, // too coarse to be solved
+            };
+            last = record.as_ref().map_or(0.0, |record| record.work);
+            for ladder in self
+                .ladders
+                .iter_mut()
+                .filter(|ladder| ladder.found.is_none())
+            {
+                match &record {
+                    Some(record) => ladder.climb(ladder.part(rung, record), aim),
+                    None => ladder.runs.clear(),
+                }
+            }
+        }
+    }
+
+    /// Runs the scene once with elements between rungs where they are worth a trial; the trials that keep the error.
+    fn between(&mut self, aim: f64) -> Vec<Option<Trial>> {
+        let wanted: Vec<Option<usize>> = self
+            .ladders
+            .iter()
+            .map(|ladder| ladder.between(aim))
+            .collect();
+        if wanted.iter().all(Option::is_none) {
+            return vec![None; wanted.len()];
+        }
+        let elements = self.ladders.iter().zip(&wanted).map(|(ladder, wanted)| {
+            let rung = ladder
+                .found
+                .or(ladder.trials.last().map(|trial| trial.elements));
+            wanted.or(rung).unwrap_or(LADDER[0])
+        });
+        let elements: Vec<usize> = elements.collect();
+        let Ok(Some(record)) = self.run(&self.rung(&elements)) else {
+            return vec![None; wanted.len()];
+        };
+        let trials = self.ladders.iter().zip(wanted).map(|(ladder, wanted)| {
+            let elements = wanted?;
+            let error = ladder.error(&ladder.part(elements, &record))?;
+            (error <= aim).then_some(Trial { elements, error })
+        });
+        trials.collect()
+    }
+
+    /// The scene with so many elements in every network, tried ones, and the cheapest leapfrog that keeps the error with them.
+    pub(super) fn with_integrator(&mut self, elements: &[usize]) -> Scene {
+        let mut scene = self.with(elements);
+        if scene.solver.integrator != Integrator::Auto {
+            return scene;
+        }
+        if let Some(step) = self.axial_implicit_step(elements) {
+            scene.solver.integrator = Integrator::AxialImplicit;
+            scene.solver.time_step_max = step;
+        } else {
+            scene.solver.integrator = Integrator::Leapfrog;
+        }
+        scene
+    }
+
+    /// The longest step of the axial-implicit leapfrog [s] that keeps the error, where that costs less than explicit steps.
+    fn axial_implicit_step(&mut self, elements: &[usize]) -> Option<f64> {
+        let mut scene = self.with(elements);
+        let explicit = self.explicit_work(&scene)?;
+        let aim = AIM * scene.solver.tolerance;
+        let segments = explicit.segments as f64 * scene.output.duration;
+        scene.solver.integrator = Integrator::AxialImplicit;
+        scene.solver.time_step_max = scene.solver.time_step_max.min(scene.output.interval);
+        for _ in 0..=HALVINGS {
+            let step = scene.solver.time_step_max;
+            let least = AXIAL_IMPLICIT_COST * segments / step;
+            if least > WORTH * explicit.work {
+                return None;
+            }
+            let record = self.run(&scene).ok()??;
+            let kept = self
+                .ladders
+                .iter()
+                .zip(elements)
+                .all(|(ladder, &elements)| {
+                    let error = ladder.error(&ladder.part(elements, &record));
+                    error.is_some_and(|error| error <= aim)
+                });
+            if kept && record.work <= WORTH * explicit.work {
+                return Some(step);
+            }
+            scene.solver.time_step_max = 0.5 * step;
+        }
+        None
+    }
+
+    /// What explicit steps cost; none where the axial-implicit leapfrog does not serve.
+    fn explicit_work(&self, scene: &Scene) -> Option<Explicit> {
+        let simulation = Simulation::by_rules(scene).ok()?;
+        let model = simulation.model();
+        let free = |network: &Network| !network.free_points.is_empty();
+        if model.networks.iter().any(free) || model.lines.iter().any(|line| line.winch.is_some()) {
+            return None;
+        }
+        let limits = simulation.choices().map(|choice| choice.explicit.step);
+        let limit = limits.fold(scene.solver.time_step_max, f64::min);
+        let output = &scene.output;
+        let steps = (output.interval / limit).ceil() * output.duration / output.interval;
+        let segments = model.lines.iter().map(|line| line.segment_count()).sum();
+        Some(Explicit {
+            segments,
+            work: steps * segments as f64,
+        })
+    }
+
+    /// Runs a scene; none where its lines need another integrator than a leapfrog.
+    fn run(&mut self, scene: &Scene) -> Result<Option<Record>, Error> {
+        let mut simulation = Simulation::by_rules(scene)?;
+        simulation.follow_scene()?;
+        let mut weight = 0.0_f64;
+        for choice in simulation.choices() {
+            weight = weight.max(match choice.integrator {
+                Integrator::Leapfrog => 1.0,
+                Integrator::AxialImplicit => AXIAL_IMPLICIT_COST,
+                _ => return Ok(None),
+            });
+        }
+        let model = simulation.model();
+        let segments: usize = model.lines.iter().map(|line| line.segment_count()).sum();
+        let ends: Vec<usize> = (0..model.lines.len())
+            .map(|line| driven(model, line))
+            .collect();
+        let mut record = Record {
+            tension: vec![Vec::new(); ends.len()],
+            work: 0.0,
+        };
+        let output = &scene.output;
+        for sample in 0..(output.duration / output.interval).round() as usize {
+            let broken = simulation.advance(output.interval).is_err();
+            if broken || self.work + record.work > 2.0 * WORK_MAX {
+                return Ok(None);
+            }
+            record.work += weight * (simulation.substeps() * segments) as f64;
+            if sample < self.from {
+                continue;
+            }
+            for (line, &end) in ends.iter().enumerate() {
+                record.tension[line].push(match end {
+                    0 => simulation.tension_a(line),
+                    _ => simulation.tension_b(line),
+                });
+            }
+        }
+        self.work += record.work;
+        Ok(Some(record))
+    }
+}
+
+/// What explicit steps of a scene would cost.
+struct Explicit {
+    /// Elements of all lines [-].
+    segments: usize,
+    /// Explicit steps of an element [-].
+    work: f64,
+}
+
+/// How fast and how long a scene moves.
+struct Pace {
+    /// Shortest period [s].
+    shortest: f64,
+    /// Time after which all is in swing [s].
+    ramp: f64,
+    /// Time that tells the errors [s].
+    duration: f64,
+}
+
+impl Pace {
+    /// None for a scene that does not say how it moves.
+    fn of(scene: &Scene) -> Option<Pace> {
+        let own = scene
+            .points
+            .iter()
+            .filter_map(|point| point.motion.as_ref());
+        let paths: Vec<&MotionPath> = scene.motion.values().chain(own).collect();
+        let (mut shortest, mut longest, mut ramp) = (f64::INFINITY, 0.0_f64, 0.0_f64);
+        let mut tables = scene
+            .water
+            .as_ref()
+            .is_some_and(|water| water.waves.is_some());
+        for path in &paths {
+            let MotionPath::Harmonic(motion) = path else {
+                tables = true;
+                continue;
+            };
+            ramp = ramp.max(motion.ramp.unwrap_or(0.0));
+            for sine in motion.axes().iter().flat_map(|(_, sines)| sines.iter()) {
+                (shortest, longest) = (shortest.min(sine[1]), longest.max(sine[1]));
+            }
+        }
+        let duration = if tables || longest == 0.0 {
+            DURATION
+        } else {
+            PERIODS * longest
+        };
+        (!paths.is_empty()).then_some(Pace {
+            shortest,
+            ramp,
+            duration: ramp + duration,
+        })
+    }
+}
+
+/// The end of a line that is moved, 0 for A: B where both or none are.
+pub(super) fn driven(model: &Model, line: usize) -> usize {
+    let moved = |end: usize| {
+        let role = &model.points[model.lines[line].ends[end]].role;
+        matches!(
+            role,
+            Role::Coupled { .. } | Role::Carried { .. } | Role::Prescribed(_)
+        )
+    };
+    usize::from(!moved(0) || moved(1))
+}
+
+/// Error of the coarse one of three runs whose elements grow by √2 [-].
+fn estimated(coarse: &Run, middle: &Run, fine: &Run) -> f64 {
+    let whole = distance(coarse, fine);
+    if whole == 0.0 {
+        return 0.0;
+    }
+    let smooth = 2.0 - (distance(coarse, middle) / whole).min(1.0);
+    (smooth * whole).max(distance(middle, fine))
+}
+
+/// RMS of the difference of two runs over the standard deviation of the tension in the second, or over a hundredth of its mean if that is more
+/// [-], of the line where it is greatest: lines that hardly move need not be right to a part of what little they do.
+fn distance(run: &Run, reference: &Run) -> f64 {
+    let lines = run.tension.iter().zip(&reference.tension);
+    let of_line = |(own, right): (&Vec<f64>, &Vec<f64>)| {
+        let mean = right.iter().sum::<f64>() / right.len() as f64;
+        let scale = rms(right.iter().map(|value| value - mean)).max(STILL * mean.abs());
+        let wrong = rms(own.iter().zip(right).map(|(a, b)| a - b));
+        if scale == 0.0 { 0.0 } else { wrong / scale }
+    };
+    lines.map(of_line).fold(0.0, f64::max)
+}
+
+fn rms(values: impl ExactSizeIterator<Item = f64>) -> f64 {
+    let count = values.len() as f64;
+    (values.map(|value| value * value).sum::<f64>() / count).sqrt()
+}

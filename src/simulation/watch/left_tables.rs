@@ -1,0 +1,199 @@
+//! Tables over strain, height and place that a simulation leaves: tension-strain curves, current profiles, soundings. Tables in time are known
+//! beforehand: [`crate::scene::Scene::notes`].
+
+use std::collections::BTreeSet;
+
+use nalgebra::Vector3;
+
+use crate::scene::{Line, Note, Scene, Section};
+use crate::simulation::Simulation;
+
+/// Part of the height of a current profile by which a line may leave it unnoticed, as a line does that lies on the seabed [-].
+const HEIGHT_MARGIN: f64 = 0.01;
+
+/// The tables of a scene.
+#[derive(Debug, Clone)]
+pub(super) struct LeftTables {
+    /// For every line with tension-strain curves its sections.
+    stretched: Vec<(usize, Vec<Stretched>)>,
+    /// Lowest and highest row of the current [m].
+    heights: Option<[f64; 2]>,
+    /// Least and greatest x and y of the soundings [m].
+    soundings: Option<[[f64; 2]; 2]>,
+    /// Key paths of those that have been left.
+    left: BTreeSet<String>,
+}
+
+/// A section of a line.
+#[derive(Debug, Clone)]
+struct Stretched {
+    /// Arc length of its end [m].
+    end: f64,
+    line_type: String,
+    /// Strain of the last row [-]; infinite where there is no table.
+    strain_max: f64,
+}
+
+impl LeftTables {
+    /// The tables of a scene, none of them left as yet.
+    pub(super) fn new(scene: &Scene) -> LeftTables {
+        let lines = scene.lines.iter().enumerate();
+        let stretched = lines.map(|(index, line)| (index, stretched(scene, line)));
+        let finite = |section: &Stretched| section.strain_max.is_finite();
+        let grid = scene.seabed.as_ref().and_then(|bed| bed.grid.as_ref());
+        LeftTables {
+            stretched: stretched
+                .filter(|(_, sections)| sections.iter().any(finite))
+                .collect(),
+            heights: heights(scene),
+            soundings: grid.map(|grid| [range(&grid.x), range(&grid.y)]),
+            left: BTreeSet::new(),
+        }
+    }
+
+    /// Notes on the tables that are left and were not before.
+    pub(super) fn look(&mut self, simulation: &Simulation, notes: &mut Vec<Note>) {
+        for (line, sections) in &self.stretched {
+            look_at_strain(simulation, *line, sections, &mut self.left, notes);
+        }
+        let lines = 0..simulation.model.lines.len();
+        if let Some(heights) = self.heights {
+            let at = "water.current.profile";
+            let mut lines = lines.clone().filter(|_| !self.left.contains(at));
+            if let Some(text) = lines.find_map(|line| beyond_current(simulation, line, heights)) {
+                say(&mut self.left, at.to_string(), text, notes);
+            }
+        }
+        if let Some(soundings) = self.soundings {
+            let at = "seabed.grid";
+            let mut lines = lines.filter(|_| !self.left.contains(at));
+            if let Some(text) = lines.find_map(|line| beside_soundings(simulation, line, soundings))
+            {
+                say(&mut self.left, at.to_string(), text, notes);
+            }
+        }
+    }
+}
+
+fn say(left: &mut BTreeSet<String>, at: String, text: String, notes: &mut Vec<Note>) {
+    if left.insert(at.clone()) {
+        notes.push(Note::new(at, text));
+    }
+}
+
+fn stretched(scene: &Scene, line: &Line) -> Vec<Stretched> {
+    let mut end = 0.0;
+    let of_section = |section: &Section| {
+        end += section.length;
+        let kind = scene.line_types.get(&section.line_type);
+        let table = kind.and_then(|kind| kind.tension_strain.as_ref());
+        let last = table.and_then(|table| table.rows.last());
+        Stretched {
+            end,
+            line_type: section.line_type.clone(),
+            strain_max: last.map_or(f64::INFINITY, |[strain, _]| *strain),
+        }
+    };
+    line.sections.iter().map(of_section).collect()
+}
+
+/// Notes on segments that are strained beyond their tables.
+fn look_at_strain(
+    simulation: &Simulation,
+    line: usize,
+    sections: &[Stretched],
+    left: &mut BTreeSet<String>,
+    notes: &mut Vec<Note>,
+) {
+    let (of, nodes) = (
+        &simulation.model.lines[line],
+        &simulation.snapshot.state.lines[line].position,
+    );
+    for (k, (pair, length)) in nodes.windows(2).zip(&of.segments.length).enumerate() {
+        let middle = of.nodes.arc[k] + 0.5 * length;
+        let section = sections.iter().find(|section| middle <= section.end);
+        let Some(section) = section.or(sections.last()) else {
+            continue;
+        };
+        let strain = (pair[1] - pair[0]).norm() / length - 1.0;
+        if strain > section.strain_max {
+            let text = format!(
+                "{} is strained by {strain:.4} at t = {} s, beyond the last row at {}: tension goes on with its last slope there, where MoorDyn \
+                 stays at the last tension",
+                of.name,
+                simulation.time(),
+                section.strain_max
+            );
+            let at = format!("line_types.{}.tension_strain", section.line_type);
+            say(left, at, text, notes);
+        }
+    }
+}
+
+/// A note on a line that is above or below the rows of the current [m].
+fn beyond_current(simulation: &Simulation, line: usize, [low, high]: [f64; 2]) -> Option<String> {
+    let margin = HEIGHT_MARGIN * (high - low);
+    let heights = simulation.snapshot.state.lines[line]
+        .position
+        .iter()
+        .map(|r| r.z);
+    let mut beyond = heights.filter(|z| {
+        let above = *z > high + margin && *z < 0.0; // there is no water further up
+        *z < low - margin || above
+    });
+    let z = beyond.next()?;
+    let (side, row) = match z < low {
+        true => ("below the lowest", low),
+        false => ("above the highest", high),
+    };
+    Some(format!(
+        "{} is at z = {z:.2} m at t = {} s, {side} row at {row} m: the current is that of this row there",
+        simulation.model.lines[line].name,
+        simulation.time()
+    ))
+}
+
+/// A note on a line that lies on the seabed outside the soundings, whose least and greatest x and y [m] are given.
+fn beside_soundings(
+    simulation: &Simulation,
+    line: usize,
+    soundings: [[f64; 2]; 2],
+) -> Option<String> {
+    let of = &simulation.model.lines[line];
+    let contact = of.nodes.contact.as_ref()?;
+    let bottom = contact.bottom.as_ref()?;
+    let outside = |[least, most]: [f64; 2], at: f64| least < most && !(least..=most).contains(&at);
+    let lies = |node: usize, r: Vector3<f64>| {
+        let lift = contact.lift(node);
+        (outside(soundings[0], r.x) || outside(soundings[1], r.y))
+            && bottom.touch(r, lift).penetration > 0.0
+    };
+    let nodes = &simulation.snapshot.state.lines[line].position;
+    let (_, r) = nodes
+        .iter()
+        .enumerate()
+        .find(|(node, r)| lies(*node, **r))?;
+    Some(format!(
+        "{} lies at ({:.2}, {:.2}) m at t = {} s, outside the soundings: the seabed goes on as at their edge there",
+        of.name,
+        r.x,
+        r.y,
+        simulation.time()
+    ))
+}
+
+fn range(values: &[f64]) -> [f64; 2] {
+    let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+    [
+        least,
+        values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+    ]
+}
+
+/// Lowest and highest row of a current that changes with height [m].
+fn heights(scene: &Scene) -> Option<[f64; 2]> {
+    let current = scene.water.as_ref()?.current.as_ref()?;
+    let rows = current.profile.as_ref().filter(|rows| rows.len() > 1)?;
+    let heights: Vec<f64> = rows.iter().map(|row| row[0]).collect();
+    Some(range(&heights))
+}
