@@ -7,10 +7,9 @@ use moorline::interface::{Binding, Causality, Interface, Kind, Layout, Variable}
 use moorline::model::{Body, Model, Moving};
 use moorline::output::channels::Channels;
 use moorline::output::figures::ELEVATION;
-use moorline::output::left_tables::LeftTables;
 use moorline::output::record::{Column, Record};
 use moorline::output::{collect, write_run};
-use moorline::scene::{Drive, LoadedScene, Note, Reconstruction, Supplement};
+use moorline::scene::{Drive, LoadedScene, Reconstruction, Supplement};
 use moorline::simulation::{Simulation, Watch, pilot};
 
 use super::failure::Failure;
@@ -51,9 +50,10 @@ pub fn run(
         // the elements of the FMU, which know nothing of this run's motion and duration
         loaded.scene = packaged;
     }
+    let mut motion = None;
     if !drive.is_empty() {
         let known = loaded.scene.notes();
-        loaded.scene.drive(drive).map_err(Failure::Argument)?;
+        motion = loaded.scene.drive(drive).map_err(Failure::Argument)?;
         let mut notes = loaded.scene.notes();
         notes.retain(|note| !known.contains(note));
         remark_all(&loaded, notes);
@@ -83,14 +83,15 @@ pub fn run(
     };
     let columns = recorder.columns(simulation.model());
     let record = collect::record(&loaded.scene, &simulation, still.as_ref(), columns);
-    let mut left = LeftTables::new(&loaded.scene);
     let mut watch = Watch::new(&loaded.scene, &simulation);
-    let mut look = |simulation: &Simulation, time: f64| {
-        let mut notes = left.look(simulation, time);
-        notes.extend(watch.look(simulation));
-        notes
-    };
-    let record = step_through(&loaded, &mut simulation, &recorder, pace, record, &mut look)?;
+    let record = step_through(
+        &loaded,
+        &mut simulation,
+        &recorder,
+        pace,
+        record,
+        &mut watch,
+    )?;
     write_run(
         &record,
         folder,
@@ -98,20 +99,21 @@ pub fn run(
         loaded.scene.output.profile,
     )?;
     print(&format!(
-        "{}\nwritten to {}\n",
+        "{}{}\nwritten to {}\n",
+        motion.map_or(String::new(), |words| words + "\n"),
         run_summary(&record),
         folder.display()
     ))
 }
 
-/// Steps from the start to the scene's duration, and adds a row and where wanted a shape at every step to the record; `look` sees every row.
+/// Steps from the start to the scene's duration, and adds a row and where wanted a shape at every step to the record; `watch` sees every row.
 fn step_through(
     loaded: &LoadedScene,
     simulation: &mut Simulation,
     recorder: &Recorder<'_>,
     pace: Pace,
     mut record: Record,
-    look: &mut impl FnMut(&Simulation, f64) -> Vec<Note>,
+    watch: &mut Watch,
 ) -> Result<Record, Failure> {
     let scene = &loaded.scene;
     let interval = match pace {
@@ -125,7 +127,7 @@ fn step_through(
     record.frames.push(collect::frame(simulation, 0.0));
     record.flight.extend(collect::flight(simulation, 0.0));
     let bar = progress(times.count as u64);
-    remark_all(loaded, look(simulation, 0.0));
+    remark_all(loaded, watch.look(simulation));
     let mut wall = Duration::ZERO;
     for index in 0..times.count {
         if let Pace::Host { velocities, .. } = pace {
@@ -140,7 +142,7 @@ fn step_through(
         let row = recorder.row(simulation, now);
         check_finite(now, record.columns(), &row)?;
         record.add_row(now, row);
-        let notes = look(simulation, now);
+        let notes = watch.look(simulation);
         if !notes.is_empty() {
             bar.suspend(|| remark_all(loaded, notes));
         }

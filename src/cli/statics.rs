@@ -3,7 +3,6 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use moorline::output::left_tables::LeftTables;
 use moorline::output::{collect, json};
 use moorline::scene::{InitialShape, Note, Supplement};
 use moorline::simulation::Watch;
@@ -31,9 +30,6 @@ pub fn statics(path: &Path, supplement: &Supplement, as_json: bool) -> Result<()
             let text = "runs start on this shape, not in the equilibrium that is shown";
             remark(path, &loaded.locate_note(Note::new(at, text)));
         }
-    }
-    for note in LeftTables::new(&loaded.scene).look(&simulation, 0.0) {
-        remark(path, &note);
     }
     let statics = collect::statics(&loaded.scene, &simulation);
     if as_json {

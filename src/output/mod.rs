@@ -10,7 +10,6 @@ pub mod csv;
 pub mod description;
 pub mod figures;
 pub mod json;
-pub mod left_tables;
 pub mod package;
 pub mod record;
 pub mod report;
