@@ -16,8 +16,8 @@
 //! its greatest force, the loads are applied little by little instead, and every step must lie close to the one before and
 //! have a positive definite tangent.
 //!
-//! Lines with bending stiffness are in `bending`, lines in a current in `current`, lines that float in `surface`, the friction of the
-//! bed in `friction`.
+//! Lines with bending stiffness are in `bending`, lines in a current in `current`, slack lines and those that float in `slack`, the friction of
+//! the seabed in `friction`.
 //!
 //! Accepted is a residual of at most 1e-11 of the greatest force in the network (tension, nodal weight or load) plus what
 //! rounding of the positions makes of the stiffest segment.
@@ -28,12 +28,12 @@
 mod bending;
 pub(crate) mod current;
 mod friction;
-mod surface;
+mod slack;
 
 use nalgebra::Vector3;
 
 use super::StaticsError;
-use super::assembly::{StaticCase, Workspace, copy_network, for_free_points, place_ends, rubbing};
+use super::assembly::{StaticCase, Workspace, copy_network, for_free_points, place_ends};
 use super::guess;
 use crate::model::{Kinematics, Line, LineState, Model, Network, PointState, State};
 
@@ -45,8 +45,6 @@ const STEP_TOLERANCE: f64 = 1e-12;
 const STEP_MAX: f64 = 0.2;
 /// Solves of one Newton iteration with predicted tensions.
 const NEWTON_SOLVES_MAX: usize = 40;
-/// The same where no segment may turn by much at once.
-const CAUTIOUS_SOLVES_MAX: usize = 200;
 /// Solves of one minimisation.
 const DESCENT_SOLVES_MAX: usize = 200;
 /// Force out of balance that a minimisation leaves to Newton's method, over the sum of the loads, and where nodes that stick and nodes that
@@ -277,18 +275,9 @@ impl<'a> Problem<'a> {
     /// The full problem with at most this EA [N].
     fn case(&self, stiffness_max: f64) -> StaticCase {
         StaticCase {
-            time: self.time,
-            load: 1.0,
             stiffness_max,
-            tension_min: 0.0,
-            anchoring: 0.0,
-            predicted: false,
             bends: self.bends,
-            stick: 1.0,
-            limit: rubbing::AT_REST,
-            keeps_pressure: false,
-            cautious: false,
-            breadth: 0.0,
+            ..StaticCase::whole(self.time)
         }
     }
 
@@ -323,7 +312,8 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// Newton's method alone; else, where the loads may be too much, little by little; else from a soft network.
+    /// Newton's method alone; else, where the loads may be too much, little by little; else from a soft network, or from a taut one, which is
+    /// tried first where lines float.
     fn solve_from(
         &self,
         guess: &State,
@@ -331,9 +321,10 @@ impl<'a> Problem<'a> {
         work: &mut Workspace,
     ) -> Result<(), StaticsError> {
         let start = work.counters.solves;
-        let full = self.case(f64::INFINITY);
         let softens = self.softens();
-        if self.newton(state, work, full) && (!softens || self.strain_over_limit(state).0 <= 1.0) {
+        if self.newton(state, work, self.case(f64::INFINITY))
+            && (!softens || self.strain_over_limit(state).0 <= 1.0)
+        {
             return Ok(());
         }
         if softens {
@@ -346,15 +337,16 @@ impl<'a> Problem<'a> {
                 return Err(error);
             }
         }
-        if self.meets_surface() {
+        for slackens in [self.meets_surface(), !self.meets_surface()] {
             self.restart(guess, state, work);
-            if self.thin_gradually(guess, state, work) && self.strain_over_limit(state).0 <= 1.0 {
+            let found = if slackens {
+                self.slacken(state, work)
+            } else {
+                self.stiffen_gradually(state, work)
+            };
+            if found && self.strain_over_limit(state).0 <= 1.0 {
                 return Ok(());
             }
-        }
-        self.restart(guess, state, work);
-        if self.stiffen_gradually(state, work, full) && self.strain_over_limit(state).0 <= 1.0 {
-            return Ok(());
         }
         Err(self.not_converged(state, work, start))
     }
@@ -395,10 +387,10 @@ impl<'a> Problem<'a> {
         let mut relaxation: f64 = 1.0;
         let mut step = f64::INFINITY;
         let (mut balanced, mut refused) = (0, 0);
-        let solves_max = match (self.bends, case.cautious) {
-            (true, _) => bending::NEWTON_SOLVES_MAX,
-            (_, true) => CAUTIOUS_SOLVES_MAX,
-            _ => NEWTON_SOLVES_MAX,
+        let solves_max = if self.bends {
+            bending::NEWTON_SOLVES_MAX
+        } else {
+            NEWTON_SOLVES_MAX
         };
         for _ in 0..solves_max {
             case.tension_min = relaxation * self.force;
@@ -427,7 +419,7 @@ impl<'a> Problem<'a> {
                 return false;
             }
             let mut part = (STEP_MAX * self.reach(state) / step).min(1.0);
-            if self.bends || case.cautious {
+            if self.bends {
                 part = part.min(self.turning_part(state, work));
             }
             work.predict_tensions(self.model, self.network, part);
@@ -437,6 +429,13 @@ impl<'a> Problem<'a> {
             }
         }
         false
+    }
+
+    /// Whether the forces of a shape are in balance by themselves, without predicted tensions.
+    fn is_balanced(&self, state: &State, work: &mut Workspace) -> bool {
+        work.assemble_static(self.model, self.network, state, &self.case(f64::INFINITY));
+        let (residual, _) = work.greatest_residual(self.network);
+        residual <= self.tolerance(state, work, f64::INFINITY)
     }
 
     /// Farthest that a node is from end A of its line, at least the length of the longest line [m].
@@ -549,8 +548,9 @@ impl<'a> Problem<'a> {
         place_ends(self.model, self.network, state);
     }
 
-    /// From a soft network, whose energy is minimised, to that of the `full` case.
-    fn stiffen_gradually(&self, state: &mut State, work: &mut Workspace, full: StaticCase) -> bool {
+    /// From a soft network, whose energy is minimised, to the full case.
+    fn stiffen_gradually(&self, state: &mut State, work: &mut Workspace) -> bool {
+        let full = self.case(f64::INFINITY);
         let mut stiffness = SOFT_STIFFNESS * self.force;
         let lines = self
             .network
