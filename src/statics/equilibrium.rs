@@ -47,6 +47,8 @@ const STEP_MAX: f64 = 0.2;
 const NEWTON_SOLVES_MAX: usize = 40;
 /// Solves of one minimisation.
 const DESCENT_SOLVES_MAX: usize = 200;
+/// Linear solves of one search times the nodes of the network: some ten seconds [-].
+const WORK_MAX: usize = 20_000_000;
 /// Force out of balance that a minimisation leaves to Newton's method, over the sum of the loads, and where nodes that stick and nodes that
 /// slide must be told apart [-].
 const ROUGH_SHARE: f64 = 1e-6;
@@ -128,7 +130,7 @@ pub fn rest(
     if model.beam_of(number).is_some() {
         return Ok(());
     }
-    Problem::new(model, number, state.time).solve(state, work)
+    Problem::new(model, number, state.time, work).solve(state, work)
 }
 
 /// Moves the held points of every network to `points` [m] and finds the equilibrium at time `t` [s] closest to `state`.
@@ -171,7 +173,7 @@ pub fn continue_network(
     t: f64,
     work: &mut Workspace,
 ) -> Result<(), StaticsError> {
-    let problem = Problem::new(model, number, t);
+    let problem = Problem::new(model, number, t, work);
     let network = &model.networks[number];
     let mut before = std::mem::take(&mut work.before);
     copy_network(model, network, state, &mut before);
@@ -240,10 +242,12 @@ struct Problem<'a> {
     length: f64,
     /// Whether any of its lines has bending stiffness, and that is not left out.
     bends: bool,
+    /// Count of linear solves that ends the search [-].
+    solves_end: usize,
 }
 
 impl<'a> Problem<'a> {
-    fn new(model: &'a Model, number: usize, time: f64) -> Problem<'a> {
+    fn new(model: &'a Model, number: usize, time: f64, work: &Workspace) -> Problem<'a> {
         let network = &model.networks[number];
         let lines = network.lines.iter().map(|&line| &model.lines[line]);
         let mut force: f64 = lines
@@ -259,11 +263,13 @@ impl<'a> Problem<'a> {
             force +=
                 moments.map(|moment| moment.norm()).iter().sum::<f64>() / line.unstretched_length();
         }
+        let nodes: usize = lines.clone().map(|line| line.segment_count()).sum();
         Problem {
             model,
             network,
             number,
             time,
+            solves_end: work.counters.solves + WORK_MAX / nodes.max(1),
             force: if force > 0.0 { force } else { 1.0 },
             bends: lines.clone().any(|line| line.bending.is_some()),
             length: lines
@@ -279,6 +285,11 @@ impl<'a> Problem<'a> {
             bends: self.bends,
             ..StaticCase::whole(self.time)
         }
+    }
+
+    /// Whether the search has taken all the solves that it may.
+    fn is_spent(&self, work: &Workspace) -> bool {
+        work.counters.solves >= self.solves_end
     }
 
     fn solve(&self, state: &mut State, work: &mut Workspace) -> Result<(), StaticsError> {
@@ -366,13 +377,15 @@ impl<'a> Problem<'a> {
             residual,
             tolerance: self.tolerance(state, work, f64::INFINITY),
             iterations: work.counters.solves - start,
-            advice: self.advice(),
+            advice: self.advice(work),
         }
     }
 
     /// What may help where no equilibrium is found.
-    fn advice(&self) -> &'static str {
-        if !self.network.free_points.is_empty() {
+    fn advice(&self, work: &Workspace) -> &'static str {
+        if self.is_spent(work) {
+            "use fewer elements: a search on this mesh takes too long"
+        } else if !self.network.free_points.is_empty() {
             "bring the free points' reference positions closer to where they will rest, or use more elements"
         } else if self.rubs() {
             "use another number of elements, or less friction of the seabed"
@@ -405,6 +418,9 @@ impl<'a> Problem<'a> {
             };
             if balanced >= 3 || (balanced > 0 && step <= STEP_TOLERANCE * self.length) {
                 return true;
+            }
+            if self.is_spent(work) {
+                return false;
             }
             if !work.solve(self.model, self.network, self.number) {
                 relaxation = (10.0 * relaxation).min(1.0);
@@ -628,7 +644,7 @@ impl<'a> Problem<'a> {
             } else {
                 ROUGH_SHARE * self.force
             };
-            if work.greatest_residual(self.network).0 <= accepted {
+            if work.greatest_residual(self.network).0 <= accepted || self.is_spent(work) {
                 return;
             }
             if !work.solve(self.model, self.network, self.number) {

@@ -108,6 +108,9 @@ impl Problem<'_> {
             if part >= 1.0 && residual <= accepted.max(least) {
                 return true;
             }
+            if self.is_spent(work) {
+                return false;
+            }
             if !work.solve(self.model, self.network, self.number) {
                 case.anchoring *= 10.0;
                 continue;
