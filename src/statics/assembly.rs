@@ -142,10 +142,30 @@ pub(crate) struct StaticCase {
     pub limit: f64,
     /// Whether friction goes by the normal forces of the last assembly that did not keep them.
     pub keeps_pressure: bool,
-    /// Whether no correction turns a segment by more than is sensible, however many corrections that takes.
-    pub cautious: bool,
     /// Least radius with which lines pierce the water's surface [m].
     pub breadth: f64,
+    /// Tension of a segment that is shortened to nothing; none where slack segments are to pull at nothing [N].
+    pub slack: f64,
+}
+
+impl StaticCase {
+    /// The whole problem with the loads of time `t` [s].
+    pub(crate) fn whole(t: f64) -> StaticCase {
+        StaticCase {
+            time: t,
+            load: 1.0,
+            stiffness_max: f64::INFINITY,
+            tension_min: 0.0,
+            anchoring: 0.0,
+            predicted: false,
+            bends: true,
+            stick: 1.0,
+            limit: rubbing::AT_REST,
+            keeps_pressure: false,
+            breadth: 0.0,
+            slack: 0.0,
+        }
+    }
 }
 
 /// Weights of the parts of residual and tangent in a time step.

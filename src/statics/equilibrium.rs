@@ -16,8 +16,8 @@
 //! its greatest force, the loads are applied little by little instead, and every step must lie close to the one before and
 //! have a positive definite tangent.
 //!
-//! Lines with bending stiffness are in `bending`, lines in a current in `current`, lines that float in `surface`, the friction of the
-//! bed in `friction`.
+//! Lines with bending stiffness are in `bending`, lines in a current in `current`, slack lines and those that float in `slack`, the friction of
+//! the seabed in `friction`.
 //!
 //! Accepted is a residual of at most 1e-11 of the greatest force in the network (tension, nodal weight or load) plus what
 //! rounding of the positions makes of the stiffest segment.
@@ -28,12 +28,12 @@
 mod bending;
 pub(crate) mod current;
 mod friction;
-mod surface;
+mod slack;
 
 use nalgebra::Vector3;
 
 use super::StaticsError;
-use super::assembly::{StaticCase, Workspace, copy_network, for_free_points, place_ends, rubbing};
+use super::assembly::{StaticCase, Workspace, copy_network, for_free_points, place_ends};
 use super::guess;
 use crate::model::{Kinematics, Line, LineState, Model, Network, PointState, State};
 
@@ -45,10 +45,10 @@ const STEP_TOLERANCE: f64 = 1e-12;
 const STEP_MAX: f64 = 0.2;
 /// Solves of one Newton iteration with predicted tensions.
 const NEWTON_SOLVES_MAX: usize = 40;
-/// The same where no segment may turn by much at once.
-const CAUTIOUS_SOLVES_MAX: usize = 200;
 /// Solves of one minimisation.
 const DESCENT_SOLVES_MAX: usize = 200;
+/// Linear solves of one search times the nodes of the network: some ten seconds [-].
+const WORK_MAX: usize = 20_000_000;
 /// Force out of balance that a minimisation leaves to Newton's method, over the sum of the loads, and where nodes that stick and nodes that
 /// slide must be told apart [-].
 const ROUGH_SHARE: f64 = 1e-6;
@@ -130,7 +130,7 @@ pub fn rest(
     if model.beam_of(number).is_some() {
         return Ok(());
     }
-    Problem::new(model, number, state.time).solve(state, work)
+    Problem::new(model, number, state.time, work).solve(state, work)
 }
 
 /// Moves the held points of every network to `points` [m] and finds the equilibrium at time `t` [s] closest to `state`.
@@ -173,7 +173,7 @@ pub fn continue_network(
     t: f64,
     work: &mut Workspace,
 ) -> Result<(), StaticsError> {
-    let problem = Problem::new(model, number, t);
+    let problem = Problem::new(model, number, t, work);
     let network = &model.networks[number];
     let mut before = std::mem::take(&mut work.before);
     copy_network(model, network, state, &mut before);
@@ -242,10 +242,12 @@ struct Problem<'a> {
     length: f64,
     /// Whether any of its lines has bending stiffness, and that is not left out.
     bends: bool,
+    /// Count of linear solves that ends the search [-].
+    solves_end: usize,
 }
 
 impl<'a> Problem<'a> {
-    fn new(model: &'a Model, number: usize, time: f64) -> Problem<'a> {
+    fn new(model: &'a Model, number: usize, time: f64, work: &Workspace) -> Problem<'a> {
         let network = &model.networks[number];
         let lines = network.lines.iter().map(|&line| &model.lines[line]);
         let mut force: f64 = lines
@@ -261,11 +263,13 @@ impl<'a> Problem<'a> {
             force +=
                 moments.map(|moment| moment.norm()).iter().sum::<f64>() / line.unstretched_length();
         }
+        let nodes: usize = lines.clone().map(|line| line.segment_count()).sum();
         Problem {
             model,
             network,
             number,
             time,
+            solves_end: work.counters.solves + WORK_MAX / nodes.max(1),
             force: if force > 0.0 { force } else { 1.0 },
             bends: lines.clone().any(|line| line.bending.is_some()),
             length: lines
@@ -277,19 +281,15 @@ impl<'a> Problem<'a> {
     /// The full problem with at most this EA [N].
     fn case(&self, stiffness_max: f64) -> StaticCase {
         StaticCase {
-            time: self.time,
-            load: 1.0,
             stiffness_max,
-            tension_min: 0.0,
-            anchoring: 0.0,
-            predicted: false,
             bends: self.bends,
-            stick: 1.0,
-            limit: rubbing::AT_REST,
-            keeps_pressure: false,
-            cautious: false,
-            breadth: 0.0,
+            ..StaticCase::whole(self.time)
         }
+    }
+
+    /// Whether the search has taken all the solves that it may.
+    fn is_spent(&self, work: &Workspace) -> bool {
+        work.counters.solves >= self.solves_end
     }
 
     fn solve(&self, state: &mut State, work: &mut Workspace) -> Result<(), StaticsError> {
@@ -323,7 +323,8 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// Newton's method alone; else, where the loads may be too much, little by little; else from a soft network.
+    /// Newton's method alone; else, where the loads may be too much, little by little; else from a soft network, or from a taut one, which is
+    /// tried first where lines float.
     fn solve_from(
         &self,
         guess: &State,
@@ -331,9 +332,10 @@ impl<'a> Problem<'a> {
         work: &mut Workspace,
     ) -> Result<(), StaticsError> {
         let start = work.counters.solves;
-        let full = self.case(f64::INFINITY);
         let softens = self.softens();
-        if self.newton(state, work, full) && (!softens || self.strain_over_limit(state).0 <= 1.0) {
+        if self.newton(state, work, self.case(f64::INFINITY))
+            && (!softens || self.strain_over_limit(state).0 <= 1.0)
+        {
             return Ok(());
         }
         if softens {
@@ -346,15 +348,16 @@ impl<'a> Problem<'a> {
                 return Err(error);
             }
         }
-        if self.meets_surface() {
+        for slackens in [self.meets_surface(), !self.meets_surface()] {
             self.restart(guess, state, work);
-            if self.thin_gradually(guess, state, work) && self.strain_over_limit(state).0 <= 1.0 {
+            let found = if slackens {
+                self.slacken(state, work)
+            } else {
+                self.stiffen_gradually(state, work)
+            };
+            if found && self.strain_over_limit(state).0 <= 1.0 {
                 return Ok(());
             }
-        }
-        self.restart(guess, state, work);
-        if self.stiffen_gradually(state, work, full) && self.strain_over_limit(state).0 <= 1.0 {
-            return Ok(());
         }
         Err(self.not_converged(state, work, start))
     }
@@ -374,13 +377,15 @@ impl<'a> Problem<'a> {
             residual,
             tolerance: self.tolerance(state, work, f64::INFINITY),
             iterations: work.counters.solves - start,
-            advice: self.advice(),
+            advice: self.advice(work),
         }
     }
 
     /// What may help where no equilibrium is found.
-    fn advice(&self) -> &'static str {
-        if !self.network.free_points.is_empty() {
+    fn advice(&self, work: &Workspace) -> &'static str {
+        if self.is_spent(work) {
+            "use fewer elements: a search on this mesh takes too long"
+        } else if !self.network.free_points.is_empty() {
             "bring the free points' reference positions closer to where they will rest, or use more elements"
         } else if self.rubs() {
             "use another number of elements, or less friction of the seabed"
@@ -395,10 +400,10 @@ impl<'a> Problem<'a> {
         let mut relaxation: f64 = 1.0;
         let mut step = f64::INFINITY;
         let (mut balanced, mut refused) = (0, 0);
-        let solves_max = match (self.bends, case.cautious) {
-            (true, _) => bending::NEWTON_SOLVES_MAX,
-            (_, true) => CAUTIOUS_SOLVES_MAX,
-            _ => NEWTON_SOLVES_MAX,
+        let solves_max = if self.bends {
+            bending::NEWTON_SOLVES_MAX
+        } else {
+            NEWTON_SOLVES_MAX
         };
         for _ in 0..solves_max {
             case.tension_min = relaxation * self.force;
@@ -414,6 +419,9 @@ impl<'a> Problem<'a> {
             if balanced >= 3 || (balanced > 0 && step <= STEP_TOLERANCE * self.length) {
                 return true;
             }
+            if self.is_spent(work) {
+                return false;
+            }
             if !work.solve(self.model, self.network, self.number) {
                 relaxation = (10.0 * relaxation).min(1.0);
                 refused += 1;
@@ -427,7 +435,7 @@ impl<'a> Problem<'a> {
                 return false;
             }
             let mut part = (STEP_MAX * self.reach(state) / step).min(1.0);
-            if self.bends || case.cautious {
+            if self.bends {
                 part = part.min(self.turning_part(state, work));
             }
             work.predict_tensions(self.model, self.network, part);
@@ -437,6 +445,13 @@ impl<'a> Problem<'a> {
             }
         }
         false
+    }
+
+    /// Whether the forces of a shape are in balance by themselves, without predicted tensions.
+    fn is_balanced(&self, state: &State, work: &mut Workspace) -> bool {
+        work.assemble_static(self.model, self.network, state, &self.case(f64::INFINITY));
+        let (residual, _) = work.greatest_residual(self.network);
+        residual <= self.tolerance(state, work, f64::INFINITY)
     }
 
     /// Farthest that a node is from end A of its line, at least the length of the longest line [m].
@@ -549,8 +564,9 @@ impl<'a> Problem<'a> {
         place_ends(self.model, self.network, state);
     }
 
-    /// From a soft network, whose energy is minimised, to that of the `full` case.
-    fn stiffen_gradually(&self, state: &mut State, work: &mut Workspace, full: StaticCase) -> bool {
+    /// From a soft network, whose energy is minimised, to the full case.
+    fn stiffen_gradually(&self, state: &mut State, work: &mut Workspace) -> bool {
+        let full = self.case(f64::INFINITY);
         let mut stiffness = SOFT_STIFFNESS * self.force;
         let lines = self
             .network
@@ -628,7 +644,7 @@ impl<'a> Problem<'a> {
             } else {
                 ROUGH_SHARE * self.force
             };
-            if work.greatest_residual(self.network).0 <= accepted {
+            if work.greatest_residual(self.network).0 <= accepted || self.is_spent(work) {
                 return;
             }
             if !work.solve(self.model, self.network, self.number) {

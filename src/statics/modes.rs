@@ -11,7 +11,7 @@
 
 use nalgebra::{Cholesky, DMatrix, Dyn, Matrix3, SymmetricEigen, Vector3};
 
-use super::assembly::{BendingWork, StaticCase, Workspace, node_tangent, rubbing};
+use super::assembly::{BendingWork, StaticCase, Workspace, node_tangent};
 use crate::model::{Line, Model, Network, State};
 
 /// The modes of a network, lowest first.
@@ -35,20 +35,7 @@ impl Modes {
     ) -> Option<Modes> {
         let network = &model.networks[network];
         let (unknowns, count) = number_unknowns(model, network);
-        let case = StaticCase {
-            time: state.time,
-            load: 1.0,
-            stiffness_max: f64::INFINITY,
-            tension_min: 0.0,
-            anchoring: 0.0,
-            predicted: false,
-            bends: true,
-            stick: 1.0,
-            limit: rubbing::AT_REST,
-            keeps_pressure: false,
-            cautious: false,
-            breadth: 0.0,
-        };
+        let case = StaticCase::whole(state.time);
         work.assemble_static(model, network, state, &case);
         let mut stiffness = DMatrix::zeros(count, count);
         let mut mass = DMatrix::zeros(count, count);

@@ -298,18 +298,10 @@ impl Problem<'_> {
             axial.map(|(ea, length)| ea / length)
         });
         let case = StaticCase {
-            time: self.state.time,
-            load: 1.0,
-            stiffness_max: f64::INFINITY,
-            tension_min: 0.0,
             anchoring: part * springs.fold(0.0, f64::max),
-            predicted: false,
             bends: lines().any(|line| line.bending.is_some()),
-            stick: 1.0,
             limit: rubbing::SLIDING,
-            keeps_pressure: false,
-            cautious: false,
-            breadth: 0.0,
+            ..StaticCase::whole(self.state.time)
         };
         work.assemble_static(self.model, self.network, self.state, &case);
         let at_rest = |(line, end): (usize, End)| {

@@ -13,6 +13,9 @@ use crate::physics::morison::{DragCoefficients, drag, drag_slope};
 use crate::physics::stretch::total_tension;
 use crate::physics::stretch_step::Stretched;
 
+/// Least length that a segment is stiff across by, over its unstretched length: one that is folded to nothing has no direction [-].
+const FOLDED: f64 = 0.1;
+
 /// Scratch of a line.
 #[derive(Debug, Clone)]
 pub(crate) struct LineWork {
@@ -195,6 +198,9 @@ impl LineWork {
         let ea = line.segments.axial_stiffness[i].min(case.stiffness_max);
         let (elastic, slope) = (ea * stretch.force, ea * stretch.slope / unstretched);
         (self.elastic[i], self.slope[i], self.direction[i]) = (elastic, slope, g.direction);
+        if case.slack > 0.0 {
+            return self.add_taut_segment(&g, case, [ea, unstretched], i);
+        }
         let predicted = if case.predicted {
             self.tension[i]
         } else {
@@ -206,10 +212,40 @@ impl LineWork {
         } else {
             (least, 0.0)
         };
-        // A segment folded to nothing has no direction to be stiff across.
-        let across = predicted.max(least + case.tension_min) / g.length.max(0.1 * unstretched);
+        let across = predicted.max(least + case.tension_min) / g.length.max(FOLDED * unstretched);
         let stiffness = Matrix3::from_diagonal_element(across) + (slope - across) * g.along();
         self.add_segment(i, tension * g.direction, stiffness);
+    }
+
+    /// A segment whose tension T and what the elastic force N lacks to it are complementary but for m = `case.slack`: T (T − N) = m EA. Newton's
+    /// method on T and the nodes together, from the tension t that was predicted, leaves
+    ///
+    ///   T ← (t² + m EA)/(2t − N) + t/(2t − N) dN.
+    ///
+    /// Where t is less than N it is that which N has by itself.
+    fn add_taut_segment(
+        &mut self,
+        g: &Geometry,
+        case: &StaticCase,
+        [ea, unstretched]: [f64; 2],
+        i: usize,
+    ) {
+        let (elastic, product) = (self.elastic[i], case.slack * ea);
+        let root = elastic.hypot(2.0 * product.sqrt());
+        let own = if elastic > 0.0 {
+            0.5 * (elastic + root)
+        } else {
+            2.0 * product / (root - elastic)
+        };
+        let predicted = if case.predicted { self.tension[i] } else { own };
+        let t = if predicted > elastic { predicted } else { own };
+        let sum = 2.0 * t - elastic;
+        self.elastic[i] = (t * t + product) / sum;
+        self.slope[i] *= t / sum;
+        let across = predicted / g.length.max(FOLDED * unstretched);
+        let stiffness =
+            Matrix3::from_diagonal_element(across) + (self.slope[i] - across) * g.along();
+        self.add_segment(i, self.elastic[i] * g.direction, stiffness);
     }
 
     /// Residual and, if TANGENT, tangent of a moving line.

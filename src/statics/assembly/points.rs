@@ -194,18 +194,9 @@ mod tests {
         let (point, free) = (&model.points[1], model.points[1].free().unwrap());
         assert!(free.contact.is_some());
         let case = StaticCase {
-            time: 0.0,
             load: 0.7,
-            stiffness_max: f64::INFINITY,
-            tension_min: 0.0,
-            anchoring: 0.0,
-            predicted: false,
-            bends: false,
-            breadth: 0.0,
-            stick: 1.0,
             limit: 1.0,
-            keeps_pressure: false,
-            cautious: false,
+            ..StaticCase::whole(0.0)
         };
         for z in HEIGHTS {
             let residual = |state: &PointState| {

@@ -336,20 +336,7 @@ pub(crate) fn hold_at_rest(
     if model.friction().is_none() {
         return;
     }
-    let case = StaticCase {
-        time: t,
-        load: 1.0,
-        stiffness_max: f64::INFINITY,
-        tension_min: 0.0,
-        anchoring: 0.0,
-        predicted: false,
-        bends: true,
-        breadth: 0.0,
-        stick: 1.0,
-        limit: AT_REST,
-        keeps_pressure: false,
-        cautious: false,
-    };
+    let case = StaticCase::whole(t);
     work.assemble_static(model, network, state, &case);
     work.move_anchors(model, network, state);
 }

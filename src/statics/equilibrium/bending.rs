@@ -141,6 +141,9 @@ impl Problem<'_> {
             if balanced >= 3 {
                 return true;
             }
+            if self.is_spent(work) {
+                return false;
+            }
             if !work.solve(self.model, self.network, self.number) {
                 relaxation *= 3.0;
                 continue;

@@ -69,6 +69,9 @@ impl Problem<'_> {
                 ..full
             };
             self.descend(state, work, kept);
+            if self.is_balanced(state, work) {
+                return true;
+            }
             copy_network(self.model, self.network, state, &mut found);
             self.restart(&found, state, work);
             let settled = self.newton(state, work, full);

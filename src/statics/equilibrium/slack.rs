@@ -1,0 +1,132 @@
+//! Equilibrium of slack lines.
+//!
+//! A slack segment pulls at nothing, so that a line with little or no tension in part of it has no stiffness across there, and Newton's
+//! method throws its nodes about, the more of them the finer the mesh. Such a network is therefore found as the limit of networks that are taut everywhere: the tension T
+//! of a segment and what it lacks to the strain that T gives it are complementary, and their product is set to a small force m,
+//!
+//!   T ≥ 0,  T − N(ε) ≥ 0,  T (T − N(ε)) = m EA,
+//!
+//! which makes T(ε) smooth and the energy of the network convex with one minimum only. m is the tension of a segment that is shortened to
+//! nothing. For m as great as all loads together the lines are pulled straight. From there m falls to nothing, by as much at once as
+//! Newton's method on positions and tensions together allows, and with it the breadth of the water's surface, over which a line that floats
+//! gains its buoyancy. What is left where the equilibrium is not the only one is that whose segments are shortened most evenly.
+//!
+//! Source: the primal-dual interior point method, Nocedal & Wright (2006), Numerical Optimization, 2nd ed., sections 16.6 and 19.1, with the
+//! segments' tensions as multipliers; the elimination of the tensions is derived in `assembly/line.rs`.
+
+use super::{Problem, StaticCase};
+use crate::model::State;
+use crate::statics::assembly::{Workspace, copy_network};
+
+/// First m, over the sum of the loads [-].
+const TAUTEST: f64 = 1.0;
+/// Last m, over the sum of the loads, where an equilibrium that is not accepted by then will not be [-].
+const SLACKEST: f64 = 1e-26;
+/// One m over the one before: at first, at least, and so near to one that it is given up [-].
+const FALL: f64 = 0.3;
+const FALL_MIN: f64 = 0.01;
+const FALL_MAX: f64 = 0.9;
+/// Solves for one m, and so few that the next is to fall by more.
+const SOLVES_MAX: usize = 25;
+const SOLVES_FEW: usize = 8;
+/// Force out of balance that is left at one m, over the sum of the loads [-]; never more than m.
+const SHARE: f64 = 1e-3;
+/// Least tension, over m [-].
+const TENSION_MIN: f64 = 0.01;
+/// Breadth of the water's surface at the first m, over the length of the longest line; it falls with the root of m [-].
+const BREADTH: f64 = 0.1;
+
+impl Problem<'_> {
+    /// Whether any line may pierce the water's surface.
+    pub(super) fn meets_surface(&self) -> bool {
+        let mut lines = self.network.lines.iter();
+        lines.any(|&line| self.model.lines[line].surface.is_some())
+    }
+
+    /// Follows the equilibrium from taut straight lines between their points to the slack ones they are; whether it came there.
+    pub(super) fn slacken(&self, state: &mut State, work: &mut Workspace) -> bool {
+        self.pull_straight(state, work);
+        let mut found = std::mem::take(&mut work.trial);
+        let (mut reached, mut fall) = (TAUTEST / FALL, FALL);
+        let mut balanced = false;
+        while !balanced && reached > SLACKEST && fall < FALL_MAX {
+            let part = fall * reached;
+            let before = work.counters.solves;
+            if self.newton_taut(state, work, self.taut(part)) {
+                reached = part;
+                if work.counters.solves - before < SOLVES_FEW {
+                    fall = fall.powf(1.5).max(FALL_MIN);
+                }
+                copy_network(self.model, self.network, state, &mut found);
+                balanced = self.is_balanced(state, work);
+            } else if reached > TAUTEST {
+                break;
+            } else {
+                fall = fall.sqrt();
+                copy_network(self.model, self.network, &found, state);
+            }
+            work.assemble_static(self.model, self.network, state, &self.taut(reached));
+            self.remember_tensions(work);
+        }
+        if balanced && !self.newton(state, work, self.case(f64::INFINITY)) {
+            self.restart(&found, state, work);
+        }
+        work.trial = found;
+        balanced
+    }
+
+    /// The case with this m, over the sum of the loads [-].
+    fn taut(&self, part: f64) -> StaticCase {
+        StaticCase {
+            slack: part * self.force,
+            breadth: BREADTH * self.length * part.sqrt(),
+            ..self.case(f64::INFINITY)
+        }
+    }
+
+    fn pull_straight(&self, state: &mut State, work: &mut Workspace) {
+        for &index in &self.network.lines {
+            let line = &self.model.lines[index];
+            let [a, b] = line.ends.map(|point| state.points[point].position);
+            for (r, arc) in state.lines[index].position.iter_mut().zip(&line.nodes.arc) {
+                *r = a + arc / line.unstretched_length() * (b - a);
+            }
+            work.lines[index].tension.fill(self.force);
+        }
+    }
+
+    /// Newton's method on positions and tensions of taut segments; whether it converged.
+    fn newton_taut(&self, state: &mut State, work: &mut Workspace, mut case: StaticCase) -> bool {
+        case.predicted = true;
+        case.anchoring = self.rounding_stiffness(&case);
+        let mut part = 0.0;
+        for _ in 0..SOLVES_MAX {
+            work.assemble_static(self.model, self.network, state, &case);
+            let (residual, _) = work.greatest_residual(self.network);
+            let accepted = case.slack.min(SHARE * self.force);
+            let least = self.tolerance(state, work, f64::INFINITY);
+            if part >= 1.0 && residual <= accepted.max(least) {
+                return true;
+            }
+            if self.is_spent(work) {
+                return false;
+            }
+            if !work.solve(self.model, self.network, self.number) {
+                case.anchoring *= 10.0;
+                continue;
+            }
+            if !work.greatest_solution(self.network).is_finite() {
+                return false;
+            }
+            part = self.turning_part(state, work);
+            work.predict_tensions(self.model, self.network, part);
+            for &index in &self.network.lines {
+                for tension in &mut work.lines[index].tension {
+                    *tension = tension.max(TENSION_MIN * case.slack);
+                }
+            }
+            self.advance(state, work, part);
+        }
+        false
+    }
+}
