@@ -6,6 +6,7 @@ use common::{modes, order_of, scene, shipped, with_elements};
 use moorline::interface::{Interface, Layout};
 use moorline::scene::{FibreLaw, Integrator, Scene};
 use moorline::simulation::Simulation;
+use nalgebra::Vector3;
 
 // ------------------------------------------------------------------ MotionSolve's collar
 
@@ -723,6 +724,31 @@ fn a_slack_cable_on_the_seabed_buckles_and_goes_on() {
             assert!(nodes.iter().all(|r| r.amax() < 150.0));
             assert!(cable.energy_error().is_finite());
         }
+    }
+}
+
+#[test]
+fn a_line_that_hardly_bends_rests_on_the_bed_like_one_that_does_not_bend() {
+    let rest = |bending_stiffness: Option<f64>| {
+        let mut cable = slack(1.0, 10);
+        (cable.lines[0].clamped_a, cable.points[1].position) = (None, [70.0, 0.0, -20.0]);
+        for line_type in cable.line_types.values_mut() {
+            line_type.bending_stiffness = bending_stiffness;
+        }
+        Simulation::new(&cable).unwrap().state().lines[0]
+            .position
+            .clone()
+    };
+    let flexible = rest(None);
+    for stiffness in [0.0, 1e-9, 1e-3] {
+        let apart = |(a, b): (&Vector3<f64>, &Vector3<f64>)| (a - b).norm();
+        let nodes = rest(Some(stiffness));
+        let most = flexible.iter().zip(&nodes).map(apart).fold(0.0, f64::max);
+        // EI/(lH) with elements of 10 m and a horizontal tension of some 100 N
+        assert!(
+            most <= 1e-9 + 1e-3 * stiffness,
+            "EI = {stiffness} N m²: {most:.1e} m"
+        );
     }
 }
 

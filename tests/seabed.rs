@@ -409,6 +409,32 @@ fn a_slope_of_zero_is_the_level_bed() {
     }
 }
 
+/// A light line, stiff along itself, that floats up from the bed with a free end and is drawn along by a slow current.
+fn floating(friction: f64) -> Scene {
+    scene(&format!(
+        r#"
+        water = {{ density = 1025.0, current = {{ velocity = [0.05, -0.05, 0.0] }} }}
+        seabed = {{ depth = 155.0, stiffness = 3e6, damping = 3e5, friction = {friction:e} }}
+        line_types.rope = {{ mass = 1.1, weight = -5.2, diameter = 0.05, axial_stiffness = 3.4e7, axial_damping = 0.0, drag_tangential = 0.02 }}
+        points = [
+          {{ name = "top", position = [76.5, 49.6, 12.9], kind = "fixed" }},
+          {{ name = "end", position = [120.0, 49.0, -74.0], kind = "free", mass = 0.12, volume = 3.3e-5 }},
+        ]
+        lines = [{{ name = "rope", from = "end", to = "top", sections = [{{ type = "rope", length = 204.0, elements = 14 }}] }}]
+        "#
+    ))
+}
+
+#[test]
+fn friction_of_next_to_nothing_leaves_a_line_where_it_rests_without() {
+    let rest = |friction: f64| Simulation::new(&floating(friction)).unwrap();
+    let [without, with] = [0.0, 1e-13].map(rest);
+    let nodes = [&without, &with].map(|simulation| &simulation.state().lines[0].position);
+    let apart = nodes[0].iter().zip(nodes[1]).map(|(a, b)| (a - b).norm());
+    let most = apart.fold(0.0, f64::max);
+    assert!(most <= 1e-9 * 204.0, "{most:.1e} m");
+}
+
 #[test]
 fn a_line_over_a_ridge_rests_on_it_and_stays() {
     let ridge = soundings(|x, _| 100.0 - 25.0 * (-((x - 240.0) / 60.0).powi(2)).exp());

@@ -89,6 +89,11 @@ pub struct Held {
 }
 
 impl Friction {
+    /// The greater of the coefficients [-].
+    pub fn greatest(&self) -> f64 {
+        self.axial.max(self.transverse)
+    }
+
     /// The axes of the ellipse [N] under a normal force [N].
     pub fn limits(&self, axes: &Axes, normal_force: f64) -> Vector2<f64> {
         let lying = (axes.share * axes.share).min(1.0);

@@ -36,6 +36,7 @@ use super::StaticsError;
 use super::assembly::{StaticCase, Workspace, copy_network, for_free_points, place_ends};
 use super::guess;
 use crate::model::{Kinematics, Line, LineState, Model, Network, PointState, State};
+use crate::physics::friction::Friction;
 
 /// Accepted force out of balance, over the greatest force [-].
 const FORCE_TOLERANCE: f64 = 1e-11;
@@ -228,6 +229,13 @@ fn check_finite(model: &Model, points: &[Vector3<f64>]) -> Result<(), StaticsErr
         }
     }
     Ok(())
+}
+
+/// Greatest stiffness along the bed of a node that sticks [N/m].
+fn stiffest_stick(line: &Line) -> f64 {
+    let contact = line.nodes.contact.iter();
+    let stick = contact.flat_map(|contact| &contact.stick);
+    stick.copied().fold(0.0, f64::max)
 }
 
 /// One network, one time.
@@ -472,10 +480,11 @@ impl<'a> Problem<'a> {
             .lines
             .iter()
             .map(|&line| &self.model.lines[line]);
-        8.0 * f64::EPSILON
-            * lines
-                .map(|line| self.stiffest_spring(line, case.stiffness_max))
-                .fold(0.0, f64::max)
+        let spring = |line: &Line| {
+            let spring = self.stiffest_spring(line, case.stiffness_max);
+            spring.max(stiffest_stick(line))
+        };
+        8.0 * f64::EPSILON * lines.map(spring).fold(0.0, f64::max)
     }
 
     /// Greatest stiffness of a segment of at most this EA [N], of the bed under a node, or of a joint [N/m].
@@ -491,9 +500,7 @@ impl<'a> Problem<'a> {
             .iter()
             .flat_map(|contact| &contact.stiffness)
             .copied();
-        let rub = line.nodes.contact.iter().flat_map(|contact| &contact.stick);
         let spring = bed
-            .chain(rub.copied())
             .chain(segments.map(|(ea, length)| ea.min(stiffness_max) / length))
             .fold(0.0, f64::max);
         if self.bends {
@@ -505,7 +512,7 @@ impl<'a> Problem<'a> {
 
     /// Accepted force out of balance [N] at the last assembly.
     fn tolerance(&self, state: &State, work: &Workspace, stiffness_max: f64) -> f64 {
-        let (mut force, mut rounding) = (0.0_f64, 0.0_f64);
+        let (mut force, mut rounding, mut stuck) = (0.0_f64, 0.0_f64, 0.0_f64);
         for &index in &self.network.lines {
             let line = &self.model.lines[index];
             let far = state.lines[index]
@@ -527,6 +534,7 @@ impl<'a> Problem<'a> {
                 force = force.max(joints.greatest);
             }
             rounding = rounding.max(far * self.stiffest_spring(line, stiffness_max));
+            stuck = stuck.max(far * stiffest_stick(line));
         }
         for_free_points(self.model, self.network, |index, free| {
             let load = self.model.points[index].load_at(self.time).norm();
@@ -535,7 +543,10 @@ impl<'a> Problem<'a> {
                 rounding = rounding.max(contact.bed.abs() * contact.coefficients.stiffness);
             }
         });
-        FORCE_TOLERANCE * force + 4.0 * f64::EPSILON * rounding
+        let friction = self.model.friction().map_or(0.0, Friction::greatest);
+        let rounding = 4.0 * f64::EPSILON * rounding;
+        let stuck = (4.0 * f64::EPSILON * stuck).min(friction * force);
+        FORCE_TOLERANCE * force + rounding.max(stuck)
     }
 
     /// Whether no segment that the last assembly took as taut pushes.

@@ -21,6 +21,7 @@ mod drive;
 mod energy;
 mod features;
 mod layout;
+mod limits;
 mod motions;
 mod plan;
 mod run;

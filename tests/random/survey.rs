@@ -10,7 +10,7 @@ use std::thread;
 use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::{Config, RngAlgorithm, TestCaseError, TestError, TestRng, TestRunner};
 
-use crate::dice::{TapeTree, Tapes};
+use crate::dice::{Tape, TapeTree, Tapes};
 use crate::features;
 use crate::run::{Account, Case, Fate, run};
 
@@ -37,9 +37,14 @@ fn tree(number: usize) -> TapeTree {
     tree.expect("tapes are always drawn")
 }
 
+/// The tape of a number: always the same.
+pub fn tape(number: usize) -> Tape {
+    tree(number).current()
+}
+
 /// The case of a number: always the same.
 pub fn case(number: usize) -> Case {
-    Case::of(&tree(number).current())
+    Case::of(&tape(number))
 }
 
 /// A plainer case that breaks a claim like that of a number, with the claim.

@@ -10,19 +10,21 @@
 //! Towards an end that is held on the bed the line comes up to it, over a length R of a few elements, so that the end is not pulled
 //! down: the line follows a smooth step as long as R > √3 λ, and λ is an element or less of the meshes in use. Three elements: with five
 //! the step reaches the touchdown of a line that lies on the bed for little of its length, and the error of tension is 1.4 times as great on
-//! oc3_catenary moved slowly (n = 14 to 40); with two it is hardly smaller.
+//! oc3_catenary moved slowly (n = 14 to 40); with two it is hardly smaller. A line that bends follows the step only where that is longer than the
+//! length ℓ = (4EI/k)^¼ over which a beam on springs of k per length settles, and its curvature is that of the step: up to five elements, then, as ℓ comes to
+//! an element.
 //!
 //! Source: beam without bending stiffness on Winkler's foundation, here solved for the level; the tests below and
 //! `tests/equilibrium.rs` hold the gain against the elastic catenary.
 
-use crate::model::{Contact, Line, Point, Role};
+use crate::model::{Contact, Line, Nodes, Point, Role};
 use crate::physics::seabed::REGULARISED_PENETRATION;
 
 /// Static compression that the line rests in the bed by [-].
 const SUNK: f64 = 0.5;
 /// Elements over which the line comes up to a held end [-].
 const RISE: f64 = 3.0;
-/// The same where the line bends: its curvature follows the second derivative of the step.
+/// The same over ℓ where the line bends, and at most over an element.
 const RISE_BENT: f64 = 5.0;
 
 /// Lowers the level from which softened contact pushes, from where a line would rest on the bed to where what hangs is right.
@@ -30,16 +32,25 @@ pub(super) fn sink(line: &mut Line, points: &[Point]) {
     if let Some(winch) = &mut line.winch {
         sink(winch.reel_mut(), points);
     }
-    let (length, bends) = (line.unstretched_length(), line.bends());
-    let Some(contact) = &mut line.nodes.contact else {
+    let (length, stiffness) = (line.unstretched_length(), greatest_stiffness(line));
+    let Nodes {
+        arc,
+        length: spacing,
+        contact: Some(contact),
+        ..
+    } = &mut line.nodes
+    else {
         return;
     };
-    let elements = if bends { RISE_BENT } else { RISE };
-    let spacing = line.nodes.length[0];
-    let lies = line.ends.map(|end| lies_on(contact, &points[end], spacing));
-    for (arc, level) in line.nodes.arc.iter().zip(&mut contact.level) {
+    let lies = line
+        .ends
+        .map(|end| lies_on(contact, &points[end], spacing[0]));
+    for (i, level) in contact.level.iter_mut().enumerate() {
         let compression = *level - contact.bed; // δ
-        let rise = elements * compression / REGULARISED_PENETRATION; // R
+        let element = compression / REGULARISED_PENETRATION;
+        let settles = (4.0 * stiffness * spacing[i] / contact.stiffness[i]).powf(0.25); // ℓ
+        let bent = RISE_BENT * settles.min(element);
+        let rise = bent.max(RISE * element); // R
         let near = |distance: f64| {
             if rise > 0.0 {
                 step(1.0 - distance / rise)
@@ -47,12 +58,20 @@ pub(super) fn sink(line: &mut Line, points: &[Point]) {
                 0.0
             }
         };
-        let from_ends = [*arc, length - arc].into_iter().zip(lies);
+        let from_ends = [arc[i], length - arc[i]].into_iter().zip(lies);
         let near = from_ends
             .filter(|(_, lies)| *lies)
             .map(|(distance, _)| near(distance));
         *level -= SUNK * compression * (1.0 - near.fold(0.0, f64::max));
     }
+}
+
+/// Greatest bending stiffness EI of the segments of a line [N m²].
+fn greatest_stiffness(line: &Line) -> f64 {
+    let cable = line.bending.iter().flat_map(|bending| &bending.stiffness);
+    let beam = line.beam.iter().flat_map(|beam| &beam.elements);
+    let beam = beam.map(|element| element.law.bending);
+    cable.copied().chain(beam).fold(0.0, f64::max)
 }
 
 /// Whether a held point lies on the bed, as far as an element of `length` [m] tells.
