@@ -53,7 +53,14 @@ pub fn check(path: &Path, supplement: &Supplement) -> Result<(), Failure> {
     let at_rest = simulation
         .iter()
         .flat_map(|started| Watch::new(scene, started).look(started));
-    let later = at_rest.chain(loaded.scene.advice());
+    let chosen = simulation.iter().flat_map(Simulation::choices);
+    let idle = match simulation {
+        Some(_) => loaded
+            .scene
+            .idle_with(chosen.map(|choice| choice.integrator)),
+        None => Vec::new(),
+    };
+    let later = at_rest.chain(idle).chain(loaded.scene.advice());
     let later = later.map(|note| loaded.locate_note(note));
     for note in loaded.notes.iter().cloned().chain(later) {
         writeln!(text, "{}", noted(path, &note)).expect("a string takes any text");

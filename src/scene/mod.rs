@@ -14,6 +14,7 @@ mod document;
 mod drive;
 mod error;
 mod from_deck;
+mod idle;
 pub mod input_file;
 pub mod keys;
 mod map;

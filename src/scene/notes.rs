@@ -5,12 +5,10 @@ use std::fmt;
 
 use nalgebra::Vector3;
 
-use super::check::{coefficients, number, quantity};
+use super::check::{number, quantity};
 use super::path::quoted;
 use super::table_ends;
-use super::{
-    Integrator, Line, LineModel, LineType, Point, PointKind, Reconstruction, Scene, Waves,
-};
+use super::{Integrator, Line, LineModel, LineType, Point, PointKind, Scene, Waves};
 use crate::math::attitude::Order;
 
 /// A remark on a scene that can be used as it is.
@@ -56,13 +54,14 @@ impl Scene {
             note_waves(self, waves, &mut notes);
         }
         note_whole(self, &mut notes);
+        notes.extend(self.idle());
         notes.extend(table_ends::notes(self));
         notes
     }
 
-    /// Suggestions for keys that are left open, which only `moorline check` says.
+    /// Suggestions for keys that are left open, and keys that cannot be left out and change nothing, which only `moorline check` says.
     pub fn advice(&self) -> Vec<Note> {
-        let mut notes = Vec::new();
+        let mut notes = self.idle_by_need();
         if self.solver.integrator == Integrator::QuasiStatic {
             return notes;
         }
@@ -124,20 +123,6 @@ fn note_line_type(scene: &Scene, name: &str, line_type: &LineType, notes: &mut V
     if sections.all(|section| section.line_type != name) {
         return say(notes, at, "no line uses this line type");
     }
-    let given: Vec<&str> = coefficients(line_type)
-        .iter()
-        .filter(|(_, value)| value.is_some())
-        .map(|(key, _)| *key)
-        .collect();
-    if scene.water.is_none() && !given.is_empty() {
-        let text = format!("without [water], {} change nothing", given.join(", "));
-        say(notes, at.clone(), text);
-    }
-    let resting = idle_at_rest(scene, line_type);
-    if scene.solver.integrator == Integrator::QuasiStatic && !resting.is_empty() {
-        let text = format!("quasi-static: {} change nothing", resting.join(", "));
-        say(notes, at.clone(), text);
-    }
     if scene.water.is_some() && line_type.drag_normal.is_none() {
         let flows = scene.water.as_ref().is_some_and(|w| w.current.is_some());
         let waves = scene.water.as_ref().is_some_and(|w| w.waves.is_some());
@@ -154,39 +139,6 @@ fn note_line_type(scene: &Scene, name: &str, line_type: &LineType, notes: &mut V
         let text = "lighter than the water: it floats up from the seabed";
         say(notes, at, text);
     }
-}
-
-/// Keys of a line type that act on what moves, and so on nothing at rest.
-fn idle_at_rest(scene: &Scene, line_type: &LineType) -> Vec<&'static str> {
-    let water = scene.water.as_ref();
-    let still = water.is_some_and(|water| water.current.is_none());
-    let wet = water.is_some();
-    let keys = [
-        ("axial_damping", line_type.axial_damping.is_some()),
-        ("damping_ratio", line_type.damping_ratio.is_some()),
-        ("rayleigh", line_type.rayleigh.is_some()),
-        ("dynamic_stiffness", line_type.dynamic_stiffness.is_some()),
-        ("static_damping", line_type.static_damping.is_some()),
-        ("dynamic_damping", line_type.dynamic_damping.is_some()),
-        ("rotary_inertia", line_type.rotary_inertia.is_some()),
-        ("drag_normal", still && line_type.drag_normal.is_some()),
-        (
-            "drag_tangential",
-            still && line_type.drag_tangential.is_some(),
-        ),
-        (
-            "added_mass_normal",
-            wet && line_type.added_mass_normal.is_some(),
-        ),
-        (
-            "added_mass_tangential",
-            wet && line_type.added_mass_tangential.is_some(),
-        ),
-    ];
-    keys.into_iter()
-        .filter(|(_, given)| *given)
-        .map(|(key, _)| key)
-        .collect()
 }
 
 /// Where a point is in the reference configuration, global axes [m]; `None` on a vessel that there is not.
@@ -240,9 +192,13 @@ fn note_points(scene: &Scene, notes: &mut Vec<Note>) {
         let lifted = lifted + scene.rise(point);
         let open = scene.water.as_ref().is_some_and(|w| w.surface.is_none());
         if open && !above && lifted > 0.0 && blind {
+            let end = match scene.all_beams() {
+                true => "",
+                false => "; `surface = true` in [water] ends it at z = 0",
+            };
             let text = format!(
                 "the scene's motion takes it to z = {lifted:.3} m, but the water is taken to fill all space for its lines, so that they are submerged \
-                 there too; `surface = true` in [water] ends it at z = 0"
+                 there too{end}"
             );
             say(notes, at.clone(), text);
         }
@@ -259,32 +215,6 @@ fn note_points(scene: &Scene, notes: &mut Vec<Note>) {
         if point.force.is_some() && point.kind != PointKind::Free {
             let text = "a force on a point that the forces do not move only changes what holds it";
             say(notes, format!("{at}.force"), text);
-        }
-        if point.volume.is_some() && scene.water.is_none() {
-            let text = "without [water], a volume changes nothing";
-            say(notes, format!("{at}.volume"), text);
-        }
-        if point.drag_area.is_some() && scene.water.is_none() {
-            let text = "without [water], a drag area changes nothing";
-            say(notes, format!("{at}.drag_area"), text);
-        }
-        if point.added_mass.is_some() && scene.water.is_none() {
-            let text = "without [water], an added mass changes nothing";
-            say(notes, format!("{at}.added_mass"), text);
-        }
-        let rests = scene.solver.integrator == Integrator::QuasiStatic && scene.water.is_some();
-        if point.added_mass.is_some() && rests {
-            let text = "quasi-static: an added mass changes nothing";
-            say(notes, format!("{at}.added_mass"), text);
-        }
-        let flows = scene.water.as_ref().is_some_and(|w| w.current.is_some());
-        if point.drag_area.is_some() && rests && !flows {
-            let text = "quasi-static, without a current: a drag area changes nothing";
-            say(notes, format!("{at}.drag_area"), text);
-        }
-        if point.added_mass.is_some() && point.volume.is_none() {
-            let text = "without a volume, an added mass is none: it is a part of the mass of displaced water";
-            say(notes, format!("{at}.added_mass"), text);
         }
     }
 }
@@ -307,18 +237,6 @@ fn note_waves(scene: &Scene, waves: &Waves, notes: &mut Vec<Note>) {
 }
 
 fn note_whole(scene: &Scene, notes: &mut Vec<Note>) {
-    let mut points = scene.points.iter();
-    if scene.solver.input_reconstruction != Reconstruction::Smooth
-        && scene.vessels.is_empty()
-        && points.all(|point| point.kind != PointKind::Coupled)
-    {
-        let text = "nothing is coupled to a host: `input_reconstruction` changes nothing";
-        say(notes, "solver.input_reconstruction", text);
-    }
-    if scene.solver.negative_tension && scene.solver.integrator == Integrator::QuasiStatic {
-        let text = "quasi-static: without damping `negative_tension` changes nothing";
-        say(notes, "solver.negative_tension", text);
-    }
     if scene.gravity == 0.0 {
         say(notes, "gravity", "0: lines and points are weightless");
     }
@@ -332,7 +250,7 @@ fn note_whole(scene: &Scene, notes: &mut Vec<Note>) {
         && seabed.friction.acts()
         && beams()
     {
-        let text = "beams lie on the bed without friction";
+        let text = "beams lie on the seabed without friction: for them `friction` changes nothing";
         say(notes, "seabed.friction", text);
     }
     let output = &scene.output;

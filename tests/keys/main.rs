@@ -1,3 +1,4 @@
-//! The keys of the scene format: the page of the format has them all.
+//! The keys of the scene format: each of them acts or is refused, and the page of the format has them all.
 
+mod effect;
 mod page;

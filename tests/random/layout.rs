@@ -328,6 +328,7 @@ impl Layout<'_> {
                 kind.solid_section.is_some() || kind.bending_stiffness > Some(0.0)
             })
         };
+        let lies = lies && line.initial != InitialShape::Static;
         if lies && line.sections.iter().any(|section| bends(Some(section))) {
             line.rest_shape = RestShape::Initial;
         }

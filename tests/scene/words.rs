@@ -73,7 +73,7 @@ fn words_say_what_is_modelled_and_what_is_not() {
         .unwrap();
     assert_eq!(
         note.to_string(),
-        "line_types.chain: without [water], drag_normal change nothing"
+        "line_types.chain: without [water], `drag_normal` changes nothing"
     );
 }
 

@@ -15,8 +15,8 @@ use crate::model::{Beam, BeamElement};
 use crate::physics::rayleigh;
 use crate::physics::section::SectionLaw;
 use crate::scene::{
-    FibreLaw, InitialShape, Integrator, Line, LineModel, LineType, RestShape, Scene, SceneError,
-    SolidSection, Strain,
+    FibreLaw, Integrator, Line, LineModel, LineType, RestShape, Scene, SceneError, SolidSection,
+    Strain,
 };
 
 /// A section of a beam line, per unstretched length.
@@ -72,9 +72,7 @@ fn assemble(line: &Line, parts: &[Part], lengths: &[Vec<f64>]) -> Beam {
         rotary_inertia: vec![Vector3::zeros()],
         clamped: [line.clamped_a, line.clamped_b]
             .map(|direction| direction.map(|d| Vector3::from(d).normalize())),
-        // an equilibrium is no shape that is given
-        rests_as_it_starts: line.rest_shape == RestShape::Initial
-            && line.initial != InitialShape::Static,
+        rests_as_it_starts: line.rest_shape == RestShape::Initial,
     };
     for (part, lengths) in parts.iter().zip(lengths) {
         for &length in lengths {

@@ -378,8 +378,13 @@ fn check_beam(findings: &mut Findings, at: &str, line_type: &LineType) {
     ];
     for (key, value, unit) in needed {
         if value.is_none() && line_type.solid_section.is_none() {
-            let problem =
-                format!("a beam needs `{key}` [{unit}], or a `solid_section` that it follows from");
+            let why = match line_type.model {
+                LineModel::Beam => "",
+                LineModel::Cable => ", and integrator = \"beam\" makes every line a beam",
+            };
+            let problem = format!(
+                "a beam needs `{key}` [{unit}], or a `solid_section` that it follows from{why}"
+            );
             findings.say(at, problem);
         }
     }

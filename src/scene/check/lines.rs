@@ -145,11 +145,10 @@ fn check_start(findings: &mut Findings, at: &str, line: &Line, scene: &Scene) {
         point.map(|point| point.position)
     });
     match &line.initial {
-        InitialShape::Static => {}
-        InitialShape::Catenary => {
+        InitialShape::Static | InitialShape::Catenary => {
             if line.rest_shape == RestShape::Initial {
-                let problem = "the catenary is no shape that is free of bending: give a line with rest_shape = \"initial\" a shape that is \
-                               \"straight\", { parabola = sag } or { nodes = … }";
+                let problem = "a line with rest_shape = \"initial\" needs a given shape, \"straight\", { parabola = sag } or { nodes = … }: \
+                               an equilibrium is not free of bending, and follows from the shape that is";
                 findings.say(at, problem);
             }
         }

@@ -84,6 +84,7 @@ fn check_freedom(findings: &mut Findings, at: &str, point: &Point) {
             ("volume", point.volume.is_some()),
             ("drag_area", point.drag_area.is_some()),
             ("added_mass", point.added_mass.is_some()),
+            ("force", point.force.is_some()),
         ];
         for (key, _) in given.iter().filter(|(_, given)| *given) {
             let problem = format!(

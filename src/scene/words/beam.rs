@@ -16,7 +16,7 @@ impl Scene {
     }
 
     /// Whether all lines are beams.
-    pub(super) fn all_beams(&self) -> bool {
+    pub(in crate::scene) fn all_beams(&self) -> bool {
         !self.lines.is_empty() && self.lines.iter().all(|line| self.is_beam(line))
     }
 
