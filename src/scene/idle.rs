@@ -4,8 +4,8 @@ use super::check::coefficients;
 use super::notes::Note;
 use super::path::quoted;
 use super::{
-    Integrator, LineModel, LineType, Point, PointKind, Reconstruction, Scene, Seabed, Section,
-    Solver,
+    Integrator, Line, LineModel, LineType, Point, PointKind, Reconstruction, Scene, Seabed,
+    Section, Solver,
 };
 
 /// A key, and whether it is given and changes nothing.
@@ -205,9 +205,9 @@ impl Scene {
             "negative_tension",
             beams && solver.negative_tension,
         );
-        let meshed = self.sections().all(|section| section.elements.is_some());
+        let meshed = !self.lines.iter().any(Line::is_open);
         say(
-            "all sections have `elements`, and here",
+            "all lines or their sections have `elements`, and here",
             "elements",
             meshed && solver.elements.is_some(),
         );
