@@ -437,7 +437,7 @@ fn with_waves(base: &Base, sea: Sea) -> Option<(Scene, Gap)> {
 
 /// Waves of next to no height, regular or of a spectrum.
 fn without_wave_height(base: &Base) -> Option<(Scene, Gap)> {
-    let sea = if base.number % 2 == 0 {
+    let sea = if base.number.is_multiple_of(2) {
         Sea {
             regular: Some(RegularWave {
                 height: Some(1e-13),
@@ -498,7 +498,7 @@ fn without_slope(base: &Base) -> Option<(Scene, Gap)> {
 /// Drag, or added mass.
 fn without_coefficients(base: &Base) -> Option<(Scene, Gap)> {
     base.water()?;
-    let drags = base.number % 2 == 0;
+    let drags = base.number.is_multiple_of(2);
     let give = |scene: &mut Scene, value: Option<f64>| {
         every_type(scene, |kind| {
             if drags {
@@ -718,7 +718,7 @@ fn reversed(base: &Base) -> Option<(Scene, Gap)> {
 fn split(base: &Base) -> Option<(Scene, Gap)> {
     let halves = |section: &Section| {
         let count = section.elements.expect("given");
-        let parts = if count % 2 == 0 { 2 } else { 1 };
+        let parts = if count.is_multiple_of(2) { 2 } else { 1 };
         let part = Section {
             length: section.length / parts as f64,
             elements: Some(count / parts),
@@ -788,7 +788,7 @@ fn beside_a_far_line(base: &Base) -> Option<(Scene, Gap)> {
             "far_b".to_string(),
             vec![section],
         );
-        let initial = if base.number % 2 == 0 {
+        let initial = if base.number.is_multiple_of(2) {
             InitialShape::Straight
         } else {
             InitialShape::Static
