@@ -5,9 +5,11 @@ raw state bytes, calls out of order. Both versions of FMI behind the same names.
 """
 
 import ctypes
+import os
 import pathlib
 import platform
 import sys
+import time
 import xml.etree.ElementTree as ET
 import zipfile
 from ctypes import (
@@ -23,6 +25,19 @@ LOGGER3 = CFUNCTYPE(None, c_void_p, c_int, c_char_p, c_char_p)
 class Callbacks2(Structure):
     _fields_ = [("logger", LOGGER2), ("allocate", c_void_p), ("free", c_void_p), ("finished", c_void_p),
                 ("environment", c_void_p)]
+
+
+def tasks(expected):
+    """Threads that the system counts in this process, once they are as many as expected or a few seconds have passed.
+
+    A thread that has been joined still counts until the system has taken it down.
+    """
+    for _ in range(500):
+        count = len(os.listdir("/proc/self/task"))
+        if count == expected:
+            break
+        time.sleep(0.01)
+    return count
 
 
 def unpack(fmu, folder):
