@@ -35,7 +35,8 @@
 //! A flight from the bed rises by D where T − H + V²/2EA = wD, a quadratic in V². Two flights and what lies between them
 //! must reach X; what a flight is longer than its span, (H/w)(sinh β − β) with sinh β = V/H, makes this one balance in H
 //! (`touchdown`). Without tension the flights hang and the rest of the line is slack: H = 0, the layout is one of many, and
-//! the one returned spreads the slack evenly. Friction acts towards A, as on a line laid from A and hauled at B.
+//! the one returned spreads the slack evenly. Friction acts towards A, as on a line laid from A and hauled at B; towards B where B lies on the
+//! bed and A does not ([`is_laid_from_b`]).
 //!
 //! # Several sections
 //! The line is laid out from A under a given tension, which is searched (`sections`). What floats rises off the bed without
@@ -72,6 +73,8 @@ use shape::{Kind, Piece, Shape};
 use touchdown::Touchdown;
 use uniform::{Held, Uniform};
 
+/// Height above the bed, over the length of the line, up to which an end lies on it as far as friction is concerned [-].
+const ON_BED: f64 = 0.02;
 /// An end this far under the bed, over the length of the line, is taken to lie on it: rounding of positions [-].
 const BED_TOLERANCE: f64 = 1e-12;
 
@@ -91,7 +94,8 @@ pub struct Section {
 pub struct Bed {
     /// z of the bed relative to end A [m]: 0 where A lies on it, negative below.
     pub height: f64,
-    /// Coulomb friction along the line [-]: tension falls towards A by friction × weight per metre on the bed, not below 0.
+    /// Coulomb friction along the line [-]: tension falls towards A by friction × weight per metre on the bed, not below 0; towards B of a line
+    /// that is laid from there.
     pub friction: f64,
 }
 
@@ -176,9 +180,19 @@ pub fn solve(
     bed: Option<Bed>,
 ) -> Result<Catenary, CatenaryError> {
     let bed = check(sections, span, rise, bed)?;
-    let (shape, held) = match uniform(sections) {
-        Some(section) => solve_uniform(&section, span, rise, bed),
-        None => solve_sections(sections, span, rise, bed),
+    let length: f64 = sections.iter().map(|section| section.length).sum();
+    let rubs = |bed: &Bed| bed.friction > 0.0;
+    let (shape, held) = match bed.filter(rubs) {
+        Some(bed) if is_laid_from_b([-bed.height, rise - bed.height], length) => {
+            let reversed: Vec<Section> = sections.iter().rev().copied().collect();
+            let bed = Bed {
+                height: bed.height - rise,
+                ..bed
+            };
+            let (shape, held) = solve_from_a(&reversed, span, -rise, Some(bed));
+            (shape.reversed(), held.reversed())
+        }
+        _ => solve_from_a(sections, span, rise, bed),
     };
     let forces = held.horizontal_a + held.horizontal_b + held.vertical_a + held.vertical_b;
     assert!(
@@ -191,6 +205,20 @@ pub fn solve(
         span,
         rise,
     })
+}
+
+/// Whether friction holds a line as one that was laid from end B and hauled at end A: where, of ends at these heights above the bed [m], B lies on it and A
+/// does not; `length` is that of the line [m].
+pub fn is_laid_from_b([a, b]: [f64; 2], length: f64) -> bool {
+    b <= ON_BED * length && a > ON_BED * length
+}
+
+/// [`solve`] of a line that is laid from end A.
+fn solve_from_a(sections: &[Section], span: f64, rise: f64, bed: Option<Bed>) -> (Shape, Held) {
+    match uniform(sections) {
+        Some(section) => solve_uniform(&section, span, rise, bed),
+        None => solve_sections(sections, span, rise, bed),
+    }
 }
 
 /// The one section that `sections` are, if they are all of one kind.

@@ -2,6 +2,8 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
+use crate::physics::catenary::is_laid_from_b;
+
 use super::check::{number, quantity};
 use super::notes::{Note, chord, length, reference_position};
 use super::path::quoted;
@@ -44,8 +46,6 @@ const FAIRLEAD_DISTANCE: f64 = 300.0;
 const BREAKING_DEEP: f64 = 0.142;
 /// Height over depth from which a wave breaks in shallow water (McCowan 1894) [-].
 const BREAKING_SHALLOW: f64 = 0.78;
-/// Height above the seabed, over the length of the line [-], below which an end is on the seabed.
-const ON_SEABED: f64 = 0.02;
 
 /// A rule: notes on what it finds.
 type Rule = fn(&Scene, &mut Vec<Note>);
@@ -423,8 +423,9 @@ fn swapped_ends(scene: &Scene, notes: &mut Vec<Note>) {
         else {
             continue;
         };
-        let lies = |[x, y, z]: [f64; 3]| z < seabed.lowest_at([x, y]) + ON_SEABED * length(line);
-        if b.kind == PointKind::Fixed && moves(a) && to[2] < from[2] && lies(to) && !lies(from) {
+        let heights = [from, to].map(|[x, y, z]| z - seabed.lowest_at([x, y]));
+        let reversed = to[2] < from[2] && is_laid_from_b(heights, length(line));
+        if b.kind == PointKind::Fixed && moves(a) && reversed {
             let text = format!(
                 "end B, {}, is on the seabed and end A, {}, is the one that moves: a line runs from its anchor to its fairlead, so that `tension_b` \
                  is the fairlead's; here it is the anchor's",

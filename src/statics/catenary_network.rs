@@ -11,7 +11,7 @@
 //! where it would sink.
 //!
 //! Valid for engineering strain, which the closed form is made for, and where no end lies under the bed. A line's friction on the bed
-//! is that of [`super::catenary`]: towards end A, as hauled at B. Where it leaves no tension at a point on the bed, the point may lie
+//! is that of [`super::catenary`]: towards end A, as hauled at B, or the other way about. Where it leaves no tension at a point on the bed, the point may lie
 //! anywhere in a range, and stays where it was.
 //!
 //! Source: energy and convexity as for cables under gravity, Irvine (1981), Cable Structures, chapter 2; the rest is derived here.

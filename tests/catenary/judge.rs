@@ -1,6 +1,6 @@
 //! The judge: the end forces that the solver gives, integrated along the line.
 
-use moorline::statics::catenary::{Catenary, Section};
+use moorline::statics::catenary::{Catenary, Section, is_laid_from_b};
 
 use crate::Line;
 
@@ -137,12 +137,17 @@ impl Walk<'_> {
         let friction = self.solved.friction();
         assert!(friction <= bed.friction, "Coulomb's law: {:?}", self.line);
         let gain = friction * section.weight * length;
-        let elongation = if before > 0.0 || gain == 0.0 {
-            self.miss(after - before - gain, self.force_scale());
+        let heights = [-bed.height, self.line.rise - bed.height];
+        let [laid_first, hauled] = match is_laid_from_b(heights, self.line.length()) {
+            true => [after, before],
+            false => [before, after],
+        };
+        let elongation = if laid_first > 0.0 || gain == 0.0 {
+            self.miss(hauled - laid_first - gain, self.force_scale());
             length * 0.5 * (before + after)
         } else {
-            self.miss((after - gain).max(0.0), self.force_scale());
-            0.5 * after * after / (friction * section.weight)
+            self.miss((hauled - gain).max(0.0), self.force_scale());
+            0.5 * hauled * hauled / (friction * section.weight)
         } / section.axial_stiffness;
         if before == 0.0 && after == 0.0 {
             // nothing pulls it straight: it may lie anywhere its length allows

@@ -71,6 +71,38 @@ impl Piece {
         }
     }
 
+    /// What carries it, from its end to its start.
+    fn kind_reversed(&self) -> Kind {
+        match self.kind {
+            Kind::Flight(flight) => Kind::Flight(Flight {
+                vertical: -flight.vertical_end(),
+                ..flight
+            }),
+            Kind::Laid {
+                tension,
+                growth,
+                weight,
+                axial_stiffness,
+            } => Kind::Laid {
+                tension: tension + growth * self.length,
+                growth: -growth,
+                weight,
+                axial_stiffness,
+            },
+            Kind::Slack {
+                x,
+                z,
+                weight,
+                on_bed,
+            } => Kind::Slack {
+                x,
+                z: -z,
+                weight,
+                on_bed,
+            },
+        }
+    }
+
     fn point(&self, length: f64) -> Point {
         let (dx, dz) = self.advance(length);
         let (horizontal, vertical) = match self.kind {
@@ -154,6 +186,15 @@ impl Shape {
                 },
             );
         }
+    }
+
+    /// The same line from B to A.
+    pub fn reversed(&self) -> Shape {
+        let mut reversed = Shape::default();
+        for piece in self.pieces.iter().rev() {
+            reversed.push(piece.length, piece.kind_reversed());
+        }
+        reversed
     }
 
     /// Turns pieces whose tension nowhere exceeds `nothing` [N] into slack ones where they are, and horizontal tension up to it into none.

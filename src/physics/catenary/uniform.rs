@@ -48,6 +48,17 @@ pub(super) struct Held {
 }
 
 impl Held {
+    /// Those of the same line whose ends have changed names.
+    pub fn reversed(self) -> Self {
+        Held {
+            horizontal_a: self.horizontal_b,
+            horizontal_b: self.horizontal_a,
+            vertical_a: -self.vertical_b,
+            vertical_b: -self.vertical_a,
+            ..self
+        }
+    }
+
     fn suspended(horizontal: f64, vertical_mean: f64, weight_half: f64, steps: usize) -> Self {
         Held {
             horizontal_a: horizontal,

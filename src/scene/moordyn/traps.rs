@@ -100,8 +100,8 @@ fn unneeded_options(deck: &Deck, findings: &mut Findings) {
 fn friction(deck: &Deck, findings: &mut Findings) {
     let mut coefficients = deck.options.friction.iter();
     if let Some((_, coefficient)) = coefficients.find(|(_, coefficient)| coefficient.value > 0.0) {
-        let text = "friction at rest: here every line lies as one that was laid from its end A and hauled at its end B, with all the friction that \
-                    holds against that, as in MAP++; a line at rest has none in MoorDyn";
+        let text = "friction at rest: here every line lies as one that was laid from its end A, or from end B where only that is on the seabed, and hauled at the \
+                    other end, with all the friction that holds against that, as in MAP++; a line at rest has none in MoorDyn";
         findings.remark(coefficient.span.start, text);
     }
     if let Some(damping) = &deck.options.friction_damping {

@@ -57,6 +57,6 @@ pub(super) fn friction_in_words(bed: &Seabed) -> String {
         )
     };
     format!(
-        "{coefficients}, which sticks and slides; at the start every line lies as one laid from its end A without tension and hauled at its end B"
+        "{coefficients}, which sticks and slides; at the start every line lies as one laid without tension from its end A, or from end B where only that is on the seabed, and hauled at the other end"
     )
 }

@@ -1,7 +1,7 @@
 //! Equilibrium with the friction of the bed.
 //!
 //! How far friction holds a line depends on how it came to lie. As the closed-form catenary does, this takes every line as laid from end A without tension and hauled at
-//! end B: the network first finds its equilibrium without friction; there every node gets an anchor, where it would lie if the line
+//! end B, or from B where only that lies on the bed: the network first finds its equilibrium without friction; there every node gets an anchor, where it would lie if the line
 //! lay on the same path without stretch,
 //!
 //!   a_0 = r_0,   a_{i+1} = a_i + min(l_i, |r_{i+1} − r_i|) q_i,
@@ -19,7 +19,8 @@
 //! Tresca's friction, Wriggers (2006), Computational Contact Mechanics, 2nd ed., chapter 5.
 
 use super::{Problem, StaticCase};
-use crate::model::State;
+use crate::model::{LineState, State};
+use crate::physics::catenary::is_laid_from_b;
 use crate::statics::StaticsError;
 use crate::statics::assembly::{Workspace, copy_network, for_free_points, rubbing};
 
@@ -84,22 +85,28 @@ impl Problem<'_> {
         settled
     }
 
-    /// Anchors of lines laid from end A on the path they lie on.
+    /// Anchors of lines laid on the path they lie on.
     fn lay(&self, state: &mut State) {
         for &index in &self.network.lines {
             let line = &self.model.lines[index];
-            if line.friction().is_none() {
+            let Some((_, bottom)) = line.friction().and(line.bottom()) else {
                 continue;
-            }
-            let shape = &mut state.lines[index];
-            shape.anchor.clear();
-            let mut place = shape.position[0];
-            shape.anchor.push(place);
-            for (pair, length) in shape.position.windows(2).zip(&line.segments.length) {
-                let step = pair[1] - pair[0];
-                let stretched = step.norm();
-                place += step * (length / stretched).min(1.0);
-                shape.anchor.push(place);
+            };
+            let LineState {
+                position, anchor, ..
+            } = &mut state.lines[index];
+            let last = position.len() - 1;
+            let heights = [0, last].map(|end| -bottom.touch(position[end], 0.0).penetration);
+            let from_b = is_laid_from_b(heights, line.unstretched_length());
+            anchor.clone_from(position);
+            for k in 0..last {
+                let (segment, from, to) = match from_b {
+                    true => (last - 1 - k, last - k, last - 1 - k),
+                    false => (k, k, k + 1),
+                };
+                let step = position[to] - position[from];
+                let part = line.segments.length[segment] / step.norm();
+                anchor[to] = anchor[from] + step * part.min(1.0);
             }
         }
         for_free_points(self.model, self.network, |index, free| {
