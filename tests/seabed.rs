@@ -426,7 +426,6 @@ fn floating(friction: f64) -> Scene {
 }
 
 #[test]
-#[ignore = "the search for the equilibrium of this floating rope in a current fails, with friction and without"]
 fn friction_of_next_to_nothing_leaves_a_line_where_it_rests_without() {
     let rest = |friction: f64| Simulation::new(&floating(friction)).unwrap();
     let [without, with] = [0.0, 1e-13].map(rest);

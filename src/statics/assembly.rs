@@ -144,6 +144,8 @@ pub(crate) struct StaticCase {
     pub keeps_pressure: bool,
     /// Least radius with which lines pierce the water's surface [m].
     pub breadth: f64,
+    /// Whether no correction turns a segment by more than is sensible, however many corrections that takes.
+    pub cautious: bool,
     /// Tension of a segment that is shortened to nothing; none where slack segments are to pull at nothing [N].
     pub slack: f64,
 }
@@ -163,6 +165,7 @@ impl StaticCase {
             limit: rubbing::AT_REST,
             keeps_pressure: false,
             breadth: 0.0,
+            cautious: false,
             slack: 0.0,
         }
     }

@@ -46,6 +46,8 @@ const STEP_TOLERANCE: f64 = 1e-12;
 const STEP_MAX: f64 = 0.2;
 /// Solves of one Newton iteration with predicted tensions.
 const NEWTON_SOLVES_MAX: usize = 40;
+/// The same where no segment may turn by much at once.
+const CAUTIOUS_SOLVES_MAX: usize = 200;
 /// Solves of one minimisation.
 const DESCENT_SOLVES_MAX: usize = 200;
 /// Linear solves of one search times the nodes of the network: some ten seconds [-].
@@ -361,11 +363,15 @@ impl<'a> Problem<'a> {
             let found = if slackens {
                 self.slacken(state, work)
             } else {
-                self.stiffen_gradually(state, work)
+                self.stiffen_gradually(state, work, self.case(f64::INFINITY))
             };
             if found && self.strain_over_limit(state).0 <= 1.0 {
                 return Ok(());
             }
+        }
+        self.restart(guess, state, work);
+        if self.thin_gradually(state, work) && self.strain_over_limit(state).0 <= 1.0 {
+            return Ok(());
         }
         Err(self.not_converged(state, work, start))
     }
@@ -408,10 +414,10 @@ impl<'a> Problem<'a> {
         let mut relaxation: f64 = 1.0;
         let mut step = f64::INFINITY;
         let (mut balanced, mut refused) = (0, 0);
-        let solves_max = if self.bends {
-            bending::NEWTON_SOLVES_MAX
-        } else {
-            NEWTON_SOLVES_MAX
+        let solves_max = match (self.bends, case.cautious) {
+            (true, _) => bending::NEWTON_SOLVES_MAX,
+            (_, true) => CAUTIOUS_SOLVES_MAX,
+            _ => NEWTON_SOLVES_MAX,
         };
         for _ in 0..solves_max {
             case.tension_min = relaxation * self.force;
@@ -443,7 +449,7 @@ impl<'a> Problem<'a> {
                 return false;
             }
             let mut part = (STEP_MAX * self.reach(state) / step).min(1.0);
-            if self.bends {
+            if self.bends || case.cautious {
                 part = part.min(self.turning_part(state, work));
             }
             work.predict_tensions(self.model, self.network, part);
@@ -575,9 +581,8 @@ impl<'a> Problem<'a> {
         place_ends(self.model, self.network, state);
     }
 
-    /// From a soft network, whose energy is minimised, to the full case.
-    fn stiffen_gradually(&self, state: &mut State, work: &mut Workspace) -> bool {
-        let full = self.case(f64::INFINITY);
+    /// From a soft network, whose energy is minimised, to that of the `full` case.
+    fn stiffen_gradually(&self, state: &mut State, work: &mut Workspace, full: StaticCase) -> bool {
         let mut stiffness = SOFT_STIFFNESS * self.force;
         let lines = self
             .network

@@ -75,6 +75,29 @@ impl Problem<'_> {
         balanced
     }
 
+    /// From a soft network with a broad water surface, whose energy is minimised, to lines that become thinner and thinner; whether it came to what they are.
+    /// Where the end of a floating line is free and weighs next to nothing, no m leaves its last segment a direction, and this finds the equilibrium.
+    pub(super) fn thin_gradually(&self, state: &mut State, work: &mut Workspace) -> bool {
+        let lines = self.network.lines.iter();
+        let surfaces = lines.filter_map(|&line| self.model.lines[line].surface.as_ref());
+        let radii = surfaces.flat_map(|surface| surface.radius.iter().copied());
+        let thinnest = radii.fold(f64::INFINITY, f64::min);
+        if !thinnest.is_finite() {
+            return false;
+        }
+        let first = (thinnest / (BREADTH * self.length)).min(1.0);
+        let case = |part: f64| StaticCase {
+            breadth: thinnest / part,
+            ..self.case(f64::INFINITY)
+        };
+        let wide = StaticCase {
+            cautious: true,
+            ..case(first)
+        };
+        self.stiffen_gradually(state, work, wide)
+            && self.raise(state, work, [first, 1.0 / FALL], case)
+    }
+
     /// The case with this m, over the sum of the loads [-].
     fn taut(&self, part: f64) -> StaticCase {
         StaticCase {
