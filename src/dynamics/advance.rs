@@ -154,11 +154,7 @@ impl Workspace {
         let time = state.time;
         drop_anchors(model, state);
         place_held(model, state, held);
-        let mut hands = Hands {
-            crew: &mut self.crew,
-            threads: 1,
-        };
-        self.sea.start(model, state, &mut hands);
+        self.sea.start(model, state);
         for (number, (_, solver)) in self.networks.iter().enumerate() {
             if matches!(solver, Solver::Implicit(_)) {
                 let network = &model.networks[number];
@@ -200,7 +196,7 @@ impl Workspace {
             let renewed = self.renew_waves(model, waves, state, length);
             let done = self.pass(model, state, length, held);
             if done.is_err() && renewed {
-                self.sea.undo(state);
+                self.sea.undo(model, state);
             }
             return done;
         }
@@ -265,7 +261,7 @@ impl Workspace {
             crew: &mut self.crew,
             threads: turn.threads,
         };
-        let renewed = self.sea.renew(model, waves, state, step, &mut hands);
+        let renewed = self.sea.renew((model, waves), state, step, &mut hands);
         if renewed {
             pace.note(turn, 1.0);
         }

@@ -312,8 +312,8 @@ impl AxialWork {
     }
 
     /// Takes over what waves do at the nodes of this line, by its number, over a span of time.
-    pub fn load_waves(&mut self, span: Option<&WaveSpan>, line: usize) {
-        self.layout.load_waves(span, line);
+    pub fn load_waves(&mut self, span: &WaveSpan) {
+        self.layout.load_waves(span);
     }
 
     /// Meets the water's surface as it is at t_n. Where that is `after` a step, what joined with the water in it is booked.

@@ -368,8 +368,13 @@ impl LineWork {
     }
 
     /// Takes over what waves do at the nodes of this line, by its number, over a span of time.
-    pub fn load_waves(&mut self, span: Option<&WaveSpan>, line: usize) {
-        self.layout.load_waves(span, line);
+    pub fn load_waves(&mut self, span: &WaveSpan) {
+        self.layout.load_waves(span);
+    }
+
+    /// Whether it holds another span of time than this.
+    pub fn lacks_waves(&self, span: &WaveSpan) -> bool {
+        self.layout.lacks_waves(span)
     }
 
     /// Sets what multiplies the current at t_n [-].

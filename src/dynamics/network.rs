@@ -8,7 +8,8 @@ use super::ledger::Flow;
 use super::motion::AxisPath;
 use super::step::Step;
 use crate::model::{
-    End, FreePoint, Kinematics, Model, Network, PointAtHeight, PointState, Role, State,
+    End, FreePoint, Kinematics, Model, Network, PointAtHeight, PointState, Role, State, WaveSpan,
+    WaveSpans,
 };
 use crate::physics::airy::Orbit;
 use crate::physics::friction::{Axes, Friction};
@@ -24,9 +25,8 @@ pub struct NetworkWork {
     points: Vec<PointState>,
     /// Lines, by their place in the network, and ends at the free points.
     attached: Vec<Vec<(usize, End)>>,
-    /// What waves do at the free points at both ends of a span of time [s], where there are waves.
-    waves: Vec<[Orbit; 2]>,
-    times: [f64; 2],
+    /// What waves do at the free points, where there are waves.
+    waves: Vec<WaveSpan>,
     /// Springs of the bed under the point that is stepped.
     springs: Vec<Spring>,
     /// Energy given to and lost by the free points since the state was loaded [J].
@@ -141,7 +141,6 @@ impl NetworkWork {
                 .collect(),
             points,
             waves: Vec::with_capacity(network.free_points.len()),
-            times: [0.0; 2],
             springs: Vec::with_capacity(springs.unwrap_or(0)),
             point_flow: Flow::default(),
             drag_rate: None,
@@ -174,26 +173,31 @@ impl NetworkWork {
         for (work, &line) in self.lines.iter_mut().zip(&network.lines) {
             work.resume(&state.lines[line]);
         }
-        if state
-            .waves
-            .as_ref()
-            .is_some_and(|span| span.times != self.times)
-        {
-            self.load_waves(network, state);
+        if let Some(waves) = &state.waves {
+            for (work, &line) in self.lines.iter_mut().zip(&network.lines) {
+                let span = &waves.lines[line];
+                if work.lacks_waves(span) {
+                    work.load_waves(span);
+                }
+            }
+            self.load_point_waves(network, waves);
         }
         self.load_points(network, state);
     }
 
     fn load_waves(&mut self, network: &Network, state: &State) {
+        let Some(waves) = &state.waves else { return };
         for (work, &line) in self.lines.iter_mut().zip(&network.lines) {
-            work.load_waves(state.waves.as_ref(), line);
+            work.load_waves(&waves.lines[line]);
         }
-        self.waves.clear();
-        if let Some(span) = &state.waves {
-            self.times = span.times;
-            let points = network.free_points.iter();
-            let ends = points.map(|&point| [0, 1].map(|end| span.ends[end].points[point]));
-            self.waves.extend(ends);
+        self.load_point_waves(network, waves);
+    }
+
+    fn load_point_waves(&mut self, network: &Network, waves: &WaveSpans) {
+        self.waves
+            .resize_with(network.free_points.len(), WaveSpan::default);
+        for (own, &point) in self.waves.iter_mut().zip(&network.free_points) {
+            own.clone_from(&waves.points[point]);
         }
     }
 
@@ -363,8 +367,7 @@ impl NetworkWork {
 
     /// Motion of the water by waves at a free point, by its place in the network, at `t` [s].
     fn waves_at(&self, free: usize, t: f64) -> Option<Orbit> {
-        let [before, after] = self.waves.get(free)?;
-        Some(Orbit::between(before, after, self.times, t))
+        self.waves.get(free).map(|waves| waves.at_point(t))
     }
 
     fn step_points(&mut self, model: &Model, network: &Network, t: f64, step: Step) {

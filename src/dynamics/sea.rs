@@ -1,15 +1,17 @@
 //! What waves do at the nodes: asked of the waves once for every span of time, at the places where the nodes will be at its end.
 //!
-//! A span is as long as cubics bridge it at the highest place that waves act on ([`Waves::interval_below`]), rounded down to whole communication steps; a longer communication step is cut
-//! into spans. Where a node will be is foretold from its velocity at the start of the span, r + τ v. What was found for the end of a span is
+//! Every line and every point has its own span: as long as cubics bridge it at its highest node ([`Waves::interval_below`]), rounded down to
+//! whole communication steps. So no line has a part in what waves do to another. A communication step that is longer than cubics bridge it at
+//! still water is cut into parts. Where a node will be is foretold from its velocity at the start of the span, r + τ v. What was found for the end of a span is
 //! the start of the next, so that velocity and acceleration of the water have no jump and no kink in time.
 
 use std::sync::Mutex;
 
+use nalgebra::Vector3;
 use pulp::{Arch, NullaryFnOnce};
 
 use super::crew::{Hands, Queue};
-use crate::model::{Line, LineState, Model, Point, State, WaveSpan, WavesAt};
+use crate::model::{Model, Point, State, WaveSpan, WaveSpans};
 use crate::physics::airy::{Instant, Orbit, Waves};
 
 /// Rounding of times, over a step [-].
@@ -23,8 +25,84 @@ pub struct SeaWork {
     instant: Instant,
     /// The same for the other threads.
     instants: Vec<Mutex<Instant>>,
-    /// The span before, or room for the next one.
-    spare: WaveSpan,
+    /// The spans that began last.
+    due: Vec<Due>,
+    /// What waves did at the start of the span before, or room for the end of the next, by line and then by point.
+    spare: Vec<Vec<Orbit>>,
+}
+
+/// A span that begins.
+#[derive(Debug)]
+struct Due {
+    place: Place,
+    /// Its length [s].
+    length: f64,
+    /// What waves do at its end.
+    nodes: Vec<Orbit>,
+    /// Times of the span before [s].
+    before: [f64; 2],
+}
+
+/// Where waves act, by its number.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Place {
+    Line(usize),
+    Point(usize),
+}
+
+impl Place {
+    /// All places of a model that waves act on.
+    fn of(model: &Model) -> impl Iterator<Item = Place> {
+        let lines = model.lines.iter().enumerate();
+        let lines = lines.filter(|(_, line)| line.heaves(model));
+        let points = model.points.iter().enumerate();
+        let points = points.filter(|(_, point)| heaves(point));
+        lines
+            .map(|(line, _)| Place::Line(line))
+            .chain(points.map(|(point, _)| Place::Point(point)))
+    }
+
+    /// Its number among the lines and, after them, the points.
+    fn slot(self, model: &Model) -> usize {
+        match self {
+            Place::Line(line) => line,
+            Place::Point(point) => model.lines.len() + point,
+        }
+    }
+
+    fn span(self, spans: &WaveSpans) -> &WaveSpan {
+        match self {
+            Place::Line(line) => &spans.lines[line],
+            Place::Point(point) => &spans.points[point],
+        }
+    }
+
+    fn span_mut(self, spans: &mut WaveSpans) -> &mut WaveSpan {
+        match self {
+            Place::Line(line) => &mut spans.lines[line],
+            Place::Point(point) => &mut spans.points[point],
+        }
+    }
+
+    /// Positions [m] and velocities [m/s] of its nodes.
+    fn nodes(self, state: &State) -> (&[Vector3<f64>], &[Vector3<f64>]) {
+        match self {
+            Place::Line(line) => (&state.lines[line].position, &state.lines[line].velocity),
+            Place::Point(point) => {
+                let at = &state.points[point];
+                (
+                    std::slice::from_ref(&at.position),
+                    std::slice::from_ref(&at.velocity),
+                )
+            }
+        }
+    }
+
+    /// Height of its highest node [m].
+    fn highest(self, state: &State) -> f64 {
+        let heights = self.nodes(state).0.iter().map(|position| position.z);
+        heights.fold(f64::NEG_INFINITY, f64::max)
+    }
 }
 
 impl Clone for SeaWork {
@@ -40,142 +118,144 @@ impl SeaWork {
             unit: Arch::new(),
             instant: Instant::default(),
             instants: Vec::new(),
-            spare: WaveSpan::default(),
+            due: Vec::new(),
+            spare: Vec::new(),
         }
     }
 
     /// Gives a state the waves of its time, or none.
-    pub fn start(&mut self, model: &Model, state: &mut State, hands: &mut Hands) {
+    pub fn start(&mut self, model: &Model, state: &mut State) {
         state.waves = model.waves.as_ref().map(|waves| {
-            let mut now = WavesAt::default();
-            self.sample((model, waves, &*state), 0.0, &mut now, hands);
-            WaveSpan {
-                times: [state.time; 2],
-                ends: [now.clone(), now],
+            let mut spans = WaveSpans::default();
+            spans
+                .lines
+                .resize_with(model.lines.len(), WaveSpan::default);
+            spans
+                .points
+                .resize_with(model.points.len(), WaveSpan::default);
+            for place in Place::of(model) {
+                let span = place.span_mut(&mut spans);
+                self.begin(waves, state, place, span);
             }
+            spans
         });
+    }
+
+    /// A span that is over as it begins.
+    fn begin(&mut self, waves: &Waves, state: &State, place: Place, span: &mut WaveSpan) {
+        let [first, last] = &mut span.ends;
+        let nodes = place.nodes(state);
+        sample(
+            waves,
+            (state.time, 0.0),
+            nodes,
+            first,
+            (self.unit, &mut self.instant),
+        );
+        last.clone_from(first);
+        span.times = [state.time; 2];
     }
 
     /// How far the next step goes [s] on the way over `length` [s]: not beyond the end of a span.
     pub fn reach(&self, model: &Model, waves: &Waves, state: &State, length: f64) -> f64 {
-        let left = left(state, length);
-        if left > 0.0 {
-            return if left > (1.0 - ROUNDING) * length {
-                length
-            } else {
-                left
-            };
+        let parts = length / waves.interval_below(f64::INFINITY) - ROUNDING;
+        let part = length / parts.ceil().max(1.0);
+        let left = Place::of(model).map(|place| left(place, state, length));
+        let left = left.filter(|left| *left > 0.0).fold(part, f64::min);
+        if left > (1.0 - ROUNDING) * length {
+            length
+        } else {
+            left
         }
-        let interval = waves.interval_below(highest(model, state));
-        length / (length / interval - ROUNDING).ceil().max(1.0)
     }
 
-    /// Begins a new span where the old one is over, for steps of `step` [s]; whether it did.
+    /// Begins new spans where old ones are over, for steps of `step` [s]; whether there were any.
     pub fn renew(
         &mut self,
-        model: &Model,
-        waves: &Waves,
+        (model, waves): (&Model, &Waves),
         state: &mut State,
         step: f64,
         hands: &mut Hands,
     ) -> bool {
-        if left(state, step) > 0.0 {
-            return false;
-        }
-        let mut next = std::mem::take(&mut self.spare);
-        let interval = waves.interval_below(highest(model, state));
-        let steps = (interval / step + ROUNDING).floor().max(1.0);
-        let span = steps * step;
-        next.times = [state.time, state.time + span];
-        let [first, last] = &mut next.ends;
-        match &state.waves {
-            Some(old) if (old.times[1] - state.time).abs() <= ROUNDING * step => {
-                first.clone_from(&old.ends[1]);
+        self.due.clear();
+        self.spare
+            .resize_with(model.lines.len() + model.points.len(), Vec::new);
+        for place in Place::of(model) {
+            if left(place, state, step) > 0.0 {
+                continue;
             }
-            _ => self.sample((model, waves, &*state), 0.0, first, hands),
+            let interval = waves.interval_below(place.highest(state));
+            let steps = (interval / step + ROUNDING).floor().max(1.0);
+            self.due.push(Due {
+                place,
+                length: steps * step,
+                nodes: std::mem::take(&mut self.spare[place.slot(model)]),
+                before: [0.0; 2],
+            });
         }
-        self.sample((model, waves, &*state), span, last, hands);
-        self.spare = state.waves.replace(next).unwrap_or_default();
-        true
+        self.sample_due(waves, state, hands);
+        let Some(mut spans) = state.waves.take() else {
+            return false;
+        };
+        for k in 0..self.due.len() {
+            let place = self.due[k].place;
+            let span = place.span_mut(&mut spans);
+            if (span.times[1] - state.time).abs() > ROUNDING * step {
+                self.begin(waves, state, place, span);
+            }
+            let due = &mut self.due[k];
+            due.before = span.times;
+            span.times = [state.time, state.time + due.length];
+            span.ends.swap(0, 1);
+            std::mem::swap(&mut span.ends[1], &mut due.nodes);
+            self.spare[place.slot(model)] = std::mem::take(&mut due.nodes);
+        }
+        state.waves = Some(spans);
+        !self.due.is_empty()
     }
 
-    /// Puts back the span before.
-    pub fn undo(&mut self, state: &mut State) {
-        if let Some(waves) = &mut state.waves {
-            std::mem::swap(waves, &mut self.spare);
+    /// Puts back the spans before those that began last.
+    pub fn undo(&mut self, model: &Model, state: &mut State) {
+        let Some(spans) = &mut state.waves else {
+            return;
+        };
+        for due in self.due.drain(..) {
+            let span = due.place.span_mut(spans);
+            std::mem::swap(&mut span.ends[1], &mut self.spare[due.place.slot(model)]);
+            span.ends.swap(0, 1);
+            span.times = due.before;
         }
     }
 
-    /// Motion of the water where nodes and points will be after `ahead` [s].
-    fn sample(
-        &mut self,
-        (model, waves, state): (&Model, &Waves, &State),
-        ahead: f64,
-        found: &mut WavesAt,
-        hands: &mut Hands,
-    ) {
-        let (unit, time) = (self.unit, state.time + ahead);
-        waves.turn_to(time, &mut self.instant);
-        let instant = &mut self.instant;
-        found.points.clear();
-        for (point, at) in model.points.iter().zip(&state.points) {
-            let place = heaves(point).then_some(at.position + ahead * at.velocity);
-            let orbit = place.map(|place| waves.orbit(place, instant));
-            found.points.push(orbit.unwrap_or_default());
-        }
-        found.lines.resize_with(model.lines.len(), Vec::new);
-        let ask =
-            |instant: &mut Instant, line: &Line, shape: &LineState, nodes: &mut Vec<Orbit>| {
-                nodes.clear();
-                if line.heaves(model) {
-                    nodes.resize(shape.position.len(), Orbit::default());
-                    unit.dispatch(Sampling {
-                        waves,
-                        shape,
-                        ahead,
-                        nodes,
-                        instant,
-                    });
-                }
-            };
-        let lines = model.lines.iter().zip(&state.lines);
+    /// Asks the waves what they do at the ends of the spans that begin.
+    fn sample_due(&mut self, waves: &Waves, state: &State, hands: &mut Hands) {
+        // those that end together follow each other: the waves are turned to their time once
+        let by_length = |a: &Due, b: &Due| a.length.total_cmp(&b.length);
+        self.due.sort_unstable_by(by_length);
+        let unit = self.unit;
+        let ask = |due: &mut Due, instant: &mut Instant| {
+            let (times, nodes) = ((state.time, due.length), due.place.nodes(state));
+            sample(waves, times, nodes, &mut due.nodes, (unit, instant));
+        };
         if hands.threads == 1 {
-            let all = lines.zip(&mut found.lines);
-            all.for_each(|((line, shape), nodes)| ask(instant, line, shape, nodes));
+            let instant = &mut self.instant;
+            self.due.iter_mut().for_each(|due| ask(due, instant));
             return;
         }
-        let size = model.lines.len().div_ceil(hands.threads);
-        let parts = found.lines.chunks_mut(size).enumerate();
-        let queue = Queue::new(parts.map(|(part, nodes)| {
-            let lines = part * size..(part * size + nodes.len());
-            lines.zip(nodes)
-        }));
+        let size = self.due.len().div_ceil(hands.threads).max(1);
+        let queue = Queue::new(self.due.chunks_mut(size).map(<[Due]>::iter_mut));
         let work = |own: usize, instant: &mut Instant| {
-            while let Some((line, nodes)) = queue.take(own) {
-                ask(instant, &model.lines[line], &state.lines[line], nodes);
+            while let Some(due) = queue.take(own) {
+                ask(due, instant);
             }
         };
         while self.instants.len() + 1 < hands.threads {
             self.instants.push(Mutex::default());
         }
-        let help = |number: usize, instant: &mut Instant| {
-            waves.turn_to(time, instant);
-            work(number + 1, instant);
-        };
+        let help = |number: usize, instant: &mut Instant| work(number + 1, instant);
         let helpers = &self.instants[..hands.threads - 1];
+        let instant = &mut self.instant;
         hands.crew.run(helpers, help, || work(0, instant));
-    }
-}
-
-/// Time to the end of the span that a state is in [s]; 0 where it is over, or has not begun.
-fn left(state: &State, step: f64) -> f64 {
-    let rounding = ROUNDING * step;
-    match &state.waves {
-        Some(span) if state.time >= span.times[0] - rounding => {
-            let left = span.times[1] - state.time;
-            if left > rounding { left } else { 0.0 }
-        }
-        _ => 0.0,
     }
 }
 
@@ -184,24 +264,47 @@ fn heaves(point: &Point) -> bool {
     point.body().is_some_and(|body| body.sphere.is_some())
 }
 
-/// Height of the highest place that waves act on [m].
-fn highest(model: &Model, state: &State) -> f64 {
-    let lines = model.lines.iter().zip(&state.lines);
-    let nodes = lines
-        .filter(|(line, _)| line.heaves(model))
-        .flat_map(|(_, shape)| &shape.position);
-    let points = model.points.iter().zip(&state.points);
-    let points = points
-        .filter(|(point, _)| heaves(point))
-        .map(|(_, at)| &at.position);
-    let heights = nodes.chain(points).map(|place| place.z);
-    heights.fold(f64::NEG_INFINITY, f64::max)
+/// Motion of the water where nodes, from their positions [m] and velocities [m/s] at a time [s], will be some time [s] later.
+fn sample(
+    waves: &Waves,
+    (time, ahead): (f64, f64),
+    (position, velocity): (&[Vector3<f64>], &[Vector3<f64>]),
+    found: &mut Vec<Orbit>,
+    (unit, instant): (Arch, &mut Instant),
+) {
+    waves.turn_to(time + ahead, instant);
+    found.clear();
+    found.resize(position.len(), Orbit::default());
+    unit.dispatch(Sampling {
+        waves,
+        position,
+        velocity,
+        ahead,
+        nodes: found,
+        instant,
+    });
+}
+
+/// Time to the end of the span that a place is in [s]; 0 where it is over, or has not begun.
+fn left(place: Place, state: &State, step: f64) -> f64 {
+    let rounding = ROUNDING * step;
+    let span = state.waves.as_ref().map(|spans| place.span(spans));
+    match span {
+        Some(span) if state.time >= span.times[0] - rounding => {
+            let left = span.times[1] - state.time;
+            if left > rounding { left } else { 0.0 }
+        }
+        _ => 0.0,
+    }
 }
 
 /// What waves do along a line, for the vector unit of the machine.
 struct Sampling<'a> {
     waves: &'a Waves,
-    shape: &'a LineState,
+    /// [m]
+    position: &'a [Vector3<f64>],
+    /// [m/s]
+    velocity: &'a [Vector3<f64>],
     /// [s]
     ahead: f64,
     nodes: &'a mut [Orbit],
@@ -215,7 +318,7 @@ impl NullaryFnOnce for Sampling<'_> {
     fn call(self) {
         // a closure would not be compiled for the vector unit
         for (i, orbit) in self.nodes.iter_mut().enumerate() {
-            let place = self.shape.position[i] + self.ahead * self.shape.velocity[i];
+            let place = self.position[i] + self.ahead * self.velocity[i];
             *orbit = self.waves.orbit(place, self.instant);
         }
     }

@@ -36,7 +36,7 @@ pub use bottom::Bottom;
 pub use build::line_shares;
 pub use motion::{Derivatives, Kinematics, Motion, Pose};
 pub use moving::Moving;
-pub use sea::{WaterAlong, WaveSpan, WavesAlong, WavesAt};
+pub use sea::{WaterAlong, WaveSpan, WaveSpans, WavesAlong};
 pub use state::{ClosedForm, LineState, PointState, Reel, State};
 pub use surface::{Dry, Surface};
 pub use vessel::{Frame, Vessel};

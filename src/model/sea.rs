@@ -1,7 +1,7 @@
 //! The water around lines and points at a time: the current by its profile, the waves by what they do at the nodes.
 //!
 //! What waves do at the nodes is known at both ends of a span of time, at the places where the nodes were then foretold to be, and follows
-//! cubics in between ([`Orbit::between`]). It is part of the state: a state that is put back goes on to the last bit.
+//! cubics in between ([`Orbit::between`]). Every line and every point has a span of its own. It is part of the state: a state that is put back goes on to the last bit.
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -10,27 +10,27 @@ use super::{Model, State};
 use crate::physics::airy::Orbit;
 use crate::physics::flow::Stream;
 
+/// Motion of the water by waves.
+#[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct WaveSpans {
+    /// At the nodes of every line, in the order of the model.
+    pub lines: Vec<WaveSpan>,
+    /// At every point, in the order of the model.
+    pub points: Vec<WaveSpan>,
+}
+
 /// Motion of the water by waves over a span of time.
 #[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct WaveSpan {
     /// Start and end [s].
     pub times: [f64; 2],
-    /// At both times.
-    pub ends: [WavesAt; 2],
+    /// At both times, by node; empty where waves do nothing.
+    pub ends: [Vec<Orbit>; 2],
 }
 
-/// Motion of the water by waves at one time.
-#[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct WavesAt {
-    /// At the nodes of every line, in the order of the model; empty for lines that waves do nothing to.
-    pub lines: Vec<Vec<Orbit>>,
-    /// At every point, in the order of the model; only free points in the water need it.
-    pub points: Vec<Orbit>,
-}
-
-impl Clone for WavesAt {
+impl Clone for WaveSpans {
     fn clone(&self) -> Self {
-        WavesAt {
+        WaveSpans {
             lines: self.lines.clone(),
             points: self.points.clone(),
         }
@@ -57,10 +57,9 @@ impl Clone for WaveSpan {
 }
 
 impl WaveSpan {
-    /// Motion at the nodes of a line at time `t` [s]; `None` where waves do nothing to the line.
-    pub fn along(&self, line: usize, t: f64) -> Option<WavesAlong<'_>> {
+    /// Motion at the nodes at time `t` [s]; `None` where waves do nothing.
+    pub fn at(&self, t: f64) -> Option<WavesAlong<'_>> {
         let [before, after] = &self.ends;
-        let (before, after) = (before.lines.get(line)?, after.lines.get(line)?);
         (!before.is_empty()).then_some(WavesAlong {
             ends: [before, after],
             times: self.times,
@@ -68,10 +67,10 @@ impl WaveSpan {
         })
     }
 
-    /// Motion at a point at time `t` [s].
-    pub fn at_point(&self, point: usize, t: f64) -> Orbit {
-        let [before, after] = &self.ends;
-        Orbit::between(&before.points[point], &after.points[point], self.times, t)
+    /// Motion at a point, of one node, at time `t` [s].
+    pub fn at_point(&self, t: f64) -> Orbit {
+        let waves = self.at(t);
+        waves.map_or_else(Orbit::default, |waves| waves.at(0))
     }
 }
 
@@ -139,7 +138,10 @@ impl Model {
     pub fn water_along<'a>(&'a self, state: &'a State, line: usize, t: f64) -> WaterAlong<'a> {
         WaterAlong {
             stream: self.stream(t),
-            waves: state.waves.as_ref().and_then(|waves| waves.along(line, t)),
+            waves: state
+                .waves
+                .as_ref()
+                .and_then(|waves| waves.lines[line].at(t)),
         }
     }
 }
@@ -147,6 +149,7 @@ impl Model {
 impl State {
     /// Motion of the water by waves at a free point at time `t` [s], where there are waves.
     pub fn waves_at_point(&self, point: usize, t: f64) -> Option<Orbit> {
-        self.waves.as_ref().map(|waves| waves.at_point(point, t))
+        let waves = self.waves.as_ref();
+        waves.map(|waves| waves.points[point].at_point(t))
     }
 }

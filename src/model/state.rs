@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
 
-use super::{BeamState, Kinematics, Line, WaveSpan};
+use super::{BeamState, Kinematics, Line, WaveSpans};
 
 /// State of a whole model at one time.
 #[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -15,7 +15,7 @@ pub struct State {
     /// Lines, in the order of the model.
     pub lines: Vec<LineState>,
     /// What waves do at the nodes around this time, where there are waves.
-    pub waves: Option<WaveSpan>,
+    pub waves: Option<WaveSpans>,
 }
 
 /// State of a point.

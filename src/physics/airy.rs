@@ -153,9 +153,11 @@ impl Table {
     }
 }
 
-/// The waves at one time: what every place needs of it. Also the scratch of the places.
+/// Some waves at one time: what every place needs of it. Also the scratch of the places.
 #[derive(Debug, Clone, Default)]
 pub struct Instant {
+    /// The time, once there is one [s].
+    time: Option<f64>,
     /// −ωt + φ of the components, within a turn [rad].
     turn: Vec<f64>,
     /// Growth of the ramp [-], with its rate [1/s] and the rate of that [1/s²].
@@ -246,6 +248,9 @@ impl Waves {
 
     /// Turns the instant to a time [s].
     pub fn turn_to(&self, t: f64, instant: &mut Instant) {
+        if instant.time.replace(t) == Some(t) {
+            return;
+        }
         let size = self.table.amplitude.len();
         let turn = |c: &Component| (c.phase - c.frequency * t).rem_euclid(TAU);
         instant.turn.clear();

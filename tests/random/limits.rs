@@ -6,10 +6,10 @@
 //! forces at the ends of lines over the greatest of the run.
 //!
 //! A relation may fail only in a scene that is not smooth (`is_smooth`): where displacements of its points by [`NUDGE`] change the run by [`NUDGED_MAX`] or more, as in
-//! lines that snap, or where a segment at rest is slack, so that its place is not determined. Such scenes are counted, and may be a fifth of all at most. By design three laws
-//! depend on more than the scene's shape: friction at rest is that of a line laid from end A, so that lines are reversed without friction; the
-//! axial-implicit leapfrog follows curved springs to 1e-3 of the tension, so that its scenes have linear ones; and waves are sampled as often as the highest node requires,
-//! so that the far line lies low. Lines on winches are left out: the correction of their end forces is (`dynamics/reaction.rs`).
+//! lines that snap, or where a segment at rest is slack, so that its place is not determined. Such scenes are counted, and may be a fifth of all at most. By design
+//! the axial-implicit leapfrog follows curved springs to 1e-3 of the tension, so that its scenes have linear ones; and a line that lies with both ends, or with none, has the
+//! friction of one that was laid from end A, so that such lines are reversed without. Lines on winches are left out: the correction of their
+//! end forces is (`dynamics/reaction.rs`).
 
 use std::cell::RefCell;
 use std::f64::consts::PI;
@@ -17,6 +17,7 @@ use std::rc::Rc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use moorline::model::End;
+use moorline::physics::catenary::is_laid_from_b;
 use moorline::scene::{
     Current, Friction, HarmonicMotion, InitialShape, Integrator, Line, LineType, MotionPath, Point,
     PointForce, PointKind, RegularWave, Scene, Sea, Seabed, Section, SpectrumKind, Threads,
@@ -688,13 +689,33 @@ fn moved(base: &Base) -> Option<(Scene, Gap)> {
     images(base, &one, &other, [&move |r| r + by, &|f| f])
 }
 
+/// Whether friction holds every line as one that was laid from its end on the seabed, whatever that is called.
+fn is_laid_from_one_end(scene: &Scene) -> bool {
+    let Some(bed) = &scene.seabed else {
+        return true;
+    };
+    let position = |name: &String| {
+        let mut points = scene.points.iter();
+        let point = points.find(|point| point.name == *name).expect("a point");
+        point.position
+    };
+    scene.lines.iter().all(|line| {
+        let length: f64 = line.sections.iter().map(|section| section.length).sum();
+        let heights = [&line.from, &line.to].map(|name| {
+            let [x, y, z] = position(name);
+            z - surroundings::bed_height(bed, [x, y])
+        });
+        let [a, b] = heights;
+        is_laid_from_b([a, b], length) || is_laid_from_b([b, a], length)
+    })
+}
+
 fn reversed(base: &Base) -> Option<(Scene, Gap)> {
-    // friction at rest is that of a line laid from end A and hauled at end B
     let one = base.changed(|scene| {
-        scene
-            .seabed
-            .iter_mut()
-            .for_each(|bed| bed.friction = Friction::default());
+        if !is_laid_from_one_end(scene) {
+            let bed = scene.seabed.iter_mut();
+            bed.for_each(|bed| bed.friction = Friction::default());
+        }
     });
     let mut other = one.clone();
     for line in &mut other.lines {
@@ -768,7 +789,7 @@ fn beside_a_far_line(base: &Base) -> Option<(Scene, Gap)> {
             let floor = bed.map_or(-100.0, |bed| {
                 surroundings::bed_height(bed, [along * x, 0.0])
             });
-            [along * x, 0.0, floor]
+            [along * x, 0.0, floor.max(-1e-3 * x)]
         });
         scene
             .points

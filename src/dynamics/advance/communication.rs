@@ -285,8 +285,8 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
         } else {
             work.load(&self.state.lines[index]);
         }
-        if self.state.waves.is_some() {
-            work.load_waves(self.state.waves.as_ref(), index);
+        if let Some(waves) = &self.state.waves {
+            work.load_waves(&waves.lines[index]);
         }
         let ends = [End::A, End::B].into_iter();
         let ends = ends.zip(&self.model.lines[index].ends);

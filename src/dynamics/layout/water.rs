@@ -240,9 +240,15 @@ impl Layout {
         }
     }
 
-    /// Takes over what waves do at the nodes of line number `line` over a span of time.
-    pub fn load_waves(&mut self, span: Option<&WaveSpan>, line: usize) {
-        let (Some(waves), Some(span)) = (&mut self.waves, span) else {
+    /// Whether it holds another span of time than this.
+    pub fn lacks_waves(&self, span: &WaveSpan) -> bool {
+        let waves = self.waves.as_ref();
+        waves.is_some_and(|waves| waves.times != span.times)
+    }
+
+    /// Takes over what waves do at the nodes over a span of time.
+    pub fn load_waves(&mut self, span: &WaveSpan) {
+        let Some(waves) = &mut self.waves else {
             return;
         };
         waves.times = span.times;
@@ -250,10 +256,10 @@ impl Layout {
         waves.surface.clear();
         if self.surface.is_some() {
             let of = |orbit: &Orbit| [orbit.elevation, orbit.rise];
-            let nodes = before.lines[line].iter().zip(&after.lines[line]);
+            let nodes = before.iter().zip(after);
             waves.surface.extend(nodes.map(|(b, a)| [of(b), of(a)]));
         }
-        let nodes = before.lines[line].iter().zip(&after.lines[line]);
+        let nodes = before.iter().zip(after);
         for (at, (before, after)) in self.fold.slots().zip(nodes) {
             let [velocity, acceleration] = cubics(before, after, span.times);
             for power in 0..4 {
