@@ -57,7 +57,9 @@ pub(super) fn point(variables: &mut Vec<Variable>, point: usize, name: &str) {
     for (axis, label) in AXES.iter().enumerate() {
         variables.push(row(
             format!("{name}.f{label}"),
-            format!("force of all lines at {name} on what carries it, along global {label}"),
+            format!(
+                "force of all lines at {name}, and of its own mass and volume, on what carries it, along global {label}"
+            ),
             Causality::Output,
             Unit::NEWTON,
             Binding::EndForce { body, axis },
