@@ -40,6 +40,11 @@ duration = 10.0
 interval = 0.05
 """
 
+CLUMPED = CHAIN.replace('kind = "coupled"', 'kind = "coupled"\nmass = 500.0\nvolume = 0.2')
+
+SHORT_PROFILE = CHAIN.replace("density = 1025.0",
+                              "density = 1025.0\ncurrent = { profile = [[0.0, 0.5, 0.0], [-10.0, 0.2, 0.0]] }")
+
 CHAIN_PROFILE = CHAIN.replace("interval = 0.05", "interval = 0.05\nprofile = true")
 
 CURRENT = CHAIN.replace("density = 1025.0", "density = 1025.0\ncurrent = { velocity = [1.0, 0.5, 0.0] }")

@@ -89,6 +89,20 @@ def test_static_forces_agree_with_the_closed_form_catenary(slave):
     assert one.get("line1.tension_b") == pytest.approx(catenary["line1.catenary_tension_b"], rel=0.02)
 
 
+def test_the_weight_and_buoyancy_of_a_driven_point_are_in_its_force(slave):
+    bare, clumped = (slave(scene).initialize().outputs() for scene in ("CHAIN", "CLUMPED"))
+    own = clumped["fairlead.fz"] - bare["fairlead.fz"]
+    assert own == pytest.approx(-9.80665 * (500.0 - 1025.0 * 0.2), rel=1e-9)
+    assert clumped["line1.tension_b"] == bare["line1.tension_b"]
+
+
+def test_a_table_that_a_line_leaves_is_noted_once_in_the_log(slave):
+    one = slave("SHORT_PROFILE").initialize()
+    one.run(5)
+    notes = [text for _, _, text in one.messages if "water.current.profile" in text]
+    assert len(notes) == 1 and "below the lowest row at -10 m" in notes[0]
+
+
 def test_parameters_set_in_initialization_solve_the_statics_again(slave):
     one = slave()
     one.expect(one.set("line1.length", 840.0))
