@@ -2,8 +2,6 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use crate::physics::catenary::is_laid_from_b;
-
 use super::check::{number, quantity};
 use super::notes::{Note, chord, length, reference_position};
 use super::path::quoted;
@@ -40,6 +38,8 @@ const CHAIN: std::ops::Range<f64> = 2.7..4.0;
 const DRAG_ON_BAR: f64 = 1.8;
 /// Drag and added-mass coefficients [-]: 3.8 is measured in model chains.
 const COEFFICIENT_MAX: f64 = 5.0;
+/// Height of an end above the seabed, over the length of its line [-], up to which it is taken to lie on it.
+const ON_SEABED: f64 = 0.02;
 /// Distance of a fairlead from its vessel's origin [m]: the longest vessel is 488 m long.
 const FAIRLEAD_DISTANCE: f64 = 300.0;
 /// Height over length from which a wave breaks in deep water (Michell 1893) [-].
@@ -423,8 +423,9 @@ fn swapped_ends(scene: &Scene, notes: &mut Vec<Note>) {
         else {
             continue;
         };
-        let heights = [from, to].map(|[x, y, z]| z - seabed.lowest_at([x, y]));
-        let reversed = to[2] < from[2] && is_laid_from_b(heights, length(line));
+        let [height_a, height_b] = [from, to].map(|[x, y, z]| z - seabed.lowest_at([x, y]));
+        let on_seabed = ON_SEABED * length(line);
+        let reversed = to[2] < from[2] && height_b <= on_seabed && height_a > on_seabed;
         if b.kind == PointKind::Fixed && moves(a) && reversed {
             let text = format!(
                 "end B, {}, is on the seabed and end A, {}, is the one that moves: a line runs from its anchor to its fairlead, so that `tension_b` \
