@@ -75,9 +75,7 @@ fn advance(scene: &Scene, drive: Drive, step: f64) -> (f64, f64) {
     let (mut simulation, bodies) = warm(scene, drive, step);
     let start = simulation.snapshot().clone();
     let now = simulation.time();
-    let table: Vec<Said> = (0..STEPS)
-        .map(|k| said(drive, now + k as f64 * step))
-        .collect();
+    let table: Vec<Said> = (0..STEPS).map(|k| said(drive, now + k as f64 * step)).collect();
     let (mut best, mut substeps) = (f64::INFINITY, 0);
     for _ in 0..REPETITIONS {
         simulation.restore(start.clone());
@@ -147,10 +145,7 @@ fn semi(waves: bool) -> Scene {
 }
 
 fn main() {
-    let pick: Vec<String> = std::env::args()
-        .skip(1)
-        .filter(|a| !a.starts_with('-'))
-        .collect();
+    let pick: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with('-')).collect();
     let wanted = |part: &str| pick.is_empty() || pick.iter().any(|name| name == part);
     println!(
         "{:<16} {:>4} {:<14} {:>10} {:>12} {:>12}",

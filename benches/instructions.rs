@@ -107,11 +107,8 @@ fn write() -> ExitCode {
 }
 
 fn compare() -> ExitCode {
-    let Some(text) = common::table("instructions").and_then(|path| fs::read_to_string(path).ok())
-    else {
-        println!(
-            "no table of this processor: `cargo bench --bench instructions -- --write` makes one"
-        );
+    let Some(text) = common::table("instructions").and_then(|path| fs::read_to_string(path).ok()) else {
+        println!("no table of this processor: `cargo bench --bench instructions -- --write` makes one");
         return ExitCode::SUCCESS;
     };
     let Some(counts) = counts() else {

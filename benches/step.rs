@@ -22,12 +22,7 @@ use moorline::simulation::Simulation;
 use nalgebra::Vector3;
 use pulp::{Arch, NullaryFnOnce};
 
-const SCENES: [&str; 4] = [
-    "oc3_catenary",
-    "oc4_chain",
-    "taut_polyester",
-    "lindahl_fast",
-];
+const SCENES: [&str; 4] = ["oc3_catenary", "oc4_chain", "taut_polyester", "lindahl_fast"];
 const ELEMENTS: [usize; 6] = [10, 20, 28, 40, 80, 160];
 /// Elements of the axial-implicit kernel alone, and its steps in an advance.
 const ELEMENTS_AXIAL: [usize; 7] = [5, 10, 20, 40, 48, 80, 160];
@@ -115,8 +110,7 @@ fn divider(table: &mut String) {
         1e9 * best / (LANES * numbers.len()) as f64
     });
     println!("roots and quotients alone: {wide:.2} ns/node/step, portable {portable:.2}\n");
-    writeln!(table, "roots and quotients,,,,,{wide:.2},,{portable:.2}")
-        .expect("a String takes all");
+    writeln!(table, "roots and quotients,,,,,{wide:.2},,{portable:.2}").expect("a String takes all");
 }
 
 fn meshed(name: &str, integrator: Integrator, elements: usize) -> Scene {
@@ -178,15 +172,8 @@ fn kernels(table: &mut String) {
             let simulation = stepped(name, Integrator::Leapfrog, elements, ledger);
             let step = 0.05 / simulation.substeps() as f64;
             for lines in [1, LINES] {
-                let [wide, portable] = [false, true].map(|portable| {
-                    step_cost(
-                        simulation.model(),
-                        simulation.state(),
-                        step,
-                        lines,
-                        portable,
-                    )
-                });
+                let [wide, portable] = [false, true]
+                    .map(|portable| step_cost(simulation.model(), simulation.state(), step, lines, portable));
                 let what = (&*format!("explicit alone{booked}"), lines);
                 note_kernel(table, what, (name, elements, lines), [wide, portable]);
             }
@@ -203,13 +190,7 @@ fn axial_kernels(table: &mut String) {
             let step = 0.05 / simulation.substeps() as f64;
             for count in STEPS_AXIAL {
                 let costs = [false, true].map(|portable| {
-                    axial_cost(
-                        simulation.model(),
-                        simulation.state(),
-                        step,
-                        count,
-                        portable,
-                    )
+                    axial_cost(simulation.model(), simulation.state(), step, count, portable)
                 });
                 let what = format!("axial-implicit alone{booked}; {count} in an advance");
                 note_kernel(table, (&what, 1), (name, elements, count), costs);

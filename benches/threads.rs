@@ -48,23 +48,19 @@ fn farm(elements: usize, waves: bool) -> Scene {
                 vessel.position[0] += east;
                 vessel
             }));
-        scene
-            .points
-            .extend(one.points.iter().cloned().map(|mut point| {
-                point.name = named(&point.name);
-                if point.on.is_none() {
-                    point.position[0] += east;
-                }
-                point.on = point.on.as_deref().map(named);
-                point
-            }));
-        scene
-            .lines
-            .extend(one.lines.iter().cloned().map(|mut line| {
-                line.name = named(&line.name);
-                (line.from, line.to) = (named(&line.from), named(&line.to));
-                line
-            }));
+        scene.points.extend(one.points.iter().cloned().map(|mut point| {
+            point.name = named(&point.name);
+            if point.on.is_none() {
+                point.position[0] += east;
+            }
+            point.on = point.on.as_deref().map(named);
+            point
+        }));
+        scene.lines.extend(one.lines.iter().cloned().map(|mut line| {
+            line.name = named(&line.name);
+            (line.from, line.to) = (named(&line.from), named(&line.to));
+            line
+        }));
         let motion = one.motion.iter();
         scene
             .motion

@@ -162,13 +162,11 @@ fn main() {
         };
         (system.lower[0], system.upper[count - 1]) = (0.0, 0.0);
         let mut folded = Folded::new(&system);
-        let [widest, portable] = [Arch::new(), Arch::Scalar]
-            .map(|unit| time(|| unit.dispatch(Solve(black_box(&mut folded)))));
+        let [widest, portable] =
+            [Arch::new(), Arch::Scalar].map(|unit| time(|| unit.dispatch(Solve(black_box(&mut folded)))));
         let (mut pivot, mut x) = (vec![0.0; count], vec![0.0; count]);
         let from_one = time(|| thomas(black_box(&system), &mut pivot, black_box(&mut x)));
         let from_both = time(|| twisted(black_box(&system), &mut pivot, black_box(&mut x)));
-        println!(
-            "{count:>5} {widest:>7.0} ns {portable:>7.0} ns {from_one:>7.0} ns {from_both:>7.0} ns"
-        );
+        println!("{count:>5} {widest:>7.0} ns {portable:>7.0} ns {from_one:>7.0} ns {from_both:>7.0} ns");
     }
 }

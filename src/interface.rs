@@ -364,11 +364,7 @@ impl Interface {
     ///
     /// # Errors
     /// A line whose closed-form catenary does not exist.
-    pub fn read(
-        variable: &Variable,
-        simulation: &Simulation,
-        values: &mut [f64],
-    ) -> Result<(), String> {
+    pub fn read(variable: &Variable, simulation: &Simulation, values: &mut [f64]) -> Result<(), String> {
         assert_eq!(values.len(), variable.size(), "one place for each value");
         match variable.binding {
             Binding::EndForce { body, axis } => {
@@ -395,11 +391,9 @@ impl Interface {
                     SolverResult::InputError => simulation.input_error(),
                 }
             }
-            Binding::Profile {
-                line,
-                quantity,
-                node,
-            } => profile::read(simulation, line, quantity, node, values),
+            Binding::Profile { line, quantity, node } => {
+                profile::read(simulation, line, quantity, node, values)
+            }
             Binding::Displacement { .. } | Binding::Velocity { .. } | Binding::Parameter(_) => {
                 unreachable!("inputs and parameters are kept by the caller")
             }
@@ -416,10 +410,7 @@ fn line_result(simulation: &Simulation, line: usize, result: LineResult) -> Opti
         LineResult::TensionMax => Some(simulation.tension_max(line)),
         LineResult::LaidLength => Some(simulation.laid_length(line)),
         LineResult::Sag => Some(simulation.sag(line)),
-        LineResult::CurvatureMax
-        | LineResult::MomentMax
-        | LineResult::MomentA
-        | LineResult::MomentB => {
+        LineResult::CurvatureMax | LineResult::MomentMax | LineResult::MomentA | LineResult::MomentB => {
             let nodes = simulation.bending(line).unwrap_or_default();
             Some(bending_result(&nodes, result))
         }
@@ -448,9 +439,7 @@ fn check_name(name: &str, at: &str) -> Result<(), SceneError> {
     if name.is_empty() || name.trim() != name {
         return Err(SceneError::new(
             at,
-            format!(
-                "\"{name}\" cannot name a variable: it must not be empty nor begin or end with a space"
-            ),
+            format!("\"{name}\" cannot name a variable: it must not be empty nor begin or end with a space"),
         ));
     }
     if let Some(bad) = name
@@ -604,9 +593,7 @@ mod tests {
     fn only_lines_with_held_ends_have_a_closed_form_catenary() {
         let interface = interface(SCENE, Layout::Scalars);
         let has = |name: &str| interface.variables().iter().any(|v| v.name == name);
-        assert!(
-            has("span.catenary_sag") && !has("lower.catenary_sag") && !has("upper.catenary_sag")
-        );
+        assert!(has("span.catenary_sag") && !has("lower.catenary_sag") && !has("upper.catenary_sag"));
         assert!(!dependencies(&interface, "span.catenary_sag").contains(&"left.x".to_string()));
     }
 
@@ -649,18 +636,9 @@ mod tests {
     #[test]
     fn two_variables_of_one_name_are_a_clear_error() {
         let binding = Binding::Solver(SolverResult::Substeps);
-        let one = rows::row(
-            "a.b".into(),
-            String::new(),
-            Causality::Output,
-            Unit::ONE,
-            binding,
-        );
+        let one = rows::row("a.b".into(), String::new(), Causality::Output, Unit::ONE, binding);
         let error = check_unique(&[one.clone(), one]).unwrap_err();
-        assert!(
-            error.to_string().starts_with("a.b: two variables"),
-            "{error}"
-        );
+        assert!(error.to_string().starts_with("a.b: two variables"), "{error}");
     }
 
     #[test]

@@ -178,9 +178,7 @@ fn main() -> ExitCode {
             };
             cli::run::run(&scene, &host.into(), &moved.into(), &output, pace)
         }
-        Command::Convert { deck, output, host } => {
-            cli::convert::convert(&deck, &output, &host.into())
-        }
+        Command::Convert { deck, output, host } => cli::convert::convert(&deck, &output, &host.into()),
         Command::Fmu {
             scene,
             output,

@@ -152,20 +152,11 @@ impl Simulation {
         self.begin(start_time, follows_scene, start::Shapes::AsGiven)
     }
 
-    fn begin(
-        &mut self,
-        time: f64,
-        follows_scene: bool,
-        shapes: start::Shapes,
-    ) -> Result<(), Error> {
+    fn begin(&mut self, time: f64, follows_scene: bool, shapes: start::Shapes) -> Result<(), Error> {
         let inputs = self.snapshot.inputs.clone();
         self.scale.check_start(&self.model, &inputs)?;
         let mut model = self.model.clone();
-        winches::lay_out(
-            &mut model,
-            &inputs.length_changes,
-            follows_scene.then_some(time),
-        )?;
+        winches::lay_out(&mut model, &inputs.length_changes, follows_scene.then_some(time))?;
         (self.snapshot, self.work) = start::begin(&model, time, inputs, follows_scene, shapes)?;
         self.paths.clone_from(&self.snapshot.paths);
         self.model = model;
@@ -267,9 +258,7 @@ impl Simulation {
         let (snapshot, time) = (&self.snapshot, self.snapshot.state.time);
         match snapshot.follows_scene {
             true => Ok(()),
-            false => self
-                .scale
-                .check_step(&self.model, &snapshot.inputs, time, step),
+            false => self.scale.check_step(&self.model, &snapshot.inputs, time, step),
         }
     }
 
@@ -298,10 +287,7 @@ impl Simulation {
                 }
             }
         }
-        let (states, flow) = (
-            [&before.0, &self.snapshot.state],
-            &mut self.snapshot.ledger.flow,
-        );
+        let (states, flow) = ([&before.0, &self.snapshot.state], &mut self.snapshot.ledger.flow);
         for network in &model.networks {
             flow.given += ledger::joined_energy(model, network, states);
         }

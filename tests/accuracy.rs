@@ -5,9 +5,7 @@
 use std::path::Path;
 use std::sync::LazyLock;
 
-use moorline::accuracy::{
-    Code, LEVELS, Metric, PeerError, Peers, Study, StudyError, study, uncertainty,
-};
+use moorline::accuracy::{Code, LEVELS, Metric, PeerError, Peers, Study, StudyError, study, uncertainty};
 use moorline::output::accuracy::{summary, write_runs, write_verdicts};
 use moorline::output::figures::frontier;
 use moorline::scene::{Integrator, Scene};
@@ -71,11 +69,7 @@ fn a_study_of_a_rope_says_what_each_error_costs() {
     let study = studied();
     let rms = |run: &moorline::accuracy::Run| run.errors.of(Metric::Rms);
     let leapfrog = |code: &Code| *code == Code::Own(Integrator::Leapfrog);
-    let runs: Vec<_> = study
-        .runs
-        .iter()
-        .filter(|run| leapfrog(&run.code))
-        .collect();
+    let runs: Vec<_> = study.runs.iter().filter(|run| leapfrog(&run.code)).collect();
     assert!(runs.len() >= 30);
     // The ladder goes from coarse to fine: second order over a factor of 80 in the mesh. From 30 elements on, driven by a host at points
     // in time, the tension stays 5.4e-4 beside the converged solution, which follows the motion exactly.
@@ -93,11 +87,7 @@ fn a_study_of_a_rope_says_what_each_error_costs() {
         let best = study.cheapest(metric, 0.05, Code::is_own).unwrap();
         assert!(best.errors.of(metric) <= 0.05);
         let cheaper = study.runs.iter().filter(|run| run.cost < best.cost);
-        assert!(
-            cheaper
-                .map(|run| run.errors.of(metric))
-                .all(|error| error > 0.05)
-        );
+        assert!(cheaper.map(|run| run.errors.of(metric)).all(|error| error > 0.05));
     }
     assert!(
         study

@@ -78,13 +78,7 @@ fn string_mode(n: usize, k: usize, a: Vector3<f64>) -> Vec<Vector3<f64>> {
 }
 
 /// Frequency [rad/s] at which mode k, released with amplitude `a` [m], oscillates in steps of `step` [s].
-fn released_frequency(
-    integrator: Integrator,
-    n: usize,
-    k: usize,
-    a: Vector3<f64>,
-    step: f64,
-) -> f64 {
+fn released_frequency(integrator: Integrator, n: usize, k: usize, a: Vector3<f64>, step: f64) -> f64 {
     let scene = with_integrator(taut_string(n), integrator, step);
     let mut scene = released_from(scene, &string_mode(n, k, a));
     if integrator != Integrator::Leapfrog {
@@ -120,11 +114,7 @@ fn the_leapfrog_oscillates_at_its_own_frequency() {
             max_relative = 1e-7
         );
         let found = released_frequency(Integrator::Leapfrog, 20, k, 1e-3 * Vector3::x(), 1e-3);
-        assert_relative_eq!(
-            found,
-            leapfrog(lumped_axial(20, k), 1e-3),
-            max_relative = 1e-7
-        );
+        assert_relative_eq!(found, leapfrog(lumped_axial(20, k), 1e-3), max_relative = 1e-7);
     }
 }
 
@@ -248,8 +238,7 @@ fn a_bar_under_a_sudden_load_moves_as_the_sum_of_its_modes() {
         let mode = |k: usize| {
             let omega = lumped_bar(n, k);
             let stepped = 2.0 * (0.5 * omega * step).asin();
-            2.0 / (BAR_MASS * BAR_LENGTH) * BAR_LOAD / (omega * omega)
-                * (1.0 - (stepped * j as f64).cos())
+            2.0 / (BAR_MASS * BAR_LENGTH) * BAR_LOAD / (omega * omega) * (1.0 - (stepped * j as f64).cos())
         };
         let exact: f64 = (1..=n).map(mode).sum();
         assert_relative_eq!(*found, exact, epsilon = 1e-10);
@@ -324,8 +313,7 @@ fn sizes() -> [f64; 4] {
 #[test]
 fn a_hanging_chain_has_frequencies_by_the_zeros_of_j0() {
     // ω = ½ j0k √(g/L)
-    let found = RESOLUTIONS
-        .map(|n| modes(&Simulation::new(&hanging_chain(2 * n, 0.0)).unwrap()).frequencies);
+    let found = RESOLUTIONS.map(|n| modes(&Simulation::new(&hanging_chain(2 * n, 0.0)).unwrap()).frequencies);
     for k in 1..=3 {
         let exact = 0.5 * bessel_zero(k) * (9.80665_f64 / 10.0).sqrt();
         let errors: Vec<f64> = found
@@ -360,8 +348,8 @@ fn a_hanging_chain_with_a_mass_at_its_end_has_frequencies_by_j0_and_y0() {
     ];
     for (ratio, exact) in exact {
         let tip_mass = ratio * 2.0 * 10.0;
-        let found = RESOLUTIONS
-            .map(|n| modes(&Simulation::new(&hanging_chain(n, tip_mass)).unwrap()).frequencies);
+        let found =
+            RESOLUTIONS.map(|n| modes(&Simulation::new(&hanging_chain(n, tip_mass)).unwrap()).frequencies);
         for (k, exact) in exact {
             let errors: Vec<f64> = found
                 .iter()
@@ -471,10 +459,7 @@ fn a_sagged_cable_has_the_frequencies_of_its_elastic_catenary() {
         let exact = [&cable.in_plane[..], &cable.out_of_plane[..]];
         for (plane, exact) in exact.into_iter().enumerate() {
             for (k, exact) in exact.iter().enumerate() {
-                let errors: Vec<f64> = found
-                    .iter()
-                    .map(|modes| modes[plane][k] / exact - 1.0)
-                    .collect();
+                let errors: Vec<f64> = found.iter().map(|modes| modes[plane][k] / exact - 1.0).collect();
                 assert_order(2.0, &sizes(), &errors);
             }
         }
@@ -568,17 +553,9 @@ fn a_pendulum_swings_with_the_period_of_the_elliptic_integral() {
         }
         let crossings = zero_crossings(&sway, 2e-3);
         let period = 2.0 * PI * (10.0_f64 / 9.80665).sqrt() / agm(1.0, (0.5 * angle).cos());
-        assert_relative_eq!(
-            2.0 * (crossings[1] - crossings[0]),
-            period,
-            max_relative = 5e-6
-        );
+        assert_relative_eq!(2.0 * (crossings[1] - crossings[0]), period, max_relative = 5e-6);
         assert_relative_eq!(4.0 * crossings[0], period, max_relative = 1e-5);
-        assert_relative_eq!(
-            tension,
-            9.80665 * (3.0 - 2.0 * angle.cos()),
-            max_relative = 1e-4
-        );
+        assert_relative_eq!(tension, 9.80665 * (3.0 - 2.0 * angle.cos()), max_relative = 1e-4);
     }
 }
 
@@ -685,15 +662,10 @@ fn a_bump_on_a_taut_string_splits_and_travels_as_dalembert_says() {
                 .map(|i| STRING_SPAN * i as f64 / n as f64)
                 .map(|x| Vector3::new(x, 0.0, bump(x)))
                 .collect();
-            let scene = with_integrator(
-                taut_string(n),
-                integrator,
-                0.3 * STRING_SPAN / n as f64 / speed,
-            );
+            let scene = with_integrator(taut_string(n), integrator, 0.3 * STRING_SPAN / n as f64 / speed);
             let mut simulation = Simulation::new(&released_from(scene, &nodes)).unwrap();
             simulation.advance(time).unwrap();
-            let travelled =
-                0.5 * (bump(50.0 + 25.0 - speed * time) + bump(50.0 + 25.0 + speed * time));
+            let travelled = 0.5 * (bump(50.0 + 25.0 - speed * time) + bump(50.0 + 25.0 + speed * time));
             let shape = &simulation.state().lines[0].position;
             let exact = |x: f64| 0.5 * (bump(x - speed * time) + bump(x + speed * time));
             assert!(travelled > 0.49e-3);

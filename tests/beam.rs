@@ -113,10 +113,7 @@ fn a_flying_rod_tends_to_the_converged_flight_at_second_order() {
             })
             .collect();
         if n == 160 {
-            assert!(
-                error[0] < 2e-3 && error[1] < 2e-3 && error[2] < 1e-2,
-                "{error:?}"
-            );
+            assert!(error[0] < 2e-3 && error[1] < 2e-3 && error[2] < 1e-2, "{error:?}");
             let mut simulation = Simulation::new(&spaghetti(n, step)).unwrap();
             (0..count).for_each(|_| simulation.advance(step).unwrap());
             assert_relative_eq!(energy(&simulation), converged, max_relative = 2e-4);
@@ -363,7 +360,8 @@ fn a_hockle_too_tight_for_its_elements_is_refused_in_words() {
 
 #[test]
 fn the_moments_of_a_cantilever_under_an_end_load_grow_straight_to_its_clamp() {
-    let tip = "[[points]]\nname = \"b\"\nposition = [1.0, 0.0, 0.0]\nkind = \"free\"\nforce = { z = 0.001 }\n";
+    let tip =
+        "[[points]]\nname = \"b\"\nposition = [1.0, 0.0, 0.0]\nkind = \"free\"\nforce = { z = 0.001 }\n";
     let text = slender(10, 1e6, "clamped_a = [1.0, 0.0, 0.0]") + ANCHOR + tip;
     let simulation = Simulation::new(&scene(&text)).unwrap();
     let line = &simulation.model().lines[0];
@@ -394,10 +392,7 @@ fn mooring_beam(bending: f64) -> Scene {
 
 #[test]
 fn a_mooring_line_as_a_supple_beam_hangs_and_moves_as_the_line_does() {
-    let (mut line, mut beam) = (
-        following(&shipped("oc3_catenary")),
-        following(&mooring_beam(1.0)),
-    );
+    let (mut line, mut beam) = (following(&shipped("oc3_catenary")), following(&mooring_beam(1.0)));
     assert_relative_eq!(beam.tension_b(0), line.tension_b(0), max_relative = 1e-4);
     let (line, beam) = (
         History::record(&mut line, 0.05, 800),
@@ -478,8 +473,7 @@ fn tethered(model: &str, anchor: f64, point: &str) -> Scene {
 
 #[test]
 fn a_buoy_on_a_beam_heaves_as_it_does_on_a_cable() {
-    let buoy =
-        "position = [14.0, 0.0, 0.0]\nmass = 300.0\nvolume = 1.0\ndrag_area = 0.5\nadded_mass = 0.5
+    let buoy = "position = [14.0, 0.0, 0.0]\nmass = 300.0\nvolume = 1.0\ndrag_area = 0.5\nadded_mass = 0.5
         force = { x = 500.0, z = { table = [[1.0, 0.0], [1.0, -3000.0]] } }";
     let [beam, cable] = ["beam", "cable"].map(|model| {
         let mut simulation = Simulation::new(&tethered(model, -12.0, buoy)).unwrap();
@@ -568,11 +562,7 @@ fn what_beams_cannot_do_is_refused_with_its_place() {
         scene.points[1].kind = PointKind::Free;
         scene.motion.clear();
     });
-    assert!(
-        message
-            .unwrap()
-            .contains("meets another line at the free point")
-    );
+    assert!(message.unwrap().contains("meets another line at the free point"));
     assert_eq!(refused(&|_| {}), None);
 }
 
@@ -619,10 +609,7 @@ fn a_sliding_collar_draws_a_bending_wire_to_its_published_span_at_second_order()
     }
     let changes = [0, 1, 2].map(|i| (meshes[i][0] - meshes[i + 1][0]).abs());
     for pair in changes.windows(2) {
-        assert!(
-            ((pair[0] / pair[1]).log2() - 2.0).abs() < 0.1,
-            "{changes:?}"
-        );
+        assert!(((pair[0] / pair[1]).log2() - 2.0).abs() < 0.1, "{changes:?}");
     }
 }
 
@@ -701,10 +688,7 @@ fn any_beam_runs_or_says_why_not() {
     let (mut ran, mut refused) = (0, 0);
     let mut refuse = |message: String| {
         let advised = ["use more elements", "solver.time_step_max"];
-        assert!(
-            advised.iter().any(|advice| message.contains(advice)),
-            "{message}"
-        );
+        assert!(advised.iter().any(|advice| message.contains(advice)), "{message}");
         refused += 1;
     };
     for _ in 0..60 {

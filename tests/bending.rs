@@ -31,18 +31,12 @@ fn drawn_out(collar: &Scene) -> Simulation {
 
 fn span_and_sag(simulation: &Simulation) -> [f64; 2] {
     let collar = simulation.model().point_index("collar").unwrap();
-    [
-        simulation.state().points[collar].position.x,
-        simulation.sag(0),
-    ]
+    [simulation.state().points[collar].position.x, simulation.sag(0)]
 }
 
 fn assert_close(found: [f64; 2], wanted: [f64; 2], tolerance: f64) {
     for (found, wanted) in found.into_iter().zip(wanted) {
-        assert!(
-            (found - wanted).abs() <= tolerance,
-            "{found} is not {wanted}"
-        );
+        assert!((found - wanted).abs() <= tolerance, "{found} is not {wanted}");
     }
 }
 
@@ -67,9 +61,7 @@ fn fifty_elements_meet_the_heavy_elastica_within_half_a_millimetre() {
     for (bending_stiffness, wanted) in COLLAR {
         let error = |elements| {
             let found = span_and_sag(&collar(bending_stiffness, 9.81, elements));
-            (found[0] - wanted[0])
-                .abs()
-                .max((found[1] - wanted[1]).abs())
+            (found[0] - wanted[0]).abs().max((found[1] - wanted[1]).abs())
         };
         assert!(error(50) <= 5e-4 && error(40) > 5e-4);
     }
@@ -113,9 +105,7 @@ fn words_say_the_stiffness_and_where_it_comes_from() {
     };
     let words = said(&collar);
     assert!(
-        words.contains(
-            "bending stiffness 0.5 N m², which is EI 10 N m² as given shared by 20 fibres (EI/20"
-        ),
+        words.contains("bending stiffness 0.5 N m², which is EI 10 N m² as given shared by 20 fibres (EI/20"),
         "{words}"
     );
     assert!(
@@ -235,10 +225,7 @@ fn a_loaded_cantilever_tends_to_the_elastica_at_second_order() {
             (1.0 / elements as f64, error)
         });
         let order = order_of(&errors);
-        assert!(
-            (order - 2.0).abs() < 0.1,
-            "{alpha}: order {order}, {errors:?}"
-        );
+        assert!((order - 2.0).abs() < 0.1, "{alpha}: order {order}, {errors:?}");
         assert!(errors[3].1 < 1e-4);
     }
 }
@@ -292,10 +279,7 @@ fn a_moment_on_the_free_end_bends_a_cable_to_a_circle_at_second_order() {
             (1.0 / elements as f64, (x - exact[0]).hypot(z - exact[1]))
         });
         let order = order_of(&errors);
-        assert!(
-            (order - 2.0).abs() < 0.1,
-            "{angle}: order {order}, {errors:?}"
-        );
+        assert!((order - 2.0).abs() < 0.1, "{angle}: order {order}, {errors:?}");
     }
 }
 
@@ -344,15 +328,9 @@ fn the_work_of_an_end_moment_is_in_the_ledger() {
         }
         let (given, error) = (rod.ledger().flow.given, rod.energy_error());
         let bent = rod.energy().bending;
-        assert!(
-            bent > 0.5 * 2.0 * 2.0 * LENGTH / EI * 0.8,
-            "{solver}: {bent} J"
-        );
+        assert!(bent > 0.5 * 2.0 * 2.0 * LENGTH / EI * 0.8, "{solver}: {bent} J");
         assert!(given > 0.9 * bent, "{solver}: {given} of {bent} J");
-        assert!(
-            error.abs() < tolerance * given,
-            "{solver}: {error} of {given} J"
-        );
+        assert!(error.abs() < tolerance * given, "{solver}: {error} of {given} J");
     }
 }
 
@@ -436,10 +414,7 @@ fn a_clamp_turns_with_its_vessel() {
     let [x, y, z] = tip(&rod);
     assert!(root.y > 2.0 && z.abs() < 1e-9);
     let ratio = (3.0 + LENGTH) / 3.0;
-    assert!(
-        (x - ratio * root.x).hypot(y - ratio * root.y) < 1e-5,
-        "{x} {y}"
-    );
+    assert!((x - ratio * root.x).hypot(y - ratio * root.y) < 1e-5, "{x} {y}");
     assert!(rod.energy().bending < 1e-9);
 }
 
@@ -499,12 +474,8 @@ fn frequencies(ends: &str, clamps: &str, tension: f64, elements: usize) -> [f64;
 fn assert_second_order(exact: [f64; 3], found: impl Fn(usize) -> [f64; 3]) {
     let meshes = [20, 40, 80, 160].map(|elements| (elements, found(elements)));
     for mode in 0..3 {
-        let errors = meshes.map(|(elements, found)| {
-            (
-                1.0 / elements as f64,
-                (found[mode] / exact[mode] - 1.0).abs(),
-            )
-        });
+        let errors =
+            meshes.map(|(elements, found)| (1.0 / elements as f64, (found[mode] / exact[mode] - 1.0).abs()));
         let order = order_of(&errors);
         assert!(
             (order - 2.0).abs() < 0.1,
@@ -617,10 +588,7 @@ fn the_ledger_of_a_driven_cable_closes_at_any_step() {
             simulation.advance(0.2).unwrap();
         }
         let (error, given) = (simulation.energy_error(), simulation.ledger().flow.given);
-        assert!(
-            error.abs() < 1e-7 * given.abs(),
-            "{step}: {error} of {given} J"
-        );
+        assert!(error.abs() < 1e-7 * given.abs(), "{step}: {error} of {given} J");
     }
 }
 
@@ -713,8 +681,8 @@ fn a_slack_cable_on_the_seabed_buckles_and_goes_on() {
     for exponent in [-3, 0, 2, 4, 6, 9] {
         for elements in [10, 100] {
             let scene = slack(10.0_f64.powi(exponent), elements);
-            let mut cable = Simulation::new(&scene)
-                .unwrap_or_else(|error| panic!("1e{exponent}, {elements}: {error}"));
+            let mut cable =
+                Simulation::new(&scene).unwrap_or_else(|error| panic!("1e{exponent}, {elements}: {error}"));
             for _ in 0..100 {
                 cable
                     .advance(0.2)
@@ -735,9 +703,7 @@ fn a_line_that_hardly_bends_rests_on_the_bed_like_one_that_does_not_bend() {
         for line_type in cable.line_types.values_mut() {
             line_type.bending_stiffness = bending_stiffness;
         }
-        Simulation::new(&cable).unwrap().state().lines[0]
-            .position
-            .clone()
+        Simulation::new(&cable).unwrap().state().lines[0].position.clone()
     };
     let flexible = rest(None);
     for stiffness in [0.0, 1e-9, 1e-3] {
@@ -784,8 +750,8 @@ fn a_heavy_cantilever_comes_to_rest_whichever_way_it_is_clamped() {
         for exponent in [-4, -2, 0, 2, 4, 6] {
             for elements in [5, 50] {
                 let scene = heavy_rod(10.0_f64.powi(exponent), elements, clamp);
-                let mut rod = Simulation::new(&scene)
-                    .unwrap_or_else(|error| panic!("1e{exponent}, {clamp}: {error}"));
+                let mut rod =
+                    Simulation::new(&scene).unwrap_or_else(|error| panic!("1e{exponent}, {clamp}: {error}"));
                 let before = nalgebra::Vector3::from(tip(&rod));
                 for _ in 0..20 {
                     rod.advance(0.1).unwrap();
@@ -800,11 +766,7 @@ fn a_heavy_cantilever_comes_to_rest_whichever_way_it_is_clamped() {
 #[test]
 fn a_section_without_bending_stiffness_is_a_hinge() {
     let mut chain = shipped("power_cable");
-    chain
-        .line_types
-        .get_mut("buoyant")
-        .unwrap()
-        .bending_stiffness = None;
+    chain.line_types.get_mut("buoyant").unwrap().bending_stiffness = None;
     let cable = Simulation::new(&chain).unwrap();
     let nodes = cable.bending(0).unwrap();
     assert!(nodes[100..=150].iter().all(|node| node.moment == 0.0));
@@ -868,10 +830,7 @@ fn a_line_that_is_unstressed_as_it_lies_stays_there() {
 #[test]
 fn a_line_that_bends_needs_two_elements() {
     let message = Simulation::new(&heavy_rod(1.0, 1, "[1.0, 0.0, 0.0]")).unwrap_err();
-    assert!(
-        message.to_string().starts_with("lines[0].sections"),
-        "{message}"
-    );
+    assert!(message.to_string().starts_with("lines[0].sections"), "{message}");
 }
 
 #[test]
@@ -899,10 +858,7 @@ fn the_power_cable_rests_in_a_lazy_wave() {
     let cable = Simulation::new(&shipped("power_cable")).unwrap();
     let weight: f64 = cable.model().lines[0].nodes.weight.iter().sum();
     let nodes = &cable.state().lines[0].position;
-    let (arch, sag) = (
-        nodes[150].z,
-        nodes[170..].iter().map(|r| r.z).fold(0.0, f64::min),
-    );
+    let (arch, sag) = (nodes[150].z, nodes[170..].iter().map(|r| r.z).fold(0.0, f64::min));
     assert!(arch > sag + 2.0, "arch {arch}, sag {sag}");
     assert!(cable.laid_length(0) > 10.0);
     let [_, _, lift] = cable.end_force(1);

@@ -28,11 +28,7 @@ fn samples(duration: f64) -> usize {
 
 /// A taut line without axial damping, which the leapfrogs take lagged.
 fn undamped(integrator: Integrator, n: usize, step: f64) -> Scene {
-    let mut scene = with_integrator(
-        with_elements(shipped("taut_polyester"), n),
-        integrator,
-        step,
-    );
+    let mut scene = with_integrator(with_elements(shipped("taut_polyester"), n), integrator, step);
     for line_type in scene.line_types.values_mut() {
         line_type.axial_damping = Some(0.0);
     }
@@ -78,10 +74,7 @@ fn halving_the_time_step_quarters_the_error() {
 fn five_elements_keep_all_but_seven_thousandths_of_the_tension_of_a_taut_rope() {
     let taut = |n| {
         let scene = with_elements(shipped("taut_polyester"), n);
-        run(
-            &with_integrator(scene, Integrator::AxialImplicit, SAMPLE),
-            90.0,
-        )
+        run(&with_integrator(scene, Integrator::AxialImplicit, SAMPLE), 90.0)
     };
     // 0.025 with the load on the end's half node as it is at the end, 0.009 with one that is linear
     let error = taut(5).tension_error(&taut(160), samples(60.0));
@@ -114,10 +107,7 @@ fn lagged_axial_damping_costs_less_than_a_ten_thousandth() {
     // first order in the step, beside the second order of all else
     let fine = with_elements(shipped("taut_polyester"), 10);
     for integrator in LEAPFROGS {
-        let reference = run(
-            &with_integrator(fine.clone(), integrator, SAMPLE / 256.0),
-            30.0,
-        );
+        let reference = run(&with_integrator(fine.clone(), integrator, SAMPLE / 256.0), 30.0);
         let found = run(&with_integrator(fine.clone(), integrator, 0.025), 30.0);
         for errors in errors(&[found], &reference) {
             assert!(errors[0] < 1e-4, "{integrator:?}: {errors:?}");
@@ -223,10 +213,7 @@ enum Says {
 fn host_error(step: f64, says: Says) -> f64 {
     let scene = with_integrator(shipped("oc3_catenary"), Integrator::Leapfrog, 0.00625);
     let sampled = 0.4; // common to all communication steps
-    let (count, every) = (
-        (120.0 / sampled) as usize,
-        (sampled / step).round() as usize,
-    );
+    let (count, every) = ((120.0 / sampled) as usize, (sampled / step).round() as usize);
     let motion = Motion::new(&scene.motion["fairlead"]);
     let mut host = Simulation::new(&scene).unwrap();
     let fairlead = host.model().point_index("fairlead").unwrap();

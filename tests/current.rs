@@ -45,8 +45,7 @@ fn riser(elements: usize, current: &str) -> Scene {
     ))
 }
 
-const SHEARED: &str =
-    "{ profile = [[0.0, 1.1, 0.4], [-50.0, 0.8, 0.1], [-200.0, 0.2, -0.3]], factor = 1.2 }";
+const SHEARED: &str = "{ profile = [[0.0, 1.1, 0.4], [-50.0, 0.8, 0.1], [-200.0, 0.2, -0.3]], factor = 1.2 }";
 
 /// The same current, written anew.
 fn sheared(z: f64) -> Vector3<f64> {
@@ -65,12 +64,9 @@ fn slope([r, pull]: [Vector3<f64>; 2]) -> [Vector3<f64>; 2] {
     let along = u.dot(&q);
     let across = u - along * q;
     let half = 0.5 * DENSITY * DIAMETER;
-    let drag = half * 1.1 * across.norm() * across
-        + half * std::f64::consts::PI * 0.05 * along.abs() * along * q;
-    [
-        (1.0 + tension / STIFFNESS) * q,
-        WEIGHT * Vector3::z() - drag,
-    ]
+    let drag =
+        half * 1.1 * across.norm() * across + half * std::f64::consts::PI * 0.05 * along.abs() * along * q;
+    [(1.0 + tension / STIFFNESS) * q, WEIGHT * Vector3::z() - drag]
 }
 
 /// The cable from the well under a pull [N] there, at every tenth of its length, by Runge and Kutta's method.
@@ -79,8 +75,7 @@ fn integrate(pull: Vector3<f64>) -> Vec<[Vector3<f64>; 2]> {
     let h = LENGTH / f64::from(count);
     let mut y = [Vector3::new(0.0, 0.0, -200.0), pull];
     let mut samples = vec![y];
-    let add =
-        |y: [Vector3<f64>; 2], k: [Vector3<f64>; 2], h: f64| [y[0] + h * k[0], y[1] + h * k[1]];
+    let add = |y: [Vector3<f64>; 2], k: [Vector3<f64>; 2], h: f64| [y[0] + h * k[0], y[1] + h * k[1]];
     for step in 1..=count {
         let k1 = slope(y);
         let k2 = slope(add(y, k1, 0.5 * h));
@@ -233,10 +228,7 @@ fn boosted(from: &Snapshot, to: &Snapshot) -> Snapshot {
     );
     let mut state: State = serde_json::from_value(source["state"].clone()).unwrap();
     state.lines[0].velocity.iter_mut().for_each(|v| *v -= flow);
-    state
-        .points
-        .iter_mut()
-        .for_each(|point| point.velocity -= flow);
+    state.points.iter_mut().for_each(|point| point.velocity -= flow);
     target["state"] = serde_json::to_value(&state).unwrap();
     serde_json::from_value(target).unwrap()
 }
@@ -262,11 +254,7 @@ fn a_line_in_a_current_is_a_line_towed_the_other_way_in_still_water() {
         for i in 1..tensions.len() - 1 {
             assert_relative_eq!(tensions[i], others[i], max_relative = 1e-7);
         }
-        assert_relative_eq!(
-            anchored.tension_b(0),
-            towed.tension_b(0),
-            max_relative = 1e-7
-        );
+        assert_relative_eq!(anchored.tension_b(0), towed.tension_b(0), max_relative = 1e-7);
     }
 }
 
@@ -397,10 +385,7 @@ fn halving_the_time_step_quarters_the_error_in_a_changing_current() {
             }
             simulation.state().lines[0].position[8]
         });
-        let errors: Vec<f64> = middles[..4]
-            .iter()
-            .map(|m| (m - middles[4]).norm())
-            .collect();
+        let errors: Vec<f64> = middles[..4].iter().map(|m| (m - middles[4]).norm()).collect();
         assert_order(2.0, &steps[..4], &errors);
     }
 }
@@ -521,10 +506,7 @@ fn every_mistake_in_a_current_is_refused_with_its_place() {
             "#
         );
         let message = Scene::from_toml(&text).unwrap_err().to_string();
-        assert!(
-            message.contains(place) && message.contains(problem),
-            "{message}"
-        );
+        assert!(message.contains(place) && message.contains(problem), "{message}");
     };
     refused("{}", "water.current", "a current needs");
     refused(
@@ -571,14 +553,12 @@ fn a_current_does_not_act_on_beams_and_says_so() {
     by_integrator.solver.integrator = Integrator::Beam;
     for scene in [by_type, by_integrator] {
         let mistakes = scene.mistakes();
-        let found = mistakes
-            .iter()
-            .find(|mistake| mistake.at == "water.current");
-        assert!(found.is_some_and(|mistake| {
-            mistake
-                .problem
-                .contains("beams are modelled in still water only")
-        }));
+        let found = mistakes.iter().find(|mistake| mistake.at == "water.current");
+        assert!(
+            found.is_some_and(|mistake| {
+                mistake.problem.contains("beams are modelled in still water only")
+            })
+        );
     }
 }
 

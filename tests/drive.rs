@@ -85,20 +85,14 @@ fn heave_and_pitch(header: &str, end: f64) -> String {
 #[test]
 fn a_motion_file_moves_the_vessel_of_a_deck_for_as_long_as_it_lasts() {
     let motion = heave_and_pitch("time,x,y,z,roll,pitch,yaw", 4.0);
-    let columns = run(
-        DECK,
-        &[("motion.csv", &motion)],
-        &["--motion", "motion.csv"],
-    );
+    let columns = run(DECK, &[("motion.csv", &motion)], &["--motion", "motion.csv"]);
     assert_eq!(*columns["time"].last().unwrap(), 4.0);
     assert!(columns["vessel.z"].iter().any(|z| z.abs() > 0.3));
     assert!(columns["vessel.pitch"].iter().any(|a| a.abs() > 0.01));
     let tension = &columns["FairTen1"];
-    let (low, high) = tension
-        .iter()
-        .fold((f64::INFINITY, 0.0_f64), |(low, high), t| {
-            (low.min(*t), high.max(*t))
-        });
+    let (low, high) = tension.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), t| {
+        (low.min(*t), high.max(*t))
+    });
     assert!(high > 1.01 * low && low > 0.0);
     let named = heave_and_pitch("t [s],vessel.z [m],vessel.pitch [rad]", 4.0);
     let same = run(DECK, &[("motion.csv", &named)], &["--motion", "motion.csv"]);
@@ -127,8 +121,7 @@ fn regular_motion_of_a_deck_is_that_of_a_scene_that_says_it() {
     assert_eq!(code, 0, "{error}");
     let scene = fs::read_to_string(folder.path().join("scene.toml")).unwrap();
     assert!(scene.contains("[motion]\n"));
-    let motion =
-        "[motion]\nvessel = { x = [[1.5, 8.0]], pitch = [[0.02, 6.0, 0.5]], ramp = 3.0 }\n";
+    let motion = "[motion]\nvessel = { x = [[1.5, 8.0]], pitch = [[0.02, 6.0, 0.5]], ramp = 3.0 }\n";
     let scene = scene.replace("[motion]\n", motion);
     fs::write(folder.path().join("scene.toml"), scene).unwrap();
     let (code, error) = moorline(
@@ -157,21 +150,15 @@ fn coupled_points_of_a_deck_move_as_the_one_vessel_that_is_given() {
     ];
     let said = refused(&points, &[], &moved);
     assert!(
-        said.contains("`barge` is no vessel or coupled point")
-            && said.contains("use --vessel barge"),
+        said.contains("`barge` is no vessel or coupled point") && said.contains("use --vessel barge"),
         "{said}"
     );
     let said = refused(&points, &[], &["--move", "point4.pitch=0.02,6"]);
     assert!(
-        said.contains("`point4` is a point, and points do not turn")
-            && said.contains("use --vessel NAME"),
+        said.contains("`point4` is a point, and points do not turn") && said.contains("use --vessel NAME"),
         "{said}"
     );
-    let joined = run(
-        &points,
-        &[],
-        &[moved.as_slice(), &["--vessel", "barge"]].concat(),
-    );
+    let joined = run(&points, &[], &[moved.as_slice(), &["--vessel", "barge"]].concat());
     let given = moved.map(|word| word.replace("barge", "vessel"));
     let own = run(DECK, &[], &given.each_ref().map(String::as_str));
     assert!(joined["barge.my"].iter().any(|moment| *moment != 0.0));
@@ -190,11 +177,7 @@ fn without_a_motion_a_deck_stays_at_rest() {
 fn without_vessels_a_file_without_names_moves_all_coupled_points_alike() {
     let motion = "time,x,y,z\n0,0,0,0\n1,0.2,0,0.1\n2,0.5,0,0.2\n";
     let deck = VERSION_1.replace("3     Fairlead ", "3     Coupled  ");
-    let columns = run(
-        &deck,
-        &[("motion.csv", motion)],
-        &["--motion", "motion.csv"],
-    );
+    let columns = run(&deck, &[("motion.csv", motion)], &["--motion", "motion.csv"]);
     assert_eq!(*columns["point3.x"].last().unwrap(), 0.5);
     assert_eq!(*columns["point3.z"].last().unwrap(), 0.2);
 }
@@ -239,10 +222,7 @@ fn what_cannot_move_or_be_read_is_refused_with_file_line_and_what_would_be_right
             "time,ship.x\n0,0\n",
             "line 1: `ship` is no vessel or coupled point: what moves is vessel",
         ),
-        (
-            "time,point1.x\n0,0\n",
-            "`point1` is no vessel or coupled point",
-        ),
+        ("time,point1.x\n0,0\n", "`point1` is no vessel or coupled point"),
         (
             "time,x,y,z\n0,0,0,0\n1,0,0\n",
             "line 3: expected 4 numbers (time, x, y, z), found 3",

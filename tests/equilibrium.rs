@@ -37,17 +37,16 @@ const FIXED: &str = "kind = \"fixed\"";
 ///
 ///   ●───────○───────●      L0/2 = 0.5 m each, λ = √(1 + 4u²/L0²), W = 4 (N/λ) u/L0
 fn point_load(strain: &str, load: f64) -> Model {
-    let text =
-        format!("[line_types.cable]\nmass = 0.0\naxial_stiffness = 5000.0\nstrain = {strain}\n")
-            + &point("a", [0.0; 3], FIXED)
-            + &point(
-                "middle",
-                [0.5, 0.0, 0.0],
-                &format!("kind = \"free\"\nforce = {{ z = {:e} }}", -load),
-            )
-            + &point("b", [1.0, 0.0, 0.0], FIXED)
-            + &line("left", ["a", "middle"], 0.5, 1)
-            + &line("right", ["middle", "b"], 0.5, 1);
+    let text = format!("[line_types.cable]\nmass = 0.0\naxial_stiffness = 5000.0\nstrain = {strain}\n")
+        + &point("a", [0.0; 3], FIXED)
+        + &point(
+            "middle",
+            [0.5, 0.0, 0.0],
+            &format!("kind = \"free\"\nforce = {{ z = {:e} }}", -load),
+        )
+        + &point("b", [1.0, 0.0, 0.0], FIXED)
+        + &line("left", ["a", "middle"], 0.5, 1)
+        + &line("right", ["middle", "b"], 0.5, 1);
     model(&text)
 }
 
@@ -89,8 +88,7 @@ fn green_strain_gives_the_cubic_load_deflection_for_all_eleven_loads() {
 #[test]
 fn engineering_and_logarithmic_strain_give_their_closed_forms() {
     let engineering = |stretch: f64| 5000.0 * (stretch - 1.0);
-    let logarithmic =
-        |poisson: f64| move |stretch: f64| 5000.0 * stretch.ln() * stretch.powf(-2.0 * poisson);
+    let logarithmic = |poisson: f64| move |stretch: f64| 5000.0 * stretch.ln() * stretch.powf(-2.0 * poisson);
     for load in LOADS {
         let check = |strain: &str, expected: f64| {
             let (state, _) = equilibrium(&point_load(strain, load)).unwrap();
@@ -101,10 +99,7 @@ fn engineering_and_logarithmic_strain_give_their_closed_forms() {
             );
         };
         check("\"engineering\"", deflection(load, 100.0, engineering));
-        check(
-            "{ logarithmic = 0.0 }",
-            deflection(load, 100.0, logarithmic(0.0)),
-        );
+        check("{ logarithmic = 0.0 }", deflection(load, 100.0, logarithmic(0.0)));
         if load < 6030.789 {
             check(
                 "{ logarithmic = 0.3 }",
@@ -145,10 +140,16 @@ fn just_below_the_limit_load_there_is_an_equilibrium_and_above_it_a_clear_error(
 #[test]
 fn a_line_pulled_by_more_than_its_greatest_force_is_refused_instead_of_breaking_in_one_segment() {
     let pulled = |load: f64| {
-        let text = "[line_types.cable]\nmass = 0.0\naxial_stiffness = 5000.0\nstrain = { logarithmic = 0.5 }\n".to_string()
-            + &point("a", [0.0; 3], FIXED)
-            + &point("b", [1.0, 0.0, 0.0], &format!("kind = \"free\"\nforce = {{ x = {load:e} }}"))
-            + &line("cable", ["a", "b"], 1.0, 10);
+        let text =
+            "[line_types.cable]\nmass = 0.0\naxial_stiffness = 5000.0\nstrain = { logarithmic = 0.5 }\n"
+                .to_string()
+                + &point("a", [0.0; 3], FIXED)
+                + &point(
+                    "b",
+                    [1.0, 0.0, 0.0],
+                    &format!("kind = \"free\"\nforce = {{ x = {load:e} }}"),
+                )
+                + &line("cable", ["a", "b"], 1.0, 10);
         equilibrium(&model(&text))
     };
     let greatest = 5000.0 / std::f64::consts::E; // EA ln λ/λ at λ = e [N]
@@ -194,10 +195,7 @@ fn the_sag_tends_to_the_catenary_at_second_order() {
         -state.lines[0].position[n as usize / 2].z - 0.717_777_465_4
     });
     let slope = order(&elements.map(|n| 1.0 / n), &errors);
-    assert!(
-        (slope - 2.0).abs() < 0.1,
-        "slope {slope}, errors {errors:?}"
-    );
+    assert!((slope - 2.0).abs() < 0.1, "slope {slope}, errors {errors:?}");
 }
 
 // ------------------------------------------------------------------ sliding collar
@@ -205,13 +203,12 @@ fn the_sag_tends_to_the_catenary_at_second_order() {
 /// MotionSolve's wire: 20 m, 0.2 kg/m, one end fixed, the other on a collar that slides along x under a load that rises to 20 N
 /// in 5 s.
 fn collar(elements: usize, axial_stiffness: f64) -> Model {
-    let slider =
-        "kind = \"free\"\nfree = [\"x\"]\nforce = { x = { step = [0.0, 0.0, 5.0, 20.0] } }";
-    let text = format!(
-        "gravity = 9.81\n[line_types.cable]\nmass = 0.2\naxial_stiffness = {axial_stiffness:e}\n"
-    ) + &point("fixed", [0.0; 3], FIXED)
-        + &point("collar", [16.0, 0.0, 0.0], slider)
-        + &line("wire", ["fixed", "collar"], 20.0, elements);
+    let slider = "kind = \"free\"\nfree = [\"x\"]\nforce = { x = { step = [0.0, 0.0, 5.0, 20.0] } }";
+    let text =
+        format!("gravity = 9.81\n[line_types.cable]\nmass = 0.2\naxial_stiffness = {axial_stiffness:e}\n")
+            + &point("fixed", [0.0; 3], FIXED)
+            + &point("collar", [16.0, 0.0, 0.0], slider)
+            + &line("wire", ["fixed", "collar"], 20.0, elements);
     model(&text)
 }
 
@@ -225,11 +222,7 @@ fn span_and_sag(model: &Model) -> [f64; 2] {
     }
     let total = work.take_counters();
     assert!(total.solves <= 1000, "{total:?}");
-    let lowest = state.lines[0]
-        .position
-        .iter()
-        .map(|r| r.z)
-        .fold(0.0, f64::min);
+    let lowest = state.lines[0].position.iter().map(|r| r.z).fold(0.0, f64::min);
     [state.points[1].position.x, -lowest]
 }
 
@@ -244,18 +237,14 @@ fn a_collar_pulled_by_20_newtons_slides_to_the_inextensible_catenary() {
 }
 
 #[test]
-fn the_collar_tends_to_the_inextensible_catenary_at_second_order_and_extrapolates_to_a_micrometre()
-{
+fn the_collar_tends_to_the_inextensible_catenary_at_second_order_and_extrapolates_to_a_micrometre() {
     // An EA of 5.35e6 N would stretch the wire by 1e-4 m; 1e10 N by 6e-8 m.
     let elements = [24.0, 50.0, 100.0, 200.0];
     let values = elements.map(|n| span_and_sag(&collar(n as usize, 1e10)));
     for (axis, exact) in COLLAR.into_iter().enumerate() {
         let errors = values.map(|value| value[axis] - exact);
         let slope = order(&elements.map(|n| 1.0 / n), &errors);
-        assert!(
-            (slope - 2.0).abs() < 0.1,
-            "slope {slope}, errors {errors:?}"
-        );
+        assert!((slope - 2.0).abs() < 0.1, "slope {slope}, errors {errors:?}");
         assert!(errors[3] / exact < 7e-6, "{errors:?}");
         let extrapolated = values[3][axis] + (values[3][axis] - values[2][axis]) / 3.0;
         assert!((extrapolated - exact).abs() < 1e-6, "{extrapolated}");
@@ -354,12 +343,11 @@ fn continuing_from_a_state_finds_the_same_equilibrium_as_starting_anew() {
 
 #[test]
 fn a_failure_leaves_the_state_as_it_was() {
-    let text =
-        "[line_types.cable]\nmass = 1.0\naxial_stiffness = 5000.0\nstrain = { logarithmic = 0.5 }\n"
-            .to_string()
-            + &point("a", [0.0; 3], FIXED)
-            + &point("b", [10.0, 0.0, 0.0], "kind = \"coupled\"")
-            + &line("cable", ["a", "b"], 10.0, 10);
+    let text = "[line_types.cable]\nmass = 1.0\naxial_stiffness = 5000.0\nstrain = { logarithmic = 0.5 }\n"
+        .to_string()
+        + &point("a", [0.0; 3], FIXED)
+        + &point("b", [10.0, 0.0, 0.0], "kind = \"coupled\"")
+        + &line("cable", ["a", "b"], 10.0, 10);
     let model = model(&text);
     let mut work = Workspace::new(&model);
     let mut state = statics(&model);
@@ -387,15 +375,9 @@ fn random_line(seed: &mut u64, class: usize) -> Model {
         _ => 1.0 + u(),
     };
     let angle = std::f64::consts::FRAC_PI_2 * (2.0 * u() - 1.0);
-    let (x, z) = (
-        stretch * length * angle.cos(),
-        stretch * length * angle.sin(),
-    );
+    let (x, z) = (stretch * length * angle.cos(), stretch * length * angle.sin());
     let sign = [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, -1.0, 0.0][(8.0 * u()) as usize];
-    let (weight, ea) = (
-        sign * 10f64.powf(5.0 * u() - 1.0),
-        10f64.powf(4.0 + 9.0 * u()),
-    );
+    let (weight, ea) = (sign * 10f64.powf(5.0 * u() - 1.0), 10f64.powf(4.0 + 9.0 * u()));
     let contact = if u() < 0.5 { "regularised" } else { "as_given" };
     let depth = -z.min(0.0) + if u() < 0.5 { 0.0 } else { 0.2 * length * u() };
     let mut text = String::new();
@@ -462,12 +444,7 @@ fn random_network(seed: &mut u64, class: usize) -> Model {
             ["joint", name.as_str()]
         };
         let length = (joint - corner).norm() * (0.8 + 0.8 * u());
-        text += &line(
-            &format!("leg{i}"),
-            ends,
-            length,
-            (1.0 + 30.0 * u()) as usize,
-        );
+        text += &line(&format!("leg{i}"), ends, length, (1.0 + 30.0 * u()) as usize);
     }
     model(&text)
 }
@@ -492,11 +469,7 @@ fn a_bridle_shares_its_load_between_two_legs() {
         + &point("left", [0.0, -3.0, 0.0], FIXED)
         + &point("right", [0.0, 3.0, 0.0], FIXED)
         + &point("apex", [5.0, 1.0, 0.0], "kind = \"free\"")
-        + &point(
-            "tow",
-            [30.0, 0.0, 0.0],
-            "kind = \"free\"\nforce = { x = 8000.0 }",
-        )
+        + &point("tow", [30.0, 0.0, 0.0], "kind = \"free\"\nforce = { x = 8000.0 }")
         + &line("port", ["left", "apex"], 5.0, 5)
         + &line("starboard", ["apex", "right"], 5.0, 4)
         + &line("main", ["apex", "tow"], 20.0, 10);

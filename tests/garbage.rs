@@ -156,19 +156,9 @@ const VALUES: [&str; 28] = [
 /// The shipped scenes that solve fast, and the system above.
 fn seeds() -> Vec<String> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
-    let shipped = [
-        "oc3_catenary",
-        "demo",
-        "collar",
-        "point_load",
-        "power_cable",
-    ];
+    let shipped = ["oc3_catenary", "demo", "collar", "point_load", "power_cable"];
     let read = |name: &&str| fs::read_to_string(folder.join(format!("{name}.toml"))).unwrap();
-    shipped
-        .iter()
-        .map(read)
-        .chain([SYSTEM.to_string()])
-        .collect()
+    shipped.iter().map(read).chain([SYSTEM.to_string()]).collect()
 }
 
 /// Numbers of the lines that hold `key = value`.
@@ -241,9 +231,7 @@ fn mutated(chance: &mut Chance, seed: &str, kind: usize) -> Vec<u8> {
         }
         5 => {
             // A table is missing or comes twice.
-            let heads: Vec<usize> = (0..lines.len())
-                .filter(|&i| lines[i].starts_with('['))
-                .collect();
+            let heads: Vec<usize> = (0..lines.len()).filter(|&i| lines[i].starts_with('[')).collect();
             let start = *chance.one_of(&heads);
             let end = heads.iter().find(|&&head| head > start);
             let end = end.copied().unwrap_or(lines.len());
@@ -335,9 +323,7 @@ fn refused(error: &LoadError) -> Result<Fate, String> {
         .strip_prefix(':')
         .and_then(|rest| rest.split(':').next()?.parse::<usize>().ok());
     match error {
-        LoadError::Scene { .. } if line.is_none_or(|line| line == 0) => {
-            Err(format!("no line in {list:?}"))
-        }
+        LoadError::Scene { .. } if line.is_none_or(|line| line == 0) => Err(format!("no line in {list:?}")),
         _ if rest.len() < 10 => Err(format!("{list:?} says nothing")),
         _ => Ok(Fate::Refused),
     }
@@ -413,10 +399,7 @@ fn three_hundred_mutated_scenes_are_refused_with_their_place_or_solved() {
             Ok(Fate::Refused) => counts[0] += 1,
             Ok(Fate::Solved) => counts[1] += 1,
             Ok(Fate::Unsolved) => counts[2] += 1,
-            Err(problem) => wrong.push(format!(
-                "trial {trial}: {problem}\n{}",
-                difference(&seed, &bytes)
-            )),
+            Err(problem) => wrong.push(format!("trial {trial}: {problem}\n{}", difference(&seed, &bytes))),
         }
     }
     assert!(wrong.is_empty(), "{counts:?}\n{}", wrong.join("\n"));
@@ -446,22 +429,12 @@ fn system(old: &str, new: &str) -> String {
 #[test]
 fn what_hands_do_wrong_most_is_refused_at_its_line() {
     let cases = [
-        (
-            "diameter = 0.0766",
-            "diameter = -0.0766",
-            21,
-            "not positive",
-        ),
+        ("diameter = 0.0766", "diameter = -0.0766", 21, "not positive"),
         ("mass = 113.35", "mass = nan", 20, "not a finite number"),
         ("to = \"clump\"", "to = \"clamp\"", 75, "clump"),
         ("to = \"clump\"", "to = \"anchor1\"", 75, "both ends"),
         ("elements = 12 }]", "elements = 0 }]", 76, "elements"),
-        (
-            "elements = 12 }]",
-            "elements = 100000000 }]",
-            76,
-            "more than",
-        ),
+        ("elements = 12 }]", "elements = 100000000 }]", 76, "more than"),
         ("length = 190.0", "length = 1e300", 76, "beyond the limit"),
         ("type = \"wire\"", "type = \"rope\"", 82, "rope"),
         ("kind = \"fixed\"", "kind = \"nailed\"", 44, "nailed"),
@@ -505,10 +478,7 @@ fn points_that_no_line_holds_and_loops_of_free_points_are_refused() {
 #[test]
 fn files_that_are_no_text_or_nothing_are_refused() {
     let latin = SYSTEM.replace("a barge", "a b\u{e4}rge");
-    let latin: Vec<u8> = latin
-        .chars()
-        .map(|c| u8::try_from(c as u32).unwrap())
-        .collect();
+    let latin: Vec<u8> = latin.chars().map(|c| u8::try_from(c as u32).unwrap()).collect();
     let utf_16: Vec<u8> = SYSTEM.encode_utf16().flat_map(u16::to_le_bytes).collect();
     let noise: Vec<u8> = (0..4096_u32)
         .map(|i| (i.wrapping_mul(2_654_435_761) >> 24) as u8)

@@ -90,11 +90,7 @@ fn the_public_scenes_give_the_values_they_gave_before_for_the_same_work() {
             (solves - reference_solves).abs() <= 0.01 * reference_solves,
             "{name}: {solves} solves, {reference_solves} before"
         );
-        for (column, (found, reference)) in HEADER
-            .split(',')
-            .skip(2)
-            .zip(found.iter().zip(reference))
-            .take(7)
+        for (column, (found, reference)) in HEADER.split(',').skip(2).zip(found.iter().zip(reference)).take(7)
         {
             let scale = reference.abs().max(1e-3);
             assert!(

@@ -79,9 +79,7 @@ impl Work {
 impl fmt::Display for Work {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}", self.scene)?;
-        self.counts
-            .iter()
-            .try_for_each(|count| write!(f, ",{count}"))
+        self.counts.iter().try_for_each(|count| write!(f, ",{count}"))
     }
 }
 
@@ -117,10 +115,7 @@ fn read() -> Vec<Work> {
     let lines = text.lines().filter(|line| !line.starts_with('#')).skip(1);
     let row = |line: &str| {
         let (scene, counts) = line.split_once(',').unwrap();
-        let counts: Vec<usize> = counts
-            .split(',')
-            .map(|count| count.parse().unwrap())
-            .collect();
+        let counts: Vec<usize> = counts.split(',').map(|count| count.parse().unwrap()).collect();
         Work {
             scene: scene.to_string(),
             counts: counts.try_into().unwrap(),
@@ -138,12 +133,8 @@ fn the_shipped_scenes_take_the_work_they_took_before() {
         names,
         "the table has a row for every scene of the folder"
     );
-    let pairs = before
-        .iter()
-        .map(|before| (Work::of(&before.scene), before));
-    let differences: Vec<String> = pairs
-        .flat_map(|(now, before)| now.differences(before))
-        .collect();
+    let pairs = before.iter().map(|before| (Work::of(&before.scene), before));
+    let differences: Vec<String> = pairs.flat_map(|(now, before)| now.differences(before)).collect();
     assert!(
         differences.is_empty(),
         "{}\nif that is meant, write the table anew and say why: see the top of tests/guard.rs",

@@ -34,10 +34,7 @@ fn a_communication_step_without_end_is_refused_at_once_in_waves_as_in_still_wate
             }
             let begun = Instant::now();
             let error = simulation.advance(step).unwrap_err().to_string();
-            assert!(
-                error.contains("s would be needed"),
-                "{name}, {step} s: {error}"
-            );
+            assert!(error.contains("s would be needed"), "{name}, {step} s: {error}");
             assert!(begun.elapsed().as_secs_f64() < 1.0, "{name}, {step} s");
             assert!(*simulation.snapshot() == before, "{name}, {step} s");
         }
@@ -81,10 +78,7 @@ fn angles_beyond_a_thousand_turns_are_refused() {
     let mut simulation = by_rules("storm_moored_semi");
     simulation.set_body(Body::Vessel(0), [0.0, 0.0, 0.0, 0.0, 0.0, 1e5], [None; 6]);
     let refused = simulation.advance(0.05).unwrap_err().to_string();
-    assert!(
-        refused.contains("semi.yaw = 1e5 rad is beyond"),
-        "{refused}"
-    );
+    assert!(refused.contains("semi.yaw = 1e5 rad is beyond"), "{refused}");
 }
 
 /// What a host with so many steps a period [s] gets.
@@ -147,10 +141,7 @@ fn the_estimated_error_of_inputs_is_that_of_tension_within_a_factor() {
             } = hosted(&model, period, points, velocities);
             let ratio = estimate / error;
             let what = format!("{name}, {points} points, velocities {velocities}");
-            assert!(
-                ratio > 0.4 && ratio < 2.5,
-                "{what}: {error} estimated {estimate}"
-            );
+            assert!(ratio > 0.4 && ratio < 2.5, "{what}: {error} estimated {estimate}");
             assert_eq!(warning.is_some(), estimate > 0.02, "{what}: {estimate}");
         }
     }

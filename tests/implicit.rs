@@ -275,12 +275,7 @@ fn a_snapping_chain_stays_bounded_also_a_hundred_times_stiffer() {
             .map(|v| v.norm())
             .fold(0.0, f64::max);
         assert!(fastest < 2.0, "EA {axial_stiffness}: {fastest} m/s");
-        assert!(
-            state.lines[0]
-                .position
-                .iter()
-                .all(|r| r.z > -3.1 && r.z < 0.5)
-        );
+        assert!(state.lines[0].position.iter().all(|r| r.z > -3.1 && r.z < 0.5));
         assert!(
             counters.solves as f64 <= solves * 2000.0 && counters.halvings <= 60,
             "EA {axial_stiffness}, {contact}: {counters:?}"
@@ -443,14 +438,7 @@ fn released_from_a_straight_line_a_damped_cable_tends_to_its_equilibrium() {
         .given_shape(Vector3::zeros(), Vector3::new(14.1421, 0.0, 0.0))
         .unwrap();
     let held = at_rest(&model);
-    let (state, counters) = run(
-        &model,
-        state,
-        &held,
-        40.0,
-        0.02,
-        Scheme::generalised_alpha(0.5),
-    );
+    let (state, counters) = run(&model, state, &held, 40.0, 0.02, Scheme::generalised_alpha(0.5));
     let sag = -state.lines[0].position[11].z;
     assert!((sag - 0.718_274_162_1).abs() < 1e-6, "{sag}");
     assert!(
@@ -645,11 +633,7 @@ fn slow_motion_is_quasi_static() {
     let mut elements = statics(&model);
     let places = [model.points[0].reference, fairlead.position];
     continue_from(&model, &mut elements, &places, 1000.0, &mut work).unwrap();
-    assert!(
-        gap(&moving, &elements) < 1e-3,
-        "{}",
-        gap(&moving, &elements)
-    );
+    assert!(gap(&moving, &elements) < 1e-3, "{}", gap(&moving, &elements));
     // quasi-static lines are catenaries, from which elements of 45 m differ by 0.1 m
     assert!(gap(&moving, &resting) < 0.15, "{}", gap(&moving, &resting));
     assert!(resting.lines[0].velocity.iter().all(|v| v.norm() == 0.0));

@@ -267,10 +267,7 @@ fn what_rests_stays_at_rest() {
             scene.motion.clear();
             scene.solver.integrator = integrator;
             let mut simulation = Simulation::new(&scene).unwrap();
-            let (start, force) = (
-                simulation.state().clone(),
-                Vector3::from(simulation.end_force(1)),
-            );
+            let (start, force) = (simulation.state().clone(), Vector3::from(simulation.end_force(1)));
             for _ in 0..400 {
                 simulation.advance(0.25).unwrap();
             }
@@ -381,11 +378,7 @@ fn one_long_communication_step_is_many_short_ones() {
             |r| *r,
         );
         assert!(apart < 1e-8, "{integrator:?}: {apart:e} m");
-        assert_relative_eq!(
-            long.end_force(1)[0],
-            short.end_force(1)[0],
-            max_relative = 1e-5
-        );
+        assert_relative_eq!(long.end_force(1)[0], short.end_force(1)[0], max_relative = 1e-5);
     }
 }
 
@@ -418,11 +411,7 @@ fn an_undamped_swing_keeps_its_energy_for_a_thousand_seconds() {
     "#;
     let rest = Simulation::new(&scene(text)).unwrap();
     let tilt = Rotation3::from_axis_angle(&Vector3::x_axis(), 0.2); // 11° out of its plane
-    let nodes: Vec<Vector3<f64>> = rest.state().lines[0]
-        .position
-        .iter()
-        .map(|r| tilt * r)
-        .collect();
+    let nodes: Vec<Vector3<f64>> = rest.state().lines[0].position.iter().map(|r| tilt * r).collect();
     for (integrator, radius) in [
         (Integrator::Leapfrog, None),
         (Integrator::AxialImplicit, Some(1.0)),
@@ -438,10 +427,7 @@ fn an_undamped_swing_keeps_its_energy_for_a_thousand_seconds() {
             change = change.max((energy(&simulation) - start).abs());
         }
         let swing = start - energy(&rest);
-        assert!(
-            change < 5e-3 * swing,
-            "{integrator:?}: {change} J of {swing} J"
-        );
+        assert!(change < 5e-3 * swing, "{integrator:?}: {change} J of {swing} J");
     }
 }
 

@@ -95,10 +95,7 @@ fn energy_error(integrator: Integrator, step: f64) -> f64 {
 #[test]
 fn a_tabulated_rope_keeps_its_energy() {
     for integrator in INTEGRATORS {
-        let (coarse, fine) = (
-            energy_error(integrator, 2e-3),
-            energy_error(integrator, 5e-4),
-        );
+        let (coarse, fine) = (energy_error(integrator, 2e-3), energy_error(integrator, 5e-4));
         println!("{integrator:?}: {coarse:.2e} {fine:.2e}");
         assert!(fine < 1e-3, "{integrator:?}: {fine}");
         assert!(
@@ -184,10 +181,7 @@ fn a_rope_that_dampers_draw_before_it_is_taut_converges_to_the_motion_of_explici
 fn a_table_that_does_not_rise_is_refused_with_its_row() {
     let mistake = |table: &str| {
         let text = rope("axial_stiffness = 1.0", 200.0, "").to_toml();
-        let text = text.replace(
-            "axial_stiffness = 1.0",
-            &format!("tension_strain = {table}"),
-        );
+        let text = text.replace("axial_stiffness = 1.0", &format!("tension_strain = {table}"));
         Scene::from_toml(&text).unwrap_err()
     };
     for (table, at, said) in [
@@ -398,11 +392,7 @@ fn decks_say_static_and_dynamic_stiffness_or_name_a_table() {
     assert_eq!(rows.len(), 3);
     let converted = Scene::from_toml(&read.to_commented_toml()).unwrap();
     assert_eq!(
-        converted.line_types["rope"]
-            .tension_strain
-            .as_ref()
-            .unwrap()
-            .rows,
+        converted.line_types["rope"].tension_strain.as_ref().unwrap().rows,
         *rows
     );
     for (ea, ba, said) in [

@@ -18,11 +18,7 @@ fn open(mut scene: Scene) -> Scene {
 fn lines_that_meet_share_elements_by_length_and_lines_alone_have_all_of_them() {
     let counts = |name: &str| -> Vec<usize> {
         let model = Model::new(&open(shipped(name))).unwrap();
-        model
-            .lines
-            .iter()
-            .map(|line| line.segment_count())
-            .collect()
+        model.lines.iter().map(|line| line.segment_count()).collect()
     };
     assert_eq!(counts("bridle"), [3, 3, 40]);
     assert_eq!(counts("clump_weight"), [40, 21]);

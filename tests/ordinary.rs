@@ -283,8 +283,7 @@ fn scene_of(seabed: &str, material: &str, ends: [[f64; 3]; 2], section: &str) ->
 
 #[test]
 #[ignore = "takes half a minute"]
-fn a_hundred_thousand_elements_have_an_equilibrium_or_are_refused_after_a_bounded_number_of_solves()
-{
+fn a_hundred_thousand_elements_have_an_equilibrium_or_are_refused_after_a_bounded_number_of_solves() {
     for line in [Line::rough(0), Line::floating(0)] {
         let line = Line {
             elements: Some(100_000),

@@ -154,18 +154,8 @@ const SLIPS: [(&str, &str, &str, &str); 23] = [
         "water.waves.regular.direction",
         "45 degrees are 0.7854 rad",
     ),
-    (
-        "height = 4.0",
-        "height = 40.0",
-        "water.waves.regular",
-        "breaks",
-    ),
-    (
-        "period = 10.0",
-        "period = 0.1",
-        "water.waves.regular",
-        "breaks",
-    ),
+    ("height = 4.0", "height = 40.0", "water.waves.regular", "breaks"),
+    ("period = 10.0", "period = 0.1", "water.waves.regular", "breaks"),
     (
         "pitch = [[0.05, 9.0]]",
         "pitch = [[5.0, 9.0]]",
@@ -242,12 +232,9 @@ fn shipped() -> Vec<(String, String)> {
     let files: Vec<PathBuf> = files
         .filter(|path| path.extension().is_some_and(|e| e == "toml"))
         .collect();
-    let scenes = files.iter().map(|path| {
-        (
-            path.display().to_string(),
-            fs::read_to_string(path).unwrap(),
-        )
-    });
+    let scenes = files
+        .iter()
+        .map(|path| (path.display().to_string(), fs::read_to_string(path).unwrap()));
     let readme = fs::read_to_string(root.join("README.md")).unwrap();
     let block = readme.split("```toml\n").nth(1).unwrap();
     let block = block.split("```").next().unwrap().to_string();
@@ -274,11 +261,7 @@ fn no_shipped_scene_is_strained_at_rest() {
     for (name, text) in shipped() {
         let scene = Scene::from_toml(&text).unwrap();
         let simulation = Simulation::by_rules(&scene).unwrap();
-        assert_eq!(
-            Watch::new(&scene, &simulation).look(&simulation),
-            [],
-            "{name}"
-        );
+        assert_eq!(Watch::new(&scene, &simulation).look(&simulation), [], "{name}");
     }
 }
 
@@ -363,9 +346,7 @@ fn said_by(folder: &Path, arguments: &[&str]) -> String {
 #[test]
 fn every_command_says_a_note_once_with_the_line_of_the_file() {
     let folder = tempfile::tempdir().unwrap();
-    let text = format!(
-        "title = \"slip\"\ngravity = 32.2\n{ROPE}[output]\nduration = 0.2\ninterval = 0.1\n"
-    );
+    let text = format!("title = \"slip\"\ngravity = 32.2\n{ROPE}[output]\nduration = 0.2\ninterval = 0.1\n");
     fs::write(folder.path().join("slip.toml"), text).unwrap();
     for arguments in [
         &["check", "slip.toml"][..],

@@ -180,8 +180,7 @@ fn a_drogue_in_a_current_pulls_by_its_drag_whatever_the_step() {
                 "#,
                 1.0 / RHO
             ));
-            let mut simulation =
-                Simulation::new(&with_integrator(drogue, integrator, step)).unwrap();
+            let mut simulation = Simulation::new(&with_integrator(drogue, integrator, step)).unwrap();
             for _ in 0..100 {
                 simulation.advance(0.1).unwrap();
             }
@@ -343,8 +342,7 @@ fn mass_on_a_vessel_has_a_moment_and_a_stiffness_about_its_origin() {
     let on = "position = [3.0, 2.0, -6.0], kind = 'coupled', on = 'ship'";
     let vessel = "vessels = [{ name = 'ship', position = [-3.0, 0.0, -4.0] }]";
     let of = |body: &str| {
-        let simulation =
-            Simulation::new(&heaving_fairlead(&format!("{on}{body}"), vessel)).unwrap();
+        let simulation = Simulation::new(&heaving_fairlead(&format!("{on}{body}"), vessel)).unwrap();
         (
             simulation.vessel_force(0),
             simulation.vessel_stiffness(0).unwrap(),
@@ -360,11 +358,7 @@ fn mass_on_a_vessel_has_a_moment_and_a_stiffness_about_its_origin() {
     let w = (9000.0 - RHO * 1.2) * G;
     let expected = [0.0, 0.0, -w, -2.0 * w, 3.0 * w, 0.0];
     for axis in 0..6 {
-        assert_relative_eq!(
-            force[0][axis] - bare[0][axis],
-            expected[axis],
-            epsilon = 1e-6 * w
-        );
+        assert_relative_eq!(force[0][axis] - bare[0][axis], expected[axis], epsilon = 1e-6 * w);
     }
     // it hangs 6 m under the origin, as a pendulum
     let turning = [

@@ -35,9 +35,7 @@ const ROUGH: [(&str, f64, f64); 1] = [("shallow", 0.005, 0.009)];
 
 fn public() -> Vec<Case> {
     let names = PUBLIC_SCENES.iter();
-    names
-        .map(|(name, _)| (*name, open(shipped(name))))
-        .collect()
+    names.map(|(name, _)| (*name, open(shipped(name)))).collect()
 }
 
 /// The scene with what the promise is about left open.
@@ -158,8 +156,7 @@ impl Outcome {
     /// What is promised of the raw tension.
     fn promised(&self) -> f64 {
         let mut rough = ROUGH.iter();
-        let found =
-            rough.find(|(name, tolerance, _)| *name == self.name && *tolerance == self.tolerance);
+        let found = rough.find(|(name, tolerance, _)| *name == self.name && *tolerance == self.tolerance);
         found.map_or(self.tolerance, |(_, _, kept)| *kept)
     }
 }
@@ -199,10 +196,7 @@ fn keep(cases: &[Case]) {
         let (name, tolerance) = (outcome.name, outcome.tolerance);
         let [raw, smooth] = outcome.errors;
         assert!(raw <= outcome.promised(), "{name}, {tolerance}: {raw}");
-        assert!(
-            smooth <= tolerance,
-            "{name}, {tolerance}: {smooth} low-passed"
-        );
+        assert!(smooth <= tolerance, "{name}, {tolerance}: {smooth} low-passed");
         let known = known(&outcome);
         let work = outcome.work;
         assert!(
@@ -336,10 +330,7 @@ fn write_the_reference_work() {
         env!("CARGO_PKG_VERSION"),
     );
     for outcome in public().iter().chain(&variants()).flat_map(outcomes) {
-        text += &format!(
-            "{},{},{:.0}\n",
-            outcome.name, outcome.tolerance, outcome.work
-        );
+        text += &format!("{},{},{:.0}\n", outcome.name, outcome.tolerance, outcome.work);
     }
     std::fs::write(path(), text).unwrap();
 }
@@ -420,10 +411,7 @@ fn successive_refinement_converges_under_the_default_law() {
             "{name}: {found:?}"
         );
         let [tension, position] = found[2];
-        assert!(
-            tension < 2e-3 && position < 1e-3,
-            "{name}: {tension} {position}"
-        );
+        assert!(tension < 2e-3 && position < 1e-3, "{name}: {tension} {position}");
         assert!(found[1][1] < 1e-3, "{name}: {found:?}");
     }
 }

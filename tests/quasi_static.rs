@@ -33,10 +33,7 @@ fn drawn_out(elements: usize, axial_stiffness: f64) -> Simulation {
     for _ in 0..100 {
         simulation.advance(0.1).unwrap();
         let counters = simulation.counters();
-        assert!(
-            counters.substeps == 1 && counters.solves <= 12,
-            "{counters:?}"
-        );
+        assert!(counters.substeps == 1 && counters.solves <= 12, "{counters:?}");
         solves += counters.solves;
     }
     assert!(solves <= 320, "{solves}"); // three of the wire a step
@@ -59,15 +56,10 @@ fn depth(simulation: &Simulation) -> f64 {
 #[test]
 fn the_collar_slides_to_the_inextensible_catenary_on_any_mesh() {
     // The shipped EA of 5.35e6 N lengthens the wire by 1e-4 m; 1e10 N by 5e-8 m.
-    for (elements, axial_stiffness, tolerance) in
-        [(20, 5.35e6, 1e-3), (20, 1e10, 1e-6), (200, 1e10, 1e-6)]
-    {
+    for (elements, axial_stiffness, tolerance) in [(20, 5.35e6, 1e-3), (20, 1e10, 1e-6), (200, 1e10, 1e-6)] {
         let simulation = drawn_out(elements, axial_stiffness);
         for (value, exact) in span_and_sag(&simulation).into_iter().zip(COLLAR) {
-            assert!(
-                (value / exact - 1.0).abs() < tolerance,
-                "{elements}: {value}"
-            );
+            assert!((value / exact - 1.0).abs() < tolerance, "{elements}: {value}");
         }
         assert!((depth(&simulation) / COLLAR[1] - 1.0).abs() < tolerance);
     }
@@ -135,17 +127,12 @@ fn the_wall_feels_the_pull_on_the_collar_and_half_the_weight_of_the_wire() {
 fn without_a_pull_the_wire_hangs_folded_below_the_wall_and_is_drawn_out_from_there() {
     let mut simulation = Simulation::new(&shipped("collar")).unwrap();
     assert!(simulation.state().points[1].position.x.abs() < 1e-9);
-    assert!(
-        (simulation.sag(0) - 10.0).abs() < 1e-3
-            && (simulation.tension_b(0) - HALF_WEIGHT).abs() < 1e-9
-    );
+    assert!((simulation.sag(0) - 10.0).abs() < 1e-3 && (simulation.tension_b(0) - HALF_WEIGHT).abs() < 1e-9);
     let mut span = simulation.state().points[1].position.x;
     for _ in 0..50 {
         simulation.advance(0.1).unwrap();
         let x = simulation.state().points[1].position.x;
-        assert!(
-            x > span && (simulation.state().points[1].velocity.x - (x - span) / 0.1).abs() < 1e-9
-        );
+        assert!(x > span && (simulation.state().points[1].velocity.x - (x - span) / 0.1).abs() < 1e-9);
         span = x;
     }
 }
@@ -178,9 +165,7 @@ fn line(name: &str, ends: [&str; 2], sections: &[(&str, f64, usize)]) -> String 
         format!("{{ type = \"{kind}\", length = {length:?}, elements = {elements} }}")
     };
     let sections = sections.iter().map(section).collect::<Vec<_>>().join(", ");
-    format!(
-        "[[lines]]\nname = \"{name}\"\nfrom = \"{from}\"\nto = \"{to}\"\nsections = [{sections}]\n"
-    )
+    format!("[[lines]]\nname = \"{name}\"\nfrom = \"{from}\"\nto = \"{to}\"\nsections = [{sections}]\n")
 }
 
 const FIXED: &str = "kind = \"fixed\"";
@@ -254,10 +239,7 @@ fn a_line_on_a_bed_with_friction_is_its_catenary_at_every_step_and_costs_one_sol
                 (Vector3::new(node.x, node.y, node.z) - place).norm() < 1e-10,
                 "{node:?}"
             );
-            assert!(
-                (node.tension - at.tension).abs() <= 1e-12 * pull,
-                "{node:?}"
-            );
+            assert!((node.tension - at.tension).abs() <= 1e-12 * pull, "{node:?}");
         }
         assert_eq!(simulation.laid_length(0), exact.laid_length());
         assert_eq!(simulation.sag(0), exact.sag());
@@ -279,9 +261,8 @@ fn a_line_with_an_end_under_the_bed_rests_on_its_elements() {
 
 /// Three lines from two anchors and a coupled point above, which meet in a point with a weight of its own.
 fn bridle(elements: usize, stiffness: f64, more: &str) -> Scene {
-    let text = format!(
-        "[line_types.rope]\nmass = 6.0\ndiameter = 0.08\naxial_stiffness = {stiffness:e}\n"
-    ) + QUASI_STATIC
+    let text = format!("[line_types.rope]\nmass = 6.0\ndiameter = 0.08\naxial_stiffness = {stiffness:e}\n")
+        + QUASI_STATIC
         + more
         + &point("port", [0.0, 10.0, -40.0], FIXED)
         + &point("starboard", [-5.0, -12.0, -42.0], FIXED)
@@ -295,8 +276,7 @@ fn bridle(elements: usize, stiffness: f64, more: &str) -> Scene {
 
 /// What is out of balance at a free point of some mass [kg], over the greatest tension there [-].
 fn imbalance(simulation: &Simulation, point: usize, mass: f64) -> f64 {
-    let pull = Vector3::from(simulation.end_force(point))
-        - mass * simulation.model().gravity * Vector3::z();
+    let pull = Vector3::from(simulation.end_force(point)) - mass * simulation.model().gravity * Vector3::z();
     let tensions = (0..simulation.model().lines.len()).map(|line| simulation.tension_max(line));
     pull.norm() / tensions.fold(0.0, f64::max)
 }
@@ -313,11 +293,7 @@ fn the_lines_of_a_bridle_carry_the_weight_of_its_knot() {
             let phase = 0.1 * f64::from(step);
             simulation.set_displacement(
                 2,
-                [
-                    8.0 * phase.sin(),
-                    6.0 * (1.0 - phase.cos()),
-                    3.0 * phase.sin(),
-                ],
+                [8.0 * phase.sin(), 6.0 * (1.0 - phase.cos()), 3.0 * phase.sin()],
             );
             if step > 0 {
                 simulation.advance(1.0).unwrap();
@@ -375,11 +351,7 @@ fn a_line_split_at_a_free_point_hangs_as_the_whole_one() {
         let split = ends.clone()
             + &point("joint", [150.0, 20.0, -30.0], FREE)
             + &line("lower", ["anchor", "joint"], &[("chain", first, 10)])
-            + &line(
-                "upper",
-                ["joint", "fairlead"],
-                &[("chain", 210.0 - first, 20)],
-            );
+            + &line("upper", ["joint", "fairlead"], &[("chain", 210.0 - first, 20)]);
         let (mut whole, mut split) = (
             Simulation::new(&scene(&whole)).unwrap(),
             Simulation::new(&scene(&split)).unwrap(),
@@ -432,9 +404,8 @@ fn a_heavy_free_point_rests_on_the_bed_and_is_lifted_by_a_load() {
 
 /// Two knots, sinking or floating, over a bed: each tied to an anchor, to a point above and to the other, slack to taut, in water.
 fn tangle(seed: &mut u64) -> Scene {
-    let mut text = "[seabed]\ndepth = 30.0\nstiffness = 1.0e6\n[water]\ndensity = 1025.0\n"
-        .to_string()
-        + QUASI_STATIC;
+    let mut text =
+        "[seabed]\ndepth = 30.0\nstiffness = 1.0e6\n[water]\ndensity = 1025.0\n".to_string() + QUASI_STATIC;
     for (name, heaviest) in [("chain", 60.0), ("rope", 10.0)] {
         let (mass, stiffness) = (
             1.0 + heaviest * random(seed),
@@ -466,10 +437,7 @@ fn tangle(seed: &mut u64) -> Scene {
         text += &point(name, place, kind);
         places.push(Vector3::from(place));
     }
-    for (number, [a, b]) in [[0, 4], [1, 5], [4, 5], [4, 2], [5, 3]]
-        .into_iter()
-        .enumerate()
-    {
+    for (number, [a, b]) in [[0, 4], [1, 5], [4, 5], [4, 2], [5, 3]].into_iter().enumerate() {
         let length = (0.95 + 0.5 * random(seed)) * (places[b] - places[a]).norm();
         let chain = (0.1 + 0.8 * random(seed)) * length;
         let sections = [("chain", chain, 5), ("rope", length - chain, 5)];
@@ -501,10 +469,7 @@ fn random_networks_rest_on_their_catenaries_in_balance() {
                 if z <= -30.0 + 0.02 {
                     pull.z = pull.z.max(0.0); // the bed carries it
                 }
-                assert!(
-                    pull.norm() < 1e-9 * tension,
-                    "{case} {step}: {pull} {tension}"
-                );
+                assert!(pull.norm() < 1e-9 * tension, "{case} {step}: {pull} {tension}");
             }
         }
     }
@@ -568,12 +533,7 @@ fn a_line_on_its_elements_is_at_rest_however_fast_it_was_moved_there() {
             assert_eq!(plain.line_end_force(0, end), damped.line_end_force(0, end));
         }
         assert_eq!(plain.tensions(0), damped.tensions(0));
-        assert!(
-            plain.state().lines[0]
-                .velocity
-                .iter()
-                .all(|v| v.norm() == 0.0)
-        );
+        assert!(plain.state().lines[0].velocity.iter().all(|v| v.norm() == 0.0));
     }
 }
 

@@ -69,10 +69,7 @@ fn a_chain_that_lets_go_at_both_ends_falls_freely() {
         assert_relative_eq!(fallen, 0.5 * 9.80665, max_relative = 4e-3);
         let error = simulation.energy_error().abs();
         let kinetic = simulation.energy().kinetic;
-        assert!(
-            error < 2e-2 * kinetic,
-            "{integrator:?}: {error} of {kinetic}"
-        );
+        assert!(error < 2e-2 * kinetic, "{integrator:?}: {error} of {kinetic}");
     }
 }
 
@@ -202,10 +199,7 @@ fn one_of_two_lines_at_a_free_point_lets_go_and_the_other_carries_on() {
         );
         assert!((clump - of_left).norm() < 1e-9 && (clump - of_right).norm() > 1.0);
         let (error, kinetic) = (simulation.energy_error().abs(), simulation.energy().kinetic);
-        assert!(
-            error < 2e-2 * kinetic,
-            "{integrator:?}: {error} of {kinetic}"
-        );
+        assert!(error < 2e-2 * kinetic, "{integrator:?}: {error} of {kinetic}");
     }
 }
 
@@ -221,8 +215,7 @@ fn an_end_that_could_let_go_and_does_not_moves_as_one_that_cannot() {
         let runs = ["", "release = \"b\"\n"].map(|release| {
             let mut scene = chain(&format!("{release}{way}"), water);
             scene.lines[0].sections[0].elements = Some(elements);
-            let mut simulation =
-                Simulation::new(&with_integrator(scene, integrator, 1e-3)).unwrap();
+            let mut simulation = Simulation::new(&with_integrator(scene, integrator, 1e-3)).unwrap();
             let mut history = Vec::new();
             for step in 1..=40 {
                 let t = 0.05 * f64::from(step);
@@ -231,11 +224,7 @@ fn an_end_that_could_let_go_and_does_not_moves_as_one_that_cannot() {
                 history.push(simulation.tension_b(0));
             }
             assert_eq!(simulation.parted(0), [!way.is_empty(), false]);
-            (
-                history,
-                simulation.energy().total(),
-                simulation.energy_error(),
-            )
+            (history, simulation.energy().total(), simulation.energy_error())
         });
         let [(held, energy, error), (may, other_energy, other_error)] = &runs;
         for (held, may) in held.iter().zip(may) {
@@ -277,9 +266,7 @@ fn a_simulation_goes_on_from_a_snapshot_after_a_step_that_grew_without_bound() {
         let should = simulation.snapshot().clone();
         simulation.restore(sound.clone());
         let count = simulation.state().lines[0].position.len();
-        let mad: Vec<_> = (0..count)
-            .map(|i| Vector3::repeat(1e300 * i as f64))
-            .collect();
+        let mad: Vec<_> = (0..count).map(|i| Vector3::repeat(1e300 * i as f64)).collect();
         set_node_velocities(&mut simulation, &mad);
         assert!(simulation.advance(0.1).is_err(), "{integrator:?}");
         simulation.restore(sound);
@@ -312,11 +299,7 @@ fn shaken(step: f64) -> Vec<Vector3<f64>> {
         [motion]
         top = { z = [[0.01, 1.0]], ramp = 1.0 }
         "#;
-    let mut simulation = following(&with_integrator(
-        scene(text),
-        Integrator::GeneralisedAlpha,
-        step,
-    ));
+    let mut simulation = following(&with_integrator(scene(text), Integrator::GeneralisedAlpha, step));
     simulation.set_release(0, true);
     let mut heights = Vec::new();
     for _ in 0..20 {
@@ -367,8 +350,7 @@ fn lines_that_cannot_let_go_are_refused() {
         &text.replace("mass = 20.0", "mass = 20.0\nbending_stiffness = 10.0"),
         "bending",
     );
-    let quasi_static =
-        format!("{text}\n").replace("integrator = \"auto\"", "integrator = \"quasi_static\"");
+    let quasi_static = format!("{text}\n").replace("integrator = \"auto\"", "integrator = \"quasi_static\"");
     refused(&quasi_static, "falls");
     refused(
         &chain("break = { at = \"a\", time = 1.0 }", "")

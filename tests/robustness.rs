@@ -87,11 +87,7 @@ fn greatest_tension(scene: &Scene, duration: f64) -> f64 {
 /// Runs every public scene with every change and 10 to 80 elements.
 fn none_blows_up(integrator: Integrator, spared: impl Fn(&str, &str, usize) -> bool) {
     for (name, _) in PUBLIC_SCENES {
-        let duration = if name.starts_with("lindahl") {
-            10.0
-        } else {
-            30.0
-        };
+        let duration = if name.starts_with("lindahl") { 10.0 } else { 30.0 };
         for (what, change) in CHANGES {
             for n in [10, 20, 40, 80] {
                 if spared(name, what, n) {
@@ -112,9 +108,7 @@ fn none_blows_up(integrator: Integrator, spared: impl Fn(&str, &str, usize) -> b
 
 #[test]
 fn no_hard_scene_blows_up_by_the_leapfrog() {
-    none_blows_up(Integrator::Leapfrog, |_, what, n| {
-        what == "BA × 10" && n == 80
-    }); // 10 µs a step
+    none_blows_up(Integrator::Leapfrog, |_, what, n| what == "BA × 10" && n == 80); // 10 µs a step
 }
 
 #[test]

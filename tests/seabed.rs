@@ -92,8 +92,7 @@ fn a_block_that_is_pushed_below_the_limit_stays_and_above_it_goes() {
             let push = 0.4 * part * weight;
             let force = format!(", force = {{ x = {{ ramp = [5.0, 0.0, 6.0, {push}] }} }}");
             let scene = block("friction = 0.4", [0.0, 0.0, -50.0], &force);
-            let mut simulation =
-                Simulation::new(&with_integrator(scene, integrator, 0.01)).unwrap();
+            let mut simulation = Simulation::new(&with_integrator(scene, integrator, 0.01)).unwrap();
             run(&mut simulation, 0.1, 16.0);
             let gone = place(&simulation, "block").x;
             if goes {
@@ -162,10 +161,7 @@ fn tension_falls_by_mu_w_along_the_bed_and_there_is_none_beyond() {
             slid += 1;
         }
     }
-    assert!(
-        slid > 3 && tension[0].abs() < 1e-3 * w * l,
-        "{slid} {tension:?}"
-    );
+    assert!(slid > 3 && tension[0].abs() < 1e-3 * w * l, "{slid} {tension:?}");
 }
 
 /// Tension of a segment [N].
@@ -211,10 +207,7 @@ fn a_line_with_friction_starts_at_rest_and_stays_there_for_600_s() {
                 greatest = greatest.max(moved.fold(0.0, f64::max));
             }
             println!("{integrator:?}, {bed}: drift {greatest:e} m");
-            assert!(
-                greatest < 1e-9 * 600.0,
-                "{integrator:?}, {bed}: {greatest:e} m"
-            );
+            assert!(greatest < 1e-9 * 600.0, "{integrator:?}, {bed}: {greatest:e} m");
         }
     }
 }
@@ -243,10 +236,7 @@ fn drag_along(simulation: &mut Simulation, points: &[&str], velocity: Vector3<f6
             let point = simulation.model().point_index(name).unwrap();
             let gone = velocity * step * (i - 1) as f64;
             simulation.set_displacement(point, gone.into());
-            simulation.set_velocity(
-                point,
-                [Some(velocity.x), Some(velocity.y), Some(velocity.z)],
-            );
+            simulation.set_velocity(point, [Some(velocity.x), Some(velocity.y), Some(velocity.z)]);
         }
         simulation.advance(step).unwrap();
     }
@@ -278,12 +268,7 @@ fn a_line_dragged_across_itself_resists_with_the_transverse_coefficient() {
         let ends = ["kind = \"coupled\""; 2];
         let scene = with_integrator(lying(bed, ends, 20, 102.0), integrator, 0.01);
         let mut simulation = Simulation::new(&scene).unwrap();
-        drag_along(
-            &mut simulation,
-            &["a", "b"],
-            Vector3::new(0.0, 0.1, 0.0),
-            120.0,
-        );
+        drag_along(&mut simulation, &["a", "b"], Vector3::new(0.0, 0.1, 0.0), 120.0);
         let forces = [End::A, End::B].map(|end| simulation.line_end_force(0, end));
         let pulled = -(forces[0].y + forces[1].y);
         println!("{integrator:?}: {pulled} N of {} N", 0.8 * 100.0 * G * 95.0);
@@ -297,18 +282,10 @@ fn the_ledger_closes_over_a_bed_that_slopes_and_rubs() {
         let bed = "friction = { transverse = 0.8, axial = 0.3 }, slope = [0.05, -0.1]";
         let scene = with_integrator(chain(bed, 560.0, 30), integrator, 0.005);
         let mut simulation = Simulation::new(&scene).unwrap();
-        drag_along(
-            &mut simulation,
-            &["fairlead"],
-            Vector3::new(0.1, 0.4, 0.0),
-            20.0,
-        );
+        drag_along(&mut simulation, &["fairlead"], Vector3::new(0.1, 0.4, 0.0), 20.0);
         let (error, lost) = (simulation.energy_error(), simulation.ledger().flow.lost);
         println!("{integrator:?}: {error} J of {lost} J");
-        assert!(
-            error.abs() < 0.01 * lost,
-            "{integrator:?}: {error} J of {lost} J"
-        );
+        assert!(error.abs() < 0.01 * lost, "{integrator:?}: {error} J of {lost} J");
     }
 }
 
@@ -395,8 +372,8 @@ fn a_slope_of_zero_is_the_level_bed() {
         Integrator::AxialImplicit,
         Integrator::GeneralisedAlpha,
     ] {
-        let [(level, _), (slope, _)] = ["friction = 0.0", "friction = 0.0, slope = [1e-300, 0.0]"]
-            .map(|bed| {
+        let [(level, _), (slope, _)] =
+            ["friction = 0.0", "friction = 0.0, slope = [1e-300, 0.0]"].map(|bed| {
                 swung(
                     &with_integrator(chain(bed, 560.0, 20), integrator, 0.02),
                     [1.0, 0.0],
@@ -585,20 +562,14 @@ fn a_deck_with_bathymetry_and_friction_is_read_and_converted_with_them() {
     let loaded = moorline::scene::load(&folder.join("deck.dat")).unwrap();
     let bed = loaded.scene.seabed.as_ref().unwrap();
     assert_eq!((bed.friction.transverse, bed.friction.axial), (0.7, 0.3));
-    assert_eq!(
-        bed.grid.as_ref().unwrap().depth,
-        [[100.0, 110.0], [100.0, 110.0]]
-    );
+    assert_eq!(bed.grid.as_ref().unwrap().depth, [[100.0, 110.0], [100.0, 110.0]]);
     let notes: Vec<String> = loaded.notes.iter().map(ToString::to_string).collect();
     let notes = notes.join("\n");
     assert!(
         notes.contains("static friction of 1.5 times the kinetic is not modelled"),
         "{notes}"
     );
-    assert!(
-        notes.contains("it needs no damping to fade in with"),
-        "{notes}"
-    );
+    assert!(notes.contains("it needs no damping to fade in with"), "{notes}");
     let converted = Scene::from_toml(&loaded.to_commented_toml()).unwrap();
     assert_eq!(converted, loaded.scene);
 }
@@ -607,14 +578,13 @@ fn a_deck_with_bathymetry_and_friction_is_read_and_converted_with_them() {
 fn a_seafloor_file_of_moordyn_c_is_read_as_heights_of_the_bed() {
     let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("seafloor_c");
     std::fs::create_dir_all(&folder).unwrap();
-    let deck = include_str!("decks/openfast_v2.dat")
-        .replace("2.0e6    kbot", "110 WtrDpth\nbed.txt SeafloorFile");
+    let deck =
+        include_str!("decks/openfast_v2.dat").replace("2.0e6    kbot", "110 WtrDpth\nbed.txt SeafloorFile");
     std::fs::write(folder.join("deck.dat"), deck).unwrap();
-    let heights =
-        "2 2\n-900 900\n-900 900\n-900 -900 -100\n-900 900 -100\n900 -900 -110\n900 900 -110\n";
+    let heights = "2 2\n-900 900\n-900 900\n-900 -900 -100\n-900 900 -100\n900 -900 -110\n900 900 -110\n";
     std::fs::write(folder.join("bed.txt"), heights).unwrap();
-    let loaded = moorline::scene::load(&folder.join("deck.dat"))
-        .unwrap_or_else(|error| panic!("{}", error.list()));
+    let loaded =
+        moorline::scene::load(&folder.join("deck.dat")).unwrap_or_else(|error| panic!("{}", error.list()));
     let grid = loaded.scene.seabed.unwrap().grid.unwrap();
     assert_eq!((grid.x, grid.y), (vec![-900.0, 900.0], vec![-900.0, 900.0]));
     assert_eq!(grid.depth, [[100.0, 110.0], [100.0, 110.0]]);
@@ -625,10 +595,7 @@ fn a_seafloor_file_of_moordyn_c_is_read_as_heights_of_the_bed() {
     .unwrap();
     let error = moorline::scene::load(&folder.join("deck.dat")).unwrap_err();
     let said = error.list();
-    assert!(
-        said.contains("deck.dat:27:1: OPTIONS, bathymetry: "),
-        "{said}"
-    );
+    assert!(said.contains("deck.dat:27:1: OPTIONS, bathymetry: "), "{said}");
     assert!(
         said.contains("bed.txt: no height at x = 900 m, y = -900 m"),
         "{said}"
@@ -652,10 +619,7 @@ fn a_vessel_is_held_by_nodes_that_stick_and_let_go_by_nodes_that_slide() {
     let [smooth, rough] = [0.0, 1.0].map(stiffness);
     // The less of the bed's length stretches with the fairlead, the stiffer is the line.
     assert!(rough[0][0] > 1.001 * smooth[0][0] && rough[0][0] < 2.0 * smooth[0][0]);
-    println!(
-        "{} N/m without, {} N/m with friction",
-        smooth[0][0], rough[0][0]
-    );
+    println!("{} N/m without, {} N/m with friction", smooth[0][0], rough[0][0]);
 }
 
 #[test]
@@ -668,9 +632,7 @@ fn a_point_under_a_bed_that_is_not_level_is_told_of() {
         scene.points[0].position = [10.0, 0.0, -100.0];
         let notes: Vec<String> = scene.notes().iter().map(ToString::to_string).collect();
         assert!(
-            notes
-                .iter()
-                .any(|note| note.contains("below the seabed there")),
+            notes.iter().any(|note| note.contains("below the seabed there")),
             "{notes:?}"
         );
     }
@@ -724,9 +686,6 @@ fn an_end_that_lets_go_comes_to_rest_on_a_bed_that_rubs() {
             .profile(0)
             .iter()
             .fold(0.0, |a: f64, node| a.min(node.z));
-        assert!(
-            (-100.5..-100.0).contains(&lowest),
-            "{integrator:?}: {lowest} m"
-        );
+        assert!((-100.5..-100.0).contains(&lowest), "{integrator:?}: {lowest} m");
     }
 }

@@ -112,9 +112,8 @@ fn the_static_forces_of_an_oblique_line_are_those_of_a_catenary_of_two_weights_t
         axial_stiffness: 2e6,
     };
     // the length under water, by bisection on the height of its end
-    let solve = |s: f64| {
-        catenary::solve(&[section(s, wet), section(60.0 - s, air)], 40.0, 38.0, None).unwrap()
-    };
+    let solve =
+        |s: f64| catenary::solve(&[section(s, wet), section(60.0 - s, air)], 40.0, 38.0, None).unwrap();
     let (mut low, mut high) = (20.0, 59.0);
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
@@ -183,10 +182,7 @@ fn a_line_that_dips_in_and_out_is_followed_to_second_order_in_time() {
         let errors = steps.map(|step| {
             let nodes = dipped(integrator, step);
             let pairs = nodes.iter().zip(&exact);
-            pairs
-                .map(|(a, b)| (a - b).norm_squared())
-                .sum::<f64>()
-                .sqrt()
+            pairs.map(|(a, b)| (a - b).norm_squared()).sum::<f64>().sqrt()
         });
         println!("{integrator:?}: {errors:?}");
         assert_order_at_least(2.0, &steps, &errors);
@@ -221,7 +217,8 @@ fn a_line_that_is_hauled_out_of_the_water_ends_with_its_weight_in_air() {
         "position = [0.0, 0.0, -8.0], kind = \"coupled\"",
     ];
     for integrator in [Integrator::Leapfrog, Integrator::GeneralisedAlpha] {
-        let more = "motion.b = { table = [[0.0, 0.0, 0.0, 0.0], [5.0, 0.0, 0.0, 0.0], [35.0, 0.0, 0.0, 40.0]] }";
+        let more =
+            "motion.b = { table = [[0.0, 0.0, 0.0, 0.0], [5.0, 0.0, 0.0, 0.0], [35.0, 0.0, 0.0, 40.0]] }";
         let scene = with_integrator(line(ROPE, ends, 20.0, 10, more), integrator, 0.01);
         let (wet, air) = (
             (50.0 + 25.0 * 20.0) * G - displaced(0.1) * 20.0,
@@ -234,27 +231,17 @@ fn a_line_that_is_hauled_out_of_the_water_ends_with_its_weight_in_air() {
             simulation.advance(0.05).unwrap();
         }
         let force = simulation.end_force(1)[2];
-        assert!(
-            (force + air).abs() < 1e-3 * air,
-            "{integrator:?}: {force}, {air}"
-        );
-        let (error, given) = (
-            simulation.energy_error().abs(),
-            simulation.ledger().flow.given,
-        );
-        assert!(
-            error < 1e-3 * given,
-            "{integrator:?}: {error} J of {given} J"
-        );
+        assert!((force + air).abs() < 1e-3 * air, "{integrator:?}: {force}, {air}");
+        let (error, given) = (simulation.energy_error().abs(), simulation.ledger().flow.given);
+        assert!(error < 1e-3 * given, "{integrator:?}: {error} J of {given} J");
     }
 }
 
 #[test]
 fn a_line_afloat_heaves_with_the_stiffness_of_its_waterplane() {
     let (diameter, mass, count) = (0.2, 0.5 * displaced(0.2) / G, 10);
-    let hose = format!(
-        "mass = {mass:?}, diameter = {diameter:?}, axial_stiffness = 1e5, added_mass_normal = 1.0"
-    );
+    let hose =
+        format!("mass = {mass:?}, diameter = {diameter:?}, axial_stiffness = 1e5, added_mass_normal = 1.0");
     let ends = [
         "position = [0.0, 0.0, 0.0], kind = \"fixed\"",
         "position = [10.01, 0.0, 0.0], kind = \"fixed\"",
@@ -313,10 +300,7 @@ fn the_vessel_stiffness_is_the_slope_of_the_force_where_lines_pierce_the_surface
         }
         simulation.vessel_force(0)
     };
-    let stiffness = Simulation::new(&scene)
-        .unwrap()
-        .vessel_stiffness(0)
-        .unwrap();
+    let stiffness = Simulation::new(&scene).unwrap().vessel_stiffness(0).unwrap();
     let h = 1e-4;
     for axis in 0..3 {
         let (high, low) = (force(h, axis), force(-h, axis));
@@ -349,9 +333,7 @@ fn an_end_force_is_that_of_all_nodes_in_every_way_of_telling_it() {
     let lack: f64 = (0..=12)
         .map(|i| {
             let surface = model.lines[0].surface.as_ref().unwrap();
-            surface
-                .node(i, &simulation.state().lines[0].position)
-                .weight
+            surface.node(i, &simulation.state().lines[0].position).weight
         })
         .sum();
     let both = of_end + simulation.line_end_force(0, End::A);

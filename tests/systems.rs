@@ -113,8 +113,7 @@ fn point_load(scene: &Scene, point: &Point, place: Vector3<f64>) -> Vector3<f64>
     let density = scene.water.as_ref().unwrap().density;
     let u = current(scene, place.z);
     let lift = density * point.volume.unwrap_or(0.0) - point.mass.unwrap_or(0.0);
-    lift * scene.gravity * Vector3::z()
-        + 0.5 * density * point.drag_area.unwrap_or(0.0) * u.norm() * u
+    lift * scene.gravity * Vector3::z() + 0.5 * density * point.drag_area.unwrap_or(0.0) * u.norm() * u
 }
 
 /// The scene with the elements that the model gave its sections written out.
@@ -147,9 +146,7 @@ fn imbalance(scene: &Scene, simulation: &Simulation) -> Imbalance {
         .lines
         .iter()
         .flat_map(|line| &line.sections)
-        .map(|section| {
-            section.length * wet_weight(scene, &scene.line_types[&section.line_type]).abs()
-        })
+        .map(|section| section.length * wet_weight(scene, &scene.line_types[&section.line_type]).abs())
         .sum();
     let (mut node, mut whole) = (0.0_f64, 0.0_f64);
     let mut at_points = vec![Vector3::zeros(); model.points.len()];
@@ -196,10 +193,7 @@ fn systems_at_rest_are_in_balance_node_by_node_and_as_a_whole() {
         let found = imbalance(&scene, &simulation);
         println!("{name}: {:.1e} {:.1e}", found.node, found.whole);
         // in a current, end forces take the drag along the last element as linear, where the nodes have it lumped
-        let flows = scene
-            .water
-            .as_ref()
-            .is_some_and(|water| water.current.is_some());
+        let flows = scene.water.as_ref().is_some_and(|water| water.current.is_some());
         let whole = if flows { 2e-3 } else { 1e-8 };
         assert!(found.node < 1e-8 && found.whole < whole, "{name}");
     }
@@ -302,10 +296,7 @@ fn driven(bridle: bool, integrator: Integrator, step: f64) -> Scene {
 #[test]
 fn halving_the_time_step_quarters_the_error_of_a_clump_line_and_a_bridle() {
     for bridle in [false, true] {
-        for (integrator, coarse) in [
-            (Integrator::Leapfrog, 4e-3),
-            (Integrator::GeneralisedAlpha, 4e-2),
-        ] {
+        for (integrator, coarse) in [(Integrator::Leapfrog, 4e-3), (Integrator::GeneralisedAlpha, 4e-2)] {
             let steps = [1.0, 0.5, 0.25, 0.125, 1.0 / 32.0].map(|part| part * coarse);
             let places = steps.map(|step| {
                 let mut simulation = following(&driven(bridle, integrator, step));
@@ -375,11 +366,7 @@ fn y_joint() -> Scene {
 
 /// Three points tied to each other, each to an anchor and to the vessel.
 fn delta_joint() -> Scene {
-    let knots = [
-        [30.0, 0.0, -25.0],
-        [-15.0, 26.0, -25.0],
-        [-15.0, -26.0, -25.0],
-    ];
+    let knots = [[30.0, 0.0, -25.0], [-15.0, 26.0, -25.0], [-15.0, -26.0, -25.0]];
     let mut lines = Vec::new();
     for (anchor, knot, vessel) in [("a0", "k0", "v0"), ("a1", "k1", "v1"), ("a2", "k2", "v2")] {
         lines.push((anchor, knot, 205.0));

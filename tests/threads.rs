@@ -72,19 +72,11 @@ fn any_number_of_threads_gives_the_same_state_bit_for_bit() {
         semi(6, true, Integrator::GeneralisedAlpha),
         semi(6, false, Integrator::QuasiStatic),
         twice(&shipped("bridle")),
-        with_integrator(
-            twice(&shipped("bridle")),
-            Integrator::GeneralisedAlpha,
-            0.05,
-        ),
+        with_integrator(twice(&shipped("bridle")), Integrator::GeneralisedAlpha, 0.05),
     ];
     // one network by one integrator, the other by another
     let mut mixed = semi(8, true, Integrator::Auto);
-    mixed
-        .line_types
-        .get_mut("rope")
-        .expect("a rope")
-        .axial_stiffness = Some(1.6e11);
+    mixed.line_types.get_mut("rope").expect("a rope").axial_stiffness = Some(1.6e11);
     mixed.lines[3]
         .sections
         .iter_mut()

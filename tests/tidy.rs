@@ -179,9 +179,7 @@ fn raw_string_end(text: &str, after_r: usize) -> Option<usize> {
     let hashes = rest.len() - rest.trim_start_matches('#').len();
     let inside = rest[hashes..].strip_prefix('"')?;
     let closing = format!("\"{}", "#".repeat(hashes));
-    let length = inside
-        .find(&closing)
-        .map_or(inside.len(), |n| n + closing.len());
+    let length = inside.find(&closing).map_or(inside.len(), |n| n + closing.len());
     Some(after_r + hashes + 1 + length)
 }
 
@@ -194,29 +192,21 @@ fn char_end(text: &str, at: usize) -> Option<usize> {
     }
     let character = inside.chars().next()?;
     let after = &inside[character.len_utf8()..];
-    after
-        .starts_with('\'')
-        .then(|| at + 1 + character.len_utf8() + 1)
+    after.starts_with('\'').then(|| at + 1 + character.len_utf8() + 1)
 }
 
 /// Places where a whole word stands in code.
 fn words<'t>(code: &'t str, word: &'t str) -> impl Iterator<Item = usize> + 't {
-    code.match_indices(word)
-        .map(|(at, _)| at)
-        .filter(move |at| {
-            let bytes = code.as_bytes();
-            let after = at + word.len();
-            let free_before = *at == 0 || !is_name_byte(bytes[at - 1]);
-            free_before && bytes.get(after).is_none_or(|byte| !is_name_byte(*byte))
-        })
+    code.match_indices(word).map(|(at, _)| at).filter(move |at| {
+        let bytes = code.as_bytes();
+        let after = at + word.len();
+        let free_before = *at == 0 || !is_name_byte(bytes[at - 1]);
+        free_before && bytes.get(after).is_none_or(|byte| !is_name_byte(*byte))
+    })
 }
 
 fn assert_none(complaints: &[String], rule: &str) {
-    assert!(
-        complaints.is_empty(),
-        "{rule}\n  {}",
-        complaints.join("\n  ")
-    );
+    assert!(complaints.is_empty(), "{rule}\n  {}", complaints.join("\n  "));
 }
 
 /// The layer a file of the library belongs to.
@@ -352,10 +342,7 @@ fn a_function_fits_a_screen() {
 fn says_a_unit(doc: &str) -> bool {
     doc.split('[').skip(1).any(|inside| {
         let unit = inside.split(']').next().unwrap_or("");
-        inside.contains(']')
-            && !unit.is_empty()
-            && !unit.contains('`')
-            && unit.chars().count() <= 24
+        inside.contains(']') && !unit.is_empty() && !unit.contains('`') && unit.chars().count() <= 24
     })
 }
 
@@ -388,10 +375,7 @@ fn public_numbers(source: &Source) -> Vec<(usize, String)> {
         };
         if words(declaration, "f64").next().is_some() {
             let name = rest.strip_prefix("fn ").unwrap_or(rest);
-            let end = name
-                .bytes()
-                .position(|byte| !is_name_byte(byte))
-                .unwrap_or(0);
+            let end = name.bytes().position(|byte| !is_name_byte(byte)).unwrap_or(0);
             found.push((at, name[..end].to_string()));
         }
     }
@@ -470,11 +454,7 @@ fn nothing_is_left_to_be_done() {
                 }
             }
         }
-        for mark in [
-            concat!("TO", "DO"),
-            concat!("FIX", "ME"),
-            concat!("XX", "X"),
-        ] {
+        for mark in [concat!("TO", "DO"), concat!("FIX", "ME"), concat!("XX", "X")] {
             let marks = words(&source.text, mark).map(|at| format!("{}: {mark}", source.place(at)));
             complaints.extend(marks);
         }

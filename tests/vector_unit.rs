@@ -47,8 +47,7 @@ fn swayed(name: &str, elements: usize, steps: usize, portable: bool) -> State {
 fn the_widest_vectors_and_portable_ones_agree_bit_for_bit() {
     for name in ["oc3_catenary", "taut_polyester"] {
         for elements in [2, 3, 10, 21, 40] {
-            let [wide, portable] =
-                [false, true].map(|portable| swayed(name, elements, 400, portable));
+            let [wide, portable] = [false, true].map(|portable| swayed(name, elements, 400, portable));
             assert!(
                 wide.lines == portable.lines,
                 "{name}, {elements} elements: states differ"
@@ -68,9 +67,7 @@ fn swayed_implicitly(name: &str, elements: usize, steps: usize, portable: bool) 
     let mut work = AxialWork::new(model, line, 0.9).expect("one strain measure");
     work.set_portable(portable);
     work.load(&state);
-    let start = line
-        .ends
-        .map(|point| simulation.state().points[point].position);
+    let start = line.ends.map(|point| simulation.state().points[point].position);
     let step = Step::after([size; 2], size);
     for end in [End::A, End::B] {
         work.put_end(end, start[end as usize], Vector3::zeros());
@@ -92,10 +89,7 @@ fn implicit_tensions_are_the_same_with_the_widest_vectors_and_portable_ones() {
         for elements in [2, 3, 5, 10, 21, 40] {
             let [wide, portable] =
                 [false, true].map(|portable| swayed_implicitly(name, elements, 200, portable));
-            assert!(
-                wide == portable,
-                "{name}, {elements} elements: states differ"
-            );
+            assert!(wide == portable, "{name}, {elements} elements: states differ");
         }
     }
 }

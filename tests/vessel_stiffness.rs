@@ -64,8 +64,7 @@ impl Deck {
         );
         for number in 0..3 {
             let angle = self.heading + std::f64::consts::TAU * f64::from(number) / 3.0;
-            let at =
-                |[radius, depth]: [f64; 2]| [radius * angle.cos(), radius * angle.sin(), -depth];
+            let at = |[radius, depth]: [f64; 2]| [radius * angle.cos(), radius * angle.sin(), -depth];
             text += &format!(
                 r#"
                 [[points]]
@@ -195,10 +194,7 @@ fn assert_is_slope(scene: &Scene, step: f64, tolerance: f64) {
 
 #[test]
 fn the_stiffness_of_elements_is_the_slope_of_their_force() {
-    let smooth = Deck {
-        friction: 0.0,
-        ..OC3
-    };
+    let smooth = Deck { friction: 0.0, ..OC3 };
     assert_is_slope(&smooth.scene(20, ""), 1e-4, 1e-5);
     assert_is_slope(&bridle(""), 1e-4, 1e-5);
     // Every equilibrium lays the lines anew on a bed with friction, whose nodes the stiffness holds where they lie: 1.9e-4.
@@ -249,11 +245,7 @@ fn the_stiffness_of_clamped_cables_has_the_moments_of_their_clamps() {
 
 #[test]
 fn the_stiffness_is_symmetric_but_for_the_moment_that_rotations_turn() {
-    for scene in [
-        bridle(""),
-        bridle("integrator = \"quasi_static\""),
-        cables(),
-    ] {
+    for scene in [bridle(""), bridle("integrator = \"quasi_static\""), cables()] {
         let simulation = posed(&scene, POSE);
         let stiffness = matrix(simulation.vessel_stiffness(0).unwrap());
         let [.., x, y, z] = simulation.vessel_force(0);
@@ -331,19 +323,14 @@ fn a_slack_line_holds_a_vessel_by_the_weight_that_heave_lifts() {
 
 /// Diagonal of the stiffness of the closed forms, and the vertical force [N/m, N m/rad, N].
 fn published(deck: &Deck) -> ([f64; 6], f64) {
-    let (force, stiffness) = Simulation::new(&deck.scene(20, ""))
-        .unwrap()
-        .vessel_at_rest(0);
+    let (force, stiffness) = Simulation::new(&deck.scene(20, "")).unwrap().vessel_at_rest(0);
     let stiffness = stiffness.unwrap();
     ([0, 1, 2, 3, 4, 5].map(|i| stiffness[i][i]), force[2])
 }
 
 fn assert_close(value: f64, expected: f64, tolerance: f64) {
     let error = value / expected - 1.0;
-    assert!(
-        error.abs() < tolerance,
-        "{value} is {error:.4} off {expected}"
-    );
+    assert!(error.abs() < tolerance, "{value} is {error:.4} off {expected}");
 }
 
 #[test]
@@ -391,10 +378,7 @@ fn oc4_deepcwind_has_its_published_stiffness() {
 
 #[test]
 fn elements_converge_to_the_stiffness_of_the_closed_form() {
-    let frictionless = Deck {
-        friction: 0.0,
-        ..OC3
-    };
+    let frictionless = Deck { friction: 0.0, ..OC3 };
     let errors = [20, 160, 640].map(|elements| {
         let simulation = Simulation::new(&frictionless.scene(elements, "")).unwrap();
         let (_, closed) = simulation.vessel_at_rest(0);

@@ -82,8 +82,7 @@ fn the_water_presses_a_held_piece_as_morison_and_airy_say() {
     let (mut greatest, mut error) = (0.0_f64, 0.0_f64);
     for _ in 0..90 {
         simulation.advance(0.1).unwrap();
-        let found =
-            simulation.line_end_force(0, End::A) + simulation.line_end_force(0, End::B) - still;
+        let found = simulation.line_end_force(0, End::A) + simulation.line_end_force(0, End::B) - still;
         let angle = k * Vector3::new(7.0, 3.0, 0.0).dot(&along) - omega * simulation.time();
         let half_node = |z: f64| {
             let decay = (k * (z - amplitude * angle.cos())).exp();
@@ -91,8 +90,7 @@ fn the_water_presses_a_held_piece_as_morison_and_airy_say() {
             let velocity = water * angle.cos() * along + Vector3::new(0.3, -0.2, 0.0);
             let level = omega * water * angle.sin() * along;
             let upward = -omega * water * angle.cos() * Vector3::z();
-            0.5 * DENSITY * 0.3 * 1.1 * velocity.norm() * velocity
-                + displaced * (1.9 * level + 1.2 * upward)
+            0.5 * DENSITY * 0.3 * 1.1 * velocity.norm() * velocity + displaced * (1.9 * level + 1.2 * upward)
         };
         let expected = half_node(-12.0) + half_node(-10.0); // of 1 m each
         error = error.max((found - expected).norm());
@@ -131,10 +129,7 @@ fn what_weighs_as_much_as_water_goes_round_as_the_water_does() {
     for integrator in [Integrator::Leapfrog, Integrator::GeneralisedAlpha] {
         for depth in [8.0, 20.0, 40.0] {
             let mut scene = with_integrator(drifter(depth), integrator, 0.02);
-            set_waves(
-                &mut scene,
-                regular(amplitude, period, 0.0, Some(4.0 * period)),
-            );
+            set_waves(&mut scene, regular(amplitude, period, 0.0, Some(4.0 * period)));
             let mut simulation = Simulation::new(&scene).unwrap();
             let mut places = Vec::new();
             while simulation.time() < 6.0 * period {
@@ -219,10 +214,7 @@ fn halving_the_time_step_quarters_the_error_in_waves() {
             }
             simulation.state().lines[0].position[8]
         });
-        let errors: Vec<f64> = middles[..4]
-            .iter()
-            .map(|m| (m - middles[4]).norm())
-            .collect();
+        let errors: Vec<f64> = middles[..4].iter().map(|m| (m - middles[4]).norm()).collect();
         assert_order(2.0, &steps[..4], &errors);
     }
 }
@@ -313,9 +305,7 @@ fn long_and_short_communication_steps_meet_the_same_waves() {
         tensions
     };
     let (short, long) = (after(0.05), after(2.0));
-    let range = short
-        .iter()
-        .fold(0.0_f64, |a, b| a.max((b - short[0]).abs()));
+    let range = short.iter().fold(0.0_f64, |a, b| a.max((b - short[0]).abs()));
     for (a, b) in short.iter().zip(&long) {
         assert!((a - b).abs() < 0.01 * range, "{short:?} {long:?}");
     }
@@ -431,10 +421,7 @@ fn a_ramp_begins_at_the_forces_of_still_water() {
         let scene = riser(integrator, 0.02);
         let mut calm = scene.clone();
         calm.water.as_mut().unwrap().waves = None;
-        let (waves, still) = (
-            Simulation::new(&scene).unwrap(),
-            Simulation::new(&calm).unwrap(),
-        );
+        let (waves, still) = (Simulation::new(&scene).unwrap(), Simulation::new(&calm).unwrap());
         assert_eq!(waves.end_force(1), still.end_force(1));
     }
 }
@@ -496,10 +483,7 @@ fn refused(waves: &str, place: &str, problem: &str) {
         1,
     );
     let message = Scene::from_toml(&text).unwrap_err().to_string();
-    assert!(
-        message.contains(place) && message.contains(problem),
-        "{message}"
-    );
+    assert!(message.contains(place) && message.contains(problem), "{message}");
 }
 
 #[test]
@@ -645,10 +629,7 @@ fn waves_that_would_break_and_seas_without_a_ramp_are_remarked_on() {
     set_waves(&mut scene, regular(5.0, 6.0, 0.0, None));
     let notes = scene.notes();
     for said in ["a wave of 10 m and 6 s breaks", "no `ramp`"] {
-        assert!(
-            notes.iter().any(|note| note.text.contains(said)),
-            "{notes:?}"
-        );
+        assert!(notes.iter().any(|note| note.text.contains(said)), "{notes:?}");
     }
 }
 
@@ -664,8 +645,7 @@ fn deck(folder: &std::path::Path, waves: &str, current: &str) -> std::path::Path
 }
 
 const DECK_WAVES: &str = "0.0 0.0 0.0\n0.6 0.0 1.2\n0.9 0.4 0.0 0.5\n";
-const DECK_CURRENT: &str =
-    "--- steady currents ---\nprofile\nz ux uy uz\n-80.0 0.1 0.0 0\n0.0 0.7 0.2 0\n";
+const DECK_CURRENT: &str = "--- steady currents ---\nprofile\nz ux uy uz\n-80.0 0.1 0.0 0\n0.0 0.7 0.2 0\n";
 
 #[test]
 fn a_deck_of_moordyn_brings_its_waves_and_current_from_files() {
@@ -699,10 +679,7 @@ fn a_scene_names_files_of_waves_and_current_as_a_deck_does() {
     let folder = tempfile::tempdir().unwrap();
     deck(folder.path(), DECK_WAVES, DECK_CURRENT);
     let path = folder.path().join("scene.toml");
-    let original = system(
-        Integrator::Auto,
-        "{ regular = { height = 1.0, period = 5.0 } }",
-    );
+    let original = system(Integrator::Auto, "{ regular = { height = 1.0, period = 5.0 } }");
     let text = original.to_toml().replace(
         "[water.waves.regular]",
         "[water.current]\nfile = \"current_profile.txt\"\n[water.waves]\nfile = \"wave_frequencies.txt\"\n[nothing]",
@@ -712,17 +689,7 @@ fn a_scene_names_files_of_waves_and_current_as_a_deck_does() {
     std::fs::write(&path, format!("{}{}", &text[..start], &text[end..])).unwrap();
     let scene = moorline::scene::load(&path).unwrap().scene;
     let water = scene.water.as_ref().unwrap();
-    assert_eq!(
-        water
-            .current
-            .as_ref()
-            .unwrap()
-            .profile
-            .as_ref()
-            .unwrap()
-            .len(),
-        2
-    );
+    assert_eq!(water.current.as_ref().unwrap().profile.as_ref().unwrap().len(), 2);
     assert_eq!(
         Simulation::new(&scene)
             .unwrap()

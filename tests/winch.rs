@@ -119,16 +119,8 @@ fn statics_at_a_length_change_are_those_of_the_line_written_with_that_length() {
         simulation.restart(0.0).unwrap();
         let elements = (25.0 + change / 4.0) as usize;
         let written = Simulation::new(&chain(100.0 + change, elements, "")).unwrap();
-        assert_relative_eq!(
-            simulation.tension_b(0),
-            written.tension_b(0),
-            max_relative = 1e-9
-        );
-        assert_relative_eq!(
-            simulation.laid_length(0),
-            written.laid_length(0),
-            epsilon = 1e-6
-        );
+        assert_relative_eq!(simulation.tension_b(0), written.tension_b(0), max_relative = 1e-9);
+        assert_relative_eq!(simulation.laid_length(0), written.laid_length(0), epsilon = 1e-6);
     }
 }
 
@@ -147,11 +139,7 @@ fn a_line_between_two_numbers_of_segments_is_a_line_with_a_segment_of_that_lengt
         (last.length, last.elements) = (end, Some(1));
         scene.lines[0].sections.push(last);
         let written = Simulation::new(&scene).unwrap();
-        assert_relative_eq!(
-            simulation.tension_b(0),
-            written.tension_b(0),
-            max_relative = 1e-9
-        );
+        assert_relative_eq!(simulation.tension_b(0), written.tension_b(0), max_relative = 1e-9);
     }
 }
 
@@ -252,10 +240,7 @@ fn the_error_of_the_tension_falls_with_the_step_as_it_does_without_a_winch() {
     let orders = [0.0, 1.9, 9.0].map(|change| {
         let reference = paying_out(change, 6.25e-5);
         let errors = steps.map(|step| paying_out(change, step).tension_error(&reference, 200));
-        println!(
-            "{change} m: order {:.2}, {errors:.7?}",
-            order(&steps, &errors)
-        );
+        println!("{change} m: order {:.2}, {errors:.7?}", order(&steps, &errors));
         order(&steps, &errors)
     });
     assert!(orders[1] > orders[0] - 0.1, "{orders:?}");
@@ -344,10 +329,7 @@ fn what_a_winch_cannot_serve_is_refused() {
         assert!(mistake.problem.contains(said), "{mistake}");
     };
     let text = chain(100.0, 25, WINCH).to_toml();
-    refused(
-        &text.replace("end = \"b\"", "end = \"a\""),
-        "the other way round",
-    );
+    refused(&text.replace("end = \"b\"", "end = \"a\""), "the other way round");
     refused(
         &text.replace("length_max = 30.0", "length_max = -1.0"),
         "not positive",
@@ -356,10 +338,7 @@ fn what_a_winch_cannot_serve_is_refused() {
         &text.replace("mass = 20.0", "mass = 20.0\nbending_stiffness = 10.0"),
         "bending",
     );
-    let implicit = text.replace(
-        "integrator = \"auto\"",
-        "integrator = \"generalised_alpha\"",
-    );
+    let implicit = text.replace("integrator = \"auto\"", "integrator = \"generalised_alpha\"");
     refused(&implicit, "leapfrog");
 }
 
@@ -368,8 +347,7 @@ fn a_line_on_a_rough_bed_stays_at_rest_and_pays_out_as_on_a_smooth_one() {
     let text = chain(100.0, 25, WINCH).to_toml();
     let text = text.replace("\nfriction = 0.0", "");
     let rough = Scene::from_toml(&text.replace("[seabed]", "[seabed]\nfriction = 0.5")).unwrap();
-    let mut simulation =
-        Simulation::new(&with_integrator(rough, Integrator::Leapfrog, 2e-3)).unwrap();
+    let mut simulation = Simulation::new(&with_integrator(rough, Integrator::Leapfrog, 2e-3)).unwrap();
     let start = simulation.tension_b(0);
     (0..50).for_each(|_| simulation.advance(0.1).unwrap());
     assert_relative_eq!(simulation.tension_b(0), start, max_relative = 1e-9);

@@ -35,12 +35,8 @@ pub fn scene(name: &str) -> Scene {
 /// Where a table of this processor is, `benches/tables/<processor>.<name>.csv`; none where the processor's name is not known.
 pub fn table(name: &str) -> Option<PathBuf> {
     let known = fs::read_to_string("/proc/cpuinfo").ok()?;
-    let processor = known
-        .lines()
-        .find_map(|line| line.strip_prefix("model name"))?;
-    let processor = processor
-        .trim_start_matches([' ', '\t', ':'])
-        .to_lowercase();
+    let processor = known.lines().find_map(|line| line.strip_prefix("model name"))?;
+    let processor = processor.trim_start_matches([' ', '\t', ':']).to_lowercase();
     let words = processor.split(|c: char| !c.is_ascii_alphanumeric());
     let words: Vec<&str> = words.filter(|word| !word.is_empty()).collect();
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/tables");

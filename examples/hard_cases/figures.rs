@@ -11,8 +11,7 @@ use super::scenes::*;
 
 /// All cases, in the order of the page.
 pub const ALL: [fn() -> Page; 14] = [
-    snap, stiffness, bed, damping, short, clump, massless, fall, whip, dragged, jump, resonance,
-    hours, steps,
+    snap, stiffness, bed, damping, short, clump, massless, fall, whip, dragged, jump, resonance, hours, steps,
 ];
 
 /// Most points of a curve.
@@ -62,8 +61,7 @@ fn ledger(run: &Run, time_unit: f64) -> Vec<[f64; 2]> {
 }
 
 fn named<const N: usize>(runs: [(&str, &Run); N]) -> Vec<(String, Run)> {
-    runs.map(|(name, run)| (name.to_string(), run.clone()))
-        .into()
+    runs.map(|(name, run)| (name.to_string(), run.clone())).into()
 }
 
 const KN: f64 = 1e3;
@@ -74,11 +72,7 @@ const TENSION_N: [&str; 2] = ["time [s]", "tension [N]"];
 
 fn lindahl(elements: usize, integrator: Integrator, damping: f64) -> Run {
     let scene = with_elements(shipped("lindahl_fast"), elements);
-    Run::of(
-        &more_damped(by(scene, integrator, 0.002), damping),
-        15.0,
-        0.005,
-    )
+    Run::of(&more_damped(by(scene, integrator, 0.002), damping), 15.0, 0.005)
 }
 
 fn snap() -> Page {
@@ -92,11 +86,7 @@ fn snap() -> Page {
             "Snap after slack: Lindahl's chain, one turn in 1.25 s",
             TENSION_N,
             vec![
-                series(
-                    "leapfrog, 40 elements",
-                    Look::Line,
-                    tension(&explicit, span, 1.0),
-                ),
+                series("leapfrog, 40 elements", Look::Line, tension(&explicit, span, 1.0)),
                 series(
                     "axial-implicit, 40 elements",
                     Look::Line,
@@ -156,10 +146,7 @@ fn bed() -> Page {
         Run::of(&scene, 40.0, 0.05)
     };
     let (given, harder) = (run(1.0), run(100.0));
-    let apart = given
-        .time
-        .iter()
-        .zip(given.tension.iter().zip(&harder.tension));
+    let apart = given.time.iter().zip(given.tension.iter().zip(&harder.tension));
     let apart = apart.map(|(t, (a, b))| [*t, (b - a) / KN]).collect();
     let span = [0.0, 40.0];
     Page {
@@ -227,11 +214,7 @@ fn damping() -> Page {
 
 fn short() -> Page {
     let plain = Run::of(&short_segment(0.0), 30.0, 0.05);
-    let explicit = Run::of(
-        &by(short_segment(1000.0), Integrator::Leapfrog, 0.01),
-        30.0,
-        0.05,
-    );
+    let explicit = Run::of(&by(short_segment(1000.0), Integrator::Leapfrog, 0.01), 30.0, 0.05);
     let auto = Run::of(&short_segment(1000.0), 30.0, 0.05);
     let span = [10.0, 30.0];
     Page {
@@ -255,19 +238,10 @@ fn short() -> Page {
 fn clump() -> Page {
     use super::scenes::clump;
     let drop = |integrator| Run::of(&by(clump(10, 1.0, 0.0), integrator, 0.001), 4.0, 0.01);
-    let (explicit, implicit) = (
-        drop(Integrator::Leapfrog),
-        drop(Integrator::GeneralisedAlpha),
-    );
-    let swing = Run::of(
-        &by(clump(10, 0.0, 1.0), Integrator::Leapfrog, 0.001),
-        20.0,
-        0.01,
-    );
+    let (explicit, implicit) = (drop(Integrator::Leapfrog), drop(Integrator::GeneralisedAlpha));
+    let swing = Run::of(&by(clump(10, 0.0, 1.0), Integrator::Leapfrog, 0.001), 20.0, 0.01);
     let pulls = swing_pulls(1.0, 0.01, 2000).into_iter().enumerate();
-    let pendulum = pulls
-        .map(|(k, pull)| [0.01 * k as f64, pull / KN])
-        .collect();
+    let pendulum = pulls.map(|(k, pull)| [0.01 * k as f64, pull / KN]).collect();
     let level = |pull: f64, to: f64| vec![[0.0, pull / KN], [to, pull / KN]];
     Page {
         stem: "hard_06_clump",
@@ -307,13 +281,7 @@ fn clump() -> Page {
 }
 
 fn massless() -> Page {
-    let run = |mass, integrator| {
-        Run::of(
-            &by(nearly_massless(mass, true), integrator, 0.01),
-            12.0,
-            0.05,
-        )
-    };
+    let run = |mass, integrator| Run::of(&by(nearly_massless(mass, true), integrator, 0.01), 12.0, 0.05);
     let span = [0.0, 12.0];
     let truth = run(1e-5, Integrator::GeneralisedAlpha);
     let explicit = run(1e-5, Integrator::Leapfrog);
@@ -328,11 +296,7 @@ fn massless() -> Page {
                 series("leapfrog", Look::Line, tension(&explicit, span, KN)),
                 series("auto", Look::Line, tension(&auto, span, KN)),
                 series("1 kg/m", Look::Line, tension(&heavier, span, KN)),
-                series(
-                    "generalised-α, 10 ms",
-                    Look::Reference,
-                    tension(&truth, span, KN),
-                ),
+                series("generalised-α, 10 ms", Look::Reference, tension(&truth, span, KN)),
             ],
         )],
         runs: named([
@@ -393,11 +357,7 @@ fn fall() -> Page {
                 "Pull on the hook over the chain's weight",
                 ["time [s]", "pull [-]"],
                 vec![
-                    series(
-                        "160 elements",
-                        Look::Line,
-                        tension(&fine, [0.0, 2.0], weight),
-                    ),
+                    series("160 elements", Look::Line, tension(&fine, [0.0, 2.0], weight)),
                     series("energy kept", Look::Reference, theory(&fall_pull)),
                 ],
             ),
@@ -505,11 +465,7 @@ fn jump() -> Page {
             "Taut polyester, its fairlead 1 m further from one communication point to the next",
             TENSION_MN,
             vec![
-                series(
-                    "smooth path, leapfrog",
-                    Look::Line,
-                    tension(&smooth, span, MN),
-                ),
+                series("smooth path, leapfrog", Look::Line, tension(&smooth, span, MN)),
                 series(
                     "smooth path, axial-implicit",
                     Look::Line,
@@ -613,10 +569,6 @@ fn steps() -> Page {
                 series("exact motion", Look::Reference, tension(&exact, span, KN)),
             ],
         )],
-        runs: named([
-            ("exact", &exact),
-            ("10 s", &long),
-            ("irregular", &irregular),
-        ]),
+        runs: named([("exact", &exact), ("10 s", &long), ("irregular", &irregular)]),
     }
 }

@@ -46,20 +46,12 @@ impl Run {
     }
 
     /// A scene that a host drives: `say` tells it where its points are before each of its communication steps [s].
-    pub fn hosted(
-        scene: &Scene,
-        steps: impl Iterator<Item = f64>,
-        say: impl Fn(&mut Simulation),
-    ) -> Run {
+    pub fn hosted(scene: &Scene, steps: impl Iterator<Item = f64>, say: impl Fn(&mut Simulation)) -> Run {
         Run::driven(begun(scene), steps, say)
     }
 
     /// A scene that follows its own motion to these times [s], one communication step to each, and what is seen of it there.
-    pub fn watched(
-        scene: &Scene,
-        times: &[f64],
-        see: impl Fn(&Simulation) -> f64,
-    ) -> (Run, Vec<f64>) {
+    pub fn watched(scene: &Scene, times: &[f64], see: impl Fn(&Simulation) -> f64) -> (Run, Vec<f64>) {
         let starts = std::iter::once(0.0).chain(times.iter().copied());
         let steps = starts.zip(times).map(|(from, to)| to - from);
         let seen = RefCell::new(Vec::new());
@@ -90,9 +82,7 @@ impl Run {
         run.sample();
         for step in steps {
             say(&mut run.end);
-            run.end
-                .advance(step)
-                .unwrap_or_else(|error| panic!("{error}"));
+            run.end.advance(step).unwrap_or_else(|error| panic!("{error}"));
             run.substeps += run.end.counters().substeps;
             run.solves += run.end.counters().solves;
             run.sample();
@@ -108,8 +98,7 @@ impl Run {
             .max(flow.given.abs())
             .max(flow.lost.abs())
             .max(self.flowed);
-        self.gained
-            .push(energy.total() - now.ledger().start - flow.given);
+        self.gained.push(energy.total() - now.ledger().start - flow.given);
         self.flowed = most;
         self.time.push(now.time());
         self.tension.push(now.tension_b(0));
@@ -118,12 +107,7 @@ impl Run {
 
     /// Whether every node is at a finite place and every tension finite.
     pub fn is_finite(&self) -> bool {
-        let nodes = self
-            .end
-            .state()
-            .lines
-            .iter()
-            .flat_map(|line| &line.position);
+        let nodes = self.end.state().lines.iter().flat_map(|line| &line.position);
         self.tension.iter().all(|tension| tension.is_finite())
             && nodes.flat_map(|r| r.iter()).all(|x| x.is_finite())
     }

@@ -7,9 +7,7 @@ use std::f64::consts::{PI, TAU};
 use moorline::math::random::Random;
 use moorline::physics::spectrum::Spectrum;
 use moorline::scene::channel::LineEnd;
-use moorline::scene::{
-    Break, Friction, HarmonicMotion, InitialShape, Integrator, MotionPath, Scene,
-};
+use moorline::scene::{Break, Friction, HarmonicMotion, InitialShape, Integrator, MotionPath, Scene};
 use moorline::simulation::Simulation;
 use nalgebra::Complex;
 
@@ -330,8 +328,7 @@ pub fn swing_pulls(angle: f64, interval: f64, count: usize) -> Vec<f64> {
             let k2 = rates(after(k1, 0.5));
             let k3 = rates(after(k2, 0.5));
             let k4 = rates(after(k3, 1.0));
-            now = [0, 1, 2, 3]
-                .map(|i| now[i] + h / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]));
+            now = [0, 1, 2, 3].map(|i| now[i] + h / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]));
         }
         pulls.push(pull(now[0], now[1]));
     }

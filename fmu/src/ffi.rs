@@ -261,9 +261,7 @@ impl Handle {
                 (Topic::Fatal, message)
             }
         };
-        self.instance
-            .log
-            .push(topic, || format!("{function}: {message}"));
+        self.instance.log.push(topic, || format!("{function}: {message}"));
         self.send_log();
         topic.status()
     }
@@ -298,9 +296,7 @@ fn check_pointer<T>(pointer: *const T, count: usize) -> Result<(), Refusal> {
     }
     let bytes = count.checked_mul(size_of::<T>());
     if bytes.is_none_or(|bytes| isize::try_from(bytes).is_err()) {
-        return Err(Refusal(format!(
-            "{count} values are more than memory holds"
-        )));
+        return Err(Refusal(format!("{count} values are more than memory holds")));
     }
     Ok(())
 }
@@ -322,10 +318,7 @@ pub(crate) unsafe fn slice<'a, T>(pointer: *const T, count: usize) -> Result<&'a
 ///
 /// # Safety
 /// A pointer that is not null points to `count` initialised values that nothing else uses during `'a`.
-pub(crate) unsafe fn slice_mut<'a, T>(
-    pointer: *mut T,
-    count: usize,
-) -> Result<&'a mut [T], Refusal> {
+pub(crate) unsafe fn slice_mut<'a, T>(pointer: *mut T, count: usize) -> Result<&'a mut [T], Refusal> {
     if count == 0 {
         return Ok(&mut []);
     }
@@ -373,10 +366,7 @@ pub(crate) unsafe fn location<'a>(pointer: *const c_char) -> Option<&'a [u8]> {
 ///
 /// # Safety
 /// As for [`slice`] and [`text`].
-pub(crate) unsafe fn texts<'a>(
-    pointer: *const *const c_char,
-    count: usize,
-) -> Result<Vec<&'a str>, Refusal> {
+pub(crate) unsafe fn texts<'a>(pointer: *const *const c_char, count: usize) -> Result<Vec<&'a str>, Refusal> {
     // SAFETY: by the caller's promise.
     let pointers = unsafe { slice(pointer, count) }?;
     pointers
@@ -392,10 +382,7 @@ pub(crate) unsafe fn texts<'a>(
 ///
 /// # Safety
 /// A `target` that is not null points to null or to a state of [`store_state`] that was not freed.
-pub(crate) unsafe fn store_state(
-    target: *mut *mut c_void,
-    snapshot: Snapshot,
-) -> Result<(), Refusal> {
+pub(crate) unsafe fn store_state(target: *mut *mut c_void, snapshot: Snapshot) -> Result<(), Refusal> {
     check_pointer(target, 1)?;
     // SAFETY: not null and aligned; the caller promises that it may be read and what it points to.
     unsafe {

@@ -88,9 +88,7 @@ unsafe extern "C" fn fmi2Instantiate(
         let sink = Sink::two(functions, instanceName);
         ffi::instantiate(VERSION, sink, || {
             if fmuType != fmi2CoSimulation {
-                return Err(
-                    "fmi2Instantiate: this FMU offers co-simulation, not model exchange".into(),
-                );
+                return Err("fmi2Instantiate: this FMU offers co-simulation, not model exchange".into());
             }
             Instance::new(
                 VERSION,
@@ -175,11 +173,7 @@ unsafe extern "C" fn fmi2GetReal(
     // SAFETY: the host's handle and arrays.
     unsafe {
         ffi::call(c, VERSION, "fmi2GetReal", |instance| {
-            instance.get(
-                Kind::Float64,
-                ffi::slice(vr, nvr)?,
-                ffi::slice_mut(value, nvr)?,
-            )
+            instance.get(Kind::Float64, ffi::slice(vr, nvr)?, ffi::slice_mut(value, nvr)?)
         })
     }
 }
@@ -314,11 +308,7 @@ unsafe extern "C" fn fmi2SetFMUstate(c: fmi2Component, FMUstate: fmi2FMUstate) -
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi2FreeFMUstate(c: fmi2Component, FMUstate: *mut fmi2FMUstate) -> fmi2Status {
     // SAFETY: the host's handle and state.
-    unsafe {
-        ffi::call(c, VERSION, "fmi2FreeFMUstate", |_| {
-            ffi::free_state(FMUstate)
-        })
-    }
+    unsafe { ffi::call(c, VERSION, "fmi2FreeFMUstate", |_| ffi::free_state(FMUstate)) }
 }
 
 #[unsafe(no_mangle)]

@@ -138,14 +138,9 @@ fn refuse_kind(
     environment: fmi3InstanceEnvironment,
     logger: fmi3LogMessageCallback,
 ) -> fmi3Instance {
-    let sink = Sink::Three {
-        logger,
-        environment,
-    };
+    let sink = Sink::Three { logger, environment };
     ffi::instantiate(VERSION, sink, || {
-        Err(Refusal(format!(
-            "this FMU offers co-simulation, not {kind}"
-        )))
+        Err(Refusal(format!("this FMU offers co-simulation, not {kind}")))
     })
 }
 
@@ -215,19 +210,14 @@ unsafe extern "C" fn fmi3EnterInitializationMode(
 ) -> fmi3Status {
     // SAFETY: the host's handle.
     unsafe {
-        ffi::call(
-            instance,
-            VERSION,
-            "fmi3EnterInitializationMode",
-            |instance| {
-                instance.set_up(
-                    toleranceDefined.then_some(tolerance),
-                    startTime,
-                    stopTimeDefined.then_some(stopTime),
-                )?;
-                instance.enter_initialization()
-            },
-        )
+        ffi::call(instance, VERSION, "fmi3EnterInitializationMode", |instance| {
+            instance.set_up(
+                toleranceDefined.then_some(tolerance),
+                startTime,
+                stopTimeDefined.then_some(stopTime),
+            )?;
+            instance.enter_initialization()
+        })
     }
 }
 
@@ -416,10 +406,7 @@ no_variables! {
 }
 
 #[unsafe(no_mangle)]
-unsafe extern "C" fn fmi3GetFMUState(
-    instance: fmi3Instance,
-    FMUState: *mut fmi3FMUState,
-) -> fmi3Status {
+unsafe extern "C" fn fmi3GetFMUState(instance: fmi3Instance, FMUState: *mut fmi3FMUState) -> fmi3Status {
     // SAFETY: the host's handle and state.
     unsafe {
         ffi::call(instance, VERSION, "fmi3GetFMUState", |instance| {
@@ -439,10 +426,7 @@ unsafe extern "C" fn fmi3SetFMUState(instance: fmi3Instance, FMUState: fmi3FMUSt
 }
 
 #[unsafe(no_mangle)]
-unsafe extern "C" fn fmi3FreeFMUState(
-    instance: fmi3Instance,
-    FMUState: *mut fmi3FMUState,
-) -> fmi3Status {
+unsafe extern "C" fn fmi3FreeFMUState(instance: fmi3Instance, FMUState: *mut fmi3FMUState) -> fmi3Status {
     // SAFETY: the host's handle and state.
     unsafe {
         ffi::call(instance, VERSION, "fmi3FreeFMUState", |_| {
@@ -459,12 +443,9 @@ unsafe extern "C" fn fmi3SerializedFMUStateSize(
 ) -> fmi3Status {
     // SAFETY: the host's handle, state and result.
     unsafe {
-        ffi::call(
-            instance,
-            VERSION,
-            "fmi3SerializedFMUStateSize",
-            |instance| ffi::write(size, instance.serialize(ffi::state(FMUState)?)?.len()),
-        )
+        ffi::call(instance, VERSION, "fmi3SerializedFMUStateSize", |instance| {
+            ffi::write(size, instance.serialize(ffi::state(FMUState)?)?.len())
+        })
     }
 }
 

@@ -95,8 +95,7 @@ impl Instance {
         let mut instance = Instance {
             inputs: vec![BodyInput::default(); scene.points.len() + scene.vessels.len()],
             start_displacements: vec![[0.0; 6]; scene.points.len() + scene.vessels.len()],
-            time_reference: (version == FmiVersion::Three)
-                .then(|| time_reference(&description.interface)),
+            time_reference: (version == FmiVersion::Three).then(|| time_reference(&description.interface)),
             releases: vec![false; scene.lines.len()],
             length_changes: vec![0.0; scene.lines.len()],
             start_length_changes: vec![0.0; scene.lines.len()],
@@ -164,12 +163,7 @@ impl Instance {
 
     /// Sets start and end [s]. The host's tolerance is not used: it speaks of integration error, and the parameter
     /// `solver.tolerance` of fairlead tension.
-    pub(crate) fn set_up(
-        &mut self,
-        tolerance: Option<f64>,
-        start: f64,
-        stop: Option<f64>,
-    ) -> Outcome {
+    pub(crate) fn set_up(&mut self, tolerance: Option<f64>, start: f64, stop: Option<f64>) -> Outcome {
         self.expect_phase(&[Phase::Instantiated])?;
         if !start.is_finite() {
             return Err(Refusal(format!("the start time {start} s is not finite")));
@@ -272,10 +266,7 @@ impl Instance {
                 &self.start_length_changes,
             )?);
         }
-        Ok(self
-            .simulation
-            .as_mut()
-            .expect("was there or was just solved"))
+        Ok(self.simulation.as_mut().expect("was there or was just solved"))
     }
 
     /// Row of a value reference.
@@ -350,22 +341,14 @@ impl Instance {
     }
 
     /// Reads truth values.
-    pub(crate) fn get_booleans(
-        &mut self,
-        references: &[u32],
-        count: usize,
-    ) -> Result<Vec<bool>, Refusal> {
+    pub(crate) fn get_booleans(&mut self, references: &[u32], count: usize) -> Result<Vec<bool>, Refusal> {
         let mut numbers = vec![0.0; count];
         self.get(Kind::Boolean, references, &mut numbers)?;
         Ok(numbers.into_iter().map(|number| number != 0.0).collect())
     }
 
     /// Sets truth values.
-    pub(crate) fn set_booleans(
-        &mut self,
-        references: &[u32],
-        values: impl Iterator<Item = bool>,
-    ) -> Outcome {
+    pub(crate) fn set_booleans(&mut self, references: &[u32], values: impl Iterator<Item = bool>) -> Outcome {
         let numbers: Vec<f64> = values.map(|value| f64::from(u8::from(value))).collect();
         self.set(Kind::Boolean, references, &numbers)
     }
@@ -408,10 +391,7 @@ impl Instance {
     pub(crate) fn refuse_type(&self, kind: &str, references: &[u32]) -> Outcome {
         match references.first() {
             None => Ok(()),
-            Some(&reference) => Err(wrong_type(
-                Self::variable(&self.interface, reference)?,
-                kind,
-            )),
+            Some(&reference) => Err(wrong_type(Self::variable(&self.interface, reference)?, kind)),
         }
     }
 
@@ -420,10 +400,7 @@ impl Instance {
         if references.is_empty() && values.is_empty() {
             return Ok(());
         }
-        if self
-            .time_reference
-            .is_some_and(|time| references.contains(&time))
-        {
+        if self.time_reference.is_some_and(|time| references.contains(&time)) {
             return Err("time is not to be set".into());
         }
         self.check_access(kind, references, values.len())?;
@@ -478,12 +455,8 @@ impl Instance {
     fn check_settable(&self, variable: &Variable, value: f64) -> Outcome {
         let named = |problem: &str| Err(Refusal(format!("{}: {problem}", variable.name)));
         match variable.causality {
-            Causality::Input => {
-                self.expect_phase(&[Phase::Instantiated, Phase::Initialization, Phase::Step])
-            }
-            Causality::Parameter => {
-                self.expect_phase(&[Phase::Instantiated, Phase::Initialization])
-            }
+            Causality::Input => self.expect_phase(&[Phase::Instantiated, Phase::Initialization, Phase::Step]),
+            Causality::Parameter => self.expect_phase(&[Phase::Instantiated, Phase::Initialization]),
             Causality::Output | Causality::CalculatedParameter => {
                 return named("an output or calculated parameter is not to be set");
             }
@@ -695,20 +668,18 @@ impl Instance {
         };
         // From here on nothing can fail.
         let simulation = rebuilt.or_else(|| self.simulation.take());
-        self.simulation =
-            snapshot
-                .solver
-                .as_ref()
-                .zip(simulation)
-                .map(|(state, mut simulation)| {
-                    simulation.restore(state.clone());
-                    simulation
-                });
+        self.simulation = snapshot
+            .solver
+            .as_ref()
+            .zip(simulation)
+            .map(|(state, mut simulation)| {
+                simulation.restore(state.clone());
+                simulation
+            });
         if let (Some(watch), Some(simulation)) = (&mut self.watch, &self.simulation) {
             watch.resume(simulation);
         }
-        self.start_displacements
-            .clone_from(&snapshot.start_displacements);
+        self.start_displacements.clone_from(&snapshot.start_displacements);
         self.start_length_changes
             .clone_from(&snapshot.start_length_changes);
         self.scene = scene;
@@ -835,9 +806,7 @@ mod tests {
     fn real(instance: &mut Instance, name: &str) -> f64 {
         let reference = reference(instance, name);
         let mut value = [0.0];
-        instance
-            .get(Kind::Float64, &[reference], &mut value)
-            .unwrap();
+        instance.get(Kind::Float64, &[reference], &mut value).unwrap();
         value[0]
     }
 
@@ -907,12 +876,7 @@ mod tests {
         let mut instance = started();
         instance.do_step(0.0, 0.1).unwrap();
         let before = instance.snapshot();
-        for (at, step) in [
-            (0.2, 0.1),
-            (0.1, -0.1),
-            (f64::NAN, 0.1),
-            (0.1, f64::INFINITY),
-        ] {
+        for (at, step) in [(0.2, 0.1), (0.1, -0.1), (f64::NAN, 0.1), (0.1, f64::INFINITY)] {
             assert!(instance.do_step(at, step).is_err());
             assert_eq!(instance.snapshot(), before);
             assert_eq!(instance.step_status(), Status::Error);

@@ -118,8 +118,7 @@ mod tests {
 
     #[test]
     fn every_topic_has_the_category_of_its_name() {
-        let categories =
-            [Topic::Event, Topic::Warning, Topic::Error, Topic::Fatal].map(Topic::category);
+        let categories = [Topic::Event, Topic::Warning, Topic::Error, Topic::Fatal].map(Topic::category);
         assert_eq!(
             categories,
             [

@@ -20,14 +20,8 @@ pub(crate) fn read_scene(location: Option<&[u8]>) -> Result<String, String> {
         .into_iter()
         .map(|folder| Ok(path_of(folder)?.join(SCENE_FILE)))
         .collect::<Result<_, String>>()?;
-    let file = files
-        .iter()
-        .find(|file| file.is_file())
-        .unwrap_or(&files[0]);
-    let said = format!(
-        " (resource location \"{}\")",
-        String::from_utf8_lossy(location)
-    );
+    let file = files.iter().find(|file| file.is_file()).unwrap_or(&files[0]);
+    let said = format!(" (resource location \"{}\")", String::from_utf8_lossy(location));
     let mut text = String::new();
     input_file::open(file, "a scene file", input_file::SIZE_MAX)
         .map_err(|unopened| unopened.at(file, "") + &said)?
@@ -143,9 +137,7 @@ fn percent_decoded(text: &[u8]) -> Vec<u8> {
 }
 
 fn hex(digit: u8) -> Option<u8> {
-    char::from(digit)
-        .to_digit(16)
-        .and_then(|d| u8::try_from(d).ok())
+    char::from(digit).to_digit(16).and_then(|d| u8::try_from(d).ok())
 }
 
 #[cfg(test)]
@@ -164,10 +156,7 @@ mod tests {
             ("file:/data/a/resources", "/data/a/resources"),
             ("file://localhost/data/a", "/data/a"),
             ("FILE:////data/a", "/data/a"),
-            (
-                "file:///data/sp%20dir%20%C3%B8%20%7Bx%7D",
-                "/data/sp dir ø {x}",
-            ),
+            ("file:///data/sp%20dir%20%C3%B8%20%7Bx%7D", "/data/sp dir ø {x}"),
             ("file:///data/sp dir ø {x}", "/data/sp dir ø {x}"),
             ("file:///data/100%/a", "/data/100%/a"),
             ("/data/a/resources/", "/data/a/resources/"),
@@ -203,11 +192,7 @@ mod tests {
     fn another_host_and_a_missing_location_are_refused_in_words() {
         let message = read_scene(Some(b"file://elsewhere/a")).unwrap_err();
         assert!(message.contains("elsewhere"), "{message}");
-        assert!(
-            read_scene(None)
-                .unwrap_err()
-                .contains("no resource location")
-        );
+        assert!(read_scene(None).unwrap_err().contains("no resource location"));
         let message = read_scene(Some(b"/does/not/exist")).unwrap_err();
         assert!(message.contains("/does/not/exist"), "{message}");
     }
@@ -233,12 +218,7 @@ mod tests {
         std::fs::create_dir(&place).unwrap();
         std::fs::write(place.join(SCENE_FILE), "title = \"\"").unwrap();
         let path = place.as_os_str().as_bytes();
-        let escaped = [
-            b"file://",
-            folder.path().as_os_str().as_bytes(),
-            b"/odd%20%FF",
-        ]
-        .concat();
+        let escaped = [b"file://", folder.path().as_os_str().as_bytes(), b"/odd%20%FF"].concat();
         for location in [path, &[b"file://", path].concat(), &escaped] {
             assert_eq!(read_scene(Some(location)).unwrap(), "title = \"\"");
         }

@@ -81,8 +81,7 @@ const SUM_BYTES: usize = 32;
 impl Snapshot {
     /// As bytes that only an FMU with the same token reads.
     pub(crate) fn to_bytes(&self, token: &str) -> Result<Vec<u8>, String> {
-        let body =
-            postcard::to_stdvec(self).map_err(|e| format!("the state cannot be written: {e}"))?;
+        let body = postcard::to_stdvec(self).map_err(|e| format!("the state cannot be written: {e}"))?;
         let mut bytes = MARK.to_vec();
         bytes.extend_from_slice(token.as_bytes());
         bytes.extend_from_slice(&(body.len() as u64).to_le_bytes());

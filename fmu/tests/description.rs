@@ -13,10 +13,7 @@ fn the_committed_descriptions_are_what_the_program_writes() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let text = std::fs::read_to_string(root.join("scenes/oc3_catenary.toml")).unwrap();
     let scene = Scene::from_toml(&text).unwrap();
-    for (version, name) in [
-        (FmiVersion::Two, "fmi2.xml"),
-        (FmiVersion::Three, "fmi3.xml"),
-    ] {
+    for (version, name) in [(FmiVersion::Two, "fmi2.xml"), (FmiVersion::Three, "fmi3.xml")] {
         let path = root.join("modelDescription").join(name);
         let written = Description::new(&text, &scene, version).unwrap().xml;
         if std::env::var_os("MOORLINE_UPDATE").is_some() {

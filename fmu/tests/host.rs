@@ -111,9 +111,7 @@ fn a_refused_call_says_which_function_refused_and_why() {
 fn a_wrong_token_is_refused_in_words() {
     for version in VERSIONS {
         let fmu = common::open(version, &[]);
-        let error = fmu
-            .instantiate_with_token("mooring", "other", false)
-            .unwrap_err();
+        let error = fmu.instantiate_with_token("mooring", "other", false).unwrap_err();
         assert!(error.to_string().contains("token"), "{error}");
     }
 }

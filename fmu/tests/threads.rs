@@ -6,16 +6,11 @@ use moorline_host::FmiVersion;
 
 /// Two lines that share nothing, on two threads.
 fn two_lines() -> String {
-    let second = common::SCENE
-        .split("[[points]]")
-        .skip(1)
-        .collect::<Vec<_>>();
+    let second = common::SCENE.split("[[points]]").skip(1).collect::<Vec<_>>();
     let second = format!("[[points]]{}", second.join("[[points]]"));
     let second = ["anchor", "fairlead", "line1"]
         .into_iter()
-        .fold(second, |text, name| {
-            text.replace(name, &format!("{name}_2"))
-        });
+        .fold(second, |text, name| text.replace(name, &format!("{name}_2")));
     format!("{}{second}\n[solver]\nthreads = 2\n", common::SCENE)
 }
 

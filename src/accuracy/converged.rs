@@ -40,10 +40,7 @@ impl Converged {
                 Err(said) => reason = said,
             }
         }
-        Err(StudyError::NotConverged {
-            name: name(),
-            reason,
-        })
+        Err(StudyError::NotConverged { name: name(), reason })
     }
 
     /// What is least of the solution that has converged best [-].
@@ -71,9 +68,7 @@ fn followed(scene: &Scene, family: Vec<Vec<Setting>>) -> Result<Option<Converged
         }
     }
     let doubt = |sequence: &Sequence| sequence.best.as_ref().map_or(f64::NAN, Converged::doubt);
-    let better = sequences
-        .into_iter()
-        .min_by(|a, b| doubt(a).total_cmp(&doubt(b)));
+    let better = sequences.into_iter().min_by(|a, b| doubt(a).total_cmp(&doubt(b)));
     let Some(mut sequence) = better else {
         return Err(reason);
     };

@@ -26,12 +26,7 @@ pub enum Metric {
 
 impl Metric {
     /// All, in the order of [`Errors`].
-    pub const ALL: [Metric; 4] = [
-        Metric::Rms,
-        Metric::LowPassed,
-        Metric::Peak,
-        Metric::Position,
-    ];
+    pub const ALL: [Metric; 4] = [Metric::Rms, Metric::LowPassed, Metric::Peak, Metric::Position];
 
     /// What it measures, in words.
     pub fn title(self) -> &'static str {
@@ -109,8 +104,7 @@ impl Judge {
     pub fn uncertainty(&self, coarse: &Histories, fine: &Histories) -> Errors {
         let mut errors = self.errors(coarse, fine);
         let tensions = coarse.tension.iter().zip(&fine.tension);
-        let on_the_whole =
-            worst(tensions.map(|(a, b)| self.rms(a, b) * self.deviation_over_range(b)));
+        let on_the_whole = worst(tensions.map(|(a, b)| self.rms(a, b) * self.deviation_over_range(b)));
         let peak = &mut errors.0[Metric::Peak as usize];
         *peak = peak.max(on_the_whole);
         errors
@@ -150,11 +144,7 @@ impl Judge {
         }
         let (own, right) = (&own[self.from..], &right[self.from..]);
         let mean = right.iter().sum::<Vector3<f64>>() / right.len() as f64;
-        let wrong: f64 = own
-            .iter()
-            .zip(right)
-            .map(|(a, b)| (a - b).norm_squared())
-            .sum();
+        let wrong: f64 = own.iter().zip(right).map(|(a, b)| (a - b).norm_squared()).sum();
         let motion: f64 = right.iter().map(|b| (b - mean).norm_squared()).sum();
         (wrong / motion).sqrt()
     }
@@ -171,11 +161,7 @@ fn range(values: &[f64]) -> f64 {
 /// The greatest; what is no number is infinitely wrong.
 fn worst(errors: impl Iterator<Item = f64>) -> f64 {
     let finite = |error: f64| {
-        if error.is_finite() {
-            error
-        } else {
-            f64::INFINITY
-        }
+        if error.is_finite() { error } else { f64::INFINITY }
     };
     errors.map(finite).fold(0.0, f64::max)
 }

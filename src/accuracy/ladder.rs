@@ -6,15 +6,15 @@ use crate::scene::{ContactLaw, Integrator, Reconstruction, Scene, Threads};
 /// step, so that a mesh a little finer may take one step more, and one a little coarser waste none. The leapfrogs take four nodes at a
 /// time, so finer meshes have an odd number of elements, every other one as many as make whole fours of nodes.
 const ELEMENTS: [usize; 29] = [
-    3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31, 33, 35, 39, 43, 47,
-    51, 55, 59, 63,
+    3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31, 33, 35, 39, 43, 47, 51, 55, 59,
+    63,
 ];
 /// Elements of the longest line in dearer explicit runs [-].
 const ELEMENTS_FINE: [usize; 7] = [71, 79, 95, 111, 159, 227, 319];
 /// Elements of the longest line, tensions implicit [-]: as close together as those that peers are tried with.
 const ELEMENTS_AXIAL: [usize; 28] = [
-    3, 4, 5, 6, 7, 8, 9, 11, 13, 15, 19, 23, 27, 31, 35, 39, 43, 47, 55, 63, 71, 79, 87, 95, 103,
-    111, 135, 159,
+    3, 4, 5, 6, 7, 8, 9, 11, 13, 15, 19, 23, 27, 31, 35, 39, 43, 47, 55, 63, 71, 79, 87, 95, 103, 111, 135,
+    159,
 ];
 /// Elements of the longest line, fully implicit [-].
 const ELEMENTS_IMPLICIT: [usize; 3] = [10, 20, 40];
@@ -24,8 +24,8 @@ const ELEMENTS_STATIC: [usize; 4] = [10, 20, 40, 80];
 const CONVERGED_ELEMENTS_STATIC: [usize; 3] = [80, 160, 320];
 /// Steps to the shortest period, tensions implicit [-].
 const STEPS_AXIAL: [f64; 20] = [
-    5.0, 5.7, 6.1, 6.6, 7.3, 8.0, 10.0, 11.5, 13.0, 14.5, 16.0, 18.0, 20.0, 23.0, 28.0, 40.0, 80.0,
-    160.0, 320.0, 640.0,
+    5.0, 5.7, 6.1, 6.6, 7.3, 8.0, 10.0, 11.5, 13.0, 14.5, 16.0, 18.0, 20.0, 23.0, 28.0, 40.0, 80.0, 160.0,
+    320.0, 640.0,
 ];
 /// Steps to the shortest period, fully implicit [-].
 const STEPS_IMPLICIT: [f64; 3] = [20.0, 80.0, 320.0];
@@ -95,9 +95,8 @@ impl Setting {
     /// told where the fairlead is, as by default; other settings keep none, and are told where it goes, as other codes are.
     pub fn apply(&self, scene: &Scene) -> Scene {
         let mut scene = scene.clone();
-        let length = |line: &crate::scene::Line| -> f64 {
-            line.sections.iter().map(|section| section.length).sum()
-        };
+        let length =
+            |line: &crate::scene::Line| -> f64 { line.sections.iter().map(|section| section.length).sum() };
         let longest = scene.lines.iter().map(length).fold(0.0, f64::max);
         for section in scene.lines.iter_mut().flat_map(|line| &mut line.sections) {
             section.elements = self.elements.map(|elements| {
@@ -147,13 +146,7 @@ pub fn ladder(scene: &Scene, period: f64) -> Vec<Setting> {
     let mut settings: Vec<Setting> = TOLERANCES.map(Setting::chosen).into();
     settings.extend(explicit(period, interval));
     let axial = Integrator::AxialImplicit;
-    settings.extend(implicit(
-        axial,
-        &ELEMENTS_AXIAL,
-        &STEPS_AXIAL,
-        period,
-        interval,
-    ));
+    settings.extend(implicit(axial, &ELEMENTS_AXIAL, &STEPS_AXIAL, period, interval));
     let full = Integrator::GeneralisedAlpha;
     settings.extend(implicit(
         full,
@@ -212,9 +205,8 @@ fn explicit(period: f64, interval: f64) -> impl Iterator<Item = Setting> {
         let setting = Setting::new(elements, Integrator::Leapfrog, Some(step));
         setting.communicating(communication)
     };
-    let seldom = move |communication: &usize| {
-        *communication == 1 || *communication as f64 * interval <= longest
-    };
+    let seldom =
+        move |communication: &usize| *communication == 1 || *communication as f64 * interval <= longest;
     let meshes = ELEMENTS.into_iter().chain(ELEMENTS_FINE);
     meshes.flat_map(move |elements| {
         let admitted = if elements > COMMUNICATING_ELEMENTS {
@@ -262,8 +254,7 @@ pub fn converged(scene: &Scene, period: f64) -> Vec<Vec<Vec<Setting>>> {
         both.push(axial);
     }
     let explicit = |n: &usize| Setting::new(*n, Integrator::Leapfrog, None).on_bed_as_given();
-    let implicit =
-        |n: usize, steps: f64| Setting::new(n, Integrator::Auto, stepped(steps)).on_bed_as_given();
+    let implicit = |n: usize, steps: f64| Setting::new(n, Integrator::Auto, stepped(steps)).on_bed_as_given();
     let finest = CONVERGED_ELEMENTS_IMPLICIT;
     vec![
         both,
@@ -296,11 +287,7 @@ mod tests {
             ..Scene::default()
         };
         let meshed = Setting::new(40, Integrator::Leapfrog, None).apply(&scene);
-        let elements: Vec<_> = meshed
-            .lines
-            .iter()
-            .flat_map(|line| &line.sections)
-            .collect();
+        let elements: Vec<_> = meshed.lines.iter().flat_map(|line| &line.sections).collect();
         let elements: Vec<_> = elements.iter().map(|section| section.elements).collect();
         assert_eq!(elements, [Some(30), Some(10), Some(1)]);
         let own = Setting::chosen(0.01).apply(&scene);

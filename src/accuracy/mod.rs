@@ -102,8 +102,7 @@ impl Run {
 
     /// Least and greatest of its timings [-].
     pub fn spread(&self) -> [f64; 2] {
-        let ends =
-            |[least, greatest]: [f64; 2], cost: &f64| [least.min(*cost), greatest.max(*cost)];
+        let ends = |[least, greatest]: [f64; 2], cost: &f64| [least.min(*cost), greatest.max(*cost)];
         self.costs.iter().fold([self.cost; 2], ends)
     }
 }
@@ -152,9 +151,7 @@ pub enum StudyError {
         reason: String,
     },
     /// Nothing happens in it.
-    #[error(
-        "{name}: nothing moves in it, so that there is no error of a history to judge; give it a motion"
-    )]
+    #[error("{name}: nothing moves in it, so that there is no error of a history to judge; give it a motion")]
     AtRest {
         /// The scene.
         name: String,
@@ -275,12 +272,7 @@ impl Study {
     }
 
     /// The cheapest run among those that `codes` admits whose error is at most `level` [-].
-    pub fn cheapest(
-        &self,
-        metric: Metric,
-        level: f64,
-        codes: impl Fn(&Code) -> bool,
-    ) -> Option<&Run> {
+    pub fn cheapest(&self, metric: Metric, level: f64, codes: impl Fn(&Code) -> bool) -> Option<&Run> {
         let good = self.within(metric, level, codes);
         good.min_by(|a, b| a.cost.total_cmp(&b.cost))
     }
@@ -354,9 +346,7 @@ fn label(setting: &Setting, timed: &Timed, on_bed: bool) -> String {
 
 /// A setting in words, before it has run.
 fn described(setting: &Setting) -> String {
-    let elements = setting
-        .elements
-        .map_or(String::new(), |n| format!(", n = {n}"));
+    let elements = setting.elements.map_or(String::new(), |n| format!(", n = {n}"));
     let step = setting.time_step_max.map(seconds);
     let step = step.map_or(String::new(), |step| format!(", step {step}"));
     format!("{}{elements}{step}", code(setting).name())
@@ -382,10 +372,7 @@ fn judge(scene: &Scene, period: f64, converged: &Histories) -> Judge {
 
 /// The shortest period [s] with which anything moves.
 fn shortest_period(scene: &Scene) -> f64 {
-    let own = scene
-        .points
-        .iter()
-        .filter_map(|point| point.motion.as_ref());
+    let own = scene.points.iter().filter_map(|point| point.motion.as_ref());
     let paths = scene.motion.values().chain(own);
     let periods = paths.filter_map(|path| match path {
         MotionPath::Harmonic(motion) => Some(motion),
@@ -396,11 +383,7 @@ fn shortest_period(scene: &Scene) -> f64 {
         .flatten()
         .map(|sine| sine[1])
         .fold(f64::INFINITY, f64::min);
-    if shortest.is_finite() {
-        shortest
-    } else {
-        PERIOD
-    }
+    if shortest.is_finite() { shortest } else { PERIOD }
 }
 
 #[cfg(test)]

@@ -265,8 +265,7 @@ impl Conversation {
         self.output
             .read_line(&mut line)
             .map_err(|error| error.to_string())?;
-        serde_json::from_str(&line)
-            .map_err(|error| format!("the peers' script answered {line:.80}: {error}"))
+        serde_json::from_str(&line).map_err(|error| format!("the peers' script answered {line:.80}: {error}"))
     }
 
     /// Runs the peers' ladder and judges what they answer. A family of settings ends where finer meshes no longer pay; `done` is
@@ -280,11 +279,7 @@ impl Conversation {
     ) {
         let mut families: Vec<Family> = Vec::new();
         for number in 0..self.runs.len() {
-            let Planned {
-                peer,
-                label,
-                family,
-            } = self.runs[number].clone();
+            let Planned { peer, label, family } = self.runs[number].clone();
             let index = families.iter().position(|one| one.name == family);
             let index = index.unwrap_or(families.len());
             if index == families.len() {
@@ -360,10 +355,7 @@ fn question<'a>(name: &'a str, scene: &'a Scene) -> Result<Question<'a>, String>
     let Some(MotionPath::Harmonic(motion)) = scene.motion.get(&fairlead.name) else {
         return Err(refuse());
     };
-    let line_type = scene
-        .line_types
-        .get(&section.line_type)
-        .ok_or_else(refuse)?;
+    let line_type = scene.line_types.get(&section.line_type).ok_or_else(refuse)?;
     let (mass, diameter) = line_type.mass.zip(line_type.diameter).ok_or_else(refuse)?;
     let axial_stiffness = line_type.axial_stiffness.ok_or_else(refuse)?;
     let or_zero = |value: Option<f64>| value.unwrap_or(0.0);
@@ -416,9 +408,6 @@ mod tests {
             family.take(&Errors::all(error));
             family.idle
         };
-        assert_eq!(
-            [0.1, 0.05, 0.049, 0.06, 0.02].map(&mut idle),
-            [0, 0, 1, 2, 0]
-        );
+        assert_eq!([0.1, 0.05, 0.049, 0.06, 0.02].map(&mut idle), [0, 0, 1, 2, 0]);
     }
 }

@@ -72,8 +72,7 @@ impl Trial {
         let step = setting.communication as f64 * interval;
         let samples = samples(scene);
         let count = samples.div_ceil(setting.communication);
-        let mut start =
-            Simulation::new(&setting.apply(scene)).map_err(|error| error.to_string())?;
+        let mut start = Simulation::new(&setting.apply(scene)).map_err(|error| error.to_string())?;
         let time = |index: usize| (index * setting.communication) as f64 * interval;
         let ahead = start.model().solver.input_reconstruction == Reconstruction::Interpolate;
         let told = |index: usize| time(index + usize::from(ahead));
@@ -95,8 +94,7 @@ impl Trial {
 
     /// A run that follows the scene's motion exactly.
     pub fn exact(scene: &Scene, setting: &Setting) -> Result<Trial, String> {
-        let mut start =
-            Simulation::new(&setting.apply(scene)).map_err(|error| error.to_string())?;
+        let mut start = Simulation::new(&setting.apply(scene)).map_err(|error| error.to_string())?;
         start.follow_scene().map_err(|error| error.to_string())?;
         let samples = samples(scene);
         Ok(Trial {
@@ -164,9 +162,7 @@ impl Trial {
         for index in 0..self.count {
             let said = index * self.bodies..(index + 1) * self.bodies;
             tell(&mut simulation, &self.said[said]);
-            simulation
-                .advance(self.step)
-                .map_err(|error| error.to_string())?;
+            simulation.advance(self.step).map_err(|error| error.to_string())?;
             each(&simulation);
         }
         Ok(before.elapsed().as_secs_f64())
@@ -232,9 +228,7 @@ where
     }
     let at = |sample: usize| {
         let place = sample as f64 / parts;
-        let first = (place.floor() as usize)
-            .saturating_sub(1)
-            .min(values.len() - 4);
+        let first = (place.floor() as usize).saturating_sub(1).min(values.len() - 4);
         let weights = cubic([0.0, 1.0, 2.0, 3.0], place - first as f64);
         let [a, b, c, d] = [0, 1, 2, 3].map(|point| values[first + point] * weights[point]);
         a + b + c + d
@@ -243,9 +237,7 @@ where
 }
 
 fn samples(scene: &Scene) -> usize {
-    (scene.output.duration / scene.output.interval)
-        .round()
-        .max(2.0) as usize
+    (scene.output.duration / scene.output.interval).round().max(2.0) as usize
 }
 
 /// The integrator as the scene format spells it.

@@ -39,8 +39,7 @@ impl<'a> Verdict<'a> {
 
     /// Least and greatest ratio [-] that the timings of both runs allow.
     pub fn ratio_range(&self) -> Option<[f64; 2]> {
-        let ([own_min, own_max], [peer_min, peer_max]) =
-            (self.own?.spread(), self.best_peer()?.spread());
+        let ([own_min, own_max], [peer_min, peer_max]) = (self.own?.spread(), self.best_peer()?.spread());
         Some([peer_min / own_max, peer_max / own_min])
     }
 }

@@ -16,23 +16,11 @@ use super::{print, progress, read_scene};
 
 /// The public scenes, built in.
 const PUBLIC: [(&str, &str); 5] = [
-    (
-        "oc3_catenary",
-        include_str!("../../scenes/oc3_catenary.toml"),
-    ),
+    ("oc3_catenary", include_str!("../../scenes/oc3_catenary.toml")),
     ("oc4_chain", include_str!("../../scenes/oc4_chain.toml")),
-    (
-        "taut_polyester",
-        include_str!("../../scenes/taut_polyester.toml"),
-    ),
-    (
-        "lindahl_fast",
-        include_str!("../../scenes/lindahl_fast.toml"),
-    ),
-    (
-        "lindahl_slow",
-        include_str!("../../scenes/lindahl_slow.toml"),
-    ),
+    ("taut_polyester", include_str!("../../scenes/taut_polyester.toml")),
+    ("lindahl_fast", include_str!("../../scenes/lindahl_fast.toml")),
+    ("lindahl_slow", include_str!("../../scenes/lindahl_slow.toml")),
 ];
 /// moorline's integrators that have a ladder.
 const INTEGRATORS: [Integrator; 4] = [
@@ -87,9 +75,7 @@ pub fn accuracy(
 fn write_studies(machine: &str, studies: &[Study], folder: &Path) -> Result<(), Failure> {
     let file = |name: &str| folder.join(name);
     write_file(&file("accuracy.csv"), |w| write_runs(machine, studies, w))?;
-    write_file(&file("verdicts.csv"), |w| {
-        write_verdicts(machine, studies, w)
-    })?;
+    write_file(&file("verdicts.csv"), |w| write_verdicts(machine, studies, w))?;
     let mut texts = vec![
         ("summary.md".to_string(), summary(studies)),
         ("overview.svg".to_string(), frontier::overview(studies)),
@@ -263,12 +249,7 @@ fn settings(study: &Study) -> Table {
         for level in LEVELS {
             if let Some(run) = study.cheapest(Metric::Rms, level, runs) {
                 let level = format!("{:.1} %", 100.0 * level);
-                let row = [
-                    code.name().into(),
-                    level,
-                    cost(Some(run)),
-                    run.label.clone(),
-                ];
+                let row = [code.name().into(), level, cost(Some(run)), run.label.clone()];
                 table.text_row(row.into());
             }
         }

@@ -55,9 +55,7 @@ pub fn check(path: &Path, supplement: &Supplement) -> Result<(), Failure> {
         .flat_map(|started| Watch::new(scene, started).look(started));
     let chosen = simulation.iter().flat_map(Simulation::choices);
     let idle = match simulation {
-        Some(_) => loaded
-            .scene
-            .idle_with(chosen.map(|choice| choice.integrator)),
+        Some(_) => loaded.scene.idle_with(chosen.map(|choice| choice.integrator)),
         None => Vec::new(),
     };
     let later = at_rest.chain(idle).chain(loaded.scene.advice());

@@ -109,11 +109,7 @@ struct Host<'a> {
 }
 
 impl<'a> Host<'a> {
-    fn new(
-        fmu: &Fmu,
-        interface: &'a Interface,
-        reference: &'a Simulation,
-    ) -> Result<Self, HostError> {
+    fn new(fmu: &Fmu, interface: &'a Interface, reference: &'a Simulation) -> Result<Self, HostError> {
         let find = |variable: &Variable| fmu.reference(&variable.name);
         let recorded: Vec<&Variable> = recorded(interface).collect();
         let mut displacements = Vec::new();
@@ -123,8 +119,7 @@ impl<'a> Host<'a> {
             }
         }
         let node = |line: &str, number: usize| -> Result<[u32; 4], HostError> {
-            let of =
-                |quantity: &str| fmu.reference(&format!("{line}.profile.{quantity}[{number}]"));
+            let of = |quantity: &str| fmu.reference(&format!("{line}.profile.{quantity}[{number}]"));
             Ok([of("x")?, of("y")?, of("z")?, of("tension")?])
         };
         let mut nodes = Vec::new();
@@ -188,9 +183,7 @@ impl<'a> Host<'a> {
         for (variable, &reference) in self.recorded.iter().zip(&self.references) {
             let value = match scene_input(variable, self.reference.model(), time) {
                 Some(input) => input,
-                None if variable.kind == Kind::Int32 => {
-                    f64::from(self.slave.integer(&variable.name)?)
-                }
+                None if variable.kind == Kind::Int32 => f64::from(self.slave.integer(&variable.name)?),
                 None => {
                     let mut value = [0.0];
                     self.slave.get_real(&[reference], &mut value)?;

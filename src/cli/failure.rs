@@ -125,9 +125,9 @@ impl From<OutputError> for Failure {
     fn from(error: OutputError) -> Self {
         match &error {
             OutputError::File { source, .. } => Failure::of_file(source.kind(), error.to_string()),
-            OutputError::Folder { .. }
-            | OutputError::Closed { .. }
-            | OutputError::NotAFolder { .. } => Failure::Argument(error.to_string()),
+            OutputError::Folder { .. } | OutputError::Closed { .. } | OutputError::NotAFolder { .. } => {
+                Failure::Argument(error.to_string())
+            }
         }
     }
 }

@@ -12,20 +12,12 @@ use super::failure::Failure;
 use super::{print, read_scene, remark_all, simulate};
 
 /// Packages a scene for the FMI version "2" or "3".
-pub fn fmu(
-    path: &Path,
-    supplement: &Supplement,
-    target: &Path,
-    version: &str,
-) -> Result<(), Failure> {
+pub fn fmu(path: &Path, supplement: &Supplement, target: &Path, version: &str) -> Result<(), Failure> {
     let loaded = read_scene(path, supplement)?;
     check_file(target)?;
     // A scene without an equilibrium would make an FMU that no host can start.
     let simulation = simulate(&loaded)?;
-    remark_all(
-        &loaded,
-        Watch::new(&loaded.scene, &simulation).look(&simulation),
-    );
+    remark_all(&loaded, Watch::new(&loaded.scene, &simulation).look(&simulation));
     let version = match version {
         "3" => FmiVersion::Three,
         _ => FmiVersion::Two,

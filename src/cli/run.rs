@@ -61,8 +61,9 @@ pub fn run(
     let _open = Folder::open(folder)?;
     let mut simulation = match pace {
         Pace::Scene => simulate(&loaded)?,
-        Pace::Host { .. } => Simulation::by_rules(&loaded.scene)
-            .map_err(|error| Failure::of_simulation(error, &loaded))?,
+        Pace::Host { .. } => {
+            Simulation::by_rules(&loaded.scene).map_err(|error| Failure::of_simulation(error, &loaded))?
+        }
     };
     let still = simulation.in_equilibrium().ok();
     let start = match pace {
@@ -84,14 +85,7 @@ pub fn run(
     let columns = recorder.columns(simulation.model());
     let record = collect::record(&loaded.scene, &simulation, still.as_ref(), columns);
     let mut watch = Watch::new(&loaded.scene, &simulation);
-    let record = step_through(
-        &loaded,
-        &mut simulation,
-        &recorder,
-        pace,
-        record,
-        &mut watch,
-    )?;
+    let record = step_through(&loaded, &mut simulation, &recorder, pace, record, &mut watch)?;
     write_run(
         &record,
         folder,
@@ -216,11 +210,7 @@ impl Times {
     pub fn new(end: f64, interval: f64) -> Times {
         // A remainder of a millionth of a step is rounding of the quotient, not a step.
         let count = (end / interval - 1e-6).ceil().max(0.0) as usize;
-        Times {
-            interval,
-            end,
-            count,
-        }
+        Times { interval, end, count }
     }
 
     /// Time at the beginning of a step, or the end [s].

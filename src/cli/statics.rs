@@ -20,10 +20,7 @@ pub fn statics(path: &Path, supplement: &Supplement, as_json: bool) -> Result<()
     let simulation = simulate(&loaded)?
         .in_equilibrium()
         .map_err(|error| Failure::of_simulation(error, &loaded))?;
-    remark_all(
-        &loaded,
-        Watch::new(&loaded.scene, &simulation).look(&simulation),
-    );
+    remark_all(&loaded, Watch::new(&loaded.scene, &simulation).look(&simulation));
     for (index, line) in loaded.scene.lines.iter().enumerate() {
         if line.initial != InitialShape::Static {
             let at = format!("lines[{index}].initial");
@@ -47,10 +44,7 @@ pub fn statics(path: &Path, supplement: &Supplement, as_json: bool) -> Result<()
     if !statics.title.is_empty() {
         writeln!(text, "{}\n", statics.title).expect("a string takes any text");
     }
-    print(&format!(
-        "{text}{}\n{points}{vessels}",
-        static_table(&record)
-    ))
+    print(&format!("{text}{}\n{points}{vessels}", static_table(&record)))
 }
 
 /// Force and stiffness of the mooring on a vessel.
@@ -61,16 +55,11 @@ fn vessel_tables(vessel: &json::Vessel) -> String {
     force.row("closed form where there is one", &vessel.hold.force);
     force.row("elements", &vessel.elements.force);
     let Some(stiffness) = &vessel.hold.stiffness else {
-        return format!(
-            "\n{force}\n{name}: no stiffness, for a beam holds it or nothing holds the lines\n"
-        );
+        return format!("\n{force}\n{name}: no stiffness, for a beam holds it or nothing holds the lines\n");
     };
     let head = format!("{name}: stiffness [N/m, N/rad, N, N m/rad]");
     let mut table = Table::new(&[&head, "x", "y", "z", "roll", "pitch", "yaw"]);
-    for (row, name) in stiffness
-        .iter()
-        .zip(["x", "y", "z", "roll", "pitch", "yaw"])
-    {
+    for (row, name) in stiffness.iter().zip(["x", "y", "z", "roll", "pitch", "yaw"]) {
         table.row(name, row);
     }
     format!("\n{force}\n{table}")

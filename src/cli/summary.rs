@@ -107,14 +107,9 @@ pub fn run_summary(record: &Record) -> String {
     let mut table = Table::new(&["in time", "least", "mean", "greatest"]);
     for LineRecord { name, .. } in &record.lines {
         for (stem, label) in [("tension_b", "tension at end B [N]"), ("sag", "sag [m]")] {
-            let history = record
-                .history(&format!("{name}.{stem}"))
-                .unwrap_or_default();
+            let history = record.history(&format!("{name}.{stem}")).unwrap_or_default();
             if let Some(range) = Range::of(&history) {
-                table.row(
-                    &format!("{name} {label}"),
-                    &[range.min, range.mean, range.max],
-                );
+                table.row(&format!("{name} {label}"), &[range.min, range.mean, range.max]);
             }
         }
     }

@@ -145,12 +145,7 @@ impl Workspace {
     }
 
     /// Gives a state at rest the accelerations that the implicit integrators start from.
-    pub fn start(
-        &mut self,
-        model: &Model,
-        state: &mut State,
-        held: &impl Fn(usize, f64) -> Kinematics,
-    ) {
+    pub fn start(&mut self, model: &Model, state: &mut State, held: &impl Fn(usize, f64) -> Kinematics) {
         let time = state.time;
         drop_anchors(model, state);
         place_held(model, state, held);
@@ -341,8 +336,7 @@ fn place_held(model: &Model, state: &mut State, held: &impl Fn(usize, f64) -> Ki
     for (index, point) in state.points.iter_mut().enumerate() {
         if !matches!(model.points[index].role, Role::Fixed | Role::Free(_)) {
             let k = held(index, state.time);
-            (point.position, point.velocity, point.acceleration) =
-                (k.position, k.velocity, k.acceleration);
+            (point.position, point.velocity, point.acceleration) = (k.position, k.velocity, k.acceleration);
             if let Role::Carried { .. } = model.points[index].role {
                 (point.orientation, point.spin) = (k.orientation, k.spin);
             }

@@ -171,17 +171,12 @@ impl AxialWork {
             frequency_squared: axial_frequency_squared(line),
             damping_rate: damping_rate(line),
             rows: Rows {
-                segments: layout
-                    .rows()
-                    .map(|at| SegmentRow::new(&layout, at))
-                    .collect(),
+                segments: layout.rows().map(|at| SegmentRow::new(&layout, at)).collect(),
                 nodes: layout.rows().map(node).collect(),
                 current: layout.flows().then(|| vec![CurrentRow::new(); count]),
             },
             parted: [false; 2],
-            rubbing: layout
-                .bottom()
-                .map(|_| Rubbing::new(line.segment_count() + 1)),
+            rubbing: layout.bottom().map(|_| Rubbing::new(line.segment_count() + 1)),
             lost: Lanes::splat(0.0),
             given: 0.0,
             numerical: Lanes::splat(0.0),
@@ -327,8 +322,7 @@ impl AxialWork {
     /// [`Self::meet_surface`] of a line that may pierce it.
     fn pierce_surface(&mut self, after: Option<Step>) {
         if let Some(step) = after {
-            self.layout
-                .leave_surface(step, self.parted.map(|parted| !parted));
+            self.layout.leave_surface(step, self.parted.map(|parted| !parted));
         }
         self.layout.find_surface();
         let Some(surface) = &self.layout.surface else {
@@ -560,8 +554,7 @@ impl AxialWork {
             let line = &self.layout;
             let (at, (segment, sign)) = (line.end_slot(end), line.end_segment(end));
             let after = 0.5 * step.drift;
-            let way =
-                after * line.velocity_before.get(at) + (step.kick - after) * line.velocity.get(at);
+            let way = after * line.velocity_before.get(at) + (step.kick - after) * line.velocity.get(at);
             let pull = sign * self.rows.pull(segment);
             self.given += line.end_lack(end) * way.z - pull.dot(&way);
         }
@@ -580,8 +573,7 @@ impl AxialWork {
             let [across, along] = node.drag;
             let after = flow - line.velocity_before.load(at);
             let drawn = along * after.dot(tangent) - node.drag_rest;
-            let power =
-                across * past.dot(flow) + (drawn - across * past.dot(tangent)) * flow.dot(tangent);
+            let power = across * past.dot(flow) + (drawn - across * past.dot(tangent)) * flow.dot(tangent);
             sum = sum + node.free * (power + current.press.dot(mean));
         }
         let work = sum * Lanes::splat(step.kick);
@@ -691,10 +683,7 @@ impl NullaryFnOnce for Turning<'_> {
     #[inline(always)]
     fn call(self) -> f64 {
         let AxialWork {
-            layout,
-            rows,
-            parted,
-            ..
+            layout, rows, parted, ..
         } = self.0;
         layout.renew_neighbours(*parted);
         let mut sum = Lanes::splat(0.0);

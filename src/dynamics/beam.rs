@@ -99,9 +99,7 @@ impl StuckReason {
             StuckReason::Diverged | StuckReason::Turned => {
                 "try a smaller solver.time_step_max, or some damping of the line"
             }
-            StuckReason::Folded => {
-                "use more elements there, or a greater bending or torsional stiffness"
-            }
+            StuckReason::Folded => "use more elements there, or a greater bending or torsional stiffness",
         }
     }
 }
@@ -211,13 +209,7 @@ impl BeamWork {
     }
 
     /// Mass of a node and what is there with their added mass [kg], for a tangent and a height [m].
-    fn effective_mass(
-        &self,
-        case: &BeamStep,
-        i: usize,
-        tangent: Vector3<f64>,
-        height: f64,
-    ) -> Matrix3<f64> {
+    fn effective_mass(&self, case: &BeamStep, i: usize, tangent: Vector3<f64>, height: f64) -> Matrix3<f64> {
         let body = self.body(case, i);
         let own = body.map_or(0.0, |body| body.point.at(height).mass);
         Matrix3::from_diagonal_element(own) + node_mass(case.nodes, i, tangent)
@@ -267,10 +259,7 @@ impl BeamWork {
             (position.norm() / length).max(theta.norm())
         };
         let changes = self.chain.right.iter().map(size).enumerate();
-        changes.fold(
-            (0, 0.0),
-            |most, next| if next.1 > most.1 { next } else { most },
-        )
+        changes.fold((0, 0.0), |most, next| if next.1 > most.1 { next } else { most })
     }
 
     fn assemble(&mut self, case: &BeamStep, shape: &LineState) {
@@ -412,10 +401,7 @@ impl BeamWork {
         let i = end * (case.beam.elements.len() - 1);
         let (element, rest) = (&case.beam.elements[i], &beam_state(shape).rest[i]);
         let after = strain(&self.now[i], &self.now[i + 1], element.length);
-        let (laws, plain) = (
-            [&element.law, &element.damping],
-            [&self.strain_before[i], &after],
-        );
+        let (laws, plain) = ([&element.law, &element.damping], [&self.strain_before[i], &after]);
         let stress = response(laws, element.length, plain, rest, mixture(case.length)).stress;
         let gradient = strain_gradient(&self.mean[i], &self.mean[i + 1], element.length);
         element.length * gradient[end].tr_mul(&stress)

@@ -13,8 +13,8 @@
 
 use super::cost::{AXIAL_IMPLICIT_COST, IMPLICIT_COST};
 use super::limit::{
-    ExplicitLimit, axial_accuracy_step, explicit_limit, free_point_limit, heave_step,
-    point_accuracy_step, transverse_period, transverse_step,
+    ExplicitLimit, axial_accuracy_step, explicit_limit, free_point_limit, heave_step, point_accuracy_step,
+    transverse_period, transverse_step,
 };
 use crate::model::{Line, Model, Network};
 use crate::scene::Integrator;
@@ -154,12 +154,7 @@ fn implicit_step(model: &Model, network: &Network) -> f64 {
         .fold(model.solver.time_step_max, f64::min)
 }
 
-fn choose(
-    model: &Model,
-    network: &Network,
-    steps: &Steps,
-    tension: &impl Fn(usize) -> f64,
-) -> Integrator {
+fn choose(model: &Model, network: &Network, steps: &Steps, tension: &impl Fn(usize) -> f64) -> Integrator {
     let lines = || network.lines.iter().map(|&line| &model.lines[line]);
     if lines().any(|line| line.beam.is_some()) {
         return Integrator::Beam;
@@ -171,9 +166,8 @@ fn choose(
         return Integrator::Leapfrog;
     }
     let joined = !network.free_points.is_empty();
-    let at_rest = |&line: &usize| {
-        transverse_period(&model.lines[line], tension(line)) < model.solver.time_step_max
-    };
+    let at_rest =
+        |&line: &usize| transverse_period(&model.lines[line], tension(line)) < model.solver.time_step_max;
     let quick = network.lines.iter().all(at_rest);
     let rates = [
         (Integrator::Leapfrog, 1.0 / steps.explicit, true),

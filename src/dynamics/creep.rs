@@ -219,10 +219,7 @@ impl CreepArrays {
         let last = load(&of.last);
         let crept = load(&of.kept) * load(&self.slow) + (load(&of.first) + last) * strain;
         let stiffness = load(&self.stiffness);
-        (
-            stiffness * strain + memory * crept,
-            stiffness + memory * last,
-        )
+        (stiffness * strain + memory * crept, stiffness + memory * last)
     }
 
     /// Takes the memory from t_n to t_{n+1} by [`Viscoelastic::relaxation`], to strains of half a step after t_n and a whole one; what both halves around
@@ -234,8 +231,7 @@ impl CreepArrays {
         let (slow, before, now) = (load(&self.slow), load(&self.strain), strains[1]);
         let crept = load(&of.kept) * slow + load(&of.first) * before + load(&of.last) * now;
         let twice = load(&self.stiffness) * (before + now) + load(&self.memory) * (slow + crept);
-        let impulse =
-            half * Lanes::splat(step.drift) * twice + load(&self.damping) * (now - before);
+        let impulse = half * Lanes::splat(step.drift) * twice + load(&self.damping) * (now - before);
         let slack = (load(&of.slack) * slow).positive();
         let after = impulse.choose(crept, slack);
         self.slow.store(after, at);
@@ -318,10 +314,7 @@ mod tests {
                 let now = law[0].energy(after[0], after[1]);
                 if k > 1 {
                     let off = given - crept.taken[0] - (now - held);
-                    assert!(
-                        off.abs() < 1e-6 * given,
-                        "{damping:?}, {k}: {off} of {given}"
-                    );
+                    assert!(off.abs() < 1e-6 * given, "{damping:?}, {k}: {off} of {given}");
                     assert!(crept.taken[0] > 0.0);
                 }
                 (steps, held) = ([0.02, steps[0]], now);

@@ -418,11 +418,7 @@ mod tests {
     /// Sums numbers with so many helpers; returns the sum, and who took part.
     fn summed(crew: &mut Crew, helpers: usize) -> (usize, usize) {
         let numbers: Vec<usize> = (1..=1000).collect();
-        let queue = Queue::new(
-            numbers
-                .chunks(1000 / (helpers + 1) + 1)
-                .map(<[usize]>::iter),
-        );
+        let queue = Queue::new(numbers.chunks(1000 / (helpers + 1) + 1).map(<[usize]>::iter));
         let sum = AtomicUsize::new(0);
         let work = |own: usize, came: &mut usize| {
             *came = 1;

@@ -350,12 +350,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
         result
     }
 
-    fn passed<'a>(
-        &'a self,
-        states: [&'a State; 2],
-        times: [f64; 2],
-        work: &'a Workspace,
-    ) -> Passed<'a> {
+    fn passed<'a>(&'a self, states: [&'a State; 2], times: [f64; 2], work: &'a Workspace) -> Passed<'a> {
         Passed {
             states,
             times,
@@ -401,13 +396,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
     }
 
     /// One step from the state `before`; whether Newton's method converged. If not, the state is spoilt.
-    fn step(
-        &self,
-        [t0, t1]: [f64; 2],
-        before: &State,
-        state: &mut State,
-        work: &mut Workspace,
-    ) -> bool {
+    fn step(&self, [t0, t1]: [f64; 2], before: &State, state: &mut State, work: &mut Workspace) -> bool {
         let dt = t1 - t0;
         let ([old, new], rates) = self.scheme.weights(dt);
         work.fade_dampers(self.model, self.network, state, dt);
@@ -448,13 +437,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
 
     /// Solves once more where the exact tangent is not positive definite: with row exchanges, since stiff segments that turn within the step make it
     /// unsymmetric, and with joints of lines that bend that are not indefinite.
-    fn solve_indefinite(
-        &self,
-        state: &State,
-        t: f64,
-        weights: &Weights,
-        work: &mut Workspace,
-    ) -> bool {
+    fn solve_indefinite(&self, state: &State, t: f64, weights: &Weights, work: &mut Workspace) -> bool {
         let bends = |&line: &usize| self.model.lines[line].bending.is_some();
         if self.network.lines.iter().any(bends) {
             let convex = Weights {
@@ -499,9 +482,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
 
     /// From b' to a' = [(1 − α_f) b' + (α_f − α_m) a] / (1 − α_m), wherever forces move something.
     fn shift_accelerations(&self, state: &mut State, before: &State) {
-        let Scheme {
-            alpha_m, alpha_f, ..
-        } = *self.scheme;
+        let Scheme { alpha_m, alpha_f, .. } = *self.scheme;
         let of_new = (1.0 - alpha_f) / (1.0 - alpha_m);
         let shifted = |new: Vector3<f64>, old: Vector3<f64>| of_new * new + (1.0 - of_new) * old;
         for &index in &self.network.lines {

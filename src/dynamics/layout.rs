@@ -162,8 +162,7 @@ impl Layout {
     /// Rounds speeds far below [`STILLNESS`] to zero.
     pub fn still(&mut self) {
         for at in self.rows() {
-            self.velocity
-                .store(self.velocity.load(at).rounded(STILLNESS), at);
+            self.velocity.store(self.velocity.load(at).rounded(STILLNESS), at);
         }
     }
 
@@ -190,11 +189,7 @@ impl Layout {
         for end in [End::A, End::B] {
             let at = self.end_slot(end);
             if parted[end as usize] && self.has_row(at) {
-                let beyond = if end == End::A {
-                    at.before()
-                } else {
-                    at.after()
-                };
+                let beyond = if end == End::A { at.before() } else { at.after() };
                 self.position.set(beyond, self.position.get(at));
             }
         }
@@ -328,12 +323,7 @@ impl Layout {
         } else {
             0.0
         };
-        total_tension(
-            elastic,
-            self.axial_damping[at] * rate,
-            0.0,
-            self.negative_tension,
-        )
+        total_tension(elastic, self.axial_damping[at] * rate, 0.0, self.negative_tension)
     }
 
     /// Energy [J] that the half node at an end of masses across and along the line [kg] brings to the line when it parts from what held it

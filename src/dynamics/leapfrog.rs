@@ -101,9 +101,8 @@ impl WaterWork {
         let masses = || nodes.mass_tangent.iter().zip(&nodes.mass_normal);
         let excess: Vec<f64> = masses().map(|(t, n)| 1.0 / t - 1.0 / n).collect();
         let mass_excess: Vec<f64> = masses().map(|(t, n)| t - n).collect();
-        let wet = layout.drag.is_some()
-            || layout.waves.is_some()
-            || excess.iter().any(|excess| *excess != 0.0);
+        let wet =
+            layout.drag.is_some() || layout.waves.is_some() || excess.iter().any(|excess| *excess != 0.0);
         let drag = layout.drag.as_ref();
         let over_mass = |drag: Option<&[f64]>, mass: &[f64]| -> Vec<f64> {
             let pairs = drag.unwrap_or_default().iter().zip(mass);
@@ -112,10 +111,7 @@ impl WaterWork {
         let given = nodes.drag.as_ref();
         let across = over_mass(given.map(|drag| &drag.normal[..]), &nodes.mass_normal);
         let along = over_mass(given.map(|drag| &drag.tangent[..]), &nodes.mass_tangent);
-        let counts = along
-            .iter()
-            .zip(&across)
-            .any(|(along, across)| along > across);
+        let counts = along.iter().zip(&across).any(|(along, across)| along > across);
         wet.then(|| WaterWork {
             drag_over_mass: layout.fold.column(&across, 0.0),
             drag_over_mass_along: counts.then(|| layout.fold.column(&along, 0.0)),
@@ -214,22 +210,12 @@ pub struct EndLoad {
 
 impl LineWork {
     /// Scratch for a line; `None` where its sections have different strain measures, which the kernel does not mix.
-    pub fn new(
-        line: &Line,
-        water: Water<'_>,
-        held: [bool; 2],
-        solver: &Solver,
-    ) -> Option<LineWork> {
+    pub fn new(line: &Line, water: Water<'_>, held: [bool; 2], solver: &Solver) -> Option<LineWork> {
         let winch = WinchWork::new(line);
         let is_held = held[1] && winch.is_none();
         let line = line.winch.as_ref().map_or(line, |winch| winch.reel());
         let layout = Layout::new(line, water, solver, FEW_ROWS, is_held)?;
-        let inverse_mass: Vec<f64> = line
-            .nodes
-            .mass_normal
-            .iter()
-            .map(|mass| 1.0 / mass)
-            .collect();
+        let inverse_mass: Vec<f64> = line.nodes.mass_normal.iter().map(|mass| 1.0 / mass).collect();
         Some(LineWork {
             plain: layout.law == StretchLaw::Engineering
                 && layout.creep.is_none()
@@ -414,10 +400,7 @@ impl LineWork {
             }
             let at = layout.end_slot(end);
             if self.tied[side] {
-                let excess = self
-                    .water
-                    .as_ref()
-                    .map_or(0.0, |w| w.inverse_mass_excess[at]);
+                let excess = self.water.as_ref().map_or(0.0, |w| w.inverse_mass_excess[at]);
                 let across = self.inverse_mass[at];
                 let masses = [1.0 / across, 1.0 / (across + excess)];
                 self.given += layout.joining_energy(end, masses, step);
@@ -583,10 +566,7 @@ impl LineWork {
                 line.set_rub(at, Vector3::zeros());
                 continue;
             }
-            let excess = self
-                .water
-                .as_ref()
-                .map_or(0.0, |w| w.inverse_mass_excess[at]);
+            let excess = self.water.as_ref().map_or(0.0, |w| w.inverse_mass_excess[at]);
             let inverse_mass = self.inverse_mass[at];
             let tangent = line.tangent_of(i);
             let Some((contact, friction)) = line.rubbing() else {
@@ -640,8 +620,7 @@ impl LineWork {
     /// jumps no velocity tells how far. The material at a winch goes with its velocities.
     fn end_way(&mut self, end: End, step: Step) -> Vector3<f64> {
         let (at, side) = (self.layout.end_slot(end), end as usize);
-        let [before, after] =
-            [&self.layout.velocity_before, &self.layout.velocity].map(|of| of.get(at));
+        let [before, after] = [&self.layout.velocity_before, &self.layout.velocity].map(|of| of.get(at));
         let place = self.layout.position.get(at) - 0.5 * step.drift * after;
         let gone = place - self.half_places[side];
         self.half_places[side] = place;
@@ -696,14 +675,10 @@ impl LineWork {
         let press = press.map_or(Vector3::zeros(), |waves| waves.press_of(at, tangent));
         let mass_normal = 1.0 / self.inverse_mass[at];
         let mass_tangent = 1.0 / (self.inverse_mass[at] + excess);
-        let mass = mass_normal * Matrix3::identity()
-            + (mass_tangent - mass_normal) * tangent * tangent.transpose();
+        let mass =
+            mass_normal * Matrix3::identity() + (mass_tangent - mass_normal) * tangent * tangent.transpose();
         let contact = line.contact.as_ref().map_or([0.0; 3], |c| {
-            [
-                c.stiffness[at],
-                c.damping[at],
-                c.stiffness[at] * c.level[at],
-            ]
+            [c.stiffness[at], c.damping[at], c.stiffness[at] * c.level[at]]
         });
         EndLoad {
             force: force + resistance + press,
@@ -801,8 +776,7 @@ pub fn segment_tension(
     let segments = &line.segments;
     let (chord, length) = (high - low, segments.length[segment]);
     let l = chord.norm();
-    let elastic =
-        segments.axial_stiffness[segment] * segments.law[segment].at(l / length - 1.0).force;
+    let elastic = segments.axial_stiffness[segment] * segments.law[segment].at(l / length - 1.0).force;
     let rate = if l > 0.0 {
         chord.dot(&(high_velocity - low_velocity)) / (l * length)
     } else {

@@ -266,9 +266,8 @@ pub fn jump_energy(
 /// Energy of the buoyancy that a line lacks whose nodes are at `position` [m] [J].
 fn lacking_energy(surface: &Surface, position: &[Vector3<f64>]) -> f64 {
     let segments = position.windows(2).enumerate();
-    let energy = |(i, ends): (usize, &[Vector3<f64>])| {
-        surface.energy(i, [0, 1].map(|end| surface.height(&ends[end])))
-    };
+    let energy =
+        |(i, ends): (usize, &[Vector3<f64>])| surface.energy(i, [0, 1].map(|end| surface.height(&ends[end])));
     segments.map(energy).sum()
 }
 
@@ -292,13 +291,7 @@ fn passing(line: &Line, shape: &LineState, lag: f64) -> Vector3<f64> {
 }
 
 /// Energy of motion of a node at a velocity [m/s], with what it carries along across and along the line [J].
-fn node_motion(
-    line: &Line,
-    shape: &LineState,
-    i: usize,
-    velocity: Vector3<f64>,
-    water: WaterAlong,
-) -> f64 {
+fn node_motion(line: &Line, shape: &LineState, i: usize, velocity: Vector3<f64>, water: WaterAlong) -> f64 {
     let along = velocity.dot(&tangent(shape, i)).powi(2);
     let across = velocity.norm_squared() - along;
     let [normal, tangent] = line.nodes.masses(i, dry_part(line, shape, i, water));
@@ -308,17 +301,12 @@ fn node_motion(
 /// Part of a node that is out of the water [-].
 fn dry_part(line: &Line, shape: &LineState, i: usize, water: WaterAlong) -> f64 {
     let surface = line.surface.as_ref();
-    surface.map_or(0.0, |surface| {
-        surface.node_in(water, i, &shape.position).part
-    })
+    surface.map_or(0.0, |surface| surface.node_in(water, i, &shape.position).part)
 }
 
 /// How many ends of a network's lines have parted from their points.
 pub fn parted_ends(network: &Network, state: &State) -> usize {
-    let ends = network
-        .lines
-        .iter()
-        .flat_map(|&line| state.lines[line].parted);
+    let ends = network.lines.iter().flat_map(|&line| state.lines[line].parted);
     ends.filter(|parted| *parted).count()
 }
 

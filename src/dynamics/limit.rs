@@ -135,9 +135,7 @@ pub fn explicit_limit(line: &Line) -> ExplicitLimit {
     let (segments, enough) = (&line.segments, damping_enough(line));
     let mut limit = ExplicitLimit::none();
     for i in loose_nodes(line) {
-        let spring: f64 = beside(line, i)
-            .map(|segment| stiffness(line, segment))
-            .sum();
+        let spring: f64 = beside(line, i).map(|segment| stiffness(line, segment)).sum();
         let lags = beside(line, i).map(|segment| lag(segments, segment));
         let omega = ((2.0 * spring + heave(line, i)) / line.least_mass(i)).sqrt();
         let lag = lags.fold(0.0, f64::max);
@@ -154,10 +152,7 @@ fn fading(line: &Line, node: usize) -> f64 {
 
 /// Nodes that no point holds, or that one may let go of.
 fn loose_nodes(line: &Line) -> RangeInclusive<usize> {
-    let parts = |end: End| {
-        line.parting
-            .is_some_and(|sides| sides[end as usize].may_part())
-    };
+    let parts = |end: End| line.parting.is_some_and(|sides| sides[end as usize].may_part());
     let [first, last] = [End::A, End::B].map(|end| usize::from(parts(end)));
     1 - first..=line.segment_count() - 1 + last
 }
@@ -177,9 +172,7 @@ fn reeled_limit(reel: &Line) -> ExplicitLimit {
         ExplicitLimit::new(omega, lag, fading(reel, i), DAMPING_RATIO_ENOUGH)
     };
     let nodes = 1..reel.segment_count();
-    nodes
-        .map(limit)
-        .fold(ExplicitLimit::none(), ExplicitLimit::or)
+    nodes.map(limit).fold(ExplicitLimit::none(), ExplicitLimit::or)
 }
 
 /// Explicit step limit of a free point with all that is tied to it; none without a line.
@@ -384,9 +377,7 @@ mod tests {
             })
             .collect();
         let list: Vec<_> = (sections.iter().enumerate())
-            .map(|(k, (_, length, n))| {
-                format!("{{ type = 't{k}', length = {length}, elements = {n} }}")
-            })
+            .map(|(k, (_, length, n))| format!("{{ type = 't{k}', length = {length}, elements = {n} }}"))
             .collect();
         let span: f64 = sections.iter().map(|(_, length, _)| length).sum();
         let scene = Scene::from_toml(&format!(
@@ -419,10 +410,7 @@ mod tests {
 
     #[test]
     fn the_greatest_axial_frequency_of_several_sections_is_the_greatest_eigenvalue() {
-        let line = line(
-            &[(2.0, 10.0, 3), (40.0, 1.0, 2), (0.5, 30.0, 4)],
-            "engineering",
-        );
+        let line = line(&[(2.0, 10.0, 3), (40.0, 1.0, 2), (0.5, 30.0, 4)], "engineering");
         let (mass, last) = (&line.nodes.mass, line.segment_count() - 1);
         let scaled = DMatrix::from_fn(last, last, |i, k| {
             let (low, high) = (i.min(k), i.max(k));

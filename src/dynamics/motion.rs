@@ -132,12 +132,7 @@ impl AxesPath {
     /// Becomes the path `before` continued by a communication step from what the host says at its start; at its end where it is
     /// [`Reconstruction::Interpolate`]. Returns its ends, as [`AxesPath::ends`]: read again at once, what was written would hold up the step.
     #[inline(always)]
-    pub fn extend(
-        &mut self,
-        before: &AxesPath,
-        foresight: &Foresight,
-        said: &Said,
-    ) -> [[Lanes; 3]; 2] {
+    pub fn extend(&mut self, before: &AxesPath, foresight: &Foresight, said: &Said) -> [[Lanes; 3]; 2] {
         if foresight.reconstruction == Reconstruction::Interpolate {
             return self.interpolate(before, foresight, said);
         }
@@ -170,12 +165,7 @@ impl AxesPath {
     /// [`AxesPath::extend`] to what the host says of the step's end. A velocity that it does not tell is the slope there of the parabola
     /// through the last three places.
     #[inline(always)]
-    fn interpolate(
-        &mut self,
-        before: &AxesPath,
-        foresight: &Foresight,
-        said: &Said,
-    ) -> [[Lanes; 3]; 2] {
+    fn interpolate(&mut self, before: &AxesPath, foresight: &Foresight, said: &Said) -> [[Lanes; 3]; 2] {
         let mut velocity = said.velocity;
         if !said.rated.all_positive() {
             let [_, length, rate] = foresight.span;
@@ -234,13 +224,7 @@ impl AxesPath {
     /// [`AxesPath::bridge`] where the path jumps to what the host says, or what it missed is made up over more than the step.
     #[cold]
     #[inline(never)]
-    fn bridge_over(
-        &mut self,
-        before: &AxesPath,
-        foresight: &Foresight,
-        said: &Said,
-        to: Prediction,
-    ) {
+    fn bridge_over(&mut self, before: &AxesPath, foresight: &Foresight, said: &Said, to: Prediction) {
         let ([position, velocity, velocity_before], [_, length, _]) = (to, foresight.span);
         let mut from = before.end;
         self.end = [position, velocity];
@@ -474,11 +458,7 @@ mod tests {
 
     impl Guided {
         fn at_rest(time: f64, position: f64) -> Guided {
-            Guided(
-                Clock::new(time),
-                AxisPath::at_rest(position),
-                Foresight::none(),
-            )
+            Guided(Clock::new(time), AxisPath::at_rest(position), Foresight::none())
         }
 
         fn extend(&mut self, sample: Sample, step: f64, reconstruction: Reconstruction) {
@@ -515,9 +495,7 @@ mod tests {
             // equal steps, short ones between them, the same instant again and leaps back
             let step = if k % 31 == 30 { 0.007 } else { 0.05 };
             let mut fresh = Foresight::none();
-            clock
-                .clone()
-                .tell(time, step, Reconstruction::Smooth, &mut fresh);
+            clock.clone().tell(time, step, Reconstruction::Smooth, &mut fresh);
             clock.tell(time, step, Reconstruction::Smooth, &mut kept);
             assert_eq!(format!("{kept:?}"), format!("{fresh:?}"), "at {time} s");
             time += match k {
@@ -570,11 +548,7 @@ mod tests {
             for axis in 0..3 {
                 let [value, slope, _] = together.at(time + 0.1).map(|lanes| lanes[axis]);
                 let own = alone[axis].at(time + 0.1);
-                assert_eq!(
-                    [value, slope],
-                    [own.value, own.slope],
-                    "axis {axis}, {time} s"
-                );
+                assert_eq!([value, slope], [own.value, own.slope], "axis {axis}, {time} s");
             }
         }
     }
@@ -613,10 +587,7 @@ mod tests {
             let fastest = (0..=100)
                 .map(|k| path.at(time + 0.01 * step * f64::from(k)).slope.abs())
                 .fold(0.0, f64::max);
-            assert!(
-                fastest < 0.6,
-                "{fastest} m/s in a step of {step} s at {time} s"
-            );
+            assert!(fastest < 0.6, "{fastest} m/s in a step of {step} s at {time} s");
             time += step;
         }
         assert_relative_eq!(path.at(time).value, 1.0, epsilon = 1e-6);
@@ -785,10 +756,7 @@ mod tests {
                 for pair in errors.windows(2) {
                     for (quantity, order) in [2.9, 2.5, 1.5].into_iter().enumerate() {
                         let fall = (pair[0][quantity] / pair[1][quantity]).log2();
-                        assert!(
-                            fall > order,
-                            "{steps:?} {with_velocity} {quantity}: {errors:?}"
-                        );
+                        assert!(fall > order, "{steps:?} {with_velocity} {quantity}: {errors:?}");
                     }
                 }
             }
@@ -800,11 +768,7 @@ mod tests {
         for with_velocity in [false, true] {
             let alone = path_errors(&[0.2], with_velocity);
             for short in [0.1, 0.02, 0.01, 1e-3, 1e-4, 1e-6] {
-                for steps in [
-                    &[0.2, short][..],
-                    &[0.2, short, short, short],
-                    &[0.2, 0.2, short],
-                ] {
+                for steps in [&[0.2, short][..], &[0.2, short, short, short], &[0.2, 0.2, short]] {
                     let errors = path_errors(steps, with_velocity);
                     for (error, alone) in errors.into_iter().zip(alone) {
                         assert!(error < 2.0 * alone, "{steps:?} {with_velocity}: {errors:?}");

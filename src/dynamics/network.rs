@@ -8,8 +8,7 @@ use super::ledger::Flow;
 use super::motion::AxisPath;
 use super::step::Step;
 use crate::model::{
-    End, FreePoint, Kinematics, Model, Network, PointAtHeight, PointState, Role, State, WaveSpan,
-    WaveSpans,
+    End, FreePoint, Kinematics, Model, Network, PointAtHeight, PointState, Role, State, WaveSpan, WaveSpans,
 };
 use crate::physics::airy::Orbit;
 use crate::physics::friction::{Axes, Friction};
@@ -71,13 +70,7 @@ impl LineEnd {
 
     /// Finds where the point is at `t` [s], and its velocity half a step of `length` [s] earlier.
     #[inline]
-    fn find(
-        &mut self,
-        points: &[PointState],
-        t: f64,
-        length: f64,
-        held: &impl Fn(usize, f64) -> Kinematics,
-    ) {
+    fn find(&mut self, points: &[PointState], t: f64, length: f64, held: &impl Fn(usize, f64) -> Kinematics) {
         self.placed = match self.tie {
             Tie::Fixed => return,
             Tie::Held(point) => {
@@ -150,9 +143,7 @@ impl NetworkWork {
     /// Runs the kernels as they are compiled for any machine of the target, or for the best vectors of this one, as is the default.
     /// Results do not depend on it.
     pub fn set_portable(&mut self, portable: bool) {
-        self.lines
-            .iter_mut()
-            .for_each(|line| line.set_portable(portable));
+        self.lines.iter_mut().for_each(|line| line.set_portable(portable));
     }
 
     /// Takes over the state.
@@ -245,9 +236,7 @@ impl NetworkWork {
                 let stream = model.stream(t);
                 let mut past = point.half_step[0];
                 past -= stream.map_or(Vector3::zeros(), |now| now.velocity(point.position.z));
-                past -= self
-                    .waves_at(free, t)
-                    .map_or(Vector3::zeros(), |w| w.velocity);
+                past -= self.waves_at(free, t).map_or(Vector3::zeros(), |w| w.velocity);
                 let rate = sphere.drag * past.norm();
                 (rate > 0.0).then(|| rate / tied_mass(model, index))
             })
@@ -308,13 +297,7 @@ impl NetworkWork {
     }
 
     /// Sets the paths of the winches, by the line they pay out, from `t` [s] on; after [`Self::put_ends`].
-    pub fn start_reels(
-        &mut self,
-        network: &Network,
-        state: &State,
-        paths: &[AxisPath],
-        step: Step,
-    ) {
+    pub fn start_reels(&mut self, network: &Network, state: &State, paths: &[AxisPath], step: Step) {
         for (work, &line) in self.lines.iter_mut().zip(&network.lines) {
             let fresh = state.lines[line].half_step.is_unset();
             work.start_reel(paths.get(line), state.time, fresh, step);
@@ -381,8 +364,7 @@ impl NetworkWork {
             let waves = self.waves_at(free, t);
             let (at, mut load) = load_in_water(model, index, law, [height, t], now, waves);
             self.springs.clear();
-            self.springs
-                .extend(Spring::new(load.contact, bed.height, step));
+            self.springs.extend(Spring::new(load.contact, bed.height, step));
             for &(at, end) in &self.attached[free] {
                 if self.lines[at].is_parted(end) {
                     continue;
@@ -431,11 +413,7 @@ fn attached(model: &Model, network: &Network, point: usize) -> Vec<(usize, End)>
         let place = network.lines.iter().position(|&l| l == line)?;
         Some((place, end))
     };
-    model.points[point]
-        .attached
-        .iter()
-        .filter_map(place)
-        .collect()
+    model.points[point].attached.iter().filter_map(place).collect()
 }
 
 /// What weight, load and water bring to a free point at a height [m] and a time [s] that moves at `now` [m/s], without lines and bed; and
@@ -507,11 +485,7 @@ fn mass_work(
 
 impl Spring {
     /// The spring of stiffness, damping and force at no height under a point at `height` [m]; `None` where there is none.
-    fn new(
-        [stiffness, damping, force_at_zero]: [f64; 3],
-        height: f64,
-        step: Step,
-    ) -> Option<Spring> {
+    fn new([stiffness, damping, force_at_zero]: [f64; 3], height: f64, step: Step) -> Option<Spring> {
         (stiffness > 0.0).then_some(Spring {
             stiffness,
             resistance: stiffness * step.drift + damping,
@@ -632,13 +606,7 @@ impl Bed<'_> {
 
 /// Impulse of the springs on a point that would have the velocity `velocity` [m/s] without it. The sum of springs that
 /// only push is convex in the velocity, so that Newton's method from above finds it in as many iterations as there are springs.
-fn pushed(
-    velocity: Vector3<f64>,
-    response: Vector3<f64>,
-    springs: &[Spring],
-    bed: &Bed,
-    step: Step,
-) -> f64 {
+fn pushed(velocity: Vector3<f64>, response: Vector3<f64>, springs: &[Spring], bed: &Bed, step: Step) -> f64 {
     let (rise, yielding) = (bed.normal.dot(&velocity), bed.normal.dot(&response));
     let mut impulse = 0.0;
     for _ in 0..springs.len() {
@@ -669,8 +637,7 @@ impl Sliding {
     fn new(normal: Vector3<f64>, inverse: &Matrix3<f64>, free: &Vector3<f64>) -> Sliding {
         let Axes { along, across, .. } = Axes::new(normal, normal);
         let axes = [along, across];
-        let mut yielding =
-            Matrix2::from_fn(|i, j| axes[i].dot(&(inverse * axes[j].component_mul(free))));
+        let mut yielding = Matrix2::from_fn(|i, j| axes[i].dot(&(inverse * axes[j].component_mul(free))));
         // A point on a rail yields along that alone: the rest is held, and must not be divided by.
         let least = 1e-12 * yielding.trace();
         yielding += Matrix2::from_diagonal_element(least);

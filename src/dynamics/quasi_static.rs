@@ -129,12 +129,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Path<'_, K> {
     /// Puts the network on its catenaries, its free points guessed to have moved on as before; whether that was possible.
     fn hang(&self, state: &mut State, [start, end]: [f64; 2], work: &mut Workspace) -> bool {
         let model = self.model;
-        for point in self
-            .network
-            .lines
-            .iter()
-            .flat_map(|&line| model.lines[line].ends)
-        {
+        for point in self.network.lines.iter().flat_map(|&line| model.lines[line].ends) {
             if model.points[point].free().is_none() {
                 state.points[point] = PointState::held(&(self.held)(point, end));
             }

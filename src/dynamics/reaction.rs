@@ -117,8 +117,7 @@ pub fn end_force(
         dry,
         moments,
     };
-    let pull =
-        tension(line, state, segment, negative_tension) * inward + half.shear(state, segment);
+    let pull = tension(line, state, segment, negative_tension) * inward + half.shear(state, segment);
     let mut force = pull + half.load(inward, dry.part);
     if let (Some(reel), End::B) = (state.reel, end) {
         force -= passing(line, reel) * chord / line.segments.length[segment];
@@ -213,8 +212,8 @@ impl HalfNode<'_> {
         let chord = state.position[after] - state.position[next];
         let onward = chord.try_normalize(0.0).unwrap_or(inward);
         let segment = next.min(after);
-        let passed_on = tension(self.line, state, segment, negative_tension) * onward
-            + self.shear(state, segment);
+        let passed_on =
+            tension(self.line, state, segment, negative_tension) * onward + self.shear(state, segment);
         let tangents = [3.0 * inward - onward, inward, inward + onward]
             .map(|along| along.try_normalize(0.0).unwrap_or(inward));
         let own = self.load(tangents[0], self.dry.part);
@@ -243,10 +242,7 @@ impl HalfNode<'_> {
     /// `next` node.
     fn bulge(&self, state: &LineState, next: usize, tangents: [Vector3<f64>; 3]) -> Vector3<f64> {
         let flow = self.water.velocity(next, state.position[next].z);
-        let (past, last) = (
-            self.point.velocity - self.flow(),
-            state.velocity[next] - flow,
-        );
+        let (past, last) = (self.point.velocity - self.flow(), state.velocity[next] - flow);
         let [end, half_way, next] = [(0, past), (1, 0.5 * (past + last)), (2, last)]
             .map(|(place, velocity)| self.drag(velocity, tangents[place], self.dry.part));
         (2.0 * half_way - end - next) / 3.0

@@ -127,12 +127,8 @@ impl SeaWork {
     pub fn start(&mut self, model: &Model, state: &mut State) {
         state.waves = model.waves.as_ref().map(|waves| {
             let mut spans = WaveSpans::default();
-            spans
-                .lines
-                .resize_with(model.lines.len(), WaveSpan::default);
-            spans
-                .points
-                .resize_with(model.points.len(), WaveSpan::default);
+            spans.lines.resize_with(model.lines.len(), WaveSpan::default);
+            spans.points.resize_with(model.points.len(), WaveSpan::default);
             for place in Place::of(model) {
                 let span = place.span_mut(&mut spans);
                 self.begin(waves, state, place, span);

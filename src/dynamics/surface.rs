@@ -106,9 +106,7 @@ impl SurfaceNow {
         NodeNow {
             weight: nodes.weight[i] + dry.weight,
             masses: nodes.masses(i, dry.part),
-            drag: drag.map_or([0.0; 2], |drag| {
-                [wet * drag.normal[i], wet * drag.tangent[i]]
-            }),
+            drag: drag.map_or([0.0; 2], |drag| [wet * drag.normal[i], wet * drag.tangent[i]]),
             pressed: nodes
                 .pressed
                 .as_ref()
@@ -118,11 +116,7 @@ impl SurfaceNow {
 
     /// Buoyancy that a node lacks, in calm water where there are waves [N].
     pub fn lack(&self, i: usize, waves: bool) -> f64 {
-        if waves {
-            self.calm[i]
-        } else {
-            self.dry[i].weight
-        }
+        if waves { self.calm[i] } else { self.dry[i].weight }
     }
 
     /// Books what joined node `i` or left it since the [`Self::find`] before the last, as if it had the same mass along the line as across it;

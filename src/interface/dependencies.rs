@@ -41,9 +41,7 @@ pub(super) fn fill(variables: &mut [Variable], scene: &Scene, model: &Model) {
     for variable in variables {
         let (lines, closed_form) = match &variable.binding {
             Binding::EndForce { body, .. } => (networks_of(model, attached_to(*body)), false),
-            Binding::Line { line, result } if is_catenary(*result) => {
-                (BTreeSet::from([*line]), true)
-            }
+            Binding::Line { line, result } if is_catenary(*result) => (BTreeSet::from([*line]), true),
             Binding::Line { line, .. } | Binding::Profile { line, .. } => {
                 (networks_of(model, [*line]), false)
             }
@@ -124,14 +122,13 @@ impl Scope<'_> {
             Parameter::WaterDensity => {
                 self.types()
                     .any(|name| self.is_buoyant(name) || self.is_pushed(name))
-                    || self.free_points().any(|point| {
-                        point.volume.is_some() || (self.flows() && point.drag_area.is_some())
-                    })
+                    || self
+                        .free_points()
+                        .any(|point| point.volume.is_some() || (self.flows() && point.drag_area.is_some()))
             }
             Parameter::SeabedDepth => true,
             Parameter::Gravity => {
-                self.types()
-                    .any(|name| scene.line_types[name].weight.is_none())
+                self.types().any(|name| scene.line_types[name].weight.is_none())
                     || self.emerges()
                     || self.is_in_waves()
                     || self
@@ -156,9 +153,9 @@ impl Scope<'_> {
                     || self.is_pushed(name)
                     || (self.scene.seabed.is_some() && !self.closed_form)
             }
-            Property::BendingStiffness
-            | Property::ShearStiffness
-            | Property::TorsionalStiffness => !self.closed_form,
+            Property::BendingStiffness | Property::ShearStiffness | Property::TorsionalStiffness => {
+                !self.closed_form
+            }
             Property::DragNormal | Property::DragTangential => self.flows(),
             Property::AddedMassNormal | Property::AddedMassTangential => self.is_in_waves(),
             Property::RotaryInertia
@@ -181,8 +178,7 @@ impl Scope<'_> {
     /// Whether the water moves, which closed forms know nothing of.
     fn flows(&self) -> bool {
         let water = self.scene.water.as_ref();
-        !self.closed_form
-            && water.is_some_and(|water| water.current.is_some() || water.waves.is_some())
+        !self.closed_form && water.is_some_and(|water| water.current.is_some() || water.waves.is_some())
     }
 
     fn is_in_waves(&self) -> bool {

@@ -14,11 +14,7 @@ pub(super) fn push(variables: &mut Vec<Variable>, model: &Model, layout: Layout)
             let name = format!("{}.profile.{label}", built.name);
             let description = format!("{}: {meaning} at the nodes from end A to end B", built.name);
             let mut push = |name, description, node, dimension| {
-                let binding = Binding::Profile {
-                    line,
-                    quantity,
-                    node,
-                };
+                let binding = Binding::Profile { line, quantity, node };
                 let mut variable = row(name, description, Causality::Output, unit, binding);
                 variable.dimension = dimension;
                 variables.push(variable);
@@ -28,8 +24,7 @@ pub(super) fn push(variables: &mut Vec<Variable>, model: &Model, layout: Layout)
                 Layout::Scalars => {
                     for node in 0..nodes {
                         let number = node + 1;
-                        let description =
-                            format!("{}: {meaning} at node {number} from end A", built.name);
+                        let description = format!("{}: {meaning} at node {number} from end A", built.name);
                         push(format!("{name}[{number}]"), description, Some(node), None);
                     }
                 }

@@ -267,7 +267,8 @@ pub(super) fn solver(variables: &mut Vec<Variable>) {
     variables.push(substeps);
     variables.push(row(
         "solver.energy_error".into(),
-        "energy that the time integration made (positive) or lost since the start; 0 where no ledger is kept".into(),
+        "energy that the time integration made (positive) or lost since the start; 0 where no ledger is kept"
+            .into(),
         Causality::Output,
         Unit::JOULE,
         Binding::Solver(SolverResult::EnergyError),

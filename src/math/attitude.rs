@@ -66,9 +66,7 @@ impl Order {
                 -Vector3::new(roll, pitch, yaw)
             }
         };
-        angles.zip_map(&near, |angle, near| {
-            angle + TAU * ((near - angle) / TAU).round()
-        })
+        angles.zip_map(&near, |angle, near| angle + TAU * ((near - angle) / TAU).round())
     }
 }
 
@@ -85,12 +83,7 @@ pub struct Attitude {
 
 impl Attitude {
     /// From roll, pitch and yaw [rad] in an order, their rates [rad/s] and second derivatives [rad/s²].
-    pub fn new(
-        order: Order,
-        angles: Vector3<f64>,
-        rates: Vector3<f64>,
-        seconds: Vector3<f64>,
-    ) -> Attitude {
+    pub fn new(order: Order, angles: Vector3<f64>, rates: Vector3<f64>, seconds: Vector3<f64>) -> Attitude {
         let axes = axes(order, angles);
         let sequence = order.sequence();
         let [outer, middle, inner] = sequence.map(|i| axes.column(i).into_owned());
@@ -116,8 +109,7 @@ pub fn angle_rates(angles: Vector3<f64>, spin: Vector3<f64>) -> Option<Vector3<f
 
 /// Axes that roll, pitch and yaw turn about, as columns.
 fn axes(order: Order, angles: Vector3<f64>) -> Matrix3<f64> {
-    let [(sin_r, cos_r), (sin_p, cos_p), (sin_y, cos_y)] =
-        [angles.x, angles.y, angles.z].map(f64::sin_cos);
+    let [(sin_r, cos_r), (sin_p, cos_p), (sin_y, cos_y)] = [angles.x, angles.y, angles.z].map(f64::sin_cos);
     match order {
         Order::Zyx => {
             let roll = Vector3::new(cos_y * cos_p, sin_y * cos_p, -sin_p);
@@ -174,8 +166,7 @@ mod tests {
     #[test]
     fn the_two_orders_are_products_of_the_same_rotations() {
         let [roll, pitch, yaw] = ANGLES;
-        let about =
-            |axis: Vector3<f64>, angle: f64| nalgebra::Rotation3::new(angle * axis).into_inner();
+        let about = |axis: Vector3<f64>, angle: f64| nalgebra::Rotation3::new(angle * axis).into_inner();
         let [x, y, z] = [
             about(Vector3::x(), roll),
             about(Vector3::y(), pitch),

@@ -339,12 +339,8 @@ mod tests {
         let mut seed = 7;
         let mut matrix = || Matrix3::from_fn(|_, _| noise(&mut seed));
         let coupling: Vec<_> = (1..nodes).map(|_| matrix()).collect();
-        let diagonal = (0..nodes)
-            .map(|_| matrix() + Matrix3::identity() * 9.0)
-            .collect();
-        let right = (0..nodes)
-            .map(|_| matrix().column(0).into_owned())
-            .collect();
+        let diagonal = (0..nodes).map(|_| matrix() + Matrix3::identity() * 9.0).collect();
+        let right = (0..nodes).map(|_| matrix().column(0).into_owned()).collect();
         System {
             diagonal,
             coupling,
@@ -383,12 +379,7 @@ mod tests {
                 )
                 .unwrap();
             let mut points = DenseSystem::new(2);
-            for (row, column, block) in [
-                (0, 0, ends.aa),
-                (0, 1, ends.ab),
-                (1, 0, ends.ba),
-                (1, 1, ends.bb),
-            ] {
+            for (row, column, block) in [(0, 0, ends.aa), (0, 1, ends.ab), (1, 0, ends.ba), (1, 1, ends.bb)] {
                 points.add_block(row, column, &block);
             }
             points.add_right(0, ends.a);
@@ -405,10 +396,7 @@ mod tests {
     fn elimination_equals_the_dense_solution_with_held_ends() {
         let system = random(6);
         let mut reference = dense(&system);
-        for (point, axis) in [0, 5]
-            .into_iter()
-            .flat_map(|p| (0..3).map(move |axis| (p, axis)))
-        {
+        for (point, axis) in [0, 5].into_iter().flat_map(|p| (0..3).map(move |axis| (p, axis))) {
             reference.hold(point, axis);
         }
         assert!(reference.solve(Pivots::Positive));

@@ -74,8 +74,7 @@ impl Fold {
     /// Where the nodes stand, from the first to the last that there is room for, and to the one behind these.
     pub fn slots(self) -> impl Iterator<Item = Slot> {
         let rows = 1..=self.rows;
-        let inner =
-            (0..LANES).flat_map(move |lane| rows.clone().map(move |row| Slot { row, lane }));
+        let inner = (0..LANES).flat_map(move |lane| rows.clone().map(move |row| Slot { row, lane }));
         inner.chain(std::iter::once(self.slot(self.room())))
     }
 

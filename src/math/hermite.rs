@@ -76,11 +76,7 @@ impl Hermite {
 impl Hermites {
     /// From a start over a span, whose inverse is at hand, through values and slopes at both ends.
     #[inline(always)]
-    pub fn bridge(
-        [start, span, rate]: [f64; 3],
-        [p0, m0]: [Lanes; 2],
-        [p1, m1]: [Lanes; 2],
-    ) -> Hermites {
+    pub fn bridge([start, span, rate]: [f64; 3], [p0, m0]: [Lanes; 2], [p1, m1]: [Lanes; 2]) -> Hermites {
         let (two, three) = (Lanes::splat(2.0), Lanes::splat(3.0));
         let span = Lanes::splat(span);
         let (m0, m1) = (span * m0, span * m1);
@@ -211,14 +207,8 @@ mod tests {
             let start = 0.5 * (std::f64::consts::PI / 1.3 - span); // where the sixth derivative of x is greatest in the middle
             let curve = Quintic::new(wave(start), wave(start + span), span);
             let bound = 1.3_f64.powi(6) * span.powi(6) * QUINTIC_ERROR;
-            let miss = |u: f64| {
-                (curve.at(u, 1.0 / span)[0] - wave(start + u * span)[0])
-                    .x
-                    .abs()
-            };
-            let worst = (0..=20)
-                .map(|k| miss(0.05 * f64::from(k)))
-                .fold(0.0, f64::max);
+            let miss = |u: f64| (curve.at(u, 1.0 / span)[0] - wave(start + u * span)[0]).x.abs();
+            let worst = (0..=20).map(|k| miss(0.05 * f64::from(k))).fold(0.0, f64::max);
             assert!(
                 worst <= bound + 1e-15 && worst > 0.9 * bound,
                 "{worst} of {bound}"

@@ -84,9 +84,7 @@ impl Lanes {
     /// `yes` where x > 0, else `no`.
     #[inline(always)]
     pub fn choose(self, yes: Lanes, no: Lanes) -> Lanes {
-        Lanes(from_fn(
-            |i| if self.0[i] > 0.0 { yes.0[i] } else { no.0[i] },
-        ))
+        Lanes(from_fn(|i| if self.0[i] > 0.0 { yes.0[i] } else { no.0[i] }))
     }
 
     /// The greater of two, lane by lane.
@@ -366,10 +364,7 @@ mod tests {
         for code in 0..kinds.len().pow(4) {
             let values: [f64; LANES] =
                 from_fn(|lane| kinds[code / kinds.len().pow(lane as u32) % kinds.len()]);
-            let (lanes, count) = (
-                Lanes::new(values),
-                values.iter().filter(|x| **x > 0.0).count(),
-            );
+            let (lanes, count) = (Lanes::new(values), values.iter().filter(|x| **x > 0.0).count());
             assert_eq!(lanes.any_positive(), count > 0, "{values:?}");
             assert_eq!(lanes.all_positive(), count == LANES, "{values:?}");
         }

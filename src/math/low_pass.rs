@@ -69,11 +69,7 @@ mod tests {
     fn the_gain_is_that_of_two_passes_of_second_order() {
         for frequency in [0.25_f64, 0.5, 1.0, 2.0] {
             let warped = (PI * frequency * INTERVAL).tan() / (PI * INTERVAL).tan();
-            assert_relative_eq!(
-                gain(frequency),
-                1.0 / (1.0 + warped.powi(4)),
-                max_relative = 2e-3
-            );
+            assert_relative_eq!(gain(frequency), 1.0 / (1.0 + warped.powi(4)), max_relative = 2e-3);
         }
     }
 

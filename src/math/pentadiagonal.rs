@@ -193,10 +193,7 @@ mod tests {
                 above: matrices(nodes - 1),
                 below: matrices(nodes - 1),
                 far: matrices(nodes.saturating_sub(2)),
-                right: matrices(nodes)
-                    .iter()
-                    .map(|m| m.column(0).into_owned())
-                    .collect(),
+                right: matrices(nodes).iter().map(|m| m.column(0).into_owned()).collect(),
                 diagonal: matrices(nodes)
                     .iter()
                     .map(|m| m + Matrix3::identity() * 14.0)
@@ -243,12 +240,7 @@ mod tests {
                 .eliminate(system.blocks(), &system.right, true, Pivots::Positive)
                 .unwrap();
             let mut points = DenseSystem::new(2);
-            for (row, column, block) in [
-                (0, 0, ends.aa),
-                (0, 1, ends.ab),
-                (1, 0, ends.ba),
-                (1, 1, ends.bb),
-            ] {
+            for (row, column, block) in [(0, 0, ends.aa), (0, 1, ends.ab), (1, 0, ends.ba), (1, 1, ends.bb)] {
                 points.add_block(row, column, &block);
             }
             points.add_right(0, ends.a);

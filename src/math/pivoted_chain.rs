@@ -72,9 +72,7 @@ impl PivotedChain {
             let next = self.right[i + 1];
             self.right[i] -= self.upper[i] * next;
         }
-        self.right
-            .iter()
-            .all(|block| block.iter().all(|x| x.is_finite()))
+        self.right.iter().all(|block| block.iter().all(|x| x.is_finite()))
     }
 }
 

@@ -128,11 +128,7 @@ mod tests {
             Vector3::new(0.6, 0.0, 0.8),
         ] {
             let frame = turned_to(&Matrix3::identity(), direction);
-            assert_relative_eq!(
-                frame.transpose() * frame,
-                Matrix3::identity(),
-                epsilon = 1e-15
-            );
+            assert_relative_eq!(frame.transpose() * frame, Matrix3::identity(), epsilon = 1e-15);
             assert_relative_eq!(frame.determinant(), 1.0, epsilon = 1e-15);
             assert_relative_eq!(frame.column(2).into_owned(), direction, epsilon = 1e-15);
         }

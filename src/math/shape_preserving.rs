@@ -111,8 +111,7 @@ fn quartic_slope(at: &[f64], values: &[f64], i: usize) -> f64 {
     let mut difference = rows.map(|row| values[row]); // divided, of Newton's form
     for order in 1..count {
         for k in (order..count).rev() {
-            difference[k] =
-                (difference[k] - difference[k - 1]) / (at[rows[k]] - at[rows[k - order]]);
+            difference[k] = (difference[k] - difference[k - 1]) / (at[rows[k]] - at[rows[k - order]]);
         }
     }
     let (mut slope, mut product) = (0.0, 1.0);
@@ -179,10 +178,7 @@ impl<'a> Limiter<'a> {
         if is_monotone(secant, slopes) {
             return true;
         }
-        let excursion = excursion(
-            [self.values[k], self.values[k + 1]],
-            slopes.map(|m| m * span),
-        );
+        let excursion = excursion([self.values[k], self.values[k + 1]], slopes.map(|m| m * span));
         excursion > 0.0 && excursion <= self.support(k)
     }
 
@@ -229,11 +225,7 @@ fn is_monotone(secant: f64, [start, end]: [f64; 2]) -> bool {
 /// By how much a cubic leaves the range of the values at its ends, with its slopes there times its span.
 fn excursion([low, high]: [f64; 2], [start, end]: [f64; 2]) -> f64 {
     let rise = high - low;
-    let [b, c, d] = [
-        start,
-        3.0 * rise - 2.0 * start - end,
-        start + end - 2.0 * rise,
-    ];
+    let [b, c, d] = [start, 3.0 * rise - 2.0 * start - end, start + end - 2.0 * rise];
     let root = (c * c - 3.0 * b * d).max(0.0).sqrt();
     let sum = -(c + root.copysign(c));
     let turns = [sum / (3.0 * d), b / sum];
@@ -264,9 +256,7 @@ mod tests {
 
     /// Greatest error away from three rows at either end of a sine with `count` rows a period, shifted at random by up to a part of their distance.
     fn error_of_sine(count: f64, phase: f64, mut shift: impl FnMut() -> f64) -> f64 {
-        let at: Vec<f64> = (0..=(3.0 * count) as usize)
-            .map(|i| i as f64 + shift())
-            .collect();
+        let at: Vec<f64> = (0..=(3.0 * count) as usize).map(|i| i as f64 + shift()).collect();
         let sine = |t: f64| (TAU * t / count + phase).sin();
         let values: Vec<f64> = at.iter().map(|t| sine(*t)).collect();
         let slopes = slopes(&at, &values, Ends::Flat);
@@ -289,10 +279,7 @@ mod tests {
             let error = error_of_sine(20.0, phase, || 0.0);
             assert!(error < 4e-5, "phase {phase} rad: {error:e}");
             let error = error_of_sine(8.0, phase, || 0.0);
-            assert!(
-                error < 3e-3,
-                "8 rows a period, phase {phase} rad: {error:e}"
-            );
+            assert!(error < 3e-3, "8 rows a period, phase {phase} rad: {error:e}");
         }
     }
 
@@ -318,8 +305,7 @@ mod tests {
     fn is_convex_or_concave(at: &[f64], values: &[f64]) -> bool {
         let bend = |k: usize| secant(at, values, k) - secant(at, values, k - 1);
         let bends: Vec<f64> = (1..at.len() - 1).map(bend).collect();
-        bends.len() > 2
-            && (bends.iter().all(|bend| *bend > 0.0) || bends.iter().all(|bend| *bend < 0.0))
+        bends.len() > 2 && (bends.iter().all(|bend| *bend > 0.0) || bends.iter().all(|bend| *bend < 0.0))
     }
 
     #[test]
@@ -374,10 +360,7 @@ mod tests {
         let parabola = at.map(|t| (t - 2.5) * (t - 2.5));
         let slopes = slopes(&at, &parabola, Ends::Chord);
         for i in 1..6 {
-            assert!(
-                (slopes[i] - 2.0 * (at[i] - 2.5)).abs() < 1e-13,
-                "{slopes:?}"
-            );
+            assert!((slopes[i] - 2.0 * (at[i] - 2.5)).abs() < 1e-13, "{slopes:?}");
         }
     }
 

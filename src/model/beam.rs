@@ -45,11 +45,7 @@ pub struct BeamState {
 
 impl BeamState {
     /// At rest on node positions [m], without twist; the points that the ends are clamped to have the given attitudes [-].
-    pub fn at_rest(
-        beam: &Beam,
-        position: &[Vector3<f64>],
-        attitude: [Matrix3<f64>; 2],
-    ) -> BeamState {
+    pub fn at_rest(beam: &Beam, position: &[Vector3<f64>], attitude: [Matrix3<f64>; 2]) -> BeamState {
         let last = position.len() - 1;
         let clamp = |end: usize| beam.clamped[end].map(|direction| attitude[end] * direction);
         let direction = |i: usize| match i {

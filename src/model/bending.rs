@@ -38,9 +38,9 @@ impl Bending {
         let joints = |factor: &dyn Fn(usize) -> f64| -> Vec<f64> {
             let at = |node: usize| match node {
                 0 => clamps[0].map_or(0.0, |_| 2.0 * factor(0) * stiffness[0] / length[0]),
-                i if i == n => clamps[1].map_or(0.0, |_| {
-                    2.0 * factor(n - 1) * stiffness[n - 1] / length[n - 1]
-                }),
+                i if i == n => {
+                    clamps[1].map_or(0.0, |_| 2.0 * factor(n - 1) * stiffness[n - 1] / length[n - 1])
+                }
                 i => in_series([half(i - 1, factor(i - 1)), half(i, factor(i))]),
             };
             (0..=n).map(at).collect()
@@ -53,9 +53,7 @@ impl Bending {
             joint: joints(&|_| 1.0),
             length: (0..=n).map(tributary).collect(),
             rest: vec![0.0; n + 1],
-            compression_max: (0..n)
-                .map(|i| compression_max(stiffness[i], length[i]))
-                .collect(),
+            compression_max: (0..n).map(|i| compression_max(stiffness[i], length[i])).collect(),
             damping: beta
                 .iter()
                 .any(|beta| *beta > 0.0)
@@ -124,11 +122,7 @@ const LENGTH_MIN: f64 = 1e-9;
 
 /// The turn at a node between its segments, or between a clamp and a segment; `None` at a pinned end.
 #[inline(always)]
-pub fn joint(
-    clamps: [Option<Vector3<f64>>; 2],
-    position: &[Vector3<f64>],
-    node: usize,
-) -> Option<Turn> {
+pub fn joint(clamps: [Option<Vector3<f64>>; 2], position: &[Vector3<f64>], node: usize) -> Option<Turn> {
     let segment = |i: usize| {
         let chord = position[i + 1] - position[i];
         let length = chord.norm();

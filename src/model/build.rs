@@ -12,8 +12,8 @@ use nalgebra::Vector3;
 
 use self::reach::may_touch_bed;
 use super::{
-    Bending, Bottom, Contact, Current, Drag, End, FreePoint, Line, Model, Motion, Network, Nodes,
-    Parting, Point, PointContact, Pressed, Role, Section, Segments, Surface, Vessel, Winch, mesh,
+    Bending, Bottom, Contact, Current, Drag, End, FreePoint, Line, Model, Motion, Network, Nodes, Parting,
+    Point, PointContact, Pressed, Role, Section, Segments, Surface, Vessel, Winch, mesh,
 };
 use crate::physics::bending;
 use crate::physics::flow::Profile;
@@ -98,10 +98,7 @@ impl Model {
 fn bottom(bed: &scene::Seabed) -> Option<Bottom> {
     let ground = match (&bed.grid, bed.slope) {
         (Some(grid), _) => {
-            let heights = grid
-                .depth
-                .iter()
-                .map(|row| row.iter().map(|d| -d).collect());
+            let heights = grid.depth.iter().map(|row| row.iter().map(|d| -d).collect());
             let heights: Vec<Vec<f64>> = heights.collect();
             Ground::Grid(Grid::new(&grid.x, &grid.y, &heights)?)
         }
@@ -238,12 +235,7 @@ fn free_point(scene: &Scene, point: &scene::Point) -> FreePoint {
 }
 
 /// Contact of a free point that weighs `dry` [N] in air and moves along `axes`; one without weight rests on its lines' ends.
-fn point_contact(
-    scene: &Scene,
-    point: &scene::Point,
-    axes: [bool; 3],
-    dry: f64,
-) -> Option<PointContact> {
+fn point_contact(scene: &Scene, point: &scene::Point, axes: [bool; 3], dry: f64) -> Option<PointContact> {
     let bed = scene.seabed.as_ref()?;
     let in_reach = scene.lines.iter().any(|line| {
         let tied = line.from == point.name || line.to == point.name;
@@ -304,9 +296,8 @@ fn bending_stiffness(line_type: &LineType) -> f64 {
     if line_type.model == LineModel::Beam {
         return 0.0;
     }
-    let of_section = |section: scene::SolidSection| {
-        bending::solid_round(section.diameter, section.youngs_modulus)
-    };
+    let of_section =
+        |section: scene::SolidSection| bending::solid_round(section.diameter, section.youngs_modulus);
     let solid = line_type
         .bending_stiffness
         .or(line_type.solid_section.map(of_section));
@@ -336,9 +327,7 @@ fn stretch_law(line_type: &LineType) -> (StretchLaw, f64) {
 /// The law of a line type, whose damping ratio refers to segments of the length `damped` [m].
 fn line_law(scene: &Scene, line_type: &LineType, damped: f64) -> LineLaw {
     let density = scene.water.as_ref().map_or(0.0, |water| water.density);
-    let displaced = line_type
-        .diameter
-        .map_or(0.0, |d| density * cross_section(d));
+    let displaced = line_type.diameter.map_or(0.0, |d| density * cross_section(d));
     let mass = line_type
         .mass
         .unwrap_or_else(|| line_type.weight.unwrap_or(0.0) / scene.gravity);
@@ -356,8 +345,7 @@ fn line_law(scene: &Scene, line_type: &LineType, damped: f64) -> LineLaw {
             line_type.drag_normal.unwrap_or(0.0),
             line_type.drag_tangential.unwrap_or(0.0),
         );
-        (density > 0.0 && normal + tangent > 0.0)
-            .then(|| drag_per_length(density, diameter, normal, tangent))
+        (density > 0.0 && normal + tangent > 0.0).then(|| drag_per_length(density, diameter, normal, tangent))
     });
     let contact = scene
         .seabed
@@ -408,16 +396,12 @@ fn build_line(
     (elements, damped): (f64, &[f64]),
 ) -> Result<Line, SceneError> {
     let point = |key: &str, name: &str| {
-        scene
-            .points
-            .iter()
-            .position(|p| p.name == *name)
-            .ok_or_else(|| {
-                SceneError::new(
-                    format!("lines[{index}].{key}"),
-                    format!("there is no point \"{name}\""),
-                )
-            })
+        scene.points.iter().position(|p| p.name == *name).ok_or_else(|| {
+            SceneError::new(
+                format!("lines[{index}].{key}"),
+                format!("there is no point \"{name}\""),
+            )
+        })
     };
     let ends = [point("from", &line.from)?, point("to", &line.to)?];
     let mut laws = Vec::with_capacity(line.sections.len());
@@ -436,16 +420,12 @@ fn build_line(
     let reeled = reel(index, line, &mut lengths)?;
     let beam = beam::build(scene, index, line, &laws, &lengths)?;
     let parts = segment_parts(&laws, &lengths);
-    let sections = line
-        .sections
-        .iter()
-        .zip(&laws)
-        .map(|(section, law)| Section {
-            length: section.length,
-            weight: law.weight,
-            axial_stiffness: law.axial_stiffness,
-            law: law.law.clone(),
-        });
+    let sections = line.sections.iter().zip(&laws).map(|(section, law)| Section {
+        length: section.length,
+        weight: law.weight,
+        axial_stiffness: law.axial_stiffness,
+        law: law.law.clone(),
+    });
     let mut built = Line {
         name: line.name.clone(),
         ends,
@@ -596,8 +576,7 @@ fn line_bending(
 fn rest_as_it_lies(line: &mut Line, points: &[Point], rest_shape: RestShape) {
     let [a, b] = line.ends.map(|point| points[point].reference);
     let nodes = line.given_shape(a, b);
-    if let (Some(bending), Some(nodes), RestShape::Initial) = (&mut line.bending, nodes, rest_shape)
-    {
+    if let (Some(bending), Some(nodes), RestShape::Initial) = (&mut line.bending, nodes, rest_shape) {
         bending.rest_at(&nodes);
     }
 }
@@ -663,8 +642,7 @@ fn nodes(scene: &Scene, parts: &[SegmentPart], may_touch_bed: bool) -> Nodes {
         mass: lump(&|law| law.mass),
         mass_normal,
         mass_tangent: lump(&|law| law.mass + law.added_tangent),
-        mass_damping: any(&|law| law.mass_damping != 0.0)
-            .then(|| lump(&|law| law.mass_damping * law.mass)),
+        mass_damping: any(&|law| law.mass_damping != 0.0).then(|| lump(&|law| law.mass_damping * law.mass)),
         length,
         weight,
         drag,
@@ -727,18 +705,13 @@ fn contact(
 
 /// Refuses a beam that shares a free point with another line.
 fn check_beam(points: &[Point], lines: &[Line], network: &Network) -> Result<(), SceneError> {
-    let beam = network
-        .lines
-        .iter()
-        .find(|&&line| lines[line].beam.is_some());
+    let beam = network.lines.iter().find(|&&line| lines[line].beam.is_some());
     match (beam, network.lines.len()) {
         (None, _) | (_, 1) => Ok(()),
         (Some(&beam), _) => {
             let shared = network.free_points.iter();
             let mut shared = shared.filter(|&&point| points[point].attached.len() > 1);
-            let name = shared
-                .next()
-                .map_or("", |&point| points[point].name.as_str());
+            let name = shared.next().map_or("", |&point| points[point].name.as_str());
             Err(SceneError::new(
                 format!("lines[{beam}]"),
                 format!(
@@ -761,19 +734,12 @@ fn check_integrator(
     let integrator = scene.solver.integrator;
     let refuse = |what: String| {
         let right = "use \"generalised_alpha\" or \"auto\"";
-        Err(SceneError::new(
-            "solver.integrator",
-            format!("{what}; {right}"),
-        ))
+        Err(SceneError::new("solver.integrator", format!("{what}; {right}")))
     };
     if !matches!(integrator, Integrator::Leapfrog | Integrator::AxialImplicit) {
         return Ok(());
     }
-    if let Some(&line) = network
-        .lines
-        .iter()
-        .find(|&&line| !lines[line].serves_leapfrog())
-    {
+    if let Some(&line) = network.lines.iter().find(|&&line| !lines[line].serves_leapfrog()) {
         let name = &lines[line].name;
         return refuse(format!(
             "a leapfrog needs mass on every node, one strain measure and no bending stiffness along line \"{name}\""
@@ -794,11 +760,7 @@ fn check_integrator(
 fn networks(points: &[Point], lines: &[Line]) -> Vec<Network> {
     let mut of_line: Vec<usize> = (0..lines.len()).collect();
     for point in points.iter().filter(|point| point.free().is_some()) {
-        let joined: Vec<usize> = point
-            .attached
-            .iter()
-            .map(|(line, _)| of_line[*line])
-            .collect();
+        let joined: Vec<usize> = point.attached.iter().map(|(line, _)| of_line[*line]).collect();
         let Some(first) = joined.iter().copied().min() else {
             continue;
         };
@@ -811,17 +773,10 @@ fn networks(points: &[Point], lines: &[Line]) -> Vec<Network> {
     (0..lines.len())
         .filter(|&id| of_line.contains(&id))
         .map(|id| Network {
-            lines: (0..lines.len())
-                .filter(|&line| of_line[line] == id)
-                .collect(),
+            lines: (0..lines.len()).filter(|&line| of_line[line] == id).collect(),
             free_points: (0..points.len())
                 .filter(|&p| points[p].free().is_some())
-                .filter(|&p| {
-                    points[p]
-                        .attached
-                        .iter()
-                        .any(|(line, _)| of_line[*line] == id)
-                })
+                .filter(|&p| points[p].attached.iter().any(|(line, _)| of_line[*line] == id))
                 .collect(),
         })
         .collect()

@@ -24,9 +24,7 @@ impl Line {
             InitialShape::Static | InitialShape::Catenary => None,
             InitialShape::Straight => Some(on_chord(0.0)),
             InitialShape::Parabola(sag) => Some(on_chord(*sag)),
-            InitialShape::Nodes(nodes) => {
-                Some(nodes.iter().map(|node| Vector3::from(*node)).collect())
-            }
+            InitialShape::Nodes(nodes) => Some(nodes.iter().map(|node| Vector3::from(*node)).collect()),
         }
     }
 }

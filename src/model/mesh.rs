@@ -87,11 +87,7 @@ pub fn line_elements(tolerance: f64) -> f64 {
 pub fn lengths(pieces: &[Piece], elements: f64, refinements: &[Refinement]) -> Vec<Vec<f64>> {
     let total: f64 = pieces.iter().map(|piece| piece.length).sum();
     let share = |piece: &Piece| (elements * piece.length / total).round().max(1.0) as usize;
-    let counts = || {
-        pieces
-            .iter()
-            .map(|piece| piece.elements.unwrap_or(share(piece)))
-    };
+    let counts = || pieces.iter().map(|piece| piece.elements.unwrap_or(share(piece)));
     let mut fine = refinements.to_vec();
     for refinement in &mut fine {
         let least = (refinement.to - refinement.from) / LINE_ELEMENTS_MAX;
@@ -196,9 +192,7 @@ impl Field<'_> {
         self.least_near(piece.from, index) < bound
             || self.least_near(piece.to, index) < bound
             || self.refinements.iter().any(|refinement| {
-                refinement.from < piece.to
-                    && refinement.to > piece.from
-                    && refinement.size < piece.size
+                refinement.from < piece.to && refinement.to > piece.from && refinement.size < piece.size
             })
     }
 
@@ -223,9 +217,7 @@ impl Field<'_> {
         let (mut s, mut count) = (piece.from, 0.0);
         let mut arc = vec![(0.0, 0.0)];
         while s < piece.to {
-            let step = (h(s) / QUADRATURE)
-                .min(piece.to - s)
-                .max(f64::EPSILON * piece.to);
+            let step = (h(s) / QUADRATURE).min(piece.to - s).max(f64::EPSILON * piece.to);
             count += step / h(s + 0.5 * step);
             s += step;
             arc.push((s - piece.from, count));
@@ -281,11 +273,7 @@ mod tests {
     #[test]
     fn a_section_with_a_number_of_elements_keeps_it_beside_anything() {
         let mesh = lengths(
-            &[
-                piece(0.5, Some(1)),
-                piece(400.0, Some(3)),
-                piece(2.0, Some(9)),
-            ],
+            &[piece(0.5, Some(1)), piece(400.0, Some(3)), piece(2.0, Some(9))],
             40.0,
             &[],
         );
@@ -297,11 +285,7 @@ mod tests {
         let systems: [&[Piece]; 5] = [
             &[piece(300.0, None), piece(1.0, None), piece(99.0, None)],
             &[piece(0.3, None), piece(900.0, None), piece(0.3, None)],
-            &[
-                piece(2.0, Some(8)),
-                piece(500.0, None),
-                piece(40.0, Some(40)),
-            ],
+            &[piece(2.0, Some(8)), piece(500.0, None), piece(40.0, Some(40))],
             &[
                 piece(1.0, None),
                 piece(1.7, None),
@@ -320,11 +304,7 @@ mod tests {
             for tolerance in [0.05, 0.02, 0.01, 0.004] {
                 let mesh = lengths(pieces, line_elements(tolerance), &[]);
                 for (piece, mesh) in pieces.iter().zip(&mesh) {
-                    assert_relative_eq!(
-                        mesh.iter().sum::<f64>(),
-                        piece.length,
-                        max_relative = 1e-12
-                    );
+                    assert_relative_eq!(mesh.iter().sum::<f64>(), piece.length, max_relative = 1e-12);
                     assert!(mesh.iter().all(|length| *length > 0.0));
                 }
                 let count: usize = mesh.iter().map(Vec::len).sum();

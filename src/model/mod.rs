@@ -329,12 +329,7 @@ pub struct Pressed {
 impl Pressed {
     /// Force [N] on a node whose unit tangent is `tangent` [-], by water of an acceleration [m/s²].
     #[inline]
-    pub fn force(
-        &self,
-        node: usize,
-        acceleration: Vector3<f64>,
-        tangent: Vector3<f64>,
-    ) -> Vector3<f64> {
+    pub fn force(&self, node: usize, acceleration: Vector3<f64>, tangent: Vector3<f64>) -> Vector3<f64> {
         let excess = self.tangent[node] - self.normal[node];
         self.normal[node] * acceleration + excess * acceleration.dot(&tangent) * tangent
     }
@@ -393,14 +388,9 @@ impl Nodes {
             (a - b).abs() <= ROUNDING * a.abs()
         };
         let dragged = |drag: &Drag| same(&drag.normal) && same(&drag.tangent);
-        [
-            &self.mass,
-            &self.mass_normal,
-            &self.mass_tangent,
-            &self.weight,
-        ]
-        .into_iter()
-        .all(|values| same(values))
+        [&self.mass, &self.mass_normal, &self.mass_tangent, &self.weight]
+            .into_iter()
+            .all(|values| same(values))
             && self.drag.as_ref().is_none_or(dragged)
     }
 }
@@ -554,8 +544,7 @@ impl FreePoint {
         (stream, waves): (Option<Stream>, Option<Orbit>),
     ) -> PointForces {
         let z = state.position.z;
-        let mut past =
-            state.velocity - stream.map_or(Vector3::zeros(), |stream| stream.velocity(z));
+        let mut past = state.velocity - stream.map_or(Vector3::zeros(), |stream| stream.velocity(z));
         let at = self.at(z - waves.map_or(0.0, |orbit| orbit.elevation));
         let mut sum = load - at.weight * Vector3::z();
         if let Some(orbit) = &waves {
@@ -625,9 +614,7 @@ impl Point {
         }
         let load = self.load_at(t);
         let forces = self.own.as_ref().map(|own| own.forces(load, state, water));
-        forces.map_or(load, |forces| {
-            forces.sum - forces.at.mass * state.acceleration
-        })
+        forces.map_or(load, |forces| forces.sum - forces.at.mass * state.acceleration)
     }
 
     /// Point load at time `t` [s], in [N].
@@ -643,9 +630,7 @@ impl Point {
 
     /// Moment at time `t` [s], in [N m].
     pub fn moment_at(&self, t: f64) -> Vector3<f64> {
-        self.moment_axes()
-            .map(|f| f.map_or(0.0, |f| f.at(t)))
-            .into()
+        self.moment_axes().map(|f| f.map_or(0.0, |f| f.at(t))).into()
     }
 
     /// Mean moment from `from` to `to` [s], in [N m].

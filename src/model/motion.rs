@@ -147,9 +147,7 @@ impl Motion {
         let within = |kink: f64| kink > start && kink <= end;
         match self {
             Motion::Harmonic { ramp: None, .. } => true,
-            Motion::Harmonic {
-                ramp: Some(ramp), ..
-            } => !within(0.0) && !within(*ramp),
+            Motion::Harmonic { ramp: Some(ramp), .. } => !within(0.0) && !within(*ramp),
             Motion::Table(rows) => {
                 let next = rows.partition_point(|row| row.time <= start);
                 rows.get(next).is_none_or(|row| row.time > end)
@@ -196,11 +194,7 @@ fn harmonic(component: &[f64]) -> Harmonic {
 /// Product of a motion with r(t) = ½(1 − cos(πt/ramp)), 0 before t = 0.
 fn ramped(k: Pose, t: f64, ramp: f64) -> Pose {
     if t <= 0.0 {
-        let rate2 = if t == 0.0 {
-            0.5 * (PI / ramp).powi(2)
-        } else {
-            0.0
-        };
+        let rate2 = if t == 0.0 { 0.5 * (PI / ramp).powi(2) } else { 0.0 };
         return Pose {
             acceleration: rate2 * k.value,
             ..Pose::default()
@@ -219,8 +213,7 @@ fn ramped(k: Pose, t: f64, ramp: f64) -> Pose {
 fn table(rows: &[MotionRow]) -> Vec<TableRow> {
     let column = |axis: usize| -> Vec<f64> { rows.iter().map(|row| row[axis]).collect() };
     let times = column(0);
-    let slopes: [Vec<f64>; 6] =
-        std::array::from_fn(|axis| slopes(&times, &column(1 + axis), Ends::Flat));
+    let slopes: [Vec<f64>; 6] = std::array::from_fn(|axis| slopes(&times, &column(1 + axis), Ends::Flat));
     let row = |(i, row): (usize, &MotionRow)| TableRow {
         time: row[0],
         displacement: Vector6::from_column_slice(&row[1..]),
@@ -232,11 +225,7 @@ fn table(rows: &[MotionRow]) -> Vec<TableRow> {
 fn interpolate(rows: &[TableRow], t: f64) -> Pose {
     let after = rows.partition_point(|row| row.time <= t);
     if after == 0 || after == rows.len() {
-        let held = if after == 0 {
-            rows.first()
-        } else {
-            rows.last()
-        };
+        let held = if after == 0 { rows.first() } else { rows.last() };
         return Pose {
             value: held.map_or(Vector6::zeros(), |row| row.displacement),
             ..Pose::default()
@@ -308,12 +297,7 @@ mod tests {
     #[test]
     fn a_table_that_holds_moves_and_holds_stays_between_its_rows() {
         let row = |t: f64, x: f64| [t, x, 0.0, 0.0, 0.0, 0.0, 0.0];
-        let rows = [
-            row(0.0, 0.0),
-            row(30.0, 0.0),
-            row(32.0, 5.0),
-            row(60.0, 5.0),
-        ];
+        let rows = [row(0.0, 0.0), row(30.0, 0.0), row(32.0, 5.0), row(60.0, 5.0)];
         let motion = Motion::Table(table(&rows));
         for i in -10..=7000 {
             let x = motion.at(0.01 * f64::from(i)).position.x;

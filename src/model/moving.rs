@@ -18,9 +18,7 @@ impl Model {
     pub fn moving(&self, time: f64) -> Vec<Moving> {
         let points = self.points.iter().enumerate();
         let points = points.filter_map(|(index, point)| match &point.role {
-            Role::Coupled {
-                motion: Some(motion),
-            } => {
+            Role::Coupled { motion: Some(motion) } => {
                 let pose = motion.pose(time);
                 Some(Moving {
                     body: Body::Point(index),

@@ -109,9 +109,7 @@ impl WaterAlong<'_> {
     /// Elevation of the surface over a node [m].
     #[inline]
     pub fn elevation(&self, node: usize) -> f64 {
-        self.waves
-            .as_ref()
-            .map_or(0.0, |waves| waves.at(node).elevation)
+        self.waves.as_ref().map_or(0.0, |waves| waves.at(node).elevation)
     }
 
     /// How fast the surface rises over a node [m/s].
@@ -123,9 +121,7 @@ impl WaterAlong<'_> {
     /// Velocity of the water at a node that is at the height z [m], in [m/s].
     #[inline]
     pub fn velocity(&self, node: usize, z: f64) -> Vector3<f64> {
-        let flow = self
-            .stream
-            .map_or(Vector3::zeros(), |stream| stream.velocity(z));
+        let flow = self.stream.map_or(Vector3::zeros(), |stream| stream.velocity(z));
         match &self.waves {
             None => flow,
             Some(waves) => flow + waves.at(node).velocity,
@@ -138,10 +134,7 @@ impl Model {
     pub fn water_along<'a>(&'a self, state: &'a State, line: usize, t: f64) -> WaterAlong<'a> {
         WaterAlong {
             stream: self.stream(t),
-            waves: state
-                .waves
-                .as_ref()
-                .and_then(|waves| waves.lines[line].at(t)),
+            waves: state.waves.as_ref().and_then(|waves| waves.lines[line].at(t)),
         }
     }
 }

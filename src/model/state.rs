@@ -197,18 +197,10 @@ impl LineState {
     pub fn become_viscoelastic(&mut self, line: &Line) {
         self.creep.clear();
         if let Some(laws) = &line.segments.viscoelastic {
-            let chords = self
-                .position
-                .windows(2)
-                .map(|pair| (pair[1] - pair[0]).norm());
-            let strains = chords
-                .zip(&line.segments.length)
-                .map(|(l, l0)| l / l0 - 1.0);
-            self.creep.extend(
-                laws.iter()
-                    .zip(strains)
-                    .map(|(law, strain)| law.rest(strain)),
-            );
+            let chords = self.position.windows(2).map(|pair| (pair[1] - pair[0]).norm());
+            let strains = chords.zip(&line.segments.length).map(|(l, l0)| l / l0 - 1.0);
+            self.creep
+                .extend(laws.iter().zip(strains).map(|(law, strain)| law.rest(strain)));
         }
     }
 

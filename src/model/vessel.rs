@@ -76,9 +76,7 @@ impl Vessel {
         if self.order != Order::Zyx {
             let near = self.attitude + value.fixed_rows::<3>(3);
             let angles = Order::Zyx.angles(&frame.attitude.rotation, near);
-            value
-                .fixed_rows_mut::<3>(3)
-                .copy_from(&(angles - self.attitude));
+            value.fixed_rows_mut::<3>(3).copy_from(&(angles - self.attitude));
         }
         value.into()
     }
@@ -113,9 +111,7 @@ impl Vessel {
         Kinematics {
             position: origin.position + arm,
             velocity: origin.velocity + swing,
-            acceleration: origin.acceleration
-                + attitude.spin_rate.cross(&arm)
-                + attitude.spin.cross(&swing),
+            acceleration: origin.acceleration + attitude.spin_rate.cross(&arm) + attitude.spin.cross(&swing),
             orientation: attitude.rotation * self.reference_rotation.inverse(),
             spin: attitude.spin,
         }

@@ -53,11 +53,7 @@ pub enum Passage {
 impl Winch {
     /// On the line `reel` that has all that can be paid out, of whose segments `nominal` are out at no change; the last section begins at
     /// segment `first`.
-    pub(super) fn new(
-        reel: Line,
-        [first, nominal]: [usize; 2],
-        winch: &crate::scene::Winch,
-    ) -> Winch {
+    pub(super) fn new(reel: Line, [first, nominal]: [usize; 2], winch: &crate::scene::Winch) -> Winch {
         Winch {
             length: reel.nodes.arc[nominal],
             reel: Box::new(reel),
@@ -146,11 +142,7 @@ impl Line {
         if let (Some(contact), Some(full)) = (&mut self.nodes.contact, &reel.nodes.contact) {
             keep(&mut contact.level, &full.level, count + 1);
             contact.level[count] = full.level[reel.segment_count()];
-            keep(
-                &mut contact.stick,
-                &full.stick,
-                full.stick.len().min(count + 1),
-            );
+            keep(&mut contact.stick, &full.stick, full.stick.len().min(count + 1));
         }
         self.winch = Some(winch);
         self.set_length_change(change);
@@ -197,12 +189,7 @@ fn extensive<'a>(
     ];
     let drag = drag.map(|(a, b)| [(&mut a.normal, &b.normal), (&mut a.tangent, &b.tangent)]);
     let pressed = pressed.map(|(a, b)| [(&mut a.normal, &b.normal), (&mut a.tangent, &b.tangent)]);
-    let contact = contact.map(|(a, b)| {
-        [
-            (&mut a.stiffness, &b.stiffness),
-            (&mut a.damping, &b.damping),
-        ]
-    });
+    let contact = contact.map(|(a, b)| [(&mut a.stiffness, &b.stiffness), (&mut a.damping, &b.damping)]);
     let damping = nodes.mass_damping.as_mut().zip(reel.mass_damping.as_ref());
     let pairs = drag.into_iter().chain(pressed).flatten();
     let bed = contact.into_iter().flatten();

@@ -104,8 +104,7 @@ pub fn summary(studies: &[Study]) -> String {
     text.push_str("\n| scene, moorline's own choice | cost | RMS | low-passed | peak | position |\n|---|---|---|---|---|---|\n");
     for study in studies {
         for run in study.runs.iter().filter(|run| run.code == Code::Chosen) {
-            let [rms, low, peak, position] =
-                Metric::ALL.map(|metric| percent(run.errors.of(metric)));
+            let [rms, low, peak, position] = Metric::ALL.map(|metric| percent(run.errors.of(metric)));
             let (name, label, cost) = (&study.name, &run.label, cost(Some(run)));
             // Writing into a string does not fail.
             let _ = writeln!(
@@ -132,11 +131,7 @@ fn row(study: &Study, verdict: &Verdict<'_>) -> String {
         other => other.title(),
     };
     let setting = verdict.own.map_or("—".to_string(), |run| {
-        format!(
-            "{}, {}",
-            run.code.name().replace("moorline, ", ""),
-            run.label
-        )
+        format!("{}, {}", run.code.name().replace("moorline, ", ""), run.label)
     });
     format!(
         "| {}, {metric} {} | {} | {} | {} | {ratio} | {setting} |\n",

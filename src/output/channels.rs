@@ -37,21 +37,15 @@ impl Channels {
     /// # Errors
     /// The first channel whose name is unknown or speaks of what the model does not have.
     pub fn new(scene: &Scene, model: &Model) -> Result<Channels, SceneError> {
-        let found = scene
-            .output
-            .channels
-            .iter()
-            .enumerate()
-            .map(|(index, name)| {
-                let source = Channel::parse(name).and_then(|channel| {
-                    channel.check(scene)?;
-                    source(&channel, model)
-                });
-                let source = source.map_err(|problem| {
-                    SceneError::new(format!("output.channels[{index}]"), problem)
-                })?;
-                Ok((column(name, source, model), source))
+        let found = scene.output.channels.iter().enumerate().map(|(index, name)| {
+            let source = Channel::parse(name).and_then(|channel| {
+                channel.check(scene)?;
+                source(&channel, model)
             });
+            let source =
+                source.map_err(|problem| SceneError::new(format!("output.channels[{index}]"), problem))?;
+            Ok((column(name, source, model), source))
+        });
         Ok(Channels {
             list: found.collect::<Result<_, _>>()?,
         })
@@ -65,9 +59,7 @@ impl Channels {
     /// The channels' values now, each in its column's unit.
     pub fn values(&self, simulation: &Simulation) -> Vec<f64> {
         let sources = self.list.iter();
-        sources
-            .map(|(_, source)| value(*source, simulation))
-            .collect()
+        sources.map(|(_, source)| value(*source, simulation)).collect()
     }
 }
 
@@ -89,11 +81,7 @@ fn source(channel: &Channel, model: &Model) -> Result<Source, String> {
                 quantity: Quantity::Tension,
             }
         }
-        Channel::Node {
-            line,
-            node,
-            quantity,
-        } => {
+        Channel::Node { line, node, quantity } => {
             let line = line_of(line)?;
             let node = match *node {
                 NodePlace::Number(node) => {
@@ -119,14 +107,9 @@ fn source(channel: &Channel, model: &Model) -> Result<Source, String> {
 
 fn column(name: &str, source: Source, model: &Model) -> Column {
     let (place, quantity) = match source {
-        Source::Node {
-            line,
-            node,
-            quantity,
-        } => (
-            format!("node {node} of {}", model.lines[line].name),
-            quantity,
-        ),
+        Source::Node { line, node, quantity } => {
+            (format!("node {node} of {}", model.lines[line].name), quantity)
+        }
         Source::Point { point, quantity } => (model.points[point].name.clone(), quantity),
     };
     let letter = |axis: usize| ["x", "y", "z"][axis];
@@ -150,11 +133,7 @@ fn column(name: &str, source: Source, model: &Model) -> Column {
 fn value(source: Source, simulation: &Simulation) -> f64 {
     let state = simulation.state();
     match source {
-        Source::Node {
-            line,
-            node,
-            quantity,
-        } => {
+        Source::Node { line, node, quantity } => {
             let shape = &state.lines[line];
             let node = node.min(shape.position.len() - 1); // nodes that a winch has not paid out are at the winch
             match quantity {
@@ -274,9 +253,6 @@ mod tests {
         let model = Model::new(&scene).unwrap();
         let mistake = Channels::new(&scene, &model).unwrap_err();
         assert_eq!(mistake.at, "output.channels[1]");
-        assert!(
-            mistake.problem.starts_with("node 5000 of a line of"),
-            "{mistake}"
-        );
+        assert!(mistake.problem.starts_with("node 5000 of a line of"), "{mistake}");
     }
 }

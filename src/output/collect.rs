@@ -3,9 +3,7 @@
 use nalgebra::Vector3;
 
 use super::json;
-use super::record::{
-    Catenary, Column, Flight, Frame, LineRecord, Node, Record, StaticLine, Surroundings,
-};
+use super::record::{Catenary, Column, Flight, Frame, LineRecord, Node, Record, StaticLine, Surroundings};
 use crate::model::{End, Line, Role};
 use crate::scene::{PointKind, Scene};
 use crate::simulation::{NodeBending, Simulation};
@@ -84,9 +82,7 @@ fn catenary_profile(simulation: &Simulation, line: usize) -> Vec<[f64; 3]> {
     let Some(catenary) = simulation.catenary(line) else {
         return Vec::new();
     };
-    let [a, b] = model.lines[line]
-        .ends
-        .map(|end| model.points[end].reference);
+    let [a, b] = model.lines[line].ends.map(|end| model.points[end].reference);
     let chord = Vector3::new(b.x - a.x, b.y - a.y, 0.0);
     let direction = chord.try_normalize(0.0).unwrap_or(Vector3::x());
     let length = model.lines[line].unstretched_length();

@@ -154,12 +154,7 @@ mod tests {
                 .unwrap()
                 .ends_with(",tension,curvature,moment")
         );
-        assert_eq!(
-            text.lines()
-                .filter(|row| row.ends_with(",0.25,8.0"))
-                .count(),
-            1
-        );
+        assert_eq!(text.lines().filter(|row| row.ends_with(",0.25,8.0")).count(), 1);
         assert!(text.lines().nth(1).unwrap().ends_with(",,"));
     }
 
@@ -169,12 +164,7 @@ mod tests {
         let mut bytes = Vec::new();
         write_profile(&record, &mut bytes).unwrap();
         let mut table = csv::Reader::from_reader(bytes.as_slice());
-        let nodes: usize = record
-            .frames
-            .iter()
-            .flat_map(|f| &f.lines)
-            .map(Vec::len)
-            .sum();
+        let nodes: usize = record.frames.iter().flat_map(|f| &f.lines).map(Vec::len).sum();
         let rows: Vec<_> = table.records().collect::<Result<_, _>>().unwrap();
         assert_eq!(rows.len(), nodes);
         assert_eq!(&rows[1][1], "line1");

@@ -24,10 +24,7 @@ pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 /// Categories of log messages with their meaning; the FMU uses no other.
 pub const LOG_CATEGORIES: [(&str, &str); 4] = [
     ("logEvents", "what was chosen and why"),
-    (
-        "logStatusWarning",
-        "a call was carried out with a reservation",
-    ),
+    ("logStatusWarning", "a call was carried out with a reservation"),
     (
         "logStatusError",
         "a call was refused or failed; the state is as before",
@@ -78,16 +75,12 @@ fn token(xml: &str, scene: &str) -> String {
         hash.update((part.len() as u64).to_le_bytes());
         hash.update(part);
     }
-    hash.finalize()
-        .iter()
-        .map(|byte| format!("{byte:02x}"))
-        .collect()
+    hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 fn write(scene: &Scene, interface: &Interface, version: FmiVersion, token: &str) -> String {
     let mut writer = Writer::new_with_indent(Vec::new(), b' ', 2);
-    write_document(&mut writer, scene, interface, version, token)
-        .expect("writing to memory does not fail");
+    write_document(&mut writer, scene, interface, version, token).expect("writing to memory does not fail");
     let mut bytes = writer.into_inner();
     bytes.push(b'\n');
     String::from_utf8(bytes).expect("the writer was given UTF-8 only")
@@ -114,22 +107,20 @@ fn write_document(
         FmiVersion::Two => "guid",
         FmiVersion::Three => "instantiationToken",
     };
-    let root = writer
-        .create_element("fmiModelDescription")
-        .with_attributes([
-            ("fmiVersion", version.to_string().as_str()),
-            ("modelName", name.as_str()),
-            (token_key, token),
-            (
-                "description",
-                "Mooring lines: displacements of the fairleads in, forces of the mooring out. \
+    let root = writer.create_element("fmiModelDescription").with_attributes([
+        ("fmiVersion", version.to_string().as_str()),
+        ("modelName", name.as_str()),
+        (token_key, token),
+        (
+            "description",
+            "Mooring lines: displacements of the fairleads in, forces of the mooring out. \
                  SI units, global axes, z up, z = 0 at still water.",
-            ),
-            ("version", VERSION),
-            ("license", "MIT OR Apache-2.0"),
-            ("generationTool", generation_tool.as_str()),
-            ("variableNamingConvention", naming),
-        ]);
+        ),
+        ("version", VERSION),
+        ("license", "MIT OR Apache-2.0"),
+        ("generationTool", generation_tool.as_str()),
+        ("variableNamingConvention", naming),
+    ]);
     root.write_inner_content(|writer| {
         write_co_simulation(writer, version)?;
         write_units(writer, interface, version)?;
@@ -256,12 +247,7 @@ fn write_units(writer: &mut Xml, interface: &Interface, version: FmiVersion) -> 
 }
 
 fn write_unit(writer: &mut Xml, unit: &Unit) -> io::Result<()> {
-    let exponents = [
-        ("kg", unit.kg),
-        ("m", unit.m),
-        ("s", unit.s),
-        ("rad", unit.rad),
-    ];
+    let exponents = [("kg", unit.kg), ("m", unit.m), ("s", unit.s), ("rad", unit.rad)];
     let present: Vec<(&str, String)> = exponents
         .iter()
         .filter(|(_, exponent)| *exponent != 0)
@@ -445,13 +431,11 @@ fn write_structure(writer: &mut Xml, interface: &Interface, version: FmiVersion)
         .collect();
     match version {
         FmiVersion::Two => {
-            writer
-                .create_element("Outputs")
-                .write_inner_content(|writer| {
-                    outputs().try_for_each(|(index, depends)| {
-                        write_unknown(writer, ["Unknown", "index"], index, depends)
-                    })
-                })?;
+            writer.create_element("Outputs").write_inner_content(|writer| {
+                outputs().try_for_each(|(index, depends)| {
+                    write_unknown(writer, ["Unknown", "index"], index, depends)
+                })
+            })?;
             writer
                 .create_element("InitialUnknowns")
                 .write_inner_content(|writer| {
@@ -465,12 +449,7 @@ fn write_structure(writer: &mut Xml, interface: &Interface, version: FmiVersion)
                 write_unknown(writer, ["Output", "valueReference"], index, depends)?;
             }
             for (index, depends) in &initial {
-                write_unknown(
-                    writer,
-                    ["InitialUnknown", "valueReference"],
-                    *index,
-                    depends,
-                )?;
+                write_unknown(writer, ["InitialUnknown", "valueReference"], *index, depends)?;
             }
         }
     }

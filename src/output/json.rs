@@ -175,12 +175,7 @@ mod tests {
     }
 
     fn keys(value: &serde_json::Value) -> Vec<&str> {
-        value
-            .as_object()
-            .unwrap()
-            .keys()
-            .map(String::as_str)
-            .collect()
+        value.as_object().unwrap().keys().map(String::as_str).collect()
     }
 
     #[test]
@@ -205,10 +200,7 @@ mod tests {
         assert_eq!(keys(line), documented);
         assert_eq!(keys(&line["end_a"]), ["force", "tension"]);
         assert_eq!(keys(&line["profile"][0]), ["s", "tension", "x", "y", "z"]);
-        assert_eq!(
-            keys(&json["points"][0]),
-            ["force", "kind", "name", "position"]
-        );
+        assert_eq!(keys(&json["points"][0]), ["force", "kind", "name", "position"]);
         assert_eq!(json["vessels"], serde_json::json!([]));
     }
 
@@ -238,9 +230,6 @@ mod tests {
             json["lines"][0]["end_a"]["tension"].as_f64(),
             Some(5.0_f64.sqrt())
         );
-        assert_eq!(
-            json["lines"][0]["profile"][0]["z"].as_f64(),
-            Some(-1.0 / 3.0)
-        );
+        assert_eq!(json["lines"][0]["profile"][0]["z"].as_f64(), Some(-1.0 / 3.0));
     }
 }

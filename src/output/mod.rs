@@ -126,9 +126,7 @@ pub fn write_file(
 /// What is in the way.
 pub fn check_file(path: &Path) -> Result<(), OutputError> {
     let target = target_of(path).and_then(|target| {
-        let folder = target
-            .parent()
-            .filter(|folder| !folder.as_os_str().is_empty());
+        let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty());
         match folder {
             Some(folder) if !folder.is_dir() => Err(io::Error::new(
                 io::ErrorKind::NotFound,
@@ -206,16 +204,10 @@ pub fn write_run(
     profile: bool,
 ) -> Result<(), OutputError> {
     make_folder(folder)?;
-    write_file(&folder.join("results.csv"), |w| {
-        csv::write_results(record, w)
-    })?;
-    write_file(&folder.join("results.units.csv"), |w| {
-        csv::write_units(record, w)
-    })?;
+    write_file(&folder.join("results.csv"), |w| csv::write_results(record, w))?;
+    write_file(&folder.join("results.units.csv"), |w| csv::write_units(record, w))?;
     if profile {
-        write_file(&folder.join("profile.csv"), |w| {
-            csv::write_profile(record, w)
-        })?;
+        write_file(&folder.join("profile.csv"), |w| csv::write_profile(record, w))?;
     }
     write_shapes(record, folder)?;
     for (stem, svg) in figures::all(record) {
@@ -223,9 +215,7 @@ pub fn write_run(
         write_file(&path, |w| w.write_all(svg.as_bytes()))?;
     }
     let html = report::html(record, words);
-    write_file(&folder.join("report.html"), |w| {
-        w.write_all(html.as_bytes())
-    })
+    write_file(&folder.join("report.html"), |w| w.write_all(html.as_bytes()))
 }
 
 /// Writes the shapes for ParaView; the collection comes last, when all it names is there.
@@ -238,9 +228,7 @@ fn write_shapes(record: &record::Record, folder: &Path) -> Result<(), OutputErro
         write_file(&path, |w| vtk::write_frame(frame, w))?;
     }
     let times = frames().map(|frame| frame.time);
-    write_file(&folder.join("lines.pvd"), |w| {
-        vtk::write_collection(times, w)
-    })
+    write_file(&folder.join("lines.pvd"), |w| vtk::write_collection(times, w))
 }
 
 /// `results.csv` -> `results.csv.1234.partial`, with the number of the process: two runs do not write into one another.
@@ -298,10 +286,7 @@ mod tests {
         for name in ["socket", "null", "loop"] {
             let problem = write(name).unwrap_err().to_string();
             let wanted = ["device or a pipe", "links lead from it"];
-            assert!(
-                wanted.iter().any(|part| problem.contains(part)),
-                "{problem}"
-            );
+            assert!(wanted.iter().any(|part| problem.contains(part)), "{problem}");
             assert!(check_file(&at(name)).is_err());
         }
         assert!(!fs::symlink_metadata(at("socket")).unwrap().is_file());

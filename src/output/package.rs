@@ -60,11 +60,7 @@ pub enum PackageError {
 /// # Errors
 /// Names the library and the folder where it was expected.
 pub fn find_library() -> Result<PathBuf, PackageError> {
-    let name = format!(
-        "{}{}",
-        std::env::consts::DLL_PREFIX,
-        library_name("moorline_fmu")
-    );
+    let name = format!("{}{}", std::env::consts::DLL_PREFIX, library_name("moorline_fmu"));
     let program = std::env::current_exe().map_err(|problem| PackageError::File {
         path: PathBuf::from("the running program"),
         problem,

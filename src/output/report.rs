@@ -83,9 +83,8 @@ fn statics(record: &Record) -> String {
             figures.map(|(name, figure)| {
                 let closed = line.catenary.as_ref().map(|c| figure(&c.figures));
                 let solved = line.equilibrium.as_ref().map(figure);
-                let said = |value: Option<f64>| {
-                    value.map_or("none".to_string(), |value| rounded(value, DIGITS))
-                };
+                let said =
+                    |value: Option<f64>| value.map_or("none".to_string(), |value| rounded(value, DIGITS));
                 let both = solved.zip(closed);
                 vec![
                     format!("{}: {name}", line.name),

@@ -3,9 +3,7 @@
 use std::f64::consts::TAU;
 use std::time::Duration;
 
-use super::record::{
-    Catenary, Column, Counters, Frame, LineRecord, Node, Record, StaticLine, Surroundings,
-};
+use super::record::{Catenary, Column, Counters, Frame, LineRecord, Node, Record, StaticLine, Surroundings};
 
 const DEPTH: f64 = 200.0;
 const ELEMENTS: usize = 20;

@@ -99,11 +99,7 @@ fn write_array<W: Write>(
     let mut text = String::from("\n");
     for (index, value) in values.enumerate() {
         text.push_str(&value);
-        text.push(if (index + 1) % components == 0 {
-            '\n'
-        } else {
-            ' '
-        });
+        text.push(if (index + 1) % components == 0 { '\n' } else { ' ' });
     }
     let components = components.to_string();
     xml.create_element("DataArray")
@@ -130,20 +126,19 @@ pub fn write_collection(times: impl Iterator<Item = f64>, out: impl Write) -> io
             ("byte_order", "LittleEndian"),
         ])
         .write_inner_content(|xml| {
-            xml.create_element("Collection")
-                .write_inner_content(|xml| {
-                    for (index, time) in times.enumerate() {
-                        let (time, file) = (shortest(time), frame_name(index));
-                        xml.create_element("DataSet")
-                            .with_attributes([
-                                ("timestep", time.as_str()),
-                                ("part", "0"),
-                                ("file", file.as_str()),
-                            ])
-                            .write_empty()?;
-                    }
-                    Ok(())
-                })?;
+            xml.create_element("Collection").write_inner_content(|xml| {
+                for (index, time) in times.enumerate() {
+                    let (time, file) = (shortest(time), frame_name(index));
+                    xml.create_element("DataSet")
+                        .with_attributes([
+                            ("timestep", time.as_str()),
+                            ("part", "0"),
+                            ("file", file.as_str()),
+                        ])
+                        .write_empty()?;
+                }
+                Ok(())
+            })?;
             Ok(())
         })?;
     xml.into_inner().flush()

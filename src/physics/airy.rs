@@ -185,12 +185,7 @@ pub fn wave_number(frequency: f64, depth: Option<f64>, gravity: f64) -> f64 {
 
 impl Waves {
     /// Wave trains over a depth [m], deep water where none, under gravity [m/s²], that grow over a ramp [s].
-    pub fn new(
-        components: &[Component],
-        depth: Option<f64>,
-        ramp: Option<f64>,
-        gravity: f64,
-    ) -> Waves {
+    pub fn new(components: &[Component], depth: Option<f64>, ramp: Option<f64>, gravity: f64) -> Waves {
         let mut components = components.to_vec();
         components.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
         let number = |c: &Component| wave_number(c.frequency, depth, gravity);
@@ -372,11 +367,7 @@ impl Waves {
             Some(ramp) if t < ramp => {
                 let speed = PI / ramp;
                 let (sin, cos) = (speed * t.max(0.0)).sin_cos();
-                [
-                    0.5 * (1.0 - cos),
-                    0.5 * speed * sin,
-                    0.5 * speed * speed * cos,
-                ]
+                [0.5 * (1.0 - cos), 0.5 * speed * sin, 0.5 * speed * speed * cos]
             }
             _ => [1.0, 0.0, 0.0],
         }
@@ -474,9 +465,8 @@ fn stretch(components: &[Component], numbers: &[f64]) -> Vec<f64> {
     let mut slopes = Vec::with_capacity(HEIGHTS); // √Σ(k aω² e^{kz})², falling [1/s²]
     for height in 0..HEIGHTS {
         let z = -first * DEEPER.powi(height as i32);
-        let square = |(c, k): (&Component, &f64)| {
-            (k * c.amplitude * c.frequency.powi(2) * (k * z).exp()).powi(2)
-        };
+        let square =
+            |(c, k): (&Component, &f64)| (k * c.amplitude * c.frequency.powi(2) * (k * z).exp()).powi(2);
         let squares = components.iter().zip(numbers).map(square);
         slopes.push((z - margin, squares.sum::<f64>().sqrt()));
     }
@@ -543,10 +533,7 @@ mod tests {
             .iter()
             .map(|c| (*c, wave_number(c.frequency, waves.depth, GRAVITY)))
             .collect();
-        let elevation: f64 = trains
-            .iter()
-            .map(|(c, k)| c.amplitude * angle(c, *k).cos())
-            .sum();
+        let elevation: f64 = trains.iter().map(|(c, k)| c.amplitude * angle(c, *k).cos()).sum();
         let h = waves.depth.unwrap_or(1e4);
         let z = h * (place.z - elevation) / (h + elevation);
         let velocity = |(c, k): &(Component, f64)| {
@@ -583,10 +570,7 @@ mod tests {
                 let expected = written_out(&waves, place, t);
                 let found = orbit(&waves, place, t).velocity;
                 let error = (found - expected).norm();
-                assert!(
-                    error < 1e-4 * expected.norm(),
-                    "{depth:?}, z = {z} m: {error:e}"
-                );
+                assert!(error < 1e-4 * expected.norm(), "{depth:?}, z = {z} m: {error:e}");
             }
         }
     }

@@ -222,9 +222,7 @@ impl Turn {
     #[inline(always)]
     pub fn damper(&self, damping: f64) -> Hessian {
         let mean = (self.first.along + self.second.along).normalize();
-        let [j1, j2] = self
-            .bend_slopes()
-            .map(|j| j - mean * (mean.transpose() * j));
+        let [j1, j2] = self.bend_slopes().map(|j| j - mean * (mean.transpose() * j));
         Hessian {
             first: damping * j1.transpose() * j1,
             mixed: damping * j1.transpose() * j2,
@@ -366,11 +364,7 @@ mod tests {
                 Couple::new(moment, e).force
             };
             let difference = (force(h) - force(-h)) / (2.0 * h);
-            assert_relative_eq!(
-                couple.slope.column(axis).into_owned(),
-                difference,
-                epsilon = 1e-8
-            );
+            assert_relative_eq!(couple.slope.column(axis).into_owned(), difference, epsilon = 1e-8);
         }
     }
 
@@ -396,8 +390,7 @@ mod tests {
                 let mut full = nalgebra::Matrix6::zeros();
                 full.fixed_view_mut::<3, 3>(0, 0).copy_from(&h.first);
                 full.fixed_view_mut::<3, 3>(0, 3).copy_from(&h.mixed);
-                full.fixed_view_mut::<3, 3>(3, 0)
-                    .copy_from(&h.mixed.transpose());
+                full.fixed_view_mut::<3, 3>(3, 0).copy_from(&h.mixed.transpose());
                 full.fixed_view_mut::<3, 3>(3, 3).copy_from(&h.second);
                 let least = full.symmetric_eigenvalues().min();
                 assert!(least > -1e-11 * full.norm());
@@ -414,11 +407,7 @@ mod tests {
         let spin = spin - spin.dot(&mean) * mean;
         let [v1, v2] = e.map(|e| spin.cross(&e));
         let h = t.damper(1.0);
-        assert_relative_eq!(
-            h.first * v1 + h.mixed * v2,
-            Vector3::zeros(),
-            epsilon = 1e-14
-        );
+        assert_relative_eq!(h.first * v1 + h.mixed * v2, Vector3::zeros(), epsilon = 1e-14);
     }
 
     #[test]
@@ -441,11 +430,7 @@ mod tests {
     fn strands_side_by_side_share_the_stiffness() {
         let strand = solid_round(0.1 / 20.0_f64.sqrt(), 2e11);
         let solid = solid_round(0.1, 2e11);
-        assert_relative_eq!(
-            20.0 * strand,
-            of_strands(solid, 20, 1),
-            max_relative = 1e-14
-        );
+        assert_relative_eq!(20.0 * strand, of_strands(solid, 20, 1), max_relative = 1e-14);
         assert_relative_eq!(strand, of_strands(solid, 20, 2), max_relative = 1e-14);
     }
 

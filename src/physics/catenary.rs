@@ -224,13 +224,9 @@ fn solve_from_a(sections: &[Section], span: f64, rise: f64, bed: Option<Bed>) ->
 /// The one section that `sections` are, if they are all of one kind.
 fn uniform(sections: &[Section]) -> Option<Section> {
     let first = sections[0];
-    let alike =
-        |s: &Section| s.weight == first.weight && s.axial_stiffness == first.axial_stiffness;
+    let alike = |s: &Section| s.weight == first.weight && s.axial_stiffness == first.axial_stiffness;
     let length = sections.iter().map(|section| section.length).sum();
-    sections
-        .iter()
-        .all(alike)
-        .then_some(Section { length, ..first })
+    sections.iter().all(alike).then_some(Section { length, ..first })
 }
 
 fn solve_uniform(section: &Section, span: f64, rise: f64, bed: Option<Bed>) -> (Shape, Held) {
@@ -385,12 +381,7 @@ fn suspend_weightless(sections: &[Section], span: f64, rise: f64, shape: &mut Sh
 }
 
 /// Refuses what is not a line; returns the bed with ends that are below it by rounding put on it.
-fn check(
-    sections: &[Section],
-    span: f64,
-    rise: f64,
-    bed: Option<Bed>,
-) -> Result<Option<Bed>, CatenaryError> {
+fn check(sections: &[Section], span: f64, rise: f64, bed: Option<Bed>) -> Result<Option<Bed>, CatenaryError> {
     if sections.is_empty() {
         return Err(CatenaryError::NoSections);
     }

@@ -24,12 +24,7 @@ pub struct ContactStep {
 
 /// Force over a step [s] from penetration `before` to `after` [m], the damper fading in over ± `reach` [m].
 #[inline]
-pub fn contact_step(
-    k: ContactCoefficients,
-    [before, after]: [f64; 2],
-    reach: f64,
-    step: f64,
-) -> ContactStep {
+pub fn contact_step(k: ContactCoefficients, [before, after]: [f64; 2], reach: f64, step: f64) -> ContactStep {
     let (spring, spring_slope) = spring(k.stiffness, before, after);
     let (fade, fade_slope) = fade(0.5 * (before + after), reach);
     let rate = (after - before) / step;

@@ -46,12 +46,7 @@ pub struct FadingContact {
 impl FadingContact {
     /// At a penetration [m] and vertical velocity ż [m/s], the damper fading in over ± `reach` [m]; `None` where the bed does not act.
     #[inline(always)]
-    pub fn new(
-        k: ContactCoefficients,
-        penetration: f64,
-        velocity: f64,
-        reach: f64,
-    ) -> Option<FadingContact> {
+    pub fn new(k: ContactCoefficients, penetration: f64, velocity: f64, reach: f64) -> Option<FadingContact> {
         if penetration <= -reach {
             return None;
         }

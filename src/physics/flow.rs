@@ -82,9 +82,7 @@ impl Profile {
             (0.0..1.0).contains(&part)
         };
         let layers = self.layers.iter().filter(within);
-        layers
-            .map(|layer| layer.inverse_height * layer.change)
-            .sum()
+        layers.map(|layer| layer.inverse_height * layer.change).sum()
     }
 
     /// Velocities at four heights z [m], in [m/s].
@@ -133,11 +131,7 @@ mod tests {
 
     fn sheared() -> Profile {
         let at = |z: f64, x: f64, y: f64| (z, Vector3::new(x, y, 0.0));
-        Profile::through(&[
-            at(0.0, 1.0, 0.2),
-            at(-200.0, 0.3, -0.1),
-            at(-50.0, 0.8, 0.0),
-        ])
+        Profile::through(&[at(0.0, 1.0, 0.2), at(-200.0, 0.3, -0.1), at(-50.0, 0.8, 0.0)])
     }
 
     #[test]

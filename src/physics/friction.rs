@@ -97,8 +97,7 @@ impl Friction {
     /// The axes of the ellipse [N] under a normal force [N].
     pub fn limits(&self, axes: &Axes, normal_force: f64) -> Vector2<f64> {
         let lying = (axes.share * axes.share).min(1.0);
-        let along =
-            lying * self.axial * self.axial + (1.0 - lying) * self.transverse * self.transverse;
+        let along = lying * self.axial * self.axial + (1.0 - lying) * self.transverse * self.transverse;
         Vector2::new(along.sqrt(), self.transverse) * normal_force
     }
 }

@@ -71,13 +71,7 @@ impl Landing {
     }
 
     /// With friction; `None` where the bed would not push a node that sticks.
-    fn rub(
-        &self,
-        free: Vector3<f64>,
-        spring: f64,
-        resistance: f64,
-        friction: &Friction,
-    ) -> Option<Landed> {
+    fn rub(&self, free: Vector3<f64>, spring: f64, resistance: f64, friction: &Friction) -> Option<Landed> {
         let [m, along_mass] = self.mass;
         let axes = Axes::new(self.normal, self.tangent);
         let (upright, excess) = (self.normal.dot(&self.tangent), along_mass - m);
@@ -150,11 +144,7 @@ mod tests {
             let free = Vector3::from(free);
             for friction in [None, Some(&ROUGH)] {
                 let landed = node.solve(free, friction).unwrap();
-                assert_relative_eq!(
-                    balance(&node, free, &landed),
-                    Vector3::zeros(),
-                    epsilon = 1e-10
-                );
+                assert_relative_eq!(balance(&node, free, &landed), Vector3::zeros(), epsilon = 1e-10);
                 let k = node.coefficients;
                 let resistance = k.stiffness * node.steps[1] + k.damping;
                 let push = k.stiffness * node.penetration - resistance * landed.velocity.z;
@@ -187,10 +177,7 @@ mod tests {
 
     #[test]
     fn the_bed_never_pulls() {
-        assert_eq!(
-            landing().solve(Vector3::new(0.0, 0.0, 5.0), Some(&ROUGH)),
-            None
-        );
+        assert_eq!(landing().solve(Vector3::new(0.0, 0.0, 5.0), Some(&ROUGH)), None);
         let above = Landing {
             penetration: -0.01,
             ..landing()

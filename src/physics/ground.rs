@@ -102,9 +102,7 @@ impl Ground {
     #[inline]
     pub fn stand(&self, place: Vector3<f64>) -> (f64, Vector3<f64>) {
         let (height, [hx, hy]) = match self {
-            Ground::Plane { height, slope } => {
-                (height + slope[0] * place.x + slope[1] * place.y, *slope)
-            }
+            Ground::Plane { height, slope } => (height + slope[0] * place.x + slope[1] * place.y, *slope),
             Ground::Grid(grid) => {
                 let relief = grid.relief(place.x, place.y);
                 (relief.height, relief.slope)
@@ -149,8 +147,7 @@ impl Grid {
         if x.is_empty() || y.is_empty() || !increasing(x) || !increasing(y) || !complete {
             return None;
         }
-        let column =
-            |rows: &[Vec<f64>], i: usize| -> Vec<f64> { rows.iter().map(|row| row[i]).collect() };
+        let column = |rows: &[Vec<f64>], i: usize| -> Vec<f64> { rows.iter().map(|row| row[i]).collect() };
         let along_x = |rows: &[Vec<f64>], law: Law| -> Vec<Vec<f64>> {
             rows.iter().map(|row| law(x, row, Ends::Chord)).collect()
         };
@@ -192,24 +189,16 @@ impl Grid {
             let found: Vec<_> = known
                 .map(|other| (other, (line[other] - line[at]) / 3.0))
                 .collect();
-            if found.is_empty() {
-                vec![(at, 0.0)]
-            } else {
-                found
-            }
+            if found.is_empty() { vec![(at, 0.0)] } else { found }
         };
         let mut corners = Vec::with_capacity(4);
         for (other_i, reach_x) in beside(&self.x, i) {
             for (other_j, reach_y) in beside(&self.y, j) {
                 let soundings = [(i, j), (other_i, j), (i, other_j), (other_i, other_j)];
-                let change = soundings
-                    .map(|(i, j)| heights[j][i])
-                    .map(|z| z - heights[j][i]);
+                let change = soundings.map(|(i, j)| heights[j][i]).map(|z| z - heights[j][i]);
                 let (low, high) = change
                     .into_iter()
-                    .fold((0.0_f64, 0.0_f64), |(low, high), z| {
-                        (low.min(z), high.max(z))
-                    });
+                    .fold((0.0_f64, 0.0_f64), |(low, high), z| (low.min(z), high.max(z)));
                 let margin = EXCURSION_MAX * (high - low);
                 corners.push(Corner {
                     reach: [reach_x, reach_y],
@@ -228,8 +217,7 @@ impl Grid {
                 let [h, hx, hy, hxy] = self.nodes[j * self.x.len() + i];
                 for (p, x) in by_x.iter().enumerate() {
                     for (q, y) in by_y.iter().enumerate().take(3 - p) {
-                        sums[p][q] +=
-                            y[0] * (x[0] * h + x[1] * hx) + y[1] * (x[0] * hy + x[1] * hxy);
+                        sums[p][q] += y[0] * (x[0] * h + x[1] * hx) + y[1] * (x[0] * hy + x[1] * hxy);
                     }
                 }
             }
@@ -311,9 +299,7 @@ impl Cell {
         if place > last {
             return still(line.len() - 1);
         }
-        let next = line
-            .partition_point(|known| *known <= place)
-            .min(line.len() - 1);
+        let next = line.partition_point(|known| *known <= place).min(line.len() - 1);
         let width = line[next] - line[next - 1];
         let t = (place - line[next - 1]) / width;
         let (square, cube) = (t * t, t * t * t);
@@ -375,10 +361,7 @@ mod tests {
                 assert_relative_eq!(grid.relief(x, y).height, sounding, max_relative = 1e-15);
             }
         }
-        assert_eq!(
-            grid.relief(-100.0, 7.0).height,
-            grid.relief(-10.0, 7.0).height
-        );
+        assert_eq!(grid.relief(-100.0, 7.0).height, grid.relief(-10.0, 7.0).height);
         assert_eq!(grid.relief(-100.0, 7.0).slope[0], 0.0);
         assert_eq!(grid.relief(3.0, 99.0).height, grid.relief(3.0, 30.0).height);
     }
@@ -451,18 +434,10 @@ mod tests {
                 }
                 level
             };
-            let rows: Vec<Vec<f64>> = y
-                .iter()
-                .map(|_| x.iter().map(|_| sounding()).collect())
-                .collect();
+            let rows: Vec<Vec<f64>> = y.iter().map(|_| x.iter().map(|_| sounding()).collect()).collect();
             let grid = Grid::new(&x, &y, &rows).unwrap();
             for (j, i) in (0..y.len() - 1).flat_map(|j| (0..x.len() - 1).map(move |i| (j, i))) {
-                let corners = [
-                    rows[j][i],
-                    rows[j][i + 1],
-                    rows[j + 1][i],
-                    rows[j + 1][i + 1],
-                ];
+                let corners = [rows[j][i], rows[j][i + 1], rows[j + 1][i], rows[j + 1][i + 1]];
                 let low = corners.into_iter().fold(f64::INFINITY, f64::min);
                 let high = corners.into_iter().fold(f64::NEG_INFINITY, f64::max);
                 let margin = 0.05 * (high - low) + 1e-10;
@@ -497,12 +472,9 @@ mod tests {
 
     #[test]
     fn a_smooth_slope_is_met_with_an_error_that_falls_with_its_order() {
-        let height =
-            |x: f64, y: f64| -100.0 + 0.3 * x + 0.2 * y + 2.0 * (0.05 * x).sin() * (0.04 * y).cos();
+        let height = |x: f64, y: f64| -100.0 + 0.3 * x + 0.2 * y + 2.0 * (0.05 * x).sin() * (0.04 * y).cos();
         let error = |count: usize| {
-            let line: Vec<f64> = (0..=count)
-                .map(|i| 100.0 * i as f64 / count as f64)
-                .collect();
+            let line: Vec<f64> = (0..=count).map(|i| 100.0 * i as f64 / count as f64).collect();
             let rows: Vec<Vec<f64>> = line
                 .iter()
                 .map(|&y| line.iter().map(|&x| height(x, y)).collect())

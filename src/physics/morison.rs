@@ -54,19 +54,14 @@ pub fn drag(k: DragCoefficients, velocity: Vector3<f64>, tangent: Vector3<f64>) 
 }
 
 /// Slope −∂f/∂u of [`drag`] [N s/m]: symmetric, positive semi-definite.
-pub fn drag_slope(
-    k: DragCoefficients,
-    velocity: Vector3<f64>,
-    tangent: Vector3<f64>,
-) -> Matrix3<f64> {
+pub fn drag_slope(k: DragCoefficients, velocity: Vector3<f64>, tangent: Vector3<f64>) -> Matrix3<f64> {
     let along = velocity.dot(&tangent);
     let across = velocity - along * tangent;
     let speed = across.norm();
     let tt = tangent * tangent.transpose();
     let mut slope = 2.0 * k.tangent * along.abs() * tt;
     if speed > 0.0 {
-        slope +=
-            k.normal * (speed * (Matrix3::identity() - tt) + across * across.transpose() / speed);
+        slope += k.normal * (speed * (Matrix3::identity() - tt) + across * across.transpose() / speed);
     }
     slope
 }
@@ -89,8 +84,7 @@ mod tests {
         for axis in 0..3 {
             let mut step = Vector3::zeros();
             step[axis] = 1e-6;
-            let difference =
-                (drag(K, velocity - step, tangent) - drag(K, velocity + step, tangent)) / 2e-6;
+            let difference = (drag(K, velocity - step, tangent) - drag(K, velocity + step, tangent)) / 2e-6;
             assert_relative_eq!(difference, slope.column(axis).into_owned(), epsilon = 1e-8);
         }
     }
@@ -108,10 +102,6 @@ mod tests {
     fn a_cylinder_across_the_flow_feels_half_rho_d_c_u_squared() {
         let k = drag_per_length(1025.0, 0.1, 1.2, 0.0);
         let force = drag(k, Vector3::new(2.0, 0.0, 0.0), Vector3::z());
-        assert_relative_eq!(
-            force.x,
-            -0.5 * 1025.0 * 0.1 * 1.2 * 4.0,
-            max_relative = 1e-15
-        );
+        assert_relative_eq!(force.x, -0.5 * 1025.0 * 0.1 * 1.2 * 4.0, max_relative = 1e-15);
     }
 }

@@ -50,11 +50,7 @@ pub struct Wetted {
 impl Sphere {
     /// A sphere of `volume` [m³], drag area CdA `drag_area` [m²] and added-mass coefficient `added_mass` [-] in water of `density`
     /// [kg/m³] under `gravity` [m/s²]; `None` where the water does nothing to it.
-    pub fn new(
-        [volume, drag_area, added_mass]: [f64; 3],
-        density: f64,
-        gravity: f64,
-    ) -> Option<Sphere> {
+    pub fn new([volume, drag_area, added_mass]: [f64; 3], density: f64, gravity: f64) -> Option<Sphere> {
         let radius = if volume > 0.0 {
             (0.75 * volume / PI).cbrt()
         } else {

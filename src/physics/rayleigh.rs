@@ -34,11 +34,7 @@ mod tests {
     fn both_ratios_are_met() {
         let c = coefficients([0.05, 0.02], [3.0, 11.0]);
         for (ratio, w) in [(0.05, 3.0), (0.02, 11.0)] {
-            assert_relative_eq!(
-                0.5 * (c.mass / w + c.stiffness * w),
-                ratio,
-                max_relative = 1e-14
-            );
+            assert_relative_eq!(0.5 * (c.mass / w + c.stiffness * w), ratio, max_relative = 1e-14);
         }
     }
 }

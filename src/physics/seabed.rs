@@ -101,10 +101,7 @@ mod tests {
         let (weight, length) = (500.0, 4.0);
         let soft = regularised(GIVEN, [weight, 0.0], length);
         assert_relative_eq!(weight / soft.stiffness, REGULARISED_PENETRATION * length);
-        assert_relative_eq!(
-            soft.damping / soft.stiffness,
-            GIVEN.damping / GIVEN.stiffness
-        );
+        assert_relative_eq!(soft.damping / soft.stiffness, GIVEN.damping / GIVEN.stiffness);
     }
 
     #[test]
@@ -119,11 +116,7 @@ mod tests {
         let own = |damping: f64| damping / (2.0 * (weight / 0.01 * mass).sqrt());
         assert_relative_eq!(part(100.0), own(100.0), max_relative = 1e-12);
         assert_eq!(part(0.0), 0.0);
-        assert_relative_eq!(
-            part(1e6),
-            own(1e6 * weight / 0.01 / 1e6),
-            max_relative = 1e-12
-        );
+        assert_relative_eq!(part(1e6), own(1e6 * weight / 0.01 / 1e6), max_relative = 1e-12);
     }
 
     #[test]

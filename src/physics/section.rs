@@ -169,12 +169,7 @@ fn correction_gradient(before: &Sextuple, now: &Sextuple, length: f64) -> Matrix
 
 /// Change of Dᵀ S with the plain strains at the end of the step, where S = `stress` stays.
 #[inline(always)]
-fn correction_curvature(
-    before: &Sextuple,
-    now: &Sextuple,
-    stress: &Sextuple,
-    length: f64,
-) -> Matrix3<f64> {
+fn correction_curvature(before: &Sextuple, now: &Sextuple, stress: &Sextuple, length: f64) -> Matrix3<f64> {
     let ((u0, v0), (u1, v1)) = (turns(before, length), turns(now, length));
     let (mean, last) = (split(&(0.5 * (before + now))).1, split(now).1);
     let (n, m) = (stress[2], split(stress).1);
@@ -238,15 +233,11 @@ pub fn strain_gradient(a: &Section, b: &Section, length: f64) -> [Matrix6<f64>; 
     let turn = turn_gradient(a, b) / length;
     let block = |sign: f64, own: &Section| {
         let mut gradient = Matrix6::zeros();
-        gradient
-            .fixed_view_mut::<3, 3>(0, 0)
-            .copy_from(&(sign * along));
+        gradient.fixed_view_mut::<3, 3>(0, 0).copy_from(&(sign * along));
         gradient
             .fixed_view_mut::<3, 3>(0, 3)
             .copy_from(&(0.5 * own.frame.tr_mul(&slope)));
-        gradient
-            .fixed_view_mut::<3, 3>(3, 3)
-            .copy_from(&(sign * turn));
+        gradient.fixed_view_mut::<3, 3>(3, 3).copy_from(&(sign * turn));
         gradient
     };
     [block(-1.0, a), block(1.0, b)]
@@ -289,9 +280,7 @@ pub fn geometric_stiffness(
         }
         let mut stiffness = Matrix6::zeros();
         let mut put = |i: usize, j: usize, block: Matrix3<f64>| {
-            stiffness
-                .fixed_view_mut::<3, 3>(i, j)
-                .copy_from(&(half * block));
+            stiffness.fixed_view_mut::<3, 3>(i, j).copy_from(&(half * block));
         };
         put(0, 3, -up * turned[column]);
         put(3, 0, across * carried[row]);
@@ -542,10 +531,6 @@ mod tests {
     fn the_energy_is_the_sum_of_its_parts() {
         let law = LAW;
         let total = 0.5 * LENGTH * STRESS.dot(&law.diagonal().component_mul(&STRESS));
-        assert_relative_eq!(
-            law.energy(&STRESS, LENGTH).total(),
-            total,
-            max_relative = 1e-15
-        );
+        assert_relative_eq!(law.energy(&STRESS, LENGTH).total(), total, max_relative = 1e-15);
     }
 }

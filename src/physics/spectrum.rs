@@ -165,11 +165,7 @@ mod tests {
             ones / sum
         };
         for gamma in [1.0, 2.0, 3.3, 5.0, 7.0] {
-            assert_relative_eq!(
-                factor(gamma),
-                1.0 - 0.287 * f64::ln(gamma),
-                max_relative = 0.02
-            );
+            assert_relative_eq!(factor(gamma), 1.0 - 0.287 * f64::ln(gamma), max_relative = 0.02);
         }
     }
 
@@ -196,10 +192,7 @@ mod tests {
     #[test]
     fn frequencies_share_no_period() {
         let sea = storm(3.3).draw(100, 2);
-        let gaps: Vec<f64> = sea
-            .windows(2)
-            .map(|c| c[1].frequency - c[0].frequency)
-            .collect();
+        let gaps: Vec<f64> = sea.windows(2).map(|c| c[1].frequency - c[0].frequency).collect();
         assert!(gaps.iter().all(|gap| *gap > 0.0));
         let mean = gaps.iter().sum::<f64>() / 99.0;
         assert!(
@@ -218,9 +211,7 @@ mod tests {
                 ..storm(3.3)
             };
             let sea = spread.draw(40_000, 9);
-            let mean = |f: fn(f64) -> f64| {
-                sea.iter().map(|c| f(c.direction - 0.4)).sum::<f64>() / 40_000.0
-            };
+            let mean = |f: fn(f64) -> f64| sea.iter().map(|c| f(c.direction - 0.4)).sum::<f64>() / 40_000.0;
             // the mean of cos θ under cos²ˢ ½θ is s/(s + 1)
             assert!((mean(f64::cos) - s / (s + 1.0)).abs() < 0.01, "s = {s}");
             assert!(mean(f64::sin).abs() < 0.01);

@@ -114,11 +114,7 @@ impl StretchStep {
         let (chords, length) = (before.chord + after.chord, before.length + after.length);
         StretchStep {
             mean,
-            direction: if length > 0.0 {
-                chords / length
-            } else {
-                chords
-            },
+            direction: if length > 0.0 { chords / length } else { chords },
             length,
         }
     }

@@ -187,11 +187,7 @@ mod tests {
             let at = emerged(RADIUS, [low, high]).unwrap();
             let over = high / (high - low);
             // what is curved at the surface is of the order of the radius squared
-            assert_relative_eq!(
-                0.5 * (at.parts[0] + at.parts[1]),
-                over,
-                max_relative = 1e-12
-            );
+            assert_relative_eq!(0.5 * (at.parts[0] + at.parts[1]), over, max_relative = 1e-12);
             assert_relative_eq!(at.parts[0], over * over, epsilon = 1e-3);
             let turned = emerged(RADIUS, [high, low]).unwrap();
             assert_eq!(turned.parts, [at.parts[1], at.parts[0]]);

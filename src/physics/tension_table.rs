@@ -36,8 +36,7 @@ impl TensionTable {
     /// Through rows of strain [-] and tension [N]; with it the steepest slope EA [N], which its values are divided by.
     pub fn through(rows: &[[f64; 2]]) -> (TensionTable, f64) {
         assert!(rows.len() > 1, "a curve goes through two rows at least");
-        let (strains, tensions): (Vec<f64>, Vec<f64>) =
-            rows.iter().map(|row| (row[0], row[1])).unzip();
+        let (strains, tensions): (Vec<f64>, Vec<f64>) = rows.iter().map(|row| (row[0], row[1])).unzip();
         let slopes = rising_slopes(&strains, &tensions);
         let mut pieces: Vec<Piece> = rows
             .windows(2)
@@ -115,11 +114,7 @@ impl Piece {
         let vertex = -c / (3.0 * d);
         let within = (0.0..=self.span).contains(&vertex);
         let ends = slope(0.0).max(slope(self.span));
-        if within {
-            ends.max(slope(vertex))
-        } else {
-            ends
-        }
+        if within { ends.max(slope(vertex)) } else { ends }
     }
 }
 
@@ -153,18 +148,8 @@ mod tests {
             let (strain, h) = (0.0005 * f64::from(i) + 0.00021, 1e-6);
             let (low, at, high) = (table.at(strain - h), table.at(strain), table.at(strain + h));
             let (force, slope) = (high.energy - low.energy, high.force - low.force);
-            assert_relative_eq!(
-                force / (2.0 * h),
-                at.force,
-                max_relative = 1e-6,
-                epsilon = 1e-9
-            );
-            assert_relative_eq!(
-                slope / (2.0 * h),
-                at.slope,
-                max_relative = 1e-5,
-                epsilon = 1e-6
-            );
+            assert_relative_eq!(force / (2.0 * h), at.force, max_relative = 1e-6, epsilon = 1e-9);
+            assert_relative_eq!(slope / (2.0 * h), at.slope, max_relative = 1e-5, epsilon = 1e-6);
         }
     }
 

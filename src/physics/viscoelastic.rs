@@ -271,11 +271,7 @@ impl Viscoelastic {
         } else {
             // ½EA_d e'² = (R − (P + D) e') (e' − e)
             let both = series.pull + damper;
-            roots([
-                0.5 * self.fast + both,
-                reach + both * before,
-                before * reach,
-            ])[1]
+            roots([0.5 * self.fast + both, reach + both * before, before * reach])[1]
         };
         let damps = if after > 0.0 { damper } else { 0.0 };
         let slope = gradient(self.fast, [before, after]).slope + damps;
@@ -384,8 +380,8 @@ mod tests {
         for k in 0..(settled + 1) * steps {
             let crept = law.step([strain(k), strain(k + 1)], slow, dt).slow;
             let rate = (strain(k + 1) - strain(k)) / dt;
-            let tension = law.elastic(0.5 * (strain(k) + strain(k + 1)), 0.5 * (slow + crept))
-                + law.damping * rate;
+            let tension =
+                law.elastic(0.5 * (strain(k) + strain(k + 1)), 0.5 * (slow + crept)) + law.damping * rate;
             if k >= settled * steps {
                 let phase = omega * (k as f64 + 0.5) * dt;
                 storage += 2.0 / steps as f64 / amplitude * tension * phase.sin();
@@ -407,15 +403,9 @@ mod tests {
                 for part in 0..2 {
                     let scale = exact[part];
                     let (first, last) = (coarse[part] - exact[part], fine[part] - exact[part]);
-                    assert!(
-                        last.abs() < 1e-3 * scale,
-                        "{part} {omega}: {fine:?} {exact:?}"
-                    );
+                    assert!(last.abs() < 1e-3 * scale, "{part} {omega}: {fine:?} {exact:?}");
                     let order = (first / last).abs().ln() / 4.0_f64.ln();
-                    assert!(
-                        (order - 2.0).abs() < 0.1 || last.abs() < 1e-7 * scale,
-                        "{order}"
-                    );
+                    assert!((order - 2.0).abs() < 0.1 || last.abs() < 1e-7 * scale, "{order}");
                 }
             }
         }
@@ -430,11 +420,7 @@ mod tests {
             max_relative = 1e-12
         );
         let rest = law.rest(0.02);
-        assert_relative_eq!(
-            law.step([0.02; 2], rest, 1.0).slow,
-            rest,
-            max_relative = 1e-12
-        );
+        assert_relative_eq!(law.step([0.02; 2], rest, 1.0).slow, rest, max_relative = 1e-12);
     }
 
     #[test]
@@ -443,11 +429,7 @@ mod tests {
         let (strain, dt) = (0.01, 0.01);
         let tau = 4.0e9 / (law.fast + law.slow);
         let mut slow = 0.0;
-        assert_relative_eq!(
-            law.elastic(strain, slow),
-            0.01 * 1.586e8,
-            max_relative = 1e-12
-        );
+        assert_relative_eq!(law.elastic(strain, slow), 0.01 * 1.586e8, max_relative = 1e-12);
         for k in 1..=2000 {
             slow = law.step([strain, strain], slow, dt).slow;
             let fading = (-(k as f64) * dt / tau).exp();
@@ -464,15 +446,11 @@ mod tests {
         laws.flat_map(move |law| {
             strains.into_iter().flat_map(move |before| {
                 let steps = [1e-5, 0.01, 5.0].into_iter();
-                let slows: &[f64] = if law.yielding > 0.0 {
-                    &[0.0, 1e-3]
-                } else {
-                    &[0.0]
-                };
+                let slows: &[f64] = if law.yielding > 0.0 { &[0.0, 1e-3] } else { &[0.0] };
                 steps.flat_map(move |dt| {
-                    slows.iter().flat_map(move |&slow| {
-                        strains.map(move |after| (law, [before, after], slow, dt))
-                    })
+                    slows
+                        .iter()
+                        .flat_map(move |&slow| strains.map(move |after| (law, [before, after], slow, dt)))
                 })
             })
         })
@@ -487,10 +465,7 @@ mod tests {
             let given = step.mean.tension * (strains[1] - strains[0]);
             let scale = law.energy(after.0, after.1) + law.energy(before.0, before.1) + given.abs();
             let case = (strains, slow, dt, step);
-            assert!(
-                (given - held - step.mean.taken).abs() <= 1e-9 * scale,
-                "{case:?}"
-            );
+            assert!((given - held - step.mean.taken).abs() <= 1e-9 * scale, "{case:?}");
             assert!(step.mean.tension >= 0.0, "{case:?}");
             assert!(step.mean.taken >= -1e-9 * scale, "{case:?}");
         }
@@ -535,8 +510,7 @@ mod tests {
             let of_parts = |parts: usize| {
                 let strain = |k: usize| before + (after - before) * k as f64 / parts as f64;
                 (0..parts).fold(slow, |slow, k| {
-                    law.step([strain(k), strain(k + 1)], slow, dt / parts as f64)
-                        .slow
+                    law.step([strain(k), strain(k + 1)], slow, dt / parts as f64).slow
                 })
             };
             let relaxed = law.relaxation(dt);
@@ -552,11 +526,7 @@ mod tests {
         let relaxed = law.relaxation(0.05);
         assert!(relaxed.kept < 1e-100);
         let rest = law.rest(0.01);
-        assert_relative_eq!(
-            (relaxed.first + relaxed.last) * 0.01,
-            rest,
-            max_relative = 1e-12
-        );
+        assert_relative_eq!((relaxed.first + relaxed.last) * 0.01, rest, max_relative = 1e-12);
     }
 
     #[test]

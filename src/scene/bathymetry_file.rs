@@ -36,8 +36,7 @@ pub(super) fn read(path: &Path) -> Result<DepthGrid, String> {
     let name = path.display();
     let looked_for = " (it is looked for beside the scene)";
     let bytes = input_file::read_table(path, "a file of soundings", looked_for)?;
-    let text = String::from_utf8(bytes)
-        .map_err(|error| format!("{name} cannot be read as text: {error}"))?;
+    let text = String::from_utf8(bytes).map_err(|error| format!("{name} cannot be read as text: {error}"))?;
     parse(&text).map_err(|problem| format!("{name}{problem}"))
 }
 
@@ -147,9 +146,7 @@ fn moordyn_c_heights(rows: &[Row], sizes: [usize; 2]) -> Result<DepthGrid, Strin
         };
         let index = |list: &[f64], place: f64, axis: &str| {
             let found = list.iter().position(|known| *known == place);
-            found.ok_or_else(|| {
-                format!(", line {line}: {axis} = {place} m is not in the list of {axis}")
-            })
+            found.ok_or_else(|| format!(", line {line}: {axis} = {place} m is not in the list of {axis}"))
         };
         let cell = &mut heights[index(&y, place_y, "y")?][index(&x, place_x, "x")?];
         if cell.replace(height).is_some() {
@@ -158,16 +155,9 @@ fn moordyn_c_heights(rows: &[Row], sizes: [usize; 2]) -> Result<DepthGrid, Strin
             ));
         }
     }
-    if heights
-        .iter()
-        .flatten()
-        .flatten()
-        .all(|height| *height > 0.0)
-        && rows.len() > 3
-    {
+    if heights.iter().flatten().flatten().all(|height| *height > 0.0) && rows.len() > 3 {
         return Err(
-            ": every height is above the water: z is that of the seabed, negative below z = 0"
-                .into(),
+            ": every height is above the water: z is that of the seabed, negative below z = 0".into(),
         );
     }
     let mut depth = Vec::with_capacity(y.len());
@@ -248,8 +238,7 @@ mod tests {
             "y [m]/x [m]; -100; 0; 250\n-50; 90,0; 95; 100\n50; 91; 96; 104,5\n",
         ] {
             let found = parse(text).unwrap();
-            let of =
-                |grid: &DepthGrid| [grid.x.clone(), grid.y.clone(), grid.depth.concat()].concat();
+            let of = |grid: &DepthGrid| [grid.x.clone(), grid.y.clone(), grid.depth.concat()].concat();
             for (found, wanted) in of(&found).iter().zip(of(&grid())) {
                 assert!((found - wanted).abs() <= 1e-13 * wanted.abs(), "{text}");
             }

@@ -67,7 +67,8 @@ pub enum Quantity {
 }
 
 /// What is accepted, for messages.
-const ACCEPTED: &str = "FairTen1, AnchTen1, L1N10T, L1N10Px, L1N10Vx, Point1Px, Point1Vx, Point1Fx and Point1T, with x, y or z";
+const ACCEPTED: &str =
+    "FairTen1, AnchTen1, L1N10T, L1N10Px, L1N10Vx, Point1Px, Point1Vx, Point1Fx and Point1T, with x, y or z";
 
 impl Channel {
     /// Reads the name of a channel.
@@ -96,11 +97,7 @@ impl Channel {
                 if let Quantity::Force(_) = quantity {
                     return Err(unknown());
                 }
-                Ok(Channel::Node {
-                    line,
-                    node,
-                    quantity,
-                })
+                Ok(Channel::Node { line, node, quantity })
             }
             ("C" | "CON" | "P" | "POINT" | "N" | "NODE", rest) => Ok(Channel::Point {
                 point: format!("point{number}"),
@@ -174,24 +171,16 @@ pub fn check_node(node: usize, elements: usize) -> Result<(), String> {
 }
 
 fn split_letters(text: &str) -> (&str, &str) {
-    text.split_at(
-        text.find(|c: char| c.is_ascii_digit())
-            .unwrap_or(text.len()),
-    )
+    text.split_at(text.find(|c: char| c.is_ascii_digit()).unwrap_or(text.len()))
 }
 
 fn split_digits(text: &str) -> (&str, &str) {
-    text.split_at(
-        text.find(|c: char| !c.is_ascii_digit())
-            .unwrap_or(text.len()),
-    )
+    text.split_at(text.find(|c: char| !c.is_ascii_digit()).unwrap_or(text.len()))
 }
 
 /// `N10…`, `NA…`, `NB…`.
 fn node(text: &str) -> Option<(NodePlace, &str)> {
-    let rest = text
-        .strip_prefix("NODE")
-        .or_else(|| text.strip_prefix('N'))?;
+    let rest = text.strip_prefix("NODE").or_else(|| text.strip_prefix('N'))?;
     let (digits, after) = split_digits(rest);
     if !digits.is_empty() {
         return Some((NodePlace::Number(digits.parse().ok()?), after));
@@ -232,21 +221,13 @@ mod tests {
         end("ANCHTEN12", "line12", LineEnd::A);
         let node = |name: &str, node, quantity| {
             let line = "line3".to_string();
-            let channel = Channel::Node {
-                line,
-                node,
-                quantity,
-            };
+            let channel = Channel::Node { line, node, quantity };
             assert_eq!(Channel::parse(name), Ok(channel));
         };
         node("L3N10T", NodePlace::Number(10), Quantity::Tension);
         node("l3n0ten", NodePlace::Number(0), Quantity::Tension);
         node("L3N19Px", NodePlace::Number(19), Quantity::Position(0));
-        node(
-            "LINE3NAPZ",
-            NodePlace::End(LineEnd::A),
-            Quantity::Position(2),
-        );
+        node("LINE3NAPZ", NodePlace::End(LineEnd::A), Quantity::Position(2));
         node("L3NBVy", NodePlace::End(LineEnd::B), Quantity::Velocity(1));
         let point = |name: &str, quantity| {
             let point = "point4".to_string();

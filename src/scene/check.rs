@@ -117,9 +117,7 @@ impl Bounds {
                 ));
             }
             Bounds::Within(..) => return None,
-            Bounds::Positive(upper) | Bounds::NotNegative(upper) | Bounds::Magnitude(upper) => {
-                upper
-            }
+            Bounds::Positive(upper) | Bounds::NotNegative(upper) | Bounds::Magnitude(upper) => upper,
         };
         (value.abs() > upper).then(|| {
             format!(
@@ -162,10 +160,7 @@ fn check_name(findings: &mut Findings, at: &str, name: &str) {
     } else if first.is_some_and(|c| c.is_ascii_digit() || c == '-') {
         findings.say(at, format!("{name:?} starts with a digit or -: {allowed}"));
     } else if name.len() > 64 {
-        findings.say(
-            at,
-            format!("the name has {} characters, 64 at most", name.len()),
-        );
+        findings.say(at, format!("the name has {} characters, 64 at most", name.len()));
     } else if ["time", "solver"].contains(&name) {
         findings.say(
             at,
@@ -185,10 +180,7 @@ fn check_names<'s>(
         let at = format!("{list}[{index}].name");
         check_name(findings, &at, name);
         if let Some(other) = taken.get(name) {
-            findings.say(
-                at,
-                format!("the name `{name}` is taken by {other}: take another"),
-            );
+            findings.say(at, format!("the name `{name}` is taken by {other}: take another"));
         } else {
             taken.insert(name, format!("{list}[{index}]"));
         }
@@ -202,8 +194,5 @@ fn unknown<'a>(
     name: &str,
     known: impl IntoIterator<Item = &'a str> + Clone,
 ) -> String {
-    format!(
-        "no {what} is called `{name}`{}",
-        suggestion(name, plural, known)
-    )
+    format!("no {what} is called `{name}`{}", suggestion(name, plural, known))
 }

@@ -57,9 +57,7 @@ impl Separator {
     pub(super) fn headings(self, row: &str) -> Vec<Heading> {
         if self == Separator::Tab {
             let cells = row.trim().split('\t').map(str::trim);
-            return cells
-                .map(|cell| Heading::of(cell.trim_matches('"')))
-                .collect();
+            return cells.map(|cell| Heading::of(cell.trim_matches('"'))).collect();
         }
         let mut joined: Vec<String> = Vec::new();
         for cell in self.cells(row) {
@@ -150,13 +148,9 @@ impl<R: BufRead> Lines<R> {
             self.line += 1;
             let line = self.line;
             if count as u64 == LINE_MAX {
-                return Err(format!(
-                    ", line {line} is longer than {} KiB",
-                    LINE_MAX >> 10
-                ));
+                return Err(format!(", line {line} is longer than {} KiB", LINE_MAX >> 10));
             }
-            let text =
-                String::from_utf8(bytes).map_err(|_| format!(": line {line} is not UTF-8 text"))?;
+            let text = String::from_utf8(bytes).map_err(|_| format!(": line {line} is not UTF-8 text"))?;
             let text = text.trim_start_matches('\u{feff}').trim();
             if !text.is_empty() && !text.starts_with('#') {
                 return Ok(Some((line, text.to_string())));

@@ -19,11 +19,7 @@ impl LoadedScene {
         let heading = format!("{name}, a {} file, as a scene of moorline", self.format);
         paragraph(&mut text, "# ", &heading);
         for note in &self.notes {
-            let note: String = note
-                .to_string()
-                .chars()
-                .filter(|c| !c.is_control())
-                .collect();
+            let note: String = note.to_string().chars().filter(|c| !c.is_control()).collect();
             paragraph(&mut text, "# ", &note);
         }
         text.push('\n');
@@ -51,13 +47,9 @@ struct Place {
 impl Place {
     /// What is said behind a line of TOML.
     fn comment(&mut self, line: &str, loaded: &LoadedScene) -> Option<String> {
-        let header = line
-            .strip_prefix('[')
-            .and_then(|rest| rest.strip_suffix(']'));
+        let header = line.strip_prefix('[').and_then(|rest| rest.strip_suffix(']'));
         if let Some(header) = header {
-            let element = header
-                .strip_prefix('[')
-                .and_then(|rest| rest.strip_suffix(']'));
+            let element = header.strip_prefix('[').and_then(|rest| rest.strip_suffix(']'));
             self.table = element.unwrap_or(header).to_string();
             let mut at = self.table.clone();
             if element.is_some() {

@@ -5,8 +5,8 @@ use std::fmt::Display;
 use std::ops::Range;
 
 use serde::de::{
-    self, DeserializeSeed, Deserializer, EnumAccess, Expected, IntoDeserializer, MapAccess,
-    SeqAccess, Unexpected, VariantAccess, Visitor,
+    self, DeserializeSeed, Deserializer, EnumAccess, Expected, IntoDeserializer, MapAccess, SeqAccess,
+    Unexpected, VariantAccess, Visitor,
 };
 use serde::forward_to_deserialize_any;
 use toml::Spanned;
@@ -110,9 +110,7 @@ impl ReadError {
                 };
                 format!("expected {upto} [{unit}]{rest}, found {found}")
             }
-            Problem::Type {
-                expected, found, ..
-            } => format!("expected {expected}, found {found}"),
+            Problem::Type { expected, found, .. } => format!("expected {expected}, found {found}"),
             Problem::Missing {
                 key,
                 unit: Some(unit),
@@ -237,16 +235,15 @@ impl<'de> Node<'de> {
             DeValue::String(text) => visitor.visit_str(text),
             DeValue::Integer(integer) => {
                 let parsed = i64::from_str_radix(integer.as_str(), integer.radix());
-                visitor.visit_i64(parsed.map_err(|_| {
-                    ReadError::other(format!("{integer} is beyond a 64-bit whole number"))
-                })?)
+                visitor.visit_i64(
+                    parsed.map_err(|_| {
+                        ReadError::other(format!("{integer} is beyond a 64-bit whole number"))
+                    })?,
+                )
             }
             DeValue::Float(float) => visitor.visit_f64(finite(float.as_str())?),
             DeValue::Boolean(value) => visitor.visit_bool(*value),
-            DeValue::Datetime(_) => Err(de::Error::invalid_type(
-                Unexpected::Other("a date"),
-                &visitor,
-            )),
+            DeValue::Datetime(_) => Err(de::Error::invalid_type(Unexpected::Other("a date"), &visitor)),
             DeValue::Array(array) => visitor.visit_seq(Elements::new(array)),
             DeValue::Table(table) => visitor.visit_map(Entries::new(table, None)),
         }
@@ -257,9 +254,7 @@ impl<'de> Node<'de> {
 fn finite(written: &str) -> Result<f64, ReadError> {
     match written.parse::<f64>() {
         Ok(value) if value.is_finite() => Ok(value),
-        _ => Err(ReadError::other(format!(
-            "{written} is not a finite number"
-        ))),
+        _ => Err(ReadError::other(format!("{written} is not a finite number"))),
     }
 }
 
@@ -292,11 +287,7 @@ impl<'de> Deserializer<'de> for Node<'de> {
         visitor.visit_newtype_struct(self)
     }
 
-    fn deserialize_tuple<V: Visitor<'de>>(
-        self,
-        len: usize,
-        visitor: V,
-    ) -> Result<V::Value, ReadError> {
+    fn deserialize_tuple<V: Visitor<'de>>(self, len: usize, visitor: V) -> Result<V::Value, ReadError> {
         let expected = format!("an array of {len} numbers");
         let result = match self.value.get_ref() {
             DeValue::Array(array) if array.len() == len => self.visit(visitor),
@@ -377,10 +368,7 @@ impl<'de> Elements<'de> {
 impl<'de> SeqAccess<'de> for Elements<'de> {
     type Error = ReadError;
 
-    fn next_element_seed<T: DeserializeSeed<'de>>(
-        &mut self,
-        seed: T,
-    ) -> Result<Option<T::Value>, ReadError> {
+    fn next_element_seed<T: DeserializeSeed<'de>>(&mut self, seed: T) -> Result<Option<T::Value>, ReadError> {
         let Some(value) = self.rest.next() else {
             return Ok(None);
         };
@@ -396,10 +384,7 @@ impl<'de> SeqAccess<'de> for Elements<'de> {
     }
 }
 
-type Entry<'de> = (
-    &'de Spanned<toml::de::DeString<'de>>,
-    &'de Spanned<DeValue<'de>>,
-);
+type Entry<'de> = (&'de Spanned<toml::de::DeString<'de>>, &'de Spanned<DeValue<'de>>);
 
 /// Entries of a table in the order of the text.
 struct Entries<'de> {
@@ -423,10 +408,7 @@ impl<'de> Entries<'de> {
 impl<'de> MapAccess<'de> for Entries<'de> {
     type Error = ReadError;
 
-    fn next_key_seed<K: DeserializeSeed<'de>>(
-        &mut self,
-        seed: K,
-    ) -> Result<Option<K::Value>, ReadError> {
+    fn next_key_seed<K: DeserializeSeed<'de>>(&mut self, seed: K) -> Result<Option<K::Value>, ReadError> {
         self.current = self.rest.next();
         let Some((key, _)) = self.current else {
             return Ok(None);
@@ -434,11 +416,7 @@ impl<'de> MapAccess<'de> for Entries<'de> {
         let name: &str = key.get_ref();
         seed.deserialize(name.into_deserializer())
             .map(Some)
-            .map_err(|error: ReadError| {
-                error
-                    .or_span(key.span())
-                    .inside(Step::Key(name.to_string()))
-            })
+            .map_err(|error: ReadError| error.or_span(key.span()).inside(Step::Key(name.to_string())))
     }
 
     fn next_value_seed<V: DeserializeSeed<'de>>(&mut self, seed: V) -> Result<V::Value, ReadError> {
@@ -481,11 +459,10 @@ impl<'de> VariantAccess<'de> for Choice<'de> {
     fn unit_variant(self) -> Result<(), ReadError> {
         match self.content {
             None => Ok(()),
-            Some(_) => Err(ReadError::other(format!(
-                "`{0}` takes no value: write \"{0}\"",
-                self.name
-            ))
-            .or_span(self.name_span)),
+            Some(_) => Err(
+                ReadError::other(format!("`{0}` takes no value: write \"{0}\"", self.name))
+                    .or_span(self.name_span),
+            ),
         }
     }
 

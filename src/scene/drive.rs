@@ -40,8 +40,7 @@ impl FromStr for RegularMotion {
 
     /// Reads `BODY.AXIS=AMPLITUDE,PERIOD` or `BODY.AXIS=AMPLITUDE,PERIOD,PHASE`.
     fn from_str(text: &str) -> Result<Self, String> {
-        let wanted =
-            "must be BODY.AXIS=AMPLITUDE,PERIOD[,PHASE] in m, rad and s, such as platform.x=2.5,12";
+        let wanted = "must be BODY.AXIS=AMPLITUDE,PERIOD[,PHASE] in m, rad and s, such as platform.x=2.5,12";
         let (variable, numbers) = text.split_once('=').ok_or(wanted)?;
         let (body, axis) = variable.trim().rsplit_once('.').ok_or(wanted)?;
         let numbers: Vec<f64> = numbers
@@ -54,9 +53,7 @@ impl FromStr for RegularMotion {
             _ => return Err(wanted.into()),
         };
         if !(amplitude.is_finite() && phase.is_finite() && period > 0.0 && period.is_finite()) {
-            return Err(format!(
-                "{wanted}; the period is positive and all are finite"
-            ));
+            return Err(format!("{wanted}; the period is positive and all are finite"));
         }
         Ok(RegularMotion {
             body: body.to_string(),
@@ -106,8 +103,7 @@ impl Scene {
                 ));
             }
             let motion = harmonic(&drive.regular, body, drive.ramp);
-            self.motion
-                .insert(body.clone(), MotionPath::Harmonic(motion));
+            self.motion.insert(body.clone(), MotionPath::Harmonic(motion));
         }
         if let Some(duration) = drive.duration.or(end.filter(|end| *end > 0.0)) {
             self.output.duration = duration;
@@ -124,9 +120,7 @@ impl Scene {
         match moves {
             Moves::Named(bodies) => {
                 for (body, rows) in &bodies {
-                    let turns = rows
-                        .iter()
-                        .any(|row| row[4..].iter().any(|angle| *angle != 0.0));
+                    let turns = rows.iter().any(|row| row[4..].iter().any(|angle| *angle != 0.0));
                     self.must_move(body)
                         .and_then(|()| self.must_turn(body, turns))
                         .map_err(|problem| format!("{file}, line 1: {problem}"))?;
@@ -173,9 +167,7 @@ impl Scene {
             .points
             .iter()
             .filter(|point| point.kind == PointKind::Coupled && point.on.is_none());
-        vessels
-            .chain(points.map(|point| point.name.as_str()))
-            .collect()
+        vessels.chain(points.map(|point| point.name.as_str())).collect()
     }
 
     fn must_move(&self, body: &str) -> Result<(), String> {

@@ -68,8 +68,7 @@ pub(super) fn depth(
         findings.remark_on_all(text);
         return Some(deepest);
     }
-    findings
-        .remark_on_all("no water depth in the file, and no fixed point below the water: no seabed");
+    findings.remark_on_all("no water depth in the file, and no fixed point below the water: no seabed");
     None
 }
 
@@ -92,11 +91,7 @@ impl Vessels<'_> {
     }
 
     /// The vessel of all coupled points has a name of its own and a place that is known.
-    pub(super) fn check_given(
-        &self,
-        mut others: impl Iterator<Item = String>,
-        findings: &mut Findings,
-    ) {
+    pub(super) fn check_given(&self, mut others: impl Iterator<Item = String>, findings: &mut Findings) {
         let Some(name) = self.of_all() else { return };
         if others.any(|other| other == name) {
             let problem = format!(
@@ -121,12 +116,7 @@ impl Vessels<'_> {
         attitude: [f64; 3],
     ) -> String {
         if scene.vessels.iter().all(|vessel| vessel.name != name) {
-            let position = self
-                .supplement
-                .positions
-                .get(name)
-                .copied()
-                .unwrap_or(position);
+            let position = self.supplement.positions.get(name).copied().unwrap_or(position);
             scene.vessels.push(Vessel {
                 name: name.to_string(),
                 position,
@@ -148,11 +138,7 @@ impl Vessels<'_> {
         }
         for name in self.supplement.positions.keys() {
             if !has(name) {
-                let known: Vec<&str> = scene
-                    .vessels
-                    .iter()
-                    .map(|vessel| vessel.name.as_str())
-                    .collect();
+                let known: Vec<&str> = scene.vessels.iter().map(|vessel| vessel.name.as_str()).collect();
                 let problem = format!(
                     "a position is given for `{name}`, but the file has {}",
                     if known.is_empty() {
@@ -168,12 +154,7 @@ impl Vessels<'_> {
 }
 
 /// Keeps the places of the coordinates of a point.
-pub(super) fn place_position(
-    places: &mut Places,
-    at: &str,
-    words: &str,
-    position: &[Placed<f64>; 3],
-) {
+pub(super) fn place_position(places: &mut Places, at: &str, words: &str, position: &[Placed<f64>; 3]) {
     for (axis, (coordinate, letter)) in position.iter().zip(["X", "Y", "Z"]).enumerate() {
         let words = format!("{words}, {letter}");
         places.put(format!("{at}.position[{axis}]"), &coordinate.span, words);

@@ -4,8 +4,7 @@ use super::check::coefficients;
 use super::notes::Note;
 use super::path::quoted;
 use super::{
-    Integrator, Line, LineModel, LineType, Point, PointKind, Reconstruction, Scene, Seabed,
-    Section, Solver,
+    Integrator, Line, LineModel, LineType, Point, PointKind, Reconstruction, Scene, Seabed, Section, Solver,
 };
 
 /// A key, and whether it is given and changes nothing.
@@ -18,11 +17,7 @@ impl Scene {
         let used = |name: &str| self.sections().any(|section| section.line_type == name);
         let types = self.line_types.iter();
         for (name, line_type) in types.filter(|(name, _)| used(name)) {
-            self.idle_of_line_type(
-                &format!("line_types.{}", quoted(name)),
-                line_type,
-                &mut notes,
-            );
+            self.idle_of_line_type(&format!("line_types.{}", quoted(name)), line_type, &mut notes);
         }
         for (i, point) in self.points.iter().enumerate() {
             self.idle_of_point(&format!("points[{i}]"), point, &mut notes);
@@ -45,12 +40,7 @@ impl Scene {
         say(&mut notes, "water", why, &[("surface", surfaced)]);
         let seabed = self.seabed.as_ref().filter(|_| self.is_quasi_static());
         let damped = seabed.is_some_and(|bed| bed.damping != Seabed::level(bed.depth).damping);
-        say(
-            &mut notes,
-            "seabed",
-            "quasi-static:",
-            &[("damping", damped)],
-        );
+        say(&mut notes, "seabed", "quasi-static:", &[("damping", damped)]);
         notes
     }
 
@@ -68,10 +58,7 @@ impl Scene {
     /// Returns notes on keys without which a scene cannot be written, and which change nothing.
     pub(super) fn idle_by_need(&self) -> Vec<Note> {
         let mut notes = Vec::new();
-        let waves = self
-            .water
-            .as_ref()
-            .is_some_and(|water| water.waves.is_some());
+        let waves = self.water.as_ref().is_some_and(|water| water.waves.is_some());
         let seabed = self.seabed.as_ref();
         let sounded = seabed.is_some_and(|seabed| seabed.grid.is_some()) && !waves;
         let why = "with soundings and without waves,";
@@ -89,19 +76,13 @@ impl Scene {
 
     fn idle_of_line_type(&self, at: &str, line_type: &LineType, notes: &mut Vec<Note>) {
         let dry = self.water.is_none();
-        let coefficients =
-            coefficients(line_type).map(|(key, value)| (key, dry && value.is_some()));
+        let coefficients = coefficients(line_type).map(|(key, value)| (key, dry && value.is_some()));
         say(notes, at, "without [water],", &coefficients);
         let beam = line_type.model == LineModel::Beam || self.solver.integrator == Integrator::Beam;
         // a beam may have its rotary inertia from the diameter
         let spun = beam && line_type.rotary_inertia.is_none() && line_type.solid_section.is_none();
         let bare = dry && self.seabed.is_none() && line_type.diameter.is_some() && !spun;
-        say(
-            notes,
-            at,
-            "without [water] and [seabed],",
-            &[("diameter", bare)],
-        );
+        say(notes, at, "without [water] and [seabed],", &[("diameter", bare)]);
         if self.is_quasi_static() {
             say(notes, at, "quasi-static:", &self.idle_at_rest(line_type));
         }
@@ -110,8 +91,7 @@ impl Scene {
         };
         let sheared = [line_type.shear_stiffness, line_type.torsional_stiffness];
         let sheared = beam && sheared.iter().any(Option::is_none);
-        let bent =
-            line_type.bending_stiffness.is_none() || beam && line_type.rotary_inertia.is_none();
+        let bent = line_type.bending_stiffness.is_none() || beam && line_type.rotary_inertia.is_none();
         let (whole, ratio) = (!sheared && !bent, section.poisson != super::steel_poisson());
         let why = "what follows from it is given or not modelled, so that";
         say(notes, at, why, &[("solid_section", whole)]);
@@ -126,10 +106,7 @@ impl Scene {
     /// Keys of a line type that act on what moves, and so on nothing at rest.
     fn idle_at_rest(&self, line_type: &LineType) -> [Key; 11] {
         let wet = self.water.is_some();
-        let still = self
-            .water
-            .as_ref()
-            .is_some_and(|water| water.current.is_none());
+        let still = self.water.as_ref().is_some_and(|water| water.current.is_none());
         let given = |value: Option<f64>| value.is_some();
         [
             ("axial_damping", given(line_type.axial_damping)),
@@ -141,10 +118,7 @@ impl Scene {
             ("rotary_inertia", given(line_type.rotary_inertia)),
             ("drag_normal", still && given(line_type.drag_normal)),
             ("drag_tangential", still && given(line_type.drag_tangential)),
-            (
-                "added_mass_normal",
-                wet && given(line_type.added_mass_normal),
-            ),
+            ("added_mass_normal", wet && given(line_type.added_mass_normal)),
             (
                 "added_mass_tangential",
                 wet && given(line_type.added_mass_tangential),

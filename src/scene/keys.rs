@@ -10,10 +10,10 @@ use serde::forward_to_deserialize_any;
 use super::seabed::Directions;
 use super::time_function::MotionText;
 use super::{
-    AngleOrder, Axis, Bossak, Break, ContactLaw, Current, DepthGrid, FibreLaw, InitialShape,
-    Integrator, Line, LineModel, LineType, Output, Point, PointForce, PointKind, PointMoment,
-    Rayleigh, Reconstruction, RegularWave, RestShape, Scene, Sea, Seabed, Section, SolidSection,
-    Solver, SpectrumKind, Strain, TensionStrain, TimeFunction, Vessel, Water, Winch, channel,
+    AngleOrder, Axis, Bossak, Break, ContactLaw, Current, DepthGrid, FibreLaw, InitialShape, Integrator,
+    Line, LineModel, LineType, Output, Point, PointForce, PointKind, PointMoment, Rayleigh, Reconstruction,
+    RegularWave, RestShape, Scene, Sea, Seabed, Section, SolidSection, Solver, SpectrumKind, Strain,
+    TensionStrain, TimeFunction, Vessel, Water, Winch, channel,
 };
 
 /// A table of the scene format, or a choice of words, by the name of its type.
@@ -133,10 +133,7 @@ impl<'de> Deserializer<'de> for Stranger {
 impl<'de> MapAccess<'de> for Stranger {
     type Error = Refusal;
 
-    fn next_key_seed<K: DeserializeSeed<'de>>(
-        &mut self,
-        seed: K,
-    ) -> Result<Option<K::Value>, Refusal> {
+    fn next_key_seed<K: DeserializeSeed<'de>>(&mut self, seed: K) -> Result<Option<K::Value>, Refusal> {
         seed.deserialize(StrDeserializer::new(STRANGE)).map(Some)
     }
 
@@ -165,12 +162,8 @@ mod tests {
             for line in source.lines() {
                 derived |= line.starts_with("#[derive(") && line.contains("Deserialize");
                 derived &= !line.contains("try_from");
-                let mut words = line
-                    .split_whitespace()
-                    .skip_while(|word| word.starts_with("pub"));
-                if let (Some("struct" | "enum"), Some(name), true) =
-                    (words.next(), words.next(), derived)
-                {
+                let mut words = line.split_whitespace().skip_while(|word| word.starts_with("pub"));
+                if let (Some("struct" | "enum"), Some(name), true) = (words.next(), words.next(), derived) {
                     let name = name.trim_end_matches(['{', ';']);
                     assert!(listed.iter().any(|(known, _)| *known == name), "{name}");
                     derived = false;

@@ -429,11 +429,7 @@ pub struct Line {
 impl Line {
     /// Whether the number of elements of any of its sections is left open.
     pub fn is_open(&self) -> bool {
-        self.elements.is_none()
-            && self
-                .sections
-                .iter()
-                .any(|section| section.elements.is_none())
+        self.elements.is_none() && self.sections.iter().any(|section| section.elements.is_none())
     }
 }
 

@@ -86,10 +86,7 @@ fn read_any(path: &Path, names: bool) -> Result<(Moves, String), String> {
 }
 
 /// The motion in a text, and how it was read; problems begin with a comma and a line, or a colon.
-fn parse(
-    input: impl BufRead,
-    beside: &BTreeMap<String, String>,
-) -> Result<(Moves, String), String> {
+fn parse(input: impl BufRead, beside: &BTreeMap<String, String>) -> Result<(Moves, String), String> {
     let mut lines = Lines::new(input);
     let (line, first) = lines.next()?.unwrap_or((1, String::new()));
     let separator = Separator::of(&first);
@@ -243,9 +240,7 @@ impl Table {
             return Err(wrong_header(row, ""));
         }
         let mut table = Table::new(separator, headings.len(), true);
-        table.is_recorded = headings
-            .iter()
-            .any(|heading| heading.name == "solver.substeps");
+        table.is_recorded = headings.iter().any(|heading| heading.name == "solver.substeps");
         table.add(0, &headings[0].name, None, 0);
         for (place, Heading { name, .. }) in headings.iter().enumerate().skip(1) {
             let (body, axis) = match name.rsplit_once('.') {
@@ -351,11 +346,7 @@ impl Table {
     fn row(&mut self, text: &str) -> Result<Vec<f64>, String> {
         let cells = self.separator.cells(text);
         if cells.len() != self.width {
-            let names: Vec<&str> = self
-                .columns
-                .iter()
-                .map(|column| column.name.as_str())
-                .collect();
+            let names: Vec<&str> = self.columns.iter().map(|column| column.name.as_str()).collect();
             let twice = self.separator == Separator::Comma && cells.len() > self.width;
             return Err(format!(
                 "expected {} numbers ({}), found {}{}",
@@ -394,10 +385,7 @@ impl Table {
             columns.join(", ")
         );
         for (is_so, words) in [
-            (
-                !self.has_header,
-                "; no header, so columns count by their places",
-            ),
+            (!self.has_header, "; no header, so columns count by their places"),
             (self.has_unit_row, "; units from the row below the header"),
             (self.decimal == Some(','), "; decimal commas"),
             (
@@ -414,8 +402,7 @@ impl Table {
     fn moves(&self, rows: &[Vec<f64>]) -> Moves {
         let of = |body: Option<&str>| {
             let columns = self.columns.iter().enumerate();
-            let own =
-                columns.filter(|(_, column)| column.entry == 0 || column.body.as_deref() == body);
+            let own = columns.filter(|(_, column)| column.entry == 0 || column.body.as_deref() == body);
             let own: Vec<(usize, usize)> = own.map(|(i, column)| (i, column.entry)).collect();
             let motion = |row: &Vec<f64>| {
                 let mut motion = [0.0; 7];
@@ -425,11 +412,7 @@ impl Table {
             rows.iter().map(motion).collect::<Vec<MotionRow>>()
         };
         let mut names: Vec<&str> = Vec::new();
-        for body in self
-            .columns
-            .iter()
-            .filter_map(|column| column.body.as_deref())
-        {
+        for body in self.columns.iter().filter_map(|column| column.body.as_deref()) {
             if !names.contains(&body) {
                 names.push(body);
             }
@@ -441,9 +424,7 @@ impl Table {
                 turns,
             };
         }
-        let bodies = names
-            .into_iter()
-            .map(|name| (name.to_string(), of(Some(name))));
+        let bodies = names.into_iter().map(|name| (name.to_string(), of(Some(name))));
         match self.is_recorded {
             true => Moves::Recorded(bodies.collect()),
             false => Moves::Named(bodies.collect()),
@@ -455,11 +436,7 @@ impl Table {
 ///
 /// # Errors
 /// A cell with the other one: a comma or point of thousands looks the same.
-fn one_decimal(
-    separator: Separator,
-    known: Option<char>,
-    cell: &str,
-) -> Result<Option<char>, String> {
+fn one_decimal(separator: Separator, known: Option<char>, cell: &str) -> Result<Option<char>, String> {
     if separator != Separator::Semicolon {
         return Ok(None);
     }
@@ -489,9 +466,7 @@ fn unknown_column(row: &str, named: bool) -> String {
     wrong_header(
         row,
         match named {
-            true => {
-                ", or the time and columns such as \"platform.x\" [m] and \"platform.pitch\" [rad]"
-            }
+            true => ", or the time and columns such as \"platform.x\" [m] and \"platform.pitch\" [rad]",
             false => "",
         },
     )
@@ -505,11 +480,7 @@ pub(super) fn axis_number(name: &str) -> Option<usize> {
 /// The number of an axis by any of its names, in any case.
 fn axis_of(name: &str) -> Option<usize> {
     let name = name.to_lowercase();
-    let synonym = || {
-        SYNONYMS
-            .iter()
-            .position(|names| names.contains(&name.as_str()))
-    };
+    let synonym = || SYNONYMS.iter().position(|names| names.contains(&name.as_str()));
     axis_number(&name).or_else(synonym)
 }
 
@@ -593,11 +564,7 @@ mod tests {
         let Ok((Moves::Named(bodies), said)) = of("t [s],barge.pitch [deg]\n0,5\n") else {
             panic!("the header names a body");
         };
-        assert_relative_eq!(
-            bodies[0].1[0][5],
-            5.0_f64.to_radians(),
-            max_relative = 1e-15
-        );
+        assert_relative_eq!(bodies[0].1[0][5], 5.0_f64.to_radians(), max_relative = 1e-15);
         assert!(said.contains("barge.pitch [deg]"));
     }
 
@@ -631,10 +598,7 @@ mod tests {
             ),
             ("0 0 0\n", ", line 1: the header must be"),
             ("0;0;0;0\n", ", line 1: the header must be"),
-            (
-                "time,surge,x,y\n0,0,0,0\n",
-                ", line 1: surge and x are the same",
-            ),
+            ("time,surge,x,y\n0,0,0,0\n", ", line 1: surge and x are the same"),
             ("time,x,y,roll\n0,0,0,0\n", ", line 1: the header must be"),
             ("time,x,y,z\ns,m,m,m\n", ": no rows below the header"),
         ] {
@@ -667,8 +631,7 @@ mod tests {
         assert!(said.contains("barge.pitch [deg]"), "{said}");
         let problem = read(&path, "fairlead").unwrap_err();
         assert!(
-            problem
-                .ends_with("line 1: no column moves `fairlead`: there are columns of barge, buoy"),
+            problem.ends_with("line 1: no column moves `fairlead`: there are columns of barge, buoy"),
             "{problem}"
         );
     }

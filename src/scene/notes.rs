@@ -92,16 +92,8 @@ impl Scene {
 
     /// Length of the longest line with a section of a line type [m]; 0 where there is none.
     fn longest_of(&self, name: &str) -> f64 {
-        let has = |line: &&Line| {
-            line.sections
-                .iter()
-                .any(|section| section.line_type == name)
-        };
-        self.lines
-            .iter()
-            .filter(has)
-            .map(length)
-            .fold(0.0, f64::max)
+        let has = |line: &&Line| line.sections.iter().any(|section| section.line_type == name);
+        self.lines.iter().filter(has).map(length).fold(0.0, f64::max)
     }
 
     /// Damping BA [N s] that is [`FIRST_MODE_RATIO`] of critical in the first axial mode of a line of a length [m]: a quarter of a wave
@@ -146,10 +138,7 @@ pub(super) fn reference_position(scene: &Scene, point: &Point) -> Option<[f64; 3
     let Some(carrier) = &point.on else {
         return Some(point.position);
     };
-    let vessel = scene
-        .vessels
-        .iter()
-        .find(|vessel| vessel.name == *carrier)?;
+    let vessel = scene.vessels.iter().find(|vessel| vessel.name == *carrier)?;
     let turn = Order::Zyx.rotation(vessel.attitude.into());
     Some((Vector3::from(vessel.position) + turn * Vector3::from(point.position)).into())
 }
@@ -181,9 +170,8 @@ fn note_points(scene: &Scene, notes: &mut Vec<Note>) {
         }
         let above = reference_position(scene, point).is_some_and(|place| place[2] > 0.0);
         let mut lines = scene.lines.iter();
-        let blind = lines.any(|line| {
-            (line.from == point.name || line.to == point.name) && !scene.meets_surface(line)
-        });
+        let blind = lines
+            .any(|line| (line.from == point.name || line.to == point.name) && !scene.meets_surface(line));
         if scene.water.is_some() && above && blind {
             let text = "above z = 0, but the water is taken to fill all space for its lines, so that they are submerged there too";
             say(notes, format!("{at}.position"), text);

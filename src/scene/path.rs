@@ -102,10 +102,7 @@ pub(super) fn line_column(text: &str, byte: usize) -> (usize, usize) {
     }
     let before = &text[..byte];
     let line = before.matches('\n').count() + 1;
-    let column = before
-        .rsplit('\n')
-        .next()
-        .map_or(0, |line| line.chars().count());
+    let column = before.rsplit('\n').next().map_or(0, |line| line.chars().count());
     (line, column + 1)
 }
 

@@ -20,12 +20,7 @@ struct Place {
 
 impl Places {
     /// Keeps where a key path comes from, and what the file calls it.
-    pub(super) fn put(
-        &mut self,
-        at: impl Into<String>,
-        span: &Range<usize>,
-        words: impl Into<String>,
-    ) {
+    pub(super) fn put(&mut self, at: impl Into<String>, span: &Range<usize>, words: impl Into<String>) {
         let place = Place {
             span: span.clone(),
             words: words.into(),
@@ -83,14 +78,8 @@ mod tests {
         places.put("points[0]", &(4..5), "point 1");
         places.put("points[0].position[2]", &(6..7), "point 1, Z");
         let located = |at: &str| places.locate(SceneError::new(at, "wrong"));
-        assert_eq!(
-            located("points[0].position[2]").to_string(),
-            "point 1, Z: wrong"
-        );
+        assert_eq!(located("points[0].position[2]").to_string(), "point 1, Z: wrong");
         assert_eq!(located("points[0].mass").span, Some(4..5));
-        assert_eq!(
-            located("points[1].mass").to_string(),
-            "points[1].mass: wrong"
-        );
+        assert_eq!(located("points[1].mass").to_string(), "points[1].mass: wrong");
     }
 }

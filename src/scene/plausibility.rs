@@ -5,9 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use super::check::{number, quantity};
 use super::notes::{Note, chord, length, reference_position};
 use super::path::quoted;
-use super::{
-    Line, LineType, MotionPath, Point, PointKind, Scene, Sea, Strain, WaveComponents, Waves,
-};
+use super::{Line, LineType, MotionPath, Point, PointKind, Scene, Sea, Strain, WaveComponents, Waves};
 
 /// Density of water [kg/m³]: warm fresh water has 990, brine in tanks 1100.
 const WATER_DENSITY: [f64; 2] = [900.0, 1100.0];
@@ -128,21 +126,16 @@ fn wave_steepness(scene: &Scene, notes: &mut Vec<Note>) {
             Some((format!("{at}.regular"), height, wave.period))
         });
         let spectrum = sea.significant_height.zip(sea.peak_period);
-        let spectrum =
-            spectrum.map(|(height, period)| (format!("{at}.significant_height"), height, period));
+        let spectrum = spectrum.map(|(height, period)| (format!("{at}.significant_height"), height, period));
         let rows = match &sea.components {
             Some(WaveComponents::Rows(rows)) => rows.as_slice(),
             _ => &[],
         };
-        let rows = rows
-            .iter()
-            .enumerate()
-            .map(|(row, [amplitude, period, ..])| {
-                (format!("{at}.components[{row}]"), 2.0 * amplitude, *period)
-            });
+        let rows = rows.iter().enumerate().map(|(row, [amplitude, period, ..])| {
+            (format!("{at}.components[{row}]"), 2.0 * amplitude, *period)
+        });
         let steep = regular.into_iter().chain(spectrum).chain(rows);
-        let mut steep =
-            steep.filter_map(|(at, height, period)| Some((at, breaking(scene, height, period)?)));
+        let mut steep = steep.filter_map(|(at, height, period)| Some((at, breaking(scene, height, period)?)));
         if let Some((at, text)) = steep.next() {
             say(notes, at, text);
         }
@@ -158,10 +151,7 @@ fn breaking(scene: &Scene, height: f64, period: f64) -> Option<String> {
     let limit = match &scene.seabed {
         Some(seabed) => {
             // Fenton & McKee 1990, within 2 %
-            let shortening = (TAU * seabed.depth / deep)
-                .powf(0.75)
-                .tanh()
-                .powf(2.0 / 3.0);
+            let shortening = (TAU * seabed.depth / deep).powf(0.75).tanh().powf(2.0 / 3.0);
             (BREAKING_DEEP * deep * shortening).min(BREAKING_SHALLOW * seabed.depth)
         }
         None => BREAKING_DEEP * deep,
@@ -194,9 +184,7 @@ fn sea_angles(scene: &Scene, notes: &mut Vec<Note>) {
                 (format!("{at}.regular.phase"), wave.phase),
             ]
         });
-        let mean = sea
-            .direction
-            .map(|angle| (format!("{at}.direction"), angle));
+        let mean = sea.direction.map(|angle| (format!("{at}.direction"), angle));
         for (at, angle) in regular.chain(mean) {
             if angle.abs() > TAU {
                 say(notes, at, degrees(angle));
@@ -275,9 +263,7 @@ fn mass_per_volume(scene: &Scene, line_type: &LineType, at: &str, notes: &mut Ve
         return;
     };
     let at = format!("{at}.diameter");
-    let on_bar = line_type
-        .drag_normal
-        .is_some_and(|drag| drag >= DRAG_ON_BAR);
+    let on_bar = line_type.drag_normal.is_some_and(|drag| drag >= DRAG_ON_BAR);
     let mass = scene.mass(line_type);
     let density = mass / (0.25 * PI * diameter * diameter);
     if mass == 0.0 || !density.is_finite() {
@@ -419,8 +405,7 @@ fn swapped_ends(scene: &Scene, notes: &mut Vec<Note>) {
         let (Some(a), Some(b)) = (find(&line.from), find(&line.to)) else {
             continue;
         };
-        let (Some(from), Some(to)) = (reference_position(scene, a), reference_position(scene, b))
-        else {
+        let (Some(from), Some(to)) = (reference_position(scene, a), reference_position(scene, b)) else {
             continue;
         };
         let [height_a, height_b] = [from, to].map(|[x, y, z]| z - seabed.lowest_at([x, y]));

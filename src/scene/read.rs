@@ -13,8 +13,8 @@ use super::places::Places;
 use super::rows::{Findings, MISTAKES_MAX};
 use super::slips::slip;
 use super::{
-    LoadError, MotionPath, Scene, SceneError, WaveComponents, bathymetry_file, document,
-    input_file, map, moordyn, motion_file, path, tension_strain, water_file,
+    LoadError, MotionPath, Scene, SceneError, WaveComponents, bathymetry_file, document, input_file, map,
+    moordyn, motion_file, path, tension_strain, water_file,
 };
 
 /// A scene and the file it came from.
@@ -49,10 +49,7 @@ impl LoadedScene {
             return self.places.locate(mistake);
         }
         match Document::parse(&self.text) {
-            Ok(document) => document
-                .place(vec![mistake.clone()])
-                .pop()
-                .unwrap_or(mistake),
+            Ok(document) => document.place(vec![mistake.clone()]).pop().unwrap_or(mistake),
             Err(_) => mistake,
         }
     }
@@ -350,14 +347,10 @@ fn read_water(scene: &mut Scene, folder: &Path) -> Vec<SceneError> {
 
 /// Reads every motion file of the scene; returns what is wrong with them.
 fn read_motions(scene: &mut Scene, folder: &Path) -> Vec<SceneError> {
-    let of_points = scene
-        .points
-        .iter_mut()
-        .enumerate()
-        .filter_map(|(i, point)| {
-            let motion = point.motion.as_mut()?;
-            Some((format!("points[{i}].motion.file"), &point.name, motion))
-        });
+    let of_points = scene.points.iter_mut().enumerate().filter_map(|(i, point)| {
+        let motion = point.motion.as_mut()?;
+        Some((format!("points[{i}].motion.file"), &point.name, motion))
+    });
     let of_run = scene
         .motion
         .iter_mut()
@@ -409,10 +402,9 @@ fn syntax_mistake(text: &str, error: &toml::de::Error) -> SceneError {
     if let Some(span) = moordyn::first_header(text) {
         return SceneError {
             at: String::new(),
-            problem:
-                "this is a MoorDyn file, and TOML is expected here: give the file itself, or what \
+            problem: "this is a MoorDyn file, and TOML is expected here: give the file itself, or what \
                       `moorline convert` makes of it"
-                    .into(),
+                .into(),
             span: Some(span),
         };
     }

@@ -101,11 +101,7 @@ pub(super) fn number(text: &str) -> Result<f64, String> {
         None => {
             let lower = text.trim_start_matches(['+', '-']).to_lowercase();
             let endless = ["nan", "inf", "infinity"].contains(&lower.as_str());
-            let kind = if endless {
-                "a finite number"
-            } else {
-                "a number"
-            };
+            let kind = if endless { "a finite number" } else { "a number" };
             Err(format!("expected {kind}, found {}", shown(text)))
         }
     }
@@ -137,12 +133,7 @@ pub(super) struct Remark {
 
 impl Findings {
     /// Notes a mistake: what it is about, where, what would be right.
-    pub(super) fn mistake(
-        &mut self,
-        at: impl Into<String>,
-        span: Range<usize>,
-        problem: impl Into<String>,
-    ) {
+    pub(super) fn mistake(&mut self, at: impl Into<String>, span: Range<usize>, problem: impl Into<String>) {
         if self.mistakes.len() < MISTAKES_MAX {
             self.mistakes.push(SceneError {
                 at: at.into(),
@@ -262,10 +253,7 @@ impl Cells<'_, '_> {
         let value = text.parse::<usize>().ok().filter(|value| *value >= least);
         Placed {
             value: value.unwrap_or_else(|| {
-                let problem = format!(
-                    "expected a whole number from {least} on, found {}",
-                    shown(text)
-                );
+                let problem = format!("expected a whole number from {least} on, found {}", shown(text));
                 self.wrong(column, problem);
                 least
             }),
@@ -281,13 +269,9 @@ pub(super) fn compare_header(header: &Row<'_>, columns: &[Column], findings: &mu
         let upper = text.trim_matches(['(', ')', '*', '#']).to_uppercase();
         column.spellings.contains(&upper.as_str())
     };
-    let wrong = names
-        .iter()
-        .zip(columns)
-        .enumerate()
-        .find(|(_, (name, column))| {
-            !is(name.text, column) && columns.iter().any(|other| is(name.text, other))
-        });
+    let wrong = names.iter().zip(columns).enumerate().find(|(_, (name, column))| {
+        !is(name.text, column) && columns.iter().any(|other| is(name.text, other))
+    });
     if let Some((place, (name, column))) = wrong {
         findings.remark(
             name.span.start,
@@ -322,12 +306,7 @@ mod tests {
 
     #[test]
     fn numbers_of_c_and_fortran_are_read_and_nothing_else_is() {
-        for (text, value) in [
-            ("1.0D5", 1e5),
-            ("-3.e-2", -0.03),
-            ("+7", 7.0),
-            (".5d+1", 5.0),
-        ] {
+        for (text, value) in [("1.0D5", 1e5), ("-3.e-2", -0.03), ("+7", 7.0), (".5d+1", 5.0)] {
             assert_eq!(number(text), Ok(value));
         }
         for text in [

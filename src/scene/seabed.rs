@@ -99,19 +99,14 @@ impl Seabed {
 
     /// Whether it is a horizontal plane.
     pub fn is_level(&self) -> bool {
-        self.grid.is_none()
-            && self.file.is_none()
-            && self.slope.is_none_or(|slope| slope == [0.0; 2])
+        self.grid.is_none() && self.file.is_none() && self.slope.is_none_or(|slope| slope == [0.0; 2])
     }
 
     /// z of the bed at a place [m]: of a plane as it is, between soundings the lowest of those around.
     pub(super) fn lowest_at(&self, [x, y]: [f64; 2]) -> f64 {
         let around = |line: &[f64], place: f64| {
             let next = line.partition_point(|known| *known <= place);
-            [
-                next.saturating_sub(1),
-                next.min(line.len().saturating_sub(1)),
-            ]
+            [next.saturating_sub(1), next.min(line.len().saturating_sub(1))]
         };
         let Some(grid) = &self.grid else {
             let [along_x, along_y] = self.slope.unwrap_or_default();
@@ -187,8 +182,7 @@ impl<'de> Visitor<'de> for FrictionVisitor {
     }
 
     fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Friction, A::Error> {
-        let Directions { transverse, axial } =
-            Directions::deserialize(MapAccessDeserializer::new(map))?;
+        let Directions { transverse, axial } = Directions::deserialize(MapAccessDeserializer::new(map))?;
         Ok(Friction { transverse, axial })
     }
 }

@@ -2,9 +2,7 @@
 
 /// Returns what a line of text that is no TOML looks like, and what would be right, where it is a slip known here.
 pub(super) fn slip(text: &str, place: usize) -> Option<String> {
-    let start = text[..place.min(text.len())]
-        .rfind('\n')
-        .map_or(0, |end| end + 1);
+    let start = text[..place.min(text.len())].rfind('\n').map_or(0, |end| end + 1);
     let line = text[start..].lines().next()?;
     if let Some(quote) = line.chars().find(|c| "“”„‘’«»".contains(*c)) {
         return Some(format!(
@@ -15,10 +13,7 @@ pub(super) fn slip(text: &str, place: usize) -> Option<String> {
         return None; // the header of a table
     }
     let tokens = tokens(line);
-    tokens
-        .iter()
-        .find_map(odd)
-        .or_else(|| unjoined(line, &tokens))
+    tokens.iter().find_map(odd).or_else(|| unjoined(line, &tokens))
 }
 
 /// What stands between two delimiters of a line, outside of quotes.
@@ -75,8 +70,7 @@ fn tokens(line: &str) -> Vec<Token<'_>> {
 /// What is odd about a value.
 fn odd(token: &Token) -> Option<String> {
     let text = token.text;
-    let is_number =
-        |text: &str| text.parse::<f64>().is_ok() && text.contains(|c: char| c.is_ascii_digit());
+    let is_number = |text: &str| text.parse::<f64>().is_ok() && text.contains(|c: char| c.is_ascii_digit());
     if token.before == ','
         && !token.in_array
         && token.after != '='
@@ -127,9 +121,7 @@ fn unfinished(text: &str) -> Option<String> {
 fn not_a_number(text: &str, lower: &str) -> Option<String> {
     let exponent = lower.replacen('d', "e", 1);
     if exponent.parse::<f64>().is_ok() {
-        return Some(format!(
-            "`{text}` has its exponent after a d: write {exponent}"
-        ));
+        return Some(format!("`{text}` has its exponent after a d: write {exponent}"));
     }
     let (number, rest) = text.split_once(char::is_whitespace)?;
     number.parse::<f64>().ok()?;
@@ -172,26 +164,17 @@ mod tests {
                 "kind = fixed",
                 "`fixed` is a word without quotes: write \"fixed\"",
             ),
-            (
-                "points = [{ name = \"a\", kind = fixed }]",
-                "`fixed` is a word",
-            ),
+            ("points = [{ name = \"a\", kind = fixed }]", "`fixed` is a word"),
             ("free = [x, z]", "`x` is a word"),
             ("profile = True", "`True` is written `true`"),
             (
                 "gravity = 9,81",
                 "`9,81` has a decimal comma: numbers have a point, 9.81",
             ),
-            (
-                "water = { density = 1025,0 }",
-                "`1025,0` has a decimal comma",
-            ),
+            ("water = { density = 1025,0 }", "`1025,0` has a decimal comma"),
             ("gravity = 9.81 m/s", "`9.81 m/s` has a unit"),
             ("position = [1.0 2.0, 3.0]", "`1.0 2.0` lacks a comma"),
-            (
-                "gravity = .5",
-                "`.5` lacks a digit beside its point: write 0.5",
-            ),
+            ("gravity = .5", "`.5` lacks a digit beside its point: write 0.5"),
             (
                 "gravity = -5.",
                 "`-5.` lacks a digit beside its point: write -5.0",

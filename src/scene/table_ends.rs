@@ -17,16 +17,12 @@ fn motions(scene: &Scene) -> impl Iterator<Item = (String, &MotionPath)> {
     let driven = scene.motion.iter();
     let driven = driven.map(|(name, motion)| (format!("motion.{}", quoted(name)), motion));
     let points = scene.points.iter().enumerate();
-    let own = points
-        .filter_map(|(i, point)| Some((format!("points[{i}].motion"), point.motion.as_ref()?)));
+    let own = points.filter_map(|(i, point)| Some((format!("points[{i}].motion"), point.motion.as_ref()?)));
     driven.chain(own)
 }
 
 fn functions(scene: &Scene) -> impl Iterator<Item = (String, &TimeFunction)> {
-    let current = scene
-        .water
-        .as_ref()
-        .and_then(|water| water.current.as_ref());
+    let current = scene.water.as_ref().and_then(|water| water.current.as_ref());
     let factor = current.and_then(|current| current.factor.as_ref());
     let factor = factor.map(|factor| ("water.current.factor".to_string(), factor));
     let loads = scene.points.iter().enumerate().flat_map(|(i, point)| {
@@ -36,9 +32,7 @@ fn functions(scene: &Scene) -> impl Iterator<Item = (String, &TimeFunction)> {
         let force = axes.clone().zip(force).map(|(axis, f)| ("force", axis, f));
         let moment = axes.zip(moment).map(|(axis, f)| ("moment", axis, f));
         let all = force.chain(moment);
-        all.filter_map(move |(key, axis, f)| {
-            Some((format!("points[{i}].{key}.{axis}"), f.as_ref()?))
-        })
+        all.filter_map(move |(key, axis, f)| Some((format!("points[{i}].{key}.{axis}"), f.as_ref()?)))
     });
     let winches = scene.lines.iter().enumerate().filter_map(|(i, line)| {
         let path = line.winch.as_ref()?.path.as_ref()?;
@@ -79,8 +73,7 @@ fn note_function(at: String, function: &TimeFunction, duration: f64) -> Option<N
         return None;
     }
     let [end, run] = [last[0], duration].map(|time| quantity(time, "s"));
-    let text =
-        format!("the table ends at {end}, the run at {run}: in between its last value holds");
+    let text = format!("the table ends at {end}, the run at {run}: in between its last value holds");
     Some(Note::new(at, text))
 }
 
@@ -91,12 +84,7 @@ mod tests {
     #[test]
     fn a_motion_table_that_does_not_cover_the_run_is_remarked_on() {
         let motion = |times: &[f64]| {
-            MotionPath::Table(
-                times
-                    .iter()
-                    .map(|t| [*t, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])
-                    .collect(),
-            )
+            MotionPath::Table(times.iter().map(|t| [*t, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]).collect())
         };
         let said = |times: &[f64]| {
             let note = note_motion("motion.f".into(), &motion(times), 60.0);

@@ -45,11 +45,7 @@ impl TensionStrain {
         {
             let at_zero = last[1] - last[0] * (tension - last[1]) / (strain - last[0]);
             let rounding = 1e-9 * tension.abs().max(last[1].abs());
-            let at_zero = if at_zero.abs() > rounding {
-                at_zero
-            } else {
-                0.0
-            };
+            let at_zero = if at_zero.abs() > rounding { at_zero } else { 0.0 };
             self.rows.insert(0, [0.0, at_zero]);
         }
         below
@@ -145,8 +141,7 @@ pub(super) fn read(path: &Path) -> Result<Vec<[f64; 2]>, String> {
     if rows.is_empty() {
         return Err(format!("{name}: no rows of strain [-] and tension [N]"));
     }
-    in_units_of(heading.1, &mut rows)
-        .map_err(|problem| format!("{name}, line {}: {problem}", heading.0))?;
+    in_units_of(heading.1, &mut rows).map_err(|problem| format!("{name}, line {}: {problem}", heading.0))?;
     Ok(rows)
 }
 
@@ -179,10 +174,7 @@ mod tests {
         assert_eq!(read(&path).unwrap(), [[0.0, 0.0], [0.01, 4e5], [0.02, 9e5]]);
         std::fs::write(&path, "strain tension\n(-) (lbf)\n0 0\n1 2\n").unwrap();
         let unknown = read(&path).unwrap_err();
-        assert!(
-            unknown.contains("line 2: unknown unit \"lbf\""),
-            "{unknown}"
-        );
+        assert!(unknown.contains("line 2: unknown unit \"lbf\""), "{unknown}");
         std::fs::write(&path, "0 0\n0.1 five\n").unwrap();
         let problem = read(&path).unwrap_err();
         std::fs::remove_file(&path).unwrap();

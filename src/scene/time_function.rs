@@ -96,9 +96,7 @@ impl TimeFunction {
                 let u = ((t - t0) / (t1 - t0)).clamp(0.0, 1.0);
                 f0 + (f1 - f0) * u * u * (3.0 - 2.0 * u)
             }
-            TimeFunction::Ramp([t0, f0, t1, f1]) => {
-                f0 + (f1 - f0) * ((t - t0) / (t1 - t0)).clamp(0.0, 1.0)
-            }
+            TimeFunction::Ramp([t0, f0, t1, f1]) => f0 + (f1 - f0) * ((t - t0) / (t1 - t0)).clamp(0.0, 1.0),
             TimeFunction::Table(pairs) => interpolate(pairs, t),
         }
     }
@@ -143,9 +141,7 @@ impl TimeFunction {
             TimeFunction::Step([t0, _, t1, _]) | TimeFunction::Ramp([t0, _, t1, _]) => {
                 self.mean_over([*t0, *t1].into_iter(), from, to)
             }
-            TimeFunction::Table(pairs) => {
-                self.mean_over(pairs.iter().map(|[time, _]| *time), from, to)
-            }
+            TimeFunction::Table(pairs) => self.mean_over(pairs.iter().map(|[time, _]| *time), from, to),
         }
     }
 
@@ -300,14 +296,7 @@ impl TryFrom<MotionText> for MotionPath {
     type Error = String;
 
     fn try_from(text: MotionText) -> Result<Self, Self::Error> {
-        let axes = [
-            &text.x,
-            &text.y,
-            &text.z,
-            &text.roll,
-            &text.pitch,
-            &text.yaw,
-        ];
+        let axes = [&text.x, &text.y, &text.z, &text.roll, &text.pitch, &text.yaw];
         let swings = axes.iter().any(|axis| axis.is_some());
         match (text.file, text.table) {
             (Some(_), Some(_)) => Err("`file` and `table` cannot both be given".into()),
@@ -422,13 +411,9 @@ mod tests {
         ];
         for function in functions {
             let (from, to, n) = (0.2, 4.7, 1_000_000);
-            let sample =
-                |i: i32| function.at(from + (to - from) * (f64::from(i) + 0.5) / f64::from(n));
+            let sample = |i: i32| function.at(from + (to - from) * (f64::from(i) + 0.5) / f64::from(n));
             let mean = (0..n).map(sample).sum::<f64>() / f64::from(n);
-            assert!(
-                (function.mean(from, to) - mean).abs() < 1e-5,
-                "{function:?}"
-            );
+            assert!((function.mean(from, to) - mean).abs() < 1e-5, "{function:?}");
         }
         let load = TimeFunction::Table(vec![[2.5, 8.0], [2.5, 0.0]]);
         assert_eq!(load.mean(2.4, 2.5), 8.0);

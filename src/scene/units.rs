@@ -179,9 +179,7 @@ pub(super) fn bracketed(heading: &str) -> Vec<&str> {
 
 /// A unit without brackets.
 pub(super) fn bare(text: &str) -> &str {
-    text.trim()
-        .trim_matches(['[', ']', '(', ')', '{', '}'])
-        .trim()
+    text.trim().trim_matches(['[', ']', '(', ')', '{', '}']).trim()
 }
 
 #[cfg(test)]

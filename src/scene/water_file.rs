@@ -112,10 +112,7 @@ fn rows(path: &Path, text: &str, head: usize) -> Result<Vec<(usize, Vec<f64>)>, 
                 Ok(number) if number.is_finite() => numbers.push(number),
                 _ => {
                     let shown: String = word.chars().take(40).collect();
-                    return Err(format!(
-                        "{name}, line {}: {shown:?} is no number",
-                        index + 1
-                    ));
+                    return Err(format!("{name}, line {}: {shown:?} is no number", index + 1));
                 }
             }
         }
@@ -156,8 +153,7 @@ mod tests {
                 .map(|[a, period, _, phase]| a * (phase - TAU / period * t).cos())
                 .sum();
             let sine = |a: f64, w: f64, phase: f64| a * (w * t + phase).sin();
-            let expected =
-                sine(5.0_f64.sqrt(), 0.5, f64::atan2(-2.0, 1.0)) + sine(0.5, 0.9, FRAC_PI_2);
+            let expected = sine(5.0_f64.sqrt(), 0.5, f64::atan2(-2.0, 1.0)) + sine(0.5, 0.9, FRAC_PI_2);
             assert_relative_eq!(found, expected, epsilon = 1e-12);
         }
         assert_eq!(rows[1][2], 0.3);
@@ -171,10 +167,7 @@ mod tests {
         assert_eq!(rows, vec![[-50.0, 0.1, 0.2], [0.0, 1.0, 0.0]]);
         let knots = head.replace("(m/s)", "(knots)");
         let unknown = of(&format!("{knots}0.0 1.0 0 0\n"), profile).unwrap_err();
-        assert!(
-            unknown.contains("line 3: unknown unit \"knots\""),
-            "{unknown}"
-        );
+        assert!(unknown.contains("line 3: unknown unit \"knots\""), "{unknown}");
         let slow = head.replace("(m/s)", "(cm/s)");
         let rows_slow = of(&format!("{slow}-50.0 10 20 0\n0.0 100 0 0\n"), profile).unwrap();
         assert_eq!(rows_slow, vec![[-50.0, 0.1, 0.2], [0.0, 1.0, 0.0]]);

@@ -19,8 +19,7 @@ use super::check::{integrator_name, number, quantity};
 use super::notes::{chord, length};
 use super::{
     Axis, ContactLaw, DAMPING_ELEMENTS, InitialShape, Integrator, Line, LineModel, LineType,
-    NUMERICAL_DAMPING_RATIO, Point, PointForce, PointKind, Reconstruction, Scene, Strain,
-    TimeFunction,
+    NUMERICAL_DAMPING_RATIO, Point, PointForce, PointKind, Reconstruction, Scene, Strain, TimeFunction,
 };
 use motions::motion_in_words;
 use vessels::vessel_in_words;
@@ -58,11 +57,7 @@ impl Scene {
             .collect();
         section(&mut text, "vessels", &vessels);
         section(&mut text, "points", &points);
-        let lines: Vec<_> = self
-            .lines
-            .iter()
-            .map(|line| self.line_in_words(line))
-            .collect();
+        let lines: Vec<_> = self.lines.iter().map(|line| self.line_in_words(line)).collect();
         section(&mut text, "lines", &lines);
         section(&mut text, "solution", &self.solution_in_words());
         section(&mut text, "not modelled", &self.absences_in_words());
@@ -93,10 +88,7 @@ impl Scene {
         let gravity = if self.gravity == 0.0 {
             "no gravity: nothing has a weight".to_string()
         } else {
-            format!(
-                "gravity {}, downwards along z",
-                quantity(self.gravity, "m/s²")
-            )
+            format!("gravity {}, downwards along z", quantity(self.gravity, "m/s²"))
         };
         let water = match &self.water {
             Some(water) => surroundings::water_in_words(self, water),
@@ -169,16 +161,8 @@ impl Scene {
 
     fn point_in_words(&self, point: &Point) -> String {
         let [x, y, z] = point.position.map(number);
-        let frame = if point.on.is_some() {
-            " in its frame"
-        } else {
-            ""
-        };
-        let mut said = format!(
-            "{}: {}, at ({x}, {y}, {z}) m{frame}",
-            point.name,
-            role(point)
-        );
+        let frame = if point.on.is_some() { " in its frame" } else { "" };
+        let mut said = format!("{}: {}, at ({x}, {y}, {z}) m{frame}", point.name, role(point));
         if let Some(mass) = point.mass {
             write!(said, ", mass {}", quantity(mass, "kg")).expect("a String takes all");
         }
@@ -189,8 +173,7 @@ impl Scene {
             write!(said, ", drag area {}", quantity(area, "m²")).expect("a String takes all");
         }
         if let Some(coefficient) = point.added_mass {
-            write!(said, ", added mass {} of its volume", number(coefficient))
-                .expect("a String takes all");
+            write!(said, ", added mass {} of its volume", number(coefficient)).expect("a String takes all");
         }
         if let Some(sea) = self.sea_in_words(point) {
             write!(said, ", {sea}").expect("a String takes all");
@@ -205,8 +188,7 @@ impl Scene {
             write!(said, ", {}", beam::moment_in_words(moment)).expect("a String takes all");
             let mut lines = self.lines.iter();
             if lines.any(|line| bending::bends(self, line) && line.joins(&point.name)) {
-                said +=
-                    ", of which the part along the line does nothing, for a cable has no torsion";
+                said += ", of which the part along the line does nothing, for a cable has no torsion";
             }
         }
         if let Some(motion) = &point.motion {
@@ -243,8 +225,7 @@ impl Scene {
         let start = match &line.initial {
             InitialShape::Static => "starts in static equilibrium".to_string(),
             InitialShape::Catenary => {
-                "starts on the catenary between its ends, or straight where it has none, at rest"
-                    .to_string()
+                "starts on the catenary between its ends, or straight where it has none, at rest".to_string()
             }
             InitialShape::Straight => "starts straight, at rest".to_string(),
             InitialShape::Parabola(sag) => {
@@ -305,20 +286,13 @@ impl Scene {
         let output = &self.output;
         let mut said = vec![
             integrator,
-            format!(
-                "target error of fairlead tension {}",
-                percent(solver.tolerance)
-            ),
+            format!("target error of fairlead tension {}", percent(solver.tolerance)),
             tension.to_string(),
             format!(
                 "`run` covers {} and writes every {}{}",
                 quantity(output.duration, "s"),
                 quantity(output.interval, "s"),
-                if output.profile {
-                    ", with all nodes"
-                } else {
-                    ""
-                }
+                if output.profile { ", with all nodes" } else { "" }
             ),
         ];
         match solver.input_reconstruction {

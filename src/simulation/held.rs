@@ -52,9 +52,7 @@ impl<'a> At<'a> {
             ..k
         };
         match &self.model.points[point].role {
-            Role::Carried { vessel, arm } => {
-                self.model.vessels[*vessel].carry(&self.frame(*vessel, t), *arm)
-            }
+            Role::Carried { vessel, arm } => self.model.vessels[*vessel].carry(&self.frame(*vessel, t), *arm),
             Role::Coupled { .. } if self.own_motion(point).is_none() => {
                 let coupled = |point: &&Point| is_coupled(point);
                 let before = self.model.points[..point].iter().filter(coupled);
@@ -185,8 +183,7 @@ impl Bridge {
             return None;
         }
         let piece = (passed as usize).min(count - 1);
-        let [position, velocity, acceleration] =
-            self.pieces[piece].at(passed - piece as f64, self.rate);
+        let [position, velocity, acceleration] = self.pieces[piece].at(passed - piece as f64, self.rate);
         Some(Kinematics {
             position,
             velocity,
@@ -220,21 +217,15 @@ impl Held {
     pub fn new(model: &Model, follows_scene: bool) -> Held {
         let mut coupled = 0..;
         let ways = model.points.iter().map(|point| {
-            let place = if is_coupled(point) {
-                coupled.next()
-            } else {
-                None
-            };
+            let place = if is_coupled(point) { coupled.next() } else { None };
             let mut clamps = point.attached.iter();
             let turns = clamps.any(|&(line, _)| model.lines[line].bends());
             match &point.role {
                 Role::Fixed | Role::Free(_) => Way::Still,
-                Role::Prescribed(motion) => {
+                Role::Prescribed(motion) => Way::Bridged(Box::new(Bridge::new(motion.derivatives()))),
+                Role::Coupled { motion: Some(motion) } if follows_scene => {
                     Way::Bridged(Box::new(Bridge::new(motion.derivatives())))
                 }
-                Role::Coupled {
-                    motion: Some(motion),
-                } if follows_scene => Way::Bridged(Box::new(Bridge::new(motion.derivatives()))),
                 Role::Coupled { .. } => place.map_or(Way::Worked, Way::Host),
                 Role::Carried { .. } if turns => Way::Worked,
                 Role::Carried { .. } => Way::Bridged(Box::new(Bridge::new(None))),
@@ -250,9 +241,7 @@ impl Held {
             span: [f64::NAN; 2],
             ends: references.map(|k| [k; 2]).collect(),
             hosted: vec![[[Lanes::splat(0.0); 3]; 2]; coupled.start],
-            moves: ways
-                .iter()
-                .any(|way| !matches!(way, Way::Still | Way::Host(_))),
+            moves: ways.iter().any(|way| !matches!(way, Way::Still | Way::Host(_))),
             ways,
             vessels: motions
                 .map(|motion| motion.filter(|_| follows_scene)?.derivatives())
@@ -286,11 +275,7 @@ impl Held {
                         continue; // on a vessel
                     };
                     let [start, end] = span;
-                    let first = if goes_on {
-                        ends[1]
-                    } else {
-                        at.point(point, start)
-                    };
+                    let first = if goes_on { ends[1] } else { at.point(point, start) };
                     *ends = [first, at.point(point, end)];
                     let count = bridge.pieces_over(end - start, steps / 2);
                     let count = count.filter(|_| motion.is_smooth(span));
@@ -317,20 +302,10 @@ impl Held {
             Some(bounds) => bounds.turn(length),
             None => cubic_turn(&poses, length),
         };
-        let (shift, spread) = (
-            bounds.map_or(0.0, |bounds| bounds.shift(length)),
-            bell(turned),
-        );
+        let (shift, spread) = (bounds.map_or(0.0, |bounds| bounds.shift(length)), bell(turned));
         let ways = self.ways.iter_mut().zip(&mut self.ends);
         for (point, (way, ends)) in model.points.iter().zip(ways) {
-            let (
-                Way::Bridged(bridge),
-                Role::Carried {
-                    vessel: carrier,
-                    arm,
-                },
-            ) = (way, &point.role)
-            else {
+            let (Way::Bridged(bridge), Role::Carried { vessel: carrier, arm }) = (way, &point.role) else {
                 continue;
             };
             if *carrier != vessel {
@@ -495,14 +470,8 @@ mod tests {
     fn a_carried_point_is_bridged_along_the_path_of_a_host_too() {
         let scene = Scene::from_toml(SCENE).unwrap();
         let model = Model::new(&scene).unwrap();
-        let (snapshot, _) = start::begin(
-            &model,
-            0.0,
-            Inputs::new(&model),
-            false,
-            start::Shapes::AsGiven,
-        )
-        .unwrap();
+        let (snapshot, _) =
+            start::begin(&model, 0.0, Inputs::new(&model), false, start::Shapes::AsGiven).unwrap();
         let mut paths = snapshot.paths.clone();
         let [place, angles] = &mut paths.vessels[0].0;
         for (path, first) in [(place, 0.0), (angles, 3e-4)] {

@@ -55,10 +55,9 @@ impl VesselInput {
         let [vx, vy, vz, wx, wy, wz] = self.velocity;
         let [_, _, _, roll, pitch, yaw] = self.pose;
         let turning = match (wx, wy, wz) {
-            (Some(x), Some(y), Some(z)) => angle_rates(
-                attitude + Vector3::new(roll, pitch, yaw),
-                Vector3::new(x, y, z),
-            ),
+            (Some(x), Some(y), Some(z)) => {
+                angle_rates(attitude + Vector3::new(roll, pitch, yaw), Vector3::new(x, y, z))
+            }
             _ => None,
         };
         let angle = |axis: usize| turning.map(|rates| rates[axis]);

@@ -61,9 +61,7 @@ impl Paths {
         Paths {
             clock: Clock::new(time),
             points: coupled.map(place).collect(),
-            vessels: vessels
-                .map(|input| VesselPath::at_rest(input.pose))
-                .collect(),
+            vessels: vessels.map(|input| VesselPath::at_rest(input.pose)).collect(),
             reels: winches::paths(model, &inputs.length_changes, time, follows_scene),
         }
     }

@@ -105,12 +105,7 @@ impl Settled {
             };
             let worst = kind.iter().max_by(|a, b| a.error.total_cmp(&b.error));
             let sentences = worst.map(|mesh| self.mesh_in_words(mesh));
-            said.extend(
-                sentences
-                    .into_iter()
-                    .flatten()
-                    .map(|words| of.clone() + &words),
-            );
+            said.extend(sentences.into_iter().flatten().map(|words| of.clone() + &words));
         }
         let solver = &self.scene.solver;
         if solver.integrator == Integrator::AxialImplicit {
@@ -142,10 +137,7 @@ impl Settled {
         let tried: Vec<String> = tried
             .map(|trial| format!("{} with {}", rounded(trial.error), trial.elements))
             .collect();
-        let target = format!(
-            "for the target error of {}",
-            percent(self.scene.solver.tolerance)
-        );
+        let target = format!("for the target error of {}", percent(self.scene.solver.tolerance));
         let mut said = Vec::new();
         if !tried.is_empty() {
             said.push(format!(

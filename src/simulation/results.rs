@@ -11,9 +11,7 @@ use crate::dynamics::beam::{BeamView, Momentum};
 use crate::dynamics::ledger::{Energy, Ledger};
 use crate::dynamics::reaction;
 use crate::math::attitude::angle_rates;
-use crate::model::{
-    Body, ClosedForm, End, Line, LineState, Network, Point, PointState, Role, joint,
-};
+use crate::model::{Body, ClosedForm, End, Line, LineState, Network, Point, PointState, Role, joint};
 use crate::scene::Integrator;
 use crate::statics::catenary::Catenary;
 use crate::statics::{self, assembly, catenary_network};
@@ -131,18 +129,17 @@ impl Simulation {
             lines.any(|&line| model.lines[line].drifts(model))
                 || model.current.is_some() && free.any(|free| free.sphere.is_some())
         };
-        let rides = |point: &Point| matches!(point.role, Role::Carried { vessel: carrier, .. } if carrier == vessel);
+        let rides =
+            |point: &Point| matches!(point.role, Role::Carried { vessel: carrier, .. } if carrier == vessel);
         let wet = |point: &Point| point.own.as_ref().is_some_and(|own| own.sphere.is_some());
         model.networks.iter().filter(holds).any(dragged)
-            || model.current.is_some()
-                && model.points.iter().any(|point| rides(point) && wet(point))
+            || model.current.is_some() && model.points.iter().any(|point| rides(point) && wet(point))
     }
 
     fn stiffness_in_current(&self, vessel: usize) -> Option<[[f64; 6]; 6]> {
         let mut stiffness = [[0.0; 6]; 6];
         for axis in 0..6 {
-            let aside =
-                |way: f64| Some(self.at_rest_aside(vessel, axis, way)?.vessel_force(vessel));
+            let aside = |way: f64| Some(self.at_rest_aside(vessel, axis, way)?.vessel_force(vessel));
             let [below, above] = [aside(-ASIDE)?, aside(ASIDE)?];
             for (row, force) in stiffness.iter_mut().enumerate() {
                 force[axis] = (below[row] - above[row]) / (2.0 * ASIDE);
@@ -216,9 +213,7 @@ impl Simulation {
         let (model, state) = (&*self.model, &self.snapshot.state);
         let data = &model.points[point];
         let lines = data.attached.iter();
-        let of_lines: Vector3<f64> = lines
-            .map(|&(line, end)| self.line_end_force(line, end))
-            .sum();
+        let of_lines: Vector3<f64> = lines.map(|&(line, end)| self.line_end_force(line, end)).sum();
         if data.own.is_none() && data.load.is_none() {
             return of_lines.into();
         }
@@ -320,8 +315,7 @@ impl Simulation {
             return closed_form.tension.clone();
         }
         let (model, state) = (&self.model.lines[line], &self.snapshot.state.lines[line]);
-        let segment =
-            |i: usize| reaction::tension(model, state, i, self.model.solver.negative_tension);
+        let segment = |i: usize| reaction::tension(model, state, i, self.model.solver.negative_tension);
         let n = model.segment_count();
         (0..=n)
             .map(|i| match i {

@@ -60,14 +60,8 @@ impl Scale {
             if let Role::Coupled { .. } = point.role {
                 let input = &inputs.points[index];
                 let body = Body::Point(index);
-                check_axes(
-                    &point.name,
-                    &input.displacement,
-                    &input.rates[0],
-                    length,
-                    reach,
-                )
-                .map_err(|problem| (body, problem))?;
+                check_axes(&point.name, &input.displacement, &input.rates[0], length, reach)
+                    .map_err(|problem| (body, problem))?;
             }
         }
         for (index, vessel) in model.vessels.iter().enumerate() {
@@ -111,13 +105,7 @@ impl Scale {
 
 /// Refuses displacements [m, rad] beyond `reach` [m], and velocities [m/s, rad/s] that lead beyond it in a step of `length` [s].
 #[inline]
-fn check_axes(
-    name: &str,
-    place: &[f64],
-    rates: &[f64],
-    length: f64,
-    reach: f64,
-) -> Result<(), String> {
+fn check_axes(name: &str, place: &[f64], rates: &[f64], length: f64, reach: f64) -> Result<(), String> {
     for (axis, (&value, &rate)) in place.iter().zip(rates).enumerate() {
         let limit = if axis < 3 { reach } else { TURNS_MAX };
         // no number is within any limit
@@ -130,13 +118,7 @@ fn check_axes(
 }
 
 #[cold]
-fn beyond(
-    name: &str,
-    axis: usize,
-    [value, rate, length]: [f64; 3],
-    limit: f64,
-    is_near: bool,
-) -> String {
+fn beyond(name: &str, axis: usize, [value, rate, length]: [f64; 3], limit: f64, is_near: bool) -> String {
     let (unit, why) = match axis < 3 {
         true => ("m", format!("{REACH} times the size of the scene")),
         false => ("rad", "a thousand turns".to_string()),

@@ -74,12 +74,7 @@ pub(super) fn begin(
 
 /// Every network in static equilibrium or, where all its lines have shapes of their own, on these, with its free points where the scene puts
 /// them. Quasi-static lines start on their catenaries; those that will move start where their elements are at rest.
-fn at_rest(
-    model: &Model,
-    time: f64,
-    places: &[PointState],
-    shapes: Shapes,
-) -> Result<State, StaticsError> {
+fn at_rest(model: &Model, time: f64, places: &[PointState], shapes: Shapes) -> Result<State, StaticsError> {
     let mut work = assembly::Workspace::new(model);
     let mut state = equilibrium::hang(model, places, time, &mut work)?;
     for number in 0..model.networks.len() {
@@ -145,12 +140,7 @@ fn static_tension(model: &Model, state: &State, line: usize) -> f64 {
 }
 
 /// The closed-form catenary between two places, where it applies: engineering strain, and a level bed if any is in reach.
-fn solve_catenary(
-    model: &Model,
-    line: &Line,
-    a: Vector3<f64>,
-    b: Vector3<f64>,
-) -> Option<Catenary> {
+fn solve_catenary(model: &Model, line: &Line, a: Vector3<f64>, b: Vector3<f64>) -> Option<Catenary> {
     if line
         .sections
         .iter()

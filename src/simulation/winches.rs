@@ -20,12 +20,7 @@ pub(super) struct ReelPath {
 impl ReelPath {
     /// Continues by a communication step from what a host says at a time [s] of the length change [m]; a winch that has a greatest speed
     /// [m/s] lags behind what is faster.
-    pub fn extend(
-        &mut self,
-        speed_max: Option<f64>,
-        [time, wanted]: [f64; 2],
-        foresight: &Foresight,
-    ) {
+    pub fn extend(&mut self, speed_max: Option<f64>, [time, wanted]: [f64; 2], foresight: &Foresight) {
         let [last, before] = self.told;
         let reach = speed_max.map_or(f64::INFINITY, |speed| speed * (time - last).max(0.0));
         let position = wanted.clamp(before - reach, before + reach);
@@ -73,9 +68,7 @@ pub(super) fn paths(model: &Model, told: &[f64], time: f64, follows_scene: bool)
     let lines = model.lines.iter().zip(told);
     let path = |(line, told): (&Line, &f64)| {
         let winch = line.winch.as_ref();
-        let change = winch.map_or(0.0, |winch| {
-            start(winch, *told, follows_scene.then_some(time))
-        });
+        let change = winch.map_or(0.0, |winch| start(winch, *told, follows_scene.then_some(time)));
         ReelPath {
             path: AxisPath::at_rest(change),
             told: [time, change],
@@ -88,11 +81,7 @@ pub(super) fn paths(model: &Model, told: &[f64], time: f64, follows_scene: bool)
 ///
 /// # Errors
 /// Lengths that a winch cannot pay out.
-pub(super) fn lay_out(
-    model: &mut Arc<Model>,
-    told: &[f64],
-    follows: Option<f64>,
-) -> Result<(), SceneError> {
+pub(super) fn lay_out(model: &mut Arc<Model>, told: &[f64], follows: Option<f64>) -> Result<(), SceneError> {
     for (index, &told) in told.iter().enumerate() {
         let Some(winch) = &model.lines[index].winch else {
             continue;

@@ -373,8 +373,8 @@ impl Workspace {
                 let growth = -line.direction[i].dot(&(x[i + 1] - x[i])); // of the segment's length [m]
                 let predicted = line.elastic[i] + line.slope[i] * growth;
                 let least = 0.0 - line.push[i];
-                consistent &= line.tension[i] <= least
-                    || line.elastic[i] >= least - PUSH_STRAIN * stiffness[i];
+                consistent &=
+                    line.tension[i] <= least || line.elastic[i] >= least - PUSH_STRAIN * stiffness[i];
                 line.tension[i] += part * (predicted - line.tension[i]);
             }
         }
@@ -382,13 +382,7 @@ impl Workspace {
     }
 
     /// Sets how far the seabed dampers of a network fade for a step of `dt` [s] from `state`.
-    pub(crate) fn fade_dampers(
-        &mut self,
-        model: &Model,
-        network: &Network,
-        state: &State,
-        dt: f64,
-    ) {
+    pub(crate) fn fade_dampers(&mut self, model: &Model, network: &Network, state: &State, dt: f64) {
         for &index in &network.lines {
             self.lines[index].fade_dampers(&model.lines[index], &state.lines[index], dt);
             self.lines[index].parted = state.lines[index].parted;
@@ -473,10 +467,7 @@ impl Workspace {
     /// Longest entry of the last solution [m]; not a number if one of them is not.
     pub(crate) fn greatest_solution(&self, network: &Network) -> f64 {
         let longer = |a: f64, b: f64| if a.is_nan() || a >= b { a } else { b };
-        let lines = network
-            .lines
-            .iter()
-            .flat_map(|&line| self.lines[line].solution());
+        let lines = network.lines.iter().flat_map(|&line| self.lines[line].solution());
         lines.map(|x| x.norm_squared()).fold(0.0, longer).sqrt()
     }
 
@@ -508,13 +499,7 @@ impl Workspace {
     }
 }
 /// Force [N] that a line applies to the point at one of its ends, inertia and drag of its end node included.
-pub fn end_force(
-    model: &Model,
-    state: &State,
-    line: usize,
-    end: End,
-    work: &mut Workspace,
-) -> Vector3<f64> {
+pub fn end_force(model: &Model, state: &State, line: usize, end: End, work: &mut Workspace) -> Vector3<f64> {
     let weights = Weights {
         force: 1.0,
         friction: 1.0,
@@ -527,21 +512,10 @@ pub fn end_force(
     };
     let negative_tension = model.solver.negative_tension;
     let clamps = model.lines[line].clamps(&state.points);
-    let (line_model, line_state, line_work) = (
-        &model.lines[line],
-        &state.lines[line],
-        &mut work.lines[line],
-    );
+    let (line_model, line_state, line_work) = (&model.lines[line], &state.lines[line], &mut work.lines[line]);
     line_work.fade_dampers(line_model, line_state, 0.0);
     let water = model.water_along(state, line, state.time);
-    line_work.assemble_dynamic::<false>(
-        line_model,
-        line_state,
-        clamps,
-        water,
-        &weights,
-        negative_tension,
-    );
+    line_work.assemble_dynamic::<false>(line_model, line_state, clamps, water, &weights, negative_tension);
     if line_model.bending.is_some() {
         let moments = model.end_moments(line_model, state.time);
         let parts = Parts::of_step(&weights, false);

@@ -19,8 +19,7 @@ use crate::math::pivoted_chain::PivotedChain;
 use crate::math::rotation::{cayley, turned_to};
 use crate::model::{Beam, BeamElement, FreePoint, Model, Nodes, Point, PointState, State};
 use crate::physics::section::{
-    Mixture, Response, Section, Sextuple, geometric_stiffness, join, response, split, strain,
-    strain_gradient,
+    Mixture, Response, Section, Sextuple, geometric_stiffness, join, response, split, strain, strain_gradient,
 };
 use crate::statics::StaticsError;
 
@@ -127,8 +126,7 @@ pub fn rest(model: &Model, index: usize, state: &mut State, t: f64) -> Result<()
         ends: [end(0), end(1)],
         bodies: line.ends.map(|point| model.points[point].free()),
     };
-    turn_clamps_in(&case, &mut sections)
-        .map_err(|restless| refusal(&line.name, &case, restless))?;
+    turn_clamps_in(&case, &mut sections).map_err(|restless| refusal(&line.name, &case, restless))?;
     let line_state = &mut state.lines[index];
     for (i, section) in sections.iter().enumerate() {
         line_state.position[i] = section.position;
@@ -236,9 +234,7 @@ const COSINE_MIN: f64 = 0.5;
 /// The first element whose sections differ by more than its strains can tell, by its lower node.
 pub(crate) fn folded(sections: &[Section]) -> Option<usize> {
     let cosine = |pair: &[Section]| 0.5 * (pair[0].frame.dot(&pair[1].frame) - 1.0);
-    sections
-        .windows(2)
-        .position(|pair| cosine(pair) < COSINE_MIN)
+    sections.windows(2).position(|pair| cosine(pair) < COSINE_MIN)
 }
 
 /// Where the sections of a beam are before, at the mean of, and after a step; in statics all are the same.
@@ -267,11 +263,10 @@ pub(crate) fn add_elements(
         let after = strain(now[0], now[1], element.length);
         let before = span.strain_before.map_or(after, |strains| strains[i]);
         let laws = [&element.law, &element.damping];
-        let Response { stress, slope } =
-            response(laws, element.length, [&before, &after], &rest[i], mixture);
+        let Response { stress, slope } = response(laws, element.length, [&before, &after], &rest[i], mixture);
         let weights = strain_gradient(mean[0], mean[1], element.length);
-        let slopes = strain_gradient(now[0], now[1], element.length)
-            .map(|gradient| element.length * slope * gradient);
+        let slopes =
+            strain_gradient(now[0], now[1], element.length).map(|gradient| element.length * slope * gradient);
         let geometric = geometric_stiffness(mean, now, &stress, mixture.share);
         let block = |row: usize, column: usize| {
             let mut block = weights[row].tr_mul(&slopes[column]) + geometric[row][column];
@@ -294,22 +289,17 @@ fn softest(case: &BeamCase) -> f64 {
     let weight: f64 = case.nodes.weight.iter().map(|w| w.abs()).sum();
     let bodies: f64 = case.bodies.iter().flatten().map(|b| b.weight_max()).sum();
     let loads = case.ends.iter().map(|end| split(&end.load).0.norm());
-    let bending = |element: &BeamElement| {
-        element.law.bending.max(element.law.torsion) / element.length.powi(2)
-    };
+    let bending =
+        |element: &BeamElement| element.law.bending.max(element.law.torsion) / element.length.powi(2);
     let bending = case.beam.elements.iter().map(bending).fold(0.0, f64::max);
     SOFTNESS * (weight + bodies + loads.sum::<f64>()).max(bending)
 }
 
 /// Force out of balance that the rounding of positions alone may leave [N].
 fn rounding(case: &BeamCase, sections: &[Section]) -> f64 {
-    let reach = sections
-        .iter()
-        .map(|s| s.position.norm())
-        .fold(0.0, f64::max);
-    let noise = |element: &BeamElement| {
-        element.law.axial.max(element.law.shear) * (reach / element.length + 1.0)
-    };
+    let reach = sections.iter().map(|s| s.position.norm()).fold(0.0, f64::max);
+    let noise =
+        |element: &BeamElement| element.law.axial.max(element.law.shear) * (reach / element.length + 1.0);
     f64::EPSILON * case.beam.elements.iter().map(noise).fold(0.0, f64::max)
 }
 
@@ -375,23 +365,17 @@ impl BeamStatics {
     ///
     /// # Errors
     /// None was found; the sections are then where they were.
-    pub fn solve(
-        &mut self,
-        case: &BeamCase,
-        sections: &mut Vec<Section>,
-    ) -> Result<usize, Restless> {
+    pub fn solve(&mut self, case: &BeamCase, sections: &mut Vec<Section>) -> Result<usize, Restless> {
         self.start.clone_from(sections);
         self.solves = 0;
         self.assemble(case, sections, 0.0, 0.0);
         let unloaded = self.imbalance(case);
         self.assemble(case, sections, 1.0, 0.0);
         let from_rest = unloaded.1 <= 1e-9 * self.imbalance(case).1;
-        let found = [from_rest, !from_rest]
-            .into_iter()
-            .any(|raise| match raise {
-                true => self.raise_load(case, sections),
-                false => self.settle(case, sections),
-            });
+        let found = [from_rest, !from_rest].into_iter().any(|raise| match raise {
+            true => self.raise_load(case, sections),
+            false => self.settle(case, sections),
+        });
         self.assemble(case, sections, 1.0, 0.0);
         let (node, residual) = self.imbalance(case);
         let restless = match (found, folded(sections)) {
@@ -446,10 +430,7 @@ impl BeamStatics {
                 soft.law.axial = element.law.axial.min(stiffness);
                 soft.law.shear = element.law.shear.min(stiffness);
             }
-            let softened = BeamCase {
-                beam: &soft,
-                ..*case
-            };
+            let softened = BeamCase { beam: &soft, ..*case };
             anchoring = self.descend(&softened, sections, anchoring);
             if stiffness >= full {
                 return self.newton(case, sections, 1.0);
@@ -526,10 +507,7 @@ impl BeamStatics {
         if anchoring > 0.0 {
             self.anchor(case.beam, anchoring);
         }
-        let turns_freely = case
-            .ends
-            .iter()
-            .all(|end| end.held[3..].iter().all(|held| !held));
+        let turns_freely = case.ends.iter().all(|end| end.held[3..].iter().all(|held| !held));
         if turns_freely {
             let element = &case.beam.elements[0];
             let axis: Vector3<f64> = sections[0].frame.column(2).into_owned();

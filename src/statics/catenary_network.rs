@@ -99,13 +99,7 @@ pub fn rest(
 /// Moves the free points of a network from where they are in `state` to where they rest at time `t` [s], and puts its lines on
 /// their catenaries. Held points stay where they are. False, and the state as it was, where that is not possible: a line
 /// without a closed form, out of the water, or with an end under the bed, or no rest found in a bounded number of steps.
-pub fn solve_network(
-    model: &Model,
-    number: usize,
-    state: &mut State,
-    t: f64,
-    work: &mut Workspace,
-) -> bool {
+pub fn solve_network(model: &Model, number: usize, state: &mut State, t: f64, work: &mut Workspace) -> bool {
     let network = &model.networks[number];
     if !serves(model, network) {
         return false;
@@ -146,21 +140,14 @@ pub(crate) struct HungLine {
 }
 
 /// The catenaries of a network between its points as they are; `None` where a line has none.
-pub(crate) fn hung(
-    model: &Model,
-    number: usize,
-    state: &State,
-    work: &mut Workspace,
-) -> Option<HungNetwork> {
+pub(crate) fn hung(model: &Model, number: usize, state: &State, work: &mut Workspace) -> Option<HungNetwork> {
     let problem = Problem::new(model, number, state.time);
     if !(serves(model, problem.network) && problem.evaluate(state, work)) {
         return None;
     }
     let mut lines = Vec::with_capacity(problem.network.lines.len());
     for &index in &problem.network.lines {
-        let [a, b] = model.lines[index]
-            .ends
-            .map(|end| state.points[end].position);
+        let [a, b] = model.lines[index].ends.map(|end| state.points[end].position);
         lines.push(HungLine {
             end_force: Plane::new(a, b).end_forces(work.catenaries[index].as_ref()?),
             stiffness: problem.line_stiffness(state, work, index),
@@ -186,10 +173,7 @@ impl HungNetwork {
         let network = &model.networks[number];
         let system = &mut work.systems[number];
         system.clear();
-        let blocks = self
-            .lines
-            .iter()
-            .flat_map(|line| line.stiffness.iter().flatten());
+        let blocks = self.lines.iter().flat_map(|line| line.stiffness.iter().flatten());
         let stiffest = blocks.map(Matrix3::amax).fold(0.0, f64::max);
         let rounding = Matrix3::from_diagonal_element(8.0 * f64::EPSILON * stiffest);
         for slot in 0..self.held.len() {
@@ -222,11 +206,7 @@ impl HungNetwork {
             None => moved(point),
         };
         let lines = network.lines.iter();
-        Some(
-            lines
-                .map(|&line| model.lines[line].ends.map(of_point))
-                .collect(),
-        )
+        Some(lines.map(|&line| model.lines[line].ends.map(of_point)).collect())
     }
 }
 
@@ -244,11 +224,7 @@ impl Plane {
     fn new(a: Vector3<f64>, b: Vector3<f64>) -> Plane {
         let across = Vector3::new(b.x - a.x, b.y - a.y, 0.0);
         let span = across.norm();
-        let along = if span > 0.0 {
-            across / span
-        } else {
-            Vector3::x()
-        };
+        let along = if span > 0.0 { across / span } else { Vector3::x() };
         Plane {
             along,
             span,
@@ -392,8 +368,7 @@ impl<'a> Problem<'a> {
             if residual <= tolerance {
                 return true;
             }
-            let (stiffest, farthest) =
-                self.assemble(state, work, relaxation * self.force / self.length);
+            let (stiffest, farthest) = self.assemble(state, work, relaxation * self.force / self.length);
             if residual <= tolerance + 4.0 * f64::EPSILON * stiffest * farthest {
                 return true;
             }
@@ -420,8 +395,7 @@ impl<'a> Problem<'a> {
             let [a, b] = line.ends.map(|point| state.points[point].position);
             let plane = Plane::new(a, b);
             work.counters.solves += 1;
-            let Some(solved) = guess::closed_form(self.model, line, a, plane.span, plane.rise)
-            else {
+            let Some(solved) = guess::closed_form(self.model, line, a, plane.span, plane.rise) else {
                 return false;
             };
             for (point, force) in line.ends.into_iter().zip(plane.end_forces(&solved)) {
@@ -448,10 +422,7 @@ impl<'a> Problem<'a> {
             return f64::NEG_INFINITY;
         };
         let own = free.contact.map(|contact| contact.bed);
-        let lines = point
-            .attached
-            .iter()
-            .map(|(line, _)| &self.model.lines[*line]);
+        let lines = point.attached.iter().map(|(line, _)| &self.model.lines[*line]);
         lines
             .filter_map(|line| Some(line.nodes.contact.as_ref()?.bed))
             .chain(own)
@@ -459,16 +430,9 @@ impl<'a> Problem<'a> {
     }
 
     /// Whether a free point cannot move along an axis: not free there, or pressed on the bed.
-    fn is_held(
-        &self,
-        state: &State,
-        work: &Workspace,
-        point: usize,
-        axes: [bool; 3],
-        axis: usize,
-    ) -> bool {
-        let pressed = work.points[point].residual.z <= 0.0
-            && state.points[point].position.z <= self.bed_under(point);
+    fn is_held(&self, state: &State, work: &Workspace, point: usize, axes: [bool; 3], axis: usize) -> bool {
+        let pressed =
+            work.points[point].residual.z <= 0.0 && state.points[point].position.z <= self.bed_under(point);
         !axes[axis] || (axis == 2 && pressed)
     }
 
@@ -482,9 +446,7 @@ impl<'a> Problem<'a> {
             for (end, row) in line.ends.into_iter().zip(&blocks) {
                 farthest = farthest.max(state.points[end].position.amax());
                 for (other, block) in line.ends.into_iter().zip(row) {
-                    if let (Some(row), Some(column)) =
-                        (work.points[end].slot, work.points[other].slot)
-                    {
+                    if let (Some(row), Some(column)) = (work.points[end].slot, work.points[other].slot) {
                         work.systems[self.number].add_block(row, column, block);
                         stiffest = stiffest.max(block.amax());
                     }
@@ -511,12 +473,7 @@ impl<'a> Problem<'a> {
     }
 
     /// −∂F/∂r of the forces on A and B by the positions of A and B [N/m].
-    fn line_stiffness(
-        &self,
-        state: &State,
-        work: &mut Workspace,
-        index: usize,
-    ) -> [[Matrix3<f64>; 2]; 2] {
+    fn line_stiffness(&self, state: &State, work: &mut Workspace, index: usize) -> [[Matrix3<f64>; 2]; 2] {
         let line = &self.model.lines[index];
         let Some(solved) = &work.catenaries[index] else {
             return [[Matrix3::zeros(); 2]; 2];
@@ -539,14 +496,7 @@ impl<'a> Problem<'a> {
 
     /// Slopes of a line that touches the bed, by difference quotients, with the number of catenaries solved.
     fn slopes_on_bed(&self, state: &State, line: &Line, solved: &Catenary) -> (Slopes, usize) {
-        let forces = |c: &Catenary| {
-            [
-                c.horizontal_a(),
-                c.vertical_a(),
-                c.horizontal(),
-                c.vertical_b(),
-            ]
-        };
+        let forces = |c: &Catenary| [c.horizontal_a(), c.vertical_a(), c.horizontal(), c.vertical_b()];
         let [a, b] = line.ends.map(|point| state.points[point].position);
         let step = DIFFERENCE * line.unstretched_length().max(a.amax()).max(b.amax());
         let (plane, base) = (Plane::new(a, b), forces(solved));
@@ -579,8 +529,7 @@ impl<'a> Problem<'a> {
             };
             let a = state.points[line.ends[0]].position;
             let nodes = line.nodes.arc.iter();
-            let shape: Vec<Vector3<f64>> =
-                nodes.map(|&s| a + solved.at(s).z * Vector3::z()).collect();
+            let shape: Vec<Vector3<f64>> = nodes.map(|&s| a + solved.at(s).z * Vector3::z()).collect();
             surface.is_pierced(&shape)
         })
     }
@@ -606,11 +555,7 @@ impl<'a> Problem<'a> {
                 self.evaluate(state, work);
                 return false;
             }
-            let points = self
-                .network
-                .free_points
-                .iter()
-                .map(|&index| &work.points[index]);
+            let points = self.network.free_points.iter().map(|&index| &work.points[index]);
             let after: f64 = points.map(|point| point.solution.dot(&point.total)).sum();
             if after >= -TURNED_MAX * before || self.greatest_residual(work) <= 0.5 * balance {
                 return part == 1.0;

@@ -223,10 +223,7 @@ fn check_finite(model: &Model, points: &[Vector3<f64>]) -> Result<(), StaticsErr
         for (axis, value) in ["x", "y", "z"].into_iter().zip(position.iter()) {
             if !value.is_finite() {
                 let place = format!("point \"{}\", {axis}", point.name);
-                return Err(StaticsError::NotFinite {
-                    place,
-                    value: *value,
-                });
+                return Err(StaticsError::NotFinite { place, value: *value });
             }
         }
     }
@@ -270,8 +267,7 @@ impl<'a> Problem<'a> {
         });
         for line in lines.clone().filter(|line| line.bending.is_some()) {
             let moments = model.end_moments(line, time);
-            force +=
-                moments.map(|moment| moment.norm()).iter().sum::<f64>() / line.unstretched_length();
+            force += moments.map(|moment| moment.norm()).iter().sum::<f64>() / line.unstretched_length();
         }
         let nodes: usize = lines.clone().map(|line| line.segment_count()).sum();
         Problem {
@@ -282,9 +278,7 @@ impl<'a> Problem<'a> {
             solves_end: work.counters.solves + WORK_MAX / nodes.max(1),
             force: if force > 0.0 { force } else { 1.0 },
             bends: lines.clone().any(|line| line.bending.is_some()),
-            length: lines
-                .map(|line| line.unstretched_length())
-                .fold(0.0, f64::max),
+            length: lines.map(|line| line.unstretched_length()).fold(0.0, f64::max),
         }
     }
 
@@ -335,12 +329,7 @@ impl<'a> Problem<'a> {
 
     /// Newton's method alone; else, where the loads may be too much, little by little; else from a soft network, or from a taut one, which is
     /// tried first where lines float.
-    fn solve_from(
-        &self,
-        guess: &State,
-        state: &mut State,
-        work: &mut Workspace,
-    ) -> Result<(), StaticsError> {
+    fn solve_from(&self, guess: &State, state: &mut State, work: &mut Workspace) -> Result<(), StaticsError> {
         let start = work.counters.solves;
         let softens = self.softens();
         if self.newton(state, work, self.case(f64::INFINITY))
@@ -470,22 +459,14 @@ impl<'a> Problem<'a> {
 
     /// Farthest that a node is from end A of its line, at least the length of the longest line [m].
     fn reach(&self, state: &State) -> f64 {
-        let lines = self
-            .network
-            .lines
-            .iter()
-            .map(|&line| &state.lines[line].position);
+        let lines = self.network.lines.iter().map(|&line| &state.lines[line].position);
         let distances = lines.flat_map(|nodes| nodes.iter().map(|r| (r - nodes[0]).amax()));
         distances.fold(self.length, f64::max)
     }
 
     /// Anchoring that lifts pivots above the rounding of the stiffest spring [N/m].
     fn rounding_stiffness(&self, case: &StaticCase) -> f64 {
-        let lines = self
-            .network
-            .lines
-            .iter()
-            .map(|&line| &self.model.lines[line]);
+        let lines = self.network.lines.iter().map(|&line| &self.model.lines[line]);
         let spring = |line: &Line| {
             let spring = self.stiffest_spring(line, case.stiffness_max);
             spring.max(stiffest_stick(line))
@@ -495,11 +476,7 @@ impl<'a> Problem<'a> {
 
     /// Greatest stiffness of a segment of at most this EA [N], of the bed under a node, or of a joint [N/m].
     fn stiffest_spring(&self, line: &Line, stiffness_max: f64) -> f64 {
-        let segments = line
-            .segments
-            .axial_stiffness
-            .iter()
-            .zip(&line.segments.length);
+        let segments = line.segments.axial_stiffness.iter().zip(&line.segments.length);
         let bed = line
             .nodes
             .contact

@@ -27,12 +27,7 @@ pub(crate) fn hang(
         }
         None => hang_parabola(line, a, b, position, tension),
     }
-    if let Some(contact) = line
-        .nodes
-        .contact
-        .as_ref()
-        .filter(|_| !model.bed_is_level())
-    {
+    if let Some(contact) = line.nodes.contact.as_ref().filter(|_| !model.bed_is_level()) {
         for r in position.iter_mut() {
             r.z = r.z.max(contact.height_under(*r));
         }
@@ -55,12 +50,7 @@ pub(crate) fn start_shape(
 }
 
 /// Nodes [m] of a line on its closed-form catenary between ends at `a` and `b` [m], on their chord where it has none.
-fn catenary_or_chord(
-    model: &Model,
-    line: &Line,
-    a: Vector3<f64>,
-    b: Vector3<f64>,
-) -> Vec<Vector3<f64>> {
+fn catenary_or_chord(model: &Model, line: &Line, a: Vector3<f64>, b: Vector3<f64>) -> Vec<Vector3<f64>> {
     let chord = b - a;
     let (arc, length) = (&line.nodes.arc, line.unstretched_length());
     let mut position: Vec<_> = arc.iter().map(|s| a + s / length * chord).collect();
@@ -73,13 +63,7 @@ fn catenary_or_chord(
 }
 
 /// Puts nodes at the lengths `arc` [m] along a catenary that begins at `a` [m], in the plane of its `chord` [m].
-fn draw(
-    solved: &Catenary,
-    arc: &[f64],
-    a: Vector3<f64>,
-    chord: Vector3<f64>,
-    position: &mut [Vector3<f64>],
-) {
+fn draw(solved: &Catenary, arc: &[f64], a: Vector3<f64>, chord: Vector3<f64>, position: &mut [Vector3<f64>]) {
     let span = chord.xy().norm();
     let along = if span > 0.0 {
         Vector3::new(chord.x, chord.y, 0.0) / span
@@ -123,8 +107,7 @@ fn hang_parabola(
     let length = line.unstretched_length();
     let weight: f64 = line.nodes.weight.iter().sum();
     let chord = (b - a).norm();
-    let sag =
-        (0.375 * chord.max(0.1 * length) * (length - chord).max(0.0)).sqrt() * weight.signum();
+    let sag = (0.375 * chord.max(0.1 * length) * (length - chord).max(0.0)).sqrt() * weight.signum();
     let bed = line
         .nodes
         .contact

@@ -27,12 +27,7 @@ pub struct Modes {
 
 impl Modes {
     /// Modes of a network about `state`; `None` where a node that moves has no mass.
-    pub fn new(
-        model: &Model,
-        network: usize,
-        state: &State,
-        work: &mut Workspace,
-    ) -> Option<Modes> {
+    pub fn new(model: &Model, network: usize, state: &State, work: &mut Workspace) -> Option<Modes> {
         let network = &model.networks[network];
         let (unknowns, count) = number_unknowns(model, network);
         let case = StaticCase::whole(state.time);
@@ -64,12 +59,7 @@ impl Modes {
             let own = own.map_or(0.0, |free| free.at(height).mass);
             let point = point_unknowns(model, network, &unknowns, index);
             add_block(&mut stiffness, point, point, &work.points[index].diagonal);
-            add_block(
-                &mut mass,
-                point,
-                point,
-                &Matrix3::from_diagonal_element(own),
-            );
+            add_block(&mut mass, point, point, &Matrix3::from_diagonal_element(own));
         }
         let mut modes = solve(stiffness, Cholesky::new(mass)?);
         modes.unknowns = unknowns;
@@ -98,9 +88,7 @@ fn number_unknowns(model: &Model, network: &Network) -> (Vec<Vec<[Option<usize>;
         unknowns.push((0..=last).map(node).collect());
     }
     for &index in &network.free_points {
-        let axes = model.points[index]
-            .free()
-            .map_or([false; 3], |free| free.axes);
+        let axes = model.points[index].free().map_or([false; 3], |free| free.axes);
         let numbers = axes.map(&mut next);
         for (line, nodes) in network.lines.iter().zip(&mut unknowns) {
             let last = nodes.len() - 1;
@@ -121,17 +109,11 @@ fn point_unknowns(
     unknowns: &[Vec<[Option<usize>; 3]>],
     point: usize,
 ) -> [Option<usize>; 3] {
-    let ends = network
-        .lines
-        .iter()
-        .zip(unknowns)
-        .flat_map(|(&line, nodes)| {
-            let [a, b] = model.lines[line].ends;
-            [(a, nodes[0]), (b, nodes[nodes.len() - 1])]
-        });
-    let mut found = ends
-        .filter(|(end, _)| *end == point)
-        .map(|(_, numbers)| numbers);
+    let ends = network.lines.iter().zip(unknowns).flat_map(|(&line, nodes)| {
+        let [a, b] = model.lines[line].ends;
+        [(a, nodes[0]), (b, nodes[nodes.len() - 1])]
+    });
+    let mut found = ends.filter(|(end, _)| *end == point).map(|(_, numbers)| numbers);
     found.next().unwrap_or([None; 3])
 }
 
@@ -151,11 +133,7 @@ fn add_block(
 }
 
 /// What the joints of a line couple.
-fn add_second_neighbours(
-    stiffness: &mut DMatrix<f64>,
-    nodes: &[[Option<usize>; 3]],
-    bending: &BendingWork,
-) {
+fn add_second_neighbours(stiffness: &mut DMatrix<f64>, nodes: &[[Option<usize>; 3]], bending: &BendingWork) {
     for (step, blocks) in [(1, &bending.near), (2, &bending.far)] {
         for (i, block) in blocks.iter().enumerate() {
             let (row, column) = (nodes[i], nodes[i + step]);
@@ -247,11 +225,7 @@ mod tests {
         let (k, m) = (500.0 / 1.0 + 500.0 / 2.0, 2.0 + 0.5 * 0.3 * 3.0_f64); // [N/m], [kg]
         assert_eq!(modes.frequencies.len(), 1);
         assert_relative_eq!(modes.frequencies[0], (k / m).sqrt(), max_relative = 1e-14);
-        assert_relative_eq!(
-            modes.shape(0, 0)[1].x.abs(),
-            1.0 / m.sqrt(),
-            max_relative = 1e-14
-        );
+        assert_relative_eq!(modes.shape(0, 0)[1].x.abs(), 1.0 / m.sqrt(), max_relative = 1e-14);
         assert_eq!(modes.shape(0, 1)[0], modes.shape(0, 0)[1]);
     }
 

@@ -71,15 +71,9 @@ pub fn of_vessel(
 }
 
 /// The same of the points themselves that ride on it: their loads, and their weight less buoyancy.
-fn of_own_weights(
-    model: &Model,
-    state: &State,
-    vessel: usize,
-    origin: Vector3<f64>,
-) -> Matrix6<f64> {
+fn of_own_weights(model: &Model, state: &State, vessel: usize, origin: Vector3<f64>) -> Matrix6<f64> {
     let mut sum = Matrix6::zeros();
-    let rides =
-        |role: &Role| matches!(role, Role::Carried { vessel: carrier, .. } if *carrier == vessel);
+    let rides = |role: &Role| matches!(role, Role::Carried { vessel: carrier, .. } if *carrier == vessel);
     for (point, at) in model.points.iter().zip(&state.points) {
         if !rides(&point.role) {
             continue;
@@ -286,12 +280,7 @@ impl Problem<'_> {
 
     /// From the elements, with springs of a `part` of their greatest axial stiffness [-] on every unknown.
     fn of_elements(&self, part: f64, work: &mut Workspace) -> Option<Matrix6<f64>> {
-        let lines = || {
-            self.network
-                .lines
-                .iter()
-                .map(|&line| &self.model.lines[line])
-        };
+        let lines = || self.network.lines.iter().map(|&line| &self.model.lines[line]);
         let springs = lines().flat_map(|line| {
             let segments = &line.segments;
             let axial = segments.axial_stiffness.iter().zip(&segments.length);

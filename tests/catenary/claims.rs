@@ -37,8 +37,7 @@ fn the_oc3_line_has_the_tension_map_prints_with_its_friction_and_less_without() 
     assert_near(line.tension_b(), 911_089.46, 5e-3);
     assert_near(line.horizontal(), 736_939.29, 5e-3);
     assert_near(line.vertical_b(), 535_727.99, 5e-3);
-    let frictionless =
-        Line::uniform(902.2, 698.094, 384.243e6, 848.67, 250.0, oc3(0.0).bed).solve();
+    let frictionless = Line::uniform(902.2, 698.094, 384.243e6, 848.67, 250.0, oc3(0.0).bed).solve();
     assert_near(frictionless.tension_b(), 911_088.356_868_612_6, 1e-6);
     assert_eq!(frictionless.horizontal_a(), frictionless.horizontal());
 }
@@ -90,11 +89,7 @@ fn swapping_the_ends_mirrors_the_line() {
             };
             let (there, back) = (line.solve(), swapped.solve());
             // what a change of L by one rounding would do to the force is beyond any solver: Δ = EA ε/strain at most
-            let flexibility: f64 = line
-                .sections
-                .iter()
-                .map(|s| s.length / s.axial_stiffness)
-                .sum();
+            let flexibility: f64 = line.sections.iter().map(|s| s.length / s.axial_stiffness).sum();
             let scale = there.tension_a().max(there.tension_b()) + line.weights();
             let tolerance = 1e-9 * scale + 1e-14 * line.length() / flexibility;
             assert!(
@@ -133,11 +128,7 @@ fn cutting_a_line_into_like_sections_changes_nothing() {
                 }
                 .solve(),
             );
-            let flexibility: f64 = line
-                .sections
-                .iter()
-                .map(|s| s.length / s.axial_stiffness)
-                .sum();
+            let flexibility: f64 = line.sections.iter().map(|s| s.length / s.axial_stiffness).sum();
             let scale = whole.tension_a().max(whole.tension_b()) + line.weights();
             let tolerance = 1e-9 * scale + 1e-14 * line.length() / flexibility;
             assert!(
@@ -177,11 +168,7 @@ fn a_slack_line_hangs_vertically_and_pulls_with_what_hangs() {
     let line = Line::uniform(100.0, 20.0, 1e9, 30.0, 40.0, bed).solve();
     assert_eq!((line.horizontal(), line.tension_a()), (0.0, 0.0));
     // T + T²/2EAw·w = w·40, the stretch of what hangs
-    assert_near(
-        line.vertical_b() + line.vertical_b().powi(2) / 2e9,
-        800.0,
-        1e-9,
-    );
+    assert_near(line.vertical_b() + line.vertical_b().powi(2) / 2e9, 800.0, 1e-9);
     assert_near(line.at(100.0).x, 30.0, 1e-12);
 }
 
@@ -260,10 +247,7 @@ fn what_is_not_a_line_is_refused_with_the_place_and_the_reason() {
         refuse(&[], 1.0, 0.0, None),
         "sections: a line needs at least one section, there is none"
     );
-    let short = Section {
-        length: 0.0,
-        ..good
-    };
+    let short = Section { length: 0.0, ..good };
     assert_eq!(
         refuse(&[good, short], 1.0, 0.0, None),
         "sections[1].length: 0 m is not positive and finite"
@@ -304,6 +288,7 @@ fn what_is_not_a_line_is_refused_with_the_place_and_the_reason() {
         height: -2.0,
         friction: 0.0,
     };
-    let message = "bed.height: the bed at z = -2 m is above end B at z = -3 m; it must be at or below both ends";
+    let message =
+        "bed.height: the bed at z = -2 m is above end B at z = -3 m; it must be at or below both ends";
     assert_eq!(refuse(&[good], 1.0, -3.0, Some(high)), message);
 }

@@ -33,11 +33,7 @@ fn integrate(section: &Section, length: f64, h: f64, v: f64) -> [f64; 3] {
         return quadrature(0.0, length, |s| {
             let v = v + w * s;
             let t = h.hypot(v);
-            let rate = if t > 0.0 {
-                1.0 / t + 1.0 / ea
-            } else {
-                1.0 / ea
-            };
+            let rate = if t > 0.0 { 1.0 / t + 1.0 / ea } else { 1.0 / ea };
             [h * rate, v * rate, t / ea]
         });
     }
@@ -126,11 +122,7 @@ impl Walk<'_> {
     fn lie(&mut self, section: &Section, to: f64) {
         let bed = self.line.bed.expect("only a bed carries");
         let length = to - self.s;
-        assert!(
-            section.weight >= 0.0,
-            "what floats does not lie: {:?}",
-            self.line
-        );
+        assert!(section.weight >= 0.0, "what floats does not lie: {:?}", self.line);
         self.miss(self.v, self.force_scale());
         self.miss(self.z - bed.height, self.length_scale());
         let (before, after) = (self.h, self.solved.at(to).horizontal);
@@ -176,10 +168,7 @@ impl Walk<'_> {
 
     fn compare_point(&mut self) {
         let point = self.solved.at(self.s);
-        self.miss(
-            (point.x - self.x).hypot(point.z - self.z),
-            self.length_scale(),
-        );
+        self.miss((point.x - self.x).hypot(point.z - self.z), self.length_scale());
         let force = (point.horizontal - self.h).hypot(point.vertical - self.v);
         self.miss(force, self.force_scale());
         // what is within the tolerance is taken over: far from A, or beyond a heavy section, a part may carry less than the

@@ -47,8 +47,7 @@ impl Line {
     }
 
     fn solve(&self) -> Catenary {
-        solve(&self.sections, self.span, self.rise, self.bed)
-            .unwrap_or_else(|e| panic!("{e}: {self:?}"))
+        solve(&self.sections, self.span, self.rise, self.bed).unwrap_or_else(|e| panic!("{e}: {self:?}"))
     }
 
     fn length(&self) -> f64 {

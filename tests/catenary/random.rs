@@ -40,11 +40,7 @@ impl Dice {
     }
 
     /// Up to `most` sections of one order of magnitude; `weight` maps a positive weight to the wanted one.
-    fn sections(
-        &mut self,
-        most: f64,
-        mut weight: impl FnMut(&mut Dice, f64) -> f64,
-    ) -> Vec<Section> {
+    fn sections(&mut self, most: f64, mut weight: impl FnMut(&mut Dice, f64) -> f64) -> Vec<Section> {
         let base = self.section();
         let count = self.between(2.0, most + 1.0) as usize;
         (0..count)
@@ -365,8 +361,7 @@ pub const CLASSES: [(&str, Make); 26] = [
     }),
     ("with both ends on the bed", |d| {
         let section = d.section();
-        let span =
-            section.length * (1.0 + d.decades(-9.0, -0.3) * if d.chance(0.5) { -1.0 } else { 1.0 });
+        let span = section.length * (1.0 + d.decades(-9.0, -0.3) * if d.chance(0.5) { -1.0 } else { 1.0 });
         let bed = Some(Bed {
             height: 0.0,
             friction: friction(d),

@@ -7,11 +7,7 @@ use crate::Line;
 /// Greatest difference of a solved line from a row of reference values: of forces over T at the fairlead (at least the anchor's where
 /// that one is zero), and of positions and lengths over the length [-].
 fn compare_row(row: &std::collections::HashMap<String, String>, bed: Option<Bed>) -> (f64, f64) {
-    let number = |name: &str| -> f64 {
-        row[name]
-            .parse()
-            .unwrap_or_else(|_| panic!("{name} of {row:?}"))
-    };
+    let number = |name: &str| -> f64 { row[name].parse().unwrap_or_else(|_| panic!("{name} of {row:?}")) };
     let section = |i: usize| Section {
         length: number(&format!("L{i}")),
         weight: number(&format!("w{i}")),
@@ -62,15 +58,14 @@ fn compare_row(row: &std::collections::HashMap<String, String>, bed: Option<Bed>
 
 /// Compares every row of a table; prints the greatest difference of every class; returns the number of rows.
 fn compare_table(path: &std::path::Path, tolerance: f64) -> usize {
-    let mut reader =
-        csv::Reader::from_path(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+    let mut reader = csv::Reader::from_path(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
     let mut worst = std::collections::BTreeMap::<String, (usize, f64, f64)>::new();
     let mut rows = 0;
     for row in reader.deserialize() {
         let row: std::collections::HashMap<String, String> = row.expect("a row of the table");
-        let height = row.get("bed_height").map_or(0.0, |height| {
-            height.parse().expect("bed_height is a number")
-        });
+        let height = row
+            .get("bed_height")
+            .map_or(0.0, |height| height.parse().expect("bed_height is a number"));
         let friction = row["CB"].parse().expect("CB is a number");
         let bed = (row["seabed"] == "1").then_some(Bed { height, friction });
         let (force, length) = compare_row(&row, bed);
@@ -92,22 +87,16 @@ fn compare_table(path: &std::path::Path, tolerance: f64) -> usize {
 
 #[test]
 fn every_row_of_the_reference_bank_is_met_to_nine_digits() {
-    let path =
-        std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/reference/catenary.csv");
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/reference/catenary.csv");
     assert!(compare_table(&path, 1e-9) >= 60);
 }
 
 #[test]
 fn every_row_of_the_external_bank_is_met_to_nine_digits() {
     let Some(folder) = std::env::var_os("MOORLINE_REFERENCE") else {
-        println!(
-            "skipped: MOORLINE_REFERENCE does not name the folder that holds catenary_bank.csv"
-        );
+        println!("skipped: MOORLINE_REFERENCE does not name the folder that holds catenary_bank.csv");
         return;
     };
-    let rows = compare_table(
-        &std::path::Path::new(&folder).join("catenary_bank.csv"),
-        1e-9,
-    );
+    let rows = compare_table(&std::path::Path::new(&folder).join("catenary_bank.csv"), 1e-9);
     assert_eq!(rows, 182);
 }

@@ -10,10 +10,7 @@ fn no_argument_shows_the_help() {
     assert_eq!(output.status.code(), Some(2));
     let text = err(&output);
     for command in ["check", "statics", "run", "fmu", "demo"] {
-        assert!(
-            text.contains(&format!("\n  {command} ")),
-            "{command} in {text}"
-        );
+        assert!(text.contains(&format!("\n  {command} ")), "{command} in {text}");
     }
     assert!(text.contains("Exit codes: 0 done, 2 the input is wrong, 1 the computation failed"));
 }
@@ -87,11 +84,7 @@ fn a_mistake_is_shown_with_its_line_and_what_would_be_right() {
         &["run", "wrong.toml", "-o", "r"],
         &["fmu", "wrong.toml", "-o", "x.fmu"],
     ] {
-        let parts = [
-            "wrong.toml:5:1",
-            "axial_stifness = 2505.0",
-            "axial_stiffness",
-        ];
+        let parts = ["wrong.toml:5:1", "axial_stifness = 2505.0", "axial_stiffness"];
         refused(folder.path(), arguments, 2, &parts);
     }
     assert_eq!(names(folder.path()), ["scene.toml", "wrong.toml"]);
@@ -108,12 +101,7 @@ fn what_a_deck_leaves_to_its_host_is_refused_beside_a_scene() {
     ] {
         let refused = |more: &[&str], part: &str| {
             let arguments = [command, &["scene.toml"], more].concat();
-            refused(
-                folder.path(),
-                &arguments,
-                2,
-                &["scene.toml: a scene gives", part],
-            );
+            refused(folder.path(), &arguments, 2, &["scene.toml: a scene gives", part]);
         };
         refused(&["--depth", "300"], "`seabed.depth`");
         refused(&["--at", "platform=1,2,3"], "`position`");

@@ -10,17 +10,9 @@ use super::{done, err, folder, names, refused};
 fn an_fmu_that_cannot_be_placed_is_refused() {
     let folder = folder();
     let fmu = |output: &str, part: &str| {
-        refused(
-            folder.path(),
-            &["fmu", "scene.toml", "-o", output],
-            2,
-            &[part],
-        );
+        refused(folder.path(), &["fmu", "scene.toml", "-o", output], 2, &[part]);
     };
-    fmu(
-        ".",
-        "cannot write .: it is a folder: give the name of a file",
-    );
+    fmu(".", "cannot write .: it is a folder: give the name of a file");
     fmu(
         "nowhere/x.fmu",
         "cannot write nowhere/x.fmu: there is no folder nowhere",
@@ -32,11 +24,7 @@ fn an_fmu_that_cannot_be_placed_is_refused() {
 fn build_library() {
     static BUILT: std::sync::Once = std::sync::Once::new();
     BUILT.call_once(|| {
-        let profile = if cfg!(debug_assertions) {
-            "dev"
-        } else {
-            "release"
-        };
+        let profile = if cfg!(debug_assertions) { "dev" } else { "release" };
         let output = Command::new(env!("CARGO"))
             .args([
                 "build",
@@ -61,10 +49,7 @@ fn an_fmu_of_either_version_is_one_whole_file() {
     for version in ["2", "3"] {
         let target = format!("rope{version}.fmu");
         let arguments = ["fmu", "scene.toml", "-o", &target, "--fmi", version];
-        assert_eq!(
-            done(folder.path(), &arguments),
-            format!("written to {target}\n")
-        );
+        assert_eq!(done(folder.path(), &arguments), format!("written to {target}\n"));
         let file = fs::File::open(folder.path().join(&target)).unwrap();
         let mut archive = zip::ZipArchive::new(file).unwrap();
         let mut xml = String::new();
@@ -79,15 +64,9 @@ fn an_fmu_of_either_version_is_one_whole_file() {
             names.iter().any(|name| name.starts_with("binaries/")),
             "{names:?}"
         );
-        assert!(
-            names.contains(&"resources/scene.toml".to_string()),
-            "{names:?}"
-        );
+        assert!(names.contains(&"resources/scene.toml".to_string()), "{names:?}");
     }
-    assert_eq!(
-        names(folder.path()),
-        ["rope2.fmu", "rope3.fmu", "scene.toml"]
-    );
+    assert_eq!(names(folder.path()), ["rope2.fmu", "rope3.fmu", "scene.toml"]);
 }
 
 #[test]
@@ -121,10 +100,7 @@ fn the_demo_drives_an_fmu_that_gives_the_bits_of_a_run() {
     for table in ["results.csv", "profile.csv"] {
         let read = |of: &str| fs::read_to_string(folder.path().join(of).join(table)).unwrap();
         let (run, demo) = (read("run"), read("moorline-demo"));
-        let differing = run
-            .lines()
-            .zip(demo.lines())
-            .find(|(run, demo)| run != demo);
+        let differing = run.lines().zip(demo.lines()).find(|(run, demo)| run != demo);
         assert_eq!(differing, None, "{table}");
         assert_eq!(run.len(), demo.len());
     }
@@ -147,10 +123,6 @@ fn a_missing_fmu_library_is_named_with_how_to_build_it() {
         .unwrap();
     assert_eq!(output.status.code(), Some(1));
     assert!(err(&output).contains("moorline_fmu"), "{}", err(&output));
-    assert!(
-        err(&output).contains("cargo build --release"),
-        "{}",
-        err(&output)
-    );
+    assert!(err(&output).contains("cargo build --release"), "{}", err(&output));
     assert!(!folder.path().join("x.fmu").exists());
 }

@@ -81,10 +81,7 @@ fn refused(folder: &Path, arguments: &[&str], code: i32, parts: &[&str]) {
         .collect::<Vec<_>>()
         .join(" ");
     for part in parts {
-        assert!(
-            flat.contains(part),
-            "{arguments:?}: no \"{part}\" in\n{message}"
-        );
+        assert!(flat.contains(part), "{arguments:?}: no \"{part}\" in\n{message}");
     }
     assert!(!message.contains("panicked"), "{message}");
     assert!(output.stdout.is_empty(), "{arguments:?}: {}", out(&output));
@@ -93,12 +90,7 @@ fn refused(folder: &Path, arguments: &[&str], code: i32, parts: &[&str]) {
 /// Runs what must be done.
 fn done(folder: &Path, arguments: &[&str]) -> String {
     let output = moorline(folder, arguments);
-    assert_eq!(
-        output.status.code(),
-        Some(0),
-        "{arguments:?}: {}",
-        err(&output)
-    );
+    assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", err(&output));
     out(&output)
 }
 

@@ -12,21 +12,11 @@ fn an_output_folder_that_cannot_be_made_is_refused_before_the_run() {
     let folder = folder();
     fs::write(folder.path().join("taken"), "").unwrap();
     let run = |output: &str, parts: &[&str]| {
-        refused(
-            folder.path(),
-            &["run", "scene.toml", "-o", output],
-            2,
-            parts,
-        );
+        refused(folder.path(), &["run", "scene.toml", "-o", output], 2, parts);
     };
     run("taken", &["taken is a file: give the name of a folder"]);
     run("taken/below", &["cannot make the folder taken/below"]);
-    refused(
-        folder.path(),
-        &["demo", "-o", "taken"],
-        2,
-        &["taken is a file"],
-    );
+    refused(folder.path(), &["demo", "-o", "taken"], 2, &["taken is a file"]);
     assert_eq!(names(folder.path()), ["scene.toml", "taken"]);
 }
 
@@ -80,12 +70,7 @@ fn a_folder_that_takes_no_files_is_refused_before_any_work() {
     let folder = folder();
     let part = "cannot write into the folder /proc: ";
     for command in ["run", "accuracy"] {
-        refused(
-            folder.path(),
-            &[command, "scene.toml", "-o", "/proc"],
-            2,
-            &[part],
-        );
+        refused(folder.path(), &[command, "scene.toml", "-o", "/proc"], 2, &[part]);
     }
     refused(folder.path(), &["demo", "-o", "/proc"], 2, &[part]);
 }
@@ -158,14 +143,8 @@ fn outputs_follow_links_and_replace_nothing_but_regular_files() {
     symlink("/dev/null", at("null")).unwrap();
     symlink("real.toml", at("link.toml")).unwrap();
     for target in ["pipe", "null"] {
-        let what =
-            format!("cannot write {target}: it is a device or a pipe: give the name of a file");
-        refused(
-            folder.path(),
-            &["fmu", "scene.toml", "-o", target],
-            2,
-            &[&what],
-        );
+        let what = format!("cannot write {target}: it is a device or a pipe: give the name of a file");
+        refused(folder.path(), &["fmu", "scene.toml", "-o", target], 2, &[&what]);
         let convert = ["convert", &deck, "--depth", "320", "-o", target];
         refused(folder.path(), &convert, 2, &[&what]);
     }
@@ -173,17 +152,8 @@ fn outputs_follow_links_and_replace_nothing_but_regular_files() {
     let result = moorline(folder.path(), &convert);
     assert_eq!(result.status.code(), Some(0), "{}", err(&result));
     assert!(fs::symlink_metadata(at("link.toml")).unwrap().is_symlink());
-    assert!(
-        fs::read_to_string(at("real.toml"))
-            .unwrap()
-            .contains("[[lines]]")
-    );
-    assert!(
-        fs::symlink_metadata(at("pipe"))
-            .unwrap()
-            .file_type()
-            .is_fifo()
-    );
+    assert!(fs::read_to_string(at("real.toml")).unwrap().contains("[[lines]]"));
+    assert!(fs::symlink_metadata(at("pipe")).unwrap().file_type().is_fifo());
     assert!(!fs::metadata("/dev/null").unwrap().is_file());
 }
 

@@ -40,10 +40,7 @@ fn run_writes_its_files_and_nothing_else() {
     expected.sort();
     assert_eq!(names(folder.path()), expected);
     let (header, rows) = table(&folder.path().join("out/results.csv"));
-    assert_eq!(
-        header[..4],
-        ["time", "fairlead.x", "fairlead.y", "fairlead.z"]
-    );
+    assert_eq!(header[..4], ["time", "fairlead.x", "fairlead.y", "fairlead.z"]);
     assert!(header.contains(&"line1.tension_b".to_string()));
     assert_eq!(rows.len(), 11);
     assert_eq!(rows[10][0], 1.0);
@@ -51,9 +48,7 @@ fn run_writes_its_files_and_nothing_else() {
     assert_eq!(units, header);
     let text = fs::read_to_string(folder.path().join("out/results.csv")).unwrap();
     let last = text.lines().last().unwrap().split(',');
-    let steps = last
-        .zip(&header)
-        .find(|(_, name)| *name == "solver.substeps");
+    let steps = last.zip(&header).find(|(_, name)| *name == "solver.substeps");
     assert!(steps.unwrap().0.parse::<usize>().is_ok(), "{text}");
 }
 
@@ -61,18 +56,13 @@ fn run_writes_its_files_and_nothing_else() {
 fn header_of_units(path: &Path) -> (Vec<String>, Vec<String>) {
     let mut reader = csv::Reader::from_path(path).unwrap();
     let rows = reader.records().map(Result::unwrap);
-    rows.map(|row| (row[0].to_string(), row[1].to_string()))
-        .unzip()
+    rows.map(|row| (row[0].to_string(), row[1].to_string())).unzip()
 }
 
 #[test]
 fn profiles_are_written_where_the_scene_asks() {
     let folder = folder();
-    fs::write(
-        folder.path().join("p.toml"),
-        format!("{SCENE}profile = true\n"),
-    )
-    .unwrap();
+    fs::write(folder.path().join("p.toml"), format!("{SCENE}profile = true\n")).unwrap();
     done(folder.path(), &["run", "p.toml", "-o", "out"]);
     let text = fs::read_to_string(folder.path().join("out/profile.csv")).unwrap();
     assert!(text.starts_with("time,line,node,s,x,y,z,tension\n0.0,line1,0,0.0,0.0,0.0,0.0,"));
@@ -93,10 +83,7 @@ fn a_second_run_replaces_the_first_and_gives_the_same_numbers() {
 /// The table's head, and its rows of a run that follows the scene's motion exactly and of one driven as by a host in steps of `step` [s].
 fn exact_and_host(folder: &TempDir, scene: &str, step: &str) -> (Vec<String>, [Vec<Vec<f64>>; 2]) {
     let run = |output: &str, more: &[&str]| {
-        done(
-            folder.path(),
-            &[&["run", scene, "-o", output], more].concat(),
-        );
+        done(folder.path(), &[&["run", scene, "-o", output], more].concat());
         table(&folder.path().join(output).join("results.csv"))
     };
     let (header, exact) = run("exact", &[]);
@@ -147,14 +134,7 @@ fn a_communication_step_sets_the_rows() {
     let folder = folder();
     done(
         folder.path(),
-        &[
-            "run",
-            "scene.toml",
-            "-o",
-            "out",
-            "--communication-step",
-            "0.3",
-        ],
+        &["run", "scene.toml", "-o", "out", "--communication-step", "0.3"],
     );
     let (_, rows) = table(&folder.path().join("out/results.csv"));
     let times: Vec<f64> = rows.iter().map(|row| row[0]).collect();
@@ -184,10 +164,7 @@ fn a_run_that_leaves_a_table_is_remarked_on_once_with_its_name_and_its_time() {
             "table = [[0.0, 0.0, 0.0, 0.0], [0.5, 0.4, 0.0, 0.0]]",
         )
         .replace("position = [0.0, 0.0, 0.0]", "position = [0.0, 0.0, -20.0]")
-        .replace(
-            "position = [14.0, 0.0, 0.0]",
-            "position = [14.0, 0.0, -20.0]",
-        )
+        .replace("position = [14.0, 0.0, 0.0]", "position = [14.0, 0.0, -20.0]")
         + "[water]\ndensity = 1025.0\ncurrent = { profile = [[0.0, 0.1, 0.0], [-10.0, 0.0, 0.0]] }\n\
            [seabed]\ndepth = 21.0\ngrid = { x = [0.0, 5.0], y = [-5.0, 5.0], depth = [[21.0, 21.1], [21.0, 21.0]] }\n";
     let said = remarks(&folder, &scene, &["-o", "out"]);
@@ -216,11 +193,7 @@ fn a_run_that_stays_within_its_tables_says_nothing_of_them() {
         );
     let said = remarks(&folder, &scene, &["-o", "out"]);
     assert!(!said.contains("table") && !said.contains("row"), "{said}");
-    fs::write(
-        folder.path().join("m.csv"),
-        "time,x,y,z\n0,0,0,0\n0.4,0.1,0,0\n",
-    )
-    .unwrap();
+    fs::write(folder.path().join("m.csv"), "time,x,y,z\n0,0,0,0\n0.4,0.1,0,0\n").unwrap();
     let said = remarks(
         &folder,
         &scene,

@@ -18,12 +18,7 @@ fn an_equilibrium_that_does_not_exist_is_a_computation_that_failed() {
     let parts = ["error: line \"line1\"", "lower the load"];
     refused(folder.path(), &["statics", "soft.toml"], 1, &parts);
     refused(folder.path(), &["run", "soft.toml", "-o", "r"], 1, &parts);
-    refused(
-        folder.path(),
-        &["fmu", "soft.toml", "-o", "x.fmu"],
-        1,
-        &parts,
-    );
+    refused(folder.path(), &["fmu", "soft.toml", "-o", "x.fmu"], 1, &parts);
     assert_eq!(names(folder.path()), ["scene.toml", "soft.toml"]);
 }
 
@@ -45,13 +40,7 @@ fn statics_as_json_has_the_documented_keys_and_balances() {
     let text = done(folder().path(), &["statics", "scene.toml", "--json"]);
     let json: serde_json::Value = serde_json::from_str(&text).unwrap();
     let line = &json["lines"][0];
-    for key in [
-        "horizontal",
-        "vertical",
-        "laid_length",
-        "stretched_length",
-        "sag",
-    ] {
+    for key in ["horizontal", "vertical", "laid_length", "stretched_length", "sag"] {
         assert!(line[key].is_f64(), "{key} in {line}");
     }
     let force = |end: &str, axis: usize| line[end]["force"][axis].as_f64().unwrap();
@@ -97,14 +86,8 @@ fn statics_solves_the_equilibrium_whatever_shape_a_run_starts_on() {
     );
     // The catenary of SeaFEM case 11, to what 22 elements leave.
     let horizontal = cell(&out(&output), "line1 horizontal force at end B [N]", 1);
-    assert!(
-        (horizontal / 17.00889855 - 1.0).abs() < 1e-3,
-        "{horizontal}"
-    );
-    let straight = SCENE.replace(
-        "name = \"line1\"",
-        "name = \"line1\"\ninitial = \"straight\"",
-    );
+    assert!((horizontal / 17.00889855 - 1.0).abs() < 1e-3, "{horizontal}");
+    let straight = SCENE.replace("name = \"line1\"", "name = \"line1\"\ninitial = \"straight\"");
     fs::write(folder.path().join("straight.toml"), straight).unwrap();
     let json = |scene: &str| done(folder.path(), &["statics", scene, "--json"]);
     assert_eq!(json("straight.toml"), json("scene.toml"));
@@ -140,10 +123,7 @@ fn what_flies_freely_has_no_equilibrium_to_show() {
         1,
         &["line \"rod\"", "nothing holds this beam"],
     );
-    let run = done(
-        folder.path(),
-        &["run", &scene, "-o", "out", "--duration", "0.2"],
-    );
+    let run = done(folder.path(), &["run", &scene, "-o", "out", "--duration", "0.2"]);
     assert!(run.starts_with("no static equilibrium\n"), "{run}");
 }
 
@@ -156,9 +136,7 @@ fn collect_keys(value: &serde_json::Value, keys: &mut Vec<String>) {
                 collect_keys(value, keys);
             }
         }
-        serde_json::Value::Array(values) => {
-            values.iter().for_each(|value| collect_keys(value, keys))
-        }
+        serde_json::Value::Array(values) => values.iter().for_each(|value| collect_keys(value, keys)),
         _ => {}
     }
 }
@@ -172,9 +150,8 @@ fn every_key_of_the_json_is_documented() {
         let mut keys = Vec::new();
         collect_keys(&serde_json::from_str(&text).unwrap(), &mut keys);
         for key in keys {
-            let written = ["`", "."].map(|before| {
-                ["`", "[]`"].map(|after| page.contains(&format!("{before}{key}{after}")))
-            });
+            let written = ["`", "."]
+                .map(|before| ["`", "[]`"].map(|after| page.contains(&format!("{before}{key}{after}"))));
             assert!(written.concat().contains(&true), "{key}");
         }
     }

@@ -36,9 +36,7 @@ fn snaps_after_slack_peak_as_in_a_converged_run() {
             );
             let turn = |t: &f64| (span[0]..span[1]).contains(t);
             let samples = run.time.iter().zip(&run.tension).filter(|(t, _)| turn(t));
-            let slack = samples
-                .filter(|(_, tension)| **tension < 0.02 * truth)
-                .count();
+            let slack = samples.filter(|(_, tension)| **tension < 0.02 * truth).count();
             assert!(slack > 0, "{what}: slack in every turn");
         }
     }

@@ -19,11 +19,7 @@ const PARTS: [f64; 5] = [0.3, 0.5, 0.7, 0.8, 0.9];
 
 /// The folded chain when its free end should have fallen by [`PARTS`], and how far it has [-].
 fn falling(elements: usize, fold: usize, integrator: Integrator) -> (Run, Vec<f64>) {
-    let scene = by(
-        folded_chain(elements, fold),
-        integrator,
-        0.01 / elements as f64,
-    );
+    let scene = by(folded_chain(elements, fold), integrator, 0.01 / elements as f64);
     Run::watched(&scene, &PARTS.map(fall_time), |now| {
         -now.state().lines[0].position[0].z / CHAIN
     })
@@ -77,11 +73,7 @@ fn a_whip_crack_gains_no_energy() {
         (Integrator::GeneralisedAlpha, 1e-3, 1e-6),
     ] {
         for elements in [40, 80] {
-            let scene = by(
-                folded_chain(elements, 2),
-                integrator,
-                0.01 / elements as f64,
-            );
+            let scene = by(folded_chain(elements, 2), integrator, 0.01 / elements as f64);
             let run = Run::of(&scene, 5.0, 0.005);
             let what = format!("whip of {elements}, {integrator:?}");
             sound(&what, &run, ledger, 17_500.0);

@@ -101,11 +101,7 @@ fn answers(what: &str, scene: &Scene, steps: Vec<f64>, truth: &Run, host: f64) {
     let exact = Run::of_steps(scene, steps.iter().copied());
     let hosted = Run::hosted(scene, steps.into_iter(), say_slow);
     sound(what, &hosted, 2e-2, 1300.0);
-    at_most(
-        host,
-        &format!("{what}, host"),
-        hosted.tension_error(&exact, 50.0),
-    );
+    at_most(host, &format!("{what}, host"), hosted.tension_error(&exact, 50.0));
     let last = |run: &Run| run.tension[run.tension.len() - 1];
     let apart = (last(&exact) / last(truth) - 1.0).abs();
     at_most(1e-3, &format!("{what}, end"), apart);

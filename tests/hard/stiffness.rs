@@ -87,8 +87,7 @@ fn a_hundred_times_harder_bed_takes_the_same_steps_to_the_same_answers() {
 
 #[test]
 fn a_segment_1000_times_shorter_than_its_neighbours_changes_nothing_but_the_steps() {
-    let run =
-        |ratio: f64, integrator| Run::of(&by(short_segment(ratio), integrator, 0.01), 30.0, 0.05);
+    let run = |ratio: f64, integrator| Run::of(&by(short_segment(ratio), integrator, 0.01), 30.0, 0.05);
     let plain = run(0.0, Integrator::Leapfrog);
     let fine = Run::of(&with_elements(short_segment(0.0), 240), 30.0, 0.05);
     let slow = |run: &Run| run.slow_tension_error(&fine, 10.0, 0.5);
@@ -127,11 +126,7 @@ fn a_tonne_on_a_light_rope_swings_as_a_pendulum() {
         at_most(5e-3, &format!("{what}, peak"), peak);
         let pairs = run.tension.iter().zip(&exact);
         let apart = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        at_most(
-            0.02 * CLUMP * G,
-            &format!("{what}, tension at any time"),
-            apart,
-        );
+        at_most(0.02 * CLUMP * G, &format!("{what}, tension at any time"), apart);
     }
 }
 
@@ -156,11 +151,7 @@ fn a_line_almost_without_mass_pulls_as_it_should() {
     for wet in [true, false] {
         for mass in [1e-3, 1e-5] {
             let scene = || nearly_massless(mass, wet);
-            let truth = Run::of(
-                &by(scene(), Integrator::GeneralisedAlpha, 0.002),
-                12.0,
-                0.05,
-            );
+            let truth = Run::of(&by(scene(), Integrator::GeneralisedAlpha, 0.002), 12.0, 0.05);
             // `auto` steps as far as the host does where the line is at rest in every step; the ledger's sums have as many terms
             for (integrator, ledger, steps) in [
                 (Integrator::Leapfrog, 1e-4, 120_000.0), // in water half again by the drag along it
@@ -171,11 +162,7 @@ fn a_line_almost_without_mass_pulls_as_it_should() {
                 let run = Run::of(&by(scene(), integrator, 0.01), 12.0, 0.05);
                 let what = format!("{mass} kg/m, wet {wet}, {integrator:?}");
                 sound(&what, &run, ledger, steps);
-                at_most(
-                    1e-5,
-                    &format!("{what}, tension"),
-                    run.tension_error(&truth, 4.0),
-                );
+                at_most(1e-5, &format!("{what}, tension"), run.tension_error(&truth, 4.0));
             }
         }
     }

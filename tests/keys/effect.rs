@@ -57,10 +57,7 @@ fn table_of(path: &[String]) -> Option<&'static str> {
         [map, _] if map == "motion" => return Some("MotionText"),
         _ => {}
     }
-    let mut names = path
-        .iter()
-        .rev()
-        .filter(|step| step.parse::<usize>().is_err());
+    let mut names = path.iter().rev().filter(|step| step.parse::<usize>().is_err());
     let name = names.next()?;
     if name == "initial" {
         return None; // a choice with a value
@@ -77,9 +74,7 @@ fn objects(value: &Value, path: &mut Vec<String>, found: &mut Vec<Vec<String>>) 
         path.pop();
     };
     match value {
-        Value::Table(table) => table
-            .iter()
-            .for_each(|(key, value)| inside(key.clone(), value)),
+        Value::Table(table) => table.iter().for_each(|(key, value)| inside(key.clone(), value)),
         Value::Array(array) => array
             .iter()
             .enumerate()
@@ -105,10 +100,7 @@ fn rendered(path: &[String]) -> String {
         Ok(_) => format!("[{step}]"),
         Err(_) => format!(".{step}"),
     });
-    steps
-        .collect::<String>()
-        .trim_start_matches('.')
-        .to_string()
+    steps.collect::<String>().trim_start_matches('.').to_string()
 }
 
 /// What a scene comes to.
@@ -181,14 +173,7 @@ fn outcome(folder: &Path, scene: &Value) -> Result<Outcome, Refusal> {
 /// Moves, releases and pays out what a host may.
 fn drive(simulation: &mut Simulation, t: f64) {
     let model = simulation.model().clone();
-    let pose = [
-        0.3 * t,
-        0.1 * t * t,
-        0.5 * t * t,
-        0.1 * t,
-        0.02 * t,
-        0.2 * t,
-    ];
+    let pose = [0.3 * t, 0.1 * t * t, 0.5 * t * t, 0.1 * t, 0.02 * t, 0.2 * t];
     for body in model.bodies() {
         let moved = match body {
             Body::Point(point) => matches!(model.points[point].role, Role::Coupled { .. }),
@@ -206,12 +191,7 @@ fn drive(simulation: &mut Simulation, t: f64) {
     }
 }
 
-fn collect(
-    simulation: &Simulation,
-    interface: &Interface,
-    channels: &Channels,
-    found: &mut Outcome,
-) {
+fn collect(simulation: &Simulation, interface: &Interface, channels: &Channels, found: &mut Outcome) {
     let (names, numbers) = (&mut found.names, &mut found.numbers);
     for variable in interface.outputs() {
         // steps are how results are found, and no result
@@ -232,19 +212,14 @@ fn collect(
     for (index, line) in simulation.state().lines.iter().enumerate() {
         numbers.extend(line.position.iter().flat_map(|r| [r.x, r.y, r.z]));
         let bending = simulation.bending(index).unwrap_or_default();
-        numbers.extend(
-            bending
-                .iter()
-                .flat_map(|node| [node.curvature, node.moment]),
-        );
+        numbers.extend(bending.iter().flat_map(|node| [node.curvature, node.moment]));
     }
     let points = 0..simulation.model().points.len();
     numbers.extend(points.flat_map(|point| simulation.end_force(point)));
 }
 
 fn differ(a: &Outcome, b: &Outcome) -> bool {
-    let apart =
-        |(a, b): (&f64, &f64)| a.is_nan() != b.is_nan() || (a - b).abs() > 1e-12 * a.abs().max(1.0);
+    let apart = |(a, b): (&f64, &f64)| a.is_nan() != b.is_nan() || (a - b).abs() > 1e-12 * a.abs().max(1.0);
     let mut pairs = a.numbers.iter().zip(&b.numbers);
     a.names != b.names || a.numbers.len() != b.numbers.len() || pairs.any(apart)
 }
@@ -281,18 +256,12 @@ fn names(text: &str, known: &[&str]) -> bool {
     let is_name = |c: char| c.is_alphanumeric() || c == '_';
     known.iter().filter(|name| !name.is_empty()).any(|name| {
         let spaced = name.replace('_', " ");
-        text.split(|c| !is_name(c)).any(|word| word == *name)
-            || name.contains('_') && text.contains(&spaced)
+        text.split(|c| !is_name(c)).any(|word| word == *name) || name.contains('_') && text.contains(&spaced)
     })
 }
 
 /// Compares a changed key of an object of a name with what was before.
-fn fate(
-    found: Result<Outcome, Refusal>,
-    at: &str,
-    [name, key]: [&str; 2],
-    before: &Outcome,
-) -> Fate {
+fn fate(found: Result<Outcome, Refusal>, at: &str, [name, key]: [&str; 2], before: &Outcome) -> Fate {
     let after = match found {
         Ok(after) => after,
         Err(Refusal::Failure(error)) => return Fate::Told(error),
@@ -312,10 +281,7 @@ fn fate(
         here && note.text.contains(&format!("`{key}`")) && note.text.contains("nothing")
     };
     let titled = key == "title" && after.loaded.scene.in_words() != before.loaded.scene.in_words();
-    match (
-        after.notes.iter().find(about),
-        differ(&after, before) || titled,
-    ) {
+    match (after.notes.iter().find(about), differ(&after, before) || titled) {
         (Some(note), true) => Fate::Silent(format!("acts, against the note {note}")),
         (Some(note), false) => Fate::Told(note.to_string()),
         (None, true) => Fate::Acts,
@@ -355,9 +321,7 @@ struct Found {
 fn scene(list: &Table, row: &Value) -> (Value, Vec<String>) {
     let chosen = |key: &str, usual: &str| {
         let name = row.get(key).and_then(Value::as_str).unwrap_or(usual);
-        list[key]
-            .get(name)
-            .unwrap_or_else(|| panic!("no {key} {name}"))
+        list[key].get(name).unwrap_or_else(|| panic!("no {key} {name}"))
     };
     let mut text = chosen("layout", "moored").as_str().unwrap().to_string();
     for (key, usual) in [("water", "still"), ("seabed", "bed"), ("line", "chain")] {
@@ -365,21 +329,13 @@ fn scene(list: &Table, row: &Value) -> (Value, Vec<String>) {
     }
     let integrator = row.get("integrator").and_then(Value::as_str);
     text = text.replace("$integrator", integrator.unwrap_or("leapfrog"));
-    for change in row
-        .get("change")
-        .and_then(Value::as_array)
-        .into_iter()
-        .flatten()
-    {
+    for change in row.get("change").and_then(Value::as_array).into_iter().flatten() {
         text = text.replace(change[0].as_str().unwrap(), change[1].as_str().unwrap());
     }
     let scene = text
         .parse::<Table>()
         .unwrap_or_else(|error| panic!("{text}: {error}"));
-    (
-        scene.into(),
-        chosen("objects", "all").clone().try_into().unwrap(),
-    )
+    (scene.into(), chosen("objects", "all").clone().try_into().unwrap())
 }
 
 /// Tries every value of every key of the objects of a scene that are to be tried.
@@ -389,14 +345,10 @@ fn try_all(folder: &Path, name: &str, (scene, tried): (Value, Vec<String>), foun
     let (mut paths, tables) = (Vec::new(), tables());
     objects(&scene, &mut Vec::new(), &mut paths);
     paths.retain(|path| tried.iter().any(|start| path.join(".").starts_with(start)));
-    for (path, table) in paths
-        .iter()
-        .filter_map(|path| Some((path, table_of(path)?)))
-    {
+    for (path, table) in paths.iter().filter_map(|path| Some((path, table_of(path)?))) {
         let (_, keys) = tables.iter().find(|(known, _)| *known == table).unwrap();
         let values = |key| values.get(table).and_then(|keys| keys.get(key));
-        let values =
-            |key| values(key).unwrap_or_else(|| panic!("no value of {table}.{key} to try"));
+        let values = |key| values(key).unwrap_or_else(|| panic!("no value of {table}.{key} to try"));
         for (key, value) in keys
             .iter()
             .flat_map(|key| values(*key).iter().map(move |value| (*key, value)))
@@ -434,9 +386,7 @@ fn every_key_of_every_object_changes_a_result_or_is_refused_or_noted() {
     let mut wrong = found.silent;
     for [scene, change, _] in except {
         let count = wrong.len();
-        wrong.retain(|silent| {
-            !(silent.starts_with(&scene) && silent.contains(&format!(": {change}")))
-        });
+        wrong.retain(|silent| !(silent.starts_with(&scene) && silent.contains(&format!(": {change}"))));
         if wrong.len() == count {
             wrong.push(format!("{scene}: {change} is no exception"));
         }

@@ -55,9 +55,7 @@ fn code(text: &str) -> BTreeSet<&str> {
 
 /// The rows of the tables under "Every key": what they are about, and the words in them.
 fn listed() -> BTreeMap<&'static str, BTreeSet<&'static str>> {
-    let (_, list) = PAGE
-        .split_once("\n## Every key\n")
-        .expect("the page has a list");
+    let (_, list) = PAGE.split_once("\n## Every key\n").expect("the page has a list");
     let rows = list.lines().filter(|line| line.starts_with("| "));
     let cells = rows.filter_map(|row| row.trim_matches(['|', ' ']).split_once(" | "));
     cells
@@ -73,20 +71,12 @@ fn of_the_reader() -> Vec<Known> {
 #[test]
 fn the_keys_of_the_page_are_those_of_the_reader() {
     let (listed, known) = (listed(), of_the_reader());
-    assert_eq!(
-        listed.len(),
-        known.len(),
-        "tables on the page, and of the reader"
-    );
+    assert_eq!(listed.len(), known.len(), "tables on the page, and of the reader");
     for (table, keys) in known {
         let name = NAMES.iter().find(|(of, _)| *of == table);
         let (_, name) = name.unwrap_or_else(|| panic!("{table} has no row on the page"));
         // `dynamics` is another name of `integrator`
-        let keys: BTreeSet<&str> = keys
-            .iter()
-            .copied()
-            .filter(|key| *key != "dynamics")
-            .collect();
+        let keys: BTreeSet<&str> = keys.iter().copied().filter(|key| *key != "dynamics").collect();
         assert_eq!(listed[name], keys, "{table}, \"{name}\" on the page");
     }
 }
@@ -128,9 +118,7 @@ fn every_key_in_an_example_of_the_page_is_one_of_the_reader() {
         let commented = line.trim_start_matches("# ");
         let code = commented.split('#').next().unwrap_or_default();
         for before in code.split('=').rev().skip(1) {
-            let key = before
-                .rsplit([' ', '{', ',', '.'])
-                .find(|word| !word.is_empty());
+            let key = before.rsplit([' ', '{', ',', '.']).find(|word| !word.is_empty());
             let key = key.unwrap_or_default();
             // a motion is given by the name of what moves
             assert!(

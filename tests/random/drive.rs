@@ -35,13 +35,11 @@ impl Drive {
         let mut dice = plan.dice(tape, part::DRIVE);
         let follows = !dice.chance(0.5);
         let points = scene.points.iter().enumerate();
-        let coupled =
-            points.filter(|(_, point)| point.kind == PointKind::Coupled && point.on.is_none());
+        let coupled = points.filter(|(_, point)| point.kind == PointKind::Coupled && point.on.is_none());
         let points = coupled.map(|(index, point)| (Body::Point(index), &point.name));
         let vessels = scene.vessels.iter().enumerate();
         let vessels = vessels.map(|(index, vessel)| (Body::Vessel(index), &vessel.name));
-        let moved =
-            |(body, name): (Body, &String)| Some((body, Motion::new(scene.motion.get(name)?)));
+        let moved = |(body, name): (Body, &String)| Some((body, Motion::new(scene.motion.get(name)?)));
         let winch = |(index, line): (usize, &moorline::scene::Line)| {
             let winch = line.winch.as_ref()?;
             Some((index, 0.9 * winch.length_max))

@@ -1,8 +1,8 @@
 //! What a scene has: the physics that random scenes must cover.
 
 use moorline::scene::{
-    ContactLaw, InitialShape, Integrator, LineModel, LineType, MotionPath, PointKind,
-    Reconstruction, RestShape, Scene, Strain,
+    ContactLaw, InitialShape, Integrator, LineModel, LineType, MotionPath, PointKind, Reconstruction,
+    RestShape, Scene, Strain,
 };
 
 use crate::run::Case;
@@ -53,9 +53,7 @@ pub fn used_types(scene: &Scene) -> Vec<&LineType> {
 
 /// The names of those that hold.
 fn held<const N: usize>(list: [(&'static str, bool); N]) -> impl Iterator<Item = &'static str> {
-    list.into_iter()
-        .filter(|(_, has)| *has)
-        .map(|(name, _)| name)
+    list.into_iter().filter(|(_, has)| *has).map(|(name, _)| name)
 }
 
 fn surroundings(scene: &Scene) -> Vec<&'static str> {
@@ -64,8 +62,7 @@ fn surroundings(scene: &Scene) -> Vec<&'static str> {
     let seas = water
         .and_then(|water| water.waves.as_ref())
         .map(|waves| &waves.seas[..]);
-    let sea =
-        |what: fn(&moorline::scene::Sea) -> bool| seas.is_some_and(|seas| seas.iter().any(what));
+    let sea = |what: fn(&moorline::scene::Sea) -> bool| seas.is_some_and(|seas| seas.iter().any(what));
     let bed = scene.seabed.as_ref();
     held([
         ("dry", water.is_none()),
@@ -96,10 +93,7 @@ fn surroundings(scene: &Scene) -> Vec<&'static str> {
         ("seabed: level", bed.is_some_and(|bed| bed.is_level())),
         ("seabed: slope", bed.is_some_and(|bed| bed.slope.is_some())),
         ("seabed: grid", bed.is_some_and(|bed| bed.grid.is_some())),
-        (
-            "seabed: friction",
-            bed.is_some_and(|bed| bed.friction.acts()),
-        ),
+        ("seabed: friction", bed.is_some_and(|bed| bed.friction.acts())),
         (
             "seabed: as given",
             bed.is_some_and(|bed| bed.contact == ContactLaw::AsGiven),
@@ -112,14 +106,8 @@ fn types(used: &[&LineType]) -> Vec<&'static str> {
     let any = |what: fn(&LineType) -> bool| used.iter().any(|kind| what(kind));
     let stiffness = |kind: &LineType| kind.axial_stiffness.unwrap_or(1e6);
     held([
-        (
-            "EA below 1e5 N",
-            used.iter().any(|kind| stiffness(kind) < 1e5),
-        ),
-        (
-            "EA above 1e11 N",
-            used.iter().any(|kind| stiffness(kind) > 1e11),
-        ),
+        ("EA below 1e5 N", used.iter().any(|kind| stiffness(kind) < 1e5)),
+        ("EA above 1e11 N", used.iter().any(|kind| stiffness(kind) > 1e11)),
         ("BA none", any(|kind| kind.axial_damping == Some(0.0))),
         ("BA given", any(|kind| kind.axial_damping > Some(0.0))),
         ("damping ratio", any(|kind| kind.damping_ratio.is_some())),
@@ -135,10 +123,7 @@ fn types(used: &[&LineType]) -> Vec<&'static str> {
             any(|kind| matches!(kind.strain, Strain::Logarithmic(_))),
         ),
         ("tension table", any(|kind| kind.tension_strain.is_some())),
-        (
-            "viscoelastic rope",
-            any(|kind| kind.dynamic_stiffness.is_some()),
-        ),
+        ("viscoelastic rope", any(|kind| kind.dynamic_stiffness.is_some())),
         (
             "bending",
             any(|kind| kind.model == LineModel::Cable && bends(kind)),
@@ -168,10 +153,7 @@ fn bodies(scene: &Scene) -> Vec<&'static str> {
             scene.points.iter().any(|point| point.force.is_some()),
         ),
         ("vessel", !scene.vessels.is_empty()),
-        (
-            "motion: table",
-            path(|path| matches!(path, MotionPath::Table(_))),
-        ),
+        ("motion: table", path(|path| matches!(path, MotionPath::Table(_)))),
         (
             "motion: harmonic",
             path(|path| matches!(path, MotionPath::Harmonic(_))),
@@ -185,18 +167,9 @@ fn lines(scene: &Scene) -> Vec<&'static str> {
     let any = |what: fn(&moorline::scene::Line) -> bool| scene.lines.iter().any(what);
     held([
         ("several sections", any(|line| line.sections.len() > 1)),
-        (
-            "elements chosen",
-            any(|line| line.sections[0].elements.is_none()),
-        ),
-        (
-            "given shape",
-            any(|line| line.initial != InitialShape::Static),
-        ),
-        (
-            "bent at rest",
-            any(|line| line.rest_shape == RestShape::Initial),
-        ),
+        ("elements chosen", any(|line| line.sections[0].elements.is_none())),
+        ("given shape", any(|line| line.initial != InitialShape::Static)),
+        ("bent at rest", any(|line| line.rest_shape == RestShape::Initial)),
         (
             "clamped",
             any(|line| line.clamped_a.is_some() || line.clamped_b.is_some()),

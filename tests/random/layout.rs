@@ -4,8 +4,8 @@ use std::f64::consts::{PI, TAU};
 
 use moorline::scene::channel::LineEnd;
 use moorline::scene::{
-    AngleOrder, Axis, Break, InitialShape, Integrator, Line, LineType, Point, PointForce,
-    PointKind, PointMoment, RestShape, Scene, Section, TimeFunction, Vessel, Winch,
+    AngleOrder, Axis, Break, InitialShape, Integrator, Line, LineType, Point, PointForce, PointKind,
+    PointMoment, RestShape, Scene, Section, TimeFunction, Vessel, Winch,
 };
 use nalgebra::{Rotation3, Vector3};
 
@@ -107,13 +107,7 @@ impl Layout<'_> {
     }
 
     /// A point on a vessel, the last one or a new one.
-    fn carried(
-        &mut self,
-        dice: &mut Dice,
-        motion: &mut Dice,
-        name: String,
-        place: Vector3<f64>,
-    ) -> Point {
+    fn carried(&mut self, dice: &mut Dice, motion: &mut Dice, name: String, place: Vector3<f64>) -> Point {
         if self.scene.vessels.is_empty() || dice.chance(0.4) {
             let number = self.scene.vessels.len();
             let reach = 0.1 * self.plan.size;
@@ -122,13 +116,7 @@ impl Layout<'_> {
                 motion_angles: AngleOrder::Zyx,
                 name: format!("vessel{number}"),
                 position: (place + Vector3::from(offset)).into(),
-                attitude: [0.0; 3].map(|_: f64| {
-                    if dice.chance(0.5) {
-                        dice.within(PI)
-                    } else {
-                        0.0
-                    }
-                }),
+                attitude: [0.0; 3].map(|_: f64| if dice.chance(0.5) { dice.within(PI) } else { 0.0 }),
             };
             let path = motions::motion(motion, self.plan, true);
             self.scene.motion.insert(vessel.name.clone(), path);
@@ -244,10 +232,7 @@ impl Layout<'_> {
     fn is_stiff(&self) -> bool {
         let weight = self.plan.gravity.max(1.0) * self.plan.size;
         let stiff = |kind: &LineType| {
-            let stiffness = kind
-                .axial_stiffness
-                .or(kind.dynamic_stiffness)
-                .unwrap_or(0.0);
+            let stiffness = kind.axial_stiffness.or(kind.dynamic_stiffness).unwrap_or(0.0);
             stiffness > 1e4 * kind.mass.unwrap_or(1.0) * weight
         };
         self.scene.line_types.values().any(stiff)
@@ -313,9 +298,7 @@ impl Layout<'_> {
             _ if still => InitialShape::Static,
             11 if beam => InitialShape::Static,
             10 if chord.norm() > 0.0 => InitialShape::Straight,
-            11 => InitialShape::Parabola(
-                chord.norm().max(1e-3) * (0.375 * (slack - 1.0).max(1e-4)).sqrt(),
-            ),
+            11 => InitialShape::Parabola(chord.norm().max(1e-3) * (0.375 * (slack - 1.0).max(1e-4)).sqrt()),
             _ => InitialShape::Static,
         };
         if self.plan.resists == Resists::Stretch {

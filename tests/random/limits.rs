@@ -20,8 +20,8 @@ use moorline::model::End;
 use moorline::physics::catenary::is_laid_from_b;
 use moorline::scene::{
     Current, Friction, HarmonicMotion, InitialShape, Integrator, Line, LineType, MotionPath, Point,
-    PointForce, PointKind, RegularWave, Scene, Sea, Seabed, Section, SpectrumKind, Threads,
-    TimeFunction, Water, WaveComponents, Waves,
+    PointForce, PointKind, RegularWave, Scene, Sea, Seabed, Section, SpectrumKind, Threads, TimeFunction,
+    Water, WaveComponents, Waves,
 };
 use moorline::simulation::Simulation;
 use nalgebra::{Rotation3, Vector3};
@@ -377,23 +377,14 @@ fn without_density(base: &Base) -> Option<(Scene, Gap)> {
         waves: None,
         surface,
     };
-    limit(
-        base,
-        |scene| scene.water = None,
-        |scene| scene.water = Some(thin),
-    )
+    limit(base, |scene| scene.water = None, |scene| scene.water = Some(thin))
 }
 
 fn with_current(base: &Base, current: Current) -> Option<(Scene, Gap)> {
     base.water()?;
     limit(
         base,
-        |scene| {
-            scene
-                .water
-                .iter_mut()
-                .for_each(|water| water.current = None)
-        },
+        |scene| scene.water.iter_mut().for_each(|water| water.current = None),
         |scene| {
             scene
                 .water
@@ -509,11 +500,7 @@ fn without_coefficients(base: &Base) -> Option<(Scene, Gap)> {
             }
         });
     };
-    limit(
-        base,
-        |scene| give(scene, None),
-        |scene| give(scene, Some(1e-13)),
-    )
+    limit(base, |scene| give(scene, None), |scene| give(scene, Some(1e-13)))
 }
 
 fn without_point_bodies(base: &Base) -> Option<(Scene, Gap)> {
@@ -559,9 +546,7 @@ fn without_motion(base: &Base) -> Option<(Scene, Gap)> {
                 .into_iter()
                 .chain(scene.vessels.iter().map(|vessel| vessel.name.clone()))
             {
-                scene
-                    .motion
-                    .insert(name, MotionPath::Harmonic(tiny.clone()));
+                scene.motion.insert(name, MotionPath::Harmonic(tiny.clone()));
             }
         },
     )
@@ -626,19 +611,13 @@ fn turned(base: &Base) -> Option<(Scene, Gap)> {
     let mut other = one.clone();
     for point in other.points.iter_mut().filter(|point| point.on.is_none()) {
         point.position = (turn * Vector3::from(point.position)).into();
-        point
-            .motion
-            .iter_mut()
-            .for_each(|path| turned_path(path, trig));
+        point.motion.iter_mut().for_each(|path| turned_path(path, trig));
     }
     for vessel in &mut other.vessels {
         vessel.position = (turn * Vector3::from(vessel.position)).into();
         vessel.attitude[2] += angle;
     }
-    other
-        .motion
-        .values_mut()
-        .for_each(|path| turned_path(path, trig));
+    other.motion.values_mut().for_each(|path| turned_path(path, trig));
     if let Some(bed) = &mut other.seabed {
         bed.slope = bed.slope.map(rotate);
     }
@@ -653,9 +632,7 @@ fn turned(base: &Base) -> Option<(Scene, Gap)> {
             }
         }
         for sea in water.waves.iter_mut().flat_map(|waves| &mut waves.seas) {
-            sea.regular
-                .iter_mut()
-                .for_each(|wave| wave.direction += angle);
+            sea.regular.iter_mut().for_each(|wave| wave.direction += angle);
             if let Some(WaveComponents::Rows(rows)) = &mut sea.components {
                 rows.iter_mut().for_each(|row| row[2] += angle);
             }
@@ -782,13 +759,9 @@ fn reordered_joined(base: &Base) -> Option<(Scene, Gap)> {
 fn beside_a_far_line(base: &Base) -> Option<(Scene, Gap)> {
     let other = base.changed(|scene| {
         let bed = scene.seabed.as_ref();
-        let along = bed
-            .and_then(|bed| bed.slope)
-            .map_or(1.0, |[x, _]| -x.signum()); // down the slope
+        let along = bed.and_then(|bed| bed.slope).map_or(1.0, |[x, _]| -x.signum()); // down the slope
         let [a, b] = [5000.0, 5100.0].map(|x| {
-            let floor = bed.map_or(-100.0, |bed| {
-                surroundings::bed_height(bed, [along * x, 0.0])
-            });
+            let floor = bed.map_or(-100.0, |bed| surroundings::bed_height(bed, [along * x, 0.0]));
             [along * x, 0.0, floor.max(-1e-3 * x)]
         });
         scene

@@ -41,20 +41,14 @@ const LONG: usize = 10_000;
 /// Shares of ledgers that close, and of those to which integrators brought nothing, where a host's steps are equal, where they differ, and where held
 /// points jump to where it says [-], as scenes 0..10 000 were measured to have them.
 const CLOSED_SHARES: [(&str, [[f64; 2]; 3]); 6] = [
-    (
-        "AxialImplicit",
-        [[0.980, 0.978], [0.971, 0.961], [0.747, 0.742]],
-    ),
+    ("AxialImplicit", [[0.980, 0.978], [0.971, 0.961], [0.747, 0.742]]),
     ("Bossak", [[0.998, 0.965], [0.999, 0.932], [0.989, 0.899]]),
     (
         "GeneralisedAlpha",
         [[0.997, 0.966], [0.991, 0.969], [0.997, 0.980]],
     ),
     ("Leapfrog", [[0.975, 0.975], [0.983, 0.983], [0.926, 0.926]]),
-    (
-        "QuasiStatic",
-        [[0.980, 0.980], [0.975, 0.975], [0.965, 0.965]],
-    ),
+    ("QuasiStatic", [[0.980, 0.980], [0.975, 0.975], [0.965, 0.965]]),
     ("several", [[0.978, 0.960], [0.956, 0.942], [0.871, 0.862]]),
 ];
 /// Share of scenes that are too dear to run, as measured on the same [-].
@@ -132,10 +126,7 @@ fn ten_thousand_random_scenes_run_or_say_why_not() {
 #[test]
 #[ignore = "compares the ledger of the scene of the number in SCENE with those of shorter steps"]
 fn one_random_ledger_closes_better_in_shorter_steps() {
-    for number in std::env::var("SCENE")
-        .expect("SCENE is a number")
-        .split(',')
-    {
+    for number in std::env::var("SCENE").expect("SCENE is a number").split(',') {
         let case = survey::case(number.parse().expect("SCENE is a number"));
         let told: Vec<String> = [1.0, 0.5, 0.25].map(|part| told(&case, part)).into();
         println!("{number}: {}", told.join("; "));
@@ -163,9 +154,7 @@ fn told(case: &run::Case, part: f64) -> String {
 #[test]
 #[ignore = "shows the scene of the number in SCENE"]
 fn one_random_scene_keeps_its_claims() {
-    let number = std::env::var("SCENE")
-        .ok()
-        .and_then(|number| number.parse().ok());
+    let number = std::env::var("SCENE").ok().and_then(|number| number.parse().ok());
     let case = survey::case(number.expect("SCENE is a number"));
     println!("{}", case.as_toml());
     println!("{:?}", run::run(&case).expect("no claim is broken"));

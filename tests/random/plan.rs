@@ -79,9 +79,8 @@ impl Plan {
             _ => Resists::Stretch,
         };
         let plain = resists == Resists::Stretch;
-        let winch = dice.chance(0.12)
-            && plain
-            && matches!(integrator, Integrator::Auto | Integrator::Leapfrog);
+        let winch =
+            dice.chance(0.12) && plain && matches!(integrator, Integrator::Auto | Integrator::Leapfrog);
         let alike = resists == Resists::Torsion || !implicit || dice.chance(0.7);
         let law = dice.whole(0, 9);
         Plan {

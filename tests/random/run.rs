@@ -121,9 +121,7 @@ fn steps(case: &Case, simulation: &mut Simulation, account: &mut Account) -> Res
         .read(simulation)
         .map_err(|problem| format!("at rest, {problem}"))?;
     let choices = simulation.choices();
-    account.integrators = choices
-        .map(|choice| format!("{:?}", choice.integrator))
-        .collect();
+    account.integrators = choices.map(|choice| format!("{:?}", choice.integrator)).collect();
     let load = Load::of(simulation);
     let replayed = case.drive.steps.len() / 2;
     let mut memory: Option<Snapshot> = None;
@@ -209,11 +207,7 @@ fn node_cost(integrator: Integrator) -> f64 {
 }
 
 /// Whether a step that failed says why and has left everything as it was.
-fn said_clearly(
-    error: &StepError,
-    before: &Snapshot,
-    simulation: &Simulation,
-) -> Result<(), String> {
+fn said_clearly(error: &StepError, before: &Snapshot, simulation: &Simulation) -> Result<(), String> {
     let mut lines = simulation.model().lines.iter();
     let line = lines.find(|line| line.name == error.line);
     let known = line.is_some_and(|line| error.node <= line.segment_count());

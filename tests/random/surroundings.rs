@@ -3,8 +3,8 @@
 use std::f64::consts::PI;
 
 use moorline::scene::{
-    ContactLaw, Current, DepthGrid, Friction, RegularWave, STANDARD_GRAVITY, Sea, Seabed,
-    SpectrumKind, TimeFunction, Water, WaveComponents, Waves,
+    ContactLaw, Current, DepthGrid, Friction, RegularWave, STANDARD_GRAVITY, Sea, Seabed, SpectrumKind,
+    TimeFunction, Water, WaveComponents, Waves,
 };
 
 use crate::dice::Dice;

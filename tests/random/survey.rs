@@ -124,9 +124,7 @@ impl Survey {
                 scope.spawn(work);
             }
         });
-        survey
-            .into_inner()
-            .expect("no thread panics while it counts")
+        survey.into_inner().expect("no thread panics while it counts")
     }
 
     fn count(&mut self, number: usize, case: &Case, result: Result<Account, String>) {

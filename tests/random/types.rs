@@ -68,11 +68,7 @@ fn stretch(dice: &mut Dice, plan: &Plan, kind: &mut LineType, mass: f64) {
         8 => {
             let [kink, factor] = [dice.log(1e-3, 0.1), dice.log(1.0, 20.0)];
             let knee = stiffness * kink;
-            let rows = vec![
-                [0.0, 0.0],
-                [kink, knee],
-                [2.0 * kink, (1.0 + factor) * knee],
-            ];
+            let rows = vec![[0.0, 0.0], [kink, knee], [2.0 * kink, (1.0 + factor) * knee]];
             kind.tension_strain = Some(TensionStrain { file: None, rows });
         }
         9 => {
@@ -110,10 +106,7 @@ fn stretch(dice: &mut Dice, plan: &Plan, kind: &mut LineType, mass: f64) {
 
 /// What resists bending, and of beams torsion and shear.
 fn bending(dice: &mut Dice, plan: &Plan, kind: &mut LineType, diameter: f64) {
-    let axial = kind
-        .axial_stiffness
-        .or(kind.static_stiffness)
-        .unwrap_or(1e6);
+    let axial = kind.axial_stiffness.or(kind.static_stiffness).unwrap_or(1e6);
     let rod = axial * diameter * diameter / 16.0; // EI of a solid rod [N m²]
     match plan.resists {
         Resists::Stretch => {}

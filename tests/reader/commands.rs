@@ -39,10 +39,7 @@ fn the_command_line_converts_a_deck_with_what_its_host_would_give() {
     ];
     let (code, said, error) = moorline(folder.path(), &placed);
     assert_eq!((code, error.as_str()), (0, ""), "{said}");
-    assert!(
-        said.starts_with("written to farm.toml\nnote: file"),
-        "{said}"
-    );
+    assert!(said.starts_with("written to farm.toml\nnote: file"), "{said}");
     let (code, _, error) = moorline(folder.path(), &["convert", "farm.toml", "-o", "again.toml"]);
     assert_eq!(code, 2);
     assert!(error.contains("is a scene of moorline already"), "{error}");
@@ -61,12 +58,7 @@ fn a_run_of_a_deck_writes_its_channels_beside_moorlines_columns() {
     let (code, _, error) = moorline(folder.path(), &["run", "deck.dat", "-o", "out"]);
     assert_eq!(code, 0, "{error}");
     let mut table = csv::Reader::from_path(folder.path().join("out/results.csv")).unwrap();
-    let header: Vec<String> = table
-        .headers()
-        .unwrap()
-        .iter()
-        .map(str::to_string)
-        .collect();
+    let header: Vec<String> = table.headers().unwrap().iter().map(str::to_string).collect();
     let rows: Vec<Vec<f64>> = table.deserialize().map(Result::unwrap).collect();
     let column = |name: &str| {
         let index = header
@@ -108,9 +100,7 @@ fn a_map_deck_runs_through_equilibria_without_trials_of_elements() {
     let last = table.records().last().unwrap().unwrap();
     let tension: f64 = last[index.unwrap()].parse().unwrap();
     let mut moved = deep();
-    moved
-        .positions
-        .insert("vessel".to_string(), [4.0, 0.0, 0.0]);
+    moved.positions.insert("vessel".to_string(), [4.0, 0.0, 0.0]);
     let there = load_bytes(MAP.as_bytes(), &moved).unwrap_or_else(|e| panic!("{}", e.list()));
     let exact = Simulation::new(&there.scene).unwrap();
     let exact = exact.catenary(0).unwrap().tension_b();

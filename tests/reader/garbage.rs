@@ -23,9 +23,7 @@ fn number_cells(text: &str) -> Vec<(usize, usize)> {
             .any(|word| upper.contains(word));
         } else if inside {
             let words = line.split('#').next().unwrap().split_whitespace();
-            let numbers = words
-                .enumerate()
-                .filter(|(_, word)| word.parse::<f64>().is_ok());
+            let numbers = words.enumerate().filter(|(_, word)| word.parse::<f64>().is_ok());
             cells.extend(numbers.map(|(word, _)| (number, word)));
         }
     }
@@ -116,10 +114,7 @@ fn decks_cut_swapped_and_scrambled_never_panic_and_never_hang() {
                 let text = String::from_utf8(bytes).unwrap();
                 let lines: Vec<&str> = text.lines().collect();
                 let drop = chance.below(lines.len());
-                let kept = lines
-                    .iter()
-                    .enumerate()
-                    .filter(|(number, _)| *number != drop);
+                let kept = lines.iter().enumerate().filter(|(number, _)| *number != drop);
                 bytes = kept
                     .map(|(_, line)| *line)
                     .collect::<Vec<_>>()
@@ -152,9 +147,7 @@ fn files_that_are_nothing_are_refused() {
         b"---",
         b"\x89PNG\r\n",
     ] {
-        let error = load_bytes(bytes, &Supplement::default())
-            .unwrap_err()
-            .list();
+        let error = load_bytes(bytes, &Supplement::default()).unwrap_err().list();
         assert!(error.contains("input"), "{error}");
     }
     let loops = with(

@@ -78,11 +78,7 @@ fn with(text: &str, old: &str, new: &str) -> String {
 }
 
 fn notes(loaded: &LoadedScene) -> String {
-    loaded
-        .notes
-        .iter()
-        .map(|note| format!("{note}\n"))
-        .collect()
+    loaded.notes.iter().map(|note| format!("{note}\n")).collect()
 }
 
 fn point<'s>(scene: &'s Scene, name: &str) -> &'s moorline::scene::Point {

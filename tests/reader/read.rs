@@ -3,8 +3,7 @@
 use std::fs;
 
 use moorline::scene::{
-    Drive, Friction, InitialShape, Integrator, LoadedScene, PointKind, Scene, TimeFunction, load,
-    load_with,
+    Drive, Friction, InitialShape, Integrator, LoadedScene, PointKind, Scene, TimeFunction, load, load_with,
 };
 
 use crate::*;
@@ -20,14 +19,8 @@ fn an_openfast_deck_is_read_as_three_lines_on_a_vessel() {
     let chain = &scene.line_types["chain"];
     assert_eq!((chain.mass, chain.diameter), (Some(113.35), Some(0.0766)));
     assert_eq!(chain.axial_stiffness, Some(7.536e8));
-    assert_eq!(
-        (chain.axial_damping, chain.damping_ratio),
-        (None, Some(0.8))
-    );
-    assert_eq!(
-        (chain.drag_normal, chain.drag_tangential),
-        (Some(2.0), Some(0.4))
-    );
+    assert_eq!((chain.axial_damping, chain.damping_ratio), (None, Some(0.8)));
+    assert_eq!((chain.drag_normal, chain.drag_tangential), (Some(2.0), Some(0.4)));
     assert_eq!(chain.added_mass_normal, Some(0.8));
     assert_eq!(chain.added_mass_tangential, Some(0.25));
     assert_eq!(chain.bending_stiffness, None);
@@ -127,9 +120,7 @@ fn the_words_for_a_deck_tell_of_its_vessel_and_of_where_points_are_on_it() {
     // In its body's frame the point is above z = 0, but the body lies deep, and turned.
     assert!(!notes(&read("moordyn_c.txt")).contains("above z = 0"));
     assert!(
-        words.contains(
-            "line1: from rod1a to point7, 160 m of cable in 16 elements; 27.902 m longer"
-        ),
+        words.contains("line1: from rod1a to point7, 160 m of cable in 16 elements; 27.902 m longer"),
         "{words}"
     );
 }
@@ -145,10 +136,7 @@ fn the_two_versions_of_a_deck_are_the_same_scene() {
     assert_eq!((buoy.mass, buoy.volume), (Some(500.0), Some(2.0)));
     assert_eq!((buoy.drag_area, buoy.added_mass), (Some(1.5), Some(0.6)));
     let force = buoy.force.as_ref().unwrap();
-    assert_eq!(
-        (&force.x, &force.z),
-        (&None, &Some(TimeFunction::Constant(1e3)))
-    );
+    assert_eq!((&force.x, &force.z), (&None, &Some(TimeFunction::Constant(1e3))));
     assert_eq!(one.scene.output.interval, 0.02);
 }
 
@@ -159,15 +147,9 @@ fn a_deck_in_the_style_of_moordyn_c_is_read_with_its_body_rod_and_coupled_point(
         (scene.gravity, scene.water.as_ref().unwrap().density),
         (9.81, 1028.0)
     );
-    assert_eq!(
-        scene.seabed.as_ref().unwrap().friction,
-        Friction::isotropic(0.4)
-    );
+    assert_eq!(scene.seabed.as_ref().unwrap().friction, Friction::isotropic(0.4));
     let body = &scene.vessels[0];
-    assert_eq!(
-        (body.name.as_str(), body.position),
-        ("body1", [0.0, 0.0, -20.0])
-    );
+    assert_eq!((body.name.as_str(), body.position), ("body1", [0.0, 0.0, -20.0]));
     assert!((body.attitude[2] - std::f64::consts::FRAC_PI_2).abs() < 1e-15);
     assert_eq!(point(&scene, "point7").on.as_deref(), Some("body1"));
     let coupled = point(&scene, "point2");
@@ -246,10 +228,7 @@ fn a_farm_stands_where_its_host_says() {
         .iter()
         .map(|v| (v.name.as_str(), v.position))
         .collect();
-    assert_eq!(
-        stands,
-        [("turbine1", [0.0; 3]), ("turbine2", [1000.0, 0.0, 0.0])]
-    );
+    assert_eq!(stands, [("turbine1", [0.0; 3]), ("turbine2", [1000.0, 0.0, 0.0])]);
     let mut wrong = supplement();
     wrong.positions.insert("turbine3".into(), [0.0; 3]);
     let error = load_with(&deck("farm.dat"), &wrong).unwrap_err();
@@ -264,10 +243,7 @@ fn a_farm_stands_where_its_host_says() {
 #[test]
 fn a_map_deck_repeats_its_lines_and_has_the_published_tension_of_oc3() {
     let error = load(&deck("oc3.map")).unwrap_err().list();
-    assert!(
-        error.contains("oc3.map:8:32: NODE PROPERTIES, Z: "),
-        "{error}"
-    );
+    assert!(error.contains("oc3.map:8:32: NODE PROPERTIES, Z: "), "{error}");
     let loaded = load_with(&deck("oc3.map"), &deep()).unwrap();
     assert_eq!(loaded.format, "MAP++");
     let scene = &loaded.scene;
@@ -296,11 +272,7 @@ fn a_nodes_mass_volume_and_force_in_a_map_deck_reach_the_scene() {
         "2     Vessel    5.2     0.0    -70.0     0     0        #     #     #",
         "2 Vessel 5.2 0 -70 0 0 # # #\n3 connect #400 #0 #-200 1000 2 0 0 -5e3",
     );
-    let deck = with(
-        &deck,
-        "902.2       1         2 ",
-        "600 1 3\n2 Material 350 3 2 ",
-    );
+    let deck = with(&deck, "902.2       1         2 ", "600 1 3\n2 Material 350 3 2 ");
     let deck = with(&deck, "repeat 120 240\n", "");
     let scene = load_bytes(deck.as_bytes(), &deep())
         .unwrap_or_else(|e| panic!("{}", e.list()))
@@ -311,10 +283,7 @@ fn a_nodes_mass_volume_and_force_in_a_map_deck_reach_the_scene() {
         (PointKind::Free, [400.0, 0.0, -200.0])
     );
     assert_eq!((node.mass, node.volume), (Some(1000.0), Some(2.0)));
-    assert_eq!(
-        node.force.as_ref().unwrap().z,
-        Some(TimeFunction::Constant(-5e3))
-    );
+    assert_eq!(node.force.as_ref().unwrap().z, Some(TimeFunction::Constant(-5e3)));
 }
 
 #[test]
@@ -335,8 +304,7 @@ fn the_content_of_a_file_tells_what_it_is_and_its_name_does_not() {
 
 #[test]
 fn dashes_in_comments_and_strings_of_a_scene_are_no_deck() {
-    let scene =
-        fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/demo.toml")).unwrap();
+    let scene = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/demo.toml")).unwrap();
     let text = format!("# ------ LINE TYPES ------\n{scene}");
     assert_eq!(load_text(&text).unwrap().format, "TOML");
 }
@@ -360,10 +328,7 @@ fn latin_1_utf_8_marks_and_all_ends_of_lines_are_read_alike() {
         marked.as_bytes(),
         tabs.as_bytes(),
     ] {
-        assert_eq!(
-            load_bytes(bytes, &Supplement::default()).unwrap().scene,
-            plain
-        );
+        assert_eq!(load_bytes(bytes, &Supplement::default()).unwrap().scene, plain);
     }
 }
 
@@ -422,17 +387,9 @@ fn a_map_deck_is_quasi_static_and_says_so() {
     assert_eq!(loaded.scene.solver.integrator, Integrator::QuasiStatic);
     let said = notes(&loaded);
     assert!(said.contains("quasi-static, as MAP++ is"), "{said}");
-    assert!(
-        loaded
-            .scene
-            .in_words()
-            .contains("quasi-static: an equilibrium")
-    );
+    assert!(loaded.scene.in_words().contains("quasi-static: an equilibrium"));
     let converted = loaded.to_commented_toml();
-    assert!(
-        converted.contains("integrator = \"quasi_static\""),
-        "{converted}"
-    );
+    assert!(converted.contains("integrator = \"quasi_static\""), "{converted}");
 }
 
 #[test]
@@ -442,11 +399,7 @@ fn mass_of_a_coupled_point_in_a_deck_reaches_the_force_on_what_moves_it() {
         "2     Coupled   -30.0   0.0     -8.0    0      0 ",
         "2     Coupled   -30.0   0.0     -8.0   9000   0.9",
     );
-    let text = with(
-        &text,
-        "5.0     0.0     15.0    0      0 ",
-        "5.0 0.0 15.0 400 0.1",
-    );
+    let text = with(&text, "5.0     0.0     15.0    0      0 ", "5.0 0.0 15.0 400 0.1");
     let text = with(
         &text,
         "3     Fixed     -120.0  0.0     -60.0   0      0 ",
@@ -469,10 +422,7 @@ fn mass_of_a_coupled_point_in_a_deck_reaches_the_force_on_what_moves_it() {
         simulation.end_force(index)[2]
     };
     let own = force(&heavy) - force(&light);
-    assert!(
-        (own + (9000.0 - 1028.0 * 0.9) * 9.81).abs() < 1e-6,
-        "{own} N"
-    );
+    assert!((own + (9000.0 - 1028.0 * 0.9) * 9.81).abs() < 1e-6, "{own} N");
     let words = heavy.scene.in_words();
     let words = words.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(
@@ -484,7 +434,8 @@ fn mass_of_a_coupled_point_in_a_deck_reaches_the_force_on_what_moves_it() {
 #[test]
 fn a_deck_that_gives_no_time_to_come_to_rest_starts_from_its_positions() {
     let buoy = "ID      LineType   UnstrLen";
-    let free = "7 free 150 0 -60 500 0.2 0 0\n---------------------- LINES --------------------------------------\n";
+    let free =
+        "7 free 150 0 -60 500 0.2 0 0\n---------------------- LINES --------------------------------------\n";
     let text = with(
         OPENFAST,
         "---------------------- LINES --------------------------------------\n",
@@ -514,11 +465,7 @@ fn a_deck_that_gives_no_time_to_come_to_rest_starts_from_its_positions() {
     let (place, simulation) = start(&at_once);
     assert_eq!(place, [150.0, 0.0, -60.0]);
     let lines = &at_once.scene.lines;
-    assert!(
-        lines
-            .iter()
-            .all(|line| line.initial == InitialShape::Catenary)
-    );
+    assert!(lines.iter().all(|line| line.initial == InitialShape::Catenary));
     // a line between held points lies on its closed form
     let line = simulation.model().line_index("line2").unwrap();
     let catenary = simulation.catenary(line).unwrap();
@@ -602,10 +549,7 @@ fn the_motion_of_a_decks_vessel_turns_it_as_moordyn_does_and_an_fmu_as_it_says()
     let near = |simulation: &Simulation, wanted: [f64; 3]| {
         let place = simulation.state().points[index].position;
         for axis in 0..3 {
-            assert!(
-                (place[axis] - wanted[axis]).abs() < 1e-9,
-                "{place} {wanted:?}"
-            );
+            assert!((place[axis] - wanted[axis]).abs() < 1e-9, "{place} {wanted:?}");
         }
     };
     simulation.follow_scene().unwrap();

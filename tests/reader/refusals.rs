@@ -339,11 +339,7 @@ fn a_wrong_map_deck_is_refused_at_its_place() {
             "77,7066",
             "MassDenInAir: expected a number [kg/m], found \"77,7066\"",
         ),
-        (
-            "902.2 ",
-            "-902.2 ",
-            "line 1, UnstrLen: -902.2 m is not positive",
-        ),
+        ("902.2 ", "-902.2 ", "line 1, UnstrLen: -902.2 m is not positive"),
     ] {
         let error = load_bytes(with(MAP, old, new).as_bytes(), &deep())
             .unwrap_err()

@@ -90,9 +90,7 @@ const TRAPS: &[Trap] = &[
             "\"Anchor2\" is read as Fixed",
             "\"Coupled2\" is read as Coupled",
         ],
-        holds: |scene| {
-            point(scene, "point4").kind == PointKind::Coupled && scene.vessels.is_empty()
-        },
+        holds: |scene| point(scene, "point4").kind == PointKind::Coupled && scene.vessels.is_empty(),
     },
     Trap {
         file: "state_file.txt",
@@ -166,9 +164,7 @@ const TRAPS: &[Trap] = &[
         supplement: nothing,
         closed: Ok(1),
         notes: &["no files of single lines are written"],
-        holds: |scene| {
-            scene.output.channels == ["FairTen1", "AnchTen1", "L1N20T", "L1N20Pz", "Point2Fx"]
-        },
+        holds: |scene| scene.output.channels == ["FairTen1", "AnchTen1", "L1N20T", "L1N20Pz", "Point2Fx"],
     },
     Trap {
         file: "no_depth.txt",
@@ -233,9 +229,7 @@ const TRAPS: &[Trap] = &[
             let rides = |name| point(scene, name).on.as_deref() == Some("barge");
             let vessel = &scene.vessels[0];
             let at_origin = vessel.position == [0.0; 3] && vessel.attitude == [0.0; 3];
-            scene.vessels.len() == 1
-                && at_origin
-                && ["point4", "point5", "point6"].into_iter().all(rides)
+            scene.vessels.len() == 1 && at_origin && ["point4", "point5", "point6"].into_iter().all(rides)
         },
     },
     Trap {

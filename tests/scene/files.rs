@@ -28,21 +28,13 @@ fn a_file_that_is_no_text_is_refused_with_the_byte() {
         load(&path).unwrap_err()
     };
     let latin = refused("latin.toml", b"title = \"a\"\n# M\xfcller\n");
+    assert!(matches!(&latin, LoadError::NotText { byte: 15, .. }), "{latin}");
     assert!(
-        matches!(&latin, LoadError::NotText { byte: 15, .. }),
-        "{latin}"
-    );
-    assert!(
-        latin
-            .to_string()
-            .contains("byte 15 (line 2, column 4) is 0xFC"),
+        latin.to_string().contains("byte 15 (line 2, column 4) is 0xFC"),
         "{latin}"
     );
     let binary = refused("binary.toml", b"\x7fELF\x02\x00\x01");
-    assert!(
-        matches!(&binary, LoadError::NotText { byte: 5, .. }),
-        "{binary}"
-    );
+    assert!(matches!(&binary, LoadError::NotText { byte: 5, .. }), "{binary}");
 }
 
 #[test]
@@ -55,9 +47,7 @@ fn a_file_that_cannot_be_read_is_refused_by_name() {
     );
     let is_folder = load(folder.path()).unwrap_err();
     assert!(
-        is_folder
-            .to_string()
-            .ends_with("is a folder, not a scene file"),
+        is_folder.to_string().ends_with("is a folder, not a scene file"),
         "{is_folder}"
     );
 }
@@ -88,11 +78,7 @@ fn all_mistakes_are_listed_in_the_order_of_the_file() {
             "output.interval"
         ]
     );
-    assert!(
-        list.contains(
-            "scene.toml:34:6: lines[0].to: no point is called `bouy`, did you mean `buoy`?"
-        )
-    );
+    assert!(list.contains("scene.toml:34:6: lines[0].to: no point is called `bouy`, did you mean `buoy`?"));
     assert!(error.to_string().ends_with("(and 3 mistakes more)"));
     let mut shown = String::new();
     miette::GraphicalReportHandler::new_themed(miette::GraphicalTheme::none())

@@ -98,11 +98,7 @@ const SLIPS: &[Refusal] = &[
         "",
         "10:1: line_types.chain: missing key `axial_stiffness` [N]",
     ),
-    (
-        "name = \"anchor\"\n",
-        "",
-        "16:1: points[0]: missing key `name`",
-    ),
+    ("name = \"anchor\"\n", "", "16:1: points[0]: missing key `name`"),
     (
         "position = [100.0, 0.0, -50.0]",
         "position = [100.0, 0.0]",
@@ -863,8 +859,7 @@ fn a_motion_under_a_name_that_nothing_has_says_what_there_is() {
             "platform = { x = [[1.0, 10.0]], pitch = [[0.1, 10.0]] }",
         )
         + "[[vessels]]\nname = \"semi\"\n";
-    let wanted =
-        "motion.platform: no vessel or coupled point is called `platform`; there is `semi`";
+    let wanted = "motion.platform: no vessel or coupled point is called `platform`; there is `semi`";
     assert!(said(&text).ends_with(wanted), "{}", said(&text));
 }
 

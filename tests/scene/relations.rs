@@ -14,10 +14,7 @@ fn said_after(changes: &[(&str, &str)]) -> String {
 
 #[test]
 fn a_weight_needs_gravity_to_tell_the_mass() {
-    let said = said_after(&[
-        ("gravity = 9.81", "gravity = 0"),
-        ("mass = 100.0", "weight = 5"),
-    ]);
+    let said = said_after(&[("gravity = 9.81", "gravity = 0"), ("mass = 100.0", "weight = 5")]);
     assert_eq!(
         said,
         "11:10: line_types.chain.weight: the mass would be weight/gravity, but gravity is 0: give `mass` [kg/m] too"
@@ -27,10 +24,7 @@ fn a_weight_needs_gravity_to_tell_the_mass() {
 #[test]
 fn drag_without_a_diameter_is_refused() {
     let said = said_after(&[("mass = 100.0", "weight = 5.0"), ("diameter = 0.1\n", "")]);
-    assert!(
-        said.contains("no diameter: the seabed's stiffness"),
-        "{said}"
-    );
+    assert!(said.contains("no diameter: the seabed's stiffness"), "{said}");
     let said = said_after(&[
         ("mass = 100.0", "weight = 5.0"),
         ("diameter = 0.1\n", ""),
@@ -69,10 +63,7 @@ fn a_free_point_without_a_line_is_refused() {
 fn a_straight_start_needs_ends_apart() {
     let said = said_after(&[
         ("[20.0, 0.0, -20.0]", "[0.0, 0.0, 0.0]"),
-        (
-            "elements = 10 }]",
-            "elements = 10 }]\ninitial = \"straight\"",
-        ),
+        ("elements = 10 }]", "elements = 10 }]\ninitial = \"straight\""),
     ]);
     assert!(
         said.starts_with("42:11: lines[1].initial: the two ends have the same position"),

@@ -13,10 +13,7 @@ fn repository_scenes() -> Vec<(String, String)> {
     let mut scenes: Vec<(String, String)> = fs::read_dir(folder)
         .unwrap()
         .map(|entry| entry.unwrap().path())
-        .filter(|path| {
-            path.extension()
-                .is_some_and(|extension| extension == "toml")
-        })
+        .filter(|path| path.extension().is_some_and(|extension| extension == "toml"))
         .map(|path| {
             let name = path.file_stem().unwrap().to_string_lossy().into_owned();
             (name, fs::read_to_string(path).unwrap())
@@ -33,11 +30,7 @@ fn every_scene_of_the_repository_is_right_and_survives_being_written() {
     for (name, text) in scenes {
         let scene = Scene::from_toml(&text).unwrap_or_else(|mistake| panic!("{name}: {mistake}"));
         let written = scene.to_toml();
-        assert_eq!(
-            Scene::from_toml(&written).unwrap(),
-            scene,
-            "{name}\n{written}"
-        );
+        assert_eq!(Scene::from_toml(&written).unwrap(), scene, "{name}\n{written}");
     }
 }
 
@@ -63,9 +56,7 @@ fn words_say_what_is_modelled_and_what_is_not() {
         "{words}"
     );
     assert!(absent.contains("buoyancy, drag and added mass"), "{words}");
-    assert!(
-        absent.contains("contact with a\n      seabed") || absent.contains("contact with a seabed")
-    );
+    assert!(absent.contains("contact with a\n      seabed") || absent.contains("contact with a seabed"));
     let notes = scene.notes();
     let note = notes
         .iter()

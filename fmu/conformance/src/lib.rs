@@ -45,15 +45,13 @@ type Instantiate<Callbacks> = unsafe extern "C" fn(
     standard::fmi2Boolean,
 ) -> standard::fmi2Component;
 const _: fn(own::fmi2InstantiateTYPE) -> Instantiate<own::fmi2CallbackFunctions> = |f| f;
-const _: fn(Instantiate<standard::fmi2CallbackFunctions>) -> standard::fmi2InstantiateTYPE =
-    |f| Some(f);
+const _: fn(Instantiate<standard::fmi2CallbackFunctions>) -> standard::fmi2InstantiateTYPE = |f| Some(f);
 
 /// `fmi2NewDiscreteStates` with either side's event information.
 type NewDiscreteStates<Info> =
     unsafe extern "C" fn(standard::fmi2Component, *mut Info) -> standard::fmi2Status;
 const _: fn(own::fmi2NewDiscreteStatesTYPE) -> NewDiscreteStates<own::fmi2EventInfo> = |f| f;
-const _: fn(NewDiscreteStates<standard::fmi2EventInfo>) -> standard::fmi2NewDiscreteStatesTYPE =
-    |f| Some(f);
+const _: fn(NewDiscreteStates<standard::fmi2EventInfo>) -> standard::fmi2NewDiscreteStatesTYPE = |f| Some(f);
 
 /// Asserts that two structures have the same size, alignment, field types and field places.
 macro_rules! assert_same_structure {

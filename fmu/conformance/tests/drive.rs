@@ -124,15 +124,7 @@ fn drive3() -> Vec<u64> {
         let time = 0.05 * f64::from(k);
         slave.set_float64(&[HAND_X], &[displacement(k)]).unwrap();
         slave
-            .do_step(
-                time,
-                0.05,
-                true,
-                &mut event,
-                &mut end,
-                &mut early,
-                &mut reached,
-            )
+            .do_step(time, 0.05, true, &mut event, &mut end, &mut early, &mut reached)
             .unwrap();
         assert_eq!(reached, time + 0.05);
         slave.get_float64(&[TENSION_B], &mut tension).unwrap();

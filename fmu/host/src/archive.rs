@@ -52,9 +52,7 @@ pub(crate) fn unpack(path: &Path) -> Result<TempDir, HostError> {
         .prefix("fmu-")
         .tempdir()
         .map_err(|e| fail(e.to_string()))?;
-    archive
-        .extract(folder.path())
-        .map_err(|e| fail(e.to_string()))?;
+    archive.extract(folder.path()).map_err(|e| fail(e.to_string()))?;
     Ok(folder)
 }
 

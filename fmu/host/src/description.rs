@@ -113,9 +113,7 @@ impl Description {
                 self.step_size = number(tag, "stepSize")?;
             }
             "ScalarVariable" => self.push_variable(tag, VariableType::Other)?,
-            "Real" | "Integer" | "Boolean" | "Enumeration" | "String"
-                if self.version == FmiVersion::Two =>
-            {
+            "Real" | "Integer" | "Boolean" | "Enumeration" | "String" if self.version == FmiVersion::Two => {
                 if let Some(variable) = self.variables.last_mut() {
                     variable.kind = variable_type(tag.name().as_ref());
                     variable.unit = attribute(tag, "unit")?;
@@ -197,9 +195,8 @@ fn attribute(tag: &BytesStart<'_>, name: &str) -> Result<Option<String>, HostErr
 }
 
 fn required(tag: &BytesStart<'_>, name: &str) -> Result<String, HostError> {
-    attribute(tag, name)?.ok_or_else(|| {
-        HostError::Description(format!("{} has no attribute {name}", tag.name().as_ref()))
-    })
+    attribute(tag, name)?
+        .ok_or_else(|| HostError::Description(format!("{} has no attribute {name}", tag.name().as_ref())))
 }
 
 fn number(tag: &BytesStart<'_>, name: &str) -> Result<Option<f64>, HostError> {

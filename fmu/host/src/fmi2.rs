@@ -60,14 +60,7 @@ pub const fmi2Terminated: fmi2StatusKind = 3;
 
 /// Host's log function; `printf` format and arguments.
 pub type fmi2CallbackLogger = Option<
-    unsafe extern "C" fn(
-        fmi2ComponentEnvironment,
-        fmi2String,
-        fmi2Status,
-        fmi2String,
-        fmi2String,
-        ...
-    ),
+    unsafe extern "C" fn(fmi2ComponentEnvironment, fmi2String, fmi2Status, fmi2String, fmi2String, ...),
 >;
 /// Host's `calloc`.
 pub type fmi2CallbackAllocateMemory = Option<unsafe extern "C" fn(usize, usize) -> *mut c_void>;

@@ -83,25 +83,20 @@ impl Fmu {
     /// A container, description or library that cannot be used.
     pub fn open(path: &Path) -> Result<Fmu, HostError> {
         let folder = archive::unpack(path)?;
-        let text =
-            std::fs::read_to_string(folder.path().join("modelDescription.xml")).map_err(|e| {
-                HostError::Archive {
-                    path: path.to_path_buf(),
-                    problem: format!("modelDescription.xml: {e}"),
-                }
-            })?;
+        let text = std::fs::read_to_string(folder.path().join("modelDescription.xml")).map_err(|e| {
+            HostError::Archive {
+                path: path.to_path_buf(),
+                problem: format!("modelDescription.xml: {e}"),
+            }
+        })?;
         let description = Description::from_xml(&text)?;
-        let library_path = archive::library_path(
-            folder.path(),
-            description.version,
-            &description.model_identifier,
-        )?;
+        let library_path =
+            archive::library_path(folder.path(), description.version, &description.model_identifier)?;
         // SAFETY: loading runs the library's initialisers. That is what opening an FMU means; the user chose the file.
-        let library =
-            unsafe { libloading::Library::new(&library_path) }.map_err(|e| HostError::Library {
-                path: library_path,
-                problem: e.to_string(),
-            })?;
+        let library = unsafe { libloading::Library::new(&library_path) }.map_err(|e| HostError::Library {
+            path: library_path,
+            problem: e.to_string(),
+        })?;
         // SAFETY: a library in an FMU of this version has the standard's functions with the standard's signatures; the
         // table is kept beside the library and never used after it.
         let api = unsafe {
@@ -158,12 +153,7 @@ impl Fmu {
     ///
     /// # Errors
     /// The FMU refuses; the error holds what it logged.
-    pub fn instantiate_with_token(
-        &self,
-        name: &str,
-        token: &str,
-        logging: bool,
-    ) -> Result<Slave, HostError> {
+    pub fn instantiate_with_token(&self, name: &str, token: &str, logging: bool) -> Result<Slave, HostError> {
         Slave::new(self, name, token, logging)
     }
 }

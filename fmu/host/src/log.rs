@@ -50,9 +50,7 @@ pub(crate) unsafe fn text(text: *const c_char) -> String {
         return String::new();
     }
     // SAFETY: not null; the caller promises the rest.
-    unsafe { CStr::from_ptr(text) }
-        .to_string_lossy()
-        .into_owned()
+    unsafe { CStr::from_ptr(text) }.to_string_lossy().into_owned()
 }
 
 /// `fmi3LogMessageCallback`.
@@ -91,11 +89,7 @@ unsafe extern "C" fn logger(
         log.push(LogMessage {
             status: Status::from_c(status),
             category: text(category),
-            text: if format == "%s" {
-                text(argument)
-            } else {
-                format
-            },
+            text: if format == "%s" { text(argument) } else { format },
         });
     }
 }
@@ -128,14 +122,7 @@ pub(crate) fn variadic_logger() -> fmi2CallbackLogger {
     let logger = unsafe {
         std::mem::transmute::<
             *const (),
-            unsafe extern "C" fn(
-                *mut c_void,
-                *const c_char,
-                fmi2Status,
-                *const c_char,
-                *const c_char,
-                ...
-            ),
+            unsafe extern "C" fn(*mut c_void, *const c_char, fmi2Status, *const c_char, *const c_char, ...),
         >(logger as *const ())
     };
     Some(logger)

@@ -30,12 +30,7 @@ unsafe impl Send for Slave {}
 pub struct SavedState(*mut c_void);
 
 impl Slave {
-    pub(crate) fn new(
-        fmu: &Fmu,
-        name: &str,
-        token: &str,
-        logging: bool,
-    ) -> Result<Slave, HostError> {
+    pub(crate) fn new(fmu: &Fmu, name: &str, token: &str, logging: bool) -> Result<Slave, HostError> {
         let log = Box::new(Log::default());
         let callbacks = Box::new(fmi2CallbackFunctions {
             logger: variadic_logger(),
@@ -137,18 +132,12 @@ impl Slave {
     ///
     /// # Errors
     /// The FMU's own.
-    pub fn enter_initialization(
-        &mut self,
-        start: f64,
-        stop: Option<f64>,
-    ) -> Result<Status, HostError> {
+    pub fn enter_initialization(&mut self, start: f64, stop: Option<f64>) -> Result<Status, HostError> {
         let (defined, stop) = (stop.is_some(), stop.unwrap_or(0.0));
         self.call(
             ["fmi2SetupExperiment", ""],
             // SAFETY: the handle is live until drop; here and in all calls below.
-            |f, handle| unsafe {
-                (f.fmi2SetupExperiment)(handle, 0, 0.0, start, i32::from(defined), stop)
-            },
+            |f, handle| unsafe { (f.fmi2SetupExperiment)(handle, 0, 0.0, start, i32::from(defined), stop) },
             |_, _| 0,
         )?;
         self.call(
@@ -156,9 +145,7 @@ impl Slave {
             // SAFETY: see above.
             |f, handle| unsafe { (f.fmi2EnterInitializationMode)(handle) },
             // SAFETY: see above.
-            |f, handle| unsafe {
-                (f.fmi3EnterInitializationMode)(handle, false, 0.0, start, defined, stop)
-            },
+            |f, handle| unsafe { (f.fmi3EnterInitializationMode)(handle, false, 0.0, start, defined, stop) },
         )
     }
 
@@ -186,12 +173,7 @@ impl Slave {
             ["fmi2SetReal", "fmi3SetFloat64"],
             // SAFETY: the handle is live; pointer and length come from one slice, equal lengths were checked.
             |f, handle| unsafe {
-                (f.fmi2SetReal)(
-                    handle,
-                    references.as_ptr(),
-                    references.len(),
-                    values.as_ptr(),
-                )
+                (f.fmi2SetReal)(handle, references.as_ptr(), references.len(), values.as_ptr())
             },
             // SAFETY: the handle is live; pointer and length come from one slice.
             |f, handle| unsafe {
@@ -210,28 +192,16 @@ impl Slave {
     ///
     /// # Errors
     /// The FMU's own; different numbers of references and values in FMI 2.0.
-    pub fn get_real(
-        &mut self,
-        references: &[u32],
-        values: &mut [f64],
-    ) -> Result<Status, HostError> {
+    pub fn get_real(&mut self, references: &[u32], values: &mut [f64]) -> Result<Status, HostError> {
         self.check_lengths(references.len(), values.len())?;
         let (target, length) = (values.as_mut_ptr(), values.len());
         self.call(
             ["fmi2GetReal", "fmi3GetFloat64"],
             // SAFETY: the handle is live; pointer and length come from one slice, equal lengths were checked.
-            |f, handle| unsafe {
-                (f.fmi2GetReal)(handle, references.as_ptr(), references.len(), target)
-            },
+            |f, handle| unsafe { (f.fmi2GetReal)(handle, references.as_ptr(), references.len(), target) },
             // SAFETY: the handle is live; pointer and length come from one slice.
             |f, handle| unsafe {
-                (f.fmi3GetFloat64)(
-                    handle,
-                    references.as_ptr(),
-                    references.len(),
-                    target,
-                    length,
-                )
+                (f.fmi3GetFloat64)(handle, references.as_ptr(), references.len(), target, length)
             },
         )
     }
@@ -391,8 +361,7 @@ impl Drop for Slave {
 }
 
 fn c_text(text: &str) -> Result<CString, HostError> {
-    CString::new(text)
-        .map_err(|_| HostError::Argument(format!("\"{text}\" contains a zero character")))
+    CString::new(text).map_err(|_| HostError::Argument(format!("\"{text}\" contains a zero character")))
 }
 
 fn joined(messages: &[LogMessage]) -> String {

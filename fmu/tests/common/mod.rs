@@ -55,11 +55,7 @@ fn run_cargo(features: &[&str]) {
     // target/PROFILE/deps/TEST
     let program = std::env::current_exe().unwrap();
     let target = program.ancestors().nth(3).unwrap();
-    let profile = if cfg!(debug_assertions) {
-        "test"
-    } else {
-        "release"
-    };
+    let profile = if cfg!(debug_assertions) { "test" } else { "release" };
     let done = Command::new(cargo)
         .args(["build", "--package", "moorline-fmu", "--lib"])
         .args(["--profile", profile, "--target-dir"])
@@ -67,11 +63,7 @@ fn run_cargo(features: &[&str]) {
         .args(features.iter().flat_map(|feature| ["--features", feature]))
         .output()
         .unwrap();
-    assert!(
-        done.status.success(),
-        "{}",
-        String::from_utf8_lossy(&done.stderr)
-    );
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
 }
 
 /// The packaged scene, written once for each test program and version.

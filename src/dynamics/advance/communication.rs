@@ -61,8 +61,7 @@ impl Solver {
     }
 
     pub(super) fn new(model: &Model, network: &Network, integrator: Integrator) -> Solver {
-        let kernel =
-            |solver: Option<Solver>| solver.expect("the integrator was chosen for these lines");
+        let kernel = |solver: Option<Solver>| solver.expect("the integrator was chosen for these lines");
         match integrator {
             Integrator::QuasiStatic => Solver::QuasiStatic,
             Integrator::Beam => {
@@ -167,9 +166,7 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
             if self.jumps {
                 work.set_out_anew(steps[0]);
                 let lines = network.lines.iter();
-                jumped = lines
-                    .map(|&line| self.jump_energy(line, steps[0], next))
-                    .sum();
+                jumped = lines.map(|&line| self.jump_energy(line, steps[0], next)).sum();
             }
             work.start_reels(network, self.state, self.reels, step);
             work.begin();
@@ -423,8 +420,7 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
             copy_network(model, &model.networks[number], self.state, next);
             quasi_static::advance(model, number, next, self.held, times, halving, work)
         };
-        let (done, flow) =
-            attempt(Halving::ForcesAndEnergy).or_else(|_| attempt(Halving::Forces))?;
+        let (done, flow) = attempt(Halving::ForcesAndEnergy).or_else(|_| attempt(Halving::Forces))?;
         let counters = Counters {
             substeps: done.steps,
             solves: done.solves,
@@ -433,12 +429,7 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
     }
 
     /// Refuses a communication step that would take a network too many internal steps, none longer than `part` [s].
-    pub(super) fn check_length(
-        &self,
-        number: usize,
-        choice: &Choice,
-        part: f64,
-    ) -> Result<(), StepError> {
+    pub(super) fn check_length(&self, number: usize, choice: &Choice, part: f64) -> Result<(), StepError> {
         let longest = match choice.integrator {
             Integrator::QuasiStatic => part,
             Integrator::AxialImplicit => part.min(choice.longest),

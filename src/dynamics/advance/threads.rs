@@ -34,12 +34,7 @@ pub(super) struct Helper {
 
 impl Helpers {
     /// So many, ready for a step whose state is built in `next`.
-    pub(super) fn of<K>(
-        &mut self,
-        count: usize,
-        step: &Communication<K>,
-        next: &State,
-    ) -> &[Mutex<Helper>] {
+    pub(super) fn of<K>(&mut self, count: usize, step: &Communication<K>, next: &State) -> &[Mutex<Helper>] {
         while self.0.len() < count {
             self.0.push(Mutex::new(Helper {
                 implicit: assembly::Workspace::new(step.model),
@@ -69,11 +64,7 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
         let size = count.div_ceil(helpers.len() + 1);
         for (number, helper) in helpers.iter().enumerate() {
             let first = ((number + 1) * size).min(count);
-            self.exchange(
-                first..(first + size).min(count),
-                next,
-                &mut lock(helper).next,
-            );
+            self.exchange(first..(first + size).min(count), next, &mut lock(helper).next);
         }
         let parts = networks.chunks_mut(size).zip(outcomes.chunks_mut(size));
         let queue = Queue::new(parts.enumerate().map(|(part, (networks, outcomes))| {

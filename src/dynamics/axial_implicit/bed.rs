@@ -112,9 +112,7 @@ mod tests {
             lanes(1.0),
             STEP,
         );
-        let push = bed
-            .push(lanes(after))
-            .where_positive(bed.pushes(lanes(after)));
+        let push = bed.push(lanes(after)).where_positive(bed.pushes(lanes(after)));
         push[0]
     }
 

@@ -93,10 +93,7 @@ impl AxialWork {
     pub(super) fn prepare_geometry(&mut self) {
         let (line, last) = (&self.layout, self.layout.fold.rows());
         let position = line.position.rows(last);
-        let (segments, nodes) = (
-            &mut self.rows.segments[..last],
-            &mut self.rows.nodes[..last],
-        );
+        let (segments, nodes) = (&mut self.rows.segments[..last], &mut self.rows.nodes[..last]);
         for at in line.rows() {
             let (before, here, after) = (position[at - 1], position[at], position[at + 1]);
             let segment = &mut segments[at - 1];
@@ -155,10 +152,7 @@ impl AxialWork {
                 row.more_before = found.slope * share * longer;
             }
         }
-        let forgot = std::mem::replace(
-            &mut self.forgets,
-            (Lanes::splat(0.0) - least).any_positive(),
-        );
+        let forgot = std::mem::replace(&mut self.forgets, (Lanes::splat(0.0) - least).any_positive());
         if forgot || self.forgets {
             self.remember_segments(sizes);
         }
@@ -317,13 +311,7 @@ impl NodeRow {
 
     /// Adds what accelerated water presses with [N], and what damping by mass [N s/m] takes from `velocity` [m/s].
     #[inline(always)]
-    fn press(
-        &mut self,
-        press: Option<Vectors>,
-        velocity: Vectors,
-        damping: Option<Lanes>,
-        sizes: &Sizes,
-    ) {
+    fn press(&mut self, press: Option<Vectors>, velocity: Vectors, damping: Option<Lanes>, sizes: &Sizes) {
         let mut force = press;
         if let Some(damping) = damping {
             let taken = velocity.scale(damping);

@@ -163,10 +163,7 @@ impl SegmentRow {
         let softness = (self.stiffness + least).recip();
         let bend = (self.curvature * softness).where_positive(self.stiffness);
         let strain = (self.length + drift * (along + bend)) * inverse - Lanes::splat(1.0);
-        let (pulling, scale) = (
-            strain.max(Lanes::splat(SHORTEST)),
-            share * self.axial_stiffness,
-        );
+        let (pulling, scale) = (strain.max(Lanes::splat(SHORTEST)), share * self.axial_stiffness);
         let [stretch, slope] = pulled(law, pulling);
         let stretch = stretch + slope * (strain - pulling);
         let force = self.memory + scale * self.unstretched_length * stretch;

@@ -123,8 +123,7 @@ impl AxialWork {
             let [across, excess] = [row.across, row.excess].map(|part| part[at.lane]);
             let upright = normal.dot(&row.tangent.get(at.lane));
             let yields = across + excess * upright * upright;
-            let [penetration, rise, yields] =
-                [penetration, normal.dot(&velocity), yields].map(Lanes::splat);
+            let [penetration, rise, yields] = [penetration, normal.dot(&velocity), yields].map(Lanes::splat);
             let law = law.map(Lanes::splat);
             rubbing.nodes[i] = Stand {
                 mode: Mode::Off,
@@ -159,11 +158,7 @@ impl AxialWork {
             return true;
         };
         let needed = self.needed(i, &node, velocity, step);
-        let friction = self
-            .layout
-            .rubbing()
-            .and_then(|(_, friction)| friction)
-            .copied();
+        let friction = self.layout.rubbing().and_then(|(_, friction)| friction).copied();
         let Some(rubbing) = &mut self.rubbing else {
             return true;
         };

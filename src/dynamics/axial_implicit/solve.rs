@@ -83,10 +83,7 @@ impl AxialWork {
         let zero = Lanes::splat(0.0);
         let behind = self.layout.velocity_before.load(nodes.len() + 1);
         let relative = high.loose.moved_down_before(behind) - low.loose;
-        let forms = [
-            low.forms,
-            high.forms.map(|form| form.moved_down_before(zero)),
-        ];
+        let forms = [low.forms, high.forms.map(|form| form.moved_down_before(zero))];
         self.rows.segments[last].assemble(relative, forms, sizes);
     }
 
@@ -117,11 +114,7 @@ impl AxialWork {
     /// New velocities, into `velocity_before`, from T̄, that of the segments before those of the first row being `before` [N]; with `BOOKS` also
     /// what the segments' impulses are.
     #[inline(always)]
-    pub(super) fn find_velocities<const BED: u8, const BOOKS: bool>(
-        &mut self,
-        before: Lanes,
-        sizes: &Sizes,
-    ) {
+    pub(super) fn find_velocities<const BED: u8, const BOOKS: bool>(&mut self, before: Lanes, sizes: &Sizes) {
         let (rows, kick) = (self.rows.nodes.len(), sizes.kick);
         let (segments, new) = (
             &self.rows.segments[..rows],
@@ -183,13 +176,7 @@ impl Found {
     /// Books what is left of the momentum of nodes beside tension and weight: water, damping and bed took it. What ½ vᵀMv has along the
     /// tangents beside what it has across them, these turning between the kicks, is booked at both ends of the advance.
     #[inline(always)]
-    fn book_node(
-        &mut self,
-        node: &NodeRow,
-        [old, new]: [Vectors; 2],
-        weight: Lanes,
-        sizes: &Sizes,
-    ) {
+    fn book_node(&mut self, node: &NodeRow, [old, new]: [Vectors; 2], weight: Lanes, sizes: &Sizes) {
         let mut left = node.impulse - (new - old).scale(node.mass_normal);
         left.z = left.z - sizes.kick * weight;
         self.lost = self.lost + node.free * left.dot(old + new);
@@ -210,8 +197,7 @@ impl Found {
         let l = segment.length;
         let longer = l + drift * along;
         let square = drift * drift * across;
-        let turned =
-            (square - Lanes::splat(FLAT) * longer * longer).max(Lanes::splat(SHORT) * l - longer);
+        let turned = (square - Lanes::splat(FLAT) * longer * longer).max(Lanes::splat(SHORT) * l - longer);
         self.turned = self.turned.max(turned.where_positive(total));
         let push = segment.stiffness * drift * across;
         let twice = segment.curvature * longer;
@@ -301,8 +287,8 @@ impl AxialWork {
         let (line, law) = (&self.layout, &self.layout.law);
         let mut twice = Lanes::splat(0.0);
         for (row, segment) in self.rows.segments.iter().enumerate() {
-            let relative = [&line.velocity, &line.velocity_before]
-                .map(|of| of.load(row + 2) - of.load(row + 1));
+            let relative =
+                [&line.velocity, &line.velocity_before].map(|of| of.load(row + 2) - of.load(row + 1));
             let chord = segment.direction.scale(segment.length);
             let inverse = line.inverse_length.load(row + 1);
             let strain = |moved: Vectors| {
@@ -378,8 +364,7 @@ impl AxialWork {
             let l = segment.length;
             let square = drift * (l * along + l * along + drift * relative.dot(relative));
             let longer = (l * l + square).positive().sqrt();
-            let transverse =
-                square * (l + longer + Lanes::splat(f64::MIN_POSITIVE)).recip() - drift * along;
+            let transverse = square * (l + longer + Lanes::splat(f64::MIN_POSITIVE)).recip() - drift * along;
             let curvature = segment.stiffness * transverse * per_drift;
             let off = (curvature - segment.curvature).abs().max(more.abs()) - tolerance;
             let again = (zero - taut * segment.taut).max(off.where_positive(taut));

@@ -113,10 +113,7 @@ fn end_of_step<'a, K: Fn(usize, f64) -> Kinematics>(
 /// Which unknowns of a beam's ends are held.
 pub fn held(model: &Model, line: &Line) -> [[bool; 6]; 2] {
     [0, 1].map(|end| {
-        let clamped = line
-            .beam
-            .as_ref()
-            .is_some_and(|beam| beam.clamped[end].is_some());
+        let clamped = line.beam.as_ref().is_some_and(|beam| beam.clamped[end].is_some());
         end_hold(&model.points[line.ends[end]], clamped).held
     })
 }

@@ -111,12 +111,8 @@ impl<'a> BeamView<'a> {
         if !damped {
             return elastic.stress;
         }
-        let moving = [i, i + 1].map(|node| {
-            join(
-                self.shape.velocity[node],
-                state.frames[node] * state.spins[node],
-            )
-        });
+        let moving =
+            [i, i + 1].map(|node| join(self.shape.velocity[node], state.frames[node] * state.spins[node]));
         let gradient = strain_gradient(&a, &b, element.length);
         let rate = gradient[0] * moving[0] + gradient[1] * moving[1];
         elastic.stress + element.damping.diagonal().component_mul(&rate)

@@ -24,11 +24,7 @@ const UNDAMPED: SectionLaw = SectionLaw {
 fn beam(n: usize, a: Vector3<f64>, b: Vector3<f64>, law: SectionLaw) -> (Beam, Nodes, LineState) {
     let length = (b - a).norm() / n as f64;
     let share = |i: usize| {
-        if i == 0 || i == n {
-            0.5 * length
-        } else {
-            length
-        }
+        if i == 0 || i == n { 0.5 * length } else { length }
     };
     let lengths: Vec<f64> = (0..=n).map(share).collect();
     let element = BeamElement {
@@ -38,10 +34,7 @@ fn beam(n: usize, a: Vector3<f64>, b: Vector3<f64>, law: SectionLaw) -> (Beam, N
     };
     let beam = Beam {
         elements: vec![element; n],
-        rotary_inertia: lengths
-            .iter()
-            .map(|l| 10.0 * l * Vector3::repeat(1.0))
-            .collect(),
+        rotary_inertia: lengths.iter().map(|l| 10.0 * l * Vector3::repeat(1.0)).collect(),
         clamped: [None, None],
         rests_as_it_starts: false,
     };
@@ -288,11 +281,7 @@ fn the_ledger_of_a_beam_with_a_buoy_and_a_clump_in_a_current_closes_to_rounding(
             length: 0.02,
         };
         flow.add(flight.work.step(&case, &mut flight.shape).unwrap().1);
-        assert_relative_eq!(
-            held(&flight) - start,
-            flow.given - flow.lost,
-            epsilon = 1e-8
-        );
+        assert_relative_eq!(held(&flight) - start, flow.given - flow.lost, epsilon = 1e-8);
         lowest = flight.shape.position[12].z.min(lowest);
     }
     assert!(flow.lost > 1.0 && flow.given > 0.1 && lowest < -0.4);

@@ -13,9 +13,7 @@ use nalgebra::Vector3;
 use pulp::NullaryFnOnce;
 
 use super::LineWork;
-use crate::dynamics::layout::{
-    CurrentNow, LENGTH2_MIN, Layout, WaveArrays, inverse_norm, water_flow,
-};
+use crate::dynamics::layout::{CurrentNow, LENGTH2_MIN, Layout, WaveArrays, inverse_norm, water_flow};
 use crate::dynamics::step::Step;
 use crate::math::lanes::{Lanes, Vectors};
 use crate::model::End;
@@ -231,10 +229,7 @@ impl SegmentRows<'_> {
         } else {
             (elastic + damping).positive()
         };
-        (
-            chord.scale(tension * inverse_l),
-            chord.scale(spring * inverse_l),
-        )
+        (chord.scale(tension * inverse_l), chord.scale(spring * inverse_l))
     }
 }
 
@@ -395,11 +390,7 @@ impl LineWork {
             true => swept.kick::<AROUND, BED, PLAIN, true>(sizes, drift),
             false => swept.kick::<AROUND, BED, PLAIN, false>(sizes, drift),
         }
-        let Sums {
-            given,
-            dragged,
-            left,
-        } = swept.sums;
+        let Sums { given, dragged, left } = swept.sums;
         self.lost = self.lost + Lanes::splat(0.5) * left - dragged * sizes.kick;
         self.given_by_current = self.given_by_current + given * sizes.kick;
         let line = &mut self.layout;

@@ -109,11 +109,7 @@ impl LineWork {
         if let Some(winch) = &self.winch {
             let nodes = self.layout.segment_count + 1;
             state.reel = Some(winch.reel);
-            for values in [
-                &mut state.position,
-                &mut state.velocity,
-                &mut state.acceleration,
-            ] {
+            for values in [&mut state.position, &mut state.velocity, &mut state.acceleration] {
                 values.resize(nodes, Vector3::zeros());
             }
             if !state.anchor.is_empty() {
@@ -342,13 +338,7 @@ impl LineWork {
                 None => contact.level[i],
             };
             put(&mut into.level, from, n + 1, level, 0.0);
-            put(
-                &mut into.stiffness,
-                from,
-                n + 1,
-                |i| contact.stiffness[i],
-                0.0,
-            );
+            put(&mut into.stiffness, from, n + 1, |i| contact.stiffness[i], 0.0);
             put(&mut into.damping, from, n + 1, |i| contact.damping[i], 0.0);
             if let (Some(bottom), false) = (&mut into.bottom, contact.stick.is_empty()) {
                 put(&mut bottom.stick, from, n + 1, |i| contact.stick[i], 0.0);
@@ -369,13 +359,7 @@ impl LineWork {
         let (nodes, n) = (&winch.line.nodes, winch.line.segment_count());
         if let Some(drag) = &nodes.drag {
             put(&mut water.drag_normal, from, n + 1, |i| drag.normal[i], 0.0);
-            put(
-                &mut water.drag_tangent,
-                from,
-                n + 1,
-                |i| drag.tangent[i],
-                0.0,
-            );
+            put(&mut water.drag_tangent, from, n + 1, |i| drag.tangent[i], 0.0);
         }
         let inverse = |i: usize| 1.0 / nodes.mass_tangent[i] - 1.0 / nodes.mass_normal[i];
         put(&mut water.inverse_mass_excess, from, n + 1, inverse, 0.0);
@@ -449,11 +433,7 @@ mod tests {
         let mut work = LineWork::new(line, water, [true; 2], &Solver::default()).unwrap();
         let wild = |i: usize, k: f64| {
             let i = i as f64;
-            Vector3::new(
-                (3.0 * i + k).sin(),
-                (5.0 * i * k).cos(),
-                (i + 2.0 * k).sin(),
-            )
+            Vector3::new((3.0 * i + k).sin(), (5.0 * i * k).cos(), (i + 2.0 * k).sin())
         };
         let mut state = LineState::at_rest(
             (0..=10)
@@ -490,16 +470,8 @@ mod tests {
         let mut work = work();
         let (mass, momenta) = content(&work);
         assert_relative_eq!(mass, 20.0 * 42.2, max_relative = 1e-14);
-        let motion = [
-            work.layout.velocity.clone(),
-            work.layout.velocity_before.clone(),
-        ];
-        for passage in [
-            Passage::Split,
-            Passage::Merge,
-            Passage::Merge,
-            Passage::Merge,
-        ] {
+        let motion = [work.layout.velocity.clone(), work.layout.velocity_before.clone()];
+        for passage in [Passage::Split, Passage::Merge, Passage::Merge, Passage::Merge] {
             work.pass(passage, 1e-3);
             let (kept_mass, kept) = content(&work);
             assert_relative_eq!(kept_mass, mass, max_relative = 1e-14);

@@ -6,31 +6,20 @@ use nalgebra::Vector3;
 
 use super::Flow;
 use crate::dynamics::leapfrog::segment_tension;
-use crate::model::{
-    ClosedForm, End, FreePoint, Line, LineState, Model, Network, PointState, State,
-};
+use crate::model::{ClosedForm, End, FreePoint, Line, LineState, Model, Network, PointState, State};
 use crate::statics::assembly::rubbing::{resting_node, resting_point};
 use crate::statics::assembly::{end_moment, end_moment_power, end_shear};
 use crate::statics::equilibrium::current::drag_at_rest;
 
 /// Work given to and lost by a network at rest before and after a step between two times [s], in [J].
-pub fn work_at_rest(
-    model: &Model,
-    network: &Network,
-    states: [&State; 2],
-    times: [f64; 2],
-) -> Flow {
+pub fn work_at_rest(model: &Model, network: &Network, states: [&State; 2], times: [f64; 2]) -> Flow {
     let mut flow = Flow::default();
     for &index in &network.lines {
-        flow.given +=
-            end_work(model, index, states, times) + current_work(model, index, states, times);
+        flow.given += end_work(model, index, states, times) + current_work(model, index, states, times);
         flow.lost -= bed_work(&model.lines[index], states.map(|state| &state.lines[index]));
     }
     for &index in &network.free_points {
-        let (point, at) = (
-            &model.points[index],
-            states.map(|state| &state.points[index]),
-        );
+        let (point, at) = (&model.points[index], states.map(|state| &state.points[index]));
         let Some(free) = point.free() else { continue };
         let force = |k: usize| {
             let stream = model.stream(times[k]);
@@ -66,24 +55,12 @@ fn end_work(model: &Model, index: usize, states: [&State; 2], times: [f64; 2]) -
         let points = states.map(|state| &state.points[point]);
         let force = |k: usize| {
             let state = states[k];
-            force_of_line(
-                line,
-                &state.lines[index],
-                end,
-                &state.points[point],
-                moments[k],
-            )
+            force_of_line(line, &state.lines[index], end, &state.points[point], moments[k])
         };
         given -= work([0, 1].map(force), points.map(|at| at.position));
         if line.bending.is_some() {
-            let moment = |state: &State| {
-                end_moment(
-                    line,
-                    &state.lines[index].position,
-                    end,
-                    &state.points[point],
-                )
-            };
+            let moment =
+                |state: &State| end_moment(line, &state.lines[index].position, end, &state.points[point]);
             let moments = states.map(moment);
             let turned = points[1].orientation * points[0].orientation.inverse();
             given -= 0.5 * (moments[0] + moments[1]).dot(&turned.scaled_axis());

@@ -25,8 +25,7 @@ use crate::physics::morison::{DragCoefficients, drag};
 use crate::physics::seabed::ContactCoefficients;
 use crate::statics::assembly::rubbing::{resting_node, resting_point};
 use crate::statics::assembly::{
-    Workspace, end_moment, end_moment_power, end_shear, joint_damping_power, rates, stretch_step,
-    stretched,
+    Workspace, end_moment, end_moment_power, end_shear, joint_damping_power, rates, stretch_step, stretched,
 };
 
 /// A step that an implicit integrator has made.
@@ -134,8 +133,7 @@ impl Passed<'_> {
         let mass = |side: usize| {
             let waves = self.sea().waves_at_point(point, self.times[side]);
             let surface = waves.map_or(0.0, |orbit| orbit.elevation);
-            free.at(self.states[side].points[point].position.z - surface)
-                .mass
+            free.at(self.states[side].points[point].position.z - surface).mass
         };
         let masses = [0, 1].map(|side| Mass {
             across: mass(side),
@@ -163,12 +161,10 @@ impl Passed<'_> {
         [a0, a1]: [Vector3<f64>; 2],
         mean: Vector3<f64>,
     ) -> Flow {
-        let Scheme {
-            alpha_m, alpha_f, ..
-        } = *self.scheme;
+        let Scheme { alpha_m, alpha_f, .. } = *self.scheme;
         let changed = |v: &Vector3<f64>| v.dot(&(new.times(v) - old.times(v)));
-        let inertia = new.times(&((1.0 - alpha_m) * a1 + (alpha_m - alpha_f) * a0))
-            + alpha_f * old.times(&a0);
+        let inertia =
+            new.times(&((1.0 - alpha_m) * a1 + (alpha_m - alpha_f) * a0)) + alpha_f * old.times(&a0);
         let change = v1 - v0;
         let gained = 0.25 * (v0 + v1).dot(&(old.times(&change) + new.times(&change)));
         Flow {
@@ -303,11 +299,7 @@ impl Side<'_> {
     }
 
     fn line_power(&self, index: usize, water: WaterAlong) -> Flow {
-        let (model, line, shape) = (
-            self.model,
-            &self.model.lines[index],
-            &self.state.lines[index],
-        );
+        let (model, line, shape) = (self.model, &self.model.lines[index], &self.state.lines[index]);
         let (n, negative) = (line.segment_count(), model.solver.negative_tension);
         let after = &self.passed.states[1].lines[index];
         let [a, b] = [End::A, End::B].map(|end| line.is_held(model, after, end));
@@ -426,8 +418,7 @@ impl Side<'_> {
         let passing = |node| self.passed.velocity_mean(index, node);
         let ends = [End::A, End::B].into_iter().zip(line.ends);
         Flow {
-            given: ends.map(given).sum::<f64>()
-                + end_moment_power(&shape.position, moments, passing),
+            given: ends.map(given).sum::<f64>() + end_moment_power(&shape.position, moments, passing),
             lost: joint_damping_power(line, shape, clamps, passing),
             numerical: 0.0,
         }

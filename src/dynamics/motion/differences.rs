@@ -11,12 +11,7 @@ const BETTER_AT_REST: f64 = 0.9;
 /// What multiplies the errors of the degrees that are not kept: where degree 0 is, and where another [-].
 const HANDICAPS: [Terms; 2] = [
     [1.0 / BETTER_AT_REST; DEGREE_MAX + 1],
-    [
-        1.0 / BETTER_AT_REST,
-        1.0 / BETTER,
-        1.0 / BETTER,
-        1.0 / BETTER,
-    ],
+    [1.0 / BETTER_AT_REST, 1.0 / BETTER, 1.0 / BETTER, 1.0 / BETTER],
 ];
 /// Step over the time between the first two samples, above which they make no line [-].
 const UNJUDGED_MAX: f64 = 2.0;
@@ -43,12 +38,7 @@ impl Differences {
         let over = |change: Lanes, inverse: f64| change * Lanes::splat(inverse);
         let (p, q, r) = (over(a - b, ab), over(b - c, bc), over(c - d, cd));
         let (s, t) = (over(d - e, de), over(e - f, ef));
-        let (pq, qr, rs, st) = (
-            over(p - q, ac),
-            over(q - r, bd),
-            over(r - s, ce),
-            over(s - t, df),
-        );
+        let (pq, qr, rs, st) = (over(p - q, ac), over(q - r, bd), over(r - s, ce), over(s - t, df));
         let (pr, qs, rt) = (over(pq - qr, ad), over(qr - rs, be), over(rs - st, cf));
         let (ps, qt) = (over(pr - qs, ae), over(qs - rt, bf));
         // the remainder of the polynomial of degree k is the difference of order k + 1 times its nodes' distances
@@ -119,9 +109,7 @@ impl Differences {
         let stretch = stretch.unwrap_or([[1.0; DEGREE_MAX + 1]; JUDGED]);
         let error = |k: usize| -> f64 {
             let errors = self.miss.iter().zip(&stretch).take(judged);
-            errors
-                .map(|(miss, stretch)| miss[k][axis] * stretch[k])
-                .sum()
+            errors.map(|(miss, stretch)| miss[k][axis] * stretch[k]).sum()
         };
         let (kept, mut best, mut least) = match kept <= highest {
             true => (kept, kept, error(kept)),

@@ -82,13 +82,7 @@ impl Clock {
     }
 
     /// A host speaks at a time [s] of a step from then on [s]: `foresight` becomes what all paths need to continue by it, whatever it was.
-    pub fn tell(
-        &mut self,
-        time: f64,
-        step: f64,
-        reconstruction: Reconstruction,
-        foresight: &mut Foresight,
-    ) {
+    pub fn tell(&mut self, time: f64, step: f64, reconstruction: Reconstruction, foresight: &mut Foresight) {
         let last_step = time - self.times[0];
         let order = if last_step > 0.0 {
             self.made_up = self.made_up.max(time + last_step);

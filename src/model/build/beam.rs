@@ -15,8 +15,7 @@ use crate::model::{Beam, BeamElement};
 use crate::physics::rayleigh;
 use crate::physics::section::SectionLaw;
 use crate::scene::{
-    FibreLaw, Integrator, Line, LineModel, LineType, RestShape, Scene, SceneError, SolidSection,
-    Strain,
+    FibreLaw, Integrator, Line, LineModel, LineType, RestShape, Scene, SceneError, SolidSection, Strain,
 };
 
 /// A section of a beam line, per unstretched length.
@@ -117,15 +116,11 @@ fn part(name: &str, line_type: &LineType, law: &LineLaw) -> Result<Part, SceneEr
         axial: law.axial_stiffness,
         shear: stiffness("shear_stiffness", line_type.shear_stiffness, shear)?,
         bending: stiffness("bending_stiffness", line_type.bending_stiffness, bending)? / strands,
-        torsion: stiffness(
-            "torsional_stiffness",
-            line_type.torsional_stiffness,
-            torsion,
-        )?,
+        torsion: stiffness("torsional_stiffness", line_type.torsional_stiffness, torsion)?,
     };
-    let slowed = line_type.rayleigh.map_or(0.0, |r| {
-        rayleigh::coefficients(r.ratios, r.frequencies).stiffness
-    });
+    let slowed = line_type
+        .rayleigh
+        .map_or(0.0, |r| rayleigh::coefficients(r.ratios, r.frequencies).stiffness);
     Ok(Part {
         damping: SectionLaw {
             axial: law.axial_damping, // parts of Rayleigh's and of a ratio included

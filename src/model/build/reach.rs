@@ -60,10 +60,7 @@ fn tied<'a>(scene: &'a Scene, line: &'a Line) -> Vec<&'a Line> {
     let mut tied = vec![line];
     let mut next = 0;
     while let Some(&line) = tied.get(next) {
-        for shared in [&line.from, &line.to]
-            .into_iter()
-            .filter(|name| is_free(name))
-        {
+        for shared in [&line.from, &line.to].into_iter().filter(|name| is_free(name)) {
             for other in &scene.lines {
                 let meets = other.from == *shared || other.to == *shared;
                 if meets && tied.iter().all(|line| line.name != other.name) {
@@ -115,11 +112,7 @@ mod tests {
         assert!(!touches(&hung("kind = 'fixed'", "", "")));
         assert!(!touches(&hung("kind = 'free'", "", "")));
         let vessel = "[[vessels]]\nname = 'barge'\nposition = [0.0, 0.0, -5.0]";
-        assert!(!touches(&hung(
-            "kind = 'coupled', on = 'barge'",
-            "",
-            vessel
-        )));
+        assert!(!touches(&hung("kind = 'coupled', on = 'barge'", "", vessel)));
     }
 
     #[test]

@@ -42,9 +42,7 @@ pub(super) fn sink(line: &mut Line, points: &[Point]) {
     else {
         return;
     };
-    let lies = line
-        .ends
-        .map(|end| lies_on(contact, &points[end], spacing[0]));
+    let lies = line.ends.map(|end| lies_on(contact, &points[end], spacing[0]));
     for (i, level) in contact.level.iter_mut().enumerate() {
         let compression = *level - contact.bed; // δ
         let element = compression / REGULARISED_PENETRATION;

@@ -50,9 +50,7 @@ pub(super) fn damping_lengths(scene: &Scene) -> Vec<Vec<f64>> {
     lines
         .map(|(line, longest)| {
             let sections = line.sections.iter();
-            sections
-                .map(|section| of_section(section, longest))
-                .collect()
+            sections.map(|section| of_section(section, longest)).collect()
         })
         .collect()
 }
@@ -182,10 +180,9 @@ fn shapes(
 /// Places of a point [m] in the course of the scene's motion; only its reference where none is known.
 fn path(scene: &Scene, vessels: &[Vessel], point: &Point) -> Vec<Vector3<f64>> {
     let place = |t: f64| match &point.role {
-        Role::Coupled {
-            motion: Some(motion),
+        Role::Coupled { motion: Some(motion) } | Role::Prescribed(motion) => {
+            Some(point.reference + motion.at(t).position)
         }
-        | Role::Prescribed(motion) => Some(point.reference + motion.at(t).position),
         Role::Carried { vessel, arm } => {
             let vessel = &vessels[*vessel];
             let pose = vessel.motion()?.pose(t);
@@ -279,21 +276,14 @@ pub(super) fn in_words(scene: &Scene, model: &Model) -> Vec<String> {
 }
 
 fn reasons(scene: &Scene, model: &Model, line: &scene::Line, built: &Line, share: f64) -> String {
-    if line
-        .sections
-        .iter()
-        .all(|section| section.elements.is_some())
-    {
+    if line.sections.iter().all(|section| section.elements.is_some()) {
         return "as given".to_string();
     }
     let mut reasons = match (line.elements, scene.solver.elements) {
         (Some(elements), _) => format!("of the {elements} that the line is given"),
         (None, Some(elements)) => format!("of the {elements} of a line alone"),
         (None, None) => {
-            format!(
-                "for the target error of {}",
-                percent(scene.solver.tolerance)
-            )
+            format!("for the target error of {}", percent(scene.solver.tolerance))
         }
     };
     if line.elements.is_none() && share < alone(scene) {

@@ -25,9 +25,10 @@ pub fn agreement(title: &str, quantity: &str, series: &[Series]) -> Option<Strin
         return None;
     }
     let diagonal = Curve::new(vec![[low, low], [high, high]], DARK, Stroke::Fine).named("equal");
-    let discs = series.iter().enumerate().map(|(index, one)| {
-        Curve::new(one.pairs.clone(), colour(index), Stroke::Marks).named(&one.name)
-    });
+    let discs = series
+        .iter()
+        .enumerate()
+        .map(|(index, one)| Curve::new(one.pairs.clone(), colour(index), Stroke::Marks).named(&one.name));
     let curves: Vec<Curve> = [diagonal].into_iter().chain(discs).collect();
     let x = Axis::around(&curves, 0, format!("{quantity}, measured"));
     let y = Axis::around(&curves, 1, format!("{quantity}, computed"));

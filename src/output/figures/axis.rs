@@ -40,10 +40,9 @@ impl Axis {
             .flat_map(|curve| &curve.points)
             .map(|point| point[component])
             .filter(|value| value.is_finite());
-        let (mut min, mut max) = values
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(min, max), v| {
-                (min.min(v), max.max(v))
-            });
+        let (mut min, mut max) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(min, max), v| {
+            (min.min(v), max.max(v))
+        });
         if min > max {
             (min, max) = (0.0, 1.0);
         }
@@ -98,10 +97,7 @@ impl Axis {
             .into_iter()
             .find(|&step| step >= 0.8 * wanted)
             .unwrap_or(10.0 * decade);
-        let (first, last) = (
-            (self.min / step).ceil() as i64,
-            (self.max / step).floor() as i64,
-        );
+        let (first, last) = ((self.min / step).ceil() as i64, (self.max / step).floor() as i64);
         let ticks = (first..=last).map(|i| i as f64 * step).collect();
         (ticks, decimals(step))
     }
@@ -140,14 +136,9 @@ impl ValueFormatter<f64> for Axis {
 
 /// Logarithms of the powers of ten from `min` to `max`, and of twice and five times them where these are few.
 fn decade_ticks(min: f64, max: f64) -> Vec<f64> {
-    let within: &[f64] = if max - min > 3.0 {
-        &[1.0]
-    } else {
-        &[1.0, 2.0, 5.0]
-    };
+    let within: &[f64] = if max - min > 3.0 { &[1.0] } else { &[1.0, 2.0, 5.0] };
     let decades = min.floor() as i32..=max.ceil() as i32;
-    let ticks =
-        decades.flat_map(|decade| within.iter().map(move |m| m.log10() + f64::from(decade)));
+    let ticks = decades.flat_map(|decade| within.iter().map(move |m| m.log10() + f64::from(decade)));
     ticks.filter(|tick| (min..=max).contains(tick)).collect()
 }
 
@@ -164,9 +155,7 @@ fn power_of_ten(x: f64) -> String {
         .chars()
         .map(|c| match c {
             '-' => '⁻',
-            digit => {
-                ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'][digit as usize - '0' as usize]
-            }
+            digit => ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'][digit as usize - '0' as usize],
         })
         .collect();
     if factor == 1.0 {
@@ -234,17 +223,9 @@ mod tests {
             scale: Scale::Decades,
             ..axis(-5.2, 0.3)
         };
-        let texts: Vec<String> = axis
-            .ticks()
-            .0
-            .iter()
-            .map(|tick| power_of_ten(*tick))
-            .collect();
+        let texts: Vec<String> = axis.ticks().0.iter().map(|tick| power_of_ten(*tick)).collect();
         assert_eq!(texts, ["10⁻⁵", "10⁻⁴", "0.001", "0.01", "0.1", "1"]);
-        let texts: Vec<String> = decade_ticks(-0.4, 1.1)
-            .into_iter()
-            .map(power_of_ten)
-            .collect();
+        let texts: Vec<String> = decade_ticks(-0.4, 1.1).into_iter().map(power_of_ten).collect();
         assert_eq!(texts, ["0.5", "1", "2", "5", "10"]);
         assert_eq!(power_of_ten(-4.0 + 5.0_f64.log10()), "5·10⁻⁴");
     }

@@ -141,14 +141,7 @@ fn fine_f(pixels: f64) -> u32 {
 
 impl Chart {
     /// A chart `width` [px] wide whose frame with axis labels is `height` [px] high.
-    pub fn new(
-        title: String,
-        x: Axis,
-        y: Axis,
-        curves: Vec<Curve>,
-        width: u32,
-        height: u32,
-    ) -> Chart {
+    pub fn new(title: String, x: Axis, y: Axis, curves: Vec<Curve>, width: u32, height: u32) -> Chart {
         Chart {
             title,
             x,
@@ -267,12 +260,7 @@ impl Chart {
     }
 
     /// Words beside points, within a frame and clear of each other, of marks and, where there is room, of bold curves.
-    fn draw_labels(
-        &self,
-        area: &Area,
-        frame: &Patch,
-        place: impl Fn(&[f64; 2]) -> [i32; 2],
-    ) -> DrawResult {
+    fn draw_labels(&self, area: &Area, frame: &Patch, place: impl Fn(&[f64; 2]) -> [i32; 2]) -> DrawResult {
         let marks = self.curves.iter().filter(|c| c.stroke == Stroke::Marks);
         let marks = marks.flat_map(|curve| &curve.points);
         let mut marks: Vec<Patch> = marks
@@ -414,8 +402,7 @@ pub fn grid_svg(legend: &[Curve], charts: &[Chart], columns: usize) -> String {
         .map_or(0, |&(_, _, row)| (row + 1) * LEGEND_ROW + MARGIN);
     let height: u32 = head + rows().map(row_height).sum::<u32>();
     let mut svg = String::new();
-    draw_grid(&mut svg, &legend, rows(), [width, height, head])
-        .expect("drawing into a string does not fail");
+    draw_grid(&mut svg, &legend, rows(), [width, height, head]).expect("drawing into a string does not fail");
     // The drawing is FINE times as large as the figure; round joins keep a sharp peak from growing a spike.
     let end_of_head = svg.find('>').map_or(0, |end| end + 1);
     let mut head = String::new();
@@ -494,10 +481,7 @@ mod tests {
             ];
             let scale_x = frame[0] / (chart.x.max - chart.x.min);
             let scale_y = frame[1] / (chart.y.max - chart.y.min);
-            assert!(
-                (scale_x / scale_y - 1.0).abs() < 1e-9,
-                "{scale_x} {scale_y}"
-            );
+            assert!((scale_x / scale_y - 1.0).abs() < 1e-9, "{scale_x} {scale_y}");
             assert!(chart.x.max >= x && chart.y.min <= -y);
         }
     }

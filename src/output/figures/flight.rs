@@ -54,11 +54,7 @@ fn view_chart(record: &Record, [across, up]: [usize; 2]) -> Chart {
         for line in 0..record.lines.len() {
             let path = record.frames.iter().filter_map(|frame| {
                 let nodes = &frame.lines[line];
-                let node = if end == 0 {
-                    nodes.first()
-                } else {
-                    nodes.last()
-                };
+                let node = if end == 0 { nodes.first() } else { nodes.last() };
                 node.map(|node| view(node.position))
             });
             let curve = Curve::new(path.collect(), colour(1 + end), Stroke::Dashed);
@@ -66,11 +62,7 @@ fn view_chart(record: &Record, [across, up]: [usize; 2]) -> Chart {
         }
     }
     let interval = drawn.get(1).map_or(0.0, |frame| frame.time - drawn[0].time);
-    let title = format!(
-        "{}, every {} s",
-        with_title("Flight", record),
-        plain(interval)
-    );
+    let title = format!("{}, every {} s", with_title("Flight", record), plain(interval));
     let x = Axis::around(&curves, 0, AXES[across].to_string());
     let y = Axis::around(&curves, 1, AXES[up].to_string());
     Chart::to_scale(title, x, y, curves)
@@ -162,12 +154,7 @@ mod tests {
     #[test]
     fn the_balance_names_what_it_shows() {
         let svg = balance(&flying()).unwrap();
-        for label in [
-            "energy [J]",
-            "strain",
-            "angular momentum [N m s]",
-            "about z",
-        ] {
+        for label in ["energy [J]", "strain", "angular momentum [N m s]", "about z"] {
             assert!(svg.contains(label), "{label}");
         }
     }

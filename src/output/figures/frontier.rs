@@ -33,9 +33,9 @@ pub fn figure(study: &Study) -> String {
 
 /// RMS tension and position of several studies.
 pub fn overview(studies: &[Study]) -> String {
-    let charts = studies.iter().flat_map(|study| {
-        [Metric::Rms, Metric::Position].map(|metric| chart(study, metric, false))
-    });
+    let charts = studies
+        .iter()
+        .flat_map(|study| [Metric::Rms, Metric::Position].map(|metric| chart(study, metric, false)));
     grid(charts.collect())
 }
 
@@ -133,11 +133,7 @@ fn duel(study: &Study, metric: Metric, level: f64) -> Option<Curve> {
     let middle = (own.cost * peer.cost).sqrt();
     let points = vec![at(own.cost), at(middle), at(peer.cost)];
     let star = if verdict.key { " *" } else { "" };
-    let labels = vec![
-        String::new(),
-        format!("{}×{star}", times(ratio)),
-        String::new(),
-    ];
+    let labels = vec![String::new(), format!("{}×{star}", times(ratio)), String::new()];
     Some(Curve::new(points, DARK, Stroke::Fine).labelled(labels))
 }
 
@@ -160,9 +156,7 @@ fn shown_runs(study: &Study, metric: Metric, code: &Code) -> Vec<[f64; 2]> {
 /// The staircase of a frontier: what an error costs at least.
 fn frontier(study: &Study, metric: Metric, codes: impl Fn(&Code) -> bool) -> Vec<[f64; 2]> {
     let runs = study.frontier(metric, codes);
-    let runs = runs
-        .into_iter()
-        .filter(|run| run.errors.of(metric) <= ERROR_MAX);
+    let runs = runs.into_iter().filter(|run| run.errors.of(metric) <= ERROR_MAX);
     let mut steps: Vec<[f64; 2]> = Vec::new();
     for run in runs {
         let next = place(study, metric, run.errors.of(metric), run.cost);

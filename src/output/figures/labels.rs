@@ -89,9 +89,7 @@ fn places(label: &Label, gap: i32) -> impl Iterator<Item = Patch> {
     rows.flat_map(move |row| {
         let sides = [gap + half[0], -gap - half[0], 0];
         // straight over and under the point only where that is clear of it
-        let sides = sides
-            .into_iter()
-            .filter(move |side| *side != 0 || row.abs() > 0);
+        let sides = sides.into_iter().filter(move |side| *side != 0 || row.abs() > 0);
         sides.map(move |side| Patch::around([x + side, y + row * height], half))
     })
 }

@@ -67,9 +67,7 @@ pub fn all(record: &Record) -> Vec<(&'static str, String)> {
 
 fn drawn(figures: Vec<(&'static str, Option<String>)>) -> Vec<(&'static str, String)> {
     let figures = figures.into_iter();
-    figures
-        .filter_map(|(stem, svg)| Some((stem, svg?)))
-        .collect()
+    figures.filter_map(|(stem, svg)| Some((stem, svg?))).collect()
 }
 
 /// Lines seen from the side, on one scale in both directions: the closed-form catenary dashed, the equilibrium, the last
@@ -271,10 +269,7 @@ fn levels(record: &Record, curves: &[Curve]) -> Vec<(f64, &'static str, [u8; 3])
         let margin = 0.25 * (y.max - y.min);
         (y.min - margin..=y.max + margin).contains(&height)
     };
-    let water = record
-        .surroundings
-        .water
-        .then_some((0.0, "still water", WATER));
+    let water = record.surroundings.water.then_some((0.0, "still water", WATER));
     let seabed = record.surroundings.seabed.map(|z| (z, "seabed", SEABED));
     water
         .into_iter()

@@ -122,12 +122,7 @@ mod tests {
             }
             let energy = flight.energy(1.5);
             assert_relative_eq!(energy.axial, stretch, max_relative = 1e-8);
-            assert_relative_eq!(
-                energy.gravitational,
-                weighed,
-                epsilon = 1e-9,
-                max_relative = 1e-8
-            );
+            assert_relative_eq!(energy.gravitational, weighed, epsilon = 1e-9, max_relative = 1e-8);
         }
     }
 

@@ -72,10 +72,7 @@ pub(super) fn increasing(
         }
         at = next;
     }
-    Root {
-        at,
-        steps: STEPS_MAX,
-    }
+    Root { at, steps: STEPS_MAX }
 }
 
 /// Root of `function` (value only), increasing in x > 0 and searched on ln x from `start` outwards; `lowest` if it is below that.
@@ -147,11 +144,7 @@ pub(super) fn between(
             (b, fb) = (a, fa);
         }
         (a, fa) = (at, value);
-        let (best, residual) = if fa.abs() < fb.abs() {
-            (a, fa)
-        } else {
-            (b, fb)
-        };
+        let (best, residual) = if fa.abs() < fb.abs() { (a, fa) } else { (b, fb) };
         let close = f64::EPSILON * best.abs().max(resolution);
         if residual.abs() <= tolerance || (b - a).abs() <= 2.0 * close {
             return Root { at: best, steps };
@@ -214,10 +207,7 @@ pub(super) fn increasing_positive(
         }
         at = next;
     }
-    Root {
-        at,
-        steps: STEPS_MAX,
-    }
+    Root { at, steps: STEPS_MAX }
 }
 
 #[cfg(test)]
@@ -249,12 +239,7 @@ mod tests {
             // its last step, 1e-9 of the root, squares to 1e-11 over the 1e-6 on which this function bends
             assert!((positive.at - 3.7).abs() < 1e-10, "{positive:?}");
         }
-        let halved = between(
-            sigmoid,
-            (-9.0, sigmoid(-9.0)),
-            (1e4, sigmoid(1e4)),
-            (0.0, 1.0),
-        );
+        let halved = between(sigmoid, (-9.0, sigmoid(-9.0)), (1e4, sigmoid(1e4)), (0.0, 1.0));
         assert!((halved.at - 3.7).abs() < 1e-14, "{halved:?}");
     }
 

@@ -199,12 +199,7 @@ impl Sections {
             let slack_miss = miss(lowest, self.length);
             if slack_miss < 0.0 {
                 let ends = ((0.0, limp_miss), (self.length, slack_miss));
-                let root = root::between(
-                    |s| miss(lowest, s),
-                    ends.0,
-                    ends.1,
-                    (tolerance, self.length),
-                );
+                let root = root::between(|s| miss(lowest, s), ends.0, ends.1, (tolerance, self.length));
                 steps += root.steps;
                 miss(lowest, root.at);
             }
@@ -229,8 +224,7 @@ impl Sections {
             horizontal: hold.horizontal_a,
             vertical: 0.0,
             reference: 0,
-            from_bed: self.bed.is_some_and(|bed| bed.height >= 0.0)
-                && self.sections[0].weight >= 0.0,
+            from_bed: self.bed.is_some_and(|bed| bed.height >= 0.0) && self.sections[0].weight >= 0.0,
         };
         departure.from_bed = departure.from_bed && self.fly(&departure).gap >= 0.0;
         // every touchdown lies beyond the lift-off before it, in a section of its own
@@ -239,8 +233,7 @@ impl Sections {
                 memory.push(None);
             }
             let (flying, touch) = if departure.from_bed {
-                let (lifted, touch) =
-                    self.lift_off(&departure, hold.tight_from, &mut memory[flight]);
+                let (lifted, touch) = self.lift_off(&departure, hold.tight_from, &mut memory[flight]);
                 self.lay(&departure, &lifted, hold.tight_from, shape);
                 (lifted, touch)
             } else {
@@ -392,64 +385,41 @@ impl Sections {
 
     /// A section's end, beyond where `from` the search began, where the vertical tension of the flight is so much smaller than at its reference that it is better
     /// found there: the vertical tension and the section.
-    fn better_reference(
-        &self,
-        flight: &Departure,
-        from: &Departure,
-        flown: &Flown,
-    ) -> Option<(f64, usize)> {
+    fn better_reference(&self, flight: &Departure, from: &Departure, flown: &Flown) -> Option<(f64, usize)> {
         // where the gap jumps over zero the flight does not end at the touchdown it seems to have
         let ends = flown.touch.filter(|_| flown.gap.abs() < JUMP * self.length);
         let last = ends.map_or(self.sections.len(), |(index, _)| index + 1);
         let first = from.section + usize::from(from.from_bed);
         let candidates = (first..=last).map(|index| (self.vertical_at(flight, index), index));
         let best = candidates.min_by(|a, b| a.0.abs().total_cmp(&b.0.abs()))?;
-        (best.1 != flight.reference && best.0.abs() < REFERENCE_SHARE * flight.vertical.abs())
-            .then_some(best)
+        (best.1 != flight.reference && best.0.abs() < REFERENCE_SHARE * flight.vertical.abs()).then_some(best)
     }
 
     /// Where tension begins on the bed after the touchdown `from`: a section and the length between there and its end [m].
     fn tight_place(&self, tight_from: f64, from: &Departure, run_end: usize) -> (usize, f64) {
-        let whole = (
-            from.section,
-            self.sections[from.section].length - from.offset,
-        );
+        let whole = (from.section, self.sections[from.section].length - from.offset);
         if from.horizontal > self.limp() {
             return whole;
         }
         let ends = from.section + 1..=run_end;
         match ends.into_iter().find(|&end| tight_from < self.starts[end]) {
             None => (run_end - 1, 0.0),
-            Some(end) if end - 1 == from.section => {
-                (end - 1, whole.1.min(self.starts[end] - tight_from))
-            }
+            Some(end) if end - 1 == from.section => (end - 1, whole.1.min(self.starts[end] - tight_from)),
             Some(end) => (
                 end - 1,
-                self.sections[end - 1]
-                    .length
-                    .min(self.starts[end] - tight_from),
+                self.sections[end - 1].length.min(self.starts[end] - tight_from),
             ),
         }
     }
 
     /// Section and offset of the lift-off after which the vertical tension at `reference` is `vertical`.
-    fn locate(
-        &self,
-        from: &Departure,
-        run_end: usize,
-        vertical: f64,
-        reference: usize,
-    ) -> (usize, f64) {
+    fn locate(&self, from: &Departure, run_end: usize, vertical: f64, reference: usize) -> (usize, f64) {
         for index in from.section..run_end {
             let section = &self.sections[index];
             // weight in flight of this section
             let flown = vertical + (self.before[index + 1] - self.before[reference]);
             if flown > 0.0 && section.weight > 0.0 {
-                let least = if index == from.section {
-                    from.offset
-                } else {
-                    0.0
-                };
+                let least = if index == from.section { from.offset } else { 0.0 };
                 return (
                     index,
                     (section.length - flown / section.weight).clamp(least, section.length),

@@ -56,10 +56,7 @@ impl Piece {
     }
 
     pub fn on_bed(&self) -> bool {
-        matches!(
-            self.kind,
-            Kind::Laid { .. } | Kind::Slack { on_bed: true, .. }
-        )
+        matches!(self.kind, Kind::Laid { .. } | Kind::Slack { on_bed: true, .. })
     }
 
     /// Stretched less unstretched length [m].
@@ -89,12 +86,7 @@ impl Piece {
                 weight,
                 axial_stiffness,
             },
-            Kind::Slack {
-                x,
-                z,
-                weight,
-                on_bed,
-            } => Kind::Slack {
+            Kind::Slack { x, z, weight, on_bed } => Kind::Slack {
                 x,
                 z: -z,
                 weight,
@@ -107,9 +99,7 @@ impl Piece {
         let (dx, dz) = self.advance(length);
         let (horizontal, vertical) = match self.kind {
             Kind::Flight(flight) => (flight.horizontal, flight.first(length).vertical_end()),
-            Kind::Laid {
-                tension, growth, ..
-            } => (tension + growth * length, 0.0),
+            Kind::Laid { tension, growth, .. } => (tension + growth * length, 0.0),
             Kind::Slack { .. } => (0.0, 0.0),
         };
         Point {
@@ -250,12 +240,7 @@ impl Shape {
         self.end = (0.0, 0.0, 0.0);
         for piece in pieces {
             let kind = match piece.kind {
-                Kind::Slack {
-                    x,
-                    z,
-                    weight,
-                    on_bed,
-                } => Kind::Slack {
+                Kind::Slack { x, z, weight, on_bed } => Kind::Slack {
                     x: x * factor,
                     z,
                     weight,

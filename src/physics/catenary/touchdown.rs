@@ -60,8 +60,7 @@ impl Uniform {
         let (w, ea) = (self.weight, self.axial_stiffness);
         let wd = w * height;
         let (hs, cs) = (h / ea, (wd + h) / ea);
-        let vertical =
-            (2.0 * wd * (wd + 2.0 * h) / (1.0 + cs + (1.0 + 2.0 * cs + hs * hs).sqrt())).sqrt();
+        let vertical = (2.0 * wd * (wd + 2.0 * h) / (1.0 + cs + (1.0 + 2.0 * cs + hs * hs).sqrt())).sqrt();
         if h == 0.0 {
             return Lift {
                 vertical,
@@ -117,17 +116,11 @@ impl Uniform {
         };
         let knee = 0.1 * w * at.height_a.max(at.height_b);
         let lowest = HORIZONTAL_SHARE_MIN * w * l;
-        let root =
-            root::increasing_positive(balance, self.guess(at), (lowest, f64::INFINITY), |h| {
-                h < knee
-            });
+        let root = root::increasing_positive(balance, self.guess(at), (lowest, f64::INFINITY), |h| h < knee);
         let h = root.at;
         let (a, b) = (self.lift(h, at.height_a), self.lift(h, at.height_b));
         let laid = (l - (a.vertical + b.vertical) / w).max(0.0);
-        debug_assert!(
-            ea > 0.0 && h.is_finite(),
-            "touchdown found no horizontal tension"
-        );
+        debug_assert!(ea > 0.0 && h.is_finite(), "touchdown found no horizontal tension");
         Held {
             horizontal_a: (h - at.friction * w * laid).max(0.0),
             horizontal_b: h,
@@ -196,8 +189,7 @@ mod tests {
         for h in [1e-6, 3.0, 700.0, 1e6] {
             let lift = LINE.lift(h, 12.0);
             let tension = h.hypot(lift.vertical);
-            let rise =
-                lift.vertical * lift.vertical / (tension + h) + lift.vertical * lift.vertical / 4e4;
+            let rise = lift.vertical * lift.vertical / (tension + h) + lift.vertical * lift.vertical / 4e4;
             assert!((rise - 600.0).abs() < 1e-10, "{h}: {rise}");
         }
     }
@@ -217,10 +209,7 @@ mod tests {
                 close(here.vertical_slope, central(up.vertical, down.vertical)),
                 "{h}"
             );
-            assert!(
-                close(here.excess_slope, central(up.excess, down.excess)),
-                "{h}"
-            );
+            assert!(close(here.excess_slope, central(up.excess, down.excess)), "{h}");
             let ground = LINE.lift(h, 0.0);
             for friction in [0.0, 0.4, 9.0] {
                 let (high, _) = LINE.stretch(h + step, &ground, &up, friction);

@@ -252,10 +252,7 @@ mod tests {
             };
             let held = line.suspend(60.6, 80.8);
             let tension = held.horizontal_b.hypot(held.vertical_b);
-            assert!(
-                (tension - 1e4).abs() < weight.abs() * 100.0 + 1e-9,
-                "{tension}"
-            );
+            assert!((tension - 1e4).abs() < weight.abs() * 100.0 + 1e-9, "{tension}");
         }
     }
 

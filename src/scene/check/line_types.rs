@@ -43,18 +43,8 @@ fn check_numbers(findings: &mut Findings, at: &str, line_type: &LineType) {
             "-",
         ),
         ("drag_normal", line_type.drag_normal, coefficient, "-"),
-        (
-            "drag_tangential",
-            line_type.drag_tangential,
-            coefficient,
-            "-",
-        ),
-        (
-            "added_mass_normal",
-            line_type.added_mass_normal,
-            coefficient,
-            "-",
-        ),
+        ("drag_tangential", line_type.drag_tangential, coefficient, "-"),
+        ("added_mass_normal", line_type.added_mass_normal, coefficient, "-"),
         (
             "added_mass_tangential",
             line_type.added_mass_tangential,
@@ -89,13 +79,7 @@ fn check_mass(findings: &mut Findings, at: &str, line_type: &LineType, scene: &S
 }
 
 /// Water and seabed act on a line by its diameter.
-fn check_diameter(
-    findings: &mut Findings,
-    at: &str,
-    name: &str,
-    line_type: &LineType,
-    scene: &Scene,
-) {
+fn check_diameter(findings: &mut Findings, at: &str, name: &str, line_type: &LineType, scene: &Scene) {
     if line_type.diameter.is_some() {
         return;
     }
@@ -135,10 +119,7 @@ pub(in crate::scene) fn coefficients(line_type: &LineType) -> [(&'static str, Op
 
 /// What the axial force follows from: a stiffness, a table, or two stiffnesses with dampers.
 fn check_axial(findings: &mut Findings, at: &str, line_type: &LineType) {
-    if viscoelastic(line_type)
-        .iter()
-        .any(|(_, value)| value.is_some())
-    {
+    if viscoelastic(line_type).iter().any(|(_, value)| value.is_some()) {
         check_viscoelastic(findings, at, line_type);
         return;
     }
@@ -165,10 +146,7 @@ fn check_axial(findings: &mut Findings, at: &str, line_type: &LineType) {
         );
     }
     if line_type.model == LineModel::Beam {
-        findings.say(
-            &at_table,
-            "a beam has one `axial_stiffness` [N], and no table",
-        );
+        findings.say(&at_table, "a beam has one `axial_stiffness` [N], and no table");
     }
     check_table(findings, &at_table, table);
 }
@@ -186,21 +164,14 @@ fn viscoelastic(line_type: &LineType) -> [(&'static str, Option<f64>); 4] {
 /// A viscoelastic rope has two stiffnesses and two dampings, and nothing else that resists stretch.
 fn check_viscoelastic(findings: &mut Findings, at: &str, line_type: &LineType) {
     for (key, value) in viscoelastic(line_type) {
-        let unit = if key.ends_with("stiffness") {
-            "N"
-        } else {
-            "N s"
-        };
+        let unit = if key.ends_with("stiffness") { "N" } else { "N s" };
         let bounds = match key {
             "dynamic_damping" => Bounds::NotNegative(1e15),
             _ => Bounds::Positive(1e15),
         };
         findings.number_if(format!("{at}.{key}"), value, bounds, unit);
         if value.is_none() && key != "dynamic_damping" {
-            findings.say(
-                at,
-                format!("missing key `{key}` [{unit}] of a viscoelastic rope"),
-            );
+            findings.say(at, format!("missing key `{key}` [{unit}] of a viscoelastic rope"));
         }
     }
     if let (Some(slow), Some(fast)) = (line_type.static_stiffness, line_type.dynamic_stiffness)
@@ -382,9 +353,8 @@ fn check_beam(findings: &mut Findings, at: &str, line_type: &LineType) {
                 LineModel::Beam => "",
                 LineModel::Cable => ", and integrator = \"beam\" makes every line a beam",
             };
-            let problem = format!(
-                "a beam needs `{key}` [{unit}], or a `solid_section` that it follows from{why}"
-            );
+            let problem =
+                format!("a beam needs `{key}` [{unit}], or a `solid_section` that it follows from{why}");
             findings.say(at, problem);
         }
     }

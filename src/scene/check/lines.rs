@@ -49,7 +49,8 @@ fn check_sections(findings: &mut Findings, at: &str, line: &Line, scene: &Scene)
     check_elements(findings, at, line.elements);
     let given = |section: &Section| section.elements.is_some();
     if line.elements.is_some() && !line.sections.is_empty() && line.sections.iter().all(given) {
-        let problem = "every section of the line has its own number of elements: leave this one out, or those";
+        let problem =
+            "every section of the line has its own number of elements: leave this one out, or those";
         findings.say(format!("{at}.elements"), problem);
     }
     for (i, section) in line.sections.iter().enumerate() {
@@ -100,12 +101,7 @@ fn check_parting(findings: &mut Findings, at: &str, line: &Line, scene: &Scene) 
         let at = format!("{at}.break");
         let bounds = Bounds::Positive(1e15);
         findings.number_if(format!("{at}.tension"), parting.tension, bounds, "N");
-        findings.number_if(
-            format!("{at}.time"),
-            parting.time,
-            Bounds::NotNegative(1e9),
-            "s",
-        );
+        findings.number_if(format!("{at}.time"), parting.time, Bounds::NotNegative(1e9), "s");
         if parting.tension.is_none() && parting.time.is_none() {
             findings.say(
                 &at,
@@ -171,9 +167,7 @@ fn check_start(findings: &mut Findings, at: &str, line: &Line, scene: &Scene) {
                 findings.number(format!("{at}.parabola"), *sag, bounds, "m");
             }
         }
-        InitialShape::Nodes(nodes) => {
-            check_nodes(findings, &format!("{at}.nodes"), nodes, line, ends)
-        }
+        InitialShape::Nodes(nodes) => check_nodes(findings, &format!("{at}.nodes"), nodes, line, ends),
     }
 }
 
@@ -249,7 +243,8 @@ fn check_clamps(findings: &mut Findings, at: &str, line: &Line, scene: &Scene) {
         }
         let line_type = section.and_then(|section| scene.line_types.get(&section.line_type));
         if !line_type.is_none_or(LineType::bends) {
-            let problem = "a perfectly flexible line cannot be clamped: give its type a `bending_stiffness` [N m²]";
+            let problem =
+                "a perfectly flexible line cannot be clamped: give its type a `bending_stiffness` [N m²]";
             findings.say(at, problem);
         }
     }

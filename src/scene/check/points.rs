@@ -54,12 +54,7 @@ fn check_place(findings: &mut Findings, at: &str, point: &Point, scene: &Scene) 
 
 /// Keys that only some kinds of points may have.
 fn check_freedom(findings: &mut Findings, at: &str, point: &Point) {
-    findings.number_if(
-        format!("{at}.mass"),
-        point.mass,
-        Bounds::NotNegative(1e12),
-        "kg",
-    );
+    findings.number_if(format!("{at}.mass"), point.mass, Bounds::NotNegative(1e12), "kg");
     findings.number_if(
         format!("{at}.volume"),
         point.volume,
@@ -278,10 +273,7 @@ fn check_run_motion(scene: &Scene, findings: &mut Findings) {
         }
         match scene.points.iter().find(|point| point.name == *name) {
             None => {
-                findings.say(
-                    at.clone(),
-                    nothing_driven(name, coupled.clone(), vessels.clone()),
-                );
+                findings.say(at.clone(), nothing_driven(name, coupled.clone(), vessels.clone()));
             }
             Some(point) if point.kind != PointKind::Coupled => {
                 let problem = format!(
@@ -290,11 +282,8 @@ fn check_run_motion(scene: &Scene, findings: &mut Findings) {
                 );
                 findings.say(at.clone(), problem);
             }
-            Some(Point {
-                on: Some(vessel), ..
-            }) => {
-                let problem =
-                    format!("`{name}` rides on the vessel `{vessel}`: write the motion of that");
+            Some(Point { on: Some(vessel), .. }) => {
+                let problem = format!("`{name}` rides on the vessel `{vessel}`: write the motion of that");
                 findings.say(at.clone(), problem);
             }
             Some(_) if motion.turns() => {
@@ -320,11 +309,6 @@ fn nothing_driven<'a>(
             format!("no {what} is called `{name}`, and there is none: nothing is moved by a host")
         }
         [one] => format!("no {what} is called `{name}`; there is `{one}`"),
-        _ => unknown(
-            what,
-            "vessels and coupled points",
-            name,
-            known.iter().copied(),
-        ),
+        _ => unknown(what, "vessels and coupled points", name, known.iter().copied()),
     }
 }

@@ -28,8 +28,7 @@ pub(super) fn check_bed(scene: &Scene, bed: &Seabed, findings: &mut Findings) {
         .map(|(key, _)| *key)
         .collect();
     if let [first, second, ..] = given[..] {
-        let problem =
-            format!("`{first}` and `{second}` cannot both be given: the bed has one shape");
+        let problem = format!("`{first}` and `{second}` cannot both be given: the bed has one shape");
         return findings.say("seabed", problem);
     }
     if bed.file.is_some() {
@@ -74,12 +73,7 @@ fn check_grid(grid: &DepthGrid, findings: &mut Findings) {
             );
         }
         for (i, place) in line.iter().enumerate() {
-            let right = findings.number(
-                format!("{at}.{key}[{i}]"),
-                *place,
-                Bounds::Magnitude(1e7),
-                "m",
-            );
+            let right = findings.number(format!("{at}.{key}[{i}]"), *place, Bounds::Magnitude(1e7), "m");
             if let Some(before) = i.checked_sub(1).map(|i| line[i])
                 && right
                 && *place <= before
@@ -107,10 +101,7 @@ fn check_grid(grid: &DepthGrid, findings: &mut Findings) {
     }
     for (j, row) in grid.depth.iter().enumerate() {
         if row.len() != wide {
-            let problem = format!(
-                "{} depths for {wide} values of x: write one for each",
-                row.len()
-            );
+            let problem = format!("{} depths for {wide} values of x: write one for each", row.len());
             return findings.say(format!("{at}.depth[{j}]"), problem);
         }
         for (i, depth) in row.iter().enumerate() {

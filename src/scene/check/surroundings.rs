@@ -23,12 +23,7 @@ pub(super) fn check(scene: &Scene, findings: &mut Findings) {
         findings.number("gravity", scene.gravity, gravity, "m/s²");
     }
     if let Some(water) = &scene.water {
-        findings.number(
-            "water.density",
-            water.density,
-            Bounds::Positive(1e5),
-            "kg/m³",
-        );
+        findings.number("water.density", water.density, Bounds::Positive(1e5), "kg/m³");
         if let Some(current) = &water.current {
             check_current(scene, current, findings);
         }
@@ -69,7 +64,10 @@ fn check_current(scene: &Scene, current: &Current, findings: &mut Findings) {
             "a current needs `velocity = [vx, vy, vz]` [m/s], or `profile = [[z, vx, vy], …]` [m, m/s]",
         ),
         (Some(_), Some(_)) => {
-            findings.say(at, "`velocity` and `profile` cannot both be given: the profile says all");
+            findings.say(
+                at,
+                "`velocity` and `profile` cannot both be given: the profile says all",
+            );
         }
         (Some(velocity), None) => {
             for (axis, value) in velocity.iter().enumerate() {

@@ -40,12 +40,7 @@ impl Load {
 }
 
 /// Checks a load.
-pub(super) fn check_load_in_time(
-    findings: &mut Findings,
-    at: &str,
-    function: &TimeFunction,
-    load: Load,
-) {
+pub(super) fn check_load_in_time(findings: &mut Findings, at: &str, function: &TimeFunction, load: Load) {
     let (force, unit) = (Bounds::Magnitude(1e15), load.unit);
     match function {
         TimeFunction::Constant(value) => {
@@ -136,10 +131,7 @@ fn check_rows(findings: &mut Findings, at: &str, rows: &[MotionRow], in_scene: b
         findings.mistakes.append(&mut of_rows.mistakes);
     } else if let Some(first) = of_rows.mistakes.first() {
         let row = first.at.strip_prefix(at).unwrap_or_default();
-        findings.say(
-            at,
-            format!("row {row} (from 0) of the file: {}", first.problem),
-        );
+        findings.say(at, format!("row {row} (from 0) of the file: {}", first.problem));
     }
 }
 

@@ -40,10 +40,7 @@ pub(super) fn check(scene: &Scene, waves: &Waves, findings: &mut Findings) {
         }
     }
     if scene.gravity <= 0.0 {
-        findings.say(
-            at,
-            "without gravity there are no waves: leave one of the two out",
-        );
+        findings.say(at, "without gravity there are no waves: leave one of the two out");
     }
     check_lines(scene, findings);
 }
@@ -137,10 +134,7 @@ fn check_spectrum(at: &str, sea: &Sea, findings: &mut Findings) {
         ("peak_period", sea.peak_period, PERIOD, "s"),
     ] {
         match value {
-            None => findings.say(
-                at,
-                format!("missing key `{key}` [{unit}]: the spectrum needs it"),
-            ),
+            None => findings.say(at, format!("missing key `{key}` [{unit}]: the spectrum needs it")),
             Some(value) => {
                 findings.number(format!("{at}.{key}"), value, bounds, unit);
             }

@@ -69,24 +69,16 @@ fn misplaced(line: &Line, scene: &Scene) -> Option<&'static str> {
         .parting
         .as_ref()
         .is_some_and(|parting| parting.at == LineEnd::B);
-    (parts || line.release == Some(LineEnd::B)).then_some(
-        "end B is on the winch, so that it neither breaks off nor lets go: leave one of them out",
-    )
+    (parts || line.release == Some(LineEnd::B))
+        .then_some("end B is on the winch, so that it neither breaks off nor lets go: leave one of them out")
 }
 
 /// What the winch cannot be combined with.
 fn unserved(line: &Line, scene: &Scene) -> Option<&'static str> {
-    if !matches!(
-        scene.solver.integrator,
-        Integrator::Auto | Integrator::Leapfrog
-    ) {
+    if !matches!(scene.solver.integrator, Integrator::Auto | Integrator::Leapfrog) {
         return Some("winches are served by the integrators \"leapfrog\" and \"auto\"");
     }
-    if scene
-        .water
-        .as_ref()
-        .is_some_and(|water| water.waves.is_some())
-    {
+    if scene.water.as_ref().is_some_and(|water| water.waves.is_some()) {
         return Some("a line on a winch knows no waves yet: leave out one of them");
     }
     if scene.meets_surface(line) {
@@ -97,9 +89,8 @@ fn unserved(line: &Line, scene: &Scene) -> Option<&'static str> {
     if matches!(line.initial, InitialShape::Nodes(_)) {
         return Some("a line on a winch starts \"static\" or \"straight\"");
     }
-    let other = |kind: &LineType| {
-        kind.model == LineModel::Beam || kind.bends() || kind.dynamic_stiffness.is_some()
-    };
+    let other =
+        |kind: &LineType| kind.model == LineModel::Beam || kind.bends() || kind.dynamic_stiffness.is_some();
     let mut sections = line.sections.iter();
     sections
         .any(|section| scene.line_types.get(&section.line_type).is_some_and(other))

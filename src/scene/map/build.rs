@@ -6,8 +6,8 @@ use super::deck::{Coordinate, Deck, Kind, Node};
 use crate::scene::from_deck::{self, SEA_WATER, Vessels};
 use crate::scene::rows::{Findings, Placed, ROWS_MAX};
 use crate::scene::{
-    self, AngleOrder, Friction, Integrator, Places, Point, PointForce, PointKind, Scene, Seabed,
-    Section, Solver, Supplement, TimeFunction, Water,
+    self, AngleOrder, Friction, Integrator, Places, Point, PointForce, PointKind, Scene, Seabed, Section,
+    Solver, Supplement, TimeFunction, Water,
 };
 
 /// A deck on its way to a scene.
@@ -56,9 +56,7 @@ pub(super) fn scene(
         findings,
         types: BTreeMap::new(),
     };
-    builder
-        .vessels
-        .check_given(std::iter::empty(), builder.findings);
+    builder.vessels.check_given(std::iter::empty(), builder.findings);
     builder.needs_depth();
     builder.line_types();
     for turn in builder.turns() {
@@ -133,9 +131,7 @@ impl Builder<'_> {
         }
         let angles = deck.repeat.iter().map(|angle| angle.value.to_radians());
         let turns = std::iter::once(0.0).chain(angles).enumerate();
-        turns
-            .map(|(number, angle)| Turn { number, angle })
-            .collect()
+        turns.map(|(number, angle)| Turn { number, angle }).collect()
     }
 
     fn points(&mut self, turn: Turn) {
@@ -143,20 +139,15 @@ impl Builder<'_> {
             let at = format!("points[{}]", self.scene.points.len());
             let words = format!("node {}", node.id.value);
             self.places.put(at.clone(), &node.id.span, words.clone());
-            for (axis, (coordinate, letter)) in
-                node.position.iter().zip(["X", "Y", "Z"]).enumerate()
-            {
+            for (axis, (coordinate, letter)) in node.position.iter().zip(["X", "Y", "Z"]).enumerate() {
                 let words = format!("{words}, {letter}");
                 self.places
                     .put(format!("{at}.position[{axis}]"), &coordinate.span, words);
             }
             self.places
                 .put(format!("{at}.mass"), &node.mass.span, format!("{words}, M"));
-            self.places.put(
-                format!("{at}.volume"),
-                &node.volume.span,
-                format!("{words}, B"),
-            );
+            self.places
+                .put(format!("{at}.volume"), &node.volume.span, format!("{words}, B"));
             let point = self.point(node, turn);
             self.scene.points.push(point);
         }
@@ -164,13 +155,10 @@ impl Builder<'_> {
 
     fn point(&mut self, node: &Node, turn: Turn) -> Point {
         let depth = self.vessels.supplement.depth.unwrap_or(0.0);
-        let position = node
-            .position
-            .each_ref()
-            .map(|coordinate| match coordinate.value {
-                Coordinate::Given(value) => value,
-                Coordinate::Depth => -depth,
-            });
+        let position = node.position.each_ref().map(|coordinate| match coordinate.value {
+            Coordinate::Given(value) => value,
+            Coordinate::Depth => -depth,
+        });
         let name = point_name(self.deck, node.id.value, turn);
         let fixed = Point::at(name, turned(position, turn.angle), PointKind::Fixed);
         match node.kind.value {
@@ -179,12 +167,10 @@ impl Builder<'_> {
                 mass: (node.mass.value != 0.0).then_some(node.mass.value),
                 volume: (node.volume.value != 0.0).then_some(node.volume.value),
                 kind: PointKind::Coupled,
-                on: Some(self.vessels.board(
-                    &mut self.scene,
-                    self.vessels.of_the_deck(),
-                    [0.0; 3],
-                    [0.0; 3],
-                )),
+                on: Some(
+                    self.vessels
+                        .board(&mut self.scene, self.vessels.of_the_deck(), [0.0; 3], [0.0; 3]),
+                ),
                 ..fixed
             },
             Kind::Connect => Point {
@@ -258,17 +244,8 @@ impl Builder<'_> {
 
     /// The one friction coefficient [-] of all line types that lines use.
     fn friction(&mut self) -> f64 {
-        let used = |name: &str| {
-            self.deck
-                .lines
-                .iter()
-                .any(|line| line.line_type.value == name)
-        };
-        let mut types = self
-            .deck
-            .line_types
-            .iter()
-            .filter(|kind| used(&kind.name.value));
+        let used = |name: &str| self.deck.lines.iter().any(|line| line.line_type.value == name);
+        let mut types = self.deck.line_types.iter().filter(|kind| used(&kind.name.value));
         let Some(first) = types.next() else {
             return 0.0;
         };
@@ -280,11 +257,8 @@ impl Builder<'_> {
             self.findings
                 .mistake("LINE DICTIONARY, CB", other.friction.span.clone(), problem);
         }
-        self.places.put(
-            "seabed.friction",
-            &first.friction.span,
-            "LINE DICTIONARY, CB",
-        );
+        self.places
+            .put("seabed.friction", &first.friction.span, "LINE DICTIONARY, CB");
         first.friction.value
     }
 
@@ -299,12 +273,7 @@ impl Builder<'_> {
             scene::STANDARD_GRAVITY
         ));
         if let Some(first) = self.deck.unneeded.first() {
-            let keys: Vec<&str> = self
-                .deck
-                .unneeded
-                .iter()
-                .map(|key| key.value.as_str())
-                .collect();
+            let keys: Vec<&str> = self.deck.unneeded.iter().map(|key| key.value.as_str()).collect();
             let text = format!("options that nothing here needs: {}", keys.join(", "));
             self.findings.remark(first.span.start, text);
         }

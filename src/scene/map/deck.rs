@@ -174,11 +174,7 @@ const UNNEEDED: &[&str] = &[
     "FD_EPSILON",
 ];
 
-const fn column(
-    name: &'static str,
-    unit: &'static str,
-    spellings: &'static [&'static str],
-) -> Column {
+const fn column(name: &'static str, unit: &'static str, spellings: &'static [&'static str]) -> Column {
     Column {
         name,
         unit,
@@ -259,16 +255,11 @@ fn sections(text: &str) -> (Vec<Row<'_>>, Vec<Section<'_>>) {
 /// Whether a text is a MAP++ file: its nodes have the ten columns that only MAP++ has.
 pub(in crate::scene) fn is_deck(text: &str) -> bool {
     let (_, sections) = sections(text);
-    let nodes = sections
-        .iter()
-        .find(|section| section.table == Table::Nodes);
-    let Some(nodes) = nodes.filter(|section| section.header.text.trim_start().starts_with("---"))
-    else {
+    let nodes = sections.iter().find(|section| section.table == Table::Nodes);
+    let Some(nodes) = nodes.filter(|section| section.header.text.trim_start().starts_with("---")) else {
         return false;
     };
-    let mut options = sections
-        .iter()
-        .filter(|section| section.table == Table::Options);
+    let mut options = sections.iter().filter(|section| section.table == Table::Options);
     let key_first = |row: &Row<'_>| {
         let key = row.fields().first().map(|field| field.text.to_uppercase());
         key.is_some_and(|key| key == "REPEAT" || UNNEEDED.contains(&key.as_str()))
@@ -280,19 +271,10 @@ pub(in crate::scene) fn is_deck(text: &str) -> bool {
 /// A row of nodes that MoorDyn cannot mean: the bed as a word, or forces to be found.
 fn is_node_of_map(row: &Row<'_>) -> bool {
     let fields = row.fields();
-    let text = |column: usize| {
-        fields
-            .get(column)
-            .map_or("", |field: &Field<'_>| field.text)
-    };
+    let text = |column: usize| fields.get(column).map_or("", |field: &Field<'_>| field.text);
     let depth = text(4).eq_ignore_ascii_case("depth");
-    let iterated = [2, 3, 4]
-        .iter()
-        .any(|column| text(*column).starts_with('#'));
-    let forces = fields.len() >= 10
-        && [7, 8, 9]
-            .iter()
-            .all(|column| text(*column).starts_with('#'));
+    let iterated = [2, 3, 4].iter().any(|column| text(*column).starts_with('#'));
+    let forces = fields.len() >= 10 && [7, 8, 9].iter().all(|column| text(*column).starts_with('#'));
     depth || iterated || forces
 }
 
@@ -302,11 +284,7 @@ pub(super) fn read(text: &str, findings: &mut Findings) -> Deck {
     let words = title.iter().flat_map(Row::fields).map(|field| field.text);
     let title: String = words.collect::<Vec<_>>().join(" ");
     let mut deck = Deck {
-        title: title
-            .chars()
-            .filter(|c| !c.is_control())
-            .take(200)
-            .collect(),
+        title: title.chars().filter(|c| !c.is_control()).take(200).collect(),
         ..Deck::default()
     };
     for table in Table::NEEDED {
@@ -336,11 +314,10 @@ pub(super) fn read(text: &str, findings: &mut Findings) -> Deck {
 
 /// Rows below a header that heads nothing, save the first, which may be a title.
 fn unknown_section(section: &Section<'_>, all: &[Section<'_>], findings: &mut Findings) {
-    let first = all
-        .first()
-        .is_some_and(|first| std::ptr::eq(first, section));
+    let first = all.first().is_some_and(|first| std::ptr::eq(first, section));
     if !first && !section.rows.is_empty() {
-        let problem = "unknown section; known are LINE DICTIONARY, NODE PROPERTIES, LINE PROPERTIES and SOLVER OPTIONS";
+        let problem =
+            "unknown section; known are LINE DICTIONARY, NODE PROPERTIES, LINE PROPERTIES and SOLVER OPTIONS";
         findings.mistake("", section.header.span(), problem);
     }
 }
@@ -401,10 +378,7 @@ fn node(cells: &mut Cells<'_, '_>) -> Node {
         _ => {
             cells.wrong(
                 1,
-                format!(
-                    "expected fix, connect or vessel, found {}",
-                    shown(&word.value)
-                ),
+                format!("expected fix, connect or vessel, found {}", shown(&word.value)),
             );
             Kind::Fix
         }
@@ -480,15 +454,14 @@ fn line(cells: &mut Cells<'_, '_>) -> Line {
                 cells.findings.mistake(at, flag.span.clone(), problem);
             }
             "DAMAGE_TIME" => {
-                let problem =
-                    "lines that come off are not modelled: take the flag and its time out";
+                let problem = "lines that come off are not modelled: take the flag and its time out";
                 cells.findings.mistake(at, flag.span.clone(), problem);
             }
             _ if OUTPUT_FLAGS.contains(&upper.as_str()) => {}
             _ => {
                 let known = OUTPUT_FLAGS.iter().copied().chain(["OMIT_CONTACT"]);
-                let meant = nearest(&upper, known)
-                    .map_or(String::new(), |flag| format!(", did you mean {flag}?"));
+                let meant =
+                    nearest(&upper, known).map_or(String::new(), |flag| format!(", did you mean {flag}?"));
                 let problem = format!("unknown flag {}{meant}", shown(flag.text));
                 cells.findings.mistake(at, flag.span.clone(), problem);
             }
@@ -535,8 +508,7 @@ fn options(section: &Section<'_>, deck: &mut Deck, findings: &mut Findings) {
             });
         } else {
             let known = UNNEEDED.iter().copied().chain(["REPEAT"]);
-            let meant = nearest(&upper, known)
-                .map_or(String::new(), |key| format!(", did you mean {key}?"));
+            let meant = nearest(&upper, known).map_or(String::new(), |key| format!(", did you mean {key}?"));
             let problem = format!("unknown option {}{meant}", shown(key.text));
             findings.mistake("SOLVER OPTIONS", key.span.clone(), problem);
         }
@@ -549,11 +521,7 @@ fn check_numbers(deck: &Deck, findings: &mut Findings) {
     for node in &deck.nodes {
         if nodes.insert(node.id.value, ()).is_some() {
             let problem = format!("a second node {}: take another number", node.id.value);
-            findings.mistake(
-                format!("node {}", node.id.value),
-                node.id.span.clone(),
-                problem,
-            );
+            findings.mistake(format!("node {}", node.id.value), node.id.span.clone(), problem);
         }
     }
     let mut types = BTreeMap::new();
@@ -574,11 +542,7 @@ fn check_numbers(deck: &Deck, findings: &mut Findings) {
             let problem = format!("no line type is called {}", shown(&line.line_type.value));
             findings.mistake(at.clone(), line.line_type.span.clone(), problem);
         }
-        for end in line
-            .ends
-            .iter()
-            .filter(|end| !nodes.contains_key(&end.value))
-        {
+        for end in line.ends.iter().filter(|end| !nodes.contains_key(&end.value)) {
             let problem = format!("no node has the number {}", end.value);
             findings.mistake(at.clone(), end.span.clone(), problem);
         }

@@ -7,8 +7,8 @@ use crate::scene::channel::Channel;
 use crate::scene::from_deck::{self, SEA_WATER, Vessels, place_position};
 use crate::scene::rows::{Findings, Placed};
 use crate::scene::{
-    self, AngleOrder, Current, Friction, InitialShape, Output, Places, PointForce, PointKind,
-    Scene, Sea, Seabed, Section, Supplement, TensionStrain, TimeFunction, Water, Waves,
+    self, AngleOrder, Current, Friction, InitialShape, Output, Places, PointForce, PointKind, Scene, Sea,
+    Seabed, Section, Supplement, TensionStrain, TimeFunction, Water, Waves,
 };
 
 /// A deck on its way to a scene.
@@ -133,11 +133,8 @@ impl<'d> Builder<'d> {
             ("added_mass_tangential", &kind.added_mass_tangential, "CaAx"),
         ];
         for (key, cell, column) in cells {
-            self.places.put(
-                format!("{at}.{key}"),
-                &cell.span,
-                format!("{words}, {column}"),
-            );
+            self.places
+                .put(format!("{at}.{key}"), &cell.span, format!("{words}, {column}"));
         }
         let properties = [
             ("axial_stiffness", Some(&kind.stiffness), "EA"),
@@ -152,11 +149,8 @@ impl<'d> Builder<'d> {
         ];
         for (key, cell, column) in properties {
             if let Some(cell) = cell {
-                self.places.put(
-                    format!("{at}.{key}"),
-                    &cell.span,
-                    format!("{words}, {column}"),
-                );
+                self.places
+                    .put(format!("{at}.{key}"), &cell.span, format!("{words}, {column}"));
             }
         }
     }
@@ -175,18 +169,11 @@ impl<'d> Builder<'d> {
                 ("drag_area", &point.drag_area, "CdA"),
                 ("added_mass", &point.added_mass, "Ca"),
             ] {
-                self.places.put(
-                    format!("{at}.{key}"),
-                    &cell.span,
-                    format!("{words}, {column}"),
-                );
+                self.places
+                    .put(format!("{at}.{key}"), &cell.span, format!("{words}, {column}"));
             }
             let position = [0, 1, 2].map(|axis| point.position[axis].value);
-            let mut made = self.attached(
-                format!("point{}", point.id.value),
-                &point.attachment,
-                position,
-            );
+            let mut made = self.attached(format!("point{}", point.id.value), &point.attachment, position);
             if made.kind != PointKind::Fixed {
                 made.mass = given(point.mass.value);
                 made.volume = given(point.volume.value);
@@ -242,9 +229,7 @@ impl<'d> Builder<'d> {
         position: [f64; 3],
         attitude: [f64; 3],
     ) -> scene::Point {
-        let name = self
-            .vessels
-            .board(&mut self.scene, vessel, position, attitude);
+        let name = self.vessels.board(&mut self.scene, vessel, position, attitude);
         scene::Point {
             kind: PointKind::Coupled,
             on: Some(name),
@@ -254,14 +239,14 @@ impl<'d> Builder<'d> {
 
     /// A farm's host knows where its turbines stand.
     fn needs_position(&mut self, number: usize, attachment: &Placed<Attachment>) {
-        let mut numbers =
-            self.deck
-                .points
-                .iter()
-                .filter_map(|point| match point.attachment.value {
-                    Attachment::Turbine(number) => Some(number),
-                    _ => None,
-                });
+        let mut numbers = self
+            .deck
+            .points
+            .iter()
+            .filter_map(|point| match point.attachment.value {
+                Attachment::Turbine(number) => Some(number),
+                _ => None,
+            });
         let several = numbers.any(|other| other != number);
         let name = format!("turbine{number}");
         let placed = self.vessels.supplement.positions.contains_key(&name);
@@ -293,8 +278,7 @@ impl<'d> Builder<'d> {
         let known = self.scene.vessels.iter().any(|vessel| vessel.name == name);
         if !known {
             let words = format!("body {}", body.id.value);
-            self.places
-                .put(format!("vessels[{index}]"), &body.id.span, words);
+            self.places.put(format!("vessels[{index}]"), &body.id.span, words);
         }
         self.aboard(point, &name, place, attitude(&turn))
     }
@@ -345,22 +329,19 @@ impl<'d> Builder<'d> {
         self.moving_water(&mut water);
         self.scene.water = Some(water);
         if let Some(density) = &options.density {
-            self.places
-                .put("water.density", &density.span, "OPTIONS, rho");
+            self.places.put("water.density", &density.span, "OPTIONS, rho");
         }
         let given = options.depth.as_ref().and_then(|depth| match depth.value {
             Property::Named(_) => None,
             _ => Some(plain(&depth.value)),
         });
         let given = given.map(|depth| self.down_to_the_anchors(depth));
-        let Some(depth) = from_deck::depth(given, supplement, &self.scene.points, self.findings)
-        else {
+        let Some(depth) = from_deck::depth(given, supplement, &self.scene.points, self.findings) else {
             return;
         };
         let mut seabed = Seabed::level(depth);
         if let Some(depth) = &options.depth {
-            self.places
-                .put("seabed.depth", &depth.span, "OPTIONS, WtrDpth");
+            self.places.put("seabed.depth", &depth.span, "OPTIONS, WtrDpth");
         }
         if let Some(stiffness) = &options.bed_stiffness {
             seabed.stiffness = stiffness.value;
@@ -369,8 +350,7 @@ impl<'d> Builder<'d> {
         }
         if let Some(damping) = &options.bed_damping {
             seabed.damping = damping.value;
-            self.places
-                .put("seabed.damping", &damping.span, "OPTIONS, cBot");
+            self.places.put("seabed.damping", &damping.span, "OPTIONS, cBot");
         }
         seabed.friction = self.friction();
         seabed.file = self.soundings();
@@ -452,11 +432,7 @@ impl<'d> Builder<'d> {
         let whole = coefficient("FrictionCoefficient");
         let across = coefficient("mu_kT").or(whole);
         let along = coefficient("mu_kA").or(whole);
-        for (key, at) in [
-            ("transverse", across),
-            ("axial", along),
-            ("", along.or(across)),
-        ] {
+        for (key, at) in [("transverse", across), ("axial", along), ("", along.or(across))] {
             if let Some((option, coefficient)) = at {
                 let at = match key {
                     "" => "seabed.friction".to_string(),
@@ -507,17 +483,14 @@ impl<'d> Builder<'d> {
             .bending_stiffness
             .is_some();
         let clamp = |builder: &mut Self, index: usize| {
-            bends
-                .then(|| builder.clamp(&line.ends[index], index))
-                .flatten()
+            bends.then(|| builder.clamp(&line.ends[index], index)).flatten()
         };
         let (clamped_a, clamped_b) = (clamp(self, 0), clamp(self, 1));
         let [from, to] = [0, 1].map(|index| match line.ends[index].value {
             LineEnd::Point(id) => format!("point{id}"),
             LineEnd::Rod(id, b) => format!("rod{id}{}", if b { "b" } else { "a" }),
         });
-        let mut made =
-            scene::Line::between(format!("line{}", line.id.value), from, to, vec![section]);
+        let mut made = scene::Line::between(format!("line{}", line.id.value), from, to, vec![section]);
         if self.deck.options.starts_at_once.is_some() {
             made.initial = InitialShape::Catenary;
         }
@@ -680,11 +653,7 @@ fn rotation([roll, pitch, yaw]: [f64; 3]) -> [[f64; 3]; 3] {
 /// Roll, pitch and yaw [rad] of the same turn by R = Rz·Ry·Rx, as scenes have it.
 fn attitude(turn: &[[f64; 3]; 3]) -> [f64; 3] {
     let pitch = (0.0 - turn[2][0]).clamp(-1.0, 1.0).asin();
-    [
-        turn[2][1].atan2(turn[2][2]),
-        pitch,
-        turn[1][0].atan2(turn[0][0]),
-    ]
+    [turn[2][1].atan2(turn[2][2]), pitch, turn[1][0].atan2(turn[0][0])]
 }
 
 #[cfg(test)]

@@ -84,9 +84,7 @@ enum Meaning {
 }
 
 fn meaning(key: &str) -> Option<Meaning> {
-    let known = NEEDED
-        .iter()
-        .find(|(known, _)| known.eq_ignore_ascii_case(key));
+    let known = NEEDED.iter().find(|(known, _)| known.eq_ignore_ascii_case(key));
     known.map(|(_, meaning)| *meaning)
 }
 
@@ -108,8 +106,7 @@ impl Choice {
     fn repeats(&self, other: &Choice) -> bool {
         let (a, b) = (&self.key.value, &other.key.value);
         let several = [Meaning::Friction, Meaning::Surroundings].map(Some);
-        let same =
-            meaning(a).is_some() && meaning(a) == meaning(b) && !several.contains(&meaning(a));
+        let same = meaning(a).is_some() && meaning(a) == meaning(b) && !several.contains(&meaning(a));
         same || a.eq_ignore_ascii_case(b)
     }
 }
@@ -151,10 +148,7 @@ fn choices(rows: &[Row<'_>], findings: &mut Findings) -> Vec<Choice> {
     for row in rows.iter().take(ROWS_MAX) {
         let fields = row.fields();
         let [value, key, ..] = fields.as_slice() else {
-            let problem = format!(
-                "expected a value and a key, found {}",
-                shown(row.text.trim())
-            );
+            let problem = format!("expected a value and a key, found {}", shown(row.text.trim()));
             findings.mistake("OPTIONS", row.span(), problem);
             continue;
         };
@@ -192,13 +186,7 @@ fn unknown(key: &str) -> String {
     format!("the option {} is not known and left out{meant}", shown(key))
 }
 
-fn take(
-    options: &mut Options,
-    meaning: Meaning,
-    key: &str,
-    value: Placed<String>,
-    findings: &mut Findings,
-) {
+fn take(options: &mut Options, meaning: Meaning, key: &str, value: Placed<String>, findings: &mut Findings) {
     let mut placed = || match number(&value.value) {
         Ok(number) => Some(Placed {
             value: number,
@@ -217,9 +205,7 @@ fn take(
         Meaning::OutputInterval => options.output_interval = placed(),
         Meaning::Friction => {
             let coefficient = placed();
-            options
-                .friction
-                .extend(coefficient.map(|c| (key.to_string(), c)));
+            options.friction.extend(coefficient.map(|c| (key.to_string(), c)));
         }
         Meaning::FrictionDamping => options.friction_damping = placed(),
         Meaning::StaticFriction => options.static_friction = placed(),

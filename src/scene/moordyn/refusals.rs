@@ -85,12 +85,7 @@ fn bending_laws(deck: &Deck, findings: &mut Findings) {
         };
         if !matches!(bending.value, Property::Number(_)) {
             let problem = "only a constant EI [N m²] is modelled: write it as a number".to_string();
-            refuse(
-                findings,
-                about_type(&kind.name, "EI"),
-                &bending.span,
-                problem,
-            );
+            refuse(findings, about_type(&kind.name, "EI"), &bending.span, problem);
         }
     }
 }
@@ -141,17 +136,11 @@ fn bodies_in_motion(deck: &Deck, findings: &mut Findings) {
 /// Mass, volume and drag of a body that the host moves.
 fn bodies_with_mass(deck: &Deck, findings: &mut Findings) {
     for body in &deck.bodies {
-        if !matches!(
-            body.attachment.value,
-            Attachment::Coupled | Attachment::Vessel
-        ) {
+        if !matches!(body.attachment.value, Attachment::Coupled | Attachment::Vessel) {
             continue; // fixed, or refused as it moves
         }
         let [_, _, drag, _] = &body.parts;
-        let drag = drag
-            .value
-            .iter()
-            .fold(0.0, |sum: f64, part| sum + part.abs());
+        let drag = drag.value.iter().fold(0.0, |sum: f64, part| sum + part.abs());
         let sizes = [
             ("mass", body.mass.value, &body.mass.span),
             ("volume", body.volume.value, &body.volume.span),
@@ -243,12 +232,7 @@ fn waves_and_currents(deck: &Deck, findings: &mut Findings) {
         }
         let what = "only WaveKin 7 (components of wave_frequencies.txt) and Currents 1 (steady, current_profile.txt) are read of a deck: \
                     write one of them or 0, and give other waves and currents in the scene";
-        refuse(
-            findings,
-            format!("OPTIONS, {key}"),
-            &value.span,
-            what.to_string(),
-        );
+        refuse(findings, format!("OPTIONS, {key}"), &value.span, what.to_string());
     }
 }
 
@@ -263,16 +247,19 @@ fn line_failures(deck: &Deck, findings: &mut Findings) {
 
 fn controlled_lengths(deck: &Deck, findings: &mut Findings) {
     for row in &deck.controls {
-        let problem = "lines whose length a controller changes are not modelled: take the section CONTROL out".to_string();
+        let problem =
+            "lines whose length a controller changes are not modelled: take the section CONTROL out"
+                .to_string();
         refuse(findings, "CONTROL", &row.span, problem);
     }
 }
 
 fn external_loads(deck: &Deck, findings: &mut Findings) {
     for row in &deck.loads {
-        let problem = "external loads are not read: a scene has loads on free points (`force`), the host has those on \
+        let problem =
+            "external loads are not read: a scene has loads on free points (`force`), the host has those on \
                        vessels"
-            .to_string();
+                .to_string();
         refuse(findings, "EXTERNAL LOADS", &row.span, problem);
     }
 }

@@ -160,20 +160,13 @@ pub(super) fn split<'t>(text: &'t str, findings: &mut Findings) -> Sections<'t> 
 }
 
 /// Begins a section; returns a header that heads none.
-fn begin<'t>(
-    sections: &mut Sections<'t>,
-    header: Row<'t>,
-    findings: &mut Findings,
-) -> Option<Row<'t>> {
+fn begin<'t>(sections: &mut Sections<'t>, header: Row<'t>, findings: &mut Findings) -> Option<Row<'t>> {
     let Some(kind) = kind_of(&header) else {
         // The title of the file looks like a header too.
         return (!sections.list.is_empty()).then_some(header);
     };
     if sections.get(kind).is_some() {
-        let problem = format!(
-            "a second section {}: write all of its rows in one",
-            kind.name()
-        );
+        let problem = format!("a second section {}: write all of its rows in one", kind.name());
         findings.mistake(kind.name(), header.span(), problem);
     }
     sections.list.push(Section {

@@ -2,9 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::deck::{
-    Attachment, Body, Deck, Line, LineEnd, LineType, Point, Property, Rod, RodType, Version,
-};
+use super::deck::{Attachment, Body, Deck, Line, LineEnd, LineType, Point, Property, Rod, RodType, Version};
 use super::options;
 use super::sections::{Kind, Section, Sections};
 use crate::scene::rows::{Cells, Column, Findings, Placed, ROWS_MAX, Row, number, shown};
@@ -230,20 +228,14 @@ fn unique<'d, T: Ord + std::fmt::Display + 'd>(
 fn title(sections: &Sections<'_>) -> String {
     let rows = sections.preamble.iter().filter(|row| {
         let fields = row.fields();
-        let echo = fields
-            .get(1)
-            .is_some_and(|f| f.text.eq_ignore_ascii_case("echo"));
+        let echo = fields.get(1).is_some_and(|f| f.text.eq_ignore_ascii_case("echo"));
         let upper = row.text.to_uppercase();
         let kind = upper.contains("MOORDYN") && upper.contains("INPUT FILE") && fields.len() <= 5;
         !row.text.contains("---") && !echo && !kind
     });
     let words = rows.flat_map(|row| row.fields()).map(|field| field.text);
     let title: String = words.collect::<Vec<_>>().join(" ");
-    title
-        .chars()
-        .filter(|c| !c.is_control())
-        .take(200)
-        .collect()
+    title.chars().filter(|c| !c.is_control()).take(200).collect()
 }
 
 /// Version 1 has nine columns of line types, none of them EI.
@@ -283,11 +275,7 @@ fn read_rows<T>(
             let names: Vec<String> = accepted
                 .iter()
                 .map(|width| {
-                    let names: Vec<&str> = columns(*width)
-                        .iter()
-                        .take(*width)
-                        .map(|c| c.name)
-                        .collect();
+                    let names: Vec<&str> = columns(*width).iter().take(*width).map(|c| c.name).collect();
                     format!("{width} ({})", names.join(" "))
                 })
                 .collect();
@@ -296,10 +284,7 @@ fn read_rows<T>(
             continue;
         };
         if let Some(extra) = fields.get(widest) {
-            let text = format!(
-                "{}: what stands behind column {widest} is not read",
-                kind.name()
-            );
+            let text = format!("{}: what stands behind column {widest} is not read", kind.name());
             findings.remark(extra.span.start, text);
         }
         table.push(read(&mut Cells {
@@ -407,9 +392,7 @@ fn rod_types(sections: &Sections<'_>, findings: &mut Findings) -> Vec<RodType> {
             for column in 1..ROD_TYPES.len() {
                 cells.number(column);
             }
-            RodType {
-                name: cells.word(0),
-            }
+            RodType { name: cells.word(0) }
         },
     )
 }
@@ -506,13 +489,9 @@ fn points(sections: &Sections<'_>, findings: &mut Findings) -> Vec<Point> {
 /// Words and numbers by turns: "Body1Pinned" -> "BODY", 1, "PINNED".
 fn decomposed(word: &str) -> (String, Option<usize>, String) {
     let upper = word.to_uppercase();
-    let first = upper
-        .find(|c: char| c.is_ascii_digit())
-        .unwrap_or(upper.len());
+    let first = upper.find(|c: char| c.is_ascii_digit()).unwrap_or(upper.len());
     let (letters, rest) = upper.split_at(first);
-    let digits = rest
-        .find(|c: char| !c.is_ascii_digit())
-        .unwrap_or(rest.len());
+    let digits = rest.find(|c: char| !c.is_ascii_digit()).unwrap_or(rest.len());
     let (digits, tail) = rest.split_at(digits);
     (letters.to_string(), digits.parse().ok(), tail.to_string())
 }
@@ -526,9 +505,7 @@ fn attachment(cells: &mut Cells<'_, '_>, column: usize) -> Placed<Attachment> {
         ("FIXED" | "FIX" | "ANCHOR", _, "") => Some(Attachment::Fixed),
         ("COUPLED" | "CPLD", _, "") => Some(Attachment::Coupled),
         ("VESSEL" | "VES" | "FAIRLEAD", _, "") => Some(Attachment::Vessel),
-        ("FREE" | "CONNECT" | "CONNECTION" | "POINT" | "CON" | "P" | "C", _, "") => {
-            Some(Attachment::Free)
-        }
+        ("FREE" | "CONNECT" | "CONNECTION" | "POINT" | "CON" | "P" | "C", _, "") => Some(Attachment::Free),
         ("PINNED" | "PIN", None, "") => Some(Attachment::Pinned(None)),
         ("VESSELPINNED" | "VESPIN" | "COUPLEDPINNED" | "CPLDPIN", None, "") => {
             Some(Attachment::CoupledPinned)
@@ -603,11 +580,7 @@ fn length_comes_first(section: &Section<'_>, deck: &Deck) -> bool {
     let names = section.names.as_ref().map(|names| names.fields());
     let named = names.and_then(|names| {
         let mut names = names.iter();
-        names.position(|name| {
-            LINES_1[2]
-                .spellings
-                .contains(&name.text.to_uppercase().as_str())
-        })
+        names.position(|name| LINES_1[2].spellings.contains(&name.text.to_uppercase().as_str()))
     });
     match named {
         Some(column) => column == 2,
@@ -620,11 +593,7 @@ fn lines(sections: &Sections<'_>, deck: &Deck, findings: &mut Findings) -> Vec<L
         return Vec::new();
     };
     let first = length_comes_first(section, deck);
-    let (ends, length, columns) = if first {
-        (4, 2, LINES_1)
-    } else {
-        (2, 4, LINES_2)
-    };
+    let (ends, length, columns) = if first { (4, 2, LINES_1) } else { (2, 4, LINES_2) };
     read_rows(
         &section.rows,
         Kind::Lines,
@@ -648,10 +617,7 @@ fn known_type(cells: &mut Cells<'_, '_>, deck: &Deck) -> Placed<String> {
     if types.clone().all(|name| name != word.value) {
         let meant = types.find(|name| name.eq_ignore_ascii_case(&word.value));
         let meant = meant.map_or(String::new(), |name| format!(", did you mean {name:?}?"));
-        cells.wrong(
-            1,
-            format!("no line type is called {}{meant}", shown(&word.value)),
-        );
+        cells.wrong(1, format!("no line type is called {}{meant}", shown(&word.value)));
     }
     word
 }

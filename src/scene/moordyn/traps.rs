@@ -150,12 +150,7 @@ fn masses_of_fixed_points(deck: &Deck, findings: &mut Findings) {
             Attachment::Body(id) => fixed(id),
             _ => false,
         };
-        let sizes = [
-            &point.mass,
-            &point.volume,
-            &point.drag_area,
-            &point.added_mass,
-        ];
+        let sizes = [&point.mass, &point.volume, &point.drag_area, &point.added_mass];
         if let Some(given) = sizes.iter().find(|size| size.value != 0.0)
             && fixed
         {

@@ -31,9 +31,9 @@ impl Scene {
             ("GJ", line_type.torsional_stiffness, "N m²"),
             ("rotary inertia", line_type.rotary_inertia, "kg m"),
         ];
-        let given = rows.iter().filter_map(|(name, value, unit)| {
-            Some(format!("{name} {}", quantity((*value)?, unit)))
-        });
+        let given = rows
+            .iter()
+            .filter_map(|(name, value, unit)| Some(format!("{name} {}", quantity((*value)?, unit))));
         let mut parts: Vec<String> = given.collect();
         let open = rows.iter().filter(|(_, value, _)| value.is_none());
         let open: Vec<&str> = open.map(|(name, _, _)| *name).collect();

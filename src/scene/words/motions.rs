@@ -71,11 +71,7 @@ fn harmonic_in_words(harmonic: &HarmonicMotion) -> String {
     let ramp = harmonic
         .ramp
         .map(|ramp| format!(", growing over {}", quantity(ramp, "s")));
-    format!(
-        "swings by {}{}",
-        waves.join(" and "),
-        ramp.unwrap_or_default()
-    )
+    format!("swings by {}{}", waves.join(" and "), ramp.unwrap_or_default())
 }
 
 #[cfg(test)]
@@ -93,7 +89,8 @@ mod tests {
         motion.x = vec![vec![2.5, 12.0]];
         motion.ramp = Some(15.0);
         let said = motion_in_words(&MotionPath::Harmonic(motion));
-        let expected = "swings by 2.5 m every 12 s along x and 0.05 rad every 10 s in pitch, growing over 15 s";
+        let expected =
+            "swings by 2.5 m every 12 s along x and 0.05 rad every 10 s in pitch, growing over 15 s";
         assert_eq!(said, expected);
         let still = HarmonicMotion {
             x: vec![vec![0.0, 12.0]],

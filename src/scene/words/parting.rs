@@ -23,9 +23,7 @@ pub(super) fn in_words(line: &Line) -> String {
         let tension = parting
             .tension
             .map(|tension| format!("under {}", quantity(tension, "N")));
-        let time = parting
-            .time
-            .map(|time| format!("at t = {}", quantity(time, "s")));
+        let time = parting.time.map(|time| format!("at t = {}", quantity(time, "s")));
         let when: Vec<String> = tension.into_iter().chain(time).collect();
         said += &format!("; end {end} breaks off {point} {}", when.join(" or "));
     }

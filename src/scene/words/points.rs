@@ -45,8 +45,7 @@ impl Scene {
             .map(|point| point.name.as_str())
             .collect();
         let mut joined = vec![point.name.as_str()];
-        let (mut network, mut rest): (Vec<&Line>, Vec<&Line>) =
-            (vec![], self.lines.iter().collect());
+        let (mut network, mut rest): (Vec<&Line>, Vec<&Line>) = (vec![], self.lines.iter().collect());
         loop {
             let (reached, beyond): (Vec<&Line>, _) = rest.into_iter().partition(|line| {
                 [&line.from, &line.to]
@@ -107,10 +106,7 @@ impl Scene {
     fn bed_in_words(&self, point: &Point) -> Option<String> {
         let bed = self.seabed.as_ref()?;
         let weight = point.mass.unwrap_or(0.0) * self.gravity;
-        let moves = point
-            .free
-            .as_ref()
-            .is_none_or(|axes| axes.contains(&Axis::Z));
+        let moves = point.free.as_ref().is_none_or(|axes| axes.contains(&Axis::Z));
         (weight > 0.0 && moves && bed.stiffness > 0.0).then(|| {
             "should it touch the bed, it rests there on a spring that its weight in air presses in by 0.02 m".to_string()
         })

@@ -45,10 +45,7 @@ pub(super) fn friction_in_words(bed: &Seabed) -> String {
         return "no friction".to_string();
     }
     let coefficients = if friction.axial == friction.transverse {
-        format!(
-            "Coulomb friction with the coefficient {}",
-            number(friction.axial)
-        )
+        format!("Coulomb friction with the coefficient {}", number(friction.axial))
     } else {
         format!(
             "Coulomb friction with the coefficients {} along the line, {} across it and for points",

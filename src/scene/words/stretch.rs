@@ -20,11 +20,9 @@ pub(super) fn in_words(line_type: &LineType, mass: f64) -> String {
         line_type.dynamic_stiffness,
         line_type.static_damping,
     ) {
-        let own = line_type
-            .dynamic_damping
-            .map_or_else(String::new, |damping| {
-                format!(" and its damper {}", quantity(damping, "N s"))
-            });
+        let own = line_type.dynamic_damping.map_or_else(String::new, |damping| {
+            format!(" and its damper {}", quantity(damping, "N s"))
+        });
         return format!(
             "viscoelastic: EA {} at rest and in slow motion, {} in fast motion{own}, the slow part damped by {}, {}",
             quantity(slow, "N"),

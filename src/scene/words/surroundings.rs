@@ -36,10 +36,7 @@ fn waves_in_words(scene: &Scene, waves: &Waves) -> String {
         1 => String::new(),
         _ => {
             let height = (4e3 * total.sqrt()).round() / 1e3;
-            format!(
-                ", together of a significant height of {}",
-                quantity(height, "m")
-            )
+            format!(", together of a significant height of {}", quantity(height, "m"))
         }
     };
     let ramp = match waves.ramp() {
@@ -65,10 +62,7 @@ fn sea_in_words(sea: &Sea) -> String {
             count => format!("{count} wave trains"),
         };
         let height = (4e3 * sea.variance().sqrt()).round() / 1e3;
-        return format!(
-            "{trains} of a significant height of {}",
-            quantity(height, "m")
-        );
+        return format!("{trains} of a significant height of {}", quantity(height, "m"));
     }
     let kind = match sea.spectrum {
         Some(SpectrumKind::PiersonMoskowitz) => "a Pierson-Moskowitz spectrum".to_string(),
@@ -113,8 +107,7 @@ fn current_in_words(current: &Current) -> String {
         None => ", steady".to_string(),
         Some(TimeFunction::Constant(factor)) => format!(", steady, times {}", number(*factor)),
         Some(_) => {
-            ", times a function of time; the force of the water's own acceleration is left out"
-                .to_string()
+            ", times a function of time; the force of the water's own acceleration is left out".to_string()
         }
     };
     shape + &times

@@ -14,9 +14,7 @@ pub(super) fn vessel_in_words(scene: &Scene, vessel: &Vessel) -> String {
     );
     if vessel.attitude != [0.0; 3] {
         let [roll, pitch, yaw] = vessel.attitude.map(significant);
-        said.push_str(&format!(
-            ", at roll {roll} rad, pitch {pitch} rad, yaw {yaw} rad"
-        ));
+        said.push_str(&format!(", at roll {roll} rad, pitch {pitch} rad, yaw {yaw} rad"));
     }
     let points = scene.points.iter();
     let aboard = points.filter(|point| point.on.as_ref() == Some(&vessel.name));

@@ -52,8 +52,7 @@ fn errors(scene: &Scene, networks: &Networks, elements: &[usize]) -> Option<Vec<
     let model = simulation.model();
     let of_line = |line: usize| {
         let (built, exact) = (&model.lines[line], simulation.catenary(line)?);
-        if built.bends() || built.drifts(model) || scene.lines[line].initial != InitialShape::Static
-        {
+        if built.bends() || built.drifts(model) || scene.lines[line].initial != InitialShape::Static {
             return None;
         }
         let [found, exact] = match driven(model, line) {
@@ -65,12 +64,7 @@ fn errors(scene: &Scene, networks: &Networks, elements: &[usize]) -> Option<Vec<
     let errors: Vec<Option<f64>> = networks
         .lines
         .iter()
-        .map(|lines| {
-            lines
-                .iter()
-                .filter_map(|&line| of_line(line))
-                .reduce(f64::max)
-        })
+        .map(|lines| lines.iter().filter_map(|&line| of_line(line)).reduce(f64::max))
         .collect();
     errors.iter().find_map(|error| *error)?;
     let known = |error: Option<f64>| error.filter(|error| error.is_finite()).unwrap_or(0.0);

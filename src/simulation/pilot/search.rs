@@ -118,8 +118,7 @@ impl Ladder {
             return None;
         };
         self.found?;
-        let order = (before.error / found.error).ln()
-            / (found.elements as f64 / before.elements as f64).ln();
+        let order = (before.error / found.error).ln() / (found.elements as f64 / before.elements as f64).ln();
         let wanted = before.elements as f64 * (before.error / aim).powf(1.0 / order);
         let elements = wanted.ceil() as usize;
         (elements as f64 <= FEWER * found.elements as f64).then_some(elements)
@@ -167,11 +166,7 @@ impl<'a> Search<'a> {
         Some(Search {
             from: (start / scene.output.interval) as usize,
             scene,
-            ladders: networks
-                .lines
-                .iter()
-                .map(|lines| Ladder::new(lines))
-                .collect(),
+            ladders: networks.lines.iter().map(|lines| Ladder::new(lines)).collect(),
             networks,
             work: 0.0,
         })
@@ -213,10 +208,7 @@ impl<'a> Search<'a> {
             if !open || self.work + 2.0 * last > WORK_MAX {
                 break;
             }
-            let elements = self
-                .ladders
-                .iter()
-                .map(|ladder| ladder.found.unwrap_or(rung));
+            let elements = self.ladders.iter().map(|ladder| ladder.found.unwrap_or(rung));
             let elements: Vec<usize> = elements.collect();
             let record = match self.run(&self.rung(&elements)) {
                 Ok(Some(record)) => Some(record),
@@ -224,11 +216,7 @@ impl<'a> Search<'a> {
                 Err(_) => None, // too coarse to be solved
             };
             last = record.as_ref().map_or(0.0, |record| record.work);
-            for ladder in self
-                .ladders
-                .iter_mut()
-                .filter(|ladder| ladder.found.is_none())
-            {
+            for ladder in self.ladders.iter_mut().filter(|ladder| ladder.found.is_none()) {
                 match &record {
                     Some(record) => ladder.climb(ladder.part(rung, record), aim),
                     None => ladder.runs.clear(),
@@ -239,18 +227,12 @@ impl<'a> Search<'a> {
 
     /// Runs the scene once with elements between rungs where they are worth a trial; the trials that keep the error.
     fn between(&mut self, aim: f64) -> Vec<Option<Trial>> {
-        let wanted: Vec<Option<usize>> = self
-            .ladders
-            .iter()
-            .map(|ladder| ladder.between(aim))
-            .collect();
+        let wanted: Vec<Option<usize>> = self.ladders.iter().map(|ladder| ladder.between(aim)).collect();
         if wanted.iter().all(Option::is_none) {
             return vec![None; wanted.len()];
         }
         let elements = self.ladders.iter().zip(&wanted).map(|(ladder, wanted)| {
-            let rung = ladder
-                .found
-                .or(ladder.trials.last().map(|trial| trial.elements));
+            let rung = ladder.found.or(ladder.trials.last().map(|trial| trial.elements));
             wanted.or(rung).unwrap_or(LADDER[0])
         });
         let elements: Vec<usize> = elements.collect();
@@ -295,14 +277,10 @@ impl<'a> Search<'a> {
                 return None;
             }
             let record = self.run(&scene).ok()??;
-            let kept = self
-                .ladders
-                .iter()
-                .zip(elements)
-                .all(|(ladder, &elements)| {
-                    let error = ladder.error(&ladder.part(elements, &record));
-                    error.is_some_and(|error| error <= aim)
-                });
+            let kept = self.ladders.iter().zip(elements).all(|(ladder, &elements)| {
+                let error = ladder.error(&ladder.part(elements, &record));
+                error.is_some_and(|error| error <= aim)
+            });
             if kept && record.work <= WORTH * explicit.work {
                 return Some(step);
             }
@@ -344,9 +322,7 @@ impl<'a> Search<'a> {
         }
         let model = simulation.model();
         let segments: usize = model.lines.iter().map(|line| line.segment_count()).sum();
-        let ends: Vec<usize> = (0..model.lines.len())
-            .map(|line| driven(model, line))
-            .collect();
+        let ends: Vec<usize> = (0..model.lines.len()).map(|line| driven(model, line)).collect();
         let mut record = Record {
             tension: vec![Vec::new(); ends.len()],
             work: 0.0,
@@ -394,16 +370,10 @@ struct Pace {
 impl Pace {
     /// None for a scene that does not say how it moves.
     fn of(scene: &Scene) -> Option<Pace> {
-        let own = scene
-            .points
-            .iter()
-            .filter_map(|point| point.motion.as_ref());
+        let own = scene.points.iter().filter_map(|point| point.motion.as_ref());
         let paths: Vec<&MotionPath> = scene.motion.values().chain(own).collect();
         let (mut shortest, mut longest, mut ramp) = (f64::INFINITY, 0.0_f64, 0.0_f64);
-        let mut tables = scene
-            .water
-            .as_ref()
-            .is_some_and(|water| water.waves.is_some());
+        let mut tables = scene.water.as_ref().is_some_and(|water| water.waves.is_some());
         for path in &paths {
             let MotionPath::Harmonic(motion) = path else {
                 tables = true;

@@ -67,8 +67,7 @@ impl LeftTables {
         if let Some(soundings) = self.soundings {
             let at = "seabed.grid";
             let mut lines = lines.filter(|_| !self.left.contains(at));
-            if let Some(text) = lines.find_map(|line| beside_soundings(simulation, line, soundings))
-            {
+            if let Some(text) = lines.find_map(|line| beside_soundings(simulation, line, soundings)) {
                 say(&mut self.left, at.to_string(), text, notes);
             }
         }
@@ -133,10 +132,7 @@ fn look_at_strain(
 /// A note on a line that is above or below the rows of the current [m].
 fn beyond_current(simulation: &Simulation, line: usize, [low, high]: [f64; 2]) -> Option<String> {
     let margin = HEIGHT_MARGIN * (high - low);
-    let heights = simulation.snapshot.state.lines[line]
-        .position
-        .iter()
-        .map(|r| r.z);
+    let heights = simulation.snapshot.state.lines[line].position.iter().map(|r| r.z);
     let mut beyond = heights.filter(|z| {
         let above = *z > high + margin && *z < 0.0; // there is no water further up
         *z < low - margin || above
@@ -154,25 +150,17 @@ fn beyond_current(simulation: &Simulation, line: usize, [low, high]: [f64; 2]) -
 }
 
 /// A note on a line that lies on the seabed outside the soundings, whose least and greatest x and y [m] are given.
-fn beside_soundings(
-    simulation: &Simulation,
-    line: usize,
-    soundings: [[f64; 2]; 2],
-) -> Option<String> {
+fn beside_soundings(simulation: &Simulation, line: usize, soundings: [[f64; 2]; 2]) -> Option<String> {
     let of = &simulation.model.lines[line];
     let contact = of.nodes.contact.as_ref()?;
     let bottom = contact.bottom.as_ref()?;
     let outside = |[least, most]: [f64; 2], at: f64| least < most && !(least..=most).contains(&at);
     let lies = |node: usize, r: Vector3<f64>| {
         let lift = contact.lift(node);
-        (outside(soundings[0], r.x) || outside(soundings[1], r.y))
-            && bottom.touch(r, lift).penetration > 0.0
+        (outside(soundings[0], r.x) || outside(soundings[1], r.y)) && bottom.touch(r, lift).penetration > 0.0
     };
     let nodes = &simulation.snapshot.state.lines[line].position;
-    let (_, r) = nodes
-        .iter()
-        .enumerate()
-        .find(|(node, r)| lies(*node, **r))?;
+    let (_, r) = nodes.iter().enumerate().find(|(node, r)| lies(*node, **r))?;
     Some(format!(
         "{} lies at ({:.2}, {:.2}) m at t = {} s, outside the soundings: the seabed goes on as at their edge there",
         of.name,
@@ -184,10 +172,7 @@ fn beside_soundings(
 
 fn range(values: &[f64]) -> [f64; 2] {
     let least = values.iter().copied().fold(f64::INFINITY, f64::min);
-    [
-        least,
-        values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
-    ]
+    [least, values.iter().copied().fold(f64::NEG_INFINITY, f64::max)]
 }
 
 /// Lowest and highest row of a current that changes with height [m].

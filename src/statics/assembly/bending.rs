@@ -158,13 +158,9 @@ impl LineWork {
     /// Removes the nodes between the ends from the system; `None` if a pivot cannot be taken.
     pub(super) fn eliminate(&mut self, first_free: bool, pivots: Pivots) -> Option<Ends> {
         let Some(work) = self.bending.as_mut().filter(|work| work.active) else {
-            return self.chain.eliminate(
-                &self.diagonal,
-                &self.coupling,
-                &self.residual,
-                first_free,
-                pivots,
-            );
+            return self
+                .chain
+                .eliminate(&self.diagonal, &self.coupling, &self.residual, first_free, pivots);
         };
         for (i, coupling) in self.coupling.iter().enumerate() {
             work.above[i] = coupling + work.near[i];
@@ -176,8 +172,7 @@ impl LineWork {
             below: &work.below,
             far: &work.far,
         };
-        work.chain
-            .eliminate(blocks, &self.residual, first_free, pivots)
+        work.chain.eliminate(blocks, &self.residual, first_free, pivots)
     }
 
     /// The whole solution from that of the ends.
@@ -223,10 +218,7 @@ fn moving<'a>(bending: &'a Bending, velocity: &[Vector3<f64>]) -> Option<&'a [f6
 }
 
 /// The couples of moments [N m] on the ends of a line, with their segments.
-fn couples(
-    position: &[Vector3<f64>],
-    moments: [Vector3<f64>; 2],
-) -> impl Iterator<Item = (Couple, usize)> {
+fn couples(position: &[Vector3<f64>], moments: [Vector3<f64>; 2]) -> impl Iterator<Item = (Couple, usize)> {
     let segments = [0, position.len() - 2];
     let acting = moments.into_iter().zip(segments);
     acting
@@ -246,11 +238,7 @@ pub fn end_moment_power(
 }
 
 /// Rates [m/s] of the vectors that meet at a node, those up to `last` moving as `velocity` tells; zero where a clamp or nothing moves.
-pub(crate) fn rates(
-    node: usize,
-    last: usize,
-    velocity: impl Fn(usize) -> Vector3<f64>,
-) -> [Vector3<f64>; 2] {
+pub(crate) fn rates(node: usize, last: usize, velocity: impl Fn(usize) -> Vector3<f64>) -> [Vector3<f64>; 2] {
     let rate = |from: usize| velocity(from + 1) - velocity(from);
     [
         if node > 0 {
@@ -258,11 +246,7 @@ pub(crate) fn rates(
         } else {
             Vector3::zeros()
         },
-        if node < last {
-            rate(node)
-        } else {
-            Vector3::zeros()
-        },
+        if node < last { rate(node) } else { Vector3::zeros() },
     ]
 }
 
@@ -273,11 +257,7 @@ pub fn joint_damping_power(
     clamps: [Option<Vector3<f64>>; 2],
     passing: impl Fn(usize) -> Vector3<f64>,
 ) -> f64 {
-    let Some(damping) = line
-        .bending
-        .as_ref()
-        .and_then(|bending| bending.damping.as_ref())
-    else {
+    let Some(damping) = line.bending.as_ref().and_then(|bending| bending.damping.as_ref()) else {
         return 0.0;
     };
     let last = line.segment_count();
@@ -358,12 +338,7 @@ pub fn shear(
 }
 
 /// Moment [N m] of a line on what it is clamped to at an end.
-pub fn end_moment(
-    line: &Line,
-    position: &[Vector3<f64>],
-    end: End,
-    point: &PointState,
-) -> Vector3<f64> {
+pub fn end_moment(line: &Line, position: &[Vector3<f64>], end: End, point: &PointState) -> Vector3<f64> {
     let (Some(bending), Some(clamp)) = (&line.bending, line.clamp(end, point)) else {
         return Vector3::zeros();
     };

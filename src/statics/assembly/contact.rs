@@ -61,8 +61,7 @@ impl LineWork {
             };
             self.residual[i].z -= weights.force * bed.force;
             if TANGENT {
-                self.diagonal[i][(2, 2)] +=
-                    weights.position * bed.stiffness + weights.velocity * bed.damping;
+                self.diagonal[i][(2, 2)] += weights.position * bed.stiffness + weights.velocity * bed.damping;
             }
         }
     }

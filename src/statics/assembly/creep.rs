@@ -42,14 +42,7 @@ impl CreepWork {
 
     /// Force and slope of segment `i` at a strain [-]: at the end of the step, or of the state as it is.
     #[inline(always)]
-    pub fn respond(
-        &self,
-        line: &Line,
-        state: &LineState,
-        i: usize,
-        strain: f64,
-        when: Stretch,
-    ) -> Response {
+    pub fn respond(&self, line: &Line, state: &LineState, i: usize, strain: f64, when: Stretch) -> Response {
         if state.creep.is_empty() {
             let ea = line.segments.axial_stiffness[i];
             return Response {
@@ -69,11 +62,7 @@ impl CreepWork {
         Response {
             elastic: law.elastic(strain, slow),
             tangent: law.stiffness + law.memory * slope,
-            damping: if when == Stretch::Now {
-                law.damping
-            } else {
-                0.0
-            },
+            damping: if when == Stretch::Now { law.damping } else { 0.0 },
         }
     }
 
@@ -95,9 +84,7 @@ impl CreepWork {
         }
         for (i, law) in self.laws.iter().enumerate() {
             let [before, slow] = self.start[i];
-            state.creep[i] = law
-                .step([before, strain(line, state, i)], slow, self.dt)
-                .slow;
+            state.creep[i] = law.step([before, strain(line, state, i)], slow, self.dt).slow;
         }
     }
 }

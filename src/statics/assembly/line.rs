@@ -185,13 +185,7 @@ impl LineWork {
     }
 
     #[inline(always)]
-    fn add_static_segment(
-        &mut self,
-        line: &Line,
-        position: &[Vector3<f64>],
-        case: &StaticCase,
-        i: usize,
-    ) {
+    fn add_static_segment(&mut self, line: &Line, position: &[Vector3<f64>], case: &StaticCase, i: usize) {
         let unstretched = line.segments.length[i];
         let g = Geometry::new(position[i], position[i + 1], unstretched);
         let stretch = line.segments.law[i].at(g.strain);
@@ -201,11 +195,7 @@ impl LineWork {
         if case.slack > 0.0 {
             return self.add_taut_segment(&g, case, [ea, unstretched], i);
         }
-        let predicted = if case.predicted {
-            self.tension[i]
-        } else {
-            elastic
-        };
+        let predicted = if case.predicted { self.tension[i] } else { elastic };
         let least = 0.0 - self.push[i];
         let (tension, slope) = if predicted > least || elastic > least {
             (elastic, slope)
@@ -223,13 +213,7 @@ impl LineWork {
     ///   T ← (t² + m EA)/(2t − N) + t/(2t − N) dN.
     ///
     /// Where t is less than N it is that which N has by itself.
-    fn add_taut_segment(
-        &mut self,
-        g: &Geometry,
-        case: &StaticCase,
-        [ea, unstretched]: [f64; 2],
-        i: usize,
-    ) {
+    fn add_taut_segment(&mut self, g: &Geometry, case: &StaticCase, [ea, unstretched]: [f64; 2], i: usize) {
         let (elastic, product) = (self.elastic[i], case.slack * ea);
         let root = elastic.hypot(2.0 * product.sqrt());
         let own = if elastic > 0.0 {
@@ -243,8 +227,7 @@ impl LineWork {
         self.elastic[i] = (t * t + product) / sum;
         self.slope[i] *= t / sum;
         let across = predicted / g.length.max(FOLDED * unstretched);
-        let stiffness =
-            Matrix3::from_diagonal_element(across) + (self.slope[i] - across) * g.along();
+        let stiffness = Matrix3::from_diagonal_element(across) + (self.slope[i] - across) * g.along();
         self.add_segment(i, self.elastic[i] * g.direction, stiffness);
     }
 
@@ -323,11 +306,7 @@ impl LineWork {
         let mut stiffness = Matrix3::zeros();
         if TANGENT && g.length > 0.0 {
             let damps = taut || negative_tension;
-            let spring = if taut {
-                response.tangent / unstretched
-            } else {
-                0.0
-            };
+            let spring = if taut { response.tangent / unstretched } else { 0.0 };
             let damper = if damps { ba / unstretched } else { 0.0 };
             let along = weights.position * spring + weights.velocity * damper;
             let least = if weights.convex { 0.0 } else { least };
@@ -377,15 +356,14 @@ impl LineWork {
                 let t = node_tangent(&state.position, i);
                 inertia += (tangent - normal) * t.dot(&a) * t;
                 if TANGENT {
-                    self.diagonal[i] +=
-                        weights.acceleration * (tangent - normal) * t * t.transpose();
+                    self.diagonal[i] += weights.acceleration * (tangent - normal) * t * t.transpose();
                 }
             }
             if TANGENT && weights.position > 0.0 && dry.slope > 0.0 {
                 let (along, air) = (node_tangent(&state.position, i), nodes.mass[i]);
                 let along = along.dot(&a) * along;
-                let added = (nodes.mass_normal[i] - air) * (a - along)
-                    + (nodes.mass_tangent[i] - air) * along;
+                let added =
+                    (nodes.mass_normal[i] - air) * (a - along) + (nodes.mass_tangent[i] - air) * along;
                 self.diagonal[i] += weights.inertia * surface::by_height(&dry, added);
             }
             self.residual[i] += weights.inertia * inertia;

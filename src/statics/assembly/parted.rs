@@ -46,11 +46,7 @@ impl LineWork {
             }
             if self.parted[1] {
                 // without an unknown at end A its blocks mean nothing
-                let pull = if a == Vector3::zeros() {
-                    a
-                } else {
-                    ends.ba * a
-                };
+                let pull = if a == Vector3::zeros() { a } else { ends.ba * a };
                 b = inverse[1] * (ends.b - pull);
             }
         }

@@ -61,9 +61,7 @@ pub(crate) fn copy_network(model: &Model, network: &Network, from: &State, to: &
         let (from_line, to_line) = (&from.lines[index], &mut to.lines[index]);
         to_line.position.copy_from_slice(&from_line.position);
         to_line.velocity.copy_from_slice(&from_line.velocity);
-        to_line
-            .acceleration
-            .copy_from_slice(&from_line.acceleration);
+        to_line.acceleration.copy_from_slice(&from_line.acceleration);
         to_line.creep.clone_from(&from_line.creep);
         to_line.parted = from_line.parted;
         to_line.beam.clone_from(&from_line.beam);

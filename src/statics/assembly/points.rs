@@ -107,13 +107,11 @@ impl PointWork {
                 .set_column(2, &(self.diagonal.column(2) + by_height));
         }
         if let (Some(contact), None) = (&free.contact, bottom)
-            && let Some(bed) =
-                FadingContact::new(contact.coefficients, contact.level - z, v.z, self.reach)
+            && let Some(bed) = FadingContact::new(contact.coefficients, contact.level - z, v.z, self.reach)
         {
             force.z += bed.force;
             if TANGENT {
-                self.diagonal[(2, 2)] +=
-                    weights.position * bed.stiffness + weights.velocity * bed.damping;
+                self.diagonal[(2, 2)] += weights.position * bed.stiffness + weights.velocity * bed.damping;
             }
         }
         self.residual = weights.inertia * at.mass * a - weights.force * force;
@@ -123,11 +121,7 @@ impl PointWork {
     }
 }
 /// Visits the free points of a network.
-pub(crate) fn for_free_points(
-    model: &Model,
-    network: &Network,
-    mut visit: impl FnMut(usize, &FreePoint),
-) {
+pub(crate) fn for_free_points(model: &Model, network: &Network, mut visit: impl FnMut(usize, &FreePoint)) {
     for &index in &network.free_points {
         if let Some(free) = model.points[index].free() {
             visit(index, free);
@@ -209,8 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn the_tangent_of_a_moving_point_is_the_slope_of_its_residual_alone_and_as_an_implicit_step_moves_it()
-     {
+    fn the_tangent_of_a_moving_point_is_the_slope_of_its_residual_alone_and_as_an_implicit_step_moves_it() {
         let model = model();
         let free = model.points[1].free().unwrap();
         let load = Vector3::new(30.0, -20.0, 10.0);
@@ -235,14 +228,7 @@ mod tests {
                     let mut work = PointWork::new();
                     work.reach = 0.05;
                     let stream = model.stream(0.0);
-                    work.assemble_dynamic::<true>(
-                        free,
-                        None,
-                        state,
-                        load,
-                        (stream, None),
-                        &weights,
-                    );
+                    work.assemble_dynamic::<true>(free, None, state, load, (stream, None), &weights);
                     (work.residual, work.diagonal)
                 };
                 // where only the velocity moves, what depends on height stays in J and so must not be asked for

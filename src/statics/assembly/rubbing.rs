@@ -144,8 +144,7 @@ impl Push {
     }
 
     fn tangent(&self, weights: &Weights) -> Matrix3<f64> {
-        let slope =
-            |i: usize| weights.position * self.stiffness[i] + weights.velocity * self.damping[i];
+        let slope = |i: usize| weights.position * self.stiffness[i] + weights.velocity * self.damping[i];
         slope(0) + weights.friction / weights.force * slope(1)
     }
 }
@@ -239,8 +238,7 @@ impl LineWork {
         weights: &Weights,
     ) {
         for i in 0..state.position.len() {
-            let push =
-                resting_node(line, state, i, self.reach[i], 1.0).and_then(|node| node.push());
+            let push = resting_node(line, state, i, self.reach[i], 1.0).and_then(|node| node.push());
             self.rubbed[i] = push.map_or(Vector3::zeros(), |push| push.friction);
             let Some(push) = push else { continue };
             self.residual[i] -= push.weighted(weights);
@@ -281,8 +279,7 @@ impl PointWork {
         state: &PointState,
         weights: &Weights,
     ) {
-        let push =
-            resting_point(free, bottom, state, self.reach, 1.0).and_then(|point| point.push());
+        let push = resting_point(free, bottom, state, self.reach, 1.0).and_then(|point| point.push());
         self.rubbed = push.map_or(Vector3::zeros(), |push| push.friction);
         if let Some(push) = push {
             self.residual -= push.weighted(weights);
@@ -294,18 +291,9 @@ impl PointWork {
 }
 
 /// Moves the anchors of a network after the nodes that slid, as the last assembly found them.
-pub(super) fn move_anchors(
-    model: &Model,
-    network: &Network,
-    state: &mut State,
-    work: &super::Workspace,
-) {
+pub(super) fn move_anchors(model: &Model, network: &Network, state: &mut State, work: &super::Workspace) {
     for &index in &network.lines {
-        let (line, shape, work) = (
-            &model.lines[index],
-            &mut state.lines[index],
-            &work.lines[index],
-        );
+        let (line, shape, work) = (&model.lines[index], &mut state.lines[index], &work.lines[index]);
         if line.friction().is_none() {
             continue;
         }
@@ -445,8 +433,7 @@ mod tests {
         let push = resting(bottom, zero, velocity, slid).push().unwrap();
         for axis in 0..3 {
             let step = 1e-7 * Vector3::from_fn(|i, _| f64::from(u8::from(i == axis)));
-            let force =
-                |shift, velocity| resting(bottom, shift, velocity, slid).push().unwrap().force;
+            let force = |shift, velocity| resting(bottom, shift, velocity, slid).push().unwrap().force;
             let by_place = (force(-step, velocity) - force(step, velocity)) / 2e-7;
             let by_velocity = (force(zero, velocity - step) - force(zero, velocity + step)) / 2e-7;
             let stiffness = push.stiffness[0] + push.stiffness[1];
@@ -457,11 +444,7 @@ mod tests {
                 by_place,
                 epsilon = 1e-6 * scale
             );
-            assert_relative_eq!(
-                damping.column(axis).into_owned(),
-                by_velocity,
-                epsilon = 1e-4
-            );
+            assert_relative_eq!(damping.column(axis).into_owned(), by_velocity, epsilon = 1e-4);
         }
     }
 

@@ -82,8 +82,7 @@ fn random_state(model: &Model, size: f64) -> State {
         }
         let last = nodes.position.len() - 1;
         let joint = &mut state.points[1];
-        (joint.position, joint.velocity) =
-            (Vector3::new(3.6, 0.1, -0.2), Vector3::new(0.2, -0.3, 0.4));
+        (joint.position, joint.velocity) = (Vector3::new(3.6, 0.1, -0.2), Vector3::new(0.2, -0.3, 0.4));
         (nodes.position[last], nodes.velocity[last]) = (joint.position, joint.velocity);
     }
     place_joint(model, &mut state);
@@ -103,10 +102,7 @@ fn residual(model: &Model, state: &State, work: &mut Workspace) -> Vec<Vector3<f
 }
 
 fn collect(work: &Workspace) -> Vec<Vector3<f64>> {
-    let nodes = work
-        .lines
-        .iter()
-        .flat_map(|line| line.residual.iter().copied());
+    let nodes = work.lines.iter().flat_map(|line| line.residual.iter().copied());
     nodes.chain([work.points[1].total]).collect()
 }
 
@@ -199,8 +195,7 @@ fn stiffen(model: &mut Model) {
 }
 
 const WATER: &str = "[water]\ndensity = 1025.0";
-const BED: &str =
-    "[seabed]\ndepth = 0.05\nstiffness = 2.0e4\ndamping = 900.0\ncontact = \"as_given\"";
+const BED: &str = "[seabed]\ndepth = 0.05\nstiffness = 2.0e4\ndamping = 900.0\ncontact = \"as_given\"";
 
 #[test]
 fn the_stiffness_is_the_slope_of_the_residual_stretched_and_on_the_bed() {
@@ -294,8 +289,7 @@ fn the_damping_is_the_slope_of_the_residual_in_a_sheared_current() {
 
 #[test]
 fn the_mass_is_the_slope_of_the_residual_with_unequal_added_mass() {
-    let line_type =
-        "mass = 2.0\ndiameter = 0.05\nadded_mass_normal = 1.0\nadded_mass_tangential = 0.1";
+    let line_type = "mass = 2.0\ndiameter = 0.05\nadded_mass_normal = 1.0\nadded_mass_tangential = 0.1";
     let model = network(WATER, line_type);
     assert_tangent(&model, &random_state(&model, 1.0), Varied::Acceleration);
 }
@@ -315,10 +309,7 @@ fn the_stiffness_is_the_slope_of_the_residual_where_lines_pierce_the_surface() {
     let mut work = Workspace::new(&model);
     residual(&model, &state, &mut work);
     let parts: Vec<f64> = work.lines[0].dry.iter().map(|dry| dry.part).collect();
-    assert!(
-        parts.iter().any(|part| (0.1..0.9).contains(part)),
-        "{parts:?}"
-    );
+    assert!(parts.iter().any(|part| (0.1..0.9).contains(part)), "{parts:?}");
 }
 
 #[test]
@@ -333,8 +324,7 @@ fn damping_and_mass_are_slopes_of_the_residual_where_lines_pierce_the_surface() 
 #[test]
 fn drag_and_added_mass_have_their_own_slope_with_a_nodes_height() {
     // alike along and across, so that the frozen tangent of the line changes nothing
-    let line_type =
-        "mass = 2.0\ndiameter = 0.2\nadded_mass_normal = 1.0\nadded_mass_tangential = 1.0";
+    let line_type = "mass = 2.0\ndiameter = 0.2\nadded_mass_normal = 1.0\nadded_mass_tangential = 1.0";
     let model = network(SURFACE, line_type);
     let mut state = random_state(&model, 1.0);
     for nodes in &mut state.lines {

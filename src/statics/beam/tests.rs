@@ -104,10 +104,7 @@ fn loaded(bench: &Bench, force: Vector3<f64>, moment: Vector3<f64>) -> Vec<Secti
 
 /// Slope of log(error) over log(n), by least squares.
 fn order(points: &[(usize, f64)]) -> f64 {
-    let logs: Vec<(f64, f64)> = points
-        .iter()
-        .map(|(n, e)| (-(*n as f64).ln(), e.ln()))
-        .collect();
+    let logs: Vec<(f64, f64)> = points.iter().map(|(n, e)| (-(*n as f64).ln(), e.ln())).collect();
     let count = logs.len() as f64;
     let (mx, my) = (
         logs.iter().map(|p| p.0).sum::<f64>() / count,
@@ -120,10 +117,7 @@ fn order(points: &[(usize, f64)]) -> f64 {
 fn assert_order(expected: f64, meshes: &[usize], error: impl Fn(usize) -> f64) {
     let points: Vec<(usize, f64)> = meshes.iter().map(|&n| (n, error(n))).collect();
     let slope = order(&points);
-    assert!(
-        (slope - expected).abs() < 0.1,
-        "order {slope:.3}: {points:?}"
-    );
+    assert!((slope - expected).abs() < 0.1, "order {slope:.3}: {points:?}");
 }
 
 #[test]
@@ -256,10 +250,7 @@ fn an_equilibrium_that_folds_its_elements_is_refused() {
     let bench = straight_bench(2, 1.0, law(1e4, 1.0));
     let mut sections = bench.sections.clone();
     let (sin, cos) = 2.6_f64.sin_cos(); // two elements of 75° each
-    sections[1].frame = turned_to(
-        &sections[0].frame,
-        Vector3::new(0.27, 0.96, 0.0).normalize(),
-    );
+    sections[1].frame = turned_to(&sections[0].frame, Vector3::new(0.27, 0.96, 0.0).normalize());
     sections[2].frame = turned_to(&sections[1].frame, Vector3::new(cos, sin, 0.0));
     sections[1].position = Vector3::new(0.4, 0.2, 0.0);
     sections[2].position = Vector3::new(0.2, 0.6, 0.0);
@@ -272,9 +263,6 @@ fn an_equilibrium_that_folds_its_elements_is_refused() {
         bodies: [None; 2],
     };
     let refused = BeamStatics::new(3).solve(&case, &mut sections);
-    assert!(
-        matches!(refused, Err(Restless::Folded { .. })),
-        "{refused:?}"
-    );
+    assert!(matches!(refused, Err(Restless::Folded { .. })), "{refused:?}");
     assert_eq!(sections, start);
 }

@@ -42,8 +42,7 @@ pub(super) fn in_flight(sections: &[Section], solved: &Catenary) -> Matrix2<f64>
     for section in sections {
         let end = vertical + section.weight * section.length;
         let stretch = section.length / section.axial_stiffness;
-        compliance +=
-            turning(section, horizontal, [vertical, end], &frame) + Matrix2::identity() * stretch;
+        compliance += turning(section, horizontal, [vertical, end], &frame) + Matrix2::identity() * stretch;
         vertical = end;
     }
     let stiffness = compliance.try_inverse().unwrap_or_else(Matrix2::zeros);
@@ -51,12 +50,7 @@ pub(super) fn in_flight(sections: &[Section], solved: &Catenary) -> Matrix2<f64>
 }
 
 /// ∫ p pᵀ/T ds along and across [m/N]: the turning of a section's elements.
-fn turning(
-    section: &Section,
-    h: f64,
-    [start, end]: [f64; 2],
-    frame: &Matrix2<f64>,
-) -> Matrix2<f64> {
+fn turning(section: &Section, h: f64, [start, end]: [f64; 2], frame: &Matrix2<f64>) -> Matrix2<f64> {
     let weight = section.weight * section.length;
     let tensions = [h.hypot(start), h.hypot(end)];
     if weight.abs() < STRAIGHT * tensions[0].min(tensions[1]) {
@@ -131,13 +125,7 @@ mod tests {
             weight: s.weight,
             axial_stiffness: s.axial_stiffness,
         };
-        catenary::solve(
-            &sections.iter().map(plain).collect::<Vec<_>>(),
-            span,
-            rise,
-            None,
-        )
-        .unwrap()
+        catenary::solve(&sections.iter().map(plain).collect::<Vec<_>>(), span, rise, None).unwrap()
     }
 
     #[test]
@@ -147,11 +135,7 @@ mod tests {
             std::slice::from_ref(&chain),
             &[section(12.0, 0.1, 1e4)],
             &[section(12.0, -30.0, 1e6)],
-            &[
-                chain.clone(),
-                section(5.0, -3.0, 1e5),
-                section(4.0, 100.0, 1e7),
-            ],
+            &[chain.clone(), section(5.0, -3.0, 1e5), section(4.0, 100.0, 1e7)],
             &[section(12.0, 0.0, 1e4)],
         ];
         for sections in lines {
@@ -202,10 +186,7 @@ mod tests {
     #[test]
     fn a_taut_line_of_extreme_stiffness_keeps_both_stiffnesses() {
         let line = [section(10.0, 1e-8, 1e13)];
-        let stiffness = in_flight(
-            &line,
-            &solve(&line, 6.0 * (1.0 + 1e-12), 8.0 * (1.0 + 1e-12)),
-        );
+        let stiffness = in_flight(&line, &solve(&line, 6.0 * (1.0 + 1e-12), 8.0 * (1.0 + 1e-12)));
         let [along, across] = stiffness.symmetric_eigenvalues().into();
         let (along, across) = if along > across {
             (along, across)

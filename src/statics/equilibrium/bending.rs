@@ -61,11 +61,7 @@ impl Problem<'_> {
                 turn = turn.max((x[i + 1] - x[i]).norm() / length);
             }
         }
-        if turn > TURN_MAX {
-            TURN_MAX / turn
-        } else {
-            1.0
-        }
+        if turn > TURN_MAX { TURN_MAX / turn } else { 1.0 }
     }
 
     pub(super) fn solve_bent(
@@ -87,10 +83,7 @@ impl Problem<'_> {
         if let Err(limit @ StaticsError::LimitLoad { .. }) = hangs {
             return Err(limit);
         }
-        if hangs.is_ok()
-            && self.newton(state, work, self.case(f64::INFINITY))
-            && self.settle(state, work)
-        {
+        if hangs.is_ok() && self.newton(state, work, self.case(f64::INFINITY)) && self.settle(state, work) {
             return Ok(());
         }
         self.restart(guess, state, work);
@@ -112,8 +105,8 @@ impl Problem<'_> {
     /// Whether an equilibrium is stable and within the limits of its strain measures, or another one was found from it after a small wave.
     fn settle(&self, state: &mut State, work: &mut Workspace) -> bool {
         let full = self.case(f64::INFINITY);
-        let found = self.stable(state, work, full)
-            || (self.relax(state, work) && self.stable(state, work, full));
+        let found =
+            self.stable(state, work, full) || (self.relax(state, work) && self.stable(state, work, full));
         found && self.strain_over_limit(state).0 <= 1.0
     }
 

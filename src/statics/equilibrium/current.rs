@@ -27,12 +27,7 @@ const DEPTH: usize = 8;
 const PARTS: [usize; 4] = [1, 4, 16, 64];
 
 /// Drag of a current on a node at rest [N].
-pub(crate) fn drag_at_rest(
-    line: &Line,
-    position: &[Vector3<f64>],
-    i: usize,
-    stream: Stream,
-) -> Vector3<f64> {
+pub(crate) fn drag_at_rest(line: &Line, position: &[Vector3<f64>], i: usize, stream: Stream) -> Vector3<f64> {
     let Some(coefficients) = &line.nodes.drag else {
         return Vector3::zeros();
     };
@@ -73,12 +68,7 @@ impl Problem<'_> {
     }
 
     /// Rounds of drag and equilibrium until both agree.
-    fn drift(
-        &self,
-        stream: Stream,
-        state: &mut State,
-        work: &mut Workspace,
-    ) -> Result<(), StaticsError> {
+    fn drift(&self, stream: Stream, state: &mut State, work: &mut Workspace) -> Result<(), StaticsError> {
         let mut anderson = Anderson::new(DEPTH);
         let (mut loads, mut image) = (Vec::new(), Vec::new());
         let start = work.counters.solves;
@@ -90,9 +80,10 @@ impl Problem<'_> {
             };
             problem.solve_loaded(state, work)?;
             self.drag_of_shape(stream, state, &mut image);
-            let difference = loads.chunks(3).zip(image.chunks(3)).map(|(a, b)| {
-                Vector3::from_column_slice(a).metric_distance(&Vector3::from_column_slice(b))
-            });
+            let difference = loads
+                .chunks(3)
+                .zip(image.chunks(3))
+                .map(|(a, b)| Vector3::from_column_slice(a).metric_distance(&Vector3::from_column_slice(b)));
             let greatest = difference.fold(0.0, f64::max);
             if greatest <= problem.tolerance(state, work, f64::INFINITY) {
                 return Ok(());

@@ -92,9 +92,7 @@ impl Problem<'_> {
             let Some((_, bottom)) = line.friction().and(line.bottom()) else {
                 continue;
             };
-            let LineState {
-                position, anchor, ..
-            } = &mut state.lines[index];
+            let LineState { position, anchor, .. } = &mut state.lines[index];
             let last = position.len() - 1;
             let heights = [0, last].map(|end| -bottom.touch(position[end], 0.0).penetration);
             let from_b = is_laid_from_b(heights, line.unstretched_length());

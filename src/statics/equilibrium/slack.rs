@@ -94,8 +94,7 @@ impl Problem<'_> {
             cautious: true,
             ..case(first)
         };
-        self.stiffen_gradually(state, work, wide)
-            && self.raise(state, work, [first, 1.0 / FALL], case)
+        self.stiffen_gradually(state, work, wide) && self.raise(state, work, [first, 1.0 / FALL], case)
     }
 
     /// The case with this m, over the sum of the loads [-].
