@@ -53,7 +53,7 @@ fn main() -> ExitCode {
 /// Steps a scene by its output interval with its own motion.
 fn step(name: &str, count: usize) {
     let scene = common::scene(name);
-    let mut simulation = Simulation::by_rules(&scene).expect("an equilibrium");
+    let mut simulation = Simulation::new(&scene).expect("an equilibrium");
     simulation.follow_scene().expect("an equilibrium");
     for _ in 0..count {
         simulation.advance(scene.output.interval).expect("a step");

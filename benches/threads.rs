@@ -73,7 +73,7 @@ fn farm(elements: usize, waves: bool) -> Scene {
 fn warm(scene: &Scene, threads: Threads) -> Simulation {
     let mut scene = scene.clone();
     scene.solver.threads = threads;
-    let mut simulation = Simulation::by_rules(&scene).expect("an equilibrium");
+    let mut simulation = Simulation::new(&scene).expect("an equilibrium");
     simulation.follow_scene().expect("an equilibrium");
     while simulation.time() < WARM_UP {
         simulation.advance(STEP).expect("a step");

@@ -62,7 +62,9 @@
 #![forbid(unsafe_code)]
 
 pub mod accuracy;
+pub mod discretisation;
 pub mod dynamics;
+pub mod elements;
 pub mod interface;
 pub mod math;
 pub mod model;

@@ -8,7 +8,7 @@ mod held;
 mod input_error;
 mod inputs;
 mod paths;
-pub mod pilot;
+
 mod results;
 mod scale;
 mod start;
@@ -86,21 +86,12 @@ pub struct Simulation {
 }
 
 impl Simulation {
-    /// Makes a scene discrete and solves its static equilibrium at the reference positions. What the scene leaves open of mesh,
-    /// integrator and step is tried on its motion ([`pilot::settle`]).
+    /// Builds the discrete model of a scene and solves its static equilibrium at the reference positions. The mesh is that of
+    /// [`Model::new`]: no discretisation is tried here (see `discretisation::select`).
     ///
     /// # Errors
     /// Mistakes in the scene, or an equilibrium that does not exist.
     pub fn new(scene: &Scene) -> Result<Simulation, Error> {
-        let settled = pilot::settle(scene);
-        Simulation::by_rules(settled.as_ref().map_or(scene, |settled| &settled.scene))
-    }
-
-    /// [`Simulation::new`] by rules alone: the mesh is that of [`Model::new`].
-    ///
-    /// # Errors
-    /// As there.
-    pub fn by_rules(scene: &Scene) -> Result<Simulation, Error> {
         let model = Arc::new(Model::new(scene)?);
         let inputs = Inputs::new(&model);
         let (snapshot, work) = start::begin(&model, 0.0, inputs, false, start::Shapes::AsGiven)?;
@@ -315,7 +306,7 @@ mod tests {
     fn steps_shorter_than_rounding_allows_wait_for_the_next_one() {
         let scene = include_str!("../scenes/oc3_catenary.toml");
         let scene = Scene::from_toml(scene).unwrap();
-        let mut simulation = Simulation::by_rules(&scene).unwrap();
+        let mut simulation = Simulation::new(&scene).unwrap();
         let point = simulation.model().point_index("fairlead");
         assert_eq!(point, Some(1));
         driven(&mut simulation, 0.05);

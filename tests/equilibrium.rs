@@ -3,9 +3,9 @@
 mod common;
 
 use common::*;
+use moorline::elements::{Counters, Workspace, end_force};
 use moorline::model::{End, Model, State};
 use moorline::statics::StaticsError;
-use moorline::statics::assembly::{Counters, Workspace, end_force};
 use moorline::statics::equilibrium::{continue_from, solve};
 use nalgebra::Vector3;
 

@@ -13,8 +13,8 @@ use std::fmt;
 use std::path::PathBuf;
 
 use common::*;
+use moorline::elements::Workspace;
 use moorline::simulation::Simulation;
-use moorline::statics::assembly::Workspace;
 use moorline::statics::equilibrium;
 
 /// Longest run [s].

@@ -12,7 +12,7 @@ fn shipped(name: &str) -> Scene {
 }
 
 fn by_rules(name: &str) -> Simulation {
-    Simulation::by_rules(&shipped(name)).unwrap()
+    Simulation::new(&shipped(name)).unwrap()
 }
 
 /// Sets every body to where the scene moves it at a time [s], with or without velocities.
@@ -164,7 +164,7 @@ fn a_host_that_samples_finely_or_gives_velocities_is_not_warned() {
 #[test]
 fn a_body_at_rest_and_a_host_that_knows_what_comes_have_no_error_of_inputs() {
     let mut scene = shipped("oc3_catenary");
-    let mut still = Simulation::by_rules(&scene).unwrap();
+    let mut still = Simulation::new(&scene).unwrap();
     for k in 0..200 {
         let noise = 1e-9 * f64::from(k * 7919 % 101);
         still.set_displacement(1, [noise, 0.0, 0.0]);
@@ -172,7 +172,7 @@ fn a_body_at_rest_and_a_host_that_knows_what_comes_have_no_error_of_inputs() {
     }
     assert_eq!(still.input_error(), 0.0);
     scene.solver.input_reconstruction = moorline::scene::Reconstruction::Interpolate;
-    let mut knowing = Simulation::by_rules(&scene).unwrap();
+    let mut knowing = Simulation::new(&scene).unwrap();
     for k in 1..100 {
         set_motion(&mut knowing, f64::from(k), false);
         knowing.advance(1.0).unwrap();

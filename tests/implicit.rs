@@ -7,8 +7,8 @@ use std::f64::consts::{PI, TAU};
 use common::*;
 use moorline::dynamics::implicit::{self, SPECTRAL_RADIUS, Scheme, Span};
 use moorline::dynamics::quasi_static::{self, Halving};
+use moorline::elements::{Counters, Workspace};
 use moorline::model::{Kinematics, Model, State};
-use moorline::statics::assembly::{Counters, Workspace};
 use moorline::statics::equilibrium::continue_from;
 use nalgebra::Vector3;
 

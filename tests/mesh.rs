@@ -3,9 +3,10 @@
 mod common;
 
 use common::*;
+use moorline::discretisation;
 use moorline::model::Model;
 use moorline::scene::Scene;
-use moorline::simulation::{Simulation, pilot};
+use moorline::simulation::Simulation;
 
 fn open(mut scene: Scene) -> Scene {
     for section in scene.lines.iter_mut().flat_map(|line| &mut line.sections) {
@@ -98,12 +99,12 @@ fn mostly_laid() -> Scene {
 #[test]
 fn a_line_at_rest_has_as_many_elements_as_its_static_tension_needs() {
     let tension_error = |scene: &Scene| {
-        let simulation = Simulation::by_rules(scene).unwrap();
+        let simulation = Simulation::new(scene).unwrap();
         simulation.tension_b(0) / simulation.catenary(0).unwrap().tension_b() - 1.0
     };
     let scene = mostly_laid();
     assert!(tension_error(&scene).abs() > 0.05); // 40 elements, by the rule
-    let settled = pilot::settle(&scene).unwrap();
+    let settled = discretisation::select(&scene).unwrap();
     assert!(tension_error(&settled.scene).abs() < 0.02);
     let mesh = &settled.meshes[0];
     let [before, after] = mesh.rest.unwrap().errors;
@@ -111,7 +112,7 @@ fn a_line_at_rest_has_as_many_elements_as_its_static_tension_needs() {
     assert!(settled.in_words()[0].contains("at rest"));
     let mut still = open(shipped("oc3_catenary"));
     still.motion.clear();
-    assert!(pilot::settle(&still).is_none());
+    assert!(discretisation::select(&still).is_none());
 }
 
 /// Axial damping of the segments of a rope of 100 m with a damping ratio of 0.1 [N s], with a key of its section and one of the solver.

@@ -17,10 +17,10 @@ mod common;
 
 use std::ops::Range;
 
+use moorline::elements::{Workspace, end_force};
 use moorline::math::random::Random;
 use moorline::model::{End, Model};
 use moorline::scene::Scene;
-use moorline::statics::assembly::{Workspace, end_force};
 use moorline::statics::catenary::{self, Bed, Section};
 use moorline::statics::equilibrium::solve;
 

@@ -260,7 +260,7 @@ fn no_shipped_scene_is_noted() {
 fn no_shipped_scene_is_strained_at_rest() {
     for (name, text) in shipped() {
         let scene = Scene::from_toml(&text).unwrap();
-        let simulation = Simulation::by_rules(&scene).unwrap();
+        let simulation = Simulation::new(&scene).unwrap();
         assert_eq!(Watch::new(&scene, &simulation).look(&simulation), [], "{name}");
     }
 }

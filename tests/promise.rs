@@ -11,9 +11,10 @@ mod common;
 use std::path::PathBuf;
 
 use common::*;
+use moorline::discretisation;
 use moorline::math::low_pass::low_pass;
 use moorline::scene::{Integrator, MotionPath, Scene};
-use moorline::simulation::{Simulation, pilot};
+use moorline::simulation::Simulation;
 
 const TOLERANCES: [f64; 4] = [0.05, 0.02, 0.01, 0.005];
 /// Elements of the converged solution, and its steps to the shortest period [-].
@@ -284,7 +285,7 @@ fn tensions(scene: &Scene) -> Vec<Vec<f64>> {
 fn errors_of_lines(name: &str, scene: &Scene, tolerance: f64) -> Vec<f64> {
     let mut chosen = scene.clone();
     chosen.solver.tolerance = tolerance;
-    let settled = pilot::settle(&chosen).unwrap();
+    let settled = discretisation::select(&chosen).unwrap();
     let elements: Vec<usize> = settled.meshes.iter().map(|mesh| mesh.elements).collect();
     let mut fine = settled.scene.clone();
     fine.solver = chosen.solver.clone();
@@ -338,7 +339,7 @@ fn write_the_reference_work() {
 #[test]
 fn a_packaged_scene_keeps_its_mesh_whatever_is_set_later() {
     let scene = moved("taut_polyester", [1.0, 1.0]);
-    let mut frozen = pilot::frozen(&scene).unwrap();
+    let mut frozen = discretisation::frozen(&scene).unwrap();
     let count = |scene: &Scene| Simulation::new(scene).unwrap().model().lines[0].segment_count();
     let before = count(&frozen);
     assert_eq!(count(&scene), before);
@@ -347,16 +348,16 @@ fn a_packaged_scene_keeps_its_mesh_whatever_is_set_later() {
     assert_eq!(count(&frozen), before);
     let mut still = scene;
     still.motion.clear();
-    let mut frozen = pilot::frozen(&still).unwrap();
+    let mut frozen = discretisation::frozen(&still).unwrap();
     frozen.solver.tolerance = 0.002;
     assert_eq!(count(&frozen), 40);
-    assert_eq!(pilot::frozen(&shipped("oc3_catenary")), None);
+    assert_eq!(discretisation::frozen(&shipped("oc3_catenary")), None);
 }
 
 #[test]
 fn what_hardly_moves_need_not_be_right_to_a_part_of_what_little_it_does() {
     let elements = |amplitude: f64| {
-        let settled = pilot::settle(&moved("oc3_catenary", [amplitude, 1.0])).unwrap();
+        let settled = discretisation::select(&moved("oc3_catenary", [amplitude, 1.0])).unwrap();
         println!("{amplitude}: {:?}", settled.meshes[0].trials);
         settled.meshes[0].elements
     };
@@ -366,7 +367,7 @@ fn what_hardly_moves_need_not_be_right_to_a_part_of_what_little_it_does() {
 
 #[test]
 fn what_was_tried_is_told_in_words() {
-    let words = pilot::settle(&moved("taut_polyester", [1.0, 1.0]))
+    let words = discretisation::select(&moved("taut_polyester", [1.0, 1.0]))
         .unwrap()
         .in_words();
     println!("{words:?}");

@@ -6,10 +6,10 @@ mod common;
 use std::process::Command;
 
 use common::{at_reference, random, resting, scene, shipped, with_elements};
+use moorline::elements::Workspace;
 use moorline::model::{Body, End, Model, State};
 use moorline::scene::{Reconstruction, Scene, Strain};
 use moorline::simulation::Simulation;
-use moorline::statics::assembly::Workspace;
 use moorline::statics::catenary::{self, Bed, Catenary, Section};
 use moorline::statics::{catenary_network, equilibrium};
 use nalgebra::Vector3;

@@ -4,11 +4,11 @@ mod common;
 
 use approx::assert_relative_eq;
 use common::*;
+use moorline::elements::Workspace;
 use moorline::model::{End, Model};
 use moorline::physics::surface::emerged;
 use moorline::scene::{Integrator, Scene};
 use moorline::simulation::Simulation;
-use moorline::statics::assembly::Workspace;
 use moorline::statics::catenary::{self, Section};
 use nalgebra::Vector3;
 
@@ -321,13 +321,8 @@ fn an_end_force_is_that_of_all_nodes_in_every_way_of_telling_it() {
     let simulation = Simulation::new(&scene).unwrap();
     let model = simulation.model();
     let of_end = simulation.line_end_force(0, End::B);
-    let assembled = moorline::statics::assembly::end_force(
-        model,
-        simulation.state(),
-        0,
-        End::B,
-        &mut Workspace::new(model),
-    );
+    let assembled =
+        moorline::elements::end_force(model, simulation.state(), 0, End::B, &mut Workspace::new(model));
     assert!((of_end - assembled).norm() < 1e-9 * of_end.norm());
     let weight: f64 = model.lines[0].nodes.weight.iter().sum();
     let lack: f64 = (0..=12)

@@ -50,7 +50,7 @@ fn twice(one: &Scene) -> Scene {
 fn on_threads(scene: &Scene, threads: usize) -> Simulation {
     let mut scene = scene.clone();
     scene.solver.threads = Threads::Number(threads);
-    let mut simulation = Simulation::by_rules(&scene).expect("an equilibrium");
+    let mut simulation = Simulation::new(&scene).expect("an equilibrium");
     simulation.follow_scene().expect("an equilibrium");
     simulation
 }
@@ -116,7 +116,7 @@ fn a_step_that_fails_says_the_same_and_leaves_the_state_on_any_number_of_threads
     let fail = |threads: usize| {
         let mut scene = scene.clone();
         scene.solver.threads = Threads::Number(threads);
-        let mut simulation = Simulation::by_rules(&scene).expect("an equilibrium");
+        let mut simulation = Simulation::new(&scene).expect("an equilibrium");
         simulation.advance(0.05).expect("a step");
         let away = [1e9, 0.0, 0.0, 0.0, 0.0, 0.0];
         simulation.set_body(Body::Vessel(0), away, [None; 6]);
@@ -143,7 +143,7 @@ fn many_simulations_with_threads_of_their_own_run_at_once() {
 #[test]
 fn a_line_alone_stays_on_one_thread_and_many_lines_are_told_why_not() {
     let said = |scene: &Scene, step: f64| {
-        let simulation = Simulation::by_rules(scene).expect("an equilibrium");
+        let simulation = Simulation::new(scene).expect("an equilibrium");
         simulation.threads_in_words(step)
     };
     let alone = said(&shipped("oc4_chain"), 0.05);

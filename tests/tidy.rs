@@ -9,14 +9,16 @@ use std::path::{Path, PathBuf};
 const FUNCTION_LINES_MAX: usize = 70;
 
 /// The layers from the ground up: each may use those before it.
-const LAYERS: [&str; 10] = [
+const LAYERS: [&str; 12] = [
     "math",
     "physics",
     "scene",
     "model",
+    "elements",
     "statics",
     "dynamics",
     "simulation",
+    "discretisation",
     "accuracy",
     "interface",
     "output",

@@ -729,7 +729,7 @@ fn statics(
     length_changes: &[f64],
 ) -> Result<Simulation, Refusal> {
     // what the package leaves open is not tried again: the interface has the mesh of the rules
-    let mut simulation = Simulation::by_rules(scene).map_err(|e| e.to_string())?;
+    let mut simulation = Simulation::new(scene).map_err(|e| e.to_string())?;
     let bodies: Vec<Body> = simulation.model().bodies().collect();
     for (body, displacement) in bodies.into_iter().zip(displacements) {
         simulation.set_body(body, *displacement, [None; 6]);

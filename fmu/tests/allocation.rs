@@ -70,7 +70,7 @@ fn allocations(text: &str, elements: Option<usize>) -> usize {
     let mut scene = Scene::from_toml(text).unwrap();
     scene.solver.elements = elements;
     scene.solver.threads = Threads::Number(1);
-    let mut simulation = Simulation::by_rules(&scene).unwrap();
+    let mut simulation = Simulation::new(&scene).unwrap();
     simulation.follow_scene().unwrap();
     let mut advance = |steps: usize| (0..steps).for_each(|_| simulation.advance(0.05).unwrap());
     advance(100); // on both sides of a span of waves

@@ -3,12 +3,13 @@
 use std::fmt::Write;
 use std::path::Path;
 
+use moorline::discretisation;
 use moorline::dynamics::Choice;
 use moorline::interface::{Causality, Interface, Layout};
 use moorline::model::Model;
 use moorline::output::channels::Channels;
 use moorline::scene::{Scene, Supplement, TOML, load_with};
-use moorline::simulation::{Simulation, Watch, pilot};
+use moorline::simulation::{Simulation, Watch};
 
 use super::failure::Failure;
 use super::{noted, print};
@@ -17,7 +18,7 @@ use super::{noted, print};
 pub fn check(path: &Path, supplement: &Supplement) -> Result<(), Failure> {
     let loaded = load_with(path, supplement)?;
     let located = |mistake| Failure::of_scene(mistake, &loaded);
-    let settled = pilot::settle(&loaded.scene);
+    let settled = discretisation::select(&loaded.scene);
     let scene = settled.as_ref().map_or(&loaded.scene, |found| &found.scene);
     let model = Model::new(scene).map_err(located)?;
     let interface = Interface::new(scene, &model, Layout::Arrays).map_err(located)?;

@@ -15,6 +15,7 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use indicatif::{ProgressBar, ProgressStyle};
+use moorline::discretisation::discretised;
 use moorline::scene::{LoadedScene, Note, Supplement, load_with};
 use moorline::simulation::Simulation;
 
@@ -49,7 +50,7 @@ fn remark_all(loaded: &LoadedScene, notes: Vec<Note>) {
 
 /// The simulation of a scene, in static equilibrium.
 fn simulate(loaded: &LoadedScene) -> Result<Simulation, Failure> {
-    Simulation::new(&loaded.scene).map_err(|error| Failure::of_simulation(error, loaded))
+    Simulation::new(&discretised(&loaded.scene)).map_err(|error| Failure::of_simulation(error, loaded))
 }
 
 /// Prints text to standard output.

@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
+use moorline::discretisation;
 use moorline::interface::{Binding, Causality, Interface, Kind, Layout, Variable};
 use moorline::model::{Body, Model, Moving};
 use moorline::output::channels::Channels;
@@ -10,7 +11,7 @@ use moorline::output::figures::ELEVATION;
 use moorline::output::record::{Column, Record};
 use moorline::output::{collect, write_run};
 use moorline::scene::{Drive, LoadedScene, Reconstruction, Supplement};
-use moorline::simulation::{Simulation, Watch, pilot};
+use moorline::simulation::{Simulation, Watch};
 
 use super::failure::Failure;
 use super::folder::Folder;
@@ -45,7 +46,7 @@ pub fn run(
 ) -> Result<(), Failure> {
     let mut loaded = read_scene(path, supplement)?;
     if let Pace::Host { .. } = pace
-        && let Some(packaged) = pilot::frozen(&loaded.scene)
+        && let Some(packaged) = discretisation::frozen(&loaded.scene)
     {
         // the elements of the FMU, which know nothing of this run's motion and duration
         loaded.scene = packaged;
@@ -62,7 +63,7 @@ pub fn run(
     let mut simulation = match pace {
         Pace::Scene => simulate(&loaded)?,
         Pace::Host { .. } => {
-            Simulation::by_rules(&loaded.scene).map_err(|error| Failure::of_simulation(error, &loaded))?
+            Simulation::new(&loaded.scene).map_err(|error| Failure::of_simulation(error, &loaded))?
         }
     };
     let still = simulation.in_equilibrium().ok();

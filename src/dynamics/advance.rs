@@ -12,11 +12,11 @@ use super::ledger::{self, Energy, Flow};
 use super::motion::AxisPath;
 use super::sea::SeaWork;
 use super::{Choice, StepError};
+use crate::elements;
+use crate::elements::friction::{drop_anchors, hold_at_rest};
 use crate::model::{Kinematics, Model, Role, State};
 use crate::physics::airy::Waves;
 use crate::scene::{Integrator, Reconstruction};
-use crate::statics::assembly;
-use crate::statics::assembly::rubbing::{drop_anchors, hold_at_rest};
 use communication::{Communication, Solver, within_guard};
 use threads::{Helpers, Outcome};
 
@@ -46,7 +46,7 @@ pub struct Done {
 #[derive(Debug, Clone)]
 pub struct Workspace {
     networks: Vec<(Choice, Solver)>,
-    implicit: assembly::Workspace,
+    implicit: elements::Workspace,
     next: State,
     sea: SeaWork,
     /// The state before a step that is made in parts.
@@ -85,7 +85,7 @@ impl Workspace {
             helpers: Helpers::default(),
             outcomes: Vec::new(),
             networks,
-            implicit: assembly::Workspace::new(model),
+            implicit: elements::Workspace::new(model),
             next: state.clone(),
             sea: SeaWork::new(),
             before: State::default(),

@@ -16,26 +16,24 @@
 //!   β = ¼ (1 − α_m + α_f)².
 //! * Bossak(α, γ): α_m = α ≤ 0, α_f = 0, β = ¼ (1 − α)²; second order for γ = ½ − α.
 //!
-//! The tangent is that of [`crate::statics::assembly`], with predicted tensions as in [`crate::statics::equilibrium`]. The seabed's
+//! The tangent is that of [`crate::elements`], with predicted tensions as in [`crate::statics::equilibrium`]. The seabed's
 //! damper fades in over two static penetrations above and below the bed, or over what the node moves in a step if that is
 //! more, instead of switching on at touch, which Newton's method would not survive; what rests on the bed is not affected.
 //!
 //! Source: Chung & Hulbert (1993), J. Appl. Mech. 60, 371-375; Wood, Bossak & Zienkiewicz (1980), Int. J. Numer. Meth. Eng. 15,
 //! 1562-1566. Valid for ρ from 0 to 1. As it is usually written the method gains energy without bound where slack cables snap taut without
 //! damping (a dry cable of 20 segments that falls, EA/T = 1e4 and 1e6, Δt = 2 to 10 ms, ρ = 0.5 and more): forces before and after a step are no
-//! measure of what a spring takes in between. The segments therefore pull as [`crate::statics::assembly`] has them over a step, by the
+//! measure of what a spring takes in between. The segments therefore pull as [`crate::elements`] has them over a step, by the
 //! discrete gradient of their energy; the same cable then never gains energy at any ρ, and keeps it at ρ = 1.
 
 use nalgebra::{Matrix3, Vector3};
 
 use super::ledger::passed::Passed;
 use super::{StepError, reaction};
+use crate::elements::{Counters, Stretch, Weights, Workspace, copy_network, for_free_points, place_ends};
 use crate::math::block_tridiagonal::Pivots;
 use crate::model::{Kinematics, Model, Network, PointState, State};
 use crate::scene::{Integrator, Solver};
-use crate::statics::assembly::{
-    Counters, Stretch, Weights, Workspace, copy_network, for_free_points, place_ends,
-};
 
 /// Spectral radius at infinite frequency where the scene gives none [-].
 pub const SPECTRAL_RADIUS: f64 = 0.2;

@@ -7,12 +7,12 @@ use super::leapfrog::{EndLoad, LineWork, Placed};
 use super::ledger::Flow;
 use super::motion::AxisPath;
 use super::step::Step;
+use crate::elements::friction::point_stick;
 use crate::model::{
     End, FreePoint, Kinematics, Model, Network, PointAtHeight, PointState, Role, State, WaveSpan, WaveSpans,
 };
 use crate::physics::airy::Orbit;
 use crate::physics::friction::{Axes, Friction};
-use crate::statics::assembly::rubbing::point_stick;
 
 /// Scratch of a network: its lines laid out for the kernels, and its free points.
 #[derive(Debug, Clone)]

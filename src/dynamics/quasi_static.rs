@@ -13,8 +13,8 @@ use nalgebra::Vector3;
 
 use super::StepError;
 use super::ledger::{self, Flow, work_at_rest};
+use crate::elements::{Counters, Workspace, copy_network};
 use crate::model::{Kinematics, Model, Network, PointState, State};
-use crate::statics::assembly::{Counters, Workspace, copy_network};
 use crate::statics::catenary_network::solve_network;
 use crate::statics::equilibrium::continue_network;
 use crate::statics::{StaticsError, catenary_network};

@@ -38,9 +38,9 @@ use nalgebra::Vector3;
 use super::beam::BeamView;
 use super::creep::{Creeping, Stretching};
 use super::leapfrog::segment_tension;
+use crate::elements::shear;
 use crate::model::{Bending, Dry, End, Line, LineState, PointState, Reel, WaterAlong};
 use crate::physics::morison::{self, DragCoefficients};
-use crate::statics::assembly::shear;
 
 /// Weight of what the load gains or loses at the surface in the scale of the change, over the load itself, both squared [-].
 const ABRUPT: f64 = 16.0;

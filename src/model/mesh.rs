@@ -2,7 +2,7 @@
 //!
 //! The lumped two-node line carries about 0.8/n of relative error in the RMS of a fairlead tension (4 % at n = 20, 1.8 % at
 //! n = 40 on a 900 m catenary), so n = 0.8/tolerance over the line where the scene does not say how it moves; where it does,
-//! [`crate::simulation::pilot`] finds n. Of lines that meet at free points the longest gets n, and the others their
+//! [`crate::discretisation`] finds n. Of lines that meet at free points the longest gets n, and the others their
 //! share by length, at least one.
 //!
 //! Sections share a line's elements by length. Where that would put a long element beside one that is more than [`RATIO_MAX`] times

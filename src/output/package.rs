@@ -13,8 +13,8 @@ use zip::{CompressionMethod, DateTime, ZipWriter};
 
 use super::description::{Description, MODEL_IDENTIFIER};
 use super::{OutputError, write_file};
+use crate::discretisation;
 use crate::scene::{LoadedScene, Scene, SceneError};
-use crate::simulation::pilot;
 
 /// Name of the scene below `resources/`.
 pub const SCENE_FILE: &str = "scene.toml";
@@ -91,7 +91,7 @@ pub fn write_fmu(
         let path = path.to_path_buf();
         move |problem| PackageError::File { path, problem }
     };
-    let frozen = pilot::frozen(&loaded.scene);
+    let frozen = discretisation::frozen(&loaded.scene);
     let text = match &frozen {
         Some(scene) => scene.to_toml(),
         None => packaged_text(loaded),

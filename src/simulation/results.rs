@@ -10,11 +10,12 @@ use crate::dynamics::advance::Counters;
 use crate::dynamics::beam::{BeamView, Momentum};
 use crate::dynamics::ledger::{Energy, Ledger};
 use crate::dynamics::reaction;
+use crate::elements;
 use crate::math::attitude::angle_rates;
 use crate::model::{Body, ClosedForm, End, Line, LineState, Network, Point, PointState, Role, joint};
 use crate::scene::Integrator;
 use crate::statics::catenary::Catenary;
-use crate::statics::{self, assembly, catenary_network};
+use crate::statics::{self, catenary_network};
 
 /// How far a vessel in a current goes to either side to tell its stiffness [m, rad].
 const ASIDE: f64 = 1e-3;
@@ -102,7 +103,7 @@ impl Simulation {
     /// of the pose that is set.
     pub fn vessel_stiffness(&self, vessel: usize) -> Option<[[f64; 6]; 6]> {
         let (model, state) = (&*self.model, &self.snapshot.state);
-        let mut work = assembly::Workspace::new(model);
+        let mut work = elements::Workspace::new(model);
         let origin = self.vessel_origin(vessel);
         let stiffness = statics::stiffness::of_vessel(model, state, vessel, origin, &mut work)?;
         match self.drifts(vessel) {
@@ -175,7 +176,7 @@ impl Simulation {
         hung.snapshot.state.waves = None;
         hung.memo.clear();
         let (model, time) = (&*self.model, self.snapshot.state.time);
-        let mut work = assembly::Workspace::new(model);
+        let mut work = elements::Workspace::new(model);
         for number in 0..model.networks.len() {
             let state = &mut hung.snapshot.state;
             catenary_network::solve_network(model, number, state, time, &mut work);
@@ -201,7 +202,7 @@ impl Simulation {
                     let clamped = view.beam.clamped[usize::from(end == End::B)].is_some();
                     clamped.then(|| view.end_action(end, at).1)
                 }
-                None => Some(assembly::end_moment(data, &shape.position, end, at)),
+                None => Some(elements::end_moment(data, &shape.position, end, at)),
             }
         };
         let attached = &model.points[point].attached;

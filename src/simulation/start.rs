@@ -10,11 +10,12 @@ use super::{Error, Snapshot};
 use crate::dynamics::advance::{Counters, Workspace};
 use crate::dynamics::ledger::Ledger;
 use crate::dynamics::{beam, reaction};
+use crate::elements;
 use crate::model::{End, Line, LineState, Model, PointState, Reel, State};
 use crate::physics::stretch::StretchLaw;
 use crate::scene::{InitialShape, Integrator};
 use crate::statics::catenary::{self, Bed, Catenary};
-use crate::statics::{self, StaticsError, assembly, catenary_network, equilibrium, guess};
+use crate::statics::{self, StaticsError, catenary_network, equilibrium, guess};
 
 /// What becomes of lines that are given a shape to start on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -75,7 +76,7 @@ pub(super) fn begin(
 /// Every network in static equilibrium or, where all its lines have shapes of their own, on these, with its free points where the scene puts
 /// them. Quasi-static lines start on their catenaries; those that will move start where their elements are at rest.
 fn at_rest(model: &Model, time: f64, places: &[PointState], shapes: Shapes) -> Result<State, StaticsError> {
-    let mut work = assembly::Workspace::new(model);
+    let mut work = elements::Workspace::new(model);
     let mut state = equilibrium::hang(model, places, time, &mut work)?;
     for number in 0..model.networks.len() {
         if shapes == Shapes::AsGiven && !model.starts_at_rest(number) {

@@ -21,9 +21,9 @@ mod stiffness;
 use nalgebra::{Matrix2, Matrix3, Vector3};
 
 use super::StaticsError;
-use super::assembly::{Workspace, for_free_points, place_ends};
 use super::catenary::Catenary;
 use super::{equilibrium, guess};
+use crate::elements::{Workspace, for_free_points, place_ends};
 use crate::math::block_tridiagonal::Pivots;
 use crate::model::{ClosedForm, Line, Model, Network, PointState, State};
 use crate::physics::stretch::StretchLaw;

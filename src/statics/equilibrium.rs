@@ -1,6 +1,6 @@
 //! Static equilibrium of the assembled lines.
 //!
-//! Newton's method on the residual of [`super::assembly`], with two changes that make it indifferent to how stiff a line is
+//! Newton's method on the residual of [`crate::elements`], with two changes that make it indifferent to how stiff a line is
 //! and to how bad the guess is:
 //!
 //! * The geometric stiffness T/l is taken from a tension that the previous linear solve predicted,
@@ -33,8 +33,8 @@ mod slack;
 use nalgebra::Vector3;
 
 use super::StaticsError;
-use super::assembly::{StaticCase, Workspace, copy_network, for_free_points, place_ends};
 use super::guess;
+use crate::elements::{StaticCase, Workspace, copy_network, for_free_points, place_ends};
 use crate::model::{Kinematics, Line, LineState, Model, Network, PointState, State};
 use crate::physics::friction::Friction;
 

@@ -1,6 +1,5 @@
 //! Statics: what a mooring does when nothing moves.
 
-pub mod assembly;
 pub mod beam;
 pub use crate::physics::catenary;
 pub mod catenary_network;

@@ -25,8 +25,8 @@ use std::ops::SubAssign;
 
 use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
 
-use super::assembly::{LineWork, StaticCase, Workspace, rubbing};
 use super::catenary_network::{self, HungNetwork};
+use crate::elements::{LineWork, StaticCase, Workspace, friction};
 use crate::model::{Body, End, Line, Model, Network, Role, State};
 use crate::physics::bending::{Direction, Hessian, Turn};
 
@@ -289,7 +289,7 @@ impl Problem<'_> {
         let case = StaticCase {
             anchoring: part * springs.fold(0.0, f64::max),
             bends: lines().any(|line| line.bending.is_some()),
-            limit: rubbing::SLIDING,
+            limit: friction::SLIDING,
             ..StaticCase::whole(self.state.time)
         };
         work.assemble_static(self.model, self.network, self.state, &case);

@@ -1,10 +1,10 @@
 //! What the tests of the dynamics share: scenes, histories and measures of error.
 #![allow(dead_code)] // each test file uses a part
 
+use moorline::elements::Workspace;
 use moorline::model::{Model, PointState, State};
 use moorline::scene::{InitialShape, Integrator, Scene};
 use moorline::simulation::Simulation;
-use moorline::statics::assembly::Workspace;
 use moorline::statics::equilibrium;
 use moorline::statics::modes::Modes;
 use nalgebra::Vector3;

@@ -15,9 +15,9 @@ use crate::dynamics::network::NetworkWork;
 use crate::dynamics::quasi_static::{self, Halving};
 use crate::dynamics::step::Step;
 use crate::dynamics::{Choice, StepError};
+use crate::elements::{self, copy_network};
 use crate::model::{End, Kinematics, Model, Network, Role, State};
 use crate::scene::{AXIAL_RADIUS_MIN, Integrator};
-use crate::statics::assembly::{self, copy_network};
 
 /// Spectral radius of the axial-implicit leapfrog where the scene gives none [-].
 const AXIAL_SPECTRAL_RADIUS: f64 = 0.9;
@@ -119,7 +119,7 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
         &self,
         number: usize,
         (choice, solver): &mut (Choice, Solver),
-        implicit: &mut assembly::Workspace,
+        implicit: &mut elements::Workspace,
         next: &mut State,
         total: &mut Done,
     ) -> Result<(), StepError> {
@@ -331,7 +331,7 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
         number: usize,
         step_max: f64,
         scheme: &Scheme,
-        work: &mut assembly::Workspace,
+        work: &mut elements::Workspace,
         next: &mut State,
     ) -> Result<Done, StepError> {
         self.substeps(self.model.networks[number].lines[0], step_max, 0)?;
@@ -412,7 +412,7 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
     fn quasi_static(
         &self,
         number: usize,
-        work: &mut assembly::Workspace,
+        work: &mut elements::Workspace,
         next: &mut State,
     ) -> Result<Done, StepError> {
         let (model, times) = (self.model, [self.start, self.start + self.length]);

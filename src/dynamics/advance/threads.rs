@@ -6,8 +6,8 @@ use super::Done;
 use super::communication::{Communication, Solver};
 use crate::dynamics::crew::{Crew, Queue, lock};
 use crate::dynamics::{Choice, StepError};
+use crate::elements;
 use crate::model::{Kinematics, State};
-use crate::statics::assembly;
 
 /// What became of a network in a step that threads shared.
 pub(super) type Outcome = Option<Result<Done, StepError>>;
@@ -26,7 +26,7 @@ impl Clone for Helpers {
 /// Scratch of a thread that helps.
 #[derive(Debug)]
 pub(super) struct Helper {
-    implicit: assembly::Workspace,
+    implicit: elements::Workspace,
     next: State,
     /// Networks that it brought to the end of the step.
     made: Vec<usize>,
@@ -37,7 +37,7 @@ impl Helpers {
     pub(super) fn of<K>(&mut self, count: usize, step: &Communication<K>, next: &State) -> &[Mutex<Helper>] {
         while self.0.len() < count {
             self.0.push(Mutex::new(Helper {
-                implicit: assembly::Workspace::new(step.model),
+                implicit: elements::Workspace::new(step.model),
                 next: next.clone(),
                 made: Vec::with_capacity(step.model.networks.len()),
             }));
@@ -56,7 +56,7 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
         crew: &mut Crew,
         helpers: &[Mutex<Helper>],
         (networks, outcomes): (&mut [(Choice, Solver)], &mut Vec<Outcome>),
-        (implicit, next): (&mut assembly::Workspace, &mut State),
+        (implicit, next): (&mut elements::Workspace, &mut State),
     ) {
         let count = networks.len();
         outcomes.clear();
@@ -109,7 +109,7 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
         &self,
         number: usize,
         network: &mut (Choice, Solver),
-        implicit: &mut assembly::Workspace,
+        implicit: &mut elements::Workspace,
         next: &mut State,
     ) -> Result<Done, StepError> {
         let mut done = Done::default();

@@ -6,9 +6,9 @@ use nalgebra::Vector3;
 
 use super::Flow;
 use crate::dynamics::leapfrog::segment_tension;
+use crate::elements::friction::{resting_node, resting_point};
+use crate::elements::{end_moment, end_moment_power, end_shear};
 use crate::model::{ClosedForm, End, FreePoint, Line, LineState, Model, Network, PointState, State};
-use crate::statics::assembly::rubbing::{resting_node, resting_point};
-use crate::statics::assembly::{end_moment, end_moment_power, end_shear};
 use crate::statics::equilibrium::current::drag_at_rest;
 
 /// Work given to and lost by a network at rest before and after a step between two times [s], in [J].

@@ -19,14 +19,14 @@ use nalgebra::Vector3;
 use super::super::implicit::Scheme;
 use super::{Flow, dry_part, tangent};
 use crate::dynamics::reaction::tension;
+use crate::elements::friction::{resting_node, resting_point};
+use crate::elements::{
+    Workspace, end_moment, end_moment_power, end_shear, joint_damping_power, rates, stretch_step, stretched,
+};
 use crate::model::{End, FreePoint, Line, LineState, Model, Network, State, WaterAlong, joint};
 use crate::physics::fading_damper::FadingContact;
 use crate::physics::morison::{DragCoefficients, drag};
 use crate::physics::seabed::ContactCoefficients;
-use crate::statics::assembly::rubbing::{resting_node, resting_point};
-use crate::statics::assembly::{
-    Workspace, end_moment, end_moment_power, end_shear, joint_damping_power, rates, stretch_step, stretched,
-};
 
 /// A step that an implicit integrator has made.
 #[derive(Clone, Copy)]

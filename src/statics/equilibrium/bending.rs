@@ -17,9 +17,9 @@
 use nalgebra::Vector3;
 
 use super::{Problem, StaticCase};
+use crate::elements::{Workspace, place_ends};
 use crate::model::{Line, State};
 use crate::statics::StaticsError;
-use crate::statics::assembly::{Workspace, place_ends};
 
 /// Solves of one Newton iteration with bending.
 pub(super) const NEWTON_SOLVES_MAX: usize = 100;

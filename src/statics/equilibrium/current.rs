@@ -12,12 +12,12 @@
 use nalgebra::Vector3;
 
 use super::Problem;
+use crate::elements::{Workspace, copy_network, node_tangent};
 use crate::math::anderson::Anderson;
 use crate::model::{Line, State};
 use crate::physics::flow::Stream;
 use crate::physics::morison::{DragCoefficients, drag};
 use crate::statics::StaticsError;
-use crate::statics::assembly::{Workspace, copy_network, node_tangent};
 
 /// Rounds of drag and equilibrium for each part of the current.
 const ROUNDS_MAX: usize = 60;

@@ -19,10 +19,10 @@
 //! Tresca's friction, Wriggers (2006), Computational Contact Mechanics, 2nd ed., chapter 5.
 
 use super::{Problem, StaticCase};
+use crate::elements::{Workspace, copy_network, for_free_points, friction};
 use crate::model::{LineState, State};
 use crate::physics::catenary::is_laid_from_b;
 use crate::statics::StaticsError;
-use crate::statics::assembly::{Workspace, copy_network, for_free_points, rubbing};
 
 /// Part of the stiffness of sticking that is tried first, and how fast it is raised: friction then grows from nothing to what the
 /// displacement mobilises, and no node that slides is ever without a taut neighbour to hold it [-].
@@ -40,7 +40,7 @@ impl Problem<'_> {
 
     /// Takes friction away before the equilibrium without it is sought.
     pub(super) fn let_go(&self, state: &mut State) {
-        rubbing::weigh_anchors(self.model, self.network, state);
+        friction::weigh_anchors(self.model, self.network, state);
     }
 
     /// From the equilibrium without friction to that with it.

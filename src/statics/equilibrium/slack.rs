@@ -12,11 +12,11 @@
 //! gains its buoyancy. What is left where the equilibrium is not the only one is that whose segments are shortened most evenly.
 //!
 //! Source: the primal-dual interior point method, Nocedal & Wright (2006), Numerical Optimization, 2nd ed., sections 16.6 and 19.1, with the
-//! segments' tensions as multipliers; the elimination of the tensions is derived in `assembly/line.rs`.
+//! segments' tensions as multipliers; the elimination of the tensions is derived in `elements/line.rs`.
 
 use super::{Problem, StaticCase};
+use crate::elements::{Workspace, copy_network};
 use crate::model::State;
-use crate::statics::assembly::{Workspace, copy_network};
 
 /// First m, over the sum of the loads [-].
 const TAUTEST: f64 = 1.0;

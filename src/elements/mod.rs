@@ -19,16 +19,16 @@
 //! indefinite where `convex` is asked for. Statics keeps springs, weight and the drag of a current, whose forces are held while the
 //! shape is sought. A line that may pierce the water's surface lacks there what `surface` says.
 
-mod bending;
 mod contact;
-mod creep;
+pub mod friction;
+mod joint;
 mod line;
-mod parted;
 mod places;
-mod points;
-pub mod rubbing;
-mod stretch;
+mod point;
+mod released;
+mod segment;
 mod surface;
+mod viscoelastic;
 
 use nalgebra::Vector3;
 
@@ -37,14 +37,14 @@ use crate::model::{End, Model, Network, PointState, State};
 use crate::physics::fading_damper::damper_reach;
 use crate::statics::catenary::Catenary;
 
-use bending::Parts;
-pub(crate) use bending::{BendingWork, rates};
-pub use bending::{end_moment, end_moment_power, end_shear, joint_damping_power, shear};
+use joint::Parts;
+pub(crate) use joint::{BendingWork, rates};
+pub use joint::{end_moment, end_moment_power, end_shear, joint_damping_power, shear};
 pub(crate) use line::{LineWork, node_tangent};
 use places::{Place, blank_state};
 pub(crate) use places::{copy_network, place_ends};
-pub(crate) use points::{PointWork, for_free_points};
-pub(crate) use stretch::{stretch_step, stretched};
+pub(crate) use point::{PointWork, for_free_points};
+pub(crate) use segment::{stretch_step, stretched};
 
 /// Scratch of the implicit solvers for a whole model. Nothing in it is read before it is written.
 #[derive(Debug, Clone)]
@@ -138,7 +138,7 @@ pub(crate) struct StaticCase {
     pub bends: bool,
     /// Part of the stiffness that friction sticks with, on nodes that have anchors [-].
     pub stick: f64,
-    /// Part of the limit of friction that holds: [`rubbing::AT_REST`], or [`rubbing::SLIDING`] where nodes at rest at that limit are to slide on [-].
+    /// Part of the limit of friction that holds: [`friction::AT_REST`], or [`friction::SLIDING`] where nodes at rest at that limit are to slide on [-].
     pub limit: f64,
     /// Whether friction goes by the normal forces of the last assembly that did not keep them.
     pub keeps_pressure: bool,
@@ -162,7 +162,7 @@ impl StaticCase {
             predicted: false,
             bends: true,
             stick: 1.0,
-            limit: rubbing::AT_REST,
+            limit: friction::AT_REST,
             keeps_pressure: false,
             breadth: 0.0,
             cautious: false,
@@ -420,7 +420,7 @@ impl Workspace {
     /// Moves the anchors of nodes that slid along the bed, after an assembly of the state.
     pub(crate) fn move_anchors(&self, model: &Model, network: &Network, state: &mut State) {
         if model.friction().is_some() {
-            rubbing::move_anchors(model, network, state, self);
+            friction::move_anchors(model, network, state, self);
         }
     }
 

@@ -291,7 +291,7 @@ impl<'a> Search<'a> {
 
     /// What explicit steps cost; none where the axial-implicit leapfrog does not serve.
     fn explicit_work(&self, scene: &Scene) -> Option<Explicit> {
-        let simulation = Simulation::by_rules(scene).ok()?;
+        let simulation = Simulation::new(scene).ok()?;
         let model = simulation.model();
         let free = |network: &Network| !network.free_points.is_empty();
         if model.networks.iter().any(free) || model.lines.iter().any(|line| line.winch.is_some()) {
@@ -310,7 +310,7 @@ impl<'a> Search<'a> {
 
     /// Runs a scene; none where its lines need another integrator than a leapfrog.
     fn run(&mut self, scene: &Scene) -> Result<Option<Record>, Error> {
-        let mut simulation = Simulation::by_rules(scene)?;
+        let mut simulation = Simulation::new(scene)?;
         simulation.follow_scene()?;
         let mut weight = 0.0_f64;
         for choice in simulation.choices() {

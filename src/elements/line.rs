@@ -2,10 +2,10 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::bending::Parts;
-use super::creep::CreepWork;
-use super::parted::Parted;
-use super::stretch::StepEnd;
+use super::joint::Parts;
+use super::released::Parted;
+use super::segment::StepEnd;
+use super::viscoelastic::CreepWork;
 use super::{BendingWork, StaticCase, Stretch, Weights, surface};
 use crate::math::block_tridiagonal::Chain;
 use crate::model::{Dry, Line, LineState, Model, WaterAlong};

@@ -2,7 +2,7 @@
 
 use super::Stretch;
 use super::line::Geometry;
-use super::stretch::Response;
+use super::segment::Response;
 use crate::model::{Line, LineState};
 use crate::physics::stretch_step::Mean;
 use crate::physics::viscoelastic::Viscoelastic;

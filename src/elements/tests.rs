@@ -14,7 +14,7 @@ const FORCES: Weights = Weights {
     position: 0.0,
     velocity: 0.0,
     acceleration: 0.0,
-    stretch: crate::statics::assembly::Stretch::Now,
+    stretch: crate::elements::Stretch::Now,
     convex: false,
 };
 

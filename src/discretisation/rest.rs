@@ -48,7 +48,7 @@ pub(super) fn refine(scene: &Scene, networks: &Networks, meshes: &mut [Mesh]) {
 /// Greatest error of the tension at the driven ends of the lines of every network at rest against their closed-form catenaries [-], 0 where no
 /// line of a network has one; none where no line at all has one.
 fn errors(scene: &Scene, networks: &Networks, elements: &[usize]) -> Option<Vec<f64>> {
-    let simulation = Simulation::by_rules(&networks.with_elements(scene, elements)).ok()?;
+    let simulation = Simulation::new(&networks.with_elements(scene, elements)).ok()?;
     let model = simulation.model();
     let of_line = |line: usize| {
         let (built, exact) = (&model.lines[line], simulation.catenary(line)?);

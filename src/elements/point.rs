@@ -220,7 +220,7 @@ mod tests {
                 position: 0.8 * moves[0],
                 velocity: 0.8 * moves[1],
                 acceleration: 0.8 * moves[2],
-                stretch: crate::statics::assembly::Stretch::Now,
+                stretch: crate::elements::Stretch::Now,
                 convex: false,
             };
             for z in HEIGHTS {

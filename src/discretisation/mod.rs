@@ -27,6 +27,8 @@
 mod rest;
 mod search;
 
+use std::borrow::Cow;
+
 use crate::model::mesh::line_elements;
 use crate::model::{Model, line_shares};
 use crate::scene::{Integrator, Line, Scene, percent};
@@ -77,7 +79,7 @@ pub struct Rest {
 
 /// What the trials of a scene came to.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Settled {
+pub struct Discretisation {
     /// The scene with its elements and, where that is cheaper, the axial-implicit leapfrog with its step.
     pub scene: Scene,
     /// The mesh of every network whose elements are open.
@@ -86,7 +88,7 @@ pub struct Settled {
     pub duration: f64,
 }
 
-impl Settled {
+impl Discretisation {
     /// What was found, in words: one sentence each.
     pub fn in_words(&self) -> Vec<String> {
         let mut kinds: Vec<Vec<&Mesh>> = Vec::new();
@@ -165,7 +167,7 @@ impl Settled {
 }
 
 /// Tries a scene; none where there is nothing to choose or all is as rules say.
-pub fn settle(scene: &Scene) -> Option<Settled> {
+pub fn select(scene: &Scene) -> Option<Discretisation> {
     if !is_open(scene) {
         return None;
     }
@@ -173,7 +175,7 @@ pub fn settle(scene: &Scene) -> Option<Settled> {
     tried_in_motion(scene, &networks).or_else(|| tried_at_rest(scene, &networks))
 }
 
-fn tried_in_motion(scene: &Scene, networks: &Networks) -> Option<Settled> {
+fn tried_in_motion(scene: &Scene, networks: &Networks) -> Option<Discretisation> {
     let mut search = Search::new(scene, networks)?;
     let mut meshes = search.meshes()?;
     rest::refine(scene, networks, &mut meshes);
@@ -183,7 +185,7 @@ fn tried_in_motion(scene: &Scene, networks: &Networks) -> Option<Settled> {
     } else {
         networks.with_elements(search.scene(), &elements)
     };
-    Some(Settled {
+    Some(Discretisation {
         duration: search.scene().output.duration,
         scene: Scene {
             output: scene.output.clone(),
@@ -194,7 +196,7 @@ fn tried_in_motion(scene: &Scene, networks: &Networks) -> Option<Settled> {
 }
 
 /// The scene with more elements than the rule gives, where it needs them at rest.
-fn tried_at_rest(scene: &Scene, networks: &Networks) -> Option<Settled> {
+fn tried_at_rest(scene: &Scene, networks: &Networks) -> Option<Discretisation> {
     if scene.solver.integrator == Integrator::QuasiStatic {
         return None;
     }
@@ -210,17 +212,25 @@ fn tried_at_rest(scene: &Scene, networks: &Networks) -> Option<Settled> {
     rest::refine(scene, networks, &mut meshes);
     meshes.iter().find_map(|mesh| mesh.rest)?;
     let elements: Vec<usize> = meshes.iter().map(|mesh| mesh.elements).collect();
-    Some(Settled {
+    Some(Discretisation {
         scene: networks.with_elements(scene, &elements),
         meshes: networks.open(&meshes).cloned().collect(),
         duration: 0.0,
     })
 }
 
-/// The scene with the mesh that it has now, whatever is set of it later: as [`settle`] finds it, or by rule. None where all elements are
+/// The scene with its discretisation: as [`select`] finds it, or as it is where nothing is left open.
+pub fn discretised(scene: &Scene) -> Cow<'_, Scene> {
+    match select(scene) {
+        Some(found) => Cow::Owned(found.scene),
+        None => Cow::Borrowed(scene),
+    }
+}
+
+/// The scene with the mesh that it has now, whatever is set of it later: as [`select`] finds it, or by rule. None where all elements are
 /// given.
 pub fn frozen(scene: &Scene) -> Option<Scene> {
-    if let Some(settled) = settle(scene) {
+    if let Some(settled) = select(scene) {
         return Some(settled.scene);
     }
     if !is_open(scene) {
