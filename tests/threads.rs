@@ -147,9 +147,9 @@ fn a_line_alone_stays_on_one_thread_and_many_lines_are_told_why_not() {
         simulation.threads_in_words(step)
     };
     let alone = said(&shipped("oc4_chain"), 0.05);
-    assert_eq!(alone, "one thread: there is one system of lines");
+    assert_eq!(alone, "one thread: there is one network of lines");
     let few = said(&semi(6, false, Integrator::Leapfrog), 0.05);
-    assert!(few.starts_with("one thread: 12 systems of lines"), "{few}");
+    assert!(few.starts_with("one thread: 12 networks of lines"), "{few}");
     let mut asked = semi(6, false, Integrator::Leapfrog);
     asked.solver.threads = Threads::Number(4);
     assert_eq!(said(&asked, 0.05), "4 threads, as given");

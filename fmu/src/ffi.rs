@@ -11,7 +11,7 @@ use std::ffi::{CStr, CString, c_char, c_void};
 use std::panic::{self, AssertUnwindSafe};
 use std::sync::{Mutex, MutexGuard, Once, PoisonError};
 
-use moorline::dynamics::is_helper;
+use moorline::dynamics::is_worker;
 use moorline_host::fmi2::{fmi2CallbackFunctions, fmi2CallbackLogger};
 use moorline_host::fmi3::fmi3LogMessageCallback;
 use moorline_host::{FmiVersion, Status};
@@ -108,7 +108,7 @@ thread_local! {
     static IS_GUARDED: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Stands for all threads that an instance has work done on; a guard passes on what panics there.
+/// Stands for all worker threads of an instance; a guard passes on what panics there.
 const HELPER: usize = 0;
 
 /// Where guarded panics happened, by thread, until their guards have told it.
@@ -129,10 +129,10 @@ fn silence_guarded_panics() {
     ONCE.call_once(|| {
         let before = panic::take_hook();
         panic::set_hook(Box::new(move |info| {
-            let helps = is_helper();
-            if helps || IS_GUARDED.get() {
+            let is_worker = is_worker();
+            if is_worker || IS_GUARDED.get() {
                 if let Some(place) = info.location() {
-                    let thread = if helps { HELPER } else { thread_number() };
+                    let thread = if is_worker { HELPER } else { thread_number() };
                     panic_places().insert(thread, place.to_string());
                 }
             } else {
@@ -438,7 +438,7 @@ pub(crate) fn copy_state(bytes: &[u8], target: &mut [u8]) -> Result<(), Refusal>
 #[cfg(test)]
 mod tests {
     use super::*;
-    use moorline::dynamics::as_helper;
+    use moorline::dynamics::as_worker;
 
     #[test]
     fn a_guarded_panic_becomes_its_message_and_place() {
@@ -451,7 +451,7 @@ mod tests {
     #[test]
     fn a_panic_of_a_helping_thread_becomes_its_message_and_place() {
         let message = guard(|| {
-            std::thread::spawn(|| as_helper(|| panic!("line {} lost", 3)))
+            std::thread::spawn(|| as_worker(|| panic!("line {} lost", 3)))
                 .join()
                 .unwrap_or_else(|payload| panic::resume_unwind(payload))
         });

@@ -1,24 +1,22 @@
 //! One communication step of a whole model: every network by its integrator, in as many internal steps as it needs.
 
 mod communication;
-mod threads;
 
 use serde::{Deserialize, Serialize};
 
 use super::axial_implicit;
-use super::crew::{Crew, Hands, Labour, Pace};
 use super::implicit;
 use super::ledger::{self, Energy, Flow};
 use super::motion::AxisPath;
 use super::sea::SeaWork;
+use super::threads::{ThreadPool, WorkEstimate};
 use super::{Choice, StepError};
 use crate::elements;
 use crate::elements::friction::{drop_anchors, hold_at_rest};
 use crate::model::{Kinematics, Model, Role, State};
 use crate::physics::airy::Waves;
 use crate::scene::{Integrator, Reconstruction};
-use communication::{Communication, Solver, within_guard};
-use threads::{Helpers, Outcome};
+use communication::{Communication, Scratch, Solver, within_guard};
 
 /// Rounding of times, over a step [-].
 const ROUNDING: f64 = 1e-9;
@@ -45,48 +43,54 @@ pub struct Done {
 /// Scratch of all networks and the state being built.
 #[derive(Debug, Clone)]
 pub struct Workspace {
-    networks: Vec<(Choice, Solver)>,
-    implicit: elements::Workspace,
-    next: State,
+    networks: Vec<NetworkSolver>,
+    /// Per thread.
+    scratch: Vec<Scratch>,
     sea: SeaWork,
     /// The state before a step that is made in parts.
     before: State,
-    /// How the winches pay out, by line; empty where there are none.
+    /// Paths of the winches, by line; empty where there are none.
     reels: Vec<AxisPath>,
     /// Whether the leapfrogs still hold the state that they handed back last.
     holds: bool,
-    crew: Crew,
-    labour: Labour,
-    /// How steps go on threads, and how waves are asked on them.
-    paces: [Pace; 2],
-    /// Scratch of the other threads, once there are some.
-    helpers: Helpers,
-    /// What became of the networks that threads shared.
-    outcomes: Vec<Outcome>,
+    threads: ThreadPool,
+    estimate: WorkEstimate,
+}
+
+/// A network's integrator.
+#[derive(Debug, Clone)]
+struct NetworkSolver {
+    choice: Choice,
+    solver: Solver,
+    /// Outcome of the present step.
+    outcome: Result<Done, StepError>,
 }
 
 impl Workspace {
-    /// Chooses integrators and allocates all scratch for a model that starts from `state`; `tension` tells the static
+    /// Chooses integrators and allocates all scratch for a model that starts from `state`; `tension` returns the static
     /// tension of a line [N].
     pub fn new(model: &Model, state: &State, tension: impl Fn(usize) -> f64) -> Workspace {
-        let networks: Vec<(Choice, Solver)> = model
+        let networks: Vec<NetworkSolver> = model
             .networks
             .iter()
             .map(|network| {
                 let choice = Choice::new(model, network, &tension);
-                let solver = Solver::new(model, network, choice.integrator);
-                (choice, solver)
+                NetworkSolver {
+                    solver: Solver::new(model, network, choice.integrator),
+                    choice,
+                    outcome: Ok(Done::default()),
+                }
             })
             .collect();
-        Workspace {
-            crew: Crew::default(),
-            labour: Labour::new(model, networks.iter().map(|(choice, _)| choice)),
-            paces: Default::default(),
-            helpers: Helpers::default(),
-            outcomes: Vec::new(),
-            networks,
+        let own = Scratch {
             implicit: elements::Workspace::new(model),
             next: state.clone(),
+        };
+        Workspace {
+            threads: ThreadPool::default(),
+            estimate: WorkEstimate::new(model, networks.iter().map(|network| &network.choice)),
+            scratch: vec![own],
+            networks,
             sea: SeaWork::new(),
             before: State::default(),
             reels: Vec::new(),
@@ -105,20 +109,20 @@ impl Workspace {
         self.reels.extend(paths);
     }
 
-    /// What was chosen, by network.
+    /// Returns the integrators chosen, by network.
     pub fn choices(&self) -> impl Iterator<Item = &Choice> {
-        self.networks.iter().map(|(choice, _)| choice)
+        self.networks.iter().map(|network| &network.choice)
     }
 
-    /// How many threads share steps of a length [s], and why.
+    /// Describes the number of threads for steps of a length [s], with the reason.
     pub fn threads_in_words(&self, length: f64) -> String {
-        self.labour.in_words(length)
+        self.estimate.describe(length)
     }
 
     /// Energy that the networks hold; none of motion where they are quasi-static.
     pub fn energy(&self, model: &Model, state: &State) -> Energy {
         let mut sum = Energy::default();
-        for ((_, solver), network) in self.networks.iter().zip(&model.networks) {
+        for (NetworkSolver { solver, .. }, network) in self.networks.iter().zip(&model.networks) {
             let mut energy = ledger::energy(model, network, state);
             if matches!(solver, Solver::QuasiStatic) {
                 energy.kinetic = 0.0;
@@ -132,7 +136,7 @@ impl Workspace {
     /// [`AxialWork::defers_turning`].
     pub fn turning_energy(&self, model: &Model, state: &State) -> f64 {
         let mut sum = 0.0;
-        for ((_, solver), network) in self.networks.iter().zip(&model.networks) {
+        for (NetworkSolver { solver, .. }, network) in self.networks.iter().zip(&model.networks) {
             if let Solver::AxialImplicit(work) = solver
                 && work.defers_turning()
             {
@@ -150,14 +154,14 @@ impl Workspace {
         drop_anchors(model, state);
         place_held(model, state, held);
         self.sea.start(model, state);
-        for (number, (_, solver)) in self.networks.iter().enumerate() {
-            if matches!(solver, Solver::Implicit(_)) {
-                let network = &model.networks[number];
-                hold_at_rest(model, network, state, time, &mut self.implicit);
-                implicit::start(model, number, state, held, time, &mut self.implicit);
+        let Scratch { implicit: work, next } = &mut self.scratch[0];
+        for (number, network) in self.networks.iter().enumerate() {
+            if matches!(network.solver, Solver::Implicit(_)) {
+                hold_at_rest(model, &model.networks[number], state, time, work);
+                implicit::start(model, number, state, held, time, work);
             }
         }
-        self.next.clone_from(state);
+        next.clone_from(state);
     }
 
     /// Advances `state` by `length` [s]; `held` tells the kinematics of held points in that time.
@@ -246,24 +250,13 @@ impl Workspace {
         choices.try_for_each(|(number, choice)| step.check_length(number, choice, part))
     }
 
-    /// Asks the waves anew where a span of theirs is over; whether it was.
+    /// Samples the waves where a span of theirs is over; returns whether one was.
     fn renew_waves(&mut self, model: &Model, waves: &Waves, state: &mut State, step: f64) -> bool {
-        let (labour, [_, pace]) = (&self.labour, &mut self.paces);
-        let expected = labour.at_sea();
-        self.crew.call(expected - 1);
-        let turn = pace.turn(expected, labour.is_given());
-        let mut hands = Hands {
-            crew: &mut self.crew,
-            threads: turn.threads,
-        };
-        let renewed = self.sea.renew((model, waves), state, step, &mut hands);
-        if renewed {
-            pace.note(turn, 1.0);
-        }
-        renewed
+        let threads = (&mut self.threads, self.estimate.threads_for_waves());
+        self.sea.renew((model, waves), state, step, threads)
     }
 
-    /// Advances `state` by `length` [s], over which it knows what waves do.
+    /// Advances `state` by `length` [s], over which the motion by waves is known.
     fn pass(
         &mut self,
         model: &Model,
@@ -271,10 +264,8 @@ impl Workspace {
         length: f64,
         held: &(impl Fn(usize, f64) -> Kinematics + Sync),
     ) -> Result<Done, StepError> {
-        let reads_next = |(_, solver): &(Choice, Solver)| solver.reads_next();
-        if state.waves.is_some() && self.networks.iter().any(reads_next) {
-            self.next.waves.clone_from(&state.waves);
-        }
+        let threads = self.estimate.threads_for(length);
+        self.prepare_scratch(state, threads);
         let step = Communication {
             model,
             state,
@@ -285,33 +276,58 @@ impl Workspace {
             holds: std::mem::take(&mut self.holds),
             jumps: model.solver.input_reconstruction == Reconstruction::Jump,
         };
-        let expected = self.labour.over(length);
-        self.crew.call(expected - 1);
-        let turn = self.paces[0].turn(expected, self.labour.is_given());
-        let mut total = Done::default();
-        if turn.threads > 1 {
-            let helpers = self.helpers.of(turn.threads - 1, &step, &self.next);
-            let own = (&mut self.implicit, &mut self.next);
-            let networks = (&mut self.networks[..], &mut self.outcomes);
-            step.on_threads(&mut self.crew, helpers, networks, own);
-            for done in self.outcomes.drain(..).flatten() {
-                total.join(done?);
+        let work = |first: usize, networks: &mut [NetworkSolver], scratch: &mut Scratch| {
+            for (number, network) in networks.iter_mut().enumerate() {
+                let solver = (&network.choice, &mut network.solver);
+                network.outcome = step.network(first + number, solver, scratch);
             }
-        } else {
-            for (number, network) in self.networks.iter_mut().enumerate() {
-                let (implicit, next) = (&mut self.implicit, &mut self.next);
-                step.network(number, network, implicit, next, &mut total)?;
+        };
+        self.threads
+            .share(&mut self.networks, &mut self.scratch[..threads], work);
+        self.exchange_parts(model, threads);
+        let mut total = Done::default();
+        for network in &mut self.networks {
+            total.join(std::mem::replace(&mut network.outcome, Ok(Done::default()))?);
+        }
+        let next = &mut self.scratch[0].next;
+        next.time = state.time + length;
+        place_held(model, next, held);
+        // all but the waves, which stay as they are
+        state.time = next.time;
+        std::mem::swap(&mut state.points, &mut next.points);
+        std::mem::swap(&mut state.lines, &mut next.lines);
+        self.holds = true;
+        Ok(total)
+    }
+
+    /// Makes scratch for so many threads ready for a step from `state`.
+    fn prepare_scratch(&mut self, state: &State, threads: usize) {
+        while self.scratch.len() < threads {
+            self.scratch.push(self.scratch[0].clone());
+        }
+        if state.waves.is_some() && self.networks.iter().any(|network| network.solver.reads_next()) {
+            for scratch in &mut self.scratch[..threads] {
+                scratch.next.waves.clone_from(&state.waves);
             }
         }
-        self.next.time = state.time + length;
-        place_held(model, &mut self.next, held);
-        // all but the waves, which stay as they are
-        state.time = self.next.time;
-        std::mem::swap(&mut state.points, &mut self.next.points);
-        std::mem::swap(&mut state.lines, &mut self.next.lines);
-        self.holds = true;
-        self.paces[0].note(turn, length);
-        Ok(total)
+    }
+
+    /// Moves the networks that other threads advanced to the first thread's next state.
+    fn exchange_parts(&mut self, model: &Model, threads: usize) {
+        let [own, others @ ..] = &mut self.scratch[..threads] else {
+            return;
+        };
+        let size = self.networks.len().div_ceil(threads).max(1);
+        for (other, networks) in others.iter_mut().zip(model.networks.chunks(size).skip(1)) {
+            for network in networks {
+                for &line in &network.lines {
+                    std::mem::swap(&mut own.next.lines[line], &mut other.next.lines[line]);
+                }
+                for &point in &network.free_points {
+                    std::mem::swap(&mut own.next.points[point], &mut other.next.points[point]);
+                }
+            }
+        }
     }
 }
 

@@ -6,7 +6,6 @@ pub mod beam;
 mod choice;
 mod cost;
 mod creep;
-mod crew;
 pub mod implicit;
 mod layout;
 pub mod leapfrog;
@@ -19,10 +18,11 @@ pub mod reaction;
 mod sea;
 pub mod step;
 mod surface;
+mod threads;
 
 pub use choice::Choice;
 pub use cost::AXIAL_IMPLICIT_COST;
-pub use crew::{Aside, as_helper, is_helper, make_threads_aside};
+pub use threads::{Aside, as_worker, is_worker, make_threads_aside};
 
 /// Why a step could not be made. The state is as it was before.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -5,12 +5,10 @@
 //! still water is cut into parts. Where a node will be is foretold from its velocity at the start of the span, r + τ v. What was found for the end of a span is
 //! the start of the next, so that velocity and acceleration of the water have no jump and no kink in time.
 
-use std::sync::Mutex;
-
 use nalgebra::Vector3;
 use pulp::{Arch, NullaryFnOnce};
 
-use super::crew::{Hands, Queue};
+use super::threads::ThreadPool;
 use crate::model::{Model, Point, State, WaveSpan, WaveSpans};
 use crate::physics::airy::{Instant, Orbit, Waves};
 
@@ -22,9 +20,8 @@ const ROUNDING: f64 = 1e-9;
 pub struct SeaWork {
     /// The widest vectors of this machine; results do not depend on it.
     unit: Arch,
-    instant: Instant,
-    /// The same for the other threads.
-    instants: Vec<Mutex<Instant>>,
+    /// Per thread.
+    instants: Vec<Instant>,
     /// The spans that began last.
     due: Vec<Due>,
     /// What waves did at the start of the span before, or room for the end of the next, by line and then by point.
@@ -116,8 +113,7 @@ impl SeaWork {
     pub fn new() -> SeaWork {
         SeaWork {
             unit: Arch::new(),
-            instant: Instant::default(),
-            instants: Vec::new(),
+            instants: vec![Instant::default()],
             due: Vec::new(),
             spare: Vec::new(),
         }
@@ -146,7 +142,7 @@ impl SeaWork {
             (state.time, 0.0),
             nodes,
             first,
-            (self.unit, &mut self.instant),
+            (self.unit, &mut self.instants[0]),
         );
         last.clone_from(first);
         span.times = [state.time; 2];
@@ -165,13 +161,13 @@ impl SeaWork {
         }
     }
 
-    /// Begins new spans where old ones are over, for steps of `step` [s]; whether there were any.
+    /// Begins new spans where old ones are over, for steps of `step` [s], on so many threads of a pool; returns whether there were any.
     pub fn renew(
         &mut self,
         (model, waves): (&Model, &Waves),
         state: &mut State,
         step: f64,
-        hands: &mut Hands,
+        (pool, threads): (&mut ThreadPool, usize),
     ) -> bool {
         self.due.clear();
         self.spare
@@ -189,7 +185,7 @@ impl SeaWork {
                 before: [0.0; 2],
             });
         }
-        self.sample_due(waves, state, hands);
+        self.sample_due(waves, state, (pool, threads));
         let Some(mut spans) = state.waves.take() else {
             return false;
         };
@@ -223,35 +219,21 @@ impl SeaWork {
         }
     }
 
-    /// Asks the waves what they do at the ends of the spans that begin.
-    fn sample_due(&mut self, waves: &Waves, state: &State, hands: &mut Hands) {
-        // those that end together follow each other: the waves are turned to their time once
+    /// Samples the waves at the ends of the spans that begin.
+    fn sample_due(&mut self, waves: &Waves, state: &State, (pool, threads): (&mut ThreadPool, usize)) {
+        // spans that end together follow each other, so that the waves are turned to their time once
         let by_length = |a: &Due, b: &Due| a.length.total_cmp(&b.length);
         self.due.sort_unstable_by(by_length);
         let unit = self.unit;
-        let ask = |due: &mut Due, instant: &mut Instant| {
-            let (times, nodes) = ((state.time, due.length), due.place.nodes(state));
-            sample(waves, times, nodes, &mut due.nodes, (unit, instant));
-        };
-        if hands.threads == 1 {
-            let instant = &mut self.instant;
-            self.due.iter_mut().for_each(|due| ask(due, instant));
-            return;
-        }
-        let size = self.due.len().div_ceil(hands.threads).max(1);
-        let queue = Queue::new(self.due.chunks_mut(size).map(<[Due]>::iter_mut));
-        let work = |own: usize, instant: &mut Instant| {
-            while let Some(due) = queue.take(own) {
-                ask(due, instant);
+        let work = |_, part: &mut [Due], instant: &mut Instant| {
+            for due in part {
+                let (times, nodes) = ((state.time, due.length), due.place.nodes(state));
+                sample(waves, times, nodes, &mut due.nodes, (unit, instant));
             }
         };
-        while self.instants.len() + 1 < hands.threads {
-            self.instants.push(Mutex::default());
-        }
-        let help = |number: usize, instant: &mut Instant| work(number + 1, instant);
-        let helpers = &self.instants[..hands.threads - 1];
-        let instant = &mut self.instant;
-        hands.crew.run(helpers, help, || work(0, instant));
+        self.instants
+            .resize_with(threads.max(self.instants.len()), Instant::default);
+        pool.share(&mut self.due, &mut self.instants[..threads], work);
     }
 }
 

@@ -88,6 +88,14 @@ fn axial_work(model: &Model, network: &Network) -> Option<AxialWork> {
     AxialWork::new(model, &model.lines[network.lines[0]], rho)
 }
 
+/// Scratch of a thread.
+#[derive(Debug, Clone)]
+pub(super) struct Scratch {
+    pub(super) implicit: elements::Workspace,
+    /// The state at the end of the step, as it is built.
+    pub(super) next: State,
+}
+
 /// New scratch for one that a motion without bound went through: numbers that are none would stay where no node is, and in masses of nodes
 /// that the water's surface seems not to meet.
 fn renew<W>(work: &mut W, new: Option<W>) {
@@ -114,26 +122,21 @@ pub(super) struct Communication<'a, K> {
 }
 
 impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
-    /// One network over the step; joins what it does to `total`.
+    /// Advances one network over the step, with its new state in `next`.
     pub(super) fn network(
         &self,
         number: usize,
-        (choice, solver): &mut (Choice, Solver),
-        implicit: &mut elements::Workspace,
-        next: &mut State,
-        total: &mut Done,
-    ) -> Result<(), StepError> {
+        (choice, solver): (&Choice, &mut Solver),
+        Scratch { implicit, next }: &mut Scratch,
+    ) -> Result<Done, StepError> {
         let step_max = choice.step_max;
-        total.join(match solver {
-            Solver::AxialImplicit(work) => {
-                return self.axial_implicit(number, choice, work, next, total);
-            }
-            Solver::Leapfrog(work) => self.leapfrog(number, choice, work, next)?,
-            Solver::Implicit(scheme) => self.implicit(number, step_max, scheme, implicit, next)?,
-            Solver::Beam(work) => self.beam(number, step_max, work, next)?,
-            Solver::QuasiStatic => self.quasi_static(number, implicit, next)?,
-        });
-        Ok(())
+        match solver {
+            Solver::AxialImplicit(work) => self.axial_implicit(number, choice, work, next),
+            Solver::Leapfrog(work) => self.leapfrog(number, choice, work, next),
+            Solver::Implicit(scheme) => self.implicit(number, step_max, scheme, implicit, next),
+            Solver::Beam(work) => self.beam(number, step_max, work, next),
+            Solver::QuasiStatic => self.quasi_static(number, implicit, next),
+        }
     }
 
     #[inline(never)]
@@ -222,8 +225,7 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
         choice: &Choice,
         work: &mut AxialWork,
         next: &mut State,
-        total: &mut Done,
-    ) -> Result<(), StepError> {
+    ) -> Result<Done, StepError> {
         let network = &self.model.networks[number];
         let (index, transverse) = (network.lines[0], work.transverse);
         let line = &self.model.lines[index];
@@ -263,8 +265,7 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
                     substeps: count,
                     solves,
                 };
-                total.join(Done { counters, flow });
-                return Ok(());
+                return Ok(Done { counters, flow });
             }
             if !whole {
                 let broken = work.broken_node();
