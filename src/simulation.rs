@@ -31,7 +31,7 @@ use held::{At, Held};
 use input_error::InputRecord;
 use inputs::Inputs;
 use paths::Paths;
-use results::Memo;
+use results::Reactions;
 use scale::Scale;
 
 pub use results::{NodeBending, ProfileNode};
@@ -80,7 +80,7 @@ pub struct Simulation {
     paths: Box<Paths>,
     foresight: Foresight,
     held: Held,
-    memo: Memo,
+    reactions: Reactions,
     scale: Scale,
     catenaries: Vec<Option<Catenary>>,
 }
@@ -101,7 +101,7 @@ impl Simulation {
             paths: snapshot.paths.clone(),
             foresight: Foresight::none(),
             held: Held::new(&model, false),
-            memo: Memo::new(model.vessels.len()),
+            reactions: Reactions::new(&model),
             scale: Scale::new(&model),
             snapshot,
             work,
@@ -152,7 +152,7 @@ impl Simulation {
         self.paths.clone_from(&self.snapshot.paths);
         self.model = model;
         self.held = Held::new(&self.model, follows_scene);
-        self.memo.clear();
+        self.reactions.clear();
         Ok(())
     }
 
@@ -182,7 +182,7 @@ impl Simulation {
         self.paths.clone_from(&self.snapshot.paths);
         self.work.forget();
         self.held = Held::new(&self.model, self.snapshot.follows_scene);
-        self.memo.clear();
+        self.reactions.clear();
         winches::follow(&mut self.model, &self.snapshot.state);
     }
 
@@ -237,7 +237,7 @@ impl Simulation {
             self.snapshot.ledger.flow.add(done.flow);
         }
         std::mem::swap(&mut self.snapshot.paths, &mut self.paths);
-        self.memo.clear();
+        self.reactions.clear();
         if !self.paths.reels.is_empty() {
             winches::follow(&mut self.model, &self.snapshot.state);
         }

@@ -12,7 +12,7 @@ use crate::dynamics::ledger::{Energy, Ledger};
 use crate::dynamics::reaction;
 use crate::elements;
 use crate::math::attitude::angle_rates;
-use crate::model::{Body, ClosedForm, End, Line, LineState, Network, Point, PointState, Role, joint};
+use crate::model::{Body, ClosedForm, End, Line, LineState, Model, Network, Point, PointState, Role, joint};
 use crate::scene::Integrator;
 use crate::statics::catenary::Catenary;
 use crate::statics::{self, catenary_network};
@@ -46,37 +46,54 @@ pub struct NodeBending {
     pub moment: f64,
 }
 
-/// What several outputs need of the present state, worked out when the first of them is read.
+/// Quantities of the present state that several outputs share, each evaluated when the first of them is read.
 #[derive(Debug, Clone)]
-pub(super) struct Memo {
-    /// Energy held, and what is yet to be booked as lost [J].
+pub(super) struct Reactions {
+    /// Stored energy, and the part of the dissipation that is not yet in the energy balance [J].
     energy: OnceLock<(Energy, f64)>,
     /// Force [N] and moment [N m] on every vessel.
     vessels: Vec<OnceLock<[f64; 6]>>,
+    lines: Vec<LineReactions>,
 }
 
-impl Memo {
-    /// Of a simulation with so many vessels.
-    pub fn new(vessels: usize) -> Memo {
-        Memo {
+/// Those of a line.
+#[derive(Debug, Clone, Default)]
+struct LineReactions {
+    /// Force on the points at ends A and B [N].
+    ends: [OnceLock<Vector3<f64>>; 2],
+    /// Effective tension at every node [N].
+    tensions: OnceLock<Vec<f64>>,
+    bending: OnceLock<Option<Vec<NodeBending>>>,
+}
+
+impl Reactions {
+    /// Allocates for a model; nothing is evaluated.
+    pub fn new(model: &Model) -> Reactions {
+        Reactions {
             energy: OnceLock::new(),
-            vessels: vec![OnceLock::new(); vessels],
+            vessels: vec![OnceLock::new(); model.vessels.len()],
+            lines: vec![LineReactions::default(); model.lines.len()],
         }
     }
 
-    /// Forgets what was worked out: the state is another.
+    /// Drops all values, for another state.
     pub fn clear(&mut self) {
         self.energy.take();
-        self.vessels.iter_mut().for_each(|force| {
+        for force in &mut self.vessels {
             force.take();
-        });
+        }
+        for line in &mut self.lines {
+            line.ends = Default::default();
+            line.tensions.take();
+            line.bending.take();
+        }
     }
 }
 
 impl Simulation {
     /// Force [N] and moment [N m] of the mooring on a vessel, about its origin, in global axes.
     pub fn vessel_force(&self, vessel: usize) -> [f64; 6] {
-        let force = &self.memo.vessels[vessel];
+        let force = &self.reactions.vessels[vessel];
         *force.get_or_init(|| self.sum_of_forces(vessel))
     }
 
@@ -174,7 +191,7 @@ impl Simulation {
     pub fn vessel_at_rest(&self, vessel: usize) -> ([f64; 6], Option<[[f64; 6]; 6]>) {
         let mut hung = self.clone();
         hung.snapshot.state.waves = None;
-        hung.memo.clear();
+        hung.reactions.clear();
         let (model, time) = (&*self.model, self.snapshot.state.time);
         let mut work = elements::Workspace::new(model);
         for number in 0..model.networks.len() {
@@ -235,6 +252,11 @@ impl Simulation {
 
     /// Force of one line on the point at its end [N].
     pub fn line_end_force(&self, line: usize, end: End) -> Vector3<f64> {
+        let force = &self.reactions.lines[line].ends[end as usize];
+        *force.get_or_init(|| self.evaluate_end_force(line, end))
+    }
+
+    fn evaluate_end_force(&self, line: usize, end: End) -> Vector3<f64> {
         let (model, state) = (&self.model, &self.snapshot.state);
         let point = match end {
             End::A => model.lines[line].ends[0],
@@ -311,7 +333,12 @@ impl Simulation {
     }
 
     /// Effective tension at every node [N].
-    pub fn tensions(&self, line: usize) -> Vec<f64> {
+    pub fn tensions(&self, line: usize) -> &[f64] {
+        let tensions = &self.reactions.lines[line].tensions;
+        tensions.get_or_init(|| self.evaluate_tensions(line))
+    }
+
+    fn evaluate_tensions(&self, line: usize) -> Vec<f64> {
         if let Some(closed_form) = self.closed_form(line) {
             return closed_form.tension.clone();
         }
@@ -347,7 +374,12 @@ impl Simulation {
 
     /// Curvature [1/m] and bending moment [N m] at every node, where the line has bending stiffness; zero at hinges and at pinned ends
     /// without a moment on them.
-    pub fn bending(&self, line: usize) -> Option<Vec<NodeBending>> {
+    pub fn bending(&self, line: usize) -> Option<&[NodeBending]> {
+        let bending = &self.reactions.lines[line].bending;
+        bending.get_or_init(|| self.evaluate_bending(line)).as_deref()
+    }
+
+    fn evaluate_bending(&self, line: usize) -> Option<Vec<NodeBending>> {
         let (data, state) = (&self.model.lines[line], &self.snapshot.state);
         if let Some(view) = BeamView::of(data, &state.lines[line]) {
             let at = |node| NodeBending {
@@ -392,13 +424,13 @@ impl Simulation {
         let mut profile: Vec<ProfileNode> = nodes
             .zip(self.tensions(line))
             .enumerate()
-            .map(|(node, ((s, r), tension))| ProfileNode {
+            .map(|(node, ((s, r), &tension))| ProfileNode {
                 s: *s,
                 x: r.x,
                 y: r.y,
                 z: r.z,
                 tension,
-                bending: bending.as_ref().map(|nodes| nodes[node]),
+                bending: bending.map(|nodes| nodes[node]),
             })
             .collect();
         if let Some(&end) = profile.last() {
@@ -443,7 +475,7 @@ impl Simulation {
             let turning = self.work.turning_energy(model, state);
             (self.work.energy(model, state), -turning)
         };
-        self.memo.energy.get_or_init(found)
+        self.reactions.energy.get_or_init(found)
     }
 
     /// Whether an energy ledger is kept, as [`Solver::energy_ledger`](crate::scene::Solver::energy_ledger) says.
