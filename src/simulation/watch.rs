@@ -59,12 +59,10 @@ impl Watch {
                 self.has_jumped = true;
                 notes.push(note);
             }
-            if watched.strain_max.is_finite() {
+            if watched.strain_max.is_finite() && exceeds_strain(simulation, index, watched.strain_max) {
                 let strain = strain(simulation, index);
-                if strain > watched.strain_max {
-                    notes.push(strained(simulation, index, strain, watched.strain_max));
-                    watched.strain_max = f64::INFINITY;
-                }
+                notes.push(strained(simulation, index, strain, watched.strain_max));
+                watched.strain_max = f64::INFINITY;
             }
         }
         self.tables.look(simulation, &mut notes);
@@ -104,15 +102,25 @@ fn jump(
     Some(Note::new(format!("lines[{line}]"), text))
 }
 
-/// Greatest strain of a line's segments [-], without the one that a winch changes.
-fn strain(simulation: &Simulation, line: usize) -> f64 {
+/// Squares of the stretched [m²] and unstretched lengths [m] of a line's segments, without the segment that a winch changes.
+fn lengths(simulation: &Simulation, line: usize) -> impl Iterator<Item = (f64, f64)> {
     let data = &simulation.model.lines[line];
     let nodes = &simulation.snapshot.state.lines[line].position;
     let lengths = &data.segments.length;
     let count = lengths.len() - usize::from(data.winch.is_some());
     let pairs = nodes.windows(2).zip(lengths).take(count);
-    pairs
-        .map(|(pair, length)| (pair[1] - pair[0]).norm() / length - 1.0)
+    pairs.map(|(pair, length)| ((pair[1] - pair[0]).norm_squared(), *length))
+}
+
+/// Returns whether any segment of a line is strained beyond a limit [-]. Called at every communication point: needs no roots.
+fn exceeds_strain(simulation: &Simulation, line: usize, limit: f64) -> bool {
+    lengths(simulation, line).any(|(square, length)| square > ((1.0 + limit) * length).powi(2))
+}
+
+/// Greatest strain of a line's segments [-].
+fn strain(simulation: &Simulation, line: usize) -> f64 {
+    lengths(simulation, line)
+        .map(|(square, length)| square.sqrt() / length - 1.0)
         .fold(0.0, f64::max)
 }
 
