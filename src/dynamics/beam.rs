@@ -35,6 +35,7 @@ use crate::physics::seabed::ContactCoefficients;
 use crate::physics::section::{
     Mixture, Section, Sextuple, corrected, join, response, split, strain, strain_gradient,
 };
+use crate::physics::slender::Slender;
 use crate::statics::beam::{BeamEnd, Span, add_elements, folded};
 
 pub use body::Body;
@@ -494,16 +495,11 @@ fn beam_state(shape: &LineState) -> &crate::model::BeamState {
 
 /// Mass of a node with its added mass for a tangent [kg].
 fn node_mass(nodes: &Nodes, i: usize, tangent: Vector3<f64>) -> Matrix3<f64> {
-    let (normal, along) = (nodes.mass_normal[i], nodes.mass_tangent[i]);
-    Matrix3::from_diagonal_element(normal) + (along - normal) * tangent * tangent.transpose()
+    Slender::new(nodes.masses(i, 0.0)).matrix(tangent)
 }
 
 fn drag_of(nodes: &Nodes, i: usize) -> Option<DragCoefficients> {
-    let drag = nodes.drag.as_ref()?;
-    Some(DragCoefficients {
-        normal: drag.normal[i],
-        tangent: drag.tangent[i],
-    })
+    Some(nodes.drag.as_ref()?.at(i))
 }
 
 #[cfg(test)]

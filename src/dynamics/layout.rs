@@ -17,6 +17,7 @@ use crate::math::fold::{Column, Field, Fold, Slot};
 use crate::math::lanes::{Lanes, Vectors};
 use crate::math::unit;
 use crate::model::{End, Line};
+use crate::physics::slender::Slender;
 use crate::physics::stretch::{StretchLaw, total_tension};
 use crate::scene::Solver;
 use ground::ContactArrays;
@@ -328,14 +329,13 @@ impl Layout {
 
     /// Energy [J] that the half node at an end of masses across and along the line [kg] brings to the line when it parts from what held it
     /// at t_n.
-    pub fn joining_energy(&self, end: End, [across, along]: [f64; 2], step: Step) -> f64 {
+    pub fn joining_energy(&self, end: End, masses: [f64; 2], step: Step) -> f64 {
         let (at, other) = (self.end_slot(end), self.end_neighbour(end));
         let velocity = self.velocity.get(at);
         let chord = self.position.get(other) - self.position.get(at);
         let tangent = chord.try_normalize(0.0).unwrap_or_else(Vector3::zeros);
         let height = self.position.get(at).z - step.lag() * velocity.z;
-        let axial = velocity.dot(&tangent).powi(2);
-        let kinetic = 0.5 * (across * (velocity.norm_squared() - axial) + along * axial);
+        let kinetic = 0.5 * Slender::new(masses).square(velocity, tangent);
         // the surface holds the energy of the buoyancy that is lacking by itself
         let lack = self
             .surface

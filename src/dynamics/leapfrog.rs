@@ -29,6 +29,7 @@ use crate::math::lanes::{LANES, Lanes};
 use crate::model::{End, Line, LineState, Parting, WaveSpan};
 use crate::physics::friction_step::Landing;
 use crate::physics::morison::{self, DragCoefficients};
+use crate::physics::slender::Slender;
 use crate::physics::stretch::{StretchLaw, total_tension};
 use crate::scene::Solver;
 pub use sweep::Placed;
@@ -476,11 +477,7 @@ impl LineWork {
             let stretching = chord.dot(rate) * inverse_l;
             let damping = line.axial_damping.load(at) * stretching * line.inverse_length.load(at);
             let spring = elastic.positive();
-            let tension = if line.negative_tension {
-                spring + damping
-            } else {
-                (elastic + damping).positive()
-            };
+            let tension = total_tension(elastic, damping, Lanes::splat(0.0), line.negative_tension);
             self.pull.store(chord.scale(tension * inverse_l), at);
             self.spring.store(chord.scale(spring * inverse_l), at);
         }
@@ -501,11 +498,7 @@ impl LineWork {
             let rate = direction.dot(relative) * inverse_length;
             let elastic = creep.elastic(at, strain);
             let damping = line.axial_damping.load(at) * rate;
-            let tension = if line.negative_tension {
-                elastic.positive() + damping
-            } else {
-                (elastic + damping).positive()
-            };
+            let tension = total_tension(elastic, damping, Lanes::splat(0.0), line.negative_tension);
             self.pull.store(direction.scale(tension), at);
             self.spring.store(direction.scale(tension), at);
         }
@@ -673,10 +666,8 @@ impl LineWork {
         }
         let press = line.waves.as_ref();
         let press = press.map_or(Vector3::zeros(), |waves| waves.press_of(at, tangent));
-        let mass_normal = 1.0 / self.inverse_mass[at];
-        let mass_tangent = 1.0 / (self.inverse_mass[at] + excess);
-        let mass =
-            mass_normal * Matrix3::identity() + (mass_tangent - mass_normal) * tangent * tangent.transpose();
+        let inverse = self.inverse_mass[at];
+        let mass = Slender::inverse([inverse, inverse + excess]);
         let contact = line.contact.as_ref().map_or([0.0; 3], |c| {
             [c.stiffness[at], c.damping[at], c.stiffness[at] * c.level[at]]
         });
@@ -685,8 +676,8 @@ impl LineWork {
             resistance,
             press,
             current_power,
-            mass,
-            across: mass_normal,
+            mass: mass.matrix(tangent),
+            across: mass.across,
             contact,
         }
     }

@@ -39,6 +39,7 @@ use serde::{Deserialize, Serialize};
 use super::beam::{self, BeamView};
 use super::creep::Creeping;
 use crate::model::{End, Line, LineState, Model, Network, Reel, State, Surface, WaterAlong, joint};
+use crate::physics::slender::Slender;
 
 pub use at_rest::work_at_rest;
 
@@ -292,10 +293,8 @@ fn passing(line: &Line, shape: &LineState, lag: f64) -> Vector3<f64> {
 
 /// Energy of motion of a node at a velocity [m/s], with what it carries along across and along the line [J].
 fn node_motion(line: &Line, shape: &LineState, i: usize, velocity: Vector3<f64>, water: WaterAlong) -> f64 {
-    let along = velocity.dot(&tangent(shape, i)).powi(2);
-    let across = velocity.norm_squared() - along;
-    let [normal, tangent] = line.nodes.masses(i, dry_part(line, shape, i, water));
-    0.5 * (normal * across + tangent * along)
+    let masses = line.nodes.masses(i, dry_part(line, shape, i, water));
+    0.5 * Slender::new(masses).square(velocity, tangent(shape, i))
 }
 
 /// Part of a node that is out of the water [-].

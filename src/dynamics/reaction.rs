@@ -40,7 +40,8 @@ use super::creep::{Creeping, Stretching};
 use super::leapfrog::segment_tension;
 use crate::elements::shear;
 use crate::model::{Bending, Dry, End, Line, LineState, PointState, Reel, WaterAlong};
-use crate::physics::morison::{self, DragCoefficients};
+use crate::physics::morison;
+use crate::physics::slender::Slender;
 
 /// Weight of what the load gains or loses at the surface in the scale of the change, over the load itself, both squared [-].
 const ABRUPT: f64 = 16.0;
@@ -165,9 +166,7 @@ impl HalfNode<'_> {
     fn load(&self, inward: Vector3<f64>, dry: f64) -> Vector3<f64> {
         let (nodes, node) = (&self.line.nodes, self.node);
         let (velocity, acceleration) = (self.point.velocity, self.point.acceleration);
-        let along = acceleration.dot(&inward) * inward;
-        let [mass_normal, mass_tangent] = nodes.masses(node, dry);
-        let mut load = -(mass_normal * (acceleration - along) + mass_tangent * along);
+        let mut load = -Slender::new(nodes.masses(node, dry)).times(acceleration, inward);
         if nodes.drag.is_some() {
             load += self.drag(velocity - self.flow(), inward, dry);
         }
@@ -253,11 +252,7 @@ impl HalfNode<'_> {
         let Some(drag) = &self.line.nodes.drag else {
             return Vector3::zeros();
         };
-        let coefficients = DragCoefficients {
-            normal: drag.normal[self.node],
-            tangent: drag.tangent[self.node],
-        };
-        morison::drag(coefficients.times(1.0 - dry), velocity, tangent)
+        morison::drag(drag.at(self.node).times(1.0 - dry), velocity, tangent)
     }
 }
 

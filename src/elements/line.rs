@@ -9,7 +9,8 @@ use super::viscoelastic::CreepWork;
 use super::{BendingWork, StaticCase, Stretch, Weights, surface};
 use crate::math::block_tridiagonal::Chain;
 use crate::model::{Dry, Line, LineState, Model, WaterAlong};
-use crate::physics::morison::{DragCoefficients, drag, drag_slope};
+use crate::physics::morison::{drag, drag_slope};
+use crate::physics::slender::Slender;
 use crate::physics::stretch::total_tension;
 use crate::physics::stretch_step::Stretched;
 
@@ -346,24 +347,17 @@ impl LineWork {
         for i in 0..nodes.weight.len() {
             self.residual[i].z += weights.force * nodes.weight[i];
             let dry = self.dry(i);
-            let [normal, tangent] = nodes.masses(i, dry.part);
+            let mass = Slender::new(nodes.masses(i, dry.part));
             let a = state.acceleration[i];
-            let mut inertia = normal * a;
+            let along = node_tangent(&state.position, i);
+            let inertia = mass.times(a, along);
             if TANGENT {
-                self.diagonal[i] += Matrix3::from_diagonal_element(weights.acceleration * normal);
-            }
-            if normal != tangent {
-                let t = node_tangent(&state.position, i);
-                inertia += (tangent - normal) * t.dot(&a) * t;
-                if TANGENT {
-                    self.diagonal[i] += weights.acceleration * (tangent - normal) * t * t.transpose();
-                }
+                self.diagonal[i] += weights.acceleration * mass.matrix(along);
             }
             if TANGENT && weights.position > 0.0 && dry.slope > 0.0 {
-                let (along, air) = (node_tangent(&state.position, i), nodes.mass[i]);
-                let along = along.dot(&a) * along;
-                let added =
-                    (nodes.mass_normal[i] - air) * (a - along) + (nodes.mass_tangent[i] - air) * along;
+                let added_mass =
+                    [nodes.mass_normal[i], nodes.mass_tangent[i]].map(|mass| mass - nodes.mass[i]);
+                let added = Slender::new(added_mass).times(a, along);
                 self.diagonal[i] += weights.inertia * surface::by_height(&dry, added);
             }
             self.residual[i] += weights.inertia * inertia;
@@ -395,10 +389,7 @@ impl LineWork {
         };
         for i in 0..coefficients.normal.len() {
             let dry = self.dry(i);
-            let k = DragCoefficients {
-                normal: coefficients.normal[i],
-                tangent: coefficients.tangent[i],
-            };
+            let k = coefficients.at(i);
             let (t, z) = (node_tangent(&state.position, i), state.position[i].z);
             let v = state.velocity[i] - water.velocity(i, z);
             if TANGENT && dry.slope > 0.0 {

@@ -11,6 +11,7 @@ pub mod low_pass;
 pub mod pentadiagonal;
 pub mod pivoted_chain;
 pub mod random;
+pub mod real;
 pub mod rotation;
 pub mod shape_preserving;
 pub mod unit;

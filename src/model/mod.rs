@@ -23,8 +23,10 @@ use nalgebra::Vector3;
 
 use crate::physics::airy::{Orbit, Waves};
 use crate::physics::flow::{Profile, Stream};
+use crate::physics::morison::DragCoefficients;
 use crate::physics::point::{Sphere, Wetted};
 use crate::physics::seabed::ContactCoefficients;
+use crate::physics::slender::Slender;
 use crate::physics::stretch::StretchLaw;
 use crate::physics::stretch_step::Spring;
 use crate::physics::viscoelastic::Viscoelastic;
@@ -326,16 +328,24 @@ pub struct Pressed {
     pub tangent: Vec<f64>,
 }
 
-impl Pressed {
-    /// Force [N] on a node whose unit tangent is `tangent` [-], by water of an acceleration [m/s²].
+impl Drag {
+    /// Coefficients of a node.
     #[inline]
-    pub fn force(&self, node: usize, acceleration: Vector3<f64>, tangent: Vector3<f64>) -> Vector3<f64> {
-        let excess = self.tangent[node] - self.normal[node];
-        self.normal[node] * acceleration + excess * acceleration.dot(&tangent) * tangent
+    pub fn at(&self, node: usize) -> DragCoefficients {
+        DragCoefficients {
+            normal: self.normal[node],
+            tangent: self.tangent[node],
+        }
     }
 }
 
 impl Pressed {
+    /// Force [N] on a node whose unit tangent is `tangent` [-], by water of an acceleration [m/s²].
+    #[inline]
+    pub fn force(&self, node: usize, acceleration: Vector3<f64>, tangent: Vector3<f64>) -> Vector3<f64> {
+        Slender::new(self.masses(node, 0.0)).times(acceleration, tangent)
+    }
+
     /// This node as it is where a `dry` part of it [-] is out of the water: mass across and along the line [kg].
     #[inline]
     pub fn masses(&self, node: usize, dry: f64) -> [f64; 2] {

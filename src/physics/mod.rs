@@ -14,6 +14,7 @@ pub mod point;
 pub mod rayleigh;
 pub mod seabed;
 pub mod section;
+pub mod slender;
 pub mod spectrum;
 pub mod stretch;
 pub mod stretch_step;

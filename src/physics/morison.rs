@@ -11,13 +11,15 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use crate::math::real::{Real, RealVector};
+
 /// Lumped coefficients of a node: K times the node's length.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct DragCoefficients {
+pub struct DragCoefficients<R = f64> {
     /// ½ρ d C_dn times length [N s²/m²].
-    pub normal: f64,
+    pub normal: R,
     /// ½ρ π d C_dt times length [N s²/m²].
-    pub tangent: f64,
+    pub tangent: R,
 }
 
 impl DragCoefficients {
@@ -45,12 +47,24 @@ pub fn drag_per_length(
     }
 }
 
+impl<R: Real> DragCoefficients<R> {
+    /// Resistance −f [N] of a node that moves with `relative` velocity [m/s] to the water. The line's direction is that of `chord` [m], with
+    /// the inverse of its square [1/m²], so that a kernel needs no unit tangent.
+    #[inline(always)]
+    pub fn resistance<V: RealVector<Real = R>>(self, relative: V, chord: V, inverse_square: R) -> V {
+        let along = relative.inner(chord); // u·c
+        let part = along * inverse_square;
+        let across = relative - chord.scaled(part);
+        let normal = self.normal * across.inner(across).sqrt();
+        let tangent = self.tangent * (along.abs() * inverse_square.sqrt()) * part;
+        across.scaled(normal) + chord.scaled(tangent)
+    }
+}
+
 /// Drag force [N] on a node that moves with `velocity` [m/s] relative to the water, for the unit `tangent`.
 #[inline]
 pub fn drag(k: DragCoefficients, velocity: Vector3<f64>, tangent: Vector3<f64>) -> Vector3<f64> {
-    let along = velocity.dot(&tangent);
-    let across = velocity - along * tangent;
-    -k.normal * across.norm() * across - k.tangent * along.abs() * along * tangent
+    -k.resistance(velocity, tangent, 1.0)
 }
 
 /// Slope −∂f/∂u of [`drag`] [N s/m]: symmetric, positive semi-definite.

@@ -14,6 +14,7 @@
 //! A cable does not push, unless it has bending stiffness: the total tension is clipped, see [`total_tension`].
 
 use super::tension_table::TensionTable;
+use crate::math::real::Real;
 
 /// Strain measure with its parameters.
 #[derive(Debug, Clone, PartialEq)]
@@ -99,7 +100,7 @@ fn logarithmic_energy(log: f64, a: f64) -> f64 {
 /// ill-posed. The peers' law (MoorDyn), max(0, N) + C, is kept for comparison with them. `least` is minus the push that bending
 /// stiffness lets the segment carry, 0 without.
 #[inline(always)]
-pub fn total_tension(elastic: f64, damping: f64, least: f64, negative_tension: bool) -> f64 {
+pub fn total_tension<R: Real>(elastic: R, damping: R, least: R, negative_tension: bool) -> R {
     if negative_tension {
         elastic.max(least) + damping
     } else {

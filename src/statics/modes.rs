@@ -13,6 +13,7 @@ use nalgebra::{Cholesky, DMatrix, Dyn, Matrix3, SymmetricEigen, Vector3};
 
 use crate::elements::{BendingWork, StaticCase, Workspace, node_tangent};
 use crate::model::{Line, Model, Network, State};
+use crate::physics::slender::Slender;
 
 /// The modes of a network, lowest first.
 #[derive(Debug, Clone)]
@@ -147,9 +148,7 @@ fn add_second_neighbours(stiffness: &mut DMatrix<f64>, nodes: &[[Option<usize>; 
 fn node_mass(line: &Line, position: &[Vector3<f64>], i: usize) -> Matrix3<f64> {
     let surface = line.surface.as_ref();
     let dry = surface.map_or(0.0, |surface| surface.node(i, position).part);
-    let [normal, tangent] = line.nodes.masses(i, dry);
-    let t = node_tangent(position, i);
-    Matrix3::from_diagonal_element(normal) + (tangent - normal) * t * t.transpose()
+    Slender::new(line.nodes.masses(i, dry)).matrix(node_tangent(position, i))
 }
 
 fn solve(mut stiffness: DMatrix<f64>, mass: Cholesky<f64, Dyn>) -> Modes {

@@ -10,6 +10,7 @@ use crate::math::lanes::{Lanes, Vectors};
 use crate::model::{End, Line, Model, WaveSpan};
 use crate::physics::airy::{Orbit, cubics};
 use crate::physics::flow::{Profile, Stream};
+use crate::physics::slender::Slender;
 
 /// What moves the water around a line.
 #[derive(Debug, Clone, Copy)]
@@ -113,16 +114,13 @@ impl WaveArrays {
     #[inline(always)]
     pub fn press(&self, at: usize, tangent: Vectors) -> Vectors {
         let acceleration = polynomial(&self.acceleration, self.passed, at);
-        let normal = self.normal.load(at);
-        let excess = self.tangent.load(at) - normal;
-        acceleration.scale(normal) + tangent.scale(excess * acceleration.dot(tangent))
+        Slender::new([self.normal.load(at), self.tangent.load(at)]).times(acceleration, tangent)
     }
 
     /// Force of the accelerated water on a node with this unit tangent [N].
     pub fn press_of(&self, at: Slot, tangent: Vector3<f64>) -> Vector3<f64> {
         let acceleration = self.value(&self.acceleration, at);
-        let excess = self.tangent[at] - self.normal[at];
-        self.normal[at] * acceleration + excess * acceleration.dot(&tangent) * tangent
+        Slender::new([self.normal[at], self.tangent[at]]).times(acceleration, tangent)
     }
 
     fn value(&self, powers: &[Field; 4], at: Slot) -> Vector3<f64> {

@@ -17,6 +17,8 @@ use crate::dynamics::layout::{CurrentNow, LENGTH2_MIN, Layout, WaveArrays, inver
 use crate::dynamics::step::Step;
 use crate::math::lanes::{Lanes, Vectors};
 use crate::model::End;
+use crate::physics::morison::DragCoefficients;
+use crate::physics::stretch::total_tension;
 
 /// Where an end of a line goes.
 #[derive(Debug, Clone, Copy)]
@@ -224,11 +226,7 @@ impl SegmentRows<'_> {
         let spring = elastic.positive();
         let stretching = chord.dot(rate) * inverse_l;
         let damping = self.damping[row] * stretching * inverse_length;
-        let tension = if self.negative_tension {
-            spring + damping
-        } else {
-            (elastic + damping).positive()
-        };
+        let tension = total_tension(elastic, damping, Lanes::splat(0.0), self.negative_tension);
         (chord.scale(tension * inverse_l), chord.scale(spring * inverse_l))
     }
 }
@@ -310,15 +308,14 @@ impl NodeRows<'_> {
 }
 
 impl WaterRows<'_> {
-    /// K_n |u_n| u_n + K_t |u_t| u_t, with c the chord, u_t = (u·c) c/c².
+    /// Resistance of the water at the nodes of a row [N].
     #[inline(always)]
     fn drag(&self, at: usize, past: Vectors, chord: Vectors, inverse_square: Lanes) -> Vectors {
-        let along = past.dot(chord); // u·c
-        let part = along * inverse_square;
-        let across = past - chord.scale(part);
-        let normal = self.normal[at] * across.dot(across).sqrt();
-        let tangent = self.tangent[at] * (along.abs() * inverse_square.sqrt()) * part;
-        across.scale(normal) + chord.scale(tangent)
+        let k = DragCoefficients {
+            normal: self.normal[at],
+            tangent: self.tangent[at],
+        };
+        k.resistance(past, chord, inverse_square)
     }
 }
 

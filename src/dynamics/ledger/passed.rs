@@ -25,8 +25,9 @@ use crate::elements::{
 };
 use crate::model::{End, FreePoint, Line, LineState, Model, Network, State, WaterAlong, joint};
 use crate::physics::fading_damper::FadingContact;
-use crate::physics::morison::{DragCoefficients, drag};
+use crate::physics::morison::drag;
 use crate::physics::seabed::ContactCoefficients;
+use crate::physics::slender::Slender;
 
 /// A step that an implicit integrator has made.
 #[derive(Clone, Copy)]
@@ -135,11 +136,7 @@ impl Passed<'_> {
             let surface = waves.map_or(0.0, |orbit| orbit.elevation);
             free.at(self.states[side].points[point].position.z - surface).mass
         };
-        let masses = [0, 1].map(|side| Mass {
-            across: mass(side),
-            excess: 0.0,
-            tangent: Vector3::zeros(),
-        });
+        let masses = [0, 1].map(|side| Mass(Slender::new([mass(side); 2]), Vector3::zeros()));
         let points = self.states.map(|state| &state.points[point]);
         let [v, a] = [
             points.map(|point| point.velocity),
@@ -252,28 +249,18 @@ impl Passed<'_> {
     }
 }
 
-/// Mass of a node.
+/// Mass of a node, with its tangent.
 #[derive(Clone, Copy)]
-struct Mass {
-    /// Across the line [kg].
-    across: f64,
-    /// That along it less that across it [kg].
-    excess: f64,
-    tangent: Vector3<f64>,
-}
+struct Mass(Slender<f64>, Vector3<f64>);
 
 impl Mass {
     fn of(line: &Line, shape: &LineState, i: usize, water: WaterAlong) -> Mass {
-        let [across, along] = line.nodes.masses(i, dry_part(line, shape, i, water));
-        Mass {
-            across,
-            excess: along - across,
-            tangent: tangent(shape, i),
-        }
+        let masses = line.nodes.masses(i, dry_part(line, shape, i, water));
+        Mass(Slender::new(masses), tangent(shape, i))
     }
 
     fn times(&self, v: &Vector3<f64>) -> Vector3<f64> {
-        self.across * v + self.excess * self.tangent.dot(v) * self.tangent
+        self.0.times(*v, self.1)
     }
 }
 
@@ -336,10 +323,7 @@ impl Side<'_> {
         let mut flow = Flow::default();
         let wet = 1.0 - dry_part(line, shape, i, water);
         if let Some(coefficients) = &nodes.drag {
-            let k = DragCoefficients {
-                normal: coefficients.normal[i],
-                tangent: coefficients.tangent[i],
-            };
+            let k = coefficients.at(i);
             let past = match water.is_still() {
                 true => Vector3::zeros(),
                 false => water.velocity(i, shape.position[i].z),

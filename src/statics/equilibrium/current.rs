@@ -16,7 +16,7 @@ use crate::elements::{Workspace, copy_network, node_tangent};
 use crate::math::anderson::Anderson;
 use crate::model::{Line, State};
 use crate::physics::flow::Stream;
-use crate::physics::morison::{DragCoefficients, drag};
+use crate::physics::morison::drag;
 use crate::statics::StaticsError;
 
 /// Rounds of drag and equilibrium for each part of the current.
@@ -31,14 +31,14 @@ pub(crate) fn drag_at_rest(line: &Line, position: &[Vector3<f64>], i: usize, str
     let Some(coefficients) = &line.nodes.drag else {
         return Vector3::zeros();
     };
-    let k = DragCoefficients {
-        normal: coefficients.normal[i],
-        tangent: coefficients.tangent[i],
-    };
     let surface = line.surface.as_ref();
     let dry = surface.map_or(0.0, |surface| surface.node(i, position).part);
     let past = -stream.velocity(position[i].z);
-    drag(k.times(1.0 - dry), past, node_tangent(position, i))
+    drag(
+        coefficients.at(i).times(1.0 - dry),
+        past,
+        node_tangent(position, i),
+    )
 }
 
 impl Problem<'_> {
