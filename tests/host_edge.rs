@@ -34,7 +34,7 @@ fn a_communication_step_without_end_is_refused_at_once_in_waves_as_in_still_wate
             }
             let begun = Instant::now();
             let error = simulation.advance(step).unwrap_err().to_string();
-            assert!(error.contains("s would be needed"), "{name}, {step} s: {error}");
+            assert!(error.contains("internal steps of"), "{name}, {step} s: {error}");
             assert!(begun.elapsed().as_secs_f64() < 1.0, "{name}, {step} s");
             assert!(*simulation.snapshot() == before, "{name}, {step} s");
         }

@@ -38,6 +38,8 @@ const INPUT_MAX: f64 = 1e12;
 
 /// Difference between the host's clock and ours that is rounding, relative to the step [-].
 const TIME_TOLERANCE: f64 = 1e-6;
+/// Part of a step by which rounding of the host's clock may change it [-].
+const RESOLUTION: f64 = 1e-4;
 
 /// One instance.
 #[derive(Debug)]
@@ -556,6 +558,12 @@ impl Instance {
         if step == 0.0 {
             return Ok(());
         }
+        let counted = (at + step) - at;
+        if (counted - step).abs() > RESOLUTION * step {
+            return Err(Refusal(format!(
+                "a step of {step} s from {at} s: floating-point numbers of this size do not resolve it; start from an earlier time"
+            )));
+        }
         let tolerance = TIME_TOLERANCE * step + 64.0 * f64::EPSILON * self.time.abs();
         let gap = (at - self.time).abs();
         if gap > tolerance {
@@ -932,5 +940,16 @@ mod tests {
         instance.do_step(1.1, 0.1).unwrap();
         let refusal = instance.do_step(1.2, 0.1).unwrap_err();
         assert!(refusal.0.contains("stop time 1.2 s"), "{}", refusal.0);
+    }
+
+    #[test]
+    fn a_clock_that_does_not_resolve_the_step_is_refused() {
+        for (start, is_resolved) in [(1e9, true), (1e12, false), (1e15, false)] {
+            let mut instance = instance(FmiVersion::Two);
+            instance.set_up(None, start, None).unwrap();
+            instance.enter_initialization().unwrap();
+            instance.exit_initialization().unwrap();
+            assert_eq!(instance.do_step(start, 0.05).is_ok(), is_resolved, "{start} s");
+        }
     }
 }

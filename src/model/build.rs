@@ -147,13 +147,18 @@ fn lay_on(line: &mut Line, bottom: Option<&Arc<Bottom>>) {
     }
 }
 
-/// The current of the water, where it has one.
+/// The current of the water, where it has one that is not zero at all heights.
 fn current(water: &scene::Water) -> Option<Current> {
     let current = water.current.as_ref()?;
+    let uniform = current.velocity.unwrap_or_default();
+    let mut rows = current.profile.iter().flatten();
+    if uniform == [0.0; 3] && rows.all(|[_, vx, vy]| *vx == 0.0 && *vy == 0.0) {
+        return None;
+    }
     let row = |[z, vx, vy]: &[f64; 3]| (*z, Vector3::new(*vx, *vy, 0.0));
-    let profile = match (&current.profile, current.velocity) {
-        (Some(rows), _) => Profile::through(&rows.iter().map(row).collect::<Vec<_>>()),
-        (None, velocity) => Profile::uniform(Vector3::from(velocity.unwrap_or_default())),
+    let profile = match &current.profile {
+        Some(rows) => Profile::through(&rows.iter().map(row).collect::<Vec<_>>()),
+        None => Profile::uniform(Vector3::from(uniform)),
     };
     Some(Current {
         profile,

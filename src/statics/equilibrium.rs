@@ -34,6 +34,7 @@ use nalgebra::Vector3;
 
 use super::StaticsError;
 use super::guess;
+use crate::elements::friction::point_stick;
 use crate::elements::{StaticCase, Workspace, copy_network, for_free_points, place_ends};
 use crate::model::{Kinematics, Line, LineState, Model, Network, PointState, State};
 use crate::physics::friction::Friction;
@@ -524,6 +525,7 @@ impl<'a> Problem<'a> {
             force = force.max(load).max(free.weight_max());
             if let Some(contact) = &free.contact {
                 rounding = rounding.max(contact.bed.abs() * contact.coefficients.stiffness);
+                stuck = stuck.max(state.points[index].position.amax() * point_stick(free));
             }
         });
         let friction = self.model.friction().map_or(0.0, Friction::greatest);

@@ -470,8 +470,11 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
             time: self.start,
             line: self.model.lines[line].name.clone(),
             node: 0,
-            reason: format!("steps of {step_max:.1e} s would be needed, {count:.0e} of them"),
-            advice: "check solver.time_step_max, masses, lengths and stiffnesses, or use solver.integrator = \"generalised_alpha\"",
+            reason: format!(
+                "the communication step of {} s needs {count:.0e} internal steps of {step_max:.1e} s",
+                self.length
+            ),
+            advice: "use shorter communication steps; if the internal steps are too short, check solver.time_step_max, masses, lengths and stiffnesses",
         }
     }
 
