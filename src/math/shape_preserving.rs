@@ -2,7 +2,7 @@
 //!
 //! [`slopes`] serves values that may rise and fall: displacements in time, soundings in x and in y. The slope at a row is that of the quartic
 //! through the row and its two neighbours on either side, one order less for each of them that there is not; its error is of the order h⁴,
-//! that of the cubics likewise. The first and the last slope are given by [`Ends`]. Where a cubic then turns between two rows i and i + 1,
+//! that of the cubics likewise. The first and the last slope are given by [`End`]. Where a cubic then turns between two rows i and i + 1,
 //! its excursion beyond both is that of a smooth extremum if, with the divided second differences d_k = (s_k − s_{k−1})/(h_k + h_{k−1}) of the
 //! secants s and spans h,
 //!
@@ -24,13 +24,15 @@
 //! by Huynh (1993), SIAM J. Numer. Anal. 30, 57-100; the test above is moorline's own. Harmonic mean by Fritsch & Butland (1984), SIAM J. Sci.
 //! Stat. Comput. 5, 300-304. Valid for ascending rows.
 
-/// Slope of a curve at its first and last row.
+/// Slope of a curve at its first or last row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Ends {
-    /// 0: the curve goes on constant outside, with a continuous slope.
+pub enum End {
+    /// 0: the curve is constant outside, with a continuous slope.
     Flat,
     /// That of the chord to the next row.
     Chord,
+    /// That of the parabola through three rows, kept between 0 and three times the chord's: the curve ends there.
+    Open,
 }
 
 /// Greatest excursion of an extremum over that of a parabola with the least curvature of the rows beside it [-].
@@ -43,21 +45,27 @@ const MONOTONE_MAX: f64 = 3.0;
 const END_SLOPE_MIN: f64 = 0.1;
 
 /// Slopes at ascending rows, in the unit of `values` over that of `at`.
-pub fn slopes(at: &[f64], values: &[f64], ends: Ends) -> Vec<f64> {
+pub fn slopes(at: &[f64], values: &[f64], ends: [End; 2]) -> Vec<f64> {
     let mut slopes = smooth_slopes(at, values, ends);
-    Limiter::new(at, values).limit(&mut slopes, ends);
+    Limiter::new(at, values).limit(&mut slopes);
     slopes
 }
 
 /// The same without a limit.
-pub fn smooth_slopes(at: &[f64], values: &[f64], ends: Ends) -> Vec<f64> {
+pub fn smooth_slopes(at: &[f64], values: &[f64], ends: [End; 2]) -> Vec<f64> {
     let last = at.len().saturating_sub(1);
-    let slope = |i: usize| match (i, ends) {
+    let end = |i: usize, chord: usize, end: End| match end {
+        End::Flat => 0.0,
+        End::Chord => secant(at, values, chord),
+        End::Open => {
+            let bound = MONOTONE_MAX * secant(at, values, chord);
+            quartic_slope(at, values, i).clamp(bound.min(0.0), bound.max(0.0))
+        }
+    };
+    let slope = |i: usize| match i {
         _ if last == 0 => 0.0,
-        (0, Ends::Chord) => secant(at, values, 0),
-        (i, Ends::Chord) if i == last => secant(at, values, last - 1),
-        (0, Ends::Flat) => 0.0,
-        (i, Ends::Flat) if i == last => 0.0,
+        0 => end(0, 0, ends[0]),
+        i if i == last => end(last, last - 1, ends[1]),
         _ => quartic_slope(at, values, i),
     };
     (0..at.len()).map(slope).collect()
@@ -145,7 +153,7 @@ impl<'a> Limiter<'a> {
     }
 
     /// Limits both slopes of every cubic that turns without support. A row is limited once at most, and may make the cubic before it turn.
-    fn limit(&self, slopes: &mut [f64], ends: Ends) {
+    fn limit(&self, slopes: &mut [f64]) {
         let mut limited = vec![false; slopes.len()];
         let mut k = 0;
         while k < self.spans.len() {
@@ -155,7 +163,7 @@ impl<'a> Limiter<'a> {
                 for row in [k, k + 1] {
                     back |= row == k && !limited[row];
                     limited[row] = true;
-                    slopes[row] = self.monotone(row, slopes[row], ends);
+                    slopes[row] = self.monotone(row, slopes[row]);
                 }
             }
             k = if back && k > 0 { k - 1 } else { k + 1 };
@@ -163,10 +171,10 @@ impl<'a> Limiter<'a> {
     }
 
     /// The slope at a row with which the cubics on both sides may be monotone.
-    fn monotone(&self, row: usize, slope: f64, ends: Ends) -> f64 {
+    fn monotone(&self, row: usize, slope: f64) -> f64 {
         let inner = row > 0 && row < self.spans.len();
         if !inner {
-            return if ends == Ends::Flat { 0.0 } else { slope };
+            return slope;
         }
         let bound = MONOTONE_MAX * minmod(self.secants[row - 1], self.secants[row]);
         slope.clamp(bound.min(0.0), bound.max(0.0))
@@ -259,7 +267,7 @@ mod tests {
         let at: Vec<f64> = (0..=(3.0 * count) as usize).map(|i| i as f64 + shift()).collect();
         let sine = |t: f64| (TAU * t / count + phase).sin();
         let values: Vec<f64> = at.iter().map(|t| sine(*t)).collect();
-        let slopes = slopes(&at, &values, Ends::Flat);
+        let slopes = slopes(&at, &values, [End::Flat; 2]);
         let mut worst = 0.0_f64;
         for k in 3..at.len() - 4 {
             let knot = |i: usize| (at[i], values[i], slopes[i]);
@@ -328,7 +336,7 @@ mod tests {
                     v += (random.unit() - 0.5) * 10_f64.powf(2.0 * random.unit());
                 }
             }
-            for ends in [Ends::Flat, Ends::Chord] {
+            for ends in [[End::Flat; 2], [End::Chord; 2], [End::Flat, End::Open]] {
                 let slopes = slopes(&at, &values, ends);
                 for k in 0..count - 1 {
                     let [least, most] = range(&at, &values, &slopes, k);
@@ -354,11 +362,11 @@ mod tests {
     fn a_straight_line_and_a_parabola_are_met_exactly_inside() {
         let at = [0.0, 0.7, 1.0, 2.2, 3.0, 3.9, 5.0];
         let line = at.map(|t| 3.0 - 2.0 * t);
-        for slope in slopes(&at, &line, Ends::Chord) {
+        for slope in slopes(&at, &line, [End::Chord; 2]) {
             assert!((slope + 2.0).abs() < 1e-14, "{slope}");
         }
         let parabola = at.map(|t| (t - 2.5) * (t - 2.5));
-        let slopes = slopes(&at, &parabola, Ends::Chord);
+        let slopes = slopes(&at, &parabola, [End::Chord; 2]);
         for i in 1..6 {
             assert!((slopes[i] - 2.0 * (at[i] - 2.5)).abs() < 1e-13, "{slopes:?}");
         }
@@ -366,9 +374,13 @@ mod tests {
 
     #[test]
     fn one_row_and_two_rows_have_the_slopes_of_their_ends() {
-        assert_eq!(slopes(&[1.0], &[5.0], Ends::Chord), [0.0]);
-        assert_eq!(slopes(&[1.0, 2.0], &[5.0, 7.0], Ends::Chord), [2.0, 2.0]);
-        assert_eq!(slopes(&[1.0, 2.0], &[5.0, 7.0], Ends::Flat), [0.0, 0.0]);
-        assert!(slopes(&[], &[], Ends::Flat).is_empty());
+        assert_eq!(slopes(&[1.0], &[5.0], [End::Chord; 2]), [0.0]);
+        assert_eq!(slopes(&[1.0, 2.0], &[5.0, 7.0], [End::Chord; 2]), [2.0, 2.0]);
+        assert_eq!(slopes(&[1.0, 2.0], &[5.0, 7.0], [End::Flat; 2]), [0.0, 0.0]);
+        assert!(slopes(&[], &[], [End::Flat; 2]).is_empty());
+        assert_eq!(
+            slopes(&[1.0, 2.0], &[5.0, 7.0], [End::Flat, End::Open]),
+            [0.0, 2.0]
+        );
     }
 }

@@ -174,7 +174,7 @@ fn vessel(scene: &Scene, vessel: &scene::Vessel) -> Vessel {
         scene
             .motion
             .get(&vessel.name)
-            .map(|path| (Motion::new(path), vessel.motion_angles)),
+            .map(|path| (Motion::until(path, scene.output.duration), vessel.motion_angles)),
     )
 }
 
@@ -187,7 +187,10 @@ fn build_point(scene: &Scene, vessels: &[Vessel], point: &scene::Point) -> Point
     let role = match (point.kind, carrier) {
         (PointKind::Coupled, Some(vessel)) => Role::Carried { vessel, arm: place },
         (PointKind::Coupled, None) => Role::Coupled {
-            motion: scene.motion.get(&point.name).map(Motion::new),
+            motion: scene
+                .motion
+                .get(&point.name)
+                .map(|path| Motion::until(path, scene.output.duration)),
         },
         (PointKind::Fixed, _) => Role::Fixed,
         (PointKind::Prescribed, _) => point

@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 use nalgebra::{UnitQuaternion, Vector3, Vector6};
 
 use crate::math::hermite::Hermite;
-use crate::math::shape_preserving::{Ends, slopes};
+use crate::math::shape_preserving::{End, slopes};
 use crate::scene::{MotionPath, MotionRow};
 
 /// Where a driven point is, and how it moves.
@@ -109,8 +109,13 @@ pub struct TableRow {
 }
 
 impl Motion {
-    /// The motion that a checked scene describes.
+    /// The motion that a checked scene describes. A table starts from rest and comes to rest at its last row.
     pub fn new(path: &MotionPath) -> Motion {
+        Motion::until(path, f64::INFINITY)
+    }
+
+    /// The motion of a run that ends at a time [s]: a table that ends no earlier does not come to rest at its last row.
+    pub fn until(path: &MotionPath, end: f64) -> Motion {
         match path {
             MotionPath::Harmonic(motion) => Motion::Harmonic {
                 axes: motion
@@ -118,8 +123,8 @@ impl Motion {
                     .map(|(_, components)| components.iter().map(|c| harmonic(c)).collect()),
                 ramp: motion.ramp.filter(|ramp| *ramp > 0.0),
             },
-            MotionPath::File(file) => Motion::Table(table(&file.rows)),
-            MotionPath::Table(rows) => Motion::Table(table(rows)),
+            MotionPath::File(file) => Motion::Table(table(&file.rows, end)),
+            MotionPath::Table(rows) => Motion::Table(table(rows, end)),
         }
     }
 
@@ -210,10 +215,17 @@ fn ramped(k: Pose, t: f64, ramp: f64) -> Pose {
     }
 }
 
-fn table(rows: &[MotionRow]) -> Vec<TableRow> {
+/// Part of the time of a table by which a run may end later and still end with it [-].
+const ROUNDING: f64 = 1e-9;
+
+fn table(rows: &[MotionRow], end: f64) -> Vec<TableRow> {
     let column = |axis: usize| -> Vec<f64> { rows.iter().map(|row| row[axis]).collect() };
     let times = column(0);
-    let slopes: [Vec<f64>; 6] = std::array::from_fn(|axis| slopes(&times, &column(1 + axis), Ends::Flat));
+    let ends_with_run = times
+        .last()
+        .is_some_and(|last| end <= last + ROUNDING * last.abs());
+    let ends = [End::Flat, if ends_with_run { End::Open } else { End::Flat }];
+    let slopes: [Vec<f64>; 6] = std::array::from_fn(|axis| slopes(&times, &column(1 + axis), ends));
     let row = |(i, row): (usize, &MotionRow)| TableRow {
         time: row[0],
         displacement: Vector6::from_column_slice(&row[1..]),
@@ -223,7 +235,10 @@ fn table(rows: &[MotionRow]) -> Vec<TableRow> {
 }
 
 fn interpolate(rows: &[TableRow], t: f64) -> Pose {
-    let after = rows.partition_point(|row| row.time <= t);
+    let mut after = rows.partition_point(|row| row.time <= t);
+    if after > 1 && rows[after - 1].time == t && after == rows.len() {
+        after -= 1; // the end of the last piece belongs to it
+    }
     if after == 0 || after == rows.len() {
         let held = if after == 0 { rows.first() } else { rows.last() };
         return Pose {
@@ -288,17 +303,36 @@ mod tests {
             .map(|i| 0.1 * i as f64)
             .map(|t| [t, t.sin(), 0.0, 1.0 - t, 0.0, 0.0, 0.0])
             .collect();
-        let motion = Motion::Table(table(&rows));
+        let motion = Motion::Table(table(&rows, f64::INFINITY));
         assert_relative_eq!(motion.at(2.0).position.x, f64::sin(2.0), epsilon = 1e-14);
         assert_relative_eq!(motion.at(2.04).position.x, f64::sin(2.04), epsilon = 1e-5);
         assert_derivatives(&motion, 2.05, 1e-5);
     }
 
     #[test]
+    fn a_table_comes_to_rest_at_its_end_only_where_the_run_goes_on() {
+        let rows: Vec<MotionRow> = (0..=47)
+            .map(|i| 0.05 * f64::from(i))
+            .map(|t| [t, (TAU * t).sin(), 0.0, 0.0, 0.0, 0.0, 0.0])
+            .collect();
+        let error = |end: f64| {
+            let motion = Motion::until(&MotionPath::Table(rows.clone()), end);
+            let last = motion.at(2.35).velocity.x;
+            let greatest = (0..50).map(|k| 2.3 + 0.001 * f64::from(k));
+            let missed = greatest.map(|t| (motion.at(t).position.x - (TAU * t).sin()).abs());
+            (last, missed.fold(0.0, f64::max))
+        };
+        let (speed, missed) = error(2.35);
+        assert!((speed - TAU * (TAU * 2.35).cos()).abs() < 0.25, "{speed} m/s");
+        assert!(missed < 2e-3, "{missed} m");
+        assert_eq!(error(10.0).0, 0.0);
+    }
+
+    #[test]
     fn a_table_that_holds_moves_and_holds_stays_between_its_rows() {
         let row = |t: f64, x: f64| [t, x, 0.0, 0.0, 0.0, 0.0, 0.0];
         let rows = [row(0.0, 0.0), row(30.0, 0.0), row(32.0, 5.0), row(60.0, 5.0)];
-        let motion = Motion::Table(table(&rows));
+        let motion = Motion::Table(table(&rows, f64::INFINITY));
         for i in -10..=7000 {
             let x = motion.at(0.01 * f64::from(i)).position.x;
             assert!((0.0..=5.0).contains(&x), "{x} m");
@@ -312,7 +346,7 @@ mod tests {
     #[test]
     fn a_span_that_ends_in_a_kink_is_not_smooth_and_one_that_starts_there_is() {
         let row = |t: f64| [t, t, 0.0, 0.0, 0.0, 0.0, 0.0];
-        let motion = Motion::Table(table(&[0.0, 0.5, 1.0, 1.5].map(row)));
+        let motion = Motion::Table(table(&[0.0, 0.5, 1.0, 1.5].map(row), f64::INFINITY));
         assert!(motion.is_smooth([0.5, 0.9]) && !motion.is_smooth([0.5, 1.0]));
         let motion = swinging(Some(20.0));
         assert!(motion.is_smooth([20.0, 21.0]) && !motion.is_smooth([19.0, 20.0]));

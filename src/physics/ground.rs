@@ -20,10 +20,10 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::math::shape_preserving::{Ends, slopes, smooth_slopes};
+use crate::math::shape_preserving::{End, slopes, smooth_slopes};
 
 /// Slopes at the rows of a table.
-type Law = fn(&[f64], &[f64], Ends) -> Vec<f64>;
+type Law = fn(&[f64], &[f64], [End; 2]) -> Vec<f64>;
 
 /// By how much the surface may leave the soundings of a cell, over their range [-].
 const EXCURSION_MAX: f64 = 0.05;
@@ -149,11 +149,11 @@ impl Grid {
         }
         let column = |rows: &[Vec<f64>], i: usize| -> Vec<f64> { rows.iter().map(|row| row[i]).collect() };
         let along_x = |rows: &[Vec<f64>], law: Law| -> Vec<Vec<f64>> {
-            rows.iter().map(|row| law(x, row, Ends::Chord)).collect()
+            rows.iter().map(|row| law(x, row, [End::Chord; 2])).collect()
         };
         let along_y = |rows: &[Vec<f64>], law: Law| -> Vec<Vec<f64>> {
             (0..x.len())
-                .map(|i| law(y, &column(rows, i), Ends::Chord))
+                .map(|i| law(y, &column(rows, i), [End::Chord; 2]))
                 .collect()
         };
         let hx = along_x(heights, slopes);
