@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Make the tables and figures of speed against error anew on this machine, and the README's part with them.
+"""Make the tables and figures of speed against error anew on this machine, and the part of docs/accuracy.md that shows them.
 
 Builds the command line, runs `moorline accuracy` over the five public scenes into a folder named after the processor,
-and puts its summary between the README's marks. `--readme-only` does the last part alone, from the folder's tables.
+and puts its summary between the marks of docs/accuracy.md. `--page-only` does the last part alone, from the folder's tables.
 """
 
 import argparse
@@ -45,24 +45,24 @@ def measured(peers):
 
 
 def shown(folder):
-    """Put the summary and the figure of `folder` between the README's marks."""
-    readme = ROOT / "README.md"
-    before, rest = readme.read_text(encoding="utf-8").split(MARKS[0])
+    """Put the summary and the figure of `folder` between the marks of the page."""
+    page = HERE.parent / "accuracy.md"
+    before, rest = page.read_text(encoding="utf-8").split(MARKS[0])
     _, after = rest.split(MARKS[1])
-    place = folder.relative_to(ROOT).as_posix()
+    place = folder.relative_to(HERE.parent).as_posix()
     summary = (folder / "summary.md").read_text(encoding="utf-8")
     text = f"Measured on {machine(folder)}; tables and figures in [{place}]({place}).\n\n"
     text += f"![cost against error]({place}/overview.svg)\n\n{summary}"
-    readme.write_text(f"{before}{MARKS[0]}\n{text}{MARKS[1]}{after}", encoding="utf-8")
+    page.write_text(f"{before}{MARKS[0]}\n{text}{MARKS[1]}{after}", encoding="utf-8")
 
 
 def main():
     """Measure where wanted, and show."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--peers", help="Python interpreter or virtual environment with the peers' packages")
-    parser.add_argument("--readme-only", metavar="FOLDER", help="show a folder's tables, measure nothing")
+    parser.add_argument("--page-only", metavar="FOLDER", help="show a folder's tables, measure nothing")
     arguments = parser.parse_args()
-    only = arguments.readme_only
+    only = arguments.page_only
     shown(Path(only).resolve() if only else measured(arguments.peers))
 
 
