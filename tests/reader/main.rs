@@ -1,6 +1,5 @@
 //! Decks of MoorDyn and MAP++: what is read of them, what is refused and where, and that a converted deck is the same system.
 
-mod commands;
 #[path = "../common/mod.rs"]
 mod common;
 mod garbage;

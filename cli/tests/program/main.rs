@@ -1,12 +1,15 @@
 //! The command line from outside: exit codes, messages, files.
 
 mod arguments;
+mod decks;
+mod drive;
 mod fmu;
 mod places;
 mod run;
 mod statics;
 mod study;
 
+use std::collections::BTreeMap;
 use std::ffi::OsStr;
 use std::fs;
 use std::path::Path;
@@ -67,6 +70,18 @@ fn out(output: &Output) -> String {
 
 fn err(output: &Output) -> String {
     String::from_utf8(output.stderr.clone()).unwrap()
+}
+
+/// Runs what must be done, and reads the columns of its results by name.
+fn columns(folder: &Path, arguments: &[&str]) -> BTreeMap<String, Vec<f64>> {
+    done(folder, arguments);
+    let (names, rows) = table(&folder.join("out/results.csv"));
+    let column = |index: usize| rows.iter().map(|row| row[index]).collect();
+    names
+        .into_iter()
+        .enumerate()
+        .map(|(index, name)| (name, column(index)))
+        .collect()
 }
 
 /// Runs what must be refused with this exit code and a message that has all these parts and no backtrace.

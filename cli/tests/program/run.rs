@@ -5,7 +5,7 @@ use std::path::Path;
 
 use tempfile::TempDir;
 
-use super::{SCENE, done, folder, moorline, names, refused, table};
+use super::{SCENE, columns, done, err, folder, moorline, names, out, refused, table};
 
 #[test]
 fn a_run_that_blows_up_is_a_computation_that_failed_and_leaves_no_results() {
@@ -203,4 +203,37 @@ fn a_run_that_stays_within_its_tables_says_nothing_of_them() {
         said.contains("motion.fairlead: the table ends at 0.4 s"),
         "{said}"
     );
+}
+
+/// Source: span and sag of the inextensible wire as in `tests/quasi_static.rs`.
+#[test]
+fn the_command_line_draws_the_collar_out_too() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/collar.toml");
+    let columns = columns(folder.path(), &["run", scene, "-o", "out"]);
+    let last = |name: &str| *columns[name].last().unwrap();
+    let (sag, pull, half_weight) = (4.086_064_837, 20.0_f64, 19.62);
+    assert!((last("wire.sag") / sag - 1.0).abs() < 1e-5);
+    assert!((last("wire.tension_a") - pull.hypot(half_weight)).abs() < 1e-10);
+}
+
+#[test]
+fn every_command_says_a_note_once_with_the_line_of_the_file() {
+    let folder = folder();
+    let text = SCENE.replacen('\n', "\ngravity = 32.2\n", 1);
+    let text = text.replace("axial_damping = 5.0\n", "");
+    fs::write(folder.path().join("slip.toml"), text).unwrap();
+    for arguments in [
+        &["check", "slip.toml"][..],
+        &["statics", "slip.toml"],
+        &["run", "slip.toml", "-o", "out"],
+        &["fmu", "slip.toml", "-o", "slip.fmu"],
+    ] {
+        let output = moorline(folder.path(), arguments);
+        let said = out(&output) + &err(&output);
+        let note = "note: slip.toml:2: gravity: 32.2 m/s² is unusual: 9.80665 m/s² is usual";
+        assert_eq!(said.matches(note).count(), 1, "{arguments:?}: {said}");
+        let advice = said.contains("no `axial_damping`");
+        assert_eq!(advice, arguments[0] == "check", "{arguments:?}: {said}");
+    }
 }

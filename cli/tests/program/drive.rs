@@ -3,64 +3,37 @@
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::fs;
-use std::path::Path;
-use std::process::Command;
 
-const DECK: &str = include_str!("decks/openfast_v2.dat");
-const C_STYLE: &str = include_str!("decks/moordyn_c.txt");
-const VERSION_1: &str = include_str!("decks/moordyn_v1.dat");
-const FARM: &str = include_str!("decks/farm.dat");
+use tempfile::TempDir;
 
-type Columns = BTreeMap<String, Vec<f64>>;
+use super::{columns, done, err, moorline, refused};
 
-/// Runs the command line in a folder: exit code and what it says on standard error.
-fn moorline(folder: &Path, arguments: &[&str]) -> (i32, String) {
-    let done = Command::new(env!("CARGO_BIN_EXE_moorline"))
-        .args(arguments)
-        .current_dir(folder)
-        .output()
-        .unwrap();
-    (
-        done.status.code().unwrap(),
-        String::from_utf8(done.stderr).unwrap(),
-    )
-}
+const DECK: &str = include_str!("../../../tests/decks/openfast_v2.dat");
+const C_STYLE: &str = include_str!("../../../tests/decks/moordyn_c.txt");
+const VERSION_1: &str = include_str!("../../../tests/decks/moordyn_v1.dat");
+const FARM: &str = include_str!("../../../tests/decks/farm.dat");
 
-fn results(folder: &Path) -> Columns {
-    let mut table = csv::Reader::from_path(folder.join("results.csv")).unwrap();
-    let names: Vec<String> = table.headers().unwrap().iter().map(String::from).collect();
-    let rows: Vec<Vec<f64>> = table.deserialize().map(Result::unwrap).collect();
-    let column = |index: usize| rows.iter().map(|row| row[index]).collect();
-    let columns = names.iter().enumerate();
-    columns
-        .map(|(index, name)| (name.clone(), column(index)))
-        .collect()
-}
+const RUN: [&str; 4] = ["run", "deck.txt", "-o", "out"];
 
-/// Runs `deck` with `files` beside it and the further arguments; its columns.
-fn run(deck: &str, files: &[(&str, &str)], arguments: &[&str]) -> Columns {
+/// A folder with a deck and files beside it.
+fn folder(deck: &str, files: &[(&str, &str)]) -> TempDir {
     let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("deck.txt"), deck).unwrap();
-    for (name, text) in files {
+    for (name, text) in [("deck.txt", deck)].iter().chain(files) {
         fs::write(folder.path().join(name), text).unwrap();
     }
-    let all = [&["run", "deck.txt", "-o", "out"], arguments].concat();
-    let (code, error) = moorline(folder.path(), &all);
-    assert_eq!(code, 0, "{error}");
-    results(&folder.path().join("out"))
+    folder
 }
 
-/// What a run that must not start says.
-fn refused(deck: &str, files: &[(&str, &str)], arguments: &[&str]) -> String {
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("deck.txt"), deck).unwrap();
-    for (name, text) in files {
-        fs::write(folder.path().join(name), text).unwrap();
-    }
-    let all = [&["run", "deck.txt", "-o", "out"], arguments].concat();
-    let (code, error) = moorline(folder.path(), &all);
-    assert_eq!(code, 2, "{error}");
-    error
+/// Columns of the results of a run of `deck` with `files` beside it and further arguments.
+fn run(deck: &str, files: &[(&str, &str)], arguments: &[&str]) -> BTreeMap<String, Vec<f64>> {
+    columns(folder(deck, files).path(), &[&RUN, arguments].concat())
+}
+
+/// Message of a run that must be refused.
+fn refusal(deck: &str, files: &[(&str, &str)], arguments: &[&str]) -> String {
+    let output = moorline(folder(deck, files).path(), &[&RUN, arguments].concat());
+    assert_eq!(output.status.code(), Some(2), "{}", err(&output));
+    err(&output)
 }
 
 /// A table of a heave and pitch that grow, every 0.1 s for `end` seconds.
@@ -115,21 +88,18 @@ fn regular_motion_of_a_deck_is_that_of_a_scene_that_says_it() {
             "4",
         ],
     );
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("deck.txt"), DECK).unwrap();
-    let (code, error) = moorline(folder.path(), &["convert", "deck.txt", "-o", "scene.toml"]);
-    assert_eq!(code, 0, "{error}");
+    let folder = folder(DECK, &[]);
+    done(folder.path(), &["convert", "deck.txt", "-o", "scene.toml"]);
     let scene = fs::read_to_string(folder.path().join("scene.toml")).unwrap();
     assert!(scene.contains("[motion]\n"));
     let motion = "[motion]\nvessel = { x = [[1.5, 8.0]], pitch = [[0.02, 6.0, 0.5]], ramp = 3.0 }\n";
     let scene = scene.replace("[motion]\n", motion);
     fs::write(folder.path().join("scene.toml"), scene).unwrap();
-    let (code, error) = moorline(
+    let by_scene = columns(
         folder.path(),
         &["run", "scene.toml", "-o", "out", "--duration", "4"],
     );
-    assert_eq!(code, 0, "{error}");
-    assert_eq!(results(&folder.path().join("out")), by_flag);
+    assert_eq!(by_scene, by_flag);
     assert_eq!(*by_flag["time"].last().unwrap(), 4.0);
 }
 
@@ -148,12 +118,12 @@ fn coupled_points_of_a_deck_move_as_the_one_vessel_that_is_given() {
         "--duration",
         "2",
     ];
-    let said = refused(&points, &[], &moved);
+    let said = refusal(&points, &[], &moved);
     assert!(
         said.contains("`barge` is no vessel or coupled point") && said.contains("use --vessel barge"),
         "{said}"
     );
-    let said = refused(&points, &[], &["--move", "point4.pitch=0.02,6"]);
+    let said = refusal(&points, &[], &["--move", "point4.pitch=0.02,6"]);
     assert!(
         said.contains("`point4` is a point, and points do not turn") && said.contains("use --vessel NAME"),
         "{said}"
@@ -197,21 +167,17 @@ fn a_farm_runs_with_its_places_and_the_motion_of_one_of_its_vessels() {
     let columns = run(FARM, &[], &arguments);
     assert!(columns["turbine1.x"].iter().all(|x| *x == 0.0));
     assert!(columns["turbine2.x"].iter().any(|x| *x > 0.5));
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("farm.dat"), FARM).unwrap();
+    let folder = folder(FARM, &[]);
     for command in ["check", "statics"] {
-        let (code, error) = moorline(folder.path(), &[command, "farm.dat"]);
-        assert_eq!(code, 2, "{error}");
-        let all = [&[command, "farm.dat"], &arguments[..4]].concat();
-        let (code, error) = moorline(folder.path(), &all);
-        assert_eq!(code, 0, "{error}");
+        refused(folder.path(), &[command, "deck.txt"], 2, &["turbine"]);
+        done(folder.path(), &[&[command, "deck.txt"], &arguments[..4]].concat());
     }
 }
 
 #[test]
 fn what_cannot_move_or_be_read_is_refused_with_file_line_and_what_would_be_right() {
     let flag = ["--motion", "m.csv"];
-    let with_file = |deck: &str, text: &str| refused(deck, &[("m.csv", text)], &flag);
+    let with_file = |deck: &str, text: &str| refusal(deck, &[("m.csv", text)], &flag);
     for (text, words) in [
         ("time,u\n0,0\n", "line 1: the header must be"),
         ("time,x,y,z,roll\n0,0,0,0,0\n", "line 1: the header must be"),
@@ -248,7 +214,7 @@ fn what_cannot_move_or_be_read_is_refused_with_file_line_and_what_would_be_right
             "{text:?}: {said}"
         );
     }
-    let missing = refused(DECK, &[], &flag);
+    let missing = refusal(DECK, &[], &flag);
     assert!(missing.contains("m.csv: no such file"), "{missing}");
     let turning = "time,x,y,z,roll,pitch,yaw\n0,0,0,0,0,0,0\n";
     let points = VERSION_1.replace("3     Fairlead ", "3     Coupled  ");
@@ -262,12 +228,12 @@ fn what_cannot_move_or_be_read_is_refused_with_file_line_and_what_would_be_right
         several.contains("the columns must name what moves, such as body1.x"),
         "{several}"
     );
-    let twice = refused(
+    let twice = refusal(
         DECK,
         &[("m.csv", "time,x,y,z\n0,0,0,0\n1,1,0,0\n")],
         &["--motion", "m.csv", "--move", "vessel.x=1,8"],
     );
     assert!(twice.contains("moves by the file already"), "{twice}");
-    let wrong = refused(DECK, &[], &["--move", "vessel.x=1"]);
+    let wrong = refusal(DECK, &[], &["--move", "vessel.x=1"]);
     assert!(wrong.contains("BODY.AXIS=AMPLITUDE,PERIOD"), "{wrong}");
 }

@@ -70,7 +70,7 @@ fn cell(text: &str, name: &str, column: usize) -> f64 {
 }
 
 fn public_scene(name: &str) -> String {
-    format!("{}/scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"))
+    format!("{}/../scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"))
 }
 
 #[test]
@@ -143,7 +143,7 @@ fn collect_keys(value: &serde_json::Value, keys: &mut Vec<String>) {
 
 #[test]
 fn every_key_of_the_json_is_documented() {
-    let page = include_str!("../../docs/json.md");
+    let page = include_str!("../../../docs/json.md");
     let folder = folder();
     for scene in ["storm_moored_semi", "power_cable"] {
         let text = done(folder.path(), &["statics", &public_scene(scene), "--json"]);

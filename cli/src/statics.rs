@@ -7,9 +7,9 @@ use moorline::output::{collect, json};
 use moorline::scene::{InitialShape, Note, Supplement};
 use moorline::simulation::Watch;
 
-use super::failure::Failure;
-use super::summary::{Table, static_table};
-use super::{print, read_scene, remark, remark_all, simulate};
+use crate::failure::Failure;
+use crate::summary::{Table, static_table};
+use crate::terminal::{print, read_scene, remark, remark_all, simulate};
 
 /// Solves the equilibrium and prints it.
 pub fn statics(path: &Path, supplement: &Supplement, as_json: bool) -> Result<(), Failure> {

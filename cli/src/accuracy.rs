@@ -9,10 +9,10 @@ use moorline::output::report::rounded;
 use moorline::output::write_file;
 use moorline::scene::{Drive, Integrator, Scene, Supplement};
 
-use super::failure::Failure;
-use super::folder::Folder;
-use super::summary::Table;
-use super::{print, progress, read_scene};
+use crate::failure::Failure;
+use crate::folder::Folder;
+use crate::summary::Table;
+use crate::terminal::{print, progress, read_scene};
 
 /// The public scenes, built in.
 const PUBLIC: [(&str, &str); 5] = [

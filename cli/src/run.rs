@@ -13,10 +13,10 @@ use moorline::output::{collect, write_run};
 use moorline::scene::{Drive, LoadedScene, Reconstruction, Supplement};
 use moorline::simulation::{Simulation, Watch};
 
-use super::failure::Failure;
-use super::folder::Folder;
-use super::summary::run_summary;
-use super::{print, progress, read_scene, remark_all, simulate};
+use crate::failure::Failure;
+use crate::folder::Folder;
+use crate::summary::run_summary;
+use crate::terminal::{print, progress, read_scene, remark_all, simulate};
 
 /// Shapes kept of a run whose scene does not ask for all of them [-].
 const FRAMES_MAX: usize = 240;

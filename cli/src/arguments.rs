@@ -1,30 +1,24 @@
-//! The command line: parse, call, print, exit code.
-//!
-//! Exit codes: 0 done, 2 the input is wrong, 1 the computation failed, 130 interrupted.
-
-mod cli;
+//! Arguments of the program.
 
 use std::path::PathBuf;
-use std::process::ExitCode;
 
 use clap::{Args, Parser, Subcommand};
-
-use cli::run::Pace;
 use moorline::scene::{Drive, RegularMotion, Supplement};
 
 /// Mooring-line dynamics: statics, time-domain runs, FMUs.
 #[derive(Debug, Parser)]
-#[command(version, arg_required_else_help = true, after_help = EXIT_CODES)]
-struct Arguments {
+#[command(name = "moorline", version, arg_required_else_help = true, after_help = EXIT_CODES)]
+pub struct Arguments {
+    /// The command and its arguments.
     #[command(subcommand)]
-    command: Command,
+    pub command: Command,
 }
 
 const EXIT_CODES: &str =
     "Exit codes: 0 done, 2 the input is wrong, 1 the computation failed, 130 interrupted.";
 
 #[derive(Debug, Subcommand)]
-enum Command {
+pub enum Command {
     /// Say in words what a scene models and what it does not; find every mistake
     Check {
         /// Scene of moorline, or deck of MoorDyn or MAP++
@@ -50,7 +44,7 @@ enum Command {
         #[arg(short, long, value_name = "DIR")]
         output: PathBuf,
         /// Drive the run as a host does: set the motion at every multiple of H [s], then step by H; a row of results each. With input_reconstruction = "interpolate" the motion set is that of the end of the step
-        #[arg(long, value_name = "H", value_parser = cli::positive_number)]
+        #[arg(long, value_name = "H", value_parser = positive_number)]
         communication_step: Option<f64>,
         /// Set velocities beside displacements
         #[arg(long, requires = "communication_step")]
@@ -109,12 +103,12 @@ enum Command {
 
 /// What a deck of another program leaves to its host.
 #[derive(Debug, Args)]
-struct FromHost {
+pub struct FromHost {
     /// Water depth D [m], where a deck leaves it to its host
-    #[arg(long, value_name = "D", value_parser = cli::positive_number)]
+    #[arg(long, value_name = "D", value_parser = positive_number)]
     depth: Option<f64>,
     /// Reference position of a vessel [m], where a deck leaves it to its host; may be given several times
-    #[arg(long, value_name = "NAME=X,Y,Z", value_parser = cli::convert::placed_vessel)]
+    #[arg(long, value_name = "NAME=X,Y,Z", value_parser = placed_vessel)]
     at: Vec<(String, [f64; 3])>,
     /// Join all coupled points of a deck to one vessel of this name, with its origin at (0, 0, 0)
     #[arg(long, value_name = "NAME")]
@@ -133,7 +127,7 @@ impl From<FromHost> for Supplement {
 
 /// What moves in a run, in place of what the scene says.
 #[derive(Debug, Args)]
-struct Moved {
+pub struct Moved {
     /// Motion in a CSV file: time,x,y,z[,roll,pitch,yaw] of the one vessel or of all coupled points, or time and columns such
     /// as platform.x
     #[arg(long, value_name = "FILE")]
@@ -142,10 +136,10 @@ struct Moved {
     #[arg(long = "move", value_name = "BODY.AXIS=A,T[,PHASE]")]
     regular: Vec<RegularMotion>,
     /// Let the regular motion grow for R [s]
-    #[arg(long, value_name = "R", value_parser = cli::positive_number, requires = "regular")]
+    #[arg(long, value_name = "R", value_parser = positive_number, requires = "regular")]
     ramp: Option<f64>,
     /// End the run at T [s]; else with the motion file, or as the scene says
-    #[arg(long, value_name = "T", value_parser = cli::positive_number)]
+    #[arg(long, value_name = "T", value_parser = positive_number)]
     duration: Option<f64>,
 }
 
@@ -160,45 +154,50 @@ impl From<Moved> for Drive {
     }
 }
 
-fn main() -> ExitCode {
-    let result = match Arguments::parse().command {
-        Command::Check { scene, host } => cli::check::check(&scene, &host.into()),
-        Command::Statics { scene, json, host } => cli::statics::statics(&scene, &host.into(), json),
-        Command::Run {
-            scene,
-            output,
-            communication_step,
-            velocities,
-            moved,
-            host,
-        } => {
-            let pace = match communication_step {
-                Some(step) => Pace::Host { step, velocities },
-                None => Pace::Scene,
-            };
-            cli::run::run(&scene, &host.into(), &moved.into(), &output, pace)
+/// Reads a positive, finite number.
+fn positive_number(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(number) if number > 0.0 && number.is_finite() => Ok(number),
+        Ok(_) => Err("must be positive and finite".to_string()),
+        Err(_) => Err("is not a number".to_string()),
+    }
+}
+
+/// Reads `NAME=X,Y,Z`: a vessel and its reference position [m].
+fn placed_vessel(text: &str) -> Result<(String, [f64; 3]), String> {
+    let wanted = "must be NAME=X,Y,Z in metres";
+    let (name, position) = text.split_once('=').ok_or(wanted)?;
+    let numbers: Vec<f64> = position
+        .split(',')
+        .map(|part| {
+            part.trim()
+                .parse::<f64>()
+                .ok()
+                .filter(|number| number.is_finite())
+        })
+        .collect::<Option<_>>()
+        .ok_or(wanted)?;
+    let position = numbers.try_into().map_err(|_| wanted)?;
+    Ok((name.trim().to_string(), position))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_vessel_is_placed_by_name_and_three_numbers() {
+        let placed = placed_vessel("turbine2=1600,0,-0.5");
+        assert_eq!(placed, Ok(("turbine2".to_string(), [1600.0, 0.0, -0.5])));
+        for wrong in [
+            "turbine2",
+            "turbine2=1,2",
+            "a=1,2,3,4",
+            "a=1,2,x",
+            "a=1,2,nan",
+            "",
+        ] {
+            assert!(placed_vessel(wrong).is_err(), "{wrong}");
         }
-        Command::Convert { deck, output, host } => cli::convert::convert(&deck, &output, &host.into()),
-        Command::Fmu {
-            scene,
-            output,
-            fmi,
-            host,
-        } => cli::fmu::fmu(&scene, &host.into(), &output, &fmi),
-        Command::Accuracy {
-            scenes,
-            output,
-            peers,
-            moved,
-            host,
-        } => {
-            let (host, moved) = (host.into(), moved.into());
-            cli::accuracy::accuracy(&scenes, &host, &moved, &output, peers.as_deref())
-        }
-        Command::Demo { output } => cli::demo::demo(&output),
-    };
-    match result {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => failure.tell(),
     }
 }

@@ -11,8 +11,8 @@ use moorline::output::channels::Channels;
 use moorline::scene::{Scene, Supplement, TOML, load_with};
 use moorline::simulation::{Simulation, Watch};
 
-use super::failure::Failure;
-use super::{noted, print};
+use crate::failure::Failure;
+use crate::terminal::{noted, print};
 
 /// Reads a scene, makes it discrete, and says what it models, what surprises, and which variables a host finds.
 pub fn check(path: &Path, supplement: &Supplement) -> Result<(), Failure> {

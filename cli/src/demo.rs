@@ -12,12 +12,12 @@ use moorline::scene::{LoadedScene, Places, Scene, TOML};
 use moorline::simulation::Simulation;
 use moorline_host::{FmiVersion, Fmu, HostError, Slave};
 
-use super::failure::Failure;
-use super::fmu::package;
-use super::folder::Folder;
-use super::run::{Times, columns, recorded, scene_input};
-use super::summary::run_summary;
-use super::{print, progress, simulate};
+use crate::failure::Failure;
+use crate::fmu::package;
+use crate::folder::Folder;
+use crate::run::{Times, columns, recorded, scene_input};
+use crate::summary::run_summary;
+use crate::terminal::{print, progress, simulate};
 
 /// The built-in scene.
 const SCENE: &str = include_str!("../../scenes/demo.toml");

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use moorline::output::{open_folder, remove_partial};
 
-use super::failure::Failure;
+use crate::failure::Failure;
 
 /// Exit code of a program that Ctrl-C ends, as shells have it: 128 and the signal's number.
 const INTERRUPTED: i32 = 130;

@@ -92,7 +92,7 @@ fn the_demo_drives_an_fmu_that_gives_the_bits_of_a_run() {
     ] {
         assert!(made.contains(&name.to_string()), "{name} in {made:?}");
     }
-    let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/demo.toml");
+    let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/demo.toml");
     done(
         folder.path(),
         &["run", scene, "-o", "run", "--communication-step", "0.05"],

@@ -8,8 +8,8 @@ use moorline::scene::{LoadedScene, Supplement};
 use moorline::simulation::Watch;
 use moorline_host::FmiVersion;
 
-use super::failure::Failure;
-use super::{print, read_scene, remark_all, simulate};
+use crate::failure::Failure;
+use crate::terminal::{print, read_scene, remark_all, simulate};
 
 /// Packages a scene for the FMI version "2" or "3".
 pub fn fmu(path: &Path, supplement: &Supplement, target: &Path, version: &str) -> Result<(), Failure> {
