@@ -7,7 +7,8 @@ use moorline::output::accuracy::{summary, write_runs, write_verdicts};
 use moorline::output::figures::frontier;
 use moorline::output::report::rounded;
 use moorline::output::write_file;
-use moorline::scene::{Drive, Integrator, Scene, Supplement};
+use moorline::scene::{Drive, Integrator, Scene};
+use moorline_decks::Supplement;
 
 use crate::failure::Failure;
 use crate::folder::Folder;

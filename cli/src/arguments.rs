@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
-use moorline::scene::{Drive, RegularMotion, Supplement};
+use moorline::scene::{Drive, RegularMotion};
+use moorline_decks::Supplement;
 
 /// Mooring-line dynamics: statics, time-domain runs, FMUs.
 #[derive(Debug, Parser)]

@@ -8,8 +8,9 @@ use moorline::dynamics::Choice;
 use moorline::interface::{Causality, Interface, Layout};
 use moorline::model::Model;
 use moorline::output::channels::Channels;
-use moorline::scene::{Scene, Supplement, TOML, load_with};
+use moorline::scene::{Scene, TOML};
 use moorline::simulation::{Simulation, Watch};
+use moorline_decks::{Supplement, load_with};
 
 use crate::failure::Failure;
 use crate::terminal::{noted, print};

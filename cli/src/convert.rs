@@ -5,7 +5,8 @@ use std::path::Path;
 
 use moorline::model::Model;
 use moorline::output::{check_file, write_file};
-use moorline::scene::{Supplement, TOML, load_with};
+use moorline::scene::TOML;
+use moorline_decks::{Supplement, load_with};
 
 use crate::failure::Failure;
 use crate::terminal::print;

@@ -3,7 +3,7 @@
 use std::io::{self, ErrorKind, IsTerminal, Write};
 use std::process::ExitCode;
 
-use miette::{GraphicalReportHandler, GraphicalTheme, NamedSource};
+use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme, LabeledSpan, NamedSource, SourceCode};
 use moorline::dynamics::StepError;
 use moorline::output::OutputError;
 use moorline::output::package::PackageError;
@@ -41,9 +41,9 @@ impl Failure {
 
     /// A mistake in a scene that has been read.
     pub fn of_scene(mistake: SceneError, loaded: &LoadedScene) -> Failure {
-        let name = loaded.path.display().to_string();
         Failure::Scene(LoadError::Scene {
-            source_text: Box::new(NamedSource::new(name, loaded.text.clone())),
+            path: loaded.path.clone(),
+            text: loaded.text.clone(),
             mistakes: vec![loaded.locate(mistake)],
         })
     }
@@ -91,7 +91,7 @@ impl Failure {
     }
 }
 
-/// The message with the lines of the scene it speaks of.
+/// The message with the lines of the scene that it is about.
 fn rendered(error: &LoadError) -> String {
     let plain = !io::stderr().is_terminal() || std::env::var_os("NO_COLOR").is_some();
     let theme = if plain {
@@ -103,9 +103,47 @@ fn rendered(error: &LoadError) -> String {
     let handler = GraphicalReportHandler::new_themed(theme)
         .with_width(WIDTH)
         .with_links(false);
-    match handler.render_report(&mut text, error) {
+    match handler.render_report(&mut text, &Shown::new(error)) {
         Ok(()) => text,
         Err(_) => format!("error: {}\n", error.list()),
+    }
+}
+
+/// Mistakes in a file beside its lines.
+#[derive(Debug, thiserror::Error)]
+#[error("{error}")]
+struct Shown<'e> {
+    error: &'e LoadError,
+    source_text: Option<NamedSource<String>>,
+}
+
+impl Shown<'_> {
+    fn new(error: &LoadError) -> Shown<'_> {
+        let source_text = match error {
+            LoadError::Scene { path, text, .. } => {
+                Some(NamedSource::new(path.display().to_string(), text.clone()))
+            }
+            LoadError::Unreadable { .. } | LoadError::NotText { .. } => None,
+        };
+        Shown { error, source_text }
+    }
+}
+
+impl Diagnostic for Shown<'_> {
+    fn source_code(&self) -> Option<&dyn SourceCode> {
+        self.source_text.as_ref().map(|text| text as &dyn SourceCode)
+    }
+
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        let mistakes = self.error.mistakes();
+        let alone = mistakes.len() == 1;
+        Some(Box::new(mistakes.iter().filter_map(move |mistake| {
+            let label = if alone { "here" } else { &mistake.problem };
+            Some(LabeledSpan::new_with_span(
+                Some(label.to_string()),
+                mistake.span.clone()?,
+            ))
+        })))
     }
 }
 

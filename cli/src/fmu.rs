@@ -4,8 +4,9 @@ use std::path::Path;
 
 use moorline::output::check_file;
 use moorline::output::package::{find_library, write_fmu};
-use moorline::scene::{LoadedScene, Supplement};
+use moorline::scene::LoadedScene;
 use moorline::simulation::Watch;
+use moorline_decks::Supplement;
 use moorline_host::FmiVersion;
 
 use crate::failure::Failure;

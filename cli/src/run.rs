@@ -10,8 +10,9 @@ use moorline::output::channels::Channels;
 use moorline::output::figures::ELEVATION;
 use moorline::output::record::{Column, Record};
 use moorline::output::{collect, write_run};
-use moorline::scene::{Drive, LoadedScene, Reconstruction, Supplement};
+use moorline::scene::{Drive, LoadedScene, Reconstruction};
 use moorline::simulation::{Simulation, Watch};
+use moorline_decks::Supplement;
 
 use crate::failure::Failure;
 use crate::folder::Folder;

@@ -4,8 +4,9 @@ use std::fmt::Write;
 use std::path::Path;
 
 use moorline::output::{collect, json};
-use moorline::scene::{InitialShape, Note, Supplement};
+use moorline::scene::{InitialShape, Note};
 use moorline::simulation::Watch;
+use moorline_decks::Supplement;
 
 use crate::failure::Failure;
 use crate::summary::{Table, static_table};

@@ -5,8 +5,9 @@ use std::path::Path;
 
 use indicatif::{ProgressBar, ProgressStyle};
 use moorline::discretisation::discretised;
-use moorline::scene::{LoadedScene, Note, Supplement, load_with};
+use moorline::scene::{LoadedScene, Note};
 use moorline::simulation::Simulation;
+use moorline_decks::{Supplement, load_with};
 
 use crate::failure::Failure;
 

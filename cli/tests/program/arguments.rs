@@ -91,6 +91,44 @@ fn a_mistake_is_shown_with_its_line_and_what_would_be_right() {
 }
 
 #[test]
+fn all_mistakes_are_shown_beside_their_lines() {
+    let folder = folder();
+    let wrong = SCENE
+        .replace("mass = 0.05", "mass = -1.0")
+        .replace("to = \"fairlead\"", "to = \"fairlaed\"");
+    fs::write(folder.path().join("wrong.toml"), wrong).unwrap();
+    let parts = [
+        "(and 1 mistake more)",
+        "mass = -1.0",
+        "to = \"fairlaed\"",
+        "did you mean `fairlead`?",
+    ];
+    refused(folder.path(), &["check", "wrong.toml"], 2, &parts);
+}
+
+#[test]
+fn a_mistake_at_the_very_end_of_a_file_can_be_shown() {
+    let folder = folder();
+    for text in [
+        "",
+        "gravity =",
+        "gravity =\n",
+        "title = \"",
+        "[",
+        "\u{feff}\u{fc} = ",
+    ] {
+        fs::write(folder.path().join("end.toml"), text).unwrap();
+        let output = moorline(folder.path(), &["check", "end.toml"]);
+        let shown = err(&output);
+        assert_eq!(output.status.code(), Some(2), "{shown}");
+        assert!(
+            shown.contains("end.toml:") && !shown.contains("Failed"),
+            "{shown}"
+        );
+    }
+}
+
+#[test]
 fn what_a_deck_leaves_to_its_host_is_refused_beside_a_scene() {
     let folder = folder();
     for command in [

@@ -2,14 +2,14 @@
 
 use std::fs;
 
-use moorline::scene::{Supplement, load_with};
 use moorline::simulation::Simulation;
+use moorline_decks::{Supplement, load_with};
 
 use super::{columns, err, moorline, out, refused, table};
 
-const VERSION_1: &str = include_str!("../../../tests/decks/moordyn_v1.dat");
-const FARM: &str = include_str!("../../../tests/decks/farm.dat");
-const MAP: &str = include_str!("../../../tests/decks/oc3.map");
+const VERSION_1: &str = include_str!("../../../decks/tests/decks/moordyn_v1.dat");
+const FARM: &str = include_str!("../../../decks/tests/decks/farm.dat");
+const MAP: &str = include_str!("../../../decks/tests/decks/oc3.map");
 
 #[test]
 fn the_command_line_converts_a_deck_with_what_its_host_would_give() {

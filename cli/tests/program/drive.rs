@@ -8,10 +8,10 @@ use tempfile::TempDir;
 
 use super::{columns, done, err, moorline, refused};
 
-const DECK: &str = include_str!("../../../tests/decks/openfast_v2.dat");
-const C_STYLE: &str = include_str!("../../../tests/decks/moordyn_c.txt");
-const VERSION_1: &str = include_str!("../../../tests/decks/moordyn_v1.dat");
-const FARM: &str = include_str!("../../../tests/decks/farm.dat");
+const DECK: &str = include_str!("../../../decks/tests/decks/openfast_v2.dat");
+const C_STYLE: &str = include_str!("../../../decks/tests/decks/moordyn_c.txt");
+const VERSION_1: &str = include_str!("../../../decks/tests/decks/moordyn_v1.dat");
+const FARM: &str = include_str!("../../../decks/tests/decks/farm.dat");
 
 const RUN: [&str; 4] = ["run", "deck.txt", "-o", "out"];
 

@@ -78,7 +78,7 @@ fn a_folder_that_takes_no_files_is_refused_before_any_work() {
 #[test]
 fn a_file_that_cannot_be_written_where_it_is_wanted_is_wrong_input() {
     let folder = folder();
-    let deck = format!("{}/../tests/decks/oc3.map", env!("CARGO_MANIFEST_DIR"));
+    let deck = format!("{}/../decks/tests/decks/oc3.map", env!("CARGO_MANIFEST_DIR"));
     let arguments = ["convert", &deck, "--depth", "320", "-o", "nowhere/x.toml"];
     refused(folder.path(), &arguments, 2, &["cannot write nowhere"]);
 }
@@ -138,7 +138,7 @@ fn outputs_follow_links_and_replace_nothing_but_regular_files() {
     use std::os::unix::fs::{FileTypeExt, symlink};
     let folder = folder();
     let at = |name: &str| folder.path().join(name);
-    let deck = format!("{}/../tests/decks/oc3.map", env!("CARGO_MANIFEST_DIR"));
+    let deck = format!("{}/../decks/tests/decks/oc3.map", env!("CARGO_MANIFEST_DIR"));
     make_pipe(&at("pipe"));
     symlink("/dev/null", at("null")).unwrap();
     symlink("real.toml", at("link.toml")).unwrap();

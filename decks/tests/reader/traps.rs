@@ -1,7 +1,6 @@
 //! Small decks after the traps of the field: each is read, solved at its own mesh, and its trap is named in a note.
 
-use moorline::scene::{PointKind, Scene, Supplement, load_with};
-use moorline::simulation::Simulation;
+use moorline::scene::PointKind;
 
 use crate::*;
 

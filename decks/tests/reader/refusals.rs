@@ -365,7 +365,9 @@ fn mistakes_of_a_stage_are_reported_together_in_the_order_of_the_file() {
 fn a_scene_of_moorline_is_still_told_from_a_deck_by_text() {
     let mistake = Scene::from_toml(OPENFAST).unwrap_err();
     assert!(
-        mistake.to_string().starts_with("this is a MoorDyn file"),
+        mistake
+            .to_string()
+            .starts_with("not TOML: rows of dashes head the tables of a deck"),
         "{mistake}"
     );
 }

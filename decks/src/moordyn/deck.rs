@@ -1,8 +1,6 @@
 //! What a deck says, in its own terms: plain data with places, nothing interpreted.
 
-use std::ops::Range;
-
-use crate::scene::rows::Placed;
+use crate::findings::Placed;
 
 /// Which grammar a deck is written in.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -43,6 +41,23 @@ pub(super) struct Deck {
     pub options: Options,
     /// Names of output channels.
     pub outputs: Vec<Placed<String>>,
+}
+
+impl Deck {
+    /// The body of a number.
+    pub(super) fn body(&self, id: usize) -> Option<&Body> {
+        self.bodies.iter().find(|body| body.id.value == id)
+    }
+
+    /// Numbers of the turbines that points are attached to.
+    pub(super) fn turbines(&self) -> impl Iterator<Item = usize> {
+        self.points
+            .iter()
+            .filter_map(|point| match point.attachment.value {
+                Attachment::Turbine(number) => Some(number),
+                _ => None,
+            })
+    }
 }
 
 /// A stiffness or damping: a number, or what else its column takes.
@@ -201,8 +216,8 @@ pub(super) struct Options {
     pub soundings: Option<Placed<String>>,
     /// dtOut [s].
     pub output_interval: Option<Placed<f64>>,
-    /// Where it says that MoorDyn has no time to come to rest in before it starts.
-    pub starts_at_once: Option<Range<usize>>,
+    /// TmaxIC of 0: MoorDyn starts from the positions in the file, without time to come to rest.
+    pub starts_at_once: Option<Placed<String>>,
     /// Waves and currents, where asked for: key and value.
     pub surroundings: Vec<(String, Placed<String>)>,
     /// Keys that need nothing here.

@@ -10,25 +10,21 @@
 mod build;
 mod deck;
 
-use super::rows::Findings;
-use super::{Places, Reading, Supplement};
+use moorline::scene::AngleOrder;
 
-pub(super) use deck::is_deck;
+use crate::Supplement;
+use crate::draft::Draft;
+use crate::findings::Findings;
 
-/// Reads a deck. What it leaves to its host comes from the supplement.
-pub(super) fn read(text: &str, supplement: &Supplement) -> Reading {
+pub(crate) use deck::is_deck;
+
+/// Reads a deck with what it leaves to its host.
+pub(crate) fn read<'s>(text: &str, supplement: &'s Supplement) -> Draft<'s> {
     let mut findings = Findings::default();
-    let mut places = Places::default();
     let deck = deck::read(text, &mut findings);
-    let scene = if findings.mistakes.is_empty() {
-        build::scene(&deck, supplement, &mut places, &mut findings)
-    } else {
-        None
-    };
-    Reading {
-        format: "MAP++",
-        scene,
-        places,
-        findings,
+    let mut draft = Draft::new("MAP++", findings, supplement, AngleOrder::Zyx);
+    if draft.findings.mistakes.is_empty() {
+        build::build(&deck, &mut draft);
     }
+    draft
 }

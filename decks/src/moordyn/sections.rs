@@ -1,6 +1,8 @@
 //! A deck cut at its headers.
 
-use crate::scene::rows::{Findings, Placed, Row, number, shown};
+use moorline::scene::rows::{Row, number, shown};
+
+use crate::findings::{Findings, Placed};
 
 /// What a section holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -18,50 +20,43 @@ pub(super) enum Kind {
     Outputs,
 }
 
-/// Words of a header, in capitals, and what they announce; the first that fits counts, as in MoorDyn.
-const HEADERS: [(&str, Kind); 24] = [
-    ("LINE DICTIONARY", Kind::LineTypes),
-    ("LINE TYPES", Kind::LineTypes),
-    ("ROD DICTIONARY", Kind::RodTypes),
-    ("ROD TYPES", Kind::RodTypes),
-    ("BODIES", Kind::Bodies),
-    ("BODY LIST", Kind::Bodies),
-    ("BODY PROPERTIES", Kind::Bodies),
-    ("RODS", Kind::Rods),
-    ("ROD LIST", Kind::Rods),
-    ("ROD PROPERTIES", Kind::Rods),
-    ("POINTS", Kind::Points),
-    ("POINT LIST", Kind::Points),
-    ("POINT PROPERTIES", Kind::Points),
-    ("CONNECTION", Kind::Points),
-    ("NODE PROPERTIES", Kind::Points),
-    ("NODE LIST", Kind::Points),
-    ("LINES", Kind::Lines),
-    ("LINE LIST", Kind::Lines),
-    ("LINE PROPERTIES", Kind::Lines),
-    ("EXTERNAL LOADS", Kind::ExternalLoads),
-    ("CONTROL", Kind::Control),
-    ("FAILURE", Kind::Failure),
-    ("OPTIONS", Kind::Options),
-    ("OUTPUT", Kind::Outputs),
+/// Kinds with their names in messages and the words of their headers, in capitals; the first that fits counts, as in MoorDyn.
+const KINDS: [(Kind, &str, &[&str]); 11] = [
+    (Kind::LineTypes, "LINE TYPES", &["LINE DICTIONARY", "LINE TYPES"]),
+    (Kind::RodTypes, "ROD TYPES", &["ROD DICTIONARY", "ROD TYPES"]),
+    (
+        Kind::Bodies,
+        "BODIES",
+        &["BODIES", "BODY LIST", "BODY PROPERTIES"],
+    ),
+    (Kind::Rods, "RODS", &["RODS", "ROD LIST", "ROD PROPERTIES"]),
+    (
+        Kind::Points,
+        "POINTS",
+        &[
+            "POINTS",
+            "POINT LIST",
+            "POINT PROPERTIES",
+            "CONNECTION",
+            "NODE PROPERTIES",
+            "NODE LIST",
+        ],
+    ),
+    (Kind::Lines, "LINES", &["LINES", "LINE LIST", "LINE PROPERTIES"]),
+    (Kind::ExternalLoads, "EXTERNAL LOADS", &["EXTERNAL LOADS"]),
+    (Kind::Control, "CONTROL", &["CONTROL"]),
+    (Kind::Failure, "FAILURE", &["FAILURE"]),
+    (Kind::Options, "OPTIONS", &["OPTIONS"]),
+    (Kind::Outputs, "OUTPUTS", &["OUTPUT"]),
 ];
 
 impl Kind {
-    /// Its name in messages.
+    /// Name in messages.
     pub(super) fn name(self) -> &'static str {
-        match self {
-            Kind::LineTypes => "LINE TYPES",
-            Kind::RodTypes => "ROD TYPES",
-            Kind::Bodies => "BODIES",
-            Kind::Rods => "RODS",
-            Kind::Points => "POINTS",
-            Kind::Lines => "LINES",
-            Kind::Failure => "FAILURE",
-            Kind::Control => "CONTROL",
-            Kind::ExternalLoads => "EXTERNAL LOADS",
-            Kind::Options => "OPTIONS",
-            Kind::Outputs => "OUTPUTS",
-        }
+        let mut kinds = KINDS.iter();
+        kinds
+            .find(|(kind, ..)| *kind == self)
+            .map_or("", |(_, name, _)| name)
     }
 
     /// Whether two lines below the header name columns and units.
@@ -110,16 +105,18 @@ fn is_header(row: &Row<'_>) -> bool {
 
 fn kind_of(row: &Row<'_>) -> Option<Kind> {
     let upper = row.text.to_uppercase();
-    let known = HEADERS.iter().find(|(words, _)| upper.contains(words));
-    known.map(|(_, kind)| *kind)
+    let mut kinds = KINDS.iter();
+    let known = kinds.find(|(.., words)| words.iter().any(|words| upper.contains(words)));
+    known.map(|(kind, ..)| *kind)
 }
 
-/// The first header of a section, or of the file itself.
-pub(super) fn first_header(text: &str) -> Option<Row<'_>> {
-    Row::all(text)
-        .map(|row| row.before('#'))
-        .filter(|row| row.text.trim_start().starts_with("---"))
-        .find(|row| kind_of(row).is_some() || row.text.to_uppercase().contains("MOORDYN"))
+/// Whether a text is a MoorDyn file: it has a header of such files.
+pub(crate) fn is_deck(text: &str) -> bool {
+    let mut rows = Row::all(text).map(|row| row.before('#'));
+    rows.any(|row| {
+        let rule = row.text.trim_start().starts_with("---");
+        rule && (kind_of(&row).is_some() || row.text.to_uppercase().contains("MOORDYN"))
+    })
 }
 
 /// Cuts a deck at its headers.
@@ -184,15 +181,8 @@ fn begin<'t>(sections: &mut Sections<'t>, header: Row<'t>, findings: &mut Findin
 fn count(row: &Row<'_>) -> Option<Placed<Option<usize>>> {
     let fields = row.fields();
     let key = fields.get(1)?.text.to_uppercase();
-    let counted = [
-        "NTYPES",
-        "NLINETYPES",
-        "NCONNECTS",
-        "NCONNECTIONS",
-        "NPOINTS",
-        "NLINES",
-    ];
-    counted.contains(&key.as_str()).then_some(())?;
+    let counted = "NTYPES NLINETYPES NCONNECTS NCONNECTIONS NPOINTS NLINES";
+    counted.split(' ').any(|known| known == key).then_some(())?;
     Some(Placed {
         value: fields[0].text.parse().ok(),
         span: fields[0].span.clone(),
@@ -201,14 +191,13 @@ fn count(row: &Row<'_>) -> Option<Placed<Option<usize>>> {
 
 fn add<'t>(section: &mut Section<'t>, row: Row<'t>) {
     let first = section.names.is_none() && section.count.is_none();
-    if section.kind.is_table()
-        && first
-        && let Some(count) = count(&row)
-    {
+    if !section.kind.is_table() {
+        section.rows.push(row);
+    } else if let Some(count) = first.then(|| count(&row)).flatten() {
         section.count = Some(count);
-    } else if section.kind.is_table() && section.names.is_none() {
+    } else if section.names.is_none() {
         section.names = Some(row);
-    } else if section.kind.is_table() && section.units.is_none() {
+    } else if section.units.is_none() {
         section.units = Some(row);
     } else {
         section.rows.push(row);
@@ -228,7 +217,7 @@ fn check_count(section: &Section<'_>, findings: &mut Findings) {
         }
         None => "expected the number of rows below".to_string(),
     };
-    findings.mistake(section.kind.name(), count.span.clone(), problem);
+    findings.wrong(section.kind.name(), count, problem);
 }
 
 /// A row of the table in place of names and units would be lost without a word.

@@ -17,39 +17,26 @@ mod sections;
 mod tables;
 mod traps;
 
-use std::ops::Range;
+use moorline::scene::AngleOrder;
 
-use super::rows::Findings;
-use super::{Places, Reading, Supplement};
+use crate::Supplement;
+use crate::draft::Draft;
+use crate::findings::Findings;
 
-/// Whether a text is a MoorDyn file: it has a header of such files.
-pub(super) fn is_deck(text: &str) -> bool {
-    first_header(text).is_some()
-}
+pub(crate) use sections::is_deck;
 
-/// Bytes of the first header, of the file or of a section.
-pub(super) fn first_header(text: &str) -> Option<Range<usize>> {
-    sections::first_header(text).map(|row| row.span())
-}
-
-/// Reads a deck. What it does not say, but its host would, comes from the supplement.
-pub(super) fn read(text: &str, supplement: &Supplement) -> Reading {
+/// Reads a deck with what it leaves to its host.
+pub(crate) fn read<'s>(text: &str, supplement: &'s Supplement) -> Draft<'s> {
     let mut findings = Findings::default();
-    let mut places = Places::default();
     let sections = sections::split(text, &mut findings);
     let deck = tables::read(&sections, &mut findings);
-    let mut scene = None;
     if findings.mistakes.is_empty() {
         refusals::check(&deck, &mut findings);
     }
-    if findings.mistakes.is_empty() {
-        traps::remark(&deck, &sections, &mut findings);
-        scene = build::scene(&deck, supplement, &mut places, &mut findings);
+    let mut draft = Draft::new(deck.version.name(), findings, supplement, AngleOrder::Xyz);
+    if draft.findings.mistakes.is_empty() {
+        traps::remark(&deck, &sections, &mut draft.findings);
+        build::build(&deck, &mut draft);
     }
-    Reading {
-        format: deck.version.name(),
-        scene,
-        places,
-        findings,
-    }
+    draft
 }

@@ -3,7 +3,7 @@
 use std::fs;
 
 use moorline::scene::{
-    Drive, Friction, InitialShape, Integrator, LoadedScene, PointKind, Scene, TimeFunction, load, load_with,
+    Drive, Friction, InitialShape, Integrator, LoadedScene, PointKind, Scene, TimeFunction,
 };
 
 use crate::*;
@@ -304,7 +304,8 @@ fn the_content_of_a_file_tells_what_it_is_and_its_name_does_not() {
 
 #[test]
 fn dashes_in_comments_and_strings_of_a_scene_are_no_deck() {
-    let scene = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/demo.toml")).unwrap();
+    let scene =
+        fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes/demo.toml")).unwrap();
     let text = format!("# ------ LINE TYPES ------\n{scene}");
     assert_eq!(load_text(&text).unwrap().format, "TOML");
 }

@@ -1,7 +1,6 @@
 //! Decks of MoorDyn and MAP++: what is read of them, what is refused and where, and that a converted deck is the same system.
 
-#[path = "../common/mod.rs"]
-mod common;
+mod files;
 mod garbage;
 mod read;
 mod refusals;
@@ -11,8 +10,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use moorline::model::Model;
-use moorline::scene::{LoadError, LoadedScene, Scene, Supplement, load, load_with};
+use moorline::scene::{LoadError, LoadedScene, Scene};
 use moorline::simulation::Simulation;
+use moorline_decks::{Supplement, load, load_with};
 
 const OPENFAST: &str = include_str!("../decks/openfast_v2.dat");
 const VERSION_1: &str = include_str!("../decks/moordyn_v1.dat");

@@ -1,10 +1,15 @@
-//! What is right in a deck but often meant otherwise.
+//! Remarks on what is right in a deck but often meant otherwise.
+
+use moorline::scene::plausibility::{STEEL, dense};
 
 use super::deck::{Attachment, Deck, LineType, Property, Version};
 use super::sections::{Kind, Sections};
 use super::tables::columns_of;
-use crate::scene::plausibility::{DECK_DENSITY_MAX, dense};
-use crate::scene::rows::{Findings, compare_header};
+use crate::findings::Findings;
+use crate::table::compare_header;
+
+/// Density [kg/m³] above which the diameter is unlikely to be that of the volume: steel with a margin for rounded numbers.
+const DENSITY_MAX: f64 = 1.2 * STEEL;
 
 /// BA [N s] below which a ratio without its minus sign is likelier.
 const RATIO_LIKE: f64 = 10.0;
@@ -46,7 +51,7 @@ fn ratio_or_damping(kind: &LineType, sections: &Sections<'_>, findings: &mut Fin
         return;
     };
     let name = &kind.name.value;
-    let at = kind.damping.span.start;
+    let at = &kind.damping;
     if value < 0.0 {
         let ratio = -value;
         let text = format!(
@@ -79,9 +84,9 @@ fn chain_diameter(kind: &LineType, findings: &mut Findings) {
     if diameter <= 0.0 || mass <= 0.0 {
         return;
     }
-    if let Some(text) = dense(diameter, mass, DECK_DENSITY_MAX, "Diam") {
+    if let Some(text) = dense(diameter, mass, DENSITY_MAX, "Diam") {
         let text = format!("{}: {text}", kind.name.value);
-        findings.remark(kind.diameter.span.start, text);
+        findings.remark(&kind.diameter, text);
     }
 }
 
@@ -93,20 +98,22 @@ fn unneeded_options(deck: &Deck, findings: &mut Findings) {
             "options that nothing here needs, since steps and the start from equilibrium are found without them: {}",
             keys.join(", ")
         );
-        findings.remark(first.span.start, text);
+        findings.remark(first, text);
     }
 }
 
 fn friction(deck: &Deck, findings: &mut Findings) {
     let mut coefficients = deck.options.friction.iter();
     if let Some((_, coefficient)) = coefficients.find(|(_, coefficient)| coefficient.value > 0.0) {
-        let text = "friction at rest: here every line lies as one that was laid from its end A, or from end B where only that is on the seabed, and hauled at the \
-                    other end, with all the friction that holds against that, as in MAP++; a line at rest has none in MoorDyn";
-        findings.remark(coefficient.span.start, text);
+        let text = "friction at rest: here every line lies as one that was laid from its end A, or from end B where only that is on \
+                    the seabed, and hauled at the other end, with all the friction that holds against that, as in MAP++; a line \
+                    at rest has none in MoorDyn";
+        findings.remark(coefficient, text);
     }
     if let Some(damping) = &deck.options.friction_damping {
-        let text = "friction here sticks and lets go at its limit: it needs no damping to fade in with, which in MoorDyn lets a line at rest creep";
-        findings.remark(damping.span.start, text);
+        let text = "friction here sticks and lets go at its limit: it needs no damping to fade in with, which in MoorDyn lets a \
+                    line at rest creep";
+        findings.remark(damping, text);
     }
     if let Some(scale) = &deck.options.static_friction
         && scale.value != 1.0
@@ -115,16 +122,16 @@ fn friction(deck: &Deck, findings: &mut Findings) {
             "static friction of {} times the kinetic is not modelled: one coefficient holds and brakes",
             scale.value
         );
-        findings.remark(scale.span.start, text);
+        findings.remark(scale, text);
     }
 }
 
 /// Where runs start: MoorDyn comes to rest from the positions in the file, in no time where `TmaxIC` is 0.
 fn start(deck: &Deck, findings: &mut Findings) {
-    if let Some(span) = &deck.options.starts_at_once {
-        let text = "TmaxIC 0: runs start with free points where the file has them and every line on its catenary between its ends, or straight \
-                    where it has none, as in MoorDyn; leave it out to start from equilibrium";
-        findings.remark(span.start, text);
+    if let Some(at_once) = &deck.options.starts_at_once {
+        let text = "TmaxIC 0: runs start with free points where the file has them and every line on its catenary between its ends, \
+                    or straight where it has none, as in MoorDyn; leave it out to start from equilibrium";
+        findings.remark(at_once, text);
     }
 }
 
@@ -132,33 +139,30 @@ fn line_files(deck: &Deck, findings: &mut Findings) {
     let mut lines = deck.lines.iter();
     if let Some(line) = lines.find(|line| line.outputs.value.chars().any(char::is_alphabetic)) {
         findings.remark(
-            line.outputs.span.start,
+            &line.outputs,
             "no files of single lines are written: `profile = true` in [output] writes the nodes of all lines",
         );
     }
 }
 
-/// What is fixed has no mass in a scene.
+/// Mass, volume and drag of fixed points, which have none in a scene.
 fn masses_of_fixed_points(deck: &Deck, findings: &mut Findings) {
-    let fixed = |id: usize| {
-        let body = deck.bodies.iter().find(|body| body.id.value == id);
-        body.is_some_and(|body| body.attachment.value == Attachment::Fixed)
+    let is_fixed = |attachment: Attachment| match attachment {
+        Attachment::Body(id) => deck.body(id).map(|body| body.attachment.value) == Some(Attachment::Fixed),
+        other => other == Attachment::Fixed,
     };
-    for point in &deck.points {
-        let fixed = match point.attachment.value {
-            Attachment::Fixed => true,
-            Attachment::Body(id) => fixed(id),
-            _ => false,
-        };
+    for point in deck
+        .points
+        .iter()
+        .filter(|point| is_fixed(point.attachment.value))
+    {
         let sizes = [&point.mass, &point.volume, &point.drag_area, &point.added_mass];
-        if let Some(given) = sizes.iter().find(|size| size.value != 0.0)
-            && fixed
-        {
+        if let Some(given) = sizes.into_iter().find(|size| size.value != 0.0) {
             let text = format!(
                 "point {}: mass, volume and drag of a fixed point are left out of the force on the ground, which MoorDyn adds them to",
                 point.id.value
             );
-            findings.remark(given.span.start, text);
+            findings.remark(given, text);
         }
     }
 }
