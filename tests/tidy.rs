@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 const FUNCTION_LINES_MAX: usize = 70;
 
 /// The layers from the ground up: each may use those before it.
-const LAYERS: [&str; 12] = [
+const LAYERS: [&str; 11] = [
     "math",
     "physics",
     "scene",
@@ -19,7 +19,6 @@ const LAYERS: [&str; 12] = [
     "dynamics",
     "simulation",
     "discretisation",
-    "accuracy",
     "interface",
     "output",
 ];

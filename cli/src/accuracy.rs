@@ -2,12 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use moorline::accuracy::{Code, LEVELS, Metric, Peers, Run, Slow, Study, Verdict, study};
-use moorline::output::accuracy::{summary, write_runs, write_verdicts};
-use moorline::output::figures::frontier;
 use moorline::output::report::rounded;
 use moorline::output::write_file;
 use moorline::scene::{Drive, Integrator, Scene};
+use moorline_accuracy::tables::{summary, write_runs, write_verdicts};
+use moorline_accuracy::{Code, Duel, LEVELS, Metric, Peers, Run, Slow, Study, Verdict, frontier, study};
 use moorline_decks::Supplement;
 
 use crate::failure::Failure;
@@ -217,7 +216,7 @@ fn lost(study: &Study) -> String {
         let mut duels = study.duels(metric);
         duels.sort_by(|a, b| a.ratio().total_cmp(&b.ratio()));
         let lost: Vec<_> = duels.iter().filter(|duel| duel.ratio() <= 1.0).collect();
-        let told = |duel: &moorline::accuracy::Duel<'_>| {
+        let told = |duel: &Duel<'_>| {
             format!(
                 "{} at {:.2} %, {} ({})",
                 times(duel.ratio()),

@@ -3,11 +3,11 @@
 use std::path::Path;
 
 use moorline::output::check_file;
+use moorline::output::fmi::FmiVersion;
 use moorline::output::package::{find_library, write_fmu};
 use moorline::scene::LoadedScene;
 use moorline::simulation::Watch;
 use moorline_decks::Supplement;
-use moorline_host::FmiVersion;
 
 use crate::failure::Failure;
 use crate::terminal::{print, read_scene, remark_all, simulate};
@@ -29,6 +29,7 @@ pub fn fmu(path: &Path, supplement: &Supplement, target: &Path, version: &str) -
 
 /// Writes the FMU of a scene; its name appears when the file is whole.
 pub fn package(loaded: &LoadedScene, target: &Path, version: FmiVersion) -> Result<(), Failure> {
-    let library = find_library().map_err(|error| Failure::of_package(error, loaded))?;
-    write_fmu(loaded, version, &library, target).map_err(|error| Failure::of_package(error, loaded))
+    let written =
+        find_library().and_then(|library| write_fmu(&loaded.scene, &loaded.text, version, &library, target));
+    written.map_err(|error| Failure::of_package(error, loaded))
 }

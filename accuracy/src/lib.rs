@@ -7,18 +7,22 @@
 //! resolution: nothing below that is a statement.
 //!
 //! With peers, all codes solve the peers' equations, damping that acts in compression too
-//! ([`crate::scene::Solver::negative_tension`]); and none keeps an energy ledger, but moorline where it chooses its setting itself.
+//! ([`moorline::scene::Solver::negative_tension`]); and none keeps an energy ledger, but moorline where it chooses its setting itself.
+
+#![forbid(unsafe_code)]
 
 mod converged;
 pub mod errors;
+pub mod frontier;
 mod ladder;
 mod peers;
 mod rounds;
 mod slow;
+pub mod tables;
 mod timed;
 mod verdict;
 
-use crate::scene::{ContactLaw, Integrator, MotionPath, Scene};
+use moorline::scene::{ContactLaw, Integrator, MotionPath, Scene};
 
 use converged::Converged;
 pub use errors::{Errors, Histories, Judge, Metric};

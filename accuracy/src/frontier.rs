@@ -1,11 +1,11 @@
 //! Speed against error of a scene: cost over error, a chart for each way to measure the error.
 
-use crate::accuracy::{Code, Metric, Study};
-use crate::scene::Integrator;
+use moorline::output::figures::axis::Axis;
+use moorline::output::figures::chart::{Chart, Curve, Stroke, grid_svg};
+use moorline::output::figures::{DARK, WIDTH, colour};
+use moorline::scene::Integrator;
 
-use super::axis::Axis;
-use super::chart::{Chart, Curve, Stroke, grid_svg};
-use super::{DARK, WIDTH, colour};
+use crate::{Code, Metric, Study};
 
 /// Errors beyond this part of the signal are left out: such a run shows nothing [-].
 const ERROR_MAX: f64 = 0.5;

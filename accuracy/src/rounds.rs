@@ -10,7 +10,7 @@ use super::ladder::Setting;
 use super::peers::Conversation;
 use super::timed::Trial;
 use super::{Code, How, Run, Study};
-use crate::scene::Scene;
+use moorline::scene::Scene;
 
 /// Timings of a run that a verdict names [-].
 const ROUNDS: usize = 3;
@@ -21,7 +21,7 @@ const CONTENDER_COST: f64 = 1.5;
 
 impl Study {
     /// Times in rounds what the verdicts name.
-    pub(super) fn settle(&mut self, scene: &Scene, mut peers: Option<&mut Conversation>) {
+    pub(crate) fn settle(&mut self, scene: &Scene, mut peers: Option<&mut Conversation>) {
         for _ in 0..PASSES_MAX {
             let open = self.unsettled();
             if open.is_empty() {

@@ -11,9 +11,9 @@ use nalgebra::Vector3;
 
 use super::errors::Histories;
 use super::ladder::Setting;
-use crate::model::{Line, Model, Moving, Role};
-use crate::scene::{Integrator, Reconstruction, Scene};
-use crate::simulation::Simulation;
+use moorline::model::{Line, Model, Moving, Role};
+use moorline::scene::{Integrator, Reconstruction, Scene};
+use moorline::simulation::Simulation;
 
 /// Passes of one timing, the median of which counts: at most this many, and no more once they add up to this time [s].
 const PASSES_MAX: usize = 9;
@@ -21,7 +21,7 @@ const PASSES_TIME: f64 = 0.08;
 
 /// A run that can be repeated.
 #[derive(Debug, Clone)]
-pub(super) struct Trial {
+pub(crate) struct Trial {
     start: Simulation,
     /// What the host says before every step, of so many bodies, in one run through memory: fetching it is no work of the solver. Empty where
     /// the scene's motion is followed exactly.
@@ -37,7 +37,7 @@ pub(super) struct Trial {
 
 /// What a run gave.
 #[derive(Debug, Clone)]
-pub(super) struct Timed {
+pub(crate) struct Timed {
     pub histories: Histories,
     /// Processor time over simulated time [-].
     pub cost: f64,
@@ -176,7 +176,7 @@ fn tell(simulation: &mut Simulation, said: &[Moving]) {
 }
 
 /// Runs a setting as a host drives it, and times it.
-pub(super) fn run(trial: &Trial) -> Result<Timed, String> {
+pub(crate) fn run(trial: &Trial) -> Result<Timed, String> {
     let (timed, cost) = trial.recorded()?;
     let cost = cost.map_or_else(|| trial.cost(), Ok)?;
     Ok(Timed { cost, ..timed })

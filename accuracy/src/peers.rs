@@ -13,9 +13,9 @@ use serde::{Deserialize, Serialize};
 
 use super::errors::{Errors, Histories, Judge, Metric};
 use super::{Code, Failed, How, Run, Study};
-use crate::scene::{MotionPath, Point, PointKind, Scene};
+use moorline::scene::{MotionPath, Point, PointKind, Scene};
 
-const SCRIPT: &str = include_str!("peers.py");
+const SCRIPT: &str = include_str!("../peers.py");
 /// Imports all that the script needs, and says [`READY`] where it has it.
 const PROBE: &str = "import numpy, cmoordyn, cabledyn; from cabledyn._lib import _lib; cmoordyn.create; cabledyn.CableDyn; print('ready')";
 const READY: &str = "ready";
@@ -48,7 +48,7 @@ pub enum PeerError {
     #[error("{}: no Python interpreter; give one, or the folder of a virtual environment", .0.display())]
     NoPython(PathBuf),
     /// It does not know the packages.
-    #[error("{}: cannot import moordyn and cabledyn: {said}; install src/accuracy/peers-requirements.txt there", .python.display())]
+    #[error("{}: cannot import moordyn and cabledyn: {said}; install accuracy/peers-requirements.txt there", .python.display())]
     NoPackages {
         /// The interpreter.
         python: PathBuf,
@@ -150,7 +150,7 @@ enum Answer {
 
 /// The script at work on a scene.
 #[derive(Debug)]
-pub(super) struct Conversation {
+pub(crate) struct Conversation {
     child: Child,
     /// Absent once the script has been told to end.
     input: Option<ChildStdin>,
@@ -194,7 +194,7 @@ impl Peers {
     }
 
     /// Tells the script of a scene, and hears of its ladder.
-    pub(super) fn begin(&self, name: &str, scene: &Scene) -> Result<Conversation, String> {
+    pub(crate) fn begin(&self, name: &str, scene: &Scene) -> Result<Conversation, String> {
         let question = question(name, scene)?;
         let mut child = Command::new(&self.python)
             .arg(&self.script)
@@ -249,7 +249,7 @@ impl Family {
 
 impl Conversation {
     /// Runs in the peers' ladder.
-    pub(super) fn count(&self) -> usize {
+    pub(crate) fn count(&self) -> usize {
         self.runs.len()
     }
 
@@ -270,7 +270,7 @@ impl Conversation {
 
     /// Runs the peers' ladder and judges what they answer. A family of settings ends where finer meshes no longer pay; `done` is
     /// told how much of the ladder is done.
-    pub(super) fn add_runs(
+    pub(crate) fn add_runs(
         &mut self,
         judge: &Judge,
         converged: &Histories,
@@ -325,7 +325,7 @@ impl Conversation {
     }
 
     /// Times a run of the peers' ladder again: processor time over simulated time [-]. `None` where it fails.
-    pub(super) fn time(&mut self, number: usize) -> Option<f64> {
+    pub(crate) fn time(&mut self, number: usize) -> Option<f64> {
         let asked = Asked {
             run: number,
             read: false,

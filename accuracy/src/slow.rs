@@ -4,7 +4,7 @@ use super::errors::{Errors, Histories, Judge, Metric};
 use super::ladder::Setting;
 use super::timed::Trial;
 use super::{judge, shortest_period};
-use crate::scene::{Integrator, MotionPath, Scene};
+use moorline::scene::{Integrator, MotionPath, Scene};
 
 /// How many times as long all periods are made, until the quasi-static mode is good [-].
 const FACTORS: [f64; 7] = [1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0];
@@ -28,7 +28,7 @@ pub struct Slow {
 
 /// Errors of the quasi-static mode, from the scene's own motion on to slower ones; none where the motion is no sum of sines or a run
 /// fails.
-pub(super) fn slow(scene: &Scene) -> Vec<Slow> {
+pub(crate) fn slow(scene: &Scene) -> Vec<Slow> {
     let mut all = Vec::new();
     for factor in FACTORS {
         let Some(one) = slowed(scene, factor).and_then(|scene| compared(&scene, factor)) else {

@@ -3,13 +3,13 @@
 //! Over the window, of the line where it is worst:
 //!
 //! * RMS: √⟨(T − T_ref)²⟩ over the standard deviation of T_ref;
-//! * low-passed: the same of both tensions behind a zero-phase filter ([`crate::math::low_pass`]);
+//! * low-passed: the same of both tensions behind a zero-phase filter ([`moorline::math::low_pass`]);
 //! * peak: |max T − max T_ref| over the range of T_ref;
 //! * position: √⟨|r − r_ref|²⟩ of the point half-way along the line over the standard deviation of its motion.
 
 use nalgebra::Vector3;
 
-use crate::math::low_pass::low_pass;
+use moorline::math::low_pass::low_pass;
 
 /// What is compared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,6 +1,6 @@
 //! The settings that a scene is tried with.
 
-use crate::scene::{ContactLaw, Integrator, Reconstruction, Scene, Threads};
+use moorline::scene::{ContactLaw, Integrator, Reconstruction, Scene, Threads};
 
 /// Elements of the longest line where a run costs next to nothing [-]. Close together: an explicit step must divide the communication
 /// step, so that a mesh a little finer may take one step more, and one a little coarser waste none. The leapfrogs take four nodes at a
@@ -95,8 +95,9 @@ impl Setting {
     /// told where the fairlead is, as by default; other settings keep none, and are told where it goes, as other codes are.
     pub fn apply(&self, scene: &Scene) -> Scene {
         let mut scene = scene.clone();
-        let length =
-            |line: &crate::scene::Line| -> f64 { line.sections.iter().map(|section| section.length).sum() };
+        let length = |line: &moorline::scene::Line| -> f64 {
+            line.sections.iter().map(|section| section.length).sum()
+        };
         let longest = scene.lines.iter().map(length).fold(0.0, f64::max);
         for section in scene.lines.iter_mut().flat_map(|line| &mut line.sections) {
             section.elements = self.elements.map(|elements| {
@@ -155,7 +156,7 @@ pub fn ladder(scene: &Scene, period: f64) -> Vec<Setting> {
         period,
         interval,
     ));
-    let softened = |bed: &crate::scene::Seabed| bed.contact == ContactLaw::Regularised;
+    let softened = |bed: &moorline::scene::Seabed| bed.contact == ContactLaw::Regularised;
     if scene.seabed.as_ref().is_some_and(softened) {
         let cheap = |setting: &&Setting| match setting.integrator {
             Integrator::Leapfrog => [1, 4].contains(&setting.communication),
@@ -269,7 +270,7 @@ pub fn converged(scene: &Scene, period: f64) -> Vec<Vec<Vec<Setting>>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Line, Section};
+    use moorline::scene::{Line, Section};
 
     #[test]
     fn elements_follow_the_length_of_section_and_line() {

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
-use crate::accuracy::{Code, Metric, Run, Study, Verdict};
+use crate::{Code, Metric, Run, Study, Verdict};
 
 /// Writes scene, code, setting, cost with its range, errors and the converged solution's uncertainty of every run of these studies;
 /// `machine` names the processor.

@@ -9,11 +9,11 @@ use super::errors::{Errors, Judge, Metric};
 use super::ladder::{self, Setting};
 use super::timed::{Timed, Trial};
 use super::{StudyError, judge, shortest_period};
-use crate::scene::Scene;
+use moorline::scene::Scene;
 
 /// The converged solution.
 #[derive(Debug, Clone)]
-pub(super) struct Converged {
+pub(crate) struct Converged {
     pub setting: Setting,
     pub fine: Timed,
     /// Distance from the mesh before.
