@@ -23,6 +23,18 @@ const LAYERS: [&str; 11] = [
     "output",
 ];
 
+/// The packages of the workspace, each with those it may use: the library uses none, the program and what goes into an FMU stand
+/// on top.
+const PACKAGES: [(&str, &[&str]); 7] = [
+    (".", &[]),
+    ("accuracy", &["moorline"]),
+    ("cli", &["moorline", "moorline-accuracy", "moorline-decks", "moorline-host"]),
+    ("decks", &["moorline"]),
+    ("fmu", &["moorline", "moorline-host"]),
+    ("fmu/conformance", &["moorline-host"]),
+    ("fmu/host", &["moorline"]),
+];
+
 /// A source file, as it is and without comments and literals.
 struct Source {
     /// Path from the root of the repository, with forward slashes.
@@ -274,6 +286,38 @@ fn layers_use_only_the_layers_below_them() {
     assert_none(&complaints, "layers point one way (DESIGN, section 3)");
 }
 
+/// Names of the dependencies of a manifest, development ones included.
+fn dependencies(manifest: &str) -> Vec<&str> {
+    let mut inside = false;
+    let mut names = Vec::new();
+    for line in manifest.lines() {
+        if line.starts_with('[') {
+            inside = line.ends_with("dependencies]");
+        } else if let Some((name, _)) = line.split_once(" = ").filter(|_| inside) {
+            names.push(name);
+        }
+    }
+    names
+}
+
+#[test]
+fn packages_use_only_the_packages_below_them() {
+    let manifest = |folder: &str| fs::read_to_string(root().join(folder).join("Cargo.toml")).unwrap();
+    let workspace = manifest(".");
+    let members = workspace.lines().find(|line| line.starts_with("members = "));
+    let known = PACKAGES.map(|(folder, _)| format!("{folder:?}"));
+    assert_eq!(members, Some(format!("members = [{}]", known.join(", ")).as_str()));
+    let mut complaints = Vec::new();
+    for (folder, allowed) in PACKAGES {
+        let manifest = manifest(folder);
+        let own = dependencies(&manifest);
+        let own = own.into_iter().filter(|name| name.starts_with("moorline"));
+        let forbidden = own.filter(|name| !allowed.contains(name));
+        complaints.extend(forbidden.map(|name| format!("{folder}/Cargo.toml: {name}")));
+    }
+    assert_none(&complaints, "packages point one way (DESIGN, section 3)");
+}
+
 /// First and last byte of every function with a body.
 fn functions(code: &str) -> Vec<(usize, usize)> {
     words(code, "fn")
@@ -394,7 +438,7 @@ fn is_field(declaration: &str) -> bool {
 #[test]
 fn every_public_number_says_its_unit() {
     let mut complaints = Vec::new();
-    let layers = ["src/physics", "src/model", "src/scene"];
+    let layers = ["src/physics", "src/model", "src/scene", "decks/src"];
     for source in sources() {
         if !layers.iter().any(|layer| source.is_under(layer)) {
             continue;
@@ -429,8 +473,8 @@ fn only_the_command_line_prints() {
     let mut complaints = Vec::new();
     let printing = ["print", "println", "eprint", "eprintln", "dbg"];
     for source in sources() {
-        let library = source.is_under("src") || source.is_under("fmu/src");
-        if !library {
+        let libraries = ["src", "accuracy/src", "decks/src", "fmu/src"];
+        if !libraries.iter().any(|folder| source.is_under(folder)) {
             continue;
         }
         for name in printing {
