@@ -1,4 +1,4 @@
-"""Decks of MoorDyn and MAP++ as FMUs: every deck of tests/decks and every published system, at rest and driven, for a minute in FMPy."""
+"""Decks of MoorDyn and MAP++ as FMUs: every deck of decks/tests/decks and every published system, at rest and driven, for a minute in FMPy."""
 
 import pathlib
 
@@ -9,7 +9,7 @@ import pytest
 import decks
 from runs import driven, packaged
 
-FOLDER = pathlib.Path(__file__).resolve().parent.parent / "tests" / "decks"
+FOLDER = pathlib.Path(__file__).resolve().parent.parent / "decks" / "tests" / "decks"
 OF_HOST = {"farm.dat": ["--at", "turbine1=0,0,0", "--at", "turbine2=1000,0,0"], "oc3.map": ["--depth", 320]}
 FILES = sorted(path.name for path in FOLDER.iterdir() if path.is_file())
 SYSTEMS = ["oc3", "oc4", "volturnus", "taut", "buoyed", "clump"]
@@ -18,7 +18,7 @@ STEP = 0.05  # communication step [s]
 
 @pytest.fixture
 def fmu(moorline, version, tmp_path):
-    """Packages a file of tests/decks, with what its host would give, or a system of decks.py."""
+    """Packages a file of decks/tests/decks, with what its host would give, or a system of decks.py."""
 
     def make(name):
         if name in SYSTEMS:

@@ -15,11 +15,14 @@
 //! anchor) to end B (the fairlead), and arc length counts unstretched metres from A. Forces at points are those that the
 //! mooring applies to what holds the point.
 //!
-//! Layers point one way:
+//! Layers point one way, each using those before it:
 //!
 //! ```text
-//! math -> physics -> scene -> model -> statics -> dynamics -> simulation -> interface -> output -> command line, FMU
+//! math, physics, scene, model, elements, statics, dynamics, simulation, discretisation, interface, output
 //! ```
+//!
+//! Above the library stand the packages of the workspace: `moorline-decks` reads the input files of other programs,
+//! `moorline-accuracy` measures speed against error, `moorline-cli` is the program, `moorline-fmu` the library inside FMUs.
 //!
 //! ```
 //! use moorline::scene::Scene;
@@ -61,7 +64,6 @@
 //! ```
 #![forbid(unsafe_code)]
 
-pub mod accuracy;
 pub mod discretisation;
 pub mod dynamics;
 pub mod elements;

@@ -331,38 +331,3 @@ fn a_fairlead_that_jumps_and_a_line_that_is_strained_are_each_noted_once_in_a_ru
     assert!(texts[0].contains("hand has moved by"), "{texts:?}");
     assert!(texts[1].contains("rope is strained by"), "{texts:?}");
 }
-
-/// What a command says of the rope with an unusual gravity.
-fn said_by(folder: &Path, arguments: &[&str]) -> String {
-    let output = std::process::Command::new(env!("CARGO_BIN_EXE_moorline"))
-        .args(arguments)
-        .current_dir(folder)
-        .output()
-        .unwrap();
-    let both = [output.stdout, output.stderr].concat();
-    String::from_utf8(both).unwrap()
-}
-
-#[test]
-fn every_command_says_a_note_once_with_the_line_of_the_file() {
-    let folder = tempfile::tempdir().unwrap();
-    let text = format!("title = \"slip\"\ngravity = 32.2\n{ROPE}[output]\nduration = 0.2\ninterval = 0.1\n");
-    fs::write(folder.path().join("slip.toml"), text).unwrap();
-    for arguments in [
-        &["check", "slip.toml"][..],
-        &["statics", "slip.toml"],
-        &["run", "slip.toml", "-o", "out"],
-        &["fmu", "slip.toml", "-o", "slip.fmu"],
-    ] {
-        let said = said_by(folder.path(), arguments);
-        let note = "note: slip.toml:2: gravity: 32.2 m/s² is unusual: 9.80665 m/s² is usual";
-        assert_eq!(said.matches(note).count(), 1, "{arguments:?}: {said}");
-        let advice = said.contains("no `axial_damping`");
-        assert_eq!(advice, arguments[0] == "check", "{arguments:?}: {said}");
-    }
-    let jump = "time,x,y,z\n0,0,0,0\n0.1,-1.5,0,0\n0.2,-1.5,0,0\n";
-    fs::write(folder.path().join("jump.csv"), jump).unwrap();
-    let moved = ["run", "slip.toml", "-o", "out", "--motion", "jump.csv"];
-    let said = said_by(folder.path(), &moved);
-    assert_eq!(said.matches("hand has moved by").count(), 1, "{said}");
-}

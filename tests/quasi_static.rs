@@ -3,8 +3,6 @@
 
 mod common;
 
-use std::process::Command;
-
 use common::{at_reference, random, resting, scene, shipped, with_elements};
 use moorline::elements::Workspace;
 use moorline::model::{Body, End, Model, State};
@@ -63,27 +61,6 @@ fn the_collar_slides_to_the_inextensible_catenary_on_any_mesh() {
         }
         assert!((depth(&simulation) / COLLAR[1] - 1.0).abs() < tolerance);
     }
-}
-
-#[test]
-fn the_command_line_draws_the_collar_out_too() {
-    let folder = tempfile::tempdir().unwrap();
-    let scene = format!("{}/scenes/collar.toml", env!("CARGO_MANIFEST_DIR"));
-    let done = Command::new(env!("CARGO_BIN_EXE_moorline"))
-        .args(["run", &scene, "-o"])
-        .arg(folder.path())
-        .output()
-        .unwrap();
-    assert!(done.status.success(), "{done:?}");
-    let mut table = csv::Reader::from_path(folder.path().join("results.csv")).unwrap();
-    let names = table.headers().unwrap().clone();
-    let last = table.records().last().unwrap().unwrap();
-    let value = |name: &str| -> f64 {
-        let column = names.iter().position(|other| other == name).unwrap();
-        last[column].parse().unwrap()
-    };
-    assert!((value("wire.sag") / COLLAR[1] - 1.0).abs() < 1e-5);
-    assert!((value("wire.tension_a") - PULL.hypot(HALF_WEIGHT)).abs() < 1e-10);
 }
 
 #[test]

@@ -551,58 +551,6 @@ fn a_scene_with_a_rough_grid_is_written_and_read_back_the_same() {
 }
 
 #[test]
-fn a_deck_with_bathymetry_and_friction_is_read_and_converted_with_them() {
-    let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("bathymetry");
-    std::fs::create_dir_all(&folder).unwrap();
-    let soundings = "--- MoorPy Bathymetry Input File v1.0 ---\nnGridX 2\nnGridY 2\n-900 900\n-900 100 110\n900 100 110\n";
-    std::fs::write(folder.join("bed.txt"), soundings).unwrap();
-    let options = "bed.txt WtrDpth\n0.7 mu_kT\n0.3 mu_kA\n200 FricDamp\n1.5 StatDynFricScale";
-    let deck = include_str!("decks/openfast_v2.dat").replace("2.0e6    kbot", options);
-    std::fs::write(folder.join("deck.dat"), deck).unwrap();
-    let loaded = moorline::scene::load(&folder.join("deck.dat")).unwrap();
-    let bed = loaded.scene.seabed.as_ref().unwrap();
-    assert_eq!((bed.friction.transverse, bed.friction.axial), (0.7, 0.3));
-    assert_eq!(bed.grid.as_ref().unwrap().depth, [[100.0, 110.0], [100.0, 110.0]]);
-    let notes: Vec<String> = loaded.notes.iter().map(ToString::to_string).collect();
-    let notes = notes.join("\n");
-    assert!(
-        notes.contains("static friction of 1.5 times the kinetic is not modelled"),
-        "{notes}"
-    );
-    assert!(notes.contains("it needs no damping to fade in with"), "{notes}");
-    let converted = Scene::from_toml(&loaded.to_commented_toml()).unwrap();
-    assert_eq!(converted, loaded.scene);
-}
-
-#[test]
-fn a_seafloor_file_of_moordyn_c_is_read_as_heights_of_the_bed() {
-    let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("seafloor_c");
-    std::fs::create_dir_all(&folder).unwrap();
-    let deck =
-        include_str!("decks/openfast_v2.dat").replace("2.0e6    kbot", "110 WtrDpth\nbed.txt SeafloorFile");
-    std::fs::write(folder.join("deck.dat"), deck).unwrap();
-    let heights = "2 2\n-900 900\n-900 900\n-900 -900 -100\n-900 900 -100\n900 -900 -110\n900 900 -110\n";
-    std::fs::write(folder.join("bed.txt"), heights).unwrap();
-    let loaded =
-        moorline::scene::load(&folder.join("deck.dat")).unwrap_or_else(|error| panic!("{}", error.list()));
-    let grid = loaded.scene.seabed.unwrap().grid.unwrap();
-    assert_eq!((grid.x, grid.y), (vec![-900.0, 900.0], vec![-900.0, 900.0]));
-    assert_eq!(grid.depth, [[100.0, 110.0], [100.0, 110.0]]);
-    std::fs::write(
-        folder.join("bed.txt"),
-        "2 2\n-900 900\n-900 900\n-900 -900 -100\n",
-    )
-    .unwrap();
-    let error = moorline::scene::load(&folder.join("deck.dat")).unwrap_err();
-    let said = error.list();
-    assert!(said.contains("deck.dat:27:1: OPTIONS, bathymetry: "), "{said}");
-    assert!(
-        said.contains("bed.txt: no height at x = 900 m, y = -900 m"),
-        "{said}"
-    );
-}
-
-#[test]
 fn a_vessel_is_held_by_nodes_that_stick_and_let_go_by_nodes_that_slide() {
     let stiffness = |mu: f64| {
         let mut scene = chain(&format!("friction = {mu}"), 575.0, 60);

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 const FUNCTION_LINES_MAX: usize = 70;
 
 /// The layers from the ground up: each may use those before it.
-const LAYERS: [&str; 12] = [
+const LAYERS: [&str; 11] = [
     "math",
     "physics",
     "scene",
@@ -19,9 +19,20 @@ const LAYERS: [&str; 12] = [
     "dynamics",
     "simulation",
     "discretisation",
-    "accuracy",
     "interface",
     "output",
+];
+
+/// The packages of the workspace, each with those it may use: the library uses none, the program and what goes into an FMU stand
+/// on top.
+const PACKAGES: [(&str, &[&str]); 7] = [
+    (".", &[]),
+    ("accuracy", &["moorline"]),
+    ("cli", &["moorline", "moorline-accuracy", "moorline-decks", "moorline-host"]),
+    ("decks", &["moorline"]),
+    ("fmu", &["moorline", "moorline-host"]),
+    ("fmu/conformance", &["moorline-host"]),
+    ("fmu/host", &["moorline"]),
 ];
 
 /// A source file, as it is and without comments and literals.
@@ -275,6 +286,38 @@ fn layers_use_only_the_layers_below_them() {
     assert_none(&complaints, "layers point one way (DESIGN, section 3)");
 }
 
+/// Names of the dependencies of a manifest, development ones included.
+fn dependencies(manifest: &str) -> Vec<&str> {
+    let mut inside = false;
+    let mut names = Vec::new();
+    for line in manifest.lines() {
+        if line.starts_with('[') {
+            inside = line.ends_with("dependencies]");
+        } else if let Some((name, _)) = line.split_once(" = ").filter(|_| inside) {
+            names.push(name);
+        }
+    }
+    names
+}
+
+#[test]
+fn packages_use_only_the_packages_below_them() {
+    let manifest = |folder: &str| fs::read_to_string(root().join(folder).join("Cargo.toml")).unwrap();
+    let workspace = manifest(".");
+    let members = workspace.lines().find(|line| line.starts_with("members = "));
+    let known = PACKAGES.map(|(folder, _)| format!("{folder:?}"));
+    assert_eq!(members, Some(format!("members = [{}]", known.join(", ")).as_str()));
+    let mut complaints = Vec::new();
+    for (folder, allowed) in PACKAGES {
+        let manifest = manifest(folder);
+        let own = dependencies(&manifest);
+        let own = own.into_iter().filter(|name| name.starts_with("moorline"));
+        let forbidden = own.filter(|name| !allowed.contains(name));
+        complaints.extend(forbidden.map(|name| format!("{folder}/Cargo.toml: {name}")));
+    }
+    assert_none(&complaints, "packages point one way (DESIGN, section 3)");
+}
+
 /// First and last byte of every function with a body.
 fn functions(code: &str) -> Vec<(usize, usize)> {
     words(code, "fn")
@@ -395,7 +438,7 @@ fn is_field(declaration: &str) -> bool {
 #[test]
 fn every_public_number_says_its_unit() {
     let mut complaints = Vec::new();
-    let layers = ["src/physics", "src/model", "src/scene"];
+    let layers = ["src/physics", "src/model", "src/scene", "decks/src"];
     for source in sources() {
         if !layers.iter().any(|layer| source.is_under(layer)) {
             continue;
@@ -418,7 +461,7 @@ fn every_public_number_says_its_unit() {
 fn only_the_fmu_is_unsafe() {
     let mut complaints = Vec::new();
     for source in sources() {
-        if source.is_under("src") || source.is_under("examples") {
+        if !source.is_under("fmu") {
             complaints.extend(words(&source.code, "unsafe").map(|at| source.place(at)));
         }
     }
@@ -430,8 +473,8 @@ fn only_the_command_line_prints() {
     let mut complaints = Vec::new();
     let printing = ["print", "println", "eprint", "eprintln", "dbg"];
     for source in sources() {
-        let library = source.is_under("src") || source.is_under("fmu/src");
-        if !library || source.path == "src/main.rs" || source.is_under("src/main") {
+        let libraries = ["src", "accuracy/src", "decks/src", "fmu/src"];
+        if !libraries.iter().any(|folder| source.is_under(folder)) {
             continue;
         }
         for name in printing {

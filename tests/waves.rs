@@ -633,51 +633,13 @@ fn waves_that_would_break_and_seas_without_a_ramp_are_remarked_on() {
     }
 }
 
-/// A MoorDyn deck of a buoyed line that asks for waves and a current, with files of these beside it.
-fn deck(folder: &std::path::Path, waves: &str, current: &str) -> std::path::PathBuf {
-    let deck = include_str!("decks/moordyn_v1.dat");
-    let options = "80     WtrDpth\n7  WaveKin\n1  Currents";
-    let path = folder.join("mooring.dat");
-    std::fs::write(&path, deck.replace("80     WtrDpth", options)).unwrap();
-    std::fs::write(folder.join("wave_frequencies.txt"), waves).unwrap();
-    std::fs::write(folder.join("current_profile.txt"), current).unwrap();
-    path
-}
-
-const DECK_WAVES: &str = "0.0 0.0 0.0\n0.6 0.0 1.2\n0.9 0.4 0.0 0.5\n";
-const DECK_CURRENT: &str = "--- steady currents ---\nprofile\nz ux uy uz\n-80.0 0.1 0.0 0\n0.0 0.7 0.2 0\n";
-
-#[test]
-fn a_deck_of_moordyn_brings_its_waves_and_current_from_files() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = deck(folder.path(), DECK_WAVES, DECK_CURRENT);
-    let loaded = moorline::scene::load(&path).unwrap();
-    let water = loaded.scene.water.as_ref().unwrap();
-    let current = water.current.as_ref().unwrap();
-    let profile = vec![[-80.0, 0.1, 0.0], [0.0, 0.7, 0.2]];
-    assert_eq!(current.profile.as_ref().unwrap(), &profile);
-    let mut simulation = Simulation::new(&loaded.scene).unwrap();
-    let waves = simulation.model().waves.clone().unwrap();
-    for t in [0.0, 2.0, 31.0] {
-        // MoorDyn's sum: |A| sin(ωt + arg A) at the origin
-        let expected = 1.2 * (0.6 * t + 0.5 * PI).sin() + 0.4 * (0.9_f64 * t).sin();
-        assert_relative_eq!(waves.elevation(0.0, 0.0, t), expected, epsilon = 1e-12);
-    }
-    simulation.advance(0.1).unwrap();
-    let text = loaded.to_commented_toml();
-    assert_eq!(Scene::from_toml(&text).unwrap(), loaded.scene, "{text}");
-    assert!(
-        loaded
-            .notes
-            .iter()
-            .any(|note| note.text.contains("wave_frequencies.txt"))
-    );
-}
-
 #[test]
 fn a_scene_names_files_of_waves_and_current_as_a_deck_does() {
     let folder = tempfile::tempdir().unwrap();
-    deck(folder.path(), DECK_WAVES, DECK_CURRENT);
+    let waves = "0.0 0.0 0.0\n0.6 0.0 1.2\n0.9 0.4 0.0 0.5\n";
+    std::fs::write(folder.path().join("wave_frequencies.txt"), waves).unwrap();
+    let current = "--- steady currents ---\nprofile\nz ux uy uz\n-80.0 0.1 0.0 0\n0.0 0.7 0.2 0\n";
+    std::fs::write(folder.path().join("current_profile.txt"), current).unwrap();
     let path = folder.path().join("scene.toml");
     let original = system(Integrator::Auto, "{ regular = { height = 1.0, period = 5.0 } }");
     let text = original.to_toml().replace(
@@ -704,17 +666,6 @@ fn a_scene_names_files_of_waves_and_current_as_a_deck_does() {
     std::fs::remove_file(folder.path().join("wave_frequencies.txt")).unwrap();
     let refusal = format!("{:?}", moorline::scene::load(&path).unwrap_err());
     assert!(refusal.contains("no such file"), "{refusal}");
-}
-
-#[test]
-fn a_deck_whose_files_are_wrong_is_refused_with_file_and_line() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = deck(folder.path(), "0.6 0.0\n", DECK_CURRENT);
-    let refusal = format!("{:?}", moorline::scene::load(&path).unwrap_err());
-    assert!(
-        refusal.contains("wave_frequencies.txt, line 1: expected 3 or 4 numbers"),
-        "{refusal}"
-    );
 }
 
 #[test]

@@ -6,11 +6,11 @@
 
 use std::io;
 
-use moorline_host::FmiVersion;
 use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, Event};
 use sha2::{Digest, Sha256};
 
+use super::fmi::FmiVersion;
 use crate::interface::{Causality, Interface, Kind, Layout, Unit, Variability, Variable};
 use crate::model::Model;
 use crate::scene::{Scene, SceneError};

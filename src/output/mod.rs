@@ -3,12 +3,12 @@
 //! All of it is written from plain numbers: a [`record::Record`] of a run, a [`json::Statics`] of an equilibrium. Nothing here
 //! prints. A file appears under its name only when it is whole ([`write_file`]).
 
-pub mod accuracy;
 pub mod channels;
 pub mod collect;
 pub mod csv;
 pub mod description;
 pub mod figures;
+pub mod fmi;
 pub mod json;
 pub mod package;
 pub mod record;

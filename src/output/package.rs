@@ -7,14 +7,14 @@ use std::fs;
 use std::io::{Cursor, Write};
 use std::path::{Path, PathBuf};
 
-use moorline_host::{FmiVersion, library_name, platform};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
 use super::description::{Description, MODEL_IDENTIFIER};
+use super::fmi::{FmiVersion, library_name, platform};
 use super::{OutputError, write_file};
 use crate::discretisation;
-use crate::scene::{LoadedScene, Scene, SceneError};
+use crate::scene::{Scene, SceneError};
 
 /// Name of the scene below `resources/`.
 pub const SCENE_FILE: &str = "scene.toml";
@@ -77,12 +77,14 @@ pub fn find_library() -> Result<PathBuf, PackageError> {
         })
 }
 
-/// Packages a scene with the FMU library into `target`, which has its name when it is whole. Its mesh is the one that it has now, whatever a host sets later.
+/// Packages a scene with the FMU library into `target`, which has its name when it is whole. `text` is the text of the file that the
+/// scene was read from. The mesh is the one that the scene has now, whatever a host sets later.
 ///
 /// # Errors
 /// A scene that cannot be described, a library that cannot be read, a target that cannot be written.
 pub fn write_fmu(
-    loaded: &LoadedScene,
+    scene: &Scene,
+    text: &str,
     version: FmiVersion,
     library: &Path,
     target: &Path,
@@ -91,12 +93,12 @@ pub fn write_fmu(
         let path = path.to_path_buf();
         move |problem| PackageError::File { path, problem }
     };
-    let frozen = discretisation::frozen(&loaded.scene);
+    let frozen = discretisation::frozen(scene);
     let text = match &frozen {
-        Some(scene) => scene.to_toml(),
-        None => packaged_text(loaded),
+        Some(frozen) => frozen.to_toml(),
+        None => packaged_text(scene, text),
     };
-    let scene = frozen.as_ref().unwrap_or(&loaded.scene);
+    let scene = frozen.as_ref().unwrap_or(scene);
     let description = Description::new(&text, scene, version)?;
     let binary = fs::read(library).map_err(fail(library))?;
     let bytes = container(&description.xml, &text, version, &binary)?;
@@ -106,11 +108,10 @@ pub fn write_fmu(
 
 /// The user's own text where it alone says the whole scene; else, with motion files or in another format, the scene
 /// written out.
-fn packaged_text(loaded: &LoadedScene) -> String {
-    if Scene::from_toml(&loaded.text).is_ok_and(|scene| scene == loaded.scene) {
-        loaded.text.clone()
-    } else {
-        loaded.scene.to_toml()
+fn packaged_text(scene: &Scene, text: &str) -> String {
+    match Scene::from_toml(text) {
+        Ok(read) if read == *scene => text.to_string(),
+        _ => scene.to_toml(),
     }
 }
 

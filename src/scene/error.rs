@@ -1,9 +1,7 @@
 //! What is wrong with a scene, where, and what would be right.
 
 use std::ops::Range;
-use std::path::PathBuf;
-
-use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode};
+use std::path::{Path, PathBuf};
 
 use super::path;
 
@@ -46,7 +44,7 @@ impl SceneError {
 /// Why a scene file cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum LoadError {
-    /// No such file, a folder, no permission.
+    /// The file cannot be used as a whole: there is none, it is a folder, or it is not of the kind that is wanted.
     #[error("{}: {problem}", path.display())]
     Unreadable {
         /// The file.
@@ -64,19 +62,13 @@ pub enum LoadError {
         /// What is wrong, and what would be right.
         problem: String,
     },
-    /// A scene, with something beside it that only decks need.
-    #[error("{}: {problem}", path.display())]
-    NotADeck {
+    /// Text with mistakes, in the order of the file.
+    #[error("{}", place_first(path, text, mistakes))]
+    Scene {
         /// The file.
         path: PathBuf,
-        /// What is wrong, and what would be right.
-        problem: &'static str,
-    },
-    /// Text with mistakes, in the order of the file.
-    #[error("{}", place_first(source_text, mistakes))]
-    Scene {
-        /// The file's name and text.
-        source_text: Box<NamedSource<String>>,
+        /// Its text, which the spans of the mistakes count bytes of.
+        text: String,
         /// The mistakes, at least one.
         mistakes: Vec<SceneError>,
     },
@@ -94,11 +86,8 @@ impl LoadError {
     /// Every mistake on a line: file, line, column, key, what is wrong.
     pub fn list(&self) -> String {
         match self {
-            LoadError::Scene {
-                source_text,
-                mistakes,
-            } => {
-                let lines = mistakes.iter().map(|mistake| place(source_text, mistake));
+            LoadError::Scene { path, text, mistakes } => {
+                let lines = mistakes.iter().map(|mistake| place(path, text, mistake));
                 lines.collect::<Vec<_>>().join("\n")
             }
             other => other.to_string(),
@@ -106,42 +95,17 @@ impl LoadError {
     }
 }
 
-fn place(source_text: &NamedSource<String>, mistake: &SceneError) -> String {
-    let (line, column) = mistake.line_column(source_text.inner());
-    format!("{}:{line}:{column}: {mistake}", source_text.name())
+fn place(path: &Path, text: &str, mistake: &SceneError) -> String {
+    let (line, column) = mistake.line_column(text);
+    format!("{}:{line}:{column}: {mistake}", path.display())
 }
 
-fn place_first(source_text: &NamedSource<String>, mistakes: &[SceneError]) -> String {
-    let first = mistakes
-        .first()
-        .map(|mistake| place(source_text, mistake))
-        .unwrap_or_default();
+fn place_first(path: &Path, text: &str, mistakes: &[SceneError]) -> String {
+    let first = mistakes.first().map(|mistake| place(path, text, mistake));
+    let first = first.unwrap_or_default();
     match mistakes.len() {
         0 | 1 => first,
         2 => format!("{first} (and 1 mistake more)"),
         n => format!("{first} (and {} mistakes more)", n - 1),
-    }
-}
-
-impl Diagnostic for LoadError {
-    fn source_code(&self) -> Option<&dyn SourceCode> {
-        match self {
-            LoadError::Scene { source_text, .. } => Some(source_text.as_ref()),
-            _ => None,
-        }
-    }
-
-    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
-        let mistakes = self.mistakes();
-        let alone = mistakes.len() == 1;
-        Some(Box::new(mistakes.iter().filter_map(move |mistake| {
-            let span = mistake.span.clone()?;
-            let label = if alone {
-                "here".to_string()
-            } else {
-                mistake.problem.clone()
-            };
-            Some(LabeledSpan::new_with_span(Some(label), span))
-        })))
     }
 }

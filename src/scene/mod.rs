@@ -1,8 +1,7 @@
 //! What the user wrote: plain data, SI units, nothing computed. What is absent is `None`.
 //!
-//! A scene comes from a file ([`load`]), which may be a deck of MoorDyn or MAP++ too, or from TOML text
-//! ([`Scene::from_toml`]); every mistake names its key, line and column. [`Scene::notes`] says what is no mistake but may
-//! surprise, [`Scene::in_words`] what is modelled.
+//! A scene comes from a TOML file ([`load`]) or from TOML text ([`Scene::from_toml`]); every mistake names its key, line and
+//! column. [`Scene::notes`] says what is no mistake but may surprise, [`Scene::in_words`] what is modelled.
 //! [`crate::model::Model::new`] is the one gate from here to the solver.
 
 mod bathymetry_file;
@@ -13,20 +12,17 @@ mod commented;
 mod document;
 mod drive;
 mod error;
-mod from_deck;
 mod idle;
 pub mod input_file;
 pub mod keys;
-mod map;
-mod moordyn;
 mod motion_file;
-mod nearest;
+pub mod nearest;
 mod notes;
-mod path;
+pub mod path;
 mod places;
-mod plausibility;
+pub mod plausibility;
 mod read;
-mod rows;
+pub mod rows;
 mod seabed;
 mod slips;
 mod surface;
@@ -48,8 +44,7 @@ pub use drive::{Drive, RegularMotion};
 pub use error::{LoadError, SceneError};
 pub use notes::Note;
 pub use places::Places;
-use read::Reading;
-pub use read::{LoadedScene, Supplement, TOML, load, load_with};
+pub use read::{LoadedScene, TOML, folder_of, is_toml, load, load_text, read_text};
 pub use seabed::{ContactLaw, DepthGrid, Friction, Seabed};
 pub use tension_strain::TensionStrain;
 pub use threads::Threads;

@@ -27,7 +27,7 @@ const ALIASES: &[(&str, &str)] = &[
 ];
 
 /// The known name that the user may have meant.
-pub(super) fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str> + Clone) -> Option<&'a str> {
+pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str> + Clone) -> Option<&'a str> {
     let lower = name.to_lowercase();
     let alias = ALIASES.iter().find(|(alias, _)| *alias == lower);
     if let Some((_, meant)) = alias

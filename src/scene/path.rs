@@ -23,7 +23,7 @@ fn is_bare(key: &str) -> bool {
 }
 
 /// A key as TOML would have it written: quoted where it must be.
-pub(super) fn quoted(key: &str) -> String {
+pub fn quoted(key: &str) -> String {
     if is_bare(key) {
         key.to_string()
     } else {
@@ -95,7 +95,7 @@ fn split_quoted(path: &str) -> Option<(String, &str)> {
 }
 
 /// Line and column of a byte of the text, both from 1; columns count characters.
-pub(super) fn line_column(text: &str, byte: usize) -> (usize, usize) {
+pub fn line_column(text: &str, byte: usize) -> (usize, usize) {
     let mut byte = byte.min(text.len());
     while !text.is_char_boundary(byte) {
         byte -= 1;

@@ -20,7 +20,7 @@ struct Place {
 
 impl Places {
     /// Keeps where a key path comes from, and what the file calls it.
-    pub(super) fn put(&mut self, at: impl Into<String>, span: &Range<usize>, words: impl Into<String>) {
+    pub fn put(&mut self, at: impl Into<String>, span: &Range<usize>, words: impl Into<String>) {
         let place = Place {
             span: span.clone(),
             words: words.into(),
@@ -41,7 +41,7 @@ impl Places {
     }
 
     /// A mistake in the scene as one in the file.
-    pub(super) fn locate(&self, mut mistake: SceneError) -> SceneError {
+    pub fn locate(&self, mut mistake: SceneError) -> SceneError {
         if mistake.span.is_none() {
             let place = self.find(&mistake.at);
             mistake.span = Some(place.map_or(0..0, |place| place.span.clone()));
@@ -53,7 +53,7 @@ impl Places {
     }
 
     /// A remark on the scene as one on a line of the file.
-    pub(super) fn locate_note(&self, source: &str, mut note: Note) -> Note {
+    pub fn locate_note(&self, source: &str, mut note: Note) -> Note {
         if let Some(place) = self.find(&note.at) {
             let (line, _) = path::line_column(source, place.span.start);
             note.at = format!("file line {line}, {}", place.words);

@@ -25,9 +25,7 @@ const MASS_PER_VOLUME: [f64; 2] = [200.0, 14_000.0];
 /// Weight in water over volume of the diameter [kg/m³] of a line whose mass is not given, without sign: ropes that nearly float have 30.
 const EXCESS_MIN: f64 = 1.0;
 /// Density of steel [kg/m³].
-const STEEL: f64 = 7850.0;
-/// Density on decks [kg/m³] above which the diameter is unlikely to be that of the volume: steel with a margin for rounded numbers.
-pub(super) const DECK_DENSITY_MAX: f64 = 1.2 * STEEL;
+pub const STEEL: f64 = 7850.0;
 /// Steel of a chain over that of one straight bar of its links [-]: two bars side by side, bends and perhaps studs make
 /// somewhat more than three.
 const CHAIN: std::ops::Range<f64> = 2.7..4.0;
@@ -289,7 +287,7 @@ fn mass_per_volume(scene: &Scene, line_type: &LineType, at: &str, notes: &mut Ve
 
 /// What is said of a diameter [m] and a mass [kg/m] that make a density above a limit [kg/m³]: the diameter counts as that of a cylinder
 /// of the line's volume, not that of a chain's bar.
-pub(super) fn dense(diameter: f64, mass: f64, limit: f64, key: &str) -> Option<String> {
+pub fn dense(diameter: f64, mass: f64, limit: f64, key: &str) -> Option<String> {
     let density = mass / (0.25 * PI * diameter * diameter);
     if density <= limit {
         return None;

@@ -1,20 +1,18 @@
-//! TOML text -> Scene, file of any kind -> Scene, Scene -> TOML text.
+//! TOML text -> Scene, scene file -> Scene, Scene -> TOML text.
 
-use std::collections::BTreeMap;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use miette::NamedSource;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::notes::Note;
 use super::places::Places;
-use super::rows::{Findings, MISTAKES_MAX};
+use super::rows::Row;
 use super::slips::slip;
 use super::{
-    LoadError, MotionPath, Scene, SceneError, WaveComponents, bathymetry_file, document, input_file, map,
-    moordyn, motion_file, path, tension_strain, water_file,
+    LoadError, MotionPath, Scene, SceneError, WaveComponents, bathymetry_file, document, input_file,
+    motion_file, path, tension_strain, water_file,
 };
 
 /// A scene and the file it came from.
@@ -55,34 +53,6 @@ impl LoadedScene {
     }
 }
 
-/// What a deck of another program leaves to its host.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Supplement {
-    /// Depth of the water [m], where the deck gives none.
-    pub depth: Option<f64>,
-    /// Reference positions [m] of vessels by name, such as those of the turbines of a farm.
-    pub positions: BTreeMap<String, [f64; 3]>,
-    /// Name of the one vessel that all coupled points of the deck ride on, its origin at (0, 0, 0) and its axes the global ones.
-    pub vessel: Option<String>,
-}
-
-impl Supplement {
-    /// Whether nothing is given.
-    pub fn is_empty(&self) -> bool {
-        *self == Supplement::default()
-    }
-}
-
-/// What a reader makes of a file.
-pub(super) struct Reading {
-    /// What kind of file it is.
-    pub format: &'static str,
-    /// The scene; `None` where there are mistakes.
-    pub scene: Option<Scene>,
-    pub places: Places,
-    pub findings: Findings,
-}
-
 /// What kind of file a scene of moorline's own is.
 pub const TOML: &str = "TOML";
 
@@ -104,124 +74,67 @@ impl Scene {
     pub fn to_toml(&self) -> String {
         toml::to_string(self).expect("every scene can be written as TOML")
     }
+
+    /// Reads the files that a scene names, which stand relative to a folder; returns what is wrong with them.
+    pub fn read_files(&mut self, folder: &Path) -> Vec<SceneError> {
+        let mut mistakes = read_motions(self, folder);
+        mistakes.extend(read_water(self, folder));
+        mistakes.extend(read_tables(self, folder));
+        mistakes.extend(read_soundings(self, folder));
+        mistakes
+    }
+
+    /// Mistakes in the files of a scene, and those in the scene that are not due to them.
+    pub fn mistakes_with(&self, mut of_files: Vec<SceneError>) -> Vec<SceneError> {
+        for mistake in self.mistakes() {
+            if of_files.iter().all(|known| known.at != mistake.at) {
+                of_files.push(mistake);
+            }
+        }
+        of_files
+    }
 }
 
-/// Reads and checks a file: a scene and the motion files it names, which stand relative to its folder, or a deck of MoorDyn
-/// or MAP++. What the file is, its content says.
+/// Reads and checks a scene file and the files it names, which stand relative to its folder.
 ///
 /// # Errors
 /// What keeps the file from being read, or all mistakes in it.
 pub fn load(path: &Path) -> Result<LoadedScene, LoadError> {
-    load_with(path, &Supplement::default())
+    load_text(path, read_text(path, |_| false)?)
 }
 
-/// As [`load`], with what a deck leaves to its host.
+/// As [`load`], where the text of the file has been read.
 ///
 /// # Errors
-/// As [`load`]; and where the file is a scene, which leaves nothing to its host.
-pub fn load_with(path: &Path, supplement: &Supplement) -> Result<LoadedScene, LoadError> {
-    let text = read_text(path)?;
-    let loaded = match deck_of(&text) {
-        Some(read) => deck_scene(read(&text, supplement), &text, folder_of(path)),
-        None => scene_of(&text, path).map(|scene| {
-            let notes = with_lines(&text, scene.notes());
-            (scene, notes, TOML, Places::default())
-        }),
-    };
-    match loaded {
-        Ok((.., TOML, _)) if !supplement.is_empty() => Err(LoadError::NotADeck {
-            path: path.to_path_buf(),
-            problem: match (supplement.depth, &supplement.vessel) {
-                (Some(_), _) => {
-                    "a scene gives the depth of its water itself, as `seabed.depth`: a depth beside it is for decks"
-                }
-                (None, Some(_)) => {
-                    "a scene gives its vessels itself, as [[vessels]] and `on` of its points: a vessel beside it is for decks"
-                }
-                (None, None) => {
-                    "a scene gives the places of its vessels itself, as `position`: places beside it are for decks"
-                }
-            },
-        }),
-        Ok((scene, notes, format, places)) => Ok(LoadedScene {
+/// All mistakes in it.
+pub fn load_text(path: &Path, text: String) -> Result<LoadedScene, LoadError> {
+    match scene_of(&text, folder_of(path)) {
+        Ok(scene) => Ok(LoadedScene {
+            notes: with_lines(&text, scene.notes()),
             scene,
             text,
             path: path.to_path_buf(),
-            notes,
-            format,
-            places,
+            format: TOML,
+            places: Places::default(),
         }),
         Err(mistakes) => Err(LoadError::Scene {
-            source_text: Box::new(NamedSource::new(path.display().to_string(), text)),
+            path: path.to_path_buf(),
+            text,
             mistakes,
         }),
     }
 }
 
-type ReadDeck = fn(&str, &Supplement) -> Reading;
-
-/// The reader of a deck; `None` of TOML and of what is no deck.
-fn deck_of(text: &str) -> Option<ReadDeck> {
-    // Banners of dashes stand in comments and strings of scenes too.
-    if Document::parse(text).is_ok() {
-        None
-    } else if map::is_deck(text) {
-        Some(map::read)
-    } else if moordyn::is_deck(text) {
-        Some(moordyn::read)
-    } else {
-        None
-    }
+/// Whether a text is TOML, of a scene or of anything else.
+pub fn is_toml(text: &str) -> bool {
+    Document::parse(text).is_ok()
 }
 
-type Checked = (Scene, Vec<Note>, &'static str, Places);
-
-/// What a reader made of a deck, checked as every scene is.
-fn deck_scene(reading: Reading, text: &str, folder: &Path) -> Result<Checked, Vec<SceneError>> {
-    let Reading {
-        format,
-        scene,
-        places,
-        findings,
-    } = reading;
-    let in_order = |mut mistakes: Vec<SceneError>| {
-        mistakes.sort_by_key(|mistake| mistake.span.as_ref().map_or(0, |span| span.start));
-        mistakes.truncate(MISTAKES_MAX);
-        mistakes
-    };
-    let Some(mut scene) = scene.filter(|_| findings.mistakes.is_empty()) else {
-        return Err(in_order(findings.mistakes));
-    };
-    let mut of_files = read_water(&mut scene, folder);
-    of_files.extend(read_tables(&mut scene, folder));
-    of_files.extend(read_soundings(&mut scene, folder));
-    let cut = cut_tables(&mut scene);
-    let mistakes = all_mistakes(&scene, of_files);
-    let mistakes: Vec<SceneError> = mistakes
-        .into_iter()
-        .map(|mistake| places.locate(mistake))
-        .collect();
-    if !mistakes.is_empty() {
-        return Err(in_order(mistakes));
-    }
-    let mut notes = findings.notes(text);
-    // the reader of MoorDyn's decks notes diameters itself, with narrower limits
-    let noted = |note: &Note| format.starts_with("MoorDyn") && note.at.ends_with(".diameter");
-    let of_scene = scene.notes().into_iter().filter(|note| !noted(note));
-    let of_scene = cut.into_iter().chain(of_scene);
-    notes.extend(of_scene.map(|note| places.locate_note(text, note)));
-    Ok((scene, notes, format, places))
-}
-
-fn scene_of(text: &str, path: &Path) -> Result<Scene, Vec<SceneError>> {
+fn scene_of(text: &str, folder: &Path) -> Result<Scene, Vec<SceneError>> {
     let document = Document::parse(text).map_err(|mistake| vec![mistake])?;
     let mut scene = document.scene().map_err(|mistake| vec![mistake])?;
-    let folder = folder_of(path);
-    let mut of_files = read_motions(&mut scene, folder);
-    of_files.extend(read_water(&mut scene, folder));
-    of_files.extend(read_tables(&mut scene, folder));
-    of_files.extend(read_soundings(&mut scene, folder));
-    let mistakes = all_mistakes(&scene, of_files);
+    let of_files = scene.read_files(folder);
+    let mistakes = scene.mistakes_with(of_files);
     if mistakes.is_empty() {
         Ok(scene)
     } else {
@@ -241,7 +154,7 @@ fn with_lines(text: &str, mut notes: Vec<Note>) -> Vec<Note> {
 }
 
 /// The folder that a scene's files stand in.
-fn folder_of(path: &Path) -> &Path {
+pub fn folder_of(path: &Path) -> &Path {
     path.parent().unwrap_or(Path::new("."))
 }
 
@@ -259,16 +172,6 @@ fn read_soundings(scene: &mut Scene, folder: &Path) -> Option<SceneError> {
         }
         Err(problem) => Some(SceneError::new("seabed.file", problem)),
     }
-}
-
-/// What is wrong with the files of a scene, and what else is wrong with it.
-fn all_mistakes(scene: &Scene, mut of_files: Vec<SceneError>) -> Vec<SceneError> {
-    for mistake in scene.mistakes() {
-        if of_files.iter().all(|known| known.at != mistake.at) {
-            of_files.push(mistake);
-        }
-    }
-    of_files
 }
 
 /// Reads every table of tension over strain that stands in a file; returns what is wrong with them.
@@ -289,23 +192,6 @@ fn read_tables(scene: &mut Scene, folder: &Path) -> Vec<SceneError> {
         }
     }
     mistakes
-}
-
-/// Tables of decks may say what MoorDyn does not use: rows below zero strain. Returns a note for each that has some.
-fn cut_tables(scene: &mut Scene) -> Vec<Note> {
-    let mut notes = Vec::new();
-    for (name, line_type) in &mut scene.line_types {
-        let table = line_type.tension_strain.as_mut();
-        let below = table.map_or(0, |table| table.cut_below_zero());
-        if below > 0 {
-            let text = format!(
-                "rows below zero strain in the table of tension, {below} of them, are left out: a slack line carries nothing"
-            );
-            let at = format!("line_types.{}.tension_strain", path::quoted(name));
-            notes.push(Note::new(at, text));
-        }
-    }
-    notes
 }
 
 /// Reads the files of waves and current, whose rows take their place; returns what is wrong with them.
@@ -397,27 +283,30 @@ impl<'t> Document<'t> {
     }
 }
 
-/// What the TOML parser says, or that this is another program's file.
+/// A mistake in the grammar of TOML, in the parser's words or in plainer ones.
 fn syntax_mistake(text: &str, error: &toml::de::Error) -> SceneError {
-    if let Some(span) = moordyn::first_header(text) {
-        return SceneError {
-            at: String::new(),
-            problem: "this is a MoorDyn file, and TOML is expected here: give the file itself, or what \
-                      `moorline convert` makes of it"
-                .into(),
-            span: Some(span),
-        };
+    let mistake = |span, problem: &str| SceneError {
+        at: String::new(),
+        problem: format!("not TOML: {problem}"),
+        span: Some(span),
+    };
+    if let Some(rule) = Row::all(text).find(|row| row.text.trim_start().starts_with("---")) {
+        let problem = "rows of dashes head the tables of a deck of another program; give the deck itself, or the scene that \
+                       `moorline convert` makes of it";
+        return mistake(rule.span(), problem);
     }
     let span = error.span().unwrap_or(0..0);
-    let said = slip(text, span.start).unwrap_or_else(|| error.message().replace('\n', ", "));
-    SceneError {
-        at: String::new(),
-        problem: format!("not TOML: {said}"),
-        span: Some(span),
+    match slip(text, span.start) {
+        Some(problem) => mistake(span, &problem),
+        None => mistake(span, &error.message().replace('\n', ", ")),
     }
 }
 
-fn read_text(path: &Path) -> Result<String, LoadError> {
+/// Reads a text file; bytes that are not UTF-8 are read as Latin-1 where `is_latin_1` accepts the text that they are then.
+///
+/// # Errors
+/// What keeps the file from being read, or the first byte that is no text.
+pub fn read_text(path: &Path, is_latin_1: impl Fn(&str) -> bool) -> Result<String, LoadError> {
     let unreadable = |problem: String| LoadError::Unreadable {
         path: path.to_path_buf(),
         problem,
@@ -436,7 +325,7 @@ fn read_text(path: &Path) -> Result<String, LoadError> {
     }
     String::from_utf8(bytes).or_else(|error| {
         let latin: String = error.as_bytes().iter().map(|byte| char::from(*byte)).collect();
-        if deck_of(&latin).is_some() {
+        if is_latin_1(&latin) {
             return Ok(latin);
         }
         let byte = error.utf8_error().valid_up_to();

@@ -30,28 +30,6 @@ impl TensionStrain {
     }
 }
 
-impl TensionStrain {
-    /// Leaves out the rows below zero strain, which a line that cannot push does not feel; where none stands at zero strain, the table
-    /// begins with the straight line through zero. Returns their number [-].
-    pub(super) fn cut_below_zero(&mut self) -> usize {
-        let below = self.rows.iter().take_while(|row| row[0] < 0.0).count();
-        if below == 0 {
-            return 0;
-        }
-        let last = self.rows[below - 1];
-        self.rows.drain(..below);
-        if let Some(&[strain, tension]) = self.rows.first()
-            && strain > 0.0
-        {
-            let at_zero = last[1] - last[0] * (tension - last[1]) / (strain - last[0]);
-            let rounding = 1e-9 * tension.abs().max(last[1].abs());
-            let at_zero = if at_zero.abs() > rounding { at_zero } else { 0.0 };
-            self.rows.insert(0, [0.0, at_zero]);
-        }
-        below
-    }
-}
-
 impl Serialize for TensionStrain {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         match &self.file {

@@ -8,9 +8,9 @@ use moorline::scene::{LoadError, MotionPath, Scene, load};
 use crate::{SCENE, said};
 
 #[test]
-fn a_moordyn_file_is_refused_as_one() {
+fn a_deck_is_refused_as_one() {
     let text = "--------- MoorDyn Input File ---------\nMooring system\n----- LINE TYPES -----\nName Diam\n";
-    assert!(said(text).starts_with("1:1: this is a MoorDyn file"));
+    assert!(said(text).starts_with("1:1: not TOML: rows of dashes head the tables of a deck"));
 }
 
 #[test]
@@ -80,14 +80,6 @@ fn all_mistakes_are_listed_in_the_order_of_the_file() {
     );
     assert!(list.contains("scene.toml:34:6: lines[0].to: no point is called `bouy`, did you mean `buoy`?"));
     assert!(error.to_string().ends_with("(and 3 mistakes more)"));
-    let mut shown = String::new();
-    miette::GraphicalReportHandler::new_themed(miette::GraphicalTheme::none())
-        .render_report(&mut shown, &error)
-        .unwrap();
-    assert!(
-        shown.contains("depth = -50.0") && shown.contains("to = \"bouy\""),
-        "{shown}"
-    );
 }
 
 /// Loads a scene whose fairlead follows a motion file with this text.

@@ -1,8 +1,6 @@
 //! Text that is anything.
 
-use std::fs;
-
-use moorline::scene::{InitialShape, MotionPath, Scene, TimeFunction, load};
+use moorline::scene::{InitialShape, MotionPath, Scene, TimeFunction};
 use proptest::prelude::*;
 
 use crate::{SCENE, said};
@@ -41,31 +39,6 @@ fn a_text_cut_off_anywhere_is_read_or_refused_with_a_place() {
     assert_eq!(said(&text), "fine");
     for end in 0..text.len() {
         assert_read_or_refused_with_a_place(&text[..end]);
-    }
-}
-
-#[test]
-fn a_mistake_at_the_very_end_of_a_file_can_be_shown() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("scene.toml");
-    for text in [
-        "",
-        "gravity =",
-        "gravity =\n",
-        "title = \"",
-        "[",
-        "\u{feff}\u{fc} = ",
-    ] {
-        fs::write(&path, text).unwrap();
-        let error = load(&path).unwrap_err();
-        let mut shown = String::new();
-        miette::GraphicalReportHandler::new_themed(miette::GraphicalTheme::none())
-            .render_report(&mut shown, &error)
-            .unwrap();
-        assert!(
-            shown.contains("scene.toml:") && !shown.contains("Failed"),
-            "{shown}"
-        );
     }
 }
 

@@ -64,9 +64,9 @@ mod log;
 mod slave;
 mod status;
 
-pub use archive::{library_name, platform};
 pub use description::{Causality, Description, Variable, VariableType};
 pub use fmu::{Fmu, HostError};
 pub use log::LogMessage;
+pub use moorline::output::fmi::{FmiVersion, library_name, platform};
 pub use slave::{SavedState, Slave};
-pub use status::{FmiVersion, Status};
+pub use status::Status;

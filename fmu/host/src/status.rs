@@ -1,24 +1,4 @@
-//! What both versions of FMI share: version and status.
-
-use std::fmt;
-
-/// Version of the interface.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum FmiVersion {
-    /// FMI 2.0.
-    Two,
-    /// FMI 3.0.
-    Three,
-}
-
-impl fmt::Display for FmiVersion {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            FmiVersion::Two => "2.0",
-            FmiVersion::Three => "3.0",
-        })
-    }
-}
+//! The status that both versions of FMI share.
 
 /// What a call returns; the same numbers in FMI 2.0 and 3.0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

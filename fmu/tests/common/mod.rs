@@ -6,6 +6,7 @@ use std::process::Command;
 use std::sync::OnceLock;
 
 use moorline::output::package;
+use moorline::scene::Scene;
 use moorline_host::{FmiVersion, Fmu};
 
 /// One chain on a seabed, 20 elements.
@@ -72,11 +73,9 @@ fn package(version: FmiVersion, features: &[&str], text: &str) -> &'static Path 
     static PACKAGED: [OnceLock<PathBuf>; 2] = [OnceLock::new(), OnceLock::new()];
     let library = LIBRARY.get_or_init(|| build_library(features));
     PACKAGED[version as usize].get_or_init(|| {
-        let scene = library.with_file_name(format!("scene{version}.toml"));
         let fmu = library.with_file_name(format!("line{version}.fmu"));
-        std::fs::write(&scene, text).unwrap();
-        let loaded = moorline::scene::load(&scene).unwrap();
-        package::write_fmu(&loaded, version, library, &fmu).unwrap();
+        let scene = Scene::from_toml(text).unwrap();
+        package::write_fmu(&scene, text, version, library, &fmu).unwrap();
         fmu
     })
 }

@@ -4,11 +4,10 @@
 //! Text is left to the viewer's sans-serif font: no font files are needed to draw.
 
 pub mod agreement;
-mod axis;
-mod chart;
+pub mod axis;
+pub mod chart;
 pub mod compared;
 mod flight;
-pub mod frontier;
 mod labels;
 
 use axis::{Axis, force_unit};
@@ -17,7 +16,7 @@ use chart::{Chart, Curve, Stroke};
 use super::record::{Node, Record};
 
 /// Widest figure [px].
-const WIDTH: u32 = 900;
+pub const WIDTH: u32 = 900;
 /// Height of a chart of one history [px].
 const HISTORY_HEIGHT: u32 = 340;
 /// Most shapes drawn faintly to show how far the lines move.
@@ -38,11 +37,13 @@ const PALETTE: [[u8; 3]; 7] = [
     [86, 180, 233],
     [0, 0, 0],
 ];
-const DARK: [u8; 3] = [40, 40, 40];
+/// Colour of what other curves are held against.
+pub const DARK: [u8; 3] = [40, 40, 40];
 const SEABED: [u8; 3] = [139, 110, 70];
 const WATER: [u8; 3] = [86, 140, 190];
 
-fn colour(index: usize) -> [u8; 3] {
+/// Colour of a curve by its number.
+pub fn colour(index: usize) -> [u8; 3] {
     PALETTE[index % PALETTE.len()]
 }
 

@@ -1,0 +1,107 @@
+//! The converged solution of a scene, and how far it has converged.
+//!
+//! Meshes are made finer and finer, and the one that lies closest to the one before it is taken; their distance is its uncertainty. Under a
+//! well-posed law that is the finest. Where damping acts in compression a slack line without bending stiffness is ill posed: its short
+//! waves grow, and meshes beyond some fineness lead away again. A bed softened with the mesh and one as given have the same limit and come
+//! near it at different rates; the better of the two is followed.
+
+use super::errors::{Errors, Judge, Metric};
+use super::ladder::{self, Setting};
+use super::timed::{Timed, Trial};
+use super::{StudyError, judge, shortest_period};
+use moorline::scene::Scene;
+
+/// The converged solution.
+#[derive(Debug, Clone)]
+pub(crate) struct Converged {
+    pub setting: Setting,
+    pub fine: Timed,
+    /// Distance from the mesh before.
+    pub uncertainty: Errors,
+    pub judge: Judge,
+}
+
+/// A sequence of settings on its way.
+struct Sequence {
+    rest: std::vec::IntoIter<Setting>,
+    before: Option<Timed>,
+    best: Option<Converged>,
+}
+
+impl Converged {
+    /// Finds it by the first family of settings that serves.
+    pub fn find(name: &str, scene: &Scene) -> Result<Converged, StudyError> {
+        let name = || name.to_string();
+        let mut reason = String::new();
+        for family in ladder::converged(scene, shortest_period(scene)) {
+            match followed(scene, family) {
+                Ok(Some(best)) => return Ok(best),
+                Ok(None) => return Err(StudyError::AtRest { name: name() }),
+                Err(said) => reason = said,
+            }
+        }
+        Err(StudyError::NotConverged { name: name(), reason })
+    }
+
+    /// What is least of the solution that has converged best [-].
+    fn doubt(&self) -> f64 {
+        self.uncertainty.of(Metric::Rms) + self.uncertainty.of(Metric::Position)
+    }
+}
+
+/// The best of a family: two meshes of every sequence, then the rest of the better one. `None` where nothing moves.
+fn followed(scene: &Scene, family: Vec<Vec<Setting>>) -> Result<Option<Converged>, String> {
+    let mut reason = String::new();
+    let mut sequences: Vec<Sequence> = Vec::new();
+    for settings in family {
+        let mut sequence = Sequence {
+            rest: settings.into_iter(),
+            before: None,
+            best: None,
+        };
+        match sequence.refine(scene).and_then(|()| sequence.refine(scene)) {
+            Ok(()) => sequences.push(sequence),
+            Err(said) => reason = said,
+        }
+        if sequences.iter().any(Sequence::rests) {
+            return Ok(None);
+        }
+    }
+    let doubt = |sequence: &Sequence| sequence.best.as_ref().map_or(f64::NAN, Converged::doubt);
+    let better = sequences.into_iter().min_by(|a, b| doubt(a).total_cmp(&doubt(b)));
+    let Some(mut sequence) = better else {
+        return Err(reason);
+    };
+    // A mesh too fine to run leaves the ones before it.
+    while sequence.rest.len() > 0 && sequence.refine(scene).is_ok() {}
+    Ok(sequence.best)
+}
+
+impl Sequence {
+    /// Runs the next setting and keeps it if it lies closer to its forerunner than any before.
+    fn refine(&mut self, scene: &Scene) -> Result<(), String> {
+        let Some(setting) = self.rest.next() else {
+            return Ok(());
+        };
+        let (fine, _) = Trial::exact(scene, &setting)?.recorded()?;
+        if let Some(coarse) = self.before.replace(fine.clone()) {
+            let judge = judge(scene, shortest_period(scene), &fine.histories);
+            let one = Converged {
+                setting,
+                uncertainty: judge.uncertainty(&coarse.histories, &fine.histories),
+                fine,
+                judge,
+            };
+            let best = self.best.as_ref();
+            if best.is_none_or(|best| one.doubt() < best.doubt()) {
+                self.best = Some(one);
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether nothing moves in what has run last.
+    fn rests(&self) -> bool {
+        self.before.as_ref().is_some_and(|timed| !timed.moves())
+    }
+}

@@ -1,0 +1,231 @@
+//! How far histories lie from those of a converged solution.
+//!
+//! Over the window, of the line where it is worst:
+//!
+//! * RMS: √⟨(T − T_ref)²⟩ over the standard deviation of T_ref;
+//! * low-passed: the same of both tensions behind a zero-phase filter ([`moorline::math::low_pass`]);
+//! * peak: |max T − max T_ref| over the range of T_ref;
+//! * position: √⟨|r − r_ref|²⟩ of the point half-way along the line over the standard deviation of its motion.
+
+use nalgebra::Vector3;
+
+use moorline::math::low_pass::low_pass;
+
+/// What is compared.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Metric {
+    /// Tension at the driven end, every sample.
+    Rms,
+    /// The same without its fast part.
+    LowPassed,
+    /// Greatest tension.
+    Peak,
+    /// Position half-way along the line.
+    Position,
+}
+
+impl Metric {
+    /// All, in the order of [`Errors`].
+    pub const ALL: [Metric; 4] = [Metric::Rms, Metric::LowPassed, Metric::Peak, Metric::Position];
+
+    /// What it measures, in words.
+    pub fn title(self) -> &'static str {
+        match self {
+            Metric::Rms => "tension, RMS",
+            Metric::LowPassed => "tension, low-passed RMS",
+            Metric::Peak => "tension, peak",
+            Metric::Position => "position half-way along the line, RMS",
+        }
+    }
+
+    /// Its key in tables.
+    pub fn key(self) -> &'static str {
+        match self {
+            Metric::Rms => "tension_rms",
+            Metric::LowPassed => "tension_low_passed",
+            Metric::Peak => "tension_peak",
+            Metric::Position => "position_rms",
+        }
+    }
+}
+
+/// Histories of a run, one sample after every output interval.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Histories {
+    /// Tension at the driven end of every line [N].
+    pub tension: Vec<Vec<f64>>,
+    /// Position half-way along every line [m].
+    pub middle: Vec<Vec<Vector3<f64>>>,
+}
+
+/// Where and how histories are compared.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Judge {
+    /// Interval of the samples [s].
+    pub interval: f64,
+    /// First sample that counts.
+    pub from: usize,
+    /// Cut-off of the low-passed tension [Hz].
+    pub cut_off: f64,
+}
+
+/// Relative errors [-], in the order of [`Metric::ALL`].
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Errors([f64; 4]);
+
+impl Errors {
+    /// The same error [-] in all respects.
+    pub fn all(error: f64) -> Errors {
+        Errors([error; 4])
+    }
+
+    /// The error in one respect [-].
+    pub fn of(&self, metric: Metric) -> f64 {
+        self.0[metric as usize]
+    }
+}
+
+impl Judge {
+    /// Errors of histories against those of a reference; not finite where a history is not, or has another length.
+    pub fn errors(&self, histories: &Histories, reference: &Histories) -> Errors {
+        let tensions = || histories.tension.iter().zip(&reference.tension);
+        let middles = histories.middle.iter().zip(&reference.middle);
+        let filtered = |tension: &[f64]| low_pass(tension, self.interval, self.cut_off);
+        Errors([
+            worst(tensions().map(|(own, right)| self.rms(own, right))),
+            worst(tensions().map(|(own, right)| self.rms(&filtered(own), &filtered(right)))),
+            worst(tensions().map(|(own, right)| self.peak(own, right))),
+            worst(middles.map(|(own, right)| self.position(own, right))),
+        ])
+    }
+
+    /// How well a solution is known that lies so far from one on another mesh. Two greatest tensions may agree by chance where the
+    /// histories do not: the peak is known no better than the tension is on the whole, its RMS distance over its range.
+    pub fn uncertainty(&self, coarse: &Histories, fine: &Histories) -> Errors {
+        let mut errors = self.errors(coarse, fine);
+        let tensions = coarse.tension.iter().zip(&fine.tension);
+        let on_the_whole = worst(tensions.map(|(a, b)| self.rms(a, b) * self.deviation_over_range(b)));
+        let peak = &mut errors.0[Metric::Peak as usize];
+        *peak = peak.max(on_the_whole);
+        errors
+    }
+
+    fn deviation_over_range(&self, tension: &[f64]) -> f64 {
+        let tension = &tension[self.from..];
+        let count = tension.len() as f64;
+        let mean = tension.iter().sum::<f64>() / count;
+        let square: f64 = tension.iter().map(|t| (t - mean).powi(2)).sum();
+        (square / count).sqrt() / range(tension)
+    }
+
+    fn rms(&self, own: &[f64], right: &[f64]) -> f64 {
+        if own.len() != right.len() {
+            return f64::INFINITY;
+        }
+        let (own, right) = (&own[self.from..], &right[self.from..]);
+        let mean = right.iter().sum::<f64>() / right.len() as f64;
+        let square = |difference: f64| difference * difference;
+        let wrong: f64 = own.iter().zip(right).map(|(a, b)| square(a - b)).sum();
+        let motion: f64 = right.iter().map(|b| square(b - mean)).sum();
+        (wrong / motion).sqrt()
+    }
+
+    fn peak(&self, own: &[f64], right: &[f64]) -> f64 {
+        if own.len() != right.len() {
+            return f64::INFINITY;
+        }
+        let (own, right) = (&own[self.from..], &right[self.from..]);
+        (greatest(own) - greatest(right)).abs() / range(right)
+    }
+
+    fn position(&self, own: &[Vector3<f64>], right: &[Vector3<f64>]) -> f64 {
+        if own.len() != right.len() {
+            return f64::INFINITY;
+        }
+        let (own, right) = (&own[self.from..], &right[self.from..]);
+        let mean = right.iter().sum::<Vector3<f64>>() / right.len() as f64;
+        let wrong: f64 = own.iter().zip(right).map(|(a, b)| (a - b).norm_squared()).sum();
+        let motion: f64 = right.iter().map(|b| (b - mean).norm_squared()).sum();
+        (wrong / motion).sqrt()
+    }
+}
+
+fn greatest(values: &[f64]) -> f64 {
+    values.iter().copied().fold(f64::NEG_INFINITY, f64::max)
+}
+
+fn range(values: &[f64]) -> f64 {
+    greatest(values) - values.iter().copied().fold(f64::INFINITY, f64::min)
+}
+
+/// The greatest; what is no number is infinitely wrong.
+fn worst(errors: impl Iterator<Item = f64>) -> f64 {
+    let finite = |error: f64| {
+        if error.is_finite() { error } else { f64::INFINITY }
+    };
+    errors.map(finite).fold(0.0, f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+    use std::f64::consts::TAU;
+
+    const JUDGE: Judge = Judge {
+        interval: 0.1,
+        from: 200,
+        cut_off: 0.5,
+    };
+
+    /// Ten periods of 4 s in the window: a tension about 10 N of this amplitude [N], and a ripple of 2.5 Hz.
+    fn histories(amplitude: f64, ripple: f64) -> Histories {
+        let sample = |i: usize| {
+            let t = 0.1 * i as f64;
+            10.0 + amplitude * (TAU * t / 4.0).sin() + ripple * (TAU * 2.5 * t).sin()
+        };
+        let tension: Vec<f64> = (0..600).map(sample).collect();
+        let middle = tension.iter().map(|t| Vector3::new(0.0, 3.0, *t)).collect();
+        Histories {
+            tension: vec![tension],
+            middle: vec![middle],
+        }
+    }
+
+    #[test]
+    fn an_amplitude_wrong_by_a_hundredth_is_an_error_of_a_hundredth() {
+        let errors = JUDGE.errors(&histories(1.01, 0.0), &histories(1.0, 0.0));
+        assert_relative_eq!(errors.of(Metric::Rms), 0.01, max_relative = 1e-9);
+        assert_relative_eq!(errors.of(Metric::Position), 0.01, max_relative = 1e-9);
+        assert_relative_eq!(errors.of(Metric::LowPassed), 0.01, max_relative = 1e-3);
+        // half of the range 2
+        assert_relative_eq!(errors.of(Metric::Peak), 0.005, max_relative = 1e-9);
+    }
+
+    #[test]
+    fn a_fast_ripple_counts_in_the_raw_tension_only() {
+        let errors = JUDGE.errors(&histories(1.0, 0.1), &histories(1.0, 0.0));
+        assert_relative_eq!(errors.of(Metric::Rms), 0.1, max_relative = 1e-6);
+        // Its gain is 1/626; the filter starts at the end of the record.
+        assert!(errors.of(Metric::LowPassed) < 2e-3);
+    }
+
+    #[test]
+    fn peaks_that_agree_by_chance_are_known_no_better_than_the_histories() {
+        let (one, other) = (histories(-1.0, 0.0), histories(1.0, 0.0));
+        assert!(JUDGE.errors(&one, &other).of(Metric::Peak) < 1e-12);
+        let uncertainty = JUDGE.uncertainty(&one, &other);
+        // apart by 2 sin: √2 of the range 2
+        let wanted = 0.5 * 2f64.sqrt();
+        assert_relative_eq!(uncertainty.of(Metric::Peak), wanted, max_relative = 1e-9);
+        assert_relative_eq!(uncertainty.of(Metric::Rms), 2.0, max_relative = 1e-9);
+    }
+
+    #[test]
+    fn a_run_that_blew_up_is_infinitely_wrong() {
+        let mut broken = histories(1.0, 0.0);
+        broken.tension[0][300] = f64::NAN;
+        let errors = JUDGE.errors(&broken, &histories(1.0, 0.0));
+        assert_eq!(errors.of(Metric::Rms), f64::INFINITY);
+    }
+}

@@ -1,0 +1,180 @@
+//! Speed against error of a scene: cost over error, a chart for each way to measure the error.
+
+use moorline::output::figures::axis::Axis;
+use moorline::output::figures::chart::{Chart, Curve, Stroke, grid_svg};
+use moorline::output::figures::{DARK, WIDTH, colour};
+use moorline::scene::Integrator;
+
+use crate::{Code, Metric, Study};
+
+/// Errors beyond this part of the signal are left out: such a run shows nothing [-].
+const ERROR_MAX: f64 = 0.5;
+/// Errors below this part of the converged solution's uncertainty are drawn there [-].
+const WITHIN: f64 = 0.4;
+/// The same where all is certain: errors are drawn from here on [-].
+const ERROR_MIN: f64 = 2e-4;
+/// Levels at which moorline and the better peer are set against each other [-].
+const LEVELS: [f64; 2] = [0.03, 0.01];
+/// Size of a chart, without title [px].
+const SIZE: [u32; 2] = [WIDTH / 2, 300];
+/// moorline's integrators that have runs of their own, in the order of their colours.
+const INTEGRATORS: [Integrator; 4] = [
+    Integrator::Leapfrog,
+    Integrator::AxialImplicit,
+    Integrator::GeneralisedAlpha,
+    Integrator::QuasiStatic,
+];
+
+/// The figure of a study: a chart for each way to measure the error.
+pub fn figure(study: &Study) -> String {
+    let charts = Metric::ALL.map(|metric| chart(study, metric, true));
+    grid(charts.into())
+}
+
+/// RMS tension and position of several studies.
+pub fn overview(studies: &[Study]) -> String {
+    let charts = studies
+        .iter()
+        .flat_map(|study| [Metric::Rms, Metric::Position].map(|metric| chart(study, metric, false)));
+    grid(charts.collect())
+}
+
+/// Charts in two columns below one legend, which names every kind of curve once.
+fn grid(charts: Vec<(Chart, Vec<Curve>)>) -> String {
+    let mut legend: Vec<Curve> = Vec::new();
+    let mut drawn = Vec::new();
+    for (chart, named) in charts {
+        for curve in named {
+            if !legend.iter().any(|other| other.name == curve.name) {
+                legend.push(curve);
+            }
+        }
+        drawn.push(chart);
+    }
+    grid_svg(&legend, &drawn, 2)
+}
+
+/// The chart of a metric, and its curves for a legend; single runs only where there is room.
+fn chart(study: &Study, metric: Metric, runs_too: bool) -> (Chart, Vec<Curve>) {
+    let mut curves = curves(study, metric, runs_too);
+    curves.retain(|curve| !curve.points.is_empty());
+    let y = Axis::decades(&curves, 1, "processor time / simulated time".to_string());
+    let limit = percent(study, metric, study.uncertainty.of(metric));
+    let edge = vec![[limit, y.min], [limit, y.max]];
+    let mut x = Axis::decades(&curves, 0, "error [%]".to_string());
+    x.max = (100.0 * ERROR_MAX).log10();
+    let band = vec![[x.min.min(limit), y.min], [limit, y.max]];
+    x.min = x.min.min(limit);
+    curves.push(Curve::new(band, DARK, Stroke::Band));
+    let name = "uncertainty of the converged solution";
+    curves.push(Curve::new(edge, DARK, Stroke::Dashed).named(name));
+    let named = curves.iter().filter(|curve| !curve.name.is_empty());
+    let named = named.cloned().collect();
+    for curve in &mut curves {
+        curve.name.clear();
+    }
+    let short = match metric {
+        Metric::Position => "mid position, RMS",
+        other => other.title(),
+    };
+    let title = format!("{}: {short}", study.name);
+    (Chart::new(title, x, y, curves, SIZE[0], SIZE[1]), named)
+}
+
+fn curves(study: &Study, metric: Metric, runs_too: bool) -> Vec<Curve> {
+    let mut curves = Vec::new();
+    if runs_too {
+        for (index, integrator) in INTEGRATORS.into_iter().enumerate() {
+            let code = Code::Own(integrator);
+            let points = shown_runs(study, metric, &code);
+            curves.push(Curve::new(points, colour(index), Stroke::Nodes).named(code.name()));
+        }
+    }
+    for (index, peer) in study.peers().into_iter().enumerate() {
+        let code = Code::Peer(peer.to_string());
+        let colour = colour(INTEGRATORS.len() + index);
+        if runs_too {
+            let all = shown_runs(study, metric, &code);
+            curves.push(Curve::new(all, colour, Stroke::Nodes));
+        }
+        let best = frontier(study, metric, |other| *other == code);
+        curves.push(Curve::new(best, colour, Stroke::Bold).named(peer));
+    }
+    let own = frontier(study, metric, Code::is_own);
+    curves.push(Curve::new(own, DARK, Stroke::Bold).named("moorline, cheapest"));
+    curves.push(own_choice(study, metric));
+    for level in LEVELS {
+        curves.extend(duel(study, metric, level));
+    }
+    curves
+}
+
+/// What moorline chose, labelled with the tolerance.
+fn own_choice(study: &Study, metric: Metric) -> Curve {
+    let runs = study.runs.iter().filter(|run| run.code == Code::Chosen);
+    let runs = runs.filter(|run| run.errors.of(metric) <= ERROR_MAX);
+    let (mut points, mut labels) = (Vec::new(), Vec::new());
+    for run in runs {
+        points.push(place(study, metric, run.errors.of(metric), run.cost));
+        let tolerance = run.label.split(':').next().unwrap_or_default();
+        labels.push(tolerance.replace("tolerance ", ""));
+    }
+    Curve::new(points, [213, 30, 30], Stroke::Marks)
+        .named("moorline, its own choice for a tolerance")
+        .labelled(labels)
+}
+
+/// From moorline's cheapest run to the better peer's at a level, and how many times dearer that is.
+fn duel(study: &Study, metric: Metric, level: f64) -> Option<Curve> {
+    let verdict = study.verdict(metric, level);
+    let (own, peer) = verdict.own.zip(verdict.best_peer())?;
+    let ratio = verdict.ratio().filter(|_| verdict.certain)?;
+    let at = |cost: f64| place(study, metric, level, cost);
+    let middle = (own.cost * peer.cost).sqrt();
+    let points = vec![at(own.cost), at(middle), at(peer.cost)];
+    let star = if verdict.key { " *" } else { "" };
+    let labels = vec![String::new(), format!("{}×{star}", times(ratio)), String::new()];
+    Some(Curve::new(points, DARK, Stroke::Fine).labelled(labels))
+}
+
+/// A ratio [-] in two digits.
+fn times(ratio: f64) -> String {
+    match ratio {
+        r if r < 1.0 => format!("{r:.2}"),
+        r if r < 10.0 => format!("{r:.1}"),
+        r => format!("{r:.0}"),
+    }
+}
+
+fn shown_runs(study: &Study, metric: Metric, code: &Code) -> Vec<[f64; 2]> {
+    let runs = study.runs.iter().filter(|run| run.code == *code);
+    let runs = runs.filter(|run| run.errors.of(metric) <= ERROR_MAX);
+    runs.map(|run| place(study, metric, run.errors.of(metric), run.cost))
+        .collect()
+}
+
+/// The staircase of a frontier: what an error costs at least.
+fn frontier(study: &Study, metric: Metric, codes: impl Fn(&Code) -> bool) -> Vec<[f64; 2]> {
+    let runs = study.frontier(metric, codes);
+    let runs = runs.into_iter().filter(|run| run.errors.of(metric) <= ERROR_MAX);
+    let mut steps: Vec<[f64; 2]> = Vec::new();
+    for run in runs {
+        let next = place(study, metric, run.errors.of(metric), run.cost);
+        if let Some([error, _]) = steps.last().copied() {
+            steps.push([error, next[1]]);
+        }
+        steps.push(next);
+    }
+    steps
+}
+
+/// Logarithms of error [%] and cost [-].
+fn place(study: &Study, metric: Metric, error: f64, cost: f64) -> [f64; 2] {
+    [percent(study, metric, error), cost.log10()]
+}
+
+/// Logarithm of an error [-] in percent.
+fn percent(study: &Study, metric: Metric, error: f64) -> f64 {
+    let least = (WITHIN * study.uncertainty.of(metric)).max(ERROR_MIN);
+    (100.0 * error.max(least)).log10()
+}

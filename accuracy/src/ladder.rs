@@ -1,0 +1,315 @@
+//! The settings that a scene is tried with.
+
+use moorline::scene::{ContactLaw, Integrator, Reconstruction, Scene, Threads};
+
+/// Elements of the longest line where a run costs next to nothing [-]. Close together: an explicit step must divide the communication
+/// step, so that a mesh a little finer may take one step more, and one a little coarser waste none. The leapfrogs take four nodes at a
+/// time, so finer meshes have an odd number of elements, every other one as many as make whole fours of nodes.
+const ELEMENTS: [usize; 29] = [
+    3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31, 33, 35, 39, 43, 47, 51, 55, 59,
+    63,
+];
+/// Elements of the longest line in dearer explicit runs [-].
+const ELEMENTS_FINE: [usize; 7] = [71, 79, 95, 111, 159, 227, 319];
+/// Elements of the longest line, tensions implicit [-]: as close together as those that peers are tried with.
+const ELEMENTS_AXIAL: [usize; 28] = [
+    3, 4, 5, 6, 7, 8, 9, 11, 13, 15, 19, 23, 27, 31, 35, 39, 43, 47, 55, 63, 71, 79, 87, 95, 103, 111, 135,
+    159,
+];
+/// Elements of the longest line, fully implicit [-].
+const ELEMENTS_IMPLICIT: [usize; 3] = [10, 20, 40];
+/// Elements of the longest line, without dynamics [-].
+const ELEMENTS_STATIC: [usize; 4] = [10, 20, 40, 80];
+/// The same of converged solutions [-].
+const CONVERGED_ELEMENTS_STATIC: [usize; 3] = [80, 160, 320];
+/// Steps to the shortest period, tensions implicit [-].
+const STEPS_AXIAL: [f64; 20] = [
+    5.0, 5.7, 6.1, 6.6, 7.3, 8.0, 10.0, 11.5, 13.0, 14.5, 16.0, 18.0, 20.0, 23.0, 28.0, 40.0, 80.0, 160.0,
+    320.0, 640.0,
+];
+/// Steps to the shortest period, fully implicit [-].
+const STEPS_IMPLICIT: [f64; 3] = [20.0, 80.0, 320.0];
+/// Communication steps over the interval of the output that explicit runs are tried with [-].
+const COMMUNICATIONS: [usize; 10] = [1, 2, 3, 4, 8, 10, 13, 16, 20, 28];
+/// Elements up to which explicit runs are tried with more than the first of them [-]: what a communication step costs does not
+/// count on finer meshes.
+const COMMUNICATING_ELEMENTS: usize = 32;
+/// Communication steps to the shortest period, at least [-]: the motion in between is a cubic, and histories are read by cubics.
+const COMMUNICATIONS_PER_PERIOD: f64 = 5.0;
+/// Target errors of the tool's own choice [-].
+pub const TOLERANCES: [f64; 4] = [0.05, 0.02, 0.01, 0.005];
+/// Elements of the longest line in converged solutions, each with those that tell how far it has converged before it [-].
+const CONVERGED_ELEMENTS: [usize; 3] = [320, 640, 1280];
+/// The same under the peers' law: the short waves of a slack line grow under it, the faster the finer the mesh [-].
+const CONVERGED_ELEMENTS_PEERS: [usize; 3] = [160, 320, 640];
+/// Steps to the shortest period in the converged solution, tensions implicit [-].
+const CONVERGED_STEPS_AXIAL: f64 = 8000.0;
+/// Steps to the shortest period in the converged solution, where it needs a fully implicit integrator [-].
+const CONVERGED_STEPS: f64 = 4000.0;
+/// Elements of the longest line of a converged solution that needs a fully implicit integrator [-].
+const CONVERGED_ELEMENTS_IMPLICIT: usize = 320;
+
+/// One way to solve a scene.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Setting {
+    /// Elements of the longest line, others in proportion; chosen by the tool where absent.
+    pub elements: Option<usize>,
+    /// Integrator.
+    pub integrator: Integrator,
+    /// Longest internal step [s].
+    pub time_step_max: Option<f64>,
+    /// Target error [-] that the tool chooses by.
+    pub tolerance: Option<f64>,
+    /// Intervals of the output from one communication point to the next [-].
+    pub communication: usize,
+    /// How a bed pushes back; as the scene says where absent.
+    pub contact: Option<ContactLaw>,
+}
+
+impl Setting {
+    /// A mesh and an integrator; the longest internal step [s] is the scene's where absent.
+    pub fn new(elements: usize, integrator: Integrator, time_step_max: Option<f64>) -> Setting {
+        Setting {
+            elements: Some(elements),
+            integrator,
+            time_step_max,
+            tolerance: None,
+            communication: 1,
+            contact: None,
+        }
+    }
+
+    /// What the tool chooses for a target error [-].
+    pub fn chosen(tolerance: f64) -> Setting {
+        Setting {
+            elements: None,
+            integrator: Integrator::Auto,
+            time_step_max: None,
+            tolerance: Some(tolerance),
+            communication: 1,
+            contact: None,
+        }
+    }
+
+    /// The scene with this setting, its own mesh, integrator and step put aside. What the tool chooses keeps its energy ledger, and is
+    /// told where the fairlead is, as by default; other settings keep none, and are told where it goes, as other codes are.
+    pub fn apply(&self, scene: &Scene) -> Scene {
+        let mut scene = scene.clone();
+        let length = |line: &moorline::scene::Line| -> f64 {
+            line.sections.iter().map(|section| section.length).sum()
+        };
+        let longest = scene.lines.iter().map(length).fold(0.0, f64::max);
+        for section in scene.lines.iter_mut().flat_map(|line| &mut line.sections) {
+            section.elements = self.elements.map(|elements| {
+                let share = elements as f64 * section.length / longest;
+                (share.round() as usize).max(1)
+            });
+        }
+        scene.solver.integrator = self.integrator;
+        if self.tolerance.is_none() {
+            scene.solver.energy_ledger = false;
+            scene.solver.input_reconstruction = Reconstruction::Interpolate;
+        }
+        // A step that is not asked for is limited by the integrator's own rules only.
+        scene.solver.time_step_max = self.time_step_max.unwrap_or(scene.solver.time_step_max);
+        scene.solver.tolerance = self.tolerance.unwrap_or(scene.solver.tolerance);
+        // Processor time is that of one thread, as that of other codes.
+        scene.solver.threads = Threads::Number(1);
+        if let (Some(bed), Some(contact)) = (&mut scene.seabed, self.contact) {
+            bed.contact = contact;
+        }
+        scene
+    }
+
+    /// The same with communication points so far apart [intervals of the output].
+    fn communicating(self, communication: usize) -> Setting {
+        Setting {
+            communication,
+            ..self
+        }
+    }
+
+    /// The same on a bed with exactly the scene's coefficients.
+    pub fn on_bed_as_given(self) -> Setting {
+        Setting {
+            contact: Some(ContactLaw::AsGiven),
+            ..self
+        }
+    }
+}
+
+/// The ladder of a scene whose motion has this shortest period [s].
+pub fn ladder(scene: &Scene, period: f64) -> Vec<Setting> {
+    if is_quasi_static(scene) {
+        return ELEMENTS_STATIC.map(quasi_static).into();
+    }
+    let interval = scene.output.interval;
+    let mut settings: Vec<Setting> = TOLERANCES.map(Setting::chosen).into();
+    settings.extend(explicit(period, interval));
+    let axial = Integrator::AxialImplicit;
+    settings.extend(implicit(axial, &ELEMENTS_AXIAL, &STEPS_AXIAL, period, interval));
+    let full = Integrator::GeneralisedAlpha;
+    settings.extend(implicit(
+        full,
+        &ELEMENTS_IMPLICIT,
+        &STEPS_IMPLICIT,
+        period,
+        interval,
+    ));
+    let softened = |bed: &moorline::scene::Seabed| bed.contact == ContactLaw::Regularised;
+    if scene.seabed.as_ref().is_some_and(softened) {
+        let cheap = |setting: &&Setting| match setting.integrator {
+            Integrator::Leapfrog => [1, 4].contains(&setting.communication),
+            integrator => integrator == Integrator::AxialImplicit,
+        };
+        let again: Vec<Setting> = settings.iter().filter(cheap).copied().collect();
+        settings.extend(again.into_iter().map(Setting::on_bed_as_given));
+    }
+    settings.extend([10, 40].map(quasi_static));
+    settings
+}
+
+/// Whether a scene is one of equilibria: dynamics is no measure of it then.
+pub fn is_quasi_static(scene: &Scene) -> bool {
+    scene.solver.integrator == Integrator::QuasiStatic
+}
+
+fn quasi_static(elements: usize) -> Setting {
+    Setting::new(elements, Integrator::QuasiStatic, None)
+}
+
+fn implicit(
+    integrator: Integrator,
+    meshes: &[usize],
+    steps: &[f64],
+    period: f64,
+    interval: f64,
+) -> Vec<Setting> {
+    let mut settings: Vec<Setting> = Vec::new();
+    for elements in meshes {
+        for steps in steps {
+            let (communication, step) = stepping(period / steps, interval);
+            let setting = Setting::new(*elements, integrator, Some(step));
+            let setting = setting.communicating(communication);
+            if !settings.contains(&setting) {
+                settings.push(setting);
+            }
+        }
+    }
+    settings
+}
+
+fn explicit(period: f64, interval: f64) -> impl Iterator<Item = Setting> {
+    let longest = period / COMMUNICATIONS_PER_PERIOD;
+    let leapfrog = move |elements: usize, communication: usize| {
+        let step = communication as f64 * interval;
+        let setting = Setting::new(elements, Integrator::Leapfrog, Some(step));
+        setting.communicating(communication)
+    };
+    let seldom =
+        move |communication: &usize| *communication == 1 || *communication as f64 * interval <= longest;
+    let meshes = ELEMENTS.into_iter().chain(ELEMENTS_FINE);
+    meshes.flat_map(move |elements| {
+        let admitted = if elements > COMMUNICATING_ELEMENTS {
+            1
+        } else {
+            COMMUNICATIONS.len()
+        };
+        let communications = COMMUNICATIONS.into_iter().take(admitted).filter(seldom);
+        communications.map(move |communication| leapfrog(elements, communication))
+    })
+}
+
+/// Communication step [intervals] and internal step [s] that come nearest to a wanted internal step [s] from below, one a multiple of
+/// the other.
+fn stepping(wanted: f64, interval: f64) -> (usize, f64) {
+    const ROUNDING: f64 = 1e-9;
+    if wanted >= interval {
+        let intervals = (wanted / interval + ROUNDING).floor();
+        (intervals as usize, intervals * interval)
+    } else {
+        (1, interval / (interval / wanted - ROUNDING).ceil())
+    }
+}
+
+/// Families of settings for a converged solution, in the order they are tried: the first that serves the scene is taken. Each holds one or
+/// more sequences of finer and finer settings, the best of which is followed to its end: a bed may be softened with the mesh, or have the
+/// scene's own coefficients.
+pub fn converged(scene: &Scene, period: f64) -> Vec<Vec<Vec<Setting>>> {
+    if is_quasi_static(scene) {
+        return vec![vec![CONVERGED_ELEMENTS_STATIC.map(quasi_static).into()]];
+    }
+    let meshes = if scene.solver.negative_tension {
+        CONVERGED_ELEMENTS_PEERS
+    } else {
+        CONVERGED_ELEMENTS
+    };
+    let stepped = |steps: f64| Some(stepping(period / steps, scene.output.interval).1);
+    let axial_step = stepped(CONVERGED_STEPS_AXIAL);
+    let axial: Vec<Setting> = meshes
+        .map(|n| Setting::new(n, Integrator::AxialImplicit, axial_step))
+        .into();
+    let as_given = axial.iter().copied().map(Setting::on_bed_as_given);
+    let mut both = vec![as_given.collect()];
+    if scene.seabed.is_some() {
+        both.push(axial);
+    }
+    let explicit = |n: &usize| Setting::new(*n, Integrator::Leapfrog, None).on_bed_as_given();
+    let implicit = |n: usize, steps: f64| Setting::new(n, Integrator::Auto, stepped(steps)).on_bed_as_given();
+    let finest = CONVERGED_ELEMENTS_IMPLICIT;
+    vec![
+        both,
+        vec![meshes[..2].iter().map(explicit).collect()],
+        vec![vec![
+            implicit(finest / 2, CONVERGED_STEPS / 2.0),
+            implicit(finest, CONVERGED_STEPS),
+        ]],
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use moorline::scene::{Line, Section};
+
+    #[test]
+    fn elements_follow_the_length_of_section_and_line() {
+        let section = |length: f64| Section {
+            line_type: "chain".into(),
+            length,
+            elements: Some(3),
+            damping_elements: None,
+        };
+        let scene = Scene {
+            lines: vec![
+                Line::between("long", "a", "b", vec![section(300.0), section(100.0)]),
+                Line::between("short", "a", "b", vec![section(1.0)]),
+            ],
+            ..Scene::default()
+        };
+        let meshed = Setting::new(40, Integrator::Leapfrog, None).apply(&scene);
+        let elements: Vec<_> = meshed.lines.iter().flat_map(|line| &line.sections).collect();
+        let elements: Vec<_> = elements.iter().map(|section| section.elements).collect();
+        assert_eq!(elements, [Some(30), Some(10), Some(1)]);
+        let own = Setting::chosen(0.01).apply(&scene);
+        assert_eq!(own.lines[0].sections[0].elements, None);
+        assert_eq!(own.solver.tolerance, 0.01);
+    }
+
+    #[test]
+    fn internal_and_communication_steps_divide_each_other() {
+        assert_eq!(stepping(0.05, 0.05), (1, 0.05));
+        assert_eq!(stepping(0.23, 0.05), (4, 0.2));
+        assert_eq!(stepping(0.02, 0.05), (1, 0.05 / 3.0));
+        let mut scene = Scene::default();
+        scene.output.interval = 0.05;
+        for setting in ladder(&scene, 9.0) {
+            let communication = 0.05 * setting.communication as f64;
+            assert!(communication <= 9.0 / COMMUNICATIONS_PER_PERIOD + 1e-9);
+            if let Some(step) = setting.time_step_max {
+                let steps = communication / step;
+                assert!((steps - steps.round()).abs() < 1e-9, "{setting:?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,434 @@
+//! Speed against error: a scene run with a ladder of meshes, integrators and steps, each judged against a converged solution.
+//!
+//! Cost is processor time of the stepping thread per simulated second, without reading, statics and output. moorline is driven as the
+//! peers are: a host tells it where the fairlead is and how fast it moves, one communication step after the other. The runs that the
+//! verdicts name are timed in several rounds, own and peers' in turn. Errors are those of [`errors`], over the second half
+//! of the run. The converged solution is the best of a sequence of fine meshes, its uncertainty the distance from the one of half its
+//! resolution: nothing below that is a statement.
+//!
+//! With peers, all codes solve the peers' equations, damping that acts in compression too
+//! ([`moorline::scene::Solver::negative_tension`]); and none keeps an energy ledger, but moorline where it chooses its setting itself.
+
+#![forbid(unsafe_code)]
+
+mod converged;
+pub mod errors;
+pub mod frontier;
+mod ladder;
+mod peers;
+mod rounds;
+mod slow;
+pub mod tables;
+mod timed;
+mod verdict;
+
+use moorline::scene::{ContactLaw, Integrator, MotionPath, Scene};
+
+use converged::Converged;
+pub use errors::{Errors, Histories, Judge, Metric};
+pub use ladder::{Setting, TOLERANCES};
+pub use peers::{PeerError, Peers};
+pub use slow::Slow;
+use timed::{Timed, Trial, run};
+pub use verdict::{Duel, LEVELS, Verdict};
+
+/// Cut-off of the low-passed tension over the frequency of the fastest motion [-].
+const CUT_OFF: f64 = 5.0;
+/// Shortest period taken where the scene's motion is a table, or nothing moves [s].
+const PERIOD: f64 = 10.0;
+
+/// Who computed.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Code {
+    /// moorline with this integrator.
+    Own(Integrator),
+    /// moorline with what it chose itself.
+    Chosen,
+    /// Another code, by name.
+    Peer(String),
+}
+
+impl Code {
+    /// Its name.
+    pub fn name(&self) -> &str {
+        match self {
+            Code::Chosen => "moorline, its own choice",
+            Code::Own(Integrator::Leapfrog) => "moorline, leapfrog",
+            Code::Own(Integrator::AxialImplicit) => "moorline, axial-implicit",
+            Code::Own(Integrator::QuasiStatic) => "moorline, quasi-static",
+            Code::Own(Integrator::Beam) => "moorline, beam",
+            Code::Own(_) => "moorline, implicit",
+            Code::Peer(name) => name,
+        }
+    }
+
+    /// Whether it is moorline.
+    pub fn is_own(&self) -> bool {
+        !matches!(self, Code::Peer(_))
+    }
+}
+
+/// One run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Run {
+    /// Who computed.
+    pub code: Code,
+    /// Mesh and step, in words.
+    pub label: String,
+    /// Processor time over simulated time [-], the least of its timings.
+    pub cost: f64,
+    /// Against the converged solution.
+    pub errors: Errors,
+    /// All timings.
+    costs: Vec<f64>,
+    how: How,
+}
+
+/// How a run is made again.
+#[derive(Debug, Clone, PartialEq)]
+enum How {
+    Own(Setting),
+    /// By its number in the peers' ladder.
+    Peer(usize),
+}
+
+impl Run {
+    fn new(code: Code, label: String, cost: f64, errors: Errors, how: How) -> Run {
+        Run {
+            code,
+            label,
+            cost,
+            errors,
+            costs: vec![cost],
+            how,
+        }
+    }
+
+    /// Least and greatest of its timings [-].
+    pub fn spread(&self) -> [f64; 2] {
+        let ends = |[least, greatest]: [f64; 2], cost: &f64| [least.min(*cost), greatest.max(*cost)];
+        self.costs.iter().fold([self.cost; 2], ends)
+    }
+}
+
+/// A run that gave no result, and why.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Failed {
+    /// Who, with mesh and step.
+    pub label: String,
+    /// What it said.
+    pub reason: String,
+}
+
+/// Speed against error of a scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Study {
+    /// Name of the scene.
+    pub name: String,
+    /// Title of the scene.
+    pub title: String,
+    /// Whether damping acts in compression, the peers' law.
+    pub negative_tension: bool,
+    /// Whether there is a bed.
+    pub on_bed: bool,
+    /// Mesh and step of the converged solution, in words.
+    pub converged: String,
+    /// Its distance from one of half its resolution.
+    pub uncertainty: Errors,
+    /// All runs.
+    pub runs: Vec<Run>,
+    /// Runs without a result.
+    pub failed: Vec<Failed>,
+    /// The quasi-static mode in the scene's motion and slower ones.
+    pub slow: Vec<Slow>,
+}
+
+/// Why a scene cannot be studied.
+#[derive(Debug, thiserror::Error)]
+pub enum StudyError {
+    /// Nothing serves for a converged solution.
+    #[error("no converged solution of {name}: {reason}")]
+    NotConverged {
+        /// The scene.
+        name: String,
+        /// What the last attempt said.
+        reason: String,
+    },
+    /// Nothing happens in it.
+    #[error("{name}: nothing moves in it, so that there is no error of a history to judge; give it a motion")]
+    AtRest {
+        /// The scene.
+        name: String,
+    },
+}
+
+/// Runs the ladder of a scene; `progress` is told how many runs are done, of how many.
+///
+/// # Errors
+/// Where no converged solution can be had. Single runs that fail are listed in the study.
+pub fn study(
+    name: &str,
+    scene: &Scene,
+    peers: Option<&Peers>,
+    progress: &mut dyn FnMut(usize, usize),
+) -> Result<Study, StudyError> {
+    let mut scene = scene.clone();
+    scene.solver.negative_tension |= peers.is_some();
+    let period = shortest_period(&scene);
+    let settings = ladder::ladder(&scene, period);
+    let mut conversation = peers.map(|peers| peers.begin(name, &scene));
+    let of_peers = match &conversation {
+        Some(Ok(conversation)) => conversation.count(),
+        _ => 0,
+    };
+    // The converged solution and its judge are dear, and so is timing again.
+    let (first, last) = (settings.len() / 4, (settings.len() + of_peers) / 8 + 1);
+    let total = first + settings.len() + of_peers + last;
+    progress(0, total);
+    let converged = Converged::find(name, &scene)?;
+    progress(first, total);
+    let judge = converged.judge;
+    let mut study = Study {
+        name: name.to_string(),
+        title: scene.title.clone(),
+        negative_tension: scene.solver.negative_tension,
+        on_bed: scene.seabed.is_some(),
+        converged: label(&converged.setting, &converged.fine, scene.seabed.is_some()),
+        uncertainty: converged.uncertainty,
+        runs: Vec::new(),
+        failed: Vec::new(),
+        slow: match ladder::is_quasi_static(&scene) {
+            true => Vec::new(),
+            false => slow::slow(&scene),
+        },
+    };
+    study.climb(&scene, &settings, &judge, &converged.fine, &mut |done| {
+        progress(first + done, total);
+    });
+    match &mut conversation {
+        Some(Ok(conversation)) => {
+            let before = first + settings.len();
+            let mut told = |done| progress(before + done, total);
+            conversation.add_runs(&judge, &converged.fine.histories, &mut study, &mut told);
+            study.settle(&scene, Some(conversation));
+        }
+        Some(Err(reason)) => {
+            study.failed.push(Failed {
+                label: "peers".to_string(),
+                reason: reason.clone(),
+            });
+            study.settle(&scene, None);
+        }
+        None => study.settle(&scene, None),
+    }
+    progress(total, total);
+    Ok(study)
+}
+
+/// How far the converged solution of a scene lies from one of half its resolution.
+///
+/// # Errors
+/// Where it cannot be had.
+pub fn uncertainty(name: &str, scene: &Scene) -> Result<Errors, StudyError> {
+    Converged::find(name, scene).map(|converged| converged.uncertainty)
+}
+
+impl Study {
+    /// Runs all settings but those that come to the same as one before.
+    fn climb(
+        &mut self,
+        scene: &Scene,
+        settings: &[Setting],
+        judge: &Judge,
+        converged: &Timed,
+        done: &mut dyn FnMut(usize),
+    ) {
+        let mut plans = Vec::new();
+        for (index, setting) in settings.iter().enumerate() {
+            let trial = Trial::new(scene, setting);
+            if let Ok(trial) = &trial {
+                let plan = (
+                    setting.elements,
+                    setting.communication,
+                    setting.contact,
+                    trial.plan(),
+                );
+                if setting.tolerance.is_none() && plans.contains(&plan) {
+                    continue;
+                }
+                plans.push(plan);
+            }
+            match trial.and_then(|trial| run(&trial)) {
+                Ok(timed) => self.runs.push(Run::new(
+                    code(setting),
+                    label(setting, &timed, self.on_bed),
+                    timed.cost,
+                    judge.errors(&timed.histories, &converged.histories),
+                    How::Own(*setting),
+                )),
+                Err(reason) => self.failed.push(Failed {
+                    label: described(setting),
+                    reason,
+                }),
+            }
+            done(index + 1);
+        }
+    }
+
+    /// The cheapest run among those that `codes` admits whose error is at most `level` [-].
+    pub fn cheapest(&self, metric: Metric, level: f64, codes: impl Fn(&Code) -> bool) -> Option<&Run> {
+        let good = self.within(metric, level, codes);
+        good.min_by(|a, b| a.cost.total_cmp(&b.cost))
+    }
+
+    /// Runs among those that `codes` admits whose error is at most `level` [-].
+    fn within(
+        &self,
+        metric: Metric,
+        level: f64,
+        codes: impl Fn(&Code) -> bool,
+    ) -> impl Iterator<Item = &Run> {
+        let good = self.runs.iter().filter(move |run| codes(&run.code));
+        good.filter(move |run| run.errors.of(metric) <= level)
+    }
+
+    /// Runs of a code that none of its other runs beats in both cost and error, from the cheapest on.
+    pub fn frontier(&self, metric: Metric, codes: impl Fn(&Code) -> bool) -> Vec<&Run> {
+        let mut runs: Vec<&Run> = self.runs.iter().filter(|run| codes(&run.code)).collect();
+        runs.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+        let mut best = f64::INFINITY;
+        runs.retain(|run| {
+            let better = run.errors.of(metric) < best;
+            best = best.min(run.errors.of(metric));
+            better
+        });
+        runs
+    }
+
+    /// Names of the peers that have a run.
+    pub fn peers(&self) -> Vec<&str> {
+        let mut names: Vec<&str> = Vec::new();
+        for run in &self.runs {
+            if let Code::Peer(name) = &run.code
+                && !names.contains(&name.as_str())
+            {
+                names.push(name);
+            }
+        }
+        names
+    }
+}
+
+/// Who computes with a setting.
+fn code(setting: &Setting) -> Code {
+    match setting.integrator {
+        Integrator::Auto => Code::Chosen,
+        integrator => Code::Own(integrator),
+    }
+}
+
+/// Mesh and step of a run, in words; what became of the bed, where there is one.
+fn label(setting: &Setting, timed: &Timed, on_bed: bool) -> String {
+    let communication = timed.communication.map_or(String::new(), |step| {
+        format!(", communication step {}", seconds(step))
+    });
+    let bed = match setting.contact {
+        Some(ContactLaw::AsGiven) if on_bed => ", bed as given",
+        _ => "",
+    };
+    let step = format!("step {}{communication}{bed}", seconds(timed.step));
+    match setting.tolerance {
+        Some(tolerance) => format!(
+            "tolerance {} %: {}, n = {}, {step}",
+            100.0 * tolerance,
+            timed.integrator,
+            timed.elements
+        ),
+        None => format!("n = {}, {step}", timed.elements),
+    }
+}
+
+/// A setting in words, before it has run.
+fn described(setting: &Setting) -> String {
+    let elements = setting.elements.map_or(String::new(), |n| format!(", n = {n}"));
+    let step = setting.time_step_max.map(seconds);
+    let step = step.map_or(String::new(), |step| format!(", step {step}"));
+    format!("{}{elements}{step}", code(setting).name())
+}
+
+/// A time [s] in the multiple of the second that fits.
+fn seconds(time: f64) -> String {
+    match time {
+        t if t >= 0.1 => format!("{t:.2} s"),
+        t if t >= 1e-3 => format!("{:.3} ms", 1e3 * t),
+        t => format!("{:.2} µs", 1e6 * t),
+    }
+}
+
+fn judge(scene: &Scene, period: f64, converged: &Histories) -> Judge {
+    let samples = converged.tension.first().map_or(0, Vec::len);
+    Judge {
+        interval: scene.output.interval,
+        from: samples / 2,
+        cut_off: CUT_OFF / period,
+    }
+}
+
+/// The shortest period [s] with which anything moves.
+fn shortest_period(scene: &Scene) -> f64 {
+    let own = scene.points.iter().filter_map(|point| point.motion.as_ref());
+    let paths = scene.motion.values().chain(own);
+    let periods = paths.filter_map(|path| match path {
+        MotionPath::Harmonic(motion) => Some(motion),
+        _ => None,
+    });
+    let shortest = periods
+        .flat_map(|motion| motion.axes().map(|(_, sines)| sines.clone()))
+        .flatten()
+        .map(|sine| sine[1])
+        .fold(f64::INFINITY, f64::min);
+    if shortest.is_finite() { shortest } else { PERIOD }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A study of these runs, certain to 0.1 %.
+    pub fn study_of(runs: Vec<Run>) -> Study {
+        Study {
+            name: "scene".to_string(),
+            title: "a scene".to_string(),
+            negative_tension: true,
+            on_bed: true,
+            converged: String::new(),
+            uncertainty: Errors::all(0.001),
+            runs,
+            failed: Vec::new(),
+            slow: Vec::new(),
+        }
+    }
+
+    fn run_of(code: Code, cost: f64, error: f64) -> Run {
+        let how = How::Peer(0);
+        Run::new(code, format!("at {error}"), cost, Errors::all(error), how)
+    }
+
+    /// A run of moorline with one error [-] in all respects.
+    pub fn own(cost: f64, error: f64) -> Run {
+        run_of(Code::Own(Integrator::Leapfrog), cost, error)
+    }
+
+    /// A run of a peer with one error [-] in all respects.
+    pub fn peer(name: &str, cost: f64, error: f64) -> Run {
+        run_of(Code::Peer(name.to_string()), cost, error)
+    }
+
+    #[test]
+    fn a_run_is_as_dear_as_its_best_timing_and_shows_its_worst() {
+        let mut run = own(3.0, 0.1);
+        run.costs.extend([2.0, 5.0]);
+        run.cost = 2.0;
+        assert_eq!(run.spread(), [2.0, 5.0]);
+    }
+}

@@ -1,0 +1,103 @@
+//! Timing again, own runs and peers' in turn, what the verdicts rest on.
+//!
+//! A cheapest run is the least of many timings and so the luckiest; and what shares the machine changes from minute to minute. Every run
+//! that a verdict or the tool's own choice names is therefore timed in several rounds, each of which takes moorline and peers in turn.
+//! Its cost is the least of its rounds, its spread their range. A run that was slowed when it was first timed is named by none: at the
+//! levels that moorline is held to, runs that cost little more than the cheapest of their code are timed so too.
+
+use super::errors::Metric;
+use super::ladder::Setting;
+use super::peers::Conversation;
+use super::timed::Trial;
+use super::{Code, How, Run, Study};
+use moorline::scene::Scene;
+
+/// Timings of a run that a verdict names [-].
+const ROUNDS: usize = 3;
+/// Passes over the named runs at most [-]: a new timing may make another run the cheapest.
+const PASSES_MAX: usize = 8;
+/// Cost of a run over that of the cheapest of its code, up to which it might be the cheapest itself [-].
+const CONTENDER_COST: f64 = 1.5;
+
+impl Study {
+    /// Times in rounds what the verdicts name.
+    pub(crate) fn settle(&mut self, scene: &Scene, mut peers: Option<&mut Conversation>) {
+        for _ in 0..PASSES_MAX {
+            let open = self.unsettled();
+            if open.is_empty() {
+                return;
+            }
+            for index in open {
+                let cost = match &self.runs[index].how {
+                    How::Own(setting) => timed_again(scene, setting),
+                    How::Peer(number) => peers.as_mut().and_then(|peers| peers.time(*number)),
+                };
+                // A run that cannot be repeated keeps the cost it has.
+                let run = &mut self.runs[index];
+                let cost = cost.unwrap_or(run.cost);
+                run.costs.push(cost);
+                run.cost = run.cost.min(cost);
+            }
+        }
+    }
+
+    /// Indices of the runs that the verdicts name and that were timed in fewer than all rounds: moorline's and the peers' next to
+    /// one another.
+    fn unsettled(&self) -> Vec<usize> {
+        let mut named = Vec::new();
+        for verdict in self.verdicts() {
+            let peers = verdict.peers.iter().filter_map(|(_, run)| *run);
+            for run in verdict.own.into_iter().chain(peers) {
+                named.push(run);
+                if verdict.key {
+                    named.extend(self.contenders(run, verdict.metric, verdict.level));
+                }
+            }
+        }
+        named.extend(self.runs.iter().filter(|run| run.code == Code::Chosen));
+        let mut indices = Vec::new();
+        for run in named {
+            let index = self.runs.iter().position(|other| std::ptr::eq(run, other));
+            let index = index.filter(|index| !indices.contains(index));
+            indices.extend(index.filter(|_| run.costs.len() < ROUNDS));
+        }
+        indices
+    }
+
+    /// The runs of the same code as one of them that reach a level [-] of a metric too, at little more than its cost: with a luckier timing
+    /// they might be the cheapest.
+    fn contenders(&self, of: &Run, metric: Metric, level: f64) -> impl Iterator<Item = &Run> {
+        let (code, most) = (of.code.clone(), CONTENDER_COST * of.cost);
+        let alike = move |other: &Code| match &code {
+            Code::Peer(_) => *other == code,
+            _ => other.is_own(),
+        };
+        self.within(metric, level, alike)
+            .filter(move |run| run.cost <= most)
+    }
+}
+
+fn timed_again(scene: &Scene, setting: &Setting) -> Option<f64> {
+    Trial::new(scene, setting).ok()?.cost().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::{own, peer, study_of};
+
+    #[test]
+    fn what_costs_little_more_than_the_cheapest_is_timed_in_rounds_too() {
+        let study = study_of(vec![
+            own(1.0, 0.02),
+            own(1.4, 0.001), // the cheapest at finer levels, and perhaps here
+            own(1.6, 0.02),
+            peer("A", 30.0, 0.02),
+            peer("A", 40.0, 0.02),
+            peer("A", 50.0, 0.02),
+            peer("B", 41.0, 0.02),
+        ]);
+        let mut open = study.unsettled();
+        open.sort_unstable();
+        assert_eq!(open, [0, 1, 3, 4, 6]);
+    }
+}

@@ -1,0 +1,86 @@
+//! Where the quasi-static mode is enough: the scene's motion made slower, equilibria against dynamics on the same mesh.
+
+use super::errors::{Errors, Histories, Judge, Metric};
+use super::ladder::Setting;
+use super::timed::Trial;
+use super::{judge, shortest_period};
+use moorline::scene::{Integrator, MotionPath, Scene};
+
+/// How many times as long all periods are made, until the quasi-static mode is good [-].
+const FACTORS: [f64; 7] = [1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0];
+/// Good enough to stop: error of RMS tension [-].
+const GOOD: f64 = 0.01;
+/// Elements of the longest line [-]; both runs have them, so that the mesh does not count.
+const ELEMENTS: usize = 80;
+/// Internal steps to the shortest period, at least [-].
+const STEPS_PER_PERIOD: f64 = 160.0;
+
+/// The quasi-static mode in a slower motion.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Slow {
+    /// Periods over those of the scene [-].
+    pub factor: f64,
+    /// Shortest period of the motion [s].
+    pub period: f64,
+    /// Against dynamics on the same mesh.
+    pub errors: Errors,
+}
+
+/// Errors of the quasi-static mode, from the scene's own motion on to slower ones; none where the motion is no sum of sines or a run
+/// fails.
+pub(crate) fn slow(scene: &Scene) -> Vec<Slow> {
+    let mut all = Vec::new();
+    for factor in FACTORS {
+        let Some(one) = slowed(scene, factor).and_then(|scene| compared(&scene, factor)) else {
+            break;
+        };
+        all.push(one);
+        if one.errors.of(Metric::Rms) <= GOOD {
+            break;
+        }
+    }
+    all
+}
+
+fn compared(scene: &Scene, factor: f64) -> Option<Slow> {
+    let period = shortest_period(scene);
+    let step = Some(period / STEPS_PER_PERIOD);
+    let with = |integrator| {
+        let setting = Setting::new(ELEMENTS, integrator, step).on_bed_as_given();
+        histories(scene, &setting)
+    };
+    let dynamic = with(Integrator::AxialImplicit).or_else(|| with(Integrator::Auto))?;
+    let quasi_static = with(Integrator::QuasiStatic)?;
+    let judge: Judge = judge(scene, period, &dynamic);
+    Some(Slow {
+        factor,
+        period,
+        errors: judge.errors(&quasi_static, &dynamic),
+    })
+}
+
+fn histories(scene: &Scene, setting: &Setting) -> Option<Histories> {
+    let (timed, _) = Trial::exact(scene, setting).ok()?.recorded().ok()?;
+    Some(timed.histories)
+}
+
+/// The scene with all periods this many times as long, duration and output alike.
+fn slowed(scene: &Scene, factor: f64) -> Option<Scene> {
+    let mut scene = scene.clone();
+    let own = scene.points.iter_mut();
+    let own = own.filter_map(|point| point.motion.as_mut());
+    for path in scene.motion.values_mut().chain(own) {
+        let MotionPath::Harmonic(motion) = path else {
+            return None;
+        };
+        let translation = [&mut motion.x, &mut motion.y, &mut motion.z];
+        let rotation = [&mut motion.roll, &mut motion.pitch, &mut motion.yaw];
+        for sine in translation.into_iter().chain(rotation).flatten() {
+            sine[1] *= factor;
+        }
+        motion.ramp = motion.ramp.map(|ramp| factor * ramp);
+    }
+    scene.output.duration *= factor;
+    scene.output.interval *= factor;
+    Some(scene)
+}

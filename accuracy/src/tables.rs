@@ -1,0 +1,153 @@
+//! Speed against error as tables: a row for every run, a row for every verdict, and a few lines for a page.
+
+use std::fmt::Write as _;
+use std::io::{self, Write};
+
+use crate::{Code, Metric, Run, Study, Verdict};
+
+/// Writes scene, code, setting, cost with its range, errors and the converged solution's uncertainty of every run of these studies;
+/// `machine` names the processor.
+///
+/// # Errors
+/// Where `out` refuses.
+pub fn write_runs(machine: &str, studies: &[Study], out: impl Write) -> io::Result<()> {
+    let mut table = csv::Writer::from_writer(out);
+    let keys = Metric::ALL.map(Metric::key);
+    let errors = keys.iter().map(|key| (*key).to_string());
+    let uncertainties = keys.iter().map(|key| format!("{key}_uncertainty"));
+    let head = [
+        "machine",
+        "scene",
+        "code",
+        "setting",
+        "cost",
+        "cost_least",
+        "cost_greatest",
+    ];
+    let head = head.map(str::to_string);
+    table.write_record(head.into_iter().chain(errors).chain(uncertainties))?;
+    for study in studies {
+        for run in &study.runs {
+            let words = [machine, &study.name, run.code.name(), &run.label].map(str::to_string);
+            let numbers = Metric::ALL.map(|metric| run.errors.of(metric));
+            let limits = Metric::ALL.map(|metric| study.uncertainty.of(metric));
+            let numbers = costs(run).into_iter().chain(numbers).chain(limits);
+            table.write_record(words.into_iter().chain(numbers.map(number)))?;
+        }
+    }
+    table.flush()
+}
+
+/// Writes, for every level of error, the cheapest run of moorline and of every peer, and the peer's cost over moorline's.
+///
+/// # Errors
+/// Where `out` refuses.
+pub fn write_verdicts(machine: &str, studies: &[Study], out: impl Write) -> io::Result<()> {
+    let mut table = csv::Writer::from_writer(out);
+    table.write_record([
+        "machine",
+        "scene",
+        "metric",
+        "level",
+        "key",
+        "certain",
+        "code",
+        "setting",
+        "cost",
+        "cost_least",
+        "cost_greatest",
+        "ratio",
+    ])?;
+    for study in studies {
+        for verdict in study.verdicts() {
+            let own = verdict.own.map(|own| ("moorline", Some(own)));
+            for (_, run) in own.into_iter().chain(verdict.peers.iter().copied()) {
+                let Some(run) = run else { continue };
+                let ratio = verdict.own.map_or(f64::NAN, |own| run.cost / own.cost);
+                let words = [
+                    machine.to_string(),
+                    study.name.clone(),
+                    verdict.metric.key().to_string(),
+                    verdict.level.to_string(),
+                    verdict.key.to_string(),
+                    verdict.certain.to_string(),
+                    run.code.name().to_string(),
+                    run.label.clone(),
+                ];
+                let numbers = costs(run).into_iter().chain([ratio]).map(number);
+                table.write_record(words.into_iter().chain(numbers))?;
+            }
+        }
+    }
+    table.flush()
+}
+
+fn costs(run: &Run) -> [f64; 3] {
+    let [least, greatest] = run.spread();
+    [run.cost, least, greatest]
+}
+
+fn number(number: f64) -> String {
+    format!("{number:.4e}")
+}
+
+/// The levels that moorline is held to as a table in Markdown, and where a peer comes closest.
+pub fn summary(studies: &[Study]) -> String {
+    let mut text = String::from(
+        "| scene, error | moorline | MoorDyn | CableDyn | ratio to the better | moorline's setting |\n|---|---|---|---|---|---|\n",
+    );
+    for study in studies {
+        for verdict in study.verdicts().iter().filter(|verdict| verdict.key) {
+            text.push_str(&row(study, verdict));
+        }
+    }
+    text.push_str("\n| scene, moorline's own choice | cost | RMS | low-passed | peak | position |\n|---|---|---|---|---|---|\n");
+    for study in studies {
+        for run in study.runs.iter().filter(|run| run.code == Code::Chosen) {
+            let [rms, low, peak, position] = Metric::ALL.map(|metric| percent(run.errors.of(metric)));
+            let (name, label, cost) = (&study.name, &run.label, cost(Some(run)));
+            // Writing into a string does not fail.
+            let _ = writeln!(
+                text,
+                "| {name}, {label} | {cost} | {rms} | {low} | {peak} | {position} |"
+            );
+        }
+    }
+    text
+}
+
+fn row(study: &Study, verdict: &Verdict<'_>) -> String {
+    let peer = |name: &str| {
+        let found = verdict.peers.iter().find(|(peer, _)| *peer == name);
+        cost(found.and_then(|(_, run)| *run))
+    };
+    let ratio = verdict.ratio().map_or("—".to_string(), |ratio| {
+        let range = verdict.ratio_range().unwrap_or([ratio; 2]);
+        format!("**{ratio:.0}** ({:.0}–{:.0})", range[0], range[1])
+    });
+    let metric = match verdict.metric {
+        Metric::Rms => "RMS tension",
+        Metric::Position => "mid position",
+        other => other.title(),
+    };
+    let setting = verdict.own.map_or("—".to_string(), |run| {
+        format!("{}, {}", run.code.name().replace("moorline, ", ""), run.label)
+    });
+    format!(
+        "| {}, {metric} {} | {} | {} | {} | {ratio} | {setting} |\n",
+        study.name,
+        percent(verdict.level),
+        cost(verdict.own),
+        peer("MoorDyn"),
+        peer("CableDyn"),
+    )
+}
+
+fn cost(run: Option<&Run>) -> String {
+    run.map_or("—".to_string(), |run| format!("{:.1e}", run.cost))
+}
+
+fn percent(error: f64) -> String {
+    let text = format!("{:.2}", 100.0 * error);
+    format!("{} %", text.trim_end_matches('0').trim_end_matches('.'))
+}

@@ -1,0 +1,337 @@
+//! One run of a scene: its histories and what they cost.
+//!
+//! A timed run is driven as a host drives it: before every communication step it is told displacement and velocity of what moves, made
+//! beforehand: where the step ends, as the peers are, or with [`Reconstruction::Smooth`] where it starts, and nothing of what comes. The
+//! converged solution follows the scene's motion exactly.
+
+use std::hint::black_box;
+
+use cpu_time::ThreadTime;
+use nalgebra::Vector3;
+
+use super::errors::Histories;
+use super::ladder::Setting;
+use moorline::model::{Line, Model, Moving, Role};
+use moorline::scene::{Integrator, Reconstruction, Scene};
+use moorline::simulation::Simulation;
+
+/// Passes of one timing, the median of which counts: at most this many, and no more once they add up to this time [s].
+const PASSES_MAX: usize = 9;
+const PASSES_TIME: f64 = 0.08;
+
+/// A run that can be repeated.
+#[derive(Debug, Clone)]
+pub(crate) struct Trial {
+    start: Simulation,
+    /// What the host says before every step, of so many bodies, in one run through memory: fetching it is no work of the solver. Empty where
+    /// the scene's motion is followed exactly.
+    said: Vec<Moving>,
+    bodies: usize,
+    /// Communication step [s].
+    step: f64,
+    count: usize,
+    /// Interval [s] and number of the samples.
+    interval: f64,
+    samples: usize,
+}
+
+/// What a run gave.
+#[derive(Debug, Clone)]
+pub(crate) struct Timed {
+    pub histories: Histories,
+    /// Processor time over simulated time [-].
+    pub cost: f64,
+    /// Name of the integrator of the first network.
+    pub integrator: String,
+    /// Elements of all lines [-].
+    pub elements: usize,
+    /// Mean internal step [s].
+    pub step: f64,
+    /// Communication step [s], where it is not the interval of the output.
+    pub communication: Option<f64>,
+}
+
+impl Timed {
+    /// Whether any tension changes.
+    pub fn moves(&self) -> bool {
+        let changes = |tension: &Vec<f64>| {
+            let (first, last) = (tension.first(), tension.len() / 2);
+            let scale = first.map_or(0.0, |t| t.abs());
+            tension[last..]
+                .iter()
+                .any(|t| (t - tension[last]).abs() > 1e-6 * scale)
+        };
+        self.histories.tension.iter().any(changes)
+    }
+}
+
+impl Trial {
+    /// A run driven as a host drives it; a failure is told in words.
+    pub fn new(scene: &Scene, setting: &Setting) -> Result<Trial, String> {
+        let interval = scene.output.interval;
+        let step = setting.communication as f64 * interval;
+        let samples = samples(scene);
+        let count = samples.div_ceil(setting.communication);
+        let mut start = Simulation::new(&setting.apply(scene)).map_err(|error| error.to_string())?;
+        let time = |index: usize| (index * setting.communication) as f64 * interval;
+        let ahead = start.model().solver.input_reconstruction == Reconstruction::Interpolate;
+        let told = |index: usize| time(index + usize::from(ahead));
+        let first = start.model().moving(0.0);
+        let said = (0..count).flat_map(|index| start.model().moving(told(index)));
+        let (said, bodies) = (said.collect(), first.len());
+        tell(&mut start, &first);
+        start.restart(0.0).map_err(|error| error.to_string())?;
+        Ok(Trial {
+            start,
+            said,
+            bodies,
+            step,
+            count,
+            interval,
+            samples,
+        })
+    }
+
+    /// A run that follows the scene's motion exactly.
+    pub fn exact(scene: &Scene, setting: &Setting) -> Result<Trial, String> {
+        let mut start = Simulation::new(&setting.apply(scene)).map_err(|error| error.to_string())?;
+        start.follow_scene().map_err(|error| error.to_string())?;
+        let samples = samples(scene);
+        Ok(Trial {
+            start,
+            said: Vec::new(),
+            bodies: 0,
+            step: scene.output.interval,
+            count: samples,
+            interval: scene.output.interval,
+            samples,
+        })
+    }
+
+    /// Integrator and planned steps in a communication step, by network: two runs with one mesh and the same plan are the same.
+    pub fn plan(&self) -> Vec<(Integrator, usize)> {
+        let steps = |step_max: f64| (self.step / step_max - 1e-9).ceil() as usize;
+        let choices = self.start.choices();
+        choices
+            .map(|choice| (choice.integrator, steps(choice.step_max)))
+            .collect()
+    }
+
+    /// Runs once and reads; the time of a long pass counts, for reading is nothing beside it. Short ones are to be timed.
+    pub fn recorded(&self) -> Result<(Timed, Option<f64>), String> {
+        let mut record = Record::new(&self.start, self.count);
+        let mut steps = 0;
+        let elapsed = self.step_through(|simulation| {
+            steps += simulation.substeps();
+            record.read(simulation);
+        })?;
+        let choice = self.start.choices().next();
+        let lines = &self.start.model().lines;
+        let timed = Timed {
+            cost: f64::NAN,
+            integrator: choice.map_or(String::new(), |choice| name(choice.integrator)),
+            elements: lines.iter().map(Line::segment_count).sum(),
+            step: self.step * self.count as f64 / steps.max(1) as f64,
+            communication: (self.step != self.interval).then_some(self.step),
+            histories: record.sampled(self.step, self.interval, self.samples),
+        };
+        let long = elapsed >= PASSES_TIME;
+        Ok((timed, long.then(|| self.relative(elapsed))))
+    }
+
+    /// Processor time over simulated time [-], the median of a few passes that read nothing.
+    pub fn cost(&self) -> Result<f64, String> {
+        let mut times = Vec::with_capacity(PASSES_MAX);
+        while times.len() < PASSES_MAX && times.iter().sum::<f64>() < PASSES_TIME {
+            times.push(self.step_through(|simulation| {
+                black_box(simulation);
+            })?);
+        }
+        times.sort_by(f64::total_cmp);
+        Ok(self.relative(times[times.len() / 2]))
+    }
+
+    fn relative(&self, elapsed: f64) -> f64 {
+        elapsed / (self.step * self.count as f64)
+    }
+
+    /// Steps to the end from the start; processor time of this thread [s].
+    fn step_through(&self, mut each: impl FnMut(&Simulation)) -> Result<f64, String> {
+        let mut simulation = self.start.clone();
+        let before = ThreadTime::now();
+        for index in 0..self.count {
+            let said = index * self.bodies..(index + 1) * self.bodies;
+            tell(&mut simulation, &self.said[said]);
+            simulation.advance(self.step).map_err(|error| error.to_string())?;
+            each(&simulation);
+        }
+        Ok(before.elapsed().as_secs_f64())
+    }
+}
+
+fn tell(simulation: &mut Simulation, said: &[Moving]) {
+    for moving in said {
+        simulation.set_body(moving.body, moving.pose, moving.velocity.map(Some));
+    }
+}
+
+/// Runs a setting as a host drives it, and times it.
+pub(crate) fn run(trial: &Trial) -> Result<Timed, String> {
+    let (timed, cost) = trial.recorded()?;
+    let cost = cost.map_or_else(|| trial.cost(), Ok)?;
+    Ok(Timed { cost, ..timed })
+}
+
+/// What is read at every communication point, the start among them.
+struct Record {
+    tension: Vec<Vec<f64>>,
+    middle: Vec<Vec<Vector3<f64>>>,
+}
+
+impl Record {
+    fn new(start: &Simulation, count: usize) -> Record {
+        let lines = start.model().lines.len();
+        let mut record = Record {
+            tension: vec![Vec::with_capacity(count + 1); lines],
+            middle: vec![Vec::with_capacity(count + 1); lines],
+        };
+        record.read(start);
+        record
+    }
+
+    fn read(&mut self, simulation: &Simulation) {
+        for line in 0..self.tension.len() {
+            self.tension[line].push(driven_tension(simulation, line));
+            self.middle[line].push(middle(simulation, line));
+        }
+    }
+
+    /// Histories after every interval [s] of what was read after every step [s].
+    fn sampled(self, step: f64, interval: f64, samples: usize) -> Histories {
+        let parts = step / interval;
+        let tension = self.tension.into_iter();
+        let middle = self.middle.into_iter();
+        Histories {
+            tension: tension.map(|all| resampled(&all, parts, samples)).collect(),
+            middle: middle.map(|all| resampled(&all, parts, samples)).collect(),
+        }
+    }
+}
+
+/// Values at 1, 2, … `samples` of values that are `parts` apart and begin at 0: by cubics through four of them.
+fn resampled<T>(values: &[T], parts: f64, samples: usize) -> Vec<T>
+where
+    T: Copy + std::ops::Mul<f64, Output = T> + std::ops::Add<Output = T>,
+{
+    if parts == 1.0 || values.len() < 4 {
+        return values.iter().skip(1).take(samples).copied().collect();
+    }
+    let at = |sample: usize| {
+        let place = sample as f64 / parts;
+        let first = (place.floor() as usize).saturating_sub(1).min(values.len() - 4);
+        let weights = cubic([0.0, 1.0, 2.0, 3.0], place - first as f64);
+        let [a, b, c, d] = [0, 1, 2, 3].map(|point| values[first + point] * weights[point]);
+        a + b + c + d
+    };
+    (1..=samples).map(at).collect()
+}
+
+fn samples(scene: &Scene) -> usize {
+    (scene.output.duration / scene.output.interval).round().max(2.0) as usize
+}
+
+/// The integrator as the scene format spells it.
+fn name(integrator: Integrator) -> String {
+    serde_json::to_value(integrator)
+        .ok()
+        .and_then(|value| value.as_str().map(str::to_string))
+        .unwrap_or_default()
+        .replace('_', "-")
+}
+
+/// Tension at the end of a line that is moved, end B where both or none are [N].
+fn driven_tension(simulation: &Simulation, line: usize) -> f64 {
+    let model = simulation.model();
+    let [a, b] = model.lines[line].ends;
+    if moved(model, a) && !moved(model, b) {
+        simulation.tension_a(line)
+    } else {
+        simulation.tension_b(line)
+    }
+}
+
+fn moved(model: &Model, point: usize) -> bool {
+    matches!(
+        model.points[point].role,
+        Role::Coupled { .. } | Role::Carried { .. } | Role::Prescribed(_)
+    )
+}
+
+/// Position half-way along a line [m]: by a cubic through four nodes, on a chord where there are fewer.
+fn middle(simulation: &Simulation, line: usize) -> Vector3<f64> {
+    let arc = &simulation.model().lines[line].nodes.arc;
+    let profile = simulation.state().lines[line].position.as_slice();
+    half_way(arc, profile)
+}
+
+fn half_way(arc: &[f64], profile: &[Vector3<f64>]) -> Vector3<f64> {
+    let last = arc.len() - 1;
+    let half = 0.5 * arc[last];
+    let after = arc.partition_point(|s| *s < half).clamp(1, last);
+    if last < 3 {
+        let part = (half - arc[after - 1]) / (arc[after] - arc[after - 1]);
+        return profile[after - 1] + part * (profile[after] - profile[after - 1]);
+    }
+    let nodes = [0, 1, 2, 3].map(|node| node + after.saturating_sub(2).min(last - 3));
+    let weights = cubic(nodes.map(|node| arc[node]), half);
+    let terms = nodes
+        .iter()
+        .zip(weights)
+        .map(|(node, weight)| profile[*node] * weight);
+    terms.sum()
+}
+
+/// What the values at four places count for at another, on the cubic through them [-].
+fn cubic(places: [f64; 4], at: f64) -> [f64; 4] {
+    let share = |own: f64| {
+        let others = places.iter().filter(|other| **other != own);
+        others.map(|other| (at - other) / (own - other)).product()
+    };
+    places.map(share)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cubic_is_resampled_exactly() {
+        let cubic = |t: f64| 2.0 + t - 0.3 * t * t + 0.01 * t * t * t;
+        let values: Vec<f64> = (0..8).map(|k| cubic(4.0 * f64::from(k))).collect();
+        let fine = resampled(&values, 4.0, 26);
+        assert_eq!(fine.len(), 26);
+        for (index, value) in fine.iter().enumerate() {
+            let right = cubic((index + 1) as f64);
+            assert!((value - right).abs() < 1e-12 * right.abs().max(1.0));
+        }
+        assert_eq!(resampled(&values, 1.0, 7), values[1..]);
+    }
+
+    #[test]
+    fn a_line_is_read_half_way_along_whatever_its_number_of_elements() {
+        let curve = |s: f64| Vector3::new(s, 0.2 * s * s, 0.1 * s - 0.04 * s * s * s);
+        for elements in 3..9 {
+            let even = |node: usize| node as f64 / elements as f64;
+            for uneven in [0.0, 0.3] {
+                let arc: Vec<f64> = (0..=elements)
+                    .map(|node| even(node) * (1.0 + uneven * (even(node) - 1.0)))
+                    .collect();
+                let profile: Vec<_> = arc.iter().map(|s| curve(*s)).collect();
+                let lies = (half_way(&arc, &profile) - curve(0.5)).norm();
+                assert!(lies < 1e-15, "{elements}: {lies:e}");
+            }
+        }
+        let chord = half_way(&[0.0, 1.0], &[curve(0.0), curve(1.0)]);
+        assert_eq!(chord, 0.5 * (curve(0.0) + curve(1.0)));
+    }
+}

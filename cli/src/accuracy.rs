@@ -1,0 +1,317 @@
+//! `moorline accuracy`: speed against error on this machine.
+
+use std::path::{Path, PathBuf};
+
+use moorline::output::report::rounded;
+use moorline::output::write_file;
+use moorline::scene::{Drive, Integrator, Scene};
+use moorline_accuracy::tables::{summary, write_runs, write_verdicts};
+use moorline_accuracy::{Code, Duel, LEVELS, Metric, Peers, Run, Slow, Study, Verdict, frontier, study};
+use moorline_decks::Supplement;
+
+use crate::failure::Failure;
+use crate::folder::Folder;
+use crate::summary::Table;
+use crate::terminal::{print, progress, read_scene};
+
+/// The public scenes, built in.
+const PUBLIC: [(&str, &str); 5] = [
+    ("oc3_catenary", include_str!("../../scenes/oc3_catenary.toml")),
+    ("oc4_chain", include_str!("../../scenes/oc4_chain.toml")),
+    ("taut_polyester", include_str!("../../scenes/taut_polyester.toml")),
+    ("lindahl_fast", include_str!("../../scenes/lindahl_fast.toml")),
+    ("lindahl_slow", include_str!("../../scenes/lindahl_slow.toml")),
+];
+/// moorline's integrators that have a ladder.
+const INTEGRATORS: [Integrator; 4] = [
+    Integrator::Leapfrog,
+    Integrator::AxialImplicit,
+    Integrator::GeneralisedAlpha,
+    Integrator::QuasiStatic,
+];
+/// Error of RMS tension with which the quasi-static mode is enough [-].
+const ENOUGH: f64 = 0.02;
+
+/// Studies scenes, moved as they say themselves or as is given beside them, prints what each level of error costs and writes tables and
+/// figures into a folder.
+pub fn accuracy(
+    paths: &[PathBuf],
+    supplement: &Supplement,
+    drive: &Drive,
+    folder: &Path,
+    python: Option<&Path>,
+) -> Result<(), Failure> {
+    let scenes = scenes(paths, supplement, drive)?;
+    let _open = Folder::open(folder)?;
+    let peers = python.map(|python| Peers::find(python, folder)).transpose();
+    let peers = peers.map_err(|error| Failure::Argument(error.to_string()))?;
+    stay_on_one_core();
+    let machine = processor();
+    // Results are written whatever becomes of standard output, which its reader may close.
+    let mut printed = print(&format!("on {machine}\n\n"));
+    let mut studies = Vec::new();
+    for (name, scene) in &scenes {
+        let bar = progress(1);
+        let done = study(name, scene, peers.as_ref(), &mut |done, total| {
+            bar.set_length(total as u64);
+            bar.set_position(done as u64);
+        });
+        bar.finish_and_clear();
+        let done = done.map_err(|error| Failure::Computation(error.to_string()))?;
+        studies.push(done);
+        // After every scene: an interrupted run keeps what it has.
+        write_studies(&machine, &studies, folder)?;
+        let last = studies.last().map(told).unwrap_or_default();
+        printed = printed.and_then(|()| print(&last));
+    }
+    printed = printed.and_then(|()| print(&format!("written to {}\n", folder.display())));
+    if python.is_some() && studies.iter().all(|study| study.peers().is_empty()) {
+        let text = "no peer gave a result: the reasons stand at \"no result\" above";
+        return Err(Failure::Computation(text.to_string()));
+    }
+    printed
+}
+
+fn write_studies(machine: &str, studies: &[Study], folder: &Path) -> Result<(), Failure> {
+    let file = |name: &str| folder.join(name);
+    write_file(&file("accuracy.csv"), |w| write_runs(machine, studies, w))?;
+    write_file(&file("verdicts.csv"), |w| write_verdicts(machine, studies, w))?;
+    let mut texts = vec![
+        ("summary.md".to_string(), summary(studies)),
+        ("overview.svg".to_string(), frontier::overview(studies)),
+    ];
+    if let Some(last) = studies.last() {
+        texts.push((format!("{}.svg", last.name), frontier::figure(last)));
+    }
+    for (name, text) in texts {
+        write_file(&file(&name), |w| w.write_all(text.as_bytes()))?;
+    }
+    Ok(())
+}
+
+fn scenes(
+    paths: &[PathBuf],
+    supplement: &Supplement,
+    drive: &Drive,
+) -> Result<Vec<(String, Scene)>, Failure> {
+    let mut scenes: Vec<(String, Scene)> = Vec::new();
+    if paths.is_empty() {
+        if !supplement.is_empty() {
+            let text = "the public scenes leave nothing to a host: give the deck that --depth, --at and --vessel are for";
+            return Err(Failure::Argument(text.to_string()));
+        }
+        for (name, text) in PUBLIC {
+            let scene = Scene::from_toml(text).expect("the public scenes are tested");
+            scenes.push((name.to_string(), scene));
+        }
+    }
+    for path in paths {
+        let name = path.file_stem().unwrap_or_default().to_string_lossy();
+        scenes.push((name.into_owned(), read_scene(path, supplement)?.scene));
+    }
+    if !drive.is_empty() {
+        for (name, scene) in &mut scenes {
+            let moved = scene.drive(drive);
+            moved.map_err(|problem| Failure::Argument(format!("{name}: {problem}")))?;
+        }
+    }
+    Ok(scenes)
+}
+
+/// Keeps this thread, and the peers that it starts, on one core; where the system does not let it, the times still count.
+fn stay_on_one_core() {
+    if let Some(core) = core_affinity::get_core_ids().and_then(|cores| cores.last().copied()) {
+        core_affinity::set_for_current(core);
+    }
+}
+
+/// Name of the processor, or its architecture where the system does not tell.
+fn processor() -> String {
+    let told = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let model = told.lines().find(|line| line.starts_with("model name"));
+    let name = model.and_then(|line| line.split_once(':'));
+    name.map_or(std::env::consts::ARCH, |(_, name)| name.trim())
+        .to_string()
+}
+
+/// A study in tables: what reaches each level and how many times dearer the peers are, what each integrator needs, moorline's own choice,
+/// and where equilibria are enough.
+fn told(study: &Study) -> String {
+    let mut text = study.name.clone();
+    if !study.title.is_empty() {
+        text.push_str(&format!(": {}", study.title));
+    }
+    text.push('\n');
+    text.push_str(&format!("converged solution: {}; ", study.converged));
+    let limits = Metric::ALL.map(|m| format!("{} {:.2} %", m.title(), percent(study, m)));
+    text.push_str(&format!("its uncertainty: {}\n", limits.join(", ")));
+    text.push_str(&format!("\ncheapest runs\n{}", verdicts(study)));
+    if !study.peers().is_empty() {
+        text.push_str(&lost(study));
+    }
+    text.push_str(&format!(
+        "\nsettings that reach an error of {}\n{}",
+        Metric::Rms.title(),
+        settings(study)
+    ));
+    text.push_str(&format!("\nits own choice\n{}", choices(study)));
+    text.push_str(&format!("\n{}", slower(&study.slow)));
+    for failed in &study.failed {
+        text.push_str(&format!("no result: {}: {}\n", failed.label, failed.reason));
+    }
+    text.push('\n');
+    text
+}
+
+fn percent(study: &Study, metric: Metric) -> f64 {
+    100.0 * study.uncertainty.of(metric)
+}
+
+/// The cheapest way to each level of error, beside the peers'; levels that moorline is held to are starred.
+fn verdicts(study: &Study) -> Table {
+    let peers = study.peers();
+    let mut head = vec!["", "error", "cost"];
+    head.extend(peers.iter().copied());
+    if !peers.is_empty() {
+        head.extend(["ratio", "least to greatest"]);
+    }
+    head.push("settings");
+    let mut table = Table::new(&head).ending_in_words();
+    for verdict in study.verdicts() {
+        let star = if verdict.key { " *" } else { "" };
+        let mut row = vec![
+            format!("{}{star}", verdict.metric.title()),
+            format!("{:.1} %", 100.0 * verdict.level),
+            cost(verdict.own),
+        ];
+        row.extend(verdict.peers.iter().map(|(_, run)| cost(*run)));
+        if !peers.is_empty() {
+            row.push(verdict.ratio().map_or("—".to_string(), times));
+            let range = verdict.ratio_range();
+            row.push(range.map_or("—".to_string(), |[least, greatest]| {
+                format!("{least:.1} … {greatest:.1}")
+            }));
+        }
+        row.push(how(&verdict));
+        table.text_row(row);
+    }
+    table
+}
+
+/// Settings of moorline and of the better peer.
+fn how(verdict: &Verdict<'_>) -> String {
+    if !verdict.certain {
+        return "within the converged solution's uncertainty".to_string();
+    }
+    let named = |run: &Run| format!("{}, {}", run.code.name(), run.label);
+    let own = verdict.own.map_or("not reached".to_string(), named);
+    let peer = verdict.best_peer().map(named);
+    peer.map_or(own.clone(), |peer| format!("{own} | {peer}"))
+}
+
+/// Where a peer is cheaper than moorline, or else where it comes closest.
+fn lost(study: &Study) -> String {
+    let mut text = String::new();
+    for metric in Metric::ALL {
+        let mut duels = study.duels(metric);
+        duels.sort_by(|a, b| a.ratio().total_cmp(&b.ratio()));
+        let lost: Vec<_> = duels.iter().filter(|duel| duel.ratio() <= 1.0).collect();
+        let told = |duel: &Duel<'_>| {
+            format!(
+                "{} at {:.2} %, {} ({})",
+                times(duel.ratio()),
+                100.0 * duel.level,
+                duel.peer.code.name(),
+                duel.peer.label
+            )
+        };
+        let Some(closest) = duels.first() else {
+            continue;
+        };
+        let sentence = if lost.is_empty() {
+            format!("no peer is cheaper anywhere; closest {}", told(closest))
+        } else {
+            let all: Vec<String> = lost.into_iter().map(told).collect();
+            format!("a peer is cheaper: {}", all.join("; "))
+        };
+        text.push_str(&format!("{}: {sentence}\n", metric.title()));
+    }
+    text
+}
+
+/// What every integrator needs for each level of RMS tension.
+fn settings(study: &Study) -> Table {
+    let head = ["", "error", "cost", "setting"];
+    let mut table = Table::new(&head).ending_in_words();
+    for integrator in INTEGRATORS {
+        let code = Code::Own(integrator);
+        let runs = |other: &Code| *other == code;
+        for level in LEVELS {
+            if let Some(run) = study.cheapest(Metric::Rms, level, runs) {
+                let level = format!("{:.1} %", 100.0 * level);
+                let row = [code.name().into(), level, cost(Some(run)), run.label.clone()];
+                table.text_row(row.into());
+            }
+        }
+    }
+    table
+}
+
+/// What moorline chose for each tolerance, and what came of it.
+fn choices(study: &Study) -> Table {
+    let titles = Metric::ALL.map(Metric::title);
+    let head: Vec<&str> = ["setting", "cost"].into_iter().chain(titles).collect();
+    let mut table = Table::new(&head);
+    for run in study.runs.iter().filter(|run| run.code == Code::Chosen) {
+        let errors = Metric::ALL.map(|metric| format!("{:.2} %", 100.0 * run.errors.of(metric)));
+        let mut row = vec![run.label.clone(), cost(Some(run))];
+        row.extend(errors);
+        table.text_row(row);
+    }
+    table
+}
+
+/// Where the quasi-static mode is enough.
+fn slower(slow: &[Slow]) -> String {
+    let Some(last) = slow.last() else {
+        return "the quasi-static mode was not compared with dynamics: the scene is quasi-static itself, or no sum of sines in still water\n"
+            .to_string();
+    };
+    let head = ["quasi-static, periods", "shortest"];
+    let titles = Metric::ALL.map(Metric::title);
+    let head: Vec<&str> = head.into_iter().chain(titles).collect();
+    let mut table = Table::new(&head);
+    for one in slow {
+        let mut row = vec![format!("{} times as long", one.factor), period(one)];
+        row.extend(Metric::ALL.map(|metric| format!("{:.2} %", 100.0 * one.errors.of(metric))));
+        table.text_row(row);
+    }
+    let enough = slow.iter().find(|one| one.errors.of(Metric::Rms) <= ENOUGH);
+    let sentence = match enough {
+        Some(one) if one.factor == 1.0 => "the quasi-static mode is enough here".to_string(),
+        Some(one) => format!(
+            "the quasi-static mode is enough for {} % of RMS tension from periods {} times as long on, {}",
+            100.0 * ENOUGH,
+            one.factor,
+            period(one)
+        ),
+        None => format!(
+            "the quasi-static mode is not enough for {} % of RMS tension, not even with periods of {}",
+            100.0 * ENOUGH,
+            period(last)
+        ),
+    };
+    format!("{table}{sentence}\n")
+}
+
+fn period(slow: &Slow) -> String {
+    format!("{} s", rounded(slow.period, 5))
+}
+
+fn cost(run: Option<&Run>) -> String {
+    run.map_or("—".to_string(), |run| format!("{:.2e}", run.cost))
+}
+
+fn times(ratio: f64) -> String {
+    format!("{ratio:.1} x")
+}

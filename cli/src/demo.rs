@@ -1,0 +1,215 @@
+//! `moorline demo`: the main job from end to end. The built-in scene becomes an FMU; a host opens it through its C
+//! interface, moves the fairlead and reads forces, tensions and shapes back.
+
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use moorline::interface::{Binding, Interface, Kind, Layout, Variable};
+use moorline::model::Body;
+use moorline::output::record::{Frame, Node, Record};
+use moorline::output::{collect, write_run};
+use moorline::scene::{LoadedScene, Places, Scene, TOML};
+use moorline::simulation::Simulation;
+use moorline_host::{FmiVersion, Fmu, HostError, Slave};
+
+use crate::failure::Failure;
+use crate::fmu::package;
+use crate::folder::Folder;
+use crate::run::{Times, columns, recorded, scene_input};
+use crate::summary::run_summary;
+use crate::terminal::{print, progress, simulate};
+
+/// The built-in scene.
+const SCENE: &str = include_str!("../../scenes/demo.toml");
+
+/// Packages the built-in scene, drives the FMU, shows and writes what comes out.
+pub fn demo(folder: &Path) -> Result<(), Failure> {
+    let loaded = built_in_scene()?;
+    let _open = Folder::open(folder)?;
+    let target = folder.join("demo.fmu");
+    package(&loaded, &target, FmiVersion::Two)?;
+    let reference = simulate(&loaded)?;
+    let record = drive(&target, &loaded.scene, &reference)
+        .map_err(|error| Failure::Computation(format!("{}: {error}", target.display())))?;
+    write_run(
+        &record,
+        folder,
+        &loaded.scene.in_words(),
+        loaded.scene.output.profile,
+    )?;
+    print(&format!(
+        "{}\nFMI 2.0 co-simulation through the C interface, steps of {} s, displacements only\n\n{}\n\
+         written to {}: {}, results.csv, report.html, …\n",
+        loaded.scene.title,
+        loaded.scene.output.interval,
+        run_summary(&record),
+        folder.display(),
+        "demo.fmu",
+    ))
+}
+
+fn built_in_scene() -> Result<LoadedScene, Failure> {
+    let scene = Scene::from_toml(SCENE)
+        .map_err(|mistake| Failure::Computation(format!("the built-in scene: {mistake}")))?;
+    Ok(LoadedScene {
+        notes: scene.notes(),
+        scene,
+        text: SCENE.to_string(),
+        path: PathBuf::from("demo.toml"),
+        format: TOML,
+        places: Places::default(),
+    })
+}
+
+/// Runs the FMU as a host does. `reference` tells where the scene moves the points, and the closed-form shapes to compare with.
+fn drive(target: &Path, scene: &Scene, reference: &Simulation) -> Result<Record, HostError> {
+    let interface = Interface::new(scene, reference.model(), Layout::Scalars)
+        .map_err(|mistake| HostError::Description(mistake.to_string()))?;
+    let fmu = Fmu::open(target)?;
+    let mut host = Host::new(&fmu, &interface, reference)?;
+    let mut record = collect::record(scene, reference, Some(reference), columns(&host.recorded));
+    let times = Times::new(scene.output.duration, scene.output.interval);
+    host.slave.enter_initialization(0.0, Some(times.end))?;
+    host.set_motion(0.0)?;
+    host.slave.exit_initialization()?;
+    host.record_statics(&mut record)?;
+    host.record(0.0, &mut record)?;
+    let bar = progress(times.count as u64);
+    let mut wall = Duration::ZERO;
+    for index in 0..times.count {
+        let (time, step) = (times.at(index), times.step(index));
+        let before = Instant::now();
+        host.set_motion(time)?;
+        host.slave.do_step(time, step)?;
+        wall += before.elapsed();
+        host.record(times.at(index + 1), &mut record)?;
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    host.slave.terminate()?;
+    let substeps = record.history("solver.substeps").unwrap_or_default();
+    // The first row stands before any step.
+    record.counters.substeps = substeps.iter().skip(1).map(|row| row[1] as u64).sum();
+    record.counters.wall = wall;
+    record.counters.simulated = times.end;
+    Ok(record)
+}
+
+/// An instance of the FMU and the variables that this host uses.
+struct Host<'a> {
+    slave: Slave,
+    reference: &'a Simulation,
+    /// Displacements of the coupled points and vessels: body, axis, value reference.
+    displacements: Vec<(Body, usize, u32)>,
+    /// What is recorded at every step, and its value references.
+    recorded: Vec<&'a Variable>,
+    references: Vec<u32>,
+    /// Position and tension of every node of every line: value references of x, y, z and tension.
+    nodes: Vec<Vec<[u32; 4]>>,
+}
+
+impl<'a> Host<'a> {
+    fn new(fmu: &Fmu, interface: &'a Interface, reference: &'a Simulation) -> Result<Self, HostError> {
+        let find = |variable: &Variable| fmu.reference(&variable.name);
+        let recorded: Vec<&Variable> = recorded(interface).collect();
+        let mut displacements = Vec::new();
+        for variable in interface.variables() {
+            if let Binding::Displacement { body, axis } = variable.binding {
+                displacements.push((body, axis, find(variable)?));
+            }
+        }
+        let node = |line: &str, number: usize| -> Result<[u32; 4], HostError> {
+            let of = |quantity: &str| fmu.reference(&format!("{line}.profile.{quantity}[{number}]"));
+            Ok([of("x")?, of("y")?, of("z")?, of("tension")?])
+        };
+        let mut nodes = Vec::new();
+        for line in &reference.model().lines {
+            let count = line.nodes.arc.len();
+            nodes.push(
+                (1..=count)
+                    .map(|i| node(&line.name, i))
+                    .collect::<Result<_, _>>()?,
+            );
+        }
+        Ok(Host {
+            slave: fmu.instantiate("demo", false)?,
+            reference,
+            displacements,
+            references: recorded.iter().map(|v| find(v)).collect::<Result<_, _>>()?,
+            recorded,
+            nodes,
+        })
+    }
+
+    /// Sets where the scene's motion has the coupled points and vessels at `time` [s].
+    fn set_motion(&mut self, time: f64) -> Result<(), HostError> {
+        for moving in self.reference.model().moving(time) {
+            for &(owner, axis, reference) in &self.displacements {
+                if owner == moving.body {
+                    self.slave.set_real(&[reference], &[moving.pose[axis]])?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Puts what the FMU says of the equilibrium, and of the closed form, in place of what the reference says.
+    fn record_statics(&mut self, record: &mut Record) -> Result<(), HostError> {
+        let model = self.reference.model();
+        for (line, built) in record.lines.iter_mut().zip(&model.lines) {
+            // The built-in scene has one line at each fairlead: the point's force is the line's.
+            let fairlead = &model.points[built.ends[1]].name;
+            let mut force = |axis: &str| self.slave.real(&format!("{fairlead}.{axis}"));
+            let horizontal = force("fx")?.hypot(force("fy")?);
+            let mut read = |quantity: &str| self.slave.real(&format!("{}.{quantity}", line.name));
+            if let Some(equilibrium) = &mut line.equilibrium {
+                equilibrium.horizontal = horizontal;
+                equilibrium.tension_b = read("tension_b")?;
+                equilibrium.sag = read("sag")?;
+                equilibrium.laid_length = read("laid_length")?;
+            }
+            if let Some(catenary) = &mut line.catenary {
+                catenary.figures.tension_b = read("catenary_tension_b")?;
+                catenary.figures.horizontal = read("catenary_horizontal")?;
+                catenary.figures.sag = read("catenary_sag")?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds a row and a shape to the record.
+    fn record(&mut self, time: f64, record: &mut Record) -> Result<(), HostError> {
+        let mut row = Vec::with_capacity(self.recorded.len());
+        for (variable, &reference) in self.recorded.iter().zip(&self.references) {
+            let value = match scene_input(variable, self.reference.model(), time) {
+                Some(input) => input,
+                None if variable.kind == Kind::Int32 => f64::from(self.slave.integer(&variable.name)?),
+                None => {
+                    let mut value = [0.0];
+                    self.slave.get_real(&[reference], &mut value)?;
+                    value[0]
+                }
+            };
+            row.push(value);
+        }
+        record.add_row(time, row);
+        let mut lines = Vec::with_capacity(self.nodes.len());
+        for (line, references) in self.reference.model().lines.iter().zip(&self.nodes) {
+            let mut nodes = Vec::with_capacity(references.len());
+            for (&s, references) in line.nodes.arc.iter().zip(references) {
+                let mut values = [0.0; 4];
+                self.slave.get_real(references, &mut values)?;
+                let [x, y, z, tension] = values;
+                nodes.push(Node {
+                    s,
+                    position: [x, y, z],
+                    tension,
+                    bending: None,
+                });
+            }
+            lines.push(nodes);
+        }
+        record.frames.push(Frame { time, lines });
+        Ok(())
+    }
+}

@@ -1,0 +1,35 @@
+//! `moorline fmu`: a scene as an FMU.
+
+use std::path::Path;
+
+use moorline::output::check_file;
+use moorline::output::fmi::FmiVersion;
+use moorline::output::package::{find_library, write_fmu};
+use moorline::scene::LoadedScene;
+use moorline::simulation::Watch;
+use moorline_decks::Supplement;
+
+use crate::failure::Failure;
+use crate::terminal::{print, read_scene, remark_all, simulate};
+
+/// Packages a scene for the FMI version "2" or "3".
+pub fn fmu(path: &Path, supplement: &Supplement, target: &Path, version: &str) -> Result<(), Failure> {
+    let loaded = read_scene(path, supplement)?;
+    check_file(target)?;
+    // A scene without an equilibrium would make an FMU that no host can start.
+    let simulation = simulate(&loaded)?;
+    remark_all(&loaded, Watch::new(&loaded.scene, &simulation).look(&simulation));
+    let version = match version {
+        "3" => FmiVersion::Three,
+        _ => FmiVersion::Two,
+    };
+    package(&loaded, target, version)?;
+    print(&format!("written to {}\n", target.display()))
+}
+
+/// Writes the FMU of a scene; its name appears when the file is whole.
+pub fn package(loaded: &LoadedScene, target: &Path, version: FmiVersion) -> Result<(), Failure> {
+    let written =
+        find_library().and_then(|library| write_fmu(&loaded.scene, &loaded.text, version, &library, target));
+    written.map_err(|error| Failure::of_package(error, loaded))
+}

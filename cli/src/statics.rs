@@ -1,0 +1,67 @@
+//! `moorline statics`: the static equilibrium as a table or as JSON.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use moorline::output::{collect, json};
+use moorline::scene::{InitialShape, Note};
+use moorline::simulation::Watch;
+use moorline_decks::Supplement;
+
+use crate::failure::Failure;
+use crate::summary::{Table, static_table};
+use crate::terminal::{print, read_scene, remark, remark_all, simulate};
+
+/// Solves the equilibrium and prints it.
+pub fn statics(path: &Path, supplement: &Supplement, as_json: bool) -> Result<(), Failure> {
+    let mut loaded = read_scene(path, supplement)?;
+    if let Some(water) = &mut loaded.scene.water {
+        water.waves = None; // an equilibrium is that of the sea at rest
+    }
+    let simulation = simulate(&loaded)?
+        .in_equilibrium()
+        .map_err(|error| Failure::of_simulation(error, &loaded))?;
+    remark_all(&loaded, Watch::new(&loaded.scene, &simulation).look(&simulation));
+    for (index, line) in loaded.scene.lines.iter().enumerate() {
+        if line.initial != InitialShape::Static {
+            let at = format!("lines[{index}].initial");
+            let text = "runs start on this shape, not in the equilibrium that is shown";
+            remark(path, &loaded.locate_note(Note::new(at, text)));
+        }
+    }
+    let statics = collect::statics(&loaded.scene, &simulation);
+    if as_json {
+        let mut bytes = Vec::new();
+        json::write(&statics, &mut bytes).expect("memory takes any text");
+        return print(&String::from_utf8(bytes).expect("JSON is UTF-8"));
+    }
+    let record = collect::record(&loaded.scene, &simulation, Some(&simulation), Vec::new());
+    let mut points = Table::new(&["force of the mooring [N]", "x", "y", "z"]);
+    for point in &statics.points {
+        points.row(&point.name, &point.force);
+    }
+    let vessels: String = statics.vessels.iter().map(vessel_tables).collect();
+    let mut text = String::new();
+    if !statics.title.is_empty() {
+        writeln!(text, "{}\n", statics.title).expect("a string takes any text");
+    }
+    print(&format!("{text}{}\n{points}{vessels}", static_table(&record)))
+}
+
+/// Force and stiffness of the mooring on a vessel.
+fn vessel_tables(vessel: &json::Vessel) -> String {
+    let name = &vessel.name;
+    let head = format!("{name}: force [N] and moment [N m] of the lines");
+    let mut force = Table::new(&[&head, "x", "y", "z", "roll", "pitch", "yaw"]);
+    force.row("closed form where there is one", &vessel.hold.force);
+    force.row("elements", &vessel.elements.force);
+    let Some(stiffness) = &vessel.hold.stiffness else {
+        return format!("\n{force}\n{name}: no stiffness, for a beam holds it or nothing holds the lines\n");
+    };
+    let head = format!("{name}: stiffness [N/m, N/rad, N, N m/rad]");
+    let mut table = Table::new(&[&head, "x", "y", "z", "roll", "pitch", "yaw"]);
+    for (row, name) in stiffness.iter().zip(["x", "y", "z", "roll", "pitch", "yaw"]) {
+        table.row(name, row);
+    }
+    format!("\n{force}\n{table}")
+}

@@ -1,0 +1,59 @@
+//! What the commands read from and say to their user: scenes, remarks, results, progress.
+
+use std::io::{self, Write};
+use std::path::Path;
+
+use indicatif::{ProgressBar, ProgressStyle};
+use moorline::discretisation::discretised;
+use moorline::scene::{LoadedScene, Note};
+use moorline::simulation::Simulation;
+use moorline_decks::{Supplement, load_with};
+
+use crate::failure::Failure;
+
+/// Reads a scene file with what a deck leaves to its host; remarks on it go to standard error.
+pub fn read_scene(path: &Path, supplement: &Supplement) -> Result<LoadedScene, Failure> {
+    let loaded = load_with(path, supplement)?;
+    loaded.notes.iter().for_each(|note| remark(path, note));
+    Ok(loaded)
+}
+
+/// Says a remark on a scene on standard error. One that nobody can read is no reason to stop.
+pub fn remark(path: &Path, note: &Note) {
+    let _ = writeln!(io::stderr(), "{}", noted(path, note));
+}
+
+/// A remark with its file and, where it has one, its line.
+pub fn noted(path: &Path, note: &Note) -> String {
+    match note.line {
+        Some(line) => format!("note: {}:{line}: {note}", path.display()),
+        None => format!("note: {}: {note}", path.display()),
+    }
+}
+
+/// Remarks that were found after the scene was read.
+pub fn remark_all(loaded: &LoadedScene, notes: Vec<Note>) {
+    for note in notes {
+        remark(&loaded.path, &loaded.locate_note(note));
+    }
+}
+
+/// The simulation of a scene, in static equilibrium.
+pub fn simulate(loaded: &LoadedScene) -> Result<Simulation, Failure> {
+    Simulation::new(&discretised(&loaded.scene)).map_err(|error| Failure::of_simulation(error, loaded))
+}
+
+/// Prints text to standard output.
+pub fn print(text: &str) -> Result<(), Failure> {
+    let mut out = io::stdout().lock();
+    out.write_all(text.as_bytes())
+        .and_then(|()| out.flush())
+        .map_err(Failure::Print)
+}
+
+/// A bar on a terminal, nothing in a pipe.
+pub fn progress(steps: u64) -> ProgressBar {
+    let style = ProgressStyle::with_template("{bar:40} {percent:>3} %  {eta} left")
+        .expect("the template is a constant that indicatif accepts");
+    ProgressBar::new(steps).with_style(style)
+}

@@ -1,0 +1,90 @@
+//! The command line on decks.
+
+use std::fs;
+
+use moorline::simulation::Simulation;
+use moorline_decks::{Supplement, load_with};
+
+use super::{columns, err, moorline, out, refused, table};
+
+const VERSION_1: &str = include_str!("../../../decks/tests/decks/moordyn_v1.dat");
+const FARM: &str = include_str!("../../../decks/tests/decks/farm.dat");
+const MAP: &str = include_str!("../../../decks/tests/decks/oc3.map");
+
+#[test]
+fn the_command_line_converts_a_deck_with_what_its_host_would_give() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("farm.dat"), FARM).unwrap();
+    let convert = ["convert", "farm.dat", "-o", "farm.toml"];
+    refused(folder.path(), &convert, 2, &["--at turbine1=X,Y,Z"]);
+    let places = ["--at", "turbine1=0,0,0", "--at", "turbine2=1000,0,0"];
+    let output = moorline(folder.path(), &[&convert, places.as_slice()].concat());
+    assert_eq!(
+        (output.status.code(), err(&output).as_str()),
+        (Some(0), ""),
+        "{output:?}"
+    );
+    let said = out(&output);
+    assert!(said.starts_with("written to farm.toml\nnote: file"), "{said}");
+    let again = ["convert", "farm.toml", "-o", "again.toml"];
+    refused(folder.path(), &again, 2, &["is a scene of moorline already"]);
+}
+
+#[test]
+fn a_run_of_a_deck_writes_its_channels_beside_moorlines_columns() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut text = VERSION_1.to_string();
+    for (old, new) in [
+        (
+            "FairTen2 AnchTen1",
+            "FairTen2 AnchTen1 L2N0Px Point2Pz Con3Fx L1NBVz",
+        ),
+        ("0.02   dtOut", "5.0   dtOut"),
+    ] {
+        assert!(text.contains(old), "{old}");
+        text = text.replacen(old, new, 1);
+    }
+    fs::write(folder.path().join("deck.dat"), text).unwrap();
+    let columns = columns(folder.path(), &["run", "deck.dat", "-o", "out"]);
+    let column = |name: &str| columns.get(name).unwrap_or_else(|| panic!("{name}: {columns:?}"));
+    assert_eq!(column("time").len(), 13);
+    // The tension of the last segment; the force on the point has half a segment's weight besides, save what the seabed carries.
+    let apart = |channel: &str, force: &str| column(channel)[0] / column(force)[0] - 1.0;
+    assert!((-0.05..-1e-6).contains(&apart("FairTen2", "line2.tension_b")));
+    assert!(apart("AnchTen1", "line1.tension_a").abs() < 0.05);
+    assert!(column("L2N0Px").iter().all(|x| (x - 60.0).abs() < 40.0));
+    assert!(column("Point2Pz").iter().all(|z| *z < 0.0));
+    assert!(column("Con3Fx").iter().all(|force| *force > 0.0));
+    assert!(column("L1NBVz").iter().all(|speed| speed.abs() < 1e-3));
+}
+
+#[test]
+fn a_map_deck_runs_through_equilibria_without_trials_of_elements() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("oc3.map"), MAP).unwrap();
+    let motion = "time,x,y,z\n0,0,0,0\n10,4,0,0\n20,4,0,0\n";
+    fs::write(folder.path().join("motion.csv"), motion).unwrap();
+    let moved = ["--depth", "320", "--motion", "motion.csv"];
+    let arguments = [&["run", "oc3.map", "-o", "out"], &moved[..]].concat();
+    let output = moorline(folder.path(), &arguments);
+    let (said, remarks) = (out(&output), err(&output));
+    assert_eq!(output.status.code(), Some(0), "{remarks}");
+    assert!(remarks.contains("quasi-static, as MAP++ is"), "{remarks}");
+    let report = fs::read_to_string(folder.path().join("out/report.html")).unwrap();
+    assert!(
+        !report.contains("tried on") && !said.contains("tried on"),
+        "{said}"
+    );
+    let (names, rows) = table(&folder.path().join("out/results.csv"));
+    let index = names.iter().position(|name| name == "line1.tension_b").unwrap();
+    let tension = rows[rows.len() - 1][index];
+    let moved = Supplement {
+        depth: Some(320.0),
+        positions: [("vessel".to_string(), [4.0, 0.0, 0.0])].into(),
+        ..Supplement::default()
+    };
+    let there = load_with(&folder.path().join("oc3.map"), &moved).unwrap_or_else(|e| panic!("{}", e.list()));
+    let exact = Simulation::new(&there.scene).unwrap();
+    let exact = exact.catenary(0).unwrap().tension_b();
+    assert!((tension / exact - 1.0).abs() < 1e-6, "{tension} {exact}");
+}

@@ -1,0 +1,256 @@
+//! A scene on its way from a deck, and the part of it that a deck leaves to its host: depth of the water, places of vessels.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
+
+use moorline::scene::path::quoted;
+use moorline::scene::{
+    AngleOrder, Line, LineType, Places, Point, PointForce, PointKind, Scene, Section, TimeFunction, Vessel,
+};
+
+use crate::Supplement;
+use crate::findings::{Findings, Placed};
+
+/// Density of sea water [kg/m³] of a deck that gives none.
+pub(crate) const SEA_WATER: f64 = 1025.0;
+
+/// Part of a thing in a deck: key in the scene, bytes in the file, name of its column.
+pub(crate) type Part<'p> = (&'static str, &'p Range<usize>, &'static str);
+
+/// A scene on its way from a deck. It is whole where there are no mistakes.
+pub(crate) struct Draft<'s> {
+    /// Name of the format of the file.
+    pub format: &'static str,
+    pub scene: Scene,
+    pub places: Places,
+    pub findings: Findings,
+    pub supplement: &'s Supplement,
+    /// Order of the angles in the motions that hosts of such decks give.
+    pub motion_angles: AngleOrder,
+    /// Names of the line types in the scene, by those in the deck.
+    types: BTreeMap<String, String>,
+}
+
+impl<'s> Draft<'s> {
+    /// A draft without anything in it.
+    pub(crate) fn new(
+        format: &'static str,
+        findings: Findings,
+        supplement: &'s Supplement,
+        motion_angles: AngleOrder,
+    ) -> Draft<'s> {
+        Draft {
+            format,
+            scene: Scene::default(),
+            places: Places::default(),
+            findings,
+            supplement,
+            motion_angles,
+            types: BTreeMap::new(),
+        }
+    }
+
+    /// Keeps the place of a key path, and of the parts below it, with the words of the deck for it.
+    pub(crate) fn place(&mut self, at: &str, span: &Range<usize>, words: &str, parts: &[Part<'_>]) {
+        self.places.put(at, span, words);
+        for (key, span, column) in parts {
+            self.places
+                .put(format!("{at}.{key}"), span, format!("{words}, {column}"));
+        }
+    }
+
+    /// Adds a line type under a name that a scene takes.
+    pub(crate) fn add_line_type(&mut self, given: &Placed<String>, line_type: LineType, parts: &[Part<'_>]) {
+        let name = type_name(&given.value, self.scene.line_types.keys().collect());
+        if given.value != name {
+            let text = format!("the line type {:?} is called {name} here", given.value);
+            self.findings.remark(given, text);
+        }
+        let at = format!("line_types.{}", quoted(&name));
+        self.place(&at, &given.span, &format!("line type {}", given.value), parts);
+        self.types.insert(given.value.clone(), name.clone());
+        self.scene.line_types.insert(name, line_type);
+    }
+
+    /// Adds a point; `words` name it in the deck.
+    pub(crate) fn add_point(&mut self, point: Point, span: &Range<usize>, words: &str, parts: &[Part<'_>]) {
+        let at = format!("points[{}]", self.scene.points.len());
+        self.place(&at, span, words, parts);
+        self.scene.points.push(point);
+    }
+
+    /// A line of one section between two points, with the number of its elements where the deck gives it.
+    pub(crate) fn line(
+        &self,
+        name: String,
+        ends: [String; 2],
+        line_type: &str,
+        length: f64,
+        elements: Option<usize>,
+    ) -> Line {
+        let [from, to] = ends;
+        let section = Section {
+            line_type: self.types[line_type].clone(),
+            length,
+            elements,
+            damping_elements: None,
+        };
+        Line::between(name, from, to, vec![section])
+    }
+
+    /// Adds a line; `words` name it in the deck.
+    pub(crate) fn add_line(&mut self, line: Line, span: &Range<usize>, words: &str, parts: &[Part<'_>]) {
+        let at = format!("lines[{}]", self.scene.lines.len());
+        self.place(&at, span, words, parts);
+        self.scene.lines.push(line);
+    }
+
+    /// Depth of the seabed [m]: that of the deck, that of the supplement, else that of the deepest fixed point, with a remark.
+    pub(crate) fn depth(&mut self, given: Option<f64>) -> Option<f64> {
+        if let Some(depth) = given {
+            if let Some(other) = self.supplement.depth.filter(|other| *other != depth) {
+                let text = format!("the depth of {depth} m in the file counts, not {other} m");
+                self.findings.remark_on_all(text);
+            }
+            return Some(depth);
+        }
+        if self.supplement.depth.is_some() {
+            return self.supplement.depth;
+        }
+        let deepest = self.deepest_anchor().map(|anchor| -anchor.position[2]);
+        let deepest = deepest.filter(|depth| *depth > 0.0);
+        self.findings.remark_on_all(match deepest {
+            Some(depth) => format!(
+                "no water depth in the file, for the host gives it: taken from the deepest fixed point, {depth} m"
+            ),
+            None => "no water depth in the file, and no fixed point below the water: no seabed".to_string(),
+        });
+        deepest
+    }
+
+    /// The deepest fixed point; the first of several.
+    pub(crate) fn deepest_anchor(&self) -> Option<&Point> {
+        let points = self.scene.points.iter();
+        let anchors = points.filter(|point| point.kind == PointKind::Fixed);
+        anchors.min_by(|a, b| a.position[2].total_cmp(&b.position[2]))
+    }
+
+    /// Name of the vessel that a deck means where it gives none.
+    pub(crate) fn vessel_of_the_deck(&self) -> &'s str {
+        self.supplement.vessel.as_deref().unwrap_or("vessel")
+    }
+
+    /// Whether the scene has a vessel of this name.
+    pub(crate) fn has_vessel(&self, name: &str) -> bool {
+        self.scene.vessels.iter().any(|vessel| vessel.name == name)
+    }
+
+    /// Puts a point on a vessel, which is made where it is missing at a position [m] and attitude [rad].
+    pub(crate) fn aboard(
+        &mut self,
+        point: Point,
+        vessel: &str,
+        position: [f64; 3],
+        attitude: [f64; 3],
+    ) -> Point {
+        if !self.has_vessel(vessel) {
+            let given = self.supplement.positions.get(vessel).copied();
+            self.scene.vessels.push(Vessel {
+                name: vessel.to_string(),
+                position: given.unwrap_or(position),
+                attitude,
+                motion_angles: self.motion_angles,
+            });
+        }
+        Point {
+            kind: PointKind::Coupled,
+            on: Some(vessel.to_string()),
+            ..point
+        }
+    }
+
+    /// Checks that the vessel of all coupled points has a name of its own and no other place.
+    pub(crate) fn check_given(&mut self, mut others: impl Iterator<Item = String>) {
+        let Some(name) = &self.supplement.vessel else {
+            return;
+        };
+        if others.any(|other| other == *name) {
+            let problem = format!(
+                "the vessel of all coupled points cannot be `{name}`, which the file has already: give it another name"
+            );
+            self.findings.mistake("", 0..0, problem);
+        }
+        if self.supplement.positions.contains_key(name) {
+            let problem = format!(
+                "`{name}` takes the coupled points where they are, with its origin at (0, 0, 0): give no position for it"
+            );
+            self.findings.mistake("", 0..0, problem);
+        }
+    }
+
+    /// Checks that the scene has every vessel of the supplement.
+    pub(crate) fn check_vessels(&mut self) {
+        let known: Vec<&str> = self
+            .scene
+            .vessels
+            .iter()
+            .map(|vessel| vessel.name.as_str())
+            .collect();
+        let in_words = match known.is_empty() {
+            true => "no vessel".to_string(),
+            false => format!("the vessels {}", known.join(", ")),
+        };
+        let of_all = self.supplement.vessel.iter().map(|name| {
+            let problem = format!(
+                "the vessel `{name}` is given for all coupled points, but the file has none: leave it out"
+            );
+            (name, problem)
+        });
+        let placed = self.supplement.positions.keys().map(|name| {
+            let problem = format!("a position is given for `{name}`, but the file has {in_words}");
+            (name, problem)
+        });
+        for (name, problem) in of_all.chain(placed) {
+            if !known.contains(&name.as_str()) {
+                self.findings.mistake("", 0..0, problem);
+            }
+        }
+    }
+}
+
+/// A name of a line type as a scene takes it: variables of the FMU are called after it.
+fn type_name(given: &str, taken: BTreeSet<&String>) -> String {
+    let letter = |c: char| match c {
+        c if c.is_ascii_alphanumeric() || c == '-' => c,
+        _ => '_',
+    };
+    let mut name: String = given.chars().map(letter).take(48).collect();
+    let reserved = ["time", "solver"].contains(&name.as_str());
+    if reserved || !name.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_') {
+        name = format!("type{name}");
+    }
+    let numbered = (2..).map(|number| format!("{name}_{number}"));
+    let mut names = [name.clone()].into_iter().chain(numbered);
+    names.find(|name| !taken.contains(name)).unwrap_or(name)
+}
+
+/// A value of a deck, where zero means none.
+pub(crate) fn nonzero(value: f64) -> Option<f64> {
+    (value != 0.0).then_some(value)
+}
+
+/// A constant force [N] on a point; `None` where it is zero.
+pub(crate) fn constant_force(force: [f64; 3]) -> Option<PointForce> {
+    let [x, y, z] = force.map(|part| nonzero(part).map(TimeFunction::Constant));
+    (force != [0.0; 3]).then_some(PointForce { x, y, z })
+}
+
+/// Parts of a point: its coordinates [m].
+pub(crate) fn coordinates<T>(position: &[Placed<T>; 3]) -> [Part<'_>; 3] {
+    let [x, y, z] = position;
+    [
+        ("position[0]", &x.span, "X"),
+        ("position[1]", &y.span, "Y"),
+        ("position[2]", &z.span, "Z"),
+    ]
+}

@@ -1,0 +1,183 @@
+//! Decks of MoorDyn (versions 1 and 2, in the styles of OpenFAST and MoorDyn-C) and of MAP++ as scenes of moorline.
+//!
+//! [`load`] reads a scene or a deck and recognises it by its content. A deck leaves some things to its host, such as the depth
+//! of the water: [`load_with`] takes them as a [`Supplement`].
+//!
+//! ```no_run
+//! # fn main() -> Result<(), moorline::scene::LoadError> {
+//! use moorline_decks::{Supplement, load_with};
+//!
+//! let supplement = Supplement { depth: Some(320.0), ..Supplement::default() };
+//! let loaded = load_with("oc3.map".as_ref(), &supplement)?;
+//! println!("{} file: {} lines", loaded.format, loaded.scene.lines.len());
+//! # Ok(()) }
+//! ```
+#![forbid(unsafe_code)]
+
+mod draft;
+mod findings;
+mod map;
+mod moordyn;
+mod table;
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use moorline::scene::path::quoted;
+use moorline::scene::{
+    LoadError, LoadedScene, Note, Scene, SceneError, TensionStrain, folder_of, is_toml, load_text, read_text,
+};
+
+use draft::Draft;
+use findings::MISTAKES_MAX;
+
+/// What a deck of another program leaves to its host.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Supplement {
+    /// Depth of the water [m], where the deck gives none.
+    pub depth: Option<f64>,
+    /// Reference positions [m] of vessels by name, such as those of the turbines of a farm.
+    pub positions: BTreeMap<String, [f64; 3]>,
+    /// Name of the one vessel that all coupled points of the deck ride on, its origin at (0, 0, 0) and its axes the global ones.
+    pub vessel: Option<String>,
+}
+
+impl Supplement {
+    /// Whether nothing is given.
+    pub fn is_empty(&self) -> bool {
+        *self == Supplement::default()
+    }
+
+    /// Why a scene takes no supplement.
+    fn problem_of_scene(&self) -> &'static str {
+        match (self.depth, &self.vessel) {
+            (Some(_), _) => {
+                "a scene gives the depth of its water itself, as `seabed.depth`: a depth beside it is for decks"
+            }
+            (None, Some(_)) => {
+                "a scene gives its vessels itself, as [[vessels]] and `on` of its points: a vessel beside it is for decks"
+            }
+            (None, None) => {
+                "a scene gives the places of its vessels itself, as `position`: places beside it are for decks"
+            }
+        }
+    }
+}
+
+/// Reads and checks a file: a scene, or a deck of MoorDyn or MAP++. The files that it names stand relative to its folder.
+///
+/// # Errors
+/// What keeps the file from being read, or all mistakes in it.
+pub fn load(path: &Path) -> Result<LoadedScene, LoadError> {
+    load_with(path, &Supplement::default())
+}
+
+/// As [`load`], with what a deck leaves to its host.
+///
+/// # Errors
+/// As [`load`]; and where the file is a scene, which leaves nothing to its host.
+pub fn load_with(path: &Path, supplement: &Supplement) -> Result<LoadedScene, LoadError> {
+    let text = read_text(path, |text| reader(text).is_some())?;
+    let Some(read) = reader(&text) else {
+        let loaded = load_text(path, text)?;
+        return match supplement.is_empty() {
+            true => Ok(loaded),
+            false => Err(LoadError::Unreadable {
+                path: loaded.path,
+                problem: supplement.problem_of_scene().to_string(),
+            }),
+        };
+    };
+    let mut draft = read(&text, supplement);
+    let path = path.to_path_buf();
+    match finish(&mut draft, folder_of(&path)) {
+        Ok(notes) => Ok(LoadedScene {
+            notes: [draft.findings.notes(&text), located(&draft.places, &text, notes)].concat(),
+            scene: draft.scene,
+            text,
+            path,
+            format: draft.format,
+            places: draft.places,
+        }),
+        Err(mut mistakes) => {
+            mistakes.sort_by_key(|mistake| mistake.span.as_ref().map_or(0, |span| span.start));
+            mistakes.truncate(MISTAKES_MAX);
+            Err(LoadError::Scene { path, text, mistakes })
+        }
+    }
+}
+
+type Reader = for<'s> fn(&str, &'s Supplement) -> Draft<'s>;
+
+/// The reader of a deck; `None` of TOML and of texts that are no decks.
+fn reader(text: &str) -> Option<Reader> {
+    // Banners of dashes stand in comments and strings of scenes too.
+    if is_toml(text) {
+        None
+    } else if map::is_deck(text) {
+        Some(map::read)
+    } else {
+        moordyn::is_deck(text).then_some(moordyn::read as Reader)
+    }
+}
+
+/// Reads the files that a deck names and checks the scene as every scene is checked. Returns notes on the scene.
+fn finish(draft: &mut Draft<'_>, folder: &Path) -> Result<Vec<Note>, Vec<SceneError>> {
+    let mistakes = std::mem::take(&mut draft.findings.mistakes);
+    if !mistakes.is_empty() {
+        return Err(mistakes);
+    }
+    let of_files = draft.scene.read_files(folder);
+    let mut notes = cut_tables(&mut draft.scene);
+    let mistakes = draft.scene.mistakes_with(of_files).into_iter();
+    let mistakes: Vec<SceneError> = mistakes.map(|mistake| draft.places.locate(mistake)).collect();
+    if !mistakes.is_empty() {
+        return Err(mistakes);
+    }
+    notes.extend(draft.scene.notes());
+    // The reader of MoorDyn's decks notes diameters itself, with narrower limits.
+    let of_moordyn = draft.format.starts_with("MoorDyn");
+    notes.retain(|note| !(of_moordyn && note.at.ends_with(".diameter")));
+    Ok(notes)
+}
+
+fn located(places: &moorline::scene::Places, text: &str, notes: Vec<Note>) -> Vec<Note> {
+    let notes = notes.into_iter();
+    notes.map(|note| places.locate_note(text, note)).collect()
+}
+
+/// Leaves out the rows below zero strain of tables of tension, which MoorDyn does not use. Returns a note for each table that has some.
+fn cut_tables(scene: &mut Scene) -> Vec<Note> {
+    let mut notes = Vec::new();
+    for (name, line_type) in &mut scene.line_types {
+        let below = line_type.tension_strain.as_mut().map_or(0, cut_below_zero);
+        if below > 0 {
+            let text = format!(
+                "rows below zero strain in the table of tension, {below} of them, are left out: a slack line carries nothing"
+            );
+            let at = format!("line_types.{}.tension_strain", quoted(name));
+            notes.push(Note::new(at, text));
+        }
+    }
+    notes
+}
+
+/// Leaves out the rows below zero strain; where none stands at zero strain, the table begins with the straight line through zero.
+/// Returns their number [-].
+fn cut_below_zero(table: &mut TensionStrain) -> usize {
+    let below = table.rows.iter().take_while(|row| row[0] < 0.0).count();
+    if below == 0 {
+        return 0;
+    }
+    let last = table.rows[below - 1];
+    table.rows.drain(..below);
+    if let Some(&[strain, tension]) = table.rows.first()
+        && strain > 0.0
+    {
+        let at_zero = last[1] - last[0] * (tension - last[1]) / (strain - last[0]);
+        let rounding = 1e-9 * tension.abs().max(last[1].abs());
+        let at_zero = if at_zero.abs() > rounding { at_zero } else { 0.0 };
+        table.rows.insert(0, [0.0, at_zero]);
+    }
+    below
+}

@@ -1,0 +1,225 @@
+//! What a deck says, in its own terms: plain data with places, nothing interpreted.
+
+use crate::findings::Placed;
+
+/// Which grammar a deck is written in.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(super) enum Version {
+    /// Line types with nine columns.
+    One,
+    /// Line types with ten columns or more.
+    #[default]
+    Two,
+}
+
+impl Version {
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Version::One => "MoorDyn v1",
+            Version::Two => "MoorDyn v2",
+        }
+    }
+}
+
+/// A whole deck.
+#[derive(Debug, Default)]
+pub(super) struct Deck {
+    pub version: Version,
+    pub title: String,
+    pub line_types: Vec<LineType>,
+    pub rod_types: Vec<RodType>,
+    pub bodies: Vec<Body>,
+    pub rods: Vec<Rod>,
+    pub points: Vec<Point>,
+    pub lines: Vec<Line>,
+    /// Rows of FAILURE: conditions at which lines come off.
+    pub failures: Vec<Placed<String>>,
+    /// Rows of CONTROL: channels that change line lengths.
+    pub controls: Vec<Placed<String>>,
+    /// Rows of EXTERNAL LOADS.
+    pub loads: Vec<Placed<String>>,
+    pub options: Options,
+    /// Names of output channels.
+    pub outputs: Vec<Placed<String>>,
+}
+
+impl Deck {
+    /// The body of a number.
+    pub(super) fn body(&self, id: usize) -> Option<&Body> {
+        self.bodies.iter().find(|body| body.id.value == id)
+    }
+
+    /// Numbers of the turbines that points are attached to.
+    pub(super) fn turbines(&self) -> impl Iterator<Item = usize> {
+        self.points
+            .iter()
+            .filter_map(|point| match point.attachment.value {
+                Attachment::Turbine(number) => Some(number),
+                _ => None,
+            })
+    }
+}
+
+/// A stiffness or damping: a number, or what else its column takes.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Property {
+    /// A number, in the unit of its column.
+    Number(f64),
+    /// Numbers joined by bars: static, dynamic, and what scales the latter.
+    Parts(Vec<f64>),
+    /// The name of a file with a table, or of another law.
+    Named(String),
+}
+
+/// A row of LINE TYPES.
+#[derive(Debug)]
+pub(super) struct LineType {
+    pub name: Placed<String>,
+    /// Diam [m].
+    pub diameter: Placed<f64>,
+    /// Mass per length [kg/m].
+    pub mass: Placed<f64>,
+    /// EA [N].
+    pub stiffness: Placed<Property>,
+    /// BA [N s], or −ζ [-].
+    pub damping: Placed<Property>,
+    /// EI [N m²]; absent in version 1.
+    pub bending: Option<Placed<Property>>,
+    /// Cd, across the line [-].
+    pub drag_normal: Placed<f64>,
+    /// Ca, across the line [-].
+    pub added_mass_normal: Placed<f64>,
+    /// CdAx, along the line [-].
+    pub drag_tangential: Placed<f64>,
+    /// CaAx, along the line [-].
+    pub added_mass_tangential: Placed<f64>,
+    /// Cl [-] of vortex-induced vibration.
+    pub lift: Option<Placed<f64>>,
+}
+
+/// A row of ROD TYPES; its numbers are read and serve nothing yet.
+#[derive(Debug)]
+pub(super) struct RodType {
+    pub name: Placed<String>,
+}
+
+/// A row of BODIES.
+#[derive(Debug)]
+pub(super) struct Body {
+    pub id: Placed<usize>,
+    pub attachment: Placed<Attachment>,
+    /// X0, Y0, Z0 [m].
+    pub position: [Placed<f64>; 3],
+    /// r0, p0, y0 [deg].
+    pub attitude: [Placed<f64>; 3],
+    /// Mass [kg].
+    pub mass: Placed<f64>,
+    /// Volume [m³].
+    pub volume: Placed<f64>,
+    /// CG [m], I [kg m²], CdA [m²], Ca [-], each one number or several.
+    pub parts: [Placed<Vec<f64>>; 4],
+}
+
+/// A row of RODS.
+#[derive(Debug)]
+pub(super) struct Rod {
+    pub id: Placed<usize>,
+    pub rod_type: Placed<String>,
+    pub attachment: Placed<Attachment>,
+    /// Ends A and B [m].
+    pub ends: [[Placed<f64>; 3]; 2],
+    /// NumSegs; 0 of a rod that is one point.
+    pub segments: Placed<usize>,
+}
+
+/// A row of POINTS.
+#[derive(Debug)]
+pub(super) struct Point {
+    pub id: Placed<usize>,
+    pub attachment: Placed<Attachment>,
+    /// X, Y, Z [m].
+    pub position: [Placed<f64>; 3],
+    /// Mass [kg].
+    pub mass: Placed<f64>,
+    /// Volume [m³].
+    pub volume: Placed<f64>,
+    /// FX, FY, FZ [N], in rows of twelve columns.
+    pub force: Option<[Placed<f64>; 3]>,
+    /// CdA [m²].
+    pub drag_area: Placed<f64>,
+    /// Ca [-].
+    pub added_mass: Placed<f64>,
+}
+
+/// What a point, rod or body is attached to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Attachment {
+    Fixed,
+    /// Moved by the host by itself.
+    Coupled,
+    /// Rides on the one vessel.
+    Vessel,
+    Free,
+    /// Rides on a body.
+    Body(usize),
+    /// Rides on a turbine's platform, in a farm.
+    Turbine(usize),
+    /// Held in place but free to turn (rods), on a body where there is a number.
+    Pinned(Option<usize>),
+    /// Moved by the host but free to turn (rods and bodies).
+    CoupledPinned,
+}
+
+/// A row of LINES.
+#[derive(Debug)]
+pub(super) struct Line {
+    pub id: Placed<usize>,
+    pub line_type: Placed<String>,
+    /// Ends A and B.
+    pub ends: [Placed<LineEnd>; 2],
+    /// UnstrLen [m].
+    pub length: Placed<f64>,
+    /// NumSegs.
+    pub segments: Placed<usize>,
+    /// Letters that ask for a file of the line's own.
+    pub outputs: Placed<String>,
+}
+
+/// What a line ends at.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum LineEnd {
+    Point(usize),
+    /// A rod's end A (`false`) or B (`true`).
+    Rod(usize, bool),
+}
+
+/// OPTIONS that say something; absent ones are `None`.
+#[derive(Debug, Default)]
+pub(super) struct Options {
+    /// g [m/s²].
+    pub gravity: Option<Placed<f64>>,
+    /// rho [kg/m³].
+    pub density: Option<Placed<f64>>,
+    /// WtrDpth [m].
+    pub depth: Option<Placed<Property>>,
+    /// kBot [Pa/m].
+    pub bed_stiffness: Option<Placed<f64>>,
+    /// cBot [Pa s/m].
+    pub bed_damping: Option<Placed<f64>>,
+    /// Friction coefficients of the bed [-], with their keys.
+    pub friction: Vec<(String, Placed<f64>)>,
+    /// Slope of friction with velocity, where MoorDyn's fades in [N s/m or -].
+    pub friction_damping: Option<Placed<f64>>,
+    /// Static over kinetic friction [-].
+    pub static_friction: Option<Placed<f64>>,
+    /// File of the bed's depths.
+    pub soundings: Option<Placed<String>>,
+    /// dtOut [s].
+    pub output_interval: Option<Placed<f64>>,
+    /// TmaxIC of 0: MoorDyn starts from the positions in the file, without time to come to rest.
+    pub starts_at_once: Option<Placed<String>>,
+    /// Waves and currents, where asked for: key and value.
+    pub surroundings: Vec<(String, Placed<String>)>,
+    /// Keys that need nothing here.
+    pub unneeded: Vec<Placed<String>>,
+}

@@ -1,0 +1,172 @@
+//! OPTIONS: `value key comment`.
+
+use moorline::scene::rows::{Row, number, shown};
+
+use super::deck::{Options, Property};
+use super::tables::word_property;
+use crate::findings::{Findings, Placed};
+use crate::table::{ROWS_MAX, meant, placed_text};
+
+/// Keys in capitals that choose how MoorDyn solves, starts and writes: nothing here needs them.
+const UNNEEDED: &str = "DTM DT CFL TSCHEME DTIC ICDT CDSCALEIC ICDFAC THRESHIC ICTHRESH FILEIC ICGENDYNAMIC \
+    GENDYNAMICIC ICFILE WRITELOG WRITEUNITS DISABLEOUTPUT DISABLEOUTTIME OUTSWITCH INERTIALF \
+    INERTIALF_RAMPT ECHO DTWAVE UNIFYCURRENTGRID DTOUTSNAP";
+
+/// Meanings of the keys that say something, with their spellings in capitals.
+const NEEDED: [(Meaning, &str); 12] = [
+    (Meaning::Gravity, "G GRAVITY"),
+    (Meaning::Density, "RHO RHOW WTRDNSTY"),
+    (Meaning::Depth, "WTRDPTH WATERDEPTH DEPTH"),
+    (Meaning::BedStiffness, "KBOT KB"),
+    (Meaning::BedDamping, "CBOT CB"),
+    (Meaning::Friction, "FRICTIONCOEFFICIENT MU_KT MU_KA"),
+    (Meaning::FrictionDamping, "FRICDAMP CV"),
+    (Meaning::StaticFriction, "STATDYNFRICSCALE MC"),
+    (Meaning::Relaxation, "TMAXIC ICTMAX"),
+    (Meaning::OutputInterval, "DTOUT"),
+    (Meaning::Surroundings, "WAVEKIN WATERKIN CURRENTS CURRENT"),
+    (Meaning::Soundings, "SEAFLOORFILE BATHYMETRYFILE BATHFILE"),
+];
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Meaning {
+    Gravity,
+    Density,
+    Depth,
+    BedStiffness,
+    BedDamping,
+    Friction,
+    FrictionDamping,
+    StaticFriction,
+    OutputInterval,
+    Relaxation,
+    Soundings,
+    Surroundings,
+}
+
+fn meaning(key: &str) -> Option<Meaning> {
+    let known = NEEDED.iter().find(|(_, keys)| is_one_of(key, keys));
+    known.map(|(meaning, _)| *meaning)
+}
+
+/// Whether a key is in a list of keys between blanks; capitals do not count.
+fn is_one_of(key: &str, list: &str) -> bool {
+    list.split(' ').any(|known| known.eq_ignore_ascii_case(key))
+}
+
+/// Keys that name a file with a state to start from.
+const STATE_FILES: &str = "FILEIC ICFILE";
+
+/// A row of OPTIONS.
+struct Choice {
+    key: Placed<String>,
+    value: Placed<String>,
+}
+
+impl Choice {
+    /// Whether another row gives the same option.
+    fn repeats(&self, other: &Choice) -> bool {
+        let (a, b) = (&self.key.value, &other.key.value);
+        let several = [Meaning::Friction, Meaning::Surroundings].map(Some);
+        let same = meaning(a).is_some() && meaning(a) == meaning(b) && !several.contains(&meaning(a));
+        same || a.eq_ignore_ascii_case(b)
+    }
+}
+
+/// Reads the rows of OPTIONS. As in MoorDyn, an unknown key is left out and the last of several values counts, both with a remark.
+pub(super) fn read(rows: &[Row<'_>], findings: &mut Findings) -> Options {
+    let mut options = Options::default();
+    let choices = choices(rows, findings);
+    for (index, choice) in choices.iter().enumerate() {
+        let Choice { key, value } = choice;
+        let mut later = choices[index + 1..].iter().rev();
+        if let Some(last) = later.find(|later| later.repeats(choice)) {
+            let text = format!(
+                "{} {} is given again below: the last value, {}, counts",
+                key.value, value.value, last.value.value
+            );
+            findings.remark(key, text);
+        } else if let Some(meaning) = meaning(&key.value) {
+            take(&mut options, meaning, choice, findings);
+        } else if is_one_of(&key.value, UNNEEDED) {
+            remark_on_state_file(choice, findings);
+            options.unneeded.push(key.clone());
+        } else if meaning(&value.value).is_some() || is_one_of(&value.value, UNNEEDED) {
+            let problem = format!(
+                "an option is written as value and key, here {} {}",
+                shown(&key.value),
+                value.value
+            );
+            findings.wrong("OPTIONS", key, problem);
+        } else {
+            let keys = NEEDED.iter().map(|(_, keys)| *keys).chain([UNNEEDED]);
+            let known: Vec<&str> = keys.flat_map(|keys| keys.split(' ')).collect();
+            let meant = meant(&key.value, known.iter().copied());
+            let text = format!(
+                "the option {} is not known and left out{meant}",
+                shown(&key.value)
+            );
+            findings.remark(key, text);
+        }
+    }
+    options
+}
+
+fn choices(rows: &[Row<'_>], findings: &mut Findings) -> Vec<Choice> {
+    let mut choices = Vec::new();
+    for row in rows.iter().take(ROWS_MAX) {
+        let fields = row.fields();
+        let [value, key, ..] = fields.as_slice() else {
+            let problem = format!("expected a value and a key, found {}", shown(row.text.trim()));
+            findings.mistake("OPTIONS", row.span(), problem);
+            continue;
+        };
+        let [key, value] = [key, value].map(|field| placed_text(field.text, &field.span));
+        choices.push(Choice { key, value });
+    }
+    choices
+}
+
+/// MoorDyn would start from the state in the file.
+fn remark_on_state_file(Choice { key, value }: &Choice, findings: &mut Findings) {
+    if is_one_of(&key.value, STATE_FILES) && number(&value.value) != Ok(0.0) {
+        let text = format!(
+            "{} {}: the state in this file is not read, the run starts from equilibrium",
+            key.value, value.value
+        );
+        findings.remark(key, text);
+    }
+}
+
+fn take(options: &mut Options, meaning: Meaning, Choice { key, value }: &Choice, findings: &mut Findings) {
+    let is_zero = number(&value.value) == Ok(0.0);
+    let mut wrong = |problem: String| findings.wrong(format!("OPTIONS, {}", key.value), value, problem);
+    let mut placed = || {
+        let number = number(&value.value).map_err(&mut wrong).ok()?;
+        Some(value.with(number))
+    };
+    match meaning {
+        Meaning::Gravity => options.gravity = placed(),
+        Meaning::Density => options.density = placed(),
+        Meaning::BedStiffness => options.bed_stiffness = placed(),
+        Meaning::BedDamping => options.bed_damping = placed(),
+        Meaning::OutputInterval => options.output_interval = placed(),
+        Meaning::FrictionDamping => options.friction_damping = placed(),
+        Meaning::StaticFriction => options.static_friction = placed(),
+        Meaning::Friction => options.friction.extend(placed().map(|c| (key.value.clone(), c))),
+        Meaning::Depth => match word_property(&value.value) {
+            Ok(Property::Parts(_)) => wrong("expected one depth [m], or the name of a file".to_string()),
+            Ok(depth) => options.depth = Some(value.with(depth)),
+            Err(problem) => wrong(problem),
+        },
+        // 0 asks for none of these, and other times to come to rest in change nothing here.
+        Meaning::Surroundings | Meaning::Soundings | Meaning::Relaxation
+            if is_zero != (meaning == Meaning::Relaxation) =>
+        {
+            options.unneeded.push(value.with(key.value.clone()));
+        }
+        Meaning::Relaxation => options.starts_at_once = Some(value.clone()),
+        Meaning::Soundings => options.soundings = Some(value.clone()),
+        Meaning::Surroundings => options.surroundings.push((key.value.clone(), value.clone())),
+    }
+}

@@ -1,0 +1,237 @@
+//! A deck cut at its headers.
+
+use moorline::scene::rows::{Row, number, shown};
+
+use crate::findings::{Findings, Placed};
+
+/// What a section holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    LineTypes,
+    RodTypes,
+    Bodies,
+    Rods,
+    Points,
+    Lines,
+    Failure,
+    Control,
+    ExternalLoads,
+    Options,
+    Outputs,
+}
+
+/// Kinds with their names in messages and the words of their headers, in capitals; the first that fits counts, as in MoorDyn.
+const KINDS: [(Kind, &str, &[&str]); 11] = [
+    (Kind::LineTypes, "LINE TYPES", &["LINE DICTIONARY", "LINE TYPES"]),
+    (Kind::RodTypes, "ROD TYPES", &["ROD DICTIONARY", "ROD TYPES"]),
+    (
+        Kind::Bodies,
+        "BODIES",
+        &["BODIES", "BODY LIST", "BODY PROPERTIES"],
+    ),
+    (Kind::Rods, "RODS", &["RODS", "ROD LIST", "ROD PROPERTIES"]),
+    (
+        Kind::Points,
+        "POINTS",
+        &[
+            "POINTS",
+            "POINT LIST",
+            "POINT PROPERTIES",
+            "CONNECTION",
+            "NODE PROPERTIES",
+            "NODE LIST",
+        ],
+    ),
+    (Kind::Lines, "LINES", &["LINES", "LINE LIST", "LINE PROPERTIES"]),
+    (Kind::ExternalLoads, "EXTERNAL LOADS", &["EXTERNAL LOADS"]),
+    (Kind::Control, "CONTROL", &["CONTROL"]),
+    (Kind::Failure, "FAILURE", &["FAILURE"]),
+    (Kind::Options, "OPTIONS", &["OPTIONS"]),
+    (Kind::Outputs, "OUTPUTS", &["OUTPUT"]),
+];
+
+impl Kind {
+    /// Name in messages.
+    pub(super) fn name(self) -> &'static str {
+        let mut kinds = KINDS.iter();
+        kinds
+            .find(|(kind, ..)| *kind == self)
+            .map_or("", |(_, name, _)| name)
+    }
+
+    /// Whether two lines below the header name columns and units.
+    fn is_table(self) -> bool {
+        !matches!(self, Kind::Options | Kind::Outputs)
+    }
+}
+
+/// A header and the rows below it, without comments.
+#[derive(Debug)]
+pub(super) struct Section<'t> {
+    pub kind: Kind,
+    pub header: Row<'t>,
+    /// The number of rows, which decks of version 1 say below the header.
+    count: Option<Placed<Option<usize>>>,
+    /// The line that names the columns of a table.
+    pub names: Option<Row<'t>>,
+    /// The line of their units.
+    pub units: Option<Row<'t>>,
+    pub rows: Vec<Row<'t>>,
+}
+
+/// A deck in parts.
+#[derive(Debug, Default)]
+pub(super) struct Sections<'t> {
+    /// What stands above the first section.
+    pub preamble: Vec<Row<'t>>,
+    pub list: Vec<Section<'t>>,
+}
+
+impl<'t> Sections<'t> {
+    /// The section of a kind.
+    pub(super) fn get(&self, kind: Kind) -> Option<&Section<'t>> {
+        self.list.iter().find(|section| section.kind == kind)
+    }
+
+    /// Rows of a kind; none where the section is missing.
+    pub(super) fn rows(&self, kind: Kind) -> &[Row<'t>] {
+        self.get(kind).map_or(&[], |section| &section.rows)
+    }
+}
+
+fn is_header(row: &Row<'_>) -> bool {
+    row.text.contains("---")
+}
+
+fn kind_of(row: &Row<'_>) -> Option<Kind> {
+    let upper = row.text.to_uppercase();
+    let mut kinds = KINDS.iter();
+    let known = kinds.find(|(.., words)| words.iter().any(|words| upper.contains(words)));
+    known.map(|(kind, ..)| *kind)
+}
+
+/// Whether a text is a MoorDyn file: it has a header of such files.
+pub(crate) fn is_deck(text: &str) -> bool {
+    let mut rows = Row::all(text).map(|row| row.before('#'));
+    rows.any(|row| {
+        let rule = row.text.trim_start().starts_with("---");
+        rule && (kind_of(&row).is_some() || row.text.to_uppercase().contains("MOORDYN"))
+    })
+}
+
+/// Cuts a deck at its headers.
+pub(super) fn split<'t>(text: &'t str, findings: &mut Findings) -> Sections<'t> {
+    let mut sections = Sections::default();
+    // Rows below a header that heads nothing are told of once.
+    let mut unknown: Option<Row<'t>> = None;
+    for whole in Row::all(text) {
+        let row = whole.before('#');
+        if row.text.trim().is_empty() {
+            continue;
+        }
+        if is_header(&row) {
+            if row.text.to_uppercase().contains("NEED THIS LINE") {
+                break;
+            }
+            unknown = begin(&mut sections, row, findings);
+        } else if let Some(header) = &unknown {
+            let problem = format!(
+                "unknown section {}; known are LINE TYPES, ROD TYPES, BODIES, RODS, POINTS, LINES, FAILURE, CONTROL, \
+                 EXTERNAL LOADS, OPTIONS and OUTPUTS",
+                shown(header.text.trim_matches(['-', ' ']))
+            );
+            findings.mistake("", header.span(), problem);
+            unknown = None;
+        } else {
+            match sections.list.last_mut() {
+                None => sections.preamble.push(whole),
+                Some(section) => add(section, row),
+            }
+        }
+    }
+    for section in &sections.list {
+        check_names(section, findings);
+        check_count(section, findings);
+    }
+    sections
+}
+
+/// Begins a section; returns a header that heads none.
+fn begin<'t>(sections: &mut Sections<'t>, header: Row<'t>, findings: &mut Findings) -> Option<Row<'t>> {
+    let Some(kind) = kind_of(&header) else {
+        // The title of the file looks like a header too.
+        return (!sections.list.is_empty()).then_some(header);
+    };
+    if sections.get(kind).is_some() {
+        let problem = format!("a second section {}: write all of its rows in one", kind.name());
+        findings.mistake(kind.name(), header.span(), problem);
+    }
+    sections.list.push(Section {
+        kind,
+        header,
+        count: None,
+        names: None,
+        units: None,
+        rows: Vec::new(),
+    });
+    None
+}
+
+/// `3  NLines - number of lines`.
+fn count(row: &Row<'_>) -> Option<Placed<Option<usize>>> {
+    let fields = row.fields();
+    let key = fields.get(1)?.text.to_uppercase();
+    let counted = "NTYPES NLINETYPES NCONNECTS NCONNECTIONS NPOINTS NLINES";
+    counted.split(' ').any(|known| known == key).then_some(())?;
+    Some(Placed {
+        value: fields[0].text.parse().ok(),
+        span: fields[0].span.clone(),
+    })
+}
+
+fn add<'t>(section: &mut Section<'t>, row: Row<'t>) {
+    let first = section.names.is_none() && section.count.is_none();
+    if !section.kind.is_table() {
+        section.rows.push(row);
+    } else if let Some(count) = first.then(|| count(&row)).flatten() {
+        section.count = Some(count);
+    } else if section.names.is_none() {
+        section.names = Some(row);
+    } else if section.units.is_none() {
+        section.units = Some(row);
+    } else {
+        section.rows.push(row);
+    }
+}
+
+/// MoorDyn v1 would read that many rows and no more.
+fn check_count(section: &Section<'_>, findings: &mut Findings) {
+    let Some(count) = &section.count else {
+        return;
+    };
+    let problem = match count.value {
+        Some(value) if value == section.rows.len() => return,
+        Some(value) => {
+            let rows = section.rows.len();
+            format!("{value} rows are announced, and there are {rows}")
+        }
+        None => "expected the number of rows below".to_string(),
+    };
+    findings.wrong(section.kind.name(), count, problem);
+}
+
+/// A row of the table in place of names and units would be lost without a word.
+fn check_names(section: &Section<'_>, findings: &mut Findings) {
+    for row in [&section.names, &section.units].into_iter().flatten() {
+        let fields = row.fields();
+        let numbers = fields.iter().filter(|field| number(field.text).is_ok());
+        if fields.len() > 2 && 2 * numbers.count() > fields.len() {
+            findings.mistake(
+                section.kind.name(),
+                row.span(),
+                "the two lines below a section's header are the names and units of its columns and are never read, \
+                 and this one holds numbers: write both of them above the rows",
+            );
+        }
+    }
+}

@@ -1,0 +1,168 @@
+//! Remarks on what is right in a deck but often meant otherwise.
+
+use moorline::scene::plausibility::{STEEL, dense};
+
+use super::deck::{Attachment, Deck, LineType, Property, Version};
+use super::sections::{Kind, Sections};
+use super::tables::columns_of;
+use crate::findings::Findings;
+use crate::table::compare_header;
+
+/// Density [kg/m³] above which the diameter is unlikely to be that of the volume: steel with a margin for rounded numbers.
+const DENSITY_MAX: f64 = 1.2 * STEEL;
+
+/// BA [N s] below which a ratio without its minus sign is likelier.
+const RATIO_LIKE: f64 = 10.0;
+
+/// Remarks on a deck.
+pub(super) fn remark(deck: &Deck, sections: &Sections<'_>, findings: &mut Findings) {
+    headers(deck, sections, findings);
+    for kind in &deck.line_types {
+        ratio_or_damping(kind, sections, findings);
+        chain_diameter(kind, findings);
+    }
+    if deck.version == Version::One {
+        findings.remark_on_all(
+            "read as MoorDyn v1: line types with nine columns, coefficients in the order Can Cat Cdn Cdt",
+        );
+    }
+    findings.remark_on_all(
+        "in MoorDyn, damping within a line acts in compression too, so that its tension can be negative; here a slack line \
+         carries nothing, and `negative_tension = true` in [solver] gives MoorDyn's law",
+    );
+    unneeded_options(deck, findings);
+    friction(deck, findings);
+    line_files(deck, findings);
+    masses_of_fixed_points(deck, findings);
+    start(deck, findings);
+}
+
+fn headers(deck: &Deck, sections: &Sections<'_>, findings: &mut Findings) {
+    for section in &sections.list {
+        if let (Some(names), Some(columns)) = (&section.names, columns_of(section, deck)) {
+            compare_header(names, columns, findings);
+        }
+    }
+}
+
+/// A negative BA is a ratio of critical damping of a segment, a positive one is BA itself, whatever the header says.
+fn ratio_or_damping(kind: &LineType, sections: &Sections<'_>, findings: &mut Findings) {
+    let Property::Number(value) = kind.damping.value else {
+        return;
+    };
+    let name = &kind.name.value;
+    let at = &kind.damping;
+    if value < 0.0 {
+        let ratio = -value;
+        let text = format!(
+            "{name}: BA/-zeta {value} is a damping ratio of {ratio}, of the critical damping of each segment, so BA \
+             changes with NumSegs"
+        );
+        return findings.remark(at, text);
+    }
+    if value > 0.0 && value < RATIO_LIKE {
+        let text = format!(
+            "{name}: BA {value} N s is next to none; a damping ratio is written with a minus sign, -{value}"
+        );
+        findings.remark(at, text);
+    }
+    let section = sections.get(Kind::LineTypes);
+    let units = section.and_then(|section| section.units.as_ref());
+    let pascal = units.is_some_and(|units| units.text.to_lowercase().contains("pa-s"));
+    if value >= RATIO_LIKE && pascal {
+        let text = format!(
+            "{name}: the header has Pa s above the damping, but {value} is read as BA [N s], as MoorDyn does: a \
+             damping in Pa s must be multiplied by the area of the section"
+        );
+        findings.remark(at, text);
+    }
+}
+
+/// The diameter is that of a cylinder of the line's volume, not that of a chain's bar.
+fn chain_diameter(kind: &LineType, findings: &mut Findings) {
+    let (diameter, mass) = (kind.diameter.value, kind.mass.value);
+    if diameter <= 0.0 || mass <= 0.0 {
+        return;
+    }
+    if let Some(text) = dense(diameter, mass, DENSITY_MAX, "Diam") {
+        let text = format!("{}: {text}", kind.name.value);
+        findings.remark(&kind.diameter, text);
+    }
+}
+
+fn unneeded_options(deck: &Deck, findings: &mut Findings) {
+    let unneeded = &deck.options.unneeded;
+    if let Some(first) = unneeded.first() {
+        let keys: Vec<&str> = unneeded.iter().map(|key| key.value.as_str()).collect();
+        let text = format!(
+            "options that nothing here needs, since steps and the start from equilibrium are found without them: {}",
+            keys.join(", ")
+        );
+        findings.remark(first, text);
+    }
+}
+
+fn friction(deck: &Deck, findings: &mut Findings) {
+    let mut coefficients = deck.options.friction.iter();
+    if let Some((_, coefficient)) = coefficients.find(|(_, coefficient)| coefficient.value > 0.0) {
+        let text = "friction at rest: here every line lies as one that was laid from its end A, or from end B where only that is on \
+                    the seabed, and hauled at the other end, with all the friction that holds against that, as in MAP++; a line \
+                    at rest has none in MoorDyn";
+        findings.remark(coefficient, text);
+    }
+    if let Some(damping) = &deck.options.friction_damping {
+        let text = "friction here sticks and lets go at its limit: it needs no damping to fade in with, which in MoorDyn lets a \
+                    line at rest creep";
+        findings.remark(damping, text);
+    }
+    if let Some(scale) = &deck.options.static_friction
+        && scale.value != 1.0
+    {
+        let text = format!(
+            "static friction of {} times the kinetic is not modelled: one coefficient holds and brakes",
+            scale.value
+        );
+        findings.remark(scale, text);
+    }
+}
+
+/// Where runs start: MoorDyn comes to rest from the positions in the file, in no time where `TmaxIC` is 0.
+fn start(deck: &Deck, findings: &mut Findings) {
+    if let Some(at_once) = &deck.options.starts_at_once {
+        let text = "TmaxIC 0: runs start with free points where the file has them and every line on its catenary between its ends, \
+                    or straight where it has none, as in MoorDyn; leave it out to start from equilibrium";
+        findings.remark(at_once, text);
+    }
+}
+
+fn line_files(deck: &Deck, findings: &mut Findings) {
+    let mut lines = deck.lines.iter();
+    if let Some(line) = lines.find(|line| line.outputs.value.chars().any(char::is_alphabetic)) {
+        findings.remark(
+            &line.outputs,
+            "no files of single lines are written: `profile = true` in [output] writes the nodes of all lines",
+        );
+    }
+}
+
+/// Mass, volume and drag of fixed points, which have none in a scene.
+fn masses_of_fixed_points(deck: &Deck, findings: &mut Findings) {
+    let is_fixed = |attachment: Attachment| match attachment {
+        Attachment::Body(id) => deck.body(id).map(|body| body.attachment.value) == Some(Attachment::Fixed),
+        other => other == Attachment::Fixed,
+    };
+    for point in deck
+        .points
+        .iter()
+        .filter(|point| is_fixed(point.attachment.value))
+    {
+        let sizes = [&point.mass, &point.volume, &point.drag_area, &point.added_mass];
+        if let Some(given) = sizes.into_iter().find(|size| size.value != 0.0) {
+            let text = format!(
+                "point {}: mass, volume and drag of a fixed point are left out of the force on the ground, which MoorDyn adds them to",
+                point.id.value
+            );
+            findings.remark(given, text);
+        }
+    }
+}

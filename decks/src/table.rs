@@ -1,0 +1,190 @@
+//! Tables of a deck: rows of cells that know their column and their place.
+
+use std::collections::BTreeSet;
+use std::fmt::Display;
+use std::ops::Range;
+
+use moorline::scene::nearest::nearest;
+use moorline::scene::rows::{Field, Row, number, shown};
+
+use crate::findings::{Findings, Placed};
+
+/// Most rows of a table: beyond any mooring, and short enough for every check.
+pub(crate) const ROWS_MAX: usize = 5_000;
+
+/// A column of a table.
+#[derive(Debug)]
+pub(crate) struct Column {
+    /// Its name in messages, as the format's own documentation has it.
+    pub name: &'static str,
+    /// Unit of its numbers; "-" where they have none.
+    unit: &'static str,
+    /// Names in headers, in capitals.
+    pub spellings: &'static [&'static str],
+}
+
+/// A column by its name, unit and spellings.
+pub(crate) const fn column(
+    name: &'static str,
+    unit: &'static str,
+    spellings: &'static [&'static str],
+) -> Column {
+    Column {
+        name,
+        unit,
+        spellings,
+    }
+}
+
+/// Reads the rows of a section that have as many cells as one of the lists of columns, which are in ascending order, or more than
+/// the last.
+pub(crate) fn read_rows<T>(
+    section: &str,
+    rows: &[Row<'_>],
+    lists: &[&'static [Column]],
+    findings: &mut Findings,
+    mut read: impl FnMut(&mut Cells<'_, '_>) -> T,
+) -> Vec<T> {
+    let mut table = Vec::new();
+    for (index, row) in rows.iter().take(ROWS_MAX).enumerate() {
+        let (fields, place) = (row.fields(), format!("{section}, row {}", index + 1));
+        let widest = lists.last().filter(|list| list.len() < fields.len());
+        match lists.iter().find(|list| list.len() == fields.len()).or(widest) {
+            Some(columns) => table.push(read(&mut Cells {
+                place,
+                fields: &fields,
+                columns,
+                findings,
+            })),
+            None => {
+                let problem = format!("{} columns, expected {}", fields.len(), in_words(lists));
+                findings.mistake(place, row.span(), problem);
+            }
+        }
+    }
+    table
+}
+
+/// `9 (ID Attachment …) or 12 (ID Type …)`.
+fn in_words(lists: &[&'static [Column]]) -> String {
+    let list = |columns: &&[Column]| {
+        let names: Vec<&str> = columns.iter().map(|column| column.name).collect();
+        format!("{} ({})", columns.len(), names.join(" "))
+    };
+    lists.iter().map(list).collect::<Vec<_>>().join(" or ")
+}
+
+/// A row of a table, cell by cell. Every wrong cell is noted; the value returned for it only keeps the reading going.
+pub(crate) struct Cells<'r, 't> {
+    /// Section and row in messages, such as "LINES, row 2".
+    pub place: String,
+    pub fields: &'r [Field<'t>],
+    pub columns: &'static [Column],
+    pub findings: &'r mut Findings,
+}
+
+impl Cells<'_, '_> {
+    /// Adds a mistake in a cell.
+    pub(crate) fn wrong(&mut self, column: usize, problem: impl Into<String>) {
+        let about = format!("{}, {}", self.place, self.columns[column].name);
+        self.findings
+            .mistake(about, self.fields[column].span.clone(), problem);
+    }
+
+    /// A value with the bytes of its cell.
+    pub(crate) fn placed<T>(&self, column: usize, value: T) -> Placed<T> {
+        let span = self.fields[column].span.clone();
+        Placed { value, span }
+    }
+
+    /// The value of a cell, or, where it is wrong, a mistake and a value in its place.
+    pub(crate) fn read<T>(&mut self, column: usize, value: Result<T, String>, instead: T) -> Placed<T> {
+        let value = value.unwrap_or_else(|problem| {
+            self.wrong(column, problem);
+            instead
+        });
+        self.placed(column, value)
+    }
+
+    /// The cell as it stands.
+    pub(crate) fn word(&self, column: usize) -> Placed<String> {
+        self.placed(column, self.fields[column].text.to_string())
+    }
+
+    /// A number, in the unit of its column.
+    pub(crate) fn number(&mut self, column: usize) -> Placed<f64> {
+        let value = number(self.fields[column].text).map_err(|problem| match self.columns[column].unit {
+            "-" => problem,
+            unit => problem.replacen("number,", &format!("number [{unit}],"), 1),
+        });
+        self.read(column, value, 0.0)
+    }
+
+    /// Three numbers in three columns.
+    pub(crate) fn vector(&mut self, column: usize) -> [Placed<f64>; 3] {
+        [0, 1, 2].map(|axis| self.number(column + axis))
+    }
+
+    /// A whole number, `least` or more.
+    pub(crate) fn count(&mut self, column: usize, least: usize) -> Placed<usize> {
+        let text = self.fields[column].text;
+        let value = text.parse::<usize>().ok().filter(|value| *value >= least);
+        let value =
+            value.ok_or_else(|| format!("expected a whole number from {least} on, found {}", shown(text)));
+        self.read(column, value, least)
+    }
+}
+
+/// A word or a row of the file with its bytes.
+pub(crate) fn placed_text(text: &str, span: &Range<usize>) -> Placed<String> {
+    let (value, span) = (text.to_string(), span.clone());
+    Placed { value, span }
+}
+
+/// Words above the first section as a title of one line.
+pub(crate) fn title<'r, 't: 'r>(rows: impl Iterator<Item = &'r Row<'t>>) -> String {
+    let words: Vec<&str> = rows.flat_map(Row::fields).map(|field| field.text).collect();
+    let title = words.join(" ");
+    title.chars().filter(|c| !c.is_control()).take(200).collect()
+}
+
+/// Adds a mistake for each number or name that an earlier row of the table has.
+pub(crate) fn check_unique<'d, T: Ord + Display + 'd>(
+    names: impl Iterator<Item = &'d Placed<T>>,
+    what: &str,
+    findings: &mut Findings,
+) {
+    let mut seen = BTreeSet::new();
+    for name in names {
+        if !seen.insert(&name.value) {
+            let problem = format!("a second {what} {}: take another", name.value);
+            findings.wrong(format!("{what} {}", name.value), name, problem);
+        }
+    }
+}
+
+/// `, did you mean DTM?`, where a known name is near.
+pub(crate) fn meant<'a>(name: &str, known: impl IntoIterator<Item = &'a str> + Clone) -> String {
+    nearest(name, known).map_or(String::new(), |known| format!(", did you mean {known}?"))
+}
+
+/// Remarks on names above a table that are those of other columns: readers go by the place of a column, not by its name.
+pub(crate) fn compare_header(header: &Row<'_>, columns: &[Column], findings: &mut Findings) {
+    let names = header.fields();
+    let is = |text: &str, column: &Column| {
+        let upper = text.trim_matches(['(', ')', '*', '#']).to_uppercase();
+        column.spellings.contains(&upper.as_str())
+    };
+    let wrong = names.iter().zip(columns).enumerate().find(|(_, (name, column))| {
+        !is(name.text, column) && columns.iter().any(|other| is(name.text, other))
+    });
+    if let Some((place, (name, column))) = wrong {
+        let text = format!(
+            "the header calls column {} {:?}, but columns count by their place, and this one is read as {}",
+            place + 1,
+            name.text,
+            column.name
+        );
+        findings.remark_at(name.span.start, text);
+    }
+}

@@ -1,0 +1,88 @@
+//! Decks of MoorDyn and MAP++: what is read of them, what is refused and where, and that a converted deck is the same system.
+
+mod files;
+mod garbage;
+mod read;
+mod refusals;
+mod traps;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use moorline::model::Model;
+use moorline::scene::{LoadError, LoadedScene, Scene};
+use moorline::simulation::Simulation;
+use moorline_decks::{Supplement, load, load_with};
+
+const OPENFAST: &str = include_str!("../decks/openfast_v2.dat");
+const VERSION_1: &str = include_str!("../decks/moordyn_v1.dat");
+const C_STYLE: &str = include_str!("../decks/moordyn_c.txt");
+const FARM: &str = include_str!("../decks/farm.dat");
+const MAP: &str = include_str!("../decks/oc3.map");
+
+fn deck(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("tests/decks")
+        .join(name)
+}
+
+fn read(name: &str) -> LoadedScene {
+    load(&deck(name)).unwrap_or_else(|error| panic!("{}", error.list()))
+}
+
+/// What the host of the decks that leave something out would give.
+fn supplement() -> Supplement {
+    let at = |name: &str, x| (name.to_string(), [x, 0.0, 0.0]);
+    Supplement {
+        depth: Some(320.0),
+        positions: [at("turbine1", 0.0), at("turbine2", 1000.0)].into(),
+        ..Supplement::default()
+    }
+}
+
+/// What the host of the MAP++ deck would give.
+fn deep() -> Supplement {
+    Supplement {
+        depth: Some(320.0),
+        ..Supplement::default()
+    }
+}
+
+/// A deck as bytes of a file with a name that says nothing.
+fn load_bytes(bytes: &[u8], supplement: &Supplement) -> Result<LoadedScene, LoadError> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("input");
+    fs::write(&path, bytes).unwrap();
+    load_with(&path, supplement)
+}
+
+fn load_text(text: &str) -> Result<LoadedScene, LoadError> {
+    load_bytes(text.as_bytes(), &Supplement::default())
+}
+
+/// Every mistake on a line, without the folder: `input:7:32: …`.
+fn said(text: &str) -> String {
+    let error = load_text(text).expect_err("the deck is wrong");
+    let listed = error.list();
+    let lines = listed
+        .lines()
+        .map(|line| line.rsplit_once("/input").map_or(line, |(_, rest)| rest));
+    lines.map(|line| format!("input{line}\n")).collect()
+}
+
+/// The deck with one part of its text replaced, which must be there.
+fn with(text: &str, old: &str, new: &str) -> String {
+    assert!(text.contains(old), "{old:?} is not in the deck");
+    text.replacen(old, new, 1)
+}
+
+fn notes(loaded: &LoadedScene) -> String {
+    loaded.notes.iter().map(|note| format!("{note}\n")).collect()
+}
+
+fn point<'s>(scene: &'s Scene, name: &str) -> &'s moorline::scene::Point {
+    let mut points = scene.points.iter();
+    points
+        .find(|point| point.name == name)
+        .unwrap_or_else(|| panic!("no {name}"))
+}
