@@ -149,7 +149,7 @@ fn the_page_shows_the_committed_summary() {
     let part = page.split("<!-- accuracy: begin -->").nth(1).unwrap();
     let part = part.split("<!-- accuracy: end -->").next().unwrap();
     let folder = part.split("](").nth(1).unwrap().split(')').next().unwrap();
-    let file = |name: &str| root.join(folder).join(name);
+    let file = |name: &str| root.join("docs").join(folder).join(name);
     let summary = std::fs::read_to_string(file("summary.md")).unwrap();
     assert!(part.ends_with(&summary), "{part}");
     for name in ["overview.svg", "accuracy.csv", "verdicts.csv"] {
