@@ -32,7 +32,10 @@ pub fn check(path: &Path, supplement: &Supplement) -> Result<(), Failure> {
     text.push_str("elements\n");
     let chosen = settled.iter().flat_map(|found| found.in_words());
     let chosen = model.mesh_in_words(scene).into_iter().chain(chosen);
-    let simulation = Simulation::new(scene).ok();
+    let (simulation, failure) = match Simulation::new(scene) {
+        Ok(simulation) => (Some(simulation), None),
+        Err(error) => (None, Some(Failure::of_simulation(error, &loaded))),
+    };
     let steps = simulation
         .iter()
         .flat_map(|started| steps_in_words(scene, started));
@@ -65,7 +68,8 @@ pub fn check(path: &Path, supplement: &Supplement) -> Result<(), Failure> {
     for note in loaded.notes.iter().cloned().chain(later) {
         writeln!(text, "{}", noted(path, &note)).expect("a string takes any text");
     }
-    print(&text)
+    print(&text)?;
+    failure.map_or(Ok(()), Err) // a scene without an equilibrium can be described, but not run
 }
 
 /// Integrator and step of every network, each in a sentence once.

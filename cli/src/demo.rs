@@ -4,6 +4,7 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use moorline::discretisation;
 use moorline::interface::{Binding, Interface, Kind, Layout, Variable};
 use moorline::model::Body;
 use moorline::output::record::{Frame, Node, Record};
@@ -17,14 +18,15 @@ use crate::fmu::package;
 use crate::folder::Folder;
 use crate::run::{Times, columns, recorded, scene_input};
 use crate::summary::run_summary;
-use crate::terminal::{print, progress, simulate};
+use crate::terminal::{discretise, print, progress, simulate};
 
 /// The built-in scene.
 const SCENE: &str = include_str!("../../scenes/demo.toml");
 
 /// Packages the built-in scene, drives the FMU, shows and writes what comes out.
 pub fn demo(folder: &Path) -> Result<(), Failure> {
-    let loaded = built_in_scene()?;
+    let mut loaded = built_in_scene()?;
+    discretise(&mut loaded, discretisation::select);
     let _open = Folder::open(folder)?;
     let target = folder.join("demo.fmu");
     package(&loaded, &target, FmiVersion::Two)?;

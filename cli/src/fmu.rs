@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use moorline::discretisation;
 use moorline::output::check_file;
 use moorline::output::fmi::FmiVersion;
 use moorline::output::package::{find_library, write_fmu};
@@ -10,12 +11,13 @@ use moorline::simulation::Watch;
 use moorline_decks::Supplement;
 
 use crate::failure::Failure;
-use crate::terminal::{print, read_scene, remark_all, simulate};
+use crate::terminal::{discretise, print, read_scene, remark_all, simulate};
 
 /// Packages a scene for the FMI version "2" or "3".
 pub fn fmu(path: &Path, supplement: &Supplement, target: &Path, version: &str) -> Result<(), Failure> {
-    let loaded = read_scene(path, supplement)?;
+    let mut loaded = read_scene(path, supplement)?;
     check_file(target)?;
+    discretise(&mut loaded, discretisation::select);
     // A scene without an equilibrium would make an FMU that no host can start.
     let simulation = simulate(&loaded)?;
     remark_all(&loaded, Watch::new(&loaded.scene, &simulation).look(&simulation));

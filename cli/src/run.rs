@@ -17,7 +17,7 @@ use moorline_decks::Supplement;
 use crate::failure::Failure;
 use crate::folder::Folder;
 use crate::summary::run_summary;
-use crate::terminal::{print, progress, read_scene, remark_all, simulate};
+use crate::terminal::{discretise, print, progress, read_scene, remark_all, simulate};
 
 /// Shapes kept of a run whose scene does not ask for all of them [-].
 const FRAMES_MAX: usize = 240;
@@ -61,12 +61,10 @@ pub fn run(
         remark_all(&loaded, notes);
     }
     let _open = Folder::open(folder)?;
-    let mut simulation = match pace {
-        Pace::Scene => simulate(&loaded)?,
-        Pace::Host { .. } => {
-            Simulation::new(&loaded.scene).map_err(|error| Failure::of_simulation(error, &loaded))?
-        }
-    };
+    if pace == Pace::Scene {
+        discretise(&mut loaded, discretisation::select);
+    }
+    let mut simulation = simulate(&loaded)?;
     let still = simulation.in_equilibrium().ok();
     let start = match pace {
         Pace::Scene => simulation.follow_scene(),

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 use std::path::Path;
 
+use moorline::discretisation;
 use moorline::output::{collect, json};
 use moorline::scene::{InitialShape, Note};
 use moorline::simulation::Watch;
@@ -10,7 +11,7 @@ use moorline_decks::Supplement;
 
 use crate::failure::Failure;
 use crate::summary::{Table, static_table};
-use crate::terminal::{print, read_scene, remark, remark_all, simulate};
+use crate::terminal::{discretise, print, read_scene, remark, remark_all, simulate};
 
 /// Solves the equilibrium and prints it.
 pub fn statics(path: &Path, supplement: &Supplement, as_json: bool) -> Result<(), Failure> {
@@ -18,6 +19,7 @@ pub fn statics(path: &Path, supplement: &Supplement, as_json: bool) -> Result<()
     if let Some(water) = &mut loaded.scene.water {
         water.waves = None; // an equilibrium is that of the sea at rest
     }
+    discretise(&mut loaded, discretisation::select_at_rest);
     let simulation = simulate(&loaded)?
         .in_equilibrium()
         .map_err(|error| Failure::of_simulation(error, &loaded))?;

@@ -4,8 +4,8 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use indicatif::{ProgressBar, ProgressStyle};
-use moorline::discretisation::discretised;
-use moorline::scene::{LoadedScene, Note};
+use moorline::discretisation::Discretisation;
+use moorline::scene::{LoadedScene, Note, Scene};
 use moorline::simulation::Simulation;
 use moorline_decks::{Supplement, load_with};
 
@@ -38,9 +38,21 @@ pub fn remark_all(loaded: &LoadedScene, notes: Vec<Note>) {
     }
 }
 
+/// Gives a scene the mesh, integrator and step that it leaves open, once for all that a command does with it. Remarks where they are not
+/// expected to keep the tolerance.
+pub fn discretise(loaded: &mut LoadedScene, select: fn(&Scene) -> Option<Discretisation>) {
+    let Some(found) = select(&loaded.scene) else {
+        return;
+    };
+    let notes = found.shortfalls().into_iter();
+    let notes = notes.map(|text| Note::new("solver.tolerance".to_string(), text));
+    remark_all(loaded, notes.collect());
+    loaded.scene = found.scene;
+}
+
 /// The simulation of a scene, in static equilibrium.
 pub fn simulate(loaded: &LoadedScene) -> Result<Simulation, Failure> {
-    Simulation::new(&discretised(&loaded.scene)).map_err(|error| Failure::of_simulation(error, loaded))
+    Simulation::new(&loaded.scene).map_err(|error| Failure::of_simulation(error, loaded))
 }
 
 /// Prints text to standard output.

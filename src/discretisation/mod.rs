@@ -119,6 +119,25 @@ impl Discretisation {
         said
     }
 
+    /// Sentences on the lines whose error is expected to exceed the tolerance: their mesh is extrapolated, or as fine as meshes are chosen.
+    pub fn shortfalls(&self) -> Vec<String> {
+        let tolerance = self.scene.solver.tolerance;
+        let short = self
+            .meshes
+            .iter()
+            .filter(|mesh| !mesh.tried && mesh.error > tolerance);
+        short
+            .map(|mesh| {
+                format!(
+                    "an error of about {:.2} % is expected with {} elements a line, more than solver.tolerance = {tolerance}; give `elements` \
+                     for a finer mesh",
+                    100.0 * mesh.error,
+                    mesh.elements
+                )
+            })
+            .collect()
+    }
+
     /// Names of the lines of networks of one kind.
     fn names(&self, kind: &[&Mesh]) -> String {
         let lines: Vec<usize> = kind.iter().flat_map(|mesh| mesh.lines.clone()).collect();
@@ -166,13 +185,21 @@ impl Discretisation {
     }
 }
 
-/// Tries a scene; none where there is nothing to choose or all is as rules say.
+/// Selects what a scene leaves open, by trials; none where nothing is open or the rules stand.
 pub fn select(scene: &Scene) -> Option<Discretisation> {
     if !is_open(scene) {
         return None;
     }
     let networks = Networks::of(scene)?;
     tried_in_motion(scene, &networks).or_else(|| tried_at_rest(scene, &networks))
+}
+
+/// Selects the mesh for an equilibrium: no motion is tried.
+pub fn select_at_rest(scene: &Scene) -> Option<Discretisation> {
+    if !is_open(scene) {
+        return None;
+    }
+    tried_at_rest(scene, &Networks::of(scene)?)
 }
 
 fn tried_in_motion(scene: &Scene, networks: &Networks) -> Option<Discretisation> {
