@@ -207,7 +207,8 @@ impl Workspace {
             self.renew_waves(model, waves, state, part);
             let passed = self.pass(model, state, part, held).and_then(|done| {
                 total.add(done);
-                within_guard(model, state.time, total.counters.substeps)
+                let passed = state.time - (end - length);
+                within_guard(model, state.time, [passed, length], total.counters.substeps)
             });
             match passed {
                 Ok(()) => {}

@@ -29,7 +29,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::ledger::passed::Passed;
-use super::{StepError, reaction};
+use super::{StepError, StepFailure, reaction};
 use crate::elements::{Counters, Stretch, Weights, Workspace, copy_network, for_free_points, place_ends};
 use crate::math::block_tridiagonal::Pivots;
 use crate::model::{Kinematics, Model, Network, PointState, State};
@@ -384,12 +384,10 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
             time: t0,
             line: self.model.lines[line].name.clone(),
             node,
-            reason: format!(
-                "Newton's method did not converge in {ITERATIONS_MAX} iterations with a step of {:.3e} s, \
-                 {residual:.3e} N are out of balance",
-                t1 - t0
-            ),
-            advice: "look for jumps in the motion of the driven points, give every line a mass, or lower solver.time_step_max",
+            cause: StepFailure::NotConverged {
+                step: t1 - t0,
+                residual,
+            },
         }
     }
 

@@ -20,22 +20,85 @@ pub mod step;
 mod surface;
 mod threads;
 
+use crate::statics::StaticsError;
+
 pub use choice::Choice;
 pub use cost::AXIAL_IMPLICIT_COST;
 pub use threads::{Aside, as_worker, is_worker, make_threads_aside};
 
-/// Why a step could not be made. The state is as it was before.
+/// A step that could not be made, with its place. The state is as it was before.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("t = {time:.6} s, line \"{line}\", node {node}: {reason}; {advice}")]
+#[error("t = {time:.6} s, line \"{line}\", node {node}: {cause}; {}", cause.advice())]
 pub struct StepError {
-    /// Time that could not be passed [s].
+    /// Time at which the step starts [s].
     pub time: f64,
-    /// Line where it went wrong.
+    /// Name of the line.
     pub line: String,
-    /// Its node, from 0 at end A.
+    /// Node, from 0 at end A.
     pub node: usize,
-    /// What went wrong.
-    pub reason: String,
-    /// What to try.
-    pub advice: &'static str,
+    /// Cause.
+    pub cause: StepFailure,
+}
+
+/// Cause of a step that could not be made.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum StepFailure {
+    /// An input leads beyond the bounds of the scene.
+    #[error("{0}")]
+    Input(String),
+    /// A winch would leave the bounds of its line.
+    #[error("{0}")]
+    Winch(String),
+    /// The communication step needs too many internal steps.
+    #[error("the communication step of {length} s needs {count:.0e} internal steps of {step:.1e} s")]
+    TooManySteps {
+        /// Communication step [s].
+        length: f64,
+        /// Longest internal step [s].
+        step: f64,
+        /// Internal steps needed [-].
+        count: f64,
+    },
+    /// Positions or velocities grew without bound, also in shorter steps.
+    #[error("the motion grew without bound")]
+    Unbounded,
+    /// Newton's method of an implicit step did not converge.
+    #[error(
+        "Newton's method did not converge with a step of {step:.3e} s, {residual:.3e} N are out of balance"
+    )]
+    NotConverged {
+        /// Shortest step tried [s].
+        step: f64,
+        /// Greatest force out of balance [N].
+        residual: f64,
+    },
+    /// A step of a beam could not be made.
+    #[error(transparent)]
+    Beam(#[from] beam::StuckReason),
+    /// A quasi-static step has no equilibrium.
+    #[error(transparent)]
+    Statics(#[from] StaticsError),
+}
+
+impl StepFailure {
+    /// Returns what to try.
+    pub fn advice(&self) -> &'static str {
+        match self {
+            StepFailure::Input(_) => "check the units of the motion, and whether the host is stable",
+            StepFailure::Winch(_) => "keep its length_change within the bounds",
+            StepFailure::TooManySteps { .. } => {
+                "use shorter communication steps; if the internal steps are too short, check solver.time_step_max, masses, lengths and stiffnesses"
+            }
+            StepFailure::Unbounded => {
+                "try a smaller solver.time_step_max, or solver.integrator = \"generalised_alpha\""
+            }
+            StepFailure::NotConverged { .. } => {
+                "look for jumps in the motion of the driven points, give every line a mass, or lower solver.time_step_max"
+            }
+            StepFailure::Beam(reason) => reason.advice(),
+            StepFailure::Statics(_) => {
+                "communicate more often, or use a dynamic integrator if the lines lose their hold here"
+            }
+        }
+    }
 }

@@ -184,8 +184,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Path<'_, K> {
             time,
             line,
             node,
-            reason: error.to_string(),
-            advice: "communicate more often, or use a dynamic integrator if the lines lose their hold here",
+            cause: error.clone().into(),
         }
     }
 }

@@ -8,8 +8,8 @@ use super::held::HostEnds;
 use super::inputs::{Inputs, PointInput};
 use super::winches::{self, ReelPath};
 use super::{Simulation, Snapshot};
-use crate::dynamics::StepError;
 use crate::dynamics::motion::{Clock, Foresight, HostPath, Said, VesselPath};
+use crate::dynamics::{StepError, StepFailure};
 use crate::math::unit;
 use crate::model::{Line, Model, Point, Role};
 use crate::scene::Reconstruction;
@@ -144,8 +144,7 @@ fn out_of_bounds(line: &Line, time: f64, reason: String) -> StepError {
         time,
         line: line.name.clone(),
         node: line.segment_count(),
-        reason,
-        advice: "keep its length_change within the bounds",
+        cause: StepFailure::Winch(reason),
     }
 }
 

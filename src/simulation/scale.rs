@@ -6,7 +6,7 @@
 use nalgebra::Vector3;
 
 use super::inputs::Inputs;
-use crate::dynamics::StepError;
+use crate::dynamics::{StepError, StepFailure};
 use crate::model::{Body, End, Model, Role};
 use crate::scene::SceneError;
 
@@ -95,8 +95,7 @@ impl Scale {
                 time,
                 line: model.lines[line].name.clone(),
                 node: model.lines[line].end_node(end),
-                reason,
-                advice: "check the units of the motion, and whether the host is stable",
+                cause: StepFailure::Input(reason),
             }
         };
         self.check(model, inputs, length).map_err(refused)

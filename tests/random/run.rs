@@ -211,7 +211,11 @@ fn said_clearly(error: &StepError, before: &Snapshot, simulation: &Simulation) -
     let mut lines = simulation.model().lines.iter();
     let line = lines.find(|line| line.name == error.line);
     let known = line.is_some_and(|line| error.node <= line.segment_count());
-    if !known || error.reason.is_empty() || error.advice.is_empty() || !error.time.is_finite() {
+    if !known
+        || error.cause.to_string().is_empty()
+        || error.cause.advice().is_empty()
+        || !error.time.is_finite()
+    {
         return Err(format!("{error:?} does not say where and why"));
     }
     if bytes(simulation.snapshot()) != bytes(before) {

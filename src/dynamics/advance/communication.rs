@@ -14,7 +14,7 @@ use crate::dynamics::motion::AxisPath;
 use crate::dynamics::network::NetworkWork;
 use crate::dynamics::quasi_static::{self, Halving};
 use crate::dynamics::step::Step;
-use crate::dynamics::{Choice, StepError};
+use crate::dynamics::{Choice, StepError, StepFailure};
 use crate::elements::{self, copy_network};
 use crate::model::{End, Kinematics, Model, Network, Role, State};
 use crate::scene::{AXIAL_RADIUS_MIN, Integrator};
@@ -30,17 +30,26 @@ const PARTS_MAX: f64 = 1e5;
 /// A failed step is tried again with half the internal step, at most so often [-].
 const RETRIES_MAX: u32 = 6;
 
-/// Refuses internal steps [-] of a communication step that are too many, counted up to a time [s].
-pub(super) fn within_guard(model: &Model, time: f64, count: usize) -> Result<(), StepError> {
+/// Refuses a communication step of `length` [s] that has taken `passed` [s] of it in too many internal steps.
+pub(super) fn within_guard(
+    model: &Model,
+    time: f64,
+    [passed, length]: [f64; 2],
+    count: usize,
+) -> Result<(), StepError> {
     if count as f64 <= SUBSTEPS_MAX {
         return Ok(());
     }
+    let step = passed / count as f64;
     Err(StepError {
         time,
         line: model.lines[0].name.clone(),
         node: 0,
-        reason: format!("more than {SUBSTEPS_MAX:.0e} internal steps in one communication step"),
-        advice: "use shorter communication steps",
+        cause: StepFailure::TooManySteps {
+            length,
+            step,
+            count: length / step,
+        },
     })
 }
 
@@ -404,8 +413,7 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
             time: self.start,
             line: model.lines[index].name.clone(),
             node: stuck.node,
-            reason: stuck.reason.to_string(),
-            advice: stuck.reason.advice(),
+            cause: stuck.reason.into(),
         })
     }
 
@@ -470,11 +478,11 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
             time: self.start,
             line: self.model.lines[line].name.clone(),
             node: 0,
-            reason: format!(
-                "the communication step of {} s needs {count:.0e} internal steps of {step_max:.1e} s",
-                self.length
-            ),
-            advice: "use shorter communication steps; if the internal steps are too short, check solver.time_step_max, masses, lengths and stiffnesses",
+            cause: StepFailure::TooManySteps {
+                length: self.length,
+                step: step_max,
+                count,
+            },
         }
     }
 
@@ -484,8 +492,7 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
             time: self.start,
             line: self.model.lines[line].name.clone(),
             node,
-            reason: "the motion grew without bound".into(),
-            advice: "try a smaller solver.time_step_max, or solver.integrator = \"generalised_alpha\"",
+            cause: StepFailure::Unbounded,
         }
     }
 }
