@@ -28,7 +28,10 @@ const LAYERS: [&str; 11] = [
 const PACKAGES: [(&str, &[&str]); 7] = [
     (".", &[]),
     ("accuracy", &["moorline"]),
-    ("cli", &["moorline", "moorline-accuracy", "moorline-decks", "moorline-host"]),
+    (
+        "cli",
+        &["moorline", "moorline-accuracy", "moorline-decks", "moorline-host"],
+    ),
     ("decks", &["moorline"]),
     ("fmu", &["moorline", "moorline-host"]),
     ("fmu/conformance", &["moorline-host"]),
@@ -306,7 +309,10 @@ fn packages_use_only_the_packages_below_them() {
     let workspace = manifest(".");
     let members = workspace.lines().find(|line| line.starts_with("members = "));
     let known = PACKAGES.map(|(folder, _)| format!("{folder:?}"));
-    assert_eq!(members, Some(format!("members = [{}]", known.join(", ")).as_str()));
+    assert_eq!(
+        members,
+        Some(format!("members = [{}]", known.join(", ")).as_str())
+    );
     let mut complaints = Vec::new();
     for (folder, allowed) in PACKAGES {
         let manifest = manifest(folder);

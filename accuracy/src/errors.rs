@@ -1,4 +1,4 @@
-//! How far histories lie from those of a converged solution.
+//! Errors of histories against those of a converged solution.
 //!
 //! Over the window, of the line where it is worst:
 //!
@@ -7,11 +7,10 @@
 //! * peak: |max T − max T_ref| over the range of T_ref;
 //! * position: √⟨|r − r_ref|²⟩ of the point half-way along the line over the standard deviation of its motion.
 
+use moorline::math::low_pass::low_pass;
 use nalgebra::Vector3;
 
-use moorline::math::low_pass::low_pass;
-
-/// What is compared.
+/// Quantity that is compared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Metric {
     /// Tension at the driven end, every sample.
@@ -28,7 +27,7 @@ impl Metric {
     /// All, in the order of [`Errors`].
     pub const ALL: [Metric; 4] = [Metric::Rms, Metric::LowPassed, Metric::Peak, Metric::Position];
 
-    /// What it measures, in words.
+    /// Name in words.
     pub fn title(self) -> &'static str {
         match self {
             Metric::Rms => "tension, RMS",
@@ -38,7 +37,7 @@ impl Metric {
         }
     }
 
-    /// Its key in tables.
+    /// Key in tables.
     pub fn key(self) -> &'static str {
         match self {
             Metric::Rms => "tension_rms",
@@ -58,7 +57,7 @@ pub struct Histories {
     pub middle: Vec<Vec<Vector3<f64>>>,
 }
 
-/// Where and how histories are compared.
+/// Window and filter of a comparison of histories.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Judge {
     /// Interval of the samples [s].
@@ -99,7 +98,7 @@ impl Judge {
         ])
     }
 
-    /// How well a solution is known that lies so far from one on another mesh. Two greatest tensions may agree by chance where the
+    /// Uncertainty of a solution, from its distance to one on another mesh. Two greatest tensions may agree by chance where the
     /// histories do not: the peak is known no better than the tension is on the whole, its RMS distance over its range.
     pub fn uncertainty(&self, coarse: &Histories, fine: &Histories) -> Errors {
         let mut errors = self.errors(coarse, fine);
@@ -206,7 +205,7 @@ mod tests {
     fn a_fast_ripple_counts_in_the_raw_tension_only() {
         let errors = JUDGE.errors(&histories(1.0, 0.1), &histories(1.0, 0.0));
         assert_relative_eq!(errors.of(Metric::Rms), 0.1, max_relative = 1e-6);
-        // Its gain is 1/626; the filter starts at the end of the record.
+        // The gain is 1/626; the filter starts at the end of the record.
         assert!(errors.of(Metric::LowPassed) < 2e-3);
     }
 

@@ -109,7 +109,7 @@ fn curves(study: &Study, metric: Metric, runs_too: bool) -> Vec<Curve> {
     curves
 }
 
-/// What moorline chose, labelled with the tolerance.
+/// Runs with settings that moorline chose, labelled with the tolerance.
 fn own_choice(study: &Study, metric: Metric) -> Curve {
     let runs = study.runs.iter().filter(|run| run.code == Code::Chosen);
     let runs = runs.filter(|run| run.errors.of(metric) <= ERROR_MAX);

@@ -62,7 +62,7 @@ pub struct Setting {
     pub tolerance: Option<f64>,
     /// Intervals of the output from one communication point to the next [-].
     pub communication: usize,
-    /// How a bed pushes back; as the scene says where absent.
+    /// Contact law of the seabed; that of the scene where absent.
     pub contact: Option<ContactLaw>,
 }
 
@@ -79,7 +79,7 @@ impl Setting {
         }
     }
 
-    /// What the tool chooses for a target error [-].
+    /// The setting that moorline chooses for a target error [-].
     pub fn chosen(tolerance: f64) -> Setting {
         Setting {
             elements: None,
@@ -169,7 +169,7 @@ pub fn ladder(scene: &Scene, period: f64) -> Vec<Setting> {
     settings
 }
 
-/// Whether a scene is one of equilibria: dynamics is no measure of it then.
+/// Returns whether a scene is quasi-static: dynamics is then no measure of it.
 pub fn is_quasi_static(scene: &Scene) -> bool {
     scene.solver.integrator == Integrator::QuasiStatic
 }

@@ -9,7 +9,7 @@ use crate::{Code, Metric, Run, Study, Verdict};
 /// `machine` names the processor.
 ///
 /// # Errors
-/// Where `out` refuses.
+/// `out` refuses.
 pub fn write_runs(machine: &str, studies: &[Study], out: impl Write) -> io::Result<()> {
     let mut table = csv::Writer::from_writer(out);
     let keys = Metric::ALL.map(Metric::key);
@@ -41,7 +41,7 @@ pub fn write_runs(machine: &str, studies: &[Study], out: impl Write) -> io::Resu
 /// Writes, for every level of error, the cheapest run of moorline and of every peer, and the peer's cost over moorline's.
 ///
 /// # Errors
-/// Where `out` refuses.
+/// `out` refuses.
 pub fn write_verdicts(machine: &str, studies: &[Study], out: impl Write) -> io::Result<()> {
     let mut table = csv::Writer::from_writer(out);
     table.write_record([

@@ -1,14 +1,14 @@
 //! `moorline demo`: the main job from end to end. The built-in scene becomes an FMU; a host opens it through its C
 //! interface, moves the fairlead and reads forces, tensions and shapes back.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 use moorline::interface::{Binding, Interface, Kind, Layout, Variable};
 use moorline::model::Body;
 use moorline::output::record::{Frame, Node, Record};
 use moorline::output::{collect, write_run};
-use moorline::scene::{LoadedScene, Places, Scene, TOML};
+use moorline::scene::{Scene, load_text};
 use moorline::simulation::Simulation;
 use moorline_host::{FmiVersion, Fmu, HostError, Slave};
 
@@ -24,7 +24,7 @@ const SCENE: &str = include_str!("../../scenes/demo.toml");
 
 /// Packages the built-in scene, drives the FMU, shows and writes what comes out.
 pub fn demo(folder: &Path) -> Result<(), Failure> {
-    let loaded = built_in_scene()?;
+    let loaded = load_text(Path::new("demo.toml"), SCENE.to_string())?;
     let _open = Folder::open(folder)?;
     let target = folder.join("demo.fmu");
     package(&loaded, &target, FmiVersion::Two)?;
@@ -46,19 +46,6 @@ pub fn demo(folder: &Path) -> Result<(), Failure> {
         folder.display(),
         "demo.fmu",
     ))
-}
-
-fn built_in_scene() -> Result<LoadedScene, Failure> {
-    let scene = Scene::from_toml(SCENE)
-        .map_err(|mistake| Failure::Computation(format!("the built-in scene: {mistake}")))?;
-    Ok(LoadedScene {
-        notes: scene.notes(),
-        scene,
-        text: SCENE.to_string(),
-        path: PathBuf::from("demo.toml"),
-        format: TOML,
-        places: Places::default(),
-    })
 }
 
 /// Runs the FMU as a host does. `reference` tells where the scene moves the points, and the closed-form shapes to compare with.
@@ -101,7 +88,7 @@ struct Host<'a> {
     reference: &'a Simulation,
     /// Displacements of the coupled points and vessels: body, axis, value reference.
     displacements: Vec<(Body, usize, u32)>,
-    /// What is recorded at every step, and its value references.
+    /// Variables recorded at every step, and their value references.
     recorded: Vec<&'a Variable>,
     references: Vec<u32>,
     /// Position and tension of every node of every line: value references of x, y, z and tension.

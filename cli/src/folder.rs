@@ -34,7 +34,7 @@ impl Folder {
         });
         open_folder(path)?;
         let place = folder.0.clone();
-        // Where no handler can be had, Ctrl-C ends the program as it ends any other.
+        // Without a handler, Ctrl-C ends the program as it ends any other.
         let _ = ctrlc::set_handler(move || place.interrupt());
         Ok(folder)
     }

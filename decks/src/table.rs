@@ -15,7 +15,7 @@ pub(crate) const ROWS_MAX: usize = 5_000;
 /// A column of a table.
 #[derive(Debug)]
 pub(crate) struct Column {
-    /// Its name in messages, as the format's own documentation has it.
+    /// Name in messages, as in the format's own documentation.
     pub name: &'static str,
     /// Unit of its numbers; "-" where they have none.
     unit: &'static str,

@@ -199,7 +199,7 @@ fn sections(text: &str) -> (Vec<Row<'_>>, Vec<Section<'_>>) {
     (title, sections)
 }
 
-/// Whether a text is a MAP++ file: its nodes have the ten columns that only MAP++ has.
+/// Returns whether a text is a MAP++ file: its nodes have the ten columns that only MAP++ has.
 pub(crate) fn is_deck(text: &str) -> bool {
     let (_, sections) = sections(text);
     let nodes = sections.iter().find(|section| section.table == Table::Nodes);
@@ -215,7 +215,7 @@ pub(crate) fn is_deck(text: &str) -> bool {
     options_of_map || nodes.body().iter().take(ROWS_MAX).any(is_node_of_map)
 }
 
-/// Whether a word is in a list of words between blanks.
+/// Returns whether a word is in a list of words between blanks.
 fn is_one_of(word: &str, list: &str) -> bool {
     list.split(' ').any(|known| known == word)
 }

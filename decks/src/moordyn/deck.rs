@@ -1,4 +1,4 @@
-//! What a deck says, in its own terms: plain data with places, nothing interpreted.
+//! Contents of a deck in its own terms: plain data with places, nothing interpreted.
 
 use crate::findings::Placed;
 
@@ -151,7 +151,7 @@ pub(super) struct Point {
     pub added_mass: Placed<f64>,
 }
 
-/// What a point, rod or body is attached to.
+/// Attachment of a point, rod or body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Attachment {
     Fixed,
@@ -185,7 +185,7 @@ pub(super) struct Line {
     pub outputs: Placed<String>,
 }
 
-/// What a line ends at.
+/// Thing that a line ends at.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum LineEnd {
     Point(usize),

@@ -49,7 +49,7 @@ fn meaning(key: &str) -> Option<Meaning> {
     known.map(|(meaning, _)| *meaning)
 }
 
-/// Whether a key is in a list of keys between blanks; capitals do not count.
+/// Returns whether a key is in a list of keys between blanks; capitals do not count.
 fn is_one_of(key: &str, list: &str) -> bool {
     list.split(' ').any(|known| known.eq_ignore_ascii_case(key))
 }
@@ -64,7 +64,7 @@ struct Choice {
 }
 
 impl Choice {
-    /// Whether another row gives the same option.
+    /// Returns whether another row gives the same option.
     fn repeats(&self, other: &Choice) -> bool {
         let (a, b) = (&self.key.value, &other.key.value);
         let several = [Meaning::Friction, Meaning::Surroundings].map(Some);

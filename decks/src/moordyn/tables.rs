@@ -307,7 +307,7 @@ pub(super) fn word_property(word: &str) -> Result<Property, String> {
     if let Ok(parts) = parts {
         return Ok(Property::Parts(parts));
     }
-    // What begins like a number is a slip, not a name of a file.
+    // A word that begins like a number is a slip, not a name of a file.
     let name = word.starts_with(char::is_alphabetic) || word.contains(['/', '\\', '|']);
     let not_finite = ["nan", "inf", "infinity"].contains(&word.to_lowercase().as_str());
     match name && !not_finite {
@@ -402,7 +402,7 @@ fn decomposed(word: &str) -> (String, Option<usize>, String) {
     (letters.to_string(), digits.parse().ok(), tail.to_string())
 }
 
-/// What a word attaches a point, rod or body to.
+/// Attachment that a word gives.
 fn attachment(cells: &mut Cells<'_, '_>, column: usize) -> Placed<Attachment> {
     let word = cells.fields[column].text;
     let (letters, id, tail) = decomposed(word);
@@ -457,8 +457,8 @@ fn exists(end: LineEnd, deck: &Deck) -> bool {
     }
 }
 
-/// Whether rows of LINES have the length before the ends (version 1): what the columns hold tells, then the header, then the
-/// version of the line types.
+/// Returns whether rows of LINES have the length before the ends (version 1), by the contents of the columns, then by the header, then
+/// by the version of the line types.
 fn length_comes_first(section: &Section<'_>, deck: &Deck) -> bool {
     let fits = |row: &&Row<'_>, ends: usize, length: usize, count: usize| {
         let fields = row.fields();

@@ -126,7 +126,7 @@ fn friction(deck: &Deck, findings: &mut Findings) {
     }
 }
 
-/// Where runs start: MoorDyn comes to rest from the positions in the file, in no time where `TmaxIC` is 0.
+/// Start of a run: MoorDyn comes to rest from the positions in the file, in no time where `TmaxIC` is 0.
 fn start(deck: &Deck, findings: &mut Findings) {
     if let Some(at_once) = &deck.options.starts_at_once {
         let text = "TmaxIC 0: runs start with free points where the file has them and every line on its catenary between its ends, \
