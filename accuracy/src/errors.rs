@@ -94,7 +94,7 @@ impl Judge {
             worst(tensions().map(|(own, right)| self.rms(own, right))),
             worst(tensions().map(|(own, right)| self.rms(&filtered(own), &filtered(right)))),
             worst(tensions().map(|(own, right)| self.peak(own, right))),
-            worst(middles.map(|(own, right)| self.position(own, right))),
+            worst(middles.map(|(own, right)| self.relative(own, right))),
         ])
     }
 
@@ -118,15 +118,13 @@ impl Judge {
     }
 
     fn rms(&self, own: &[f64], right: &[f64]) -> f64 {
-        if own.len() != right.len() {
-            return f64::INFINITY;
-        }
-        let (own, right) = (&own[self.from..], &right[self.from..]);
-        let mean = right.iter().sum::<f64>() / right.len() as f64;
-        let square = |difference: f64| difference * difference;
-        let wrong: f64 = own.iter().zip(right).map(|(a, b)| square(a - b)).sum();
-        let motion: f64 = right.iter().map(|b| square(b - mean)).sum();
-        (wrong / motion).sqrt()
+        let along_x = |values: &[f64]| -> Vec<Vector3<f64>> {
+            values
+                .iter()
+                .map(|value| Vector3::new(*value, 0.0, 0.0))
+                .collect()
+        };
+        self.relative(&along_x(own), &along_x(right))
     }
 
     fn peak(&self, own: &[f64], right: &[f64]) -> f64 {
@@ -137,7 +135,8 @@ impl Judge {
         (greatest(own) - greatest(right)).abs() / range(right)
     }
 
-    fn position(&self, own: &[Vector3<f64>], right: &[Vector3<f64>]) -> f64 {
+    /// √⟨|own − right|²⟩ over the standard deviation of `right` [-].
+    fn relative(&self, own: &[Vector3<f64>], right: &[Vector3<f64>]) -> f64 {
         if own.len() != right.len() {
             return f64::INFINITY;
         }

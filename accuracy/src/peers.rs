@@ -19,7 +19,7 @@ use crate::errors::{Errors, Histories, Judge, Metric};
 use crate::{Code, Failed, How, Run, Study};
 
 const SCRIPT: &str = include_str!("../peers.py");
-/// Imports all that the script needs, and says [`READY`] where it has it.
+/// Imports all that the script needs, and then prints [`READY`].
 const PROBE: &str = "import numpy, cmoordyn, cabledyn; from cabledyn._lib import _lib; cmoordyn.create; cabledyn.CableDyn; print('ready')";
 const READY: &str = "ready";
 /// Elements that the peers are tried with [-].
@@ -94,7 +94,7 @@ enum Answer {
     Failed { failed: String },
 }
 
-/// Processor time and, where asked for, histories of a run.
+/// Processor time of a run, and its histories where they are read.
 #[derive(Debug, Deserialize)]
 struct Measured {
     cpu_seconds: f64,

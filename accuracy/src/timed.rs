@@ -1,7 +1,7 @@
 //! One run of a scene: its histories and what they cost.
 //!
-//! A timed run is driven as a host drives it: before every communication step it is told displacement and velocity of what moves, made
-//! beforehand: where the step ends, as the peers are, or with [`Reconstruction::Smooth`] where it starts, and nothing of what comes. The
+//! A timed run is driven as a host drives it: before every communication step it is given displacement and velocity of the moving bodies,
+//! made beforehand: at the end of the step, as the peers are, or with [`Reconstruction::Smooth`] at its start, and nothing later. The
 //! converged solution follows the scene's motion exactly.
 
 use std::hint::black_box;
@@ -66,7 +66,7 @@ impl Timed {
 }
 
 impl Trial {
-    /// A run driven as a host drives it; a failure is told in words.
+    /// A run driven as a host drives it; the error is a message.
     pub fn new(scene: &Scene, setting: &Setting) -> Result<Trial, String> {
         let interval = scene.output.interval;
         let step = setting.communication as f64 * interval;
@@ -117,7 +117,7 @@ impl Trial {
             .collect()
     }
 
-    /// Runs once and reads; the time of a long pass counts, for reading is nothing beside it. Short ones are to be timed.
+    /// Runs once with reading. The time of a long pass counts, since reading takes a negligible part of it; short ones are timed anew.
     pub fn recorded(&self) -> Result<(Timed, Option<f64>), String> {
         let mut record = Record::new(&self.start, self.count);
         let mut steps = 0;

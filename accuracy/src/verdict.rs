@@ -44,7 +44,7 @@ impl<'a> Verdict<'a> {
     }
 }
 
-/// A peer's run on its frontier beside moorline's cheapest run of no greater error.
+/// A peer's run on its frontier, and moorline's cheapest run of no greater error.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Duel<'a> {
     /// Quantity that is compared.
@@ -145,7 +145,7 @@ mod tests {
             peer("A", 90.0, 0.003),
         ]);
         let ratios: Vec<f64> = study.duels(Metric::Rms).iter().map(Duel::ratio).collect();
-        // At 1.5 % moorline needs its dear run; at 0.3 % it has none.
+        // At 1.5 % moorline needs its costly run; at 0.3 % it has none.
         assert_eq!(ratios, [7.0 / 9.0, 0.0]);
     }
 

@@ -34,8 +34,8 @@ const INTEGRATORS: [Integrator; 4] = [
 /// Error of RMS tension with which the quasi-static mode is enough [-].
 const ENOUGH: f64 = 0.02;
 
-/// Studies scenes, moved as they say themselves or as is given beside them, prints what each level of error costs and writes tables and
-/// figures into a folder.
+/// Studies scenes, with their own motion or with a given one, prints the cost of each level of error and writes tables and figures into
+/// a folder.
 pub fn accuracy(
     paths: &[PathBuf],
     supplement: &Supplement,
@@ -49,7 +49,7 @@ pub fn accuracy(
     let peers = peers.map_err(|error| Failure::Argument(error.to_string()))?;
     stay_on_one_core();
     let machine = processor();
-    // Results are written whatever becomes of standard output, which its reader may close.
+    // Results are written even if the reader of standard output closes it.
     let mut printed = print(&format!("on {machine}\n\n"));
     let mut studies = Vec::new();
     for (name, scene) in &scenes {
@@ -136,8 +136,8 @@ fn processor() -> String {
         .to_string()
 }
 
-/// A study in tables: what reaches each level and how many times dearer the peers are, what each integrator needs, moorline's own choice,
-/// and where equilibria are enough.
+/// A study in tables: the cheapest runs at each level and the cost of the peers over moorline's, settings of each integrator, moorline's own
+/// choice, and the periods for which equilibria are enough.
 fn told(study: &Study) -> String {
     let title = match study.title.as_str() {
         "" => String::new(),
@@ -175,7 +175,7 @@ fn percents(errors: &Errors) -> [String; 4] {
     Metric::ALL.map(|metric| format!("{:.2} %", 100.0 * errors.of(metric)))
 }
 
-/// The cheapest way to each level of error, beside the peers'; levels that moorline is held to are starred.
+/// Cheapest runs of moorline and of the peers at each level of error; levels that moorline is held to are starred.
 fn verdicts(study: &Study) -> Table {
     let peers = study.peers();
     let mut head = vec!["", "error", "cost"];

@@ -13,7 +13,7 @@ use crate::arguments::Input;
 use crate::failure::Failure;
 use crate::terminal::{noted, print};
 
-/// Reads a scene, makes it discrete, and says what it models, what surprises, and which variables a host finds.
+/// Reads a scene, makes it discrete, and prints what it models, notes on it, and the variables of its FMU.
 pub fn check(input: &Input) -> Result<(), Failure> {
     let loaded = load_with(&input.scene, &input.host.supplement())?;
     let located = |mistake| Failure::of_scene(mistake, &loaded);

@@ -31,12 +31,7 @@ pub fn demo(folder: &Path) -> Result<(), Failure> {
     let reference = simulate(&loaded)?;
     let record = drive(&target, &loaded.scene, &reference)
         .map_err(|error| Failure::Computation(format!("{}: {error}", target.display())))?;
-    write_run(
-        &record,
-        folder,
-        &loaded.scene.in_words(),
-        loaded.scene.output.profile,
-    )?;
+    write_run(&record, &loaded.scene, folder)?;
     print(&format!(
         "{}\nFMI 2.0 co-simulation through the C interface, steps of {} s, displacements only\n\n{}\n\
          written to {}: {}, results.csv, report.html, …\n",
@@ -48,7 +43,7 @@ pub fn demo(folder: &Path) -> Result<(), Failure> {
     ))
 }
 
-/// Runs the FMU as a host does. `reference` tells where the scene moves the points, and the closed-form shapes to compare with.
+/// Runs the FMU as a host does. `reference` gives the motion of the scene and the closed-form shapes to compare with.
 fn drive(target: &Path, scene: &Scene, reference: &Simulation) -> Result<Record, HostError> {
     let interface = Interface::new(scene, reference.model(), Layout::Scalars)
         .map_err(|mistake| HostError::Description(mistake.to_string()))?;
@@ -140,7 +135,7 @@ impl<'a> Host<'a> {
         Ok(())
     }
 
-    /// Puts what the FMU says of the equilibrium, and of the closed form, in place of what the reference says.
+    /// Replaces the equilibrium and the closed form of the reference by the FMU's.
     fn record_statics(&mut self, record: &mut Record) -> Result<(), HostError> {
         let model = self.reference.model();
         for (line, built) in record.lines.iter_mut().zip(&model.lines) {

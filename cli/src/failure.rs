@@ -85,7 +85,7 @@ impl Failure {
                 format!("error: cannot write to standard output: {error}\n"),
             ),
         };
-        // Nothing is left to say it to.
+        // A message that cannot be written changes nothing.
         let _ = io::stderr().write_all(text.as_bytes());
         ExitCode::from(code)
     }
@@ -138,9 +138,7 @@ impl From<OutputError> for Failure {
     fn from(error: OutputError) -> Self {
         match &error {
             OutputError::File { source, .. } => Failure::of_file(source.kind(), error.to_string()),
-            OutputError::Folder { .. } | OutputError::Closed { .. } | OutputError::NotAFolder { .. } => {
-                Failure::Argument(error.to_string())
-            }
+            _ => Failure::Argument(error.to_string()),
         }
     }
 }

@@ -37,13 +37,13 @@ pub enum Pace {
     },
 }
 
-/// Runs a scene, moved as it says itself or as is given beside it, and writes everything that comes out into a folder.
+/// Runs a scene, with its own motion or with a given one, and writes all results into a folder.
 pub fn run(input: &Input, drive: &Drive, folder: &Path, pace: Pace) -> Result<(), Failure> {
     let mut loaded = read_scene(&input.scene, &input.host.supplement())?;
     if let Pace::Host { .. } = pace
         && let Some(packaged) = discretisation::frozen(&loaded.scene)
     {
-        // the elements of the FMU, which know nothing of this run's motion and duration
+        // The elements of the FMU do not depend on the motion and duration of this run.
         loaded.scene = packaged;
     }
     let mut motion = None;
@@ -82,12 +82,7 @@ pub fn run(input: &Input, drive: &Drive, folder: &Path, pace: Pace) -> Result<()
     let record = collect::record(&loaded.scene, &simulation, still.as_ref(), columns);
     let mut watch = Watch::new(&loaded.scene, &simulation);
     let record = step_through(&loaded, &mut simulation, &recorder, pace, record, &mut watch)?;
-    write_run(
-        &record,
-        folder,
-        &loaded.scene.in_words(),
-        loaded.scene.output.profile,
-    )?;
+    write_run(&record, &loaded.scene, folder)?;
     print(&format!(
         "{}{}\nwritten to {}\n",
         motion.map_or(String::new(), |words| words + "\n"),

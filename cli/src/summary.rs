@@ -69,7 +69,7 @@ impl fmt::Display for Table {
     }
 }
 
-/// The lines in equilibrium beside the closed-form catenary; those that have an equilibrium.
+/// Lines that have an equilibrium, compared with the closed-form catenary.
 pub fn static_table(record: &Record) -> Table {
     let mut table = Table::new(&["static equilibrium", "solved", "catenary", "difference"]);
     for line in &record.lines {

@@ -193,7 +193,7 @@ pub(super) enum LineEnd {
     Rod(usize, bool),
 }
 
-/// OPTIONS that say something; absent ones are `None`.
+/// OPTIONS with an effect; absent ones are `None`.
 #[derive(Debug, Default)]
 pub(super) struct Options {
     /// g [m/s²].
@@ -218,7 +218,7 @@ pub(super) struct Options {
     pub output_interval: Option<Placed<f64>>,
     /// TmaxIC of 0: MoorDyn starts from the positions in the file, without time to come to rest.
     pub starts_at_once: Option<Placed<String>>,
-    /// Waves and currents, where asked for: key and value.
+    /// Waves and currents: key and value.
     pub surroundings: Vec<(String, Placed<String>)>,
     /// Keys that need nothing here.
     pub unneeded: Vec<Placed<String>>,

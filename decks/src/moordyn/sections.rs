@@ -3,6 +3,7 @@
 use moorline::scene::rows::{Row, number, shown};
 
 use crate::findings::{Findings, Placed};
+use crate::table::is_one_of;
 
 /// Kind of a section.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -122,7 +123,7 @@ pub(crate) fn is_deck(text: &str) -> bool {
 /// Cuts a deck at its headers.
 pub(super) fn split<'t>(text: &'t str, findings: &mut Findings) -> Sections<'t> {
     let mut sections = Sections::default();
-    // Rows below a header that heads nothing are told of once.
+    // Rows below an unknown header are one mistake.
     let mut unknown: Option<Row<'t>> = None;
     for whole in Row::all(text) {
         let row = whole.before('#');
@@ -180,12 +181,13 @@ fn begin<'t>(sections: &mut Sections<'t>, header: Row<'t>, findings: &mut Findin
 /// `3  NLines - number of lines`.
 fn count(row: &Row<'_>) -> Option<Placed<Option<usize>>> {
     let fields = row.fields();
-    let key = fields.get(1)?.text.to_uppercase();
+    let [value, key, ..] = fields.as_slice() else {
+        return None;
+    };
     let counted = "NTYPES NLINETYPES NCONNECTS NCONNECTIONS NPOINTS NLINES";
-    counted.split(' ').any(|known| known == key).then_some(())?;
-    Some(Placed {
-        value: fields[0].text.parse().ok(),
-        span: fields[0].span.clone(),
+    is_one_of(key.text, counted).then(|| Placed {
+        value: value.text.parse().ok(),
+        span: value.span.clone(),
     })
 }
 

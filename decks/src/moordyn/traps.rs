@@ -45,7 +45,7 @@ fn headers(deck: &Deck, sections: &Sections<'_>, findings: &mut Findings) {
     }
 }
 
-/// A negative BA is a ratio of critical damping of a segment, a positive one is BA itself, whatever the header says.
+/// A negative BA is a ratio of critical damping of a segment, a positive one is BA itself; the header has no influence.
 fn ratio_or_damping(kind: &LineType, sections: &Sections<'_>, findings: &mut Findings) {
     let Property::Number(value) = kind.damping.value else {
         return;
