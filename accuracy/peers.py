@@ -9,10 +9,9 @@ Input (SI units)
     name, gravity [m/s²], density [kg/m³], depth [m] or null, bed {stiffness [Pa/m], damping [Pa·s/m]} or null,
     line {length [m], mass [kg/m], diameter [m], axial_stiffness [N], axial_damping [N·s], drag_normal, drag_tangential,
     added_mass_normal, added_mass_tangential [-]}, anchor [m], fairlead [m],
-    harmonics {x, y, z: [[amplitude [m], period [s], phase [rad]], ...], ramp [s]} or else
-    motion {times [s], position [m], velocity [m/s]}, duration [s], interval [s], elements [-], and
-    time_limit_seconds [s], the CPU time that all passes of a run may take. The last two have defaults, and a
-    density of null is a line in air.
+    harmonics {x, y, z: [[amplitude [m], period [s], phase [rad]], ...], ramp [s]}, duration [s], interval [s],
+    elements [-], and time_limit_seconds [s], the CPU time that all passes of a run may take. A density of null is
+    a line in air.
 First answer
     runs, each with peer, label, and family, a name that runs share which differ in their mesh alone, from coarse to fine.
 Question
@@ -76,11 +75,8 @@ try:
 except ImportError:  # Windows has no such limits; there the clock on the wall ends a run
     resource = None
 
-# Segments of a ladder when the scene names none [-]; a line on the bed is far out with fewer than 8.
-ELEMENTS = (3, 4, 5, 6, 7, 8, 10, 12, 14, 17, 20, 24, 28, 34, 40, 44, 48, 52, 56, 62, 68, 74, 80)
-ELEMENTS_ON_BED = ELEMENTS[5:]
-# CPU time of a run when the scene names none [s], and how much longer the clock on the wall may take [-].
-TIME_LIMIT, WALL = 60.0, 20.0
+# Time of the clock on the wall over CPU time that a run may take [-].
+WALL = 20.0
 # Depth by which a scene is lowered where its motion reaches the surface [m].
 LOWERED = 10.0
 # What stands for air's density where CableDyn wants a positive one [kg/m³].
@@ -95,19 +91,9 @@ class Path:
     """The fairlead's prescribed motion: position [m], velocity [m/s] and acceleration [m/s²] at any time."""
 
     def __init__(self, scene):
-        """Take the harmonics where the scene has them, its samples where not."""
+        """Take the harmonics of the scene."""
         self.start = np.array(scene["fairlead"], float)
-        self.harmonics = scene.get("harmonics")
-        if self.harmonics is None:
-            motion = scene["motion"]
-            self.times, self.position, self.velocity = (
-                np.array(motion[key], float) for key in ("times", "position", "velocity")
-            )
-
-    def at(self, times):
-        """Return position [m], velocity [m/s] and acceleration [m/s²] at `times` [s], one row each."""
-        times = np.asarray(times, float)
-        return self._sampled(times) if self.harmonics is None else self._harmonic(times)
+        self.harmonics = scene["harmonics"]
 
     def period(self, duration):
         """Return the period [s] of the harmonic motion with the same mean squares of velocity and acceleration."""
@@ -115,16 +101,18 @@ class Path:
         squares = (velocity**2).mean(), (acceleration**2).mean()
         return 2.0 * math.pi * math.sqrt(squares[0] / squares[1]) if squares[1] > 0.0 else duration
 
-    def _harmonic(self, times):
+    def at(self, times):
+        """Return position [m], velocity [m/s] and acceleration [m/s²] at `times` [s], one row each."""
+        times = np.asarray(times, float)
         waves = np.zeros((3, len(times), 3))
         for axis, name in enumerate("xyz"):
-            for amplitude, period, *phase in self.harmonics.get(name, []):
+            for amplitude, period, *phase in self.harmonics[name]:
                 omega = 2.0 * math.pi / period
                 angle = omega * times + (phase[0] if phase else 0.0)
                 waves[0, :, axis] += amplitude * np.sin(angle)
                 waves[1, :, axis] += amplitude * omega * np.cos(angle)
                 waves[2, :, axis] -= amplitude * omega**2 * np.sin(angle)
-        rise = self.harmonics.get("ramp") or 0.0
+        rise = self.harmonics["ramp"]
         ramp = np.stack([np.ones_like(times), np.zeros_like(times), np.zeros_like(times)])
         if rise > 0.0:
             early, rate = times < rise, math.pi / rise
@@ -138,21 +126,6 @@ class Path:
             bend * waves[0] + 2.0 * slope * waves[1] + value * waves[2],
         )
 
-    def _sampled(self, times):
-        """Cubic Hermite between the samples; the last sample's position holds beyond them."""
-        last = len(self.times) - 2
-        at = np.clip(np.searchsorted(self.times, times, side="right") - 1, 0, last)
-        span = (self.times[at + 1] - self.times[at])[:, None]
-        u = np.clip((times[:, None] - self.times[at][:, None]) / span, 0.0, 1.0)
-        r0, r1 = self.position[at], self.position[at + 1]
-        v0, v1 = self.velocity[at] * span, self.velocity[at + 1] * span
-        a, b = 2.0 * (r0 - r1) + v0 + v1, 3.0 * (r1 - r0) - 2.0 * v0 - v1
-        return (
-            ((a * u + b) * u + v0) * u + r0,
-            ((3.0 * a * u + 2.0 * b) * u + v0) / span,
-            (6.0 * a * u + 2.0 * b) / span**2,
-        )
-
 
 class Site:
     """A scene as both peers need it: everything below z = 0, and a depth [m] in any case."""
@@ -164,8 +137,8 @@ class Site:
         self.lowered = LOWERED if max(highest, scene["anchor"][2]) >= 0.0 else 0.0
         down = np.array([0.0, 0.0, self.lowered])
         self.anchor, self.fairlead = np.array(scene["anchor"]) - down, np.array(scene["fairlead"]) - down
-        bed = scene.get("bed")
-        if bed and scene.get("depth") is not None:
+        bed = scene["bed"]
+        if bed:
             self.depth = scene["depth"] + self.lowered
             self.stiffness, self.damping = bed["stiffness"], bed["damping"]
         else:
@@ -186,7 +159,7 @@ def lies_on_bed(scene, path):
     Its parameter a [m] satisfies X = a·acosh(1 + Z/a), its length is √(Z² + 2Za). This chooses settings only: the bed
     stays in the decks.
     """
-    if not scene.get("bed") or scene.get("depth") is None:
+    if not scene["bed"]:
         return False
     position = path.at(np.linspace(0.0, scene["duration"], 4001))[0]
     across = np.hypot(*(position - np.array(scene["anchor"]))[:, :2].T).min()
@@ -239,6 +212,25 @@ def median_cpu(timed_pass):
     return max(float(np.median(costs)), 0.0)
 
 
+def numbers(values):
+    """Return values as words that read back to the same bits."""
+    return " ".join(f"{value:.17g}" for value in values)
+
+
+def line_type(line, *coefficients):
+    """Return the row of a line type without bending stiffness, its coefficients in the order of a peer's columns."""
+    kind = ("diameter", "mass", "axial_stiffness", "axial_damping")
+    return numbers([line[key] for key in kind] + [0.0] + [line[key] for key in coefficients])
+
+
+def options(scene, site):
+    """Return the options that both peers spell alike."""
+    return f"""{scene["gravity"]:.17g} g
+{site.depth:.17g} WtrDpth
+{site.stiffness:.17g} kBot
+{site.damping:.17g} cBot"""
+
+
 def host_step(wanted, interval):
     """Return the largest step [s] not above `wanted` [s] that divides `interval` [s] or is a multiple of it."""
     if wanted >= interval:
@@ -279,7 +271,7 @@ def eigenvalues(scene, elements, bedded):
     for part in (1.0, 0.75, 0.5, 0.25, 0.1):
         omega = part * 2.0 * wave * elements / line["length"]
         modes.append((omega, omega * line["axial_damping"] / (2.0 * line["axial_stiffness"])))
-    bed = scene.get("bed")
+    bed = scene["bed"]
     if bedded and bed["stiffness"] > 0.0:
         omega = math.sqrt(bed["stiffness"] * line["diameter"] / mass_normal)
         modes.append((omega, bed["damping"] * line["diameter"] / (2.0 * omega * mass_normal)))
@@ -303,30 +295,24 @@ def moordyn_deck(scene, site, elements, scheme, step):
     a splinter of a step at the end of some host steps, and the force then belongs to another time.
     """
     line = scene["line"]
-    kind = ("diameter", "mass", "axial_stiffness", "axial_damping")
-    water = ("drag_normal", "added_mass_normal", "drag_tangential", "added_mass_tangential")
-    row = [line[key] for key in kind] + [0.0] + [line[key] for key in water]
-    points = [" ".join(f"{value:.17g}" for value in point) for point in (site.anchor, site.fairlead)]
+    row = line_type(line, "drag_normal", "added_mass_normal", "drag_tangential", "added_mass_tangential")
     return f"""--- LINE TYPES ---
 Name Diam Mass EA BA EI Cd Ca CdAx CaAx
 (-) (m) (kg/m) (N) (N-s) (N-m2) (-) (-) (-) (-)
-line {" ".join(f"{value:.17g}" for value in row)}
+line {row}
 --- POINTS ---
 ID Type X Y Z Mass Vol CdA Ca
 (#) (-) (m) (m) (m) (kg) (m3) (m2) (-)
-1 Fixed {points[0]} 0 0 0 0
-2 Coupled {points[1]} 0 0 0 0
+1 Fixed {numbers(site.anchor)} 0 0 0 0
+2 Coupled {numbers(site.fairlead)} 0 0 0 0
 --- LINES ---
 ID LineType AttachA AttachB UnstrLen NumSegs Outputs
 (#) (-) (#) (#) (m) (-) (-)
 1 line 1 2 {line["length"]:.17g} {elements} -
 --- OPTIONS ---
 0 writeLog
-{scene["gravity"]:.17g} g
+{options(scene, site)}
 {scene["density"]:.17g} rho
-{site.depth:.17g} WtrDpth
-{site.stiffness:.17g} kBot
-{site.damping:.17g} cBot
 {1.000001 * step:.17g} dtM
 {scheme} tScheme
 1 disableOutput
@@ -431,19 +417,16 @@ def moordyn_runs(scene, elements, period, bedded):
 def cabledyn_deck(scene, site, run):
     """Return CableDyn's input; its end A is the fairlead."""
     line = scene["line"]
-    kind = ("diameter", "mass", "axial_stiffness", "axial_damping")
-    water = ("drag_normal", "drag_tangential", "added_mass_normal", "added_mass_tangential")
-    row = [line[key] for key in kind] + [0.0] + [line[key] for key in water]
-    points = [" ".join(f"{value:.17g}" for value in point) for point in (site.fairlead, site.anchor)]
+    row = line_type(line, "drag_normal", "drag_tangential", "added_mass_normal", "added_mass_tangential")
     return f"""--- LINE TYPES ---
 Name Diam Mass EA BA EI Cdn Cdt Can Cat
 (-) (m) (kg/m) (N) (N-s) (N-m^2) (-) (-) (-) (-)
-line {" ".join(f"{value:.17g}" for value in row)}
+line {row}
 --- POINTS ---
 ID Type X Y Z
 (-) (-) (m) (m) (m)
-1 Coupled {points[0]}
-2 Fixed {points[1]}
+1 Coupled {numbers(site.fairlead)}
+2 Fixed {numbers(site.anchor)}
 --- LINES ---
 ID NodeA NodeB Outputs
 (-) (-) (-) (-)
@@ -454,11 +437,8 @@ LineID LineType Length NumSegs
 1 line {line["length"]:.17g} {run["elements"]}
 --- OPTIONS ---
 dynamic_solver {run["tolerance"]:g} 1e-14 30 12
-{scene["gravity"]:.17g} g
+{options(scene, site)}
 {scene["density"]:.17g} rhoW
-{site.depth:.17g} WtrDpth
-{site.stiffness:.17g} kBot
-{site.damping:.17g} cBot
 {run["radius"]:g} rhoInf
 {run["reuse"]} modified_newton
 --- need this line ---
@@ -614,15 +594,14 @@ def main():
         answers.close()
         return
     scene = json.loads(sys.stdin.readline())
-    scene["density"] = scene.get("density") or AIR
+    scene["density"] = scene["density"] or AIR
     path = Path(scene)
     period, bedded = path.period(scene["duration"]), lies_on_bed(scene, path)
-    elements = scene.get("elements") or (ELEMENTS_ON_BED if bedded else ELEMENTS)
-    settings = elements, period, bedded
-    runs = moordyn_runs(scene, *settings) + cabledyn_runs(scene, *settings)
+    settings = scene, scene["elements"], period, bedded
+    runs = moordyn_runs(*settings) + cabledyn_runs(*settings)
     named = [{key: run[key] for key in ("peer", "label", "family")} for run in runs]
     print(json.dumps({"runs": named}), file=answers, flush=True)
-    limit = scene.get("time_limit_seconds") or TIME_LIMIT
+    limit = scene["time_limit_seconds"]
     for line in sys.stdin:
         question = json.loads(line)
         answer = in_own_process(scene, runs[question["run"]], limit, question["read"])

@@ -5,11 +5,12 @@
 //! waves grow, and meshes beyond some fineness lead away again. A bed softened with the mesh and one as given have the same limit and come
 //! near it at different rates; the better of the two is followed.
 
-use super::errors::{Errors, Judge, Metric};
-use super::ladder::{self, Setting};
-use super::timed::{Timed, Trial};
-use super::{StudyError, judge, shortest_period};
 use moorline::scene::Scene;
+
+use crate::errors::{Errors, Judge, Metric};
+use crate::ladder::{self, Setting};
+use crate::timed::{Timed, Trial};
+use crate::{StudyError, judge, shortest_period};
 
 /// The converged solution.
 #[derive(Debug, Clone)]
@@ -43,7 +44,7 @@ impl Converged {
         Err(StudyError::NotConverged { name: name(), reason })
     }
 
-    /// What is least of the solution that has converged best [-].
+    /// Measure of convergence; the least is best [-].
     fn doubt(&self) -> f64 {
         self.uncertainty.of(Metric::Rms) + self.uncertainty.of(Metric::Position)
     }
@@ -100,7 +101,7 @@ impl Sequence {
         Ok(())
     }
 
-    /// Whether nothing moves in what has run last.
+    /// Returns whether nothing moves in the last run.
     fn rests(&self) -> bool {
         self.before.as_ref().is_some_and(|timed| !timed.moves())
     }

@@ -1,4 +1,4 @@
-//! How far histories lie from those of a converged solution.
+//! Errors of histories against those of a converged solution.
 //!
 //! Over the window, of the line where it is worst:
 //!
@@ -7,11 +7,10 @@
 //! * peak: |max T − max T_ref| over the range of T_ref;
 //! * position: √⟨|r − r_ref|²⟩ of the point half-way along the line over the standard deviation of its motion.
 
+use moorline::math::low_pass::low_pass;
 use nalgebra::Vector3;
 
-use moorline::math::low_pass::low_pass;
-
-/// What is compared.
+/// Quantity that is compared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Metric {
     /// Tension at the driven end, every sample.
@@ -28,7 +27,7 @@ impl Metric {
     /// All, in the order of [`Errors`].
     pub const ALL: [Metric; 4] = [Metric::Rms, Metric::LowPassed, Metric::Peak, Metric::Position];
 
-    /// What it measures, in words.
+    /// Name in words.
     pub fn title(self) -> &'static str {
         match self {
             Metric::Rms => "tension, RMS",
@@ -38,7 +37,7 @@ impl Metric {
         }
     }
 
-    /// Its key in tables.
+    /// Key in tables.
     pub fn key(self) -> &'static str {
         match self {
             Metric::Rms => "tension_rms",
@@ -58,7 +57,7 @@ pub struct Histories {
     pub middle: Vec<Vec<Vector3<f64>>>,
 }
 
-/// Where and how histories are compared.
+/// Window and filter of a comparison of histories.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Judge {
     /// Interval of the samples [s].
@@ -95,11 +94,11 @@ impl Judge {
             worst(tensions().map(|(own, right)| self.rms(own, right))),
             worst(tensions().map(|(own, right)| self.rms(&filtered(own), &filtered(right)))),
             worst(tensions().map(|(own, right)| self.peak(own, right))),
-            worst(middles.map(|(own, right)| self.position(own, right))),
+            worst(middles.map(|(own, right)| self.relative(own, right))),
         ])
     }
 
-    /// How well a solution is known that lies so far from one on another mesh. Two greatest tensions may agree by chance where the
+    /// Uncertainty of a solution, from its distance to one on another mesh. Two greatest tensions may agree by chance where the
     /// histories do not: the peak is known no better than the tension is on the whole, its RMS distance over its range.
     pub fn uncertainty(&self, coarse: &Histories, fine: &Histories) -> Errors {
         let mut errors = self.errors(coarse, fine);
@@ -119,15 +118,13 @@ impl Judge {
     }
 
     fn rms(&self, own: &[f64], right: &[f64]) -> f64 {
-        if own.len() != right.len() {
-            return f64::INFINITY;
-        }
-        let (own, right) = (&own[self.from..], &right[self.from..]);
-        let mean = right.iter().sum::<f64>() / right.len() as f64;
-        let square = |difference: f64| difference * difference;
-        let wrong: f64 = own.iter().zip(right).map(|(a, b)| square(a - b)).sum();
-        let motion: f64 = right.iter().map(|b| square(b - mean)).sum();
-        (wrong / motion).sqrt()
+        let along_x = |values: &[f64]| -> Vec<Vector3<f64>> {
+            values
+                .iter()
+                .map(|value| Vector3::new(*value, 0.0, 0.0))
+                .collect()
+        };
+        self.relative(&along_x(own), &along_x(right))
     }
 
     fn peak(&self, own: &[f64], right: &[f64]) -> f64 {
@@ -138,7 +135,8 @@ impl Judge {
         (greatest(own) - greatest(right)).abs() / range(right)
     }
 
-    fn position(&self, own: &[Vector3<f64>], right: &[Vector3<f64>]) -> f64 {
+    /// √⟨|own − right|²⟩ over the standard deviation of `right` [-].
+    fn relative(&self, own: &[Vector3<f64>], right: &[Vector3<f64>]) -> f64 {
         if own.len() != right.len() {
             return f64::INFINITY;
         }
@@ -206,7 +204,7 @@ mod tests {
     fn a_fast_ripple_counts_in_the_raw_tension_only() {
         let errors = JUDGE.errors(&histories(1.0, 0.1), &histories(1.0, 0.0));
         assert_relative_eq!(errors.of(Metric::Rms), 0.1, max_relative = 1e-6);
-        // Its gain is 1/626; the filter starts at the end of the record.
+        // The gain is 1/626; the filter starts at the end of the record.
         assert!(errors.of(Metric::LowPassed) < 2e-3);
     }
 

@@ -109,7 +109,7 @@ fn curves(study: &Study, metric: Metric, runs_too: bool) -> Vec<Curve> {
     curves
 }
 
-/// What moorline chose, labelled with the tolerance.
+/// Runs with settings that moorline chose, labelled with the tolerance.
 fn own_choice(study: &Study, metric: Metric) -> Curve {
     let runs = study.runs.iter().filter(|run| run.code == Code::Chosen);
     let runs = runs.filter(|run| run.errors.of(metric) <= ERROR_MAX);
@@ -124,7 +124,7 @@ fn own_choice(study: &Study, metric: Metric) -> Curve {
         .labelled(labels)
 }
 
-/// From moorline's cheapest run to the better peer's at a level, and how many times dearer that is.
+/// Line from moorline's cheapest run to the better peer's at a level, labelled with the ratio of their costs.
 fn duel(study: &Study, metric: Metric, level: f64) -> Option<Curve> {
     let verdict = study.verdict(metric, level);
     let (own, peer) = verdict.own.zip(verdict.best_peer())?;

@@ -9,7 +9,7 @@ const ELEMENTS: [usize; 29] = [
     3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31, 33, 35, 39, 43, 47, 51, 55, 59,
     63,
 ];
-/// Elements of the longest line in dearer explicit runs [-].
+/// Elements of the longest line in costlier explicit runs [-].
 const ELEMENTS_FINE: [usize; 7] = [71, 79, 95, 111, 159, 227, 319];
 /// Elements of the longest line, tensions implicit [-]: as close together as those that peers are tried with.
 const ELEMENTS_AXIAL: [usize; 28] = [
@@ -38,7 +38,7 @@ const COMMUNICATING_ELEMENTS: usize = 32;
 const COMMUNICATIONS_PER_PERIOD: f64 = 5.0;
 /// Target errors of the tool's own choice [-].
 pub const TOLERANCES: [f64; 4] = [0.05, 0.02, 0.01, 0.005];
-/// Elements of the longest line in converged solutions, each with those that tell how far it has converged before it [-].
+/// Elements of the longest line in converged solutions, the coarser of which measure the convergence of the finer [-].
 const CONVERGED_ELEMENTS: [usize; 3] = [320, 640, 1280];
 /// The same under the peers' law: the short waves of a slack line grow under it, the faster the finer the mesh [-].
 const CONVERGED_ELEMENTS_PEERS: [usize; 3] = [160, 320, 640];
@@ -62,7 +62,7 @@ pub struct Setting {
     pub tolerance: Option<f64>,
     /// Intervals of the output from one communication point to the next [-].
     pub communication: usize,
-    /// How a bed pushes back; as the scene says where absent.
+    /// Contact law of the seabed; that of the scene where absent.
     pub contact: Option<ContactLaw>,
 }
 
@@ -79,7 +79,7 @@ impl Setting {
         }
     }
 
-    /// What the tool chooses for a target error [-].
+    /// The setting that moorline chooses for a target error [-].
     pub fn chosen(tolerance: f64) -> Setting {
         Setting {
             elements: None,
@@ -91,8 +91,8 @@ impl Setting {
         }
     }
 
-    /// The scene with this setting, its own mesh, integrator and step put aside. What the tool chooses keeps its energy ledger, and is
-    /// told where the fairlead is, as by default; other settings keep none, and are told where it goes, as other codes are.
+    /// The scene with this setting, its own mesh, integrator and step put aside. A setting that moorline chooses keeps its energy ledger,
+    /// and inputs are those of the start of a step, as by default; other settings keep none, and get inputs of the end, as other codes do.
     pub fn apply(&self, scene: &Scene) -> Scene {
         let mut scene = scene.clone();
         let length = |line: &moorline::scene::Line| -> f64 {
@@ -110,7 +110,7 @@ impl Setting {
             scene.solver.energy_ledger = false;
             scene.solver.input_reconstruction = Reconstruction::Interpolate;
         }
-        // A step that is not asked for is limited by the integrator's own rules only.
+        // A step that is not given is limited by the integrator's own rules only.
         scene.solver.time_step_max = self.time_step_max.unwrap_or(scene.solver.time_step_max);
         scene.solver.tolerance = self.tolerance.unwrap_or(scene.solver.tolerance);
         // Processor time is that of one thread, as that of other codes.
@@ -169,7 +169,7 @@ pub fn ladder(scene: &Scene, period: f64) -> Vec<Setting> {
     settings
 }
 
-/// Whether a scene is one of equilibria: dynamics is no measure of it then.
+/// Returns whether a scene is quasi-static: dynamics is then no measure of it.
 pub fn is_quasi_static(scene: &Scene) -> bool {
     scene.solver.integrator == Integrator::QuasiStatic
 }

@@ -1,7 +1,7 @@
 //! Speed against error: a scene run with a ladder of meshes, integrators and steps, each judged against a converged solution.
 //!
 //! Cost is processor time of the stepping thread per simulated second, without reading, statics and output. moorline is driven as the
-//! peers are: a host tells it where the fairlead is and how fast it moves, one communication step after the other. The runs that the
+//! peers are: a host gives position and velocity of the fairlead, one communication step after the other. The runs that the
 //! verdicts name are timed in several rounds, own and peers' in turn. Errors are those of [`errors`], over the second half
 //! of the run. The converged solution is the best of a sequence of fine meshes, its uncertainty the distance from the one of half its
 //! resolution: nothing below that is a statement.
@@ -27,6 +27,7 @@ use moorline::scene::{ContactLaw, Integrator, MotionPath, Scene};
 use converged::Converged;
 pub use errors::{Errors, Histories, Judge, Metric};
 pub use ladder::{Setting, TOLERANCES};
+use peers::Conversation;
 pub use peers::{PeerError, Peers};
 pub use slow::Slow;
 use timed::{Timed, Trial, run};
@@ -37,7 +38,7 @@ const CUT_OFF: f64 = 5.0;
 /// Shortest period taken where the scene's motion is a table, or nothing moves [s].
 const PERIOD: f64 = 10.0;
 
-/// Who computed.
+/// Code that computed a run.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Code {
     /// moorline with this integrator.
@@ -49,7 +50,7 @@ pub enum Code {
 }
 
 impl Code {
-    /// Its name.
+    /// Name of the code.
     pub fn name(&self) -> &str {
         match self {
             Code::Chosen => "moorline, its own choice",
@@ -62,7 +63,7 @@ impl Code {
         }
     }
 
-    /// Whether it is moorline.
+    /// Returns whether it is moorline.
     pub fn is_own(&self) -> bool {
         !matches!(self, Code::Peer(_))
     }
@@ -71,7 +72,7 @@ impl Code {
 /// One run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Run {
-    /// Who computed.
+    /// Code that computed a run.
     pub code: Code,
     /// Mesh and step, in words.
     pub label: String,
@@ -84,7 +85,7 @@ pub struct Run {
     how: How,
 }
 
-/// How a run is made again.
+/// Means to repeat a run.
 #[derive(Debug, Clone, PartialEq)]
 enum How {
     Own(Setting),
@@ -114,9 +115,9 @@ impl Run {
 /// A run that gave no result, and why.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Failed {
-    /// Who, with mesh and step.
+    /// Code, mesh and step.
     pub label: String,
-    /// What it said.
+    /// Its message.
     pub reason: String,
 }
 
@@ -127,13 +128,13 @@ pub struct Study {
     pub name: String,
     /// Title of the scene.
     pub title: String,
-    /// Whether damping acts in compression, the peers' law.
+    /// Damping acts in compression, the peers' law.
     pub negative_tension: bool,
-    /// Whether there is a bed.
+    /// The scene has a seabed.
     pub on_bed: bool,
     /// Mesh and step of the converged solution, in words.
     pub converged: String,
-    /// Its distance from one of half its resolution.
+    /// Distance from a solution of half its resolution.
     pub uncertainty: Errors,
     /// All runs.
     pub runs: Vec<Run>,
@@ -143,7 +144,7 @@ pub struct Study {
     pub slow: Vec<Slow>,
 }
 
-/// Why a scene cannot be studied.
+/// Reason why a scene cannot be studied.
 #[derive(Debug, thiserror::Error)]
 pub enum StudyError {
     /// Nothing serves for a converged solution.
@@ -151,7 +152,7 @@ pub enum StudyError {
     NotConverged {
         /// The scene.
         name: String,
-        /// What the last attempt said.
+        /// Message of the last attempt.
         reason: String,
     },
     /// Nothing happens in it.
@@ -162,10 +163,10 @@ pub enum StudyError {
     },
 }
 
-/// Runs the ladder of a scene; `progress` is told how many runs are done, of how many.
+/// Runs the ladder of a scene; `progress` is called with the number of runs that are done, and of all.
 ///
 /// # Errors
-/// Where no converged solution can be had. Single runs that fail are listed in the study.
+/// No converged solution can be found. Single runs that fail are listed in the study.
 pub fn study(
     name: &str,
     scene: &Scene,
@@ -176,12 +177,13 @@ pub fn study(
     scene.solver.negative_tension |= peers.is_some();
     let period = shortest_period(&scene);
     let settings = ladder::ladder(&scene, period);
-    let mut conversation = peers.map(|peers| peers.begin(name, &scene));
-    let of_peers = match &conversation {
-        Some(Ok(conversation)) => conversation.count(),
-        _ => 0,
+    let (mut conversation, refused) = match peers.map(|peers| peers.begin(name, &scene)) {
+        Some(Ok(conversation)) => (Some(conversation), None),
+        Some(Err(reason)) => (None, Some(reason)),
+        None => (None, None),
     };
-    // The converged solution and its judge are dear, and so is timing again.
+    let of_peers = conversation.as_ref().map_or(0, Conversation::count);
+    // The converged solution and its judge cost much, and so does timing again.
     let (first, last) = (settings.len() / 4, (settings.len() + of_peers) / 8 + 1);
     let total = first + settings.len() + of_peers + last;
     progress(0, total);
@@ -205,30 +207,24 @@ pub fn study(
     study.climb(&scene, &settings, &judge, &converged.fine, &mut |done| {
         progress(first + done, total);
     });
-    match &mut conversation {
-        Some(Ok(conversation)) => {
-            let before = first + settings.len();
-            let mut told = |done| progress(before + done, total);
-            conversation.add_runs(&judge, &converged.fine.histories, &mut study, &mut told);
-            study.settle(&scene, Some(conversation));
-        }
-        Some(Err(reason)) => {
-            study.failed.push(Failed {
-                label: "peers".to_string(),
-                reason: reason.clone(),
-            });
-            study.settle(&scene, None);
-        }
-        None => study.settle(&scene, None),
+    study.failed.extend(refused.map(|reason| Failed {
+        label: "peers".to_string(),
+        reason,
+    }));
+    if let Some(conversation) = &mut conversation {
+        let before = first + settings.len();
+        let mut told = |done| progress(before + done, total);
+        conversation.add_runs(&judge, &converged.fine.histories, &mut study, &mut told);
     }
+    study.settle(&scene, conversation.as_mut());
     progress(total, total);
     Ok(study)
 }
 
-/// How far the converged solution of a scene lies from one of half its resolution.
+/// Distance of the converged solution of a scene from one of half its resolution.
 ///
 /// # Errors
-/// Where it cannot be had.
+/// There is no converged solution.
 pub fn uncertainty(name: &str, scene: &Scene) -> Result<Errors, StudyError> {
     Converged::find(name, scene).map(|converged| converged.uncertainty)
 }
@@ -319,7 +315,7 @@ impl Study {
     }
 }
 
-/// Who computes with a setting.
+/// Code that computes with a setting.
 fn code(setting: &Setting) -> Code {
     match setting.integrator {
         Integrator::Auto => Code::Chosen,

@@ -1,22 +1,25 @@
 //! The peers, MoorDyn and CableDyn, run on the same scene, in the same run and on the same core.
 //!
-//! A Python script beside this file drives the peers' packages and is talked with in lines of JSON: it hears of the scene and answers with
-//! its ladder, then makes the runs it is asked for, with or without reading their results. Its ladder holds each peer's best settings;
+//! The Python script `peers.py` drives the peers' packages and exchanges lines of JSON with this module: it reads the scene and writes its
+//! ladder, then makes the runs that are requested, with or without reading their results. The ladder holds each peer's best settings;
 //! times are processor times of the peer's loop alone.
 
+use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
+use moorline::scene::{LineType, MotionPath, PointKind, Scene};
 use nalgebra::Vector3;
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
+use serde::de::DeserializeOwned;
+use serde_json::{Value, json};
 
-use super::errors::{Errors, Histories, Judge, Metric};
-use super::{Code, Failed, How, Run, Study};
-use moorline::scene::{MotionPath, Point, PointKind, Scene};
+use crate::errors::{Errors, Histories, Judge, Metric};
+use crate::{Code, Failed, How, Run, Study};
 
 const SCRIPT: &str = include_str!("../peers.py");
-/// Imports all that the script needs, and says [`READY`] where it has it.
+/// Imports all that the script needs, and then prints [`READY`].
 const PROBE: &str = "import numpy, cmoordyn, cabledyn; from cabledyn._lib import _lib; cmoordyn.create; cabledyn.CableDyn; print('ready')";
 const READY: &str = "ready";
 /// Elements that the peers are tried with [-].
@@ -30,29 +33,32 @@ const TIME_LIMIT: f64 = 60.0;
 
 /// A finer mesh pays as long as it lowers some error to less than this part of the least so far [-].
 const PAYS: f64 = 0.95;
-/// So many meshes in a row that do not pay end their family of settings [-].
+/// Number of meshes in a row that do not pay, after which their family of settings ends [-].
 const IDLE_MAX: usize = 3;
+/// Scenes that the peers run.
+const WANTED: &str =
+    "peers run on scenes of one uniform line from a fixed anchor to a coupled fairlead in harmonic motion";
 
 /// A Python interpreter that can import the peers' packages.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Peers {
     python: PathBuf,
-    /// Where the script lies: it starts itself again for every run.
+    /// Path of the script, which starts itself again for every run.
     script: PathBuf,
 }
 
-/// Why the peers cannot run.
+/// Reason why the peers cannot run.
 #[derive(Debug, thiserror::Error)]
 pub enum PeerError {
     /// The interpreter is not there.
     #[error("{}: no Python interpreter; give one, or the folder of a virtual environment", .0.display())]
     NoPython(PathBuf),
-    /// It does not know the packages.
+    /// The interpreter lacks the packages.
     #[error("{}: cannot import moordyn and cabledyn: {said}; install accuracy/peers-requirements.txt there", .python.display())]
     NoPackages {
         /// The interpreter.
         python: PathBuf,
-        /// What it said.
+        /// Its message.
         said: String,
     },
     /// The script cannot be put into the folder.
@@ -60,54 +66,9 @@ pub enum PeerError {
     NoScript {
         /// The script.
         script: PathBuf,
-        /// What the operating system said.
+        /// Message of the operating system.
         said: String,
     },
-}
-
-/// A scene as the script reads it.
-#[derive(Debug, Serialize)]
-struct Question<'a> {
-    name: &'a str,
-    gravity: f64,
-    density: Option<f64>,
-    depth: Option<f64>,
-    bed: Option<Bed>,
-    line: PeerLine,
-    anchor: [f64; 3],
-    fairlead: [f64; 3],
-    harmonics: Harmonics<'a>,
-    duration: f64,
-    interval: f64,
-    elements: &'a [usize],
-    time_limit_seconds: f64,
-}
-
-#[derive(Debug, Serialize)]
-struct Bed {
-    stiffness: f64,
-    damping: f64,
-}
-
-#[derive(Debug, Serialize)]
-struct PeerLine {
-    length: f64,
-    mass: f64,
-    diameter: f64,
-    axial_stiffness: f64,
-    axial_damping: f64,
-    drag_normal: f64,
-    drag_tangential: f64,
-    added_mass_normal: f64,
-    added_mass_tangential: f64,
-}
-
-#[derive(Debug, Serialize)]
-struct Harmonics<'a> {
-    x: &'a [Vec<f64>],
-    y: &'a [Vec<f64>],
-    z: &'a [Vec<f64>],
-    ramp: f64,
 }
 
 /// The script's first answer.
@@ -125,34 +86,29 @@ struct Planned {
     family: String,
 }
 
-/// A run that the script is asked for.
-#[derive(Debug, Serialize)]
-struct Asked {
-    run: usize,
-    read: bool,
-}
-
-/// A line of the script's answer.
+/// The answer for a run.
 #[derive(Debug, Deserialize)]
 #[serde(untagged)]
 enum Answer {
-    Run {
-        cpu_seconds: f64,
-        #[serde(default)]
-        tension: Vec<f64>,
-        #[serde(default)]
-        mid: Vec<[f64; 3]>,
-    },
-    Failed {
-        failed: String,
-    },
+    Run(Measured),
+    Failed { failed: String },
+}
+
+/// Processor time of a run, and its histories where they are read.
+#[derive(Debug, Deserialize)]
+struct Measured {
+    cpu_seconds: f64,
+    #[serde(default)]
+    tension: Vec<f64>,
+    #[serde(default)]
+    mid: Vec<[f64; 3]>,
 }
 
 /// The script at work on a scene.
 #[derive(Debug)]
 pub(crate) struct Conversation {
     child: Child,
-    /// Absent once the script has been told to end.
+    /// Absent once the script has been made to end.
     input: Option<ChildStdin>,
     output: BufReader<ChildStdout>,
     runs: Vec<Planned>,
@@ -163,7 +119,7 @@ impl Peers {
     /// The peers' packages in an interpreter, or in the virtual environment in a folder; their script goes into `folder`.
     ///
     /// # Errors
-    /// Where there is no interpreter, it lacks the packages, or the script cannot be written.
+    /// There is no interpreter, it lacks the packages, or the script cannot be written.
     pub fn find(place: &Path, folder: &Path) -> Result<Peers, PeerError> {
         let inside = ["bin/python", "Scripts/python.exe"].map(|file| place.join(file));
         let found = inside.into_iter().find(|file| file.is_file());
@@ -193,9 +149,9 @@ impl Peers {
         }
     }
 
-    /// Tells the script of a scene, and hears of its ladder.
+    /// Starts the script with a scene, and reads its ladder.
     pub(crate) fn begin(&self, name: &str, scene: &Scene) -> Result<Conversation, String> {
-        let question = question(name, scene)?;
+        let question = question(name, scene).ok_or(WANTED)?;
         let mut child = Command::new(&self.python)
             .arg(&self.script)
             .stdin(Stdio::piped())
@@ -226,10 +182,9 @@ impl Drop for Conversation {
     }
 }
 
-/// How far a family of settings has come.
+/// Progress of a family of settings.
 #[derive(Debug, Default)]
 struct Family {
-    name: String,
     least: Option<[f64; 4]>,
     idle: usize,
 }
@@ -253,23 +208,27 @@ impl Conversation {
         self.runs.len()
     }
 
-    fn ask<A: for<'a> Deserialize<'a>>(&mut self, question: &impl Serialize) -> Result<A, String> {
-        let mut text = serde_json::to_string(question).map_err(|error| error.to_string())?;
-        text.push('\n');
+    fn ask<A: DeserializeOwned>(&mut self, question: &Value) -> Result<A, String> {
         let input = self.input.as_mut().ok_or("the script has no input")?;
-        input
-            .write_all(text.as_bytes())
+        writeln!(input, "{question}")
             .and_then(|()| input.flush())
             .map_err(|error| format!("the peers' script has ended: {error}"))?;
         let mut line = String::new();
-        self.output
-            .read_line(&mut line)
-            .map_err(|error| error.to_string())?;
+        let read = self.output.read_line(&mut line);
+        read.map_err(|error| error.to_string())?;
         serde_json::from_str(&line).map_err(|error| format!("the peers' script answered {line:.80}: {error}"))
     }
 
-    /// Runs the peers' ladder and judges what they answer. A family of settings ends where finer meshes no longer pay; `done` is
-    /// told how much of the ladder is done.
+    /// Makes a run of the peers' ladder, with or without its histories.
+    fn run(&mut self, number: usize, read: bool) -> Result<Measured, String> {
+        match self.ask(&json!({ "run": number, "read": read }))? {
+            Answer::Run(measured) => Ok(measured),
+            Answer::Failed { failed } => Err(failed),
+        }
+    }
+
+    /// Makes the runs of the peers' ladder and judges them. A family of settings ends where finer meshes no longer pay; `done` is
+    /// called with the number of runs that are done.
     pub(crate) fn add_runs(
         &mut self,
         judge: &Judge,
@@ -277,124 +236,89 @@ impl Conversation {
         study: &mut Study,
         done: &mut dyn FnMut(usize),
     ) {
-        let mut families: Vec<Family> = Vec::new();
+        let mut families: BTreeMap<String, Family> = BTreeMap::new();
         for number in 0..self.runs.len() {
             let Planned { peer, label, family } = self.runs[number].clone();
-            let index = families.iter().position(|one| one.name == family);
-            let index = index.unwrap_or(families.len());
-            if index == families.len() {
-                families.push(Family {
-                    name: family,
-                    ..Family::default()
-                });
-            }
-            if families[index].idle >= IDLE_MAX {
+            let family = families.entry(family).or_default();
+            if family.idle >= IDLE_MAX {
                 continue;
             }
-            let asked = Asked {
-                run: number,
-                read: true,
-            };
-            let failed = match self.ask(&asked) {
-                Ok(Answer::Run {
-                    cpu_seconds,
-                    tension,
-                    mid,
-                }) => {
+            match self.run(number, true) {
+                Ok(measured) => {
                     let histories = Histories {
-                        tension: vec![tension],
-                        middle: vec![mid.into_iter().map(Vector3::from).collect()],
+                        tension: vec![measured.tension],
+                        middle: vec![measured.mid.into_iter().map(Vector3::from).collect()],
                     };
                     let errors = judge.errors(&histories, converged);
-                    families[index].take(&errors);
-                    let cost = cpu_seconds / self.simulated;
-                    let how = How::Peer(number);
-                    let run = Run::new(Code::Peer(peer), label, cost, errors, how);
+                    family.take(&errors);
+                    let cost = measured.cpu_seconds / self.simulated;
+                    let run = Run::new(Code::Peer(peer), label, cost, errors, How::Peer(number));
                     study.runs.push(run);
-                    None
                 }
-                Ok(Answer::Failed { failed }) => Some(failed),
-                Err(reason) => Some(reason),
-            };
-            study.failed.extend(failed.map(|reason| Failed {
-                label: format!("{}, {}", self.runs[number].peer, self.runs[number].label),
-                reason,
-            }));
+                Err(reason) => {
+                    let label = format!("{peer}, {label}");
+                    study.failed.push(Failed { label, reason });
+                }
+            }
             done(number + 1);
         }
     }
 
     /// Times a run of the peers' ladder again: processor time over simulated time [-]. `None` where it fails.
     pub(crate) fn time(&mut self, number: usize) -> Option<f64> {
-        let asked = Asked {
-            run: number,
-            read: false,
-        };
-        match self.ask(&asked) {
-            Ok(Answer::Run { cpu_seconds, .. }) => Some(cpu_seconds / self.simulated),
-            _ => None,
-        }
+        Some(self.run(number, false).ok()?.cpu_seconds / self.simulated)
     }
 }
 
-/// The scene in the script's words; the peers are asked about one uniform line from a fixed anchor to a driven fairlead.
-fn question<'a>(name: &'a str, scene: &'a Scene) -> Result<Question<'a>, String> {
-    const WANTED: &str = "peers run on scenes of one uniform line from a fixed anchor to a coupled fairlead in harmonic motion";
-    let refuse = || WANTED.to_string();
-    let [line] = scene.lines.as_slice() else {
-        return Err(refuse());
+/// The scene as the script reads it; `None` where it is not one uniform line from a fixed anchor to a fairlead in harmonic motion.
+fn question(name: &str, scene: &Scene) -> Option<Value> {
+    let ([line], Some(line_type)) = (scene.lines.as_slice(), uniform_type(scene)) else {
+        return None;
     };
-    let [section] = line.sections.as_slice() else {
-        return Err(refuse());
+    let end = |name: &str, kind: PointKind| {
+        let mut points = scene.points.iter();
+        points.find(|point| point.name == name && point.kind == kind)
     };
-    let end = |name: &str| scene.points.iter().find(|point| point.name == name);
-    let kind = |point: &&Point, kind: PointKind| point.kind == kind;
-    let anchor = end(&line.from).filter(|point| kind(point, PointKind::Fixed));
-    let fairlead = end(&line.to).filter(|point| kind(point, PointKind::Coupled));
-    let (anchor, fairlead) = anchor.zip(fairlead).ok_or_else(refuse)?;
+    let anchor = end(&line.from, PointKind::Fixed)?;
+    let fairlead = end(&line.to, PointKind::Coupled)?;
     let Some(MotionPath::Harmonic(motion)) = scene.motion.get(&fairlead.name) else {
-        return Err(refuse());
+        return None;
     };
-    let line_type = scene.line_types.get(&section.line_type).ok_or_else(refuse)?;
-    let (mass, diameter) = line_type.mass.zip(line_type.diameter).ok_or_else(refuse)?;
-    let axial_stiffness = line_type.axial_stiffness.ok_or_else(refuse)?;
+    let bed = scene.seabed.as_ref();
     let or_zero = |value: Option<f64>| value.unwrap_or(0.0);
-    Ok(Question {
-        name,
-        gravity: scene.gravity,
-        density: scene.water.as_ref().map(|water| water.density),
-        depth: scene.seabed.as_ref().map(|bed| bed.depth),
-        bed: scene.seabed.as_ref().map(|bed| Bed {
-            stiffness: bed.stiffness,
-            damping: bed.damping,
-        }),
-        line: PeerLine {
-            length: section.length,
-            mass,
-            diameter,
-            axial_stiffness,
-            axial_damping: or_zero(line_type.axial_damping),
-            drag_normal: or_zero(line_type.drag_normal),
-            drag_tangential: or_zero(line_type.drag_tangential),
-            added_mass_normal: or_zero(line_type.added_mass_normal),
-            added_mass_tangential: or_zero(line_type.added_mass_tangential),
+    Some(json!({
+        "name": name,
+        "gravity": scene.gravity,
+        "density": scene.water.as_ref().map(|water| water.density),
+        "depth": bed.map(|bed| bed.depth),
+        "bed": bed.map(|bed| json!({ "stiffness": bed.stiffness, "damping": bed.damping })),
+        "line": {
+            "length": line.sections[0].length,
+            "mass": line_type.mass?,
+            "diameter": line_type.diameter?,
+            "axial_stiffness": line_type.axial_stiffness?,
+            "axial_damping": or_zero(line_type.axial_damping),
+            "drag_normal": or_zero(line_type.drag_normal),
+            "drag_tangential": or_zero(line_type.drag_tangential),
+            "added_mass_normal": or_zero(line_type.added_mass_normal),
+            "added_mass_tangential": or_zero(line_type.added_mass_tangential),
         },
-        anchor: anchor.position,
-        fairlead: fairlead.position,
-        harmonics: Harmonics {
-            x: &motion.x,
-            y: &motion.y,
-            z: &motion.z,
-            ramp: or_zero(motion.ramp),
-        },
-        duration: scene.output.duration,
-        interval: scene.output.interval,
-        elements: match scene.seabed {
-            Some(_) => &ELEMENTS[ELEMENTS_ON_BED..],
-            None => &ELEMENTS,
-        },
-        time_limit_seconds: TIME_LIMIT,
-    })
+        "anchor": anchor.position,
+        "fairlead": fairlead.position,
+        "harmonics": { "x": motion.x, "y": motion.y, "z": motion.z, "ramp": or_zero(motion.ramp) },
+        "duration": scene.output.duration,
+        "interval": scene.output.interval,
+        "elements": &ELEMENTS[if bed.is_some() { ELEMENTS_ON_BED } else { 0 }..],
+        "time_limit_seconds": TIME_LIMIT,
+    }))
+}
+
+/// The type of a line of one section.
+fn uniform_type(scene: &Scene) -> Option<&LineType> {
+    match scene.lines.first()?.sections.as_slice() {
+        [section] => scene.line_types.get(&section.line_type),
+        _ => None,
+    }
 }
 
 #[cfg(test)]

@@ -2,15 +2,16 @@
 //!
 //! A cheapest run is the least of many timings and so the luckiest; and what shares the machine changes from minute to minute. Every run
 //! that a verdict or the tool's own choice names is therefore timed in several rounds, each of which takes moorline and peers in turn.
-//! Its cost is the least of its rounds, its spread their range. A run that was slowed when it was first timed is named by none: at the
+//! The cost is the least of the rounds, the spread their range. A run that was slowed when it was first timed is named by none: at the
 //! levels that moorline is held to, runs that cost little more than the cheapest of their code are timed so too.
 
-use super::errors::Metric;
-use super::ladder::Setting;
-use super::peers::Conversation;
-use super::timed::Trial;
-use super::{Code, How, Run, Study};
 use moorline::scene::Scene;
+
+use crate::errors::Metric;
+use crate::ladder::Setting;
+use crate::peers::Conversation;
+use crate::timed::Trial;
+use crate::{Code, How, Run, Study};
 
 /// Timings of a run that a verdict names [-].
 const ROUNDS: usize = 3;

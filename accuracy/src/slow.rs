@@ -1,12 +1,13 @@
-//! Where the quasi-static mode is enough: the scene's motion made slower, equilibria against dynamics on the same mesh.
+//! The quasi-static mode in slower and slower motions of a scene: equilibria against dynamics on the same mesh.
 
-use super::errors::{Errors, Histories, Judge, Metric};
-use super::ladder::Setting;
-use super::timed::Trial;
-use super::{judge, shortest_period};
 use moorline::scene::{Integrator, MotionPath, Scene};
 
-/// How many times as long all periods are made, until the quasi-static mode is good [-].
+use crate::errors::{Errors, Histories, Judge, Metric};
+use crate::ladder::Setting;
+use crate::timed::Trial;
+use crate::{judge, shortest_period};
+
+/// Factors on all periods, tried until the quasi-static mode is good [-].
 const FACTORS: [f64; 7] = [1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0];
 /// Good enough to stop: error of RMS tension [-].
 const GOOD: f64 = 0.01;

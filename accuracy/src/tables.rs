@@ -9,23 +9,15 @@ use crate::{Code, Metric, Run, Study, Verdict};
 /// `machine` names the processor.
 ///
 /// # Errors
-/// Where `out` refuses.
+/// `out` refuses.
 pub fn write_runs(machine: &str, studies: &[Study], out: impl Write) -> io::Result<()> {
     let mut table = csv::Writer::from_writer(out);
     let keys = Metric::ALL.map(Metric::key);
     let errors = keys.iter().map(|key| (*key).to_string());
     let uncertainties = keys.iter().map(|key| format!("{key}_uncertainty"));
-    let head = [
-        "machine",
-        "scene",
-        "code",
-        "setting",
-        "cost",
-        "cost_least",
-        "cost_greatest",
-    ];
-    let head = head.map(str::to_string);
-    table.write_record(head.into_iter().chain(errors).chain(uncertainties))?;
+    let head = "machine scene code setting cost cost_least cost_greatest";
+    let head = head.split(' ').map(str::to_string);
+    table.write_record(head.chain(errors).chain(uncertainties))?;
     for study in studies {
         for run in &study.runs {
             let words = [machine, &study.name, run.code.name(), &run.label].map(str::to_string);
@@ -41,23 +33,11 @@ pub fn write_runs(machine: &str, studies: &[Study], out: impl Write) -> io::Resu
 /// Writes, for every level of error, the cheapest run of moorline and of every peer, and the peer's cost over moorline's.
 ///
 /// # Errors
-/// Where `out` refuses.
+/// `out` refuses.
 pub fn write_verdicts(machine: &str, studies: &[Study], out: impl Write) -> io::Result<()> {
     let mut table = csv::Writer::from_writer(out);
-    table.write_record([
-        "machine",
-        "scene",
-        "metric",
-        "level",
-        "key",
-        "certain",
-        "code",
-        "setting",
-        "cost",
-        "cost_least",
-        "cost_greatest",
-        "ratio",
-    ])?;
+    let head = "machine scene metric level key certain code setting cost cost_least cost_greatest ratio";
+    table.write_record(head.split(' '))?;
     for study in studies {
         for verdict in study.verdicts() {
             let own = verdict.own.map(|own| ("moorline", Some(own)));

@@ -1,19 +1,19 @@
 //! One run of a scene: its histories and what they cost.
 //!
-//! A timed run is driven as a host drives it: before every communication step it is told displacement and velocity of what moves, made
-//! beforehand: where the step ends, as the peers are, or with [`Reconstruction::Smooth`] where it starts, and nothing of what comes. The
+//! A timed run is driven as a host drives it: before every communication step it is given displacement and velocity of the moving bodies,
+//! made beforehand: at the end of the step, as the peers are, or with [`Reconstruction::Smooth`] at its start, and nothing later. The
 //! converged solution follows the scene's motion exactly.
 
 use std::hint::black_box;
 
 use cpu_time::ThreadTime;
-use nalgebra::Vector3;
-
-use super::errors::Histories;
-use super::ladder::Setting;
 use moorline::model::{Line, Model, Moving, Role};
 use moorline::scene::{Integrator, Reconstruction, Scene};
 use moorline::simulation::Simulation;
+use nalgebra::Vector3;
+
+use crate::errors::Histories;
+use crate::ladder::Setting;
 
 /// Passes of one timing, the median of which counts: at most this many, and no more once they add up to this time [s].
 const PASSES_MAX: usize = 9;
@@ -23,7 +23,7 @@ const PASSES_TIME: f64 = 0.08;
 #[derive(Debug, Clone)]
 pub(crate) struct Trial {
     start: Simulation,
-    /// What the host says before every step, of so many bodies, in one run through memory: fetching it is no work of the solver. Empty where
+    /// Motion that the host sets before every step, body by body, contiguous in memory: fetching it is no work of the solver. Empty where
     /// the scene's motion is followed exactly.
     said: Vec<Moving>,
     bodies: usize,
@@ -35,7 +35,7 @@ pub(crate) struct Trial {
     samples: usize,
 }
 
-/// What a run gave.
+/// Results of a run.
 #[derive(Debug, Clone)]
 pub(crate) struct Timed {
     pub histories: Histories,
@@ -52,7 +52,7 @@ pub(crate) struct Timed {
 }
 
 impl Timed {
-    /// Whether any tension changes.
+    /// Returns whether any tension changes.
     pub fn moves(&self) -> bool {
         let changes = |tension: &Vec<f64>| {
             let (first, last) = (tension.first(), tension.len() / 2);
@@ -66,7 +66,7 @@ impl Timed {
 }
 
 impl Trial {
-    /// A run driven as a host drives it; a failure is told in words.
+    /// A run driven as a host drives it; the error is a message.
     pub fn new(scene: &Scene, setting: &Setting) -> Result<Trial, String> {
         let interval = scene.output.interval;
         let step = setting.communication as f64 * interval;
@@ -117,7 +117,7 @@ impl Trial {
             .collect()
     }
 
-    /// Runs once and reads; the time of a long pass counts, for reading is nothing beside it. Short ones are to be timed.
+    /// Runs once with reading. The time of a long pass counts, since reading takes a negligible part of it; short ones are timed anew.
     pub fn recorded(&self) -> Result<(Timed, Option<f64>), String> {
         let mut record = Record::new(&self.start, self.count);
         let mut steps = 0;
@@ -182,7 +182,7 @@ pub(crate) fn run(trial: &Trial) -> Result<Timed, String> {
     Ok(Timed { cost, ..timed })
 }
 
-/// What is read at every communication point, the start among them.
+/// Values read at every communication point, the start included.
 struct Record {
     tension: Vec<Vec<f64>>,
     middle: Vec<Vec<Vector3<f64>>>,
@@ -291,7 +291,7 @@ fn half_way(arc: &[f64], profile: &[Vector3<f64>]) -> Vector3<f64> {
     terms.sum()
 }
 
-/// What the values at four places count for at another, on the cubic through them [-].
+/// Weights of the values at four places in the value at another, on the cubic through them [-].
 fn cubic(places: [f64; 4], at: f64) -> [f64; 4] {
     let share = |own: f64| {
         let others = places.iter().filter(|other| **other != own);

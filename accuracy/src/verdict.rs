@@ -1,7 +1,7 @@
-//! What a study says at a level of error: who reaches it, at what cost, and where a peer is cheaper.
+//! Verdicts of a study at a level of error: the codes that reach it, their costs, and the errors at which a peer is cheaper.
 
-use super::errors::Metric;
-use super::{Code, Run, Study};
+use crate::errors::Metric;
+use crate::{Code, Run, Study};
 
 /// Error levels that are judged [-].
 pub const LEVELS: [f64; 5] = [0.05, 0.03, 0.02, 0.01, 0.005];
@@ -11,13 +11,13 @@ const ERROR_MAX: f64 = 1.0;
 /// The cheapest ways to one level of error.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Verdict<'a> {
-    /// What is compared.
+    /// Quantity that is compared.
     pub metric: Metric,
     /// Error level [-].
     pub level: f64,
-    /// Whether it is one that moorline is held to: 3 % of RMS tension, 1 % in position; of lines without a bed 1 % of RMS tension.
+    /// moorline is held to this level: 3 % of RMS tension, 1 % in position; of lines without a bed 1 % of RMS tension.
     pub key: bool,
-    /// Whether the converged solution is certain enough to judge this level.
+    /// The converged solution is certain enough to judge this level.
     pub certain: bool,
     /// moorline's cheapest run.
     pub own: Option<&'a Run>,
@@ -44,10 +44,10 @@ impl<'a> Verdict<'a> {
     }
 }
 
-/// A peer's run on its frontier beside moorline's cheapest run of no greater error.
+/// A peer's run on its frontier, and moorline's cheapest run of no greater error.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Duel<'a> {
-    /// What is compared.
+    /// Quantity that is compared.
     pub metric: Metric,
     /// The peer's error, or the converged solution's uncertainty where that is greater [-].
     pub level: f64,
@@ -145,7 +145,7 @@ mod tests {
             peer("A", 90.0, 0.003),
         ]);
         let ratios: Vec<f64> = study.duels(Metric::Rms).iter().map(Duel::ratio).collect();
-        // At 1.5 % moorline needs its dear run; at 0.3 % it has none.
+        // At 1.5 % moorline needs its costly run; at 0.3 % it has none.
         assert_eq!(ratios, [7.0 / 9.0, 0.0]);
     }
 

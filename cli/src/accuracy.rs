@@ -6,7 +6,9 @@ use moorline::output::report::rounded;
 use moorline::output::write_file;
 use moorline::scene::{Drive, Integrator, Scene};
 use moorline_accuracy::tables::{summary, write_runs, write_verdicts};
-use moorline_accuracy::{Code, Duel, LEVELS, Metric, Peers, Run, Slow, Study, Verdict, frontier, study};
+use moorline_accuracy::{
+    Code, Duel, Errors, LEVELS, Metric, Peers, Run, Slow, Study, Verdict, frontier, study,
+};
 use moorline_decks::Supplement;
 
 use crate::failure::Failure;
@@ -32,8 +34,8 @@ const INTEGRATORS: [Integrator; 4] = [
 /// Error of RMS tension with which the quasi-static mode is enough [-].
 const ENOUGH: f64 = 0.02;
 
-/// Studies scenes, moved as they say themselves or as is given beside them, prints what each level of error costs and writes tables and
-/// figures into a folder.
+/// Studies scenes, with their own motion or with a given one, prints the cost of each level of error and writes tables and figures into
+/// a folder.
 pub fn accuracy(
     paths: &[PathBuf],
     supplement: &Supplement,
@@ -47,7 +49,7 @@ pub fn accuracy(
     let peers = peers.map_err(|error| Failure::Argument(error.to_string()))?;
     stay_on_one_core();
     let machine = processor();
-    // Results are written whatever becomes of standard output, which its reader may close.
+    // Results are written even if the reader of standard output closes it.
     let mut printed = print(&format!("on {machine}\n\n"));
     let mut studies = Vec::new();
     for (name, scene) in &scenes {
@@ -118,14 +120,14 @@ fn scenes(
     Ok(scenes)
 }
 
-/// Keeps this thread, and the peers that it starts, on one core; where the system does not let it, the times still count.
+/// Keeps this thread, and the peers that it starts, on one core; without the system's permission, on any.
 fn stay_on_one_core() {
     if let Some(core) = core_affinity::get_core_ids().and_then(|cores| cores.last().copied()) {
         core_affinity::set_for_current(core);
     }
 }
 
-/// Name of the processor, or its architecture where the system does not tell.
+/// Name of the processor, or its architecture where the system does not give it.
 fn processor() -> String {
     let told = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let model = told.lines().find(|line| line.starts_with("model name"));
@@ -134,40 +136,46 @@ fn processor() -> String {
         .to_string()
 }
 
-/// A study in tables: what reaches each level and how many times dearer the peers are, what each integrator needs, moorline's own choice,
-/// and where equilibria are enough.
+/// A study in tables: the cheapest runs at each level and the cost of the peers over moorline's, settings of each integrator, moorline's own
+/// choice, and the periods for which equilibria are enough.
 fn told(study: &Study) -> String {
-    let mut text = study.name.clone();
-    if !study.title.is_empty() {
-        text.push_str(&format!(": {}", study.title));
-    }
-    text.push('\n');
-    text.push_str(&format!("converged solution: {}; ", study.converged));
-    let limits = Metric::ALL.map(|m| format!("{} {:.2} %", m.title(), percent(study, m)));
-    text.push_str(&format!("its uncertainty: {}\n", limits.join(", ")));
-    text.push_str(&format!("\ncheapest runs\n{}", verdicts(study)));
-    if !study.peers().is_empty() {
-        text.push_str(&lost(study));
-    }
-    text.push_str(&format!(
-        "\nsettings that reach an error of {}\n{}",
-        Metric::Rms.title(),
-        settings(study)
-    ));
-    text.push_str(&format!("\nits own choice\n{}", choices(study)));
-    text.push_str(&format!("\n{}", slower(&study.slow)));
-    for failed in &study.failed {
-        text.push_str(&format!("no result: {}: {}\n", failed.label, failed.reason));
-    }
-    text.push('\n');
-    text
+    let title = match study.title.as_str() {
+        "" => String::new(),
+        title => format!(": {title}"),
+    };
+    let limits = Metric::ALL.into_iter().zip(percents(&study.uncertainty));
+    let limits: Vec<String> = limits
+        .map(|(metric, limit)| format!("{} {limit}", metric.title()))
+        .collect();
+    let failed = study.failed.iter();
+    let failed: String = failed
+        .map(|failed| format!("no result: {}: {}\n", failed.label, failed.reason))
+        .collect();
+    let blocks = [
+        format!(
+            "{}{title}\nconverged solution: {}; its uncertainty: {}\n",
+            study.name,
+            study.converged,
+            limits.join(", ")
+        ),
+        format!("cheapest runs\n{}{}", verdicts(study), lost(study)),
+        format!(
+            "settings that reach an error of {}\n{}",
+            Metric::Rms.title(),
+            settings(study)
+        ),
+        format!("its own choice\n{}", choices(study)),
+        format!("{}{failed}\n", slower(&study.slow)),
+    ];
+    blocks.join("\n")
 }
 
-fn percent(study: &Study, metric: Metric) -> f64 {
-    100.0 * study.uncertainty.of(metric)
+/// Errors in per cent, in the order of [`Metric::ALL`].
+fn percents(errors: &Errors) -> [String; 4] {
+    Metric::ALL.map(|metric| format!("{:.2} %", 100.0 * errors.of(metric)))
 }
 
-/// The cheapest way to each level of error, beside the peers'; levels that moorline is held to are starred.
+/// Cheapest runs of moorline and of the peers at each level of error; levels that moorline is held to are starred.
 fn verdicts(study: &Study) -> Table {
     let peers = study.peers();
     let mut head = vec!["", "error", "cost"];
@@ -209,37 +217,33 @@ fn how(verdict: &Verdict<'_>) -> String {
     peer.map_or(own.clone(), |peer| format!("{own} | {peer}"))
 }
 
-/// Where a peer is cheaper than moorline, or else where it comes closest.
+/// Errors at which a peer is cheaper than moorline, or else where it comes closest; empty without a peer.
 fn lost(study: &Study) -> String {
-    let mut text = String::new();
-    for metric in Metric::ALL {
+    let told = |duel: &Duel<'_>| {
+        format!(
+            "{} at {:.2} %, {} ({})",
+            times(duel.ratio()),
+            100.0 * duel.level,
+            duel.peer.code.name(),
+            duel.peer.label
+        )
+    };
+    let of_metric = |metric: Metric| {
         let mut duels = study.duels(metric);
         duels.sort_by(|a, b| a.ratio().total_cmp(&b.ratio()));
-        let lost: Vec<_> = duels.iter().filter(|duel| duel.ratio() <= 1.0).collect();
-        let told = |duel: &Duel<'_>| {
-            format!(
-                "{} at {:.2} %, {} ({})",
-                times(duel.ratio()),
-                100.0 * duel.level,
-                duel.peer.code.name(),
-                duel.peer.label
-            )
+        let closest = told(duels.first()?);
+        let lost = duels.iter().take_while(|duel| duel.ratio() <= 1.0).map(told);
+        let lost: Vec<String> = lost.collect();
+        let sentence = match lost.is_empty() {
+            true => format!("no peer is cheaper anywhere; closest {closest}"),
+            false => format!("a peer is cheaper: {}", lost.join("; ")),
         };
-        let Some(closest) = duels.first() else {
-            continue;
-        };
-        let sentence = if lost.is_empty() {
-            format!("no peer is cheaper anywhere; closest {}", told(closest))
-        } else {
-            let all: Vec<String> = lost.into_iter().map(told).collect();
-            format!("a peer is cheaper: {}", all.join("; "))
-        };
-        text.push_str(&format!("{}: {sentence}\n", metric.title()));
-    }
-    text
+        Some(format!("{}: {sentence}\n", metric.title()))
+    };
+    Metric::ALL.into_iter().filter_map(of_metric).collect()
 }
 
-/// What every integrator needs for each level of RMS tension.
+/// Settings that every integrator needs for each level of RMS tension.
 fn settings(study: &Study) -> Table {
     let head = ["", "error", "cost", "setting"];
     let mut table = Table::new(&head).ending_in_words();
@@ -257,21 +261,19 @@ fn settings(study: &Study) -> Table {
     table
 }
 
-/// What moorline chose for each tolerance, and what came of it.
+/// Settings that moorline chose for each tolerance, and their errors.
 fn choices(study: &Study) -> Table {
     let titles = Metric::ALL.map(Metric::title);
     let head: Vec<&str> = ["setting", "cost"].into_iter().chain(titles).collect();
     let mut table = Table::new(&head);
     for run in study.runs.iter().filter(|run| run.code == Code::Chosen) {
-        let errors = Metric::ALL.map(|metric| format!("{:.2} %", 100.0 * run.errors.of(metric)));
-        let mut row = vec![run.label.clone(), cost(Some(run))];
-        row.extend(errors);
-        table.text_row(row);
+        let row = [run.label.clone(), cost(Some(run))];
+        table.text_row(row.into_iter().chain(percents(&run.errors)).collect());
     }
     table
 }
 
-/// Where the quasi-static mode is enough.
+/// Periods from which on the quasi-static mode is enough.
 fn slower(slow: &[Slow]) -> String {
     let Some(last) = slow.last() else {
         return "the quasi-static mode was not compared with dynamics: the scene is quasi-static itself, or no sum of sines in still water\n"
@@ -282,9 +284,8 @@ fn slower(slow: &[Slow]) -> String {
     let head: Vec<&str> = head.into_iter().chain(titles).collect();
     let mut table = Table::new(&head);
     for one in slow {
-        let mut row = vec![format!("{} times as long", one.factor), period(one)];
-        row.extend(Metric::ALL.map(|metric| format!("{:.2} %", 100.0 * one.errors.of(metric))));
-        table.text_row(row);
+        let row = [format!("{} times as long", one.factor), period(one)];
+        table.text_row(row.into_iter().chain(percents(&one.errors)).collect());
     }
     let enough = slow.iter().find(|one| one.errors.of(Metric::Rms) <= ENOUGH);
     let sentence = match enough {

@@ -22,25 +22,21 @@ const EXIT_CODES: &str =
 pub enum Command {
     /// Say in words what a scene models and what it does not; find every mistake
     Check {
-        /// Scene of moorline, or deck of MoorDyn or MAP++
-        scene: PathBuf,
         #[command(flatten)]
-        host: FromHost,
+        input: Input,
     },
     /// Static equilibrium: forces, shape, sag, length on the seabed
     Statics {
-        /// Scene of moorline, or deck of MoorDyn or MAP++
-        scene: PathBuf,
+        #[command(flatten)]
+        input: Input,
         /// Print JSON with every number in full
         #[arg(long)]
         json: bool,
-        #[command(flatten)]
-        host: FromHost,
     },
     /// Run in time with the scene's motion: CSV, ParaView files, figures, report
     Run {
-        /// Scene of moorline, or deck of MoorDyn or MAP++
-        scene: PathBuf,
+        #[command(flatten)]
+        input: Input,
         /// Folder for the results; made where it is missing
         #[arg(short, long, value_name = "DIR")]
         output: PathBuf,
@@ -52,8 +48,6 @@ pub enum Command {
         velocities: bool,
         #[command(flatten)]
         moved: Moved,
-        #[command(flatten)]
-        host: FromHost,
     },
     /// Write a MoorDyn or MAP++ file as a scene with comments
     Convert {
@@ -67,16 +61,14 @@ pub enum Command {
     },
     /// Package a scene as an FMU for co-simulation
     Fmu {
-        /// Scene of moorline, or deck of MoorDyn or MAP++
-        scene: PathBuf,
+        #[command(flatten)]
+        input: Input,
         /// The .fmu file
         #[arg(short, long, value_name = "FILE")]
         output: PathBuf,
         /// Version of FMI
         #[arg(long, default_value = "2", value_name = "VERSION", value_parser = ["2", "3"])]
         fmi: String,
-        #[command(flatten)]
-        host: FromHost,
     },
     /// Speed against error on this machine: meshes, integrators and steps against a converged solution
     Accuracy {
@@ -102,7 +94,16 @@ pub enum Command {
     },
 }
 
-/// What a deck of another program leaves to its host.
+/// A file to read, with what a deck leaves to its host.
+#[derive(Debug, Args)]
+pub struct Input {
+    /// Scene of moorline, or deck of MoorDyn or MAP++
+    pub scene: PathBuf,
+    #[command(flatten)]
+    pub host: FromHost,
+}
+
+/// Values that a deck of another program leaves to its host.
 #[derive(Debug, Args)]
 pub struct FromHost {
     /// Water depth D [m], where a deck leaves it to its host
@@ -116,17 +117,18 @@ pub struct FromHost {
     vessel: Option<String>,
 }
 
-impl From<FromHost> for Supplement {
-    fn from(host: FromHost) -> Self {
+impl FromHost {
+    /// The same for the reader of decks.
+    pub fn supplement(&self) -> Supplement {
         Supplement {
-            depth: host.depth,
-            positions: host.at.into_iter().collect(),
-            vessel: host.vessel,
+            depth: self.depth,
+            positions: self.at.iter().cloned().collect(),
+            vessel: self.vessel.clone(),
         }
     }
 }
 
-/// What moves in a run, in place of what the scene says.
+/// Motion of a run, in place of that in the scene.
 #[derive(Debug, Args)]
 pub struct Moved {
     /// Motion in a CSV file: time,x,y,z[,roll,pitch,yaw] of the one vessel or of all coupled points, or time and columns such

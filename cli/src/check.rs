@@ -1,8 +1,5 @@
 //! `moorline check`: what a scene models, in words.
 
-use std::fmt::Write;
-use std::path::Path;
-
 use moorline::discretisation;
 use moorline::dynamics::Choice;
 use moorline::interface::{Causality, Interface, Layout};
@@ -10,37 +7,37 @@ use moorline::model::Model;
 use moorline::output::channels::Channels;
 use moorline::scene::{Scene, TOML};
 use moorline::simulation::{Simulation, Watch};
-use moorline_decks::{Supplement, load_with};
+use moorline_decks::load_with;
 
+use crate::arguments::Input;
 use crate::failure::Failure;
 use crate::terminal::{noted, print};
 
-/// Reads a scene, makes it discrete, and says what it models, what surprises, and which variables a host finds.
-pub fn check(path: &Path, supplement: &Supplement) -> Result<(), Failure> {
-    let loaded = load_with(path, supplement)?;
+/// Reads a scene, makes it discrete, and prints what it models, notes on it, and the variables of its FMU.
+pub fn check(input: &Input) -> Result<(), Failure> {
+    let loaded = load_with(&input.scene, &input.host.supplement())?;
     let located = |mistake| Failure::of_scene(mistake, &loaded);
     let settled = discretisation::select(&loaded.scene);
     let scene = settled.as_ref().map_or(&loaded.scene, |found| &found.scene);
     let model = Model::new(scene).map_err(located)?;
     let interface = Interface::new(scene, &model, Layout::Arrays).map_err(located)?;
     Channels::new(scene, &model).map_err(located)?;
+    let (simulation, failure) = match Simulation::new(scene) {
+        Ok(simulation) => (Some(simulation), None),
+        Err(error) => (None, Some(Failure::of_simulation(error, &loaded))),
+    };
+    let started = || simulation.iter();
     let mut text = String::new();
     if loaded.format != TOML {
-        writeln!(text, "read as a {} file", loaded.format).expect("a string takes any text");
+        text.push_str(&format!("read as a {} file\n", loaded.format));
     }
     text.push_str(&loaded.scene.in_words());
     text.push_str("elements\n");
     let chosen = settled.iter().flat_map(|found| found.in_words());
     let chosen = model.mesh_in_words(scene).into_iter().chain(chosen);
-    let (simulation, failure) = match Simulation::new(scene) {
-        Ok(simulation) => (Some(simulation), None),
-        Err(error) => (None, Some(Failure::of_simulation(error, &loaded))),
-    };
-    let steps = simulation
-        .iter()
-        .flat_map(|started| steps_in_words(scene, started));
+    let steps = started().flat_map(|simulation| steps_in_words(scene, simulation));
     for line in chosen.chain(steps) {
-        writeln!(text, "  {line}").expect("a string takes any text");
+        text.push_str(&format!("  {line}\n"));
     }
     text.push_str("\nvariables of the FMU\n");
     for (role, causality) in [
@@ -51,22 +48,18 @@ pub fn check(path: &Path, supplement: &Supplement) -> Result<(), Failure> {
         let variables = interface.variables().iter();
         for variable in variables.filter(|variable| variable.causality == causality) {
             let (name, unit) = (&variable.name, variable.unit.name);
-            writeln!(text, "  {role}: {name} [{unit}], {}", variable.description)
-                .expect("a string takes any text");
+            text.push_str(&format!("  {role}: {name} [{unit}], {}\n", variable.description));
         }
     }
-    let at_rest = simulation
-        .iter()
-        .flat_map(|started| Watch::new(scene, started).look(started));
-    let chosen = simulation.iter().flat_map(Simulation::choices);
-    let idle = match simulation {
-        Some(_) => loaded.scene.idle_with(chosen.map(|choice| choice.integrator)),
-        None => Vec::new(),
-    };
+    let at_rest = started().flat_map(|simulation| Watch::new(scene, simulation).look(simulation));
+    let idle = started().flat_map(|simulation| {
+        let integrators = simulation.choices().map(|choice| choice.integrator);
+        loaded.scene.idle_with(integrators)
+    });
     let later = at_rest.chain(idle).chain(loaded.scene.advice());
     let later = later.map(|note| loaded.locate_note(note));
     for note in loaded.notes.iter().cloned().chain(later) {
-        writeln!(text, "{}", noted(path, &note)).expect("a string takes any text");
+        text.push_str(&format!("{}\n", noted(&loaded.path, &note)));
     }
     print(&text)?;
     failure.map_or(Ok(()), Err) // a scene without an equilibrium can be described, but not run

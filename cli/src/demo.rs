@@ -1,7 +1,7 @@
 //! `moorline demo`: the main job from end to end. The built-in scene becomes an FMU; a host opens it through its C
 //! interface, moves the fairlead and reads forces, tensions and shapes back.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 use moorline::discretisation;
@@ -9,7 +9,7 @@ use moorline::interface::{Binding, Interface, Kind, Layout, Variable};
 use moorline::model::Body;
 use moorline::output::record::{Frame, Node, Record};
 use moorline::output::{collect, write_run};
-use moorline::scene::{LoadedScene, Places, Scene, TOML};
+use moorline::scene::{Scene, load_text};
 use moorline::simulation::Simulation;
 use moorline_host::{FmiVersion, Fmu, HostError, Slave};
 
@@ -25,7 +25,7 @@ const SCENE: &str = include_str!("../../scenes/demo.toml");
 
 /// Packages the built-in scene, drives the FMU, shows and writes what comes out.
 pub fn demo(folder: &Path) -> Result<(), Failure> {
-    let mut loaded = built_in_scene()?;
+    let mut loaded = load_text(Path::new("demo.toml"), SCENE.to_string())?;
     discretise(&mut loaded, discretisation::select);
     let _open = Folder::open(folder)?;
     let target = folder.join("demo.fmu");
@@ -33,12 +33,7 @@ pub fn demo(folder: &Path) -> Result<(), Failure> {
     let reference = simulate(&loaded)?;
     let record = drive(&target, &loaded.scene, &reference)
         .map_err(|error| Failure::Computation(format!("{}: {error}", target.display())))?;
-    write_run(
-        &record,
-        folder,
-        &loaded.scene.in_words(),
-        loaded.scene.output.profile,
-    )?;
+    write_run(&record, &loaded.scene, folder)?;
     print(&format!(
         "{}\nFMI 2.0 co-simulation through the C interface, steps of {} s, displacements only\n\n{}\n\
          written to {}: {}, results.csv, report.html, …\n",
@@ -50,20 +45,7 @@ pub fn demo(folder: &Path) -> Result<(), Failure> {
     ))
 }
 
-fn built_in_scene() -> Result<LoadedScene, Failure> {
-    let scene = Scene::from_toml(SCENE)
-        .map_err(|mistake| Failure::Computation(format!("the built-in scene: {mistake}")))?;
-    Ok(LoadedScene {
-        notes: scene.notes(),
-        scene,
-        text: SCENE.to_string(),
-        path: PathBuf::from("demo.toml"),
-        format: TOML,
-        places: Places::default(),
-    })
-}
-
-/// Runs the FMU as a host does. `reference` tells where the scene moves the points, and the closed-form shapes to compare with.
+/// Runs the FMU as a host does. `reference` gives the motion of the scene and the closed-form shapes to compare with.
 fn drive(target: &Path, scene: &Scene, reference: &Simulation) -> Result<Record, HostError> {
     let interface = Interface::new(scene, reference.model(), Layout::Scalars)
         .map_err(|mistake| HostError::Description(mistake.to_string()))?;
@@ -103,7 +85,7 @@ struct Host<'a> {
     reference: &'a Simulation,
     /// Displacements of the coupled points and vessels: body, axis, value reference.
     displacements: Vec<(Body, usize, u32)>,
-    /// What is recorded at every step, and its value references.
+    /// Variables recorded at every step, and their value references.
     recorded: Vec<&'a Variable>,
     references: Vec<u32>,
     /// Position and tension of every node of every line: value references of x, y, z and tension.
@@ -155,7 +137,7 @@ impl<'a> Host<'a> {
         Ok(())
     }
 
-    /// Puts what the FMU says of the equilibrium, and of the closed form, in place of what the reference says.
+    /// Replaces the equilibrium and the closed form of the reference by the FMU's.
     fn record_statics(&mut self, record: &mut Record) -> Result<(), HostError> {
         let model = self.reference.model();
         for (line, built) in record.lines.iter_mut().zip(&model.lines) {

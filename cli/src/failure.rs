@@ -1,9 +1,9 @@
-//! Why a command ended without its result: what is said, and the exit code.
+//! Failures of commands: the message and the exit code.
 
 use std::io::{self, ErrorKind, IsTerminal, Write};
 use std::process::ExitCode;
 
-use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme, LabeledSpan, NamedSource, SourceCode};
+use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteDiagnostic, NamedSource, Report};
 use moorline::dynamics::StepError;
 use moorline::output::OutputError;
 use moorline::output::package::PackageError;
@@ -17,7 +17,7 @@ const COMPUTATION: u8 = 1;
 /// Width of a message that does not go to a terminal [characters].
 const WIDTH: usize = 110;
 
-/// Why a command ended without its result.
+/// Failure of a command.
 #[derive(Debug)]
 pub enum Failure {
     /// The scene cannot be read, or is wrong.
@@ -85,7 +85,7 @@ impl Failure {
                 format!("error: cannot write to standard output: {error}\n"),
             ),
         };
-        // Nothing is left to say it to.
+        // A message that cannot be written changes nothing.
         let _ = io::stderr().write_all(text.as_bytes());
         ExitCode::from(code)
     }
@@ -93,57 +93,32 @@ impl Failure {
 
 /// The message with the lines of the scene that it is about.
 fn rendered(error: &LoadError) -> String {
+    let mistakes = error.mistakes();
+    let labels = mistakes.iter().filter_map(|mistake| {
+        let label = if mistakes.len() == 1 {
+            "here"
+        } else {
+            &mistake.problem
+        };
+        let span = mistake.span.clone()?;
+        Some(LabeledSpan::new_with_span(Some(label.to_string()), span))
+    });
+    let mut report = Report::new(MietteDiagnostic::new(error.to_string()).with_labels(labels));
+    if let LoadError::Scene { path, text, .. } = error {
+        report = report.with_source_code(NamedSource::new(path.display().to_string(), text.clone()));
+    }
     let plain = !io::stderr().is_terminal() || std::env::var_os("NO_COLOR").is_some();
-    let theme = if plain {
-        GraphicalTheme::unicode_nocolor()
-    } else {
-        GraphicalTheme::unicode()
+    let theme = match plain {
+        true => GraphicalTheme::unicode_nocolor(),
+        false => GraphicalTheme::unicode(),
     };
-    let mut text = String::new();
     let handler = GraphicalReportHandler::new_themed(theme)
         .with_width(WIDTH)
         .with_links(false);
-    match handler.render_report(&mut text, &Shown::new(error)) {
+    let mut text = String::new();
+    match handler.render_report(&mut text, report.as_ref()) {
         Ok(()) => text,
         Err(_) => format!("error: {}\n", error.list()),
-    }
-}
-
-/// Mistakes in a file beside its lines.
-#[derive(Debug, thiserror::Error)]
-#[error("{error}")]
-struct Shown<'e> {
-    error: &'e LoadError,
-    source_text: Option<NamedSource<String>>,
-}
-
-impl Shown<'_> {
-    fn new(error: &LoadError) -> Shown<'_> {
-        let source_text = match error {
-            LoadError::Scene { path, text, .. } => {
-                Some(NamedSource::new(path.display().to_string(), text.clone()))
-            }
-            LoadError::Unreadable { .. } | LoadError::NotText { .. } => None,
-        };
-        Shown { error, source_text }
-    }
-}
-
-impl Diagnostic for Shown<'_> {
-    fn source_code(&self) -> Option<&dyn SourceCode> {
-        self.source_text.as_ref().map(|text| text as &dyn SourceCode)
-    }
-
-    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
-        let mistakes = self.error.mistakes();
-        let alone = mistakes.len() == 1;
-        Some(Box::new(mistakes.iter().filter_map(move |mistake| {
-            let label = if alone { "here" } else { &mistake.problem };
-            Some(LabeledSpan::new_with_span(
-                Some(label.to_string()),
-                mistake.span.clone()?,
-            ))
-        })))
     }
 }
 
@@ -163,9 +138,7 @@ impl From<OutputError> for Failure {
     fn from(error: OutputError) -> Self {
         match &error {
             OutputError::File { source, .. } => Failure::of_file(source.kind(), error.to_string()),
-            OutputError::Folder { .. } | OutputError::Closed { .. } | OutputError::NotAFolder { .. } => {
-                Failure::Argument(error.to_string())
-            }
+            _ => Failure::Argument(error.to_string()),
         }
     }
 }

@@ -8,14 +8,14 @@ use moorline::output::fmi::FmiVersion;
 use moorline::output::package::{find_library, write_fmu};
 use moorline::scene::LoadedScene;
 use moorline::simulation::Watch;
-use moorline_decks::Supplement;
 
+use crate::arguments::Input;
 use crate::failure::Failure;
 use crate::terminal::{discretise, print, read_scene, remark_all, simulate};
 
 /// Packages a scene for the FMI version "2" or "3".
-pub fn fmu(path: &Path, supplement: &Supplement, target: &Path, version: &str) -> Result<(), Failure> {
-    let mut loaded = read_scene(path, supplement)?;
+pub fn fmu(input: &Input, target: &Path, version: &str) -> Result<(), Failure> {
+    let mut loaded = read_scene(&input.scene, &input.host.supplement())?;
     check_file(target)?;
     discretise(&mut loaded, discretisation::select);
     // A scene without an equilibrium would make an FMU that no host can start.

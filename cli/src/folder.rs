@@ -24,7 +24,7 @@ struct Place {
 pub struct Folder(Place);
 
 impl Folder {
-    /// Makes a folder where it is missing, and sees that it takes files. From now on Ctrl-C says what is kept in it.
+    /// Makes a folder where it is missing, and checks that it takes files. From now on Ctrl-C names what is kept in it.
     pub fn open(path: &Path) -> Result<Folder, Failure> {
         let above = path.ancestors();
         let missing = above.take_while(|path| !path.as_os_str().is_empty() && !path.exists());
@@ -34,7 +34,7 @@ impl Folder {
         });
         open_folder(path)?;
         let place = folder.0.clone();
-        // Where no handler can be had, Ctrl-C ends the program as it ends any other.
+        // Without a handler, Ctrl-C ends the program as it ends any other.
         let _ = ctrlc::set_handler(move || place.interrupt());
         Ok(folder)
     }
@@ -57,7 +57,7 @@ impl Place {
         }
     }
 
-    /// Ends the program and says what is kept.
+    /// Ends the program with a message on what is kept.
     fn interrupt(&self) -> ! {
         remove_partial(&self.path);
         self.remove_empty();
@@ -66,7 +66,7 @@ impl Place {
             true => format!("{} holds what was written before", self.path.display()),
             false => "nothing was written".to_string(),
         };
-        // Nothing is left to say it to.
+        // A message that cannot be written changes nothing.
         let _ = writeln!(io::stderr(), "interrupted: {kept}");
         std::process::exit(INTERRUPTED)
     }

@@ -24,29 +24,20 @@ use run::Pace;
 
 fn main() -> ExitCode {
     let result = match Arguments::parse().command {
-        Command::Check { scene, host } => check::check(&scene, &host.into()),
-        Command::Statics { scene, json, host } => statics::statics(&scene, &host.into(), json),
+        Command::Check { input } => check::check(&input),
+        Command::Statics { input, json } => statics::statics(&input, json),
         Command::Run {
-            scene,
+            input,
             output,
             communication_step,
             velocities,
             moved,
-            host,
         } => {
-            let pace = match communication_step {
-                Some(step) => Pace::Host { step, velocities },
-                None => Pace::Scene,
-            };
-            run::run(&scene, &host.into(), &moved.into(), &output, pace)
+            let pace = communication_step.map_or(Pace::Scene, |step| Pace::Host { step, velocities });
+            run::run(&input, &moved.into(), &output, pace)
         }
-        Command::Convert { deck, output, host } => convert::convert(&deck, &output, &host.into()),
-        Command::Fmu {
-            scene,
-            output,
-            fmi,
-            host,
-        } => fmu::fmu(&scene, &host.into(), &output, &fmi),
+        Command::Convert { deck, output, host } => convert::convert(&deck, &output, &host.supplement()),
+        Command::Fmu { input, output, fmi } => fmu::fmu(&input, &output, &fmi),
         Command::Accuracy {
             scenes,
             output,
@@ -54,7 +45,7 @@ fn main() -> ExitCode {
             moved,
             host,
         } => {
-            let (host, moved) = (host.into(), moved.into());
+            let (host, moved) = (host.supplement(), moved.into());
             accuracy::accuracy(&scenes, &host, &moved, &output, peers.as_deref())
         }
         Command::Demo { output } => demo::demo(&output),

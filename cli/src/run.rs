@@ -12,8 +12,8 @@ use moorline::output::record::{Column, Record};
 use moorline::output::{collect, write_run};
 use moorline::scene::{Drive, LoadedScene, Reconstruction};
 use moorline::simulation::{Simulation, Watch};
-use moorline_decks::Supplement;
 
+use crate::arguments::Input;
 use crate::failure::Failure;
 use crate::folder::Folder;
 use crate::summary::run_summary;
@@ -22,7 +22,7 @@ use crate::terminal::{discretise, print, progress, read_scene, remark_all, simul
 /// Shapes kept of a run whose scene does not ask for all of them [-].
 const FRAMES_MAX: usize = 240;
 
-/// How the motion reaches the mooring.
+/// Coupling of the motion to the mooring.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Pace {
     /// Exactly.
@@ -32,24 +32,18 @@ pub enum Pace {
     Host {
         /// Communication step [s].
         step: f64,
-        /// Whether velocities are set too.
+        /// Velocities are set too.
         velocities: bool,
     },
 }
 
-/// Runs a scene, moved as it says itself or as is given beside it, and writes everything that comes out into a folder.
-pub fn run(
-    path: &Path,
-    supplement: &Supplement,
-    drive: &Drive,
-    folder: &Path,
-    pace: Pace,
-) -> Result<(), Failure> {
-    let mut loaded = read_scene(path, supplement)?;
+/// Runs a scene, with its own motion or with a given one, and writes all results into a folder.
+pub fn run(input: &Input, drive: &Drive, folder: &Path, pace: Pace) -> Result<(), Failure> {
+    let mut loaded = read_scene(&input.scene, &input.host.supplement())?;
     if let Pace::Host { .. } = pace
         && let Some(packaged) = discretisation::frozen(&loaded.scene)
     {
-        // the elements of the FMU, which know nothing of this run's motion and duration
+        // The elements of the FMU do not depend on the motion and duration of this run.
         loaded.scene = packaged;
     }
     let mut motion = None;
@@ -86,12 +80,7 @@ pub fn run(
     let record = collect::record(&loaded.scene, &simulation, still.as_ref(), columns);
     let mut watch = Watch::new(&loaded.scene, &simulation);
     let record = step_through(&loaded, &mut simulation, &recorder, pace, record, &mut watch)?;
-    write_run(
-        &record,
-        folder,
-        &loaded.scene.in_words(),
-        loaded.scene.output.profile,
-    )?;
+    write_run(&record, &loaded.scene, folder)?;
     print(&format!(
         "{}{}\nwritten to {}\n",
         motion.map_or(String::new(), |words| words + "\n"),
@@ -152,7 +141,7 @@ fn step_through(
     Ok(record)
 }
 
-/// What has blown up is no result.
+/// Refuses a row with a value that is not finite.
 fn check_finite(time: f64, columns: &[Column], row: &[f64]) -> Result<(), Failure> {
     // The first column is the time.
     let values = columns.iter().skip(1).zip(row);
@@ -165,7 +154,7 @@ fn check_finite(time: f64, columns: &[Column], row: &[f64]) -> Result<(), Failur
     })
 }
 
-/// What a row of results holds: variables of the interface, then channels.
+/// Columns of the results: variables of the interface, then channels.
 struct Recorder<'i> {
     variables: Vec<&'i Variable>,
     channels: Channels,

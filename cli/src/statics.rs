@@ -1,21 +1,20 @@
 //! `moorline statics`: the static equilibrium as a table or as JSON.
 
 use std::fmt::Write;
-use std::path::Path;
 
 use moorline::discretisation;
 use moorline::output::{collect, json};
 use moorline::scene::{InitialShape, Note};
 use moorline::simulation::Watch;
-use moorline_decks::Supplement;
 
+use crate::arguments::Input;
 use crate::failure::Failure;
 use crate::summary::{Table, static_table};
-use crate::terminal::{discretise, print, read_scene, remark, remark_all, simulate};
+use crate::terminal::{discretise, print, read_scene, remark_all, simulate};
 
 /// Solves the equilibrium and prints it.
-pub fn statics(path: &Path, supplement: &Supplement, as_json: bool) -> Result<(), Failure> {
-    let mut loaded = read_scene(path, supplement)?;
+pub fn statics(input: &Input, as_json: bool) -> Result<(), Failure> {
+    let mut loaded = read_scene(&input.scene, &input.host.supplement())?;
     if let Some(water) = &mut loaded.scene.water {
         water.waves = None; // an equilibrium is that of the sea at rest
     }
@@ -28,7 +27,7 @@ pub fn statics(path: &Path, supplement: &Supplement, as_json: bool) -> Result<()
         if line.initial != InitialShape::Static {
             let at = format!("lines[{index}].initial");
             let text = "runs start on this shape, not in the equilibrium that is shown";
-            remark(path, &loaded.locate_note(Note::new(at, text)));
+            remark_all(&loaded, vec![Note::new(at, text)]);
         }
     }
     let statics = collect::statics(&loaded.scene, &simulation);

@@ -12,7 +12,7 @@ const DIGITS: usize = 7;
 #[derive(Debug)]
 pub struct Table {
     rows: Vec<Vec<String>>,
-    /// Whether words stand in the last column too.
+    /// The last column holds words.
     ends_in_words: bool,
 }
 
@@ -69,7 +69,7 @@ impl fmt::Display for Table {
     }
 }
 
-/// The lines in equilibrium beside the closed-form catenary; those that have an equilibrium.
+/// Lines that have an equilibrium, compared with the closed-form catenary.
 pub fn static_table(record: &Record) -> Table {
     let mut table = Table::new(&["static equilibrium", "solved", "catenary", "difference"]);
     for line in &record.lines {
@@ -102,7 +102,7 @@ pub fn static_table(record: &Record) -> Table {
     table
 }
 
-/// What a run came to: ranges in time, and its cost.
+/// Results of a run: ranges in time, and its cost.
 pub fn run_summary(record: &Record) -> String {
     let mut table = Table::new(&["in time", "least", "mean", "greatest"]);
     for LineRecord { name, .. } in &record.lines {

@@ -1,4 +1,4 @@
-//! What the commands read from and say to their user: scenes, remarks, results, progress.
+//! Input and output of all commands: scenes, remarks, results, progress.
 
 use std::io::{self, Write};
 use std::path::Path;
@@ -18,8 +18,8 @@ pub fn read_scene(path: &Path, supplement: &Supplement) -> Result<LoadedScene, F
     Ok(loaded)
 }
 
-/// Says a remark on a scene on standard error. One that nobody can read is no reason to stop.
-pub fn remark(path: &Path, note: &Note) {
+/// Writes a remark on a scene to standard error. A remark that cannot be written does not end the command.
+fn remark(path: &Path, note: &Note) {
     let _ = writeln!(io::stderr(), "{}", noted(path, note));
 }
 

@@ -140,7 +140,7 @@ impl<'s> Draft<'s> {
         self.supplement.vessel.as_deref().unwrap_or("vessel")
     }
 
-    /// Whether the scene has a vessel of this name.
+    /// Returns whether the scene has a vessel of this name.
     pub(crate) fn has_vessel(&self, name: &str) -> bool {
         self.scene.vessels.iter().any(|vessel| vessel.name == name)
     }

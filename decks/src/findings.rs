@@ -23,7 +23,7 @@ impl<T> Placed<T> {
     }
 }
 
-/// What a reader has found so far.
+/// Mistakes and remarks found so far.
 #[derive(Debug, Default)]
 pub(crate) struct Findings {
     pub mistakes: Vec<SceneError>,

@@ -31,7 +31,7 @@ use moorline::scene::{
 use draft::Draft;
 use findings::MISTAKES_MAX;
 
-/// What a deck of another program leaves to its host.
+/// Values that a deck of another program leaves to its host.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Supplement {
     /// Depth of the water [m], where the deck gives none.
@@ -43,12 +43,12 @@ pub struct Supplement {
 }
 
 impl Supplement {
-    /// Whether nothing is given.
+    /// Returns whether nothing is given.
     pub fn is_empty(&self) -> bool {
         *self == Supplement::default()
     }
 
-    /// Why a scene takes no supplement.
+    /// Reason why a scene takes no supplement.
     fn problem_of_scene(&self) -> &'static str {
         match (self.depth, &self.vessel) {
             (Some(_), _) => {
@@ -67,7 +67,7 @@ impl Supplement {
 /// Reads and checks a file: a scene, or a deck of MoorDyn or MAP++. The files that it names stand relative to its folder.
 ///
 /// # Errors
-/// What keeps the file from being read, or all mistakes in it.
+/// The reason why the file cannot be read, or all mistakes in it.
 pub fn load(path: &Path) -> Result<LoadedScene, LoadError> {
     load_with(path, &Supplement::default())
 }

@@ -1,4 +1,4 @@
-//! Tables of a deck: rows of cells that know their column and their place.
+//! Tables of a deck: rows of cells with their columns and their places in the file.
 
 use std::collections::BTreeSet;
 use std::fmt::Display;
@@ -15,25 +15,26 @@ pub(crate) const ROWS_MAX: usize = 5_000;
 /// A column of a table.
 #[derive(Debug)]
 pub(crate) struct Column {
-    /// Its name in messages, as the format's own documentation has it.
+    /// Name in messages, as in the format's own documentation.
     pub name: &'static str,
     /// Unit of its numbers; "-" where they have none.
     unit: &'static str,
-    /// Names in headers, in capitals.
-    pub spellings: &'static [&'static str],
+    /// Names in headers, in capitals between blanks.
+    pub spellings: &'static str,
 }
 
 /// A column by its name, unit and spellings.
-pub(crate) const fn column(
-    name: &'static str,
-    unit: &'static str,
-    spellings: &'static [&'static str],
-) -> Column {
+pub(crate) const fn column(name: &'static str, unit: &'static str, spellings: &'static str) -> Column {
     Column {
         name,
         unit,
         spellings,
     }
+}
+
+/// Returns whether a word is in a list of words between blanks; capitals do not count.
+pub(crate) fn is_one_of(word: &str, list: &str) -> bool {
+    list.split(' ').any(|known| known.eq_ignore_ascii_case(word))
 }
 
 /// Reads the rows of a section that have as many cells as one of the lists of columns, which are in ascending order, or more than
@@ -171,10 +172,8 @@ pub(crate) fn meant<'a>(name: &str, known: impl IntoIterator<Item = &'a str> + C
 /// Remarks on names above a table that are those of other columns: readers go by the place of a column, not by its name.
 pub(crate) fn compare_header(header: &Row<'_>, columns: &[Column], findings: &mut Findings) {
     let names = header.fields();
-    let is = |text: &str, column: &Column| {
-        let upper = text.trim_matches(['(', ')', '*', '#']).to_uppercase();
-        column.spellings.contains(&upper.as_str())
-    };
+    let is =
+        |text: &str, column: &Column| is_one_of(text.trim_matches(['(', ')', '*', '#']), column.spellings);
     let wrong = names.iter().zip(columns).enumerate().find(|(_, (name, column))| {
         !is(name.text, column) && columns.iter().any(|other| is(name.text, other))
     });

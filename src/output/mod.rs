@@ -22,6 +22,8 @@ use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
+use crate::scene::Scene;
+
 /// Why something could not be written.
 #[derive(Debug, thiserror::Error)]
 pub enum OutputError {
@@ -192,21 +194,16 @@ const LINKS_MAX: usize = 40;
 /// Most shapes written for ParaView [-]; of more, evenly chosen ones stand for all.
 const VTK_FRAMES_MAX: usize = 240;
 
-/// Writes a run into a folder: `results.csv` with `results.units.csv`, `profile.csv` where `profile` asks for it, the
-/// shapes for ParaView (`lines.pvd` and its folder), every figure as SVG, and `report.html`. `words` says what is modelled.
+/// Writes a run of a scene into a folder: `results.csv` with `results.units.csv`, `profile.csv` where the scene asks for it, the
+/// shapes for ParaView (`lines.pvd` and its folder), every figure as SVG, and `report.html`.
 ///
 /// # Errors
 /// The first file or folder that the operating system refuses.
-pub fn write_run(
-    record: &record::Record,
-    folder: &Path,
-    words: &str,
-    profile: bool,
-) -> Result<(), OutputError> {
+pub fn write_run(record: &record::Record, scene: &Scene, folder: &Path) -> Result<(), OutputError> {
     make_folder(folder)?;
     write_file(&folder.join("results.csv"), |w| csv::write_results(record, w))?;
     write_file(&folder.join("results.units.csv"), |w| csv::write_units(record, w))?;
-    if profile {
+    if scene.output.profile {
         write_file(&folder.join("profile.csv"), |w| csv::write_profile(record, w))?;
     }
     write_shapes(record, folder)?;
@@ -214,7 +211,7 @@ pub fn write_run(
         let path = folder.join(format!("{stem}.svg"));
         write_file(&path, |w| w.write_all(svg.as_bytes()))?;
     }
-    let html = report::html(record, words);
+    let html = report::html(record, &scene.in_words());
     write_file(&folder.join("report.html"), |w| w.write_all(html.as_bytes()))
 }
 

@@ -78,7 +78,7 @@ impl<'t> Row<'t> {
     }
 }
 
-/// Reads a number in the forms of C and of Fortran (`1.0D5`).
+/// Returns the number [-] that a word gives in the form of C or of Fortran (`1.0D5`).
 ///
 /// # Errors
 /// What it is instead.

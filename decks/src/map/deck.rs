@@ -4,7 +4,8 @@ use moorline::scene::rows::{Field, Row, number, shown};
 
 use crate::findings::{Findings, Placed};
 use crate::table::{
-    Cells, Column, ROWS_MAX, check_unique, column, compare_header, meant, placed_text, read_rows, title,
+    Cells, Column, ROWS_MAX, check_unique, column, compare_header, is_one_of, meant, placed_text, read_rows,
+    title,
 };
 
 /// A whole deck.
@@ -79,36 +80,36 @@ pub(super) struct Line {
 }
 
 const LINE_TYPES: &[Column] = &[
-    column("LineType", "-", &["LINETYPE"]),
-    column("Diam", "m", &["DIAM"]),
-    column("MassDenInAir", "kg/m", &["MASSDENINAIR", "MASSDEN"]),
-    column("EA", "N", &["EA"]),
-    column("CB", "-", &["CB"]),
-    column("CIntDamp", "-", &["CINTDAMP"]),
-    column("Ca", "-", &["CA"]),
-    column("Cdn", "-", &["CDN"]),
-    column("Cdt", "-", &["CDT"]),
+    column("LineType", "-", "LINETYPE"),
+    column("Diam", "m", "DIAM"),
+    column("MassDenInAir", "kg/m", "MASSDENINAIR MASSDEN"),
+    column("EA", "N", "EA"),
+    column("CB", "-", "CB"),
+    column("CIntDamp", "-", "CINTDAMP"),
+    column("Ca", "-", "CA"),
+    column("Cdn", "-", "CDN"),
+    column("Cdt", "-", "CDT"),
 ];
 
 const NODES: &[Column] = &[
-    column("Node", "-", &["NODE"]),
-    column("Type", "-", &["TYPE"]),
-    column("X", "m", &["X"]),
-    column("Y", "m", &["Y"]),
-    column("Z", "m", &["Z"]),
-    column("M", "kg", &["M"]),
-    column("B", "m³", &["B", "V"]),
-    column("FX", "N", &["FX"]),
-    column("FY", "N", &["FY"]),
-    column("FZ", "N", &["FZ"]),
+    column("Node", "-", "NODE"),
+    column("Type", "-", "TYPE"),
+    column("X", "m", "X"),
+    column("Y", "m", "Y"),
+    column("Z", "m", "Z"),
+    column("M", "kg", "M"),
+    column("B", "m³", "B V"),
+    column("FX", "N", "FX"),
+    column("FY", "N", "FY"),
+    column("FZ", "N", "FZ"),
 ];
 
 const LINES: &[Column] = &[
-    column("Line", "-", &["LINE", "ELEMENT"]),
-    column("LineType", "-", &["LINETYPE"]),
-    column("UnstrLen", "m", &["UNSTRLEN"]),
-    column("NodeAnch", "-", &["NODEANCH"]),
-    column("NodeFair", "-", &["NODEFAIR"]),
+    column("Line", "-", "LINE ELEMENT"),
+    column("LineType", "-", "LINETYPE"),
+    column("UnstrLen", "m", "UNSTRLEN"),
+    column("NodeAnch", "-", "NODEANCH"),
+    column("NodeFair", "-", "NODEFAIR"),
 ];
 
 /// Flags in capitals that choose what MAP++ writes.
@@ -199,7 +200,7 @@ fn sections(text: &str) -> (Vec<Row<'_>>, Vec<Section<'_>>) {
     (title, sections)
 }
 
-/// Whether a text is a MAP++ file: its nodes have the ten columns that only MAP++ has.
+/// Returns whether a text is a MAP++ file: its nodes have the ten columns that only MAP++ has.
 pub(crate) fn is_deck(text: &str) -> bool {
     let (_, sections) = sections(text);
     let nodes = sections.iter().find(|section| section.table == Table::Nodes);
@@ -213,11 +214,6 @@ pub(crate) fn is_deck(text: &str) -> bool {
     };
     let options_of_map = options.any(|section| section.rows.iter().any(key_first));
     options_of_map || nodes.body().iter().take(ROWS_MAX).any(is_node_of_map)
-}
-
-/// Whether a word is in a list of words between blanks.
-fn is_one_of(word: &str, list: &str) -> bool {
-    list.split(' ').any(|known| known == word)
 }
 
 /// A row of nodes that MoorDyn cannot mean: the seabed as a word, or forces to be found.

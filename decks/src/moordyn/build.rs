@@ -51,7 +51,7 @@ fn plain(property: &Property) -> f64 {
     }
 }
 
-/// The file beside a deck that an option asks for: of waves by components (7), or of a steady current (1); `None` of other options.
+/// The file in the folder of a deck that an option names: of waves by components (7), or of a steady current (1); `None` of other options.
 pub(super) fn water_file(key: &str, value: &str) -> Option<&'static str> {
     match (key.to_uppercase().as_str(), value) {
         ("WAVEKIN", "7") => Some(WAVES_FILE),
@@ -246,7 +246,7 @@ fn surroundings(deck: &Deck, draft: &mut Draft<'_>) {
     });
 }
 
-/// The depth of a deck [m], down to its deepest anchor, whatever WtrDpth says.
+/// The depth of a deck [m], down to its deepest anchor even if WtrDpth is less.
 fn down_to_the_anchors(given: &Placed<f64>, draft: &mut Draft<'_>) -> f64 {
     let depth = given.value;
     let Some(anchor) = draft.deepest_anchor() else {
@@ -264,7 +264,7 @@ fn down_to_the_anchors(given: &Placed<f64>, draft: &mut Draft<'_>) -> f64 {
     anchored
 }
 
-/// Waves and current in files beside the deck.
+/// Waves and current from files in the folder of the deck.
 fn moving_water(deck: &Deck, water: &mut Water, draft: &mut Draft<'_>) {
     for (key, value) in &deck.options.surroundings {
         let Some(name) = water_file(key, &value.value) else {
@@ -385,7 +385,7 @@ fn clamp(end: &Placed<LineEnd>, leaves: bool, deck: &Deck, draft: &mut Draft<'_>
 fn output(deck: &Deck, draft: &mut Draft<'_>) {
     for placed in &deck.outputs {
         let name = &placed.value;
-        // MoorDyn says that it does not know these and goes on.
+        // MoorDyn warns of these and goes on.
         if ["FX", "FY", "FZ"].contains(&name.to_uppercase().as_str()) {
             let text =
                 format!("the output {name:?} names no object, and MoorDyn writes none for it: left out");

@@ -1,4 +1,4 @@
-//! What a deck says, in its own terms: plain data with places, nothing interpreted.
+//! Contents of a deck in its own terms: plain data with places, nothing interpreted.
 
 use crate::findings::Placed;
 
@@ -151,7 +151,7 @@ pub(super) struct Point {
     pub added_mass: Placed<f64>,
 }
 
-/// What a point, rod or body is attached to.
+/// Attachment of a point, rod or body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Attachment {
     Fixed,
@@ -185,7 +185,7 @@ pub(super) struct Line {
     pub outputs: Placed<String>,
 }
 
-/// What a line ends at.
+/// Thing that a line ends at.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum LineEnd {
     Point(usize),
@@ -193,7 +193,7 @@ pub(super) enum LineEnd {
     Rod(usize, bool),
 }
 
-/// OPTIONS that say something; absent ones are `None`.
+/// OPTIONS with an effect; absent ones are `None`.
 #[derive(Debug, Default)]
 pub(super) struct Options {
     /// g [m/s²].
@@ -218,7 +218,7 @@ pub(super) struct Options {
     pub output_interval: Option<Placed<f64>>,
     /// TmaxIC of 0: MoorDyn starts from the positions in the file, without time to come to rest.
     pub starts_at_once: Option<Placed<String>>,
-    /// Waves and currents, where asked for: key and value.
+    /// Waves and currents: key and value.
     pub surroundings: Vec<(String, Placed<String>)>,
     /// Keys that need nothing here.
     pub unneeded: Vec<Placed<String>>,

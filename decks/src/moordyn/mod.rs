@@ -1,10 +1,10 @@
 //! MoorDyn input files, version 1 and 2, in the styles of OpenFAST and of MoorDyn-C.
 //!
 //! text -> [`sections`] (rows under headers) -> [`tables`], [`options`] (typed cells) -> [`deck`] -> [`build`] (a scene).
-//! [`refusals`] holds what a deck can say and moorline cannot model, a function for every feature; [`traps`] what is often
-//! misread. Each stage reports all of its mistakes, and the next begins only where there are none.
+//! [`refusals`] names features of decks that moorline does not model, [`traps`] what is often misread. Each stage reports all
+//! of its mistakes, and the next begins only where there are none.
 //!
-//! Rules: a header is a line that holds `---`, told by the words in it; two lines below the header of a table name columns
+//! Rules: a header is a line that holds `---`, recognised by the words in it; two lines below the header of a table name columns
 //! and units and are never read; columns count by their place; `#` begins a comment; options are `value key`.
 //! Source: the parsers of OpenFAST (`modules/moordyn/src/MoorDyn.f90`) and MoorDyn-C (`source/MoorDyn2.cpp`), and the input
 //! file documentation of MoorDyn v2.

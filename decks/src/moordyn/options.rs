@@ -5,14 +5,14 @@ use moorline::scene::rows::{Row, number, shown};
 use super::deck::{Options, Property};
 use super::tables::word_property;
 use crate::findings::{Findings, Placed};
-use crate::table::{ROWS_MAX, meant, placed_text};
+use crate::table::{ROWS_MAX, is_one_of, meant, placed_text};
 
 /// Keys in capitals that choose how MoorDyn solves, starts and writes: nothing here needs them.
 const UNNEEDED: &str = "DTM DT CFL TSCHEME DTIC ICDT CDSCALEIC ICDFAC THRESHIC ICTHRESH FILEIC ICGENDYNAMIC \
     GENDYNAMICIC ICFILE WRITELOG WRITEUNITS DISABLEOUTPUT DISABLEOUTTIME OUTSWITCH INERTIALF \
     INERTIALF_RAMPT ECHO DTWAVE UNIFYCURRENTGRID DTOUTSNAP";
 
-/// Meanings of the keys that say something, with their spellings in capitals.
+/// Meanings of the keys with an effect, with their spellings in capitals.
 const NEEDED: [(Meaning, &str); 12] = [
     (Meaning::Gravity, "G GRAVITY"),
     (Meaning::Density, "RHO RHOW WTRDNSTY"),
@@ -49,11 +49,6 @@ fn meaning(key: &str) -> Option<Meaning> {
     known.map(|(meaning, _)| *meaning)
 }
 
-/// Whether a key is in a list of keys between blanks; capitals do not count.
-fn is_one_of(key: &str, list: &str) -> bool {
-    list.split(' ').any(|known| known.eq_ignore_ascii_case(key))
-}
-
 /// Keys that name a file with a state to start from.
 const STATE_FILES: &str = "FILEIC ICFILE";
 
@@ -64,7 +59,7 @@ struct Choice {
 }
 
 impl Choice {
-    /// Whether another row gives the same option.
+    /// Returns whether another row gives the same option.
     fn repeats(&self, other: &Choice) -> bool {
         let (a, b) = (&self.key.value, &other.key.value);
         let several = [Meaning::Friction, Meaning::Surroundings].map(Some);
@@ -159,7 +154,7 @@ fn take(options: &mut Options, meaning: Meaning, Choice { key, value }: &Choice,
             Ok(depth) => options.depth = Some(value.with(depth)),
             Err(problem) => wrong(problem),
         },
-        // 0 asks for none of these, and other times to come to rest in change nothing here.
+        // 0 is none of these, and times to come to rest in other than 0 change nothing here.
         Meaning::Surroundings | Meaning::Soundings | Meaning::Relaxation
             if is_zero != (meaning == Meaning::Relaxation) =>
         {

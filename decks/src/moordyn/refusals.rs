@@ -52,7 +52,7 @@ fn stiffness_law(stiffness: &Property) -> Option<&'static str> {
     }
 }
 
-/// BA from a table, a ratio for a viscoelastic line, viscoelastic BA beside one EA.
+/// BA from a table, a ratio for a viscoelastic line, viscoelastic BA with a single EA.
 fn damping_law(damping: &Property, visco: bool) -> Option<String> {
     let problem = match damping {
         Property::Number(value) if *value < 0.0 && visco => {

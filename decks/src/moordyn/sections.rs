@@ -3,8 +3,9 @@
 use moorline::scene::rows::{Row, number, shown};
 
 use crate::findings::{Findings, Placed};
+use crate::table::is_one_of;
 
-/// What a section holds.
+/// Kind of a section.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
     LineTypes,
@@ -59,7 +60,7 @@ impl Kind {
             .map_or("", |(_, name, _)| name)
     }
 
-    /// Whether two lines below the header name columns and units.
+    /// Returns whether two lines below the header name columns and units.
     fn is_table(self) -> bool {
         !matches!(self, Kind::Options | Kind::Outputs)
     }
@@ -70,7 +71,7 @@ impl Kind {
 pub(super) struct Section<'t> {
     pub kind: Kind,
     pub header: Row<'t>,
-    /// The number of rows, which decks of version 1 say below the header.
+    /// Number of rows, which decks of version 1 give below the header.
     count: Option<Placed<Option<usize>>>,
     /// The line that names the columns of a table.
     pub names: Option<Row<'t>>,
@@ -82,7 +83,7 @@ pub(super) struct Section<'t> {
 /// A deck in parts.
 #[derive(Debug, Default)]
 pub(super) struct Sections<'t> {
-    /// What stands above the first section.
+    /// Rows above the first section.
     pub preamble: Vec<Row<'t>>,
     pub list: Vec<Section<'t>>,
 }
@@ -110,7 +111,7 @@ fn kind_of(row: &Row<'_>) -> Option<Kind> {
     known.map(|(kind, ..)| *kind)
 }
 
-/// Whether a text is a MoorDyn file: it has a header of such files.
+/// Returns whether a text is a MoorDyn file: it has a header of such files.
 pub(crate) fn is_deck(text: &str) -> bool {
     let mut rows = Row::all(text).map(|row| row.before('#'));
     rows.any(|row| {
@@ -122,7 +123,7 @@ pub(crate) fn is_deck(text: &str) -> bool {
 /// Cuts a deck at its headers.
 pub(super) fn split<'t>(text: &'t str, findings: &mut Findings) -> Sections<'t> {
     let mut sections = Sections::default();
-    // Rows below a header that heads nothing are told of once.
+    // Rows below an unknown header are one mistake.
     let mut unknown: Option<Row<'t>> = None;
     for whole in Row::all(text) {
         let row = whole.before('#');
@@ -180,12 +181,13 @@ fn begin<'t>(sections: &mut Sections<'t>, header: Row<'t>, findings: &mut Findin
 /// `3  NLines - number of lines`.
 fn count(row: &Row<'_>) -> Option<Placed<Option<usize>>> {
     let fields = row.fields();
-    let key = fields.get(1)?.text.to_uppercase();
+    let [value, key, ..] = fields.as_slice() else {
+        return None;
+    };
     let counted = "NTYPES NLINETYPES NCONNECTS NCONNECTIONS NPOINTS NLINES";
-    counted.split(' ').any(|known| known == key).then_some(())?;
-    Some(Placed {
-        value: fields[0].text.parse().ok(),
-        span: fields[0].span.clone(),
+    is_one_of(key.text, counted).then(|| Placed {
+        value: value.text.parse().ok(),
+        span: value.span.clone(),
     })
 }
 
@@ -204,7 +206,7 @@ fn add<'t>(section: &mut Section<'t>, row: Row<'t>) {
     }
 }
 
-/// MoorDyn v1 would read that many rows and no more.
+/// Checks the number of rows, beyond which MoorDyn v1 reads none.
 fn check_count(section: &Section<'_>, findings: &mut Findings) {
     let Some(count) = &section.count else {
         return;
@@ -220,7 +222,7 @@ fn check_count(section: &Section<'_>, findings: &mut Findings) {
     findings.wrong(section.kind.name(), count, problem);
 }
 
-/// A row of the table in place of names and units would be lost without a word.
+/// Checks that no row of the table stands in place of names and units, where it would be lost.
 fn check_names(section: &Section<'_>, findings: &mut Findings) {
     for row in [&section.names, &section.units].into_iter().flatten() {
         let fields = row.fields();

@@ -6,144 +6,137 @@ use super::deck::{Attachment, Body, Deck, Line, LineEnd, LineType, Point, Proper
 use super::options;
 use super::sections::{Kind, Section, Sections};
 use crate::findings::{Findings, Placed};
-use crate::table::{self, Cells, Column, ROWS_MAX, check_unique, column, placed_text};
+use crate::table::{self, Cells, Column, ROWS_MAX, check_unique, column, is_one_of, placed_text};
+
+const TYPE_NAME: Column = column("Name", "-", "NAME TYPENAME LINETYPE TYPE");
+const DIAMETER: Column = column("Diam", "m", "DIAM DIAMETER D");
+const EA: Column = column("EA", "N", "EA");
+const BA: Column = column(
+    "BA/-zeta",
+    "N s, or a ratio with a minus sign",
+    "BA/-ZETA BA CINTDAMP BA/-Z",
+);
 
 /// LINE TYPES of version 2.
 const LINE_TYPES_2: &[Column] = &[
-    column("Name", "-", &["NAME", "TYPENAME", "LINETYPE", "TYPE"]),
-    column("Diam", "m", &["DIAM", "DIAMETER", "D"]),
-    column(
-        "Mass",
-        "kg/m",
-        &["MASS", "MASS/M", "MASSDEN", "MASSDENINAIR", "MASS/LENGTH"],
-    ),
-    column("EA", "N", &["EA"]),
-    column(
-        "BA/-zeta",
-        "N s, or a ratio with a minus sign",
-        &["BA/-ZETA", "BA", "CINTDAMP", "BA/-Z"],
-    ),
-    column("EI", "N m²", &["EI"]),
-    column("Cd", "-", &["CD", "CDN"]),
-    column("Ca", "-", &["CA", "CAN"]),
-    column("CdAx", "-", &["CDAX", "CDT"]),
-    column("CaAx", "-", &["CAAX", "CAT"]),
-    column("Cl", "-", &["CL"]),
-    column("dF", "-", &["DF"]),
-    column("cF", "-", &["CF"]),
+    TYPE_NAME,
+    DIAMETER,
+    column("Mass", "kg/m", "MASS MASS/M MASSDEN MASSDENINAIR MASS/LENGTH"),
+    EA,
+    BA,
+    column("EI", "N m²", "EI"),
+    column("Cd", "-", "CD CDN"),
+    column("Ca", "-", "CA CAN"),
+    column("CdAx", "-", "CDAX CDT"),
+    column("CaAx", "-", "CAAX CAT"),
+    column("Cl", "-", "CL"),
+    column("dF", "-", "DF"),
+    column("cF", "-", "CF"),
 ];
 
 /// LINE TYPES of version 1.
 const LINE_TYPES_1: &[Column] = &[
-    column("Name", "-", &["NAME", "TYPENAME", "LINETYPE", "TYPE"]),
-    column("Diam", "m", &["DIAM", "DIAMETER", "D"]),
-    column(
-        "MassDen",
-        "kg/m",
-        &["MASS", "MASS/M", "MASSDEN", "MASSDENINAIR", "MASS/LENGTH"],
-    ),
-    column("EA", "N", &["EA"]),
-    column(
-        "BA/-zeta",
-        "N s, or a ratio with a minus sign",
-        &["BA/-ZETA", "BA", "CINTDAMP", "BA/-Z"],
-    ),
-    column("Can", "-", &["CAN"]),
-    column("Cat", "-", &["CAT"]),
-    column("Cdn", "-", &["CDN"]),
-    column("Cdt", "-", &["CDT"]),
+    TYPE_NAME,
+    DIAMETER,
+    column("MassDen", "kg/m", "MASS MASS/M MASSDEN MASSDENINAIR MASS/LENGTH"),
+    EA,
+    BA,
+    column("Can", "-", "CAN"),
+    column("Cat", "-", "CAT"),
+    column("Cdn", "-", "CDN"),
+    column("Cdt", "-", "CDT"),
 ];
 
 const ROD_TYPES: &[Column] = &[
-    column("Name", "-", &["NAME", "TYPENAME"]),
-    column("Diam", "m", &["DIAM", "DIAMETER"]),
-    column("Mass", "kg/m", &["MASS", "MASS/M", "MASSDEN"]),
-    column("Cd", "-", &["CD"]),
-    column("Ca", "-", &["CA"]),
-    column("CdEnd", "-", &["CDEND"]),
-    column("CaEnd", "-", &["CAEND"]),
+    column("Name", "-", "NAME TYPENAME"),
+    column("Diam", "m", "DIAM DIAMETER"),
+    column("Mass", "kg/m", "MASS MASS/M MASSDEN"),
+    column("Cd", "-", "CD"),
+    column("Ca", "-", "CA"),
+    column("CdEnd", "-", "CDEND"),
+    column("CaEnd", "-", "CAEND"),
 ];
 
 const BODIES: &[Column] = &[
-    column("ID", "-", &["ID"]),
-    column("Attachment", "-", &["ATTACHMENT", "TYPE"]),
-    column("X0", "m", &["X0", "X"]),
-    column("Y0", "m", &["Y0", "Y"]),
-    column("Z0", "m", &["Z0", "Z"]),
-    column("r0", "deg", &["R0"]),
-    column("p0", "deg", &["P0"]),
-    column("y0", "deg", &["Y0"]),
-    column("Mass", "kg", &["MASS", "M"]),
-    column("CG", "m", &["CG"]),
-    column("I", "kg m²", &["I"]),
-    column("Volume", "m³", &["VOLUME", "V"]),
-    column("CdA", "m²", &["CDA"]),
-    column("Ca", "-", &["CA"]),
+    column("ID", "-", "ID"),
+    column("Attachment", "-", "ATTACHMENT TYPE"),
+    column("X0", "m", "X0 X"),
+    column("Y0", "m", "Y0 Y"),
+    column("Z0", "m", "Z0 Z"),
+    column("r0", "deg", "R0"),
+    column("p0", "deg", "P0"),
+    column("y0", "deg", "Y0"),
+    column("Mass", "kg", "MASS M"),
+    column("CG", "m", "CG"),
+    column("I", "kg m²", "I"),
+    column("Volume", "m³", "VOLUME V"),
+    column("CdA", "m²", "CDA"),
+    column("Ca", "-", "CA"),
 ];
 
 const RODS: &[Column] = &[
-    column("ID", "-", &["ID"]),
-    column("RodType", "-", &["RODTYPE"]),
-    column("Attachment", "-", &["ATTACHMENT"]),
-    column("Xa", "m", &["XA"]),
-    column("Ya", "m", &["YA"]),
-    column("Za", "m", &["ZA"]),
-    column("Xb", "m", &["XB"]),
-    column("Yb", "m", &["YB"]),
-    column("Zb", "m", &["ZB"]),
-    column("NumSegs", "-", &["NUMSEGS"]),
-    column("RodOutputs", "-", &["RODOUTPUTS", "OUTPUTS"]),
+    column("ID", "-", "ID"),
+    column("RodType", "-", "RODTYPE"),
+    column("Attachment", "-", "ATTACHMENT"),
+    column("Xa", "m", "XA"),
+    column("Ya", "m", "YA"),
+    column("Za", "m", "ZA"),
+    column("Xb", "m", "XB"),
+    column("Yb", "m", "YB"),
+    column("Zb", "m", "ZB"),
+    column("NumSegs", "-", "NUMSEGS"),
+    column("RodOutputs", "-", "RODOUTPUTS OUTPUTS"),
 ];
 
 /// POINTS with nine columns.
 const POINTS_9: &[Column] = &[
-    column("ID", "-", &["ID", "NODE", "POINT"]),
-    column("Attachment", "-", &["ATTACHMENT", "TYPE"]),
-    column("X", "m", &["X"]),
-    column("Y", "m", &["Y"]),
-    column("Z", "m", &["Z"]),
-    column("Mass", "kg", &["MASS", "M"]),
-    column("Volume", "m³", &["VOLUME", "V"]),
-    column("CdA", "m²", &["CDA"]),
-    column("Ca", "-", &["CA"]),
+    column("ID", "-", "ID NODE POINT"),
+    column("Attachment", "-", "ATTACHMENT TYPE"),
+    column("X", "m", "X"),
+    column("Y", "m", "Y"),
+    column("Z", "m", "Z"),
+    column("Mass", "kg", "MASS M"),
+    column("Volume", "m³", "VOLUME V"),
+    column("CdA", "m²", "CDA"),
+    column("Ca", "-", "CA"),
 ];
 
 /// POINTS with twelve columns.
 const POINTS_12: &[Column] = &[
-    column("ID", "-", &["ID", "NODE", "POINT"]),
-    column("Type", "-", &["ATTACHMENT", "TYPE"]),
-    column("X", "m", &["X"]),
-    column("Y", "m", &["Y"]),
-    column("Z", "m", &["Z"]),
-    column("M", "kg", &["MASS", "M"]),
-    column("V", "m³", &["VOLUME", "V"]),
-    column("FX", "N", &["FX"]),
-    column("FY", "N", &["FY"]),
-    column("FZ", "N", &["FZ"]),
-    column("CdA", "m²", &["CDA"]),
-    column("Ca", "-", &["CA"]),
+    column("ID", "-", "ID NODE POINT"),
+    column("Type", "-", "ATTACHMENT TYPE"),
+    column("X", "m", "X"),
+    column("Y", "m", "Y"),
+    column("Z", "m", "Z"),
+    column("M", "kg", "MASS M"),
+    column("V", "m³", "VOLUME V"),
+    column("FX", "N", "FX"),
+    column("FY", "N", "FY"),
+    column("FZ", "N", "FZ"),
+    column("CdA", "m²", "CDA"),
+    column("Ca", "-", "CA"),
 ];
 
 /// LINES of version 2.
 const LINES_2: &[Column] = &[
-    column("ID", "-", &["ID", "LINE"]),
-    column("LineType", "-", &["LINETYPE", "TYPE"]),
-    column("AttachA", "-", &["ATTACHA", "NODEA", "NODEANCH"]),
-    column("AttachB", "-", &["ATTACHB", "NODEB", "NODEFAIR"]),
-    column("UnstrLen", "m", &["UNSTRLEN", "LENGTH"]),
-    column("NumSegs", "-", &["NUMSEGS"]),
-    column("Outputs", "-", &["OUTPUTS", "LINEOUTPUTS", "FLAGS/OUTPUTS"]),
+    column("ID", "-", "ID LINE"),
+    column("LineType", "-", "LINETYPE TYPE"),
+    column("AttachA", "-", "ATTACHA NODEA NODEANCH"),
+    column("AttachB", "-", "ATTACHB NODEB NODEFAIR"),
+    column("UnstrLen", "m", "UNSTRLEN LENGTH"),
+    column("NumSegs", "-", "NUMSEGS"),
+    column("Outputs", "-", "OUTPUTS LINEOUTPUTS FLAGS/OUTPUTS"),
 ];
 
 /// LINES of version 1.
 const LINES_1: &[Column] = &[
-    column("Line", "-", &["ID", "LINE"]),
-    column("LineType", "-", &["LINETYPE", "TYPE"]),
-    column("UnstrLen", "m", &["UNSTRLEN", "LENGTH"]),
-    column("NumSegs", "-", &["NUMSEGS"]),
-    column("NodeAnch", "-", &["ATTACHA", "NODEA", "NODEANCH"]),
-    column("NodeFair", "-", &["ATTACHB", "NODEB", "NODEFAIR"]),
-    column("Outputs", "-", &["OUTPUTS", "LINEOUTPUTS", "FLAGS/OUTPUTS"]),
+    column("Line", "-", "ID LINE"),
+    column("LineType", "-", "LINETYPE TYPE"),
+    column("UnstrLen", "m", "UNSTRLEN LENGTH"),
+    column("NumSegs", "-", "NUMSEGS"),
+    column("NodeAnch", "-", "ATTACHA NODEA NODEANCH"),
+    column("NodeFair", "-", "ATTACHB NODEB NODEFAIR"),
+    column("Outputs", "-", "OUTPUTS LINEOUTPUTS FLAGS/OUTPUTS"),
 ];
 
 /// Reads all tables and lists of a deck.
@@ -307,7 +300,7 @@ pub(super) fn word_property(word: &str) -> Result<Property, String> {
     if let Ok(parts) = parts {
         return Ok(Property::Parts(parts));
     }
-    // What begins like a number is a slip, not a name of a file.
+    // A word that begins like a number is a slip, not a name of a file.
     let name = word.starts_with(char::is_alphabetic) || word.contains(['/', '\\', '|']);
     let not_finite = ["nan", "inf", "infinity"].contains(&word.to_lowercase().as_str());
     match name && !not_finite {
@@ -402,7 +395,7 @@ fn decomposed(word: &str) -> (String, Option<usize>, String) {
     (letters.to_string(), digits.parse().ok(), tail.to_string())
 }
 
-/// What a word attaches a point, rod or body to.
+/// Attachment that a word gives.
 fn attachment(cells: &mut Cells<'_, '_>, column: usize) -> Placed<Attachment> {
     let word = cells.fields[column].text;
     let (letters, id, tail) = decomposed(word);
@@ -457,8 +450,8 @@ fn exists(end: LineEnd, deck: &Deck) -> bool {
     }
 }
 
-/// Whether rows of LINES have the length before the ends (version 1): what the columns hold tells, then the header, then the
-/// version of the line types.
+/// Returns whether rows of LINES have the length before the ends (version 1), by the contents of the columns, then by the header, then
+/// by the version of the line types.
 fn length_comes_first(section: &Section<'_>, deck: &Deck) -> bool {
     let fits = |row: &&Row<'_>, ends: usize, length: usize, count: usize| {
         let fields = row.fields();
@@ -476,7 +469,7 @@ fn length_comes_first(section: &Section<'_>, deck: &Deck) -> bool {
     let names = section.names.as_ref().map(|names| names.fields());
     let named = names.and_then(|names| {
         let mut names = names.iter();
-        names.position(|name| LINES_1[2].spellings.contains(&name.text.to_uppercase().as_str()))
+        names.position(|name| is_one_of(name.text, LINES_1[2].spellings))
     });
     match named {
         Some(column) => column == 2,

@@ -45,7 +45,7 @@ fn headers(deck: &Deck, sections: &Sections<'_>, findings: &mut Findings) {
     }
 }
 
-/// A negative BA is a ratio of critical damping of a segment, a positive one is BA itself, whatever the header says.
+/// A negative BA is a ratio of critical damping of a segment, a positive one is BA itself; the header has no influence.
 fn ratio_or_damping(kind: &LineType, sections: &Sections<'_>, findings: &mut Findings) {
     let Property::Number(value) = kind.damping.value else {
         return;
@@ -126,7 +126,7 @@ fn friction(deck: &Deck, findings: &mut Findings) {
     }
 }
 
-/// Where runs start: MoorDyn comes to rest from the positions in the file, in no time where `TmaxIC` is 0.
+/// Start of a run: MoorDyn comes to rest from the positions in the file, in no time where `TmaxIC` is 0.
 fn start(deck: &Deck, findings: &mut Findings) {
     if let Some(at_once) = &deck.options.starts_at_once {
         let text = "TmaxIC 0: runs start with free points where the file has them and every line on its catenary between its ends, \
