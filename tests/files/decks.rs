@@ -1,0 +1,186 @@
+//! Decks and scenes that name files beside them: waves, currents, soundings of the seabed, tables of tension.
+//!
+//! claim: what a file says is in the scene, the converted scene is the same, and what is wrong is refused with file and line.
+
+use std::f64::consts::PI;
+use std::fs;
+use std::path::Path;
+
+use crate::common::*;
+use approx::assert_relative_eq;
+use moorline::scene::{LoadError, LoadedScene, Scene, load};
+use tempfile::tempdir;
+
+const VERSION_1: &str = include_str!("../decks/moordyn_v1.dat");
+const OPENFAST: &str = include_str!("../decks/openfast_v2.dat");
+
+/// Writes a file and others beside it to a folder and loads it.
+fn loaded(folder: &Path, text: &str, files: &[(&str, &str)]) -> Result<LoadedScene, LoadError> {
+    let name = if text.contains("points = [") {
+        "scene.toml"
+    } else {
+        "mooring.dat"
+    };
+    for (name, text) in files.iter().chain(&[(name, text)]) {
+        fs::write(folder.join(name), text).unwrap();
+    }
+    load(&folder.join(name))
+}
+
+/// Claims that a scene that was loaded is converted to the same scene.
+fn assert_converted(loaded: &LoadedScene) {
+    let text = loaded.to_commented_toml();
+    assert_eq!(Scene::from_toml(&text).unwrap(), loaded.scene, "{text}");
+}
+
+/// A MoorDyn deck of a buoyed line that asks for waves and a current.
+fn in_waves() -> String {
+    VERSION_1.replace("80     WtrDpth", "80     WtrDpth\n7  WaveKin\n1  Currents")
+}
+
+const WAVES: (&str, &str) = (
+    "wave_frequencies.txt",
+    "0.0 0.0 0.0\n0.6 0.0 1.2\n0.9 0.4 0.0 0.5\n",
+);
+const CURRENT: (&str, &str) = (
+    "current_profile.txt",
+    "--- steady currents ---\nprofile\nz ux uy uz\n-80.0 0.1 0.0 0\n0.0 0.7 0.2 0\n",
+);
+
+#[test]
+fn a_deck_of_moordyn_brings_its_waves_and_current_from_files() {
+    let folder = tempdir().unwrap();
+    let loaded = loaded(folder.path(), &in_waves(), &[WAVES, CURRENT]).unwrap();
+    let current = loaded.scene.water.as_ref().unwrap().current.as_ref().unwrap();
+    assert_eq!(current.profile, Some(vec![[-80.0, 0.1, 0.0], [0.0, 0.7, 0.2]]));
+    let mut simulation = start(&loaded.scene);
+    let waves = simulation.model().waves.clone().unwrap();
+    for t in [0.0, 2.0, 31.0] {
+        // MoorDyn's sum: |A| sin(ωt + arg A) at the origin
+        let expected = 1.2 * (0.6 * t + 0.5 * PI).sin() + 0.4 * (0.9_f64 * t).sin();
+        assert_relative_eq!(waves.elevation(0.0, 0.0, t), expected, epsilon = 1e-12);
+    }
+    simulation.advance(0.1).unwrap();
+    assert_converted(&loaded);
+    assert!(loaded.notes.iter().any(|note| note.text.contains(WAVES.0)));
+}
+
+#[test]
+fn a_scene_names_files_of_waves_and_current_as_a_deck_does() {
+    let folder = tempdir().unwrap();
+    let text = draft(
+        "water = { density = 1025.0, current = { file = 'current_profile.txt' }, waves = { file = 'wave_frequencies.txt' } }
+        seabed = { depth = 100.0 }
+        line_types.chain = { mass = 120.0, diameter = 0.12, axial_stiffness = 2e8, drag_normal = 1.6 }",
+    )
+    .fixed("anchor", [-260.0, 0.0, -100.0])
+    .coupled("left", [0.0, 15.0, -10.0])
+    .line("chain", ["anchor", "left"], "chain", 290.0, 24)
+    .text();
+    let scene = loaded(folder.path(), &text, &[WAVES, CURRENT]).unwrap().scene;
+    let current = scene.water.as_ref().unwrap().current.as_ref().unwrap();
+    assert_eq!(current.profile.as_ref().unwrap().len(), 2);
+    assert_eq!(
+        start(&scene).model().waves.as_ref().unwrap().components().len(),
+        2
+    );
+    fs::remove_file(folder.path().join(WAVES.0)).unwrap();
+    let refusal = format!("{:?}", loaded(folder.path(), &text, &[]).unwrap_err());
+    assert_says(&refusal, &["no such file"]);
+}
+
+#[test]
+fn a_deck_whose_files_are_wrong_is_refused_with_file_and_line() {
+    let folder = tempdir().unwrap();
+    let files = [(WAVES.0, "0.6 0.0\n"), CURRENT];
+    let refusal = format!("{:?}", loaded(folder.path(), &in_waves(), &files).unwrap_err());
+    assert_says(
+        &refusal,
+        &["wave_frequencies.txt, line 1: expected 3 or 4 numbers"],
+    );
+}
+
+#[test]
+fn a_deck_with_bathymetry_and_friction_is_read_and_converted_with_them() {
+    let folder = tempdir().unwrap();
+    let soundings = "--- MoorPy Bathymetry Input File v1.0 ---\nnGridX 2\nnGridY 2\n-900 900\n-900 100 110\n900 100 110\n";
+    let options = "bed.txt WtrDpth\n0.7 mu_kT\n0.3 mu_kA\n200 FricDamp\n1.5 StatDynFricScale";
+    let deck = OPENFAST.replace("2.0e6    kbot", options);
+    let loaded = loaded(folder.path(), &deck, &[("bed.txt", soundings)]).unwrap();
+    let bed = loaded.scene.seabed.as_ref().unwrap();
+    assert_eq!((bed.friction.transverse, bed.friction.axial), (0.7, 0.3));
+    assert_eq!(bed.grid.as_ref().unwrap().depth, [[100.0, 110.0], [100.0, 110.0]]);
+    let notes: Vec<String> = loaded.notes.iter().map(ToString::to_string).collect();
+    let notes = notes.join("\n");
+    let scale = "static friction of 1.5 times the kinetic is not modelled";
+    assert_says(&notes, &[scale, "it needs no damping to fade in with"]);
+    assert_converted(&loaded);
+}
+
+#[test]
+fn a_seafloor_file_of_moordyn_c_is_read_as_heights_of_the_bed() {
+    let folder = tempdir().unwrap();
+    let deck = OPENFAST.replace("2.0e6    kbot", "110 WtrDpth\nbed.txt SeafloorFile");
+    let axes = "2 2\n-900 900\n-900 900\n-900 -900 -100\n";
+    let heights = format!("{axes}-900 900 -100\n900 -900 -110\n900 900 -110\n");
+    let found = loaded(folder.path(), &deck, &[("bed.txt", &heights)]);
+    let grid = found
+        .unwrap_or_else(|error| panic!("{}", error.list()))
+        .scene
+        .seabed
+        .unwrap()
+        .grid
+        .unwrap();
+    assert_eq!((grid.x, grid.y), (vec![-900.0, 900.0], vec![-900.0, 900.0]));
+    assert_eq!(grid.depth, [[100.0, 110.0], [100.0, 110.0]]);
+    let error = loaded(folder.path(), &deck, &[("bed.txt", axes)]).unwrap_err();
+    let lack = "bed.txt: no height at x = 900 m, y = -900 m";
+    assert_says(&error.list(), &["mooring.dat:27:1: OPTIONS, bathymetry: ", lack]);
+}
+
+/// A deck with one rope whose EA and BA are these words.
+fn rope(ea: &str, ba: &str) -> String {
+    format!(
+        "MoorDyn input\n---- LINE TYPES ----\nName Diam Mass/m EA BA/-zeta EI Cd Ca CdAx CaAx\n(-) (m) (kg/m) (N) (N-s/-) (N-m^2) (-) (-) (-) (-)\n\
+         rope 0.15 22.0 {ea} {ba} 0.0 1.2 1.0 0.2 0.0\n\
+         ---- POINTS ----\nID Attachment X Y Z M V CdA Ca\n(-) (-) (m) (m) (m) (kg) (m^3) (m^2) (-)\n\
+         1 Fixed 200.0 0.0 -100.0 0 0 0 0\n2 Coupled 0.0 0.0 -10.0 0 0 0 0\n\
+         ---- LINES ----\nID LineType AttachA AttachB UnstrLen NumSegs Outputs\n(-) (-) (-) (-) (m) (-) (-)\n\
+         1 rope 1 2 218.0 10 -\n---- OPTIONS ----\n100.0 WtrDpth\n---- need this line ----\n"
+    )
+}
+
+#[test]
+fn decks_say_static_and_dynamic_stiffness_or_name_a_table() {
+    let folder = tempdir().unwrap();
+    let load = |ea: &str, ba: &str| loaded(folder.path(), &rope(ea, ba), &[]);
+    let both = load("1.424e8|1.586e8", "4E9|11e6").unwrap();
+    let kind = &both.scene.line_types["rope"];
+    assert_eq!(
+        kind.static_stiffness.zip(kind.dynamic_stiffness),
+        Some((1.424e8, 1.586e8))
+    );
+    assert_eq!(
+        kind.static_damping.zip(kind.dynamic_damping),
+        Some((4.0e9, 1.1e7))
+    );
+    assert_converted(&both);
+    start(&both.scene);
+    let missing = format!("{:?}", load("polyester.txt", "-0.8").unwrap_err());
+    assert_says(&missing, &["polyester.txt: no such file"]);
+    let table = "----Polyester----\nStrain Tension\n(-) (N)\n0.0 0.0\n0.01 1.0e6\n0.02 3.0e6\n";
+    fs::write(folder.path().join("polyester.txt"), table).unwrap();
+    let read = load("polyester.txt", "-0.8").unwrap();
+    let of = |scene: &Scene| scene.line_types["rope"].tension_strain.clone().unwrap().rows;
+    assert_eq!(of(&read.scene).len(), 3);
+    let converted = Scene::from_toml(&read.to_commented_toml()).unwrap();
+    assert_eq!(of(&converted), of(&read.scene));
+    for (ea, ba, said) in [
+        ("1e8|2e8|0.1", "1e9|1e6", "grows with the mean tension"),
+        ("1e8|2e8", "-0.8", "no meaning"),
+        ("1e8", "1e9|1e6", "belong to a viscoelastic line"),
+        ("1e8", "damping.txt", "not modelled"),
+    ] {
+        assert_says(&format!("{:?}", load(ea, ba).unwrap_err()), &[said]);
+    }
+}
