@@ -75,6 +75,7 @@ fn a_cable_rests_with_the_curvature_of_the_beam_at_second_order() {
 }
 
 #[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
 fn a_driven_cable_has_the_greatest_curvature_of_the_beam_at_all_times() {
     let [cable, beam] = [cable(2.0), beam(2.0)].map(|scene| {
         let mut simulation = following(&scene);

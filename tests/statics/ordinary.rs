@@ -10,19 +10,18 @@
 //! Every line has a number and is always the same. A part of the long run, or a single line:
 //!
 //! ```text
-//! LINES=120..121 cargo test --release --test ordinary -- --ignored --nocapture ten_thousand
+//! LINES=120..121 cargo test --release --test statics -- --ignored --nocapture ordinary::ten_thousand
 //! ```
 
 use std::ops::Range;
 
+use crate::common::{at_reference, draft, greatest, resting};
 use moorline::elements::{Workspace, end_force};
 use moorline::math::random::Random;
 use moorline::model::{End, Model};
 use moorline::scene::Scene;
 use moorline::statics::catenary::{self, Bed, Section};
 use moorline::statics::equilibrium::solve;
-
-use crate::common::{at_reference, model, resting};
 
 /// Density of water [kg/m³].
 const WATER: f64 = 1025.0;
@@ -107,17 +106,12 @@ impl Line {
         }
     }
 
-    fn toml(&self) -> String {
-        let elements = self
-            .elements
-            .map_or(String::new(), |count| format!(", elements = {count}"));
-        format!(
-            "[water]\ndensity = {WATER:e}\n[seabed]\ndepth = {:e}\nstiffness = {:e}\ndamping = {:e}\nfriction = {:e}\n\
-             [line_types.t]\nmass = {:e}\ndiameter = {:e}\naxial_stiffness = {:e}\ndamping_ratio = 0.05\ndrag_normal = 1.2\n\
-             added_mass_normal = 1.0\n\
-             [[points]]\nname = \"a\"\nposition = [0.0, 0.0, {:e}]\nkind = \"fixed\"\n\
-             [[points]]\nname = \"b\"\nposition = [{:e}, 0.0, {:e}]\nkind = \"coupled\"\n\
-             [[lines]]\nname = \"l\"\nfrom = \"a\"\nto = \"b\"\nsections = [{{ type = \"t\", length = {:e}{elements} }}]\n",
+    fn scene(&self) -> Scene {
+        draft(format!(
+            "water.density = {WATER:e}
+            seabed = {{ depth = {:e}, stiffness = {:e}, damping = {:e}, friction = {:e} }}
+            line_types.t = {{ mass = {:e}, diameter = {:e}, axial_stiffness = {:e}, damping_ratio = 0.05, drag_normal = 1.2,
+              added_mass_normal = 1.0 }}",
             self.depth,
             self.stiffness,
             0.1 * self.stiffness,
@@ -125,11 +119,11 @@ impl Line {
             self.mass,
             self.diameter,
             self.axial_stiffness,
-            -self.depth,
-            self.span,
-            -0.05 * self.depth,
-            self.length,
-        )
+        ))
+        .fixed("a", [0.0, 0.0, -self.depth])
+        .coupled("b", [self.span, 0.0, -0.05 * self.depth])
+        .line("l", ["a", "b"], "t", self.length, self.elements)
+        .scene()
     }
 
     /// Weight in water per metre [N/m].
@@ -141,10 +135,11 @@ impl Line {
     /// Tension at end B in closed form [N], and tension along the seabed where the line leaves it, of a line this much longer and a rise this
     /// much greater [m].
     fn closed_form(&self, [longer, higher]: [f64; 2]) -> [f64; 2] {
+        let (length, axial_stiffness) = (self.length + longer, self.axial_stiffness);
         let section = Section {
-            length: self.length + longer,
+            length,
             weight: self.weight(),
-            axial_stiffness: self.axial_stiffness,
+            axial_stiffness,
         };
         let bed = Bed {
             height: 0.0,
@@ -182,20 +177,18 @@ impl Line {
     /// Length of the longest element and the greatest depth by which the seabed gives way under a resting node [m], solves, and tension at
     /// end B [N].
     fn solved(&self) -> Result<([f64; 2], usize, f64), String> {
-        let scene = Scene::from_toml(&self.toml()).map_err(|error| error.to_string())?;
-        let model = Model::new(&scene).map_err(|error| error.to_string())?;
+        let model = Model::new(&self.scene()).map_err(|error| error.to_string())?;
         let mut work = Workspace::new(&model);
         let state = solve(&model, &resting(&at_reference(&model)), 0.0, &mut work)
             .map_err(|error| error.to_string())?;
         let solves = work.take_counters().solves;
         let force = end_force(&model, &state, 0, End::B, &mut work).norm();
         let line = &model.lines[0];
-        let most = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
         let stiffness = line.nodes.contact.iter().flat_map(|bed| &bed.stiffness);
         let depths = line.nodes.weight.iter().zip(stiffness);
         let mesh = [
-            most(&mut line.segments.length.iter().copied()),
-            most(&mut depths.map(|(weight, stiffness)| weight / stiffness)),
+            greatest(line.segments.length.iter().copied()),
+            greatest(depths.map(|(weight, stiffness)| weight / stiffness)),
         ];
         Ok((mesh, solves, force))
     }
@@ -218,7 +211,7 @@ fn claim(numbers: Range<u64>, line: fn(u64) -> Line) {
                 let [least, greatest] = line.bounds(mesh);
                 if !(least..=greatest).contains(&tension) {
                     far.push(format!(
-                        "{number}: {tension} N is not between {least} and {greatest} N, {line:?}"
+                        "{number}: {tension} N, not {least} to {greatest} N, {line:?}"
                     ));
                 }
             }
@@ -230,11 +223,10 @@ fn claim(numbers: Range<u64>, line: fn(u64) -> Line) {
         most.0, most.1
     );
     println!("{} fail, {} are far", failures.len(), far.len());
+    assert!(failures.is_empty(), "of {lines} lines fail: {failures:#?}");
     assert!(
-        failures.is_empty() && far.is_empty(),
-        "of {lines} lines {} fail: {failures:#?}, and {} are far from the closed form: {far:#?}",
-        failures.len(),
-        far.len()
+        far.is_empty(),
+        "of {lines} lines are far from the closed form: {far:#?}"
     );
 }
 
@@ -247,6 +239,7 @@ fn long_run() -> Range<u64> {
 }
 
 #[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
 fn three_hundred_random_lines_with_friction_find_their_equilibrium() {
     claim(0..300, Line::rough);
 }
@@ -268,19 +261,22 @@ fn ten_thousand_random_slack_floating_ropes_find_their_equilibrium() {
     claim(long_run(), Line::floating);
 }
 
-/// The model of one line over a seabed without water, from a fixed to a coupled point.
-fn scene_of(seabed: &str, material: &str, ends: [[f64; 3]; 2], section: &str) -> Model {
+/// Claims that the line of a type from a fixed to a coupled point over a seabed, dry, has an equilibrium.
+fn assert_solved(keys: &str, ends: [[f64; 3]; 2], length: f64, elements: usize) {
     let [a, b] = ends;
-    model(&format!(
-        "[seabed]\n{seabed}\n[line_types.t]\n{material}\n\
-         [[points]]\nname = \"a\"\nposition = {a:?}\nkind = \"fixed\"\n\
-         [[points]]\nname = \"b\"\nposition = {b:?}\nkind = \"coupled\"\n\
-         [[lines]]\nname = \"l\"\nfrom = \"a\"\nto = \"b\"\nsections = [{{ type = \"t\", {section} }}]\n"
-    ))
+    let line = draft(keys).fixed("a", a).coupled("b", b);
+    let model = line.line("l", ["a", "b"], "t", length, elements).model();
+    let found = solve(
+        &model,
+        &resting(&at_reference(&model)),
+        0.0,
+        &mut Workspace::new(&model),
+    );
+    assert!(found.is_ok(), "{elements} elements: {found:?}");
 }
 
 #[test]
-#[ignore = "takes half a minute"]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
 fn a_hundred_thousand_elements_have_an_equilibrium_or_are_refused_after_a_bounded_number_of_solves() {
     for line in [Line::rough(0), Line::floating(0)] {
         let line = Line {
@@ -296,41 +292,20 @@ fn a_hundred_thousand_elements_have_an_equilibrium_or_are_refused_after_a_bounde
 
 #[test]
 fn a_light_chain_on_a_rough_soft_seabed_finds_its_equilibrium_on_every_mesh() {
+    let keys = "seabed = { depth = 5.0, stiffness = 5882.0, friction = 0.5 }
+        line_types.t = { mass = 0.069, weight = 0.588, diameter = 0.0034, axial_stiffness = 3.4e5 }";
     for elements in (8..=320).step_by(8) {
-        let chain = scene_of(
-            "depth = 5.0\nstiffness = 5882.0\nfriction = 0.5",
-            "mass = 0.069\nweight = 0.588\ndiameter = 0.0034\naxial_stiffness = 3.4e5",
-            [[0.0, 0.0, -5.0], [19.364, 0.0, 0.0]],
-            &format!("length = 21.0, elements = {elements}"),
-        );
-        let found = solve(
-            &chain,
-            &resting(&at_reference(&chain)),
-            0.0,
-            &mut Workspace::new(&chain),
-        );
-        assert!(found.is_ok(), "{elements} elements: {found:?}");
+        assert_solved(keys, [[0.0, 0.0, -5.0], [19.364, 0.0, 0.0]], 21.0, elements);
     }
 }
 
 #[test]
 fn a_nearly_straight_and_very_stiff_line_on_a_rough_seabed_finds_its_equilibrium() {
+    let keys = "seabed = { depth = 40.90767141168425, friction = 1.0 }
+        line_types.t = { weight = 0.06577196961695088, diameter = 0.1, axial_stiffness = 80573.7785759385 }";
+    let a = [0.0, 0.0, -40.75549226241273];
+    let b = [16.97027497375482, -61.84997862719906, -40.38993865392305];
     for elements in [8, 16, 24, 48, 96, 192] {
-        let line = scene_of(
-            "depth = 40.90767141168425\nfriction = 1.0",
-            "weight = 0.06577196961695088\ndiameter = 0.1\naxial_stiffness = 80573.7785759385",
-            [
-                [0.0, 0.0, -40.75549226241273],
-                [16.97027497375482, -61.84997862719906, -40.38993865392305],
-            ],
-            &format!("length = 64.14993564405434, elements = {elements}"),
-        );
-        let found = solve(
-            &line,
-            &resting(&at_reference(&line)),
-            0.0,
-            &mut Workspace::new(&line),
-        );
-        assert!(found.is_ok(), "{elements} elements: {found:?}");
+        assert_solved(keys, [a, b], 64.14993564405434, elements);
     }
 }

@@ -3,9 +3,9 @@
 
 use std::process::Command;
 
-use crate::common::{at_reference, random, resting, scene, shipped, with_elements};
+use crate::common::*;
 use moorline::elements::Workspace;
-use moorline::model::{Body, End, Model, State};
+use moorline::model::{Body, End, Model, Section as ModelSection, State};
 use moorline::scene::{Reconstruction, Scene, Strain};
 use moorline::simulation::Simulation;
 use moorline::statics::catenary::{self, Bed, Catenary, Section};
@@ -23,10 +23,8 @@ const HALF_WEIGHT: f64 = 19.62;
 /// The shipped scene with another mesh and stiffness [N], run to its end: the collar drawn out by 20 N within 5 s, 10 s in all.
 fn drawn_out(elements: usize, axial_stiffness: f64) -> Simulation {
     let mut collar = with_elements(shipped("collar"), elements);
-    for line_type in collar.line_types.values_mut() {
-        line_type.axial_stiffness = Some(axial_stiffness);
-    }
-    let mut simulation = Simulation::new(&collar).unwrap();
+    collar.line_types.get_mut("wire").unwrap().axial_stiffness = Some(axial_stiffness);
+    let mut simulation = start(&collar);
     let mut solves = 0;
     for _ in 0..100 {
         simulation.advance(0.1).unwrap();
@@ -39,16 +37,7 @@ fn drawn_out(elements: usize, axial_stiffness: f64) -> Simulation {
 }
 
 fn span_and_sag(simulation: &Simulation) -> [f64; 2] {
-    [simulation.state().points[1].position.x, simulation.sag(0)]
-}
-
-/// Lowest node, below the wall [m]: what the drawn mesh shows of the sag.
-fn depth(simulation: &Simulation) -> f64 {
-    simulation.state().lines[0]
-        .position
-        .iter()
-        .map(|r| -r.z)
-        .fold(0.0, f64::max)
+    [place(simulation, "collar").x, simulation.sag(0)]
 }
 
 #[test]
@@ -59,7 +48,8 @@ fn the_collar_slides_to_the_inextensible_catenary_on_any_mesh() {
         for (value, exact) in span_and_sag(&simulation).into_iter().zip(COLLAR) {
             assert!((value / exact - 1.0).abs() < tolerance, "{elements}: {value}");
         }
-        assert!((depth(&simulation) / COLLAR[1] - 1.0).abs() < tolerance);
+        let depth = greatest(nodes(&simulation).iter().map(|r| -r.z)); // of the lowest node
+        assert!((depth / COLLAR[1] - 1.0).abs() < tolerance);
     }
 }
 
@@ -113,8 +103,7 @@ fn the_wall_feels_the_pull_on_the_collar_and_half_the_weight_of_the_wire() {
     }
     let lowest = simulation.profile(0)[10];
     assert!((lowest.tension - PULL).abs() < 1e-10, "{lowest:?}");
-    let chords: f64 = simulation.state().lines[0]
-        .position
+    let chords: f64 = nodes(&simulation)
         .windows(2)
         .map(|pair| (pair[1] - pair[0]).norm())
         .sum();
@@ -123,13 +112,13 @@ fn the_wall_feels_the_pull_on_the_collar_and_half_the_weight_of_the_wire() {
 
 #[test]
 fn without_a_pull_the_wire_hangs_folded_below_the_wall_and_is_drawn_out_from_there() {
-    let mut simulation = Simulation::new(&shipped("collar")).unwrap();
-    assert!(simulation.state().points[1].position.x.abs() < 1e-9);
-    assert!((simulation.sag(0) - 10.0).abs() < 1e-3 && (simulation.tension_b(0) - HALF_WEIGHT).abs() < 1e-9);
-    let mut span = simulation.state().points[1].position.x;
+    let mut simulation = start(&shipped("collar"));
+    let [mut span, sag] = span_and_sag(&simulation);
+    assert!(span.abs() < 1e-9 && (sag - 10.0).abs() < 1e-3);
+    assert!((simulation.tension_b(0) - HALF_WEIGHT).abs() < 1e-9);
     for _ in 0..50 {
         simulation.advance(0.1).unwrap();
-        let x = simulation.state().points[1].position.x;
+        let x = place(&simulation, "collar").x;
         assert!(x > span && (simulation.state().points[1].velocity.x - (x - span) / 0.1).abs() < 1e-9);
         span = x;
     }
@@ -137,60 +126,46 @@ fn without_a_pull_the_wire_hangs_folded_below_the_wall_and_is_drawn_out_from_the
 
 #[test]
 fn a_saved_quasi_static_simulation_replays_bit_for_bit() {
-    let mut simulation = Simulation::new(&shipped("collar")).unwrap();
-    (0..20).for_each(|_| simulation.advance(0.1).unwrap());
-    let saved = simulation.snapshot().clone();
-    (0..20).for_each(|_| simulation.advance(0.1).unwrap());
-    let first = simulation.snapshot().clone();
-    simulation.restore(saved);
-    (0..20).for_each(|_| simulation.advance(0.1).unwrap());
-    assert_eq!(first, *simulation.snapshot());
+    let scene = shipped("collar");
+    let mut simulation = start(&scene);
+    run(&mut simulation, 0.1, 20);
+    assert_replays(simulation, start(&scene), |simulation| run(simulation, 0.1, 20));
 }
 
-// ------------------------------------------------------------------ lines on the bed
+// ------------------------------------------------------------------ lines on the seabed
 
-const CHAIN: &str = "[seabed]\ndepth = 50.0\nstiffness = 3.0e6\nfriction = 0.6\n\
-    [line_types.chain]\nmass = 80.0\ndiameter = 0.08\naxial_stiffness = 4.0e8\n\
-    [line_types.rope]\nmass = 6.0\ndiameter = 0.08\naxial_stiffness = 2.0e7\n";
-
-fn point(name: &str, position: [f64; 3], rest: &str) -> String {
-    format!("[[points]]\nname = \"{name}\"\nposition = {position:?}\n{rest}\n")
+/// Quasi-static lines of chain and rope over a seabed with a friction [-].
+fn over_bed(friction: f64) -> Draft {
+    draft(format!(
+        "seabed = {{ depth = 50.0, stiffness = 3.0e6, friction = {friction} }}
+        line_types.chain = {{ mass = 80.0, diameter = 0.08, axial_stiffness = 4.0e8 }}
+        line_types.rope = {{ mass = 6.0, diameter = 0.08, axial_stiffness = 2.0e7 }}
+        solver.integrator = 'quasi_static'"
+    ))
+    .fixed("anchor", [0.0, 0.0, -50.0])
 }
 
-fn line(name: &str, ends: [&str; 2], sections: &[(&str, f64, usize)]) -> String {
-    let [from, to] = ends;
-    let section = |(kind, length, elements): &(&str, f64, usize)| {
-        format!("{{ type = \"{kind}\", length = {length:?}, elements = {elements} }}")
-    };
-    let sections = sections.iter().map(section).collect::<Vec<_>>().join(", ");
-    format!("[[lines]]\nname = \"{name}\"\nfrom = \"{from}\"\nto = \"{to}\"\nsections = [{sections}]\n")
-}
-
-const FIXED: &str = "kind = \"fixed\"";
-const FREE: &str = "kind = \"free\"";
-const QUASI_STATIC: &str = "[solver]\nintegrator = \"quasi_static\"\n";
-
-/// A chain with a rope above it, from an anchor on the bed to a coupled point.
+/// A chain with a rope above it, from an anchor on the seabed to a coupled point.
 fn moored() -> Scene {
-    let text = CHAIN.to_string()
-        + QUASI_STATIC
-        + &point("anchor", [0.0, 0.0, -50.0], FIXED)
-        + &point("fairlead", [190.0, 30.0, -5.0], "kind = \"coupled\"")
-        + &line(
-            "mooring",
-            ["anchor", "fairlead"],
-            &[("chain", 150.0, 30), ("rope", 60.0, 12)],
-        );
-    scene(&text)
+    let sections = [("chain", 150.0, Some(30)), ("rope", 60.0, Some(12))];
+    let fairlead = over_bed(0.6).coupled("fairlead", [190.0, 30.0, -5.0]);
+    fairlead
+        .sections("mooring", ["anchor", "fairlead"], &sections)
+        .scene()
 }
 
 fn closed_form(model: &Model, state: &State) -> Catenary {
     let line = &model.lines[0];
     let [a, b] = line.ends.map(|point| state.points[point].position);
-    let section = |s: &moorline::model::Section| Section {
-        length: s.length,
-        weight: s.weight,
-        axial_stiffness: s.axial_stiffness,
+    let section = |&ModelSection {
+                       length,
+                       weight,
+                       axial_stiffness,
+                       ..
+                   }: &ModelSection| Section {
+        length,
+        weight,
+        axial_stiffness,
     };
     let sections: Vec<Section> = line.sections.iter().map(section).collect();
     let bed = Bed {
@@ -202,18 +177,16 @@ fn closed_form(model: &Model, state: &State) -> Catenary {
 
 #[test]
 fn a_line_on_a_bed_with_friction_is_its_catenary_at_every_step_and_costs_one_solve() {
-    let mut simulation = Simulation::new(&moored()).unwrap();
+    let mut simulation = start(&moored());
     for step in 0..=40 {
         if step > 0 {
             let phase = 0.15 * f64::from(step);
-            simulation.set_displacement(
-                1,
-                [
-                    6.0 * phase.sin(),
-                    3.0 * (phase.cos() - 1.0),
-                    2.0 * (2.0 * phase).sin(),
-                ],
-            );
+            let away = [
+                6.0 * phase.sin(),
+                3.0 * (phase.cos() - 1.0),
+                2.0 * (2.0 * phase).sin(),
+            ];
+            simulation.set_displacement(1, away);
             simulation.advance(1.0).unwrap();
             assert_eq!(simulation.counters().solves, 1);
         }
@@ -232,11 +205,8 @@ fn a_line_on_a_bed_with_friction_is_its_catenary_at_every_step_and_costs_one_sol
         }
         for (node, &s) in simulation.profile(0).iter().zip(&model.lines[0].nodes.arc) {
             let at = exact.at(s);
-            let place = a + at.x * along + at.z * up;
-            assert!(
-                (Vector3::new(node.x, node.y, node.z) - place).norm() < 1e-10,
-                "{node:?}"
-            );
+            let apart = Vector3::new(node.x, node.y, node.z) - (a + at.x * along + at.z * up);
+            assert!(apart.norm() < 1e-10, "{node:?}");
             assert!((node.tension - at.tension).abs() <= 1e-12 * pull, "{node:?}");
         }
         assert_eq!(simulation.laid_length(0), exact.laid_length());
@@ -247,7 +217,7 @@ fn a_line_on_a_bed_with_friction_is_its_catenary_at_every_step_and_costs_one_sol
 
 #[test]
 fn a_line_with_an_end_under_the_bed_rests_on_its_elements() {
-    let mut simulation = Simulation::new(&moored()).unwrap();
+    let mut simulation = start(&moored());
     assert!(simulation.state().lines[0].closed_form.is_some());
     simulation.set_displacement(1, [-2.0, 0.0, -45.1]);
     simulation.advance(1.0).unwrap();
@@ -259,24 +229,36 @@ fn a_line_with_an_end_under_the_bed_rests_on_its_elements() {
 
 /// Three lines from two anchors and a coupled point above, which meet in a point with a weight of its own.
 fn bridle(elements: usize, stiffness: f64, more: &str) -> Scene {
-    let text = format!("[line_types.rope]\nmass = 6.0\ndiameter = 0.08\naxial_stiffness = {stiffness:e}\n")
-        + QUASI_STATIC
-        + more
-        + &point("port", [0.0, 10.0, -40.0], FIXED)
-        + &point("starboard", [-5.0, -12.0, -42.0], FIXED)
-        + &point("buoy", [60.0, 0.0, -20.0], "kind = \"coupled\"")
-        + &point("knot", [20.0, 4.0, -35.0], "kind = \"free\"\nmass = 50.0")
-        + &line("one", ["port", "knot"], &[("rope", 30.0, elements)])
-        + &line("two", ["knot", "starboard"], &[("rope", 34.0, elements)])
-        + &line("three", ["knot", "buoy"], &[("rope", 40.0, elements)]);
-    scene(&text)
+    draft(format!(
+        "line_types.rope = {{ mass = 6.0, diameter = 0.08, axial_stiffness = {stiffness:e} }}
+        solver.integrator = 'quasi_static'
+        {more}"
+    ))
+    .fixed("port", [0.0, 10.0, -40.0])
+    .fixed("starboard", [-5.0, -12.0, -42.0])
+    .coupled("buoy", [60.0, 0.0, -20.0])
+    .free("knot", [20.0, 4.0, -35.0])
+    .with("mass = 50.0")
+    .line("one", ["port", "knot"], "rope", 30.0, elements)
+    .line("two", ["knot", "starboard"], "rope", 34.0, elements)
+    .line("three", ["knot", "buoy"], "rope", 40.0, elements)
+    .scene()
 }
 
-/// What is out of balance at a free point of some mass [kg], over the greatest tension there [-].
+/// Whether all lines have a closed form.
+fn all_closed(simulation: &Simulation) -> bool {
+    simulation
+        .state()
+        .lines
+        .iter()
+        .all(|line| line.closed_form.is_some())
+}
+
+/// Force out of balance at a free point of some mass [kg], over the greatest tension there [-].
 fn imbalance(simulation: &Simulation, point: usize, mass: f64) -> f64 {
     let pull = Vector3::from(simulation.end_force(point)) - mass * simulation.model().gravity * Vector3::z();
-    let tensions = (0..simulation.model().lines.len()).map(|line| simulation.tension_max(line));
-    pull.norm() / tensions.fold(0.0, f64::max)
+    let lines = 0..simulation.model().lines.len();
+    pull.norm() / greatest(lines.map(|line| simulation.tension_max(line)))
 }
 
 #[test]
@@ -286,28 +268,21 @@ fn the_lines_of_a_bridle_carry_the_weight_of_its_knot() {
         // without a ledger, which would halve the steps that draw the lines taut
         let mut scene = bridle(10, stiffness, "");
         scene.solver.energy_ledger = false;
-        let mut simulation = Simulation::new(&scene).unwrap();
+        let mut simulation = start(&scene);
         for step in 0..=60 {
             let phase = 0.1 * f64::from(step);
-            simulation.set_displacement(
-                2,
-                [8.0 * phase.sin(), 6.0 * (1.0 - phase.cos()), 3.0 * phase.sin()],
-            );
+            let away = [8.0 * phase.sin(), 6.0 * (1.0 - phase.cos()), 3.0 * phase.sin()];
+            simulation.set_displacement(2, away);
             if step > 0 {
                 simulation.advance(1.0).unwrap();
-                let counters = simulation.counters();
-                total += counters.solves;
-                assert!(
-                    counters.solves <= if stiffness < 1e12 { 100 } else { 500 },
-                    "{stiffness}: {counters:?}"
-                );
+                let solves = simulation.counters().solves;
+                total += solves;
+                let most = if stiffness < 1e12 { 100 } else { 500 };
+                assert!(solves <= most, "{stiffness}: {solves}");
             }
-            assert!(
-                imbalance(&simulation, 3, 50.0) < 1e-9,
-                "{stiffness}, {step}: {}",
-                imbalance(&simulation, 3, 50.0)
-            );
-            assert!((0..3).all(|line| simulation.state().lines[line].closed_form.is_some()));
+            let imbalance = imbalance(&simulation, 3, 50.0);
+            assert!(imbalance < 1e-9, "{stiffness}, {step}: {imbalance}");
+            assert!(all_closed(&simulation));
         }
         // five to eight of each line a step, although the fairlead moves by 0.8 m between steps and draws the lines taut
         assert!(total <= 60 * 27, "{stiffness}: {total}");
@@ -326,43 +301,32 @@ fn the_assembled_equilibrium_of_a_bridle_tends_to_the_catenaries_at_second_order
         (exact.points[3].position - assembled.points[3].position).norm()
     });
     for pair in errors.windows(2) {
-        let order = (pair[0] / pair[1]).log2();
-        assert!((order - 2.0).abs() < 0.1, "{errors:?}");
+        assert!(((pair[0] / pair[1]).log2() - 2.0).abs() < 0.1, "{errors:?}");
     }
 }
 
 #[test]
 fn a_line_split_at_a_free_point_hangs_as_the_whole_one() {
     // weak enough that tension is left at the joint: where there is none, friction holds it anywhere in a range
-    let ends = CHAIN.replace("friction = 0.6", "friction = 0.05")
-        + QUASI_STATIC
-        + &point("anchor", [0.0, 0.0, -50.0], FIXED)
-        + &point("fairlead", [190.0, 30.0, -5.0], "kind = \"coupled\"");
-    // joined in the air, where it touches down, and on the bed
+    let ends = over_bed(0.05).coupled("fairlead", [190.0, 30.0, -5.0]);
+    // joined in the air, where it touches down, and on the seabed
     for first in [180.0, 120.0, 60.0, 20.0] {
-        let whole = ends.clone()
-            + &line(
-                "whole",
-                ["anchor", "fairlead"],
-                &[("chain", first, 10), ("chain", 210.0 - first, 20)],
-            );
-        let split = ends.clone()
-            + &point("joint", [150.0, 20.0, -30.0], FREE)
-            + &line("lower", ["anchor", "joint"], &[("chain", first, 10)])
-            + &line("upper", ["joint", "fairlead"], &[("chain", 210.0 - first, 20)]);
-        let (mut whole, mut split) = (
-            Simulation::new(&scene(&whole)).unwrap(),
-            Simulation::new(&scene(&split)).unwrap(),
-        );
+        let parts = [("chain", first, Some(10)), ("chain", 210.0 - first, Some(20))];
+        let mut whole = ends
+            .clone()
+            .sections("whole", ["anchor", "fairlead"], &parts)
+            .start();
+        let split = ends.clone().free("joint", [150.0, 20.0, -30.0]);
+        let split = split.line("lower", ["anchor", "joint"], "chain", first, 10);
+        let mut split = split
+            .line("upper", ["joint", "fairlead"], "chain", 210.0 - first, 20)
+            .start();
         for step in 0..20 {
             let phase = 0.3 * f64::from(step);
             for simulation in [&mut whole, &mut split] {
                 simulation.set_displacement(1, [5.0 * phase.sin(), 0.0, 2.0 * phase.sin()]);
                 simulation.advance(1.0).unwrap();
-                assert!(
-                    (0..simulation.model().lines.len())
-                        .all(|line| simulation.state().lines[line].closed_form.is_some())
-                );
+                assert!(all_closed(simulation));
             }
             let force = whole.line_end_force(0, End::B);
             let gap = (split.line_end_force(1, End::B) - force).norm() / force.norm();
@@ -373,15 +337,13 @@ fn a_line_split_at_a_free_point_hangs_as_the_whole_one() {
 
 #[test]
 fn a_heavy_free_point_rests_on_the_bed_and_is_lifted_by_a_load() {
-    let load = "kind = \"free\"\nmass = 5000.0\nforce = { z = { step = [0.0, 0.0, 10.0, 2.0e5] } }";
-    let text = CHAIN.to_string()
-        + QUASI_STATIC
-        + &point("anchor", [0.0, 0.0, -50.0], FIXED)
-        + &point("clump", [120.0, 0.0, -48.0], load)
-        + &point("fairlead", [190.0, 0.0, -5.0], FIXED)
-        + &line("lower", ["anchor", "clump"], &[("chain", 130.0, 20)])
-        + &line("upper", ["clump", "fairlead"], &[("rope", 90.0, 20)]);
-    let mut simulation = Simulation::new(&scene(&text)).unwrap();
+    let mut simulation = over_bed(0.6)
+        .free("clump", [120.0, 0.0, -48.0])
+        .with("mass = 5000.0, force = { z = { step = [0.0, 0.0, 10.0, 2.0e5] } }")
+        .fixed("fairlead", [190.0, 0.0, -5.0])
+        .line("lower", ["anchor", "clump"], "chain", 130.0, 20)
+        .line("upper", ["clump", "fairlead"], "rope", 90.0, 20)
+        .start();
     assert_eq!(simulation.state().points[1].position.z, -50.0);
     let (mut lifted, mut count) = (-50.0, 0);
     for step in 1..=20 {
@@ -401,17 +363,17 @@ fn a_heavy_free_point_rests_on_the_bed_and_is_lifted_by_a_load() {
 }
 
 /// Two knots, sinking or floating, over a bed: each tied to an anchor, to a point above and to the other, slack to taut, in water.
-fn tangle(seed: &mut u64) -> Scene {
-    let mut text =
-        "[seabed]\ndepth = 30.0\nstiffness = 1.0e6\n[water]\ndensity = 1025.0\n".to_string() + QUASI_STATIC;
+fn tangle(seed: &mut u64) -> Simulation {
+    let mut tangle = draft(
+        "seabed = { depth = 30.0, stiffness = 1.0e6 }\nwater.density = 1025.0\nsolver.integrator = 'quasi_static'",
+    );
     for (name, heaviest) in [("chain", 60.0), ("rope", 10.0)] {
         let (mass, stiffness) = (
             1.0 + heaviest * random(seed),
             10_f64.powf(4.0 + 5.0 * random(seed)),
         );
-        text += &format!(
-            "[line_types.{name}]\nmass = {mass:?}\ndiameter = 0.05\naxial_stiffness = {stiffness:e}\n"
-        );
+        let keys = format!("mass = {mass:?}, diameter = 0.05, axial_stiffness = {stiffness:e}");
+        tangle = tangle.and(&format!("line_types.{name} = {{ {keys} }}"));
     }
     let names = ["south", "north", "pile", "vessel", "left", "right"];
     let mut places = Vec::new();
@@ -423,32 +385,32 @@ fn tangle(seed: &mut u64) -> Scene {
         };
         let place = [40.0 * random(seed), 40.0 * random(seed), z];
         let knot = format!(
-            "kind = \"free\"\nmass = {:?}\nvolume = {:?}",
+            "mass = {:?}, volume = {:?}",
             500.0 * random(seed),
             0.3 * random(seed)
         );
-        let kind = match name {
-            "left" | "right" => &knot,
-            "vessel" => "kind = \"coupled\"",
-            _ => FIXED,
+        tangle = match name {
+            "left" | "right" => tangle.free(name, place).with(&knot),
+            "vessel" => tangle.coupled(name, place),
+            _ => tangle.fixed(name, place),
         };
-        text += &point(name, place, kind);
         places.push(Vector3::from(place));
     }
     for (number, [a, b]) in [[0, 4], [1, 5], [4, 5], [4, 2], [5, 3]].into_iter().enumerate() {
         let length = (0.95 + 0.5 * random(seed)) * (places[b] - places[a]).norm();
         let chain = (0.1 + 0.8 * random(seed)) * length;
-        let sections = [("chain", chain, 5), ("rope", length - chain, 5)];
-        text += &line(&format!("line{number}"), [names[a], names[b]], &sections);
+        let sections = [("chain", chain, Some(5)), ("rope", length - chain, Some(5))];
+        tangle = tangle.sections(&format!("line{number}"), [names[a], names[b]], &sections);
     }
-    scene(&text)
+    tangle.start()
 }
 
 #[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
 fn random_networks_rest_on_their_catenaries_in_balance() {
     let (mut seed, mut on_elements) = (11, 0);
     for case in 0..200 {
-        let mut simulation = Simulation::new(&tangle(&mut seed)).unwrap();
+        let mut simulation = tangle(&mut seed);
         for step in 0..5 {
             let shift = (0.3 * f64::from(step)).sin();
             simulation.set_displacement(3, [2.0 * shift, shift, shift]);
@@ -457,15 +419,13 @@ fn random_networks_rest_on_their_catenaries_in_balance() {
                 on_elements += 1;
                 continue;
             }
-            let tension = (0..5)
-                .map(|line| simulation.tension_max(line))
-                .fold(0.0, f64::max);
+            let tension = greatest((0..5).map(|line| simulation.tension_max(line)));
             for knot in [4, 5] {
                 let z = simulation.state().points[knot].position.z;
                 let own = simulation.model().points[knot].free().unwrap().at(z).weight;
                 let mut pull = Vector3::from(simulation.end_force(knot)) - own * Vector3::z();
                 if z <= -30.0 + 0.02 {
-                    pull.z = pull.z.max(0.0); // the bed carries it
+                    pull.z = pull.z.max(0.0); // the seabed carries it
                 }
                 assert!(pull.norm() < 1e-9 * tension, "{case} {step}: {pull} {tension}");
             }
@@ -478,7 +438,7 @@ fn random_networks_rest_on_their_catenaries_in_balance() {
 
 #[test]
 fn a_cable_of_green_strain_rests_on_its_elements() {
-    let mut simulation = Simulation::new(&shipped("point_load")).unwrap();
+    let mut simulation = start(&shipped("point_load"));
     let networks = &simulation.model().networks;
     assert!(!catenary_network::serves(simulation.model(), &networks[0]));
     for step in 0..=10 {
@@ -509,7 +469,7 @@ fn on_elements(axial_damping: f64) -> Simulation {
         kind.drag_normal = Some(1.2);
         kind.added_mass_normal = Some(1.0);
     }
-    Simulation::new(&scene).unwrap()
+    start(&scene)
 }
 
 #[test]
@@ -517,13 +477,9 @@ fn a_line_on_its_elements_is_at_rest_however_fast_it_was_moved_there() {
     let mut lines = [0.0, 1e7].map(on_elements);
     for step in 0..8 {
         let phase = 0.8 * f64::from(step + 1);
-        let away = [3.0 * phase.sin(), 1.0, 2.0 * phase.cos() - 2.0];
+        let away = [3.0 * phase.sin(), 1.0, 2.0 * phase.cos() - 2.0, 0.0, 0.0, 0.0];
         for simulation in &mut lines {
-            simulation.set_body(
-                Body::Point(1),
-                [away[0], away[1], away[2], 0.0, 0.0, 0.0],
-                [Some(0.0); 6],
-            );
+            simulation.set_body(Body::Point(1), away, [Some(0.0); 6]);
             simulation.advance(0.1).unwrap();
         }
         let [plain, damped] = &lines;
@@ -542,7 +498,7 @@ fn a_line_on_its_elements_is_at_rest_however_fast_it_was_moved_there() {
 fn ledger(scene: &Scene, point: usize, reach: f64) -> (f64, usize) {
     let mut scene = scene.clone();
     scene.solver.input_reconstruction = Reconstruction::Interpolate;
-    let mut simulation = Simulation::new(&scene).unwrap();
+    let mut simulation = start(&scene);
     let (mut turnover, mut given, mut substeps) = (0.0, 0.0, 0);
     for number in 1..=12 {
         let phase = 0.9 * f64::from(number);
@@ -558,7 +514,7 @@ fn ledger(scene: &Scene, point: usize, reach: f64) -> (f64, usize) {
 }
 
 #[test]
-fn the_ledger_of_a_line_that_rubs_on_the_bed_closes_in_short_steps_and_in_long_ones() {
+fn the_ledger_of_a_line_with_friction_on_the_bed_closes_in_short_steps_and_in_long_ones() {
     let (error, equilibria) = ledger(&moored(), 1, 0.5);
     assert!(error < 2e-3 && equilibria == 12, "{error:e}, {equilibria}");
     let (error, equilibria) = ledger(&moored(), 1, 12.0);
@@ -573,20 +529,15 @@ fn bridle_in_current() -> Scene {
     let mut scene = bridle(
         8,
         2e7,
-        "[water]\ndensity = 1025.0\n[water.current]\nvelocity = [1.5, 0.0, 0.0]\n",
+        "water = { density = 1025.0, current = { velocity = [1.5, 0.0, 0.0] } }",
     );
-    let knot = scene
-        .points
-        .iter_mut()
-        .find(|point| point.name == "knot")
-        .unwrap();
-    knot.drag_area = Some(4.0);
+    scene.points[3].drag_area = Some(4.0);
     scene
 }
 
 #[test]
 fn a_free_point_feels_a_current_that_its_lines_do_not() {
-    let simulation = Simulation::new(&bridle_in_current()).unwrap();
+    let simulation = start(&bridle_in_current());
     let push = 0.5 * 1025.0 * 4.0 * 1.5 * 1.5; // ½ρ C_d A u² [N]
     let knot = Vector3::from(simulation.end_force(3));
     assert!((knot.x + push).abs() < 1e-6 * push, "{knot}");

@@ -31,6 +31,7 @@ fn the_experiment_has_thirty_conditions() {
 }
 
 #[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
 fn the_forces_of_a_chain_in_a_tank_are_those_measured_within_3_percent_on_the_mean() {
     let found = errors_as_shipped();
     assert!(found.rms < 1.5, "{found:?}");
@@ -39,6 +40,7 @@ fn the_forces_of_a_chain_in_a_tank_are_those_measured_within_3_percent_on_the_me
 }
 
 #[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
 fn half_the_elements_agree_as_well_with_the_experiment() {
     let mut half = scene().unwrap();
     half.lines[0].sections[0].elements = Some(33);

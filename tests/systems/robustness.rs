@@ -16,10 +16,9 @@ fn scale_seabed(scene: &mut Scene) {
 
 /// Multiplies the axial stiffness of all line types.
 fn scale_stiffness(scene: &mut Scene, factor: f64) {
-    scene
-        .line_types
-        .values_mut()
-        .filter_map(|line_type| line_type.axial_stiffness.as_mut())
+    let types = scene.line_types.values_mut();
+    types
+        .flat_map(|kind| &mut kind.axial_stiffness)
         .for_each(|stiffness| *stiffness *= factor);
 }
 
@@ -43,12 +42,8 @@ fn double_motion(scene: &mut Scene) {
         let MotionPath::Harmonic(motion) = path else {
             continue;
         };
-        for component in [&mut motion.x, &mut motion.y, &mut motion.z]
-            .into_iter()
-            .flatten()
-        {
-            component[0] *= 2.0;
-        }
+        let axes = [&mut motion.x, &mut motion.y, &mut motion.z];
+        axes.into_iter().flatten().for_each(|sine| sine[0] *= 2.0);
     }
 }
 
@@ -72,12 +67,7 @@ fn greatest_tension(scene: &Scene, duration: f64) -> f64 {
     for _ in 0..(duration / 0.05) as usize {
         simulation.advance(0.05).unwrap();
         greatest = greatest.max(simulation.tension_max(0));
-        assert!(
-            simulation.state().lines[0]
-                .position
-                .iter()
-                .all(|r| r.norm() < 2000.0)
-        );
+        assert!(nodes(&simulation).iter().all(|r| r.norm() < 2000.0));
     }
     greatest / at_rest
 }
@@ -95,21 +85,20 @@ fn none_blows_up(integrator: Integrator, spared: impl Fn(&str, &str, usize) -> b
                 scene.solver.integrator = integrator;
                 change(&mut scene);
                 let greatest = greatest_tension(&scene, duration);
-                assert!(
-                    greatest < 16.0,
-                    "{name}, {what}, {n} elements: {greatest} times the static tension"
-                );
+                assert!(greatest < 16.0, "{name}, {what}, {n} elements: {greatest}");
             }
         }
     }
 }
 
 #[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
 fn no_hard_scene_blows_up_by_the_leapfrog() {
     none_blows_up(Integrator::Leapfrog, |_, what, n| what == "BA × 10" && n == 80); // 10 µs a step
 }
 
 #[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
 fn no_hard_scene_blows_up_by_the_integrator_chosen_for_it() {
     none_blows_up(Integrator::Auto, |name, what, n| {
         name == "lindahl_fast" && what == "EA × 10" && n >= 40
@@ -133,47 +122,36 @@ fn a_snap_of_eleven_times_the_static_tension_does_not_blow_up() {
 fn a_line_released_without_tension_settles() {
     let mut scene = shipped("seafem11");
     scene.lines[0].initial = InitialShape::Straight;
-    let mut simulation = Simulation::new(&scene).unwrap();
-    for _ in 0..400 {
-        simulation.advance(0.05).unwrap();
-    }
+    let mut simulation = start(&scene);
+    run(&mut simulation, 0.05, 400);
     assert!((simulation.sag(0) - 0.7182741621).abs() < 1e-9);
 }
 
 #[test]
 fn a_mass_on_a_stiff_line_of_one_element_hangs_still() {
-    let scene = scene(
-        r#"
-        line_types.wire = { mass = 0.1, axial_stiffness = 1e7 }
-        points = [
-          { name = "pivot", position = [0.0, 0.0, 0.0], kind = "fixed" },
-          { name = "bob", position = [0.0, 0.0, -10.0], kind = "free", mass = 1.0 },
-        ]
-        lines = [{ name = "wire", from = "pivot", to = "bob", sections = [{ type = "wire", length = 10.0, elements = 1 }] }]
-        "#,
-    );
-    let mut simulation = Simulation::new(&scene).unwrap();
-    let start = simulation.state().points[1].position;
-    for _ in 0..400 {
-        simulation.advance(0.05).unwrap();
-    }
-    assert!((simulation.state().points[1].position - start).norm() < 1e-9);
+    let mut simulation = draft("line_types.wire = { mass = 0.1, axial_stiffness = 1e7 }")
+        .fixed("pivot", [0.0; 3])
+        .free("bob", [0.0, 0.0, -10.0])
+        .with("mass = 1.0")
+        .line("wire", ["pivot", "bob"], "wire", 10.0, 1)
+        .start();
+    let first = place(&simulation, "bob");
+    run(&mut simulation, 0.05, 400);
+    assert!((place(&simulation, "bob") - first).norm() < 1e-9);
 }
 
 #[test]
 fn the_axial_implicit_leapfrog_moves_free_points_or_refuses_them() {
-    let text = r#"
-        line_types.wire = { mass = 1.0, axial_stiffness = 1e5 }
-        points = [
-          { name = "pivot", position = [0.0, 0.0, 0.0], kind = "fixed" },
-          { name = "end", position = [5.0, 0.0, -8.0], kind = "free" },
-        ]
-        lines = [{ name = "wire", from = "pivot", to = "end", sections = [{ type = "wire", length = 10.0, elements = 10 }], initial = "straight" }]
-        solver = { integrator = "axial_implicit" }
-    "#;
-    let Ok(mut simulation) = Simulation::new(&scene(text)) else {
+    let wire = draft(
+        "line_types.wire = { mass = 1.0, axial_stiffness = 1e5 }\nsolver.integrator = 'axial_implicit'",
+    )
+    .fixed("pivot", [0.0; 3])
+    .free("end", [5.0, 0.0, -8.0])
+    .line("wire", ["pivot", "end"], "wire", 10.0, 10)
+    .with("initial = 'straight'");
+    let Ok(mut simulation) = Simulation::new(&wire.scene()) else {
         return;
     };
     simulation.advance(1.0).unwrap();
-    assert!(simulation.state().points[1].position.z < -8.1);
+    assert!(place(&simulation, "end").z < -8.1);
 }

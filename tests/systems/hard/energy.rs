@@ -2,9 +2,9 @@
 
 use moorline::scene::{Integrator, Reconstruction};
 
+use super::Case;
 use super::run::Run;
 use super::scenes::*;
-use super::{at_most, sound};
 
 /// Step of generalised-α [s].
 const IMPLICIT_STEP: f64 = 0.002;
@@ -19,50 +19,49 @@ fn snapping(elements: usize, integrator: Integrator, damping: f64) -> Run {
 }
 
 #[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
 fn snaps_after_slack_peak_as_in_a_converged_run() {
     let converged = snapping(160, Integrator::Leapfrog, 1.0);
     for integrator in INTEGRATORS {
-        let what = format!("snap, {integrator:?}");
+        let case = Case(format!("snap, {integrator:?}"));
         let run = snapping(40, integrator, 1.0);
-        sound(&what, &run, 1e-2, 1300.0);
+        case.sound(&run, 1e-2, 1300.0);
         for turn in 6..12 {
             let span = [turn, turn + 1].map(|turn| TURN * f64::from(turn));
             let peak = run.peak_between(span[0], span[1]);
             let truth = converged.peak_between(span[0], span[1]);
-            at_most(
-                0.02,
-                &format!("{what}, peak of turn {turn}"),
-                (peak / truth - 1.0).abs(),
-            );
+            case.at_most(0.02, &format!("peak of turn {turn}"), (peak / truth - 1.0).abs());
             let turn = |t: &f64| (span[0]..span[1]).contains(t);
             let samples = run.time.iter().zip(&run.tension).filter(|(t, _)| turn(t));
             let slack = samples.filter(|(_, tension)| **tension < 0.02 * truth).count();
-            assert!(slack > 0, "{what}: slack in every turn");
+            assert!(slack > 0, "{}: slack in every turn", case.0);
         }
     }
 }
 
 #[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
 fn ten_times_the_damping_and_none_keep_the_ledger() {
     for integrator in INTEGRATORS {
         for (damping, ledger, steps) in [(10.0, 1e-2, 9000.0), (0.0, 6e-2, 1300.0)] {
             let run = snapping(40, integrator, damping);
-            let what = format!("damping × {damping}, {integrator:?}");
-            sound(&what, &run, ledger, steps);
-            at_most(1e-4, &format!("{what}, gain"), run.energy_gain());
+            let case = Case(format!("damping × {damping}, {integrator:?}"));
+            case.sound(&run, ledger, steps);
+            case.at_most(1e-4, "gain", run.energy_gain());
         }
     }
 }
 
 #[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
 fn undamped_ropes_that_slacken_gain_no_energy() {
     for elements in [20, 40, 80] {
         for integrator in INTEGRATORS {
             let scene = by(undamped_swing(elements), integrator, 0.005);
             let run = Run::of(&scene, 60.0, 0.1);
-            let what = format!("undamped swing of {elements}, {integrator:?}");
-            sound(&what, &run, 2e-2, 1000.0);
-            at_most(1e-3, &format!("{what}, gain"), run.energy_gain());
+            let case = Case(format!("undamped swing of {elements}, {integrator:?}"));
+            case.sound(&run, 2e-2, 1000.0);
+            case.at_most(1e-3, "gain", run.energy_gain());
         }
     }
 }
@@ -75,6 +74,7 @@ fn jump(name: &str, integrator: Integrator, reconstruction: Reconstruction) -> R
 }
 
 #[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
 fn a_fairlead_that_jumps_by_a_metre_leaves_a_line_that_settles() {
     for name in ["oc3_catenary", "taut_polyester"] {
         let mut moved = shipped(name);
@@ -83,46 +83,34 @@ fn a_fairlead_that_jumps_by_a_metre_leaves_a_line_that_settles() {
         for integrator in INTEGRATORS {
             for reconstruction in [Reconstruction::Smooth, Reconstruction::Jump] {
                 let run = jump(name, integrator, reconstruction);
-                let what = format!("jump, {name}, {integrator:?}, {reconstruction:?}");
+                let case = Case(format!("jump, {name}, {integrator:?}, {reconstruction:?}"));
                 // a jump makes waves as short as elements are, which explicit steps resolve least
                 let ledger = match reconstruction {
                     Reconstruction::Jump => 0.1,
                     _ => 0.02,
                 };
-                sound(&what, &run, ledger, 250.0);
-                at_most(
-                    3.0,
-                    &format!("{what}, peak over the start"),
-                    run.peak() / run.tension[0],
-                );
+                case.sound(&run, ledger, 250.0);
+                case.at_most(3.0, "peak over the start", run.peak() / run.tension[0]);
                 let last = run.tension[run.tension.len() - 1];
-                at_most(2e-3, &format!("{what}, settled"), (last / rest - 1.0).abs());
+                case.at_most(2e-3, "settled", (last / rest - 1.0).abs());
             }
         }
     }
 }
 
 #[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
 fn resonance_at_the_axial_frequency_is_limited_as_in_a_damped_rod() {
     let omega = rod_frequency();
-    for (integrator, bound) in [
-        (Integrator::Leapfrog, 0.01),
-        (Integrator::AxialImplicit, 0.01),
-        (Integrator::GeneralisedAlpha, 0.01),
-        (Integrator::Auto, 0.01),
-    ] {
+    for integrator in INTEGRATORS {
         let mut scene = by(resonant_rod(40, omega), integrator, 0.001);
         if integrator == Integrator::AxialImplicit {
             scene.solver.time_step_max = 0.0025;
         }
         let run = Run::of(&scene, 40.0, 0.005);
-        let what = format!("resonance, {integrator:?}");
-        sound(&what, &run, 2e-2, 1500.0);
+        let case = Case(format!("resonance, {integrator:?}"));
+        case.sound(&run, 2e-2, 1500.0);
         let exact = rod_amplitude(omega);
-        at_most(
-            bound,
-            &format!("{what}, amplitude"),
-            (run.last_amplitude() / exact - 1.0).abs(),
-        );
+        case.at_most(0.01, "amplitude", (run.last_amplitude() / exact - 1.0).abs());
     }
 }

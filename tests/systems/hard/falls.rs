@@ -1,12 +1,12 @@
-//! A folded chain that falls, the whip at its end, and a line that is let go in full swing.
+//! A folded chain that falls, the whip at its end, and a line that is released in full swing.
 
 use moorline::scene::Integrator;
 use moorline::simulation::Simulation;
 use nalgebra::Vector3;
 
+use super::Case;
 use super::run::Run;
 use super::scenes::*;
-use super::{at_most, sound};
 
 /// The integrators that let go of an end.
 const FREE: [Integrator; 3] = [
@@ -26,32 +26,34 @@ fn falling(elements: usize, fold: usize, integrator: Integrator) -> (Run, Vec<f6
 }
 
 #[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
 fn the_free_end_of_a_folded_chain_outruns_free_fall_as_its_energy_says() {
     for integrator in FREE {
         let mut last = [f64::INFINITY; 2];
         for (elements, bound) in [(20, 0.05), (40, 0.032), (80, 0.021), (160, 0.013)] {
             let (run, fallen) = falling(elements, 2, integrator);
-            let what = format!("fall of {elements}, {integrator:?}");
-            sound(&what, &run, 8e-3, 34_000.0);
+            let case = Case(format!("fall of {elements}, {integrator:?}"));
+            case.sound(&run, 8e-3, 34_000.0);
             let errors: Vec<f64> = fallen
                 .iter()
                 .zip(PARTS)
                 .map(|(x, part)| (x - part).abs())
                 .collect();
             let now = [errors[1], errors[4]];
-            at_most(bound, &format!("{what}, up to 0.9 of the drop"), now[1]);
+            case.at_most(bound, "up to 0.9 of the drop", now[1]);
             for (part, (now, last)) in [0.5, 0.9].iter().zip(now.iter().zip(last)) {
                 // no full order: the fold is as wide as two elements, and tightens with them
-                at_most(0.75 * last, &format!("{what}, at {part} of the drop"), *now);
+                case.at_most(0.75 * last, &format!("at {part} of the drop"), *now);
             }
             last = now;
             let free = 0.5 * G * fall_time(0.9).powi(2) / CHAIN;
-            assert!(fallen[4] > 1.2 * free, "{what}: {} and {free}", fallen[4]);
+            assert!(fallen[4] > 1.2 * free, "{}: {} and {free}", case.0, fallen[4]);
         }
     }
 }
 
 #[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
 fn the_fall_over_a_fold_of_half_a_metre_converges() {
     let run = |elements: usize| falling(elements, elements / 20, Integrator::GeneralisedAlpha).1;
     let fine = run(320);
@@ -59,14 +61,15 @@ fn the_fall_over_a_fold_of_half_a_metre_converges() {
     for elements in [40, 80, 160] {
         let pairs = run(elements).into_iter().zip(&fine);
         let error = pairs.map(|(x, y)| (x - y).abs()).fold(0.0, f64::max);
-        at_most(last / 3.0, &format!("wide fold of {elements}"), error);
+        Case(format!("wide fold of {elements}")).at_most(last / 3.0, "fall", error);
         last = error;
     }
-    at_most(4e-3, "wide fold of 160", last);
+    assert!(last <= 4e-3, "wide fold of 160: {last}");
 }
 
 #[test]
-fn a_whip_crack_gains_no_energy() {
+#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
+fn a_whip_crack_gains_2_permille_of_energy_at_most_and_8_percent_by_the_axial_implicit_leapfrog() {
     for (integrator, gain, ledger) in [
         (Integrator::Leapfrog, 2e-3, 0.25),
         (Integrator::AxialImplicit, 0.08, 0.01),
@@ -75,9 +78,9 @@ fn a_whip_crack_gains_no_energy() {
         for elements in [40, 80] {
             let scene = by(folded_chain(elements, 2), integrator, 0.01 / elements as f64);
             let run = Run::of(&scene, 5.0, 0.005);
-            let what = format!("whip of {elements}, {integrator:?}");
-            sound(&what, &run, ledger, 17_500.0);
-            at_most(gain, &format!("{what}, gain"), run.energy_gain());
+            let case = Case(format!("whip of {elements}, {integrator:?}"));
+            case.sound(&run, ledger, 17_500.0);
+            case.at_most(gain, "gain", run.energy_gain());
         }
     }
 }
@@ -109,7 +112,7 @@ fn last_step(simulation: &Simulation) -> f64 {
 }
 
 #[test]
-fn a_line_let_go_in_full_swing_whips_and_keeps_its_momenta() {
+fn a_line_released_in_full_swing_whips_and_keeps_its_momenta() {
     for (integrator, bound) in [
         (Integrator::Leapfrog, 1e-12),
         (Integrator::AxialImplicit, 1e-12),
@@ -121,17 +124,17 @@ fn a_line_let_go_in_full_swing_whips_and_keeps_its_momenta() {
             Run::hosted(&scene, std::iter::repeat_n(0.05, steps), let_go)
         };
         let (start, flight) = (run(LET_GO + 0.1), run(LET_GO + 4.1));
-        let what = format!("let go in full swing, {integrator:?}");
-        sound(&what, &flight, 5e-3, 800.0);
+        let case = Case(format!("released in full swing, {integrator:?}"));
+        case.sound(&flight, 5e-3, 800.0);
         let mass: f64 = flight.end.model().lines[0].nodes.mass.iter().sum();
         let [before, after] = [&start, &flight].map(|run| momenta(&run.end));
         // leapfrogs have velocities half a step before, and their steps follow the tension
         let [earlier, later] = [&start, &flight].map(|run| 0.5 * last_step(&run.end));
         let fallen = Vector3::new(0.0, 0.0, -(4.0 + earlier - later) * mass * G);
         let change = (after[0] - before[0] - fallen).norm() / fallen.norm();
-        at_most(1e-12, &format!("{what}, momentum"), change);
+        case.at_most(1e-12, "momentum", change);
         let turned = (after[1] - before[1]).norm() / before[1].norm();
-        at_most(bound, &format!("{what}, angular momentum"), turned);
-        at_most(1e-3, &format!("{what}, gain"), flight.energy_gain());
+        case.at_most(bound, "angular momentum", turned);
+        case.at_most(1e-3, "gain", flight.energy_gain());
     }
 }

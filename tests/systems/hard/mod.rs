@@ -17,27 +17,32 @@ mod falls;
 mod motion;
 mod stiffness;
 
-/// Claims that a quantity is no greater than a bound; prints both.
-fn at_most(bound: f64, what: &str, value: f64) {
-    println!("{what}: {value:.3e}, at most {bound:.3e}");
-    assert!(value <= bound, "{what}: {value:.4e} exceeds {bound:.4e}");
-}
+/// A run that claims are made of, by name.
+struct Case(String);
 
 /// Error that Newton's method leaves of a ledger, over the energy that flowed [-].
 const NEWTON: f64 = 1e-5;
 
-/// Claims that a run stayed finite, that its ledger closes to a share of the energy that flowed [-], by an implicit integrator to what Newton's method
-/// leaves, and that it took no more than so many internal steps for a second [1/s].
-fn sound(what: &str, run: &run::Run, ledger: f64, steps: f64) {
-    assert!(run.is_finite(), "{what}");
-    let ledger = match run.chosen {
-        Integrator::GeneralisedAlpha => ledger.min(NEWTON),
-        _ => ledger,
-    };
-    at_most(ledger, &format!("{what}, ledger"), run.ledger_error());
-    at_most(
-        steps,
-        &format!("{what}, steps for a second"),
-        run.substeps_per_second(),
-    );
+impl Case {
+    /// Claims that a quantity of the case is no greater than a bound; prints both.
+    fn at_most(&self, bound: f64, quantity: &str, value: f64) {
+        let name = &self.0;
+        println!("{name}, {quantity}: {value:.3e}, at most {bound:.3e}");
+        assert!(
+            value <= bound,
+            "{name}, {quantity}: {value:.4e} exceeds {bound:.4e}"
+        );
+    }
+
+    /// Claims that a run stayed finite, that its ledger closes to a share of the energy that flowed [-], by an implicit integrator to the error that Newton's
+    /// method leaves, and that it took no more than a number of internal steps for a second [1/s].
+    fn sound(&self, run: &run::Run, ledger: f64, steps: f64) {
+        assert!(run.is_finite(), "{}", self.0);
+        let ledger = match run.chosen {
+            Integrator::GeneralisedAlpha => ledger.min(NEWTON),
+            _ => ledger,
+        };
+        self.at_most(ledger, "ledger", run.ledger_error());
+        self.at_most(steps, "steps for a second", run.substeps_per_second());
+    }
 }

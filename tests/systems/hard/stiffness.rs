@@ -2,9 +2,9 @@
 
 use moorline::scene::{ContactLaw, Integrator};
 
+use super::Case;
 use super::run::Run;
 use super::scenes::*;
-use super::{at_most, sound};
 
 /// How far two runs of a line that hardly stretches lie apart below 0.5 Hz: the shocks of its nodes that land are never alike [-].
 const SHOCKS: f64 = 0.2;
@@ -30,6 +30,7 @@ fn inextensible() -> Run {
 }
 
 #[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
 fn a_stiffer_line_tends_to_an_inextensible_one_in_steps_that_stay_affordable() {
     let inextensible = inextensible();
     for integrator in INTEGRATORS {
@@ -37,14 +38,14 @@ fn a_stiffer_line_tends_to_an_inextensible_one_in_steps_that_stay_affordable() {
             if integrator == Integrator::Leapfrog && factor > 100.0 {
                 continue; // 11 000 steps for a second
             }
-            let what = format!("EA × {factor}, {integrator:?}");
+            let case = Case(format!("EA × {factor}, {integrator:?}"));
             let run = stiff(integrator, factor);
-            sound(&what, &run, 1e-2, steps);
-            at_most(
+            case.sound(&run, 1e-2, steps);
+            let (bound, apart) = (
                 if factor == 1.0 { 0.7 } else { SHOCKS },
-                &format!("{what}, low-passed tension from the inextensible one"),
                 run.slow_tension_error(&inextensible, 20.0, 0.5),
             );
+            case.at_most(bound, "low-passed tension from the inextensible one", apart);
         }
     }
     let chosen = [1.0, 1e4].map(|factor| stiff(Integrator::Auto, factor).chosen);
@@ -64,21 +65,13 @@ fn a_hundred_times_harder_bed_takes_the_same_steps_to_the_same_answers() {
                 Run::of(&by(scene, integrator, 0.02), 40.0, 0.05)
             };
             let (given, harder) = (run(1.0), run(100.0));
-            let what = format!("bed × 100, {contact:?}, {integrator:?}");
-            sound(&what, &harder, 2e-2, 170.0);
-            at_most(
-                1.03,
-                &format!("{what}, steps"),
-                harder.substeps as f64 / given.substeps as f64,
-            );
-            at_most(
+            let case = Case(format!("bed × 100, {contact:?}, {integrator:?}"));
+            case.sound(&harder, 2e-2, 170.0);
+            case.at_most(1.03, "steps", harder.substeps as f64 / given.substeps as f64);
+            case.at_most(bound, "tension", harder.tension_error(&given, 20.0));
+            case.at_most(
                 bound,
-                &format!("{what}, tension"),
-                harder.tension_error(&given, 20.0),
-            );
-            at_most(
-                bound,
-                &format!("{what}, low-passed tension"),
+                "low-passed tension",
                 harder.slow_tension_error(&given, 20.0, 0.5),
             );
         }
@@ -86,6 +79,7 @@ fn a_hundred_times_harder_bed_takes_the_same_steps_to_the_same_answers() {
 }
 
 #[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
 fn a_segment_1000_times_shorter_than_its_neighbours_changes_nothing_but_the_steps() {
     let run = |ratio: f64, integrator| Run::of(&by(short_segment(ratio), integrator, 0.01), 30.0, 0.05);
     let plain = run(0.0, Integrator::Leapfrog);
@@ -98,12 +92,12 @@ fn a_segment_1000_times_shorter_than_its_neighbours_changes_nothing_but_the_step
         (Integrator::Auto, 500.0),
     ] {
         let graded = run(1000.0, integrator);
-        let what = format!("segment of 5 mm, {integrator:?}");
-        sound(&what, &graded, 5e-3, steps);
+        let case = Case(format!("segment of 5 mm, {integrator:?}"));
+        case.sound(&graded, 5e-3, steps);
         let excess = slow(&graded) / slow(&plain);
-        at_most(1.2, &format!("{what}, error over that without it"), excess);
+        case.at_most(1.2, "error over that without it", excess);
         let peak = (graded.peak() / plain.peak() - 1.0).abs();
-        at_most(5e-3, &format!("{what}, peak"), peak);
+        case.at_most(5e-3, "peak", peak);
     }
 }
 
@@ -119,14 +113,14 @@ fn a_tonne_on_a_light_rope_swings_as_a_pendulum() {
     for integrator in JOINED {
         let angle = 1.0;
         let run = Run::of(&by(clump(10, 0.0, angle), integrator, 0.005), 20.0, 0.01);
-        let what = format!("pendulum, {integrator:?}");
-        sound(&what, &run, 1e-3, 5000.0);
+        let case = Case(format!("pendulum, {integrator:?}"));
+        case.sound(&run, 1e-3, 5000.0);
         let exact = swing_pulls(angle, 0.01, 2000);
         let peak = (run.peak() / exact.iter().copied().fold(0.0, f64::max) - 1.0).abs();
-        at_most(5e-3, &format!("{what}, peak"), peak);
+        case.at_most(5e-3, "peak", peak);
         let pairs = run.tension.iter().zip(&exact);
         let apart = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        at_most(0.02 * CLUMP * G, &format!("{what}, tension at any time"), apart);
+        case.at_most(0.02 * CLUMP * G, "tension at any time", apart);
     }
 }
 
@@ -136,17 +130,14 @@ fn a_tonne_dropped_into_a_light_rope_is_caught_with_its_energy() {
     let exact = caught_pull(fall);
     for (integrator, ledger) in JOINED.into_iter().zip([5e-3, 0.05, 5e-3]) {
         let run = Run::of(&by(clump(10, fall, 0.0), integrator, 0.001), 2.0, 0.01);
-        let what = format!("dropped clump, {integrator:?}");
-        sound(&what, &run, ledger, 5000.0);
-        at_most(
-            0.03,
-            &format!("{what}, tension"),
-            (run.peak() / exact - 1.0).abs(),
-        );
+        let case = Case(format!("dropped clump, {integrator:?}"));
+        case.sound(&run, ledger, 5000.0);
+        case.at_most(0.03, "tension", (run.peak() / exact - 1.0).abs());
     }
 }
 
 #[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
 fn a_line_almost_without_mass_pulls_as_it_should() {
     for wet in [true, false] {
         for mass in [1e-3, 1e-5] {
@@ -160,9 +151,9 @@ fn a_line_almost_without_mass_pulls_as_it_should() {
                 (Integrator::Auto, 2e-4, 4000.0),
             ] {
                 let run = Run::of(&by(scene(), integrator, 0.01), 12.0, 0.05);
-                let what = format!("{mass} kg/m, wet {wet}, {integrator:?}");
-                sound(&what, &run, ledger, steps);
-                at_most(1e-5, &format!("{what}, tension"), run.tension_error(&truth, 4.0));
+                let case = Case(format!("{mass} kg/m, wet {wet}, {integrator:?}"));
+                case.sound(&run, ledger, steps);
+                case.at_most(1e-5, "tension", run.tension_error(&truth, 4.0));
             }
         }
     }
