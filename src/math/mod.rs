@@ -13,4 +13,6 @@ pub mod pivoted_chain;
 pub mod random;
 pub mod rotation;
 pub mod shape_preserving;
+#[cfg(test)]
+pub(crate) mod tests;
 pub mod unit;

@@ -6,6 +6,9 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
+use crate::common::{assert_says, greatest};
+use tempfile::{TempDir, tempdir};
+
 const DECK: &str = include_str!("../decks/openfast_v2.dat");
 const C_STYLE: &str = include_str!("../decks/moordyn_c.txt");
 const VERSION_1: &str = include_str!("../decks/moordyn_v1.dat");
@@ -13,17 +16,13 @@ const FARM: &str = include_str!("../decks/farm.dat");
 
 type Columns = BTreeMap<String, Vec<f64>>;
 
-/// Runs the command line in a folder: exit code and what it says on standard error.
-fn moorline(folder: &Path, arguments: &[&str]) -> (i32, String) {
-    let done = Command::new(env!("CARGO_BIN_EXE_moorline"))
-        .args(arguments)
-        .current_dir(folder)
-        .output()
-        .unwrap();
-    (
-        done.status.code().unwrap(),
-        String::from_utf8(done.stderr).unwrap(),
-    )
+/// Runs the command line in a folder, which must end with this exit code; its words on standard error.
+fn moorline(folder: &Path, arguments: &[&str], code: i32) -> String {
+    let mut program = Command::new(env!("CARGO_BIN_EXE_moorline"));
+    let done = program.args(arguments).current_dir(folder).output().unwrap();
+    let error = String::from_utf8(done.stderr).unwrap();
+    assert_eq!(done.status.code(), Some(code), "{error}");
+    error
 }
 
 fn results(folder: &Path) -> Columns {
@@ -37,30 +36,33 @@ fn results(folder: &Path) -> Columns {
         .collect()
 }
 
-/// Runs `deck` with `files` beside it and the further arguments; its columns.
-fn run(deck: &str, files: &[(&str, &str)], arguments: &[&str]) -> Columns {
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("deck.txt"), deck).unwrap();
-    for (name, text) in files {
+/// Runs `deck` with `files` beside it and the further arguments in a folder: its words on standard error.
+fn ran(folder: &TempDir, deck: &str, files: &[(&str, &str)], arguments: &[&str], code: i32) -> String {
+    for (name, text) in files.iter().chain(&[("deck.txt", deck)]) {
         fs::write(folder.path().join(name), text).unwrap();
     }
-    let all = [&["run", "deck.txt", "-o", "out"], arguments].concat();
-    let (code, error) = moorline(folder.path(), &all);
-    assert_eq!(code, 0, "{error}");
+    moorline(
+        folder.path(),
+        &[&["run", "deck.txt", "-o", "out"], arguments].concat(),
+        code,
+    )
+}
+
+/// The columns of a run.
+fn run(deck: &str, files: &[(&str, &str)], arguments: &[&str]) -> Columns {
+    let folder = tempdir().unwrap();
+    ran(&folder, deck, files, arguments, 0);
     results(&folder.path().join("out"))
 }
 
-/// What a run that must not start says.
+/// The message of a run that must not start.
 fn refused(deck: &str, files: &[(&str, &str)], arguments: &[&str]) -> String {
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("deck.txt"), deck).unwrap();
-    for (name, text) in files {
-        fs::write(folder.path().join(name), text).unwrap();
-    }
-    let all = [&["run", "deck.txt", "-o", "out"], arguments].concat();
-    let (code, error) = moorline(folder.path(), &all);
-    assert_eq!(code, 2, "{error}");
-    error
+    ran(&tempdir().unwrap(), deck, files, arguments, 2)
+}
+
+/// Arguments of a command line without quotes.
+fn words(line: &str) -> Vec<&str> {
+    line.split(' ').collect()
 }
 
 /// A table of a heave and pitch that grow, every 0.1 s for `end` seconds.
@@ -90,9 +92,10 @@ fn a_motion_file_moves_the_vessel_of_a_deck_for_as_long_as_it_lasts() {
     assert!(columns["vessel.z"].iter().any(|z| z.abs() > 0.3));
     assert!(columns["vessel.pitch"].iter().any(|a| a.abs() > 0.01));
     let tension = &columns["FairTen1"];
-    let (low, high) = tension.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), t| {
-        (low.min(*t), high.max(*t))
-    });
+    let (low, high) = (
+        tension.iter().copied().fold(f64::INFINITY, f64::min),
+        greatest(tension.iter().copied()),
+    );
     assert!(high > 1.01 * low && low > 0.0);
     let named = heave_and_pitch("t [s],vessel.z [m],vessel.pitch [rad]", 4.0);
     let same = run(DECK, &[("motion.csv", &named)], &["--motion", "motion.csv"]);
@@ -101,66 +104,45 @@ fn a_motion_file_moves_the_vessel_of_a_deck_for_as_long_as_it_lasts() {
 
 #[test]
 fn regular_motion_of_a_deck_is_that_of_a_scene_that_says_it() {
-    let by_flag = run(
-        DECK,
-        &[],
-        &[
-            "--move",
-            "vessel.x=1.5,8",
-            "--move",
-            "vessel.pitch=0.02,6,0.5",
-            "--ramp",
-            "3",
-            "--duration",
-            "4",
-        ],
-    );
-    let folder = tempfile::tempdir().unwrap();
+    let flags = "--move vessel.x=1.5,8 --move vessel.pitch=0.02,6,0.5 --ramp 3 --duration 4";
+    let by_flag = run(DECK, &[], &words(flags));
+    let folder = tempdir().unwrap();
     fs::write(folder.path().join("deck.txt"), DECK).unwrap();
-    let (code, error) = moorline(folder.path(), &["convert", "deck.txt", "-o", "scene.toml"]);
-    assert_eq!(code, 0, "{error}");
+    moorline(folder.path(), &["convert", "deck.txt", "-o", "scene.toml"], 0);
     let scene = fs::read_to_string(folder.path().join("scene.toml")).unwrap();
     assert!(scene.contains("[motion]\n"));
     let motion = "[motion]\nvessel = { x = [[1.5, 8.0]], pitch = [[0.02, 6.0, 0.5]], ramp = 3.0 }\n";
     let scene = scene.replace("[motion]\n", motion);
     fs::write(folder.path().join("scene.toml"), scene).unwrap();
-    let (code, error) = moorline(
+    moorline(
         folder.path(),
         &["run", "scene.toml", "-o", "out", "--duration", "4"],
+        0,
     );
-    assert_eq!(code, 0, "{error}");
     assert_eq!(results(&folder.path().join("out")), by_flag);
     assert_eq!(*by_flag["time"].last().unwrap(), 4.0);
 }
 
 #[test]
 fn coupled_points_of_a_deck_move_as_the_one_vessel_that_is_given() {
-    let words = ["4    vessel ", "5    Vessel ", "6    VES    "];
-    let points = words.iter().fold(DECK.to_string(), |deck, word| {
+    let kinds = ["4    vessel ", "5    Vessel ", "6    VES    "];
+    let points = kinds.iter().fold(DECK.to_string(), |deck, word| {
         assert!(deck.contains(word));
         deck.replace(word, &format!("{}    Coupled ", &word[..1]))
     });
-    let moved = [
-        "--move",
-        "barge.pitch=0.02,6",
-        "--move",
-        "barge.z=0.5,8",
-        "--duration",
-        "2",
-    ];
-    let said = refused(&points, &[], &moved);
-    assert!(
-        said.contains("`barge` is no vessel or coupled point") && said.contains("use --vessel barge"),
-        "{said}"
+    let moved = "--move barge.pitch=0.02,6 --move barge.z=0.5,8 --duration 2";
+    let said = refused(&points, &[], &words(moved));
+    assert_says(
+        &said,
+        &["`barge` is no vessel or coupled point", "use --vessel barge"],
     );
     let said = refused(&points, &[], &["--move", "point4.pitch=0.02,6"]);
-    assert!(
-        said.contains("`point4` is a point, and points do not turn") && said.contains("use --vessel NAME"),
-        "{said}"
+    assert_says(
+        &said,
+        &["`point4` is a point, and points do not turn", "use --vessel NAME"],
     );
-    let joined = run(&points, &[], &[moved.as_slice(), &["--vessel", "barge"]].concat());
-    let given = moved.map(|word| word.replace("barge", "vessel"));
-    let own = run(DECK, &[], &given.each_ref().map(String::as_str));
+    let joined = run(&points, &[], &words(&format!("{moved} --vessel barge")));
+    let own = run(DECK, &[], &words(&moved.replace("barge", "vessel")));
     assert!(joined["barge.my"].iter().any(|moment| *moment != 0.0));
     assert_eq!(joined["barge.my"], own["vessel.my"]);
     assert_eq!(joined["FairTen1"], own["FairTen1"]);
@@ -184,27 +166,23 @@ fn without_vessels_a_file_without_names_moves_all_coupled_points_alike() {
 
 #[test]
 fn a_farm_runs_with_its_places_and_the_motion_of_one_of_its_vessels() {
-    let arguments = [
-        "--at",
-        "turbine1=0,0,0",
-        "--at",
-        "turbine2=1000,0,0",
-        "--move",
-        "turbine2.x=1,8",
-        "--duration",
-        "2",
-    ];
-    let columns = run(FARM, &[], &arguments);
+    let at = "--at turbine1=0,0,0 --at turbine2=1000,0,0";
+    let columns = run(
+        FARM,
+        &[],
+        &words(&format!("{at} --move turbine2.x=1,8 --duration 2")),
+    );
     assert!(columns["turbine1.x"].iter().all(|x| *x == 0.0));
     assert!(columns["turbine2.x"].iter().any(|x| *x > 0.5));
-    let folder = tempfile::tempdir().unwrap();
+    let folder = tempdir().unwrap();
     fs::write(folder.path().join("farm.dat"), FARM).unwrap();
     for command in ["check", "statics"] {
-        let (code, error) = moorline(folder.path(), &[command, "farm.dat"]);
-        assert_eq!(code, 2, "{error}");
-        let all = [&[command, "farm.dat"], &arguments[..4]].concat();
-        let (code, error) = moorline(folder.path(), &all);
-        assert_eq!(code, 0, "{error}");
+        moorline(folder.path(), &[command, "farm.dat"], 2);
+        moorline(
+            folder.path(),
+            &[&[command, "farm.dat"], &words(at)[..]].concat(),
+            0,
+        );
     }
 }
 
@@ -242,32 +220,20 @@ fn what_cannot_move_or_be_read_is_refused_with_file_line_and_what_would_be_right
         ("time,x,y,z\n", "no rows below the header"),
         ("time,x,y,z\n0,1e300,0,0\n", "beyond the limit"),
     ] {
-        let said = with_file(DECK, text);
-        assert!(
-            said.contains("error: m") && said.contains(words),
-            "{text:?}: {said}"
-        );
+        assert_says(&with_file(DECK, text), &["error: m", words]);
     }
-    let missing = refused(DECK, &[], &flag);
-    assert!(missing.contains("m.csv: no such file"), "{missing}");
+    assert_says(&refused(DECK, &[], &flag), &["m.csv: no such file"]);
     let turning = "time,x,y,z,roll,pitch,yaw\n0,0,0,0,0,0,0\n";
     let points = VERSION_1.replace("3     Fairlead ", "3     Coupled  ");
-    let said = with_file(&points, turning);
-    assert!(
-        said.contains("points do not turn") && said.contains("use --vessel NAME"),
-        "{said}"
+    assert_says(
+        &with_file(&points, turning),
+        &["points do not turn", "use --vessel NAME"],
     );
     let several = with_file(C_STYLE, "time,x,y,z\n0,0,0,0\n");
-    assert!(
-        several.contains("the columns must name what moves, such as body1.x"),
-        "{several}"
-    );
-    let twice = refused(
-        DECK,
-        &[("m.csv", "time,x,y,z\n0,0,0,0\n1,1,0,0\n")],
-        &["--motion", "m.csv", "--move", "vessel.x=1,8"],
-    );
-    assert!(twice.contains("moves by the file already"), "{twice}");
+    assert_says(&several, &["the columns must name what moves, such as body1.x"]);
+    let file = [("m.csv", "time,x,y,z\n0,0,0,0\n1,1,0,0\n")];
+    let twice = refused(DECK, &file, &words("--motion m.csv --move vessel.x=1,8"));
+    assert_says(&twice, &["moves by the file already"]);
     let wrong = refused(DECK, &[], &["--move", "vessel.x=1"]);
-    assert!(wrong.contains("BODY.AXIS=AMPLITUDE,PERIOD"), "{wrong}");
+    assert_says(&wrong, &["BODY.AXIS=AMPLITUDE,PERIOD"]);
 }

@@ -10,7 +10,7 @@ use std::sync::mpsc;
 use std::thread;
 use std::time::Duration;
 
-use crate::common::Chance;
+use crate::common::{Chance, assert_says};
 use moorline::scene::{LoadError, load};
 use moorline::simulation::{Error, Simulation};
 
@@ -120,36 +120,13 @@ interval = 0.1
 "#;
 
 /// What stands for a value: no numbers, no sizes, no types that a key wants.
-const VALUES: [&str; 28] = [
-    "nan",
-    "inf",
-    "-inf",
-    "1e300",
-    "-1e300",
-    "1e-300",
-    "1e-15",
-    "1e-6",
-    "0",
-    "-1",
-    "-0.08",
-    "1e999",
-    "99999999999999999999",
-    "100001",
-    "1e12",
-    "true",
-    "\"\"",
-    "\"x\"",
-    "\"anchor1\"",
-    "\"\\u0000\"",
-    "[]",
-    "[1.0]",
-    "[nan, 0.0, 0.0]",
-    "[[0.0, 0.0]]",
-    "{}",
-    "{ type = 1 }",
-    "0x",
-    "",
-];
+const VALUES: &str = "nan|inf|-inf|1e300|-1e300|1e-300|1e-15|1e-6|0|-1|-0.08|1e999|99999999999999999999|100001|1e12|\
+    true|\"\"|\"x\"|\"anchor1\"|\"\\u0000\"|[]|[1.0]|[nan, 0.0, 0.0]|[[0.0, 0.0]]|{}|{ type = 1 }|0x|";
+
+/// The first `count` of these values.
+fn values(count: usize) -> Vec<&'static str> {
+    VALUES.split('|').take(count).collect()
+}
 
 /// The shipped scenes that solve fast, and the system above.
 fn seeds() -> Vec<String> {
@@ -173,21 +150,17 @@ fn numbers(lines: &[String]) -> Vec<usize> {
 
 /// The line with one of its numbers replaced.
 fn with_number(chance: &mut Chance, line: &str, new: &str) -> String {
-    let starts: Vec<usize> = line
-        .char_indices()
-        .filter(|&(at, c)| {
-            let before = line[..at].chars().next_back().unwrap_or('=');
-            (c.is_ascii_digit() || c == '-') && " [,=".contains(before)
-        })
-        .map(|(at, _)| at)
-        .collect();
+    let begins = |&(at, c): &(usize, char)| {
+        let before = line[..at].chars().next_back().unwrap_or('=');
+        (c.is_ascii_digit() || c == '-') && " [,=".contains(before)
+    };
+    let starts: Vec<usize> = line.char_indices().filter(begins).map(|(at, _)| at).collect();
     let Some(&start) = starts.get(chance.below(starts.len())) else {
         return line.to_string();
     };
     let rest = &line[start..];
-    let length = rest
-        .find(|c: char| !(c.is_ascii_alphanumeric() || "+-._".contains(c)))
-        .unwrap_or(rest.len());
+    let ends = |c: char| !(c.is_ascii_alphanumeric() || "+-._".contains(c));
+    let length = rest.find(ends).unwrap_or(rest.len());
     format!("{}{new}{}", &line[..start], &rest[length..])
 }
 
@@ -204,24 +177,19 @@ fn mutated(chance: &mut Chance, seed: &str, kind: usize) -> Vec<u8> {
             // A value is another.
             let line = *chance.one_of(&assignments(&lines));
             let (key, _) = lines[line].split_once(" = ").unwrap();
-            lines[line] = format!("{key} = {}", chance.one_of(&VALUES));
+            lines[line] = format!("{key} = {}", chance.one_of(&values(28)));
         }
         2 | 3 => {
             // A number is another.
             let line = *chance.one_of(&numbers(&lines));
-            let new = chance.one_of(&VALUES[..15]);
+            let new = *chance.one_of(&values(15));
             lines[line] = with_number(chance, &lines[line], new);
         }
         4 => {
             // A name is another's, or nobody's.
-            let names: Vec<usize> = assignments(&lines)
-                .into_iter()
-                .filter(|&i| {
-                    ["name =", "from =", "to =", "on =", "type ="]
-                        .iter()
-                        .any(|key| lines[i].contains(key))
-                })
-                .collect();
+            let keys = ["name =", "from =", "to =", "on =", "type ="];
+            let named = |i: &usize| keys.iter().any(|key| lines[*i].contains(key));
+            let names: Vec<usize> = assignments(&lines).into_iter().filter(named).collect();
             let (line, other) = (*chance.one_of(&names), *chance.one_of(&names));
             let taken = lines[other].split('"').nth(1).unwrap_or("x").to_string();
             let own = lines[line].split('"').nth(1).unwrap_or("x").to_string();
@@ -298,15 +266,14 @@ fn fate(path: &Path) -> Result<Fate, String> {
         Err(Error::Scene(mistake)) => {
             let placed = loaded.locate(mistake);
             let said = placed.span.is_some() && !placed.problem.is_empty();
-            said.then_some(Fate::Refused)
-                .ok_or(format!("{placed:?} has no place"))
+            if said {
+                Ok(Fate::Refused)
+            } else {
+                Err(format!("{placed:?} has no place"))
+            }
         }
-        Err(Error::Statics(error)) => {
-            let words = error.to_string();
-            (words.len() > 10)
-                .then_some(Fate::Unsolved)
-                .ok_or(format!("{words:?} says nothing"))
-        }
+        Err(Error::Statics(error)) if error.to_string().len() > 10 => Ok(Fate::Unsolved),
+        Err(Error::Statics(error)) => Err(format!("{error:?} says nothing")),
     }
 }
 
@@ -410,22 +377,21 @@ fn difference(seed: &str, bytes: &[u8]) -> String {
     let text = String::from_utf8_lossy(bytes);
     let known: Vec<&str> = seed.lines().collect();
     let new: Vec<&str> = text.lines().filter(|line| !known.contains(line)).collect();
-    let gone: Vec<&str> = known
-        .iter()
-        .filter(|line| !text.lines().any(|other| other == **line))
-        .copied()
-        .collect();
+    let is_gone = |line: &&&str| !text.lines().any(|other| other == **line);
+    let gone: Vec<&&str> = known.iter().filter(is_gone).collect();
     format!("  title {:?}, new {new:?}, gone {gone:?}", known.first())
 }
 
-/// The system with one part of its text replaced, which must be there.
-fn system(old: &str, new: &str) -> String {
-    assert!(SYSTEM.contains(old), "{old:?} is not in the system");
-    SYSTEM.replacen(old, new, 1)
+/// The list of mistakes of a scene that is refused.
+fn refusal(text: &str) -> String {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.toml");
+    fs::write(&path, text).unwrap();
+    load(&path).expect_err("the scene is refused").list()
 }
 
 #[test]
-fn what_hands_do_wrong_most_is_refused_at_its_line() {
+fn the_commonest_mistakes_of_users_are_refused_at_their_lines() {
     let cases = [
         ("diameter = 0.0766", "diameter = -0.0766", 21, "not positive"),
         ("mass = 113.35", "mass = nan", 20, "not a finite number"),
@@ -441,36 +407,24 @@ fn what_hands_do_wrong_most_is_refused_at_its_line() {
         ("interval = 0.1", "interval = 1e-12", 99, "steps"),
     ];
     for (old, new, line, word) in cases {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("scene.toml");
-        fs::write(&path, system(old, new)).unwrap();
-        let list = load(&path).expect_err(new).list();
-        let place = format!("scene.toml:{line}:");
-        assert!(
-            list.contains(&place) && list.contains(word),
-            "{new}: wanted {place} and {word:?}, found {list}"
-        );
+        assert!(SYSTEM.contains(old), "{old:?} is not in the system");
+        let list = refusal(&SYSTEM.replacen(old, new, 1));
+        assert_says(&list, &[&format!("scene.toml:{line}:"), word]);
     }
 }
 
 #[test]
 fn points_that_no_line_holds_and_loops_of_free_points_are_refused() {
-    let loose = format!(
-        "{SYSTEM}\n[[points]]\nname = \"loose\"\nposition = [0.0, 0.0, -5.0]\nkind = \"free\"\nmass = 1.0\n"
+    let point = "[[points]]\nname = \"loose\"\nposition = [0.0, 0.0, -5.0]\nkind = \"free\"\nmass = 1.0\n";
+    assert_says(
+        &refusal(&format!("{SYSTEM}\n{point}")),
+        &["no line ends at this free point"],
     );
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("scene.toml");
-    fs::write(&path, loose).unwrap();
-    let list = load(&path).expect_err("nothing holds it").list();
-    assert!(list.contains("no line ends at this free point"), "{list}");
-    let adrift = SYSTEM.replace("kind = \"fixed\"", "kind = \"free\"\nmass = 10.0");
-    let adrift = adrift.replace(
-        "kind = \"coupled\"\non = \"barge\"",
-        "kind = \"free\"\nmass = 10.0",
-    );
-    fs::write(&path, adrift).unwrap();
-    let list = load(&path).expect_err("nothing holds anything").list();
-    assert!(list.contains("nothing holds"), "{list}");
+    let free = "kind = \"free\"\nmass = 10.0";
+    let adrift = SYSTEM
+        .replace("kind = \"fixed\"", free)
+        .replace("kind = \"coupled\"\non = \"barge\"", free);
+    assert_says(&refusal(&adrift), &["nothing holds"]);
 }
 
 #[test]

@@ -553,6 +553,7 @@ fn without_motion(base: &Base) -> Option<(Scene, Gap)> {
 }
 
 #[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
 fn what_is_of_size_zero_is_what_is_absent() {
     claim(&[
         ("density", without_density, 1e-9),
@@ -793,6 +794,7 @@ fn beside_a_far_line(base: &Base) -> Option<(Scene, Gap)> {
 }
 
 #[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
 fn a_scene_turned_moved_reversed_split_or_reordered_is_the_same_scene() {
     claim(&[
         ("turned about z", turned, 1e-6),

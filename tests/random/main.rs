@@ -110,6 +110,7 @@ fn claim(numbers: Range<usize>) {
 }
 
 #[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
 fn five_hundred_random_scenes_run_or_say_why_not() {
     claim(0..SUITE);
 }
