@@ -2,6 +2,7 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
+use moorline::discretisation::discretised;
 use moorline::dynamics::{Choice, StepError};
 use moorline::interface::{Causality, Interface, Layout};
 use moorline::model::Network;
@@ -43,9 +44,10 @@ impl Case {
 }
 
 /// What became of a scene.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub enum Fate {
     /// Ran for the whole span.
+    #[default]
     Ran,
     /// Refused as a scene, with a reason.
     Refused(String),
@@ -57,8 +59,8 @@ pub enum Fate {
     Costly,
 }
 
-/// What is told of a run.
-#[derive(Debug, Clone)]
+/// Record of a run.
+#[derive(Debug, Clone, Default)]
 pub struct Account {
     pub fate: Fate,
     /// Integrators that served it, by name.
@@ -85,16 +87,8 @@ pub fn run(case: &Case) -> Result<Account, String> {
 }
 
 fn watched(case: &Case) -> Result<Account, String> {
-    let mut account = Account {
-        fate: Fate::Ran,
-        integrators: Vec::new(),
-        imbalance: 0.0,
-        created: 0.0,
-        work: 0.0,
-        dearest: 0.0,
-        time: 0.0,
-    };
-    let begun = Simulation::new(&case.scene).and_then(|mut simulation| {
+    let mut account = Account::default();
+    let begun = Simulation::new(&discretised(&case.scene)).and_then(|mut simulation| {
         if case.drive.follows {
             simulation.follow_scene()?;
         }
@@ -145,9 +139,7 @@ fn steps(case: &Case, simulation: &mut Simulation, account: &mut Account) -> Res
         let cost = load.weight * simulation.counters().solves as f64;
         (account.work, account.dearest) = (account.work + cost, account.dearest.max(cost));
         if cost > STEP_MAX {
-            return Err(format!(
-                "a step of {step} s at {time} s cost {cost:.1e} node steps"
-            ));
+            return Err(format!("{step} s at {time} s cost {cost:.1e} node steps"));
         }
         let at = |problem| format!("{time} s + {step} s, {problem}");
         outputs.read(simulation).map_err(at)?;
@@ -189,8 +181,8 @@ impl Load {
 
     /// Work of a communication step [s] at least.
     fn expected(&self, step: f64) -> f64 {
-        let networks = self.networks.iter();
-        networks
+        self.networks
+            .iter()
             .map(|(work, longest)| work * (step / longest).ceil())
             .sum()
     }
@@ -262,10 +254,7 @@ impl Outputs {
     /// Reads all of them; the error is one that is not a finite number.
     fn read(&self, simulation: &Simulation) -> Result<(), String> {
         for variable in self.table.variables() {
-            if !matches!(
-                variable.causality,
-                Causality::Output | Causality::CalculatedParameter
-            ) {
+            if ![Causality::Output, Causality::CalculatedParameter].contains(&variable.causality) {
                 continue;
             }
             let mut values = vec![0.0; variable.size()];

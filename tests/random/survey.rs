@@ -106,13 +106,10 @@ impl Survey {
     /// Runs the scenes of these numbers.
     pub fn of(numbers: Range<usize>) -> Survey {
         let survey = Mutex::new(Survey::default());
-        let next = AtomicUsize::new(numbers.start);
+        let (next, numbers_end) = (AtomicUsize::new(numbers.start), numbers.end);
         let work = || {
-            loop {
-                let number = next.fetch_add(1, Ordering::Relaxed);
-                if number >= numbers.end {
-                    break;
-                }
+            let numbers = std::iter::from_fn(|| Some(next.fetch_add(1, Ordering::Relaxed)));
+            for number in numbers.take_while(|number| *number < numbers_end) {
                 let case = case(number);
                 let result = run(&case);
                 let mut survey = survey.lock().expect("no thread panics while it counts");
@@ -193,11 +190,12 @@ impl Survey {
     /// Greatest error of the ledgers of an integrator, whatever a host's steps [-].
     pub fn worst(&self, integrator: &str) -> f64 {
         let ledgers = self.books.iter();
-        let books = ledgers.filter(|(name, _)| name.starts_with(integrator));
-        let sizes = books
-            .flat_map(|(_, books)| books)
-            .map(|book| book.imbalance.abs().max(book.created));
-        sizes.fold(0.0, f64::max)
+        let books = ledgers
+            .filter(|(name, _)| name.starts_with(integrator))
+            .flat_map(|(_, books)| books);
+        books
+            .map(|book| book.imbalance.abs().max(book.created))
+            .fold(0.0, f64::max)
     }
 }
 
