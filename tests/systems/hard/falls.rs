@@ -8,7 +8,7 @@ use super::Case;
 use super::run::Run;
 use super::scenes::*;
 
-/// The integrators that let go of an end.
+/// The integrators that release an end.
 const FREE: [Integrator; 3] = [
     Integrator::Leapfrog,
     Integrator::AxialImplicit,
@@ -118,12 +118,12 @@ fn a_line_released_in_full_swing_whips_and_keeps_its_momenta() {
         (Integrator::AxialImplicit, 1e-12),
         (Integrator::GeneralisedAlpha, 1e-4),
     ] {
-        let scene = by(let_go_in_swing(), integrator, 0.002);
+        let scene = by(released_in_swing(), integrator, 0.002);
         let run = |duration: f64| {
             let steps = (duration / 0.05).round() as usize;
-            Run::hosted(&scene, std::iter::repeat_n(0.05, steps), let_go)
+            Run::hosted(&scene, std::iter::repeat_n(0.05, steps), release)
         };
-        let (start, flight) = (run(LET_GO + 0.1), run(LET_GO + 4.1));
+        let (start, flight) = (run(RELEASE + 0.1), run(RELEASE + 4.1));
         let case = Case(format!("released in full swing, {integrator:?}"));
         case.sound(&flight, 5e-3, 800.0);
         let mass: f64 = flight.end.model().lines[0].nodes.mass.iter().sum();
