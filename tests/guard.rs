@@ -1,5 +1,5 @@
 //! Work of the shipped scenes at their default settings: elements, linear solves of the equilibrium, internal steps, solves of the motion.
-//! `tests/reference/work.csv` holds what it was. Counters know nothing of the machine, so that a change shows what it costs.
+//! `tests/reference/work.csv` holds the counts of before. Counters do not depend on the machine, so that a change shows its cost.
 //!
 //! A change that is meant writes the table anew, for the commit to show the difference and to say why:
 //!

@@ -53,7 +53,7 @@ pub fn model(text: &str) -> Model {
     Model::new(&scene(text)).unwrap()
 }
 
-/// Where the scene puts the points [m].
+/// Reference positions of the points [m].
 pub fn at_reference(model: &Model) -> Vec<Vector3<f64>> {
     model.points.iter().map(|point| point.reference).collect()
 }
@@ -246,7 +246,7 @@ pub fn modes(simulation: &Simulation) -> Modes {
     Modes::new(model, 0, simulation.state(), &mut Workspace::new(model)).unwrap()
 }
 
-/// What the first line did, sampled at every communication point.
+/// Record of the first line, sampled at every communication point.
 #[derive(Default, Clone)]
 pub struct History {
     /// Tension at end B [N].

@@ -182,7 +182,7 @@ fn the_leapfrogs_agree_on_snapping_chains_under_the_peers_law() {
     leapfrogs_agree(&PUBLIC_SCENES[3..], 5e-4);
 }
 
-/// What a host gives besides displacements.
+/// Inputs that a host gives.
 #[derive(Clone, Copy, PartialEq)]
 enum Gives {
     Displacements,

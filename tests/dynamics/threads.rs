@@ -5,7 +5,7 @@ use moorline::model::Body;
 use moorline::scene::{Integrator, Scene, Threads};
 use moorline::simulation::{Simulation, Snapshot};
 
-/// Twelve lines of a semi-submersible with so many elements each, in waves or not.
+/// Twelve lines of a semi-submersible with a number of elements each, in waves or not.
 fn semi(elements: usize, waves: bool, integrator: Integrator) -> Scene {
     let mut scene = with_integrator(shipped("storm_moored_semi"), integrator, 0.05);
     scene.solver.elements = Some(elements);
@@ -41,14 +41,14 @@ fn twice(one: &Scene) -> Scene {
     scene
 }
 
-/// A simulation of the scene on so many threads, which follows its motion.
+/// A simulation of the scene on a number of threads that follows its motion.
 fn on_threads(scene: &Scene, threads: usize) -> Simulation {
     let mut scene = scene.clone();
     scene.solver.threads = Threads::Number(threads);
     following(&scene)
 }
 
-/// Where irregular communication steps lead on so many threads.
+/// The state after irregular communication steps on a number of threads.
 fn stepped(scene: &Scene, threads: usize) -> Snapshot {
     let mut simulation = on_threads(scene, threads);
     for step in [0.05, 0.05, 0.3, 0.01, 1.3, 0.05, 0.2, 0.05] {

@@ -119,7 +119,7 @@ duration = 10.0
 interval = 0.1
 "#;
 
-/// What stands for a value: no numbers, no sizes, no types that a key wants.
+/// Replacements of values: no numbers, sizes out of range, types that no key takes.
 const VALUES: &str = "nan|inf|-inf|1e300|-1e300|1e-300|1e-15|1e-6|0|-1|-0.08|1e999|99999999999999999999|100001|1e12|\
     true|\"\"|\"x\"|\"anchor1\"|\"\\u0000\"|[]|[1.0]|[nan, 0.0, 0.0]|[[0.0, 0.0]]|{}|{ type = 1 }|0x|";
 
@@ -241,7 +241,7 @@ fn damaged(chance: &mut Chance, mut bytes: Vec<u8>) -> Vec<u8> {
     bytes
 }
 
-/// What became of a file.
+/// Outcome of a file.
 #[derive(Debug)]
 enum Fate {
     /// Refused with its place, or with why it cannot be read as text.
@@ -277,7 +277,7 @@ fn fate(path: &Path) -> Result<Fate, String> {
     }
 }
 
-/// Whether every refusal names the file, and the line where the file is text.
+/// Checks that every refusal names the file, and the line where the file is text.
 fn refused(error: &LoadError) -> Result<Fate, String> {
     let list = error.list();
     let first = list.lines().next().unwrap_or("");
@@ -306,7 +306,7 @@ fn moved(simulation: &mut Simulation) -> Result<Fate, String> {
     Ok(Fate::Solved)
 }
 
-/// Whether all that a host may ask for are numbers.
+/// Checks that all outputs are finite.
 fn finite(simulation: &Simulation) -> Result<(), String> {
     for line in 0..simulation.model().lines.len() {
         let numbers = [
@@ -337,7 +337,7 @@ fn finite(simulation: &Simulation) -> Result<(), String> {
     Ok(())
 }
 
-/// The fate of bytes as a file, within [`PATIENCE`]; a panic is told as one.
+/// The fate of bytes as a file, within [`PATIENCE`]; a panic is reported as one.
 fn fate_of(bytes: &[u8]) -> Result<Fate, String> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("scene.toml");

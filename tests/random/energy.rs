@@ -1,4 +1,4 @@
-//! How well the energy ledger closes.
+//! Error of the energy ledger.
 
 use moorline::simulation::Simulation;
 
@@ -22,7 +22,7 @@ impl Balance {
         balance
     }
 
-    /// Books a communication step.
+    /// Counts a communication step.
     pub fn count(&mut self, simulation: &Simulation) {
         let (energy, flow) = (simulation.energy(), simulation.ledger().flow);
         self.turnover += (flow.given - self.given).abs() + (flow.lost - self.lost).abs();

@@ -1,4 +1,4 @@
-//! What a scene has: the physics that random scenes must cover.
+//! Features of a scene: the physics that random scenes must cover.
 
 use moorline::scene::{
     ContactLaw, Current, InitialShape, Integrator, Line, LineModel, LineType, MotionPath, Point, PointKind,
@@ -7,7 +7,7 @@ use moorline::scene::{
 
 use crate::run::Case;
 
-/// Names of what a case has.
+/// Names of the features of a case.
 pub fn of(case: &Case) -> Vec<&'static str> {
     let (scene, drive) = (&case.scene, &case.drive);
     let used = used_types(scene);
@@ -38,7 +38,7 @@ pub fn of(case: &Case) -> Vec<&'static str> {
     all
 }
 
-/// Whether the paths of driven points jump.
+/// Returns true where the paths of driven points jump.
 pub fn jumps(scene: &Scene) -> bool {
     scene.solver.input_reconstruction == Reconstruction::Jump
 }
@@ -120,7 +120,7 @@ fn types(used: &[&LineType]) -> Vec<&'static str> {
     .collect()
 }
 
-/// Whether a type has bending stiffness.
+/// Returns true where a type has bending stiffness.
 pub fn bends(kind: &LineType) -> bool {
     kind.bending_stiffness > Some(0.0) || kind.solid_section.is_some()
 }

@@ -63,7 +63,7 @@ struct Layout<'t> {
     /// [m]
     depth: f64,
     scene: Scene,
-    /// Where the points are [m].
+    /// Positions of the points [m].
     places: Vec<Vector3<f64>>,
 }
 
@@ -221,7 +221,7 @@ impl Layout<'_> {
         }
     }
 
-    /// Whether stretching one of the lines by a hundredth takes far more than it weighs, so that a motion would snap what is taut.
+    /// Returns true where stretching a line by a hundredth takes far more than its weight, so that a motion would snap a taut one.
     fn is_stiff(&self) -> bool {
         let weight = self.plan.gravity.max(1.0) * self.plan.size;
         let stiff = |kind: &LineType| {
@@ -320,7 +320,7 @@ impl Layout<'_> {
         line.clamped_b = line.clamped_b.filter(|_| !turned(&line.to));
     }
 
-    /// What lets go of a line, or pays it out.
+    /// Releases, breaks and winches of a line.
     fn controls(&self, dice: &mut Dice, line: &mut Line, ends: [usize; 2]) {
         let held = self.scene.points[ends[1]].kind != PointKind::Free;
         if self.plan.winch && held && dice.chance(0.6) {

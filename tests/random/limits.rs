@@ -153,7 +153,7 @@ struct Gap {
     first: String,
 }
 
-/// What a vector of one run is in the other.
+/// Image of a vector of one run in the other.
 type Image = dyn Fn(Vector3<f64>) -> Vector3<f64>;
 
 impl Gap {
@@ -224,7 +224,7 @@ const FIRST: f64 = 1e-10;
 
 /// Displacements of points, over the size of the scene [-].
 const NUDGE: f64 = 1e-10;
-/// What the difference of runs stays below that such displacements make in a scene that is smooth [-], or half the bound of a relation where that is less. (With
+/// Bound of the difference of runs that such displacements make in a smooth scene [-], or half the bound of a relation where that is less. (With
 /// half the bound alone two scenes fail at 1e-6, of stiff lines that hardly pull: 154 turned and moved, 189 moved.)
 const NUDGED_MAX: f64 = 5e-9;
 /// Least tension of a line at rest that is determined by forces, over its greatest [-].
@@ -232,7 +232,7 @@ const TAUT: f64 = 1e-9;
 /// Greatest share of the scenes of a relation that may fail because they are not smooth [-].
 const ROUGH_MAX: f64 = 0.2;
 
-/// Whether a scene is smooth: small displacements of its points change its run in proportion. Of a line that snaps they do not, nor of one that may rest in
+/// Returns true where a scene is smooth: small displacements of its points change its run in proportion. Of a line that snaps they do not, nor of one that may rest in
 /// many places, and rounding changes the run as much.
 fn is_smooth(base: &Base, scene: &Scene, bound: f64) -> bool {
     is_taut_at_rest(scene)
@@ -248,7 +248,7 @@ fn is_smooth(base: &Base, scene: &Scene, bound: f64) -> bool {
         })
 }
 
-/// Whether every segment pulls that starts at rest: where slack ones lie on a bed is not determined.
+/// Returns true where every segment that starts at rest pulls: the place of slack ones on a seabed is not determined.
 fn is_taut_at_rest(scene: &Scene) -> bool {
     let simulation = Simulation::new(scene).expect("the scene has run");
     let lines = scene.lines.iter().enumerate();
@@ -270,7 +270,7 @@ struct Found {
     scene: usize,
     gap: Gap,
     holds: bool,
-    /// Whether it fails in a scene that is not smooth.
+    /// It fails in a scene that is not smooth.
     rough: bool,
 }
 
@@ -615,7 +615,7 @@ fn moved(base: &Base) -> Option<(Scene, Gap)> {
     images(base, &one, &other, [&move |r| r + by, &|f| f])
 }
 
-/// Whether friction holds every line as one that was laid from its end on the seabed, whatever that is called.
+/// Returns true where friction holds every line as one that was laid from its end on the seabed, A or B.
 fn is_laid_from_one_end(scene: &Scene) -> bool {
     let Some(bed) = &scene.seabed else { return true };
     let position = |name: &String| {
@@ -683,7 +683,7 @@ fn reordered(base: &Base) -> Option<(Scene, Gap)> {
     same(base, &base.scene, &other)
 }
 
-/// Whether points that move freely join lines: forces of several lines are then summed in another order.
+/// Returns true where free points join lines: forces of several lines are then summed in another order.
 fn is_joined(base: &Base) -> bool {
     base.scene
         .points

@@ -9,12 +9,12 @@
 //! SCENE=123 cargo test --release --test random -- --ignored --nocapture one     a scene as TOML, its host, and what becomes of it
 //! ```
 //!
-//! Of a ledger that closes no more than 2 % of what it books is unaccounted for. What should be the damping of an integrator may bring energy: it is claimed
-//! too how many ledgers close to which it brought no more than that. Beams conserve energy: their ledgers close in every scene. Lines that slacken and snap
+//! A ledger closes where its error is at most 2 % of the energy that it counts. The damping of an integrator may bring energy: the share of ledgers to which
+//! it brought no more than that is claimed too. Beams conserve energy: their ledgers close in every scene. Lines that slacken and snap
 //! do so by a kink in their tension law, which no fixed step of a leapfrog resolves where they are as stiff and as little damped as these may be; the implicit
-//! integrators book all that they do, but may bring energy where their steps are halved and doubled in turns, or an end lets go; and a quasi-static
+//! integrators count all of their work, but may bring energy where their steps are halved and doubled in turns, or an end is released; and a quasi-static
 //! line may jump from one equilibrium to another: of these, the shares are claimed. Held points that jump to where a host says pull stiff lines by more than steps
-//! resolve which are as long as waves allow that these do not make; they are told apart.
+//! resolve which are as long as waves allow that these do not make; they are counted apart.
 
 mod dice;
 mod drive;
@@ -55,12 +55,12 @@ const CLOSED_SHARES: [(&str, [[f64; 2]; 3]); 6] = [
 const TOO_DEAR: f64 = 0.170;
 /// Standard deviations by which a draw of scenes may miss it by chance [-].
 const BY_CHANCE: f64 = 3.0;
-/// Greatest error of a beam's ledger, over what it books [-].
+/// Greatest error of a beam's ledger, over the energy that it counts [-].
 const BEAM: f64 = 1e-9;
 /// Least share of the scenes with any feature that run [-].
 const RUN_MIN: f64 = 0.5;
 
-/// By how much a share may be missed by chance in so many draws [-].
+/// Deviation of a share that chance may cause in a number of draws [-].
 fn by_chance(share: f64, draws: f64) -> f64 {
     BY_CHANCE * (share * (1.0 - share) / draws.max(1.0)).sqrt()
 }
@@ -125,13 +125,13 @@ fn ten_thousand_random_scenes_run_or_say_why_not() {
 fn one_random_ledger_closes_better_in_shorter_steps() {
     for number in std::env::var("SCENE").expect("SCENE is a number").split(',') {
         let case = survey::case(number.parse().expect("SCENE is a number"));
-        let told: Vec<String> = [1.0, 0.5, 0.25].map(|part| told(&case, part)).into();
-        println!("{number}: {}", told.join("; "));
+        let outcomes: Vec<String> = [1.0, 0.5, 0.25].map(|part| outcome(&case, part)).into();
+        println!("{number}: {}", outcomes.join("; "));
     }
 }
 
-/// What becomes of a case in steps of a part of their usual length.
-fn told(case: &run::Case, part: f64) -> String {
+/// Outcome of a case in steps of a part of their usual length.
+fn outcome(case: &run::Case, part: f64) -> String {
     let mut case = case.clone();
     let scene = moorline::discretisation::discretised(&case.scene);
     if let Ok(simulation) = moorline::simulation::Simulation::new(&scene) {

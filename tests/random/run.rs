@@ -43,7 +43,7 @@ impl Case {
     }
 }
 
-/// What became of a scene.
+/// Outcome of a scene.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub enum Fate {
     /// Ran for the whole span.
@@ -65,7 +65,7 @@ pub struct Account {
     pub fate: Fate,
     /// Integrators that served it, by name.
     pub integrators: Vec<String>,
-    /// Error of the energy ledger, over what it books [-].
+    /// Error of the energy ledger, over the energy that it counts [-].
     pub imbalance: f64,
     /// Energy that the damping of the integrators brought on balance, over the same [-].
     pub created: f64,
@@ -128,7 +128,7 @@ fn steps(case: &Case, simulation: &mut Simulation, account: &mut Account) -> Res
         if number == replayed {
             memory = Some(simulation.snapshot().clone());
         }
-        case.drive.tell(simulation);
+        case.drive.set_inputs(simulation);
         let before = simulation.snapshot().clone();
         let time = simulation.time();
         if let Err(error) = simulation.advance(step) {
@@ -154,7 +154,7 @@ fn steps(case: &Case, simulation: &mut Simulation, account: &mut Account) -> Res
     Ok(())
 }
 
-/// What steps cost.
+/// Cost of steps.
 struct Load {
     /// Work of a second where nothing is halved or repeated, of every network with its longest step [s].
     networks: Vec<(f64, f64)>,
@@ -198,7 +198,7 @@ fn node_cost(integrator: Integrator) -> f64 {
     }
 }
 
-/// Whether a step that failed says why and has left everything as it was.
+/// Checks that a step that failed gives its reason and has left everything as it was.
 fn said_clearly(error: &StepError, before: &Snapshot, simulation: &Simulation) -> Result<(), String> {
     let mut lines = simulation.model().lines.iter();
     let line = lines.find(|line| line.name == error.line);
@@ -227,7 +227,7 @@ fn replay(
     let first = bytes(simulation.snapshot());
     simulation.restore(memory);
     for &step in &case.drive.steps[from..from + REPLAY] {
-        case.drive.tell(simulation);
+        case.drive.set_inputs(simulation);
         let again = simulation.advance(step);
         again.map_err(|error| format!("a step fails when it is made again: {error}"))?;
     }

@@ -245,7 +245,7 @@ fn bridle(elements: usize, stiffness: f64, more: &str) -> Scene {
     .scene()
 }
 
-/// Whether all lines have a closed form.
+/// Returns true where every line has a closed form.
 fn all_closed(simulation: &Simulation) -> bool {
     simulation
         .state()

@@ -92,7 +92,7 @@ struct Hosted {
     warning: Option<String>,
 }
 
-/// Error of tension at B of the first line, RMS over its standard deviation, and its estimate, with displacements given so many times a `period` [s].
+/// Error of tension at B of the first line, RMS over its standard deviation, and its estimate, with displacements given `points` times a `period` [s].
 fn hosted(model: &Simulation, period: f64, points: f64, velocities: bool) -> Hosted {
     let (step, end) = (period / points, 12.0 * period + 20.0);
     let [mut exact, mut host] = [model.clone(), model.clone()];

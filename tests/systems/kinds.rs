@@ -191,7 +191,7 @@ fn systems_at_rest_are_in_balance_node_by_node_and_as_a_whole() {
     }
 }
 
-/// Whether an integrator serves a scene: the axial-implicit leapfrog has no free points.
+/// Returns true where an integrator serves a scene: the axial-implicit leapfrog has no free points.
 fn serves(integrator: Integrator, scene: &Scene) -> bool {
     let free = |point: &Point| point.kind == PointKind::Free;
     integrator != Integrator::AxialImplicit || !scene.points.iter().any(free)

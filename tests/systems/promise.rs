@@ -1,4 +1,4 @@
-//! What `solver.tolerance` promises: the RMS error of the fairlead's tension over the second half of a run, at little more than the least cost.
+//! The promise of `solver.tolerance`: the RMS error of the fairlead's tension over the second half of a run, at little more than the least cost.
 //!
 //! claim: on five public scenes and ten variants of them, whose elements, integrator and step are left open, tolerances of 5, 2, 1 and
 //! 0.5 % are kept against a converged solution of 640 elements. `tests/reference/promise.csv` holds what that costs; a change of it is a
@@ -27,7 +27,7 @@ const AXIAL_IMPLICIT_COST: f64 = 3.0;
 /// A scene, by name.
 type Case = (&'static str, Scene);
 
-/// What is not promised: on a chain that slackens in every period and lies on the bed for half of its length the RMS error of the raw tension
+/// Limits of the promise: on a chain that slackens in every period and lies on the bed for half of its length the RMS error of the raw tension
 /// falls as slowly as 1/n, and 400 elements, the most that are chosen, leave more than 0.5 %. Scene, tolerance, and what is kept instead;
 /// the low-passed tension keeps the tolerance.
 const ROUGH: [(&str, f64, f64); 1] = [("shallow", 0.005, 0.009)];
@@ -104,7 +104,7 @@ fn converged(scene: &Scene) -> History {
     recorded(&with_integrator(fine, Integrator::AxialImplicit, step)).0
 }
 
-/// What a tolerance led to.
+/// Result of a tolerance.
 struct Outcome {
     name: &'static str,
     tolerance: f64,
@@ -144,7 +144,7 @@ impl Outcome {
         }
     }
 
-    /// What is promised of the raw tension.
+    /// Promised error of the raw tension [-].
     fn promised(&self) -> f64 {
         let mut rough = ROUGH.iter();
         let found = rough.find(|(name, tolerance, _)| *name == self.name && *tolerance == self.tolerance);
@@ -152,7 +152,7 @@ impl Outcome {
     }
 }
 
-/// What all tolerances lead to on a scene.
+/// Results of all tolerances on a scene.
 fn outcomes(case: &Case) -> Vec<Outcome> {
     let reference = converged(&case.1);
     let outcomes = TOLERANCES.map(|tolerance| Outcome::new(case, tolerance, &reference));

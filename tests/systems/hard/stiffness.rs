@@ -6,7 +6,7 @@ use super::Case;
 use super::run::Run;
 use super::scenes::*;
 
-/// How far two runs of a line that hardly stretches lie apart below 0.5 Hz: the shocks of its nodes that land are never alike [-].
+/// Difference of two runs of a line that hardly stretches below 0.5 Hz: the shocks of its nodes that land are never alike [-].
 const SHOCKS: f64 = 0.2;
 
 /// The OC3 line for 40 s, its axial stiffness multiplied by a factor.
