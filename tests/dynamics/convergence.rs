@@ -79,7 +79,6 @@ fn calm(step: f64) -> Scene {
 }
 
 #[test]
-#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
 fn halving_the_axial_implicit_step_of_a_line_that_lands_quarters_the_error_at_least() {
     let steps = [0.05, 0.025, 0.0125, 0.00625];
     let reference = recorded(&calm(SAMPLE / 256.0), 60.0);
@@ -103,7 +102,6 @@ fn lagged_axial_damping_costs_less_than_a_ten_thousandth() {
 }
 
 #[test]
-#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
 fn halving_the_elements_quarters_the_error() {
     let resolutions = [40, 80, 160, 320]; // coarser meshes miss the second transverse mode
     let sizes = resolutions.map(|n| 1.0 / n as f64);

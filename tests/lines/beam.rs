@@ -237,7 +237,6 @@ fn twist_and_slacken(scene: &Scene) -> Result<Simulation, String> {
 }
 
 #[test]
-#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
 fn a_twisted_rod_drawn_in_leaves_its_plane_and_its_ledger_closes() {
     for (elements, turns) in [(40, 2.0), (80, 4.0)] {
         let end = twist_and_slacken(&hockle(elements, turns)).unwrap();

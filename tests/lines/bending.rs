@@ -374,7 +374,6 @@ fn assert_frequencies(exact: [f64; 3], end: &str, clamps: &str, tension: f64) {
 
 /// βL: roots of cos βL cosh βL = −1, of cos βL cosh βL = 1, and multiples of π.
 #[test]
-#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
 fn frequencies_of_beams_have_second_order() {
     let held = "clamped_a = [1.0, 0.0, 0.0]";
     let both = "clamped_a = [1.0, 0.0, 0.0], clamped_b = [1.0, 0.0, 0.0]";

@@ -110,7 +110,6 @@ fn a_line_between_two_numbers_of_segments_is_a_line_with_a_segment_of_that_lengt
 }
 
 #[test]
-#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
 fn a_line_that_is_paid_out_and_hauled_in_again_comes_to_rest_where_it_was() {
     let mut scene = wound(5e-3);
     let kind = scene.line_types.get_mut("chain").unwrap();
@@ -191,7 +190,6 @@ fn paying_out(change: f64, step: f64) -> History {
 }
 
 #[test]
-#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
 fn the_error_of_the_tension_falls_with_the_step_as_it_does_without_a_winch() {
     let steps = [4e-3, 2e-3, 1e-3, 5e-4];
     let orders = [0.0, 1.9, 9.0].map(|change| {

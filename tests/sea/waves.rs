@@ -407,96 +407,107 @@ fn scenes_with_waves_survive_being_written_and_read() {
     }
 }
 
-#[test]
-fn every_mistake_in_waves_is_refused_with_its_place() {
+/// Claims that seas are refused with a place and a problem.
+fn assert_seas_refused(cases: &[(&str, &str, &str)]) {
     let text = system(Integrator::Auto, STORM).to_toml();
     let start = text.find("[water.waves]").unwrap();
     let end = start + text[start..].find("\n[").unwrap_or(text.len() - start);
     let calm = format!("{}{}", &text[..start], &text[end..]);
-    let spectrum = "spectrum = \"jonswap\", significant_height = 2.0";
-    let full = &format!("{spectrum}, peak_period = 8.0");
-    let pierson = "spectrum = \"pierson_moskowitz\", significant_height = 2.0, peak_period = 8.0";
-    for (waves, place, problem) in [
-        ("{}", "water.waves", "a sea needs"),
-        ("[]", "water.waves", "no sea in the array"),
-        ("3.0", "water.waves", "expected a sea"),
+    for (waves, place, problem) in cases {
+        let density = format!("density = 1025.0\nwaves = {waves}");
+        let place = format!("water.waves{place}");
+        assert_refused(
+            &calm.replacen("density = 1025.0", &density, 1),
+            &[&place, problem],
+        );
+    }
+}
+
+#[test]
+fn every_mistake_in_waves_is_refused_with_its_place() {
+    assert_seas_refused(&[
+        ("{}", "", "a sea needs"),
+        ("[]", "", "no sea in the array"),
+        ("3.0", "", "expected a sea"),
         (
             "{ regular = { height = 1.0, period = 0.0 } }",
-            "water.waves.regular.period",
+            ".regular.period",
             "is not between 0.05",
         ),
         (
             "{ regular = { height = -1.0, period = 5.0 } }",
-            "water.waves.regular.height",
+            ".regular.height",
             "is not positive",
         ),
         (
             "{ regular = { period = 5.0 } }",
-            "water.waves.regular",
+            ".regular",
             "either its `height` or its `amplitude`",
         ),
         (
             "{ regular = { height = 1.0, amplitude = 0.5, period = 5.0 } }",
-            "water.waves.regular",
+            ".regular",
             "either",
         ),
-        ("{ regular = { height = 1.0 } }", "regular", "period"),
         (
             "{ components = [[1.0, 5.0, 0.0]] }",
-            "water.waves.components[0]",
+            ".components[0]",
             "an array of 4 numbers",
         ),
         (
             "{ components = [[1.0, -5.0, 0.0, 0.0]] }",
-            "water.waves.components[0][1]",
+            ".components[0][1]",
             "is not between",
         ),
-        ("{ components = 50 }", "water.waves", "a sea needs"),
+    ]);
+    let waves = "water = { density = 1025.0, waves = { regular = { height = 1.0 } } }";
+    assert_refused(waves, &["regular", "period"]);
+}
+
+#[test]
+fn every_mistake_in_a_spectrum_is_refused_with_its_place() {
+    let of = |kind: &str, rest: &str| format!("{{ spectrum = \"{kind}\", significant_height = 2.0{rest} }}");
+    let full = |rest: &str| of("jonswap", &format!(", peak_period = 8.0, {rest}"));
+    let regular = |period: f64| format!("regular = {{ height = 1.0, period = {period:?} }}");
+    assert_seas_refused(&[
+        ("{ components = 50 }", "", "a sea needs"),
+        (&of("jonswap", ""), "", "missing key `peak_period` [s]"),
         (
-            &format!("{{ {spectrum} }}"),
-            "water.waves",
-            "missing key `peak_period` [s]",
-        ),
-        (
-            &format!("{{ {full}, peakedness = 12.0 }}"),
-            "water.waves.peakedness",
+            &full("peakedness = 12.0"),
+            ".peakedness",
             "is not between 1 and 10",
         ),
+        (&full("components = 0"), ".components", "from 1 to"),
+        (&full("ramp = 0.0"), ".ramp", "is not positive"),
         (
-            &format!("{{ {full}, components = 0 }}"),
-            "water.waves.components",
-            "from 1 to",
-        ),
-        (
-            &format!("{{ {full}, ramp = 0.0 }}"),
-            "water.waves.ramp",
-            "is not positive",
-        ),
-        (
-            &format!("{{ {pierson}, peakedness = 2.0 }}"),
-            "water.waves.peakedness",
+            &of("pierson_moskowitz", ", peak_period = 8.0, peakedness = 2.0"),
+            ".peakedness",
             "only a JONSWAP",
         ),
         (
-            &format!("{{ {} }}", full.replace("jonswap", "bretschneider")),
-            "water.waves.spectrum",
+            &of("bretschneider", ", peak_period = 8.0"),
+            ".spectrum",
             "pierson_moskowitz",
         ),
         (
-            "{ regular = { height = 1.0, period = 5.0 }, seed = 4 }",
-            "water.waves.seed",
+            &format!("{{ {}, seed = 4 }}", regular(5.0)),
+            ".seed",
             "belongs to a spectrum",
         ),
         (
-            "[{ regular = { height = 1.0, period = 5.0 }, ramp = 4.0 }, { regular = { height = 1.0, period = 9.0 }, ramp = 5.0 }]",
-            "water.waves[1].ramp",
+            &format!(
+                "[{{ {}, ramp = 4.0 }}, {{ {}, ramp = 5.0 }}]",
+                regular(5.0),
+                regular(9.0)
+            ),
+            "[1].ramp",
             "write one ramp",
         ),
-        ("{ swell = 1.0 }", "swell", "unknown key"),
-    ] {
-        let density = format!("density = 1025.0\nwaves = {waves}");
-        assert_refused(&calm.replacen("density = 1025.0", &density, 1), &[place, problem]);
-    }
+    ]);
+    assert_refused(
+        "water = { density = 1025.0, waves = { swell = 1.0 } }",
+        &["swell", "unknown key"],
+    );
 }
 
 #[test]

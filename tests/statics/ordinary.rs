@@ -239,7 +239,6 @@ fn long_run() -> Range<u64> {
 }
 
 #[test]
-#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
 fn three_hundred_random_lines_with_friction_find_their_equilibrium() {
     claim(0..300, Line::rough);
 }

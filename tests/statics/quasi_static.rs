@@ -406,7 +406,6 @@ fn tangle(seed: &mut u64) -> Simulation {
 }
 
 #[test]
-#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
 fn random_networks_rest_on_their_catenaries_in_balance() {
     let (mut seed, mut on_elements) = (11, 0);
     for case in 0..200 {

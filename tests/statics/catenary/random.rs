@@ -340,7 +340,6 @@ fn judge_classes(count: usize, tolerance: f64) {
 }
 
 #[test]
-#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
 fn random_lines_of_every_class_obey_the_cable_equations() {
     judge_classes(100_000usize.div_ceil(CLASSES.len()), 1e-9);
 }

@@ -7,7 +7,6 @@ use super::run::Run;
 use super::scenes::*;
 
 #[test]
-#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
 fn a_line_dragged_through_its_touchdown_at_10_metres_a_second_loses_what_it_should() {
     for friction in [0.0, 0.5] {
         let converged = {
