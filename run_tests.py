@@ -1,6 +1,15 @@
 #!/usr/bin/env python3
 """Runs all tests of moorline: those in Rust, those that drive its FMUs from Python, and the check of its C interface.
 
+Which tests run where:
+
+    cargo test                                 the fast suite, at most two minutes of processor time after building: all tests of the
+                                               packages but those marked slow, which it counts as ignored
+    cargo test --features moorline/slow-tests  all of them: `cfg_attr(not(feature = "slow-tests"), ignore = "slow")` marks a slow test
+    run_tests.py                               all of them in the optimised build, fmu/conformance/run.sh and python_tests
+    cargo test -- --ignored NAME               by hand only: tests that write tests/reference/*.csv anew, long surveys (ten thousand
+                                               random scenes or lines, each with a shorter suite beside it) and those that show one scene
+
 Needs a Rust toolchain and Python 3.11 or newer. Builds what it tests; Python packages go into .venv, in the versions that
 python_tests/requirements.txt names. Arguments are passed on to pytest, such as -k or -x; the Rust tests run all the same.
 """
@@ -19,6 +28,8 @@ VENV = ROOT / ".venv"
 REQUIREMENTS = ROOT / "python_tests" / "requirements.txt"
 CONFORMANCE = ROOT / "fmu" / "conformance" / "run.sh"
 PYTHON_MIN = (3, 11)
+# Does not change the program: it is built with the feature so that the library is built once.
+SLOW_TESTS = "--features", "moorline/slow-tests"
 # Needs libclang from .venv: has a script of its own.
 LEFT_OUT = "--exclude", "moorline-conformance"
 
@@ -73,11 +84,11 @@ def release_folder():
 def run_all(arguments):
     """Runs every test and returns what failed."""
     interpreter = python()
-    must("cargo", "build", "--release", "--locked")
+    must("cargo", "build", "--release", "--locked", *SLOW_TESTS)
     program = release_folder() / ("moorline.exe" if os.name == "nt" else "moorline")
     failed = []
     # The optimised build, as the program: one build less, and the tests of whole systems run twice as fast.
-    if not run("cargo", "test", "--release", "--workspace", *LEFT_OUT, "--locked", "--no-fail-fast"):
+    if not run("cargo", "test", "--release", "--workspace", *LEFT_OUT, "--locked", "--no-fail-fast", *SLOW_TESTS):
         failed.append("cargo test")
     if CONFORMANCE.is_file():
         path = os.pathsep.join([str(interpreter.parent), os.environ["PATH"]])

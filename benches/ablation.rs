@@ -1,4 +1,4 @@
-//! What each piece of physics costs: one scene, with one feature after another taken out of it.
+//! Cost of each piece of physics: one scene, with one feature after another taken out of it.
 
 mod common;
 

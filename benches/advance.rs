@@ -17,7 +17,7 @@ const WARM_UP: f64 = 30.0;
 /// Timed communication steps.
 const STEPS: usize = 400;
 
-/// What moves the bodies.
+/// Source of the motion of the bodies.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Drive {
     /// The scene's own motion.
@@ -28,7 +28,7 @@ enum Drive {
     Velocities,
 }
 
-/// What a host says of a body at a time: displacements [m, rad] and velocities [m/s, rad/s].
+/// Input of a host for a body at a time: displacements [m, rad] and velocities [m/s, rad/s].
 type Said = ([f64; 6], [Option<f64>; 6]);
 
 /// A smooth motion at time `t` [s].

@@ -4,8 +4,8 @@
 //! `-- --write` makes the table of this machine, `benches/tables/<processor>.instructions.csv`. Where there is no valgrind or no table,
 //! nothing is claimed.
 //!
-//! Valgrind runs this program itself with the name of a scene and a number of steps. Two runs of different length tell what the steps
-//! between them take, without the start.
+//! Valgrind runs this program itself with the name of a scene and a number of steps. The difference of two runs of different length is the
+//! cost of the steps between them, without the start.
 
 mod common;
 

@@ -93,7 +93,7 @@ impl NullaryFnOnce for Divide<'_> {
     }
 }
 
-/// What the kernel cannot be faster than.
+/// Lower bound of the kernel's time.
 fn divider(table: &mut String) {
     let numbers: Vec<[Lanes; 3]> = (1..=64)
         .map(|k| [1.0, 2.0, 3.0].map(|a| Lanes::splat(a + f64::from(k))))

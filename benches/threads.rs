@@ -1,4 +1,4 @@
-//! Where threads pay: µs per communication step of systems of many lines on one thread, on two, and on as many as the solver chooses; all
+//! Gain by threads: µs per communication step of systems of many lines on one thread, on two, and on as many as the solver chooses; all
 //! in turns, so that what else the machine does falls on all of them.
 
 mod common;
@@ -17,7 +17,7 @@ const STEP: f64 = 0.05;
 /// Timed communication steps of a round.
 const STEPS: usize = 20;
 
-/// The semi-submersible with twelve lines of so many elements, in waves or without.
+/// The semi-submersible with twelve lines of a number of elements, in waves or without.
 fn semi(elements: usize, waves: bool) -> Scene {
     let mut scene = common::scene("storm_moored_semi");
     scene.solver.integrator = Integrator::Leapfrog;
@@ -69,7 +69,7 @@ fn farm(elements: usize, waves: bool) -> Scene {
     scene
 }
 
-/// A simulation past its start-up, on so many threads.
+/// A simulation past its start-up, on a number of threads.
 fn warm(scene: &Scene, threads: Threads) -> Simulation {
     let mut scene = scene.clone();
     scene.solver.threads = threads;

@@ -1,44 +1,36 @@
 """Scenes for the tests of the FMU: small, and each with something that another lacks."""
 
-CHAIN = """\
-title = "one chain line on a seabed"
 
-[water]
-density = 1025.0
+def table(name, *keys):
+    """A table of TOML with its keys; a list of tables where the name is in brackets."""
+    return "\n".join([f"[{name}]", *keys]) + "\n"
 
-[seabed]
-depth = 200.0
 
-[line_types.chain]
-mass = 113.35
-diameter = 0.0766
-axial_stiffness = 753.6e6
-axial_damping = 2.0e6
-drag_normal = 2.0
-drag_tangential = 0.4
-added_mass_normal = 0.8
-added_mass_tangential = 0.25
+def point(name, position, kind, *keys):
+    return table("[points]", f'name = "{name}"', f"position = {position}", f'kind = "{kind}"', *keys)
 
-[[points]]
-name = "anchor"
-position = [837.6, 0.0, -200.0]
-kind = "fixed"
 
-[[points]]
-name = "fairlead"
-position = [40.868, 0.0, -14.0]
-kind = "coupled"
+def line(name, ends, sections, *keys):
+    """A line; its sections are (type, length) or (type, length, elements)."""
+    words = ("type = \"{}\"", "length = {}", "elements = {}")
+    listed = ", ".join("{ " + ", ".join(w.format(v) for w, v in zip(words, section)) + " }" for section in sections)
+    return table("[lines]", f'name = "{name}"', f'from = "{ends[0]}"', f'to = "{ends[1]}"', f"sections = [{listed}]", *keys)
 
-[[lines]]
-name = "line1"
-from = "anchor"
-to = "fairlead"
-sections = [{ type = "chain", length = 835.35, elements = 20 }]
 
-[output]
-duration = 10.0
-interval = 0.05
-"""
+def scene(title, *tables):
+    """A scene with a title, which further keys may follow."""
+    return "\n".join([f"title = {title}\n", *tables])
+
+
+SEA = table("water", "density = 1025.0")
+OUTPUT = ("duration = 10.0", "interval = 0.05")
+
+CHAIN = scene(
+    '"one chain line on a seabed"', SEA, table("seabed", "depth = 200.0"),
+    table("line_types.chain", "mass = 113.35", "diameter = 0.0766", "axial_stiffness = 753.6e6", "axial_damping = 2.0e6",
+          "drag_normal = 2.0", "drag_tangential = 0.4", "added_mass_normal = 0.8", "added_mass_tangential = 0.25"),
+    point("anchor", [837.6, 0.0, -200.0], "fixed"), point("fairlead", [40.868, 0.0, -14.0], "coupled"),
+    line("line1", ("anchor", "fairlead"), [("chain", 835.35, 20)]), table("output", *OUTPUT))
 
 CLUMPED = CHAIN.replace('kind = "coupled"', 'kind = "coupled"\nmass = 500.0\nvolume = 0.2')
 
@@ -53,143 +45,38 @@ CURRENT = CHAIN.replace("density = 1025.0", "density = 1025.0\ncurrent = { veloc
 CURRENT_ALONE = CURRENT.replace("mass = 113.35", "weight = 975.0").replace("[seabed]\ndepth = 200.0\n", "").replace(
     "length = 835.35", "length = 820.0")
 
-WAVES = CHAIN.replace("[seabed]", """\
-[water.waves]
-regular = { height = 6.0, period = 10.0, direction = 0.3, phase = 0.7 }
+SWELL = table("water.waves", "regular = { height = 6.0, period = 10.0, direction = 0.3, phase = 0.7 }")
+WAVES = CHAIN.replace("[seabed]", f"{SWELL}\n[seabed]")
 
-[seabed]""")
-
-TWO_ROPES = """\
-title = "two ropes in air, one of two sections, and a span between two driven points"
-gravity = 9.81
-
-[line_types.rope]
-weight = 0.49
-axial_stiffness = 2505.0
-axial_damping = 5.0
-
-[line_types.wire]
-mass = 0.2
-axial_stiffness = 1.0e5
-damping_ratio = 0.05
-
-[[points]]
-name = "wall"
-position = [0.0, 0.0, 0.0]
-kind = "fixed"
-
-[[points]]
-name = "buoy1"
-position = [14.0, 1.0, 0.0]
-kind = "coupled"
-
-[[points]]
-name = "buoy2"
-position = [20.0, -8.0, 2.0]
-kind = "coupled"
-
-[[lines]]
-name = "slack"
-from = "wall"
-to = "buoy1"
-sections = [{ type = "rope", length = 10.0, elements = 8 }, { type = "wire", length = 5.0, elements = 4 }]
-
-[[lines]]
-name = "span"
-from = "buoy1"
-to = "buoy2"
-sections = [{ type = "wire", length = 12.0 }]
-"""
+TWO_ROPES = scene(
+    '"two ropes in air, one of two sections, and a span between two driven points"\ngravity = 9.81',
+    table("line_types.rope", "weight = 0.49", "axial_stiffness = 2505.0", "axial_damping = 5.0"),
+    table("line_types.wire", "mass = 0.2", "axial_stiffness = 1.0e5", "damping_ratio = 0.05"),
+    point("wall", [0.0, 0.0, 0.0], "fixed"), point("buoy1", [14.0, 1.0, 0.0], "coupled"),
+    point("buoy2", [20.0, -8.0, 2.0], "coupled"),
+    line("slack", ("wall", "buoy1"), [("rope", 10.0, 8), ("wire", 5.0, 4)]),
+    line("span", ("buoy1", "buoy2"), [("wire", 12.0)]))
 
 TWO_ROPES_ON_THREADS = TWO_ROPES + "\n[solver]\nthreads = 2\n"
 
-ELASTIC = """\
-title = "two elements of a soft cord: cheap enough for many steps"
+ELASTIC = scene(
+    '"two elements of a soft cord: cheap enough for many steps"',
+    table("line_types.cord", "mass = 1.0", "axial_stiffness = 50.0", "axial_damping = 5.0"),
+    point("wall", [0.0, 0.0, 0.0], "fixed"), point("hand", [10.0, 0.0, 0.0], "coupled"),
+    line("cord", ("wall", "hand"), [("cord", 9.0, 2)]))
 
-[line_types.cord]
-mass = 1.0
-axial_stiffness = 50.0
-axial_damping = 5.0
-
-[[points]]
-name = "wall"
-position = [0.0, 0.0, 0.0]
-kind = "fixed"
-
-[[points]]
-name = "hand"
-position = [10.0, 0.0, 0.0]
-kind = "coupled"
-
-[[lines]]
-name = "cord"
-from = "wall"
-to = "hand"
-sections = [{ type = "cord", length = 9.0, elements = 2 }]
-"""
-
-BARGE = """\
-title = "two opposite lines of a vessel"
-
-[water]
-density = 1025.0
-
-[seabed]
-depth = 100.0
-
-[line_types.chain]
-mass = 113.35
-diameter = 0.0766
-axial_stiffness = 753.6e6
-damping_ratio = 0.2
-drag_normal = 2.0
-added_mass_normal = 0.8
-
-[[vessels]]
-name = "barge"
-position = [10.0, -5.0, -3.0]
-
-[[points]]
-name = "anchor1"
-position = [340.0, -5.0, -100.0]
-kind = "fixed"
-
-[[points]]
-name = "anchor2"
-position = [-320.0, -5.0, -100.0]
-kind = "fixed"
-
-[[points]]
-name = "fairlead1"
-position = [20.0, 0.0, -7.0]
-kind = "coupled"
-on = "barge"
-
-[[points]]
-name = "fairlead2"
-position = [-20.0, 0.0, -7.0]
-kind = "coupled"
-on = "barge"
-
-[[lines]]
-name = "line1"
-from = "anchor1"
-to = "fairlead1"
-sections = [{ type = "chain", length = 340.0, elements = 20 }]
-
-[[lines]]
-name = "line2"
-from = "anchor2"
-to = "fairlead2"
-sections = [{ type = "chain", length = 340.0, elements = 20 }]
-
-[motion]
-barge = { x = [[2.0, 12.0]], y = [[1.0, 15.0]], roll = [[0.05, 8.0]], yaw = [[0.1, 20.0]], ramp = 10.0 }
-
-[output]
-duration = 20.0
-interval = 0.05
-"""
+BARGE = scene(
+    '"two opposite lines of a vessel"', SEA, table("seabed", "depth = 100.0"),
+    table("line_types.chain", "mass = 113.35", "diameter = 0.0766", "axial_stiffness = 753.6e6", "damping_ratio = 0.2",
+          "drag_normal = 2.0", "added_mass_normal = 0.8"),
+    table("[vessels]", 'name = "barge"', "position = [10.0, -5.0, -3.0]"),
+    point("anchor1", [340.0, -5.0, -100.0], "fixed"), point("anchor2", [-320.0, -5.0, -100.0], "fixed"),
+    point("fairlead1", [20.0, 0.0, -7.0], "coupled", 'on = "barge"'),
+    point("fairlead2", [-20.0, 0.0, -7.0], "coupled", 'on = "barge"'),
+    line("line1", ("anchor1", "fairlead1"), [("chain", 340.0, 20)]),
+    line("line2", ("anchor2", "fairlead2"), [("chain", 340.0, 20)]),
+    table("motion", "barge = { x = [[2.0, 12.0]], y = [[1.0, 15.0]], roll = [[0.05, 8.0]], yaw = [[0.1, 20.0]], ramp = 10.0 }"),
+    table("output", "duration = 20.0", "interval = 0.05"))
 
 # The same lines, but the host moves the two fairleads by themselves.
 FAIRLEADS = (
@@ -237,72 +124,16 @@ END
 ------------------------- need this line ------------------------------------
 """
 
-WINCH = """\
-title = "a chain on a winch above a bed"
+WINCH = scene(
+    '"a chain on a winch above a bed"', SEA, table("seabed", "depth = 60.0"),
+    table("line_types.chain", "mass = 20.0", "diameter = 0.05", "axial_stiffness = 1.0e6", "drag_normal = 1.2"),
+    point("anchor", [0.0, 0.0, -60.0], "fixed"), point("fairlead", [60.0, 0.0, -20.0], "coupled"),
+    line("line1", ("anchor", "fairlead"), [("chain", 100.0, 25)], 'winch = { end = "b", length_max = 30.0 }'),
+    table("output", *OUTPUT, "profile = true"))
 
-[water]
-density = 1025.0
-
-[seabed]
-depth = 60.0
-
-[line_types.chain]
-mass = 20.0
-diameter = 0.05
-axial_stiffness = 1.0e6
-drag_normal = 1.2
-
-[[points]]
-name = "anchor"
-position = [0.0, 0.0, -60.0]
-kind = "fixed"
-
-[[points]]
-name = "fairlead"
-position = [60.0, 0.0, -20.0]
-kind = "coupled"
-
-[[lines]]
-name = "line1"
-from = "anchor"
-to = "fairlead"
-sections = [{ type = "chain", length = 100.0, elements = 25 }]
-winch = { end = "b", length_max = 30.0 }
-
-[output]
-duration = 10.0
-interval = 0.05
-profile = true
-"""
-
-ROPE = """\
-title = "a viscoelastic rope in air that the host can let go"
-
-[line_types.rope]
-mass = 20.0
-static_stiffness = 4.0e7
-dynamic_stiffness = 9.0e7
-static_damping = 2.0e8
-dynamic_damping = 2.0e6
-
-[[points]]
-name = "anchor"
-position = [0.0, 0.0, -100.0]
-kind = "fixed"
-
-[[points]]
-name = "fairlead"
-position = [202.0, 0.0, -90.0]
-kind = "coupled"
-
-[[lines]]
-name = "line1"
-from = "anchor"
-to = "fairlead"
-release = "b"
-sections = [{ type = "rope", length = 200.0, elements = 20 }]
-
-[output]
-duration = 10.0
-interval = 0.05
-"""
+ROPE = scene(
+    '"a viscoelastic rope in air that the host can release"',
+    table("line_types.rope", "mass = 20.0", "static_stiffness = 4.0e7", "dynamic_stiffness = 9.0e7",
+          "static_damping = 2.0e8", "dynamic_damping = 2.0e6"),
+    point("anchor", [0.0, 0.0, -100.0], "fixed"), point("fairlead", [202.0, 0.0, -90.0], "coupled"),
+    line("line1", ("anchor", "fairlead"), [("rope", 200.0, 20)], 'release = "b"'), table("output", *OUTPUT))

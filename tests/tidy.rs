@@ -1,6 +1,6 @@
 //! The manners of the house that a compiler does not check: layers, length of functions, units, no loose ends.
 //!
-//! Rules read source text with comments and literals blanked out, so they know no types; each says file and line.
+//! Rules read source text with comments and literals blanked out, so they see no types; each names file and line.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -278,7 +278,7 @@ fn layers_use_only_the_layers_below_them() {
             continue;
         };
         for (at, used) in layers_used(&source.code) {
-            // What the user wrote knows no law.
+            // The scene uses no law.
             let scene_and_physics = LAYERS[layer] == "scene" && LAYERS[used] == "physics";
             if used > layer || scene_and_physics {
                 let place = source.place(at);
@@ -341,7 +341,7 @@ fn functions(code: &str) -> Vec<(usize, usize)> {
         .collect()
 }
 
-/// Where the body begins; a declaration without one ends in a semicolon first.
+/// First byte of the body; a declaration without one ends in a semicolon first.
 fn body_start(code: &str) -> Option<usize> {
     let mut depth = 0;
     for (at, byte) in code.bytes().enumerate() {
@@ -389,7 +389,7 @@ fn a_function_fits_a_screen() {
     assert_none(&complaints, &rule);
 }
 
-/// Whether a doc comment names a unit in brackets, such as `[m]`; links to items in backticks are none.
+/// Returns true where a doc comment names a unit in brackets, such as `[m]`; links to items in backticks are none.
 fn says_a_unit(doc: &str) -> bool {
     doc.split('[').skip(1).any(|inside| {
         let unit = inside.split(']').next().unwrap_or("");

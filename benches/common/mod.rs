@@ -15,7 +15,7 @@ const WARM_UP: f64 = 30.0;
 /// Timed span [s].
 const SPAN: f64 = 5.0;
 
-/// What one scene costs.
+/// Cost of one scene.
 pub struct Cost {
     /// CPU time per node and internal step [ns].
     pub node_step: f64,
@@ -32,7 +32,7 @@ pub fn scene(name: &str) -> Scene {
     Scene::from_toml(&text).expect("a scene that passes its checks")
 }
 
-/// Where a table of this processor is, `benches/tables/<processor>.<name>.csv`; none where the processor's name is not known.
+/// Path of a table of this processor, `benches/tables/<processor>.<name>.csv`; none where the processor's name is not known.
 pub fn table(name: &str) -> Option<PathBuf> {
     let known = fs::read_to_string("/proc/cpuinfo").ok()?;
     let processor = known.lines().find_map(|line| line.strip_prefix("model name"))?;

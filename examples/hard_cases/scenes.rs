@@ -1,10 +1,11 @@
 //! The hard cases: their scenes, what drives them, and the closed forms that they are held against.
 //!
-//! Shared by the test that asserts what must hold, `tests/hard`, and the example that draws the figures of `docs/hard-cases.md`.
+//! Shared by the test that asserts what must hold, `tests/systems/hard`, and the example that draws the figures of `docs/hard-cases.md`.
 
 use std::f64::consts::{PI, TAU};
 
 use moorline::math::random::Random;
+use moorline::physics::airy::Component;
 use moorline::physics::spectrum::Spectrum;
 use moorline::scene::channel::LineEnd;
 use moorline::scene::{Break, Friction, HarmonicMotion, InitialShape, Integrator, MotionPath, Scene};
@@ -34,6 +35,23 @@ fn written(text: &str) -> Scene {
     Scene::from_toml(text).unwrap_or_else(|error| panic!("{error}"))
 }
 
+/// A scene with these keys, of one line between two points.
+fn single(keys: &str, [a, b]: [&str; 2], line: &str) -> Scene {
+    written(&format!(
+        "points = [{{ {a} }}, {{ {b} }}]\nlines = [{{ {line} }}]\n{keys}"
+    ))
+}
+
+/// Keys of a point of a kind at a position [m].
+fn end(name: &str, kind: &str, position: [f64; 3]) -> String {
+    format!("name = '{name}', kind = '{kind}', position = {position:?}")
+}
+
+/// A section of a type, of a length [m] and with a number of elements.
+fn piece(line_type: &str, length: f64, elements: usize) -> String {
+    format!("{{ type = '{line_type}', length = {length:?}, elements = {elements} }}")
+}
+
 /// The same scene with `count` elements on every section.
 pub fn with_elements(mut scene: Scene, count: usize) -> Scene {
     for section in scene.lines.iter_mut().flat_map(|line| &mut line.sections) {
@@ -55,7 +73,7 @@ pub fn by(mut scene: Scene, integrator: Integrator, implicit_step: f64) -> Scene
 pub fn stiffer(mut scene: Scene, factor: f64) -> Scene {
     let types = scene.line_types.values_mut();
     types
-        .filter_map(|line_type| line_type.axial_stiffness.as_mut())
+        .flat_map(|kind| &mut kind.axial_stiffness)
         .for_each(|stiffness| *stiffness *= factor);
     scene
 }
@@ -64,7 +82,7 @@ pub fn stiffer(mut scene: Scene, factor: f64) -> Scene {
 pub fn more_damped(mut scene: Scene, factor: f64) -> Scene {
     let types = scene.line_types.values_mut();
     types
-        .filter_map(|line_type| line_type.axial_damping.as_mut())
+        .flat_map(|kind| &mut kind.axial_damping)
         .for_each(|damping| *damping *= factor);
     scene
 }
@@ -94,7 +112,7 @@ pub fn dragged_through_touchdown(friction: f64) -> Scene {
     scene
 }
 
-/// Where that fairlead is at a time [s], from where it was [m].
+/// Displacement of that fairlead at a time [s], in [m].
 fn dragged_by(t: f64) -> f64 {
     let there = |t: f64| match t {
         t if t < 1.0 => 5.0 * t * t,
@@ -111,7 +129,7 @@ fn dragged_by(t: f64) -> f64 {
 /// Time at which the fairlead of [`jumped`] jumps [s], and the communication step that it does so in [s].
 pub const JUMP: [f64; 2] = [1.0, 0.05];
 
-/// What a host says whose fairlead jumps by 1 m along x from one communication point to the next.
+/// Input of a host whose fairlead jumps by 1 m along x from one communication point to the next.
 pub fn jumped(simulation: &mut Simulation) {
     let fairlead = simulation.model().point_index("fairlead");
     let x = f64::from(u8::from(simulation.time() > JUMP[0] - 0.5 * JUMP[1]));
@@ -134,7 +152,7 @@ pub fn slowly_moved() -> Scene {
 /// Periods of that motion [s].
 const SLOW: [f64; 2] = [100.0, 70.0];
 
-/// What a host of [`slowly_moved`] says: where the fairlead is, and how it moves.
+/// Input of a host of [`slowly_moved`]: place and velocity of the fairlead.
 pub fn say_slow(simulation: &mut Simulation) {
     let fairlead = simulation.model().point_index("fairlead");
     let fairlead = fairlead.expect("a fairlead");
@@ -163,29 +181,19 @@ pub fn irregular_steps(duration: f64) -> Vec<f64> {
     steps
 }
 
-/// A rope of 100 m between points 90 m apart, dry, without damping, let go 40° beside its plane.
+/// A rope of 100 m between points 90 m apart, dry, without damping, released 40° beside its plane.
 pub fn undamped_swing(elements: usize) -> Scene {
-    let mut scene = written(&format!(
-        r#"
-        [line_types.rope]
-        mass = 5.0
-        axial_stiffness = 1.0e6
-        axial_damping = 0.0
-        [[points]]
-        name = "left"
-        position = [0.0, 0.0, 0.0]
-        kind = "fixed"
-        [[points]]
-        name = "right"
-        position = [90.0, 0.0, 0.0]
-        kind = "fixed"
-        [[lines]]
-        name = "rope"
-        from = "left"
-        to = "right"
-        sections = [{{ type = "rope", length = 100.0, elements = {elements} }}]
-        "#
-    ));
+    let mut scene = single(
+        "line_types.rope = { mass = 5.0, axial_stiffness = 1.0e6, axial_damping = 0.0 }",
+        [
+            &end("left", "fixed", [0.0; 3]),
+            &end("right", "fixed", [90.0, 0.0, 0.0]),
+        ],
+        &format!(
+            "name = 'rope', from = 'left', to = 'right', sections = [{}]",
+            piece("rope", 100.0, elements)
+        ),
+    );
     let rest = Simulation::new(&scene).expect("the rope hangs");
     let (sin, cos) = 0.7_f64.sin_cos();
     let nodes = rest.state().lines[0].position.iter();
@@ -194,11 +202,11 @@ pub fn undamped_swing(elements: usize) -> Scene {
     scene
 }
 
-/// Time at which both ends of [`let_go_in_swing`] are let go [s].
-pub const LET_GO: f64 = 2.0;
+/// Time at which both ends of [`released_in_swing`] are released [s].
+pub const RELEASE: f64 = 2.0;
 
-/// The rope of [`undamped_swing`] with the default damping, let go at both ends in full swing.
-pub fn let_go_in_swing() -> Scene {
+/// The rope of [`undamped_swing`] with the default damping, released at both ends in full swing.
+pub fn released_in_swing() -> Scene {
     let mut scene = undamped_swing(40);
     for line_type in scene.line_types.values_mut() {
         line_type.axial_damping = None;
@@ -207,22 +215,20 @@ pub fn let_go_in_swing() -> Scene {
     scene.lines[0].parting = Some(Break {
         at: LineEnd::A,
         tension: None,
-        time: Some(LET_GO),
+        time: Some(RELEASE),
     });
     scene
 }
 
-/// What a host of [`let_go_in_swing`] says.
-pub fn let_go(simulation: &mut Simulation) {
-    let now = simulation.time() > LET_GO - 1e-6;
+/// Input of a host of [`released_in_swing`].
+pub fn release(simulation: &mut Simulation) {
+    let now = simulation.time() > RELEASE - 1e-6;
     simulation.set_release(0, now);
 }
 
 /// A chain over a bed whose middle element is `ratio` times shorter than its neighbours; without it where `ratio` is 0.
 pub fn short_segment(ratio: f64) -> Scene {
-    let piece = |length: f64, elements: usize| {
-        format!("{{ type = \"chain\", length = {length}, elements = {elements} }}")
-    };
+    let piece = |length, elements| piece("chain", length, elements);
     let sections = if ratio > 0.0 {
         let short = 5.0 / ratio;
         let half = 75.0 - 0.5 * short;
@@ -230,36 +236,15 @@ pub fn short_segment(ratio: f64) -> Scene {
     } else {
         piece(150.0, 30)
     };
-    written(&format!(
-        r#"
-        [water]
-        density = 1025.0
-        [seabed]
-        depth = 60.0
-        [line_types.chain]
-        mass = 50.0
-        diameter = 0.08
-        axial_stiffness = 1.0e8
-        drag_normal = 1.2
-        drag_tangential = 0.1
-        added_mass_normal = 1.0
-        [[points]]
-        name = "anchor"
-        position = [120.0, 0.0, -60.0]
-        kind = "fixed"
-        [[points]]
-        name = "fairlead"
-        position = [0.0, 0.0, -5.0]
-        kind = "coupled"
-        [[lines]]
-        name = "line1"
-        from = "anchor"
-        to = "fairlead"
-        sections = [{sections}]
-        [motion]
-        fairlead = {{ x = [[1.5, 8.0]], z = [[1.0, 6.0]], ramp = 8.0 }}
-        "#
-    ))
+    single(
+        "water.density = 1025.0
+        seabed.depth = 60.0
+        line_types.chain = { mass = 50.0, diameter = 0.08, axial_stiffness = 1.0e8, drag_normal = 1.2, drag_tangential = 0.1,
+          added_mass_normal = 1.0 }
+        motion.fairlead = { x = [[1.5, 8.0]], z = [[1.0, 6.0]], ramp = 8.0 }",
+        [&end("anchor", "fixed", [120.0, 0.0, -60.0]), &end("fairlead", "coupled", [0.0, 0.0, -5.0])],
+        &format!("name = 'line1', from = 'anchor', to = 'fairlead', sections = [{sections}]"),
+    )
 }
 
 /// Mass of the clump [kg].
@@ -277,27 +262,18 @@ pub fn clump(elements: usize, lift: f64, angle: f64) -> Scene {
     } else {
         (reach * angle.sin(), -reach * angle.cos())
     };
-    let mut scene = written(&format!(
-        r#"
-        [line_types.rope]
-        mass = 0.1
-        axial_stiffness = {ROPE_STIFFNESS:e}
-        [[points]]
-        name = "clump"
-        position = [{x}, 0.0, {z}]
-        kind = "free"
-        mass = {CLUMP}
-        [[points]]
-        name = "pivot"
-        position = [0.0, 0.0, 0.0]
-        kind = "fixed"
-        [[lines]]
-        name = "rope"
-        from = "clump"
-        to = "pivot"
-        sections = [{{ type = "rope", length = {ROPE}, elements = {elements} }}]
-        "#
-    ));
+    let held = end("clump", "free", [x, 0.0, z]);
+    let mut scene = single(
+        &format!("line_types.rope = {{ mass = 0.1, axial_stiffness = {ROPE_STIFFNESS:e} }}"),
+        [
+            &format!("{held}, mass = {CLUMP}"),
+            &end("pivot", "fixed", [0.0; 3]),
+        ],
+        &format!(
+            "name = 'rope', from = 'clump', to = 'pivot', sections = [{}]",
+            piece("rope", ROPE, elements)
+        ),
+    );
     // a rope that is too long hangs in two straight halves, its middle beside them
     let beside = (0.25 * (ROPE * ROPE - x * x - z * z)).max(0.0).sqrt();
     let node = |i: usize| {
@@ -309,7 +285,7 @@ pub fn clump(elements: usize, lift: f64, angle: f64) -> Scene {
     scene
 }
 
-/// Pull of the rope of [`clump`] let go at `angle` [rad], every `interval` [s] [N]: the mass on a spring without mass, by Runge and Kutta's
+/// Pull of the rope of [`clump`] released at `angle` [rad], every `interval` [s] [N]: the mass on a spring without mass, by Runge and Kutta's
 /// method in steps of a tenth of that.
 pub fn swing_pulls(angle: f64, interval: f64, count: usize) -> Vec<f64> {
     let pull = |x: f64, z: f64| ROPE_STIFFNESS * (x.hypot(z) / ROPE - 1.0).max(0.0);
@@ -343,65 +319,37 @@ pub fn caught_pull(lift: f64) -> f64 {
 
 /// A taut line of 100 m of `mass` [kg/m], EA 1 MN, strained by 1 %, in water or in air, driven along and across itself.
 pub fn nearly_massless(mass: f64, wet: bool) -> Scene {
-    let water = if wet { "[water]\ndensity = 1025.0" } else { "" };
-    written(&format!(
-        r#"
-        {water}
-        [line_types.thread]
-        mass = {mass:e}
-        diameter = 0.02
-        axial_stiffness = 1.0e6
-        drag_normal = 1.2
-        drag_tangential = 0.02
-        added_mass_normal = 1.0
-        [[points]]
-        name = "anchor"
-        position = [0.0, 0.0, -100.0]
-        kind = "fixed"
-        [[points]]
-        name = "fairlead"
-        position = [101.0, 0.0, -100.0]
-        kind = "coupled"
-        [[lines]]
-        name = "line1"
-        from = "anchor"
-        to = "fairlead"
-        sections = [{{ type = "thread", length = 100.0, elements = 10 }}]
-        [motion]
-        fairlead = {{ x = [[0.5, 8.0]], z = [[1.0, 6.0]], ramp = 4.0 }}
-        "#
-    ))
+    let water = if wet { "water.density = 1025.0" } else { "" };
+    single(
+        &format!(
+            "{water}
+            line_types.thread = {{ mass = {mass:e}, diameter = 0.02, axial_stiffness = 1.0e6, drag_normal = 1.2,
+              drag_tangential = 0.02, added_mass_normal = 1.0 }}
+            motion.fairlead = {{ x = [[0.5, 8.0]], z = [[1.0, 6.0]], ramp = 4.0 }}"
+        ),
+        [&end("anchor", "fixed", [0.0, 0.0, -100.0]), &end("fairlead", "coupled", [101.0, 0.0, -100.0])],
+        &format!("name = 'line1', from = 'anchor', to = 'fairlead', sections = [{}]", piece("thread", 100.0, 10)),
+    )
 }
 
 /// Length of the folded chain [m].
 pub const CHAIN: f64 = 10.0;
 
-/// A chain of 10 m folded so that both ends are at one height, `fold` elements apart; the free one is let go. Node 0 is the free end.
+/// A chain of 10 m folded so that both ends are at one height, `fold` elements apart; the free one is released. Node 0 is the free end.
 pub fn folded_chain(elements: usize, fold: usize) -> Scene {
     let h = CHAIN / elements as f64;
     let gap = fold as f64 * h;
-    let mut scene = written(&format!(
-        r#"
-        gravity = {G}
-        [line_types.chain]
-        mass = 1.0
-        axial_stiffness = 1.0e6
-        [[points]]
-        name = "let_go"
-        position = [{gap}, 0.0, 0.0]
-        kind = "fixed"
-        [[points]]
-        name = "fairlead"
-        position = [0.0, 0.0, 0.0]
-        kind = "fixed"
-        [[lines]]
-        name = "chain"
-        from = "let_go"
-        to = "fairlead"
-        sections = [{{ type = "chain", length = {CHAIN}, elements = {elements} }}]
-        break = {{ at = "a", time = 0.0 }}
-        "#
-    ));
+    let pieces = piece("chain", CHAIN, elements);
+    let mut scene = single(
+        &format!("gravity = {G}\nline_types.chain = {{ mass = 1.0, axial_stiffness = 1.0e6 }}"),
+        [
+            &end("hand", "fixed", [gap, 0.0, 0.0]),
+            &end("fairlead", "fixed", [0.0; 3]),
+        ],
+        &format!(
+            "name = 'chain', from = 'hand', to = 'fairlead', break = {{ at = 'a', time = 0.0 }}, sections = [{pieces}]"
+        ),
+    );
     // two arms, and a bottom of as many elements as the gap is wide
     let arm = (elements - fold) / 2;
     let node = |i: usize| {
@@ -449,30 +397,21 @@ pub fn resonant_rod(elements: usize, omega: f64) -> Scene {
     let [length, ea, mass, ba, tension, amplitude] = ROD;
     let span = length * (1.0 + tension / ea);
     let period = TAU / omega;
-    written(&format!(
-        r#"
-        gravity = 1.0e-9
-        [line_types.rod]
-        mass = {mass}
-        axial_stiffness = {ea:e}
-        axial_damping = {ba:e}
-        [[points]]
-        name = "anchor"
-        position = [0.0, 0.0, 0.0]
-        kind = "fixed"
-        [[points]]
-        name = "fairlead"
-        position = [{span}, 0.0, 0.0]
-        kind = "coupled"
-        [[lines]]
-        name = "rod"
-        from = "anchor"
-        to = "fairlead"
-        sections = [{{ type = "rod", length = {length}, elements = {elements} }}]
-        [motion]
-        fairlead = {{ x = [[{amplitude}, {period}]] }}
-        "#
-    ))
+    single(
+        &format!(
+            "gravity = 1.0e-9
+            line_types.rod = {{ mass = {mass}, axial_stiffness = {ea:e}, axial_damping = {ba:e} }}
+            motion.fairlead = {{ x = [[{amplitude}, {period}]] }}"
+        ),
+        [
+            &end("anchor", "fixed", [0.0; 3]),
+            &end("fairlead", "coupled", [span, 0.0, 0.0]),
+        ],
+        &format!(
+            "name = 'rod', from = 'anchor', to = 'fairlead', sections = [{}]",
+            piece("rod", length, elements)
+        ),
+    )
 }
 
 /// Amplitude of the tension at the driven end of the damped rod [N]: |(EA + iωBA) k cot kL| a, k = ω √(m/(EA + iωBA)).
@@ -495,10 +434,8 @@ pub fn irregular(mut scene: Scene, significant_height: f64, peak_period: f64) ->
         spreading: None,
     };
     let record = |seed: u64| -> Vec<Vec<f64>> {
-        let waves = spectrum.draw(40, seed).into_iter();
-        waves
-            .map(|wave| vec![wave.amplitude, TAU / wave.frequency, wave.phase])
-            .collect()
+        let row = |wave: Component| vec![wave.amplitude, TAU / wave.frequency, wave.phase];
+        spectrum.draw(40, seed).into_iter().map(row).collect()
     };
     let motion = HarmonicMotion {
         x: record(1),

@@ -14,4 +14,6 @@ pub mod random;
 pub mod real;
 pub mod rotation;
 pub mod shape_preserving;
+#[cfg(test)]
+pub(crate) mod tests;
 pub mod unit;

@@ -73,6 +73,7 @@ pub fn turned_to(frame: &Matrix3<f64>, direction: Vector3<f64>) -> Matrix3<f64> 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::tests::along;
     use approx::assert_relative_eq;
 
     const THETA: Vector3<f64> = Vector3::new(0.4, -1.3, 0.7);
@@ -82,22 +83,16 @@ mod tests {
         let angle: f64 = 1.1;
         let rotation = cayley(Vector3::z() * 2.0 * (0.5 * angle).tan());
         let turned = rotation * Vector3::x();
-        assert_relative_eq!(
-            turned,
-            Vector3::new(angle.cos(), angle.sin(), 0.0),
-            epsilon = 1e-15
-        );
+        let expected = Vector3::new(angle.cos(), angle.sin(), 0.0);
+        assert_relative_eq!(turned, expected, epsilon = 1e-15);
     }
 
     #[test]
     fn a_rotation_moves_a_vector_by_theta_across_the_mean() {
         let before = Vector3::new(0.3, 0.5, -0.8);
         let after = cayley(THETA) * before;
-        assert_relative_eq!(
-            after - before,
-            THETA.cross(&(0.5 * (before + after))),
-            epsilon = 1e-15
-        );
+        let across = THETA.cross(&(0.5 * (before + after)));
+        assert_relative_eq!(after - before, across, epsilon = 1e-15);
         assert_relative_eq!(after.norm(), before.norm(), max_relative = 1e-15);
     }
 
@@ -111,9 +106,7 @@ mod tests {
     fn the_spin_of_cayley_equals_central_differences() {
         let rotation = cayley(THETA);
         for axis in 0..3 {
-            let mut step = Vector3::zeros();
-            step[axis] = 1e-6;
-            let rate = (cayley(THETA + step) - cayley(THETA - step)) / 2e-6;
+            let rate = along(axis, 1e-6, |by| cayley(THETA + by));
             let spin = spin_of_cayley(THETA).column(axis).into_owned();
             assert_relative_eq!(rate, skew(spin) * rotation, epsilon = 1e-9);
         }
@@ -121,12 +114,8 @@ mod tests {
 
     #[test]
     fn frames_are_orthonormal_and_right_handed_along_any_direction() {
-        for direction in [
-            Vector3::x(),
-            -Vector3::x(),
-            -Vector3::z(),
-            Vector3::new(0.6, 0.0, 0.8),
-        ] {
+        let oblique = Vector3::new(0.6, 0.0, 0.8);
+        for direction in [Vector3::x(), -Vector3::x(), -Vector3::z(), oblique] {
             let frame = turned_to(&Matrix3::identity(), direction);
             assert_relative_eq!(frame.transpose() * frame, Matrix3::identity(), epsilon = 1e-15);
             assert_relative_eq!(frame.determinant(), 1.0, epsilon = 1e-15);

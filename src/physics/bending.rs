@@ -287,12 +287,21 @@ pub fn compression_max(stiffness: f64, length: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::tests::{along, assert_columns, central};
     use approx::assert_relative_eq;
 
     fn direction(e: Vector3<f64>) -> Direction {
         Direction {
             along: e.normalize(),
             per_length: 1.0 / e.norm(),
+        }
+    }
+
+    /// A clamp at an angle from x [rad].
+    fn clamp(angle: f64) -> Direction {
+        Direction {
+            along: Vector3::new(angle.cos(), angle.sin(), 0.0),
+            per_length: 0.0,
         }
     }
 
@@ -306,20 +315,17 @@ mod tests {
         [Vector3::new(0.0, 0.3, 0.1), Vector3::new(0.8, -0.1, 0.2)],
     ];
 
-    fn moved(e: [Vector3<f64>; 2], side: usize, axis: usize, h: f64) -> Turn {
-        let mut e = e;
-        e[side][axis] += h;
+    fn moved(mut e: [Vector3<f64>; 2], side: usize, by: Vector3<f64>) -> Turn {
+        e[side] += by;
         turn(e)
     }
 
     #[test]
     fn slopes_are_those_of_the_energy() {
-        let h = 1e-6;
         for (e, rest) in PAIRS.into_iter().zip([0.0, 0.0, 0.4]) {
             let slope = turn(e).energy(3.0, rest).slope;
             for (side, axis) in (0..2).flat_map(|side| (0..3).map(move |axis| (side, axis))) {
-                let energy = |h| moved(e, side, axis, h).energy(3.0, rest).energy;
-                let difference = (energy(h) - energy(-h)) / (2.0 * h);
+                let difference = along(axis, 1e-6, |by| moved(e, side, by).energy(3.0, rest).energy);
                 assert_relative_eq!(slope[side][axis], difference, epsilon = 1e-8);
             }
         }
@@ -327,21 +333,20 @@ mod tests {
 
     #[test]
     fn second_derivatives_are_those_of_the_slopes() {
-        let h = 1e-6;
         for (e, rest) in PAIRS.into_iter().zip([0.0, 0.0, 0.4]) {
             let exact = turn(e).hessian(3.0, rest);
-            for axis in 0..3 {
-                let slopes = |side, h| moved(e, side, axis, h).energy(3.0, rest).slope;
-                let difference =
-                    |side, row: usize| (slopes(side, h)[row] - slopes(side, -h)[row]) / (2.0 * h);
-                let column = |m: &Matrix3<f64>| m.column(axis).into_owned();
-                let close = |a: Vector3<f64>, b: Vector3<f64>| {
-                    assert_relative_eq!(a, b, epsilon = 1e-7, max_relative = 1e-7);
-                };
-                close(difference(0, 0), column(&exact.first));
-                close(difference(0, 1), column(&exact.mixed.transpose()));
-                close(difference(1, 0), column(&exact.mixed));
-                close(difference(1, 1), column(&exact.second));
+            let mixed = exact.mixed.transpose();
+            for (side, row, block) in [
+                (0, 0, exact.first),
+                (0, 1, mixed),
+                (1, 0, exact.mixed),
+                (1, 1, exact.second),
+            ] {
+                let slope = |by| moved(e, side, by).energy(3.0, rest).slope[row];
+                for axis in 0..3 {
+                    let (column, difference) = (block.column(axis).into_owned(), along(axis, 1e-6, slope));
+                    assert_relative_eq!(column, difference, epsilon = 1e-7, max_relative = 1e-7);
+                }
             }
         }
     }
@@ -356,25 +361,12 @@ mod tests {
         assert_relative_eq!(work, moment.dot(&across), max_relative = 1e-14);
         assert!(couple.force.dot(&e).abs() < 1e-14);
         assert!(Couple::new(e, e).force.norm() < 1e-15);
-        let h = 1e-6;
-        for axis in 0..3 {
-            let force = |h: f64| {
-                let mut e = e;
-                e[axis] += h;
-                Couple::new(moment, e).force
-            };
-            let difference = (force(h) - force(-h)) / (2.0 * h);
-            assert_relative_eq!(couple.slope.column(axis).into_owned(), difference, epsilon = 1e-8);
-        }
+        assert_columns(&couple.slope, 1e-6, 1e-8, |by| Couple::new(moment, e + by).force);
     }
 
     #[test]
     fn a_clamp_takes_no_force_along_its_own_direction() {
-        let clamp = Direction {
-            along: Vector3::x(),
-            per_length: 0.0,
-        };
-        let bend = Turn::new(clamp, direction(PAIRS[0][1])).energy(2.0, 0.0);
+        let bend = Turn::new(clamp(0.0), direction(PAIRS[0][1])).energy(2.0, 0.0);
         assert_eq!(bend.slope[0], Vector3::zeros());
         assert!(bend.slope[1].norm() > 0.0);
     }
@@ -412,17 +404,9 @@ mod tests {
 
     #[test]
     fn the_moment_on_a_clamp_is_minus_the_slope_of_the_energy_with_its_rotation() {
-        let held = |angle: f64| Direction {
-            along: Vector3::new(angle.cos(), angle.sin(), 0.0),
-            per_length: 0.0,
-        };
-        let energy = |angle| {
-            Turn::new(held(angle), direction(PAIRS[0][1]))
-                .energy(3.0, 0.0)
-                .energy
-        };
-        let moment = Turn::new(held(0.2), direction(PAIRS[0][1])).moment_on_first(3.0, 0.0);
-        let difference = (energy(0.2 + 1e-6) - energy(0.2 - 1e-6)) / 2e-6;
+        let held = |angle| Turn::new(clamp(angle), direction(PAIRS[0][1]));
+        let moment = held(0.2).moment_on_first(3.0, 0.0);
+        let difference = central(1e-6, |h| held(0.2 + h).energy(3.0, 0.0).energy);
         assert_relative_eq!(moment.z, -difference, epsilon = 1e-8);
     }
 

@@ -128,6 +128,7 @@ impl Stream<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::tests::central;
 
     fn sheared() -> Profile {
         let at = |z: f64, x: f64, y: f64| (z, Vector3::new(x, y, 0.0));
@@ -150,7 +151,7 @@ mod tests {
     fn the_shear_equals_central_differences() {
         let profile = sheared();
         for z in [-250.0, -199.0, -120.0, -51.0, -20.0, 3.0] {
-            let difference = (profile.velocity(z + 1e-3) - profile.velocity(z - 1e-3)) / 2e-3;
+            let difference = central(1e-3, |h| profile.velocity(z + h));
             assert!((profile.shear(z) - difference).norm() < 1e-12, "z = {z} m");
         }
     }

@@ -179,6 +179,7 @@ impl Held {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::tests::central;
     use approx::assert_relative_eq;
 
     const LIMITS: Vector2<f64> = Vector2::new(40.0, 70.0);
@@ -202,14 +203,9 @@ mod tests {
 
     #[test]
     fn the_friction_along_each_axis_is_its_limit() {
-        assert_relative_eq!(
-            held([-900.0, 0.0].into(), ONES, LIMITS).force,
-            Vector2::new(-40.0, 0.0)
-        );
-        assert_relative_eq!(
-            held([0.0, 900.0].into(), ONES, LIMITS).force,
-            Vector2::new(0.0, 70.0)
-        );
+        let force = |holding: [f64; 2]| held(holding.into(), ONES, LIMITS).force;
+        assert_relative_eq!(force([-900.0, 0.0]), Vector2::new(-40.0, 0.0));
+        assert_relative_eq!(force([0.0, 900.0]), Vector2::new(0.0, 70.0));
     }
 
     #[test]
@@ -223,19 +219,10 @@ mod tests {
 
     #[test]
     fn without_friction_along_the_line_only_the_other_axis_holds() {
-        let limits = Vector2::new(0.0, 70.0);
-        assert_eq!(
-            held([30.0, 50.0].into(), ONES, limits).force,
-            Vector2::new(0.0, 50.0)
-        );
-        assert_relative_eq!(
-            held([30.0, 90.0].into(), ONES, limits).force,
-            Vector2::new(0.0, 70.0)
-        );
-        assert_eq!(
-            held([3.0, 4.0].into(), ONES, Vector2::zeros()).force,
-            Vector2::zeros()
-        );
+        let force = |holding: [f64; 2], limits: [f64; 2]| held(holding.into(), ONES, limits.into()).force;
+        assert_eq!(force([30.0, 50.0], [0.0, 70.0]), Vector2::new(0.0, 50.0));
+        assert_relative_eq!(force([30.0, 90.0], [0.0, 70.0]), Vector2::new(0.0, 70.0));
+        assert_eq!(force([3.0, 4.0], [0.0; 2]), Vector2::zeros());
     }
 
     #[test]
@@ -244,9 +231,8 @@ mod tests {
             let holding = Vector2::from(holding);
             let slope = held(holding, ONES, LIMITS).slope(LIMITS);
             for axis in 0..2 {
-                let step = 1e-4 * Vector2::from_fn(|i, _| f64::from(u8::from(i == axis)));
-                let force = |at: Vector2<f64>| held(at, ONES, LIMITS).force;
-                let difference = (force(holding + step) - force(holding - step)) / 2e-4;
+                let force = |h: f64| held(holding + h * Vector2::ith(axis, 1.0), ONES, LIMITS).force;
+                let difference = central(1e-4, force);
                 assert_relative_eq!(slope.column(axis).into_owned(), difference, epsilon = 1e-8);
             }
         }

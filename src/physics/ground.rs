@@ -329,18 +329,21 @@ impl Cell {
 mod tests {
     use super::*;
     use crate::math::random::Random;
+    use crate::math::tests::{along, assert_columns};
     use approx::assert_relative_eq;
 
     const X: [f64; 4] = [-10.0, 0.0, 15.0, 40.0];
     const Y: [f64; 3] = [-5.0, 5.0, 30.0];
 
+    /// A grid of the heights at these places.
+    fn sampled(x: &[f64], y: &[f64], height: impl Fn(f64, f64) -> f64) -> Grid {
+        let row = |y: &f64| x.iter().map(|x| height(*x, *y)).collect::<Vec<f64>>();
+        Grid::new(x, y, &y.iter().map(row).collect::<Vec<_>>()).unwrap()
+    }
+
     fn hilly() -> Ground {
         let height = |x: f64, y: f64| -50.0 + 3.0 * (0.1 * x).sin() - 2.0 * (0.07 * y).cos();
-        let rows: Vec<Vec<f64>> = Y
-            .iter()
-            .map(|&y| X.iter().map(|&x| height(x, y)).collect())
-            .collect();
-        Ground::Grid(Grid::new(&X, &Y, &rows).unwrap())
+        Ground::Grid(sampled(&X, &Y, height))
     }
 
     fn plane() -> Ground {
@@ -369,11 +372,7 @@ mod tests {
     #[test]
     fn a_grid_that_samples_a_plane_is_that_plane() {
         let plane = plane();
-        let rows: Vec<Vec<f64>> = Y
-            .iter()
-            .map(|&y| X.iter().map(|&x| plane.height(x, y)).collect())
-            .collect();
-        let grid = Ground::Grid(Grid::new(&X, &Y, &rows).unwrap());
+        let grid = Ground::Grid(sampled(&X, &Y, |x, y| plane.height(x, y)));
         for place in [[-3.0, 0.0, -41.0], [17.0, 29.0, -39.0], [39.0, -5.0, -40.0]] {
             let place = Vector3::from(place);
             let (of_plane, of_grid) = (plane.touch(place), grid.touch(place));
@@ -390,14 +389,10 @@ mod tests {
                 let place = Vector3::from(place);
                 let touch = ground.touch(place);
                 for axis in 0..3 {
-                    let step = 1e-5 * Vector3::from_fn(|i, _| f64::from(u8::from(i == axis)));
-                    let (low, high) = (ground.touch(place - step), ground.touch(place + step));
-                    let sinking = (high.penetration - low.penetration) / 2e-5;
+                    let sinking = along(axis, 1e-5, |by| ground.touch(place + by).penetration);
                     assert_relative_eq!(touch.slope[axis], sinking, epsilon = 1e-9);
-                    let turned = (high.normal - low.normal) / 2e-5;
-                    let turning = touch.turning.column(axis).into_owned();
-                    assert_relative_eq!(turning, turned, epsilon = 1e-9);
                 }
+                assert_columns(&touch.turning, 1e-5, 1e-9, |by| ground.touch(place + by).normal);
             }
         }
     }
@@ -418,9 +413,10 @@ mod tests {
             let mut line = |count: usize| -> Vec<f64> {
                 let mut at = 0.0;
                 let mut next = || {
-                    at += match round % 3 {
-                        0 => 1.0,
-                        _ => 10_f64.powf(3.0 * random.unit() - 1.0),
+                    at += if round % 3 == 0 {
+                        1.0
+                    } else {
+                        10_f64.powf(3.0 * random.unit() - 1.0)
                     };
                     at
                 };
@@ -446,10 +442,8 @@ mod tests {
                         line[at] + (line[at + 1] - line[at]) * f64::from(part) / 12.0
                     };
                     let h = grid.relief(part(&x, i, u), part(&y, j, v)).height;
-                    assert!(
-                        h >= low - margin && h <= high + margin,
-                        "round {round}: {h} m between {low} and {high} m"
-                    );
+                    let inside = h >= low - margin && h <= high + margin;
+                    assert!(inside, "round {round}: {h} m between {low} and {high} m");
                 }
             }
         }
@@ -457,13 +451,8 @@ mod tests {
 
     #[test]
     fn a_step_between_soundings_stays_between_them() {
-        let rows = [100.0, 100.0, 90.0, 90.0].map(|depth: f64| -depth).to_vec();
-        let grid = Grid::new(
-            &[0.0, 300.0, 310.0, 600.0],
-            &[-100.0, 100.0],
-            &[rows.clone(), rows],
-        );
-        let ground = Ground::Grid(grid.unwrap());
+        let step = |x: f64, _| if x > 305.0 { -90.0 } else { -100.0 };
+        let ground = Ground::Grid(sampled(&[0.0, 300.0, 310.0, 600.0], &[-100.0, 100.0], step));
         for i in 0..6000 {
             let h = ground.height(0.1 * f64::from(i), 33.0);
             assert!((-100.5..=-89.5).contains(&h), "{h} m");
@@ -475,11 +464,7 @@ mod tests {
         let height = |x: f64, y: f64| -100.0 + 0.3 * x + 0.2 * y + 2.0 * (0.05 * x).sin() * (0.04 * y).cos();
         let error = |count: usize| {
             let line: Vec<f64> = (0..=count).map(|i| 100.0 * i as f64 / count as f64).collect();
-            let rows: Vec<Vec<f64>> = line
-                .iter()
-                .map(|&y| line.iter().map(|&x| height(x, y)).collect())
-                .collect();
-            let grid = Grid::new(&line, &line, &rows).unwrap();
+            let grid = sampled(&line, &line, height);
             let places = (0..400).map(|i| (30.0 + 0.1 * f64::from(i), 65.0 - 0.09 * f64::from(i)));
             let errors = places.map(|(x, y)| (grid.relief(x, y).height - height(x, y)).abs());
             errors.fold(0.0, f64::max)

@@ -83,6 +83,7 @@ pub fn drag_slope(k: DragCoefficients, velocity: Vector3<f64>, tangent: Vector3<
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::tests::assert_columns;
     use approx::assert_relative_eq;
 
     const K: DragCoefficients = DragCoefficients {
@@ -95,12 +96,7 @@ mod tests {
         let tangent = Vector3::new(0.6, 0.0, 0.8);
         let velocity = Vector3::new(0.3, -1.2, 0.5);
         let slope = drag_slope(K, velocity, tangent);
-        for axis in 0..3 {
-            let mut step = Vector3::zeros();
-            step[axis] = 1e-6;
-            let difference = (drag(K, velocity - step, tangent) - drag(K, velocity + step, tangent)) / 2e-6;
-            assert_relative_eq!(difference, slope.column(axis).into_owned(), epsilon = 1e-8);
-        }
+        assert_columns(&slope, 1e-6, 1e-8, |by| -drag(K, velocity + by, tangent));
     }
 
     #[test]

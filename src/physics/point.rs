@@ -146,6 +146,7 @@ impl Sphere {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::tests::{assert_columns, central};
     use approx::assert_relative_eq;
 
     fn sphere() -> Sphere {
@@ -179,11 +180,8 @@ mod tests {
             let change = s.energy(to) - s.energy(from);
             let work = s.buoyancy * way.part * (from - to);
             assert_relative_eq!(work, change, epsilon = 1e-9);
-            let step = 1e-6;
-            let [low, high] = [to - step, to + step].map(|to| s.wetted_between(from, to).part);
-            let smooth = [from, to].map(|z| z.abs() < s.radius) == [true; 2];
-            if smooth {
-                let slope = (high - low) / (2.0 * step);
+            if [from, to].map(|z| z.abs() < s.radius) == [true; 2] {
+                let slope = central(1e-6, |by| s.wetted_between(from, to + by).part);
                 assert_relative_eq!(way.slope, slope, epsilon = 1e-8);
             }
         }
@@ -196,23 +194,19 @@ mod tests {
 
     #[test]
     fn slopes_and_the_force_of_the_energy_equal_central_differences() {
-        let (s, v, step) = (sphere(), Vector3::new(0.4, -1.1, 0.7), 1e-6);
+        let (s, v) = (sphere(), Vector3::new(0.4, -1.1, 0.7));
         for z in HEIGHTS {
             let at = s.wetted(z);
-            let [low, high] = [z - step, z + step].map(|z| s.wetted(z));
-            let slope = (high.part - low.part) / (2.0 * step);
-            assert_relative_eq!(at.slope, slope, epsilon = 1e-8);
-            let push = (s.energy(z - step) - s.energy(z + step)) / (2.0 * step);
+            assert_relative_eq!(
+                at.slope,
+                central(1e-6, |by| s.wetted(z + by).part),
+                epsilon = 1e-8
+            );
+            let push = -central(1e-6, |by| s.energy(z + by));
             assert_relative_eq!(push, s.buoyancy * at.part, epsilon = 1e-3);
-            let lifted = (s.drag(low, v) - s.drag(high, v)) / (2.0 * step);
-            assert_relative_eq!(s.drag_slope_with_height(at, v), lifted, epsilon = 1e-5);
-            for axis in 0..3 {
-                let mut turn = Vector3::zeros();
-                turn[axis] = step;
-                let faster = (s.drag(at, v - turn) - s.drag(at, v + turn)) / (2.0 * step);
-                let column = s.drag_slope(at, v).column(axis).into_owned();
-                assert_relative_eq!(column, faster, epsilon = 1e-5);
-            }
+            let sunk = -central(1e-6, |by| s.drag(s.wetted(z + by), v));
+            assert_relative_eq!(s.drag_slope_with_height(at, v), sunk, epsilon = 1e-5);
+            assert_columns(&s.drag_slope(at, v), 1e-6, 1e-5, |by| -s.drag(at, v + by));
         }
     }
 
@@ -220,11 +214,8 @@ mod tests {
     fn drag_takes_energy_and_vanishes_at_rest() {
         let (s, v) = (sphere(), Vector3::new(1.0, 2.0, -3.0));
         let under = s.wetted(-9.0);
-        assert_relative_eq!(
-            s.drag(under, v).norm(),
-            0.5 * 1025.0 * 1.5 * v.norm_squared(),
-            max_relative = 1e-14
-        );
+        let most = 0.5 * 1025.0 * 1.5 * v.norm_squared();
+        assert_relative_eq!(s.drag(under, v).norm(), most, max_relative = 1e-14);
         assert!(s.drag(under, v).dot(&v) < 0.0);
         assert_eq!(s.drag(under, Vector3::zeros()), Vector3::zeros());
         assert_eq!(s.drag_slope(under, Vector3::zeros()), Matrix3::zeros());

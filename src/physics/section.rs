@@ -309,29 +309,30 @@ pub fn join(force: Vector3<f64>, moment: Vector3<f64>) -> Sextuple {
 mod tests {
     use super::*;
     use crate::math::rotation::cayley;
+    use crate::math::tests::central;
     use approx::assert_relative_eq;
 
     const LENGTH: f64 = 0.7;
     const STRESS: Sextuple = Sextuple::new(3.0, -2.0, 5.0, 0.7, 1.1, -0.9);
 
+    fn section(position: Vector3<f64>, frame: Matrix3<f64>) -> Section {
+        Section { position, frame }
+    }
+
     fn pair() -> [Section; 2] {
         [
-            Section {
-                position: Vector3::new(0.1, -0.2, 0.3),
-                frame: cayley(Vector3::new(0.3, 0.1, -0.5)),
-            },
-            Section {
-                position: Vector3::new(0.2, 0.1, 0.9),
-                frame: cayley(Vector3::new(0.5, -0.3, 0.1)),
-            },
+            section(Vector3::new(0.1, -0.2, 0.3), cayley(Vector3::new(0.3, 0.1, -0.5))),
+            section(Vector3::new(0.2, 0.1, 0.9), cayley(Vector3::new(0.5, -0.3, 0.1))),
         ]
     }
 
     fn later() -> [Section; 2] {
-        pair().map(|section| Section {
-            position: 1.1 * section.position + Vector3::new(0.0, 0.1, 0.2),
-            frame: cayley(Vector3::new(-0.2, 0.9, 0.4)) * section.frame,
-        })
+        let (turn, shift) = (cayley(Vector3::new(-0.2, 0.9, 0.4)), Vector3::new(0.0, 0.1, 0.2));
+        pair().map(|old| section(1.1 * old.position + shift, turn * old.frame))
+    }
+
+    fn means(before: &[Section; 2], now: &[Section; 2]) -> [Section; 2] {
+        [before[0].mean(&now[0]), before[1].mean(&now[1])]
     }
 
     /// One of the twelve unknowns moved: position, then spin, of section a, then b.
@@ -357,8 +358,7 @@ mod tests {
         let [a, b] = pair();
         let gradient = strain_gradient(&a, &b, LENGTH);
         for unknown in 0..12 {
-            let step = |by: f64| strain_of(moved(pair(), unknown, by));
-            let difference = (step(1e-6) - step(-1e-6)) / 2e-6;
+            let difference = central(1e-6, |by| strain_of(moved(pair(), unknown, by)));
             let column = gradient[unknown / 6].column(unknown % 6).into_owned();
             assert_relative_eq!(column, difference, epsilon = 1e-8);
         }
@@ -368,21 +368,17 @@ mod tests {
     fn the_geometric_stiffness_equals_central_differences() {
         let before = pair();
         let loads = |now: [Section; 2]| {
-            let mean = [before[0].mean(&now[0]), before[1].mean(&now[1])];
+            let mean = means(&before, &now);
             let [a, b] = strain_gradient(&mean[0], &mean[1], LENGTH);
             [a, b].map(|gradient| LENGTH * gradient.tr_mul(&STRESS))
         };
         let now = later();
-        let mean = [before[0].mean(&now[0]), before[1].mean(&now[1])];
+        let mean = means(&before, &now);
         let [m, n] = [[&mean[0], &mean[1]], [&now[0], &now[1]]];
         let stiffness = geometric_stiffness(m, n, &STRESS, 0.5);
         for unknown in 0..12 {
-            let (high, low) = (
-                loads(moved(now, unknown, 1e-6)),
-                loads(moved(now, unknown, -1e-6)),
-            );
             for row in 0..2 {
-                let difference = (high[row] - low[row]) / 2e-6;
+                let difference = central(1e-6, |by| loads(moved(now, unknown, by))[row]);
                 let block = &stiffness[row][unknown / 6];
                 let column = block.column(unknown % 6).into_owned();
                 assert_relative_eq!(column, difference, epsilon = 1e-8);
@@ -396,11 +392,9 @@ mod tests {
             pair(),
             [Vector3::new(0.4, -0.7, 0.2), Vector3::new(0.1, 0.3, 1.2)],
         );
-        let now = [0, 1].map(|i| Section {
-            position: before[i].position + Vector3::new(0.2, i as f64, -0.3),
-            frame: cayley(thetas[i]) * before[i].frame,
-        });
-        let mean = [before[0].mean(&now[0]), before[1].mean(&now[1])];
+        let shift = |i: usize| Vector3::new(0.2, i as f64, -0.3);
+        let now = [0, 1].map(|i| section(before[i].position + shift(i), cayley(thetas[i]) * before[i].frame));
+        let mean = means(&before, &now);
         let gradient = strain_gradient(&mean[0], &mean[1], LENGTH);
         let change: Sextuple = (0..2)
             .map(|i| gradient[i] * join(now[i].position - before[i].position, thetas[i]))
@@ -412,10 +406,7 @@ mod tests {
     fn rotating_and_moving_the_world_changes_no_strain() {
         let turn = cayley(Vector3::new(1.0, -2.0, 0.5));
         let shift = Vector3::new(10.0, 20.0, -30.0);
-        let turned = pair().map(|section| Section {
-            position: turn * section.position + shift,
-            frame: turn * section.frame,
-        });
+        let turned = pair().map(|old| section(turn * old.position + shift, turn * old.frame));
         assert_relative_eq!(strain_of(turned), strain_of(pair()), epsilon = 1e-13);
     }
 
@@ -431,34 +422,25 @@ mod tests {
 
     #[test]
     fn a_straight_beam_has_no_curvature_and_an_arc_has_its_own() {
-        let frame = Matrix3::identity();
-        let section = |position: Vector3<f64>, frame| Section { position, frame };
-        let along = strain_of([
-            section(Vector3::zeros(), frame),
-            section(LENGTH * Vector3::z(), frame),
-        ]);
-        assert_relative_eq!(along, straight(), epsilon = 1e-15);
+        let first = section(Vector3::zeros(), Matrix3::identity());
+        let to = |frame| strain_of([first, section(LENGTH * Vector3::z(), frame)]);
+        assert_relative_eq!(to(Matrix3::identity()), straight(), epsilon = 1e-15);
         let angle: f64 = 1e-4; // about d₁ by an angle over the length
-        let bent = cayley(angle * Vector3::x());
-        let arc = strain_of([
-            section(Vector3::zeros(), frame),
-            section(LENGTH * Vector3::z(), bent),
-        ]);
+        let arc = to(cayley(angle * Vector3::x()));
         assert_relative_eq!(arc[3], angle / LENGTH, max_relative = 1e-8);
     }
 
-    const LAW: SectionLaw = SectionLaw {
-        shear: 2.0,
-        axial: 3.0,
-        bending: 5.0,
-        torsion: 7.0,
-    };
-    const DAMPING: SectionLaw = SectionLaw {
-        shear: 0.1,
-        axial: 0.2,
-        bending: 0.3,
-        torsion: 0.4,
-    };
+    const fn law([shear, axial, bending, torsion]: [f64; 4]) -> SectionLaw {
+        SectionLaw {
+            shear,
+            axial,
+            bending,
+            torsion,
+        }
+    }
+
+    const LAW: SectionLaw = law([2.0, 3.0, 5.0, 7.0]);
+    const DAMPING: SectionLaw = law([0.1, 0.2, 0.3, 0.4]);
 
     fn strains() -> [Sextuple; 2] {
         [strain_of(pair()), strain_of(later())].map(|s| s + 0.3 * STRESS / 5.0)
@@ -472,23 +454,19 @@ mod tests {
             let strain = corrected(plain, LENGTH) - rest;
             LAW.energy(&strain, LENGTH).total()
         };
-        let undamped = SectionLaw {
-            shear: 0.0,
-            axial: 0.0,
-            bending: 0.0,
-            torsion: 0.0,
+        let (share, rate) = (0.5, 3.0);
+        let by = |damping| {
+            response(
+                [&LAW, damping],
+                LENGTH,
+                [&before, &now],
+                &rest,
+                Mixture { share, rate },
+            )
         };
-        let mixture = Mixture {
-            share: 0.5,
-            rate: 3.0,
-        };
-        let at = response([&LAW, &undamped], LENGTH, [&before, &now], &rest, mixture);
-        assert_relative_eq!(
-            LENGTH * at.stress.dot(&(now - before)),
-            energy(&now) - energy(&before),
-            epsilon = 1e-13
-        );
-        let damped = response([&LAW, &DAMPING], LENGTH, [&before, &now], &rest, mixture);
+        let (at, damped) = (by(&law([0.0; 4])), by(&DAMPING));
+        let work = LENGTH * at.stress.dot(&(now - before));
+        assert_relative_eq!(work, energy(&now) - energy(&before), epsilon = 1e-13);
         assert!((damped.stress - at.stress).dot(&(now - before)) > 0.0);
     }
 
@@ -503,9 +481,7 @@ mod tests {
                 response([&LAW, &DAMPING], LENGTH, [&from, &now], &rest, mixture)
             };
             for unknown in 0..6 {
-                let mut step = Sextuple::zeros();
-                step[unknown] = 1e-6;
-                let difference = (at(now + step).stress - at(now - step).stress) / 2e-6;
+                let difference = central(1e-6, |h| at(now + h * Sextuple::ith(unknown, 1.0)).stress);
                 let column = at(now).slope.column(unknown).into_owned();
                 assert_relative_eq!(column, difference, epsilon = 1e-7);
             }
@@ -514,12 +490,11 @@ mod tests {
 
     #[test]
     fn the_starred_strains_of_an_arc_are_its_own_to_fourth_order() {
-        for (angle, tolerance) in [(0.1, 1e-7), (0.2, 4e-6), (0.4, 2.6e-4)] {
-            let angle: f64 = angle;
+        for (angle, tolerance) in [(0.1_f64, 1e-7), (0.2, 4e-6), (0.4, 2.6e-4)] {
             let radius = LENGTH / angle;
-            let at = |turn: f64| Section {
-                position: radius * Vector3::new(0.0, turn.cos() - 1.0, turn.sin()),
-                frame: cayley(2.0 * (0.5 * turn).tan() * Vector3::x()),
+            let at = |turn: f64| {
+                let place = radius * Vector3::new(0.0, turn.cos() - 1.0, turn.sin());
+                section(place, cayley(2.0 * (0.5 * turn).tan() * Vector3::x()))
             };
             let starred = corrected(&strain_of([at(0.0), at(angle)]), LENGTH);
             assert_relative_eq!(starred[3] * LENGTH, angle, max_relative = tolerance);

@@ -111,6 +111,7 @@ pub fn total_tension<R: Real>(elastic: R, damping: R, least: R, negative_tension
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::tests::central;
     use approx::assert_relative_eq;
 
     const LAWS: [StretchLaw; 5] = [
@@ -126,20 +127,10 @@ mod tests {
         for law in LAWS {
             for strain in [-0.2, -1e-3, 1e-4, 0.01, 0.3, 2.0] {
                 let h = 1e-5 * (1.0 + f64::abs(strain));
-                let (low, high) = (law.at(strain - h), law.at(strain + h));
-                let at = law.at(strain);
-                assert_relative_eq!(
-                    (high.energy - low.energy) / (2.0 * h),
-                    at.force,
-                    max_relative = 1e-7,
-                    epsilon = 1e-9
-                );
-                assert_relative_eq!(
-                    (high.force - low.force) / (2.0 * h),
-                    at.slope,
-                    max_relative = 1e-7,
-                    epsilon = 1e-9
-                );
+                let (at, by) = (law.at(strain), |h| law.at(strain + h));
+                let (force, slope) = (central(h, |h| by(h).energy), central(h, |h| by(h).force));
+                assert_relative_eq!(force, at.force, max_relative = 1e-7, epsilon = 1e-9);
+                assert_relative_eq!(slope, at.slope, max_relative = 1e-7, epsilon = 1e-9);
             }
         }
     }

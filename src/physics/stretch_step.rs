@@ -138,6 +138,7 @@ impl StretchStep {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::tests::along;
     use approx::assert_relative_eq;
 
     const UNSTRETCHED: f64 = 0.5;
@@ -204,9 +205,7 @@ mod tests {
             let direction = stretched(after).direction();
             let stiffness = at.stiffness(UNSTRETCHED, direction, at.mean.tension);
             for axis in 0..3 {
-                let h = 1e-7 * Vector3::ith(axis, 1.0);
-                let forces = [after + h, after - h].map(|after| step(before, after).force());
-                let slope = (forces[0] - forces[1]) / 2e-7;
+                let slope = along(axis, 1e-7, |by| step(before, after + by).force());
                 let column = stiffness.column(axis).into_owned();
                 assert_relative_eq!(column, slope, epsilon = 1e-3, max_relative = 1e-3);
             }

@@ -6,7 +6,7 @@
 //! e = √(⟨m²/h²⟩/⟨v²⟩)
 //!
 //! of it. The error of tension, RMS over standard deviation, is about 2.5 e: 0.7 to 1.7 times that on `lindahl_fast`, `oc3_catenary` and
-//! `taut_polyester` with 12 to 32 steps a period, displacements only, and with 12 and 17 with velocities (`tests/host_edge.rs`). The error falls with
+//! `taut_polyester` with 12 to 32 steps a period, displacements only, and with 12 and 17 with velocities (`tests/systems/host_edge.rs`). The error falls with
 //! h³, as m/h does.
 //!
 //! Mean values forget with the time of ten periods, of the frequency √(⟨a²⟩/⟨v²⟩) with the acceleration a. The first samples do not count, from

@@ -5,7 +5,7 @@
 //! lumped, added mass included, M_n I + (M_t − M_n) t tᵀ at a node. With the Cholesky factor M = L Lᵀ the symmetric problem
 //! L⁻¹ K L⁻ᵀ y = ω² y is solved densely, φ = L⁻ᵀ y. Damping and drag are left out.
 //!
-//! Source: the linearised equation of motion of `elements`, reduced here; `tests/analytic.rs` holds it against closed forms.
+//! Source: the linearised equation of motion of `elements`, reduced here; `tests/dynamics/analytic.rs` holds it against closed forms.
 //! Valid for motion small enough that no segment slackens and no node lands or lifts off. A slack segment has no stiffness and
 //! leaves modes of frequency 0.
 

@@ -1,13 +1,38 @@
-//! What the tests of the dynamics share: scenes, histories and measures of error.
-#![allow(dead_code)] // each test file uses a part
+//! Scenes, runs, histories, measures of error and claims that many tests make.
+#![allow(dead_code, unused_imports)] // each test binary uses a part
+
+mod draft;
+
+pub use draft::{Draft, draft};
 
 use moorline::elements::Workspace;
 use moorline::model::{Model, PointState, State};
 use moorline::scene::{InitialShape, Integrator, Scene};
-use moorline::simulation::Simulation;
+use moorline::simulation::{Simulation, Snapshot};
 use moorline::statics::equilibrium;
 use moorline::statics::modes::Modes;
 use nalgebra::Vector3;
+
+/// Density of sea water [kg/m³].
+pub const RHO: f64 = 1025.0;
+/// Gravity [m/s²].
+pub const G: f64 = 9.80665;
+
+/// The integrators of single lines.
+pub const INTEGRATORS: [Integrator; 3] = [
+    Integrator::Leapfrog,
+    Integrator::AxialImplicit,
+    Integrator::GeneralisedAlpha,
+];
+/// The integrators of lines that meet at free points.
+pub const JOINED: [Integrator; 2] = [Integrator::Leapfrog, Integrator::GeneralisedAlpha];
+
+/// Coarse steps [s] of the three integrators at which errors fall by their order.
+pub const COARSE_STEPS: [(Integrator, f64); 3] = [
+    (Integrator::Leapfrog, 4e-3),
+    (Integrator::AxialImplicit, 4e-2),
+    (Integrator::GeneralisedAlpha, 4e-2),
+];
 
 /// The five public scenes: name, duration of the window that errors are taken over [s].
 pub const PUBLIC_SCENES: [(&str, f64); 5] = [
@@ -28,7 +53,7 @@ pub fn model(text: &str) -> Model {
     Model::new(&scene(text)).unwrap()
 }
 
-/// Where the scene puts the points [m].
+/// Reference positions of the points [m].
 pub fn at_reference(model: &Model) -> Vec<Vector3<f64>> {
     model.points.iter().map(|point| point.reference).collect()
 }
@@ -58,6 +83,14 @@ pub fn with_elements(mut scene: Scene, count: usize) -> Scene {
     scene
 }
 
+/// The same scene with the elements of its lines left open.
+pub fn open(mut scene: Scene) -> Scene {
+    for section in scene.lines.iter_mut().flat_map(|line| &mut line.sections) {
+        section.elements = None;
+    }
+    scene
+}
+
 /// The same scene with an integrator and an upper limit of its step [s].
 pub fn with_integrator(mut scene: Scene, integrator: Integrator, time_step_max: f64) -> Scene {
     scene.solver.integrator = integrator;
@@ -78,13 +111,142 @@ pub fn following(scene: &Scene) -> Simulation {
     simulation
 }
 
+/// A simulation of a scene at its start.
+pub fn start(scene: &Scene) -> Simulation {
+    Simulation::new(scene).unwrap()
+}
+
+/// Makes `count` communication steps of `step` [s].
+pub fn run(simulation: &mut Simulation, step: f64, count: usize) {
+    (0..count).for_each(|_| simulation.advance(step).unwrap());
+}
+
+/// Nodes of the first line [m].
+pub fn nodes(simulation: &Simulation) -> &[Vector3<f64>] {
+    &simulation.state().lines[0].position
+}
+
+/// Position of a point by name [m].
+pub fn place(simulation: &Simulation, name: &str) -> Vector3<f64> {
+    simulation.state().points[simulation.model().point_index(name).unwrap()].position
+}
+
+/// Greatest distance of the nodes of a line from those of another [m].
+pub fn gap(a: &[Vector3<f64>], b: &[Vector3<f64>]) -> f64 {
+    assert_eq!(a.len(), b.len());
+    greatest(a.iter().zip(b).map(|(a, b)| (a - b).norm()))
+}
+
+/// The greatest of some numbers, 0 at least.
+pub fn greatest(values: impl IntoIterator<Item = f64>) -> f64 {
+    values.into_iter().fold(0.0, f64::max)
+}
+
+/// Distance of the first line's nodes from where they are now [m], the greatest after any of `count` steps of `step` [s].
+pub fn drift(simulation: &mut Simulation, step: f64, count: usize) -> f64 {
+    let start = nodes(simulation).to_vec();
+    greatest((0..count).map(|_| {
+        simulation.advance(step).unwrap();
+        gap(nodes(simulation), &start)
+    }))
+}
+
+/// Greatest distance of a node of any line from where it was after `count` steps of a second, over the length of its line [-].
+pub fn relative_drift(scene: &Scene, count: usize) -> f64 {
+    let mut simulation = start(scene);
+    let first = simulation.state().clone();
+    run(&mut simulation, 1.0, count);
+    let lines = simulation.state().lines.iter().zip(&first.lines).enumerate();
+    greatest(lines.map(|(line, (now, then))| {
+        gap(&now.position, &then.position) / simulation.model().lines[line].unstretched_length()
+    }))
+}
+
+/// Error of the energy ledger over the work that was given [-].
+pub fn error_of_given(simulation: &Simulation) -> f64 {
+    simulation.energy_error().abs() / simulation.ledger().flow.given
+}
+
+/// Error of the energy ledger over the energy that was lost [-].
+pub fn error_of_lost(simulation: &Simulation) -> f64 {
+    simulation.energy_error().abs() / simulation.ledger().flow.lost
+}
+
+/// Claims that a simulation goes on bit for bit from its own snapshot put back, and another simulation of the scene from the snapshot's bytes.
+pub fn assert_replays(mut simulation: Simulation, mut other: Simulation, go_on: impl Fn(&mut Simulation)) {
+    let saved = simulation.snapshot().clone();
+    let bytes = postcard::to_stdvec(&saved).unwrap();
+    go_on(&mut simulation);
+    let first = simulation.snapshot().clone();
+    simulation.restore(saved);
+    go_on(&mut simulation);
+    assert!(
+        *simulation.snapshot() == first,
+        "the same simulation goes on otherwise"
+    );
+    other.restore(postcard::from_bytes::<Snapshot>(&bytes).unwrap());
+    go_on(&mut other);
+    assert!(*other.snapshot() == first, "a new simulation goes on otherwise");
+    assert_eq!(
+        postcard::to_stdvec(other.snapshot()).unwrap(),
+        postcard::to_stdvec(&first).unwrap()
+    );
+    for point in 0..other.model().points.len() {
+        assert_eq!(other.end_force(point), simulation.end_force(point));
+    }
+}
+
+/// Claims that halving a step quarters the error of a place [m], from a coarse step [s] on, against a 32nd of that step.
+pub fn assert_second_order_in_time(coarse: f64, place: impl Fn(f64) -> Vector3<f64>) {
+    let steps = [1.0, 0.5, 0.25, 0.125, 1.0 / 32.0].map(|part| part * coarse);
+    let places = steps.map(place);
+    let errors = [0, 1, 2, 3].map(|i| (places[i] - places[4]).norm());
+    assert_order(2.0, &steps[..4], &errors);
+}
+
+/// Claims that the error of the ledger over the work given is below `bound` [-] in 0.125 of the coarse step, falls by its order by the axial-implicit
+/// integrator, and is that of Newton's method by generalised-α.
+pub fn assert_ledger_order(integrator: Integrator, coarse: f64, bound: f64, error: impl Fn(f64) -> f64) {
+    let steps = [1.0, 0.5, 0.25, 0.125].map(|part| part * coarse);
+    let errors = steps.map(error);
+    assert!(errors[3] < bound, "{integrator:?}: {errors:?}");
+    match integrator {
+        Integrator::AxialImplicit => assert_order(2.0, &steps, &errors),
+        Integrator::GeneralisedAlpha => assert!(errors[0] < 1e-8, "{errors:?}"),
+        _ => {}
+    }
+}
+
+/// Claims that a scene written as TOML is read back the same.
+pub fn assert_written_and_read(scene: &Scene) {
+    let text = scene.to_toml();
+    assert_eq!(Scene::from_toml(&text).unwrap(), *scene, "{text}");
+}
+
+/// Claims that a text has all of these parts.
+pub fn assert_says(text: &str, parts: &[&str]) {
+    for part in parts {
+        assert!(text.contains(part), "`{part}` is not in: {text}");
+    }
+}
+
+/// Claims that a scene is refused with a message that has all of these parts.
+pub fn assert_refused(text: &str, parts: &[&str]) {
+    assert_says(&Scene::from_toml(text).unwrap_err().to_string(), parts);
+}
+
+/// The words of `check` on a scene, in one line.
+pub fn in_words(scene: &Scene) -> String {
+    scene.in_words().split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
 /// Modes of the first network about the present state.
 pub fn modes(simulation: &Simulation) -> Modes {
     let model: &Model = simulation.model();
     Modes::new(model, 0, simulation.state(), &mut Workspace::new(model)).unwrap()
 }
 
-/// What the first line did, sampled at every communication point.
+/// Record of the first line, sampled at every communication point.
 #[derive(Default, Clone)]
 pub struct History {
     /// Tension at end B [N].
@@ -120,12 +282,8 @@ impl History {
 
     /// RMS(T − T_ref)/std(T_ref) over the last `count` samples [-].
     pub fn tension_error(&self, reference: &History, count: usize) -> f64 {
-        let vectors = |history: &History| -> Vec<Vector3<f64>> {
-            last(&history.tension, count)
-                .iter()
-                .map(|t| Vector3::new(*t, 0.0, 0.0))
-                .collect()
-        };
+        let vector = |t: &f64| Vector3::new(*t, 0.0, 0.0);
+        let vectors = |of: &History| last(&of.tension, count).iter().map(vector).collect::<Vec<_>>();
         relative_rms(&vectors(self), &vectors(reference))
     }
 
@@ -144,29 +302,23 @@ pub fn last<T>(values: &[T], count: usize) -> &[T] {
 pub fn relative_rms(values: &[Vector3<f64>], reference: &[Vector3<f64>]) -> f64 {
     let mean = reference.iter().sum::<Vector3<f64>>() / reference.len() as f64;
     let spread: f64 = reference.iter().map(|r| (r - mean).norm_squared()).sum();
-    let error: f64 = values
-        .iter()
-        .zip(reference)
-        .map(|(v, r)| (v - r).norm_squared())
-        .sum();
+    let pairs = values.iter().zip(reference);
+    let error: f64 = pairs.map(|(v, r)| (v - r).norm_squared()).sum();
     (error / spread).sqrt()
 }
 
 /// Slope of log(error) over log(size), by least squares [-].
 pub fn order(sizes: &[f64], errors: &[f64]) -> f64 {
     assert!(sizes.len() >= 4 && sizes.len() == errors.len());
-    let logs: Vec<(f64, f64)> = sizes
+    let pairs = sizes.iter().zip(errors);
+    let logs: Vec<(f64, f64)> = pairs.map(|(h, e)| (h.ln(), e.abs().ln())).collect();
+    let mean = |part: fn(&(f64, f64)) -> f64| logs.iter().map(part).sum::<f64>() / logs.len() as f64;
+    let (x, y) = (mean(|log| log.0), mean(|log| log.1));
+    let slopes = logs
         .iter()
-        .zip(errors)
-        .map(|(h, e)| (h.ln(), e.abs().ln()))
-        .collect();
-    let count = logs.len() as f64;
-    let (x, y) = (
-        logs.iter().map(|l| l.0).sum::<f64>() / count,
-        logs.iter().map(|l| l.1).sum::<f64>() / count,
-    );
-    logs.iter().map(|l| (l.0 - x) * (l.1 - y)).sum::<f64>()
-        / logs.iter().map(|l| (l.0 - x).powi(2)).sum::<f64>()
+        .map(|log| ((log.0 - x) * (log.1 - y), (log.0 - x).powi(2)));
+    let (rise, run) = slopes.fold((0.0, 0.0), |sum, part| (sum.0 + part.0, sum.1 + part.1));
+    rise / run
 }
 
 /// [`order`] of pairs of size and error [-].
@@ -182,6 +334,12 @@ pub fn assert_order(claimed: f64, sizes: &[f64], errors: &[f64]) {
         (fitted - claimed).abs() <= 0.1,
         "order {fitted:.3} instead of {claimed}: {errors:?} at {sizes:?}"
     );
+}
+
+/// [`assert_order`] of pairs of size and error.
+pub fn assert_orders(claimed: f64, pairs: &[(f64, f64)]) {
+    let (sizes, errors): (Vec<f64>, Vec<f64>) = pairs.iter().copied().unzip();
+    assert_order(claimed, &sizes, &errors);
 }
 
 /// Claims that errors fall with the resolution at an order − 0.1 or a higher one.
@@ -214,6 +372,32 @@ pub fn set_node_velocities(simulation: &mut Simulation, velocities: &[Vector3<f6
     }
     state["lines"][0]["velocity"] = serde_json::to_value(velocities).unwrap();
     simulation.restore(serde_json::from_value(snapshot).unwrap());
+}
+
+/// Mean time between changes of sign of samples taken every `step` [s], from the first to the last [s].
+pub fn half_period(samples: &[f64], step: f64) -> f64 {
+    let crossings = zero_crossings(samples, step);
+    (crossings[crossings.len() - 1] - crossings[0]) / (crossings.len() - 1) as f64
+}
+
+/// Arithmetic-geometric mean.
+pub fn agm(mut a: f64, mut b: f64) -> f64 {
+    while (a - b).abs() > 1e-15 * a {
+        (a, b) = (0.5 * (a + b), (a * b).sqrt());
+    }
+    a
+}
+
+/// Root of a function that grows, in a range, by bisection.
+pub fn bisect([mut low, mut high]: [f64; 2], value: impl Fn(f64) -> f64) -> f64 {
+    for _ in 0..200 {
+        let middle = 0.5 * (low + high);
+        match value(middle) < 0.0 {
+            true => low = middle,
+            false => high = middle,
+        }
+    }
+    low
 }
 
 /// Times [s] at which samples taken every `step` [s] from 0 change sign, by linear interpolation.

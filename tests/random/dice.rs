@@ -1,4 +1,4 @@
-//! Where random numbers come from: a tape of genes that proptest draws and shrinks, read part by part.
+//! Source of the random numbers: a tape of genes that proptest draws and shrinks, read part by part.
 //!
 //! A gene of zero means the plainest of all choices, so that a failing scene shrinks to a plain one: parts first, single genes after.
 
@@ -45,7 +45,7 @@ impl Dice<'_> {
         f64::from(gene) / (f64::from(u32::MAX) + 1.0)
     }
 
-    /// Whether something rare happens.
+    /// Returns true with a probability of `share`.
     pub fn chance(&mut self, share: f64) -> bool {
         self.unit() > 1.0 - share
     }
@@ -118,7 +118,7 @@ impl Strategy for Tapes {
 #[derive(Debug, Clone)]
 pub struct TapeTree {
     tape: Tape,
-    /// What the last simplification set to zero.
+    /// Genes that the last simplification set to zero.
     kept: Option<(Range<usize>, Vec<u32>)>,
     /// Ranges that have not been tried.
     rest: std::vec::IntoIter<Range<usize>>,

@@ -1,4 +1,4 @@
-//! How a host drives a scene: by its own motion or step by step, at regular or irregular communication points, with jumps.
+//! Hosts that drive scenes: by its own motion or step by step, at regular or irregular communication points, with jumps.
 
 use moorline::model::{Body, Motion};
 use moorline::scene::{PointKind, Scene};
@@ -10,22 +10,22 @@ use crate::plan::{Plan, part};
 /// Simulated span [s].
 pub const SPAN: f64 = 60.0;
 
-/// What a host does.
+/// Inputs of a host.
 #[derive(Debug, Clone)]
 pub struct Drive {
-    /// Whether the scene's own motion moves everything.
+    /// The scene's own motion moves everything.
     pub follows: bool,
     /// Communication steps [s], [`SPAN`] in all.
     pub steps: Vec<f64>,
-    /// Whether velocities are told.
-    tells_velocity: bool,
-    /// What is moved, where.
+    /// Velocities are given.
+    gives_velocity: bool,
+    /// Moved bodies with their motions.
     bodies: Vec<(Body, Motion)>,
     /// From a time [s] on, all bodies are elsewhere along x [m].
     jump: Option<[f64; 2]>,
     /// Lines that are released, and when [s].
     releases: Vec<(usize, f64)>,
-    /// Lines on winches and how far they are told to go [m].
+    /// Lines on winches and their greatest length changes [m].
     winches: Vec<(usize, f64)>,
 }
 
@@ -47,7 +47,7 @@ impl Drive {
         let mut drive = Drive {
             follows,
             steps: steps(&mut dice),
-            tells_velocity: dice.chance(0.4),
+            gives_velocity: dice.chance(0.4),
             bodies: points.chain(vessels).filter_map(moved).collect(),
             jump: dice.maybe(0.25, |dice| {
                 [dice.between(1.0, SPAN), dice.within(1e-2 * plan.size)]
@@ -63,19 +63,19 @@ impl Drive {
         drive
     }
 
-    /// Whether communication steps differ.
+    /// Returns true where communication steps differ.
     pub fn is_irregular(&self) -> bool {
         let inner = &self.steps[..self.steps.len() - 1];
         inner.windows(2).any(|pair| pair[0] != pair[1])
     }
 
-    /// Whether a body jumps.
+    /// Returns true where a body jumps.
     pub fn jumps(&self) -> bool {
         !self.follows && self.jump.is_some()
     }
 
-    /// Tells a simulation what holds at its time.
-    pub fn tell(&self, simulation: &mut Simulation) {
+    /// Sets the inputs of a simulation at its time.
+    pub fn set_inputs(&self, simulation: &mut Simulation) {
         let time = simulation.time();
         for &(line, at) in &self.releases {
             simulation.set_release(line, time >= at);
@@ -92,7 +92,7 @@ impl Drive {
                 value[0] += away;
             }
             let mut rate = [None; 6];
-            if self.tells_velocity {
+            if self.gives_velocity {
                 // angular velocities of a vessel are not the rates of its angles: those are left to be derived
                 (0..3).for_each(|axis| rate[axis] = Some(pose.rate[axis]));
             }

@@ -1,8 +1,9 @@
-//! How well the energy ledger closes.
+//! Error of the energy ledger.
 
 use moorline::simulation::Simulation;
 
-/// What the ledger has booked.
+/// Energy that the ledger has counted.
+#[derive(Default)]
 pub struct Balance {
     /// All that was given and lost, whatever its sign [J].
     turnover: f64,
@@ -16,18 +17,12 @@ pub struct Balance {
 impl Balance {
     /// At the start.
     pub fn new(simulation: &Simulation) -> Balance {
-        let mut balance = Balance {
-            turnover: 0.0,
-            held: 0.0,
-            given: 0.0,
-            lost: 0.0,
-            numerical: 0.0,
-        };
+        let mut balance = Balance::default();
         balance.count(simulation);
         balance
     }
 
-    /// Books a communication step.
+    /// Counts a communication step.
     pub fn count(&mut self, simulation: &Simulation) {
         let (energy, flow) = (simulation.energy(), simulation.ledger().flow);
         self.turnover += (flow.given - self.given).abs() + (flow.lost - self.lost).abs();

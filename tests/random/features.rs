@@ -1,13 +1,13 @@
-//! What a scene has: the physics that random scenes must cover.
+//! Features of a scene: the physics that random scenes must cover.
 
 use moorline::scene::{
-    ContactLaw, InitialShape, Integrator, LineModel, LineType, MotionPath, PointKind, Reconstruction,
-    RestShape, Scene, Strain,
+    ContactLaw, Current, InitialShape, Integrator, Line, LineModel, LineType, MotionPath, Point, PointKind,
+    Reconstruction, RestShape, Scene, Sea, Seabed, Strain,
 };
 
 use crate::run::Case;
 
-/// Names of what a case has.
+/// Names of the features of a case.
 pub fn of(case: &Case) -> Vec<&'static str> {
     let (scene, drive) = (&case.scene, &case.drive);
     let used = used_types(scene);
@@ -38,7 +38,7 @@ pub fn of(case: &Case) -> Vec<&'static str> {
     all
 }
 
-/// Whether the paths of driven points jump.
+/// Returns true where the paths of driven points jump.
 pub fn jumps(scene: &Scene) -> bool {
     scene.solver.input_reconstruction == Reconstruction::Jump
 }
@@ -58,46 +58,33 @@ fn held<const N: usize>(list: [(&'static str, bool); N]) -> impl Iterator<Item =
 
 fn surroundings(scene: &Scene) -> Vec<&'static str> {
     let water = scene.water.as_ref();
-    let current = water.and_then(|water| water.current.as_ref());
+    let current =
+        |what: fn(&Current) -> bool| water.and_then(|water| water.current.as_ref()).is_some_and(what);
     let seas = water
         .and_then(|water| water.waves.as_ref())
         .map(|waves| &waves.seas[..]);
-    let sea = |what: fn(&moorline::scene::Sea) -> bool| seas.is_some_and(|seas| seas.iter().any(what));
-    let bed = scene.seabed.as_ref();
+    let sea = |what: fn(&Sea) -> bool| seas.is_some_and(|seas| seas.iter().any(what));
+    let bed = |what: fn(&Seabed) -> bool| scene.seabed.as_ref().is_some_and(what);
+    let meets = scene.lines.iter().any(|line| scene.meets_surface(line));
     held([
         ("dry", water.is_none()),
         ("water", water.is_some()),
         ("no gravity", scene.gravity == 0.0),
-        (
-            "current: uniform",
-            current.is_some_and(|current| current.velocity.is_some()),
-        ),
-        (
-            "current: profile",
-            current.is_some_and(|current| current.profile.is_some()),
-        ),
-        (
-            "current: in time",
-            current.is_some_and(|current| current.factor.is_some()),
-        ),
+        ("current: uniform", current(|current| current.velocity.is_some())),
+        ("current: profile", current(|current| current.profile.is_some())),
+        ("current: in time", current(|current| current.factor.is_some())),
         ("waves: regular", sea(|sea| sea.regular.is_some())),
         ("waves: spectrum", sea(|sea| sea.spectrum.is_some())),
         (
             "waves: rows",
             sea(|sea| sea.regular.is_none() && sea.spectrum.is_none()),
         ),
-        (
-            "lines at the surface",
-            scene.lines.iter().any(|line| scene.meets_surface(line)),
-        ),
-        ("seabed: level", bed.is_some_and(|bed| bed.is_level())),
-        ("seabed: slope", bed.is_some_and(|bed| bed.slope.is_some())),
-        ("seabed: grid", bed.is_some_and(|bed| bed.grid.is_some())),
-        ("seabed: friction", bed.is_some_and(|bed| bed.friction.acts())),
-        (
-            "seabed: as given",
-            bed.is_some_and(|bed| bed.contact == ContactLaw::AsGiven),
-        ),
+        ("lines at the surface", meets),
+        ("seabed: level", bed(Seabed::is_level)),
+        ("seabed: slope", bed(|bed| bed.slope.is_some())),
+        ("seabed: grid", bed(|bed| bed.grid.is_some())),
+        ("seabed: friction", bed(|bed| bed.friction.acts())),
+        ("seabed: as given", bed(|bed| bed.contact == ContactLaw::AsGiven)),
     ])
     .collect()
 }
@@ -133,25 +120,23 @@ fn types(used: &[&LineType]) -> Vec<&'static str> {
     .collect()
 }
 
-fn bends(kind: &LineType) -> bool {
+/// Returns true where a type has bending stiffness.
+pub fn bends(kind: &LineType) -> bool {
     kind.bending_stiffness > Some(0.0) || kind.solid_section.is_some()
 }
 
 fn bodies(scene: &Scene) -> Vec<&'static str> {
-    let kind = |kind: PointKind| scene.points.iter().any(|point| point.kind == kind);
+    let point = |what: fn(&Point) -> bool| scene.points.iter().any(what);
     let path = |what: fn(&MotionPath) -> bool| scene.motion.values().any(what);
     held([
-        ("point: coupled", kind(PointKind::Coupled)),
-        ("point: prescribed", kind(PointKind::Prescribed)),
-        ("point: free", kind(PointKind::Free)),
+        ("point: coupled", point(|point| point.kind == PointKind::Coupled)),
         (
-            "point: on rails",
-            scene.points.iter().any(|point| point.free.is_some()),
+            "point: prescribed",
+            point(|point| point.kind == PointKind::Prescribed),
         ),
-        (
-            "point: load",
-            scene.points.iter().any(|point| point.force.is_some()),
-        ),
+        ("point: free", point(|point| point.kind == PointKind::Free)),
+        ("point: on rails", point(|point| point.free.is_some())),
+        ("point: load", point(|point| point.force.is_some())),
         ("vessel", !scene.vessels.is_empty()),
         ("motion: table", path(|path| matches!(path, MotionPath::Table(_)))),
         (
@@ -164,7 +149,7 @@ fn bodies(scene: &Scene) -> Vec<&'static str> {
 }
 
 fn lines(scene: &Scene) -> Vec<&'static str> {
-    let any = |what: fn(&moorline::scene::Line) -> bool| scene.lines.iter().any(what);
+    let any = |what: fn(&Line) -> bool| scene.lines.iter().any(what);
     held([
         ("several sections", any(|line| line.sections.len() > 1)),
         ("elements chosen", any(|line| line.sections[0].elements.is_none())),

@@ -10,6 +10,7 @@ use moorline::scene::{
 use nalgebra::{Rotation3, Vector3};
 
 use crate::dice::{Dice, Tape};
+use crate::features::bends as bends_by_itself;
 use crate::motions;
 use crate::plan::{Plan, Resists, part};
 use crate::{surroundings, types};
@@ -26,13 +27,8 @@ pub fn scene(tape: &Tape, plan: &Plan) -> Scene {
     let moving = plan.integrator != Integrator::QuasiStatic;
     if plan.wet {
         let dice = &mut plan.dice(tape, part::WATER);
-        let mut water = surroundings::water(
-            dice,
-            plan.size,
-            plan.gravity,
-            cable,
-            cable && moving && !plan.winch,
-        );
+        let waves = cable && moving && !plan.winch;
+        let mut water = surroundings::water(dice, plan.size, plan.gravity, cable, waves);
         if plan.winch {
             water.surface = Some(false);
         }
@@ -67,7 +63,7 @@ struct Layout<'t> {
     /// [m]
     depth: f64,
     scene: Scene,
-    /// Where the points are [m].
+    /// Positions of the points [m].
     places: Vec<Vector3<f64>>,
 }
 
@@ -138,11 +134,8 @@ impl Layout<'_> {
         let radius = size * dice.pick(&[1.0, 1.0, 0.1]) * dice.between(0.3, 1.0);
         let bearing = dice.between(0.0, TAU);
         let (x, y) = (radius * bearing.cos(), radius * bearing.sin());
-        let floor = self
-            .scene
-            .seabed
-            .as_ref()
-            .map_or(-self.depth, |bed| surroundings::bed_height(bed, [x, y]));
+        let bed = self.scene.seabed.as_ref();
+        let floor = bed.map_or(-self.depth, |bed| surroundings::bed_height(bed, [x, y]));
         let lift = if dice.chance(0.25) {
             dice.between(0.0, self.depth)
         } else {
@@ -228,7 +221,7 @@ impl Layout<'_> {
         }
     }
 
-    /// Whether stretching one of the lines by a hundredth takes far more than it weighs, so that a motion would snap what is taut.
+    /// Returns true where stretching a line by a hundredth takes far more than its weight, so that a motion would snap a taut one.
     fn is_stiff(&self) -> bool {
         let weight = self.plan.gravity.max(1.0) * self.plan.size;
         let stiff = |kind: &LineType| {
@@ -307,9 +300,7 @@ impl Layout<'_> {
         let lies = dice.chance(0.2);
         let bends = |section: Option<&Section>| {
             let kind = section.and_then(|section| self.scene.line_types.get(&section.line_type));
-            kind.is_some_and(|kind: &LineType| {
-                kind.solid_section.is_some() || kind.bending_stiffness > Some(0.0)
-            })
+            kind.is_some_and(bends_by_itself)
         };
         let lies = lies && line.initial != InitialShape::Static;
         if lies && line.sections.iter().any(|section| bends(Some(section))) {
@@ -329,7 +320,7 @@ impl Layout<'_> {
         line.clamped_b = line.clamped_b.filter(|_| !turned(&line.to));
     }
 
-    /// What lets go of a line, or pays it out.
+    /// Releases, breaks and winches of a line.
     fn controls(&self, dice: &mut Dice, line: &mut Line, ends: [usize; 2]) {
         let held = self.scene.points[ends[1]].kind != PointKind::Free;
         if self.plan.winch && held && dice.chance(0.6) {
@@ -353,18 +344,13 @@ impl Layout<'_> {
             let end = dice.pick(&[LineEnd::B, LineEnd::A]);
             match dice.whole(0, 3) {
                 0 => line.release = Some(end),
-                1 => {
+                kind @ (1 | 2) => {
+                    let time = (kind == 1).then(|| dice.between(0.0, 60.0));
+                    let tension = (kind == 2).then(|| dice.log(1e2, 1e7));
                     line.parting = Some(Break {
                         at: end,
-                        tension: None,
-                        time: Some(dice.between(0.0, 60.0)),
-                    });
-                }
-                2 => {
-                    line.parting = Some(Break {
-                        at: end,
-                        tension: Some(dice.log(1e2, 1e7)),
-                        time: None,
+                        tension,
+                        time,
                     });
                 }
                 _ => {}

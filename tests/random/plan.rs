@@ -1,4 +1,4 @@
-//! What kind of scene it is to be: choices that all its parts know.
+//! Plan of a scene: choices that all its parts share.
 
 use moorline::scene::{AXIAL_RADIUS_MIN, Bossak, Integrator, Reconstruction, Solver, Threads};
 
@@ -19,7 +19,7 @@ pub mod part {
     pub const LINES: usize = 30;
 }
 
-/// What lines resist.
+/// Deformations that lines resist.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Resists {
     Stretch,
@@ -27,7 +27,7 @@ pub enum Resists {
     Torsion,
 }
 
-/// What all parts of a scene know.
+/// Choices that all parts of a scene share.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Plan {
     /// Share of numbers that are drawn from all that is legal [-].
@@ -45,11 +45,11 @@ pub struct Plan {
     pub law: Option<usize>,
     /// Poisson's ratio of logarithmic strain [-].
     pub poisson: f64,
-    /// Whether lines are on winches.
+    /// Lines are on winches.
     pub winch: bool,
-    /// Whether points move freely.
+    /// Points move freely.
     pub junctions: bool,
-    /// Whether lines break or are released.
+    /// Lines break or are released.
     pub parts: bool,
 }
 
@@ -104,7 +104,7 @@ impl Plan {
         tape.part(part, self.wild)
     }
 
-    /// How the scene is solved.
+    /// The solver's settings.
     pub fn solver(&self, dice: &mut Dice) -> Solver {
         let radius = match self.integrator {
             Integrator::AxialImplicit => Some(AXIAL_RADIUS_MIN),

@@ -2,6 +2,7 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
+use moorline::discretisation::discretised;
 use moorline::dynamics::{Choice, StepError};
 use moorline::interface::{Causality, Interface, Layout};
 use moorline::model::Network;
@@ -42,10 +43,11 @@ impl Case {
     }
 }
 
-/// What became of a scene.
-#[derive(Debug, Clone, PartialEq)]
+/// Outcome of a scene.
+#[derive(Debug, Clone, Default, PartialEq)]
 pub enum Fate {
     /// Ran for the whole span.
+    #[default]
     Ran,
     /// Refused as a scene, with a reason.
     Refused(String),
@@ -57,13 +59,13 @@ pub enum Fate {
     Costly,
 }
 
-/// What is told of a run.
-#[derive(Debug, Clone)]
+/// Record of a run.
+#[derive(Debug, Clone, Default)]
 pub struct Account {
     pub fate: Fate,
     /// Integrators that served it, by name.
     pub integrators: Vec<String>,
-    /// Error of the energy ledger, over what it books [-].
+    /// Error of the energy ledger, over the energy that it counts [-].
     pub imbalance: f64,
     /// Energy that the damping of the integrators brought on balance, over the same [-].
     pub created: f64,
@@ -85,16 +87,8 @@ pub fn run(case: &Case) -> Result<Account, String> {
 }
 
 fn watched(case: &Case) -> Result<Account, String> {
-    let mut account = Account {
-        fate: Fate::Ran,
-        integrators: Vec::new(),
-        imbalance: 0.0,
-        created: 0.0,
-        work: 0.0,
-        dearest: 0.0,
-        time: 0.0,
-    };
-    let begun = Simulation::new(&case.scene).and_then(|mut simulation| {
+    let mut account = Account::default();
+    let begun = Simulation::new(&discretised(&case.scene)).and_then(|mut simulation| {
         if case.drive.follows {
             simulation.follow_scene()?;
         }
@@ -134,7 +128,7 @@ fn steps(case: &Case, simulation: &mut Simulation, account: &mut Account) -> Res
         if number == replayed {
             memory = Some(simulation.snapshot().clone());
         }
-        case.drive.tell(simulation);
+        case.drive.set_inputs(simulation);
         let before = simulation.snapshot().clone();
         let time = simulation.time();
         if let Err(error) = simulation.advance(step) {
@@ -145,9 +139,7 @@ fn steps(case: &Case, simulation: &mut Simulation, account: &mut Account) -> Res
         let cost = load.weight * simulation.counters().solves as f64;
         (account.work, account.dearest) = (account.work + cost, account.dearest.max(cost));
         if cost > STEP_MAX {
-            return Err(format!(
-                "a step of {step} s at {time} s cost {cost:.1e} node steps"
-            ));
+            return Err(format!("{step} s at {time} s cost {cost:.1e} node steps"));
         }
         let at = |problem| format!("{time} s + {step} s, {problem}");
         outputs.read(simulation).map_err(at)?;
@@ -162,7 +154,7 @@ fn steps(case: &Case, simulation: &mut Simulation, account: &mut Account) -> Res
     Ok(())
 }
 
-/// What steps cost.
+/// Cost of steps.
 struct Load {
     /// Work of a second where nothing is halved or repeated, of every network with its longest step [s].
     networks: Vec<(f64, f64)>,
@@ -189,8 +181,8 @@ impl Load {
 
     /// Work of a communication step [s] at least.
     fn expected(&self, step: f64) -> f64 {
-        let networks = self.networks.iter();
-        networks
+        self.networks
+            .iter()
             .map(|(work, longest)| work * (step / longest).ceil())
             .sum()
     }
@@ -206,7 +198,7 @@ fn node_cost(integrator: Integrator) -> f64 {
     }
 }
 
-/// Whether a step that failed says why and has left everything as it was.
+/// Checks that a step that failed gives its reason and has left everything as it was.
 fn said_clearly(error: &StepError, before: &Snapshot, simulation: &Simulation) -> Result<(), String> {
     let mut lines = simulation.model().lines.iter();
     let line = lines.find(|line| line.name == error.line);
@@ -239,7 +231,7 @@ fn replay(
     let first = bytes(simulation.snapshot());
     simulation.restore(memory);
     for &step in &case.drive.steps[from..from + REPLAY] {
-        case.drive.tell(simulation);
+        case.drive.set_inputs(simulation);
         let again = simulation.advance(step);
         again.map_err(|error| format!("a step fails when it is made again: {error}"))?;
     }
@@ -266,10 +258,7 @@ impl Outputs {
     /// Reads all of them; the error is one that is not a finite number.
     fn read(&self, simulation: &Simulation) -> Result<(), String> {
         for variable in self.table.variables() {
-            if !matches!(
-                variable.causality,
-                Causality::Output | Causality::CalculatedParameter
-            ) {
+            if ![Causality::Output, Causality::CalculatedParameter].contains(&variable.causality) {
                 continue;
             }
             let mut values = vec![0.0; variable.size()];

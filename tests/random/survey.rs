@@ -1,4 +1,4 @@
-//! Runs many scenes on two threads and counts what became of them.
+//! Runs many scenes on two threads and counts their outcomes.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -18,7 +18,7 @@ use crate::run::{Account, Case, Fate, run};
 const THREADS: usize = 2;
 /// Runs that shrinking a failing scene may take.
 const SHRINKS_MAX: u32 = 200;
-/// Error of a ledger that closes, over what it books [-].
+/// Error of a ledger that closes, over the energy that it counts [-].
 pub const CLOSED: f64 = 0.02;
 
 fn runner(number: usize) -> TestRunner {
@@ -59,29 +59,29 @@ pub fn shrunk(number: usize) -> Option<(Case, String)> {
     }
 }
 
-/// What the energy ledger of a scene says.
+/// Balance of the energy ledger of a scene.
 #[derive(Debug, Clone, Copy)]
-pub struct Books {
+pub struct Closing {
     pub scene: usize,
-    /// Error of the ledger, over what it books [-].
+    /// Error of the ledger, over the energy that it counts [-].
     pub imbalance: f64,
-    /// What the damping of integrators brought, over the same [-].
+    /// Energy that the damping of integrators brought, over the same [-].
     pub created: f64,
 }
 
-impl Books {
-    /// Whether the ledger closes.
+impl Closing {
+    /// Returns true where the ledger closes.
     pub fn close(&self) -> bool {
         self.imbalance.abs() <= CLOSED
     }
 
-    /// Whether the damping of integrators brought nothing, either.
+    /// Returns true where the damping of integrators brought nothing, either.
     pub fn are_sound(&self) -> bool {
         self.close() && self.created <= CLOSED
     }
 }
 
-/// What became of scenes.
+/// Outcomes of scenes.
 #[derive(Debug, Default)]
 pub struct Survey {
     /// Scenes in all.
@@ -90,8 +90,8 @@ pub struct Survey {
     pub fates: BTreeMap<&'static str, usize>,
     /// By feature: how many ran for the whole span or as far as they may cost, of how many.
     pub features: BTreeMap<&'static str, [usize; 2]>,
-    /// What energy ledgers say, by integrator.
-    pub books: BTreeMap<String, Vec<Books>>,
+    /// Energy ledgers, by integrator.
+    pub balances: BTreeMap<String, Vec<Closing>>,
     /// Scenes that break a claim, with the claim.
     pub broken: Vec<(usize, String)>,
     /// Reasons given by scenes that could not be run.
@@ -106,13 +106,10 @@ impl Survey {
     /// Runs the scenes of these numbers.
     pub fn of(numbers: Range<usize>) -> Survey {
         let survey = Mutex::new(Survey::default());
-        let next = AtomicUsize::new(numbers.start);
+        let (next, numbers_end) = (AtomicUsize::new(numbers.start), numbers.end);
         let work = || {
-            loop {
-                let number = next.fetch_add(1, Ordering::Relaxed);
-                if number >= numbers.end {
-                    break;
-                }
+            let numbers = std::iter::from_fn(|| Some(next.fetch_add(1, Ordering::Relaxed)));
+            for number in numbers.take_while(|number| *number < numbers_end) {
                 let case = case(number);
                 let result = run(&case);
                 let mut survey = survey.lock().expect("no thread panics while it counts");
@@ -133,7 +130,7 @@ impl Survey {
             Ok(account) => account,
             Err(claim) => return self.broken.push((number, claim)),
         };
-        let books = Books {
+        let balances = Closing {
             scene: number,
             imbalance: account.imbalance,
             created: account.created,
@@ -171,7 +168,7 @@ impl Survey {
                 _ => "equal steps",
             };
             let name = format!("{name}, {steps}");
-            self.books.entry(name).or_default().push(books);
+            self.balances.entry(name).or_default().push(balances);
         }
         if account.dearest > self.dearest.0 {
             self.dearest = (account.dearest, number);
@@ -183,21 +180,22 @@ impl Survey {
         self.fates.get(fate).copied().unwrap_or(0) as f64 / self.scenes as f64
     }
 
-    /// How many ledgers of an integrator close, how many of these are sound, and how many there are [-].
+    /// Numbers of the ledgers of an integrator that close, of those that are sound, and of all [-].
     pub fn closed(&self, integrator: &str) -> [f64; 3] {
-        let books = self.books.get(integrator).map_or(&[][..], Vec::as_slice);
-        let count = |which: fn(&Books) -> bool| books.iter().filter(|book| which(book)).count();
-        [count(Books::close), count(Books::are_sound), books.len()].map(|count| count as f64)
+        let balances = self.balances.get(integrator).map_or(&[][..], Vec::as_slice);
+        let count = |which: fn(&Closing) -> bool| balances.iter().filter(|balance| which(balance)).count();
+        [count(Closing::close), count(Closing::are_sound), balances.len()].map(|count| count as f64)
     }
 
     /// Greatest error of the ledgers of an integrator, whatever a host's steps [-].
     pub fn worst(&self, integrator: &str) -> f64 {
-        let ledgers = self.books.iter();
-        let books = ledgers.filter(|(name, _)| name.starts_with(integrator));
-        let sizes = books
-            .flat_map(|(_, books)| books)
-            .map(|book| book.imbalance.abs().max(book.created));
-        sizes.fold(0.0, f64::max)
+        let ledgers = self.balances.iter();
+        let balances = ledgers
+            .filter(|(name, _)| name.starts_with(integrator))
+            .flat_map(|(_, balances)| balances);
+        balances
+            .map(|balance| balance.imbalance.abs().max(balance.created))
+            .fold(0.0, f64::max)
     }
 }
 
@@ -222,10 +220,10 @@ impl fmt::Display for Survey {
         for (feature, [ran, all]) in &self.features {
             writeln!(f, "{ran:6} {all:6} {feature}")?;
         }
-        for (integrator, books) in &self.books {
-            let mut books = books.clone();
-            books.sort_by(|a, b| a.imbalance.abs().total_cmp(&b.imbalance.abs()));
-            let at = |share: f64| books[(share * (books.len() - 1) as f64) as usize];
+        for (integrator, balances) in &self.balances {
+            let mut balances = balances.clone();
+            balances.sort_by(|a, b| a.imbalance.abs().total_cmp(&b.imbalance.abs()));
+            let at = |share: f64| balances[(share * (balances.len() - 1) as f64) as usize];
             let (median, most, worst) = (at(0.5), at(0.9), at(1.0));
             let [closed, sound, all] = self.closed(integrator);
             writeln!(
@@ -240,13 +238,13 @@ impl fmt::Display for Survey {
                 worst.scene
             )?;
         }
-        for (integrator, books) in &self.books {
-            let mut open: Vec<_> = books.iter().filter(|book| !book.are_sound()).collect();
-            open.sort_by_key(|book| book.scene);
+        for (integrator, balances) in &self.balances {
+            let mut open: Vec<_> = balances.iter().filter(|balance| !balance.are_sound()).collect();
+            open.sort_by_key(|balance| balance.scene);
             writeln!(f, "{integrator}: open in, and brought")?;
-            for book in open {
-                let (error, brought) = (100.0 * book.imbalance, 100.0 * book.created.max(0.0));
-                write!(f, " {} ({error:+.1} %, {brought:.1} %)", book.scene)?;
+            for balance in open {
+                let (error, brought) = (100.0 * balance.imbalance, 100.0 * balance.created.max(0.0));
+                write!(f, " {} ({error:+.1} %, {brought:.1} %)", balance.scene)?;
             }
             writeln!(f)?;
         }

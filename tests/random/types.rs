@@ -48,7 +48,7 @@ pub fn line_type(dice: &mut Dice, plan: &Plan) -> LineType {
     kind
 }
 
-/// What resists stretch: a stiffness from 1 kN to 10 TN, a table or a viscoelastic rope; and damping.
+/// Resistance to stretch: a stiffness from 1 kN to 10 TN, a table or a viscoelastic rope; and damping.
 fn stretch(dice: &mut Dice, plan: &Plan, kind: &mut LineType, mass: f64) {
     let beam = plan.resists == Resists::Torsion;
     let hanging = if beam { 5e3 } else { 5.0 } * mass * plan.gravity * plan.size;
@@ -104,7 +104,7 @@ fn stretch(dice: &mut Dice, plan: &Plan, kind: &mut LineType, mass: f64) {
     }
 }
 
-/// What resists bending, and of beams torsion and shear.
+/// Resistance to bending, and of beams to torsion and shear.
 fn bending(dice: &mut Dice, plan: &Plan, kind: &mut LineType, diameter: f64) {
     let axial = kind.axial_stiffness.or(kind.static_stiffness).unwrap_or(1e6);
     let rod = axial * diameter * diameter / 16.0; // EI of a solid rod [N m²]

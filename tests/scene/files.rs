@@ -3,7 +3,9 @@
 use std::fs;
 use std::path::Path;
 
-use moorline::scene::{LoadError, MotionPath, Scene, load};
+use crate::common::{assert_says, draft, start};
+use moorline::scene::{LoadError, LoadedScene, MotionPath, Scene, load};
+use tempfile::tempdir;
 
 use crate::{SCENE, said};
 
@@ -150,4 +152,45 @@ fn a_motion_file_with_a_mistake_is_refused_with_its_line() {
         said.ends_with("no such file (it is looked for beside the scene)"),
         "{said}"
     );
+}
+
+const WAVES: (&str, &str) = (
+    "wave_frequencies.txt",
+    "0.0 0.0 0.0\n0.6 0.0 1.2\n0.9 0.4 0.0 0.5\n",
+);
+const CURRENT: (&str, &str) = (
+    "current_profile.txt",
+    "--- steady currents ---\nprofile\nz ux uy uz\n-80.0 0.1 0.0 0\n0.0 0.7 0.2 0\n",
+);
+
+/// Writes a scene and files beside it to a folder and loads it.
+fn written(folder: &Path, text: &str, files: &[(&str, &str)]) -> Result<LoadedScene, LoadError> {
+    for (name, text) in files.iter().chain(&[("scene.toml", text)]) {
+        fs::write(folder.join(name), text).unwrap();
+    }
+    load(&folder.join("scene.toml"))
+}
+
+#[test]
+fn a_scene_names_files_of_waves_and_current_as_a_deck_does() {
+    let folder = tempdir().unwrap();
+    let text = draft(
+        "water = { density = 1025.0, current = { file = 'current_profile.txt' }, waves = { file = 'wave_frequencies.txt' } }
+        seabed = { depth = 100.0 }
+        line_types.chain = { mass = 120.0, diameter = 0.12, axial_stiffness = 2e8, drag_normal = 1.6 }",
+    )
+    .fixed("anchor", [-260.0, 0.0, -100.0])
+    .coupled("left", [0.0, 15.0, -10.0])
+    .line("chain", ["anchor", "left"], "chain", 290.0, 24)
+    .text();
+    let scene = written(folder.path(), &text, &[WAVES, CURRENT]).unwrap().scene;
+    let current = scene.water.as_ref().unwrap().current.as_ref().unwrap();
+    assert_eq!(current.profile.as_ref().unwrap().len(), 2);
+    assert_eq!(
+        start(&scene).model().waves.as_ref().unwrap().components().len(),
+        2
+    );
+    fs::remove_file(folder.path().join(WAVES.0)).unwrap();
+    let refusal = format!("{:?}", written(folder.path(), &text, &[]).unwrap_err());
+    assert_says(&refusal, &["no such file"]);
 }

@@ -1,5 +1,8 @@
 //! Scenes as a user writes them: every refusal once with its place, files that are no scenes, text that is anything.
 
+mod broken;
+#[path = "../common/mod.rs"]
+mod common;
 mod files;
 mod garbage;
 mod refusals;

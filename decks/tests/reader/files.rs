@@ -1,107 +1,165 @@
-//! Files beside a deck: bathymetry, waves and currents.
+//! Decks and scenes that name files beside them: waves, currents, soundings of the seabed, tables of tension.
+//!
+//! claim: what a file says is in the scene, the converted scene is the same, and what is wrong is refused with file and line.
 
 use std::f64::consts::PI;
+use std::fs;
+use std::path::Path;
 
-use crate::*;
+use approx::assert_relative_eq;
+use moorline::scene::{LoadError, LoadedScene, Scene};
+use moorline::simulation::Simulation;
+use moorline_decks::load;
+use tempfile::tempdir;
 
-#[test]
-fn a_deck_with_bathymetry_and_friction_is_read_and_converted_with_them() {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("bathymetry");
-    fs::create_dir_all(&folder).unwrap();
-    let soundings = "--- MoorPy Bathymetry Input File v1.0 ---\nnGridX 2\nnGridY 2\n-900 900\n-900 100 110\n900 100 110\n";
-    fs::write(folder.join("bed.txt"), soundings).unwrap();
-    let options = "bed.txt WtrDpth\n0.7 mu_kT\n0.3 mu_kA\n200 FricDamp\n1.5 StatDynFricScale";
-    let deck = OPENFAST.replace("2.0e6    kbot", options);
-    fs::write(folder.join("deck.dat"), deck).unwrap();
-    let loaded = load(&folder.join("deck.dat")).unwrap();
-    let bed = loaded.scene.seabed.as_ref().unwrap();
-    assert_eq!((bed.friction.transverse, bed.friction.axial), (0.7, 0.3));
-    assert_eq!(bed.grid.as_ref().unwrap().depth, [[100.0, 110.0], [100.0, 110.0]]);
-    let notes: Vec<String> = loaded.notes.iter().map(ToString::to_string).collect();
-    let notes = notes.join("\n");
-    assert!(
-        notes.contains("static friction of 1.5 times the kinetic is not modelled"),
-        "{notes}"
-    );
-    assert!(notes.contains("it needs no damping to fade in with"), "{notes}");
-    let converted = Scene::from_toml(&loaded.to_commented_toml()).unwrap();
-    assert_eq!(converted, loaded.scene);
+const VERSION_1: &str = include_str!("../decks/moordyn_v1.dat");
+const OPENFAST: &str = include_str!("../decks/openfast_v2.dat");
+
+/// Writes a file and others beside it to a folder and loads it.
+fn loaded(folder: &Path, text: &str, files: &[(&str, &str)]) -> Result<LoadedScene, LoadError> {
+    for (name, text) in files.iter().chain(&[("mooring.dat", text)]) {
+        fs::write(folder.join(name), text).unwrap();
+    }
+    load(&folder.join("mooring.dat"))
 }
 
-#[test]
-fn a_seafloor_file_of_moordyn_c_is_read_as_heights_of_the_bed() {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("seafloor_c");
-    fs::create_dir_all(&folder).unwrap();
-    let deck = OPENFAST.replace("2.0e6    kbot", "110 WtrDpth\nbed.txt SeafloorFile");
-    fs::write(folder.join("deck.dat"), deck).unwrap();
-    let heights = "2 2\n-900 900\n-900 900\n-900 -900 -100\n-900 900 -100\n900 -900 -110\n900 900 -110\n";
-    fs::write(folder.join("bed.txt"), heights).unwrap();
-    let loaded = load(&folder.join("deck.dat")).unwrap_or_else(|error| panic!("{}", error.list()));
-    let grid = loaded.scene.seabed.unwrap().grid.unwrap();
-    assert_eq!((grid.x, grid.y), (vec![-900.0, 900.0], vec![-900.0, 900.0]));
-    assert_eq!(grid.depth, [[100.0, 110.0], [100.0, 110.0]]);
-    fs::write(
-        folder.join("bed.txt"),
-        "2 2\n-900 900\n-900 900\n-900 -900 -100\n",
-    )
-    .unwrap();
-    let error = load(&folder.join("deck.dat")).unwrap_err();
-    let said = error.list();
-    assert!(said.contains("deck.dat:27:1: OPTIONS, bathymetry: "), "{said}");
-    assert!(
-        said.contains("bed.txt: no height at x = 900 m, y = -900 m"),
-        "{said}"
-    );
+/// Claims that a message has all of these parts.
+fn assert_says(message: &str, parts: &[&str]) {
+    for part in parts {
+        assert!(message.contains(part), "{part:?} is not in {message}");
+    }
 }
 
-/// A MoorDyn deck of a buoyed line that asks for waves and a current, with files of these beside it.
-fn deck_with_water(folder: &Path, waves: &str, current: &str) -> PathBuf {
-    let deck = VERSION_1;
-    let options = "80     WtrDpth\n7  WaveKin\n1  Currents";
-    let path = folder.join("mooring.dat");
-    fs::write(&path, deck.replace("80     WtrDpth", options)).unwrap();
-    fs::write(folder.join("wave_frequencies.txt"), waves).unwrap();
-    fs::write(folder.join("current_profile.txt"), current).unwrap();
-    path
+/// Claims that a scene that was loaded is converted to the same scene.
+fn assert_converted(loaded: &LoadedScene) {
+    let text = loaded.to_commented_toml();
+    assert_eq!(Scene::from_toml(&text).unwrap(), loaded.scene, "{text}");
 }
 
-const DECK_WAVES: &str = "0.0 0.0 0.0\n0.6 0.0 1.2\n0.9 0.4 0.0 0.5\n";
-const DECK_CURRENT: &str = "--- steady currents ---\nprofile\nz ux uy uz\n-80.0 0.1 0.0 0\n0.0 0.7 0.2 0\n";
+/// A MoorDyn deck of a buoyed line that asks for waves and a current.
+fn in_waves() -> String {
+    VERSION_1.replace("80     WtrDpth", "80     WtrDpth\n7  WaveKin\n1  Currents")
+}
+
+const WAVES: (&str, &str) = (
+    "wave_frequencies.txt",
+    "0.0 0.0 0.0\n0.6 0.0 1.2\n0.9 0.4 0.0 0.5\n",
+);
+const CURRENT: (&str, &str) = (
+    "current_profile.txt",
+    "--- steady currents ---\nprofile\nz ux uy uz\n-80.0 0.1 0.0 0\n0.0 0.7 0.2 0\n",
+);
 
 #[test]
 fn a_deck_of_moordyn_brings_its_waves_and_current_from_files() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = deck_with_water(folder.path(), DECK_WAVES, DECK_CURRENT);
-    let loaded = load(&path).unwrap();
-    let water = loaded.scene.water.as_ref().unwrap();
-    let current = water.current.as_ref().unwrap();
-    let profile = vec![[-80.0, 0.1, 0.0], [0.0, 0.7, 0.2]];
-    assert_eq!(current.profile.as_ref().unwrap(), &profile);
+    let folder = tempdir().unwrap();
+    let loaded = loaded(folder.path(), &in_waves(), &[WAVES, CURRENT]).unwrap();
+    let current = loaded.scene.water.as_ref().unwrap().current.as_ref().unwrap();
+    assert_eq!(current.profile, Some(vec![[-80.0, 0.1, 0.0], [0.0, 0.7, 0.2]]));
     let mut simulation = Simulation::new(&loaded.scene).unwrap();
     let waves = simulation.model().waves.clone().unwrap();
     for t in [0.0, 2.0, 31.0] {
         // MoorDyn's sum: |A| sin(ωt + arg A) at the origin
         let expected = 1.2 * (0.6 * t + 0.5 * PI).sin() + 0.4 * (0.9_f64 * t).sin();
-        assert!((waves.elevation(0.0, 0.0, t) - expected).abs() < 1e-12);
+        assert_relative_eq!(waves.elevation(0.0, 0.0, t), expected, epsilon = 1e-12);
     }
     simulation.advance(0.1).unwrap();
-    let text = loaded.to_commented_toml();
-    assert_eq!(Scene::from_toml(&text).unwrap(), loaded.scene, "{text}");
-    assert!(
-        loaded
-            .notes
-            .iter()
-            .any(|note| note.text.contains("wave_frequencies.txt"))
-    );
+    assert_converted(&loaded);
+    assert!(loaded.notes.iter().any(|note| note.text.contains(WAVES.0)));
 }
 
 #[test]
 fn a_deck_whose_files_are_wrong_is_refused_with_file_and_line() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = deck_with_water(folder.path(), "0.6 0.0\n", DECK_CURRENT);
-    let refusal = format!("{:?}", load(&path).unwrap_err());
-    assert!(
-        refusal.contains("wave_frequencies.txt, line 1: expected 3 or 4 numbers"),
-        "{refusal}"
+    let folder = tempdir().unwrap();
+    let files = [(WAVES.0, "0.6 0.0\n"), CURRENT];
+    let refusal = format!("{:?}", loaded(folder.path(), &in_waves(), &files).unwrap_err());
+    assert_says(
+        &refusal,
+        &["wave_frequencies.txt, line 1: expected 3 or 4 numbers"],
     );
+}
+
+#[test]
+fn a_deck_with_bathymetry_and_friction_is_read_and_converted_with_them() {
+    let folder = tempdir().unwrap();
+    let soundings = "--- MoorPy Bathymetry Input File v1.0 ---\nnGridX 2\nnGridY 2\n-900 900\n-900 100 110\n900 100 110\n";
+    let options = "bed.txt WtrDpth\n0.7 mu_kT\n0.3 mu_kA\n200 FricDamp\n1.5 StatDynFricScale";
+    let deck = OPENFAST.replace("2.0e6    kbot", options);
+    let loaded = loaded(folder.path(), &deck, &[("bed.txt", soundings)]).unwrap();
+    let bed = loaded.scene.seabed.as_ref().unwrap();
+    assert_eq!((bed.friction.transverse, bed.friction.axial), (0.7, 0.3));
+    assert_eq!(bed.grid.as_ref().unwrap().depth, [[100.0, 110.0], [100.0, 110.0]]);
+    let notes: Vec<String> = loaded.notes.iter().map(ToString::to_string).collect();
+    let notes = notes.join("\n");
+    let scale = "static friction of 1.5 times the kinetic is not modelled";
+    assert_says(&notes, &[scale, "it needs no damping to fade in with"]);
+    assert_converted(&loaded);
+}
+
+#[test]
+fn a_seafloor_file_of_moordyn_c_is_read_as_heights_of_the_bed() {
+    let folder = tempdir().unwrap();
+    let deck = OPENFAST.replace("2.0e6    kbot", "110 WtrDpth\nbed.txt SeafloorFile");
+    let axes = "2 2\n-900 900\n-900 900\n-900 -900 -100\n";
+    let heights = format!("{axes}-900 900 -100\n900 -900 -110\n900 900 -110\n");
+    let found = loaded(folder.path(), &deck, &[("bed.txt", &heights)]);
+    let grid = found
+        .unwrap_or_else(|error| panic!("{}", error.list()))
+        .scene
+        .seabed
+        .unwrap()
+        .grid
+        .unwrap();
+    assert_eq!((grid.x, grid.y), (vec![-900.0, 900.0], vec![-900.0, 900.0]));
+    assert_eq!(grid.depth, [[100.0, 110.0], [100.0, 110.0]]);
+    let error = loaded(folder.path(), &deck, &[("bed.txt", axes)]).unwrap_err();
+    let lack = "bed.txt: no height at x = 900 m, y = -900 m";
+    assert_says(&error.list(), &["mooring.dat:27:1: OPTIONS, bathymetry: ", lack]);
+}
+
+/// A deck with one rope whose EA and BA are these words.
+fn rope(ea: &str, ba: &str) -> String {
+    format!(
+        "MoorDyn input\n---- LINE TYPES ----\nName Diam Mass/m EA BA/-zeta EI Cd Ca CdAx CaAx\n(-) (m) (kg/m) (N) (N-s/-) (N-m^2) (-) (-) (-) (-)\n\
+         rope 0.15 22.0 {ea} {ba} 0.0 1.2 1.0 0.2 0.0\n\
+         ---- POINTS ----\nID Attachment X Y Z M V CdA Ca\n(-) (-) (m) (m) (m) (kg) (m^3) (m^2) (-)\n\
+         1 Fixed 200.0 0.0 -100.0 0 0 0 0\n2 Coupled 0.0 0.0 -10.0 0 0 0 0\n\
+         ---- LINES ----\nID LineType AttachA AttachB UnstrLen NumSegs Outputs\n(-) (-) (-) (-) (m) (-) (-)\n\
+         1 rope 1 2 218.0 10 -\n---- OPTIONS ----\n100.0 WtrDpth\n---- need this line ----\n"
+    )
+}
+
+#[test]
+fn decks_say_static_and_dynamic_stiffness_or_name_a_table() {
+    let folder = tempdir().unwrap();
+    let load = |ea: &str, ba: &str| loaded(folder.path(), &rope(ea, ba), &[]);
+    let both = load("1.424e8|1.586e8", "4E9|11e6").unwrap();
+    let kind = &both.scene.line_types["rope"];
+    assert_eq!(
+        kind.static_stiffness.zip(kind.dynamic_stiffness),
+        Some((1.424e8, 1.586e8))
+    );
+    assert_eq!(
+        kind.static_damping.zip(kind.dynamic_damping),
+        Some((4.0e9, 1.1e7))
+    );
+    assert_converted(&both);
+    Simulation::new(&both.scene).unwrap();
+    let missing = format!("{:?}", load("polyester.txt", "-0.8").unwrap_err());
+    assert_says(&missing, &["polyester.txt: no such file"]);
+    let table = "----Polyester----\nStrain Tension\n(-) (N)\n0.0 0.0\n0.01 1.0e6\n0.02 3.0e6\n";
+    fs::write(folder.path().join("polyester.txt"), table).unwrap();
+    let read = load("polyester.txt", "-0.8").unwrap();
+    let of = |scene: &Scene| scene.line_types["rope"].tension_strain.clone().unwrap().rows;
+    assert_eq!(of(&read.scene).len(), 3);
+    let converted = Scene::from_toml(&read.to_commented_toml()).unwrap();
+    assert_eq!(of(&converted), of(&read.scene));
+    for (ea, ba, said) in [
+        ("1e8|2e8|0.1", "1e9|1e6", "grows with the mean tension"),
+        ("1e8|2e8", "-0.8", "no meaning"),
+        ("1e8", "1e9|1e6", "belong to a viscoelastic line"),
+        ("1e8", "damping.txt", "not modelled"),
+    ] {
+        assert_says(&format!("{:?}", load(ea, ba).unwrap_err()), &[said]);
+    }
 }

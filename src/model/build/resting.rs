@@ -15,7 +15,7 @@
 //! an element.
 //!
 //! Source: beam without bending stiffness on Winkler's foundation, here solved for the level; the tests below and
-//! `tests/equilibrium.rs` hold the gain against the elastic catenary.
+//! `tests/statics/equilibrium.rs` hold the gain against the elastic catenary.
 
 use crate::model::{Contact, Line, Nodes, Point, Role};
 use crate::physics::seabed::REGULARISED_PENETRATION;

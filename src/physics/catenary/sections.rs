@@ -529,6 +529,14 @@ mod tests {
     use super::super::{Bed, Section, solve};
     use super::{Sections, Shape};
 
+    fn section(length: f64, weight: f64, axial_stiffness: f64) -> Section {
+        Section {
+            length,
+            weight,
+            axial_stiffness,
+        }
+    }
+
     #[test]
     fn the_march_agrees_with_the_uniform_line_on_every_kind_of_it() {
         let bed = |height, friction| Some(Bed { height, friction });
@@ -542,61 +550,28 @@ mod tests {
             (50.0, 1e6, 20.0, 10.0, bed(-12.0, 0.0)),
             (50.0, 1e6, 0.0, -60.0, None),
         ] {
-            let whole = Section {
-                length: 100.0,
-                weight,
-                axial_stiffness: ea,
-            };
-            let parts = [0.3, 0.2, 0.5].map(|share| Section {
-                length: 100.0 * share,
-                ..whole
-            });
-            let uniform = solve(&[whole], span, rise, bed).expect("a line");
+            let parts = [0.3, 0.2, 0.5].map(|share| section(100.0 * share, weight, ea));
+            let uniform = solve(&[section(100.0, weight, ea)], span, rise, bed).expect("a line");
             let mut shape = Shape::default();
             let held = Sections::new(&parts, span, rise, bed).solve((0.0, 0.0), &mut shape);
             let tolerance = 1e-12 * (uniform.tension_b() + uniform.tension_a());
-            assert!(
-                (held.horizontal_b - uniform.horizontal()).abs() < tolerance,
-                "{held:?} {uniform:?}"
-            );
-            assert!(
-                (held.horizontal_a - uniform.horizontal_a()).abs() < tolerance,
-                "{held:?} {uniform:?}"
-            );
-            assert!(
-                (held.vertical_a - uniform.vertical_a()).abs() < tolerance,
-                "{held:?} {uniform:?}"
-            );
-            assert!(
-                (held.vertical_b - uniform.vertical_b()).abs() < tolerance,
-                "{held:?} {uniform:?}"
-            );
+            for (found, wanted) in [
+                (held.horizontal_b, uniform.horizontal()),
+                (held.horizontal_a, uniform.horizontal_a()),
+                (held.vertical_a, uniform.vertical_a()),
+                (held.vertical_b, uniform.vertical_b()),
+            ] {
+                assert!((found - wanted).abs() < tolerance, "{held:?} {uniform:?}");
+            }
         }
     }
 
     #[test]
     fn a_lazy_wave_may_lie_on_the_bed_twice() {
-        let heavy = |length| Section {
-            length,
-            weight: 30.0,
-            axial_stiffness: 1e8,
-        };
-        let float = Section {
-            length: 40.0,
-            weight: -40.0,
-            axial_stiffness: 1e8,
-        };
-        let sections = [heavy(150.0), float, heavy(200.0)];
-        let line = solve(
-            &sections,
-            300.0,
-            60.0,
-            Some(Bed {
-                height: 0.0,
-                friction: 0.0,
-            }),
-        )
-        .expect("a line");
+        let heavy = |length| section(length, 30.0, 1e8);
+        let sections = [heavy(150.0), section(40.0, -40.0, 1e8), heavy(200.0)];
+        let (height, friction) = (0.0, 0.0);
+        let line = solve(&sections, 300.0, 60.0, Some(Bed { height, friction })).expect("a line");
         let lifted = |s: f64| line.at(s).z > 1.0;
         assert!(!lifted(50.0) && lifted(170.0) && !lifted(280.0) && lifted(380.0));
         assert!(line.laid().count() >= 2);

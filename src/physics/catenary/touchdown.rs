@@ -177,6 +177,7 @@ impl Uniform {
 #[cfg(test)]
 mod tests {
     use super::{Touchdown, Uniform};
+    use crate::math::tests::central;
 
     const LINE: Uniform = Uniform {
         length: 100.0,
@@ -197,25 +198,23 @@ mod tests {
     #[test]
     fn the_slopes_of_a_lift_and_of_the_stretch_are_their_central_differences() {
         for h in [3.0, 700.0, 2e4, 1e6] {
-            let step = 1e-5 * h;
-            let (up, down, here) = (
-                LINE.lift(h + step, 12.0),
-                LINE.lift(h - step, 12.0),
-                LINE.lift(h, 12.0),
-            );
-            let central = |up: f64, down: f64| (up - down) / (2.0 * step);
-            let close = |slope: f64, central: f64| (slope / central - 1.0).abs() < 1e-5;
+            let close = |slope: f64, found: f64| (slope / found - 1.0).abs() < 1e-5;
+            let (step, here, ground) = (1e-5 * h, LINE.lift(h, 12.0), LINE.lift(h, 0.0));
+            let lift = |by: f64| LINE.lift(h + by, 12.0);
             assert!(
-                close(here.vertical_slope, central(up.vertical, down.vertical)),
+                close(here.vertical_slope, central(step, |by| lift(by).vertical)),
                 "{h}"
             );
-            assert!(close(here.excess_slope, central(up.excess, down.excess)), "{h}");
-            let ground = LINE.lift(h, 0.0);
+            assert!(
+                close(here.excess_slope, central(step, |by| lift(by).excess)),
+                "{h}"
+            );
             for friction in [0.0, 0.4, 9.0] {
-                let (high, _) = LINE.stretch(h + step, &ground, &up, friction);
-                let (low, _) = LINE.stretch(h - step, &ground, &down, friction);
-                let (_, slope) = LINE.stretch(h, &ground, &here, friction);
-                assert!(close(slope, central(high, low)), "{h} {friction}");
+                let stretch = |by: f64| LINE.stretch(h + by, &ground, &lift(by), friction);
+                assert!(
+                    close(stretch(0.0).1, central(step, |by| stretch(by).0)),
+                    "{h} {friction}"
+                );
             }
         }
     }

@@ -12,7 +12,7 @@
 //!
 //! An equilibrium that is not stable is left by a small wave too.
 //!
-//! Source: Kelley & Keyes (1998), SIAM J. Numer. Anal. 35(2), 508-523 (pseudo-transient continuation); the order is found by trial on cantilevers, arches, columns and slack lines in `tests/bending.rs`.
+//! Source: Kelley & Keyes (1998), SIAM J. Numer. Anal. 35(2), 508-523 (pseudo-transient continuation); the order is found by trial on cantilevers, arches, columns and slack lines in `tests/lines/bending.rs`.
 
 use nalgebra::Vector3;
 

@@ -1,0 +1,372 @@
+//! Changes of a scene that must not change a result, and quantities that a result must keep.
+
+use crate::common::*;
+use approx::assert_relative_eq;
+use moorline::dynamics::ledger::Flow;
+use moorline::model::{Body, Motion, State};
+use moorline::scene::{Current, Integrator, MotionPath, Reconstruction, Scene};
+use moorline::simulation::Simulation;
+use nalgebra::{Rotation3, Vector3};
+
+/// The OC4 chain moved along all three axes, coarse, by one integrator.
+fn chain(integrator: Integrator) -> Scene {
+    let mut scene = with_integrator(with_elements(shipped("oc4_chain"), 20), integrator, 0.01);
+    if let Some(MotionPath::Harmonic(motion)) = scene.motion.get_mut("fairlead") {
+        motion.y = vec![vec![4.0, 11.0]];
+        motion.ramp = Some(5.0);
+    }
+    scene
+}
+
+/// The state after `duration` [s] in steps of 0.05 s.
+fn after(scene: &Scene, duration: f64) -> State {
+    let mut simulation = following(scene);
+    run(&mut simulation, 0.05, (duration / 0.05).round() as usize);
+    simulation.state().clone()
+}
+
+#[test]
+fn a_scene_without_an_energy_ledger_moves_to_the_last_bit_as_one_with_it() {
+    let mut in_current = shipped("oc4_chain");
+    let current = Current {
+        velocity: Some([0.6, 0.2, 0.0]),
+        ..Current::default()
+    };
+    in_current.water.as_mut().unwrap().current = Some(current);
+    for integrator in INTEGRATORS.into_iter().chain([Integrator::QuasiStatic]) {
+        for (name, scene) in [
+            ("a chain on its seabed", shipped("oc4_chain")),
+            ("a rope", shipped("taut_polyester")),
+            ("a chain in a current", in_current.clone()),
+            ("lines at a free point", shipped("bridle")),
+        ] {
+            if name == "lines at a free point" && integrator == Integrator::AxialImplicit {
+                continue; // serves single lines
+            }
+            let mut scene = with_integrator(with_elements(scene, 20), integrator, 0.05);
+            let with = after(&scene, 3.0);
+            scene.solver.energy_ledger = false;
+            let mut without = following(&scene);
+            run(&mut without, 0.05, 60);
+            assert_eq!(without.state(), &with, "{name}, {integrator:?}");
+            assert_eq!(without.ledger().flow, Flow::default());
+            assert_eq!([without.energy_error(), without.power_residual()], [0.0; 2]);
+        }
+    }
+}
+
+/// Error of the ledger over all that it has booked, of a scene whose vessel or second point a host puts elsewhere every 0.1 s for 10 s, at once.
+fn jumping_ledger(mut scene: Scene) -> f64 {
+    scene.solver.input_reconstruction = Reconstruction::Jump;
+    let mut simulation = start(&scene);
+    let body = if scene.vessels.is_empty() {
+        Body::Point(1)
+    } else {
+        Body::Vessel(0)
+    };
+    let (mut booked, mut last): (f64, Flow) = (0.0, Flow::default());
+    for step in 0..100 {
+        let t = 0.1 * f64::from(step);
+        let [x, y, z] = [(0.9 * t).sin(), 0.5 * (0.7 * t).sin(), -1.5 * t.sin()];
+        simulation.set_body(body, [x, y, z, 0.0, 0.0, 0.0], [None; 6]);
+        simulation.advance(0.1).unwrap();
+        let flow = simulation.ledger().flow;
+        booked += (flow.given - last.given).abs() + (flow.lost - last.lost).abs();
+        last = flow;
+    }
+    simulation.energy_error() / booked
+}
+
+#[test]
+fn the_ledger_closes_where_held_points_jump() {
+    let pierces = draft(
+        "water = { density = 1025.0, surface = true, waves = [{ regular = { height = 2.0, period = 6.0 } }] }
+        line_types.rope = { mass = 20.0, diameter = 0.12, static_stiffness = 2.0e6, dynamic_stiffness = 6.0e6,
+          static_damping = 1.0e7, dynamic_damping = 1.0e4, drag_normal = 1.2, added_mass_normal = 1.0 }",
+    )
+    .fixed("anchor", [0.0, 0.0, -40.0])
+    .coupled("fairlead", [40.0, 0.0, 8.0])
+    .line("line1", ["anchor", "fairlead"], "rope", 66.0, None)
+    .scene();
+    // a jump makes waves as short as elements are, which explicit steps resolve least
+    for (name, scene, explicit) in [
+        ("a chain on its bed", shipped("oc4_chain"), 5e-3),
+        ("a rope", shipped("taut_polyester"), 1e-5),
+        ("lines at a free point", shipped("bridle"), 2e-3),
+        ("a viscoelastic rope through the surface", pierces, 0.1),
+    ] {
+        for integrator in INTEGRATORS {
+            if name == "lines at a free point" && integrator == Integrator::AxialImplicit {
+                continue; // serves single lines
+            }
+            let scene = with_integrator(with_elements(scene.clone(), 20), integrator, 0.01);
+            let error = jumping_ledger(scene);
+            println!("{name}, {integrator:?}: {error:e}");
+            let bound = match integrator {
+                Integrator::Leapfrog => explicit,
+                Integrator::AxialImplicit => 3e-3,
+                _ => 1e-6,
+            };
+            assert!(error.abs() < bound, "{name}, {integrator:?}: {error:e}");
+        }
+    }
+}
+
+/// Greatest distance of the first line's nodes in two states [m], the second mapped.
+fn distance(found: &State, other: &State, image: impl Fn(Vector3<f64>) -> Vector3<f64>) -> f64 {
+    let images: Vec<Vector3<f64>> = other.lines[0].position.iter().map(|r| image(*r)).collect();
+    gap(&found.lines[0].position, &images)
+}
+
+/// The scene in another frame: all points and harmonic motions, whose components must be alike in period, mapped linearly.
+fn mapped(mut scene: Scene, map: impl Fn(Vector3<f64>) -> Vector3<f64>) -> Scene {
+    for point in &mut scene.points {
+        point.position = map(Vector3::from(point.position)).into();
+    }
+    for path in scene.motion.values_mut() {
+        let motion = Motion::new(path);
+        let rows = (0..=400).map(|k| {
+            let t = 0.05 * k as f64;
+            let u = map(motion.at(t).position);
+            [t, u.x, u.y, u.z, 0.0, 0.0, 0.0]
+        });
+        *path = MotionPath::Table(rows.collect());
+    }
+    scene
+}
+
+#[test]
+fn the_mirror_image_of_a_scene_moves_as_the_mirror_image() {
+    for integrator in INTEGRATORS {
+        let scene = mapped(chain(integrator), |r| r);
+        let original = after(&scene, 15.0);
+        for flip in [Vector3::new(-1.0, 1.0, 1.0), Vector3::new(1.0, -1.0, 1.0)] {
+            let image = after(&mapped(scene.clone(), |r| r.component_mul(&flip)), 15.0);
+            let apart = distance(&image, &original, |r| r.component_mul(&flip));
+            assert_eq!(apart, 0.0, "{integrator:?}");
+        }
+    }
+}
+
+#[test]
+fn a_scene_turned_about_the_vertical_moves_alike() {
+    for integrator in INTEGRATORS {
+        let scene = mapped(chain(integrator), |r| r);
+        let original = after(&scene, 10.0);
+        let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), 0.7);
+        let image = after(&mapped(scene.clone(), |r| turn * r), 10.0);
+        let apart = distance(&image, &original, |r| turn * r);
+        assert!(apart < 1e-8, "{integrator:?}: {apart:e} m");
+    }
+}
+
+#[test]
+fn the_order_of_lines_and_points_changes_nothing() {
+    for integrator in INTEGRATORS {
+        let mut scene = chain(integrator);
+        let mut second = scene.lines[0].clone();
+        second.name = "line2".into();
+        second.from = "anchor2".into();
+        let mut anchor = scene.points[0].clone();
+        anchor.name = "anchor2".into();
+        anchor.position = [-760.0, 20.0, -200.0];
+        scene.points.push(anchor);
+        scene.lines.push(second);
+        let forward = after(&scene, 10.0);
+        scene.lines.reverse();
+        scene.points.reverse();
+        let backward = after(&scene, 10.0);
+        assert_eq!(forward.lines[0], backward.lines[1]);
+        assert_eq!(forward.lines[1], backward.lines[0]);
+        assert_eq!(forward.points[0], backward.points[2]);
+    }
+}
+
+#[test]
+fn a_line_of_two_sections_of_one_type_is_that_line() {
+    for integrator in INTEGRATORS {
+        let mut scene = chain(integrator);
+        scene.lines[0].sections[0].length = 835.0;
+        let whole = after(&scene, 10.0);
+        let section = &mut scene.lines[0].sections[0];
+        (section.length, section.elements) = (835.0 / 4.0, Some(5));
+        let mut rest = section.clone();
+        (rest.length, rest.elements) = (835.0 * 0.75, Some(15));
+        scene.lines[0].sections.push(rest);
+        let split = after(&scene, 10.0);
+        let apart = distance(&split, &whole, |r| r);
+        assert!(apart < 1e-9, "{integrator:?}: {apart:e} m");
+    }
+}
+
+#[test]
+fn water_without_density_is_no_water() {
+    for integrator in INTEGRATORS {
+        let mut scene = chain(integrator);
+        scene.water.as_mut().unwrap().density = 1e-12;
+        let wet = after(&scene, 10.0);
+        scene.water = None;
+        let dry = after(&scene, 10.0);
+        let apart = distance(&wet, &dry, |r| r);
+        assert!(apart < 1e-8, "{integrator:?}: {apart:e} m");
+    }
+}
+
+#[test]
+fn what_rests_stays_at_rest() {
+    for (name, _) in PUBLIC_SCENES {
+        for integrator in INTEGRATORS {
+            let mut scene = shipped(name);
+            scene.motion.clear();
+            scene.solver.integrator = integrator;
+            let mut simulation = start(&scene);
+            let (first, force) = (simulation.state().clone(), Vector3::from(simulation.end_force(1)));
+            run(&mut simulation, 0.25, 400);
+            let drift = distance(simulation.state(), &first, |r| r);
+            assert!(drift < 1e-10, "{name}, {integrator:?}: {drift:e} m");
+            let change = (Vector3::from(simulation.end_force(1)) - force).norm() / force.norm();
+            assert!(change < 1e-10, "{name}, {integrator:?}: {change:e}");
+        }
+    }
+}
+
+#[test]
+fn a_snapshot_put_back_replays_bit_for_bit() {
+    for integrator in INTEGRATORS {
+        let scene = chain(integrator);
+        let motion = Motion::new(&scene.motion["fairlead"]);
+        let mut simulation = start(&scene);
+        let fairlead = simulation.model().point_index("fairlead").unwrap();
+        let drive = |simulation: &mut Simulation, steps: std::ops::Range<usize>| {
+            for k in steps {
+                let step = [0.05, 0.08, 0.02][k % 3]; // uneven on purpose
+                simulation.set_displacement(fairlead, motion.at(simulation.time()).position.into());
+                simulation.advance(step).unwrap();
+            }
+        };
+        drive(&mut simulation, 0..100);
+        assert_replays(simulation, start(&scene), |simulation| {
+            drive(simulation, 100..200)
+        });
+    }
+}
+
+#[test]
+fn a_step_goes_on_as_if_its_state_were_put_back_before_it() {
+    for name in ["oc4_chain", "clump_weight", "storm_moored_semi"] {
+        let mut straight = following(&shipped(name));
+        let mut put_back = straight.clone();
+        for step in [0.05, 0.05, 0.08, 0.3, 0.02, 0.05, 0.05] {
+            straight.advance(step).unwrap();
+            put_back.restore(put_back.snapshot().clone());
+            put_back.advance(step).unwrap();
+            assert!(straight.snapshot() == put_back.snapshot(), "{name}");
+        }
+    }
+}
+
+#[test]
+fn a_step_that_fails_leaves_state_and_future_as_they_were() {
+    for integrator in [Integrator::Leapfrog, Integrator::AxialImplicit] {
+        let mut simulation = start(&chain(integrator));
+        let fairlead = simulation.model().point_index("fairlead").unwrap();
+        simulation.advance(0.05).unwrap();
+        let mut spared = simulation.clone();
+        simulation.set_displacement(fairlead, [3e5, 0.0, 0.0]);
+        simulation.advance(0.05).unwrap_err();
+        for simulation in [&mut simulation, &mut spared] {
+            simulation.set_displacement(fairlead, [0.1, 0.0, 0.0]);
+            simulation.advance(0.05).unwrap();
+        }
+        assert!(simulation.snapshot() == spared.snapshot(), "{integrator:?}");
+    }
+}
+
+#[test]
+fn a_step_of_no_length_changes_nothing() {
+    for integrator in INTEGRATORS {
+        let mut simulation = following(&chain(integrator));
+        run(&mut simulation, 0.05, 50);
+        let before = simulation.snapshot().clone();
+        simulation.advance(0.0).unwrap();
+        assert_eq!(*simulation.snapshot(), before);
+    }
+}
+
+#[test]
+fn one_long_communication_step_is_many_short_ones() {
+    for integrator in INTEGRATORS {
+        let scene = chain(integrator);
+        let (mut long, mut short) = (following(&scene), following(&scene));
+        run(&mut long, 1.0, 15);
+        run(&mut short, 0.05, 300);
+        let apart = distance(long.state(), short.state(), |r| r);
+        assert!(apart < 1e-8, "{integrator:?}: {apart:e} m");
+        assert_relative_eq!(long.end_force(1)[0], short.end_force(1)[0], max_relative = 1e-5);
+    }
+}
+
+/// Energy of the first line [J]: of motion, in the field of gravity, and of stretch.
+fn energy(simulation: &Simulation) -> f64 {
+    let (model, state) = (simulation.model(), &simulation.state().lines[0]);
+    let line = &model.lines[0];
+    let node = |i: usize| {
+        0.5 * line.nodes.mass[i] * state.velocity[i].norm_squared()
+            + line.nodes.weight[i] * state.position[i].z
+    };
+    let segment = |i: usize| {
+        let length = line.segments.length[i];
+        let strain = (state.position[i + 1] - state.position[i]).norm() / length - 1.0;
+        0.5 * line.segments.axial_stiffness[i] * length * strain.max(0.0).powi(2)
+    };
+    let nodes: f64 = (0..state.position.len()).map(node).sum();
+    nodes + (0..line.segment_count()).map(segment).sum::<f64>()
+}
+
+#[test]
+fn an_undamped_swing_keeps_its_energy_for_a_thousand_seconds() {
+    let rope = draft("line_types.rope = { mass = 5.0, axial_stiffness = 1e6 }")
+        .fixed("left", [0.0; 3])
+        .fixed("right", [90.0, 0.0, 0.0])
+        .line("rope", ["left", "right"], "rope", 100.0, 10);
+    let rest = rope.start();
+    let tilt = Rotation3::from_axis_angle(&Vector3::x_axis(), 0.2); // 11° out of its plane
+    let tilted: Vec<Vector3<f64>> = nodes(&rest).iter().map(|r| tilt * r).collect();
+    for (integrator, radius) in [
+        (Integrator::Leapfrog, None),
+        (Integrator::AxialImplicit, Some(1.0)),
+        (Integrator::GeneralisedAlpha, Some(1.0)),
+    ] {
+        let mut scene = with_integrator(released_from(rope.scene(), &tilted), integrator, 0.05);
+        scene.solver.spectral_radius = radius;
+        let mut simulation = start(&scene);
+        let first = energy(&simulation);
+        let mut change: f64 = 0.0;
+        for _ in 0..1000 {
+            simulation.advance(1.0).unwrap();
+            change = change.max((energy(&simulation) - first).abs());
+        }
+        let swing = first - energy(&rest);
+        assert!(change < 5e-3 * swing, "{integrator:?}: {change} J of {swing} J");
+    }
+}
+
+#[test]
+fn forces_on_all_points_balance_weight_and_bed() {
+    for (name, _) in PUBLIC_SCENES {
+        let simulation = start(&shipped(name));
+        let line = &simulation.model().lines[0];
+        let total: Vector3<f64> = [0, 1]
+            .map(|point| Vector3::from(simulation.end_force(point)))
+            .iter()
+            .sum();
+        let shape = &simulation.state().lines[0].position;
+        let bed: f64 = line.nodes.contact.as_ref().map_or(0.0, |contact| {
+            let push = |i: usize| contact.stiffness[i] * (contact.level[i] - shape[i].z).max(0.0);
+            (0..shape.len()).map(push).sum()
+        });
+        let weight: f64 = line.nodes.weight.iter().sum();
+        assert_relative_eq!(total.z, bed - weight, max_relative = 1e-9);
+        assert_relative_eq!(total.xy().norm(), 0.0, epsilon = 1e-9 * weight.abs());
+    }
+}

@@ -1,0 +1,11 @@
+//! Equilibria: assembled elements, closed forms of lines and networks, meshes, stiffness of vessels, random lines.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod catenary;
+mod equilibrium;
+mod mesh;
+mod ordinary;
+mod quasi_static;
+mod vessel_stiffness;

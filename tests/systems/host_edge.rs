@@ -1,0 +1,183 @@
+//! Hosts at the edge of sense: steps without end, displacements beyond the scene, too few samples a period.
+
+use std::time::Instant;
+
+use crate::common::{assert_says, shipped, start};
+use moorline::model::Body;
+use moorline::scene::Reconstruction;
+use moorline::simulation::{Error, Simulation};
+
+fn by_rules(name: &str) -> Simulation {
+    start(&shipped(name))
+}
+
+/// Sets every body to where the scene moves it at a time [s], with or without velocities.
+fn set_motion(simulation: &mut Simulation, time: f64, velocities: bool) {
+    for moving in simulation.model().moving(time) {
+        let velocity = moving.velocity.map(|rate| velocities.then_some(rate));
+        simulation.set_body(moving.body, moving.pose, velocity);
+    }
+}
+
+#[test]
+fn a_communication_step_without_end_is_refused_at_once_in_waves_as_in_still_water() {
+    for name in ["storm_moored_semi", "oc3_catenary"] {
+        let mut simulation = by_rules(name);
+        let before = simulation.snapshot().clone();
+        for step in [1e6, 1e7, 1e9, 1e15] {
+            if name == "oc3_catenary" && step < 1e9 {
+                continue; // in still water, some steps that can be made
+            }
+            let begun = Instant::now();
+            assert_says(
+                &simulation.advance(step).unwrap_err().to_string(),
+                &["internal steps of"],
+            );
+            assert!(begun.elapsed().as_secs_f64() < 1.0, "{name}, {step} s");
+            assert!(*simulation.snapshot() == before, "{name}, {step} s");
+        }
+        simulation.advance(0.05).unwrap();
+    }
+}
+
+#[test]
+fn displacements_beyond_a_thousand_times_the_scene_are_refused_before_anything_is_solved() {
+    for (name, body) in [("oc3_catenary", "fairlead"), ("storm_moored_semi", "semi")] {
+        let mut simulation = by_rules(name);
+        simulation.advance(0.05).unwrap();
+        let moved = simulation.model().moving(0.0)[0].body;
+        let before = simulation.clone();
+        for value in [1e7, 1e11, 1e300, f64::INFINITY, f64::NAN] {
+            for axis in 0..3 {
+                let mut pose = [0.0; 6];
+                pose[axis] = value;
+                let begun = Instant::now();
+                simulation.set_body(moved, pose, [None; 6]);
+                let step = simulation.advance(0.05).unwrap_err().to_string();
+                let Err(Error::Scene(start)) = simulation.restart(0.0) else {
+                    panic!("{name} starts at {value} m");
+                };
+                let named = format!("{body}.{} = {value:e} m is beyond", ["x", "y", "z"][axis]);
+                assert_says(&step, &[&named]);
+                assert_says(&start.to_string(), &[&named]);
+                assert!(begun.elapsed().as_secs_f64() < 0.5, "{name}, {value} m");
+            }
+        }
+        simulation.set_body(moved, [0.0; 6], [Some(1e12); 6]);
+        assert_says(
+            &simulation.advance(0.05).unwrap_err().to_string(),
+            &["leads beyond"],
+        );
+        simulation.restore(before.snapshot().clone());
+        assert!(simulation.snapshot() == before.snapshot());
+    }
+}
+
+#[test]
+fn angles_beyond_a_thousand_turns_are_refused() {
+    let mut simulation = by_rules("storm_moored_semi");
+    simulation.set_body(Body::Vessel(0), [0.0, 0.0, 0.0, 0.0, 0.0, 1e5], [None; 6]);
+    assert_says(
+        &simulation.advance(0.05).unwrap_err().to_string(),
+        &["semi.yaw = 1e5 rad is beyond"],
+    );
+}
+
+/// Result of a host that gives displacements a number of times a period.
+struct Hosted {
+    /// Error of tension over its variation [-].
+    error: f64,
+    /// The greatest that `solver.input_error` was in the second half [-].
+    estimate: f64,
+    warning: Option<String>,
+}
+
+/// Error of tension at B of the first line, RMS over its standard deviation, and its estimate, with displacements given `points` times a `period` [s].
+fn hosted(model: &Simulation, period: f64, points: f64, velocities: bool) -> Hosted {
+    let (step, end) = (period / points, 12.0 * period + 20.0);
+    let [mut exact, mut host] = [model.clone(), model.clone()];
+    exact.follow_scene().unwrap();
+    set_motion(&mut host, 0.0, velocities);
+    host.restart(0.0).unwrap();
+    let (mut sums, mut estimate, mut warning) = ([0.0; 4], 0.0_f64, None);
+    for k in 0..(end / step) as usize {
+        set_motion(&mut host, k as f64 * step, velocities);
+        for simulation in [&mut exact, &mut host] {
+            simulation.advance(step).unwrap();
+        }
+        warning = warning.or_else(|| host.input_warning());
+        if host.time() > 20.0 + 2.0 * period {
+            let tension = exact.tension_b(0);
+            let error = host.tension_b(0) - tension;
+            let terms = [1.0, tension, tension * tension, error * error];
+            (0..4).for_each(|i| sums[i] += terms[i]);
+            estimate = estimate.max(host.input_error());
+        }
+    }
+    let [count, sum, squares, errors] = sums;
+    let variance = squares / count - (sum / count).powi(2);
+    Hosted {
+        error: (errors / count / variance).sqrt(),
+        estimate,
+        warning,
+    }
+}
+
+/// Scenes with the shortest period of their motion [s].
+const SAMPLED: [(&str, f64); 3] = [
+    ("lindahl_fast", 1.25),
+    ("oc3_catenary", 9.0),
+    ("taut_polyester", 8.0),
+];
+
+#[test]
+fn the_estimated_error_of_inputs_is_that_of_tension_within_a_factor() {
+    for (name, period) in SAMPLED {
+        let model = by_rules(name);
+        let cases = [12.0, 17.0, 21.0, 25.0].map(|points| (points, false));
+        for (points, velocities) in cases.into_iter().chain([(12.0, true)]) {
+            let Hosted {
+                error,
+                estimate,
+                warning,
+            } = hosted(&model, period, points, velocities);
+            let ratio = estimate / error;
+            let what = format!("{name}, {points} points, velocities {velocities}");
+            assert!(ratio > 0.4 && ratio < 2.5, "{what}: {error} estimated {estimate}");
+            assert_eq!(warning.is_some(), estimate > 0.02, "{what}: {estimate}");
+        }
+    }
+}
+
+#[test]
+fn a_host_that_samples_finely_or_gives_velocities_is_not_warned() {
+    for (name, period) in SAMPLED {
+        let model = by_rules(name);
+        for (points, velocities) in [(45.0, false), (25.0, true)] {
+            let Hosted {
+                estimate, warning, ..
+            } = hosted(&model, period, points, velocities);
+            assert!(estimate < 0.02, "{name}, {points} points: {estimate}");
+            assert_eq!(warning, None, "{name}");
+        }
+    }
+}
+
+#[test]
+fn a_body_at_rest_and_inputs_that_are_interpolated_have_no_error_of_inputs() {
+    let mut scene = shipped("oc3_catenary");
+    let mut still = start(&scene);
+    for k in 0..200 {
+        let noise = 1e-9 * f64::from(k * 7919 % 101);
+        still.set_displacement(1, [noise, 0.0, 0.0]);
+        still.advance(0.1).unwrap();
+    }
+    assert_eq!(still.input_error(), 0.0);
+    scene.solver.input_reconstruction = Reconstruction::Interpolate;
+    let mut knowing = start(&scene);
+    for k in 1..100 {
+        set_motion(&mut knowing, f64::from(k), false);
+        knowing.advance(1.0).unwrap();
+    }
+    assert_eq!(knowing.input_error(), 0.0);
+}
