@@ -255,7 +255,7 @@ fn turned(moment: &str, elements: usize, solver: &'static str) -> Simulation {
     };
     let mut rod = rod.scene();
     rod.points[1].force = None;
-    rod.points[1].moment = Some(toml::from_str(&format!("y = {moment}")).unwrap());
+    rod.points[1].moment = Some(moorline::scene::part(&format!("y = {moment}")).unwrap());
     Simulation::new(&rod).unwrap()
 }
 
@@ -344,7 +344,7 @@ fn the_part_of_a_moment_along_a_cable_does_nothing_and_check_says_so() {
     }
     .scene();
     rod.points[1].force = None;
-    rod.points[1].moment = Some(toml::from_str("x = 2.0").unwrap());
+    rod.points[1].moment = Some(moorline::scene::part("x = 2.0").unwrap());
     assert!(rod.in_words().replace("\n", " ").contains("no torsion"));
     let rod = Simulation::new(&rod).unwrap();
     let [x, y, z] = tip(&rod);
@@ -531,12 +531,8 @@ fn let_go(solver: &'static str) -> Simulation {
 
 /// A load along z [N] that is gone after t = 0.
 fn scene_force(z: f64) -> Option<moorline::scene::PointForce> {
-    let text = format!("force = {{ z = {{ table = [[0.0, {z}], [1e-9, 0.0]] }} }}");
-    #[derive(serde::Deserialize)]
-    struct Held {
-        force: moorline::scene::PointForce,
-    }
-    Some(toml::from_str::<Held>(&text).unwrap().force)
+    let text = format!("z = {{ table = [[0.0, {z}], [1e-9, 0.0]] }}");
+    Some(moorline::scene::part(&text).unwrap())
 }
 
 #[test]

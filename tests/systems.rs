@@ -27,7 +27,7 @@ const OBLIQUE: &str = "profile = [[0.0, 0.7, 0.5], [-60.0, 0.3, 0.4], [-200.0, 0
 fn systems() -> Vec<(String, Scene)> {
     let both = |name: &str| {
         let (plain, mut drifting) = (shipped(name), shipped(name));
-        let current: Current = toml::from_str(OBLIQUE).unwrap();
+        let current: Current = moorline::scene::part(OBLIQUE).unwrap();
         drifting.water.as_mut().unwrap().current = Some(current);
         [
             (name.to_string(), plain),

@@ -12,6 +12,7 @@ use nalgebra::Vector3;
 use super::errors::Histories;
 use super::ladder::Setting;
 use crate::model::{Line, Model, Moving, Role};
+use crate::scene::table::Choice;
 use crate::scene::{Integrator, Reconstruction, Scene};
 use crate::simulation::Simulation;
 
@@ -242,11 +243,7 @@ fn samples(scene: &Scene) -> usize {
 
 /// The integrator as the scene format spells it.
 fn name(integrator: Integrator) -> String {
-    serde_json::to_value(integrator)
-        .ok()
-        .and_then(|value| value.as_str().map(str::to_string))
-        .unwrap_or_default()
-        .replace('_', "-")
+    integrator.word().replace('_', "-")
 }
 
 /// Tension at the end of a line that is moved, end B where both or none are [N].

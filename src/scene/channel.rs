@@ -2,8 +2,7 @@
 //!
 //! Numbers are those of a deck: `1` of a line stands for the scene's `line1`, of a point for `point1`. Capitals do not count.
 
-use serde::{Deserialize, Serialize};
-
+pub use super::LineEnd;
 use super::Scene;
 
 /// What a channel writes.
@@ -32,16 +31,6 @@ pub enum Channel {
         /// What of it.
         quantity: Quantity,
     },
-}
-
-/// An end of a line.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum LineEnd {
-    /// End A, the anchor's.
-    A,
-    /// End B, the fairlead's.
-    B,
 }
 
 /// A node of a line.

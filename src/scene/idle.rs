@@ -1,8 +1,8 @@
 //! Keys that are given and change nothing, for what else the scene is.
 
-use super::check::coefficients;
 use super::notes::Note;
 use super::path::quoted;
+use super::table::Table;
 use super::{
     Integrator, Line, LineModel, LineType, Point, PointKind, Reconstruction, Scene, Seabed, Section, Solver,
 };
@@ -76,8 +76,11 @@ impl Scene {
 
     fn idle_of_line_type(&self, at: &str, line_type: &LineType, notes: &mut Vec<Note>) {
         let dry = self.water.is_none();
-        let coefficients = coefficients(line_type).map(|(key, value)| (key, dry && value.is_some()));
-        say(notes, at, "without [water],", &coefficients);
+        let wet = line_type.entries().filter(|(key, _)| key.rule.acts.in_water());
+        let wet: Vec<Key> = wet
+            .map(|(key, value)| (key.name(), dry && !value.is_absent()))
+            .collect();
+        say(notes, at, "without [water],", &wet);
         let beam = line_type.model == LineModel::Beam || self.solver.integrator == Integrator::Beam;
         // a beam may have its rotary inertia from the diameter
         let spun = beam && line_type.rotary_inertia.is_none() && line_type.solid_section.is_none();
@@ -92,7 +95,10 @@ impl Scene {
         let sheared = [line_type.shear_stiffness, line_type.torsional_stiffness];
         let sheared = beam && sheared.iter().any(Option::is_none);
         let bent = line_type.bending_stiffness.is_none() || beam && line_type.rotary_inertia.is_none();
-        let (whole, ratio) = (!sheared && !bent, section.poisson != super::steel_poisson());
+        let (whole, ratio) = (
+            !sheared && !bent,
+            section.poisson != super::line_type::STEEL_POISSON,
+        );
         let why = "what follows from it is given or not modelled, so that";
         say(notes, at, why, &[("solid_section", whole)]);
         say(

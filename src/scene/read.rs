@@ -6,12 +6,14 @@ use std::path::{Path, PathBuf};
 
 use miette::NamedSource;
 use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+use toml::de::DeValue;
 
+use super::document::Node;
 use super::notes::Note;
 use super::places::Places;
 use super::rows::{Findings, MISTAKES_MAX};
 use super::slips::slip;
+use super::table::Value;
 use super::{
     LoadError, MotionPath, Scene, SceneError, WaveComponents, bathymetry_file, document, input_file, map,
     moordyn, motion_file, path, tension_strain, water_file,
@@ -93,7 +95,7 @@ impl Scene {
     /// The first mistake, with its key path and its bytes in the text.
     pub fn from_toml(text: &str) -> Result<Scene, SceneError> {
         let document = Document::parse(text)?;
-        let scene = document.scene()?;
+        let scene = document.read::<Scene>()?;
         match document.place(scene.mistakes()).into_iter().next() {
             Some(first) => Err(first),
             None => Ok(scene),
@@ -102,8 +104,16 @@ impl Scene {
 
     /// The scene as TOML that needs no other file and is read back to the same numbers, bit for bit.
     pub fn to_toml(&self) -> String {
-        toml::to_string(self).expect("every scene can be written as TOML")
+        toml::to_string(&self.write()).expect("every scene can be written as TOML")
     }
+}
+
+/// Reads a part of a scene from TOML text: the keys of a motion, a current or a load.
+///
+/// # Errors
+/// The first mistake, with its key path and its bytes in the text.
+pub fn part<T: Value>(text: &str) -> Result<T, SceneError> {
+    Document::parse(text)?.read()
 }
 
 /// Reads and checks a file: a scene and the motion files it names, which stand relative to its folder, or a deck of MoorDyn
@@ -215,7 +225,7 @@ fn deck_scene(reading: Reading, text: &str, folder: &Path) -> Result<Checked, Ve
 
 fn scene_of(text: &str, path: &Path) -> Result<Scene, Vec<SceneError>> {
     let document = Document::parse(text).map_err(|mistake| vec![mistake])?;
-    let mut scene = document.scene().map_err(|mistake| vec![mistake])?;
+    let mut scene = document.read::<Scene>().map_err(|mistake| vec![mistake])?;
     let folder = folder_of(path);
     let mut of_files = read_motions(&mut scene, folder);
     of_files.extend(read_water(&mut scene, folder));
@@ -374,15 +384,14 @@ struct Document<'t> {
 
 impl<'t> Document<'t> {
     fn parse(text: &'t str) -> Result<Self, SceneError> {
-        let table = DeTable::parse(text).map_err(|error| syntax_mistake(text, &error))?;
-        let span = table.span();
-        Ok(Document {
-            root: Spanned::new(span, DeValue::Table(table.into_inner())),
-        })
+        let root = document::parse(text).map_err(|error| syntax_mistake(text, &error))?;
+        Ok(Document { root })
     }
 
-    fn scene(&self) -> Result<Scene, SceneError> {
-        document::deserialize(&self.root)
+    fn read<T: Value>(&self) -> Result<T, SceneError> {
+        let mut value = T::blank();
+        value.read(&Node::root(&self.root))?;
+        Ok(value)
     }
 
     /// Gives mistakes their place in the text and puts them in its order.

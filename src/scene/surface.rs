@@ -121,7 +121,7 @@ mod tests {
             ("table = [[0.0, 0.0, 0.0, 0.0], [5.0, 0.0, 0.0, 2.1]]", 2.1),
             ("table = [[0.0, 0.0, 0.0, 0.0], [5.0, 0.0, 0.0, -2.1]]", 0.0),
         ] {
-            let moved = toml::from_str(path).unwrap();
+            let moved = crate::scene::part(path).unwrap();
             scene.motion.insert("b".to_string(), moved);
             assert_eq!(scene.rise(&scene.points[1]), rise, "{path}");
         }
@@ -131,7 +131,7 @@ mod tests {
     fn a_vessel_lifts_a_point_by_its_arm_as_it_rolls() {
         let held = "kind = \"coupled\", on = \"barge\"";
         let mut scene = scene("", "mass = 20.0", [-20.0, -2.0], held);
-        let path = toml::from_str("roll = [[0.1, 10.0]]\nz = [[0.5, 9.0]]").unwrap();
+        let path = crate::scene::part("roll = [[0.1, 10.0]]\nz = [[0.5, 9.0]]").unwrap();
         scene.motion.insert("barge".to_string(), path);
         let rise = 0.5 + 0.1 * f64::hypot(10.0, 2.0);
         approx::assert_relative_eq!(scene.rise(&scene.points[1]), rise, max_relative = 1e-12);

@@ -1,7 +1,6 @@
 //! Winches: lengths and speeds in range, and lines that a winch can serve.
 
-use super::time::{Load, check_load_in_time};
-use super::{Bounds, Findings, quantity};
+use super::{Findings, quantity};
 use crate::scene::channel::LineEnd;
 use crate::scene::{
     InitialShape, Integrator, Line, LineModel, LineType, PointKind, Scene, TimeFunction, Winch,
@@ -12,10 +11,6 @@ pub(super) fn check(findings: &mut Findings, at: &str, line: &Line, scene: &Scen
         return;
     };
     let at = format!("{at}.winch");
-    let length = Bounds::Positive(1e6);
-    findings.number(format!("{at}.length_max"), winch.length_max, length, "m");
-    let speed = Bounds::Positive(1e3);
-    findings.number_if(format!("{at}.speed_max"), winch.speed_max, speed, "m/s");
     if let Some(path) = &winch.path {
         check_path(findings, &format!("{at}.path"), path, winch, line);
     }
@@ -25,7 +20,6 @@ pub(super) fn check(findings: &mut Findings, at: &str, line: &Line, scene: &Scen
 }
 
 fn check_path(findings: &mut Findings, at: &str, path: &TimeFunction, winch: &Winch, line: &Line) {
-    check_load_in_time(findings, at, path, Load::LENGTH);
     let section = line.sections.last().map_or(0.0, |section| section.length);
     for value in path.corners() {
         if value > winch.length_max || value <= -section {
