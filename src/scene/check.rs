@@ -12,8 +12,9 @@ mod winch;
 use std::collections::BTreeMap;
 
 use super::nearest::suggestion;
+use super::plausibility::degrees;
 use super::table::{Rule, check_table};
-use super::{Scene, SceneError};
+use super::{Note, Scene, SceneError};
 
 impl Scene {
     /// Finds the first mistake.
@@ -40,10 +41,11 @@ impl Scene {
     }
 }
 
-/// The mistakes found so far.
+/// The mistakes found so far, and notes on unusual values.
 #[derive(Default)]
 pub struct Findings {
     pub(super) mistakes: Vec<SceneError>,
+    pub(super) notes: Vec<Note>,
 }
 
 impl Findings {
@@ -75,14 +77,23 @@ impl Findings {
         }
     }
 
-    /// Adds a number that breaks the rule of its key, with the hint of the rule where it is negative or only its size is bounded.
+    /// Adds a number that breaks the rule of its key, with the hint of the rule where it is negative or only its size is bounded; or a note on one
+    /// outside the usual range, and on angles beyond a turn. Zero is usual: it leaves an effect out.
     pub(super) fn ruled(&mut self, at: impl Into<String>, value: f64, rule: &Rule, unit: &str) {
         if let Some(problem) = rule.bounds.complaint(value, unit) {
             let about = value < 0.0 || matches!(rule.bounds, Bounds::Magnitude(_));
-            let hint = rule.hint.filter(|_| about);
-            let hint = hint.map_or_else(String::new, |hint| format!(": {hint}"));
-            self.say(at, problem + &hint);
+            let fact = problem.split(": ").next().unwrap_or_default();
+            return match rule.hint.filter(|_| about) {
+                Some(hint) => self.say(at, format!("{fact}: {hint}")),
+                None => self.say(at, problem),
+            };
         }
+        let unusual = rule
+            .usual
+            .filter(|([least, most], _)| value != 0.0 && !(*least..=*most).contains(&value));
+        let text = unusual.map(|(_, usual)| format!("{} is unusual: {usual}", quantity(value, unit)));
+        let angle = (unit == "rad").then(|| degrees(value)).flatten();
+        self.notes.extend(text.or(angle).map(|text| Note::new(at, text)));
     }
 }
 

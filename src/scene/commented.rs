@@ -38,14 +38,14 @@ impl LoadedScene {
 /// The table that a line of TOML stands in.
 #[derive(Default)]
 struct Place {
-    /// Its header, such as `lines.sections`.
+    /// Header, such as `lines.sections`.
     table: String,
-    /// How many points, lines and vessels have begun.
+    /// Number of elements of each list of tables so far.
     begun: BTreeMap<String, usize>,
 }
 
 impl Place {
-    /// What is said behind a line of TOML.
+    /// Comment behind a line of TOML: the line of the file, or the unit.
     fn comment(&mut self, line: &str, loaded: &LoadedScene) -> Option<String> {
         let header = line.strip_prefix('[').and_then(|rest| rest.strip_suffix(']'));
         if let Some(header) = header {

@@ -46,12 +46,12 @@ const fn elements() -> super::table::Rule {
 }
 
 impl Line {
-    /// Whether the number of elements of any of its sections is left open.
+    /// Returns whether the number of elements of any of its sections is left open.
     pub fn is_open(&self) -> bool {
         self.elements.is_none() && self.sections.iter().any(|section| section.elements.is_none())
     }
 
-    /// Whether one of its ends is at the point of a name.
+    /// Returns whether one of its ends is at the point of a name.
     pub fn joins(&self, point: &str) -> bool {
         self.from == point || self.to == point
     }

@@ -15,7 +15,7 @@ table! {
         /// Model of the line's elements.
         pub model: LineModel = LineModel::Cable,
         /// Axial stiffness EA [N].
-        pub axial_stiffness: Option<f64> => positive(1e15).elsewhere(&["ea"]).parameter(),
+        pub axial_stiffness: Option<f64> => positive(1e15).elsewhere(&["ea"]).instead_of(&["tension_strain"]).parameter(),
         /// Tension over strain, instead of `axial_stiffness`: rows of strain [-] and tension [N] that begin at [0, 0] and rise, or the `file` with
         /// such rows.
         pub tension_strain: Option<TensionStrain> => PLAIN.in_units("- and N").label("tension"),
@@ -45,7 +45,8 @@ table! {
         pub axial_damping: Option<f64> => not_negative(1e15).elsewhere(&["ba"]).acts(Acts::InMotion).parameter(),
         /// Axial damping as a ratio of the critical damping of each segment [-]; instead of `axial_damping`. It becomes one BA, the same on every
         /// mesh, as `damping_elements` of a section says.
-        pub damping_ratio: Option<f64> => not_negative(100.0).acts(Acts::InMotion).parameter(),
+        pub damping_ratio: Option<f64> => not_negative(100.0).acts(Acts::InMotion)
+            .instead_of(&["axial_damping", "dynamic_damping"]).parameter(),
         /// Rayleigh damping, in addition to the axial damping.
         pub rayleigh: Option<Rayleigh> => PLAIN.label("Rayleigh damping").acts(Acts::InMotion),
         /// Strain measure that EA multiplies.
@@ -80,13 +81,13 @@ const fn coefficient(acts: Acts) -> super::table::Rule {
 }
 
 impl LineType {
-    /// Whether there is a bending stiffness: as given, else that of the solid section.
+    /// Returns whether there is a bending stiffness: as given, else that of the solid section.
     pub fn bends(&self) -> bool {
         let of_section = self.solid_section.is_some();
         self.bending_stiffness.map_or(of_section, |ei| ei > 0.0)
     }
 
-    /// Whether no key sets the axial damping, so that segments have [`super::NUMERICAL_DAMPING_RATIO`]; beams then have none.
+    /// Returns whether no key sets the axial damping, so that segments have [`super::NUMERICAL_DAMPING_RATIO`]; beams then have none.
     pub fn leaves_damping_open(&self) -> bool {
         self.axial_damping.is_none()
             && self.damping_ratio.is_none()
@@ -112,16 +113,13 @@ impl Scene {
         line_type.weight.unwrap_or_else(wet)
     }
 
-    /// Whether a line is a beam.
+    /// Returns whether a line is a beam.
     pub(super) fn is_beam(&self, line: &Line) -> bool {
-        let mut types = line
-            .sections
-            .iter()
-            .filter_map(|section| self.line_types.get(&section.line_type));
+        let mut types = self.types_of(line);
         self.solver.integrator == Integrator::Beam || types.any(|kind| kind.model == LineModel::Beam)
     }
 
-    /// Whether all lines are beams.
+    /// Returns whether all lines are beams.
     pub(super) fn all_beams(&self) -> bool {
         !self.lines.is_empty() && self.lines.iter().all(|line| self.is_beam(line))
     }

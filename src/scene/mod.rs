@@ -143,3 +143,34 @@ table! {
         pub output: Output = Output::default(),
     }
 }
+
+impl Scene {
+    /// The current, where there is one.
+    fn current(&self) -> Option<&Current> {
+        self.water.as_ref()?.current.as_ref()
+    }
+
+    /// The waves, where there are some.
+    fn waves(&self) -> Option<&Waves> {
+        self.water.as_ref()?.waves.as_ref()
+    }
+
+    /// The point of a name.
+    fn point(&self, name: &str) -> Option<&Point> {
+        self.points.iter().find(|point| point.name == name)
+    }
+
+    /// Sections of all lines.
+    fn sections(&self) -> impl Iterator<Item = &Section> {
+        self.lines.iter().flat_map(|line| &line.sections)
+    }
+
+    /// Line types of the sections of a line, as far as the scene has them.
+    fn types_of(&self, line: &Line) -> impl Iterator<Item = &LineType> {
+        let types = line
+            .sections
+            .iter()
+            .map(|section| self.line_types.get(&section.line_type));
+        types.flatten()
+    }
+}

@@ -21,7 +21,7 @@ table! {
         /// Own mass [kg]; not of fixed points. At points that are not free it adds to the force on the structure that holds them.
         pub mass: Option<f64> => not_negative(1e12).label("mass"),
         /// Own displaced volume [m³]; not of fixed points.
-        pub volume: Option<f64> => not_negative(1e9).label("volume").acts(Acts::InFlow),
+        pub volume: Option<f64> => not_negative(1e9).label("volume").acts(Acts::InWater),
         /// Drag coefficient times area CdA [m²]; not of fixed points.
         pub drag_area: Option<f64> => not_negative(1e9).elsewhere(&["cda"]).label("drag area").acts(Acts::InFlow),
         /// Added-mass coefficient Ca on the displaced volume [-]; not of fixed points.
@@ -55,7 +55,7 @@ choice! {
         Fixed = "fixed",
         /// The host moves it: a fairlead.
         Coupled = "coupled",
-        /// Its own path in time moves it, in every host.
+        /// A path of its own in time moves it, in every host.
         Prescribed = "prescribed",
         /// The forces on it move it.
         Free = "free",

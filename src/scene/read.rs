@@ -28,11 +28,11 @@ pub struct LoadedScene {
     pub text: String,
     /// The file.
     pub path: PathBuf,
-    /// What is no mistake but may surprise.
+    /// Remarks on the scene.
     pub notes: Vec<Note>,
-    /// What kind of file it is.
+    /// Kind of file.
     pub format: &'static str,
-    /// Where the scene stands in a file that is no TOML.
+    /// Places of the scene's parts in a file that is not TOML.
     pub places: Places,
 }
 
@@ -57,7 +57,7 @@ impl LoadedScene {
     }
 }
 
-/// What a deck of another program leaves to its host.
+/// Data that a deck of another program leaves to its host.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Supplement {
     /// Depth of the water [m], where the deck gives none.
@@ -69,15 +69,15 @@ pub struct Supplement {
 }
 
 impl Supplement {
-    /// Whether nothing is given.
+    /// Returns whether nothing is given.
     pub fn is_empty(&self) -> bool {
         *self == Supplement::default()
     }
 }
 
-/// What a reader makes of a file.
+/// Result of reading a deck.
 pub(super) struct Reading {
-    /// What kind of file it is.
+    /// Kind of file.
     pub format: &'static str,
     /// The scene; `None` where there are mistakes.
     pub scene: Option<Scene>,
@@ -85,7 +85,7 @@ pub(super) struct Reading {
     pub findings: Findings,
 }
 
-/// What kind of file a scene of moorline's own is.
+/// Kind of file of moorline's own scenes.
 pub const TOML: &str = "TOML";
 
 impl Scene {
@@ -117,15 +117,15 @@ pub fn part<T: Value>(text: &str) -> Result<T, SceneError> {
 }
 
 /// Reads and checks a file: a scene and the motion files it names, which stand relative to its folder, or a deck of MoorDyn
-/// or MAP++. What the file is, its content says.
+/// or MAP++. The kind of file is found from its content.
 ///
 /// # Errors
-/// What keeps the file from being read, or all mistakes in it.
+/// The reason why the file cannot be read, or all mistakes in it.
 pub fn load(path: &Path) -> Result<LoadedScene, LoadError> {
     load_with(path, &Supplement::default())
 }
 
-/// As [`load`], with what a deck leaves to its host.
+/// Reads a file as [`load`] does, with the data that a deck leaves to its host.
 ///
 /// # Errors
 /// As [`load`]; and where the file is a scene, which leaves nothing to its host.
@@ -186,7 +186,7 @@ fn deck_of(text: &str) -> Option<ReadDeck> {
 
 type Checked = (Scene, Vec<Note>, &'static str, Places);
 
-/// What a reader made of a deck, checked as every scene is.
+/// Checks the scene that was read from a deck.
 fn deck_scene(reading: Reading, text: &str, folder: &Path) -> Result<Checked, Vec<SceneError>> {
     let Reading {
         format,
@@ -255,11 +255,11 @@ fn folder_of(path: &Path) -> &Path {
     path.parent().unwrap_or(Path::new("."))
 }
 
-/// Reads the soundings that the seabed names a file for; returns what is wrong with them.
+/// Reads the soundings that the seabed names a file for; returns the mistakes in them.
 fn read_soundings(scene: &mut Scene, folder: &Path) -> Option<SceneError> {
     let bed = scene.seabed.as_mut()?;
     if bed.grid.is_some() {
-        return None; // two shapes: told by the checks
+        return None; // two shapes are refused by the checks
     }
     match bathymetry_file::read(&folder.join(bed.file.as_ref()?)) {
         Ok(grid) => {
@@ -271,7 +271,7 @@ fn read_soundings(scene: &mut Scene, folder: &Path) -> Option<SceneError> {
     }
 }
 
-/// What is wrong with the files of a scene, and what else is wrong with it.
+/// Mistakes in the files of a scene, and all others.
 fn all_mistakes(scene: &Scene, mut of_files: Vec<SceneError>) -> Vec<SceneError> {
     for mistake in scene.mistakes() {
         if of_files.iter().all(|known| known.at != mistake.at) {
@@ -281,7 +281,7 @@ fn all_mistakes(scene: &Scene, mut of_files: Vec<SceneError>) -> Vec<SceneError>
     of_files
 }
 
-/// Reads every table of tension over strain that stands in a file; returns what is wrong with them.
+/// Reads every table of tension over strain that stands in a file; returns the mistakes in them.
 fn read_tables(scene: &mut Scene, folder: &Path) -> Vec<SceneError> {
     let mut mistakes = Vec::new();
     for (name, line_type) in &mut scene.line_types {
@@ -318,7 +318,7 @@ fn cut_tables(scene: &mut Scene) -> Vec<Note> {
     notes
 }
 
-/// Reads the files of waves and current, whose rows take their place; returns what is wrong with them.
+/// Reads the files of waves and current, whose rows take their place; returns the mistakes in them.
 fn read_water(scene: &mut Scene, folder: &Path) -> Vec<SceneError> {
     let mut mistakes = Vec::new();
     let Some(water) = &mut scene.water else {
@@ -355,7 +355,7 @@ fn read_water(scene: &mut Scene, folder: &Path) -> Vec<SceneError> {
     mistakes
 }
 
-/// Reads every motion file of the scene; returns what is wrong with them.
+/// Reads every motion file of the scene; returns the mistakes in them.
 fn read_motions(scene: &mut Scene, folder: &Path) -> Vec<SceneError> {
     let of_points = scene.points.iter_mut().enumerate().filter_map(|(i, point)| {
         let motion = point.motion.as_mut()?;
@@ -406,7 +406,7 @@ impl<'t> Document<'t> {
     }
 }
 
-/// What the TOML parser says, or that this is another program's file.
+/// Mistake in the syntax, or a file of another program.
 fn syntax_mistake(text: &str, error: &toml::de::Error) -> SceneError {
     if let Some(span) = moordyn::first_header(text) {
         return SceneError {

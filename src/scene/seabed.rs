@@ -5,7 +5,7 @@ use toml::Value as Toml;
 use super::SceneError;
 use super::check::Findings;
 use super::document::Node;
-use super::table::{Key, Kind, Table, Value, choice, magnitude, not_negative, positive, table};
+use super::table::{Key, Kind, PLAIN, Table, Value, choice, magnitude, not_negative, positive, table};
 
 /// Default normal stiffness [Pa/m].
 const STIFFNESS: f64 = 3.0e6;
@@ -23,15 +23,15 @@ table! {
         pub damping: f64 = DAMPING => not_negative(1e12).elsewhere(&["cbot"]),
         /// Slope dz/dx and dz/dy of a plane through (0, 0, −depth) [-].
         pub slope: Option<[f64; 2]> => magnitude(SLOPE_MAX)
-            .hint("the slope is dz/dx and dz/dy, 0.1 rises by 1 m in 10 m"),
+            .hint("steeper than any bed; the slope is dz/dx and dz/dy, 0.1 rises by 1 m in 10 m"),
         /// File of soundings, a table in CSV or a bathymetry file of MoorDyn-F or MoorDyn-C, relative to the scene.
-        pub file: Option<String>,
+        pub file: Option<String> => PLAIN.instead_of(&["slope", "grid"]),
         /// Use of stiffness and damping.
         pub contact: ContactLaw = ContactLaw::Regularised,
         /// Coefficient of Coulomb friction [-], or one across and one along the line.
         pub friction: Friction = Friction::isotropic(0.0) => not_negative(10.0).elsewhere(&["frictioncoefficient", "mu_kt"]),
         /// Soundings, smooth between the lines of the grid and constant outside.
-        pub grid: Option<DepthGrid>,
+        pub grid: Option<DepthGrid> => PLAIN.instead_of(&["slope"]),
     }
 }
 
@@ -54,7 +54,7 @@ choice! {
     /// Use of the seabed's stiffness and damping at the nodes.
     pub enum ContactLaw {
         /// Softened together until a resting node compresses its spring by a small part of its segment length; the spring begins that much
-        /// above the bed, so that the node lies on it. The damper keeps a part of critical damping, where the given one has as much.
+        /// above the seabed, so that the node lies on it. The damper keeps a part of critical damping, where the given one has as much.
         Regularised = "regularised",
         /// Exactly the given coefficients.
         AsGiven = "as_given",
@@ -79,7 +79,7 @@ impl Friction {
         }
     }
 
-    /// Whether one of the coefficients is above zero.
+    /// Returns whether one of the coefficients is above zero.
     pub fn acts(&self) -> bool {
         self.transverse > 0.0 || self.axial > 0.0
     }
@@ -94,7 +94,7 @@ impl Seabed {
         }
     }
 
-    /// Whether the bed is a horizontal plane.
+    /// Returns whether the bed is a horizontal plane.
     pub fn is_level(&self) -> bool {
         self.grid.is_none() && self.file.is_none() && self.slope.is_none_or(|slope| slope == [0.0; 2])
     }
@@ -116,7 +116,7 @@ impl Seabed {
         -deepest.copied().fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// Whether stiffness and damping have their default values.
+    /// Returns whether stiffness and damping have their default values.
     pub fn has_default_stiffness(&self) -> bool {
         self.stiffness == STIFFNESS && self.damping == DAMPING
     }

@@ -18,9 +18,9 @@ table! {
         pub elements: Option<usize> => within(1.0, ELEMENTS_MAX).elsewhere(&["segments"]),
         /// Time integrator; `dynamics` is another name of the key.
         pub integrator: Integrator = Integrator::Auto => PLAIN.or_called("dynamics"),
-        /// Whether axial damping acts in compression too, as in other codes, so that tension may be negative.
+        /// True if axial damping acts in compression too, as in other codes, so that tension may be negative.
         pub negative_tension: bool = false,
-        /// Whether the energy balance is kept; without it `solver.energy_error` stays 0, and an explicit step costs a fifth less.
+        /// True if the energy balance is kept; without it `solver.energy_error` stays 0, and an explicit step costs a fifth less.
         pub energy_ledger: bool = true,
         /// Upper limit of the internal time step [s].
         pub time_step_max: f64 = 0.05 => positive(1e4).elsewhere(&["dtm"]),
@@ -88,7 +88,7 @@ table! {
         pub duration: f64 = 60.0 => positive(1e9).elsewhere(&["tmax"]),
         /// Interval of output and communication [s].
         pub interval: f64 = 0.05 => positive(1e9).elsewhere(&["dtout", "dt"]),
-        /// Whether node positions and tensions are variables too.
+        /// True if node positions and tensions are variables too.
         pub profile: bool = false,
         /// Further columns of `moorline run`, by MoorDyn's names such as `FairTen1`.
         pub channels: Vec<String> = Vec::new(),

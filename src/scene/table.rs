@@ -37,7 +37,7 @@ impl Key {
         }
     }
 
-    /// Whether the table is refused without the key.
+    /// Returns whether the table is refused without the key.
     pub fn is_required(&self) -> bool {
         !(self.is_optional)()
     }
@@ -47,7 +47,7 @@ impl Key {
         self.rule.name.unwrap_or(self.field)
     }
 
-    /// Whether a scene may call the key by this name.
+    /// Returns whether a scene may call the key by this name.
     fn is_called(&self, name: &str) -> bool {
         self.name() == name || self.rule.alias == Some(name)
     }
@@ -114,6 +114,8 @@ pub struct Rule {
     /// Names in decks, papers and other programs, in lower case, for "did you mean"; the first is a column of MoorDyn where it has one.
     pub spellings: &'static [&'static str],
     unit: Option<&'static str>,
+    /// Keys of the same table of which none can be given too.
+    pub excluded: &'static [&'static str],
     /// Numbers that are accepted.
     pub bounds: Bounds,
     /// Sentence that follows the refusal of a number below its bounds.
@@ -125,7 +127,7 @@ pub struct Rule {
     label: Option<&'static str>,
     /// Name of the force or effect that is not modelled where the key is left out.
     pub absence: Option<&'static str>,
-    /// Whether the FMU has it as a parameter, which is fixed after initialization.
+    /// True if the FMU has it as a parameter, which is fixed after initialization.
     pub is_parameter: bool,
     /// Description of the FMU's parameter, where it is not the meaning of the key.
     pub described: Option<&'static str>,
@@ -138,6 +140,8 @@ pub enum Acts {
     Always,
     /// On moving lines only, not in quasi-static runs.
     InMotion,
+    /// In water, at rest and in motion.
+    InWater,
     /// In water that flows past the line.
     InFlow,
     /// In water, on accelerations.
@@ -150,6 +154,7 @@ pub(super) const PLAIN: Rule = Rule {
     alias: None,
     spellings: &[],
     unit: None,
+    excluded: &[],
     bounds: Bounds::Finite,
     hint: None,
     usual: None,
@@ -203,6 +208,11 @@ impl Rule {
     /// Names elsewhere.
     pub(super) const fn elsewhere(self, spellings: &'static [&'static str]) -> Rule {
         Rule { spellings, ..self }
+    }
+
+    /// Keys that cannot be given too.
+    pub(super) const fn instead_of(self, excluded: &'static [&'static str]) -> Rule {
+        Rule { excluded, ..self }
     }
 
     /// Units of a list that holds several quantities.
@@ -329,7 +339,7 @@ pub trait Value {
     fn blank() -> Self
     where
         Self: Sized;
-    /// Whether a table may leave the key out without giving a default.
+    /// Returns whether a table may leave the key out without giving a default.
     fn is_optional() -> bool
     where
         Self: Sized,
@@ -353,7 +363,7 @@ pub trait Value {
     fn set_number(&mut self, _number: f64) -> Result<(), String> {
         Ok(())
     }
-    /// Whether the value is that of a key that is left out.
+    /// Returns whether the value is that of a key that is left out.
     fn is_absent(&self) -> bool {
         false
     }
@@ -447,7 +457,7 @@ impl<T: Table> Value for T {
     }
 }
 
-/// Adds the mistakes that each value of a table has by itself.
+/// Adds the mistakes that each value of a table has by itself, and keys of which only one can be given.
 pub(super) fn check_table<T: Table>(table: &T, at: &str, findings: &mut Findings) {
     for (key, value) in table.entries() {
         let at = match at {
@@ -455,6 +465,11 @@ pub(super) fn check_table<T: Table>(table: &T, at: &str, findings: &mut Findings
             _ => format!("{at}.{}", key.name()),
         };
         value.check(&at, key, findings);
+        let given =
+            |name: &&&str| !value.is_absent() && table.get(name).is_some_and(|other| !other.is_absent());
+        if let Some(other) = key.rule.excluded.iter().find(given) {
+            findings.say(at, format!("`{other}` is given too: give one of them"));
+        }
     }
 }
 

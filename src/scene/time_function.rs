@@ -267,9 +267,9 @@ pub enum MotionPath {
 pub struct MotionFile {
     /// Path of the file.
     pub file: String,
-    /// Its rows, filled in by the reader.
+    /// Rows of the file, filled in by the reader.
     pub rows: Vec<MotionRow>,
-    /// Its columns, separators and units, filled in by the reader.
+    /// Columns, separators and units of the file, filled in by the reader.
     pub columns: String,
 }
 
@@ -335,7 +335,7 @@ impl MotionPath {
         }
     }
 
-    /// Whether it rotates.
+    /// Returns whether it rotates.
     pub fn turns(&self) -> bool {
         match self {
             MotionPath::Harmonic(h) => h.axes()[3..].iter().any(|(_, axis)| !axis.is_empty()),

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-/// What a column of a table measures.
+/// Quantity of a column of a table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Quantity {
     Time,
@@ -39,7 +39,7 @@ const HEADER_UNITS: &[(Quantity, &[&str], f64)] = &[
 ];
 
 impl Quantity {
-    /// Its SI unit.
+    /// SI unit.
     pub(super) fn si(self) -> &'static str {
         self.units().next().map_or("-", |(names, _)| names[0])
     }

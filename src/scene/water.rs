@@ -17,7 +17,7 @@ table! {
         pub current: Option<Current>,
         /// Waves: one sea, or an array of seas that add up.
         pub waves: Option<Waves>,
-        /// Whether lines lose buoyancy, drag and added mass above z = 0. Where absent, those do that have an end above it, or could float up to it.
+        /// True if lines lose buoyancy, drag and added mass above z = 0. Where absent, those do that have an end above it, or could float up to it.
         pub surface: Option<bool>,
     }
 }
@@ -134,7 +134,7 @@ const COMPONENTS: u64 = 100;
 const PEAKEDNESS: f64 = 3.3;
 
 impl Sea {
-    /// How many components are drawn from the spectrum [-].
+    /// Number of components that are drawn from the spectrum [-].
     pub fn number(&self) -> u64 {
         match self.components {
             Some(WaveComponents::Number(number)) => number,

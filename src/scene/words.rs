@@ -100,7 +100,7 @@ impl Scene {
     fn integrator_in_words(&self) -> String {
         let integrator = match self.solver.integrator {
             Integrator::QuasiStatic => {
-                let current = self.water.as_ref().is_some_and(|water| water.current.is_some());
+                let current = self.current().is_some();
                 let drag = if current {
                     "no drag but the current's"
                 } else {

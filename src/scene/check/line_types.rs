@@ -80,13 +80,7 @@ const VISCOELASTIC: [&str; 4] = [
 
 /// The axial force follows from a stiffness, a table, or two stiffnesses with dampers.
 fn check_axial(findings: &mut Findings, at: &str, line_type: &LineType) {
-    let LineType {
-        axial_stiffness,
-        axial_damping,
-        damping_ratio,
-        dynamic_damping,
-        ..
-    } = line_type;
+    let (axial_stiffness, axial_damping) = (line_type.axial_stiffness, line_type.axial_damping);
     let viscoelastic = VISCOELASTIC
         .iter()
         .any(|key| line_type.get(key).is_some_and(|value| !value.is_absent()));
@@ -104,11 +98,6 @@ fn check_axial(findings: &mut Findings, at: &str, line_type: &LineType) {
         &[
             ("", plain && axial_stiffness.is_none(), missing),
             (
-                "axial_stiffness",
-                ruled && axial_stiffness.is_some(),
-                "`tension_strain` is given too: give one of them",
-            ),
-            (
                 "strain",
                 ruled && measured,
                 "a table has its own strain, the stretched length over the unstretched one less 1: leave `strain` out",
@@ -120,16 +109,6 @@ fn check_axial(findings: &mut Findings, at: &str, line_type: &LineType) {
             ("rayleigh", viscoelastic && line_type.rayleigh.is_some(), rope),
             ("strain", viscoelastic && measured, rope),
             ("model", viscoelastic && beam, rope),
-            (
-                "damping_ratio",
-                dynamic_damping.is_some() && damping_ratio.is_some(),
-                "`dynamic_damping` is given too: give one of them",
-            ),
-            (
-                "damping_ratio",
-                axial_damping.is_some() && damping_ratio.is_some(),
-                "`axial_damping` is given too: give one of them",
-            ),
         ],
     );
     if viscoelastic {
@@ -242,8 +221,8 @@ fn check_rayleigh(findings: &mut Findings, at: &str, rayleigh: &Rayleigh) {
 }
 
 impl Acts {
-    /// Whether the property acts in water only.
+    /// Returns whether the property acts in water only.
     pub(in crate::scene) fn in_water(self) -> bool {
-        matches!(self, Acts::InFlow | Acts::InAccelerations)
+        matches!(self, Acts::InWater | Acts::InFlow | Acts::InAccelerations)
     }
 }

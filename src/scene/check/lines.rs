@@ -89,10 +89,7 @@ fn check_parting(findings: &mut Findings, at: &str, line: &Line, scene: &Scene) 
         scene.solver.integrator,
         Integrator::QuasiStatic | Integrator::Beam
     );
-    let mut types = line
-        .sections
-        .iter()
-        .filter_map(|section| scene.line_types.get(&section.line_type));
+    let mut types = scene.types_of(line);
     let stiff = types.any(|kind| kind.model == LineModel::Beam || kind.bends());
     findings.refuse(
         at,
@@ -118,7 +115,7 @@ fn check_parting(findings: &mut Findings, at: &str, line: &Line, scene: &Scene) 
 
 fn check_start(findings: &mut Findings, at: &str, line: &Line, scene: &Scene) {
     let ends = [&line.from, &line.to].map(|name| {
-        let point = scene.points.iter().find(|point| point.name == *name);
+        let point = scene.point(name);
         point.map(|point| point.position)
     });
     match &line.initial {
@@ -209,17 +206,11 @@ fn check_clamps(findings: &mut Findings, at: &str, line: &Line, scene: &Scene) {
     }
 }
 
-/// Whether a line flies where nothing holds it: a beam, whose shape at the start is given.
+/// Returns whether a line flies where nothing holds it: a beam, whose shape at the start is given.
 fn flies(line: &Line, scene: &Scene) -> bool {
-    let beam = |line_type: &str| {
-        scene.solver.integrator == Integrator::Beam
-            || scene
-                .line_types
-                .get(line_type)
-                .is_some_and(|t| t.model == LineModel::Beam)
-    };
-    let mut sections = line.sections.iter();
-    line.initial != InitialShape::Static && sections.all(|section| beam(&section.line_type))
+    let all_beams = scene.solver.integrator == Integrator::Beam;
+    let beams = all_beams || scene.types_of(line).all(|kind| kind.model == LineModel::Beam);
+    line.initial != InitialShape::Static && beams
 }
 
 /// Every line must hang, over other lines, on something that does not just fall.

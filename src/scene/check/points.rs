@@ -209,7 +209,7 @@ fn check_run_motion(scene: &Scene, findings: &mut Findings) {
         if vessels.clone().any(|vessel| vessel == name) {
             continue;
         }
-        match scene.points.iter().find(|point| point.name == *name) {
+        match scene.point(name) {
             None => {
                 findings.say(at.clone(), nothing_driven(name, coupled.clone(), vessels.clone()));
             }

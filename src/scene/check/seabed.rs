@@ -1,21 +1,13 @@
 //! Friction and shape of the seabed.
 
 use super::{Findings, quantity};
-use crate::scene::table::Table;
 use crate::scene::{DepthGrid, LineModel, Scene, Seabed};
 
 /// Most soundings.
 const SOUNDINGS_MAX: usize = 4_000_000;
 
 pub(super) fn check_bed(scene: &Scene, bed: &Seabed, findings: &mut Findings) {
-    let shapes = ["slope", "grid", "file"];
-    let is_given = |key: &&str| bed.get(key).is_some_and(|value| !value.is_absent());
-    let given: Vec<&str> = shapes.into_iter().filter(is_given).collect();
-    if let [first, second, ..] = given[..] {
-        let problem = format!("`{first}` and `{second}` cannot both be given: the bed has one shape");
-        return findings.say("seabed", problem);
-    }
-    if bed.file.is_some() {
+    if bed.file.is_some() && bed.slope.is_none() && bed.grid.is_none() {
         let problem = "the soundings of a file must be written out here: give them as `grid`";
         findings.say("seabed.file", problem);
     }

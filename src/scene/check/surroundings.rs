@@ -12,10 +12,10 @@ pub(super) fn check(scene: &Scene, findings: &mut Findings) {
             "the title holds a line break or another control character: write one line",
         );
     }
-    if let Some(current) = scene.water.as_ref().and_then(|water| water.current.as_ref()) {
+    if let Some(current) = scene.current() {
         check_current(scene, current, findings);
     }
-    if let Some(waves) = scene.water.as_ref().and_then(|water| water.waves.as_ref()) {
+    if let Some(waves) = scene.waves() {
         super::waves::check(scene, waves, findings);
     }
     if let Some(seabed) = &scene.seabed {

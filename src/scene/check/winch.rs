@@ -38,7 +38,7 @@ fn check_path(findings: &mut Findings, at: &str, path: &TimeFunction, winch: &Wi
         Some(most) if path.rate_max() > most => findings.say(
             at,
             format!(
-                "up to {} are asked for, and speed_max is {}",
+                "the path takes up to {}, and speed_max is {}",
                 quantity(path.rate_max(), "m/s"),
                 quantity(most, "m/s")
             ),
@@ -47,13 +47,13 @@ fn check_path(findings: &mut Findings, at: &str, path: &TimeFunction, winch: &Wi
     }
 }
 
-/// What is wrong with where the winch stands.
+/// Returns the refusal of the place of the winch.
 fn misplaced(line: &Line, scene: &Scene) -> Option<&'static str> {
     let winch = line.winch.as_ref()?;
     if winch.end == LineEnd::A {
         return Some("a winch is at end \"b\": write the line the other way round");
     }
-    let point = scene.points.iter().find(|point| point.name == line.to);
+    let point = scene.point(&line.to);
     if point.is_some_and(|point| point.kind == PointKind::Free) {
         return Some(
             "a winch stands on a point that forces do not move: fixed, coupled, prescribed or on a vessel",
@@ -63,17 +63,18 @@ fn misplaced(line: &Line, scene: &Scene) -> Option<&'static str> {
         .parting
         .as_ref()
         .is_some_and(|parting| parting.at == LineEnd::B);
-    (parts || line.release == Some(LineEnd::B))
-        .then_some("end B is on the winch, so that it neither breaks off nor lets go: leave one of them out")
+    (parts || line.release == Some(LineEnd::B)).then_some(
+        "end B is on the winch, so that it can neither break off nor be released: leave one of them out",
+    )
 }
 
-/// What the winch cannot be combined with.
+/// Returns the refusal of a line or scene for which winches are not modelled.
 fn unserved(line: &Line, scene: &Scene) -> Option<&'static str> {
     if !matches!(scene.solver.integrator, Integrator::Auto | Integrator::Leapfrog) {
-        return Some("winches are served by the integrators \"leapfrog\" and \"auto\"");
+        return Some("winches are modelled by the integrators \"leapfrog\" and \"auto\"");
     }
-    if scene.water.as_ref().is_some_and(|water| water.waves.is_some()) {
-        return Some("a line on a winch knows no waves yet: leave out one of them");
+    if scene.waves().is_some() {
+        return Some("a line on a winch is not modelled in waves: leave out one of them");
     }
     if scene.meets_surface(line) {
         return Some(
@@ -85,8 +86,6 @@ fn unserved(line: &Line, scene: &Scene) -> Option<&'static str> {
     }
     let other =
         |kind: &LineType| kind.model == LineModel::Beam || kind.bends() || kind.dynamic_stiffness.is_some();
-    let mut sections = line.sections.iter();
-    sections
-        .any(|section| scene.line_types.get(&section.line_type).is_some_and(other))
-        .then_some("a line on a winch has neither bending stiffness nor a viscoelastic section")
+    let bends = scene.types_of(line).any(other);
+    bends.then_some("a line on a winch has neither bending stiffness nor a viscoelastic section")
 }

@@ -48,7 +48,7 @@ impl Scene {
 
     /// Axial damping that the type leaves open, and the mesh that a ratio refers to.
     fn damping_in_words(&self, name: &str, line_type: &LineType) -> Option<String> {
-        let sections = self.lines.iter().flat_map(|line| &line.sections);
+        let sections = self.sections();
         let own = sections.filter(|section| section.line_type == name);
         let mut elements: Vec<usize> = own
             .map(|section| section.damping_elements.unwrap_or(DAMPING_ELEMENTS))
@@ -73,12 +73,9 @@ impl Scene {
         }
     }
 
-    /// Whether a cable has a section with bending stiffness.
+    /// Returns whether a cable has a section with bending stiffness.
     pub(super) fn bends(&self, line: &Line) -> bool {
-        let mut types = line
-            .sections
-            .iter()
-            .filter_map(|section| self.line_types.get(&section.line_type));
+        let mut types = self.types_of(line);
         !self.is_beam(line) && types.any(|line_type| solid_stiffness(line_type).is_some())
     }
 
@@ -92,7 +89,7 @@ impl Scene {
         }
     }
 
-    /// Whether and how cables carry compression.
+    /// Returns whether and how cables carry compression.
     pub(super) fn compression_in_words(&self) -> &'static str {
         if self.lines.iter().any(|line| self.bends(line)) {
             "tension is never negative where a line is flexible; where it has bending stiffness an element of length l pushes with \

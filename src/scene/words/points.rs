@@ -127,7 +127,7 @@ impl Scene {
         }
     }
 
-    /// Whether the water's surface acts on a free point.
+    /// Returns whether the water's surface acts on a free point.
     pub(super) fn surface_matters(&self) -> bool {
         let mut free = self.points.iter().filter(|point| point.kind == PointKind::Free);
         free.any(|point| self.radius(point).is_some())

@@ -59,7 +59,7 @@ impl Scene {
                 if names.len() == 1 { "has" } else { "have" }
             )
         };
-        let moves = self.water.as_ref().is_some_and(|water| water.waves.is_some());
+        let moves = self.waves().is_some();
         let level = if moves { ", which the waves move" } else { "" };
         let others = match submerged.is_empty() {
             true => String::new(),
