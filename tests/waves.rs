@@ -541,7 +541,7 @@ fn every_mistake_in_a_spectrum_is_refused_with_its_place() {
     refused(
         &spectrum("significant_height = 2.0, peak_period = 8.0, components = 0"),
         "water.waves.components",
-        "from 1 to",
+        "is not between 1 and 100000",
     );
     refused(
         &spectrum("significant_height = 2.0, peak_period = 8.0, ramp = 0.0"),
