@@ -28,11 +28,11 @@ table! {
         /// Damping of the fast part of a viscoelastic rope [N s]: BA_d.
         pub dynamic_damping: Option<f64> => not_negative(1e15).elsewhere(&["ba_d"]).acts(Acts::InMotion).parameter(),
         /// Bending stiffness EI of one solid section [N m²]; absent or 0, the line is perfectly flexible.
-        pub bending_stiffness: Option<f64> => not_negative(1e15).elsewhere(&["ei"]).parameter(),
+        pub bending_stiffness: Option<f64> => not_negative(1e15).elsewhere(&["ei"]).label("bending stiffness EI").parameter(),
         /// Shear stiffness GA of beams [N].
-        pub shear_stiffness: Option<f64> => positive(1e15).elsewhere(&["ga"]).parameter(),
+        pub shear_stiffness: Option<f64> => positive(1e15).elsewhere(&["ga"]).label("shear stiffness GA").parameter(),
         /// Torsional stiffness GJ of beams [N m²].
-        pub torsional_stiffness: Option<f64> => positive(1e15).elsewhere(&["gj"]).parameter(),
+        pub torsional_stiffness: Option<f64> => positive(1e15).elsewhere(&["gj"]).label("torsional stiffness GJ").parameter(),
         /// Rotary inertia of a beam's section per unstretched length [kg m], about any axis.
         pub rotary_inertia: Option<f64> => positive(1e9).label("rotary inertia").acts(Acts::InMotion).parameter(),
         /// Mass in air per unstretched length [kg/m]; weight/gravity where absent.
@@ -45,12 +45,12 @@ table! {
         pub axial_damping: Option<f64> => not_negative(1e15).elsewhere(&["ba"]).acts(Acts::InMotion).parameter(),
         /// Axial damping as a ratio of the critical damping of each segment [-]; instead of `axial_damping`. It becomes one BA, the same on every
         /// mesh, as `damping_elements` of a section says.
-        pub damping_ratio: Option<f64> => not_negative(100.0).acts(Acts::InMotion)
+        pub damping_ratio: Option<f64> => not_negative(100.0).label("axial damping ratio").acts(Acts::InMotion)
             .instead_of(&["axial_damping", "dynamic_damping"]).parameter(),
         /// Rayleigh damping, in addition to the axial damping.
         pub rayleigh: Option<Rayleigh> => PLAIN.label("Rayleigh damping").acts(Acts::InMotion),
         /// Strain measure that EA multiplies.
-        pub strain: Strain = Strain::Engineering => PLAIN.label("strain measure"),
+        pub strain: Strain = Strain::Engineering,
         /// Normal drag coefficient on the diameter [-].
         pub drag_normal: Option<f64> => coefficient(Acts::InFlow).elsewhere(&["cd", "cdn"])
             .label("normal drag coefficient").absence("normal drag"),
@@ -231,11 +231,15 @@ impl Value for Strain {
             );
         }
     }
-    fn in_words(&self, _: &Key) -> Option<String> {
-        Some(match self {
+}
+
+impl Strain {
+    /// Name in a sentence.
+    pub(super) fn name(self) -> String {
+        match self {
             Strain::Engineering => "engineering".to_string(),
             Strain::Green => "Green-Lagrange".to_string(),
-            Strain::Logarithmic(poisson) => format!("logarithmic (Poisson's ratio {})", number(*poisson)),
-        })
+            Strain::Logarithmic(poisson) => format!("logarithmic (Poisson's ratio {})", number(poisson)),
+        }
     }
 }

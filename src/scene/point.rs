@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::table::{Acts, MIXED, choice, magnitude, not_negative, table};
+use super::table::{Acts, MIXED, PLAIN, choice, magnitude, not_negative, table};
 use super::{AngleOrder, MotionPath, TimeFunction};
 
 table! {
@@ -28,11 +28,11 @@ table! {
         pub added_mass: Option<f64> => not_negative(1e3).elsewhere(&["ca"]).usual([0.0, 5.0], "0 to 5 is usual")
             .label("added-mass coefficient").acts(Acts::InAccelerations),
         /// Point load in time.
-        pub force: Option<PointForce>,
+        pub force: Option<PointForce> => PLAIN.label("force"),
         /// Moment in time, on the end of a line that bends at a free point.
-        pub moment: Option<PointMoment>,
+        pub moment: Option<PointMoment> => PLAIN.label("moment"),
         /// Prescribed displacement in time, with `kind = "prescribed"` only.
-        pub motion: Option<MotionPath> => MIXED,
+        pub motion: Option<MotionPath> => MIXED.label("it"),
     }
 }
 
@@ -78,11 +78,11 @@ table! {
     /// A point load along the global axes.
     pub struct PointForce, "`force`" {
         /// Force along x [N].
-        pub x: Option<TimeFunction>,
+        pub x: Option<TimeFunction> => PLAIN.label("along x"),
         /// Force along y [N].
-        pub y: Option<TimeFunction>,
+        pub y: Option<TimeFunction> => PLAIN.label("along y"),
         /// Force along z [N].
-        pub z: Option<TimeFunction>,
+        pub z: Option<TimeFunction> => PLAIN.label("along z"),
     }
 }
 
@@ -90,11 +90,11 @@ table! {
     /// A moment about the global axes.
     pub struct PointMoment, "`moment`" {
         /// Moment about x [N m].
-        pub x: Option<TimeFunction>,
+        pub x: Option<TimeFunction> => PLAIN.label("about x"),
         /// Moment about y [N m].
-        pub y: Option<TimeFunction>,
+        pub y: Option<TimeFunction> => PLAIN.label("about y"),
         /// Moment about z [N m].
-        pub z: Option<TimeFunction>,
+        pub z: Option<TimeFunction> => PLAIN.label("about z"),
     }
 }
 

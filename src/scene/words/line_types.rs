@@ -20,8 +20,9 @@ impl Scene {
         };
         let mut parts = vec![format!("mass {} kg/m", significant(mass))];
         parts.push(format!("weight {weight} N/m {origin}"));
-        parts.extend(given(line_type, &["mass", "weight"]));
+        parts.extend(given(line_type, &["model", "mass", "weight", "strain"]));
         if let Some(ea) = line_type.axial_stiffness.or(line_type.dynamic_stiffness) {
+            parts.push(format!("{} strain", line_type.strain.name()));
             parts.push(format!("axial waves at {} m/s", significant((ea / mass).sqrt())));
         }
         parts.extend(bending_in_words(line_type));
@@ -59,7 +60,7 @@ impl Scene {
         let elements = elements.join(" or ");
         if line_type.damping_ratio.is_some() {
             return Some(format!(
-                "that ratio with {elements} elements of a line, the same damping on every mesh"
+                "the ratio is that of one of {elements} elements of a line, with the same damping on every mesh"
             ));
         }
         let open = line_type.leaves_damping_open();
