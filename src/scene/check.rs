@@ -66,7 +66,7 @@ impl Findings {
         }
     }
 
-    /// Adds a number that is not finite or outside its bounds; returns whether it is right.
+    /// Adds a number that is not finite or outside its bounds; returns whether it is within them.
     pub(super) fn number(&mut self, at: impl Into<String>, value: f64, bounds: Bounds, unit: &str) -> bool {
         match bounds.complaint(value, unit) {
             None => true,
@@ -118,43 +118,39 @@ pub enum Bounds {
 }
 
 impl Bounds {
+    /// Returns whether a value is finite and within the bounds.
+    pub(super) fn accepts(self, value: f64) -> bool {
+        match self {
+            Bounds::Elsewhere => true,
+            Bounds::Finite => value.is_finite(),
+            Bounds::Positive(limit) => (POSITIVE_MIN..=limit).contains(&value),
+            Bounds::NotNegative(limit) => (0.0..=limit).contains(&value),
+            Bounds::Magnitude(limit) => value.abs() <= limit,
+            Bounds::Within(least, most) => (least..=most).contains(&value),
+        }
+    }
+
     /// Returns the refusal of a value outside the bounds.
     pub(super) fn complaint(self, value: f64, unit: &str) -> Option<String> {
-        let value_said = quantity(value, unit);
-        if self == Bounds::Elsewhere {
+        if self.accepts(value) {
             return None;
         }
-        if !value.is_finite() {
-            return Some(format!("{value_said} is not a finite number"));
-        }
-        let upper = match self {
-            Bounds::Positive(_) if value <= 0.0 => {
-                return Some(format!("{value_said} is not positive"));
-            }
+        let (said, of) = (quantity(value, unit), |limit| quantity(limit, unit));
+        let slip = "is the unit or the power of ten right?";
+        Some(match self {
+            _ if !value.is_finite() => format!("{said} is not a finite number"),
+            Bounds::Positive(_) if value <= 0.0 => format!("{said} is not positive"),
             Bounds::Positive(_) if value < POSITIVE_MIN => {
-                return Some(format!(
-                    "{value_said} is below the limit of {}: is the unit or the power of ten right?",
-                    quantity(POSITIVE_MIN, unit)
-                ));
+                format!("{said} is below the limit of {}: {slip}", of(POSITIVE_MIN))
             }
-            Bounds::NotNegative(_) if value < 0.0 => {
-                return Some(format!("{value_said} is negative"));
+            Bounds::NotNegative(_) if value < 0.0 => format!("{said} is negative"),
+            Bounds::Within(least, most) => {
+                format!("{said} is not between {} and {}", number(least), of(most))
             }
-            Bounds::Within(lower, upper) if value < lower || value > upper => {
-                return Some(format!(
-                    "{value_said} is not between {} and {}",
-                    number(lower),
-                    quantity(upper, unit)
-                ));
+            Bounds::Positive(limit) | Bounds::NotNegative(limit) | Bounds::Magnitude(limit) => {
+                format!("{said} is beyond the limit of {}: {slip}", of(limit))
             }
-            Bounds::Within(..) | Bounds::Finite | Bounds::Elsewhere => return None,
-            Bounds::Positive(upper) | Bounds::NotNegative(upper) | Bounds::Magnitude(upper) => upper,
-        };
-        (value.abs() > upper).then(|| {
-            format!(
-                "{value_said} is beyond the limit of {}: is the unit or the power of ten right?",
-                quantity(upper, unit)
-            )
+            Bounds::Finite | Bounds::Elsewhere => return None,
         })
     }
 }

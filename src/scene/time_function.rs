@@ -141,8 +141,9 @@ fn check_rise(findings: &mut Findings, at: &str, [t0, f0, t1, f1]: [f64; 4], uni
 fn check_times(findings: &mut Findings, at: &str, times: impl Iterator<Item = f64>, jumps: bool) {
     let mut last: Option<f64> = None;
     for (row, time) in times.enumerate() {
-        let here = format!("{at}[{row}][0]");
-        if !findings.number(here.clone(), time, TIME, "s") {
+        let here = || format!("{at}[{row}][0]");
+        if !TIME.accepts(time) {
+            findings.number(here(), time, TIME, "s");
             return;
         }
         if let Some(last) = last
@@ -153,7 +154,7 @@ fn check_times(findings: &mut Findings, at: &str, times: impl Iterator<Item = f6
                 quantity(time, "s"),
                 quantity(last, "s")
             );
-            return findings.say(here, problem);
+            return findings.say(here(), problem);
         }
         last = Some(time);
     }
@@ -515,7 +516,9 @@ fn check_rows(findings: &mut Findings, at: &str, rows: &[MotionRow]) {
             } else {
                 (ROTATION, "rad")
             };
-            findings.number(format!("{at}[{i}][{column}]"), *value, bounds, unit);
+            if !bounds.accepts(*value) {
+                findings.number(format!("{at}[{i}][{column}]"), *value, bounds, unit);
+            }
         }
     }
 }

@@ -247,7 +247,12 @@ impl<T: Value> Value for Vec<T> {
 
     fn check(&self, at: &str, key: &Key, findings: &mut Findings) {
         let known = findings.mistakes.len();
-        for (index, value) in self.iter().enumerate() {
+        let is_plain = |value: &T| {
+            value
+                .number()
+                .is_some_and(|number| key.rule.bounds.accepts(number))
+        };
+        for (index, value) in self.iter().enumerate().filter(|(_, value)| !is_plain(value)) {
             value.check(&format!("{at}[{index}]"), key, findings);
             if matches!(T::kind(), Kind::Number | Kind::Numbers) && findings.mistakes.len() > known {
                 return; // one wrong number of a long list is enough
