@@ -18,7 +18,7 @@ use crate::model::{Body, Model};
 use crate::scene::{Axis, PointKind, Scene, SceneError};
 use crate::simulation::{NodeBending, Simulation, reference_catenary};
 
-pub use parameters::Parameter;
+pub use parameters::{Parameter, Place};
 
 /// Role of a variable in FMI's words.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -120,6 +120,26 @@ impl Unit {
         s: -1,
         rad: 1,
     };
+
+    /// Units of parameters.
+    const OF_PARAMETERS: [Unit; 9] = [
+        Unit::METRE,
+        Unit::METRE_PER_SECOND_SQUARED,
+        Unit::NEWTON,
+        Unit::NEWTON_PER_METRE,
+        Unit::NEWTON_SQUARE_METRE,
+        Unit::NEWTON_SECOND,
+        Unit::KILOGRAM_PER_METRE,
+        Unit::KILOGRAM_METRE,
+        Unit::KILOGRAM_PER_CUBIC_METRE,
+    ];
+
+    /// The unit that the scene format writes as `N m²`; dimensionless where it is none of those of parameters.
+    fn of_scene(text: &str) -> Unit {
+        let name = text.replace(' ', ".").replace('²', "2").replace('³', "3");
+        let found = Unit::OF_PARAMETERS.into_iter().find(|unit| unit.name == name);
+        found.unwrap_or(Unit::ONE)
+    }
 
     const fn of(name: &'static str, kg: i8, m: i8, s: i8) -> Unit {
         Unit {
@@ -621,15 +641,19 @@ mod tests {
         let mut scene = Scene::from_toml(SCENE).unwrap();
         for variable in interface(SCENE, Layout::Scalars).variables() {
             if let Binding::Parameter(parameter) = &variable.binding {
-                let other = match parameter {
-                    Parameter::InputReconstruction => 1.0,
+                let other = match variable.kind {
+                    Kind::Int32 => 1.0,
                     _ => 1.5 * variable.start.unwrap(),
                 };
                 parameter.set(&mut scene, other).unwrap();
                 assert_eq!(parameter.value(&scene), Some(other), "{}", variable.name);
             }
         }
-        let message = Parameter::InputReconstruction.set(&mut scene, 0.5);
+        let choice = Parameter {
+            place: Place::Solver,
+            key: "input_reconstruction",
+        };
+        let message = choice.set(&mut scene, 0.5);
         assert!(message.unwrap_err().contains("neither"));
     }
 

@@ -12,6 +12,8 @@ use moorline::scene::{Integrator, Reconstruction, Scene};
 use moorline::simulation::Simulation;
 use nalgebra::Vector3;
 
+use moorline::scene::table::Choice;
+
 use crate::errors::Histories;
 use crate::ladder::Setting;
 
@@ -242,11 +244,7 @@ fn samples(scene: &Scene) -> usize {
 
 /// The integrator as the scene format spells it.
 fn name(integrator: Integrator) -> String {
-    serde_json::to_value(integrator)
-        .ok()
-        .and_then(|value| value.as_str().map(str::to_string))
-        .unwrap_or_default()
-        .replace('_', "-")
+    integrator.word().replace('_', "-")
 }
 
 /// Tension at the end of a line that is moved, end B where both or none are [N].

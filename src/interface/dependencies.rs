@@ -7,10 +7,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::parameters::Property;
-use super::{Binding, Interface, LineResult, Parameter, Variable};
+use super::{Binding, Interface, LineResult, Parameter, Place, Variable};
 use crate::model::{Body, Model};
-use crate::scene::Scene;
+use crate::scene::table::{Acts, Table};
+use crate::scene::{LineType, Scene};
 
 /// Fills [`Variable::initial_dependencies`] of all outputs and calculated parameters.
 pub(super) fn fill(variables: &mut [Variable], scene: &Scene, model: &Model) {
@@ -112,22 +112,22 @@ impl Scope<'_> {
         }
     }
 
-    fn depends_on_parameter(&self, parameter: &Parameter) -> bool {
+    fn depends_on_parameter(&self, Parameter { place, key }: &Parameter) -> bool {
         let scene = self.scene;
-        match parameter {
-            Parameter::LineType { name, property } => {
-                self.types().any(|used| used == name) && self.depends_on_property(name, *property)
+        match (place, *key) {
+            (Place::LineType(name), key) => {
+                self.types().any(|used| used == name) && self.depends_on_property(name, key)
             }
-            Parameter::SectionLength { line, .. } => self.lines.contains(line),
-            Parameter::WaterDensity => {
+            (Place::Section { line, .. }, _) => self.lines.contains(line),
+            (Place::Water, _) => {
                 self.types()
                     .any(|name| self.is_buoyant(name) || self.is_pushed(name))
                     || self
                         .free_points()
                         .any(|point| point.volume.is_some() || (self.flows() && point.drag_area.is_some()))
             }
-            Parameter::SeabedDepth => true,
-            Parameter::Gravity => {
+            (Place::Seabed, _) => true,
+            (Place::Scene, _) => {
                 self.types().any(|name| scene.line_types[name].weight.is_none())
                     || self.emerges()
                     || self.is_in_waves()
@@ -135,35 +135,28 @@ impl Scope<'_> {
                         .free_points()
                         .any(|point| point.mass.is_some() || point.volume.is_some())
             }
-            Parameter::Tolerance => {
+            (Place::Solver, "tolerance") => {
                 !self.closed_form
                     && scene.solver.elements.is_none()
                     && self.lines.iter().any(|&line| scene.lines[line].is_open())
             }
-            Parameter::InputReconstruction => false,
+            (Place::Solver, _) => false,
         }
     }
 
-    fn depends_on_property(&self, name: &str, property: Property) -> bool {
-        match property {
-            Property::AxialStiffness | Property::StaticStiffness | Property::Weight => true,
-            Property::Mass => self.scene.line_types[name].weight.is_none(),
-            Property::Diameter => {
+    fn depends_on_property(&self, name: &str, key: &str) -> bool {
+        match (LineType::SCHEMA.key(key).map(|key| key.rule.acts), key) {
+            (Some(Acts::InMotion), _) => false,
+            (Some(Acts::InFlow), _) => self.flows(),
+            (Some(Acts::InAccelerations), _) => self.is_in_waves(),
+            (_, "mass") => self.scene.line_types[name].weight.is_none(),
+            (_, "diameter") => {
                 self.is_buoyant(name)
                     || self.is_pushed(name)
                     || (self.scene.seabed.is_some() && !self.closed_form)
             }
-            Property::BendingStiffness | Property::ShearStiffness | Property::TorsionalStiffness => {
-                !self.closed_form
-            }
-            Property::DragNormal | Property::DragTangential => self.flows(),
-            Property::AddedMassNormal | Property::AddedMassTangential => self.is_in_waves(),
-            Property::RotaryInertia
-            | Property::DynamicStiffness
-            | Property::StaticDamping
-            | Property::DynamicDamping
-            | Property::AxialDamping
-            | Property::DampingRatio => false,
+            (_, "bending_stiffness" | "shear_stiffness" | "torsional_stiffness") => !self.closed_form,
+            _ => true,
         }
     }
 

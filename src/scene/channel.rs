@@ -1,12 +1,11 @@
 //! Names of output channels as MoorDyn has them: `FairTen1`, `AnchTen1`, `Con4Fx`, `L1N10T`, `Line3NAPz`.
 //!
-//! Numbers are those of a deck: `1` of a line stands for the scene's `line1`, of a point for `point1`. Capitals do not count.
+//! Numbers are those of a deck: line `1` is the scene's `line1`, point `1` is `point1`. Case is ignored.
 
-use serde::{Deserialize, Serialize};
-
+pub use super::LineEnd;
 use super::Scene;
 
-/// What a channel writes.
+/// Quantity that a channel writes.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Channel {
     /// `FairTen`, `AnchTen`: tension of the segment at an end of a line [N].
@@ -16,32 +15,22 @@ pub enum Channel {
         /// Which end.
         end: LineEnd,
     },
-    /// `L1N10Px`: something of a node of a line.
+    /// `L1N10Px`: quantity of a node of a line.
     Node {
         /// Name of the line.
         line: String,
         /// Which node.
         node: NodePlace,
-        /// What of it.
+        /// Quantity.
         quantity: Quantity,
     },
-    /// `Con4Fx`, `Point4Fx`: something of a point.
+    /// `Con4Fx`, `Point4Fx`: quantity of a point.
     Point {
         /// Name of the point.
         point: String,
-        /// What of it.
+        /// Quantity.
         quantity: Quantity,
     },
-}
-
-/// An end of a line.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum LineEnd {
-    /// End A, the anchor's.
-    A,
-    /// End B, the fairlead's.
-    B,
 }
 
 /// A node of a line.
@@ -53,7 +42,7 @@ pub enum NodePlace {
     End(LineEnd),
 }
 
-/// What of a node or a point is written; axes 0, 1, 2 are x, y, z.
+/// Quantity of a node or a point; axes 0, 1, 2 are x, y, z.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Quantity {
     /// `Px`: position [m], global axes.
@@ -66,7 +55,7 @@ pub enum Quantity {
     Tension,
 }
 
-/// What is accepted, for messages.
+/// Accepted names, for messages.
 const ACCEPTED: &str =
     "FairTen1, AnchTen1, L1N10T, L1N10Px, L1N10Vx, Point1Px, Point1Vx, Point1Fx and Point1T, with x, y or z";
 
@@ -74,7 +63,7 @@ impl Channel {
     /// Reads the name of a channel.
     ///
     /// # Errors
-    /// What is wrong with it, and what is accepted.
+    /// The mistake in the name, and the accepted names.
     pub fn parse(name: &str) -> Result<Channel, String> {
         let upper = name.to_uppercase();
         let (what, rest) = split_letters(&upper);
@@ -111,7 +100,7 @@ impl Channel {
         }
     }
 
-    /// Whether a name is that of the tension of a line.
+    /// Returns whether a name is that of the tension of a line.
     pub(super) fn is_tension(name: &str) -> bool {
         matches!(
             Channel::parse(name),
@@ -123,10 +112,10 @@ impl Channel {
         )
     }
 
-    /// Finds what the channel speaks of in a scene.
+    /// Checks that the scene has the line, point or node of the channel.
     ///
     /// # Errors
-    /// What the scene does not have.
+    /// The line, point or node that the scene lacks.
     pub fn check(&self, scene: &Scene) -> Result<(), String> {
         match self {
             Channel::EndTension { line, .. } => find_line(scene, line).map(|_| ()),
@@ -139,13 +128,10 @@ impl Channel {
                     _ => Ok(()),
                 }
             }
-            Channel::Point { point, .. } => {
-                let mut points = scene.points.iter();
-                match points.find(|known| known.name == *point) {
-                    Some(_) => Ok(()),
-                    None => Err(format!("no point is called `{point}`")),
-                }
-            }
+            Channel::Point { point, .. } => match scene.point(point) {
+                Some(_) => Ok(()),
+                None => Err(format!("no point is called `{point}`")),
+            },
         }
     }
 }
@@ -157,10 +143,10 @@ fn find_line<'s>(scene: &'s Scene, name: &str) -> Result<&'s super::Line, String
         .ok_or_else(|| format!("no line is called `{name}`"))
 }
 
-/// Finds a node in a line of so many elements.
+/// Checks that a line of `elements` elements has a node.
 ///
 /// # Errors
-/// How many nodes the line has.
+/// The number of nodes of the line.
 pub fn check_node(node: usize, elements: usize) -> Result<(), String> {
     if node > elements {
         return Err(format!(

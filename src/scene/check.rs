@@ -6,17 +6,15 @@ mod points;
 mod seabed;
 mod settings;
 mod surroundings;
-mod time;
 mod waves;
 mod winch;
 
 use std::collections::BTreeMap;
 
 use super::nearest::suggestion;
-use super::{Scene, SceneError};
-
-pub(super) use line_types::coefficients;
-pub(super) use settings::integrator_name;
+use super::plausibility::degrees;
+use super::table::{Rule, check_table};
+use super::{Note, Scene, SceneError};
 
 impl Scene {
     /// Finds the first mistake.
@@ -33,6 +31,7 @@ impl Scene {
     /// Finds every mistake, each with its key path.
     pub fn mistakes(&self) -> Vec<SceneError> {
         let mut findings = Findings::default();
+        check_table(self, "", &mut findings);
         surroundings::check(self, &mut findings);
         line_types::check(self, &mut findings);
         points::check(self, &mut findings);
@@ -42,43 +41,72 @@ impl Scene {
     }
 }
 
-/// The mistakes found so far.
+/// The mistakes found so far, and notes on unusual values.
 #[derive(Default)]
-struct Findings {
-    mistakes: Vec<SceneError>,
+pub struct Findings {
+    pub(super) mistakes: Vec<SceneError>,
+    pub(super) notes: Vec<Note>,
 }
 
 impl Findings {
-    /// Notes a mistake.
-    fn say(&mut self, at: impl Into<String>, problem: impl Into<String>) {
+    /// Adds a mistake.
+    pub(super) fn say(&mut self, at: impl Into<String>, problem: impl Into<String>) {
         self.mistakes.push(SceneError::new(at, problem));
     }
 
-    /// Notes a number that is not finite or outside its bounds; whether it is right.
-    fn number(&mut self, at: impl Into<String>, value: f64, bounds: Bounds, unit: &str) -> bool {
+    /// Adds the mistakes of which the condition holds, each at a key of a table.
+    pub(super) fn refuse(&mut self, at: &str, rules: &[(&str, bool, &str)]) {
+        for (key, _, problem) in rules.iter().filter(|(_, holds, _)| *holds) {
+            let at = if key.is_empty() {
+                at.to_string()
+            } else {
+                format!("{at}.{key}")
+            };
+            self.say(at, *problem);
+        }
+    }
+
+    /// Adds a number that is not finite or outside its bounds; returns whether it is within them.
+    pub(super) fn number(&mut self, at: impl Into<String>, value: f64, bounds: Bounds, unit: &str) -> bool {
         match bounds.complaint(value, unit) {
+            None => true,
             Some(problem) => {
                 self.say(at, problem);
                 false
             }
-            None => true,
         }
     }
 
-    /// The same for a number that may be absent.
-    fn number_if(&mut self, at: String, value: Option<f64>, bounds: Bounds, unit: &str) {
-        if let Some(value) = value {
-            self.number(at, value, bounds, unit);
+    /// Adds a number that breaks the rule of its key, with the hint of the rule where it is negative or only its size is bounded; or a note on one
+    /// outside the usual range, and on angles beyond a turn. Zero is usual: it leaves an effect out.
+    pub(super) fn ruled(&mut self, at: impl Into<String>, value: f64, rule: &Rule, unit: &str) {
+        if let Some(problem) = rule.bounds.complaint(value, unit) {
+            let about = value < 0.0 || matches!(rule.bounds, Bounds::Magnitude(_));
+            let fact = problem.split(": ").next().unwrap_or_default();
+            return match rule.hint.filter(|_| about) {
+                Some(hint) => self.say(at, format!("{fact}: {hint}")),
+                None => self.say(at, problem),
+            };
         }
+        let unusual = rule
+            .usual
+            .filter(|([least, most], _)| value != 0.0 && !(*least..=*most).contains(&value));
+        let text = unusual.map(|(_, usual)| format!("{} is unusual: {usual}", quantity(value, unit)));
+        let angle = (unit == "rad").then(|| degrees(value)).flatten();
+        self.notes.extend(text.or(angle).map(|text| Note::new(at, text)));
     }
 }
 
 /// Least positive number that stands for anything in a mooring, in any unit: squares and products of a few of them are numbers still.
 const POSITIVE_MIN: f64 = 1e-15;
 
-/// What a number may be. Limits are far beyond any mooring: they catch slips of units and powers of ten.
-#[derive(Clone, Copy)]
-enum Bounds {
+/// Bounds of a number. Limits are far beyond any mooring: they catch slips of units and powers of ten.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Bounds {
+    /// Any finite number.
+    Finite,
+    /// Bounds that depend on other keys, or on the place in a list: checked by the code of the value or of its table.
+    Elsewhere,
     /// From [`POSITIVE_MIN`] up to a limit.
     Positive(f64),
     /// Zero or more, up to a limit.
@@ -90,40 +118,39 @@ enum Bounds {
 }
 
 impl Bounds {
-    /// What is wrong with the value, where something is.
-    fn complaint(self, value: f64, unit: &str) -> Option<String> {
-        let value_said = quantity(value, unit);
-        if !value.is_finite() {
-            return Some(format!("{value_said} is not a finite number"));
+    /// Returns whether a value is finite and within the bounds.
+    pub(super) fn accepts(self, value: f64) -> bool {
+        match self {
+            Bounds::Elsewhere => true,
+            Bounds::Finite => value.is_finite(),
+            Bounds::Positive(limit) => (POSITIVE_MIN..=limit).contains(&value),
+            Bounds::NotNegative(limit) => (0.0..=limit).contains(&value),
+            Bounds::Magnitude(limit) => value.abs() <= limit,
+            Bounds::Within(least, most) => (least..=most).contains(&value),
         }
-        let upper = match self {
-            Bounds::Positive(_) if value <= 0.0 => {
-                return Some(format!("{value_said} is not positive"));
-            }
+    }
+
+    /// Returns the refusal of a value outside the bounds.
+    pub(super) fn complaint(self, value: f64, unit: &str) -> Option<String> {
+        if self.accepts(value) {
+            return None;
+        }
+        let (said, of) = (quantity(value, unit), |limit| quantity(limit, unit));
+        let slip = "is the unit or the power of ten right?";
+        Some(match self {
+            _ if !value.is_finite() => format!("{said} is not a finite number"),
+            Bounds::Positive(_) if value <= 0.0 => format!("{said} is not positive"),
             Bounds::Positive(_) if value < POSITIVE_MIN => {
-                return Some(format!(
-                    "{value_said} is below the limit of {}: is the unit or the power of ten right?",
-                    quantity(POSITIVE_MIN, unit)
-                ));
+                format!("{said} is below the limit of {}: {slip}", of(POSITIVE_MIN))
             }
-            Bounds::NotNegative(_) if value < 0.0 => {
-                return Some(format!("{value_said} is negative"));
+            Bounds::NotNegative(_) if value < 0.0 => format!("{said} is negative"),
+            Bounds::Within(least, most) => {
+                format!("{said} is not between {} and {}", number(least), of(most))
             }
-            Bounds::Within(lower, upper) if value < lower || value > upper => {
-                return Some(format!(
-                    "{value_said} is not between {} and {}",
-                    number(lower),
-                    quantity(upper, unit)
-                ));
+            Bounds::Positive(limit) | Bounds::NotNegative(limit) | Bounds::Magnitude(limit) => {
+                format!("{said} is beyond the limit of {}: {slip}", of(limit))
             }
-            Bounds::Within(..) => return None,
-            Bounds::Positive(upper) | Bounds::NotNegative(upper) | Bounds::Magnitude(upper) => upper,
-        };
-        (value.abs() > upper).then(|| {
-            format!(
-                "{value_said} is beyond the limit of {}: is the unit or the power of ten right?",
-                quantity(upper, unit)
-            )
+            Bounds::Finite | Bounds::Elsewhere => return None,
         })
     }
 }
@@ -169,7 +196,7 @@ fn check_name(findings: &mut Findings, at: &str, name: &str) {
     }
 }
 
-/// Checks the names of points and lines, which share the name space of the FMU's variables.
+/// Checks the names of points, lines and vessels, which share the name space of the FMU's variables.
 fn check_names<'s>(
     findings: &mut Findings,
     taken: &mut BTreeMap<&'s str, String>,

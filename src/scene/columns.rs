@@ -9,7 +9,7 @@ use super::units;
 /// Longest line that is read [bytes].
 const LINE_MAX: u64 = 1 << 20;
 
-/// What stands between the columns.
+/// Separator of the columns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Separator {
     Comma,
@@ -33,7 +33,7 @@ impl Separator {
         }
     }
 
-    /// Its name in a sentence.
+    /// Name in a sentence.
     pub(super) fn in_words(self) -> &'static str {
         match self {
             Separator::Comma => "commas",
@@ -74,7 +74,7 @@ impl Separator {
     /// A finite number of a cell; decimal commas stand in columns between semicolons.
     ///
     /// # Errors
-    /// What it is instead.
+    /// The cell that was found instead of a number.
     pub(super) fn number(self, cell: &str) -> Result<f64, String> {
         let plain = |text: &str| text.parse::<f64>().ok().filter(|value| value.is_finite());
         let comma = self == Separator::Semicolon && cell.matches(',').count() == 1;
@@ -92,7 +92,7 @@ impl Separator {
     }
 }
 
-/// Whether a cell holds a number, finite or not.
+/// Returns whether a cell holds a number, finite or not.
 pub(super) fn is_number(cell: &str) -> bool {
     cell.replacen(',', ".", 1).parse::<f64>().is_ok()
 }

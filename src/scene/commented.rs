@@ -6,8 +6,8 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
+use super::keys;
 use super::read::LoadedScene;
-use super::units;
 use super::words::paragraph;
 
 impl LoadedScene {
@@ -38,14 +38,14 @@ impl LoadedScene {
 /// The table that a line of TOML stands in.
 #[derive(Default)]
 struct Place {
-    /// Its header, such as `lines.sections`.
+    /// Header, such as `lines.sections`.
     table: String,
-    /// How many points, lines and vessels have begun.
+    /// Number of elements of each list of tables so far.
     begun: BTreeMap<String, usize>,
 }
 
 impl Place {
-    /// What is said behind a line of TOML.
+    /// Comment behind a line of TOML: the line of the file, or the unit.
     fn comment(&mut self, line: &str, loaded: &LoadedScene) -> Option<String> {
         let header = line.strip_prefix('[').and_then(|rest| rest.strip_suffix(']'));
         if let Some(header) = header {
@@ -65,30 +65,7 @@ impl Place {
         if value.contains('{') {
             return None;
         }
-        units::unit(owner(&self.table)?, key)
-            .filter(|unit| *unit != "-")
-            .map(str::to_string)
+        let unit = keys::table(&self.table)?.key(key)?.unit();
+        unit.filter(|unit| *unit != "-").map(str::to_string)
     }
-}
-
-/// The struct that a table is read into.
-fn owner(table: &str) -> Option<&'static str> {
-    let mut keys = table.split('.');
-    Some(match (keys.next()?, keys.next_back()) {
-        ("", _) => "Scene",
-        ("water", None) => "Water",
-        ("seabed", None) => "Seabed",
-        ("seabed", Some("grid")) => "DepthGrid",
-        ("seabed", Some("friction")) => "Friction",
-        ("line_types", Some("rayleigh")) => "Rayleigh",
-        ("line_types", Some(_)) => "LineType",
-        ("points", None) => "Point",
-        ("points", Some("force")) => "PointForce",
-        ("lines", Some("sections")) => "Section",
-        ("lines", None) => "Line",
-        ("vessels", None) => "Vessel",
-        ("solver", None) => "Solver",
-        ("output", None) => "Output",
-        _ => return None,
-    })
 }

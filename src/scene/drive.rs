@@ -1,4 +1,4 @@
-//! What moves a scene in a run and is given beside it: a motion file, regular motions, a ramp, a duration.
+//! Motions of a run that are given on the command line: a motion file, regular motions, a ramp, a duration.
 
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -66,7 +66,7 @@ impl FromStr for RegularMotion {
 }
 
 impl Drive {
-    /// Whether nothing is given.
+    /// Returns whether nothing is given.
     pub fn is_empty(&self) -> bool {
         *self == Drive::default()
     }
@@ -114,7 +114,7 @@ impl Scene {
         }
     }
 
-    /// What a motion file moves, by name.
+    /// Bodies that a motion file moves, with their rows.
     fn bodies_of(&self, moves: Moves, file: &str) -> Result<Vec<(String, Vec<MotionRow>)>, String> {
         let known = self.moved_by_a_host();
         match moves {
@@ -192,7 +192,7 @@ impl Scene {
         ))
     }
 
-    /// How coupled points become one vessel, where the scene has some and no vessel.
+    /// Advice on joining coupled points to one vessel, for a scene without vessels.
     fn joined_in_words(&self, vessel: &str) -> String {
         if !self.vessels.is_empty() || self.moved_by_a_host().is_empty() {
             return String::new();

@@ -1,4 +1,4 @@
-//! What is wrong with a scene, where, and what would be right.
+//! Mistakes in a scene, with their place and a correction.
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -11,7 +11,7 @@ use super::path;
 pub struct SceneError {
     /// Key path, such as `line_types.chain.diameter` or `lines[2].sections[0].length`; empty for the whole file.
     pub at: String,
-    /// What is wrong, and what would be right.
+    /// The mistake and its correction.
     pub problem: String,
     /// Bytes of the text it concerns, where known.
     pub span: Option<Range<usize>>,
@@ -49,7 +49,7 @@ pub enum LoadError {
     Unreadable {
         /// The file.
         path: PathBuf,
-        /// What is wrong, and what would be right.
+        /// The mistake and its correction.
         problem: String,
     },
     /// Not UTF-8 text.
@@ -59,7 +59,7 @@ pub enum LoadError {
         path: PathBuf,
         /// Number of the first byte that is not text, from 0.
         byte: usize,
-        /// What is wrong, and what would be right.
+        /// The mistake and its correction.
         problem: String,
     },
     /// Text with mistakes, in the order of the file.

@@ -1,8 +1,8 @@
 //! Keys that are given and change nothing, for what else the scene is.
 
-use super::check::coefficients;
 use super::notes::Note;
 use super::path::quoted;
+use super::table::{Acts, Table};
 use super::{
     Integrator, Line, LineModel, LineType, Point, PointKind, Reconstruction, Scene, Seabed, Section, Solver,
 };
@@ -17,10 +17,17 @@ impl Scene {
         let used = |name: &str| self.sections().any(|section| section.line_type == name);
         let types = self.line_types.iter();
         for (name, line_type) in types.filter(|(name, _)| used(name)) {
-            self.idle_of_line_type(&format!("line_types.{}", quoted(name)), line_type, &mut notes);
+            let at = format!("line_types.{}", quoted(name));
+            self.idle_by_rule(&at, line_type, &mut notes);
+            self.idle_of_line_type(&at, line_type, &mut notes);
         }
         for (i, point) in self.points.iter().enumerate() {
-            self.idle_of_point(&format!("points[{i}]"), point, &mut notes);
+            let at = format!("points[{i}]");
+            self.idle_by_rule(&at, point, &mut notes);
+            let moves = self.water.is_some() && !self.is_quasi_static();
+            let why = "it is a part of the mass of displaced water, and without `volume`";
+            let idle = moves && point.volume.is_none() && point.added_mass.is_some();
+            say(&mut notes, &at, why, &[("added_mass", idle)]);
         }
         for (i, vessel) in self.vessels.iter().enumerate() {
             let carries = |point: &Point| point.on.as_ref() == Some(&vessel.name);
@@ -58,7 +65,7 @@ impl Scene {
     /// Returns notes on keys without which a scene cannot be written, and which change nothing.
     pub(super) fn idle_by_need(&self) -> Vec<Note> {
         let mut notes = Vec::new();
-        let waves = self.water.as_ref().is_some_and(|water| water.waves.is_some());
+        let waves = self.waves().is_some();
         let seabed = self.seabed.as_ref();
         let sounded = seabed.is_some_and(|seabed| seabed.grid.is_some()) && !waves;
         let why = "with soundings and without waves,";
@@ -66,33 +73,57 @@ impl Scene {
         notes
     }
 
-    fn sections(&self) -> impl Iterator<Item = &Section> {
-        self.lines.iter().flat_map(|line| &line.sections)
-    }
-
     fn is_quasi_static(&self) -> bool {
         self.solver.integrator == Integrator::QuasiStatic
     }
 
+    /// Adds the given properties that have no effect without water, or at rest.
+    fn idle_by_rule<T: Table>(&self, at: &str, table: &T, notes: &mut Vec<Note>) {
+        let still = self.water.as_ref().is_some_and(|water| water.current.is_none());
+        let rests = |acts: Acts| match acts {
+            Acts::Always | Acts::InWater => false,
+            Acts::InMotion => true,
+            Acts::InFlow => still,
+            Acts::InAccelerations => self.water.is_some(),
+        };
+        let idle = |condition: &dyn Fn(Acts) -> bool| -> Vec<Key> {
+            let given = table.entries().filter(|(_, value)| !value.is_absent());
+            given
+                .map(|(key, _)| (key.name(), condition(key.rule.acts)))
+                .collect()
+        };
+        let dry = self.water.is_none();
+        say(
+            notes,
+            at,
+            "without [water],",
+            &idle(&|acts| dry && acts.in_water()),
+        );
+        say(
+            notes,
+            at,
+            "quasi-static:",
+            &idle(&|acts| self.is_quasi_static() && rests(acts)),
+        );
+    }
+
     fn idle_of_line_type(&self, at: &str, line_type: &LineType, notes: &mut Vec<Note>) {
         let dry = self.water.is_none();
-        let coefficients = coefficients(line_type).map(|(key, value)| (key, dry && value.is_some()));
-        say(notes, at, "without [water],", &coefficients);
         let beam = line_type.model == LineModel::Beam || self.solver.integrator == Integrator::Beam;
         // a beam may have its rotary inertia from the diameter
         let spun = beam && line_type.rotary_inertia.is_none() && line_type.solid_section.is_none();
         let bare = dry && self.seabed.is_none() && line_type.diameter.is_some() && !spun;
         say(notes, at, "without [water] and [seabed],", &[("diameter", bare)]);
-        if self.is_quasi_static() {
-            say(notes, at, "quasi-static:", &self.idle_at_rest(line_type));
-        }
         let Some(section) = &line_type.solid_section else {
             return;
         };
         let sheared = [line_type.shear_stiffness, line_type.torsional_stiffness];
         let sheared = beam && sheared.iter().any(Option::is_none);
         let bent = line_type.bending_stiffness.is_none() || beam && line_type.rotary_inertia.is_none();
-        let (whole, ratio) = (!sheared && !bent, section.poisson != super::steel_poisson());
+        let (whole, ratio) = (
+            !sheared && !bent,
+            section.poisson != super::line_type::STEEL_POISSON,
+        );
         let why = "what follows from it is given or not modelled, so that";
         say(notes, at, why, &[("solid_section", whole)]);
         say(
@@ -101,55 +132,6 @@ impl Scene {
             why,
             &[("poisson", ratio && !sheared)],
         );
-    }
-
-    /// Keys of a line type that act on what moves, and so on nothing at rest.
-    fn idle_at_rest(&self, line_type: &LineType) -> [Key; 11] {
-        let wet = self.water.is_some();
-        let still = self.water.as_ref().is_some_and(|water| water.current.is_none());
-        let given = |value: Option<f64>| value.is_some();
-        [
-            ("axial_damping", given(line_type.axial_damping)),
-            ("damping_ratio", given(line_type.damping_ratio)),
-            ("rayleigh", line_type.rayleigh.is_some()),
-            ("dynamic_stiffness", given(line_type.dynamic_stiffness)),
-            ("static_damping", given(line_type.static_damping)),
-            ("dynamic_damping", given(line_type.dynamic_damping)),
-            ("rotary_inertia", given(line_type.rotary_inertia)),
-            ("drag_normal", still && given(line_type.drag_normal)),
-            ("drag_tangential", still && given(line_type.drag_tangential)),
-            ("added_mass_normal", wet && given(line_type.added_mass_normal)),
-            (
-                "added_mass_tangential",
-                wet && given(line_type.added_mass_tangential),
-            ),
-        ]
-    }
-
-    fn idle_of_point(&self, at: &str, point: &Point, notes: &mut Vec<Note>) {
-        let [volume, drag_area, added_mass] =
-            [point.volume, point.drag_area, point.added_mass].map(|value| value.is_some());
-        let Some(water) = &self.water else {
-            let keys = [
-                ("volume", volume),
-                ("drag_area", drag_area),
-                ("added_mass", added_mass),
-            ];
-            return say(notes, at, "without [water],", &keys);
-        };
-        if self.is_quasi_static() {
-            say(notes, at, "quasi-static:", &[("added_mass", added_mass)]);
-            let still = drag_area && water.current.is_none();
-            say(
-                notes,
-                at,
-                "quasi-static, without a current:",
-                &[("drag_area", still)],
-            );
-        } else {
-            let why = "it is a part of the mass of displaced water, and without `volume`";
-            say(notes, at, why, &[("added_mass", added_mass && !volume)]);
-        }
     }
 
     fn idle_of_solver(&self, notes: &mut Vec<Note>) {
@@ -185,13 +167,12 @@ impl Scene {
             "elements",
             meshed && solver.elements.is_some(),
         );
-        let flexible = |section: &Section| {
-            !self
-                .line_types
+        let bends = |section: &Section| {
+            self.line_types
                 .get(&section.line_type)
                 .is_some_and(LineType::bends)
         };
-        let chosen = solver.integrator != Integrator::Auto || !self.sections().any(flexible);
+        let chosen = solver.integrator != Integrator::Auto || self.sections().all(bends);
         let aimed = solver.tolerance != usual.tolerance;
         say(
             "elements and integrator are given, so that",

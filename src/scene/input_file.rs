@@ -19,7 +19,7 @@ const STANDARD_INPUT: [&str; 3] = ["/dev/stdin", "/dev/fd/0", "/proc/self/fd/0"]
 /// Why a file was not opened: in words that follow its name.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Unopened {
-    /// Whether there is none.
+    /// True if there is none.
     pub is_missing: bool,
     /// The reason.
     pub problem: String,

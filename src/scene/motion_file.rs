@@ -14,7 +14,7 @@ use super::{MotionRow, input_file};
 /// Axes of a motion, in order.
 pub(super) const AXES: [&str; 6] = ["x", "y", "z", "roll", "pitch", "yaw"];
 
-/// What else headers call the axes, in lower case.
+/// Other names of the axes in headers, in lower case.
 const SYNONYMS: [[&str; 2]; 6] = [
     ["surge", "ptfmsurge"],
     ["sway", "ptfmsway"],
@@ -27,14 +27,14 @@ const SYNONYMS: [[&str; 2]; 6] = [
 /// Most rows that are read: a day at 100 Hz.
 const ROWS_MAX: usize = 8_640_000;
 
-/// What a motion file moves.
+/// Bodies that a motion file moves.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Moves {
     /// One body, which the file does not name; whether it may turn.
     One {
         /// Rows of time [s], displacement x, y, z [m] and rotation [rad].
         rows: Vec<MotionRow>,
-        /// Whether the file has columns of rotation.
+        /// True if the file has columns of rotation.
         turns: bool,
     },
     /// Bodies by name, in the order of the file, with rows of time [s], displacement x, y, z [m] and rotation [rad].
@@ -138,15 +138,15 @@ fn units_beside(path: &Path) -> Result<BTreeMap<String, String>, String> {
 /// A column that is read.
 #[derive(Debug)]
 struct Column {
-    /// Its place in a row, from 0.
+    /// Place in a row, from 0.
     place: usize,
-    /// Its name in messages.
+    /// Name in messages.
     name: String,
     /// Body that it moves, where the file names one.
     body: Option<String>,
     /// 0 of the time, 1 to 6 of the axes.
     entry: usize,
-    /// Its unit as written, or the SI unit.
+    /// Unit as written, or the SI unit.
     unit: String,
     /// One of its unit in SI units.
     factor: f64,
@@ -169,7 +169,7 @@ impl Column {
     }
 }
 
-/// How a file is laid out.
+/// Layout of a file.
 #[derive(Debug)]
 struct Table {
     separator: Separator,
@@ -178,11 +178,11 @@ struct Table {
     /// Columns of a row, read or not.
     width: usize,
     has_header: bool,
-    /// Whether it holds the results of a run.
+    /// True if it holds the results of a run.
     is_recorded: bool,
-    /// Whether any unit stands in the header.
+    /// True if any unit stands in the header.
     has_units: bool,
-    /// Whether a row below the header has the units.
+    /// True if a row below the header has the units.
     has_unit_row: bool,
     /// Mark of the decimals between semicolons, once one was found.
     decimal: Option<char>,
@@ -461,7 +461,7 @@ fn wrong_header(row: &str, more: &str) -> String {
     )
 }
 
-/// What is said of columns that are no motion.
+/// Returns the refusal of columns that are no motion.
 fn unknown_column(row: &str, named: bool) -> String {
     wrong_header(
         row,

@@ -1,46 +1,22 @@
 //! The nearest known name to one that is not known.
 
-/// What other tools and papers call our keys.
-const ALIASES: &[(&str, &str)] = &[
-    ("ea", "axial_stiffness"),
-    ("ba", "axial_damping"),
-    ("d", "diameter"),
-    ("diam", "diameter"),
-    ("m", "mass"),
-    ("w", "weight"),
-    ("cdn", "drag_normal"),
-    ("cdt", "drag_tangential"),
-    ("cdax", "drag_tangential"),
-    ("can", "added_mass_normal"),
-    ("cat", "added_mass_tangential"),
-    ("caax", "added_mass_tangential"),
-    ("kbot", "stiffness"),
-    ("cbot", "damping"),
-    ("rho", "density"),
-    ("g", "gravity"),
-    ("segments", "elements"),
-    ("unstretched_length", "length"),
-    ("line_type", "type"),
-    ("nodes", "points"),
-    ("rope", "line_types"),
-    ("dt", "interval"),
-];
+use super::keys;
 
-/// The known name that the user may have meant.
+/// The known name that the user may have meant: a key that other programs call so, or else the most similar one.
 pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str> + Clone) -> Option<&'a str> {
     let lower = name.to_lowercase();
-    let alias = ALIASES.iter().find(|(alias, _)| *alias == lower);
-    if let Some((_, meant)) = alias
-        && let Some(found) = known.clone().into_iter().find(|k| k == meant)
-    {
-        return Some(found);
-    }
-    known
-        .into_iter()
-        .map(|candidate| (closeness(&lower, &candidate.to_lowercase()), candidate))
-        .filter(|(closeness, _)| *closeness >= 0.6)
-        .max_by(|a, b| a.0.total_cmp(&b.0))
-        .map(|(_, candidate)| candidate)
+    let spelled = |candidate: &&str| {
+        let mut keys = keys::tables().into_iter().flat_map(|table| table.keys);
+        keys.any(|key| key.name() == *candidate && key.rule.spellings.contains(&lower.as_str()))
+    };
+    known.clone().into_iter().find(spelled).or_else(|| {
+        known
+            .into_iter()
+            .map(|candidate| (closeness(&lower, &candidate.to_lowercase()), candidate))
+            .filter(|(closeness, _)| *closeness >= 0.6)
+            .max_by(|a, b| a.0.total_cmp(&b.0))
+            .map(|(_, candidate)| candidate)
+    })
 }
 
 /// 1 where equal; the beginning of a name counts as close.

@@ -6,11 +6,11 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::DeValue;
 
-/// One step from a table or array to what it holds.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) enum Step {
+/// One step from a table or array to a value in it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Step<'s> {
     /// A key of a table.
-    Key(String),
+    Key(&'s str),
     /// A place in an array, from 0.
     Index(usize),
 }
@@ -31,33 +31,29 @@ pub fn quoted(key: &str) -> String {
     }
 }
 
-/// Writes a path.
-pub(super) fn render<'a>(steps: impl Iterator<Item = &'a Step>) -> String {
-    let mut path = String::new();
-    for step in steps {
-        match step {
-            Step::Key(key) if path.is_empty() => path.push_str(&quoted(key)),
-            Step::Key(key) => {
-                path.push('.');
-                path.push_str(&quoted(key));
-            }
-            Step::Index(index) => write!(path, "[{index}]").expect("a String takes all"),
+/// Appends a step to a path.
+pub(super) fn push(path: &mut String, step: Step<'_>) {
+    match step {
+        Step::Key(key) if path.is_empty() => *path = quoted(key),
+        Step::Key(key) => {
+            path.push('.');
+            path.push_str(&quoted(key));
         }
+        Step::Index(index) => write!(path, "[{index}]").expect("a String takes all"),
     }
-    path
 }
 
-/// Bytes of what the path leads to; where it leads nowhere, of the last thing on the way that exists.
+/// Bytes of the value at a path; where there is none, of the last table or array on the way.
 pub(super) fn locate(root: &Spanned<DeValue<'_>>, path: &str) -> Option<Range<usize>> {
     let mut span = None;
     let mut table = root.get_ref().as_table();
     let mut array = None;
     let mut rest = path;
-    while let Some((step, after)) = next_step(rest) {
+    while let Some((key, index, after)) = next_step(rest) {
         rest = after;
-        let found: Option<&Spanned<DeValue<'_>>> = match step {
-            Step::Key(key) => table.and_then(|table| table.get(key.as_str())),
-            Step::Index(index) => array.and_then(|array: &toml::de::DeArray<'_>| array.get(index)),
+        let found: Option<&Spanned<DeValue<'_>>> = match index {
+            None => table.and_then(|table| table.get(key.as_str())),
+            Some(index) => array.and_then(|array: &toml::de::DeArray<'_>| array.get(index)),
         };
         let Some(value) = found else { break };
         span = Some(value.span());
@@ -67,19 +63,19 @@ pub(super) fn locate(root: &Spanned<DeValue<'_>>, path: &str) -> Option<Range<us
     span
 }
 
-/// Splits the first step off a path that [`render`] wrote.
-fn next_step(path: &str) -> Option<(Step, &str)> {
+/// Splits the first step off a path: a key, or an index with an empty key.
+fn next_step(path: &str) -> Option<(String, Option<usize>, &str)> {
     let path = path.strip_prefix('.').unwrap_or(path);
     if let Some(inside) = path.strip_prefix('[') {
         let (index, rest) = inside.split_once(']')?;
-        return Some((Step::Index(index.parse().ok()?), rest));
+        return Some((String::new(), Some(index.parse().ok()?), rest));
     }
     if path.starts_with('"') {
         let (key, rest) = split_quoted(path)?;
-        return Some((Step::Key(key), rest));
+        return Some((key, None, rest));
     }
     let end = path.find(['.', '[']).unwrap_or(path.len());
-    (end > 0).then(|| (Step::Key(path[..end].to_string()), &path[end..]))
+    (end > 0).then(|| (path[..end].to_string(), None, &path[end..]))
 }
 
 /// Undoes the quoting of [`quoted`]: TOML reads the same escapes.
@@ -126,16 +122,20 @@ mod tests {
     #[test]
     fn a_rendered_path_is_read_back() {
         let steps = [
-            Step::Key("a b".into()),
+            Step::Key("a b"),
             Step::Index(3),
-            Step::Key("q\"\\".into()),
-            Step::Key("plain".into()),
+            Step::Key("q\"\\"),
+            Step::Key("plain"),
         ];
-        let path = render(steps.iter());
+        let mut path = String::new();
+        steps.into_iter().for_each(|step| push(&mut path, step));
         let mut rest = path.as_str();
         for step in steps {
-            let (read, after) = next_step(rest).unwrap();
-            assert_eq!(read, step);
+            let (key, index, after) = next_step(rest).unwrap();
+            match step {
+                Step::Key(known) => assert_eq!((key.as_str(), index), (known, None)),
+                Step::Index(known) => assert_eq!(index, Some(known)),
+            }
             rest = after;
         }
         assert!(next_step(rest).is_none());

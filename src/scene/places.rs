@@ -1,4 +1,4 @@
-//! Where the parts of a scene stand in the file that it was read from, where that file is no TOML.
+//! Places of the parts of a scene in a file that is not TOML.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -14,7 +14,7 @@ pub struct Places {
 #[derive(Debug, Clone, PartialEq)]
 struct Place {
     span: Range<usize>,
-    /// What the file calls it.
+    /// Name in the file.
     words: String,
 }
 

@@ -1,16 +1,14 @@
-//! Values that a scene may have but a mooring seldom has: most of them are slips of units. Each rule notes the key and the usual range.
+//! Notes on values that a scene may have but a mooring seldom has: most of them are slips of units. Single values are noted by the usual range of
+//! their key in the property table; the rules here concern several keys.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use super::check::{number, quantity};
-use super::notes::{Note, chord, length, reference_position};
+use super::check::{Findings, number, quantity};
+use super::notes::{Note, chord, reference_position, say};
 use super::path::quoted;
-use super::{Line, LineType, MotionPath, Point, PointKind, Scene, Sea, Strain, WaveComponents, Waves};
+use super::table::check_table;
+use super::{Line, LineType, MotionPath, Point, PointKind, Scene, Sea, Strain, WaveComponents};
 
-/// Density of water [kg/m³]: warm fresh water has 990, brine in tanks 1100.
-const WATER_DENSITY: [f64; 2] = [900.0, 1100.0];
-/// Gravity [m/s²]: 9.76 to 9.84 on Earth, and 10 by way of rounding.
-const GRAVITY: [f64; 2] = [9.0, 10.0];
 /// Speed of axial waves √(EA/m) [m/s]: 350 in a chain of a 1:50 model, 5200 in solid steel, 5700 in carbon fibre with its coat.
 const WAVE_SPEED: [f64; 2] = [300.0, 6000.0];
 /// Strain under the line's own weight [-]: steel bears 0.003, nylon breaks at 0.2 to 0.3.
@@ -32,8 +30,6 @@ const CHAIN: std::ops::Range<f64> = 2.7..4.0;
 /// Normal drag coefficient [-] from which it refers to the bar of a chain (2.4 on the bar, 1.3 on the volume-equivalent diameter): the
 /// diameter is then the bar's by intention, as in several published systems.
 const DRAG_ON_BAR: f64 = 1.8;
-/// Drag and added-mass coefficients [-]: 3.8 is measured in model chains.
-const COEFFICIENT_MAX: f64 = 5.0;
 /// Height of an end above the seabed, over the length of its line [-], up to which it is taken to lie on it.
 const ON_SEABED: f64 = 0.02;
 /// Distance of a fairlead from its vessel's origin [m]: the longest vessel is 488 m long.
@@ -47,13 +43,10 @@ const BREAKING_SHALLOW: f64 = 0.78;
 type Rule = fn(&Scene, &mut Vec<Note>);
 
 /// The rules, in the order of a scene.
-const RULES: [Rule; 11] = [
-    gravity,
-    water_density,
+const RULES: [Rule; 8] = [
     wave_steepness,
     sea_angles,
     line_type_properties,
-    point_coefficients,
     fairlead_distance,
     line_strain,
     weight_strain,
@@ -62,58 +55,26 @@ const RULES: [Rule; 11] = [
 ];
 
 impl Scene {
-    /// Notes on values that are far from those of moorings, most of them slips of units.
+    /// Returns notes on values that are far from those of moorings, most of them slips of units.
     pub fn plausibility(&self) -> Vec<Note> {
-        let mut notes = Vec::new();
+        let mut findings = Findings::default();
+        check_table(self, "", &mut findings);
+        let mut notes = findings.notes;
         RULES.iter().for_each(|rule| rule(self, &mut notes));
         notes
     }
 }
 
-fn say(notes: &mut Vec<Note>, at: impl Into<String>, text: impl Into<String>) {
-    notes.push(Note::new(at, text));
-}
-
-/// Whether a value lies outside a range.
+/// Returns whether a value lies outside a range.
 fn outside(value: f64, [lower, upper]: [f64; 2]) -> bool {
     !(lower..=upper).contains(&value)
 }
 
-fn gravity(scene: &Scene, notes: &mut Vec<Note>) {
-    if scene.gravity != 0.0 && outside(scene.gravity, GRAVITY) {
-        let text = format!(
-            "{} is unusual: 9.80665 m/s² is usual, and 0 without gravity",
-            quantity(scene.gravity, "m/s²")
-        );
-        say(notes, "gravity", text);
-    }
-}
-
-fn water_density(scene: &Scene, notes: &mut Vec<Note>) {
-    if let Some(water) = &scene.water
-        && outside(water.density, WATER_DENSITY)
-    {
-        let text = format!(
-            "{} is unusual: 1000 to 1030 kg/m³ is usual",
-            quantity(water.density, "kg/m³")
-        );
-        say(notes, "water.density", text);
-    }
-}
-
-/// Key path of a sea.
-fn sea_path(waves: &Waves, index: usize) -> String {
-    match waves.seas.len() {
-        1 => "water.waves".to_string(),
-        _ => format!("water.waves[{index}]"),
-    }
-}
-
 fn seas(scene: &Scene) -> impl Iterator<Item = (String, &Sea)> {
-    let waves = scene.water.as_ref().and_then(|water| water.waves.as_ref());
+    let waves = scene.waves();
     waves.into_iter().flat_map(|waves| {
         let seas = waves.seas.iter().enumerate();
-        seas.map(|(index, sea)| (sea_path(waves, index), sea))
+        seas.map(|(index, sea)| (waves.path(index), sea))
     })
 }
 
@@ -140,7 +101,7 @@ fn wave_steepness(scene: &Scene, notes: &mut Vec<Note>) {
     }
 }
 
-/// What is said of a wave that would break before it is so high, from a seventh of its length on; `None` of others.
+/// Returns the note on a wave that breaks at a lower height, from a seventh of its length on; `None` of others.
 fn breaking(scene: &Scene, height: f64, period: f64) -> Option<String> {
     if scene.gravity <= 0.0 || period.is_nan() || period <= 0.0 {
         return None;
@@ -164,36 +125,28 @@ fn breaking(scene: &Scene, height: f64, period: f64) -> Option<String> {
     })
 }
 
-/// What is said of an angle beyond a turn.
-fn degrees(angle: f64) -> String {
-    format!(
-        "{} is more than a turn of 6.283 rad: {} degrees are {:.4} rad",
-        quantity(angle, "rad"),
-        number(angle),
-        angle.to_radians()
-    )
+/// Returns the note on an angle beyond a turn, which may be given in degrees.
+pub(super) fn degrees(angle: f64) -> Option<String> {
+    (angle.abs() > TAU).then(|| {
+        format!(
+            "{} is more than a turn of 6.283 rad: {} degrees are {:.4} rad",
+            quantity(angle, "rad"),
+            number(angle),
+            angle.to_radians()
+        )
+    })
 }
 
+/// Angles in rows of components; those of single keys are noted by their unit.
 fn sea_angles(scene: &Scene, notes: &mut Vec<Note>) {
     for (at, sea) in seas(scene) {
-        let regular = sea.regular.iter().flat_map(|wave| {
-            [
-                (format!("{at}.regular.direction"), wave.direction),
-                (format!("{at}.regular.phase"), wave.phase),
-            ]
-        });
-        let mean = sea.direction.map(|angle| (format!("{at}.direction"), angle));
-        for (at, angle) in regular.chain(mean) {
-            if angle.abs() > TAU {
-                say(notes, at, degrees(angle));
-            }
-        }
-        if let Some(WaveComponents::Rows(rows)) = &sea.components {
-            let beyond = |row: &&[f64; 4]| row[2..].iter().any(|angle| angle.abs() > TAU);
-            if let Some(row) = rows.iter().find(beyond) {
-                let angle = if row[2].abs() > TAU { row[2] } else { row[3] };
-                say(notes, format!("{at}.components"), degrees(angle));
-            }
+        let rows = match &sea.components {
+            Some(WaveComponents::Rows(rows)) => rows.as_slice(),
+            _ => &[],
+        };
+        let mut angles = rows.iter().flat_map(|row| &row[2..]);
+        if let Some(text) = angles.find_map(|angle| degrees(*angle)) {
+            say(notes, format!("{at}.components"), text);
         }
     }
 }
@@ -206,21 +159,6 @@ fn line_type_properties(scene: &Scene, notes: &mut Vec<Note>) {
             wave_speed(scene, line_type, &at, notes);
             mass_per_volume(scene, line_type, &at, notes);
         }
-        for (key, value) in [
-            ("drag_normal", line_type.drag_normal),
-            ("drag_tangential", line_type.drag_tangential),
-            ("added_mass_normal", line_type.added_mass_normal),
-            ("added_mass_tangential", line_type.added_mass_tangential),
-        ] {
-            coefficient(format!("{at}.{key}"), value, notes);
-        }
-    }
-}
-
-fn coefficient(at: String, value: Option<f64>, notes: &mut Vec<Note>) {
-    if let Some(value) = value.filter(|value| outside(*value, [0.0, COEFFICIENT_MAX])) {
-        let text = format!("{} is unusual: 0 to 5 is usual", number(value));
-        say(notes, at, text);
     }
 }
 
@@ -285,7 +223,7 @@ fn mass_per_volume(scene: &Scene, line_type: &LineType, at: &str, notes: &mut Ve
     }
 }
 
-/// What is said of a diameter [m] and a mass [kg/m] that make a density above a limit [kg/m³]: the diameter counts as that of a cylinder
+/// Returns the note on a diameter [m] and a mass [kg/m] that make a density above a limit [kg/m³]: the diameter is that of a cylinder
 /// of the line's volume, not that of a chain's bar.
 pub fn dense(diameter: f64, mass: f64, limit: f64, key: &str) -> Option<String> {
     let density = mass / (0.25 * PI * diameter * diameter);
@@ -306,12 +244,6 @@ pub fn dense(diameter: f64, mass: f64, limit: f64, key: &str) -> Option<String> 
             "mass and {key} {diameter} m make a density of {density:.0} kg/m³, more than steel; {as_steel}"
         )
     })
-}
-
-fn point_coefficients(scene: &Scene, notes: &mut Vec<Note>) {
-    for (i, point) in scene.points.iter().enumerate() {
-        coefficient(format!("points[{i}].added_mass"), point.added_mass, notes);
-    }
 }
 
 fn fairlead_distance(scene: &Scene, notes: &mut Vec<Note>) {
@@ -347,7 +279,7 @@ impl Scene {
 
 fn line_strain(scene: &Scene, notes: &mut Vec<Note>) {
     for (i, line) in scene.lines.iter().enumerate() {
-        let length = length(line);
+        let length = line.length();
         let ends_here = |point: &Point| point.name == line.from || point.name == line.to;
         let mut free = scene.points.iter().filter(|p| p.kind == PointKind::Free);
         let strain_max = match free.any(ends_here) {
@@ -397,7 +329,7 @@ fn swapped_ends(scene: &Scene, notes: &mut Vec<Note>) {
     let Some(seabed) = &scene.seabed else {
         return;
     };
-    let find = |name: &str| scene.points.iter().find(|point| point.name == name);
+    let find = |name: &str| scene.point(name);
     let moves = |point: &Point| point.kind == PointKind::Coupled;
     for (i, line) in scene.lines.iter().enumerate() {
         let (Some(a), Some(b)) = (find(&line.from), find(&line.to)) else {
@@ -407,7 +339,7 @@ fn swapped_ends(scene: &Scene, notes: &mut Vec<Note>) {
             continue;
         };
         let [height_a, height_b] = [from, to].map(|[x, y, z]| z - seabed.lowest_at([x, y]));
-        let on_seabed = ON_SEABED * length(line);
+        let on_seabed = ON_SEABED * line.length();
         let reversed = to[2] < from[2] && height_b <= on_seabed && height_a > on_seabed;
         if b.kind == PointKind::Fixed && moves(a) && reversed {
             let text = format!(
@@ -452,12 +384,8 @@ fn motion_angles(scene: &Scene, notes: &mut Vec<Note>) {
         if let MotionPath::Harmonic(harmonic) = motion {
             for (name, sines) in harmonic.axes() {
                 let mut phases = sines.iter().filter_map(|sine| sine.get(2));
-                if let Some(phase) = phases.find(|phase| phase.abs() > TAU) {
-                    say(
-                        notes,
-                        format!("{at}.{name}"),
-                        format!("phase: {}", degrees(*phase)),
-                    );
+                if let Some(text) = phases.find_map(|phase| degrees(*phase)) {
+                    say(notes, format!("{at}.{name}"), format!("phase: {text}"));
                 }
             }
         }

@@ -4,12 +4,14 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+use toml::de::DeValue;
 
+use super::document::Node;
 use super::notes::Note;
 use super::places::Places;
 use super::rows::Row;
 use super::slips::slip;
+use super::table::Value;
 use super::{
     LoadError, MotionPath, Scene, SceneError, WaveComponents, bathymetry_file, document, input_file,
     motion_file, path, tension_strain, water_file,
@@ -24,11 +26,11 @@ pub struct LoadedScene {
     pub text: String,
     /// The file.
     pub path: PathBuf,
-    /// What is no mistake but may surprise.
+    /// Remarks on the scene.
     pub notes: Vec<Note>,
-    /// What kind of file it is.
+    /// Kind of file.
     pub format: &'static str,
-    /// Where the scene stands in a file that is no TOML.
+    /// Places of the scene's parts in a file that is not TOML.
     pub places: Places,
 }
 
@@ -53,7 +55,7 @@ impl LoadedScene {
     }
 }
 
-/// What kind of file a scene of moorline's own is.
+/// Kind of file of moorline's own scenes.
 pub const TOML: &str = "TOML";
 
 impl Scene {
@@ -63,7 +65,7 @@ impl Scene {
     /// The first mistake, with its key path and its bytes in the text.
     pub fn from_toml(text: &str) -> Result<Scene, SceneError> {
         let document = Document::parse(text)?;
-        let scene = document.scene()?;
+        let scene = document.read::<Scene>()?;
         match document.place(scene.mistakes()).into_iter().next() {
             Some(first) => Err(first),
             None => Ok(scene),
@@ -72,7 +74,7 @@ impl Scene {
 
     /// The scene as TOML that needs no other file and is read back to the same numbers, bit for bit.
     pub fn to_toml(&self) -> String {
-        toml::to_string(self).expect("every scene can be written as TOML")
+        toml::to_string(&self.write()).expect("every scene can be written as TOML")
     }
 
     /// Reads the files that a scene names, which stand relative to a folder; returns what is wrong with them.
@@ -95,10 +97,18 @@ impl Scene {
     }
 }
 
+/// Reads a part of a scene from TOML text: the keys of a motion, a current or a load.
+///
+/// # Errors
+/// The first mistake, with its key path and its bytes in the text.
+pub fn part<T: Value>(text: &str) -> Result<T, SceneError> {
+    Document::parse(text)?.read()
+}
+
 /// Reads and checks a scene file and the files it names, which stand relative to its folder.
 ///
 /// # Errors
-/// What keeps the file from being read, or all mistakes in it.
+/// The reason why the file cannot be read, or all mistakes in it.
 pub fn load(path: &Path) -> Result<LoadedScene, LoadError> {
     load_text(path, read_text(path, |_| false)?)
 }
@@ -132,7 +142,7 @@ pub fn is_toml(text: &str) -> bool {
 
 fn scene_of(text: &str, folder: &Path) -> Result<Scene, Vec<SceneError>> {
     let document = Document::parse(text).map_err(|mistake| vec![mistake])?;
-    let mut scene = document.scene().map_err(|mistake| vec![mistake])?;
+    let mut scene = document.read::<Scene>().map_err(|mistake| vec![mistake])?;
     let of_files = scene.read_files(folder);
     let mistakes = scene.mistakes_with(of_files);
     if mistakes.is_empty() {
@@ -158,11 +168,11 @@ pub fn folder_of(path: &Path) -> &Path {
     path.parent().unwrap_or(Path::new("."))
 }
 
-/// Reads the soundings that the seabed names a file for; returns what is wrong with them.
+/// Reads the soundings that the seabed names a file for; returns the mistakes in them.
 fn read_soundings(scene: &mut Scene, folder: &Path) -> Option<SceneError> {
     let bed = scene.seabed.as_mut()?;
     if bed.grid.is_some() {
-        return None; // two shapes: told by the checks
+        return None; // two shapes are refused by the checks
     }
     match bathymetry_file::read(&folder.join(bed.file.as_ref()?)) {
         Ok(grid) => {
@@ -174,7 +184,7 @@ fn read_soundings(scene: &mut Scene, folder: &Path) -> Option<SceneError> {
     }
 }
 
-/// Reads every table of tension over strain that stands in a file; returns what is wrong with them.
+/// Reads every table of tension over strain that stands in a file; returns the mistakes in them.
 fn read_tables(scene: &mut Scene, folder: &Path) -> Vec<SceneError> {
     let mut mistakes = Vec::new();
     for (name, line_type) in &mut scene.line_types {
@@ -194,7 +204,7 @@ fn read_tables(scene: &mut Scene, folder: &Path) -> Vec<SceneError> {
     mistakes
 }
 
-/// Reads the files of waves and current, whose rows take their place; returns what is wrong with them.
+/// Reads the files of waves and current, whose rows take their place; returns the mistakes in them.
 fn read_water(scene: &mut Scene, folder: &Path) -> Vec<SceneError> {
     let mut mistakes = Vec::new();
     let Some(water) = &mut scene.water else {
@@ -231,7 +241,7 @@ fn read_water(scene: &mut Scene, folder: &Path) -> Vec<SceneError> {
     mistakes
 }
 
-/// Reads every motion file of the scene; returns what is wrong with them.
+/// Reads every motion file of the scene; returns the mistakes in them.
 fn read_motions(scene: &mut Scene, folder: &Path) -> Vec<SceneError> {
     let of_points = scene.points.iter_mut().enumerate().filter_map(|(i, point)| {
         let motion = point.motion.as_mut()?;
@@ -260,15 +270,14 @@ struct Document<'t> {
 
 impl<'t> Document<'t> {
     fn parse(text: &'t str) -> Result<Self, SceneError> {
-        let table = DeTable::parse(text).map_err(|error| syntax_mistake(text, &error))?;
-        let span = table.span();
-        Ok(Document {
-            root: Spanned::new(span, DeValue::Table(table.into_inner())),
-        })
+        let root = document::parse(text).map_err(|error| syntax_mistake(text, &error))?;
+        Ok(Document { root })
     }
 
-    fn scene(&self) -> Result<Scene, SceneError> {
-        document::deserialize(&self.root)
+    fn read<T: Value>(&self) -> Result<T, SceneError> {
+        let mut value = T::blank();
+        value.read(&Node::root(&self.root))?;
+        Ok(value)
     }
 
     /// Gives mistakes their place in the text and puts them in its order.
@@ -283,7 +292,7 @@ impl<'t> Document<'t> {
     }
 }
 
-/// A mistake in the grammar of TOML, in the parser's words or in plainer ones.
+/// Mistake in the syntax, or a file of another program.
 fn syntax_mistake(text: &str, error: &toml::de::Error) -> SceneError {
     let mistake = |span, problem: &str| SceneError {
         at: String::new(),

@@ -1,64 +1,67 @@
 //! The seabed as the user described it: level, a slope, or soundings on a grid; its stiffness and its friction.
 
-use serde::de::{self, MapAccess, Visitor, value::MapAccessDeserializer};
-use serde::ser::SerializeStruct;
-use serde::{Deserialize, Deserializer, Serialize, Serializer};
-use std::fmt;
+use toml::Value as Toml;
 
-/// A seabed: z = −depth, unless `slope`, `grid` or `file` shape it.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Seabed {
-    /// Depth below z = 0 [m]: of a level bed, of a slope at the origin; with soundings, the depth that counts where one number is asked for.
-    pub depth: f64,
-    /// Normal stiffness kbot [Pa/m], per metre of line and metre of diameter.
-    #[serde(default = "default_stiffness")]
-    pub stiffness: f64,
-    /// Normal damping cbot [Pa s/m], per metre of line and metre of diameter.
-    #[serde(default = "default_damping")]
-    pub damping: f64,
-    /// Slope dz/dx and dz/dy of a plane through (0, 0, −depth) [-].
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub slope: Option<[f64; 2]>,
-    /// File of soundings, a table in CSV or a bathymetry file of MoorDyn-F or MoorDyn-C, relative to the scene; read into `grid`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub file: Option<String>,
-    /// How stiffness and damping are used.
-    #[serde(default)]
-    pub contact: ContactLaw,
-    /// Coulomb friction: one number [-], or `{ transverse = 0.7, axial = 0.4 }`.
-    #[serde(default)]
-    pub friction: Friction,
-    /// Soundings, `{ x = […], y = […], depth = [[…], …] }`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub grid: Option<DepthGrid>,
+use super::SceneError;
+use super::check::Findings;
+use super::document::Node;
+use super::table::{Key, Kind, PLAIN, Table, Value, choice, magnitude, not_negative, positive, table};
+
+/// Default normal stiffness [Pa/m].
+const STIFFNESS: f64 = 3.0e6;
+/// Default normal damping [Pa s/m].
+const DAMPING: f64 = 3.0e5;
+
+table! {
+    /// A seabed: z = −depth, unless `slope`, `grid` or `file` shape it.
+    pub struct Seabed, "`[seabed]`" {
+        /// Depth of the seabed below z = 0 [m]; of a slope, the depth at the origin; with soundings, the depth for waves.
+        pub depth: f64 => not_negative(1e5).hint("the depth counts downwards from z = 0").elsewhere(&["wtrdpth"]).parameter(),
+        /// Normal stiffness [Pa/m], per metre of line and metre of diameter.
+        pub stiffness: f64 = STIFFNESS => positive(1e12).elsewhere(&["kbot"]),
+        /// Normal damping [Pa s/m], per metre of line and metre of diameter.
+        pub damping: f64 = DAMPING => not_negative(1e12).elsewhere(&["cbot"]),
+        /// Slope dz/dx and dz/dy of a plane through (0, 0, −depth) [-].
+        pub slope: Option<[f64; 2]> => magnitude(SLOPE_MAX)
+            .hint("steeper than any bed; the slope is dz/dx and dz/dy, 0.1 rises by 1 m in 10 m"),
+        /// File of soundings, a table in CSV or a bathymetry file of MoorDyn-F or MoorDyn-C, relative to the scene.
+        pub file: Option<String> => PLAIN.instead_of(&["slope", "grid"]),
+        /// Use of stiffness and damping.
+        pub contact: ContactLaw = ContactLaw::Regularised,
+        /// Coefficient of Coulomb friction [-], or one across and one along the line.
+        pub friction: Friction = Friction::isotropic(0.0) => not_negative(10.0).elsewhere(&["frictioncoefficient", "mu_kt"]),
+        /// Soundings, smooth between the lines of the grid and constant outside.
+        pub grid: Option<DepthGrid> => PLAIN.instead_of(&["slope"]),
+    }
 }
 
-/// Depths over lines of equal x and of equal y, smooth between them and constant outside.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct DepthGrid {
-    /// x of the grid's lines [m], increasing.
-    pub x: Vec<f64>,
-    /// y of the grid's lines [m], increasing.
-    pub y: Vec<f64>,
-    /// Depths [m]: a row for every y, with one number for every x.
-    pub depth: Vec<Vec<f64>>,
+/// Steepest bed [-]: 63 degrees.
+const SLOPE_MAX: f64 = 2.0;
+
+table! {
+    /// Depths over lines of equal x and of equal y.
+    pub struct DepthGrid, "`grid`" {
+        /// x of the grid's lines [m], increasing.
+        pub x: Vec<f64> => magnitude(1e7),
+        /// y of the grid's lines [m], increasing.
+        pub y: Vec<f64> => magnitude(1e7),
+        /// Depths [m]: a row for every y, with one number for every x.
+        pub depth: Vec<Vec<f64>> => magnitude(1e5),
+    }
 }
 
-/// How seabed stiffness and damping reach the nodes.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum ContactLaw {
-    /// Softened together until a resting node compresses its spring by a small part of its segment length; the spring begins
-    /// that much above the bed, so that the node lies on it. The damper keeps a part of critical damping, where the given one has as much.
-    #[default]
-    Regularised,
-    /// Exactly the given coefficients.
-    AsGiven,
+choice! {
+    /// Use of the seabed's stiffness and damping at the nodes.
+    pub enum ContactLaw {
+        /// Softened together until a resting node compresses its spring by a small part of its segment length; the spring begins that much
+        /// above the seabed, so that the node lies on it. The damper keeps a part of critical damping, where the given one has as much.
+        Regularised = "regularised",
+        /// Exactly the given coefficients.
+        AsGiven = "as_given",
+    }
 }
 
-/// Coulomb friction between lines and bed.
+/// Coulomb friction between lines and seabed.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Friction {
     /// Across the line, and of points [-].
@@ -68,7 +71,7 @@ pub struct Friction {
 }
 
 impl Friction {
-    /// Alike in all directions [-].
+    /// Friction with the same coefficient [-] in all directions.
     pub const fn isotropic(coefficient: f64) -> Friction {
         Friction {
             transverse: coefficient,
@@ -76,33 +79,27 @@ impl Friction {
         }
     }
 
-    /// Whether there is any.
+    /// Returns whether one of the coefficients is above zero.
     pub fn acts(&self) -> bool {
         self.transverse > 0.0 || self.axial > 0.0
     }
 }
 
 impl Seabed {
-    /// A level bed at a depth [m], with the stiffness and damping that scenes have by default.
+    /// A level bed at a depth [m], with the default stiffness and damping.
     pub fn level(depth: f64) -> Seabed {
         Seabed {
             depth,
-            stiffness: default_stiffness(),
-            damping: default_damping(),
-            slope: None,
-            file: None,
-            contact: ContactLaw::default(),
-            friction: Friction::default(),
-            grid: None,
+            ..Seabed::default()
         }
     }
 
-    /// Whether it is a horizontal plane.
+    /// Returns whether the bed is a horizontal plane.
     pub fn is_level(&self) -> bool {
         self.grid.is_none() && self.file.is_none() && self.slope.is_none_or(|slope| slope == [0.0; 2])
     }
 
-    /// z of the bed at a place [m]: of a plane as it is, between soundings the lowest of those around.
+    /// Height of the bed at a place [m]; between soundings the lowest of those around.
     pub(super) fn lowest_at(&self, [x, y]: [f64; 2]) -> f64 {
         let around = |line: &[f64], place: f64| {
             let next = line.partition_point(|known| *known <= place);
@@ -119,70 +116,57 @@ impl Seabed {
         -deepest.copied().fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// Whether stiffness and damping are those of a scene that gives none.
+    /// Returns whether stiffness and damping have their default values.
     pub fn has_default_stiffness(&self) -> bool {
-        self.stiffness == default_stiffness() && self.damping == default_damping()
+        self.stiffness == STIFFNESS && self.damping == DAMPING
     }
 }
 
-fn default_stiffness() -> f64 {
-    3.0e6
+table! {
+    /// Friction by direction.
+    struct Directions, "`friction`" {
+        /// Coefficient across the line, and of points [-].
+        transverse: f64 => not_negative(10.0),
+        /// Coefficient along the line [-].
+        axial: f64 => not_negative(10.0),
+    }
 }
 
-fn default_damping() -> f64 {
-    3.0e5
-}
+impl Value for Friction {
+    fn kind() -> Kind {
+        Kind::NumberOrTable(Directions::SCHEMA)
+    }
 
-impl Serialize for Friction {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        if self.transverse == self.axial {
-            return serializer.serialize_f64(self.axial);
+    fn blank() -> Friction {
+        Friction::default()
+    }
+
+    fn read(&mut self, node: &Node<'_>) -> Result<(), SceneError> {
+        if node.entries().is_none() {
+            *self = Friction::isotropic(node.number("a number or { transverse = μ, axial = μ }")?);
+            return Ok(());
         }
-        let mut table = serializer.serialize_struct("Friction", 2)?;
-        table.serialize_field("transverse", &self.transverse)?;
-        table.serialize_field("axial", &self.axial)?;
-        table.end()
-    }
-}
-
-impl<'de> Deserialize<'de> for Friction {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_any(FrictionVisitor)
-    }
-}
-
-/// The table that tells the directions apart.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields, rename = "Friction")]
-pub(super) struct Directions {
-    transverse: f64,
-    axial: f64,
-}
-
-struct FrictionVisitor;
-
-impl<'de> Visitor<'de> for FrictionVisitor {
-    type Value = Friction;
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("a number or { transverse = μ, axial = μ }")
+        let mut directions = Directions::default();
+        directions.read(node)?;
+        let Directions { transverse, axial } = directions;
+        *self = Friction { transverse, axial };
+        Ok(())
     }
 
-    fn visit_f64<E: de::Error>(self, value: f64) -> Result<Friction, E> {
-        Ok(Friction::isotropic(value))
+    fn write(&self) -> Option<Toml> {
+        let Friction { transverse, axial } = *self;
+        match transverse == axial {
+            true => axial.write(),
+            false => Directions { transverse, axial }.write(),
+        }
     }
 
-    // Whole numbers arrive here.
-    fn visit_i64<E: de::Error>(self, value: i64) -> Result<Friction, E> {
-        Ok(Friction::isotropic(value as f64))
-    }
-
-    fn visit_u64<E: de::Error>(self, value: u64) -> Result<Friction, E> {
-        Ok(Friction::isotropic(value as f64))
-    }
-
-    fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Friction, A::Error> {
-        let Directions { transverse, axial } = Directions::deserialize(MapAccessDeserializer::new(map))?;
-        Ok(Friction { transverse, axial })
+    fn check(&self, at: &str, key: &Key, findings: &mut Findings) {
+        let Friction { transverse, axial } = *self;
+        if axial == transverse || axial.is_nan() && transverse.is_nan() {
+            axial.check(at, key, findings);
+        } else {
+            Directions { transverse, axial }.check(at, key, findings);
+        }
     }
 }

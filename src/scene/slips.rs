@@ -1,4 +1,4 @@
-//! Slips of the pen in TOML, by what they look like: words without quotes, decimal commas, units after numbers.
+//! Common slips in TOML: words without quotes, decimal commas, units after numbers.
 
 /// Returns what a line of text that is no TOML looks like, and what would be right, where it is a slip known here.
 pub(super) fn slip(text: &str, place: usize) -> Option<String> {
@@ -16,7 +16,7 @@ pub(super) fn slip(text: &str, place: usize) -> Option<String> {
     tokens.iter().find_map(odd).or_else(|| unjoined(line, &tokens))
 }
 
-/// What stands between two delimiters of a line, outside of quotes.
+/// Text between two delimiters of a line, outside of quotes.
 struct Token<'t> {
     text: &'t str,
     /// The delimiters on both sides; a space at the ends of the line.
@@ -24,7 +24,7 @@ struct Token<'t> {
     after: char,
     /// The token before.
     last: &'t str,
-    /// Whether the innermost bracket is a square one.
+    /// True if the innermost bracket is a square one.
     in_array: bool,
 }
 
@@ -67,7 +67,7 @@ fn tokens(line: &str) -> Vec<Token<'_>> {
     found
 }
 
-/// What is odd about a value.
+/// Returns the slip in a value.
 fn odd(token: &Token) -> Option<String> {
     let text = token.text;
     let is_number = |text: &str| text.parse::<f64>().is_ok() && text.contains(|c: char| c.is_ascii_digit());

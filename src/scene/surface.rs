@@ -1,13 +1,13 @@
 //! Which lines may come out of the water.
 
-use super::notes::{length, reference_position};
+use super::notes::reference_position;
 use super::{Line, MotionPath, Point, PointKind, Scene};
 
 /// Standard deviations of the elevation that a trough of waves is deep [-].
 const TROUGH: f64 = 3.0;
 
 impl Scene {
-    /// Whether a line knows the water's surface: as `water.surface` says; else where one of its ends lies above z = 0, or above the troughs of waves, in the reference
+    /// Returns whether a line meets the water's surface: as `water.surface` says; else where one of its ends lies above z = 0, or above the troughs of waves, in the reference
     /// configuration, or where it is buoyant or hangs on a free point that floats, and long enough to come up. Beams never do.
     pub fn meets_surface(&self, line: &Line) -> bool {
         let Some(water) = &self.water else {
@@ -21,18 +21,14 @@ impl Scene {
 
     fn comes_up(&self, line: &Line) -> bool {
         let end = |name: &str| {
-            let point = self.points.iter().find(|point| point.name == name)?;
+            let point = self.point(name)?;
             Some((reference_position(self, point)?[2], self.floats(point)))
         };
         let (Some((a, a_floats)), Some((b, b_floats))) = (end(&line.from), end(&line.to)) else {
             return false;
         };
-        let length = length(line);
-        let mut sections = line.sections.iter();
-        let buoyant = sections.any(|section| {
-            let line_type = self.line_types.get(&section.line_type);
-            line_type.is_some_and(|line_type| self.weight(line_type) < 0.0)
-        });
+        let length = line.length();
+        let buoyant = self.types_of(line).any(|line_type| self.weight(line_type) < 0.0);
         // the highest that a line of this length could be pulled up
         let highest = match (a_floats, b_floats) {
             (true, true) => f64::INFINITY,
@@ -41,12 +37,12 @@ impl Scene {
             (false, false) if buoyant => 0.5 * (a + b + length),
             (false, false) => a.max(b),
         };
-        let waves = self.water.as_ref().and_then(|water| water.waves.as_ref());
+        let waves = self.waves();
         let trough = waves.map_or(0.0, |waves| -TROUGH * waves.deviation());
         highest > trough
     }
 
-    /// How far the scene's own motion lifts a point at most [m].
+    /// Greatest height by which the scene's own motion lifts a point [m].
     pub(super) fn rise(&self, point: &Point) -> f64 {
         let body = point.on.as_ref().unwrap_or(&point.name);
         let path = point.motion.as_ref().or_else(|| self.motion.get(body));
@@ -61,7 +57,7 @@ impl Scene {
         z + arm * (roll + pitch).min(2.0) // no farther than to the other side
     }
 
-    /// Whether a free point is lighter than the water it displaces.
+    /// Returns whether a free point is lighter than the water it displaces.
     fn floats(&self, point: &Point) -> bool {
         let density = self.water.as_ref().map_or(0.0, |water| water.density);
         let displaced = density * point.volume.unwrap_or(0.0);
@@ -121,7 +117,7 @@ mod tests {
             ("table = [[0.0, 0.0, 0.0, 0.0], [5.0, 0.0, 0.0, 2.1]]", 2.1),
             ("table = [[0.0, 0.0, 0.0, 0.0], [5.0, 0.0, 0.0, -2.1]]", 0.0),
         ] {
-            let moved = toml::from_str(path).unwrap();
+            let moved = crate::scene::part(path).unwrap();
             scene.motion.insert("b".to_string(), moved);
             assert_eq!(scene.rise(&scene.points[1]), rise, "{path}");
         }
@@ -131,7 +127,7 @@ mod tests {
     fn a_vessel_lifts_a_point_by_its_arm_as_it_rolls() {
         let held = "kind = \"coupled\", on = \"barge\"";
         let mut scene = scene("", "mass = 20.0", [-20.0, -2.0], held);
-        let path = toml::from_str("roll = [[0.1, 10.0]]\nz = [[0.5, 9.0]]").unwrap();
+        let path = crate::scene::part("roll = [[0.1, 10.0]]\nz = [[0.5, 9.0]]").unwrap();
         scene.motion.insert("barge".to_string(), path);
         let rise = 0.5 + 0.1 * f64::hypot(10.0, 2.0);
         approx::assert_relative_eq!(scene.rise(&scene.points[1]), rise, max_relative = 1e-12);

@@ -22,7 +22,7 @@ fn motions(scene: &Scene) -> impl Iterator<Item = (String, &MotionPath)> {
 }
 
 fn functions(scene: &Scene) -> impl Iterator<Item = (String, &TimeFunction)> {
-    let current = scene.water.as_ref().and_then(|water| water.current.as_ref());
+    let current = scene.current();
     let factor = current.and_then(|current| current.factor.as_ref());
     let factor = factor.map(|factor| ("water.current.factor".to_string(), factor));
     let loads = scene.points.iter().enumerate().flat_map(|(i, point)| {

@@ -1,15 +1,17 @@
 //! Tables of tension over strain: rows in a scene, or a file of two columns.
 
-use std::fmt;
 use std::path::Path;
 
-use serde::de::{self, Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
-use serde::ser::SerializeMap;
-use serde::{Serialize, Serializer};
+use toml::Value as Toml;
 
-use super::input_file;
+use super::check::{Findings, quantity};
+use super::document::Node;
 use super::rows::{Field, Row, number, shown};
+use super::table::{Key, Kind, Table, Value, magnitude, table};
 use super::units::{self, Quantity};
+use super::value::entry;
+use super::words::significant;
+use super::{SceneError, input_file};
 
 /// Tension over strain: `[[strain, tension], …]` or `{ file = "rope.csv" }`, which stands relative to the scene's folder.
 #[derive(Debug, Clone, PartialEq)]
@@ -30,54 +32,79 @@ impl TensionStrain {
     }
 }
 
-impl Serialize for TensionStrain {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+table! {
+    /// A table of tension over strain in a file.
+    struct TensionFile, "`tension_strain`" {
+        /// File with two columns, strain [-] and tension [N], relative to the scene.
+        file: String,
+    }
+}
+
+impl Value for TensionStrain {
+    fn kind() -> Kind {
+        Kind::NumberOrTable(TensionFile::SCHEMA)
+    }
+
+    fn blank() -> TensionStrain {
+        TensionStrain {
+            file: None,
+            rows: Vec::new(),
+        }
+    }
+
+    fn read(&mut self, node: &Node<'_>) -> Result<(), SceneError> {
+        if node.elements().is_some() {
+            return self.rows.read(node);
+        }
+        if node.entries().is_none() {
+            return Err(node.expected("[[strain, tension], …] or { file = \"…\" }"));
+        }
+        let mut table = TensionFile::default();
+        table.read(node)?;
+        self.file = Some(table.file);
+        Ok(())
+    }
+
+    fn write(&self) -> Option<Toml> {
+        match &self.file {
+            Some(file) if self.rows.is_empty() => Some(entry("file", file.clone())),
+            _ => self.rows.write(),
+        }
+    }
+
+    fn check(&self, at: &str, _: &Key, findings: &mut Findings) {
+        for (number, row) in self.rows.iter().enumerate() {
+            let at = format!("{at}[{number}]");
+            let strain = findings.number(&at, row[0], magnitude(10.0).bounds, "-");
+            if !strain || !findings.number(&at, row[1], magnitude(1e15).bounds, "N") {
+                return;
+            }
+            let before = number.checked_sub(1).map(|before| self.rows[before]);
+            let problem = match before {
+                None if *row != [0.0, 0.0] => "a table begins with no tension at no strain: [0.0, 0.0]",
+                Some([strain, _]) if row[0] <= strain => "strain must rise from row to row",
+                Some([_, tension]) if row[1] <= tension => "tension must rise with strain",
+                _ => continue,
+            };
+            return findings.say(at, problem);
+        }
         match &self.file {
             Some(file) if self.rows.is_empty() => {
-                let mut map = serializer.serialize_map(Some(1))?;
-                map.serialize_entry("file", file)?;
-                map.end()
+                findings.say(at, format!("{file} was not read: write its rows here"));
             }
-            _ => self.rows.serialize(serializer),
+            _ if self.rows.len() < 2 => findings.say(at, "a table has two rows [strain, tension] or more"),
+            _ => {}
         }
     }
-}
 
-impl<'de> Deserialize<'de> for TensionStrain {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_any(TableVisitor)
-    }
-}
-
-struct TableVisitor;
-
-impl<'de> Visitor<'de> for TableVisitor {
-    type Value = TensionStrain;
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("[[strain, tension], …] or { file = \"…\" }")
-    }
-
-    fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<TensionStrain, A::Error> {
-        let mut rows = Vec::new();
-        while let Some(row) = seq.next_element()? {
-            rows.push(row);
-        }
-        Ok(TensionStrain { file: None, rows })
-    }
-
-    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<TensionStrain, A::Error> {
-        let mut file: Option<String> = None;
-        while let Some(key) = map.next_key::<String>()? {
-            match key.as_str() {
-                "file" => file = Some(map.next_value()?),
-                unknown => return Err(de::Error::unknown_field(unknown, &["file"])),
-            }
-        }
-        match file {
-            Some(file) => Ok(TensionStrain::from_file(&file)),
-            None => Err(de::Error::missing_field("file")),
-        }
+    fn in_words(&self, _: &Key) -> Option<String> {
+        let [strain, tension] = self.rows.last().copied().unwrap_or_default();
+        Some(format!(
+            "from a table of {} rows up to {} at a strain of {}, smooth between them and straight beyond",
+            self.rows.len(),
+            quantity(tension, "N"),
+            significant(strain)
+        ))
     }
 }
 

@@ -1,9 +1,13 @@
 //! Functions of time that a scene can write down: loads and motions.
 
-use std::fmt;
+use toml::Value as Toml;
 
-use serde::de::{self, Deserialize, Deserializer, MapAccess, Visitor};
-use serde::{Serialize, Serializer};
+use super::SceneError;
+use super::check::{Bounds, Findings, quantity};
+use super::document::Node;
+use super::table::{Key, Kind, MIXED, Table, Value, magnitude, positive, table};
+use super::value::entry;
+use super::words::motion_in_words;
 
 /// A scalar function of time: `20.0`, `{ step = [t0, f0, t1, f1] }`, `{ ramp = [t0, f0, t1, f1] }` or
 /// `{ table = [[t, f], …] }`.
@@ -19,71 +23,143 @@ pub enum TimeFunction {
     Table(Vec<[f64; 2]>),
 }
 
-/// Names of the functions in a scene.
-const FUNCTIONS: &[&str] = &["constant", "step", "ramp", "table"];
+table! {
+    /// The keys of a function of time, of which one is given.
+    struct FunctionText, "a function of time" {
+        /// The same value at all times, as a plain number is.
+        constant: Option<f64> => MIXED,
+        /// `[t0, f0, t1, f1]`: a cubic step from f0 before t0 to f1 after t1, with zero slope at both.
+        step: Option<[f64; 4]> => MIXED,
+        /// `[t0, f0, t1, f1]`: straight from f0 before t0 to f1 after t1.
+        ramp: Option<[f64; 4]> => MIXED,
+        /// Rows `[t, f]` of ascending time, straight between them and constant outside; two rows at one time are a jump.
+        table: Option<Vec<[f64; 2]>> => MIXED,
+    }
+}
 
-impl Serialize for TimeFunction {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let name = "TimeFunction";
+impl Value for TimeFunction {
+    fn kind() -> Kind {
+        Kind::NumberOrTable(FunctionText::SCHEMA)
+    }
+
+    fn blank() -> TimeFunction {
+        TimeFunction::Constant(0.0)
+    }
+
+    fn read(&mut self, node: &Node<'_>) -> Result<(), SceneError> {
+        let expected =
+            "a number, { step = [t0, f0, t1, f1] }, { ramp = [t0, f0, t1, f1] } or { table = [[t, f], …] }";
+        if node.entries().is_none_or(|entries| entries.is_empty()) {
+            *self = TimeFunction::Constant(node.number(expected)?);
+            return Ok(());
+        }
+        let mut text = FunctionText::default();
+        text.read(node)?;
+        let given = text.entries().filter(|(_, value)| !value.is_absent());
+        let given: Vec<&str> = given.map(|(key, _)| key.name()).collect();
+        if let [first, second, ..] = given[..] {
+            return Err(node.refuse(format!(
+                "`{first}` and `{second}` cannot both be given: a load has one function of time"
+            )));
+        }
+        let constant = || TimeFunction::Constant(text.constant.unwrap_or_default());
+        let step = text
+            .step
+            .map(TimeFunction::Step)
+            .or(text.ramp.map(TimeFunction::Ramp));
+        *self = step
+            .or(text.table.map(TimeFunction::Table))
+            .unwrap_or_else(constant);
+        Ok(())
+    }
+
+    fn write(&self) -> Option<Toml> {
         match self {
-            TimeFunction::Constant(value) => serializer.serialize_f64(*value),
-            TimeFunction::Step(v) => serializer.serialize_newtype_variant(name, 1, "step", v),
-            TimeFunction::Ramp(v) => serializer.serialize_newtype_variant(name, 2, "ramp", v),
-            TimeFunction::Table(v) => serializer.serialize_newtype_variant(name, 3, "table", v),
+            TimeFunction::Constant(value) => value.write(),
+            TimeFunction::Step(numbers) => Some(entry("step", numbers.write()?)),
+            TimeFunction::Ramp(numbers) => Some(entry("ramp", numbers.write()?)),
+            TimeFunction::Table(rows) => Some(entry("table", rows.write()?)),
         }
+    }
+
+    fn check(&self, at: &str, key: &Key, findings: &mut Findings) {
+        let (limits, unit) = (magnitude(1e15).bounds, key.unit().unwrap_or("-"));
+        match self {
+            TimeFunction::Constant(value) => _ = findings.number(at, *value, limits, unit),
+            TimeFunction::Step(numbers) => check_rise(findings, &format!("{at}.step"), *numbers, unit),
+            TimeFunction::Ramp(numbers) => check_rise(findings, &format!("{at}.ramp"), *numbers, unit),
+            TimeFunction::Table(rows) => {
+                let at = format!("{at}.table");
+                check_times(findings, &at, rows.iter().map(|row| row[0]), true);
+                for (i, row) in rows.iter().enumerate() {
+                    findings.number(format!("{at}[{i}][1]"), row[1], limits, unit);
+                }
+            }
+        }
+    }
+
+    fn in_words(&self, key: &Key) -> Option<String> {
+        let unit = key.unit().unwrap_or("-");
+        let rise = |how: &str, [t0, f0, t1, f1]: [f64; 4]| {
+            let [f0, f1] = [f0, f1].map(|f| quantity(f, unit));
+            format!(
+                "{how} from {f0} at {} to {f1} at {}",
+                quantity(t0, "s"),
+                quantity(t1, "s")
+            )
+        };
+        Some(match self {
+            TimeFunction::Constant(value) => quantity(*value, unit),
+            TimeFunction::Step(numbers) => rise("rising smoothly", *numbers),
+            TimeFunction::Ramp(numbers) => rise("rising straight", *numbers),
+            TimeFunction::Table(rows) => format!("from a table of {} rows", rows.len()),
+        })
     }
 }
 
-impl<'de> Deserialize<'de> for TimeFunction {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_any(TimeFunctionVisitor)
+/// Times of tables and steps [s]: thirty years.
+const TIME: Bounds = Bounds::Magnitude(1e9);
+
+/// Checks `[t0, f0, t1, f1]` of a step or ramp.
+fn check_rise(findings: &mut Findings, at: &str, [t0, f0, t1, f1]: [f64; 4], unit: &str) {
+    let mut right = findings.number(format!("{at}[0]"), t0, TIME, "s");
+    right &= findings.number(format!("{at}[2]"), t1, TIME, "s");
+    for (place, value) in [(1, f0), (3, f1)] {
+        findings.number(format!("{at}[{place}]"), value, Bounds::Magnitude(1e15), unit);
+    }
+    if right && t1 <= t0 {
+        let problem = format!(
+            "it ends at {}, not after its start at {}: write [t0, f0, t1, f1] with t1 > t0",
+            quantity(t1, "s"),
+            quantity(t0, "s")
+        );
+        findings.say(at, problem);
     }
 }
 
-struct TimeFunctionVisitor;
-
-impl<'de> Visitor<'de> for TimeFunctionVisitor {
-    type Value = TimeFunction;
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(
-            "a number, { step = [t0, f0, t1, f1] }, { ramp = [t0, f0, t1, f1] } or { table = [[t, f], …] }",
-        )
-    }
-
-    fn visit_f64<E: de::Error>(self, value: f64) -> Result<TimeFunction, E> {
-        Ok(TimeFunction::Constant(value))
-    }
-
-    // TOML's and JSON's whole numbers arrive here.
-    fn visit_i64<E: de::Error>(self, value: i64) -> Result<TimeFunction, E> {
-        Ok(TimeFunction::Constant(value as f64))
-    }
-
-    fn visit_u64<E: de::Error>(self, value: u64) -> Result<TimeFunction, E> {
-        Ok(TimeFunction::Constant(value as f64))
-    }
-
-    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<TimeFunction, A::Error> {
-        let Some(name) = map.next_key::<String>()? else {
-            return Err(de::Error::invalid_type(
-                de::Unexpected::Other("an empty table"),
-                &self,
-            ));
-        };
-        let function = match name.as_str() {
-            "constant" => TimeFunction::Constant(map.next_value()?),
-            "step" => TimeFunction::Step(map.next_value()?),
-            "ramp" => TimeFunction::Ramp(map.next_value()?),
-            "table" => TimeFunction::Table(map.next_value()?),
-            unknown => return Err(de::Error::unknown_field(unknown, FUNCTIONS)),
-        };
-        match map.next_key::<String>()? {
-            None => Ok(function),
-            Some(second) => Err(de::Error::custom(format!(
-                "`{name}` and `{second}` cannot both be given: a load has one function of time"
-            ))),
+/// Checks the first column of a table; where it may jump, two rows may share a time.
+fn check_times(findings: &mut Findings, at: &str, times: impl Iterator<Item = f64>, jumps: bool) {
+    let mut last: Option<f64> = None;
+    for (row, time) in times.enumerate() {
+        let here = || format!("{at}[{row}][0]");
+        if !TIME.accepts(time) {
+            findings.number(here(), time, TIME, "s");
+            return;
         }
+        if let Some(last) = last
+            && (time < last || (time == last && !jumps))
+        {
+            let problem = format!(
+                "time {} does not come after {}: write the rows in ascending time",
+                quantity(time, "s"),
+                quantity(last, "s")
+            );
+            return findings.say(here(), problem);
+        }
+        last = Some(time);
+    }
+    if last.is_none() {
+        findings.say(at, "the table has no rows");
     }
 }
 
@@ -176,8 +252,7 @@ fn interpolate(pairs: &[[f64; 2]], t: f64) -> f64 {
 pub type MotionRow = [f64; 7];
 
 /// A prescribed displacement from the reference position, and of vessels a rotation from the reference attitude.
-#[derive(Debug, Clone, PartialEq, serde::Deserialize)]
-#[serde(try_from = "MotionText")]
+#[derive(Debug, Clone, PartialEq)]
 pub enum MotionPath {
     /// Read from a table in a CSV file.
     File(MotionFile),
@@ -193,9 +268,9 @@ pub enum MotionPath {
 pub struct MotionFile {
     /// Path of the file.
     pub file: String,
-    /// Its rows, filled in by the reader.
+    /// Rows of the file, filled in by the reader.
     pub rows: Vec<MotionRow>,
-    /// Its columns, separators and units, filled in by the reader.
+    /// Columns, separators and units of the file, filled in by the reader.
     pub columns: String,
 }
 
@@ -219,7 +294,7 @@ pub struct HarmonicMotion {
 }
 
 impl HarmonicMotion {
-    /// The six axes by name, with their components: amplitudes [m] of x, y, z and [rad] of roll, pitch, yaw.
+    /// The six axes by name, with their sines: amplitudes [m] of x, y, z and [rad] of roll, pitch, yaw.
     pub fn axes(&self) -> [(&'static str, &Vec<Vec<f64>>); 6] {
         [
             ("x", &self.x),
@@ -261,7 +336,7 @@ impl MotionPath {
         }
     }
 
-    /// Whether it rotates.
+    /// Returns whether it rotates.
     pub fn turns(&self) -> bool {
         match self {
             MotionPath::Harmonic(h) => h.axes()[3..].iter().any(|(_, axis)| !axis.is_empty()),
@@ -274,33 +349,38 @@ fn turning(rows: &[MotionRow]) -> bool {
     rows.iter().any(|row| row[4..] != [0.0; 3])
 }
 
-/// The keys that TOML may give a [`MotionPath`].
-#[derive(Default, serde::Serialize, serde::Deserialize)]
-#[serde(
-    deny_unknown_fields,
-    expecting = "{ x = [[amplitude, period], …], z = …, ramp = … }, { table = [[t, x, y, z], …] } or { file = \"motion.csv\" }"
-)]
-pub(super) struct MotionText {
-    file: Option<String>,
-    table: Option<Vec<TableRow>>,
-    x: Option<Vec<Vec<f64>>>,
-    y: Option<Vec<Vec<f64>>>,
-    z: Option<Vec<Vec<f64>>>,
-    roll: Option<Vec<Vec<f64>>>,
-    pitch: Option<Vec<Vec<f64>>>,
-    yaw: Option<Vec<Vec<f64>>>,
-    ramp: Option<f64>,
+table! {
+    /// The keys of a motion: a `file`, a `table`, or sines along and about the axes.
+    struct MotionText, "a motion" {
+        /// File with columns of time [s], x, y, z [m] and of vessels roll, pitch, yaw [rad], relative to the scene.
+        file: Option<String>,
+        /// Rows of time [s], x, y, z [m] and of vessels roll, pitch, yaw [rad].
+        table: Option<Vec<TableRow>> => MIXED,
+        /// Sines along x: [amplitude [m], period [s]] or [amplitude, period, phase [rad]].
+        x: Option<Vec<Vec<f64>>> => MIXED.in_units("m, s, rad"),
+        /// Sines along y: [amplitude [m], period [s]] or [amplitude, period, phase [rad]].
+        y: Option<Vec<Vec<f64>>> => MIXED.in_units("m, s, rad"),
+        /// Sines along z: [amplitude [m], period [s]] or [amplitude, period, phase [rad]].
+        z: Option<Vec<Vec<f64>>> => MIXED.in_units("m, s, rad"),
+        /// Sines of roll: [amplitude [rad], period [s]] or [amplitude, period, phase [rad]]; vessels only.
+        roll: Option<Vec<Vec<f64>>> => MIXED.in_units("rad, s, rad"),
+        /// Sines of pitch: [amplitude [rad], period [s]] or [amplitude, period, phase [rad]]; vessels only.
+        pitch: Option<Vec<Vec<f64>>> => MIXED.in_units("rad, s, rad"),
+        /// Sines of yaw: [amplitude [rad], period [s]] or [amplitude, period, phase [rad]]; vessels only.
+        yaw: Option<Vec<Vec<f64>>> => MIXED.in_units("rad, s, rad"),
+        /// Duration of the cosine ramp ½(1 − cos(πt/ramp)) of the sines [s]; none where absent.
+        ramp: Option<f64> => positive(1e9),
+    }
 }
 
-impl TryFrom<MotionText> for MotionPath {
-    type Error = String;
-
-    fn try_from(text: MotionText) -> Result<Self, Self::Error> {
-        let axes = [&text.x, &text.y, &text.z, &text.roll, &text.pitch, &text.yaw];
+impl MotionText {
+    /// The motion, where the keys go together.
+    fn path(self) -> Result<MotionPath, String> {
+        let axes = [&self.x, &self.y, &self.z, &self.roll, &self.pitch, &self.yaw];
         let swings = axes.iter().any(|axis| axis.is_some());
-        match (text.file, text.table) {
+        match (self.file, self.table) {
             (Some(_), Some(_)) => Err("`file` and `table` cannot both be given".into()),
-            (Some(_), _) | (_, Some(_)) if swings || text.ramp.is_some() => Err(
+            (Some(_), _) | (_, Some(_)) if swings || self.ramp.is_some() => Err(
                 "`x`, `y`, `z`, `roll`, `pitch`, `yaw` and `ramp` cannot be given beside `file` or `table`".into(),
             ),
             (Some(file), None) => Ok(MotionPath::File(MotionFile {
@@ -313,69 +393,168 @@ impl TryFrom<MotionText> for MotionPath {
                 Err("a motion needs `x`, `y` or `z`, or `table`, or `file`; vessels also `roll`, `pitch` or `yaw`".into())
             }
             (None, None) => Ok(MotionPath::Harmonic(HarmonicMotion {
-                x: text.x.unwrap_or_default(),
-                y: text.y.unwrap_or_default(),
-                z: text.z.unwrap_or_default(),
-                roll: text.roll.unwrap_or_default(),
-                pitch: text.pitch.unwrap_or_default(),
-                yaw: text.yaw.unwrap_or_default(),
-                ramp: text.ramp,
+                x: self.x.unwrap_or_default(),
+                y: self.y.unwrap_or_default(),
+                z: self.z.unwrap_or_default(),
+                roll: self.roll.unwrap_or_default(),
+                pitch: self.pitch.unwrap_or_default(),
+                yaw: self.yaw.unwrap_or_default(),
+                ramp: self.ramp,
             })),
         }
     }
 }
 
 /// A row of 4 numbers, or of 7 with the rotations.
-#[derive(Clone, serde::Serialize, serde::Deserialize)]
-#[serde(try_from = "Vec<f64>", into = "Vec<f64>")]
+#[derive(Debug, Clone, PartialEq)]
 struct TableRow(MotionRow);
 
-impl TryFrom<Vec<f64>> for TableRow {
-    type Error = String;
+impl Value for TableRow {
+    fn kind() -> Kind {
+        Kind::Numbers
+    }
 
-    fn try_from(numbers: Vec<f64>) -> Result<Self, Self::Error> {
-        let mut row = [0.0; 7];
-        match numbers.len() {
-            n @ (4 | 7) => row[..n].copy_from_slice(&numbers),
-            n => {
-                return Err(format!(
-                    "expected an array of 4 numbers (t, x, y, z), or of 7 (with roll, pitch, yaw of a vessel), found an array of {n}"
-                ));
-            }
+    fn blank() -> TableRow {
+        TableRow([0.0; 7])
+    }
+
+    fn read(&mut self, node: &Node<'_>) -> Result<(), SceneError> {
+        let mut numbers: Vec<f64> = Vec::new();
+        Value::read(&mut numbers, node)?;
+        let count = numbers.len();
+        if ![4, 7].contains(&count) {
+            let expected = "an array of 4 numbers (t, x, y, z), or of 7 (with roll, pitch, yaw of a vessel)";
+            return Err(node.expected_instead_of(expected, &format!("an array of {count}")));
         }
-        Ok(TableRow(row))
+        self.0[..count].copy_from_slice(&numbers);
+        Ok(())
+    }
+
+    fn write(&self) -> Option<Toml> {
+        let width = if turning(&[self.0]) { 7 } else { 4 };
+        self.0[..width].to_vec().write()
     }
 }
 
-impl From<TableRow> for Vec<f64> {
-    fn from(TableRow(row): TableRow) -> Vec<f64> {
-        let width = if turning(&[row]) { 7 } else { 4 };
-        row[..width].to_vec()
+impl Value for MotionPath {
+    fn kind() -> Kind {
+        Kind::Table(MotionText::SCHEMA)
     }
-}
 
-impl Serialize for MotionPath {
-    /// Rows that were read from a file are written in its place, so that the scene needs no other file.
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+    fn blank() -> MotionPath {
+        MotionPath::Harmonic(HarmonicMotion::default())
+    }
+
+    fn read(&mut self, node: &Node<'_>) -> Result<(), SceneError> {
+        if node.entries().is_none() {
+            return Err(node.expected(
+                "{ x = [[amplitude, period], …], z = …, ramp = … }, { table = [[t, x, y, z], …] } or { file = \"motion.csv\" }",
+            ));
+        }
         let mut text = MotionText::default();
-        match self {
-            MotionPath::File(file) if file.rows.is_empty() => text.file = Some(file.file.clone()),
-            MotionPath::File(MotionFile { rows, .. }) | MotionPath::Table(rows) => {
-                text.table = Some(rows.iter().copied().map(TableRow).collect());
-            }
+        text.read(node)?;
+        *self = text.path().map_err(|problem| node.refuse(problem))?;
+        Ok(())
+    }
+
+    /// Rows that were read from a file are written in its place, so that the scene needs no other file.
+    fn write(&self) -> Option<Toml> {
+        let rows = match self {
+            MotionPath::File(file) if file.rows.is_empty() => return Some(entry("file", file.file.clone())),
+            MotionPath::File(MotionFile { rows, .. }) | MotionPath::Table(rows) => rows,
             MotionPath::Harmonic(harmonic) => {
-                let turn = |axis: &Vec<Vec<f64>>| (!axis.is_empty()).then(|| axis.clone());
-                text.x = Some(harmonic.x.clone());
-                text.y = Some(harmonic.y.clone());
-                text.z = Some(harmonic.z.clone());
-                text.roll = turn(&harmonic.roll);
-                text.pitch = turn(&harmonic.pitch);
-                text.yaw = turn(&harmonic.yaw);
-                text.ramp = harmonic.ramp;
+                let axes = harmonic.axes().into_iter();
+                let axes = axes.filter_map(|(name, sines)| Some((name.to_string(), sines.write()?)));
+                let ramp = harmonic.ramp.map(|ramp| ("ramp".to_string(), Toml::Float(ramp)));
+                let mut table: toml::Table = axes.chain(ramp).collect();
+                if !table.keys().any(|key| key != "ramp") {
+                    table.insert("x".into(), Toml::Array(Vec::new()));
+                }
+                return Some(Toml::Table(table));
+            }
+        };
+        let rows: Vec<TableRow> = rows.iter().copied().map(TableRow).collect();
+        Some(entry("table", rows.write()?))
+    }
+
+    fn check(&self, at: &str, key: &Key, findings: &mut Findings) {
+        match self {
+            MotionPath::File(file) if file.rows.is_empty() => findings.say(
+                format!("{at}.file"),
+                "a scene that comes as text cannot read files: write the rows as `table = [[t, x, y, z], …]`",
+            ),
+            MotionPath::File(file) => {
+                let (mut of_rows, at) = (Findings::default(), format!("{at}.file"));
+                check_rows(&mut of_rows, &at, &file.rows);
+                if let Some(first) = of_rows.mistakes.first() {
+                    let row = first.at.strip_prefix(&at).unwrap_or_default();
+                    findings.say(&at, format!("row {row} (from 0) of the file: {}", first.problem));
+                }
+            }
+            MotionPath::Table(rows) => check_rows(findings, &format!("{at}.table"), rows),
+            MotionPath::Harmonic(harmonic) => check_harmonic(findings, at, key, harmonic),
+        }
+    }
+
+    fn in_words(&self, _: &Key) -> Option<String> {
+        Some(motion_in_words(self))
+    }
+}
+
+/// Displacements [m].
+const DISPLACEMENT: Bounds = Bounds::Magnitude(1e7);
+/// Rotations [rad]: many turns.
+const ROTATION: Bounds = Bounds::Magnitude(1e4);
+
+/// Checks rows of time, displacement and rotation.
+fn check_rows(findings: &mut Findings, at: &str, rows: &[MotionRow]) {
+    check_times(findings, at, rows.iter().map(|row| row[0]), false);
+    for (i, row) in rows.iter().enumerate() {
+        for (column, value) in row.iter().enumerate().skip(1) {
+            let (bounds, unit) = if column < 4 {
+                (DISPLACEMENT, "m")
+            } else {
+                (ROTATION, "rad")
+            };
+            if !bounds.accepts(*value) {
+                findings.number(format!("{at}[{i}][{column}]"), *value, bounds, unit);
             }
         }
-        text.serialize(serializer)
     }
+}
+
+fn check_harmonic(findings: &mut Findings, at: &str, key: &Key, harmonic: &HarmonicMotion) {
+    for (number, (axis, sines)) in harmonic.axes().into_iter().enumerate() {
+        let (size, unit) = if number < 3 {
+            (DISPLACEMENT, "m")
+        } else {
+            (ROTATION, "rad")
+        };
+        for (i, sine) in sines.iter().enumerate() {
+            let at = format!("{at}.{axis}[{i}]");
+            if ![2, 3].contains(&sine.len()) {
+                let problem = format!(
+                    "expected [amplitude [{unit}], period [s]] or [amplitude, period, phase [rad]], found {} numbers",
+                    sine.len()
+                );
+                findings.say(at, problem);
+                continue;
+            }
+            let bounds = [
+                (size, unit),
+                (Bounds::Positive(1e9), "s"),
+                (Bounds::Magnitude(1e6), "rad"),
+            ];
+            for (place, (value, (bounds, unit))) in sine.iter().zip(bounds).enumerate() {
+                findings.number(format!("{at}[{place}]"), *value, bounds, unit);
+            }
+        }
+    }
+    let text = MotionText {
+        ramp: harmonic.ramp,
+        ..MotionText::default()
+    };
+    text.check(at, key, findings);
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ use moorline::dynamics::Choice;
 use moorline::interface::{Binding, Causality, Interface, Layout, SolverResult};
 use moorline::model::{Body, Role};
 use moorline::output::channels::Channels;
-use moorline::scene::keys::tables;
+use moorline::scene::keys;
 use moorline::scene::{LoadedScene, Note, SceneError, load};
 use moorline::simulation::{Error, Simulation};
 use toml::{Table, Value};
@@ -26,7 +26,7 @@ const PLACES: &[(&str, &str)] = &[
     ("seabed", "Seabed"),
     ("grid", "DepthGrid"),
     ("friction", "Directions"),
-    ("tension_strain", "TensionStrain"),
+    ("tension_strain", "TensionFile"),
     ("solid_section", "SolidSection"),
     ("rayleigh", "Rayleigh"),
     ("points", "Point"),
@@ -41,12 +41,22 @@ const PLACES: &[(&str, &str)] = &[
     ("bossak", "Bossak"),
     ("output", "Output"),
     ("motion", "MotionText"),
-    ("factor", "TimeFunction"),
-    ("path", "TimeFunction"),
-    ("x", "TimeFunction"),
-    ("y", "TimeFunction"),
-    ("z", "TimeFunction"),
+    ("factor", "FunctionText"),
+    ("path", "FunctionText"),
+    ("x", "FunctionText"),
+    ("y", "FunctionText"),
+    ("z", "FunctionText"),
 ];
+
+/// Every table of the format with the names of its keys, second names included.
+fn tables() -> Vec<(&'static str, Vec<&'static str>)> {
+    let names = |table: keys::Schema| {
+        let keys = table.keys.iter();
+        let names = keys.flat_map(|key| [Some(key.name()), key.rule.alias]).flatten();
+        (table.name, names.collect())
+    };
+    keys::tables().into_iter().map(names).collect()
+}
 
 /// Table of the format that an object at a path is; `None` of a map of names.
 fn table_of(path: &[String]) -> Option<&'static str> {
@@ -402,7 +412,7 @@ fn every_key_of_every_object_changes_a_result_or_is_refused_or_noted() {
     let nowhere: BTreeSet<String> = list["nowhere"].clone().try_into().unwrap();
     let all = tables()
         .into_iter()
-        .flat_map(|(table, keys)| keys.iter().map(move |key| format!("{table}.{key}")));
+        .flat_map(|(table, keys)| keys.into_iter().map(move |key| format!("{table}.{key}")));
     let odd = all.filter(|key| found.acting.contains(key) == nowhere.contains(key));
     wrong.extend(odd.map(|key| format!("{key} acts nowhere, or is said to")));
     assert!(

@@ -1,116 +1,66 @@
-//! The page of the scene format is the whole format: its keys are the reader's, and the reader's are on it.
+//! The reference of the scene format in `docs/scene.md` is written from the property table. After a change that is meant, write it anew:
+//! `MOORLINE_UPDATE=1 cargo test --test keys page`.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
+use std::path::Path;
 
-use moorline::scene::keys::{Known, choices, tables};
+use moorline::scene::keys::{choices, tables};
+use moorline::scene::page::reference;
 
-const PAGE: &str = include_str!("../../docs/scene.md");
+const HEADING: &str = "\n## Every key\n";
 
-/// What the page calls the tables and choices of the reader.
-const NAMES: &[(&str, &str)] = &[
-    ("Scene", "the scene"),
-    ("Water", "`[water]`"),
-    ("Current", "`current`"),
-    ("Sea", "`waves`, each sea"),
-    ("RegularWave", "`regular`"),
-    ("Seabed", "`[seabed]`"),
-    ("DepthGrid", "`grid`"),
-    ("Directions", "`friction`"),
-    ("LineType", "`[line_types.NAME]`"),
-    ("TensionStrain", "`tension_strain`"),
-    ("SolidSection", "`solid_section`"),
-    ("Rayleigh", "`rayleigh`"),
-    ("Point", "`[[points]]`"),
-    ("PointForce", "`force`"),
-    ("PointMoment", "`moment`"),
-    ("TimeFunction", "a function of time"),
-    ("MotionText", "a motion"),
-    ("Vessel", "`[[vessels]]`"),
-    ("Line", "`[[lines]]`"),
-    ("Section", "`sections`, each"),
-    ("Break", "`break`"),
-    ("Winch", "`winch`"),
-    ("Solver", "`[solver]`"),
-    ("Bossak", "`bossak`"),
-    ("Output", "`[output]`"),
-    ("LineModel", "`model`"),
-    ("FibreLaw", "`fibre_law`"),
-    ("Strain", "`strain`"),
-    ("PointKind", "`kind`"),
-    ("Axis", "`free`"),
-    ("RestShape", "`rest_shape`"),
-    ("InitialShape", "`initial`"),
-    ("Integrator", "`integrator`"),
-    ("Reconstruction", "`input_reconstruction`"),
-    ("AngleOrder", "`motion_angles`"),
-    ("ContactLaw", "`contact`"),
-    ("SpectrumKind", "`spectrum`"),
-    ("LineEnd", "an end"),
-];
-
-/// Words in backticks.
-fn code(text: &str) -> BTreeSet<&str> {
-    text.split('`').skip(1).step_by(2).collect()
-}
-
-/// The rows of the tables under "Every key": what they are about, and the words in them.
-fn listed() -> BTreeMap<&'static str, BTreeSet<&'static str>> {
-    let (_, list) = PAGE.split_once("\n## Every key\n").expect("the page has a list");
-    let rows = list.lines().filter(|line| line.starts_with("| "));
-    let cells = rows.filter_map(|row| row.trim_matches(['|', ' ']).split_once(" | "));
-    cells
-        .filter(|(_, keys)| keys.starts_with('`'))
-        .map(|(of, keys)| (of, code(keys)))
-        .collect()
-}
-
-fn of_the_reader() -> Vec<Known> {
-    tables().into_iter().chain(choices()).collect()
+fn page() -> (std::path::PathBuf, String) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/scene.md");
+    let text = std::fs::read_to_string(&path).unwrap();
+    (path, text)
 }
 
 #[test]
-fn the_keys_of_the_page_are_those_of_the_reader() {
-    let (listed, known) = (listed(), of_the_reader());
-    assert_eq!(listed.len(), known.len(), "tables on the page, and of the reader");
-    for (table, keys) in known {
-        let name = NAMES.iter().find(|(of, _)| *of == table);
-        let (_, name) = name.unwrap_or_else(|| panic!("{table} has no row on the page"));
-        // `dynamics` is another name of `integrator`
-        let keys: BTreeSet<&str> = keys.iter().copied().filter(|key| *key != "dynamics").collect();
-        assert_eq!(listed[name], keys, "{table}, \"{name}\" on the page");
+fn the_reference_of_the_page_is_that_of_the_property_table() {
+    let (path, text) = page();
+    let (before, committed) = text.split_once(HEADING).expect("the page has the heading");
+    let written = format!("\n{}", reference());
+    if std::env::var_os("MOORLINE_UPDATE").is_some() {
+        std::fs::write(&path, format!("{before}{HEADING}{written}")).unwrap();
+        return;
     }
+    for (committed, written) in committed.lines().zip(written.lines()) {
+        assert_eq!(committed, written);
+    }
+    assert_eq!(committed.len(), written.len(), "lines are missing at the end");
 }
 
 #[test]
-fn every_key_of_the_reader_is_explained_on_the_page_before_it_is_listed() {
-    let (text, _) = PAGE.split_once("\n## Every key\n").unwrap();
-    for (table, keys) in of_the_reader() {
-        for key in keys {
-            let given = [
-                format!("{key} = "),
-                format!("`{key}`"),
-                format!("\"{key}\""),
-                format!("[{key}"),
-                format!("{key}]"),
-            ];
-            let words = text.split(|c: char| !(c.is_alphanumeric() || c == '_'));
+fn every_key_has_a_text_and_every_number_a_unit_or_bounds_of_its_own() {
+    for table in tables() {
+        for key in table.keys {
+            let (name, text) = (key.name(), key.text());
             assert!(
-                given.iter().any(|form| text.contains(form.as_str()))
-                    || words.into_iter().any(|word| word == *key),
-                "{table}.{key}"
+                text.len() > 5 && text.contains(['.', ';']),
+                "{}.{name}: {text:?}",
+                table.name
             );
+            let shown = reference();
+            assert!(shown.contains(&format!("| `{name}`")), "{}.{name}", table.name);
         }
+    }
+    for (key, choice) in choices() {
+        assert!(choice.words.len() > 1, "{}", key.name());
+        assert!(choice.words.iter().all(|(_, meaning)| !meaning.trim().is_empty()));
     }
 }
 
 #[test]
 fn every_key_in_an_example_of_the_page_is_one_of_the_reader() {
-    let known: BTreeSet<&str> = of_the_reader()
+    let keys = tables().into_iter().flat_map(|table| table.keys);
+    let keys = keys.flat_map(|key| [Some(key.name()), key.rule.alias]).flatten();
+    let words = choices()
         .into_iter()
-        .flat_map(|(_, keys)| keys)
-        .copied()
-        .collect();
-    let blocks = PAGE
+        .flat_map(|(_, choice)| choice.words)
+        .map(|(word, _)| *word);
+    let known: BTreeSet<&str> = keys.chain(words).collect();
+    let (_, text) = page();
+    let blocks = text
         .split("```toml\n")
         .skip(1)
         .filter_map(|rest| rest.split("```").next());
@@ -120,7 +70,7 @@ fn every_key_in_an_example_of_the_page_is_one_of_the_reader() {
         for before in code.split('=').rev().skip(1) {
             let key = before.rsplit([' ', '{', ',', '.']).find(|word| !word.is_empty());
             let key = key.unwrap_or_default();
-            // a motion is given by the name of what moves
+            // a motion is given by the name of the point or vessel that it moves
             assert!(
                 known.contains(key) || ["fairlead", "platform"].contains(&key),
                 "{line}"

@@ -42,7 +42,8 @@ fn words_say_what_is_modelled_and_what_is_not() {
     assert!(words.contains("weight 902.03 N/m in water"), "{words}");
     let flat = words.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(
-        flat.contains("drag (normal 1.2, tangential none), no added mass"),
+        flat.contains("normal drag coefficient 1.2,")
+            && flat.contains("no tangential drag, no normal added mass, no tangential added mass"),
         "{words}"
     );
     let dry = SCENE

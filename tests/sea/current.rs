@@ -387,7 +387,7 @@ fn a_scene_with_a_current_survives_being_written_and_read() {
         "{ velocity = [1.0, 0.0, -0.1], factor = { ramp = [0.0, 0.0, 60.0, 1.0] } }",
     ] {
         let original = riser(4, current);
-        let text = toml::to_string(&original).unwrap();
+        let text = original.to_toml();
         assert_eq!(Scene::from_toml(&text).unwrap(), original, "{text}");
     }
 }

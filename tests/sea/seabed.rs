@@ -375,7 +375,7 @@ fn beds_that_make_no_sense_are_refused_with_their_key() {
         ("friction = \"much\"", "seabed.friction: expected a number"),
         (
             "slope = [0.1, 57.0]",
-            "seabed.slope[1]: 57 is steeper than any bed",
+            "seabed.slope[1]: 57 is beyond the limit of 2: steeper than any bed",
         ),
         (
             "slope = [0.1, nan]",
@@ -383,7 +383,7 @@ fn beds_that_make_no_sense_are_refused_with_their_key() {
         ),
         (
             "slope = [0.1, 0.0], file = \"bed.csv\"",
-            "seabed: `slope` and `file` cannot both be given",
+            "seabed.file: `slope` is given too: give one of them",
         ),
         (
             "file = \"bed.csv\"",

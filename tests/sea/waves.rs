@@ -477,7 +477,11 @@ fn every_mistake_in_a_spectrum_is_refused_with_its_place() {
             ".peakedness",
             "is not between 1 and 10",
         ),
-        (&full("components = 0"), ".components", "from 1 to"),
+        (
+            &full("components = 0"),
+            ".components",
+            "is not between 1 and 100000",
+        ),
         (&full("ramp = 0.0"), ".ramp", "is not positive"),
         (
             &of("pierson_moskowitz", ", peak_period = 8.0, peakedness = 2.0"),

@@ -25,7 +25,8 @@ const OBLIQUE: &str = "profile = [[0.0, 0.7, 0.5], [-60.0, 0.3, 0.4], [-200.0, 0
 fn systems() -> Vec<(String, Scene)> {
     let both = |name: &str| {
         let mut drifting = shipped(name);
-        drifting.water.as_mut().unwrap().current = Some(toml::from_str(OBLIQUE).unwrap());
+        let current: moorline::scene::Current = moorline::scene::part(OBLIQUE).unwrap();
+        drifting.water.as_mut().unwrap().current = Some(current);
         [
             (name.to_string(), shipped(name)),
             (format!("{name} in a current"), drifting),

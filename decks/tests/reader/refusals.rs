@@ -137,7 +137,7 @@ const REFUSALS: &[(&str, &str, &str)] = &[
     (
         "340.0       20       -",
         "340.0       999999999       -",
-        "input:21:52: line 1, NumSegs: 999999999 elements are more than 100000",
+        "input:21:52: line 1, NumSegs: 999999999 is not between 1 and 100000",
     ),
     (
         "340.0       20       -",

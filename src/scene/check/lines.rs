@@ -1,12 +1,9 @@
 //! Lines, their sections, their start, and whether anything holds them.
 
-use super::{Bounds, Findings, quantity, unknown};
+use super::{Findings, unknown};
 use crate::scene::{
     InitialShape, Integrator, Line, LineModel, LineType, PointKind, RestShape, Scene, Section,
 };
-
-/// Most elements of a section.
-const ELEMENTS_MAX: usize = 100_000;
 
 pub(super) fn check(scene: &Scene, findings: &mut Findings) {
     if scene.lines.is_empty() {
@@ -46,98 +43,79 @@ fn check_sections(findings: &mut Findings, at: &str, line: &Line, scene: &Scene)
         let problem = "no sections: write sections = [{ type = …, length = … }]";
         findings.say(format!("{at}.sections"), problem);
     }
-    check_elements(findings, at, line.elements);
-    let given = |section: &Section| section.elements.is_some();
-    if line.elements.is_some() && !line.sections.is_empty() && line.sections.iter().all(given) {
-        let problem =
-            "every section of the line has its own number of elements: leave this one out, or those";
-        findings.say(format!("{at}.elements"), problem);
-    }
+    let all_given =
+        !line.sections.is_empty() && line.sections.iter().all(|section| section.elements.is_some());
+    findings.refuse(
+        at,
+        &[(
+            "elements",
+            line.elements.is_some() && all_given,
+            "every section of the line has its own number of elements: leave this one out, or those",
+        )],
+    );
     for (i, section) in line.sections.iter().enumerate() {
         let at = format!("{at}.sections[{i}]");
-        if !scene.line_types.contains_key(&section.line_type) {
+        let Some(line_type) = scene.line_types.get(&section.line_type) else {
             let types = scene.line_types.keys().map(String::as_str);
             let problem = unknown("line type", "line types", &section.line_type, types);
             findings.say(format!("{at}.type"), problem);
-        }
-        let length = Bounds::Positive(1e6);
-        findings.number(format!("{at}.length"), section.length, length, "m");
-        check_elements(findings, &at, section.elements);
-        check_damping_elements(findings, &at, section, scene);
-    }
-}
-
-/// The number of elements of a line or of a section, where it is given.
-fn check_elements(findings: &mut Findings, at: &str, elements: Option<usize>) {
-    let problem = match elements {
-        Some(0) => "0 elements: give 1 or more, or leave it out to have it chosen".to_string(),
-        Some(n) if n > ELEMENTS_MAX => format!("{n} elements are more than {ELEMENTS_MAX}"),
-        _ => return,
-    };
-    findings.say(format!("{at}.elements"), problem);
-}
-
-/// The elements that a damping ratio refers to, where there is a ratio.
-fn check_damping_elements(findings: &mut Findings, at: &str, section: &Section, scene: &Scene) {
-    let Some(elements) = section.damping_elements else {
-        return;
-    };
-    let at = format!("{at}.damping_elements");
-    let line_type = scene.line_types.get(&section.line_type);
-    if line_type.is_some_and(|kind| kind.damping_ratio.is_none()) {
-        let problem = format!(
-            "line type \"{}\" has no `damping_ratio`, which alone it acts on: leave it out",
-            section.line_type
-        );
-        findings.say(at, problem);
-    } else if elements == 0 {
-        findings.say(at, "0 elements: give 1 or more, or leave it out");
-    }
-}
-
-/// Lines that part from their points.
-fn check_parting(findings: &mut Findings, at: &str, line: &Line, scene: &Scene) {
-    if let Some(parting) = &line.parting {
-        let at = format!("{at}.break");
-        let bounds = Bounds::Positive(1e15);
-        findings.number_if(format!("{at}.tension"), parting.tension, bounds, "N");
-        findings.number_if(format!("{at}.time"), parting.time, Bounds::NotNegative(1e9), "s");
-        if parting.tension.is_none() && parting.time.is_none() {
-            findings.say(
-                &at,
-                "nothing breaks the line: give `tension` [N], `time` [s] or both",
+            continue;
+        };
+        if section.damping_elements.is_some() && line_type.damping_ratio.is_none() {
+            let problem = format!(
+                "line type \"{}\" has no `damping_ratio`, which alone it acts on: leave it out",
+                section.line_type
             );
+            findings.say(format!("{at}.damping_elements"), problem);
         }
     }
-    if line.parting.is_none() && line.release.is_none() {
+}
+
+/// Lines that are released or break off their points.
+fn check_parting(findings: &mut Findings, at: &str, line: &Line, scene: &Scene) {
+    let Some(key) = line
+        .parting
+        .as_ref()
+        .map(|_| "break")
+        .or(line.release.map(|_| "release"))
+    else {
         return;
-    }
-    let at = match line.parting {
-        Some(_) => format!("{at}.break"),
-        None => format!("{at}.release"),
     };
-    if matches!(
+    let open = line
+        .parting
+        .as_ref()
+        .is_some_and(|parting| parting.tension.is_none() && parting.time.is_none());
+    let unmoved = matches!(
         scene.solver.integrator,
         Integrator::QuasiStatic | Integrator::Beam
-    ) {
-        let problem = "a line that lets go falls: use a dynamic integrator of cables, or \"auto\"";
-        findings.say(&at, problem);
-    }
-    let bends = |section: &Section| {
-        let line_type = scene.line_types.get(&section.line_type);
-        line_type.is_some_and(|kind| kind.model == LineModel::Beam || kind.bends())
-    };
-    if line.sections.iter().any(bends) {
-        findings.say(
-            at,
-            "lines with bending stiffness do not let go: leave it out, or the bending stiffness",
-        );
-    }
+    );
+    let mut types = scene.types_of(line);
+    let stiff = types.any(|kind| kind.model == LineModel::Beam || kind.bends());
+    findings.refuse(
+        at,
+        &[
+            (
+                key,
+                open,
+                "nothing breaks the line: give `tension` [N], `time` [s] or both",
+            ),
+            (
+                key,
+                unmoved,
+                "a released line falls: use a dynamic integrator of cables, or \"auto\"",
+            ),
+            (
+                key,
+                stiff,
+                "lines with bending stiffness cannot be released: leave it out, or the bending stiffness",
+            ),
+        ],
+    );
 }
 
 fn check_start(findings: &mut Findings, at: &str, line: &Line, scene: &Scene) {
     let ends = [&line.from, &line.to].map(|name| {
-        let point = scene.points.iter().find(|point| point.name == *name);
+        let point = scene.point(name);
         point.map(|point| point.position)
     });
     match &line.initial {
@@ -155,18 +133,7 @@ fn check_start(findings: &mut Findings, at: &str, line: &Line, scene: &Scene) {
                 findings.say(at, problem);
             }
         }
-        InitialShape::Parabola(sag) => {
-            if *sag < 0.0 {
-                let problem = format!(
-                    "{} is negative: a positive sag hangs below the chord",
-                    quantity(*sag, "m")
-                );
-                findings.say(format!("{at}.parabola"), problem);
-            } else {
-                let bounds = Bounds::Positive(1e6);
-                findings.number(format!("{at}.parabola"), *sag, bounds, "m");
-            }
-        }
+        InitialShape::Parabola(_) => {}
         InitialShape::Nodes(nodes) => check_nodes(findings, &format!("{at}.nodes"), nodes, line, ends),
     }
 }
@@ -178,14 +145,6 @@ fn check_nodes(
     line: &Line,
     ends: [Option<[f64; 3]>; 2],
 ) {
-    for (i, node) in nodes.iter().enumerate() {
-        for (axis, value) in node.iter().enumerate() {
-            let place = format!("{at}[{i}][{axis}]");
-            if !findings.number(place, *value, Bounds::Magnitude(1e7), "m") {
-                return;
-            }
-        }
-    }
     let elements: Option<usize> = line
         .sections
         .iter()
@@ -203,7 +162,7 @@ fn check_nodes(
         );
         return findings.say(at, problem);
     }
-    let length: f64 = line.sections.iter().map(|section| section.length).sum();
+    let length = line.length();
     let last = nodes.len() - 1;
     for (i, end) in [(0, ends[0]), (last, ends[1])] {
         let Some(end) = end else { continue };
@@ -232,35 +191,26 @@ fn check_clamps(findings: &mut Findings, at: &str, line: &Line, scene: &Scene) {
     let ends = [("clamped_a", line.clamped_a), ("clamped_b", line.clamped_b)];
     for ((key, direction), section) in ends.into_iter().zip(sections) {
         let Some(direction) = direction else { continue };
-        let at = format!("{at}.{key}");
-        let mut right = true;
-        for (axis, value) in direction.iter().enumerate() {
-            let bounds = Bounds::Magnitude(1e6);
-            right &= findings.number(format!("{at}[{axis}]"), *value, bounds, "-");
-        }
-        if right && direction == [0.0; 3] {
-            findings.say(at.clone(), "[0, 0, 0] is no direction");
-        }
         let line_type = section.and_then(|section| scene.line_types.get(&section.line_type));
-        if !line_type.is_none_or(LineType::bends) {
-            let problem =
-                "a perfectly flexible line cannot be clamped: give its type a `bending_stiffness` [N m²]";
-            findings.say(at, problem);
-        }
+        findings.refuse(
+            at,
+            &[
+                (key, direction == [0.0; 3], "[0, 0, 0] is no direction"),
+                (
+                    key,
+                    !line_type.is_none_or(LineType::bends),
+                    "a perfectly flexible line cannot be clamped: give its type a `bending_stiffness` [N m²]",
+                ),
+            ],
+        );
     }
 }
 
-/// Whether a line flies where nothing holds it: a beam, whose shape at the start is given.
+/// Returns whether a line flies where nothing holds it: a beam, whose shape at the start is given.
 fn flies(line: &Line, scene: &Scene) -> bool {
-    let beam = |line_type: &str| {
-        scene.solver.integrator == Integrator::Beam
-            || scene
-                .line_types
-                .get(line_type)
-                .is_some_and(|t| t.model == LineModel::Beam)
-    };
-    let mut sections = line.sections.iter();
-    line.initial != InitialShape::Static && sections.all(|section| beam(&section.line_type))
+    let all_beams = scene.solver.integrator == Integrator::Beam;
+    let beams = all_beams || scene.types_of(line).all(|kind| kind.model == LineModel::Beam);
+    line.initial != InitialShape::Static && beams
 }
 
 /// Every line must hang, over other lines, on something that does not just fall.

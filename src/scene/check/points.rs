@@ -1,12 +1,10 @@
 //! Points, their loads and their motions.
 
-use std::collections::BTreeMap;
-use std::f64::consts::TAU;
-
-use super::time::{Load, check_load_in_time, check_motion};
-use super::{Bounds, Findings, check_names, quantity, unknown};
+use super::{Findings, check_names, quantity, unknown};
 use crate::scene::path::quoted;
-use crate::scene::{LineType, Point, PointKind, Scene, Section, TimeFunction};
+use crate::scene::table::{Choice, Table};
+use crate::scene::{LineType, Point, PointKind, Scene, Section};
+use std::collections::BTreeMap;
 
 pub(super) fn check(scene: &Scene, findings: &mut Findings) {
     let mut taken = BTreeMap::new();
@@ -16,7 +14,6 @@ pub(super) fn check(scene: &Scene, findings: &mut Findings) {
     check_names(findings, &mut taken, "lines", lines);
     let vessels = scene.vessels.iter().map(|vessel| vessel.name.as_str());
     check_names(findings, &mut taken, "vessels", vessels);
-    check_vessels(scene, findings);
     for (i, point) in scene.points.iter().enumerate() {
         let at = format!("points[{i}]");
         check_place(findings, &at, point, scene);
@@ -30,11 +27,6 @@ pub(super) fn check(scene: &Scene, findings: &mut Findings) {
 }
 
 fn check_place(findings: &mut Findings, at: &str, point: &Point, scene: &Scene) {
-    let mut right = true;
-    for (axis, value) in point.position.iter().enumerate() {
-        let place = format!("{at}.position[{axis}]");
-        right &= findings.number(place, *value, Bounds::Magnitude(1e7), "m");
-    }
     let Some(seabed) = &scene.seabed else { return };
     if point.on.is_some() {
         return; // in the vessel's frame
@@ -42,7 +34,7 @@ fn check_place(findings: &mut Findings, at: &str, point: &Point, scene: &Scene) 
     let z = point.position[2];
     // Positions typed with few digits may miss the bed by a rounding.
     let rounding = 1e-9 * seabed.depth.abs().max(1.0);
-    if right && seabed.is_level() && seabed.depth >= 0.0 && z < -seabed.depth - rounding {
+    if seabed.is_level() && seabed.depth >= 0.0 && z < -seabed.depth - rounding {
         let problem = format!(
             "z = {} lies below the seabed at z = {}",
             quantity(z, "m"),
@@ -54,34 +46,12 @@ fn check_place(findings: &mut Findings, at: &str, point: &Point, scene: &Scene) 
 
 /// Keys that only some kinds of points may have.
 fn check_freedom(findings: &mut Findings, at: &str, point: &Point) {
-    findings.number_if(format!("{at}.mass"), point.mass, Bounds::NotNegative(1e12), "kg");
-    findings.number_if(
-        format!("{at}.volume"),
-        point.volume,
-        Bounds::NotNegative(1e9),
-        "m³",
-    );
-    findings.number_if(
-        format!("{at}.drag_area"),
-        point.drag_area,
-        Bounds::NotNegative(1e9),
-        "m²",
-    );
-    findings.number_if(
-        format!("{at}.added_mass"),
-        point.added_mass,
-        Bounds::NotNegative(1e3),
-        "-",
-    );
     if point.kind == PointKind::Fixed {
-        let given = [
-            ("mass", point.mass.is_some()),
-            ("volume", point.volume.is_some()),
-            ("drag_area", point.drag_area.is_some()),
-            ("added_mass", point.added_mass.is_some()),
-            ("force", point.force.is_some()),
-        ];
-        for (key, _) in given.iter().filter(|(_, given)| *given) {
+        let taken = ["mass", "volume", "drag_area", "added_mass", "force"];
+        let given = point
+            .entries()
+            .filter(|(key, value)| taken.contains(&key.name()) && !value.is_absent());
+        for key in given.map(|(key, _)| key.name()) {
             let problem = format!(
                 "a fixed point has no `{key}`, which would act on the ground alone: leave it out or write kind = \"free\""
             );
@@ -92,7 +62,7 @@ fn check_freedom(findings: &mut Findings, at: &str, point: &Point) {
         if point.free.is_some() {
             let problem = format!(
                 "only a free point has `free`, and this one is {}: leave it out or write kind = \"free\"",
-                kind_in_words(point.kind)
+                point.kind.word()
             );
             findings.say(format!("{at}.free"), problem);
         }
@@ -110,28 +80,6 @@ fn check_freedom(findings: &mut Findings, at: &str, point: &Point) {
     }
 }
 
-fn kind_in_words(kind: PointKind) -> &'static str {
-    match kind {
-        PointKind::Fixed => "fixed",
-        PointKind::Coupled => "coupled",
-        PointKind::Prescribed => "prescribed",
-        PointKind::Free => "free",
-    }
-}
-
-fn check_vessels(scene: &Scene, findings: &mut Findings) {
-    for (i, vessel) in scene.vessels.iter().enumerate() {
-        for axis in 0..3 {
-            let (place, angle) = (vessel.position[axis], vessel.attitude[axis]);
-            let at = format!("vessels[{i}]");
-            let far = Bounds::Magnitude(1e7);
-            findings.number(format!("{at}.position[{axis}]"), place, far, "m");
-            let turn = Bounds::Magnitude(TAU);
-            findings.number(format!("{at}.attitude[{axis}]"), angle, turn, "rad");
-        }
-    }
-}
-
 /// The vessel that a point rides on.
 fn check_carrier(findings: &mut Findings, at: &str, point: &Point, scene: &Scene) {
     let Some(carrier) = &point.on else { return };
@@ -143,21 +91,25 @@ fn check_carrier(findings: &mut Findings, at: &str, point: &Point, scene: &Scene
     if point.kind != PointKind::Coupled {
         let problem = format!(
             "a point on a vessel moves with it, and this one is {}: write kind = \"coupled\"",
-            kind_in_words(point.kind)
+            point.kind.word()
         );
         findings.say(format!("{at}.on"), problem);
     }
 }
 
 fn check_load(findings: &mut Findings, at: &str, point: &Point, scene: &Scene) {
-    if let Some(force) = &point.force {
-        let axes = [&force.x, &force.y, &force.z];
-        check_axes(findings, &format!("{at}.force"), axes, Load::FORCE);
+    if point
+        .force
+        .as_ref()
+        .is_some_and(|force| force.entries().all(|(_, axis)| axis.is_absent()))
+    {
+        findings.say(format!("{at}.force"), "no force along `x`, `y` or `z`");
     }
     if let Some(moment) = &point.moment {
         let at = format!("{at}.moment");
-        let axes = [&moment.x, &moment.y, &moment.z];
-        check_axes(findings, &at, axes, Load::MOMENT);
+        if moment.entries().all(|(_, axis)| axis.is_absent()) {
+            findings.say(&at, "no moment about `x`, `y` or `z`");
+        }
         if let Some(problem) = untaken(point, scene) {
             findings.say(at, problem);
         }
@@ -169,7 +121,7 @@ fn untaken(point: &Point, scene: &Scene) -> Option<String> {
     if point.kind != PointKind::Free {
         return Some(format!(
             "a moment turns the end of a line that bends at a free point, and this one is {}",
-            kind_in_words(point.kind)
+            point.kind.word()
         ));
     }
     let bends = |section: Option<&Section>| {
@@ -203,26 +155,13 @@ fn untaken(point: &Point, scene: &Scene) -> Option<String> {
     }
 }
 
-fn check_axes(findings: &mut Findings, at: &str, axes: [&Option<TimeFunction>; 3], load: Load) {
-    for (axis, function) in ["x", "y", "z"].into_iter().zip(axes) {
-        if let Some(function) = function {
-            check_load_in_time(findings, &format!("{at}.{axis}"), function, load);
-        }
-    }
-    if axes.iter().all(|axis| axis.is_none()) {
-        findings.say(at, format!("no {} `x`, `y` or `z`", load.preposition));
-    }
-}
-
 fn check_own_motion(findings: &mut Findings, at: &str, point: &Point) {
     match (&point.motion, point.kind) {
         (Some(motion), PointKind::Prescribed) if motion.turns() => findings.say(
             format!("{at}.motion"),
             "a point does not turn: only vessels have `roll`, `pitch` and `yaw`",
         ),
-        (Some(motion), PointKind::Prescribed) => {
-            check_motion(findings, &format!("{at}.motion"), motion);
-        }
+        (Some(_), PointKind::Prescribed) => {}
         (Some(_), PointKind::Coupled) => findings.say(
             format!("{at}.motion"),
             format!(
@@ -235,7 +174,7 @@ fn check_own_motion(findings: &mut Findings, at: &str, point: &Point) {
             format!("{at}.motion"),
             format!(
                 "a {} point has no motion of its own: write kind = \"prescribed\"",
-                kind_in_words(kind)
+                kind.word()
             ),
         ),
         (None, PointKind::Prescribed) => findings.say(
@@ -268,17 +207,16 @@ fn check_run_motion(scene: &Scene, findings: &mut Findings) {
     for (name, motion) in &scene.motion {
         let at = format!("motion.{}", quoted(name));
         if vessels.clone().any(|vessel| vessel == name) {
-            check_motion(findings, &at, motion);
             continue;
         }
-        match scene.points.iter().find(|point| point.name == *name) {
+        match scene.point(name) {
             None => {
                 findings.say(at.clone(), nothing_driven(name, coupled.clone(), vessels.clone()));
             }
             Some(point) if point.kind != PointKind::Coupled => {
                 let problem = format!(
                     "`{name}` is {}, and [motion] moves coupled points and vessels only",
-                    kind_in_words(point.kind)
+                    point.kind.word()
                 );
                 findings.say(at.clone(), problem);
             }
@@ -292,7 +230,6 @@ fn check_run_motion(scene: &Scene, findings: &mut Findings) {
             }
             Some(_) => {}
         }
-        check_motion(findings, &at, motion);
     }
 }
 

@@ -1,8 +1,8 @@
 //! Title, gravity, water, seabed.
 
 use super::seabed::check_bed;
-use super::time::{Load, check_load_in_time};
 use super::{Bounds, Findings, quantity};
+use crate::scene::water::SPEED;
 use crate::scene::{Current, Integrator, LineModel, Scene};
 
 pub(super) fn check(scene: &Scene, findings: &mut Findings) {
@@ -12,45 +12,16 @@ pub(super) fn check(scene: &Scene, findings: &mut Findings) {
             "the title holds a line break or another control character: write one line",
         );
     }
-    if scene.gravity < 0.0 {
-        let problem = format!(
-            "{} is negative: gravity is a magnitude, downwards along z",
-            quantity(scene.gravity, "m/s²")
-        );
-        findings.say("gravity", problem);
-    } else {
-        let gravity = Bounds::NotNegative(1e3);
-        findings.number("gravity", scene.gravity, gravity, "m/s²");
+    if let Some(current) = scene.current() {
+        check_current(scene, current, findings);
     }
-    if let Some(water) = &scene.water {
-        findings.number("water.density", water.density, Bounds::Positive(1e5), "kg/m³");
-        if let Some(current) = &water.current {
-            check_current(scene, current, findings);
-        }
-        if let Some(waves) = &water.waves {
-            super::waves::check(scene, waves, findings);
-        }
+    if let Some(waves) = scene.waves() {
+        super::waves::check(scene, waves, findings);
     }
     if let Some(seabed) = &scene.seabed {
-        if seabed.depth < 0.0 {
-            let problem = format!(
-                "{} is negative: the depth counts downwards from z = 0",
-                quantity(seabed.depth, "m")
-            );
-            findings.say("seabed.depth", problem);
-        } else {
-            findings.number("seabed.depth", seabed.depth, Bounds::NotNegative(1e5), "m");
-        }
-        let stiff = Bounds::Positive(1e12);
-        findings.number("seabed.stiffness", seabed.stiffness, stiff, "Pa/m");
-        let damping = Bounds::NotNegative(1e12);
-        findings.number("seabed.damping", seabed.damping, damping, "Pa s/m");
         check_bed(scene, seabed, findings);
     }
 }
-
-/// Fastest water [m/s]; the strongest tidal streams reach 10 m/s.
-const SPEED: Bounds = Bounds::Magnitude(100.0);
 
 fn check_current(scene: &Scene, current: &Current, findings: &mut Findings) {
     let at = "water.current";
@@ -66,18 +37,11 @@ fn check_current(scene: &Scene, current: &Current, findings: &mut Findings) {
         (Some(_), Some(_)) => {
             findings.say(
                 at,
-                "`velocity` and `profile` cannot both be given: the profile says all",
+                "`velocity` and `profile` cannot both be given: the profile covers all heights",
             );
         }
-        (Some(velocity), None) => {
-            for (axis, value) in velocity.iter().enumerate() {
-                findings.number(format!("{at}.velocity[{axis}]"), *value, SPEED, "m/s");
-            }
-        }
+        (Some(_), None) => {}
         (None, Some(rows)) => check_profile(rows, findings),
-    }
-    if let Some(factor) = &current.factor {
-        check_load_in_time(findings, &format!("{at}.factor"), factor, Load::FACTOR);
     }
     let all_beams = scene.solver.integrator == Integrator::Beam;
     for (name, line_type) in &scene.line_types {
@@ -99,8 +63,8 @@ fn check_profile(rows: &[[f64; 3]], findings: &mut Findings) {
     }
     for (i, [z, vx, vy]) in rows.iter().enumerate() {
         let right = findings.number(format!("{at}[{i}][0]"), *z, Bounds::Magnitude(1e5), "m");
-        findings.number(format!("{at}[{i}][1]"), *vx, SPEED, "m/s");
-        findings.number(format!("{at}[{i}][2]"), *vy, SPEED, "m/s");
+        findings.number(format!("{at}[{i}][1]"), *vx, SPEED.bounds, "m/s");
+        findings.number(format!("{at}[{i}][2]"), *vy, SPEED.bounds, "m/s");
         if let Some(twin) = rows[..i].iter().position(|row| row[0] == *z)
             && right
         {

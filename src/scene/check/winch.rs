@@ -1,7 +1,6 @@
 //! Winches: lengths and speeds in range, and lines that a winch can serve.
 
-use super::time::{Load, check_load_in_time};
-use super::{Bounds, Findings, quantity};
+use super::{Findings, quantity};
 use crate::scene::channel::LineEnd;
 use crate::scene::{
     InitialShape, Integrator, Line, LineModel, LineType, PointKind, Scene, TimeFunction, Winch,
@@ -12,10 +11,6 @@ pub(super) fn check(findings: &mut Findings, at: &str, line: &Line, scene: &Scen
         return;
     };
     let at = format!("{at}.winch");
-    let length = Bounds::Positive(1e6);
-    findings.number(format!("{at}.length_max"), winch.length_max, length, "m");
-    let speed = Bounds::Positive(1e3);
-    findings.number_if(format!("{at}.speed_max"), winch.speed_max, speed, "m/s");
     if let Some(path) = &winch.path {
         check_path(findings, &format!("{at}.path"), path, winch, line);
     }
@@ -25,7 +20,6 @@ pub(super) fn check(findings: &mut Findings, at: &str, line: &Line, scene: &Scen
 }
 
 fn check_path(findings: &mut Findings, at: &str, path: &TimeFunction, winch: &Winch, line: &Line) {
-    check_load_in_time(findings, at, path, Load::LENGTH);
     let section = line.sections.last().map_or(0.0, |section| section.length);
     for value in path.corners() {
         if value > winch.length_max || value <= -section {
@@ -44,7 +38,7 @@ fn check_path(findings: &mut Findings, at: &str, path: &TimeFunction, winch: &Wi
         Some(most) if path.rate_max() > most => findings.say(
             at,
             format!(
-                "up to {} are asked for, and speed_max is {}",
+                "the path takes up to {}, and speed_max is {}",
                 quantity(path.rate_max(), "m/s"),
                 quantity(most, "m/s")
             ),
@@ -53,13 +47,13 @@ fn check_path(findings: &mut Findings, at: &str, path: &TimeFunction, winch: &Wi
     }
 }
 
-/// What is wrong with where the winch stands.
+/// Returns the refusal of the place of the winch.
 fn misplaced(line: &Line, scene: &Scene) -> Option<&'static str> {
     let winch = line.winch.as_ref()?;
     if winch.end == LineEnd::A {
         return Some("a winch is at end \"b\": write the line the other way round");
     }
-    let point = scene.points.iter().find(|point| point.name == line.to);
+    let point = scene.point(&line.to);
     if point.is_some_and(|point| point.kind == PointKind::Free) {
         return Some(
             "a winch stands on a point that forces do not move: fixed, coupled, prescribed or on a vessel",
@@ -69,17 +63,18 @@ fn misplaced(line: &Line, scene: &Scene) -> Option<&'static str> {
         .parting
         .as_ref()
         .is_some_and(|parting| parting.at == LineEnd::B);
-    (parts || line.release == Some(LineEnd::B))
-        .then_some("end B is on the winch, so that it neither breaks off nor lets go: leave one of them out")
+    (parts || line.release == Some(LineEnd::B)).then_some(
+        "end B is on the winch, so that it can neither break off nor be released: leave one of them out",
+    )
 }
 
-/// What the winch cannot be combined with.
+/// Returns the refusal of a line or scene for which winches are not modelled.
 fn unserved(line: &Line, scene: &Scene) -> Option<&'static str> {
     if !matches!(scene.solver.integrator, Integrator::Auto | Integrator::Leapfrog) {
-        return Some("winches are served by the integrators \"leapfrog\" and \"auto\"");
+        return Some("winches are modelled by the integrators \"leapfrog\" and \"auto\"");
     }
-    if scene.water.as_ref().is_some_and(|water| water.waves.is_some()) {
-        return Some("a line on a winch knows no waves yet: leave out one of them");
+    if scene.waves().is_some() {
+        return Some("a line on a winch is not modelled in waves: leave out one of them");
     }
     if scene.meets_surface(line) {
         return Some(
@@ -91,8 +86,6 @@ fn unserved(line: &Line, scene: &Scene) -> Option<&'static str> {
     }
     let other =
         |kind: &LineType| kind.model == LineModel::Beam || kind.bends() || kind.dynamic_stiffness.is_some();
-    let mut sections = line.sections.iter();
-    sections
-        .any(|section| scene.line_types.get(&section.line_type).is_some_and(other))
-        .then_some("a line on a winch has neither bending stiffness nor a viscoelastic section")
+    let bends = scene.types_of(line).any(other);
+    bends.then_some("a line on a winch has neither bending stiffness nor a viscoelastic section")
 }

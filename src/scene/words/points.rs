@@ -1,57 +1,120 @@
-//! Free points in the sea in words.
+//! Points, vessels and their motions in words.
 
 use std::f64::consts::PI;
 
-use super::significant;
-use crate::scene::{Axis, InitialShape, Line, Point, PointKind, Scene};
+use super::{given, join, significant, triple};
+use crate::scene::check::quantity;
+use crate::scene::table::Choice;
+use crate::scene::{
+    AngleOrder, Axis, HarmonicMotion, InitialShape, Line, MotionPath, MotionRow, Point, PointKind, Scene,
+    Vessel,
+};
+
+/// Units of the axes of a motion: displacements, then rotations.
+const UNITS: [&str; 6] = ["m", "m", "m", "rad", "rad", "rad"];
 
 impl Scene {
-    /// What water and bed do to a point; nothing where neither does anything.
-    pub(super) fn sea_in_words(&self, point: &Point) -> Option<String> {
-        if point.kind != PointKind::Free {
-            let own = point.mass.is_some() || point.volume.is_some() || point.drag_area.is_some();
-            let text = "which add to the force of its lines on what moves it".to_string();
-            let said = [self.water_in_words(point), own.then_some(text)];
-            let said: Vec<String> = said.into_iter().flatten().collect();
-            return (!said.is_empty()).then(|| said.join(", "));
+    pub(super) fn point_in_words(&self, point: &Point) -> String {
+        let frame = if point.on.is_some() { " in its frame" } else { "" };
+        let place = format!("at {} m{frame}", triple(point.position));
+        let mut parts = vec![role(point), place];
+        parts.extend(given(point, &["name", "position", "kind", "on", "free"]));
+        parts.extend(self.sea_in_words(point));
+        parts.extend(self.start_in_words(point).map(str::to_string));
+        let mut lines = self.lines.iter();
+        if point.moment.is_some() && lines.any(|line| self.bends(line) && line.joins(&point.name)) {
+            parts.push(
+                "the part of the moment along the line has no effect, since a cable has no torsion".into(),
+            );
         }
-        let said: Vec<String> = [self.water_in_words(point), self.bed_in_words(point)]
-            .into_iter()
-            .flatten()
-            .collect();
+        let coupled = point.kind == PointKind::Coupled && point.on.is_none();
+        let run = if coupled {
+            self.run_in_words(&point.name)
+        } else {
+            String::new()
+        };
+        format!("{}: {}{run}", point.name, parts.join(", "))
+    }
+
+    /// "; in `run` it swings by …".
+    fn run_in_words(&self, body: &str) -> String {
+        let motion = self.motion.get(body).map(motion_in_words);
+        format!(
+            "; in `run` it {}",
+            motion.unwrap_or_else(|| "stays where it is".to_string())
+        )
+    }
+
+    pub(super) fn vessel_in_words(&self, vessel: &Vessel) -> String {
+        let mut said = format!(
+            "{}: moved by the host, its origin at {} m",
+            vessel.name,
+            triple(vessel.position)
+        );
+        if vessel.attitude != [0.0; 3] {
+            let [roll, pitch, yaw] = vessel.attitude.map(significant);
+            said += &format!(", at roll {roll} rad, pitch {pitch} rad, yaw {yaw} rad");
+        }
+        let aboard = self
+            .points
+            .iter()
+            .filter(|point| point.on.as_ref() == Some(&vessel.name));
+        let names: Vec<&str> = aboard.map(|point| point.name.as_str()).collect();
+        let carried = if names.is_empty() {
+            "no point".to_string()
+        } else {
+            names.join(", ")
+        };
+        let angles = match vessel.motion_angles {
+            AngleOrder::Zyx => "",
+            AngleOrder::Xyz => {
+                "; roll, pitch and yaw of a motion in `run` turn it by Rx(roll)·Ry(pitch)·Rz(yaw), as in MoorDyn, those of the FMU by \
+                 Rz(yaw)·Ry(pitch)·Rx(roll)"
+            }
+        };
+        format!(
+            "{said}, carries {carried}{}{angles}",
+            self.run_in_words(&vessel.name)
+        )
+    }
+
+    /// Effects of the water and the seabed on a point; `None` where neither acts.
+    fn sea_in_words(&self, point: &Point) -> Option<String> {
+        let water = self.water_at_point(point);
+        let other = if point.kind == PointKind::Free {
+            self.bed_at_point(point)
+        } else {
+            let own = point.mass.is_some() || point.volume.is_some() || point.drag_area.is_some();
+            own.then(|| "these forces add to the force of its lines on what moves it".to_string())
+        };
+        let said: Vec<String> = water.into_iter().chain(other).collect();
         (!said.is_empty()).then(|| said.join("; "))
     }
 
-    /// Where a free point starts.
-    pub(super) fn start_in_words(&self, point: &Point) -> Option<&'static str> {
-        if point.kind != PointKind::Free {
-            return None;
-        }
-        let network = self.network_of(point);
+    /// Start of a free point.
+    fn start_in_words(&self, point: &Point) -> Option<&'static str> {
+        let network = match point.kind {
+            PointKind::Free => self.network_of(point),
+            _ => return None,
+        };
         let mut shapes = network.iter().map(|line| &line.initial);
-        Some(match shapes.any(|shape| *shape == InitialShape::Static) {
+        let settles = shapes.any(|shape| *shape == InitialShape::Static);
+        (!network.is_empty()).then_some(match settles {
             true => "starts in static equilibrium",
             false => "starts at its position, as no line of its network is `static`",
         })
-        .filter(|_| !network.is_empty())
     }
 
-    /// The lines that hang together with a free point, through it and others.
+    /// The lines that are joined to a free point, through it and other free points.
     fn network_of(&self, point: &Point) -> Vec<&Line> {
-        let free: Vec<&str> = self
-            .points
-            .iter()
-            .filter(|point| point.kind == PointKind::Free)
-            .map(|point| point.name.as_str())
-            .collect();
+        let free = self.points.iter().filter(|point| point.kind == PointKind::Free);
+        let free: Vec<&str> = free.map(|point| point.name.as_str()).collect();
         let mut joined = vec![point.name.as_str()];
         let (mut network, mut rest): (Vec<&Line>, Vec<&Line>) = (vec![], self.lines.iter().collect());
         loop {
-            let (reached, beyond): (Vec<&Line>, _) = rest.into_iter().partition(|line| {
-                [&line.from, &line.to]
-                    .iter()
-                    .any(|end| joined.contains(&end.as_str()))
-            });
+            let (reached, beyond): (Vec<&Line>, _) = rest
+                .into_iter()
+                .partition(|line| joined.iter().any(|point| line.joins(point)));
             if reached.is_empty() {
                 return network;
             }
@@ -64,13 +127,13 @@ impl Scene {
         }
     }
 
-    /// Whether the water's surface acts on a free point.
+    /// Returns whether the water's surface acts on a free point.
     pub(super) fn surface_matters(&self) -> bool {
-        let mut free = self.points.iter().filter(|p| p.kind == PointKind::Free);
+        let mut free = self.points.iter().filter(|point| point.kind == PointKind::Free);
         free.any(|point| self.radius(point).is_some())
     }
 
-    /// Radius of the sphere that the water knows a point by [m]; `None` where it does nothing to it.
+    /// Radius of the sphere that represents a point in the water [m]; `None` where the water has no effect on it.
     fn radius(&self, point: &Point) -> Option<f64> {
         self.water.as_ref()?;
         let of = |value: Option<f64>| value.filter(|value| *value > 0.0);
@@ -78,37 +141,141 @@ impl Scene {
         by_volume.or_else(|| of(point.drag_area).map(|area| (area / PI).sqrt()))
     }
 
-    fn water_in_words(&self, point: &Point) -> Option<String> {
-        let radius = self.radius(point)?;
+    fn water_at_point(&self, point: &Point) -> Option<String> {
+        let radius = significant(self.radius(point)?);
         let acts = |value: Option<f64>| value.is_some_and(|value| value > 0.0);
         let volume = acts(point.volume);
-        let acting = [
+        let effects = [
             ("buoyancy", volume),
             ("drag", acts(point.drag_area)),
             ("added mass", volume && acts(point.added_mass)),
         ];
-        let named = |acts: bool| {
-            let kinds = acting.iter().filter(|(_, does)| *does == acts);
-            kinds.map(|(name, _)| *name).collect::<Vec<&str>>()
-        };
-        let absent = named(false);
-        let absent = match absent.is_empty() {
-            true => String::new(),
-            false => format!(", no {}", absent.join(", no ")),
-        };
+        let (acting, absent): (Vec<_>, Vec<_>) = effects.iter().partition(|(_, acts)| *acts);
+        let acting: Vec<&str> = acting.iter().map(|(effect, _)| *effect).collect();
+        let absent: String = absent
+            .iter()
+            .map(|(effect, _)| format!(", no {effect}"))
+            .collect();
         Some(format!(
-            "in the water {}{absent}, as of a sphere of radius {} m as far as it is under z = 0",
-            named(true).join(", "),
-            significant(radius)
+            "in the water {}{absent}, as of a sphere of radius {radius} m as far as it is under z = 0",
+            acting.join(", ")
         ))
     }
 
-    fn bed_in_words(&self, point: &Point) -> Option<String> {
-        let bed = self.seabed.as_ref()?;
+    fn bed_at_point(&self, point: &Point) -> Option<String> {
+        let seabed = self.seabed.as_ref()?;
         let weight = point.mass.unwrap_or(0.0) * self.gravity;
-        let moves = point.free.as_ref().is_none_or(|axes| axes.contains(&Axis::Z));
-        (weight > 0.0 && moves && bed.stiffness > 0.0).then(|| {
-            "should it touch the bed, it rests there on a spring that its weight in air presses in by 0.02 m".to_string()
+        let sinks = point.free.as_ref().is_none_or(|axes| axes.contains(&Axis::Z));
+        (weight > 0.0 && sinks && seabed.stiffness > 0.0).then(|| {
+            "on the seabed it rests on a spring that its weight in air compresses by 0.02 m".to_string()
         })
+    }
+}
+
+fn role(point: &Point) -> String {
+    match (point.kind, &point.on, &point.free) {
+        (PointKind::Coupled, Some(vessel), _) => format!("rides on {vessel}"),
+        (PointKind::Coupled, None, _) => "coupled to the host".to_string(),
+        (PointKind::Prescribed, ..) => "moved along its own path".to_string(),
+        (PointKind::Free, _, Some(axes)) => {
+            let axes: Vec<&str> = axes.iter().map(|axis| axis.word()).collect();
+            format!("free along {} only", join(&axes))
+        }
+        (kind, ..) => kind.word().to_string(),
+    }
+}
+
+/// "swings by 2.5 m every 12 s along x and 0.05 rad every 10 s in pitch, growing over 15 s", for a sentence on a body.
+pub(in crate::scene) fn motion_in_words(motion: &MotionPath) -> String {
+    let follows = |what: String, rows: &[MotionRow]| match ranges_in_words(rows) {
+        Some(ranges) => format!("follows {what}: {ranges}"),
+        None => format!("stays where it is, by {what}"),
+    };
+    match motion {
+        MotionPath::File(file) => {
+            let count = file.rows.len();
+            let what = format!("the {count} rows of {}, read as {},", file.file, file.columns);
+            follows(what, &file.rows)
+        }
+        MotionPath::Table(rows) => follows(format!("a table of {} rows", rows.len()), rows),
+        MotionPath::Harmonic(harmonic) => harmonic_in_words(harmonic),
+    }
+}
+
+/// "x from 0 to 5 m and pitch from -0.1 to 0.1 rad"; `None` where all rows are zero.
+fn ranges_in_words(rows: &[MotionRow]) -> Option<String> {
+    let axes = crate::scene::motion_file::AXES.iter().zip(UNITS).enumerate();
+    let said = axes.filter_map(|(axis, (name, unit))| {
+        let values = rows.iter().map(|row| row[1 + axis]);
+        let least = values.clone().fold(f64::INFINITY, f64::min);
+        let most = values.fold(f64::NEG_INFINITY, f64::max);
+        match (significant(least), significant(most)) {
+            _ if least == 0.0 && most == 0.0 => None,
+            (value, _) if least == most => Some(format!("{name} at {value} {unit}")),
+            (least, most) => Some(format!("{name} from {least} to {most} {unit}")),
+        }
+    });
+    let said: Vec<String> = said.collect();
+    (!said.is_empty()).then(|| said.join(" and "))
+}
+
+fn harmonic_in_words(harmonic: &HarmonicMotion) -> String {
+    let axes = harmonic.axes().into_iter().zip(UNITS);
+    let sines = axes.flat_map(|((name, sines), unit)| sines.iter().map(move |sine| (name, unit, sine)));
+    let sines = sines.filter_map(|(name, unit, sine)| {
+        let (amplitude, period) = (sine.first()?, sine.get(1)?);
+        let how = if unit == "m" { "along" } else { "in" };
+        let (size, period) = (quantity(amplitude.abs(), unit), quantity(*period, "s"));
+        (*amplitude != 0.0).then(|| format!("{size} every {period} {how} {name}"))
+    });
+    let sines: Vec<String> = sines.collect();
+    if sines.is_empty() {
+        return "stays where it is".to_string();
+    }
+    let ramp = harmonic
+        .ramp
+        .map(|ramp| format!(", growing over {}", quantity(ramp, "s")));
+    format!("swings by {}{}", sines.join(" and "), ramp.unwrap_or_default())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_motion_is_described_with_all_its_axes() {
+        let mut motion = HarmonicMotion {
+            pitch: vec![vec![-0.05, 10.0]],
+            ..HarmonicMotion::default()
+        };
+        let said = motion_in_words(&MotionPath::Harmonic(motion.clone()));
+        assert_eq!(said, "swings by 0.05 rad every 10 s in pitch");
+        motion.x = vec![vec![2.5, 12.0]];
+        motion.ramp = Some(15.0);
+        let said = motion_in_words(&MotionPath::Harmonic(motion));
+        let expected =
+            "swings by 2.5 m every 12 s along x and 0.05 rad every 10 s in pitch, growing over 15 s";
+        assert_eq!(said, expected);
+        let still = HarmonicMotion {
+            x: vec![vec![0.0, 12.0]],
+            ..HarmonicMotion::default()
+        };
+        let said = motion_in_words(&MotionPath::Harmonic(still));
+        assert_eq!(said, "stays where it is");
+    }
+
+    #[test]
+    fn a_table_is_described_by_the_range_of_every_axis_that_moves() {
+        let rows = vec![
+            [0.0, 0.0, 0.0, 1.5, 0.0, -0.1, 0.0],
+            [9.0, 5.0, 0.0, 1.5, 0.0, 0.2, 0.0],
+        ];
+        let said = motion_in_words(&MotionPath::Table(rows));
+        assert_eq!(
+            said,
+            "follows a table of 2 rows: x from 0 to 5 m and z at 1.5 m and pitch from -0.1 to 0.2 rad"
+        );
+        let said = motion_in_words(&MotionPath::Table(vec![[0.0; 7]; 3]));
+        assert_eq!(said, "stays where it is, by a table of 3 rows");
     }
 }

@@ -1,55 +1,129 @@
-//! Water, current and waves, in words.
+//! Gravity, water, current, waves and seabed in words.
 
-use super::{number, quantity};
+use super::{join, triple};
+use crate::scene::check::{number, quantity};
 use crate::scene::{
-    Current, RegularWave, Scene, Sea, SpectrumKind, TimeFunction, Water, WaveComponents, Waves,
+    ContactLaw, Current, RegularWave, Scene, Sea, Seabed, SpectrumKind, TimeFunction, Water, WaveComponents,
+    Waves,
 };
 
-/// "still water of 1025 kg/m³ that fills all space".
-pub(super) fn water_in_words(scene: &Scene, water: &Water) -> String {
-    let density = quantity(water.density, "kg/m³");
-    let surface = surface_in_words(scene);
-    let mut words = match (&water.current, &water.waves) {
-        (None, None) => return format!("still water of {density} {surface}"),
-        (None, Some(_)) => format!("water of {density} {surface}"),
-        (Some(current), _) => format!(
-            "water of {density} {surface}, with a current: {}; the drag on lines follows their velocity through the \
-             water, at rest too",
-            current_in_words(current)
-        ),
-    };
-    if let Some(waves) = &water.waves {
-        words += &format!("; {}", waves_in_words(scene, waves));
+impl Scene {
+    pub(super) fn surroundings_in_words(&self) -> Vec<String> {
+        let gravity = match self.gravity {
+            0.0 => "no gravity: nothing has a weight".to_string(),
+            gravity => format!("gravity {}, downwards along z", quantity(gravity, "m/s²")),
+        };
+        let water = self.water.as_ref().map(|water| self.water_in_words(water));
+        let seabed = self.seabed.as_ref().map(seabed_in_words);
+        let water = water.unwrap_or_else(|| "no water".to_string());
+        vec![gravity, water, seabed.unwrap_or_else(|| "no seabed".to_string())]
     }
-    words
+
+    /// "still water of 1025 kg/m³ that fills all space".
+    fn water_in_words(&self, water: &Water) -> String {
+        let still = water.current.is_none() && water.waves.is_none();
+        let still = if still { "still " } else { "" };
+        let mut words = format!(
+            "{still}water of {} {}",
+            quantity(water.density, "kg/m³"),
+            self.surface_in_words()
+        );
+        if let Some(current) = &water.current {
+            words += &format!(
+                ", with a current: {}; the drag on lines follows their velocity through the water, at rest too",
+                current_in_words(current)
+            );
+        }
+        if let Some(waves) = &water.waves {
+            words += &format!("; {}", self.waves_in_words(waves));
+        }
+        words
+    }
+
+    /// Names of the lines that meet the water's surface, or of those that do not.
+    fn lines_that_meet_surface(&self, meet: bool) -> Vec<&str> {
+        let lines = self.lines.iter().filter(|line| self.meets_surface(line) == meet);
+        lines.map(|line| line.name.as_str()).collect()
+    }
+
+    /// "that fills all space", or the lines that may come out of the water.
+    fn surface_in_words(&self) -> String {
+        let [piercing, submerged] = [true, false].map(|meet| self.lines_that_meet_surface(meet));
+        if piercing.is_empty() {
+            return "that fills all space".to_string();
+        }
+        let have = |names: &[&str]| {
+            format!(
+                "{} {}",
+                join(names),
+                if names.len() == 1 { "has" } else { "have" }
+            )
+        };
+        let moves = self.waves().is_some();
+        let level = if moves { ", which the waves move" } else { "" };
+        let others = match submerged.is_empty() {
+            true => String::new(),
+            false => format!(", while {} them everywhere", have(&submerged)),
+        };
+        let piercing = have(&piercing);
+        format!(
+            "with its surface at z = 0{level}: above it {piercing} no buoyancy, drag and added mass{others}"
+        )
+    }
+
+    /// Effects of the water that are not modelled: "current, waves and the water's surface".
+    pub(super) fn absences_of_water(&self) -> String {
+        let water = self.water.as_ref();
+        let [piercing, submerged] = [true, false].map(|meet| self.lines_that_meet_surface(meet).len());
+        let mut absent = Vec::new();
+        if water.is_none_or(|water| water.current.is_none()) {
+            absent.push("current");
+        }
+        if water.is_none_or(|water| water.waves.is_none()) {
+            absent.push("waves");
+        }
+        match (piercing, submerged) {
+            (1.., 0) => {}
+            _ if piercing > 0 || self.surface_matters() => absent.push("the water's surface over some lines"),
+            _ => absent.push("the water's surface"),
+        }
+        if absent.is_empty() {
+            absent.push("second-order waves");
+        }
+        join(&absent)
+    }
+
+    /// "linear waves (Airy) …: significant height 6 m, …".
+    fn waves_in_words(&self, waves: &Waves) -> String {
+        let seas: Vec<String> = waves.seas.iter().map(sea_in_words).collect();
+        let over = match &self.seabed {
+            Some(seabed) => format!("a depth of {}", quantity(seabed.depth, "m")),
+            None => "deep water".to_string(),
+        };
+        let all = match waves.seas.len() {
+            1 => String::new(),
+            _ => format!(
+                ", together of a significant height of {}",
+                height_of(waves.deviation())
+            ),
+        };
+        let ramp = match waves.ramp() {
+            Some(ramp) => format!(", growing over a ramp of {}", quantity(ramp, "s")),
+            None => ", at once in full".to_string(),
+        };
+        format!(
+            "linear waves (Airy) over {over}: {}{all}{ramp}; velocities and accelerations are stretched to the surface as Wheeler does, and \
+             components that do not reach a place are left out there (1e-4 of the surface's acceleration); drag, Froude-Krylov force and added \
+             mass act with the motion of the water past the line; no drift, no breaking, no waves made or turned by the current, and the \
+             equilibrium at the start is that of still water or of the current",
+            seas.join("; ")
+        )
+    }
 }
 
-/// "linear waves (Airy) …: significant height 6 m, …".
-fn waves_in_words(scene: &Scene, waves: &Waves) -> String {
-    let seas: Vec<String> = waves.seas.iter().map(sea_in_words).collect();
-    let over = match &scene.seabed {
-        Some(bed) => format!("a depth of {}", quantity(bed.depth, "m")),
-        None => "deep water".to_string(),
-    };
-    let total = waves.seas.iter().map(Sea::variance).sum::<f64>();
-    let all = match waves.seas.len() {
-        1 => String::new(),
-        _ => {
-            let height = (4e3 * total.sqrt()).round() / 1e3;
-            format!(", together of a significant height of {}", quantity(height, "m"))
-        }
-    };
-    let ramp = match waves.ramp() {
-        Some(ramp) => format!(", growing over a ramp of {}", quantity(ramp, "s")),
-        None => ", at once in full".to_string(),
-    };
-    format!(
-        "linear waves (Airy) over {over}: {}{all}{ramp}; velocities and accelerations are stretched to the surface as Wheeler does, and \
-         components that do not reach a place are left out there (1e-4 of the surface's acceleration); drag, Froude-Krylov force and added \
-         mass act with the motion of the water past the line; no drift, no breaking, no waves made or turned by the current, and the \
-         equilibrium at the start is that of still water or of the current",
-        seas.join("; ")
-    )
+/// Significant height of an elevation with a standard deviation [m].
+fn height_of(deviation: f64) -> String {
+    quantity((4e3 * deviation).round() / 1e3, "m")
 }
 
 fn sea_in_words(sea: &Sea) -> String {
@@ -57,27 +131,28 @@ fn sea_in_words(sea: &Sea) -> String {
         return regular_in_words(regular);
     }
     if let Some(WaveComponents::Rows(rows)) = &sea.components {
-        let trains = match rows.len() {
-            1 => "1 wave train".to_string(),
-            count => format!("{count} wave trains"),
+        let trains = if rows.len() == 1 {
+            "wave train"
+        } else {
+            "wave trains"
         };
-        let height = (4e3 * sea.variance().sqrt()).round() / 1e3;
-        return format!("{trains} of a significant height of {}", quantity(height, "m"));
+        let height = height_of(sea.variance().sqrt());
+        return format!("{} {trains} of a significant height of {height}", rows.len());
     }
     let kind = match sea.spectrum {
         Some(SpectrumKind::PiersonMoskowitz) => "a Pierson-Moskowitz spectrum".to_string(),
         _ => format!("a JONSWAP spectrum of peakedness {}", number(sea.gamma())),
     };
-    let count = sea.number();
-    let spread = match sea.spreading {
-        Some(s) => format!(", spread by cos²ˢ of half the angle with s = {}", number(s)),
-        None => String::new(),
-    };
+    let spread = sea
+        .spreading
+        .map(|s| format!(", spread by cos²ˢ of half the angle with s = {}", number(s)));
     format!(
-        "{kind}, significant height {}, peak period {}, towards {}{spread}, as {count} wave trains of equal energy drawn with the seed {}",
+        "{kind}, significant height {}, peak period {}, towards {}{}, as {} wave trains of equal energy drawn with the seed {}",
         quantity(sea.significant_height.unwrap_or_default(), "m"),
         quantity(sea.peak_period.unwrap_or_default(), "s"),
         quantity(sea.direction.unwrap_or_default(), "rad"),
+        spread.unwrap_or_default(),
+        sea.number(),
         sea.seed.unwrap_or_default()
     )
 }
@@ -91,17 +166,20 @@ fn regular_in_words(regular: &RegularWave) -> String {
     )
 }
 
-/// "1 m/s along (1, 0, 0) at all heights".
+/// "(1, 0, 0) m/s, a speed of 1 m/s, at all heights, steady".
 fn current_in_words(current: &Current) -> String {
-    let triple = |v: [f64; 3]| {
-        let speed = v.iter().map(|c| c * c).sum::<f64>().sqrt();
-        let [x, y, z] = v.map(number);
-        let speed = quantity((1e6 * speed).round() / 1e6, "m/s");
-        format!("({x}, {y}, {z}) m/s, a speed of {speed}, at all heights")
-    };
     let shape = match (&current.velocity, &current.profile) {
         (_, Some(rows)) => profile_in_words(rows),
-        (velocity, None) => triple(velocity.unwrap_or_default()),
+        (velocity, None) => {
+            let velocity = velocity.unwrap_or_default();
+            let speed = velocity
+                .iter()
+                .map(|component| component * component)
+                .sum::<f64>()
+                .sqrt();
+            let speed = quantity((1e6 * speed).round() / 1e6, "m/s");
+            format!("{} m/s, a speed of {speed}, at all heights", triple(velocity))
+        }
     };
     let times = match &current.factor {
         None => ", steady".to_string(),
@@ -128,68 +206,82 @@ fn profile_in_words(rows: &[[f64; 3]]) -> String {
             quantity(*z, "m")
         )
     };
-    if rows.len() == 1 {
-        return format!("{}, and at all other heights", place(lower));
+    match rows.len() {
+        1 => format!("{}, and at all other heights", place(lower)),
+        count => format!(
+            "from {} to {}, straight between {count} heights and constant outside",
+            place(lower),
+            place(upper)
+        ),
     }
+}
+
+fn seabed_in_words(seabed: &Seabed) -> String {
+    let law = match seabed.contact {
+        ContactLaw::Regularised => {
+            "softened together to suit the mesh, with no less than 0.2 of critical damping where the seabed has it; a resting line lies on the seabed"
+        }
+        ContactLaw::AsGiven => "exactly as given",
+    };
+    let chosen = if seabed.has_default_stiffness() {
+        " (default)"
+    } else {
+        ""
+    };
     format!(
-        "from {} to {}, straight between {} heights and constant outside",
-        place(lower),
-        place(upper),
-        rows.len()
+        "{}: normal spring of {} and damper of {}{chosen} per metre of line and of diameter, {law}; {}",
+        shape_in_words(seabed),
+        quantity(seabed.stiffness, "Pa/m"),
+        quantity(seabed.damping, "Pa s/m"),
+        friction_in_words(seabed),
     )
 }
 
-/// "that fills all space", or which lines know its surface.
-fn surface_in_words(scene: &Scene) -> String {
-    let named = |meet: bool| {
-        let lines = scene.lines.iter();
-        let lines = lines.filter(|line| scene.meets_surface(line) == meet);
-        lines.map(|line| line.name.as_str()).collect::<Vec<_>>()
+/// Shape of the seabed.
+fn shape_in_words(seabed: &Seabed) -> String {
+    let depth = quantity(-seabed.depth, "m");
+    let elements = "there is no closed-form catenary over such a seabed, elements are used instead";
+    match (&seabed.grid, seabed.slope) {
+        (Some(grid), _) => {
+            let soundings = || grid.depth.iter().flatten().copied();
+            let least = soundings().fold(f64::INFINITY, f64::min);
+            let most = soundings().fold(f64::NEG_INFINITY, f64::max);
+            let span = |line: &[f64]| match line {
+                [first, .., last] => format!("from {} to {}", number(*first), quantity(*last, "m")),
+                _ => "alike everywhere".to_string(),
+            };
+            format!(
+                "seabed through {} by {} soundings, x {}, y {}, from {} to {} deep, smooth between them and constant outside; {elements}",
+                grid.x.len(),
+                grid.y.len(),
+                span(&grid.x),
+                span(&grid.y),
+                number(least),
+                quantity(most, "m")
+            )
+        }
+        (None, Some([x, y])) if !seabed.is_level() => format!(
+            "seabed on a plane through z = {depth} at the origin that rises by {} per metre of x and {} per metre of y; {elements}",
+            number(x),
+            number(y)
+        ),
+        _ => format!("flat seabed at z = {depth}"),
+    }
+}
+
+fn friction_in_words(seabed: &Seabed) -> String {
+    let friction = seabed.friction;
+    if !friction.acts() {
+        return "no friction".to_string();
+    }
+    let [axial, transverse] = [friction.axial, friction.transverse].map(number);
+    let coefficients = match friction.axial == friction.transverse {
+        true => format!("Coulomb friction with the coefficient {axial}"),
+        false => format!(
+            "Coulomb friction with the coefficients {axial} along the line, {transverse} across it and for points"
+        ),
     };
-    let (piercing, submerged) = (named(true), named(false));
-    if piercing.is_empty() {
-        return "that fills all space".to_string();
-    }
-    let moves = scene.water.as_ref().is_some_and(|w| w.waves.is_some());
-    let level = if moves { ", which the waves move" } else { "" };
-    let mut said = format!(
-        "with its surface at z = 0{level}: above it {} no buoyancy, drag and added mass",
-        have(&piercing)
-    );
-    if !submerged.is_empty() {
-        said += &format!(", while {} them everywhere", have(&submerged));
-    }
-    said
-}
-
-/// "a, b and c have".
-fn have(names: &[&str]) -> String {
-    match names {
-        [] => String::new(),
-        [one] => format!("{one} has"),
-        [first @ .., last] => format!("{} and {last} have", first.join(", ")),
-    }
-}
-
-/// What the water of a scene does not do.
-pub(super) fn absence_in_words(scene: &Scene) -> &'static str {
-    let flows = scene.water.as_ref().is_some_and(|w| w.current.is_some());
-    let waves = scene.water.as_ref().is_some_and(|w| w.waves.is_some());
-    let mut lines = scene.lines.iter();
-    let all = !scene.lines.is_empty() && lines.clone().all(|line| scene.meets_surface(line));
-    let any = lines.any(|line| scene.meets_surface(line)) || scene.surface_matters();
-    match (flows, waves, all, any) {
-        (true, true, true, _) => "second-order waves",
-        (true, true, _, true) => "the water's surface over some lines",
-        (true, true, _, false) => "the water's surface",
-        (false, true, true, _) => "current",
-        (false, true, _, true) => "current and the water's surface over some lines",
-        (false, true, _, false) => "current and the water's surface",
-        (true, _, true, _) => "waves",
-        (true, _, _, true) => "waves and the water's surface over some lines",
-        (true, _, _, false) => "waves and the water's surface",
-        (false, _, true, _) => "current and waves",
-        (false, _, _, true) => "current, waves and the water's surface over some lines",
-        (false, _, _, false) => "current, waves and the water's surface",
-    }
+    format!(
+        "{coefficients}, which sticks and slides; at the start every line lies as if laid without tension from end A, or from end B where only that is on the seabed, and hauled at the other end"
+    )
 }

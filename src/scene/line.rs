@@ -1,0 +1,238 @@
+//! Lines, their sections, and the devices at their ends.
+
+use toml::Value as Toml;
+
+use super::check::Findings;
+use super::document::Node;
+use super::table::{Key, Kind, Value, Words, choice, magnitude, not_negative, positive, table, within};
+use super::{SceneError, TimeFunction, value};
+
+/// Most elements of a section, or of a line [-].
+pub(super) const ELEMENTS_MAX: f64 = 1e5;
+
+table! {
+    /// A line from end A (anchor) to end B (fairlead).
+    pub struct Line, "`[[lines]]`" {
+        /// Name, the stem of the line's variables.
+        pub name: String,
+        /// Point of end A.
+        pub from: String,
+        /// Point of end B.
+        pub to: String,
+        /// Sections from A to B.
+        pub sections: Vec<Section>,
+        /// Number of elements of the whole line [-], in place of the solver's; sections that have a number of their own keep it.
+        pub elements: Option<usize> => elements(),
+        /// Shape at the start, at rest.
+        pub initial: InitialShape = InitialShape::Static,
+        /// Shape that is free of bending and torsion.
+        pub rest_shape: RestShape = RestShape::Straight,
+        /// Direction of the line from A to B at end A [-], where that end is clamped; pinned where absent.
+        pub clamped_a: Option<[f64; 3]> => magnitude(1e6),
+        /// Direction of the line from A to B at end B [-], where that end is clamped; pinned where absent.
+        pub clamped_b: Option<[f64; 3]> => magnitude(1e6),
+        /// End that is released from its point when the host's input `L.release` becomes true; there is no such input where absent.
+        pub release: Option<LineEnd>,
+        /// Tension or time at which the line breaks off one of its points.
+        pub parting: Option<Break> => super::table::PLAIN.called("break"),
+        /// Winch that pays out and hauls in the line at one of its ends.
+        pub winch: Option<Winch>,
+    }
+}
+
+/// The rule of numbers of elements.
+const fn elements() -> super::table::Rule {
+    within(1.0, ELEMENTS_MAX).elsewhere(&["numsegs", "segments", "nodes"])
+}
+
+impl Line {
+    /// Returns whether the number of elements of any of its sections is left open.
+    pub fn is_open(&self) -> bool {
+        self.elements.is_none() && self.sections.iter().any(|section| section.elements.is_none())
+    }
+
+    /// Returns whether one of its ends is at the point of a name.
+    pub fn joins(&self, point: &str) -> bool {
+        self.from == point || self.to == point
+    }
+
+    /// A line between two points that starts in equilibrium.
+    pub fn between(
+        name: impl Into<String>,
+        from: impl Into<String>,
+        to: impl Into<String>,
+        sections: Vec<Section>,
+    ) -> Line {
+        Line {
+            name: name.into(),
+            from: from.into(),
+            to: to.into(),
+            sections,
+            ..Line::default()
+        }
+    }
+
+    /// Unstretched length [m].
+    pub(super) fn length(&self) -> f64 {
+        self.sections.iter().map(|section| section.length).sum()
+    }
+}
+
+table! {
+    /// A part of a line with one line type.
+    pub struct Section, "`sections`, each" {
+        /// Line type.
+        pub line_type: String => super::table::PLAIN.called("type").elsewhere(&["line_type"]),
+        /// Unstretched length [m].
+        pub length: f64 => positive(1e6).elsewhere(&["unstrlen", "unstretched_length"]).parameter(),
+        /// Number of elements [-]; chosen from the tolerance where absent.
+        pub elements: Option<usize> => elements(),
+        /// Number of elements that the line type's `damping_ratio` refers to [-]; where absent, the section's share of 40 elements of the longest
+        /// line of its network.
+        pub damping_elements: Option<usize> => within(1.0, 1e9),
+    }
+}
+
+table! {
+    /// A winch, which pays out line and hauls it in.
+    pub struct Winch, "`winch`" {
+        /// End of the line that is on the winch.
+        pub end: LineEnd,
+        /// Greatest length that the winch pays out beyond the length of the section at its end [m].
+        pub length_max: f64 => positive(1e6),
+        /// Greatest speed [m/s]; where a host asks for more, the winch lags behind. No limit where absent.
+        pub speed_max: Option<f64> => positive(1e3),
+        /// Length paid out in time [m], negative where the line is hauled in, where the scene's own motion is followed.
+        pub path: Option<TimeFunction>,
+    }
+}
+
+table! {
+    /// A break of a line: the earlier of a tension and a time.
+    pub struct Break, "`break`" {
+        /// End that breaks off its point.
+        pub at: LineEnd,
+        /// Tension of the end's segment that breaks it [N].
+        pub tension: Option<f64> => positive(1e15),
+        /// Time at which it breaks [s].
+        pub time: Option<f64> => not_negative(1e9),
+    }
+}
+
+choice! {
+    /// An end of a line.
+    pub enum LineEnd {
+        /// End A, the anchor's.
+        A = "a",
+        /// End B, the fairlead's.
+        B = "b",
+    }
+}
+
+choice! {
+    /// Shape of a line that is free of bending and torsion.
+    pub enum RestShape {
+        /// Straight.
+        Straight = "straight",
+        /// The shape at the start.
+        Initial = "initial",
+    }
+}
+
+/// Shape of a line at t = 0, at rest.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub enum InitialShape {
+    /// Static equilibrium.
+    #[default]
+    Static,
+    /// On its own closed-form catenary between its points where the scene has them, straight where it has none.
+    Catenary,
+    /// Straight between its ends.
+    Straight,
+    /// A parabola that hangs this far [m] below the middle of the chord.
+    Parabola(f64),
+    /// Given node positions [m], one more than the line has elements.
+    Nodes(Vec<[f64; 3]>),
+}
+
+impl Value for InitialShape {
+    fn kind() -> Kind {
+        Kind::Words(Words {
+            name: "InitialShape",
+            words: &[
+                ("static", "Static equilibrium."),
+                (
+                    "catenary",
+                    "The closed-form catenary of the line between its points where the scene has them, or straight where it has none.",
+                ),
+                ("straight", "Straight between its ends."),
+                (
+                    "parabola",
+                    "`{ parabola = sag }`: a parabola that hangs `sag` [m] below the middle of the chord.",
+                ),
+                (
+                    "nodes",
+                    "`{ nodes = [[x, y, z], …] }`: node positions [m], one more than the line has elements.",
+                ),
+            ],
+        })
+    }
+
+    fn blank() -> InitialShape {
+        InitialShape::Static
+    }
+
+    fn read(&mut self, node: &Node<'_>) -> Result<(), SceneError> {
+        let known = &[
+            ("static", None),
+            ("catenary", None),
+            ("straight", None),
+            ("parabola", Some("m")),
+            ("nodes", Some("m")),
+        ];
+        *self = match node.word(known)? {
+            ("parabola", Some(sag)) => InitialShape::Parabola(sag.number("a number")?),
+            (_, Some(nodes)) => {
+                let mut positions = Vec::new();
+                Value::read(&mut positions, &nodes)?;
+                InitialShape::Nodes(positions)
+            }
+            ("catenary", _) => InitialShape::Catenary,
+            ("straight", _) => InitialShape::Straight,
+            _ => InitialShape::Static,
+        };
+        Ok(())
+    }
+
+    fn write(&self) -> Option<Toml> {
+        Some(match self {
+            InitialShape::Static => "static".into(),
+            InitialShape::Catenary => "catenary".into(),
+            InitialShape::Straight => "straight".into(),
+            InitialShape::Parabola(sag) => value::entry("parabola", *sag),
+            InitialShape::Nodes(nodes) => value::entry("nodes", nodes.write()?),
+        })
+    }
+
+    fn check(&self, at: &str, _: &Key, findings: &mut Findings) {
+        match self {
+            InitialShape::Parabola(sag) => {
+                let rule = positive(1e6).hint("a positive sag hangs below the chord");
+                findings.ruled(format!("{at}.parabola"), *sag, &rule, "m");
+            }
+            InitialShape::Nodes(nodes) => {
+                let flat = nodes
+                    .iter()
+                    .enumerate()
+                    .flat_map(|(i, node)| node.iter().map(move |x| (i, x)));
+                for (place, (i, x)) in flat.enumerate() {
+                    let at = format!("{at}.nodes[{i}][{}]", place % 3);
+                    if !findings.number(at, *x, magnitude(1e7).bounds, "m") {
+                        return;
+                    }
+                }
+            }
+            _ => {}
+        }
+    }
+}

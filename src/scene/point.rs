@@ -1,0 +1,113 @@
+//! Points that lines end at, and the vessels that carry them.
+
+use std::f64::consts::TAU;
+
+use super::table::{Acts, MIXED, PLAIN, choice, magnitude, not_negative, table};
+use super::{AngleOrder, MotionPath, TimeFunction};
+
+table! {
+    /// A point that lines end at.
+    pub struct Point, "`[[points]]`" {
+        /// Name, the stem of the point's variables.
+        pub name: String,
+        /// Reference position [m]; of a point on a vessel in the axes of the vessel.
+        pub position: [f64; 3] => magnitude(1e7),
+        /// Motion of the point.
+        pub kind: PointKind,
+        /// Vessel that a coupled point rides on; its position is then in the vessel's axes.
+        pub on: Option<String>,
+        /// Axes along which a free point may move; all where absent.
+        pub free: Option<Vec<Axis>>,
+        /// Own mass [kg]; not of fixed points. At points that are not free it adds to the force on the structure that holds them.
+        pub mass: Option<f64> => not_negative(1e12).label("mass"),
+        /// Own displaced volume [m³]; not of fixed points.
+        pub volume: Option<f64> => not_negative(1e9).label("volume").acts(Acts::InWater),
+        /// Drag coefficient times area CdA [m²]; not of fixed points.
+        pub drag_area: Option<f64> => not_negative(1e9).elsewhere(&["cda"]).label("drag area").acts(Acts::InFlow),
+        /// Added-mass coefficient Ca on the displaced volume [-]; not of fixed points.
+        pub added_mass: Option<f64> => not_negative(1e3).elsewhere(&["ca"]).usual([0.0, 5.0], "0 to 5 is usual")
+            .label("added-mass coefficient").acts(Acts::InAccelerations),
+        /// Point load in time.
+        pub force: Option<PointForce> => PLAIN.label("force"),
+        /// Moment in time, on the end of a line that bends at a free point.
+        pub moment: Option<PointMoment> => PLAIN.label("moment"),
+        /// Prescribed displacement in time, with `kind = "prescribed"` only.
+        pub motion: Option<MotionPath> => MIXED.label("it"),
+    }
+}
+
+impl Point {
+    /// A point with nothing but a name, a reference position [m] and its kind.
+    pub fn at(name: impl Into<String>, position: [f64; 3], kind: PointKind) -> Point {
+        Point {
+            name: name.into(),
+            position,
+            kind,
+            ..Point::default()
+        }
+    }
+}
+
+choice! {
+    /// Motion of a point.
+    pub enum PointKind {
+        /// It never moves.
+        Fixed = "fixed",
+        /// The host moves it: a fairlead.
+        Coupled = "coupled",
+        /// A path of its own in time moves it, in every host.
+        Prescribed = "prescribed",
+        /// The forces on it move it.
+        Free = "free",
+    }
+}
+
+choice! {
+    /// A global axis.
+    pub enum Axis {
+        /// Global x.
+        X = "x",
+        /// Global y.
+        Y = "y",
+        /// Global z, up.
+        Z = "z",
+    }
+}
+
+table! {
+    /// A point load along the global axes.
+    pub struct PointForce, "`force`" {
+        /// Force along x [N].
+        pub x: Option<TimeFunction> => PLAIN.label("along x"),
+        /// Force along y [N].
+        pub y: Option<TimeFunction> => PLAIN.label("along y"),
+        /// Force along z [N].
+        pub z: Option<TimeFunction> => PLAIN.label("along z"),
+    }
+}
+
+table! {
+    /// A moment about the global axes.
+    pub struct PointMoment, "`moment`" {
+        /// Moment about x [N m].
+        pub x: Option<TimeFunction> => PLAIN.label("about x"),
+        /// Moment about y [N m].
+        pub y: Option<TimeFunction> => PLAIN.label("about y"),
+        /// Moment about z [N m].
+        pub z: Option<TimeFunction> => PLAIN.label("about z"),
+    }
+}
+
+table! {
+    /// A floating body that the host moves: a frame that carries points.
+    pub struct Vessel, "`[[vessels]]`" {
+        /// Name, the stem of the vessel's variables.
+        pub name: String,
+        /// Reference position of its origin [m].
+        pub position: [f64; 3] = [0.0; 3] => magnitude(1e7),
+        /// Reference attitude: roll, pitch, yaw [rad], body to global by yaw about z, then pitch about y', then roll about x''.
+        pub attitude: [f64; 3] = [0.0; 3] => magnitude(TAU),
+        /// Order of the rotations by roll, pitch and yaw in the motion of a run, in `[motion]` or beside the scene.
+        pub motion_angles: AngleOrder = AngleOrder::Zyx,
+    }
+}

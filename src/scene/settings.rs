@@ -1,0 +1,137 @@
+//! Solver and output.
+
+use toml::Value as Toml;
+
+use super::SceneError;
+use super::check::Findings;
+use super::document::Node;
+use super::line::ELEMENTS_MAX;
+use super::table::{Key, Kind, MIXED, PLAIN, Value, choice, positive, table, within};
+
+table! {
+    /// Solver settings.
+    pub struct Solver, "`[solver]`" {
+        /// Target error of fairlead tension [-].
+        pub tolerance: f64 = 0.02 => within(1e-12, 0.5).described("target error of fairlead tension; sets integrator and steps where the \
+            scene leaves them open; elements stay those of the packaged scene"),
+        /// Elements of a line alone [-], where lines and sections leave their number open; chosen from the tolerance where absent.
+        pub elements: Option<usize> => within(1.0, ELEMENTS_MAX).elsewhere(&["segments"]),
+        /// Time integrator; `dynamics` is another name of the key.
+        pub integrator: Integrator = Integrator::Auto => PLAIN.or_called("dynamics"),
+        /// True if axial damping acts in compression too, as in other codes, so that tension may be negative.
+        pub negative_tension: bool = false,
+        /// True if the energy balance is kept; without it `solver.energy_error` stays 0, and an explicit step costs a fifth less.
+        pub energy_ledger: bool = true,
+        /// Upper limit of the internal time step [s].
+        pub time_step_max: f64 = 0.05 => positive(1e4).elsewhere(&["dtm"]),
+        /// Spectral radius at infinite frequency [-] of `generalised_alpha` (0 to 1, default 0.2) or `axial_implicit` (½ to 1, default 0.9); where
+        /// `auto` chooses the latter, values below ½ count as ½.
+        pub spectral_radius: Option<f64> => MIXED.in_units("-"),
+        /// Parameters of the integrator `bossak`.
+        pub bossak: Option<Bossak>,
+        /// Path of a coupled point between communication points.
+        pub input_reconstruction: Reconstruction = Reconstruction::Smooth => PLAIN.described("path of a coupled point between communication \
+            points: 0 smooth, 1 constant velocity with a jump, 2 cubics through inputs that hold for the end of the step"),
+        /// Number of threads that share the lines [-], 1 to 256, or `"auto"`. Results do not depend on it.
+        pub threads: Threads = Threads::Auto,
+    }
+}
+
+choice! {
+    /// Time integrator.
+    pub enum Integrator {
+        /// Chosen from the step limits.
+        Auto = "auto",
+        /// Explicit leapfrog.
+        Leapfrog = "leapfrog",
+        /// Leapfrog with the axial tension implicit.
+        AxialImplicit = "axial_implicit",
+        /// Chung and Hulbert's generalised-α, fully implicit.
+        GeneralisedAlpha = "generalised_alpha",
+        /// Wood, Bossak and Zienkiewicz, fully implicit.
+        Bossak = "bossak",
+        /// Energy- and momentum-conserving; every line is a beam.
+        Beam = "beam",
+        /// Static equilibrium at every communication point.
+        QuasiStatic = "quasi_static",
+    }
+}
+
+table! {
+    /// Parameters of the Bossak scheme; β = (1 − α)²/4.
+    #[derive(Copy)]
+    pub struct Bossak, "`bossak`" {
+        /// Weight of the old acceleration [-], −1/3 to 0.
+        pub alpha: f64 => MIXED.in_units("-"),
+        /// Newmark's γ [-]; second order needs ½ − α, the default.
+        pub gamma: Option<f64> => within(0.5, 1.5),
+    }
+}
+
+choice! {
+    /// Path of a coupled point between communication points.
+    pub enum Reconstruction {
+        /// C1 cubic towards the predicted position: second order or better.
+        Smooth = "smooth",
+        /// Constant velocity from the position that the host gives, as in other codes: it jumps at communication points.
+        Jump = "jump",
+        /// Cubics through inputs that hold for the end of the communication step, without prediction: for hosts that know the motion, or that
+        /// step the floating body first.
+        Interpolate = "interpolate",
+    }
+}
+
+table! {
+    /// Output of `moorline run` and of the FMU.
+    pub struct Output, "`[output]`" {
+        /// Duration of `moorline run` [s].
+        pub duration: f64 = 60.0 => positive(1e9).elsewhere(&["tmax"]),
+        /// Interval of output and communication [s].
+        pub interval: f64 = 0.05 => positive(1e9).elsewhere(&["dtout", "dt"]),
+        /// True if node positions and tensions are variables too.
+        pub profile: bool = false,
+        /// Further columns of `moorline run`, by MoorDyn's names such as `FairTen1`.
+        pub channels: Vec<String> = Vec::new(),
+    }
+}
+
+/// Threads that share the lines of a system. Results do not depend on it.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Threads {
+    /// As many as pay: one for a few lines.
+    #[default]
+    Auto,
+    /// This number [-], or the number of systems of lines that are joined by held points only, where that is less.
+    Number(usize),
+}
+
+impl Value for Threads {
+    fn kind() -> Kind {
+        Kind::Count
+    }
+
+    fn blank() -> Threads {
+        Threads::Auto
+    }
+
+    fn read(&mut self, node: &Node<'_>) -> Result<(), SceneError> {
+        *self = match node.text() {
+            Ok("auto") => Threads::Auto,
+            _ => Threads::Number(node.count("a number of threads, or \"auto\"")? as usize),
+        };
+        Ok(())
+    }
+
+    fn write(&self) -> Option<Toml> {
+        match self {
+            Threads::Auto => None,
+            Threads::Number(number) => number.write(),
+        }
+    }
+
+    fn check(&self, at: &str, _: &Key, findings: &mut Findings) {
+        if let Threads::Number(number) = self {
+            findings.number(at, *number as f64, within(1.0, 256.0).bounds, "-");
+        }
+    }
+}

@@ -1,0 +1,635 @@
+//! The property table: one entry for each key of the scene format. See the module documentation of [`crate::scene`].
+
+use toml::Value as Toml;
+
+use super::SceneError;
+use super::check::{Bounds, Findings};
+use super::document::Node;
+use super::nearest::suggestion;
+
+/// A key of the scene format.
+#[derive(Clone, Copy)]
+pub struct Key {
+    field: &'static str,
+    /// Lines of the doc comment of the field.
+    doc: &'static [&'static str],
+    /// Bounds, spellings and other facts beside the type and the doc comment.
+    pub rule: Rule,
+    kind: fn() -> Kind,
+    is_optional: fn() -> bool,
+}
+
+impl Key {
+    /// Makes the entry of a field; only the macro `table!` calls this.
+    pub(super) const fn new(
+        field: &'static str,
+        doc: &'static [&'static str],
+        rule: Rule,
+        kind: fn() -> Kind,
+        is_optional: fn() -> bool,
+    ) -> Key {
+        Key {
+            field,
+            doc,
+            rule,
+            kind,
+            is_optional,
+        }
+    }
+
+    /// Returns whether the table is refused without the key.
+    pub fn is_required(&self) -> bool {
+        !(self.is_optional)()
+    }
+
+    /// Name in a scene.
+    pub fn name(&self) -> &'static str {
+        self.rule.name.unwrap_or(self.field)
+    }
+
+    /// Returns whether a scene may call the key by this name.
+    fn is_called(&self, name: &str) -> bool {
+        self.name() == name || self.rule.alias == Some(name)
+    }
+
+    /// Type of the value.
+    pub fn kind(&self) -> Kind {
+        (self.kind)()
+    }
+
+    /// Doc comment of the field, in one line.
+    pub fn text(&self) -> String {
+        let lines: Vec<&str> = self.doc.iter().map(|line| line.trim()).collect();
+        lines.join(" ")
+    }
+
+    /// Unit of its numbers: that of the rule, or the first one in brackets in the doc comment; `None` of a key without numbers.
+    pub fn unit(&self) -> Option<&'static str> {
+        let in_doc = || {
+            let mut inside = self.doc.iter().flat_map(|line| line.split('[').skip(1));
+            inside.find_map(|rest| rest.split_once(']').map(|(unit, _)| unit))
+        };
+        match self.rule.bounds {
+            Bounds::Elsewhere => self.rule.unit,
+            _ if self.kind().is_numeric() => self.rule.unit.or_else(in_doc),
+            _ => None,
+        }
+    }
+
+    /// Meaning in a few words, for descriptions of the FMU and the sentences of `check`: the beginning of the doc comment without units.
+    pub fn meaning(&self) -> String {
+        let text = self.text();
+        let mut meaning = String::new();
+        let mut depth = 0;
+        for c in text.chars() {
+            match c {
+                '[' => depth += 1,
+                ']' => depth -= 1,
+                '.' | ';' | ':' if depth == 0 => break,
+                _ if depth == 0 => meaning.push(c),
+                _ => {}
+            }
+        }
+        let meaning = meaning.trim().replace("  ", " ").replace(" ,", ",");
+        let mut letters = meaning.chars();
+        let first = letters
+            .next()
+            .map(|c| c.to_lowercase().to_string())
+            .unwrap_or_default();
+        first + letters.as_str()
+    }
+
+    /// Name of the property in the sentences of `check`.
+    pub fn label(&self) -> String {
+        self.rule.label.map_or_else(|| self.meaning(), str::to_string)
+    }
+}
+
+/// Facts on a key that its type and doc comment do not say.
+#[derive(Clone, Copy)]
+pub struct Rule {
+    name: Option<&'static str>,
+    /// Another name that is read.
+    pub alias: Option<&'static str>,
+    /// Names in decks, papers and other programs, in lower case, for "did you mean"; the first is a column of MoorDyn where it has one.
+    pub spellings: &'static [&'static str],
+    unit: Option<&'static str>,
+    /// Keys of the same table of which none can be given too.
+    pub excluded: &'static [&'static str],
+    /// Numbers that are accepted.
+    pub bounds: Bounds,
+    /// Sentence that follows the refusal of a number below its bounds.
+    pub hint: Option<&'static str>,
+    /// Range of moorings [unit of the key], and the note on other numbers.
+    pub usual: Option<([f64; 2], &'static str)>,
+    /// When the property acts on a line or point.
+    pub acts: Acts,
+    label: Option<&'static str>,
+    /// Name of the force or effect that is not modelled where the key is left out.
+    pub absence: Option<&'static str>,
+    /// True if the FMU has it as a parameter, which is fixed after initialization.
+    pub is_parameter: bool,
+    /// Description of the FMU's parameter, where it is not the meaning of the key.
+    pub described: Option<&'static str>,
+}
+
+/// When a property acts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Acts {
+    /// At rest and in motion.
+    Always,
+    /// On moving lines only, not in quasi-static runs.
+    InMotion,
+    /// In water, at rest and in motion.
+    InWater,
+    /// In water that flows past the line.
+    InFlow,
+    /// In water, on accelerations.
+    InAccelerations,
+}
+
+/// The rule of a key without any further fact: its numbers are finite.
+pub(super) const PLAIN: Rule = Rule {
+    name: None,
+    alias: None,
+    spellings: &[],
+    unit: None,
+    excluded: &[],
+    bounds: Bounds::Finite,
+    hint: None,
+    usual: None,
+    acts: Acts::Always,
+    label: None,
+    absence: None,
+    is_parameter: false,
+    described: None,
+};
+
+/// The rule of a key whose numbers have several units, and whose bounds are checked where it is read.
+pub(super) const MIXED: Rule = bounded(Bounds::Elsewhere);
+
+const fn bounded(bounds: Bounds) -> Rule {
+    Rule { bounds, ..PLAIN }
+}
+
+/// Numbers above 0, up to a limit.
+pub(super) const fn positive(limit: f64) -> Rule {
+    bounded(Bounds::Positive(limit))
+}
+
+/// Numbers from 0 to a limit.
+pub(super) const fn not_negative(limit: f64) -> Rule {
+    bounded(Bounds::NotNegative(limit))
+}
+
+/// Numbers no further from 0 than a limit.
+pub(super) const fn magnitude(limit: f64) -> Rule {
+    bounded(Bounds::Magnitude(limit))
+}
+
+/// Numbers from one value to another, both included.
+pub(super) const fn within(least: f64, most: f64) -> Rule {
+    bounded(Bounds::Within(least, most))
+}
+
+impl Rule {
+    /// Key that is not called as its field.
+    pub(super) const fn called(self, name: &'static str) -> Rule {
+        let name = Some(name);
+        Rule { name, ..self }
+    }
+
+    /// A second name that is read too.
+    pub(super) const fn or_called(self, alias: &'static str) -> Rule {
+        let alias = Some(alias);
+        Rule { alias, ..self }
+    }
+
+    /// Names elsewhere.
+    pub(super) const fn elsewhere(self, spellings: &'static [&'static str]) -> Rule {
+        Rule { spellings, ..self }
+    }
+
+    /// Keys that cannot be given too.
+    pub(super) const fn instead_of(self, excluded: &'static [&'static str]) -> Rule {
+        Rule { excluded, ..self }
+    }
+
+    /// Units of a list that holds several quantities.
+    pub(super) const fn in_units(self, unit: &'static str) -> Rule {
+        let unit = Some(unit);
+        Rule { unit, ..self }
+    }
+
+    /// Sentence on a number below the bounds.
+    pub(super) const fn hint(self, hint: &'static str) -> Rule {
+        let hint = Some(hint);
+        Rule { hint, ..self }
+    }
+
+    /// Range of moorings, and the note on numbers outside it.
+    pub(super) const fn usual(self, range: [f64; 2], note: &'static str) -> Rule {
+        let usual = Some((range, note));
+        Rule { usual, ..self }
+    }
+
+    /// When the property acts.
+    pub(super) const fn acts(self, acts: Acts) -> Rule {
+        Rule { acts, ..self }
+    }
+
+    /// Name in the sentences of `check`.
+    pub(super) const fn label(self, label: &'static str) -> Rule {
+        let label = Some(label);
+        Rule { label, ..self }
+    }
+
+    /// Effect that is missing where the key is left out.
+    pub(super) const fn absence(self, absence: &'static str) -> Rule {
+        let absence = Some(absence);
+        Rule { absence, ..self }
+    }
+
+    /// Parameter of the FMU.
+    pub(super) const fn parameter(self) -> Rule {
+        let is_parameter = true;
+        Rule { is_parameter, ..self }
+    }
+
+    /// Parameter of the FMU with a description of its own.
+    pub(super) const fn described(self, description: &'static str) -> Rule {
+        let described = Some(description);
+        Rule {
+            described,
+            ..self.parameter()
+        }
+    }
+}
+
+/// Type of a value.
+#[derive(Clone, Copy)]
+pub enum Kind {
+    /// A number.
+    Number,
+    /// A list of numbers, or of rows of numbers.
+    Numbers,
+    /// A whole number.
+    Count,
+    /// `true` or `false`.
+    Truth,
+    /// A text, or a list of texts.
+    Text,
+    /// One of several words, with their meanings; some hold a value.
+    Words(Words),
+    /// A table, or a list of tables.
+    Table(Schema),
+    /// Tables by name.
+    ByName(Schema),
+    /// A number, rows of numbers or a table.
+    NumberOrTable(Schema),
+}
+
+impl Kind {
+    fn is_numeric(self) -> bool {
+        matches!(
+            self,
+            Kind::Number | Kind::Numbers | Kind::Count | Kind::NumberOrTable(_)
+        )
+    }
+}
+
+/// Words of a choice with their meanings.
+#[derive(Clone, Copy)]
+pub struct Words {
+    /// Name of the type.
+    pub name: &'static str,
+    /// Each word and its meaning.
+    pub words: &'static [(&'static str, &'static str)],
+}
+
+/// Keys of a table.
+#[derive(Clone, Copy)]
+pub struct Schema {
+    /// Name of the type.
+    pub name: &'static str,
+    /// Heading on the reference page.
+    pub title: &'static str,
+    /// Doc comment of the type, line by line.
+    pub doc: &'static [&'static str],
+    /// Keys in the order of the page.
+    pub keys: &'static [Key],
+    /// Values of the keys where they are left out.
+    pub defaults: fn() -> Vec<Option<Toml>>,
+}
+
+impl Schema {
+    /// The key of a name.
+    pub fn key(&self, name: &str) -> Option<&'static Key> {
+        self.keys.iter().find(|key| key.is_called(name))
+    }
+}
+
+/// A value of the scene format.
+pub trait Value {
+    /// Type of the value.
+    fn kind() -> Kind
+    where
+        Self: Sized;
+    /// Value before anything is read.
+    fn blank() -> Self
+    where
+        Self: Sized;
+    /// Returns whether a table may leave the key out without giving a default.
+    fn is_optional() -> bool
+    where
+        Self: Sized,
+    {
+        false
+    }
+    /// Reads the value.
+    fn read(&mut self, node: &Node<'_>) -> Result<(), SceneError>;
+    /// The value as TOML; `None` where it is absent.
+    fn write(&self) -> Option<Toml>;
+    /// Adds the mistakes that the value has by itself: numbers out of bounds, rows out of order.
+    fn check(&self, _at: &str, _key: &Key, _findings: &mut Findings) {}
+    /// The number, in the unit of the key, of a value that is one.
+    fn number(&self) -> Option<f64> {
+        None
+    }
+    /// Sets the number. Bounds are left to [`Value::check`].
+    ///
+    /// # Errors
+    /// Numbers that stand for no choice.
+    fn set_number(&mut self, _number: f64) -> Result<(), String> {
+        Ok(())
+    }
+    /// Returns whether the value is that of a key that is left out.
+    fn is_absent(&self) -> bool {
+        false
+    }
+    /// The value in the sentences of `check`; `None` of a value that they describe together with others.
+    fn in_words(&self, _key: &Key) -> Option<String> {
+        None
+    }
+}
+
+/// A table of the scene format.
+pub trait Table: Default {
+    /// Keys and headings.
+    const SCHEMA: Schema;
+    /// Values in the order of the keys.
+    fn values(&self) -> Vec<&dyn Value>;
+    /// Values in the order of the keys.
+    fn values_mut(&mut self) -> Vec<&mut dyn Value>;
+
+    /// Keys with their values.
+    fn entries(&self) -> impl Iterator<Item = (&'static Key, &dyn Value)> {
+        Self::SCHEMA.keys.iter().zip(self.values())
+    }
+
+    /// The value of a key.
+    fn get(&self, name: &str) -> Option<&dyn Value> {
+        self.entries()
+            .find(|(key, _)| key.name() == name)
+            .map(|(_, value)| value)
+    }
+
+    /// The value of a key.
+    fn get_mut(&mut self, name: &str) -> Option<&mut dyn Value> {
+        let index = Self::SCHEMA.keys.iter().position(|key| key.name() == name)?;
+        self.values_mut().into_iter().nth(index)
+    }
+}
+
+impl<T: Table> Value for T {
+    fn kind() -> Kind {
+        Kind::Table(T::SCHEMA)
+    }
+
+    fn blank() -> T {
+        T::default()
+    }
+
+    fn read(&mut self, node: &Node<'_>) -> Result<(), SceneError> {
+        let keys = T::SCHEMA.keys;
+        let entries = node.entries().ok_or_else(|| node.expected("a table"))?;
+        let mut is_read = vec![false; keys.len()];
+        for entry in entries {
+            let name = entry.name();
+            let Some(index) = keys.iter().position(|key| key.is_called(name)) else {
+                let suggestion = suggestion(name, "known keys", keys.iter().map(Key::name));
+                return Err(entry.refuse(format!("unknown key `{name}`{suggestion}")));
+            };
+            let key = &keys[index];
+            if is_read[index] {
+                let problem = format!("`{}` is given twice, under both of its names", key.name());
+                return Err(entry.refuse(problem));
+            }
+            is_read[index] = true;
+            self.values_mut()[index].read(&entry.value.in_unit(key.unit()))?;
+        }
+        match keys
+            .iter()
+            .zip(is_read)
+            .find(|(key, read)| key.is_required() && !read)
+        {
+            None => Ok(()),
+            Some((key, _)) => {
+                let unit = key.unit().map_or_else(String::new, |unit| format!(" [{unit}]"));
+                Err(node.refuse(format!("missing key `{}`{unit}", key.name())))
+            }
+        }
+    }
+
+    fn write(&self) -> Option<Toml> {
+        let entries = self
+            .entries()
+            .filter_map(|(key, value)| Some((key.name().to_string(), value.write()?)));
+        Some(Toml::Table(entries.collect()))
+    }
+
+    fn check(&self, at: &str, _key: &Key, findings: &mut Findings) {
+        check_table(self, at, findings);
+    }
+
+    fn in_words(&self, _key: &Key) -> Option<String> {
+        Some(super::words::group(self))
+    }
+}
+
+/// Adds the mistakes that each value of a table has by itself, and keys of which only one can be given.
+pub(super) fn check_table<T: Table>(table: &T, at: &str, findings: &mut Findings) {
+    for (key, value) in table.entries() {
+        let at = match at {
+            "" => key.name().to_string(),
+            _ => format!("{at}.{}", key.name()),
+        };
+        value.check(&at, key, findings);
+        let given =
+            |name: &&&str| !value.is_absent() && table.get(name).is_some_and(|other| !other.is_absent());
+        if let Some(other) = key.rule.excluded.iter().find(given) {
+            findings.say(at, format!("`{other}` is given too: give one of them"));
+        }
+    }
+}
+
+/// Declares a table of the scene format: its struct, and beside each field the rule of its key. The doc comment of a field is the text of the
+/// reference page, the unit in it that of the number. A field has a default after `=`, is optional by its type, or is required.
+macro_rules! table {
+    (
+        $(#[doc = $about:literal])+ $(#[derive($($derive:ident),+)])?
+        $vis:vis struct $name:ident, $title:literal {
+            $($(#[doc = $doc:literal])+ $field_vis:vis $field:ident: $type:ty $(= $default:expr)? $(=> $rule:expr)?,)+
+        }
+    ) => {
+        $(#[doc = $about])+
+        #[derive(Debug, Clone, PartialEq $($(, $derive)+)?)]
+        $vis struct $name {
+            $($(#[doc = $doc])+ $field_vis $field: $type,)+
+        }
+
+        impl Default for $name {
+            fn default() -> Self {
+                $name { $($field: $crate::scene::table::table!(@default $type $(, $default)?),)+ }
+            }
+        }
+
+        impl $crate::scene::table::Table for $name {
+            const SCHEMA: $crate::scene::table::Schema = $crate::scene::table::Schema {
+                name: stringify!($name),
+                title: $title,
+                doc: &[$($about),+],
+                keys: &[$($crate::scene::table::Key::new(
+                    stringify!($field),
+                    &[$($doc),+],
+                    $crate::scene::table::table!(@rule $($rule)?),
+                    <$type as $crate::scene::table::Value>::kind,
+                    $crate::scene::table::table!(@optional $type $(, $default)?),
+                )),+],
+                defaults: || {
+                    let blank = $name::default();
+                    let values = $crate::scene::table::Table::values(&blank);
+                    values.into_iter().map(|value| value.write()).collect()
+                },
+            };
+
+            fn values(&self) -> Vec<&dyn $crate::scene::table::Value> {
+                vec![$(&self.$field),+]
+            }
+
+            fn values_mut(&mut self) -> Vec<&mut dyn $crate::scene::table::Value> {
+                vec![$(&mut self.$field),+]
+            }
+        }
+    };
+    (@default $type:ty) => { <$type as $crate::scene::table::Value>::blank() };
+    (@default $type:ty, $default:expr) => { $default };
+    (@optional $type:ty) => { <$type as $crate::scene::table::Value>::is_optional };
+    (@optional $type:ty, $default:expr) => { || true };
+    (@rule) => { $crate::scene::table::PLAIN };
+    (@rule $rule:expr) => { $rule };
+}
+
+/// Declares a choice of words: an enum, and for each variant the word in a scene. The doc comment of a variant is its meaning on the
+/// reference page; the first variant is taken where a key with a default is left out.
+macro_rules! choice {
+    ($(#[doc = $about:literal])+ $vis:vis enum $name:ident {
+        $($(#[doc = $doc:literal])+ $variant:ident = $word:literal,)+
+    }) => {
+        $(#[doc = $about])+
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+        $vis enum $name {
+            $($(#[doc = $doc])+ $variant,)+
+        }
+
+        $crate::scene::table::choice!(@value $name, [$(($word, $variant, [$($doc),+])),+]);
+    };
+    (@value $name:ident, [$(($word:literal, $variant:ident, [$($doc:literal),+])),+]) => {
+        impl $crate::scene::table::Choice for $name {
+            const WORDS: &'static [(&'static str, $name)] = &[$(($word, $name::$variant)),+];
+            const MEANINGS: $crate::scene::table::Words = $crate::scene::table::Words {
+                name: stringify!($name),
+                words: &[$(($word, concat!($($doc),+))),+],
+            };
+            const KNOWN: &'static [(&'static str, Option<&'static str>)] = &[$(($word, None)),+];
+        }
+
+        impl $crate::scene::table::Value for $name {
+            fn kind() -> $crate::scene::table::Kind {
+                $crate::scene::table::Kind::Words(<$name as $crate::scene::table::Choice>::MEANINGS)
+            }
+
+            fn blank() -> $name {
+                <$name as $crate::scene::table::Choice>::WORDS[0].1
+            }
+
+            fn read(&mut self, node: &$crate::scene::document::Node<'_>) -> Result<(), $crate::scene::SceneError> {
+                *self = $crate::scene::table::read_choice(node)?;
+                Ok(())
+            }
+
+            fn write(&self) -> Option<toml::Value> {
+                Some($crate::scene::table::Choice::word(*self).into())
+            }
+
+            fn in_words(&self, _: &$crate::scene::table::Key) -> Option<String> {
+                Some($crate::scene::table::Choice::word(*self).to_string())
+            }
+
+            fn number(&self) -> Option<f64> {
+                $crate::scene::table::Choice::place(*self).map(|place| place as f64)
+            }
+
+            fn set_number(&mut self, number: f64) -> Result<(), String> {
+                *self = $crate::scene::table::numbered_choice(number)?;
+                Ok(())
+            }
+        }
+    };
+}
+
+pub(super) use {choice, table};
+
+/// A choice of words.
+pub trait Choice: Copy + PartialEq + 'static {
+    /// Words in a scene.
+    const WORDS: &'static [(&'static str, Self)];
+    /// Words with their meanings.
+    const MEANINGS: Words;
+    /// Words, none of which holds a value.
+    const KNOWN: &'static [(&'static str, Option<&'static str>)];
+
+    /// Place among the words, from 0.
+    fn place(self) -> Option<usize> {
+        Self::WORDS.iter().position(|(_, value)| *value == self)
+    }
+
+    /// Word in a scene.
+    fn word(self) -> &'static str {
+        self.place().map_or("", |place| Self::WORDS[place].0)
+    }
+}
+
+/// Reads a word.
+pub(super) fn read_choice<T: Choice>(node: &Node<'_>) -> Result<T, SceneError> {
+    let (word, _) = node.word(T::KNOWN)?;
+    let mut words = T::WORDS.iter();
+    let (_, value) = words
+        .find(|(known, _)| *known == word)
+        .expect("the word is one of these");
+    Ok(*value)
+}
+
+/// The choice that a number stands for in the FMU.
+pub(super) fn numbered_choice<T: Choice>(number: f64) -> Result<T, String> {
+    let mut words = T::WORDS.iter().enumerate();
+    let found = words.find(|(place, _)| *place as f64 == number);
+    found.map(|(_, (_, value))| *value).ok_or_else(|| {
+        let known = T::WORDS
+            .iter()
+            .enumerate()
+            .map(|(place, (word, _))| format!("{place} ({word})"));
+        let known: Vec<String> = known.collect();
+        format!("{number} is neither {}", known.join(" nor "))
+    })
+}

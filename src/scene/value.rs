@@ -1,0 +1,302 @@
+//! Values of the scene format: numbers, texts and lists of them.
+
+use std::collections::BTreeMap;
+
+use toml::Value as Toml;
+
+use super::check::{Findings, number, quantity};
+use super::document::Node;
+use super::table::{Key, Kind, Value};
+use super::{AngleOrder, SceneError, table};
+
+impl Value for f64 {
+    fn kind() -> Kind {
+        Kind::Number
+    }
+
+    fn blank() -> f64 {
+        0.0
+    }
+
+    fn read(&mut self, node: &Node<'_>) -> Result<(), SceneError> {
+        *self = node.number("a number")?;
+        Ok(())
+    }
+
+    fn write(&self) -> Option<Toml> {
+        Some(Toml::Float(*self))
+    }
+
+    fn check(&self, at: &str, key: &Key, findings: &mut Findings) {
+        findings.ruled(at, *self, &key.rule, key.unit().unwrap_or("-"));
+    }
+
+    fn number(&self) -> Option<f64> {
+        Some(*self)
+    }
+
+    fn set_number(&mut self, number: f64) -> Result<(), String> {
+        *self = number;
+        Ok(())
+    }
+
+    fn in_words(&self, key: &Key) -> Option<String> {
+        Some(quantity(*self, key.unit().unwrap_or("-")))
+    }
+}
+
+/// Implements [`Value`] for a whole number; its bounds are those of its key.
+macro_rules! count {
+    ($type:ty) => {
+        impl Value for $type {
+            fn kind() -> Kind {
+                Kind::Count
+            }
+
+            fn blank() -> $type {
+                0
+            }
+
+            fn read(&mut self, node: &Node<'_>) -> Result<(), SceneError> {
+                *self = node.count("a whole number, not negative")? as $type;
+                Ok(())
+            }
+
+            fn write(&self) -> Option<Toml> {
+                Some(Toml::Integer(*self as i64))
+            }
+
+            fn check(&self, at: &str, key: &Key, findings: &mut Findings) {
+                let value = *self as f64;
+                if let Some(problem) = key.rule.bounds.complaint(value, "-") {
+                    findings.say(at, problem.replacen(&number(value), &self.to_string(), 1));
+                }
+            }
+
+            fn in_words(&self, _: &Key) -> Option<String> {
+                Some(self.to_string())
+            }
+        }
+    };
+}
+
+count!(usize);
+count!(u64);
+
+impl Value for bool {
+    fn kind() -> Kind {
+        Kind::Truth
+    }
+
+    fn blank() -> bool {
+        false
+    }
+
+    fn read(&mut self, node: &Node<'_>) -> Result<(), SceneError> {
+        *self = node.truth()?;
+        Ok(())
+    }
+
+    fn write(&self) -> Option<Toml> {
+        Some(Toml::Boolean(*self))
+    }
+}
+
+impl Value for String {
+    fn kind() -> Kind {
+        Kind::Text
+    }
+
+    fn blank() -> String {
+        String::new()
+    }
+
+    fn read(&mut self, node: &Node<'_>) -> Result<(), SceneError> {
+        *self = node.text()?.to_string();
+        Ok(())
+    }
+
+    fn write(&self) -> Option<Toml> {
+        Some(Toml::String(self.clone()))
+    }
+}
+
+impl<T: Value> Value for Option<T> {
+    fn kind() -> Kind {
+        T::kind()
+    }
+
+    fn blank() -> Option<T> {
+        None
+    }
+
+    fn is_optional() -> bool {
+        true
+    }
+
+    fn read(&mut self, node: &Node<'_>) -> Result<(), SceneError> {
+        self.insert(T::blank()).read(node)
+    }
+
+    fn write(&self) -> Option<Toml> {
+        self.as_ref().and_then(T::write)
+    }
+
+    fn check(&self, at: &str, key: &Key, findings: &mut Findings) {
+        if let Some(value) = self {
+            value.check(at, key, findings);
+        }
+    }
+
+    fn number(&self) -> Option<f64> {
+        self.as_ref().and_then(T::number)
+    }
+
+    fn set_number(&mut self, number: f64) -> Result<(), String> {
+        self.get_or_insert_with(T::blank).set_number(number)
+    }
+
+    fn is_absent(&self) -> bool {
+        self.is_none()
+    }
+
+    fn in_words(&self, key: &Key) -> Option<String> {
+        self.as_ref()?.in_words(key)
+    }
+}
+
+/// A TOML table with one entry.
+pub(super) fn entry(key: &str, value: impl Into<Toml>) -> Toml {
+    Toml::Table([(key.to_string(), value.into())].into_iter().collect())
+}
+
+/// Type of a list of values.
+fn list_of(kind: Kind) -> Kind {
+    match kind {
+        Kind::Number => Kind::Numbers,
+        other => other,
+    }
+}
+
+/// Reads the elements of an array one by one.
+fn read_all<T: Value>(node: &Node<'_>, mut keep: impl FnMut(T)) -> Result<(), SceneError> {
+    for element in node.elements().ok_or_else(|| node.expected("an array"))? {
+        let mut value = T::blank();
+        value.read(&element)?;
+        keep(value);
+    }
+    Ok(())
+}
+
+impl<T: Value, const N: usize> Value for [T; N] {
+    fn kind() -> Kind {
+        list_of(T::kind())
+    }
+
+    fn blank() -> [T; N] {
+        std::array::from_fn(|_| T::blank())
+    }
+
+    fn read(&mut self, node: &Node<'_>) -> Result<(), SceneError> {
+        let expected = format!("an array of {N} numbers");
+        match node.elements().map(|elements| elements.len()) {
+            Some(count) if count == N => {}
+            Some(count) => return Err(node.expected_instead_of(&expected, &format!("an array of {count}"))),
+            None => return Err(node.expected(&expected)),
+        }
+        let mut index = 0;
+        read_all(node, |value| {
+            self[index] = value;
+            index += 1;
+        })
+    }
+
+    fn write(&self) -> Option<Toml> {
+        Some(Toml::Array(self.iter().filter_map(T::write).collect()))
+    }
+
+    fn check(&self, at: &str, key: &Key, findings: &mut Findings) {
+        for (index, value) in self.iter().enumerate() {
+            value.check(&format!("{at}[{index}]"), key, findings);
+        }
+    }
+
+    fn in_words(&self, key: &Key) -> Option<String> {
+        let words: Vec<String> = self.iter().filter_map(|value| value.in_words(key)).collect();
+        Some(words.join(" and "))
+    }
+}
+
+impl<T: Value> Value for Vec<T> {
+    fn kind() -> Kind {
+        list_of(T::kind())
+    }
+
+    fn blank() -> Vec<T> {
+        Vec::new()
+    }
+
+    fn read(&mut self, node: &Node<'_>) -> Result<(), SceneError> {
+        self.clear();
+        read_all(node, |value| self.push(value))
+    }
+
+    fn write(&self) -> Option<Toml> {
+        (!self.is_empty()).then(|| Toml::Array(self.iter().filter_map(T::write).collect()))
+    }
+
+    fn check(&self, at: &str, key: &Key, findings: &mut Findings) {
+        let known = findings.mistakes.len();
+        let is_plain = |value: &T| {
+            value
+                .number()
+                .is_some_and(|number| key.rule.bounds.accepts(number))
+        };
+        for (index, value) in self.iter().enumerate().filter(|(_, value)| !is_plain(value)) {
+            value.check(&format!("{at}[{index}]"), key, findings);
+            if matches!(T::kind(), Kind::Number | Kind::Numbers) && findings.mistakes.len() > known {
+                return; // one wrong number of a long list is enough
+            }
+        }
+    }
+}
+
+impl<T: Value> Value for BTreeMap<String, T> {
+    fn kind() -> Kind {
+        match T::kind() {
+            Kind::Table(schema) => Kind::ByName(schema),
+            other => other,
+        }
+    }
+
+    fn blank() -> BTreeMap<String, T> {
+        BTreeMap::new()
+    }
+
+    fn read(&mut self, node: &Node<'_>) -> Result<(), SceneError> {
+        for entry in node.entries().ok_or_else(|| node.expected("a table"))? {
+            let mut value = T::blank();
+            value.read(&entry.value)?;
+            self.insert(entry.name().to_string(), value);
+        }
+        Ok(())
+    }
+
+    fn write(&self) -> Option<Toml> {
+        let entries = self
+            .iter()
+            .filter_map(|(name, value)| Some((name.clone(), value.write()?)));
+        (!self.is_empty()).then(|| Toml::Table(entries.collect()))
+    }
+
+    fn check(&self, at: &str, key: &Key, findings: &mut Findings) {
+        for (name, value) in self {
+            value.check(&format!("{at}.{}", super::path::quoted(name)), key, findings);
+        }
+    }
+}
+
+table::choice!(@value AngleOrder, [
+    ("zyx", Zyx, ["R = Rz(yaw)·Ry(pitch)·Rx(roll), the order of the FMU's variables."]),
+    ("xyz", Xyz, ["R = Rx(roll)·Ry(pitch)·Rz(yaw), the order of MoorDyn."])
+]);

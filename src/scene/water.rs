@@ -1,0 +1,292 @@
+//! Water, current and waves.
+
+use toml::Value as Toml;
+
+use super::check::Findings;
+use super::document::Node;
+use super::table::{Key, Kind, MIXED, Rule, Table, Value, choice, magnitude, positive, table, within};
+use super::{SceneError, TimeFunction};
+
+table! {
+    /// Water. Its surface is at z = 0 for free points and for lines that may come out of it; other lines are under water everywhere.
+    pub struct Water, "`[water]`" {
+        /// Density of the water [kg/m³].
+        pub density: f64 => positive(1e5).elsewhere(&["rho", "wtrdnsty", "rhow"])
+            .usual([900.0, 1100.0], "1000 to 1030 kg/m³ is usual").parameter(),
+        /// Current; still water where absent.
+        pub current: Option<Current>,
+        /// Waves: one sea, or an array of seas that add up.
+        pub waves: Option<Waves>,
+        /// True if lines lose buoyancy, drag and added mass above z = 0. Where absent, those do that have an end above it, or could float up to it.
+        pub surface: Option<bool>,
+    }
+}
+
+impl Water {
+    /// Still water of a density [kg/m³].
+    pub fn still(density: f64) -> Water {
+        Water {
+            density,
+            ..Water::default()
+        }
+    }
+}
+
+/// Fastest water [m/s]; the strongest tidal streams reach 10 m/s.
+pub(super) const SPEED: Rule = magnitude(100.0);
+
+table! {
+    /// A current: one `velocity` at all heights, or a `profile` over the height, which may stand in a `file`; with `factor`, a function of
+    /// time that multiplies it.
+    pub struct Current, "`current`" {
+        /// Velocity at all heights [m/s].
+        pub velocity: Option<[f64; 3]> => SPEED,
+        /// File of MoorDyn's format with the profile: below three lines of headings, rows of z [m] and vx, vy, vz [m/s].
+        pub file: Option<String>,
+        /// Rows of height z [m] and horizontal velocity vx, vy [m/s], no two at one height; straight between them and constant outside.
+        pub profile: Option<Vec<[f64; 3]>> => MIXED.in_units("m, m/s"),
+        /// Factor of the velocity in time [-]; 1 where absent.
+        pub factor: Option<TimeFunction>,
+    }
+}
+
+/// Seas that add up, such as swell and a wind sea.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Waves {
+    /// The seas.
+    pub seas: Vec<Sea>,
+}
+
+/// Periods of waves [s]: from ripples in a tank to tides.
+const PERIOD: Rule = within(0.05, 1e5);
+/// Directions and phases [rad].
+const ANGLE: Rule = magnitude(1e6);
+/// Heights of waves [m]: the highest ever measured had 32 m.
+const HEIGHT: Rule = positive(100.0);
+
+table! {
+    /// A sea: `regular`, rows of `components`, a `file` of them, or a `spectrum`, with a `ramp`.
+    pub struct Sea, "`waves`, each sea" {
+        /// One train of waves.
+        pub regular: Option<RegularWave>,
+        /// Rows of amplitude [m], period [s], direction [rad] and phase [rad]; or, of a spectrum, the number of components.
+        pub components: Option<WaveComponents> => MIXED.in_units("m, s, rad, rad"),
+        /// File of MoorDyn's format with the components: rows of ω [rad/s], real and imaginary part of the amplitude [m] of sin(ωt − kx) and
+        /// direction [rad].
+        pub file: Option<String>,
+        /// Spectrum that components are drawn from.
+        pub spectrum: Option<SpectrumKind>,
+        /// Significant height of a spectrum [m], four standard deviations of the elevation.
+        pub significant_height: Option<f64> => HEIGHT.elsewhere(&["hs", "wavehs"]),
+        /// Period of a spectrum's peak [s].
+        pub peak_period: Option<f64> => PERIOD.elsewhere(&["tp", "wavetp"]),
+        /// Peakedness γ of a JONSWAP spectrum [-]; 3.3 where absent.
+        pub peakedness: Option<f64> => within(1.0, 10.0).elsewhere(&["gamma"]),
+        /// Mean direction in which a spectrum's waves travel, from x towards y [rad]; 0 where absent.
+        pub direction: Option<f64> => ANGLE,
+        /// Exponent s of the spread cos²ˢ(½(θ − direction)) of a spectrum's directions [-]; one direction where absent.
+        pub spreading: Option<f64> => within(0.0, 1000.0),
+        /// Seed of the frequencies, phases and directions of a spectrum's components [-]; 0 where absent.
+        pub seed: Option<u64>,
+        /// Duration of the cosine ramp ½(1 − cos(πt/ramp)) of all seas [s]; none where absent.
+        pub ramp: Option<f64> => positive(1e9),
+    }
+}
+
+table! {
+    /// One train of waves, η = a cos(k·x − ωt + phase). Give its `height` or its `amplitude`.
+    pub struct RegularWave, "`regular`" {
+        /// Height from trough to crest [m].
+        pub height: Option<f64> => HEIGHT,
+        /// Half the height [m].
+        pub amplitude: Option<f64> => HEIGHT,
+        /// Period [s].
+        pub period: f64 => PERIOD,
+        /// Direction of travel, from x towards y [rad].
+        pub direction: f64 = 0.0 => ANGLE,
+        /// Phase [rad]; with 0 a crest is at x = y = 0 at t = 0.
+        pub phase: f64 = 0.0 => ANGLE,
+    }
+}
+
+choice! {
+    /// Shape of a spectrum.
+    pub enum SpectrumKind {
+        /// A growing sea (Hasselmann et al. 1973).
+        Jonswap = "jonswap",
+        /// A fully developed sea (Pierson & Moskowitz 1964).
+        PiersonMoskowitz = "pierson_moskowitz",
+    }
+}
+
+/// Components as a list, or their number.
+#[derive(Debug, Clone, PartialEq)]
+pub enum WaveComponents {
+    /// Rows of amplitude [m], period [s], direction [rad], phase [rad].
+    Rows(Vec<[f64; 4]>),
+    /// Number of components that are drawn from a spectrum [-].
+    Number(u64),
+}
+
+/// Components drawn from a spectrum where the scene gives no number [-].
+const COMPONENTS: u64 = 100;
+/// Peakedness of a JONSWAP spectrum where the scene gives none [-], the mean of the measurements.
+const PEAKEDNESS: f64 = 3.3;
+
+impl Sea {
+    /// Number of components that are drawn from the spectrum [-].
+    pub fn number(&self) -> u64 {
+        match self.components {
+            Some(WaveComponents::Number(number)) => number,
+            _ => COMPONENTS,
+        }
+    }
+
+    /// Variance of the elevation [m²].
+    pub fn variance(&self) -> f64 {
+        if let Some(regular) = &self.regular {
+            return 0.5 * regular.half_height().unwrap_or_default().powi(2);
+        }
+        match &self.components {
+            Some(WaveComponents::Rows(rows)) => rows.iter().map(|row| 0.5 * row[0] * row[0]).sum(),
+            _ => (0.25 * self.significant_height.unwrap_or_default()).powi(2),
+        }
+    }
+
+    /// Peakedness γ of the spectrum [-]; 1 makes a Pierson-Moskowitz spectrum of it.
+    pub fn gamma(&self) -> f64 {
+        match self.spectrum {
+            Some(SpectrumKind::PiersonMoskowitz) => 1.0,
+            _ => self.peakedness.unwrap_or(PEAKEDNESS),
+        }
+    }
+}
+
+impl RegularWave {
+    /// Half the height [m]; `None` unless one of the two is given.
+    pub fn half_height(&self) -> Option<f64> {
+        match (self.height, self.amplitude) {
+            (Some(height), None) => Some(0.5 * height),
+            (None, amplitude) => amplitude,
+            (Some(_), Some(_)) => None,
+        }
+    }
+}
+
+impl Waves {
+    /// Standard deviation of the elevation [m].
+    pub fn deviation(&self) -> f64 {
+        self.seas.iter().map(Sea::variance).sum::<f64>().sqrt()
+    }
+
+    /// Duration of the ramp [s], where one of the seas says so.
+    pub fn ramp(&self) -> Option<f64> {
+        self.seas.iter().find_map(|sea| sea.ramp)
+    }
+}
+
+impl Waves {
+    /// Key path of a sea.
+    pub(super) fn path(&self, index: usize) -> String {
+        match self.seas.len() {
+            1 => "water.waves".to_string(),
+            _ => format!("water.waves[{index}]"),
+        }
+    }
+}
+
+impl Value for Waves {
+    fn kind() -> Kind {
+        Kind::Table(Sea::SCHEMA)
+    }
+
+    fn blank() -> Waves {
+        Waves::default()
+    }
+
+    fn read(&mut self, node: &Node<'_>) -> Result<(), SceneError> {
+        if node.elements().is_some() {
+            return self.seas.read(node);
+        }
+        if node.entries().is_none() {
+            return Err(node.expected(
+                "a sea, { regular = { height, period } }, { components = [[amplitude, period, direction, phase], …] } or \
+                 { spectrum = \"jonswap\", significant_height, peak_period }, or an array of seas",
+            ));
+        }
+        let mut sea = Sea::default();
+        sea.read(node)?;
+        self.seas = vec![sea];
+        Ok(())
+    }
+
+    fn write(&self) -> Option<Toml> {
+        match self.seas.as_slice() {
+            [sea] => sea.write(),
+            _ => self.seas.write(),
+        }
+    }
+
+    fn check(&self, _: &str, key: &Key, findings: &mut Findings) {
+        for (index, sea) in self.seas.iter().enumerate() {
+            sea.check(&self.path(index), key, findings);
+        }
+    }
+}
+
+impl Value for WaveComponents {
+    fn kind() -> Kind {
+        Kind::Numbers
+    }
+
+    fn blank() -> WaveComponents {
+        WaveComponents::Rows(Vec::new())
+    }
+
+    fn read(&mut self, node: &Node<'_>) -> Result<(), SceneError> {
+        if node.elements().is_some() {
+            let mut rows = Vec::new();
+            Value::read(&mut rows, node)?;
+            *self = WaveComponents::Rows(rows);
+            return Ok(());
+        }
+        let expected =
+            "rows [[amplitude, period, direction, phase], …], or the number of components of a spectrum";
+        node.count(expected)
+            .map(|number| *self = WaveComponents::Number(number))
+    }
+
+    fn write(&self) -> Option<Toml> {
+        match self {
+            WaveComponents::Rows(rows) => rows.write(),
+            WaveComponents::Number(number) => number.write(),
+        }
+    }
+
+    fn check(&self, at: &str, _: &Key, findings: &mut Findings) {
+        let rows = match self {
+            WaveComponents::Rows(rows) => rows,
+            WaveComponents::Number(number) => {
+                findings.number(at, *number as f64, within(1.0, 1e5).bounds, "-");
+                return;
+            }
+        };
+        if rows.is_empty() {
+            findings.say(
+                at,
+                "there are no rows: write [[amplitude, period, direction, phase], …]",
+            );
+        }
+        let columns = [
+            (magnitude(100.0), "m"),
+            (PERIOD, "s"),
+            (ANGLE, "rad"),
+            (ANGLE, "rad"),
+        ];
+        for (i, row) in rows.iter().enumerate() {
+            for (j, (value, (rule, unit))) in row.iter().zip(columns).enumerate() {
+                findings.number(format!("{at}[{i}][{j}]"), *value, rule.bounds, unit);
+            }
+        }
+    }
+}

@@ -1,0 +1,139 @@
+//! Line types in words.
+
+use std::f64::consts::PI;
+
+use super::{given, significant};
+use crate::scene::check::{number, quantity};
+use crate::scene::table::Table;
+use crate::scene::{
+    DAMPING_ELEMENTS, FibreLaw, Integrator, Line, LineModel, LineType, NUMERICAL_DAMPING_RATIO, Scene,
+};
+
+impl Scene {
+    pub(super) fn line_type_in_words(&self, name: &str, line_type: &LineType) -> String {
+        let mass = self.mass(line_type);
+        let weight = significant(self.weight(line_type));
+        let origin = match (line_type.weight, &self.water) {
+            (Some(_), _) => "as given",
+            (None, Some(_)) => "in water",
+            (None, None) => "in air",
+        };
+        let mut parts = vec![format!("mass {} kg/m", significant(mass))];
+        parts.push(format!("weight {weight} N/m {origin}"));
+        parts.extend(given(line_type, &["model", "mass", "weight", "strain"]));
+        if let Some(ea) = line_type.axial_stiffness.or(line_type.dynamic_stiffness) {
+            parts.push(format!("{} strain", line_type.strain.name()));
+            parts.push(format!("axial waves at {} m/s", significant((ea / mass).sqrt())));
+        }
+        parts.extend(bending_in_words(line_type));
+        parts.extend(self.damping_in_words(name, line_type));
+        if self.water.is_some() {
+            let buoyancy = if line_type.weight.is_some() {
+                "buoyancy within the weight"
+            } else {
+                "buoyancy"
+            };
+            parts.push(buoyancy.to_string());
+            let left_out = line_type.entries().filter(|(_, value)| value.is_absent());
+            let absent = left_out.filter_map(|(key, _)| key.rule.absence);
+            parts.extend(absent.map(|effect| format!("no {effect}")));
+        }
+        let all_beams = self.solver.integrator == Integrator::Beam;
+        let beam = line_type.model == LineModel::Beam || all_beams;
+        format!(
+            "{name}: {}{}",
+            if beam { "a beam: " } else { "" },
+            parts.join(", ")
+        )
+    }
+
+    /// Axial damping that the type leaves open, and the mesh that a ratio refers to.
+    fn damping_in_words(&self, name: &str, line_type: &LineType) -> Option<String> {
+        let sections = self.sections();
+        let own = sections.filter(|section| section.line_type == name);
+        let mut elements: Vec<usize> = own
+            .map(|section| section.damping_elements.unwrap_or(DAMPING_ELEMENTS))
+            .collect();
+        elements.sort_unstable();
+        elements.dedup();
+        let elements: Vec<String> = elements.iter().map(usize::to_string).collect();
+        let elements = elements.join(" or ");
+        if line_type.damping_ratio.is_some() {
+            return Some(format!(
+                "the ratio is that of one of {elements} elements of a line, with the same damping on every mesh"
+            ));
+        }
+        let open = line_type.leaves_damping_open();
+        match line_type.model {
+            LineModel::Cable if open => Some(format!(
+                "axial damping {} of critical in each segment, and no less than with {elements} elements (default)",
+                number(NUMERICAL_DAMPING_RATIO)
+            )),
+            LineModel::Beam if open => Some("no damping within the line".to_string()),
+            _ => None,
+        }
+    }
+
+    /// Returns whether a cable has a section with bending stiffness.
+    pub(super) fn bends(&self, line: &Line) -> bool {
+        let mut types = self.types_of(line);
+        !self.is_beam(line) && types.any(|line_type| solid_stiffness(line_type).is_some())
+    }
+
+    /// The parts of bending, torsion and shear that are not modelled.
+    pub(super) fn absence_of_bending(&self) -> &'static str {
+        let cables = || self.lines.iter().filter(|line| !self.is_beam(line));
+        match cables().filter(|line| self.bends(line)).count() {
+            0 => "bending, torsion and shear of lines",
+            n if n == cables().count() => "torsion and shear of lines",
+            _ => "bending of lines without bending stiffness, torsion and shear of all lines",
+        }
+    }
+
+    /// Returns whether and how cables carry compression.
+    pub(super) fn compression_in_words(&self) -> &'static str {
+        if self.lines.iter().any(|line| self.bends(line)) {
+            "tension is never negative where a line is flexible; where it has bending stiffness an element of length l pushes with \
+             up to 4EI/l², beyond which it would buckle within itself"
+        } else {
+            "tension is never negative: a slack line carries nothing"
+        }
+    }
+}
+
+/// EI of one solid section [N m²]: as given, else Eπd⁴/64; `None` for flexible cables, and for beams.
+fn solid_stiffness(line_type: &LineType) -> Option<f64> {
+    let of_section = || {
+        let section = line_type.solid_section?;
+        Some(section.youngs_modulus * PI * section.diameter.powi(4) / 64.0)
+    };
+    let solid = line_type.bending_stiffness.or_else(of_section);
+    solid.filter(|ei| *ei > 0.0 && line_type.model == LineModel::Cable)
+}
+
+/// Bending stiffness of a cable that follows from its solid section or is shared by fibres.
+fn bending_in_words(line_type: &LineType) -> Option<String> {
+    let solid = solid_stiffness(line_type)?;
+    let source = match line_type.bending_stiffness {
+        None => "of the solid section",
+        Some(_) => "as given",
+    };
+    let said = quantity(solid, "N m²");
+    let fibres = line_type.fibres.unwrap_or(1).max(1);
+    let (share, law) = match (fibres, line_type.fibre_law) {
+        (1, _) if line_type.bending_stiffness.is_some() => return None,
+        (1, _) => return Some(format!("bending stiffness EI {said} {source}")),
+        (n, FibreLaw::Linear) => (
+            solid / n as f64,
+            format!("EI/{n}: strands that slide on each other side by side"),
+        ),
+        (n, FibreLaw::Squared) => (
+            solid / (n as f64).powi(2),
+            format!("EI/{n}²: that of a single strand"),
+        ),
+    };
+    let share = quantity(share, "N m²");
+    Some(format!(
+        "bending stiffness {share}, which is EI {said} {source} shared by {fibres} fibres ({law})"
+    ))
+}

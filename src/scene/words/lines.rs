@@ -1,0 +1,129 @@
+//! Lines in words.
+
+use super::{significant, triple};
+use crate::scene::check::quantity;
+use crate::scene::notes::chord;
+use crate::scene::table::Choice;
+use crate::scene::{InitialShape, Line, LineEnd, RestShape, Scene, Section};
+
+impl Scene {
+    pub(super) fn line_in_words(&self, line: &Line) -> String {
+        let sections: Vec<String> = line.sections.iter().map(section_in_words).collect();
+        let start = match &line.initial {
+            InitialShape::Static => "starts in static equilibrium".to_string(),
+            InitialShape::Catenary => {
+                "starts on the catenary between its ends, or straight where it has none, at rest".to_string()
+            }
+            InitialShape::Straight => "starts straight, at rest".to_string(),
+            InitialShape::Parabola(sag) => {
+                format!(
+                    "starts as a parabola with a sag of {}, at rest",
+                    quantity(*sag, "m")
+                )
+            }
+            InitialShape::Nodes(_) => "starts at the given nodes, at rest".to_string(),
+        };
+        let fit = fit_in_words(line.length(), chord(self, line).unwrap_or(0.0));
+        let mut parts = vec![
+            format!("from {} to {}, {}", line.from, line.to, sections.join(", ")),
+            fit,
+            start,
+        ];
+        match (self.is_beam(line), self.bends(line)) {
+            (true, _) => parts.push(format!("a beam, {}", ends_in_words(line))),
+            (_, true) => parts.push(format!("bends; {}", ends_in_words(line))),
+            _ => {}
+        }
+        parts.extend(release_in_words(line));
+        parts.extend(break_in_words(line));
+        parts.extend(winch_in_words(line));
+        format!("{}: {}", line.name, parts.join("; "))
+    }
+}
+
+fn section_in_words(section: &Section) -> String {
+    let elements = match section.elements {
+        Some(1) => " in 1 element".to_string(),
+        Some(n) => format!(" in {n} elements"),
+        None => String::new(),
+    };
+    format!(
+        "{} of {}{elements}",
+        quantity(section.length, "m"),
+        section.line_type
+    )
+}
+
+/// Difference between the length of a line and the distance of its ends, both in metres.
+fn fit_in_words(length: f64, chord: f64) -> String {
+    let (slack, apart) = (length - chord, significant(chord));
+    if slack.abs() < 1e-9 * length {
+        return format!("as long as the distance between its ends, {apart} m");
+    }
+    let longer = if slack > 0.0 { "longer" } else { "shorter" };
+    let slack = significant(slack.abs());
+    format!("{slack} m {longer} than the distance between its ends, {apart} m")
+}
+
+/// Support of the ends of a line that bends, and its shape without bending.
+fn ends_in_words(line: &Line) -> String {
+    let end = |name: &str, clamp: Option<[f64; 3]>| match clamp {
+        Some(along) => format!("clamped at end {name} along {}", triple(along)),
+        None => format!("free to turn at end {name}"),
+    };
+    let rest = match line.rest_shape {
+        RestShape::Straight => "unstressed where straight",
+        RestShape::Initial => "unstressed in its shape at the start",
+    };
+    format!(
+        "{}, {}; {rest}",
+        end("A", line.clamped_a),
+        end("B", line.clamped_b)
+    )
+}
+
+/// "end B", and the name of the point there.
+fn end_of(line: &Line, end: LineEnd) -> (String, &str) {
+    let point = match end {
+        LineEnd::A => &line.from,
+        LineEnd::B => &line.to,
+    };
+    (format!("end {}", end.word().to_uppercase()), point)
+}
+
+fn release_in_words(line: &Line) -> Option<String> {
+    let (end, point) = end_of(line, line.release?);
+    let name = &line.name;
+    Some(format!(
+        "{end} is released from {point} when the input {name}.release becomes true"
+    ))
+}
+
+fn break_in_words(line: &Line) -> Option<String> {
+    let parting = line.parting.as_ref()?;
+    let (end, point) = end_of(line, parting.at);
+    let tension = parting
+        .tension
+        .map(|tension| format!("under {}", quantity(tension, "N")));
+    let time = parting.time.map(|time| format!("at t = {}", quantity(time, "s")));
+    let when: Vec<String> = tension.into_iter().chain(time).collect();
+    Some(format!("{end} breaks off {point} {}", when.join(" or ")))
+}
+
+fn winch_in_words(line: &Line) -> Option<String> {
+    let winch = line.winch.as_ref()?;
+    let speed = winch
+        .speed_max
+        .map(|speed| format!(", at no more than {}", quantity(speed, "m/s")));
+    let path = winch
+        .path
+        .as_ref()
+        .map_or("", |_| " (its own path where the scene's motion is followed)");
+    Some(format!(
+        "end B is on a winch at {}, which pays out up to {} and hauls in by the input {}.length_change{}{path}",
+        line.to,
+        quantity(winch.length_max, "m"),
+        line.name,
+        speed.unwrap_or_default()
+    ))
+}
