@@ -377,9 +377,9 @@ mod tests {
         let [m, n] = [[&mean[0], &mean[1]], [&now[0], &now[1]]];
         let stiffness = geometric_stiffness(m, n, &STRESS, 0.5);
         for unknown in 0..12 {
-            for row in 0..2 {
+            for (row, blocks) in stiffness.iter().enumerate() {
                 let difference = central(1e-6, |by| loads(moved(now, unknown, by))[row]);
-                let block = &stiffness[row][unknown / 6];
+                let block = &blocks[unknown / 6];
                 let column = block.column(unknown % 6).into_owned();
                 assert_relative_eq!(column, difference, epsilon = 1e-8);
             }
