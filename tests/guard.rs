@@ -13,6 +13,7 @@ use std::fmt;
 use std::path::PathBuf;
 
 use common::*;
+use moorline::discretisation::discretised;
 use moorline::elements::Workspace;
 use moorline::simulation::Simulation;
 use moorline::statics::equilibrium;
@@ -35,7 +36,7 @@ struct Work {
 impl Work {
     /// Counts the work of a shipped scene: its equilibrium, and its own motion for its duration or [`SPAN`].
     fn of(name: &str) -> Work {
-        let scene = shipped(name);
+        let scene = discretised(&shipped(name)).into_owned();
         let mut simulation = following(&scene);
         let lines = &simulation.model().lines;
         let elements = lines.iter().map(|line| line.segment_count()).sum();
