@@ -9,6 +9,7 @@ use std::process::ExitCode;
 
 use clap::{Args, Parser, Subcommand};
 
+use cli::modes::Shown;
 use cli::run::Pace;
 use moorline::scene::{Drive, RegularMotion, Supplement};
 
@@ -39,6 +40,25 @@ enum Command {
         /// Print JSON with every number in full
         #[arg(long)]
         json: bool,
+        #[command(flatten)]
+        host: FromHost,
+    },
+    /// Natural periods and shapes of lines and networks about the static equilibrium
+    ///
+    /// Added mass is included; drag, damping and waves are not. The seabed's springs act where nodes rest on it, and slack segments resist
+    /// nothing, both as at rest.
+    Modes {
+        /// Scene of moorline, or deck of MoorDyn or MAP++
+        scene: PathBuf,
+        /// Modes of all lines together, from the lowest frequency up
+        #[arg(long, value_name = "N", default_value = "10", value_parser = clap::value_parser!(u16).range(1..))]
+        count: u16,
+        /// Print JSON with shapes and every number in full
+        #[arg(long)]
+        json: bool,
+        /// Folder for modes.svg, a figure of the lowest modes; made where it is missing
+        #[arg(short, long, value_name = "DIR")]
+        output: Option<PathBuf>,
         #[command(flatten)]
         host: FromHost,
     },
@@ -164,6 +184,20 @@ fn main() -> ExitCode {
     let result = match Arguments::parse().command {
         Command::Check { scene, host } => cli::check::check(&scene, &host.into()),
         Command::Statics { scene, json, host } => cli::statics::statics(&scene, &host.into(), json),
+        Command::Modes {
+            scene,
+            count,
+            json,
+            output,
+            host,
+        } => {
+            let shown = Shown {
+                count: usize::from(count),
+                as_json: json,
+                output: output.as_deref(),
+            };
+            cli::modes::modes(&scene, &host.into(), &shown)
+        }
         Command::Run {
             scene,
             output,

@@ -7,6 +7,7 @@ pub mod demo;
 mod failure;
 pub mod fmu;
 mod folder;
+pub mod modes;
 pub mod run;
 pub mod statics;
 mod summary;

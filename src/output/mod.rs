@@ -10,6 +10,7 @@ pub mod csv;
 pub mod description;
 pub mod figures;
 pub mod json;
+pub mod modes;
 pub mod package;
 pub mod record;
 pub mod report;

@@ -10,6 +10,7 @@ pub mod compared;
 mod flight;
 pub mod frontier;
 mod labels;
+pub mod modes;
 
 use axis::{Axis, force_unit};
 use chart::{Chart, Curve, Stroke};
