@@ -33,6 +33,23 @@ pub enum Command {
         #[arg(long)]
         json: bool,
     },
+    /// Natural periods and shapes of lines and networks about the static equilibrium
+    ///
+    /// Added mass is included; drag, damping and waves are not. The seabed's springs act where nodes rest on it, and slack segments resist
+    /// nothing, both as at rest.
+    Modes {
+        #[command(flatten)]
+        input: Input,
+        /// Modes of all lines together, from the lowest frequency up
+        #[arg(long, value_name = "N", default_value = "10", value_parser = clap::value_parser!(u16).range(1..))]
+        count: u16,
+        /// Print JSON with shapes and every number in full
+        #[arg(long)]
+        json: bool,
+        /// Folder for modes.svg, a figure of the lowest modes; made where it is missing
+        #[arg(short, long, value_name = "DIR")]
+        output: Option<PathBuf>,
+    },
     /// Run in time with the scene's motion: CSV, ParaView files, figures, report
     Run {
         #[command(flatten)]

@@ -10,6 +10,7 @@ mod demo;
 mod failure;
 mod fmu;
 mod folder;
+mod modes;
 mod run;
 mod statics;
 mod summary;
@@ -26,6 +27,19 @@ fn main() -> ExitCode {
     let result = match Arguments::parse().command {
         Command::Check { input } => check::check(&input),
         Command::Statics { input, json } => statics::statics(&input, json),
+        Command::Modes {
+            input,
+            count,
+            json,
+            output,
+        } => {
+            let shown = modes::Shown {
+                count: usize::from(count),
+                as_json: json,
+                output: output.as_deref(),
+            };
+            modes::modes(&input, &shown)
+        }
         Command::Run {
             input,
             output,

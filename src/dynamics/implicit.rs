@@ -31,7 +31,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::ledger::passed::Passed;
 use super::{StepError, StepFailure, reaction};
 use crate::elements::{Counters, Stretch, Weights, Workspace, copy_network, for_free_points, place_ends};
-use crate::math::block_tridiagonal::Pivots;
+use crate::math::block_banded::Pivots;
 use crate::model::{Kinematics, Model, Network, PointState, State};
 use crate::scene::{Integrator, Solver};
 

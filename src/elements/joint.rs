@@ -7,8 +7,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::{LineWork, Weights};
-use crate::math::block_tridiagonal::{Ends, Pivots};
-use crate::math::pentadiagonal::{Blocks, Chain};
+use crate::math::block_banded::{Blocks, Chain, Ends, Pivots};
 use crate::model::{Bending, End, Line, LineState, PointState, joint};
 use crate::physics::bending::{Couple, Hessian};
 
@@ -26,7 +25,7 @@ pub(crate) struct BendingWork {
     /// `near` with the segments' coupling, above and below the diagonal.
     above: Vec<Matrix3<f64>>,
     below: Vec<Matrix3<f64>>,
-    chain: Chain,
+    chain: Chain<true>,
 }
 
 /// Which parts of residual and tangent to add.
@@ -158,9 +157,13 @@ impl LineWork {
     /// Removes the nodes between the ends from the system; `None` if a pivot cannot be taken.
     pub(super) fn eliminate(&mut self, first_free: bool, pivots: Pivots) -> Option<Ends> {
         let Some(work) = self.bending.as_mut().filter(|work| work.active) else {
-            return self
-                .chain
-                .eliminate(&self.diagonal, &self.coupling, &self.residual, first_free, pivots);
+            let blocks = Blocks {
+                diagonal: &self.diagonal,
+                above: &self.coupling,
+                below: &self.coupling,
+                far: &[],
+            };
+            return self.chain.eliminate(blocks, &self.residual, first_free, pivots);
         };
         for (i, coupling) in self.coupling.iter().enumerate() {
             work.above[i] = coupling + work.near[i];

@@ -7,7 +7,7 @@ use super::released::Parted;
 use super::segment::StepEnd;
 use super::viscoelastic::CreepWork;
 use super::{BendingWork, StaticCase, Stretch, Weights, surface};
-use crate::math::block_tridiagonal::Chain;
+use crate::math::block_banded::Chain;
 use crate::model::{Dry, Line, LineState, Model, WaterAlong};
 use crate::physics::morison::{drag, drag_slope};
 use crate::physics::slender::Slender;
@@ -59,7 +59,7 @@ pub(crate) struct LineWork {
     /// What was eliminated of them last.
     pub(super) loose: Option<Parted>,
     /// Elimination where nothing bends.
-    pub(super) chain: Chain,
+    pub(super) chain: Chain<false>,
 }
 
 /// A segment as it lies.

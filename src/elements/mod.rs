@@ -32,10 +32,11 @@ mod viscoelastic;
 
 use nalgebra::Vector3;
 
-use crate::math::block_tridiagonal::{DenseSystem, Pivots};
+use crate::math::block_banded::Pivots;
+use crate::math::sparse_blocks::PointSystem;
 use crate::model::{End, Model, Network, PointState, State};
+use crate::physics::catenary::Catenary;
 use crate::physics::fading_damper::damper_reach;
-use crate::statics::catenary::Catenary;
 
 use joint::Parts;
 pub(crate) use joint::{BendingWork, rates};
@@ -54,7 +55,7 @@ pub struct Workspace {
     /// Per point of the model.
     pub(crate) points: Vec<PointWork>,
     /// Per network of the model.
-    pub(crate) systems: Vec<DenseSystem>,
+    pub(crate) systems: Vec<PointSystem>,
     /// Per line of the model: its closed form at the last evaluation of a network of catenaries.
     pub(crate) catenaries: Vec<Option<Catenary>>,
     /// The state before a step of the caller's.
@@ -96,7 +97,12 @@ impl Workspace {
                 points[index].slot = Some(slot);
             }
         }
-        let system = |network: &Network| DenseSystem::new(network.free_points.len());
+        let system = |network: &Network| {
+            let ends = network.lines.iter().map(|&line| model.lines[line].ends);
+            let pairs = ends.filter_map(|[a, b]| Some((points[a].slot?, points[b].slot?)));
+            PointSystem::new(network.free_points.len(), &pairs.collect::<Vec<_>>())
+        };
+        let systems = model.networks.iter().map(system).collect();
         Workspace {
             lines: model
                 .lines
@@ -104,7 +110,7 @@ impl Workspace {
                 .map(|line| LineWork::new(model, line))
                 .collect(),
             points,
-            systems: model.networks.iter().map(system).collect(),
+            systems,
             catenaries: vec![None; model.lines.len()],
             start: blank_state(model),
             before: blank_state(model),

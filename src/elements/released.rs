@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::LineWork;
-use crate::math::block_tridiagonal::Ends;
+use crate::math::block_banded::Ends;
 
 /// What is left of a line's equations on its ends, for the parted of them.
 #[derive(Debug, Clone, Copy)]

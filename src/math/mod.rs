@@ -1,19 +1,20 @@
-//! No physics: small fixed-size algebra, block-tridiagonal and block-pentadiagonal solves, interpolation, random numbers.
+//! No physics: small fixed-size algebra, banded and sparse block systems, eigenvalues, interpolation, random numbers.
 pub mod anderson;
 pub mod attitude;
-pub mod block_tridiagonal;
+pub mod block_banded;
+pub mod eigen;
 pub mod elementary;
 pub mod fold;
 pub mod folded_tridiagonal;
 pub mod hermite;
 pub mod lanes;
 pub mod low_pass;
-pub mod pentadiagonal;
 pub mod pivoted_chain;
 pub mod random;
 pub mod real;
 pub mod rotation;
 pub mod shape_preserving;
+pub mod sparse_blocks;
 #[cfg(test)]
 pub(crate) mod tests;
 pub mod unit;

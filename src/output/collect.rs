@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use super::json;
 use super::record::{Catenary, Column, Flight, Frame, LineRecord, Node, Record, StaticLine, Surroundings};
-use crate::model::{End, Line, Role};
+use crate::model::{End, Line, Role, Vessel};
 use crate::scene::{PointKind, Scene};
 use crate::simulation::{NodeBending, Simulation};
 
@@ -147,22 +147,31 @@ pub fn statics(scene: &Scene, simulation: &Simulation) -> json::Statics {
                 force: simulation.end_force(point),
             })
             .collect(),
-        vessels: (0..simulation.model().vessels.len())
-            .map(|vessel| static_vessel(simulation, vessel))
-            .collect(),
+        vessels: static_vessels(simulation),
     }
 }
 
-fn static_vessel(simulation: &Simulation, vessel: usize) -> json::Vessel {
-    let (force, stiffness) = simulation.vessel_at_rest(vessel);
-    json::Vessel {
-        name: simulation.model().vessels[vessel].name.clone(),
-        hold: json::Hold { force, stiffness },
-        elements: json::Hold {
+fn static_vessels(simulation: &Simulation) -> Vec<json::Vessel> {
+    let vessels = &simulation.model().vessels;
+    let holds = |simulation: &Simulation| {
+        let stiffnesses = simulation.vessel_stiffnesses().into_iter().enumerate();
+        let hold = |(vessel, stiffness)| json::Hold {
             force: simulation.vessel_force(vessel),
-            stiffness: simulation.vessel_stiffness(vessel),
-        },
-    }
+            stiffness,
+        };
+        stiffnesses.map(hold).collect::<Vec<_>>()
+    };
+    let hung = match vessels[..] {
+        [] => Vec::new(),
+        _ => holds(&simulation.on_catenaries()),
+    };
+    let vessels = vessels.iter().zip(hung).zip(holds(simulation));
+    let vessel = |((vessel, hold), elements): ((&Vessel, _), _)| json::Vessel {
+        name: vessel.name.clone(),
+        hold,
+        elements,
+    };
+    vessels.map(vessel).collect()
 }
 
 fn static_line(simulation: &Simulation, line: usize) -> json::Line {

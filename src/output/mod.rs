@@ -10,6 +10,7 @@ pub mod description;
 pub mod figures;
 pub mod fmi;
 pub mod json;
+pub mod modes;
 pub mod package;
 pub mod record;
 pub mod report;

@@ -119,10 +119,22 @@ impl Simulation {
     /// [`statics::stiffness`]. Where a current drags lines, its force changes with them: the stiffness is then that of equilibria on both sides
     /// of the pose that is set.
     pub fn vessel_stiffness(&self, vessel: usize) -> Option<[[f64; 6]; 6]> {
+        self.stiffness_with(vessel, &mut elements::Workspace::new(&self.model))
+    }
+
+    /// [`Simulation::vessel_stiffness`] of every vessel.
+    pub fn vessel_stiffnesses(&self) -> Vec<Option<[[f64; 6]; 6]>> {
+        let mut work = elements::Workspace::new(&self.model);
+        let vessels = 0..self.model.vessels.len();
+        vessels
+            .map(|vessel| self.stiffness_with(vessel, &mut work))
+            .collect()
+    }
+
+    fn stiffness_with(&self, vessel: usize, work: &mut elements::Workspace) -> Option<[[f64; 6]; 6]> {
         let (model, state) = (&*self.model, &self.snapshot.state);
-        let mut work = elements::Workspace::new(model);
         let origin = self.vessel_origin(vessel);
-        let stiffness = statics::stiffness::of_vessel(model, state, vessel, origin, &mut work)?;
+        let stiffness = statics::stiffness::of_vessel(model, state, vessel, origin, work)?;
         match self.drifts(vessel) {
             true => self.stiffness_in_current(vessel),
             false => Some(stiffness.transpose().into()), // an array of columns
@@ -185,10 +197,9 @@ impl Simulation {
         Some(aside)
     }
 
-    /// Force [N, N m] and stiffness [N/m, N, N m] of the mooring on a vessel were it at rest as it is now, every network that has one on
-    /// its closed-form catenaries and the others on their elements. The closed form has bed friction and no error of a mesh; of a network
-    /// on its elements this is the present force and stiffness.
-    pub fn vessel_at_rest(&self, vessel: usize) -> ([f64; 6], Option<[[f64; 6]; 6]>) {
+    /// This mooring at rest as it is now, without waves, with every network that has one on its closed-form catenaries and the others on
+    /// their elements. The closed form has bed friction and no error of a mesh.
+    pub fn on_catenaries(&self) -> Simulation {
         let mut hung = self.clone();
         hung.snapshot.state.waves = None;
         hung.reactions.clear();
@@ -198,7 +209,7 @@ impl Simulation {
             let state = &mut hung.snapshot.state;
             catenary_network::solve_network(model, number, state, time, &mut work);
         }
-        (hung.vessel_force(vessel), hung.vessel_stiffness(vessel))
+        hung
     }
 
     /// Where the origin of a vessel is now [m].

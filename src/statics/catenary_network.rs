@@ -24,7 +24,7 @@ use super::StaticsError;
 use super::catenary::Catenary;
 use super::{equilibrium, guess};
 use crate::elements::{Workspace, for_free_points, place_ends};
-use crate::math::block_tridiagonal::Pivots;
+use crate::math::block_banded::Pivots;
 use crate::model::{ClosedForm, Line, Model, Network, PointState, State};
 use crate::physics::stretch::StretchLaw;
 

@@ -2,145 +2,255 @@
 //!
 //! K φ = ω² M φ over the nodes between the ends of every line and the free axes of free points. K is the assembled tangent
 //! of statics: axial, geometric and bending stiffness of the lines, the bed's springs where they touch, and the surface's where it is pierced. M is that of dynamics:
-//! lumped, added mass included, M_n I + (M_t − M_n) t tᵀ at a node. With the Cholesky factor M = L Lᵀ the symmetric problem
-//! L⁻¹ K L⁻ᵀ y = ω² y is solved densely, φ = L⁻ᵀ y. Damping and drag are left out.
+//! lumped, added mass included, M_n I + (M_t − M_n) t tᵀ at a node. M couples the axes of a node only, so that with the Cholesky factors
+//! M = L Lᵀ of its blocks L⁻¹ K L⁻ᵀ y = ω² y is as sparse as K, φ = L⁻ᵀ y. Damping and drag are left out.
 //!
 //! Source: the linearised equation of motion of `elements`, reduced here; `tests/dynamics/analytic.rs` holds it against closed forms.
 //! Valid for motion small enough that no segment slackens and no node lands or lifts off. A slack segment has no stiffness and
-//! leaves modes of frequency 0.
+//! leaves modes of frequency 0. Beams have no tangent here.
 
-use nalgebra::{Cholesky, DMatrix, Dyn, Matrix3, SymmetricEigen, Vector3};
+use nalgebra::{Matrix3, Vector3};
 
-use crate::elements::{BendingWork, StaticCase, Workspace, node_tangent};
+use crate::elements::{StaticCase, Workspace, node_tangent};
+use crate::math::eigen::{Eigen, Entry};
 use crate::model::{Line, Model, Network, State};
 use crate::physics::slender::Slender;
+
+/// Unknowns up to which the dense solver is used, whatever the number of modes [-].
+const DENSE_MAX: usize = 300;
+
+/// Why a network has no modes.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum ModesError {
+    /// A line is a beam.
+    #[error(
+        "line \"{line}\": natural modes of beams are not computed; give the line `bending_stiffness` in place of beam properties"
+    )]
+    Beam {
+        /// Name of the line.
+        line: String,
+    },
+    /// A node that moves has no mass.
+    #[error(
+        "line \"{line}\", node {node}: no natural modes: this node moves and has no mass; give the line or the point a mass"
+    )]
+    NoMass {
+        /// Name of a line that ends or runs there.
+        line: String,
+        /// Node, from 0 at end A.
+        node: usize,
+    },
+    /// The stiffness is not positive semidefinite.
+    #[error(
+        "line \"{line}\": no natural modes: the equilibrium of this line and the lines joined to it is not stable"
+    )]
+    Unstable {
+        /// Name of the network's first line.
+        line: String,
+    },
+}
 
 /// The modes of a network, lowest first.
 #[derive(Debug, Clone)]
 pub struct Modes {
     /// Circular natural frequencies [rad/s]; 0 where nothing restores.
     pub frequencies: Vec<f64>,
-    /// Unknown of every axis of every node, by line of the network and node; `None` where it is held.
-    unknowns: Vec<Vec<[Option<usize>; 3]>>,
-    /// Mass-normalised shapes by column [1/√kg].
-    shapes: DMatrix<f64>,
+    nodes: Nodes,
+    eigen: Eigen,
+}
+
+/// The nodes of a network that move.
+#[derive(Debug, Clone)]
+struct Nodes {
+    /// Place of every node, by line of the network and node; `None` where it is held.
+    places: Vec<Vec<Option<usize>>>,
+    /// Unknown of every axis of every place; `None` where it is held.
+    unknowns: Vec<[Option<usize>; 3]>,
+    /// L⁻¹ of every place [1/√kg].
+    scale: Vec<Matrix3<f64>>,
 }
 
 impl Modes {
-    /// Modes of a network about `state`; `None` where a node that moves has no mass.
-    pub fn new(model: &Model, network: usize, state: &State, work: &mut Workspace) -> Option<Modes> {
+    /// All modes of a network about `state`.
+    ///
+    /// # Errors
+    /// A beam, or a node that moves without mass.
+    pub fn new(
+        model: &Model,
+        network: usize,
+        state: &State,
+        work: &mut Workspace,
+    ) -> Result<Modes, ModesError> {
+        Modes::lowest(model, network, state, usize::MAX, work)
+    }
+
+    /// The `count` lowest modes of a network about `state`, or all where there are fewer.
+    ///
+    /// # Errors
+    /// A beam, a node that moves without mass, or an equilibrium that is not stable.
+    pub fn lowest(
+        model: &Model,
+        network: usize,
+        state: &State,
+        count: usize,
+        work: &mut Workspace,
+    ) -> Result<Modes, ModesError> {
+        let name = |line: usize| model.lines[line].name.clone();
+        if let Some(line) = model.beam_of(network) {
+            return Err(ModesError::Beam { line: name(line) });
+        }
         let network = &model.networks[network];
-        let (unknowns, count) = number_unknowns(model, network);
-        let case = StaticCase::whole(state.time);
-        work.assemble_static(model, network, state, &case);
-        let mut stiffness = DMatrix::zeros(count, count);
-        let mut mass = DMatrix::zeros(count, count);
-        for (&index, nodes) in network.lines.iter().zip(&unknowns) {
-            let (line, tangent) = (&model.lines[index], &work.lines[index]);
-            for (i, &node) in nodes.iter().enumerate() {
-                add_block(&mut stiffness, node, node, &tangent.diagonal[i]);
-                add_block(
-                    &mut mass,
-                    node,
-                    node,
-                    &node_mass(line, &state.lines[index].position, i),
-                );
-            }
-            for (pair, coupling) in nodes.windows(2).zip(&tangent.coupling) {
-                add_block(&mut stiffness, pair[0], pair[1], coupling);
-                add_block(&mut stiffness, pair[1], pair[0], &coupling.transpose());
-            }
-            if let Some(bending) = &tangent.bending {
-                add_second_neighbours(&mut stiffness, nodes, bending);
-            }
-        }
-        for &index in &network.free_points {
-            let height = state.points[index].position.z;
-            let own = model.points[index].free();
-            let own = own.map_or(0.0, |free| free.at(height).mass);
-            let point = point_unknowns(model, network, &unknowns, index);
-            add_block(&mut stiffness, point, point, &work.points[index].diagonal);
-            add_block(&mut mass, point, point, &Matrix3::from_diagonal_element(own));
-        }
-        let mut modes = solve(stiffness, Cholesky::new(mass)?);
-        modes.unknowns = unknowns;
-        Some(modes)
+        let nodes = Nodes::new(model, network, state, work)?;
+        work.assemble_static(model, network, state, &StaticCase::whole(state.time));
+        let entries = nodes.stiffness(network, work);
+        let size = nodes.unknowns.iter().flatten().flatten().count();
+        let eigen = match size <= DENSE_MAX || 4 * count.min(size) > size {
+            true => Some(Eigen::all(size, &entries)),
+            false => Eigen::lowest(size, &entries, count),
+        };
+        let eigen = eigen.ok_or_else(|| ModesError::Unstable {
+            line: name(network.lines[0]),
+        })?;
+        let squares = eigen.values.iter().take(count);
+        Ok(Modes {
+            frequencies: squares.map(|square| square.max(0.0).sqrt()).collect(),
+            nodes,
+            eigen,
+        })
     }
 
     /// Mass-normalised displacements [1/√kg] of every node of a line in a mode; `line` counts the lines of the network.
     pub fn shape(&self, mode: usize, line: usize) -> Vec<Vector3<f64>> {
-        let along = |unknown: Option<usize>| unknown.map_or(0.0, |row| self.shapes[(row, mode)]);
-        let nodes = self.unknowns[line].iter();
-        nodes.map(|node| Vector3::from(node.map(along))).collect()
+        let Nodes {
+            places,
+            unknowns,
+            scale,
+        } = &self.nodes;
+        let along = |unknown: Option<usize>| unknown.map_or(0.0, |row| self.eigen.vector(mode, row));
+        let at = |place: usize| scale[place].tr_mul(&Vector3::from(unknowns[place].map(along)));
+        let places = places[line].iter();
+        places.map(|place| place.map_or(Vector3::zeros(), at)).collect()
     }
 }
 
-/// Numbers the axes that move: nodes between the ends line by line, then free points. Also how many there are.
-fn number_unknowns(model: &Model, network: &Network) -> (Vec<Vec<[Option<usize>; 3]>>, usize) {
-    let mut count = 0;
-    let mut next = |moves: bool| {
-        count += usize::from(moves);
-        moves.then(|| count - 1)
-    };
-    let mut unknowns: Vec<Vec<[Option<usize>; 3]>> = Vec::with_capacity(network.lines.len());
-    for &index in &network.lines {
-        let last = model.lines[index].segment_count();
-        let node = |i: usize| [i > 0 && i < last; 3].map(&mut next);
-        unknowns.push((0..=last).map(node).collect());
+impl Nodes {
+    /// Numbers the axes that move: free points, then nodes between the ends line by line.
+    fn new(model: &Model, network: &Network, state: &State, work: &Workspace) -> Result<Nodes, ModesError> {
+        let (mut mass, mut axes) = (Vec::new(), Vec::new());
+        for &point in &network.free_points {
+            let height = state.points[point].position.z;
+            let free = model.points[point].free();
+            let own = free.map_or(0.0, |free| free.at(height).mass);
+            mass.push(Matrix3::from_diagonal_element(own));
+            axes.push(free.map_or([false; 3], |free| free.axes));
+        }
+        let mut places = Vec::with_capacity(network.lines.len());
+        for &index in &network.lines {
+            let line = &model.lines[index];
+            let slots = line.ends.map(|point| work.points[point].slot);
+            let inner = mass.len()..mass.len() + line.segment_count() - 1;
+            mass.resize(inner.end, Matrix3::zeros());
+            axes.resize(inner.end, [true; 3]);
+            let own: Vec<Option<usize>> = [slots[0]]
+                .into_iter()
+                .chain(inner.map(Some))
+                .chain([slots[1]])
+                .collect();
+            for (node, place) in own
+                .iter()
+                .enumerate()
+                .filter_map(|(node, place)| Some((node, (*place)?)))
+            {
+                mass[place] += node_mass(line, &state.lines[index].position, node);
+            }
+            places.push(own);
+        }
+        let factors = mass
+            .iter()
+            .zip(&axes)
+            .map(|(mass, axes)| inverse_factor(mass, *axes));
+        let mut scale = Vec::with_capacity(mass.len());
+        for (place, factor) in factors.enumerate() {
+            scale.push(factor.ok_or_else(|| without_mass(model, network, &places, place))?);
+        }
+        let mut count = 0;
+        let mut number = |moves: bool| {
+            count += usize::from(moves);
+            moves.then(|| count - 1)
+        };
+        let unknowns = axes.iter().map(|axes| axes.map(&mut number)).collect();
+        Ok(Nodes {
+            places,
+            unknowns,
+            scale,
+        })
     }
-    for &index in &network.free_points {
-        let axes = model.points[index].free().map_or([false; 3], |free| free.axes);
-        let numbers = axes.map(&mut next);
-        for (line, nodes) in network.lines.iter().zip(&mut unknowns) {
-            let last = nodes.len() - 1;
-            for (node, &point) in [0, last].into_iter().zip(&model.lines[*line].ends) {
-                if point == index {
-                    nodes[node] = numbers;
+
+    /// L⁻¹ K L⁻ᵀ of the assembled tangent [1/s²].
+    fn stiffness(&self, network: &Network, work: &Workspace) -> Vec<Entry> {
+        let mut entries = Vec::new();
+        let mut add = |row: Option<usize>, column: Option<usize>, block: &Matrix3<f64>| {
+            if let (Some(row), Some(column)) = (row, column) {
+                self.add_block(&mut entries, row, column, block);
+            }
+        };
+        for (&index, places) in network.lines.iter().zip(&self.places) {
+            let line = &work.lines[index];
+            for (&place, block) in places.iter().zip(&line.diagonal) {
+                add(place, place, block);
+            }
+            let bending = line.bending.as_ref().filter(|bending| bending.active);
+            let joints = bending.map_or([&[][..]; 2], |bending| [&bending.near[..], &bending.far]);
+            for (step, blocks) in [(1, &line.coupling[..]), (1, joints[0]), (2, joints[1])] {
+                for (i, block) in blocks.iter().enumerate() {
+                    add(places[i], places[i + step], block);
+                    add(places[i + step], places[i], &block.transpose());
+                }
+            }
+        }
+        for (place, &index) in network.free_points.iter().enumerate() {
+            add(Some(place), Some(place), &work.points[index].diagonal);
+        }
+        entries
+    }
+
+    /// Adds the entries of a block of K that lie in the lower triangle.
+    fn add_block(&self, entries: &mut Vec<Entry>, row: usize, column: usize, block: &Matrix3<f64>) {
+        let scaled = self.scale[row] * block * self.scale[column].transpose();
+        for (i, row) in self.unknowns[row].into_iter().enumerate() {
+            for (k, column) in self.unknowns[column].into_iter().enumerate() {
+                if let (Some(row), Some(column)) = (row, column)
+                    && row >= column
+                {
+                    entries.push(Entry::new(row, column, scaled[(i, k)]));
                 }
             }
         }
     }
-    (unknowns, count)
 }
 
-/// Unknowns of a free point, as the lines that end there have them.
-fn point_unknowns(
-    model: &Model,
-    network: &Network,
-    unknowns: &[Vec<[Option<usize>; 3]>],
-    point: usize,
-) -> [Option<usize>; 3] {
-    let ends = network.lines.iter().zip(unknowns).flat_map(|(&line, nodes)| {
-        let [a, b] = model.lines[line].ends;
-        [(a, nodes[0]), (b, nodes[nodes.len() - 1])]
+/// L⁻¹ of the mass of a node on its free axes [1/√kg]; `None` where it has none.
+fn inverse_factor(mass: &Matrix3<f64>, axes: [bool; 3]) -> Option<Matrix3<f64>> {
+    let moves = |i: usize, k: usize| axes[i] && axes[k];
+    let own = Matrix3::from_fn(|i, k| {
+        if moves(i, k) {
+            mass[(i, k)]
+        } else {
+            f64::from(u8::from(i == k))
+        }
     });
-    let mut found = ends.filter(|(end, _)| *end == point).map(|(_, numbers)| numbers);
-    found.next().unwrap_or([None; 3])
+    own.cholesky()?.l().try_inverse()
 }
 
-fn add_block(
-    matrix: &mut DMatrix<f64>,
-    rows: [Option<usize>; 3],
-    columns: [Option<usize>; 3],
-    block: &Matrix3<f64>,
-) {
-    for (i, row) in rows.into_iter().enumerate() {
-        for (j, column) in columns.into_iter().enumerate() {
-            if let (Some(row), Some(column)) = (row, column) {
-                matrix[(row, column)] += block[(i, j)];
-            }
-        }
-    }
-}
-
-/// What the joints of a line couple.
-fn add_second_neighbours(stiffness: &mut DMatrix<f64>, nodes: &[[Option<usize>; 3]], bending: &BendingWork) {
-    for (step, blocks) in [(1, &bending.near), (2, &bending.far)] {
-        for (i, block) in blocks.iter().enumerate() {
-            let (row, column) = (nodes[i], nodes[i + step]);
-            add_block(stiffness, row, column, block);
-            add_block(stiffness, column, row, &block.transpose());
-        }
+/// The error of a place that has no mass.
+fn without_mass(model: &Model, network: &Network, places: &[Vec<Option<usize>>], place: usize) -> ModesError {
+    let lines = network.lines.iter().zip(places);
+    let mut found =
+        lines.filter_map(|(&line, own)| Some((line, own.iter().position(|&at| at == Some(place))?)));
+    let (line, node) = found.next().unwrap_or((network.lines[0], 0));
+    ModesError::NoMass {
+        line: model.lines[line].name.clone(),
+        node,
     }
 }
 
@@ -149,26 +259,6 @@ fn node_mass(line: &Line, position: &[Vector3<f64>], i: usize) -> Matrix3<f64> {
     let surface = line.surface.as_ref();
     let dry = surface.map_or(0.0, |surface| surface.node(i, position).part);
     Slender::new(line.nodes.masses(i, dry)).matrix(node_tangent(position, i))
-}
-
-fn solve(mut stiffness: DMatrix<f64>, mass: Cholesky<f64, Dyn>) -> Modes {
-    let factor = mass.l();
-    factor.solve_lower_triangular_mut(&mut stiffness);
-    stiffness.transpose_mut();
-    factor.solve_lower_triangular_mut(&mut stiffness);
-    let eigen = SymmetricEigen::new(stiffness);
-    let mut order: Vec<usize> = (0..eigen.eigenvalues.len()).collect();
-    order.sort_by(|&i, &j| eigen.eigenvalues[i].total_cmp(&eigen.eigenvalues[j]));
-    let mut shapes = eigen.eigenvectors.select_columns(&order);
-    factor.tr_solve_lower_triangular_mut(&mut shapes);
-    Modes {
-        frequencies: order
-            .iter()
-            .map(|&i| eigen.eigenvalues[i].max(0.0).sqrt())
-            .collect(),
-        unknowns: Vec::new(),
-        shapes,
-    }
 }
 
 #[cfg(test)]
@@ -197,7 +287,7 @@ mod tests {
         Model::new(&Scene::from_toml(SPRINGS).unwrap()).unwrap()
     }
 
-    fn modes(model: &Model) -> Option<Modes> {
+    fn modes(model: &Model) -> Result<Modes, ModesError> {
         let points: Vec<PointState> = model
             .points
             .iter()
@@ -238,6 +328,8 @@ mod tests {
         if let Role::Free(free) = &mut model.points[1].role {
             free.mass = 0.0;
         }
-        assert!(modes(&model).is_none());
+        let error = modes(&model).unwrap_err();
+        let line = "a".to_string();
+        assert_eq!(error, ModesError::NoMass { line, node: 1 });
     }
 }

@@ -283,8 +283,7 @@ fn a_slack_line_holds_a_vessel_by_the_weight_that_heave_lifts() {
         ..OC3
     };
     let simulation = start(&slack.scene(20, ""));
-    let (_, closed) = simulation.vessel_at_rest(0);
-    let closed = closed.unwrap();
+    let closed = simulation.on_catenaries().vessel_stiffness(0).unwrap();
     assert_close(closed[2][2], 3.0 * slack.chain[1], 1e-3);
     assert!(closed[0][0].abs() < 1e-3 * closed[2][2]);
     let elements = matrix(simulation.vessel_stiffness(0).unwrap());
@@ -293,8 +292,8 @@ fn a_slack_line_holds_a_vessel_by_the_weight_that_heave_lifts() {
 
 /// Diagonal of the stiffness of the closed forms, and the vertical force [N/m, N m/rad, N].
 fn published(deck: &Deck) -> ([f64; 6], f64) {
-    let (force, stiffness) = start(&deck.scene(20, "")).vessel_at_rest(0);
-    let stiffness = stiffness.unwrap();
+    let hung = start(&deck.scene(20, "")).on_catenaries();
+    let (force, stiffness) = (hung.vessel_force(0), hung.vessel_stiffness(0).unwrap());
     ([0, 1, 2, 3, 4, 5].map(|i| stiffness[i][i]), force[2])
 }
 
@@ -341,7 +340,7 @@ fn elements_converge_to_the_stiffness_of_the_closed_form() {
     let frictionless = Deck { friction: 0.0, ..OC3 };
     let errors = [20, 160, 640].map(|elements| {
         let simulation = start(&frictionless.scene(elements, ""));
-        let (_, closed) = simulation.vessel_at_rest(0);
+        let closed = simulation.on_catenaries().vessel_stiffness(0);
         let [closed, solved] = [closed, simulation.vessel_stiffness(0)].map(|k| matrix(k.unwrap()));
         difference(&solved, &closed)
     });

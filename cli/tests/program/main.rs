@@ -4,6 +4,7 @@ mod arguments;
 mod decks;
 mod drive;
 mod fmu;
+mod modes;
 mod places;
 mod run;
 mod statics;
@@ -133,4 +134,30 @@ fn table(path: &Path) -> (Vec<String>, Vec<Vec<f64>>) {
     let header = reader.headers().unwrap().iter().map(String::from).collect();
     let rows = reader.deserialize().collect::<Result<_, _>>().unwrap();
     (header, rows)
+}
+
+/// Adds the keys of all tables in it, arrays of tables included.
+fn collect_keys(value: &serde_json::Value, keys: &mut Vec<String>) {
+    match value {
+        serde_json::Value::Object(table) => {
+            for (key, value) in table {
+                keys.push(key.clone());
+                collect_keys(value, keys);
+            }
+        }
+        serde_json::Value::Array(values) => values.iter().for_each(|value| collect_keys(value, keys)),
+        _ => {}
+    }
+}
+
+/// Every key is on the page of the JSON.
+fn assert_documented(json: &serde_json::Value) {
+    let page = include_str!("../../../docs/json.md");
+    let mut keys = Vec::new();
+    collect_keys(json, &mut keys);
+    for key in keys {
+        let written = ["`", "."]
+            .map(|before| ["`", "[]`"].map(|after| page.contains(&format!("{before}{key}{after}"))));
+        assert!(written.concat().contains(&true), "{key}");
+    }
 }

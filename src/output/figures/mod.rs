@@ -9,6 +9,7 @@ pub mod chart;
 pub mod compared;
 mod flight;
 mod labels;
+pub mod modes;
 
 use axis::{Axis, force_unit};
 use chart::{Chart, Curve, Stroke};

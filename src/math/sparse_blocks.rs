@@ -1,0 +1,353 @@
+//! Direct solution of a sparse system of 3×3 blocks with a symmetric pattern: the points that chains meet in, three unknowns each.
+//!
+//! The points are eliminated in an order of approximate minimum degree. Order and pattern of the factors are found once (`Order`); a
+//! solve then computes numbers only and allocates nothing. With point k next in the order, U its blocks on the later points and L those of
+//! these on it,
+//!
+//!   W_j = D_k⁻¹ U_kj,   y_k = D_k⁻¹ b_k,   A_ij ← A_ij − L_ik W_j,   b_i ← b_i − L_ik y_k,   at last x_k = y_k − Σ W_j x_j.
+//!
+//! Pivots stay in their blocks, so that signs of pivots keep their meaning: a matrix is positive definite where all of them are positive, see
+//! [`Pivots`]. Values need not be symmetric. The arithmetic is the same on every machine, whatever its vectors.
+//!
+//! Source: Davis (2006), Direct Methods for Sparse Linear Systems, chapters 4 (symbolic analysis) and 6 (LU with a symmetric pattern);
+//! Amestoy, Davis & Duff (1996), SIAM J. Matrix Anal. Appl. 17, 886-905 (order). Order and pattern are by the crate faer, whose numeric
+//! factors do not serve here: its Cholesky factors need symmetric values, its LU factors exchange rows between points, and both round differently on
+//! machines with other vectors.
+
+use std::sync::Arc;
+
+use faer::sparse::SymbolicSparseColMat;
+use faer::sparse::linalg::SupernodalThreshold;
+use faer::sparse::linalg::cholesky::{
+    CholeskySymbolicParams, SymbolicCholeskyRaw, SymmetricOrdering, factorize_symbolic_cholesky,
+};
+use nalgebra::{Matrix3, Vector3};
+
+use super::block_banded::{Lu3, Pivots};
+
+/// Order of elimination, and where the factors have blocks.
+#[derive(Debug)]
+struct Order {
+    /// Place of every point in the order.
+    place: Vec<usize>,
+    /// Where the blocks below the diagonal begin in each column, and their number.
+    start: Vec<usize>,
+    /// Rows of the blocks below the diagonal, ascending in each column.
+    rows: Vec<usize>,
+    /// Blocks that the pairs of blocks of a column change, column by column.
+    targets: Vec<usize>,
+}
+
+impl Order {
+    /// Order for `points` points, of which `pairs` are coupled.
+    fn new(points: usize, pairs: &[(usize, usize)]) -> Order {
+        let pairs = pairs.iter().filter(|(a, b)| a != b);
+        let upper = pairs.map(|&(a, b)| faer::sparse::Pair::new(a.min(b), a.max(b)));
+        let entries: Vec<_> = upper.collect();
+        let (matrix, _) = SymbolicSparseColMat::<usize>::try_new_from_indices(points, points, &entries)
+            .expect("indices of points that exist");
+        let params = CholeskySymbolicParams {
+            supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SIMPLICIAL,
+            ..Default::default()
+        };
+        let factor =
+            factorize_symbolic_cholesky(matrix.as_ref(), faer::Side::Upper, SymmetricOrdering::Amd, params)
+                .expect("memory for a pattern");
+        let SymbolicCholeskyRaw::Simplicial(pattern) = factor.raw() else {
+            unreachable!("a simplicial pattern is asked for");
+        };
+        let place = factor.perm().expect("an order").arrays().1.to_vec();
+        let (mut start, mut rows) = (vec![0], Vec::new());
+        for column in pattern.col_ptr().windows(2) {
+            let column = &pattern.row_idx()[column[0]..column[1]];
+            let own = start.len() - 1;
+            rows.extend(column.iter().filter(|&&row| row != own));
+            start.push(rows.len());
+        }
+        let mut order = Order {
+            place,
+            start,
+            rows,
+            targets: Vec::new(),
+        };
+        order.targets = order.find_targets();
+        order
+    }
+
+    fn find_targets(&self) -> Vec<usize> {
+        let mut targets = Vec::new();
+        for column in self.start.windows(2) {
+            let rows = &self.rows[column[0]..column[1]];
+            for (i, &first) in rows.iter().enumerate() {
+                targets.extend(rows[i + 1..].iter().map(|&second| self.block(second, first)));
+            }
+        }
+        targets
+    }
+
+    /// Index of the block below the diagonal in a row and a column of the order.
+    fn block(&self, row: usize, column: usize) -> usize {
+        let [start, end] = [self.start[column], self.start[column + 1]];
+        let found = self.rows[start..end].binary_search(&row);
+        start + found.expect("a pair of points that the system was made for")
+    }
+}
+
+/// The system of the points that chains meet in, three unknowns each.
+#[derive(Debug, Clone)]
+pub struct PointSystem {
+    order: Arc<Order>,
+    /// Blocks of points on themselves, in the order of elimination, and b, then the solution.
+    diagonal: Vec<Matrix3<f64>>,
+    right: Vec<Vector3<f64>>,
+    /// Blocks below the diagonal, and those opposite above it.
+    lower: Vec<Matrix3<f64>>,
+    upper: Vec<Matrix3<f64>>,
+    /// Axes whose unknown is zero, in the order of elimination.
+    held: Vec<[bool; 3]>,
+}
+
+impl PointSystem {
+    /// Room for `points` points, of which `pairs` are coupled.
+    pub fn new(points: usize, pairs: &[(usize, usize)]) -> PointSystem {
+        let order = Order::new(points, pairs);
+        let blocks = vec![Matrix3::zeros(); order.rows.len()];
+        PointSystem {
+            order: Arc::new(order),
+            diagonal: vec![Matrix3::zeros(); points],
+            right: vec![Vector3::zeros(); points],
+            lower: blocks.clone(),
+            upper: blocks,
+            held: vec![[false; 3]; points],
+        }
+    }
+
+    /// Sets everything to zero.
+    pub fn clear(&mut self) {
+        for blocks in [&mut self.diagonal, &mut self.lower, &mut self.upper] {
+            blocks.fill(Matrix3::zeros());
+        }
+        self.right.fill(Vector3::zeros());
+        self.held.fill([false; 3]);
+    }
+
+    /// Adds a block in the rows of point `row` and the columns of point `column`, of one of the pairs or of a point on itself.
+    pub fn add_block(&mut self, row: usize, column: usize, block: &Matrix3<f64>) {
+        let [row, column] = [row, column].map(|point| self.order.place[point]);
+        match row.cmp(&column) {
+            std::cmp::Ordering::Equal => self.diagonal[row] += block,
+            std::cmp::Ordering::Greater => self.lower[self.order.block(row, column)] += block,
+            std::cmp::Ordering::Less => self.upper[self.order.block(column, row)] += block,
+        }
+    }
+
+    /// Adds to the right-hand side of point `row`.
+    pub fn add_right(&mut self, row: usize, right: Vector3<f64>) {
+        self.right[self.order.place[row]] += right;
+    }
+
+    /// Holds one axis of a point: its unknown becomes zero.
+    pub fn hold(&mut self, point: usize, axis: usize) {
+        self.held[self.order.place[point]][axis] = true;
+    }
+
+    /// Solves in place; false if a pivot cannot be taken.
+    pub fn solve(&mut self, pivots: Pivots) -> bool {
+        self.apply_holds();
+        let order = &self.order;
+        let mut targets = order.targets.iter();
+        for k in 0..self.diagonal.len() {
+            let Some(pivot) = Lu3::new(&self.diagonal[k], pivots) else {
+                return false;
+            };
+            let known = pivot.solve_dividing(self.right[k]);
+            self.right[k] = known;
+            let column = order.start[k]..order.start[k + 1];
+            for block in &mut self.upper[column.clone()] {
+                *block = pivot.solve3(block);
+            }
+            let (lower, later_lower) = self.lower.split_at_mut(column.end);
+            let (upper, later_upper) = self.upper.split_at_mut(column.end);
+            let (rows, lower, upper) = (
+                &order.rows[column.clone()],
+                &lower[column.clone()],
+                &upper[column.clone()],
+            );
+            for (i, &row) in rows.iter().enumerate() {
+                self.diagonal[row] -= lower[i] * upper[i];
+                self.right[row] -= lower[i] * known;
+                for (j, target) in (i + 1..rows.len()).zip(&mut targets) {
+                    let target = target - column.end;
+                    later_lower[target] -= lower[j] * upper[i];
+                    later_upper[target] -= lower[i] * upper[j];
+                }
+            }
+        }
+        for k in (0..self.diagonal.len()).rev() {
+            let mut x = self.right[k];
+            for block in order.start[k]..order.start[k + 1] {
+                x -= self.upper[block] * self.right[order.rows[block]];
+            }
+            self.right[k] = x;
+        }
+        true
+    }
+
+    fn apply_holds(&mut self) {
+        let order = &self.order;
+        for k in 0..self.held.len() {
+            let own = self.held[k];
+            for block in order.start[k]..order.start[k + 1] {
+                let other = self.held[order.rows[block]];
+                mask(&mut self.lower[block], other, own);
+                mask(&mut self.upper[block], own, other);
+            }
+            mask(&mut self.diagonal[k], own, own);
+            for axis in (0..3).filter(|&axis| own[axis]) {
+                self.diagonal[k][(axis, axis)] = 1.0;
+                self.right[k][axis] = 0.0;
+            }
+        }
+    }
+
+    /// Solution at a point, after [`PointSystem::solve`].
+    pub fn solution(&self, point: usize) -> Vector3<f64> {
+        self.right[self.order.place[point]]
+    }
+}
+
+/// Sets rows and columns of a block to zero.
+fn mask(block: &mut Matrix3<f64>, rows: [bool; 3], columns: [bool; 3]) {
+    for i in (0..3).filter(|&i| rows[i]) {
+        block.row_mut(i).fill(0.0);
+    }
+    for i in (0..3).filter(|&i| columns[i]) {
+        block.column_mut(i).fill(0.0);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::random::Random;
+    use nalgebra::{DMatrix, DVector};
+
+    /// A system and the same as a dense one.
+    struct Both {
+        sparse: PointSystem,
+        matrix: DMatrix<f64>,
+        right: DVector<f64>,
+    }
+
+    impl Both {
+        /// A net of `count` by `count` points, neighbours coupled, with `own` on the diagonal.
+        fn net(count: usize, own: f64) -> Both {
+            let mut random = Random::new(5);
+            let mut block =
+                |own| Matrix3::from_fn(|_, _| 2.0 * random.unit() - 1.0) + Matrix3::identity() * own;
+            let points = count * count;
+            let along = (0..points).filter(|i| i % count + 1 < count).map(|i| (i, i + 1));
+            let across = (0..points - count).map(|i| (i + count, i));
+            let pairs: Vec<_> = along.chain(across).collect();
+            let mut both = Both {
+                sparse: PointSystem::new(points, &pairs),
+                matrix: DMatrix::zeros(3 * points, 3 * points),
+                right: DVector::zeros(3 * points),
+            };
+            for i in 0..points {
+                both.add(i, i, block(own));
+                let right = block(0.0).column(0).into_owned();
+                both.sparse.add_right(i, right);
+                both.right.fixed_rows_mut::<3>(3 * i).copy_from(&right);
+            }
+            for &(a, b) in &pairs {
+                both.add(a, b, block(0.0));
+                both.add(b, a, block(0.0));
+            }
+            both
+        }
+
+        fn add(&mut self, row: usize, column: usize, block: Matrix3<f64>) {
+            self.sparse.add_block(row, column, &block);
+            let mut view = self.matrix.fixed_view_mut::<3, 3>(3 * row, 3 * column);
+            view += block;
+        }
+
+        fn hold(&mut self, point: usize, axis: usize) {
+            self.sparse.hold(point, axis);
+            let row = 3 * point + axis;
+            self.matrix.row_mut(row).fill(0.0);
+            self.matrix.column_mut(row).fill(0.0);
+            self.matrix[(row, row)] = 1.0;
+            self.right[row] = 0.0;
+        }
+
+        /// Greatest difference of both solutions.
+        fn error(&mut self, pivots: Pivots) -> f64 {
+            assert!(self.sparse.solve(pivots));
+            let exact = self
+                .matrix
+                .clone()
+                .lu()
+                .solve(&self.right)
+                .expect("a regular matrix");
+            let points = 0..self.right.len() / 3;
+            let difference = points.map(|i| self.sparse.solution(i) - exact.fixed_rows::<3>(3 * i));
+            difference.map(|d| d.amax()).fold(0.0, f64::max) / exact.amax()
+        }
+    }
+
+    #[test]
+    fn a_net_is_solved_as_by_a_dense_solver() {
+        for count in [1, 2, 3, 5, 9] {
+            for pivots in [Pivots::Positive, Pivots::Any] {
+                let error = Both::net(count, 14.0).error(pivots);
+                assert!(error < 1e-14, "{count}: {error}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_system_is_solved_again_after_it_is_cleared() {
+        let mut both = Both::net(4, 14.0);
+        both.sparse.hold(3, 1);
+        assert!(both.sparse.solve(Pivots::Positive));
+        both.sparse.clear();
+        let fresh = Both::net(4, 14.0);
+        for (i, k) in (0..16).flat_map(|i| (0..16).map(move |k| (i, k))) {
+            let block = fresh.matrix.fixed_view::<3, 3>(3 * i, 3 * k).into_owned();
+            if block != Matrix3::zeros() {
+                both.sparse.add_block(i, k, &block);
+            }
+        }
+        (0..16).for_each(|i| {
+            both.sparse
+                .add_right(i, fresh.right.fixed_rows::<3>(3 * i).into_owned())
+        });
+        assert!(both.error(Pivots::Positive) < 1e-14);
+    }
+
+    #[test]
+    fn a_held_axis_does_not_move_and_the_rest_is_solved() {
+        let mut both = Both::net(5, 14.0);
+        for (point, axis) in [(0, 0), (12, 0), (12, 1), (12, 2), (13, 1), (24, 2)] {
+            both.hold(point, axis);
+        }
+        assert!(both.error(Pivots::Positive) < 1e-14);
+        assert_eq!(both.sparse.solution(12), Vector3::zeros());
+    }
+
+    #[test]
+    fn a_matrix_that_is_not_positive_definite_is_reported() {
+        for point in 0..16 {
+            let mut both = Both::net(4, 14.0);
+            both.add(
+                point,
+                point,
+                Matrix3::from_diagonal(&Vector3::new(0.0, -30.0, 0.0)),
+            );
+            assert!(!both.sparse.clone().solve(Pivots::Positive), "{point}");
+            assert!(both.error(Pivots::Any) < 1e-12);
+        }
+    }
+}
