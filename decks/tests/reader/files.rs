@@ -1,4 +1,4 @@
-//! Files beside a deck: bathymetry, waves and currents.
+//! Files beside a deck: bathymetry, waves and currents, tables of tension.
 
 use std::f64::consts::PI;
 
@@ -104,4 +104,64 @@ fn a_deck_whose_files_are_wrong_is_refused_with_file_and_line() {
         refusal.contains("wave_frequencies.txt, line 1: expected 3 or 4 numbers"),
         "{refusal}"
     );
+}
+
+/// A deck with one rope whose EA and BA are these words.
+fn deck_with_rope(ea: &str, ba: &str) -> String {
+    format!(
+        "MoorDyn input\n---- LINE TYPES ----\nName Diam Mass/m EA BA/-zeta EI Cd Ca CdAx CaAx\n(-) (m) (kg/m) (N) (N-s/-) (N-m^2) (-) (-) (-) (-)\n\
+         rope 0.15 22.0 {ea} {ba} 0.0 1.2 1.0 0.2 0.0\n\
+         ---- POINTS ----\nID Attachment X Y Z M V CdA Ca\n(-) (-) (m) (m) (m) (kg) (m^3) (m^2) (-)\n\
+         1 Fixed 200.0 0.0 -100.0 0 0 0 0\n2 Coupled 0.0 0.0 -10.0 0 0 0 0\n\
+         ---- LINES ----\nID LineType AttachA AttachB UnstrLen NumSegs Outputs\n(-) (-) (-) (-) (m) (-) (-)\n\
+         1 rope 1 2 218.0 10 -\n---- OPTIONS ----\n100.0 WtrDpth\n---- need this line ----\n"
+    )
+}
+
+#[test]
+fn decks_say_static_and_dynamic_stiffness_or_name_a_table() {
+    let folder = tempfile::tempdir().unwrap();
+    let read = |ea: &str, ba: &str| {
+        let path = folder.path().join("mooring.dat");
+        fs::write(&path, deck_with_rope(ea, ba)).unwrap();
+        load(&path)
+    };
+    let both = read("1.424e8|1.586e8", "4E9|11e6").unwrap();
+    let kind = &both.scene.line_types["rope"];
+    assert_eq!(
+        kind.static_stiffness.zip(kind.dynamic_stiffness),
+        Some((1.424e8, 1.586e8))
+    );
+    assert_eq!(
+        kind.static_damping.zip(kind.dynamic_damping),
+        Some((4.0e9, 1.1e7))
+    );
+    let converted = Scene::from_toml(&both.to_commented_toml()).unwrap();
+    assert_eq!(converted, both.scene);
+    Simulation::new(&converted).unwrap();
+    let missing = format!("{:?}", read("polyester.txt", "-0.8").unwrap_err());
+    assert!(missing.contains("polyester.txt: no such file"), "{missing}");
+    let table = "----Polyester----\nStrain Tension\n(-) (N)\n0.0 0.0\n0.01 1.0e6\n0.02 3.0e6\n";
+    fs::write(folder.path().join("polyester.txt"), table).unwrap();
+    let found = read("polyester.txt", "-0.8").unwrap();
+    let rows = &found.scene.line_types["rope"]
+        .tension_strain
+        .as_ref()
+        .unwrap()
+        .rows;
+    assert_eq!(rows.len(), 3);
+    let converted = Scene::from_toml(&found.to_commented_toml()).unwrap();
+    assert_eq!(
+        converted.line_types["rope"].tension_strain.as_ref().unwrap().rows,
+        *rows
+    );
+    for (ea, ba, said) in [
+        ("1e8|2e8|0.1", "1e9|1e6", "grows with the mean tension"),
+        ("1e8|2e8", "-0.8", "no meaning"),
+        ("1e8", "1e9|1e6", "belong to a viscoelastic line"),
+        ("1e8", "damping.txt", "not modelled"),
+    ] {
+        let refused = format!("{:?}", read(ea, ba).unwrap_err());
+        assert!(refused.contains(said), "{refused}");
+    }
 }
