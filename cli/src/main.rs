@@ -1,6 +1,7 @@
 //! The program `moorline`: parse, call, print, exit code.
 //!
 //! Exit codes: 0 done, 2 the input is wrong, 1 the computation failed, 130 interrupted.
+#![forbid(unsafe_code)]
 
 mod accuracy;
 mod arguments;
