@@ -133,11 +133,13 @@ fn converges(name: &str, scene: &str) {
 }
 
 #[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
 fn oc3_converges_to_a_fifth_of_a_percent_in_tension_and_a_thousandth_in_position() {
     converges("oc3", include_str!("../../scenes/oc3_catenary.toml"));
 }
 
 #[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
 fn oc4_converges_to_a_fifth_of_a_percent_in_tension_and_a_thousandth_in_position() {
     converges("oc4", include_str!("../../scenes/oc4_chain.toml"));
 }
