@@ -27,11 +27,11 @@ pub enum Command {
     },
     /// Static equilibrium: forces, shape, sag, length on the seabed
     Statics {
-        #[command(flatten)]
-        input: Input,
         /// Print JSON with every number in full
         #[arg(long)]
         json: bool,
+        #[command(flatten)]
+        input: Input,
     },
     /// Natural periods and shapes of lines and networks about the static equilibrium
     ///
@@ -52,8 +52,6 @@ pub enum Command {
     },
     /// Run in time with the scene's motion: CSV, ParaView files, figures, report
     Run {
-        #[command(flatten)]
-        input: Input,
         /// Folder for the results; made where it is missing
         #[arg(short, long, value_name = "DIR")]
         output: PathBuf,
@@ -65,6 +63,8 @@ pub enum Command {
         velocities: bool,
         #[command(flatten)]
         moved: Moved,
+        #[command(flatten)]
+        input: Input,
     },
     /// Write a MoorDyn or MAP++ file as a scene with comments
     Convert {
@@ -78,14 +78,14 @@ pub enum Command {
     },
     /// Package a scene as an FMU for co-simulation
     Fmu {
-        #[command(flatten)]
-        input: Input,
         /// The .fmu file
         #[arg(short, long, value_name = "FILE")]
         output: PathBuf,
         /// Version of FMI
         #[arg(long, default_value = "2", value_name = "VERSION", value_parser = ["2", "3"])]
         fmi: String,
+        #[command(flatten)]
+        input: Input,
     },
     /// Speed against error on this machine: meshes, integrators and steps against a converged solution
     Accuracy {
