@@ -43,20 +43,41 @@ pub(super) enum Moves {
     Recorded(Vec<(String, Vec<MotionRow>)>),
 }
 
+/// Motion of one body in a file.
+#[derive(Debug)]
+pub(super) struct OneBody {
+    pub rows: Vec<MotionRow>,
+    /// Description of the columns that were read.
+    pub columns: String,
+    /// True if the file holds the results of a run, whose angles are Z-Y-X.
+    pub is_recorded: bool,
+}
+
 /// Rows of time [s], displacement x, y, z [m] and rotation [rad] of one body, and how they were read.
 ///
 /// # Errors
 /// The file, the line and what would be right.
-pub(super) fn read(path: &Path, body: &str) -> Result<(Vec<MotionRow>, String), String> {
+pub(super) fn read(path: &Path, body: &str) -> Result<OneBody, String> {
     let (moves, columns) = read_any(path, false)?;
+    let is_recorded = matches!(moves, Moves::Recorded(_));
     let bodies = match moves {
-        Moves::One { rows, .. } => return Ok((rows, columns)),
+        Moves::One { rows, .. } => {
+            return Ok(OneBody {
+                rows,
+                columns,
+                is_recorded,
+            });
+        }
         Moves::Named(bodies) | Moves::Recorded(bodies) => bodies,
     };
     let names: Vec<String> = bodies.iter().map(|(name, _)| name.clone()).collect();
     let mut bodies = bodies.into_iter();
     match bodies.find(|(name, _)| name == body) {
-        Some((_, rows)) => Ok((rows, format!("those of {body} in {columns}"))),
+        Some((_, rows)) => Ok(OneBody {
+            rows,
+            columns: format!("those of {body} in {columns}"),
+            is_recorded,
+        }),
         None => Err(format!(
             "{}, line 1: no column moves `{body}`: there are columns of {}",
             path.display(),
@@ -614,7 +635,7 @@ mod tests {
         let path = folder.path().join("results.csv");
         let text = "time,barge.x,barge.vx,barge.pitch,buoy.z,line1.tension_b,solver.substeps\n0,1,9,2,3,1e5,4\n1,2,9,3,4,1e5,4\n";
         fs::write(&path, text).unwrap();
-        let (rows, said) = read(&path, "barge").unwrap();
+        let OneBody { rows, columns: said, .. } = read(&path, "barge").unwrap();
         assert_eq!(rows[1], [1.0, 2.0, 0.0, 0.0, 0.0, 3.0, 0.0]);
         assert!(
             said.starts_with("those of barge in columns between commas: time [s], barge.x [m]"),
@@ -626,7 +647,7 @@ mod tests {
             "name,unit,description\ntime,s,time\nbarge.pitch,deg,\"pitch, in degrees\"\n",
         )
         .unwrap();
-        let (rows, said) = read(&path, "barge").unwrap();
+        let OneBody { rows, columns: said, .. } = read(&path, "barge").unwrap();
         assert_relative_eq!(rows[0][5], 2.0_f64.to_radians(), max_relative = 1e-15);
         assert!(said.contains("barge.pitch [deg]"), "{said}");
         let problem = read(&path, "fairlead").unwrap_err();

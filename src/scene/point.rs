@@ -2,8 +2,10 @@
 
 use std::f64::consts::TAU;
 
+use nalgebra::Vector3;
+
 use super::table::{Acts, MIXED, PLAIN, choice, magnitude, not_negative, table};
-use super::{AngleOrder, MotionPath, TimeFunction};
+use super::{AngleOrder, MotionPath, MotionRow, Scene, TimeFunction};
 
 table! {
     /// A point that lines end at.
@@ -109,5 +111,38 @@ table! {
         pub attitude: [f64; 3] = [0.0; 3] => magnitude(TAU),
         /// Order of the rotations by roll, pitch and yaw in the motion of a run, in `[motion]` or beside the scene.
         pub motion_angles: AngleOrder = AngleOrder::Zyx,
+    }
+}
+
+impl Vessel {
+    /// Rows of a motion whose angles are Z-Y-X, as in the results of a run, with angles in the order of this vessel's motions [rad].
+    pub(super) fn in_own_order(&self, mut rows: Vec<MotionRow>) -> Vec<MotionRow> {
+        if self.motion_angles.is_zyx() {
+            return rows;
+        }
+        let attitude = Vector3::from(self.attitude);
+        let reference = self
+            .motion_angles
+            .angles(&AngleOrder::Zyx.rotation(attitude), attitude);
+        let mut angles = reference;
+        for row in &mut rows {
+            let recorded = attitude + Vector3::from_row_slice(&row[4..]);
+            angles = self
+                .motion_angles
+                .angles(&AngleOrder::Zyx.rotation(recorded), angles);
+            row[4..].copy_from_slice((angles - reference).as_slice());
+        }
+        rows
+    }
+}
+
+impl Scene {
+    /// [`Vessel::in_own_order`] of a body by its name; the rows of a point are as they are.
+    pub(super) fn in_own_order(&self, body: &str, rows: Vec<MotionRow>) -> Vec<MotionRow> {
+        let vessel = self.vessels.iter().find(|vessel| vessel.name == body);
+        match vessel {
+            Some(vessel) => vessel.in_own_order(rows),
+            None => rows,
+        }
     }
 }

@@ -243,6 +243,7 @@ fn read_water(scene: &mut Scene, folder: &Path) -> Vec<SceneError> {
 
 /// Reads every motion file of the scene; returns the mistakes in them.
 fn read_motions(scene: &mut Scene, folder: &Path) -> Vec<SceneError> {
+    let vessels = scene.vessels.clone();
     let of_points = scene.points.iter_mut().enumerate().filter_map(|(i, point)| {
         let motion = point.motion.as_mut()?;
         Some((format!("points[{i}].motion.file"), &point.name, motion))
@@ -255,7 +256,14 @@ fn read_motions(scene: &mut Scene, folder: &Path) -> Vec<SceneError> {
     for (at, body, motion) in of_points.chain(of_run) {
         if let MotionPath::File(file) = motion {
             match motion_file::read(&folder.join(&file.file), body) {
-                Ok((rows, columns)) => (file.rows, file.columns) = (rows, columns),
+                Ok(read) => {
+                    let vessel = vessels.iter().find(|vessel| vessel.name == *body && read.is_recorded);
+                    file.rows = match vessel {
+                        Some(vessel) => vessel.in_own_order(read.rows),
+                        None => read.rows,
+                    };
+                    file.columns = read.columns;
+                }
                 Err(problem) => mistakes.push(SceneError::new(at, problem)),
             }
         }

@@ -7,9 +7,10 @@ use std::fs;
 use std::path::Path;
 
 use approx::assert_relative_eq;
-use moorline::scene::{LoadError, LoadedScene, Scene};
+use moorline::scene::{AngleOrder, Drive, LoadError, LoadedScene, MotionPath, Scene};
 use moorline::simulation::Simulation;
 use moorline_decks::load;
+use nalgebra::Vector3;
 use tempfile::tempdir;
 
 const VERSION_1: &str = include_str!("../decks/moordyn_v1.dat");
@@ -162,4 +163,33 @@ fn decks_say_static_and_dynamic_stiffness_or_name_a_table() {
     ] {
         assert_says(&format!("{:?}", load(ea, ba).unwrap_err()), &[said]);
     }
+}
+
+#[test]
+fn recorded_angles_move_a_vessel_of_a_deck_to_where_they_were_recorded() {
+    let folder = tempdir().unwrap();
+    let path = folder.path().join("deck.dat");
+    fs::write(&path, OPENFAST).unwrap();
+    let mut scene = load(&path).unwrap().scene;
+    let vessel = scene.vessels[0].name.clone();
+    let order = scene.vessels[0].motion_angles;
+    assert!(!order.is_zyx());
+    let angles = Vector3::new(0.35, -0.52, 0.70);
+    let results = folder.path().join("results.csv");
+    let axes = ["x", "y", "z", "roll", "pitch", "yaw"].map(|axis| format!("{vessel}.{axis}"));
+    let header = format!("time,{},solver.substeps", axes.join(","));
+    let row = |t: f64| format!("{t},0,0,0,{},{},{},1", angles.x, angles.y, angles.z);
+    fs::write(&results, format!("{header}\n{}\n{}\n", row(0.0), row(1.0))).unwrap();
+    scene
+        .drive(&Drive {
+            file: Some(results),
+            ..Drive::default()
+        })
+        .unwrap();
+    let MotionPath::Table(rows) = &scene.motion[&vessel] else {
+        panic!("{:?}", scene.motion[&vessel]);
+    };
+    let moved = order.rotation(Vector3::from_row_slice(&rows[0][4..]));
+    let recorded = AngleOrder::Zyx.rotation(angles);
+    assert!(moved.angle_to(&recorded) < 1e-12, "{rows:?}");
 }
