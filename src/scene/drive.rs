@@ -129,7 +129,9 @@ impl Scene {
             }
             Moves::Recorded(bodies) => {
                 let moved = |body: &&(String, _)| known.contains(&body.0.as_str());
-                let in_order = |(body, rows): &(String, Vec<MotionRow>)| (body.clone(), self.in_own_order(body, rows.clone()));
+                let in_order = |(body, rows): &(String, Vec<MotionRow>)| {
+                    (body.clone(), self.in_own_order(body, rows.clone()))
+                };
                 let own: Vec<_> = bodies.iter().filter(moved).map(in_order).collect();
                 match (own.is_empty(), bodies.first()) {
                     (true, Some((body, _))) => {

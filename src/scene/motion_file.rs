@@ -635,7 +635,9 @@ mod tests {
         let path = folder.path().join("results.csv");
         let text = "time,barge.x,barge.vx,barge.pitch,buoy.z,line1.tension_b,solver.substeps\n0,1,9,2,3,1e5,4\n1,2,9,3,4,1e5,4\n";
         fs::write(&path, text).unwrap();
-        let OneBody { rows, columns: said, .. } = read(&path, "barge").unwrap();
+        let OneBody {
+            rows, columns: said, ..
+        } = read(&path, "barge").unwrap();
         assert_eq!(rows[1], [1.0, 2.0, 0.0, 0.0, 0.0, 3.0, 0.0]);
         assert!(
             said.starts_with("those of barge in columns between commas: time [s], barge.x [m]"),
@@ -647,7 +649,9 @@ mod tests {
             "name,unit,description\ntime,s,time\nbarge.pitch,deg,\"pitch, in degrees\"\n",
         )
         .unwrap();
-        let OneBody { rows, columns: said, .. } = read(&path, "barge").unwrap();
+        let OneBody {
+            rows, columns: said, ..
+        } = read(&path, "barge").unwrap();
         assert_relative_eq!(rows[0][5], 2.0_f64.to_radians(), max_relative = 1e-15);
         assert!(said.contains("barge.pitch [deg]"), "{said}");
         let problem = read(&path, "fairlead").unwrap_err();

@@ -257,7 +257,9 @@ fn read_motions(scene: &mut Scene, folder: &Path) -> Vec<SceneError> {
         if let MotionPath::File(file) = motion {
             match motion_file::read(&folder.join(&file.file), body) {
                 Ok(read) => {
-                    let vessel = vessels.iter().find(|vessel| vessel.name == *body && read.is_recorded);
+                    let vessel = vessels
+                        .iter()
+                        .find(|vessel| vessel.name == *body && read.is_recorded);
                     file.rows = match vessel {
                         Some(vessel) => vessel.in_own_order(read.rows),
                         None => read.rows,
