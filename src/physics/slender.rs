@@ -51,7 +51,7 @@ impl<R: Real> Slender<R> {
 }
 
 impl Slender<f64> {
-    /// The matrix a I + b t tᵀ.
+    /// Matrix a I + b t tᵀ [kg] or [1/kg].
     pub fn matrix(self, tangent: Vector3<f64>) -> Matrix3<f64> {
         Matrix3::from_diagonal_element(self.across) + self.excess * tangent * tangent.transpose()
     }

@@ -355,7 +355,7 @@ table! {
         /// File with columns of time [s], x, y, z [m] and of vessels roll, pitch, yaw [rad], relative to the scene.
         file: Option<String>,
         /// Rows of time [s], x, y, z [m] and of vessels roll, pitch, yaw [rad].
-        table: Option<Vec<TableRow>> => MIXED,
+        table: Option<Vec<TableRow>> => MIXED.in_units("s, m, rad"),
         /// Sines along x: [amplitude [m], period [s]] or [amplitude, period, phase [rad]].
         x: Option<Vec<Vec<f64>>> => MIXED.in_units("m, s, rad"),
         /// Sines along y: [amplitude [m], period [s]] or [amplitude, period, phase [rad]].

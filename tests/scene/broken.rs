@@ -398,7 +398,12 @@ fn the_commonest_mistakes_of_users_are_refused_at_their_lines() {
         ("to = \"clump\"", "to = \"clamp\"", 75, "clump"),
         ("to = \"clump\"", "to = \"anchor1\"", 75, "both ends"),
         ("elements = 12 }]", "elements = 0 }]", 76, "elements"),
-        ("elements = 12 }]", "elements = 100000000 }]", 76, "more than"),
+        (
+            "elements = 12 }]",
+            "elements = 100000000 }]",
+            76,
+            "is not between 1 and",
+        ),
         ("length = 190.0", "length = 1e300", 76, "beyond the limit"),
         ("type = \"wire\"", "type = \"rope\"", 82, "rope"),
         ("kind = \"fixed\"", "kind = \"nailed\"", 44, "nailed"),
