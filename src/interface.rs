@@ -432,7 +432,7 @@ fn line_result(simulation: &Simulation, line: usize, result: LineResult) -> Opti
         LineResult::Sag => Some(simulation.sag(line)),
         LineResult::CurvatureMax | LineResult::MomentMax | LineResult::MomentA | LineResult::MomentB => {
             let nodes = simulation.bending(line).unwrap_or_default();
-            Some(bending_result(&nodes, result))
+            Some(bending_result(nodes, result))
         }
         LineResult::CatenarySag => catenary().map(|c| c.sag()),
         LineResult::CatenaryHorizontal => catenary().map(|c| c.horizontal()),
