@@ -92,7 +92,7 @@ def run_all(arguments):
         failed.append("cargo test")
     if CONFORMANCE.is_file():
         path = os.pathsep.join([str(interpreter.parent), os.environ["PATH"]])
-        if not run("bash", CONFORMANCE, interpreter, PATH=path, VIRTUAL_ENV=str(VENV)):
+        if not run("bash", CONFORMANCE, interpreter, PATH=path, VIRTUAL_ENV=str(VENV), MOORLINE=str(program)):
             failed.append("fmu/conformance/run.sh")
     if not run(interpreter, "-m", "pytest", "python_tests", *arguments, MOORLINE=str(program)):
         failed.append("pytest")

@@ -45,7 +45,7 @@ def test_a_spoilt_scene_is_refused_at_instantiation(library, version, tmp_path, 
     assert SPOILT[name] != WHOLE
     text = refused(library("CHAIN", version), tmp_path, SPOILT[name])
     words = {"negative diameter": "diameter", "wrong name": "farlead", "loop": "both ends", "unknown key": "diametre",
-             "no elements": "elements", "all elements": "100000", "not a number": "mass", "a deck": "MoorDyn"}
+             "no elements": "elements", "all elements": "100000", "not a number": "mass", "a deck": "a deck of another program"}
     assert words.get(name, "") in text
 
 

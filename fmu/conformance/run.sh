@@ -15,8 +15,10 @@ BINDGEN_EXTRA_CLANG_ARGS="-I$(gcc -print-file-name=include)" # stddef.h, which l
 export LIBCLANG_PATH BINDGEN_EXTRA_CLANG_ARGS
 
 cd "$(dirname "$0")/../.."
-# The library and the command line that packages with it, then the checks, which find them by MOORLINE.
-cargo build --release
-MOORLINE=${MOORLINE:-$PWD/target/release/moorline}
+# The program and the library beside it that it packages, built here unless MOORLINE names the program.
+if [ -z "${MOORLINE:-}" ]; then
+    cargo build --release
+    MOORLINE=$PWD/target/release/moorline
+fi
 export MOORLINE
 cargo test -p moorline-conformance --features fmi-sys
