@@ -1,14 +1,14 @@
 //! Mesh, integrator and step that keep a stated error, found by trying them on the scene's own motion.
 //!
-//! No rule from lengths, speeds and periods tells the error of a line that slackens and lands: n times the RMS error of the fairlead's
-//! tension lies between 0.45 and 2 for chains of like shape and motion, and falls with n² where nothing slackens. So a scene that says
-//! how it moves is run with a ladder of meshes, n_j = 5, 7, 10, 14 …, over a few of its periods. With the relative RMS distance d(j, k)
-//! of two runs the error of the mesh n_j is taken to be
+//! The error of a line that slackens and lands does not follow from lengths, speeds and periods: n times the RMS error of the fairlead's
+//! tension lies between 0.45 and 2 for chains of similar shape and motion, and the error falls with n² where nothing slackens. A scene
+//! with a motion is therefore run on a ladder of meshes, n_j = 5, 7, 10, 14 …, over a few periods. With the relative RMS distance d(j, k)
+//! of two runs, the error of the mesh n_j is estimated as
 //!
 //!   e_j = max(c d(j, j+2), d(j+1, j+2)),     c = 2 − min(1, d(j, j+1)/d(j, j+2)),
 //!
-//! n_{j+2} having twice the elements. Where the errors of the meshes have nothing to do with each other, d(j, j+2) ≈ e_j and
-//! c ≈ 1; where they fall with n², d(j, j+2) = ¾ e_j, d(j, j+1) = ½ e_j and c = 4/3. On fifteen scenes and nine meshes d(j, j+2)/e_j was
+//! where n_{j+2} has twice the elements. If the errors of the meshes are uncorrelated, d(j, j+2) ≈ e_j and
+//! c ≈ 1; if they fall with n², d(j, j+2) = ¾ e_j, d(j, j+1) = ½ e_j and c = 4/3. On fifteen scenes and nine meshes d(j, j+2)/e_j was
 //! 0.74 to 1.15 wherever the error is 0.5 % or more, but for a chain that snaps at n = 7 (0.65). The mesh is the coarsest whose e_j is
 //! below a part of the tolerance, interpolated between the rungs and tried once more there.
 //!
@@ -51,7 +51,7 @@ pub struct Trial {
     pub error: f64,
 }
 
-/// The mesh of a network of lines.
+/// Mesh of a network of lines.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mesh {
     /// Its lines.
@@ -62,22 +62,22 @@ pub struct Mesh {
     pub elements: usize,
     /// Estimated error with them [-].
     pub error: f64,
-    /// Whether that mesh was tried, and not extrapolated to.
+    /// True if a trial was run on this mesh; false if it was extrapolated.
     pub tried: bool,
-    /// What asked for more elements than motion or rule, if anything did.
+    /// Reason for more elements than the motion or the rule requires, where there is one.
     pub rest: Option<Rest>,
 }
 
-/// Why a line at rest needs more elements than its motion, or a rule, asks for.
+/// Static error that requires more elements than the motion or the rule.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rest {
-    /// Elements that motion or rule ask for [-].
+    /// Elements that the motion or the rule requires [-].
     pub fewer: usize,
-    /// Errors of the tension at the driven end with those and with the ones that are taken, over that of the catenary [-].
+    /// Relative error of the tension at the driven end against the catenary, with those elements and with the selected ones [-].
     pub errors: [f64; 2],
 }
 
-/// What the trials of a scene came to.
+/// Result of the trials of a scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Discretisation {
     /// The scene with its elements and, where that is cheaper, the axial-implicit leapfrog with its step.
@@ -119,7 +119,8 @@ impl Discretisation {
         said
     }
 
-    /// Sentences on the lines whose error is expected to exceed the tolerance: their mesh is extrapolated, or as fine as meshes are chosen.
+    /// Returns a sentence for each mesh whose error is expected to exceed the tolerance: it was extrapolated, or it has the greatest number of
+    /// elements that is selected.
     pub fn shortfalls(&self) -> Vec<String> {
         let tolerance = self.scene.solver.tolerance;
         let short = self
