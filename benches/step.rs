@@ -128,7 +128,7 @@ fn with_and_without(elements: usize) -> [(usize, (&'static str, bool)); 2] {
 /// A scene one communication step after its start.
 fn stepped(name: &str, integrator: Integrator, elements: usize, ledger: bool) -> Simulation {
     let mut scene = meshed(name, integrator, elements);
-    scene.solver.energy_ledger = ledger;
+    scene.output.energy_balance = ledger;
     let mut simulation = Simulation::new(&scene).expect("an equilibrium");
     simulation.follow_scene().expect("an equilibrium");
     simulation.advance(0.05).expect("a step");
@@ -236,8 +236,7 @@ fn axial_cost(model: &Model, state: &State, size: f64, count: usize, portable: b
                 let k = held(end, t);
                 work.put_end(end, k.position, k.velocity - 0.5 * size * k.acceleration);
             }
-            work.meet_surface(None);
-            work.open_books();
+            work.meet_surface();
             for _ in 0..count {
                 t += size;
                 work.step(step, [End::A, End::B].map(|end| held(end, t).position));
@@ -294,7 +293,6 @@ fn compared(table: &mut String) {
     for (name, elements, step, interval) in COMPARED {
         let mut scene = meshed(name, Integrator::AxialImplicit, elements);
         (scene.solver.time_step_max, scene.output.interval) = (step, interval);
-        scene.solver.energy_ledger = false;
         let cost = common::measure(&scene);
         let advance = 1e9 * cost.second * interval;
         println!(

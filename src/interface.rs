@@ -20,6 +20,9 @@ use crate::simulation::{NodeBending, Simulation, reference_catenary};
 
 pub use parameters::{Parameter, Place};
 
+/// Message for a value of an energy balance that the scene does not ask for.
+const NO_BALANCE: &str = "the scene asks for no energy balance (`energy_balance` in [output])";
+
 /// Role of a variable in FMI's words.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Causality {
@@ -340,6 +343,9 @@ impl Interface {
             }
         }
         rows::solver(&mut variables);
+        if scene.output.energy_balance {
+            rows::energy_balance(&mut variables);
+        }
         for (index, line) in model.lines.iter().enumerate() {
             if reference_catenary(model, line).is_some() {
                 rows::catenary(&mut variables, index, &line.name);
@@ -406,8 +412,11 @@ impl Interface {
             Binding::Solver(result) => {
                 values[0] = match result {
                     SolverResult::Substeps => simulation.substeps() as f64,
-                    SolverResult::EnergyError => simulation.energy_error(),
-                    SolverResult::PowerResidual => simulation.power_residual(),
+                    SolverResult::EnergyError => {
+                        let balance = simulation.energy_balance().ok_or(NO_BALANCE)?;
+                        balance.error()
+                    }
+                    SolverResult::PowerResidual => simulation.power_residual().ok_or(NO_BALANCE)?,
                     SolverResult::InputError => simulation.input_error(),
                 }
             }

@@ -20,7 +20,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use crate::dynamics::advance::{Counters, Workspace};
-use crate::dynamics::ledger::{self, Ledger};
+use crate::dynamics::energy_balance::{self, EnergyBalance};
 use crate::dynamics::motion::Foresight;
 use crate::dynamics::{Choice, StepError};
 use crate::model::{Line, LineState, Model, State};
@@ -63,7 +63,8 @@ pub struct Snapshot {
     paths: Box<Paths>,
     follows_scene: bool,
     counters: Counters,
-    ledger: Ledger,
+    /// Kept where the scene asks for it.
+    balance: Option<EnergyBalance>,
     start_time: f64,
     input_record: InputRecord,
     /// By how much the host is ahead of the state, less than [`STEP_MIN`] [s].
@@ -225,16 +226,16 @@ impl Simulation {
         let state = &mut self.snapshot.state;
         let advanced = self.work.advance(model, state, step, &held);
         if advanced.is_err()
-            && let Some((state, ledger)) = before
+            && let Some((state, balance)) = before
         {
-            (self.snapshot.state, self.snapshot.ledger) = (state, ledger);
+            (self.snapshot.state, self.snapshot.balance) = (state, balance);
         }
         let done = advanced?;
         self.snapshot.counters = done.counters;
         self.snapshot.input_record = record;
         self.snapshot.ahead = 0.0;
-        if self.keeps_ledger() {
-            self.snapshot.ledger.flow.add(done.flow);
+        if let Some(balance) = &mut self.snapshot.balance {
+            balance.flow.add(done.flow);
         }
         std::mem::swap(&mut self.snapshot.paths, &mut self.paths);
         self.reactions.clear();
@@ -253,8 +254,8 @@ impl Simulation {
         }
     }
 
-    /// Parts the lines from their points that are to let go, and books what their ends bring along; returns who was parted before.
-    fn let_go(&mut self) -> Option<(State, Ledger)> {
+    /// Parts the lines from their points that are to let go; returns the state before.
+    fn let_go(&mut self) -> Option<(State, Option<EnergyBalance>)> {
         if !self.snapshot.inputs.releases.contains(&true) {
             return None;
         }
@@ -270,7 +271,7 @@ impl Simulation {
             return None;
         }
         self.work.forget();
-        let before = (self.snapshot.state.clone(), self.snapshot.ledger);
+        let before = (self.snapshot.state.clone(), self.snapshot.balance);
         for ((line, release), shape) in lines.zip(&mut self.snapshot.state.lines) {
             if let Some(partings) = line.parting.filter(|_| *release) {
                 for (parted, parting) in shape.parted.iter_mut().zip(partings) {
@@ -278,12 +279,14 @@ impl Simulation {
                 }
             }
         }
-        let (states, flow) = ([&before.0, &self.snapshot.state], &mut self.snapshot.ledger.flow);
-        for network in &model.networks {
-            flow.given += ledger::joined_energy(model, network, states);
+        if let Some(balance) = &mut self.snapshot.balance {
+            let states = [&before.0, &self.snapshot.state];
+            for network in &model.networks {
+                balance.flow.external_work += energy_balance::joined_energy(model, network, states);
+            }
+            let [held, free] = states.map(|state| self.work.kinetic_energy_of_leapfrogs(model, state));
+            balance.flow.dissipation += free - held;
         }
-        let [held, free] = states.map(|state| self.work.turning_energy(model, state));
-        flow.lost += free - held;
         Some(before)
     }
 }

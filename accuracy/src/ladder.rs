@@ -107,7 +107,6 @@ impl Setting {
         }
         scene.solver.integrator = self.integrator;
         if self.tolerance.is_none() {
-            scene.solver.energy_ledger = false;
             scene.solver.input_reconstruction = Reconstruction::Interpolate;
         }
         // A step that is not given is limited by the integrator's own rules only.

@@ -92,17 +92,19 @@ impl Run {
 
     fn sample(&mut self) {
         let now = &self.end;
-        let (flow, energy) = (now.ledger().flow, now.energy());
+        let (balance, energy) = (now.energy_balance().expect("the scene asks for it"), now.energy());
+        let flow = balance.flow;
         let most = energy
             .kinetic
-            .max(flow.given.abs())
-            .max(flow.lost.abs())
+            .max(flow.external_work.abs())
+            .max(flow.dissipation.abs())
             .max(self.flowed);
-        self.gained.push(energy.total() - now.ledger().start - flow.given);
+        self.gained
+            .push(energy.total() - balance.start - flow.external_work);
         self.flowed = most;
         self.time.push(now.time());
         self.tension.push(now.tension_b(0));
-        self.error.push(now.energy_error());
+        self.error.push(balance.error());
     }
 
     /// Whether every node is at a finite place and every tension finite.
@@ -162,7 +164,9 @@ impl Run {
 }
 
 fn begun(scene: &Scene) -> Simulation {
-    Simulation::new(scene).unwrap_or_else(|error| panic!("{error}"))
+    let mut scene = scene.clone();
+    scene.output.energy_balance = true;
+    Simulation::new(&scene).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// RMS of the difference over the standard deviation of the reference [-].

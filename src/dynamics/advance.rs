@@ -4,9 +4,8 @@ mod communication;
 
 use serde::{Deserialize, Serialize};
 
-use super::axial_implicit;
+use super::energy_balance::{self, Energy, Flow};
 use super::implicit;
-use super::ledger::{self, Energy, Flow};
 use super::motion::AxisPath;
 use super::sea::SeaWork;
 use super::threads::{ThreadPool, WorkEstimate};
@@ -36,7 +35,7 @@ pub struct Counters {
 pub struct Done {
     /// Work of the integrators.
     pub counters: Counters,
-    /// Energy given and lost.
+    /// Flow of energy; zero without a balance.
     pub flow: Flow,
 }
 
@@ -123,7 +122,7 @@ impl Workspace {
     pub fn energy(&self, model: &Model, state: &State) -> Energy {
         let mut sum = Energy::default();
         for (NetworkSolver { solver, .. }, network) in self.networks.iter().zip(&model.networks) {
-            let mut energy = ledger::energy(model, network, state);
+            let mut energy = energy_balance::energy(model, network, state);
             if matches!(solver, Solver::QuasiStatic) {
                 energy.kinetic = 0.0;
             }
@@ -132,20 +131,13 @@ impl Workspace {
         sum
     }
 
-    /// What the books of the networks leave out until they are read, to be taken off what was lost [J]: see
-    /// [`AxialWork::defers_turning`].
-    pub fn turning_energy(&self, model: &Model, state: &State) -> f64 {
-        let mut sum = 0.0;
-        for (NetworkSolver { solver, .. }, network) in self.networks.iter().zip(&model.networks) {
-            if let Solver::AxialImplicit(work) = solver
-                && work.defers_turning()
-            {
-                let index = network.lines[0];
-                let (line, shape) = (&model.lines[index], &state.lines[index]);
-                sum += axial_implicit::turning_energy(model, line, shape);
-            }
-        }
-        sum
+    /// Kinetic energy of the networks that leapfrogs serve, which their flow counts as dissipated [J].
+    pub fn kinetic_energy_of_leapfrogs(&self, model: &Model, state: &State) -> f64 {
+        let solvers = self.networks.iter().zip(&model.networks);
+        let served = solvers.filter(|(network, _)| network.solver.is_leapfrog());
+        served
+            .map(|(_, network)| energy_balance::energy(model, network, state).kinetic)
+            .sum()
     }
 
     /// Gives a state at rest the accelerations that the implicit integrators start from.

@@ -45,6 +45,7 @@
 //! Model. Simul. 7, 1779-1794, with controllable dissipation added. The limit left is transverse:
 //! [`super::limit::transverse_step`].
 
+mod balance;
 mod bed;
 mod prepare;
 mod rows;
@@ -55,12 +56,12 @@ use nalgebra::Vector3;
 use pulp::NullaryFnOnce;
 
 use super::layout::{Layout, Water, interior};
-use super::ledger::Flow;
 use super::limit::{axial_frequency_squared, transverse_step};
 use super::step::Step;
 use crate::math::lanes::Lanes;
 use crate::model::{End, Line, LineState, Model, Parting, WaveSpan};
 use crate::physics::stretch::StretchLaw;
+use balance::LineBalance;
 use rows::{CurrentRow, NodeRow, Rows, SegmentRow, Sizes, springs, under};
 use rubbing::Rubbing;
 
@@ -130,18 +131,14 @@ pub struct AxialWork {
     rubbing: Option<Rubbing>,
     /// Whether ends A and B have parted from their points.
     parted: [bool; 2],
-    /// Energy lost, given and dissipated by the averaging of tensions since the state was loaded [J].
-    lost: Lanes,
-    given: f64,
-    numerical: Lanes,
+    /// The energy balance, where the scene asks for it.
+    balance: Option<LineBalance>,
     /// Greatest T̄ since then [N].
     tension_peak: Lanes,
     /// Greatest tension of the springs, and greatest T̄, when the state was handed back last [N].
     tensions: [f64; 2],
     /// Whether the flags and the true stretch of all steps since then were found.
     settled: bool,
-    /// Whether any node may be heavier along the line than across it, or lighter.
-    turns: bool,
     /// Whether springs up to t_n may push, of which not all is in T̄ then.
     forgets: bool,
     /// Whether no step has been made yet.
@@ -153,7 +150,7 @@ impl AxialWork {
     /// kernel does not mix.
     pub fn new(model: &Model, line: &Line, rho: f64) -> Option<AxialWork> {
         let water = Water::around(model, line);
-        let layout = Layout::new(line, water, &model.solver, FEW_ROWS, true)?;
+        let layout = Layout::new(model, (line, water), FEW_ROWS, true)?;
         let count = layout.rows().count();
         let column = |values: &[f64]| layout.fold.column(values, 1.0);
         let masses = [&line.nodes.mass_normal, &line.nodes.mass_tangent].map(|m| column(m));
@@ -177,15 +174,12 @@ impl AxialWork {
             },
             parted: [false; 2],
             rubbing: layout.bottom().map(|_| Rubbing::new(line.segment_count() + 1)),
-            lost: Lanes::splat(0.0),
-            given: 0.0,
-            numerical: Lanes::splat(0.0),
+            balance: layout.energy_balance.then(LineBalance::default),
             tension_peak: Lanes::splat(0.0),
             tensions: [0.0; 2],
             settled: true,
             forgets: false,
             starts: true,
-            turns: line.nodes.mass_tangent != line.nodes.mass_normal || layout.surface.is_some(),
             layout,
         })
     }
@@ -233,9 +227,8 @@ impl AxialWork {
 
     /// Goes on from the state that [`Self::store`] handed back last.
     pub fn resume(&mut self) {
-        let zero = Lanes::splat(0.0);
-        (self.lost, self.given, self.numerical) = (zero, 0.0, zero);
-        (self.tension_peak, self.settled) = (zero, true);
+        self.clear_balance();
+        (self.tension_peak, self.settled) = (Lanes::splat(0.0), true);
         self.starts = false;
     }
 
@@ -248,46 +241,6 @@ impl AxialWork {
         let at = self.layout.end_slot(end);
         if self.layout.has_row(at) {
             self.rows.nodes[at.row - 1].free[at.lane] = f64::from(u8::from(free));
-        }
-    }
-
-    /// Starts the books of the steps to come, the ends and the surface being where they are.
-    #[inline]
-    pub fn open_books(&mut self) {
-        if self.layout.books && self.layout.surface.is_some() {
-            self.lost[0] += self.turning_energy();
-        }
-    }
-
-    /// Whether the books leave out what [`turning_energy`] the state has: what one run of steps ends with the next one starts with, so that
-    /// it need not be known before the ledger is read. Where nodes dip into the water masses change too, and each run is booked for itself.
-    pub fn defers_turning(&self) -> bool {
-        self.turns && self.layout.surface.is_none()
-    }
-
-    /// Σ ½ (M_t − M_n)(v·t)² of all nodes but held ends, the velocities being those of t_{n−½} [J].
-    fn turning_energy(&mut self) -> f64 {
-        if !self.turns {
-            return 0.0;
-        }
-        let unit = self.layout.vector_unit;
-        unit.dispatch(Turning(self))
-    }
-
-    /// Energy given by the held ends and lost between them since [`Self::load`]; see [`Self::defers_turning`]. None where it
-    /// is not booked.
-    pub fn flow(&mut self) -> Flow {
-        if !self.layout.books {
-            return Flow::default();
-        }
-        let turning = match self.layout.surface {
-            Some(_) => self.turning_energy(),
-            None => 0.0,
-        };
-        Flow {
-            given: self.given + self.layout.lifted(),
-            lost: self.lost.sum() - self.layout.joined() - turning,
-            numerical: self.numerical.sum(),
         }
     }
 
@@ -311,19 +264,16 @@ impl AxialWork {
         self.layout.load_waves(span);
     }
 
-    /// Meets the water's surface as it is at t_n. Where that is `after` a step, what joined with the water in it is booked.
+    /// Finds the nodes at the water's surface at t_n and sets their coefficients.
     #[inline]
-    pub fn meet_surface(&mut self, after: Option<Step>) {
+    pub fn meet_surface(&mut self) {
         if self.layout.surface.is_some() {
-            self.pierce_surface(after);
+            self.pierce_surface();
         }
     }
 
     /// [`Self::meet_surface`] of a line that may pierce it.
-    fn pierce_surface(&mut self, after: Option<Step>) {
-        if let Some(step) = after {
-            self.layout.leave_surface(step, self.parted.map(|parted| !parted));
-        }
+    fn pierce_surface(&mut self) {
         self.layout.find_surface();
         let Some(surface) = &self.layout.surface else {
             return;
@@ -332,10 +282,6 @@ impl AxialWork {
             let at = self.layout.slot(i);
             let node = &mut self.rows.nodes[at.row - 1];
             [node.mass_normal[at.lane], node.mass_tangent[at.lane]] = surface.node(i).masses;
-        }
-        match after {
-            Some(_) => self.layout.book_surface(self.parted.map(|parted| !parted)),
-            None => self.layout.clear_surface(),
         }
     }
 
@@ -354,15 +300,7 @@ impl AxialWork {
         if self.parted[end as usize] {
             return;
         }
-        let moves = self.layout.position.get(self.layout.end_slot(end)) != position;
-        let jumps = moves && self.layout.books && self.defers_turning();
-        if jumps {
-            self.lost[0] -= self.turning_energy();
-        }
         self.layout.put_end(end, position, velocity);
-        if jumps {
-            self.lost[0] += self.turning_energy();
-        }
     }
 
     /// Makes viscoelastic segments at the ends take these to have come as they go on, from where they were `lag` [s] ago.
@@ -383,10 +321,9 @@ impl AxialWork {
             }
             let node = &self.rows.nodes[at.row - 1];
             let masses = [node.mass_normal[at.lane], node.mass_tangent[at.lane]];
-            self.given += self.layout.joining_energy(end, masses, step);
-            let tangent = self.layout.tangent_of(self.layout.end_node(end));
-            let along = self.layout.velocity.get(at).dot(&tangent);
-            self.lost[0] += 0.5 * (masses[1] - masses[0]) * along * along;
+            if let Some(balance) = &mut self.balance {
+                balance.supply(self.layout.joining_energy(end, masses, step));
+            }
             self.parted[side] = true;
             self.set_free(end, true);
         }
@@ -404,20 +341,16 @@ impl AxialWork {
         unit.dispatch(AxialStep(self, &step, &ends))
     }
 
-    /// Lines in moving water and over rough beds book in passing.
     #[inline(always)]
     fn choose_step(&mut self, step: &Step, ends: &[Vector3<f64>; 2]) -> usize {
         use under::{LEVEL, NOTHING, ROUGH};
-        let moving = self.rows.current.is_some();
-        match (moving, self.bed_under(), self.layout.books) {
-            (false, NOTHING, false) => self.step_vectors::<false, NOTHING, false>(step, ends),
-            (false, NOTHING, true) => self.step_vectors::<false, NOTHING, true>(step, ends),
-            (false, LEVEL, false) => self.step_vectors::<false, LEVEL, false>(step, ends),
-            (false, LEVEL, true) => self.step_vectors::<false, LEVEL, true>(step, ends),
-            (false, _, _) => self.step_vectors::<false, ROUGH, true>(step, ends),
-            (true, NOTHING, _) => self.step_vectors::<true, NOTHING, true>(step, ends),
-            (true, LEVEL, _) => self.step_vectors::<true, LEVEL, true>(step, ends),
-            (true, _, _) => self.step_vectors::<true, ROUGH, true>(step, ends),
+        match (self.rows.current.is_some(), self.bed_under()) {
+            (false, NOTHING) => self.step_vectors::<false, NOTHING>(step, ends),
+            (false, LEVEL) => self.step_vectors::<false, LEVEL>(step, ends),
+            (false, _) => self.step_vectors::<false, ROUGH>(step, ends),
+            (true, NOTHING) => self.step_vectors::<true, NOTHING>(step, ends),
+            (true, LEVEL) => self.step_vectors::<true, LEVEL>(step, ends),
+            (true, _) => self.step_vectors::<true, ROUGH>(step, ends),
         }
     }
 
@@ -432,7 +365,7 @@ impl AxialWork {
     }
 
     #[inline(always)]
-    fn step_vectors<const CURRENT: bool, const BED: u8, const BOOKS: bool>(
+    fn step_vectors<const CURRENT: bool, const BED: u8>(
         &mut self,
         step: &Step,
         ends: &[Vector3<f64>; 2],
@@ -440,7 +373,7 @@ impl AxialWork {
         let step = *step;
         self.choose_weights(step);
         let sizes = self.sizes(step);
-        self.choose_springs::<BOOKS>(step, &sizes);
+        self.choose_springs(step, &sizes);
         self.prepare_drag::<CURRENT>(step);
         self.prepare_nodes::<CURRENT>(&sizes);
         self.prepare_ends(step, ends);
@@ -451,37 +384,28 @@ impl AxialWork {
         }
         self.weigh_nodes::<BED>();
         let mut passes = 0;
-        let mut found = loop {
+        loop {
             passes += 1;
             self.assemble(&sizes);
             let before = self.solve_tensions();
-            self.find_velocities::<BED, BOOKS>(before, &sizes);
-            let found = self.look_over::<BED, BOOKS>(&sizes);
+            self.find_velocities::<BED>(before, &sizes);
+            let found = self.look_over::<BED>(&sizes);
             self.tension_peak = self.tension_peak.max(found.greatest);
             let bed_holds = self.bed_holds::<BED>(&found, step);
             let holds = self.segments_hold(&found, &sizes) && bed_holds;
             if holds || passes == PASSES_MAX {
                 self.settled &= holds;
-                break found;
+                break;
             }
             if !bed_holds {
                 self.weigh_nodes::<BED>();
             }
-        };
-        if BOOKS && self.is_curved() {
-            found.numerical = self.dissipated_by_curves(step, &sizes);
         }
-        let half = Lanes::splat(0.5);
-        self.lost = self.lost + half * found.lost;
-        self.numerical = self.numerical + half * found.numerical;
         if BED == under::ROUGH {
             self.keep_rub(step);
         }
-        if BOOKS {
-            self.book_ends(step);
-        }
-        if CURRENT {
-            self.book_current(step);
+        if self.balance.is_some() {
+            self.balance_step(step, &sizes);
         }
         std::mem::swap(&mut self.layout.velocity, &mut self.layout.velocity_before);
         self.move_on(step, ends);
@@ -499,21 +423,19 @@ impl AxialWork {
     }
 
     #[inline(always)]
-    fn choose_springs<const BOOKS: bool>(&mut self, step: Step, sizes: &Sizes) {
+    fn choose_springs(&mut self, step: Step, sizes: &Sizes) {
         let line = &mut self.layout;
         if let Some(creep) = &mut line.creep {
             creep.prepare(step.drift);
             line.renew_ghosts(self.parted);
             self.prepare_geometry();
-            return self.prepare_segments::<{ springs::CREEPING }, BOOKS>(step, sizes);
+            return self.prepare_segments::<{ springs::CREEPING }>(sizes);
         }
         line.renew_neighbours(self.parted);
         self.prepare_geometry();
         match self.layout.law {
-            StretchLaw::Engineering => {
-                self.prepare_segments::<{ springs::LINEAR }, BOOKS>(step, sizes);
-            }
-            _ => self.prepare_segments::<{ springs::CURVED }, BOOKS>(step, sizes),
+            StretchLaw::Engineering => self.prepare_segments::<{ springs::LINEAR }>(sizes),
+            _ => self.prepare_segments::<{ springs::CURVED }>(sizes),
         }
     }
 
@@ -529,56 +451,19 @@ impl AxialWork {
             self.layout.position.wrap();
             self.creep(step);
         }
-        self.meet_surface(Some(step));
+        self.layout.pass_waves(step);
+        self.meet_surface();
     }
 
-    /// Takes the memory of viscoelastic segments to t_{n+1}, where the nodes now are, and books what their dampers took and what the averaging
-    /// dissipates: the work of T̄ less that of the tension which the memory has over the step.
+    /// Takes the memory of viscoelastic segments to t_{n+1}, where the nodes now are.
     #[inline(always)]
     fn creep(&mut self, step: Step) {
-        let (half, kick) = (Lanes::splat(0.5), Lanes::splat(step.kick));
         for at in self.layout.rows() {
             let crept = self.layout.creep(at, step);
-            let (velocity, row) = (&self.layout.velocity, &self.rows.segments[at - 1]);
-            let along = row.direction.dot(velocity.load(at + 1) - velocity.load(at));
-            let moved = half * kick * (row.along + along);
-            self.lost = self.lost + crept.taken;
-            self.numerical = self.numerical + (row.tension - crept.tension) * moved;
+            if self.balance.is_some() {
+                self.balance_creep(at, crept, step);
+            }
         }
-    }
-
-    /// Books what the held ends gave in the step; `velocity_before` holds the new velocities.
-    #[inline(always)]
-    fn book_ends(&mut self, step: Step) {
-        for end in self.held_ends() {
-            let line = &self.layout;
-            let (at, (segment, sign)) = (line.end_slot(end), line.end_segment(end));
-            let after = 0.5 * step.drift;
-            let way = after * line.velocity_before.get(at) + (step.kick - after) * line.velocity.get(at);
-            let pull = sign * self.rows.pull(segment);
-            self.given += line.end_lack(end) * way.z - pull.dot(&way);
-        }
-    }
-
-    /// Books the work of the drag on the water's way and that of the water's press, which was taken off what was lost.
-    #[inline(always)]
-    fn book_current(&mut self, step: Step) {
-        let (line, half) = (&self.layout, Lanes::splat(0.5));
-        let currents = self.rows.current.iter().flatten();
-        let mut sum = Lanes::splat(0.0);
-        for ((at, node), current) in line.rows().zip(&self.rows.nodes).zip(currents) {
-            let mean = (line.velocity.load(at) + line.velocity_before.load(at)).scale(half);
-            let (flow, tangent) = (current.flow, node.tangent);
-            let past = flow - mean;
-            let [across, along] = node.drag;
-            let after = flow - line.velocity_before.load(at);
-            let drawn = along * after.dot(tangent) - node.drag_rest;
-            let power = across * past.dot(flow) + (drawn - across * past.dot(tangent)) * flow.dot(tangent);
-            sum = sum + node.free * (power + current.press.dot(mean));
-        }
-        let work = sum * Lanes::splat(step.kick);
-        self.given += work.sum();
-        self.lost = self.lost + work;
     }
 
     /// Greatest T̄ [N] between the last time the state was loaded and [`Self::store`].
@@ -657,41 +542,6 @@ impl Tensions<'_> {
         if segment < self.now.len() {
             (self.now[segment], self.before[segment]) = (of[0][lane], of[1][lane]);
         }
-    }
-}
-
-/// Σ ½ (M_t − M_n)(v·t)² of the nodes of a line that nothing holds, the velocities being those that the leapfrog keeps [J].
-pub fn turning_energy(model: &Model, line: &Line, state: &LineState) -> f64 {
-    let (velocity, _) = state.velocities_before();
-    let n = line.segment_count();
-    let [first, last] = ENDS.map(|end| usize::from(line.is_held(model, state, end)));
-    let turning = |i: usize| {
-        let chord = state.position[(i + 1).min(n)] - state.position[i.saturating_sub(1)];
-        let along = velocity[i].dot(&chord);
-        let excess = line.nodes.mass_tangent[i] - line.nodes.mass_normal[i];
-        0.5 * excess * along * along / chord.norm_squared().max(f64::MIN_POSITIVE)
-    };
-    (first..=n - last).map(turning).sum()
-}
-
-/// [`AxialWork::turning_energy`] for the vector unit of the machine.
-struct Turning<'a>(&'a mut AxialWork);
-
-impl NullaryFnOnce for Turning<'_> {
-    type Output = f64;
-
-    #[inline(always)]
-    fn call(self) -> f64 {
-        let AxialWork {
-            layout, rows, parted, ..
-        } = self.0;
-        layout.renew_neighbours(*parted);
-        let mut sum = Lanes::splat(0.0);
-        for (at, node) in layout.rows().zip(&rows.nodes) {
-            let excess = node.free * (node.mass_tangent - node.mass_normal);
-            sum = sum + excess * layout.along_squared(at);
-        }
-        0.5 * sum.sum()
     }
 }
 

@@ -24,7 +24,7 @@ mod measures;
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::ledger::Flow;
+use super::energy_balance::Flow;
 use crate::math::pivoted_chain::PivotedChain;
 use crate::math::rotation::{cayley, cayley_vector, skew, spin_of_cayley};
 use crate::model::{Beam, LineState, Nodes};
@@ -374,10 +374,10 @@ impl BeamWork {
             let [start, end] = plain.map(|strain| corrected(strain, element.length));
             let rate = (end - start) / dt;
             let damping = element.damping.diagonal();
-            flow.lost += dt * element.length * rate.dot(&damping.component_mul(&rate));
+            flow.dissipation += dt * element.length * rate.dot(&damping.component_mul(&rate));
         }
         for (end, node) in [0, last].into_iter().enumerate() {
-            flow.given += self.end_work(case, shape, end, node);
+            flow.external_work += self.end_work(case, shape, end, node);
         }
         for i in 0..=last {
             let held = match i {
@@ -386,7 +386,7 @@ impl BeamWork {
                 _ => &[false; 6],
             };
             if !held[..3].iter().all(|held| *held) {
-                flow.lost += self.node_loss(case, shape, i);
+                flow.dissipation += self.node_loss(case, shape, i);
             }
             if let Some(body) = self.body(case, i) {
                 let step = body.over(self.places(i), dt);

@@ -28,7 +28,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::ledger::passed::Passed;
+use super::energy_balance::implicit::Passed;
 use super::{StepError, StepFailure, reaction};
 use crate::elements::{Counters, Stretch, Weights, Workspace, copy_network, for_free_points, place_ends};
 use crate::math::block_banded::Pivots;

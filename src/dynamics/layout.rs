@@ -16,10 +16,9 @@ use super::surface::SurfaceNow;
 use crate::math::fold::{Column, Field, Fold, Slot};
 use crate::math::lanes::{Lanes, Vectors};
 use crate::math::unit;
-use crate::model::{End, Line};
+use crate::model::{End, Line, Model};
 use crate::physics::slender::Slender;
 use crate::physics::stretch::{StretchLaw, total_tension};
-use crate::scene::Solver;
 use ground::ContactArrays;
 use handover::padded_positions;
 pub use water::Water;
@@ -45,8 +44,8 @@ pub(super) struct Layout {
     few_rows: usize,
     pub law: StretchLaw,
     pub negative_tension: bool,
-    /// Whether steps are booked in the energy ledger.
-    pub books: bool,
+    /// Whether the scene asks for the energy balance.
+    pub energy_balance: bool,
     /// Node positions at t_n [m].
     pub position: Field,
     /// Velocities at t_{n−½} [m/s].
@@ -83,18 +82,12 @@ pub(super) fn inverse_norm(square: Lanes) -> Lanes {
     (square + Lanes::splat(LENGTH2_MIN)).sqrt().recip()
 }
 
-/// The same of one vector.
-pub(super) fn inverse_norm_of(square: f64) -> f64 {
-    1.0 / (square + LENGTH2_MIN).sqrt()
-}
-
 impl Layout {
     /// Arrays for a line, whose kernel has no use for vectors of eight numbers over `few_rows` or less, and whose end B is where it is put
     /// as long as it is `held` and does not part; `None` where its sections have different strain measures, which the kernels do not mix.
     pub fn new(
-        line: &Line,
-        water: Water<'_>,
-        solver: &Solver,
+        model: &Model,
+        (line, water): (&Line, Water<'_>),
         few_rows: usize,
         held: bool,
     ) -> Option<Layout> {
@@ -121,8 +114,8 @@ impl Layout {
             vector_unit: unit::over_rows(fold.rows(), few_rows),
             few_rows,
             law: line.uniform_law()?,
-            negative_tension: solver.negative_tension,
-            books: solver.energy_ledger,
+            negative_tension: model.solver.negative_tension,
+            energy_balance: model.energy_balance,
             position: padded_positions(fold),
             velocity: Field::zeros(fold),
             velocity_before: Field::zeros(fold),
@@ -200,15 +193,6 @@ impl Layout {
     pub fn set_segment_count(&mut self, count: usize) {
         self.segment_count = count;
         self.last = [count, count - 1].map(|i| self.fold.slot(i));
-    }
-
-    /// (v·t)² of nodes whose neighbours are known [m²/s²].
-    #[inline(always)]
-    pub fn along_squared(&self, at: usize) -> Lanes {
-        let chord = self.position.load(at + 1) - self.position.load(at - 1);
-        let along = self.velocity.load(at).dot(chord);
-        let square = chord.dot(chord) + Lanes::splat(LENGTH2_MIN);
-        along * along * square.recip()
     }
 
     /// Where node `i` and segment `i` stand.
@@ -327,9 +311,8 @@ impl Layout {
         total_tension(elastic, self.axial_damping[at] * rate, 0.0, self.negative_tension)
     }
 
-    /// Energy [J] that the half node at an end of masses across and along the line [kg] brings to the line when it parts from what held it
-    /// at t_n.
-    pub fn joining_energy(&self, end: End, masses: [f64; 2], step: Step) -> f64 {
+    /// Energy of the half node at an end, of masses across and along the line [kg], that is released at t_n, and the kinetic part of it [J].
+    pub fn joining_energy(&self, end: End, masses: [f64; 2], step: Step) -> [f64; 2] {
         let (at, other) = (self.end_slot(end), self.end_neighbour(end));
         let velocity = self.velocity.get(at);
         let chord = self.position.get(other) - self.position.get(at);
@@ -341,7 +324,25 @@ impl Layout {
             .surface
             .as_ref()
             .map_or(0.0, |surface| surface.lack(self.end_node(end), false));
-        kinetic + (self.weight[at] - lack) * height
+        [kinetic + (self.weight[at] - lack) * height, kinetic]
+    }
+
+    /// Elastic force of the segments at a strain [N], negative in compression.
+    #[inline(always)]
+    pub fn elastic(&self, at: usize, strain: Lanes) -> Lanes {
+        let stiffness = self.axial_stiffness.load(at);
+        match (&self.creep, &self.law) {
+            (Some(creep), _) => creep.elastic(at, strain),
+            (None, StretchLaw::Engineering) => stiffness * strain,
+            (None, law) => stiffness * strain.map(|strain| law.at(strain).force),
+        }
+    }
+
+    /// Force of the springs of the segments on their lower nodes [N].
+    #[inline(always)]
+    pub fn spring(&self, at: usize) -> Vectors {
+        let (chord, inverse_l) = self.chord(at);
+        chord.scale(self.elastic(at, self.strain(at)).positive() * inverse_l)
     }
 
     /// Strain of the segments [-].
@@ -371,6 +372,18 @@ impl Layout {
             taken: crept.taken * inverse.recip(),
             ..crept
         }
+    }
+
+    /// Keeps the strains of viscoelastic segments at t_n for the step to come.
+    #[inline(always)]
+    pub fn keep_strains(&mut self) {
+        let Some(mut creep) = self.creep.take() else {
+            return;
+        };
+        for at in self.rows() {
+            creep.strain.store(self.strain(at), at);
+        }
+        self.creep = Some(creep);
     }
 
     /// Vectors along the segments, and the inverse of their lengths.

@@ -1,39 +1,41 @@
 //! Semi-explicit leapfrog of lumped two-node segments: the default for cables without bending.
 //!
-//! Positions live at t_n, velocities at t_{n−½}. A step is a sweep over the line, in which
+//! Positions live at t_n, velocities at t_{n−½}. The stages of a step are
 //!
 //! 1. segments: strain, lagged strain rate, tension T q;
-//! 2. nodes: v_{n+½} = v_{n−½} + Δt M⁻¹ f, with drag at the extrapolated velocity 1.5 v_{n−½} − 0.5 v_{n−3/2}, the
+//! 2. free points, which take the forces of the segments at them;
+//! 3. nodes: v_{n+½} = v_{n−½} + Δt M⁻¹ f, with drag at the extrapolated velocity 1.5 v_{n−½} − 0.5 v_{n−3/2}, the
 //!    anisotropic mass inverted in closed form and the seabed solved implicitly, node by node, by a rank-one update;
-//! 3. r_{n+1} = r_n + Δt v_{n+½}; the ends are put where their points are.
+//! 4. nodes on a seabed that slopes or has friction, one by one;
+//! 5. r_{n+1} = r_n + Δt v_{n+½}; the ends are put where their points are.
 //!
-//! Before the sweep free points take the pull of the segments at them, and after it beds that slope or rub look after the nodes one by one.
+//! Stage 5 is part of the loop of stage 3 where nothing comes between them.
 //!
 //! One force evaluation a step, second order, stable below [`super::limit::explicit_limit`] whatever the seabed.
 //!
 //! Source: Verlet's scheme as in Hairer, Lubich & Wanner (2003), Acta Numerica 12, 399-450; the inverse of
 //! M_n I + (M_t − M_n) t tᵀ by Sherman & Morrison (1950); contact: backward Euler on the penetrating spring and damper.
 
+mod balance;
 mod sweep;
 mod winch;
 
 use nalgebra::{Matrix3, Vector3};
 use pulp::NullaryFnOnce;
 
-use super::layout::{Layout, Water, interior, inverse_norm_of};
-use super::ledger::Flow;
+use super::layout::{Layout, Water, interior};
 use super::limit::expected_slope;
 use super::step::Step;
 use crate::math::fold::{Column, Field, Slot};
 use crate::math::lanes::{LANES, Lanes};
-use crate::model::{End, Line, LineState, Parting, WaveSpan};
+use crate::model::{End, Line, LineState, Model, Parting, WaveSpan};
 use crate::physics::friction_step::Landing;
 use crate::physics::morison::{self, DragCoefficients};
 use crate::physics::slender::Slender;
 use crate::physics::stretch::{StretchLaw, total_tension};
-use crate::scene::Solver;
+use balance::LineBalance;
 pub use sweep::Placed;
-use sweep::{Drift, Sweep};
+use sweep::{Drift, Pull, Sweep};
 use winch::WinchWork;
 
 /// Rows of nodes that vectors of eight numbers do not pay for [-].
@@ -43,52 +45,37 @@ const FEW_ROWS: usize = 5;
 #[derive(Debug, Clone)]
 pub struct LineWork {
     layout: Layout,
-    /// Whether the sweep can do all by itself: the strain is the engineering one, and there is neither creep, nor damping by mass, nor a bed
-    /// that slopes or rubs.
-    plain: bool,
     /// Force of a segment on its lower node, T q [N].
     pull: Field,
-    /// The part of it that springs have; all of it where segments creep [N].
-    spring: Field,
-    /// Force that water and damping resist with at t_n [N]; where the bed slopes or rubs with the dampers beside the nodes.
+    /// Resistance of water and mass damping at t_n [N].
     resistance: Field,
     /// Force of water that waves accelerate at t_n [N], where there are waves.
     press: Option<Field>,
     /// Inverse square of the chord between the nodes beside a node at t_n [1/m²].
     inverse_square: Column,
     inverse_mass: Column,
-    /// M_n [kg].
-    mass: Column,
     water: Option<WaterWork>,
-    /// 1 for nodes between the ends, 0 elsewhere.
+    /// 1 for nodes between prescribed ends and at released ones, 0 elsewhere.
     interior: Column,
     /// Whether ends A and B are held, were none parted.
     tied: [bool; 2],
     /// Whether they have parted from their points.
     parted: [bool; 2],
-    /// Where they were half a step before t_n [m].
-    half_places: [Vector3<f64>; 2],
-    /// Energy lost, and given by held ends and by moving water, since the state was loaded [J].
-    lost: Lanes,
-    given: f64,
-    given_by_current: Lanes,
-    /// What ½ vᵀMv had along the tangents beside what it had across them when the books were opened [J].
-    turning: f64,
-    /// Energy lost to the bed [J], where it slopes or rubs.
-    settled: Option<f64>,
+    /// Whether the seabed slopes or has friction.
+    rough: bool,
+    /// The energy balance, where the scene asks for it.
+    balance: Option<LineBalance>,
     /// The winch at end B, where the line is on one.
     winch: Option<Box<WinchWork>>,
 }
 
-/// What needs a node's tangent: drag, and a mass that differs along and across the line.
+/// Coefficients of resistance, and of a mass that differs along and across the line.
 #[derive(Debug, Clone)]
 struct WaterWork {
     drag_normal: Column,
     drag_tangent: Column,
     /// 1/M_t − 1/M_n [1/kg].
     inverse_mass_excess: Column,
-    /// M_t − M_n [kg]; of ends as [`LineWork::set_mass_excess`] says.
-    mass_excess: Column,
     /// Drag coefficient over mass of a node that is wholly in the water, across the line [1/m].
     drag_over_mass: Column,
     /// The same along the line, where it is greater at some node [1/m].
@@ -101,9 +88,10 @@ impl WaterWork {
         let zeros = Column::new(layout.fold, 0.0);
         let masses = || nodes.mass_tangent.iter().zip(&nodes.mass_normal);
         let excess: Vec<f64> = masses().map(|(t, n)| 1.0 / t - 1.0 / n).collect();
-        let mass_excess: Vec<f64> = masses().map(|(t, n)| t - n).collect();
-        let wet =
-            layout.drag.is_some() || layout.waves.is_some() || excess.iter().any(|excess| *excess != 0.0);
+        let needed = layout.drag.is_some()
+            || layout.waves.is_some()
+            || layout.mass_damping.is_some()
+            || excess.iter().any(|excess| *excess != 0.0);
         let drag = layout.drag.as_ref();
         let over_mass = |drag: Option<&[f64]>, mass: &[f64]| -> Vec<f64> {
             let pairs = drag.unwrap_or_default().iter().zip(mass);
@@ -113,13 +101,12 @@ impl WaterWork {
         let across = over_mass(given.map(|drag| &drag.normal[..]), &nodes.mass_normal);
         let along = over_mass(given.map(|drag| &drag.tangent[..]), &nodes.mass_tangent);
         let counts = along.iter().zip(&across).any(|(along, across)| along > across);
-        wet.then(|| WaterWork {
+        needed.then(|| WaterWork {
             drag_over_mass: layout.fold.column(&across, 0.0),
             drag_over_mass_along: counts.then(|| layout.fold.column(&along, 0.0)),
             drag_normal: drag.map_or(zeros.clone(), |drag| drag.normal.clone()),
             drag_tangent: drag.map_or(zeros, |drag| drag.tangent.clone()),
             inverse_mass_excess: layout.fold.column(&excess, 0.0),
-            mass_excess: layout.fold.column(&mass_excess, 0.0),
         })
     }
 }
@@ -142,38 +129,6 @@ impl NullaryFnOnce for SurveyRows<'_> {
     #[inline(always)]
     fn call(self) -> Survey {
         self.0.survey_rows()
-    }
-}
-
-/// [`LineWork::pull_beforehand`] for the vector unit of the machine.
-struct PullSegments<'a>(&'a mut LineWork);
-
-impl NullaryFnOnce for PullSegments<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn call(self) {
-        self.0.choose_segment_pass();
-    }
-}
-
-/// [`LineWork::turning_energy`] for the vector unit of the machine.
-struct Turning<'a>(&'a mut LineWork);
-
-impl NullaryFnOnce for Turning<'_> {
-    type Output = f64;
-
-    #[inline(always)]
-    fn call(self) -> f64 {
-        let LineWork { layout, water, .. } = self.0;
-        layout.renew_neighbours([true; 2]); // ends of excess mass have no neighbour beyond them
-        let mut sum = Lanes::splat(0.0);
-        if let Some(water) = water {
-            for at in layout.rows() {
-                sum = sum + water.mass_excess.load(at) * layout.along_squared(at);
-            }
-        }
-        0.5 * sum.sum()
     }
 }
 
@@ -203,42 +158,31 @@ pub struct EndLoad {
     pub current_power: f64,
     /// Mass matrix of the half node [kg].
     pub mass: Matrix3<f64>,
-    /// Its mass across the line [kg].
-    pub across: f64,
     /// Contact stiffness [N/m] and damping [N s/m] of the half node, and its force at z = 0, or at no height over a bed that slopes or rubs [N].
     pub contact: [f64; 3],
 }
 
 impl LineWork {
     /// Scratch for a line; `None` where its sections have different strain measures, which the kernel does not mix.
-    pub fn new(line: &Line, water: Water<'_>, held: [bool; 2], solver: &Solver) -> Option<LineWork> {
+    pub fn new(model: &Model, line: &Line, held: [bool; 2]) -> Option<LineWork> {
         let winch = WinchWork::new(line);
         let is_held = held[1] && winch.is_none();
+        let water = Water::around(model, line);
         let line = line.winch.as_ref().map_or(line, |winch| winch.reel());
-        let layout = Layout::new(line, water, solver, FEW_ROWS, is_held)?;
+        let layout = Layout::new(model, (line, water), FEW_ROWS, is_held)?;
         let inverse_mass: Vec<f64> = line.nodes.mass_normal.iter().map(|mass| 1.0 / mass).collect();
         Some(LineWork {
-            plain: layout.law == StretchLaw::Engineering
-                && layout.creep.is_none()
-                && layout.mass_damping.is_none()
-                && layout.bottom().is_none(),
             pull: Field::zeros(layout.fold),
             resistance: Field::zeros(layout.fold),
             press: layout.waves.as_ref().map(|_| Field::zeros(layout.fold)),
             inverse_square: Column::new(layout.fold, 0.0),
             inverse_mass: layout.fold.column(&inverse_mass, 0.0),
-            mass: layout.fold.column(&line.nodes.mass_normal, 0.0),
             water: WaterWork::new(line, &layout),
-            spring: Field::zeros(layout.fold),
-            turning: 0.0,
             interior: interior(layout.fold, layout.segment_count),
             tied: held,
             parted: [false; 2],
-            half_places: [Vector3::zeros(); 2],
-            lost: Lanes::splat(0.0),
-            given: 0.0,
-            given_by_current: Lanes::splat(0.0),
-            settled: layout.bottom().map(|_| 0.0),
+            rough: layout.bottom().is_some(),
+            balance: layout.energy_balance.then(LineBalance::default),
             layout,
             winch,
         })
@@ -257,11 +201,10 @@ impl LineWork {
         for end in [End::A, End::B] {
             let at = self.layout.end_slot(end);
             self.interior[at] = f64::from(u8::from(self.is_parted(end)));
-            self.set_mass_excess(end);
         }
-        self.set_out(0.5 * state.half_step.steps[0]);
+        self.interior.wrap();
         self.layout.still();
-        self.clear_flow();
+        self.start_balance(0.5 * state.half_step.steps[0]);
     }
 
     /// Goes on from the state that [`Self::store`] handed back last; a line on a winch is laid out anew.
@@ -269,36 +212,14 @@ impl LineWork {
         match self.winch {
             None => {
                 self.layout.still();
-                self.clear_flow();
+                self.clear_balance();
             }
             Some(_) => self.load(state),
         }
     }
 
-    /// Sets by how much an end is heavier along the line than across it: not at all where it is held.
-    fn set_mass_excess(&mut self, end: End) {
-        let (at, held) = (self.layout.end_slot(end), self.held()[end as usize]);
-        let across = self.inverse_mass[at];
-        if let Some(water) = &mut self.water {
-            let along = across + water.inverse_mass_excess[at];
-            let excess = 1.0 / along - 1.0 / across;
-            water.mass_excess[at] = if held { 0.0 } else { excess };
-        }
-    }
-
-    fn clear_flow(&mut self) {
-        (self.lost, self.given) = (Lanes::splat(0.0), 0.0);
-        self.given_by_current = Lanes::splat(0.0);
-        if let Some(lost) = &mut self.settled {
-            *lost = 0.0;
-        }
-    }
-
-    /// Meets the water's surface as it is at t_n. Where that is `after` a step, what joined with the water in it is booked.
-    pub fn meet_surface(&mut self, after: Option<Step>) {
-        if let Some(step) = after {
-            self.layout.leave_surface(step, self.held());
-        }
+    /// Finds the nodes at the water's surface at t_n and sets their coefficients.
+    pub fn meet_surface(&mut self) {
         self.layout.find_surface();
         let Some(surface) = &self.layout.surface else {
             return;
@@ -306,51 +227,11 @@ impl LineWork {
         for i in surface.crossed() {
             let (at, now) = (self.layout.slot(i), surface.node(i));
             let [across, along] = now.masses.map(|mass| 1.0 / mass);
-            (self.inverse_mass[at], self.mass[at]) = (across, now.masses[0]);
+            self.inverse_mass[at] = across;
             if let Some(water) = &mut self.water {
                 [water.drag_normal[at], water.drag_tangent[at]] = now.drag;
                 water.inverse_mass_excess[at] = along - across;
-                water.mass_excess[at] = now.masses[1] - now.masses[0];
             }
-        }
-        for end in [End::A, End::B] {
-            self.set_mass_excess(end);
-        }
-        match after {
-            Some(_) => self.layout.book_surface(self.held()),
-            None => self.layout.clear_surface(),
-        }
-    }
-
-    /// Starts the books of the steps to come, the ends and the surface being where they are.
-    pub fn open_books(&mut self) {
-        if self.layout.books {
-            self.turning = self.turning_energy();
-        }
-    }
-
-    /// Σ ½ (M_t − M_n)(v·t)² of all nodes but held ends, the velocities being those of t_{n−½} [J].
-    fn turning_energy(&mut self) -> f64 {
-        if self.water.is_none() {
-            return 0.0;
-        }
-        let unit = self.layout.vector_unit;
-        unit.dispatch(Turning(self))
-    }
-
-    /// Energy given by held ends and the current and lost between them since [`Self::open_books`]; none where it is not booked.
-    pub fn flow(&mut self) -> Flow {
-        if !self.layout.books {
-            return Flow::default();
-        }
-        let turned = self.turning_energy() - self.turning;
-        Flow {
-            numerical: 0.0,
-            given: self.given
-                + self.given_by_current.sum()
-                + self.layout.lifted()
-                + self.winch.as_ref().map_or(0.0, |winch| winch.given()),
-            lost: self.lost.sum() + self.settled.unwrap_or(0.0) - self.layout.joined() - turned,
         }
     }
 
@@ -381,11 +262,6 @@ impl LineWork {
         self.layout.store(state, steps);
     }
 
-    /// Whether ends A and B are held.
-    fn held(&self) -> [bool; 2] {
-        [0, 1].map(|side| self.tied[side] && !self.parted[side])
-    }
-
     /// Whether an end has parted from its point.
     pub fn is_parted(&self, end: End) -> bool {
         self.parted[end as usize]
@@ -399,113 +275,23 @@ impl LineWork {
             if self.parted[side] || !partings[side].parts(layout.end_tension(end, step), t) {
                 continue;
             }
-            let at = layout.end_slot(end);
             if self.tied[side] {
-                let excess = self.water.as_ref().map_or(0.0, |w| w.inverse_mass_excess[at]);
-                let across = self.inverse_mass[at];
-                let masses = [1.0 / across, 1.0 / (across + excess)];
-                self.given += layout.joining_energy(end, masses, step);
+                self.balance_release(end, step);
             }
             self.parted[side] = true;
+            let at = self.layout.end_slot(end);
             self.interior[at] = 1.0;
-            self.set_mass_excess(end);
-            if let (Some(water), true) = (&self.water, self.tied[side]) {
-                let along = self
-                    .layout
-                    .velocity
-                    .get(at)
-                    .dot(&self.layout.tangent_of(self.layout.end_node(end)));
-                self.turning += 0.5 * water.mass_excess[at] * along * along;
-            }
+            self.interior.wrap();
         }
     }
 
-    /// Tensions from positions at t_n and velocities at t_{n−½}, where they must be known before the sweep: of lines that are not
-    /// plain, and of segments at free points.
+    /// Evaluates the forces of the segments from positions at t_n and velocities at t_{n−½}.
     #[inline]
-    pub fn pull_beforehand(&mut self) {
-        let sweep_does = self.plain && self.tied == [true; 2];
-        if !sweep_does {
-            self.pull_first();
-        }
+    pub fn pull(&mut self) {
+        self.layout.vector_unit.dispatch(Pull(self));
     }
 
-    fn pull_first(&mut self) {
-        if !self.plain {
-            self.layout.renew_ghosts(self.parted);
-            self.layout.vector_unit.dispatch(PullSegments(self));
-            return;
-        }
-        for end in [End::A, End::B] {
-            if !self.tied[end as usize] && !self.is_parted(end) {
-                self.pull_end(end);
-            }
-        }
-    }
-
-    /// The pull of the segment at an end, as the sweep will find it.
-    fn pull_end(&mut self, end: End) {
-        let line = &self.layout;
-        let ((at, sign), near) = (line.end_segment(end), line.end_neighbour(end));
-        let far = line.end_slot(end);
-        let change = |of: &Field| sign * (of.get(near) - of.get(far));
-        let (chord, rate) = (change(&line.position), change(&line.velocity));
-        let square = chord.dot(&chord);
-        let inverse_l = inverse_norm_of(square);
-        let strain = square * inverse_l * line.inverse_length[at] - 1.0;
-        let stretching = chord.dot(&rate) * inverse_l;
-        let tension = total_tension(
-            line.axial_stiffness[at] * strain,
-            line.axial_damping[at] * stretching * line.inverse_length[at],
-            0.0,
-            line.negative_tension,
-        );
-        self.pull.set(at, chord * (tension * inverse_l));
-    }
-
-    #[inline(always)]
-    fn choose_segment_pass(&mut self) {
-        if self.layout.creep.is_some() {
-            return self.creeping_segment_pass();
-        }
-        let line = &self.layout;
-        for at in line.rows() {
-            let (chord, inverse_l) = line.chord(at);
-            let stiffness = line.axial_stiffness.load(at);
-            let elastic = stiffness * line.strain(at).map(|strain| line.law.at(strain).force);
-            let rate = line.velocity.load(at + 1) - line.velocity.load(at);
-            let stretching = chord.dot(rate) * inverse_l;
-            let damping = line.axial_damping.load(at) * stretching * line.inverse_length.load(at);
-            let spring = elastic.positive();
-            let tension = total_tension(elastic, damping, Lanes::splat(0.0), line.negative_tension);
-            self.pull.store(chord.scale(tension * inverse_l), at);
-            self.spring.store(chord.scale(spring * inverse_l), at);
-        }
-    }
-
-    /// [`LineWork::choose_segment_pass`] of a line with viscoelastic segments.
-    #[inline(always)]
-    fn creeping_segment_pass(&mut self) {
-        let mut creep = self.layout.creep.take().expect("this line creeps");
-        let line = &self.layout;
-        for at in line.rows() {
-            let (chord, inverse_l) = line.chord(at);
-            let direction = chord.scale(inverse_l);
-            let inverse_length = line.inverse_length.load(at);
-            let strain = line.strain(at);
-            creep.strain.store(strain, at);
-            let relative = line.velocity.load(at + 1) - line.velocity.load(at);
-            let rate = direction.dot(relative) * inverse_length;
-            let elastic = creep.elastic(at, strain);
-            let damping = line.axial_damping.load(at) * rate;
-            let tension = total_tension(elastic, damping, Lanes::splat(0.0), line.negative_tension);
-            self.pull.store(direction.scale(tension), at);
-            self.spring.store(direction.scale(tension), at);
-        }
-        self.layout.creep = Some(creep);
-    }
-
-    /// Takes the memory of viscoelastic segments to t_{n+1}, and books what their dampers took.
+    /// Takes the memory of viscoelastic segments to t_{n+1}.
     fn creep(&mut self, step: Step) {
         if self.layout.creep.is_none() {
             return;
@@ -515,40 +301,53 @@ impl LineWork {
         if let Some(creep) = &mut self.layout.creep {
             creep.prepare(step.drift);
         }
+        let mut taken = Lanes::splat(0.0);
         for at in rows {
-            self.lost = self.lost + self.layout.creep(at, step).taken;
+            taken = taken + self.layout.creep(at, step).taken;
+        }
+        if let Some(balance) = &mut self.balance {
+            balance.dissipate(taken.sum());
         }
     }
 
-    /// A step from t_n to `t` [s], with the ends going where `ends` says.
+    /// A step from t_n to `t` [s], with the ends going where `ends` says; after [`Self::pull`].
     pub fn advance(&mut self, t: f64, step: Step, ends: [&Placed; 2]) {
-        let (unit, work, size) = (self.layout.vector_unit, self, &step);
-        unit.dispatch(Sweep { work, size, ends });
-        if work.settled.is_some() {
-            work.settle(step);
-            unit.dispatch(Drift { work, size, ends });
+        let (unit, size) = (self.layout.vector_unit, &step);
+        let drifts = !self.rough && self.balance.is_none();
+        unit.dispatch(Sweep {
+            work: self,
+            size,
+            drifts,
+            ends,
+        });
+        if !drifts {
+            if self.rough {
+                self.settle(step);
+            }
+            self.balance_nodes(step);
+            unit.dispatch(Drift {
+                work: self,
+                size,
+                ends,
+            });
         }
-        if work.winch.is_some() {
-            work.wind(t, step);
+        if self.winch.is_some() {
+            self.wind(t, step);
         }
-        work.creep(step);
-        if work.layout.books {
-            work.book_ends(step);
+        self.creep(step);
+        self.balance_ends(step);
+        if self.layout.surface.is_some() {
+            self.layout.pass_waves(step);
+            self.meet_surface();
         }
-        if work.layout.surface.is_some() {
-            work.meet_surface(Some(step));
-        }
-        if work.winch.is_some() {
-            work.renew_reel(step);
+        if self.winch.is_some() {
+            self.renew_reel(step);
         }
     }
 
-    /// What a bed that slopes or rubs makes of the velocities at t_{n+½}.
+    /// Solves contact and friction of the nodes on a seabed that slopes or has friction, from the velocities at t_{n+½} without them.
     fn settle(&mut self, step: Step) {
         let line = &mut self.layout;
-        let Some(lost) = &mut self.settled else {
-            return;
-        };
         for (i, at) in line.nodes().enumerate() {
             if self.interior[at] == 0.0 {
                 continue; // tied to its point
@@ -561,13 +360,12 @@ impl LineWork {
             }
             let excess = self.water.as_ref().map_or(0.0, |w| w.inverse_mass_excess[at]);
             let inverse_mass = self.inverse_mass[at];
-            let tangent = line.tangent_of(i);
             let Some((contact, friction)) = line.rubbing() else {
                 return;
             };
             let node = Landing {
                 mass: [1.0 / inverse_mass, 1.0 / (inverse_mass + excess)],
-                tangent,
+                tangent: line.tangent_of(i),
                 normal,
                 penetration,
                 coefficients: contact.coefficients(at),
@@ -577,49 +375,8 @@ impl LineWork {
                 line.set_rub(at, Vector3::zeros());
                 continue;
             };
-            let passed = line.velocity_before.get(at) + landed.velocity;
-            let resisted = self.resistance.get(at).dot(&(landed.velocity - free));
-            *lost += 0.5 * (step.kick * resisted - landed.impulse.dot(&passed));
-            if let Some(water) = &self.water {
-                let squares = [free, landed.velocity].map(|v| v.dot(&tangent).powi(2));
-                *lost += 0.5 * water.mass_excess[at] * (squares[1] - squares[0]);
-            }
             line.velocity.set(at, landed.velocity);
             line.set_rub(at, landed.rub / step.kick);
-        }
-    }
-
-    /// Books the work of the ends in a step, and that of the dampers beside them on the ends.
-    fn book_ends(&mut self, step: Step) {
-        let held = self.held();
-        for end in [End::A, End::B] {
-            if self.is_parted(end) {
-                continue;
-            }
-            let way = self.end_way(end, step);
-            if way == Vector3::zeros() {
-                continue; // as of anchors
-            }
-            let (segment, sign) = self.layout.end_segment(end);
-            let pull = sign * self.pull.get(segment);
-            self.lost[0] += (sign * self.spring.get(segment) - pull).dot(&way);
-            if held[end as usize] {
-                self.given += self.layout.end_lack(end) * way.z - pull.dot(&way);
-            }
-        }
-    }
-
-    /// How far an end went from half a step before t_n to half a step after it [m]. A held end goes from place to place: where its acceleration
-    /// jumps no velocity tells how far. The material at a winch goes with its velocities.
-    fn end_way(&mut self, end: End, step: Step) -> Vector3<f64> {
-        let (at, side) = (self.layout.end_slot(end), end as usize);
-        let [before, after] = [&self.layout.velocity_before, &self.layout.velocity].map(|of| of.get(at));
-        let place = self.layout.position.get(at) - 0.5 * step.drift * after;
-        let gone = place - self.half_places[side];
-        self.half_places[side] = place;
-        match self.held()[side] && self.winch.is_none() {
-            true => gone,
-            false => 0.5 * step.kick * (before + after),
         }
     }
 
@@ -628,20 +385,15 @@ impl LineWork {
         self.layout.vector_unit.dispatch(PutEnds(self, ends));
     }
 
-    /// Makes the ends take their ways from where they were half the `last` step [s] ago, as they go on now: how they came there is no part of them.
+    /// Makes viscoelastic segments and the work of the ends start from the present place and velocity of the ends, half the `last` step [s] ago: a jump
+    /// is not part of their motion.
     pub fn set_out_anew(&mut self, last: f64) {
         let lag = 0.5 * last;
         self.set_out(lag);
         self.layout.set_out_anew(lag);
     }
 
-    /// Notes where the ends were `lag` [s] ago.
-    fn set_out(&mut self, lag: f64) {
-        let ends = [End::A, End::B].map(|end| self.layout.end_slot(end));
-        self.half_places = ends.map(|at| self.layout.place_before(at, lag));
-    }
-
-    /// What the end brings to a free point, after [`Self::pull_beforehand`]; `velocity` [m/s] is the point's at t_n.
+    /// What the end brings to a free point, after [`Self::pull`]; `velocity` [m/s] is the point's at t_n.
     pub fn end_load(&self, end: End, velocity: Vector3<f64>) -> EndLoad {
         let line = &self.layout;
         let (at, other) = (line.end_slot(end), line.end_neighbour(end));
@@ -677,7 +429,6 @@ impl LineWork {
             press,
             current_power,
             mass: mass.matrix(tangent),
-            across: mass.across,
             contact,
         }
     }

@@ -2,14 +2,13 @@
 
 use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 
-use super::layout::Water;
+use super::energy_balance::Flow;
 use super::leapfrog::{EndLoad, LineWork, Placed};
-use super::ledger::Flow;
 use super::motion::AxisPath;
 use super::step::Step;
 use crate::elements::friction::point_stick;
 use crate::model::{
-    End, FreePoint, Kinematics, Model, Network, PointAtHeight, PointState, Role, State, WaveSpan, WaveSpans,
+    End, FreePoint, Kinematics, Model, Network, PointState, Role, State, WaveSpan, WaveSpans,
 };
 use crate::physics::airy::Orbit;
 use crate::physics::friction::{Axes, Friction};
@@ -28,7 +27,7 @@ pub struct NetworkWork {
     waves: Vec<WaveSpan>,
     /// Springs of the bed under the point that is stepped.
     springs: Vec<Spring>,
-    /// Energy given to and lost by the free points since the state was loaded [J].
+    /// Flow of energy of the free points since the state was loaded.
     point_flow: Flow,
     /// Greatest ratio K |v| / M of the lines' nodes as they are held, where it is known [1/s].
     drag_rate: Option<f64>,
@@ -109,9 +108,7 @@ impl NetworkWork {
                 let held = model.lines[line]
                     .ends
                     .map(|point| model.points[point].free().is_none());
-                let data = &model.lines[line];
-                let water = Water::around(model, data);
-                LineWork::new(data, water, held, &model.solver)
+                LineWork::new(model, &model.lines[line], held)
             })
             .collect::<Option<Vec<LineWork>>>()?;
         let points = vec![PointState::at_rest(Vector3::zeros()); network.free_points.len()];
@@ -256,12 +253,12 @@ impl NetworkWork {
     }
 
     /// The first line, by its place in the network, and node whose position is not finite, or whose speed is one that no mooring line reaches;
-    /// where there is none, the fastest node of the first line whose books are not finite.
-    pub fn broken_node(&mut self) -> (usize, usize) {
+    /// where there is none, the fastest node of the first line whose energy is not finite.
+    pub fn broken_node(&self) -> (usize, usize) {
         let mut lines = self.lines.iter().enumerate();
         let broken = lines.find_map(|(line, work)| Some((line, work.broken_node()?)));
         broken.unwrap_or_else(|| {
-            let mut lines = self.lines.iter_mut();
+            let mut lines = self.lines.iter();
             let grown = lines.position(|work| !work.flow().is_finite()).unwrap_or(0);
             (grown, self.lines[grown].fastest_node())
         })
@@ -281,7 +278,7 @@ impl NetworkWork {
             if let Some(partings) = &model.lines[line].parting {
                 work.part_ends(partings, t, step);
             }
-            work.pull_beforehand();
+            work.pull();
             work.weigh_reel();
         }
         if !self.points.is_empty() {
@@ -304,12 +301,9 @@ impl NetworkWork {
         }
     }
 
-    /// Meets the water's surface where the lines lie before the first step, and starts the books.
+    /// Finds the nodes at the water's surface before the first step.
     pub fn begin(&mut self) {
-        for line in &mut self.lines {
-            line.meet_surface(None);
-            line.open_books();
-        }
+        self.lines.iter_mut().for_each(LineWork::meet_surface);
     }
 
     /// Sets current and waves to those of `t` [s].
@@ -325,10 +319,10 @@ impl NetworkWork {
         }
     }
 
-    /// Energy given and lost since the state was loaded.
-    pub fn flow(&mut self) -> Flow {
+    /// Flow of energy since the state was loaded, the kinetic energy included in the dissipation; zero without a balance.
+    pub fn flow(&self) -> Flow {
         let mut flow = self.point_flow;
-        self.lines.iter_mut().for_each(|line| flow.add(line.flow()));
+        self.lines.iter().for_each(|line| flow.add(line.flow()));
         flow
     }
 
@@ -362,7 +356,7 @@ impl NetworkWork {
             let height = self.points[free].position.z;
             let bed = Bed::under(model, self.points[free].position);
             let waves = self.waves_at(free, t);
-            let (at, mut load) = load_in_water(model, index, law, [height, t], now, waves);
+            let mut load = load_in_water(model, index, law, [height, t], now, waves);
             self.springs.clear();
             self.springs.extend(Spring::new(load.contact, bed.height, step));
             for &(at, end) in &self.attached[free] {
@@ -376,25 +370,13 @@ impl NetworkWork {
             }
             let kicked = load.kicked(last, law.axes, &self.springs, &bed, step);
             let Kicked { velocity, .. } = kicked;
-            let mean = 0.5 * (last + velocity);
-            let by_current = step.kick * load.current_power;
-            self.point_flow.given += step.kick * point.load_at(t).dot(&mean) + by_current;
-            self.point_flow.lost -=
-                step.kick * load.resistance.dot(&mean) + kicked.impulse.dot(&mean) - by_current;
-            self.point_flow.given += step.kick * load.press.dot(&mean);
-            let excess = |v: &Vector3<f64>| v.dot(&(load.mass * v)) - load.across * v.dot(v);
-            self.point_flow.lost -= 0.5 * (excess(&last) - excess(&velocity));
-            let surface = |t: f64| self.waves_at(free, t).map_or(0.0, |w| w.elevation);
-            let before = t - step.lag();
-            let surfaces = [before, t + 0.5 * step.drift].map(surface);
-            let brought = mass_work(
-                law,
-                at,
-                [height, surfaces[0], surfaces[1]],
-                [last, velocity],
-                step,
-            );
-            self.point_flow.lost -= brought;
+            if model.energy_balance {
+                let way = step.kick * 0.5 * (last + velocity);
+                let by_water = load.press.dot(&way) + step.kick * load.current_power;
+                self.point_flow.external_work += point.load_at(t).dot(&way) + by_water;
+                self.point_flow.dissipation +=
+                    (load.force - load.resistance).dot(&way) + step.kick * load.current_power;
+            }
             let state = &mut self.points[free];
             state.half_step = [velocity, last];
             state.acceleration = (velocity - last) / step.kick;
@@ -416,8 +398,8 @@ fn attached(model: &Model, network: &Network, point: usize) -> Vec<(usize, End)>
     model.points[point].attached.iter().filter_map(place).collect()
 }
 
-/// What weight, load and water bring to a free point at a height [m] and a time [s] that moves at `now` [m/s], without lines and bed; and
-/// what it is there. Its buoyancy beside that under still water counts as pressed by the waves.
+/// Weight, load and water of a free point at a height [m] and a time [s] that moves at `now` [m/s]. The difference between its buoyancy and that in
+/// still water counts as Froude-Krylov force.
 fn load_in_water(
     model: &Model,
     index: usize,
@@ -425,7 +407,7 @@ fn load_in_water(
     [height, t]: [f64; 2],
     now: Vector3<f64>,
     waves: Option<Orbit>,
-) -> (PointAtHeight, EndLoad) {
+) -> EndLoad {
     let point = &model.points[index];
     let surface = waves.map_or(0.0, |orbit| orbit.elevation);
     let at = law.at(height - surface);
@@ -438,13 +420,12 @@ fn load_in_water(
         press = law.pressed(at.wetted, orbit) + (weight - at.weight) * Vector3::z();
     }
     let drag = law.drag(at.wetted, now - water);
-    let load = EndLoad {
+    EndLoad {
         force: point.load_at(t) - weight * Vector3::z() + drag + press,
         resistance: drag,
         press,
         current_power: drag.dot(&water),
         mass: at.mass * Matrix3::identity(),
-        across: at.mass,
         contact: law.contact.map_or([0.0; 3], |contact| {
             let k = contact.coefficients;
             let level = match model.bottom {
@@ -453,8 +434,7 @@ fn load_in_water(
             };
             [k.stiffness, k.damping, k.stiffness * level]
         }),
-    };
-    (at, load)
+    }
 }
 
 /// Mass of a free point and of the half nodes tied to it, at least [kg].
@@ -466,21 +446,6 @@ fn tied_mass(model: &Model, point: usize) -> f64 {
         line.least_mass(node)
     });
     point.free().map_or(0.0, |free| free.mass) + tied.sum::<f64>()
-}
-
-/// Energy of motion [J] that a point has from the water which joins it, or that leaves with the water, between the half steps around t_n;
-/// `at` is what it is at t_n at a height [m], the surface being at two elevations [m] at the half steps.
-fn mass_work(
-    law: &FreePoint,
-    at: PointAtHeight,
-    [height, before, after]: [f64; 3],
-    [last, velocity]: [Vector3<f64>; 2],
-    step: Step,
-) -> f64 {
-    let low = height - step.lag() * last.z - before;
-    let high = height + 0.5 * step.drift * velocity.z - after;
-    let [low, high] = [low, high].map(|z| law.at(z).mass);
-    0.5 * (at.mass - low) * last.norm_squared() + 0.5 * (high - at.mass) * velocity.norm_squared()
 }
 
 impl Spring {
@@ -506,7 +471,6 @@ impl EndLoad {
         self.press += other.press;
         self.current_power += other.current_power;
         self.mass += other.mass;
-        self.across += other.across;
     }
 
     /// v_{n+½} of a point that moves along `axes` only, and the impulse of the bed, which is implicit: friction is sought that agrees with
@@ -528,7 +492,6 @@ impl EndLoad {
         let Some(inverse) = mass.try_inverse() else {
             return Kicked {
                 velocity: last,
-                impulse: zero,
                 rub: zero,
             };
         };
@@ -556,7 +519,6 @@ impl EndLoad {
         }
         Kicked {
             velocity: velocity + response * push + inverse * rub.component_mul(&free),
-            impulse: push * bed.normal + rub,
             rub,
         }
     }
@@ -569,9 +531,7 @@ const ROUNDS_MAX: usize = 50;
 struct Kicked {
     /// v_{n+½} [m/s].
     velocity: Vector3<f64>,
-    /// Impulse of the bed [N s].
-    impulse: Vector3<f64>,
-    /// The part of it that friction has [N s].
+    /// Impulse of friction [N s].
     rub: Vector3<f64>,
 }
 

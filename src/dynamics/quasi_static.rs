@@ -5,14 +5,12 @@
 //! strain are closed-form catenaries, joined at free points; others, and those that find no rest that way, are chains of elements. Valid where motions
 //! are slow beside the lowest natural period and drag is small beside weight.
 //!
-//! A step is one equilibrium. It is halved where none is found, and, as long as an energy ledger is kept, where the mean of the forces before and
-//! after it tells the work of the ends too badly for the energy to be accounted for: where forces change much within a step, or where the lines
-//! went over to another equilibrium. Where halves without an equilibrium are met on that account, the step is made again for the forces alone.
+//! A step is one equilibrium. It is halved where none is found.
 
 use nalgebra::Vector3;
 
 use super::StepError;
-use super::ledger::{self, Flow, work_at_rest};
+use super::energy_balance::{Flow, work_at_rest};
 use crate::elements::{Counters, Workspace, copy_network};
 use crate::model::{Kinematics, Model, Network, PointState, State};
 use crate::statics::catenary_network::solve_network;
@@ -21,19 +19,6 @@ use crate::statics::{StaticsError, catenary_network};
 
 /// Parts that a step may be cut into by halving: six halvings.
 const PARTS_MAX: usize = 64;
-/// Energy of a part that may be unaccounted for, over its work [-]: what is made going one way is lost coming back.
-const OPEN_MAX: f64 = 0.1;
-/// Energy that rounding may bring, over what is held [-].
-const ROUNDING: f64 = 1e-9;
-
-/// What halves a step.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Halving {
-    /// No equilibrium at its end.
-    Forces,
-    /// That, or an energy that is not accounted for.
-    ForcesAndEnergy,
-}
 
 /// A network on its way from equilibrium to equilibrium.
 struct Path<'a, K> {
@@ -44,7 +29,7 @@ struct Path<'a, K> {
 }
 
 /// Advances one network from its state at `t0` to the equilibrium at `t1` [s]; `held` gives the positions of the points that forces do
-/// not move. `state.time` is left to the caller. Returns the work of the solver, and the energy that was given and lost.
+/// not move. `state.time` is left to the caller. Returns the work of the solver, and the flow of energy.
 ///
 /// # Errors
 /// There is no equilibrium at some time of the step; the state is then that of the last one found.
@@ -54,7 +39,6 @@ pub fn advance<K: Fn(usize, f64) -> Kinematics>(
     state: &mut State,
     held: &K,
     [t0, t1]: [f64; 2],
-    halving: Halving,
     work: &mut Workspace,
 ) -> Result<(Counters, Flow), StepError> {
     let path = Path {
@@ -72,11 +56,11 @@ pub fn advance<K: Fn(usize, f64) -> Kinematics>(
     while done < PARTS_MAX {
         let [from, to] = [done, done + parts].map(|part| part as f64 / PARTS_MAX as f64);
         let times = [t0 + (t1 - t0) * from, t1 - (t1 - t0) * (1.0 - to)];
-        let booked = path.rest(&before, state, times, work);
-        let booked = booked.map(|()| path.book([&before, state], times));
-        match booked {
-            Ok((booked, is_open)) if !is_open || parts == 1 || halving == Halving::Forces => {
-                flow.add(booked);
+        match path.rest(&before, state, times, work) {
+            Ok(()) => {
+                if model.energy_balance {
+                    flow.add(work_at_rest(model, path.network, [&before, state], times));
+                }
                 path.stop(&before, state, times[1] - times[0]);
                 copy_network(model, path.network, state, &mut before);
                 work.counters.steps += 1;
@@ -148,19 +132,6 @@ impl<K: Fn(usize, f64) -> Kinematics> Path<'_, K> {
                 state.lines[line].closed_form = None;
             }
         }
-    }
-
-    /// Energy given and lost between two states at rest, where a ledger is kept, and whether it accounts badly for what they hold.
-    fn book(&self, states: [&State; 2], times: [f64; 2]) -> (Flow, bool) {
-        if !self.model.solver.energy_ledger {
-            return (Flow::default(), false);
-        }
-        let flow = work_at_rest(self.model, self.network, states, times);
-        let [before, after] = states.map(|state| ledger::energy(self.model, self.network, state));
-        let open = after.at_rest() - before.at_rest() - flow.given + flow.lost;
-        let work = flow.given.abs() + flow.lost.abs();
-        let held = after.at_rest() - after.gravitational + after.gravitational.abs();
-        (flow, open.abs() > OPEN_MAX * work + ROUNDING * held)
     }
 
     /// Leaves the nodes at rest after a part of the step of `dt` [s]; free points keep the rate at which they moved, for the next guess.

@@ -1,9 +1,5 @@
 //! The water's surface over the line of a leapfrog: between two steps, weight, drag and mass of the nodes that it crosses are set
 //! to what they are there, so that the kernels need not know of it.
-//!
-//! With the mass M_n of the positions at t_n, the velocities v_{n−½} have the kinetic energy ½ vᵀM_n v, and what joins or leaves with
-//! the water in a step brings or takes ½ vᵀ(M_{n+1} − M_n)v. What M has along the line beside what it has across it is booked with the turning
-//! of the nodes; the rest is booked here.
 
 use crate::math::fold::{Field, Fold};
 use crate::model::{Dry, Line, Nodes, Surface};
@@ -18,12 +14,10 @@ pub(super) struct SurfaceNow {
     dry: Vec<Dry>,
     /// Buoyancy that the nodes would lack in calm water [N], where there are waves.
     calm: Vec<f64>,
-    /// Work of the buoyancy by which waves exceed that of calm water, since it was last cleared [J].
+    /// Work of the difference in buoyancy between waves and still water since the state was loaded [J].
     pub lifted: f64,
     /// Dry parts at t_{n−1} [-].
     before: Vec<f64>,
-    /// Energy of motion that joined with the water since it was last cleared [J].
-    pub joined: f64,
 }
 
 /// A node at t_n.
@@ -51,7 +45,6 @@ impl SurfaceNow {
             before: vec![0.0; count],
             calm: vec![0.0; count],
             lifted: 0.0,
-            joined: 0.0,
         })
     }
 
@@ -87,8 +80,8 @@ impl SurfaceNow {
         }
     }
 
-    /// Books the work on node `i` [J] of what it has more buoyancy than in calm water, on its way up by `way` [m].
-    pub fn book_lift(&mut self, i: usize, way: f64) {
+    /// Adds the work of the difference in buoyancy between waves and still water on node `i` as it rises by `way` [m].
+    pub fn lift(&mut self, i: usize, way: f64) {
         self.lifted += (self.calm[i] - self.dry[i].weight) * way;
     }
 
@@ -117,13 +110,5 @@ impl SurfaceNow {
     /// Buoyancy that a node lacks, in calm water where there are waves [N].
     pub fn lack(&self, i: usize, waves: bool) -> f64 {
         if waves { self.calm[i] } else { self.dry[i].weight }
-    }
-
-    /// Books what joined node `i` or left it since the [`Self::find`] before the last, as if it had the same mass along the line as across it;
-    /// `velocity` [m/s] as laid out.
-    pub fn book(&mut self, i: usize, fold: Fold, velocity: &Field) {
-        let wetter = self.before[i] - self.dry[i].part;
-        let added = self.nodes.mass_normal[i] - self.nodes.mass[i];
-        self.joined += 0.5 * wetter * added * velocity.get(fold.slot(i)).norm_squared();
     }
 }

@@ -266,25 +266,36 @@ pub(super) fn solver(variables: &mut Vec<Variable>) {
     substeps.variability = Variability::Discrete;
     variables.push(substeps);
     variables.push(row(
-        "solver.energy_error".into(),
-        "energy that the time integration made (positive) or lost since the start; 0 where no ledger is kept"
-            .into(),
-        Causality::Output,
-        Unit::JOULE,
-        Binding::Solver(SolverResult::EnergyError),
-    ));
-    variables.push(row(
-        "solver.power_residual".into(),
-        "energy error over the time since the start".into(),
-        Causality::Output,
-        Unit::WATT,
-        Binding::Solver(SolverResult::PowerResidual),
-    ));
-    variables.push(row(
         "solver.input_error".into(),
         "estimated error of tension, over its variation, from extrapolating the displacements between communication points".into(),
         Causality::Output,
         Unit::ONE,
         Binding::Solver(SolverResult::InputError),
     ));
+}
+
+pub(super) fn energy_balance(variables: &mut Vec<Variable>) {
+    let results = [
+        (
+            "solver.energy_error",
+            "energy that the time integration has produced (positive) or lost since the start",
+            Unit::JOULE,
+            SolverResult::EnergyError,
+        ),
+        (
+            "solver.power_residual",
+            "energy error over the time since the start",
+            Unit::WATT,
+            SolverResult::PowerResidual,
+        ),
+    ];
+    for (name, meaning, unit, result) in results {
+        variables.push(row(
+            name.into(),
+            meaning.into(),
+            Causality::Output,
+            unit,
+            Binding::Solver(result),
+        ));
+    }
 }

@@ -85,6 +85,7 @@ impl Model {
             lines,
             vessels,
             solver: scene.solver.clone(),
+            energy_balance: scene.output.energy_balance,
         })
     }
 

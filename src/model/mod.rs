@@ -70,8 +70,10 @@ pub struct Model {
     pub vessels: Vec<Vessel>,
     /// Sets of lines that share free points and so must be solved together.
     pub networks: Vec<Network>,
-    /// How to solve, as the user asked.
+    /// Settings of the solver, as the scene gives them.
     pub solver: Solver,
+    /// Whether the scene asks for the energy balance.
+    pub energy_balance: bool,
 }
 
 /// A current.

@@ -20,8 +20,6 @@ table! {
         pub integrator: Integrator = Integrator::Auto => PLAIN.or_called("dynamics"),
         /// True if axial damping acts in compression too, as in other codes, so that tension may be negative.
         pub negative_tension: bool = false,
-        /// True if the energy balance is kept; without it `solver.energy_error` stays 0, and an explicit step costs a fifth less.
-        pub energy_ledger: bool = true,
         /// Upper limit of the internal time step [s].
         pub time_step_max: f64 = 0.05 => positive(1e4).elsewhere(&["dtm"]),
         /// Spectral radius at infinite frequency [-] of `generalised_alpha` (0 to 1, default 0.2) or `axial_implicit` (½ to 1, default 0.9); where
@@ -90,6 +88,9 @@ table! {
         pub interval: f64 = 0.05 => positive(1e9).elsewhere(&["dtout", "dt"]),
         /// True if node positions and tensions are variables too.
         pub profile: bool = false,
+        /// True if the energy balance is evaluated, with `solver.energy_error` and `solver.power_residual`; explicit steps then cost about half as much
+        /// again.
+        pub energy_balance: bool = false => PLAIN.elsewhere(&["energy_ledger"]),
         /// Further columns of `moorline run`, by MoorDyn's names such as `FairTen1`.
         pub channels: Vec<String> = Vec::new(),
     }

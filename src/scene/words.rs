@@ -82,8 +82,8 @@ impl Scene {
             }
             Reconstruction::Interpolate => said.push("inputs of a host hold for the end of its step".into()),
         }
-        if !solver.energy_ledger {
-            said.push("no energy balance: `solver.energy_error` stays 0".into());
+        if output.energy_balance {
+            said.push("with the energy balance".into());
         }
         if !output.channels.is_empty() {
             said.push(format!(

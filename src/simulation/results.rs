@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::{Simulation, held, start};
 use crate::dynamics::advance::Counters;
 use crate::dynamics::beam::{BeamView, Momentum};
-use crate::dynamics::ledger::{Energy, Ledger};
+use crate::dynamics::energy_balance::{Energy, EnergyBalance};
 use crate::dynamics::reaction;
 use crate::elements;
 use crate::math::attitude::angle_rates;
@@ -49,8 +49,8 @@ pub struct NodeBending {
 /// Quantities of the present state that several outputs share, each evaluated when the first of them is read.
 #[derive(Debug, Clone)]
 pub(super) struct Reactions {
-    /// Stored energy, and the part of the dissipation that is not yet in the energy balance [J].
-    energy: OnceLock<(Energy, f64)>,
+    /// Stored energy.
+    energy: OnceLock<Energy>,
     /// Force [N] and moment [N m] on every vessel.
     vessels: Vec<OnceLock<[f64; 6]>>,
     lines: Vec<LineReactions>,
@@ -474,51 +474,28 @@ impl Simulation {
         self.snapshot.counters
     }
 
-    /// Energy held, by kind.
+    /// Stored energy, by kind.
     pub fn energy(&self) -> Energy {
-        self.energies().0
+        let energy = &self.reactions.energy;
+        *energy.get_or_init(|| self.work.energy(&self.model, &self.snapshot.state))
     }
 
-    /// Energy held, and what is yet to be booked as lost [J].
-    fn energies(&self) -> &(Energy, f64) {
-        let (model, state) = (&*self.model, &self.snapshot.state);
-        let found = || {
-            let turning = self.work.turning_energy(model, state);
-            (self.work.energy(model, state), -turning)
-        };
-        self.reactions.energy.get_or_init(found)
+    /// Energy balance since the start, where the scene asks for it
+    /// ([`Output::energy_balance`](crate::scene::Output::energy_balance)).
+    pub fn energy_balance(&self) -> Option<EnergyBalance> {
+        let mut balance = self.snapshot.balance?;
+        balance.now = self.energy().total();
+        balance.flow.dissipation -= self
+            .work
+            .kinetic_energy_of_leapfrogs(&self.model, &self.snapshot.state);
+        Some(balance)
     }
 
-    /// Whether an energy ledger is kept, as [`Solver::energy_ledger`](crate::scene::Solver::energy_ledger) says.
-    pub fn keeps_ledger(&self) -> bool {
-        self.model.solver.energy_ledger
-    }
-
-    /// Imbalance of the energy ledger since the start [J]; 0 where none is kept.
-    pub fn energy_error(&self) -> f64 {
-        match self.keeps_ledger() {
-            true => self.ledger().error(self.energy().total()),
-            false => 0.0,
-        }
-    }
-
-    /// The energy ledger.
-    pub fn ledger(&self) -> Ledger {
-        let mut ledger = self.snapshot.ledger;
-        if self.keeps_ledger() {
-            ledger.flow.lost += self.energies().1;
-        }
-        ledger
-    }
-
-    /// Imbalance of the energy ledger since the start, over the time since then [W]; 0 where none is kept.
-    pub fn power_residual(&self) -> f64 {
+    /// Error of the energy balance over the time since the start [W].
+    pub fn power_residual(&self) -> Option<f64> {
         let elapsed = self.time() - self.snapshot.start_time;
-        if elapsed > 0.0 {
-            self.energy_error() / elapsed
-        } else {
-            0.0
-        }
+        let error = self.energy_balance()?.error();
+        Some(if elapsed > 0.0 { error / elapsed } else { 0.0 })
     }
 }
 

@@ -8,7 +8,7 @@ use super::inputs::Inputs;
 use super::paths::Paths;
 use super::{Error, Snapshot};
 use crate::dynamics::advance::{Counters, Workspace};
-use crate::dynamics::ledger::Ledger;
+use crate::dynamics::energy_balance::{EnergyBalance, Flow};
 use crate::dynamics::{beam, reaction};
 use crate::elements;
 use crate::model::{End, Line, LineState, Model, PointState, Reel, State};
@@ -56,7 +56,14 @@ pub(super) fn begin(
     let mut work = Workspace::new(model, &state, |line| static_tension(model, &state, line));
     work.start(model, &mut state, &held);
     let counters = Counters::default();
-    let ledger = Ledger::new(work.energy(model, &state).total());
+    let balance = model.energy_balance.then(|| EnergyBalance {
+        start: work.energy(model, &state).total(),
+        now: 0.0,
+        flow: Flow {
+            dissipation: work.kinetic_energy_of_leapfrogs(model, &state),
+            ..Flow::default()
+        },
+    });
     Ok((
         Snapshot {
             state,
@@ -64,7 +71,7 @@ pub(super) fn begin(
             paths: Box::new(paths),
             follows_scene,
             counters,
-            ledger,
+            balance,
             start_time: time,
             input_record: InputRecord::default(),
             ahead: 0.0,

@@ -162,14 +162,21 @@ pub fn relative_drift(scene: &Scene, count: usize) -> f64 {
     }))
 }
 
-/// Error of the energy ledger over the work that was given [-].
-pub fn error_of_given(simulation: &Simulation) -> f64 {
-    simulation.energy_error().abs() / simulation.ledger().flow.given
+/// A scene that asks for the energy balance.
+pub fn balanced(mut scene: Scene) -> Scene {
+    scene.output.energy_balance = true;
+    scene
 }
 
-/// Error of the energy ledger over the energy that was lost [-].
+/// Error of the energy balance over the external work [-].
+pub fn error_of_given(simulation: &Simulation) -> f64 {
+    simulation.energy_balance().unwrap().error().abs()
+        / simulation.energy_balance().unwrap().flow.external_work
+}
+
+/// Error of the energy balance over the dissipation [-].
 pub fn error_of_lost(simulation: &Simulation) -> f64 {
-    simulation.energy_error().abs() / simulation.ledger().flow.lost
+    simulation.energy_balance().unwrap().error().abs() / simulation.energy_balance().unwrap().flow.dissipation
 }
 
 /// Claims that a simulation goes on bit for bit from its own snapshot put back, and another simulation of the scene from the snapshot's bytes.

@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use crate::common::{agm, assert_order, at_reference, draft, gap, greatest, statics};
 use moorline::dynamics::implicit::{self, SPECTRAL_RADIUS, Scheme, Span};
-use moorline::dynamics::quasi_static::{self, Halving};
+use moorline::dynamics::quasi_static;
 use moorline::elements::{Counters, Workspace};
 use moorline::model::{Kinematics, Model, State};
 use moorline::statics::equilibrium::continue_from;
@@ -403,8 +403,7 @@ fn slow_motion_is_quasi_static() {
     let mut resting = statics(&model);
     for step in 0..20 {
         let span = [50.0 * step as f64, 50.0 * (step + 1) as f64];
-        let halving = Halving::ForcesAndEnergy;
-        quasi_static::advance(&model, 0, &mut resting, &held, span, halving, &mut work).unwrap();
+        quasi_static::advance(&model, 0, &mut resting, &held, span, &mut work).unwrap();
     }
     let fairlead = held(1, 1000.0);
     let mut elements = statics(&model);

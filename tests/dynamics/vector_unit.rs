@@ -66,8 +66,7 @@ fn swayed_implicitly(name: &str, elements: usize, steps: usize, portable: bool) 
     for end in [End::A, End::B] {
         work.put_end(end, start[end as usize], Vector3::zeros());
     }
-    work.meet_surface(None);
-    work.open_books();
+    work.meet_surface();
     for k in 1..=steps {
         let phase = 2.0 * k as f64 * size;
         work.step(step, start.map(|at| at + phase.sin() * Vector3::x()));

@@ -24,9 +24,10 @@ impl Balance {
 
     /// Counts a communication step.
     pub fn count(&mut self, simulation: &Simulation) {
-        let (energy, flow) = (simulation.energy(), simulation.ledger().flow);
-        self.turnover += (flow.given - self.given).abs() + (flow.lost - self.lost).abs();
-        (self.given, self.lost, self.numerical) = (flow.given, flow.lost, flow.numerical);
+        let (energy, flow) = (simulation.energy(), simulation.energy_balance().unwrap().flow);
+        self.turnover += (flow.external_work - self.given).abs() + (flow.dissipation - self.lost).abs();
+        (self.given, self.lost, self.numerical) =
+            (flow.external_work, flow.dissipation, flow.algorithmic_dissipation);
         let height = energy.gravitational;
         self.held = self.held.max(energy.total() - height + height.abs());
     }
@@ -41,7 +42,7 @@ impl Balance {
 
     /// Error of the ledger over all that it has booked [-].
     pub fn imbalance(&self, simulation: &Simulation) -> f64 {
-        match simulation.energy_error() {
+        match simulation.energy_balance().unwrap().error() {
             0.0 => 0.0,
             error => error / (self.turnover + self.held),
         }

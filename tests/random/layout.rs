@@ -23,6 +23,7 @@ pub fn scene(tape: &Tape, plan: &Plan) -> Scene {
         solver: plan.solver(&mut plan.dice(tape, part::SOLVER)),
         ..Scene::default()
     };
+    scene.output.energy_balance = true;
     let cable = plan.resists != Resists::Torsion;
     let moving = plan.integrator != Integrator::QuasiStatic;
     if plan.wet {

@@ -81,7 +81,6 @@ impl Base {
         };
         let mut scene = layout::scene(&tape, &plan);
         let solver = &mut scene.solver;
-        solver.energy_ledger = false;
         solver.threads = Threads::Number(1);
         solver.time_step_max = 0.05;
         solver.elements = None;

@@ -116,7 +116,6 @@ impl Plan {
             tolerance: dice.size([0.02, 0.3], [1e-3, 0.5]),
             integrator: self.integrator,
             negative_tension: dice.chance(0.15),
-            energy_ledger: true,
             elements: dice.maybe(0.9, |dice| dice.whole(4, 40)), // else they are found by trials
             time_step_max: dice.size([0.05, 0.05], [2e-3, 10.0]),
             spectral_radius: dice

@@ -7,12 +7,12 @@ use super::Counters;
 use super::Done;
 use crate::dynamics::axial_implicit::AxialWork;
 use crate::dynamics::beam::{self, BeamWork, Driven, Stuck, StuckReason};
+use crate::dynamics::energy_balance::implicit::{self as implicit_balance, Passed};
+use crate::dynamics::energy_balance::{self, Flow};
 use crate::dynamics::implicit::{self, Scheme};
-use crate::dynamics::ledger::passed::{self, Passed};
-use crate::dynamics::ledger::{self, Flow};
 use crate::dynamics::motion::AxisPath;
 use crate::dynamics::network::NetworkWork;
-use crate::dynamics::quasi_static::{self, Halving};
+use crate::dynamics::quasi_static;
 use crate::dynamics::step::Step;
 use crate::dynamics::{Choice, StepError, StepFailure};
 use crate::elements::{self, copy_network};
@@ -67,6 +67,11 @@ impl Solver {
     /// Whether it asks the state being built for what waves do.
     pub(super) fn reads_next(&self) -> bool {
         matches!(self, Solver::Implicit(_))
+    }
+
+    /// Whether it is one of the leapfrogs.
+    pub(super) fn is_leapfrog(&self) -> bool {
+        matches!(self, Solver::Leapfrog(_) | Solver::AxialImplicit(_))
     }
 
     pub(super) fn new(model: &Model, network: &Network, integrator: Integrator) -> Solver {
@@ -174,11 +179,12 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
             let mut steps = self.state.lines[network.lines[0]].half_step.steps;
             let mut step = Step::after(steps, drift);
             work.put_ends(self.start, steps[0], self.held);
-            let mut jumped = 0.0;
+            let mut flow = Flow::default();
             if self.jumps {
                 work.set_out_anew(steps[0]);
-                let lines = network.lines.iter();
-                jumped = lines.map(|&line| self.jump_energy(line, steps[0], next)).sum();
+                for &line in &network.lines {
+                    flow.add(self.jump_energy(line, steps[0], next));
+                }
             }
             work.start_reels(network, self.state, self.reels, step);
             work.begin();
@@ -188,8 +194,7 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
                 steps = [drift, steps[0]];
                 step = Step::after(steps, drift);
             }
-            let mut flow = work.flow();
-            flow.given += jumped;
+            flow.add(work.flow());
             let is_sound = work.is_sound() && flow.is_finite();
             let end = self.start + self.length;
             let holds = limit.holds(work.drag_rate(model, network, end), drift);
@@ -247,7 +252,7 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
             let count = self.substeps(index, longest, retry)?;
             let drift = self.length / count as f64;
             self.set_out(index, drift, work, self.holds && retry == 0);
-            let jumped = self.jump_energy(index, drift, next);
+            let mut flow = self.jump_energy(index, drift, next);
             let mut steps = self.state.lines[index].half_step.steps;
             let mut solves = 0;
             for k in 1..=count {
@@ -264,8 +269,8 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
                 solves += work.step(Step::after(steps, drift), ends);
                 steps = [drift, steps[0]];
             }
-            let (is_sound, mut flow) = (work.store(&mut next.lines[index], steps), work.flow());
-            flow.given += jumped;
+            let is_sound = work.store(&mut next.lines[index], steps);
+            flow.add(work.flow());
             let stretch = drift * drift * work.tension_peak();
             let too_long = stretch > transverse * transverse || !work.is_settled();
             let whole = is_sound && flow.is_finite();
@@ -306,21 +311,20 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
             work.set_out_anew(self.state.lines[index].velocities_before().1);
         }
         work.set_time(self.start);
-        work.meet_surface(None);
-        work.open_books();
+        work.meet_surface();
     }
 
-    /// What held ends give a leapfrog's line where they set out from elsewhere than where the last step took them, with velocities half a step of
-    /// `drift` [s] earlier [J]. What comes next writes over the line in `next`.
-    fn jump_energy(&self, index: usize, drift: f64, next: &mut State) -> f64 {
-        if !self.jumps || !self.model.solver.energy_ledger {
-            return 0.0;
+    /// Flow of energy into a leapfrog's line whose prescribed ends jump at the start of the step, to velocities half a step of `drift` [s] earlier. The line
+    /// in `next` is overwritten.
+    fn jump_energy(&self, index: usize, drift: f64, next: &mut State) -> Flow {
+        if !self.jumps || !self.model.energy_balance {
+            return Flow::default();
         }
         let ends = self.model.lines[index].ends.map(|point| {
             let k = (self.held)(point, self.start);
             [k.position, k.velocity - 0.5 * drift * k.acceleration]
         });
-        ledger::jump_energy(self.model, self.state, index, ends, &mut next.lines[index])
+        energy_balance::jump_flow(self.model, self.state, index, ends, &mut next.lines[index])
     }
 
     fn is_fixed(&self, point: usize) -> bool {
@@ -354,19 +358,18 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
         };
         let (model, network) = (self.model, &self.model.networks[number]);
         let mut flow = Flow::default();
-        let mut parted = ledger::parted_ends(network, self.state);
-        let books = model.solver.energy_ledger;
+        let mut parted = energy_balance::parted_ends(network, self.state);
         let count = |passed: &Passed| {
-            if !books {
+            if !model.energy_balance {
                 return;
             }
             let [before, after] = passed.states;
-            let now_parted = ledger::parted_ends(network, after);
+            let now_parted = energy_balance::parted_ends(network, after);
             if now_parted != parted {
-                flow.given += ledger::joined_energy(model, network, [before, after]);
+                flow.external_work += energy_balance::joined_energy(model, network, [before, after]);
                 parted = now_parted;
             } else {
-                flow.add(passed::flow(model, network, passed));
+                flow.add(implicit_balance::flow(model, network, passed));
             }
         };
         let held = implicit::Held {
@@ -425,11 +428,8 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
         next: &mut State,
     ) -> Result<Done, StepError> {
         let (model, times) = (self.model, [self.start, self.start + self.length]);
-        let mut attempt = |halving| {
-            copy_network(model, &model.networks[number], self.state, next);
-            quasi_static::advance(model, number, next, self.held, times, halving, work)
-        };
-        let (done, flow) = attempt(Halving::ForcesAndEnergy).or_else(|_| attempt(Halving::Forces))?;
+        copy_network(model, &model.networks[number], self.state, next);
+        let (done, flow) = quasi_static::advance(model, number, next, self.held, times, work)?;
         let counters = Counters {
             substeps: done.steps,
             solves: done.solves,

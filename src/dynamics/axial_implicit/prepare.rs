@@ -35,10 +35,6 @@ impl AxialWork {
             kick: Lanes::splat(step.kick),
             drift: Lanes::splat(step.drift),
             damping: [0.5 * (1.0 + shift), 0.5 * (1.0 - shift)].map(Lanes::splat),
-            slope: match self.layout.creep {
-                None => Some(Lanes::splat(1.0 / (self.weights.0[0] * step.drift))),
-                Some(_) => None,
-            },
             push: Lanes::splat(push),
             weights: self.weights.0.map(Lanes::splat),
         }
@@ -106,18 +102,11 @@ impl AxialWork {
         }
     }
 
-    /// The segments, from geometry and velocities at t_{n−½}; with `BOOKS` also what their books begin with.
+    /// The segments, from geometry and velocities at t_{n−½}.
     #[inline(always)]
-    pub(super) fn prepare_segments<const SPRINGS: u8, const BOOKS: bool>(
-        &mut self,
-        step: Step,
-        sizes: &Sizes,
-    ) {
+    pub(super) fn prepare_segments<const SPRINGS: u8>(&mut self, sizes: &Sizes) {
         let half = Lanes::splat(0.5);
-        let back = Lanes::splat(-step.lag());
-        let half_back = half * back;
         let [b1, ..] = sizes.weights;
-        let share = Lanes::splat(1.0 / self.weights.0[0]);
         let mut least = Lanes::splat(f64::INFINITY);
         for at in self.layout.rows() {
             let found = self.springs::<SPRINGS>(at);
@@ -147,10 +136,6 @@ impl AxialWork {
             least = least.min(row.margins[0] + pull);
             let total = row.spring(along) + pull;
             row.taut = total.choose(Lanes::splat(1.0), Lanes::splat(-1.0));
-            if BOOKS {
-                let longer = back * (along + half_back * bend);
-                row.more_before = found.slope * share * longer;
-            }
         }
         let forgot = std::mem::replace(&mut self.forgets, (Lanes::splat(0.0) - least).any_positive());
         if forgot || self.forgets {

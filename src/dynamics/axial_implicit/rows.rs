@@ -39,8 +39,6 @@ pub(super) struct Sizes {
     pub drift: Lanes,
     /// ½(1+θ) and ½(1−θ), the weights of the new strain rate and the old one in the damping [-].
     pub damping: [Lanes; 2],
-    /// The springs' slope with the length over dT̄/d(q·(v_{i+1} − v_i)), 1/(b₁Δt) [1/s], unless they creep.
-    pub slope: Option<Lanes>,
     /// 1 where dampers act in slack segments, else 0 [-].
     pub push: Lanes,
     /// Weights of T^{n+1}, T^n, T^{n−1} and T^{n−2} in T̄ [-].
@@ -70,8 +68,6 @@ pub(super) struct SegmentRow {
     /// Lengths l at t_n [m], and 1/l.
     pub length: Lanes,
     pub inverse: Lanes,
-    /// By how much the tension of the springs was more half a step before t_n, as if they pushed too [N].
-    pub more_before: Lanes,
     /// q·(v_{i+1} − v_i) at t_{n−½} [m/s].
     pub along: Lanes,
     /// dT̄/d(q·(v_{i+1} − v_i)) of the springs [N s/m].
@@ -109,7 +105,6 @@ impl SegmentRow {
             direction: Vectors::zero(),
             length: zero,
             inverse: zero,
-            more_before: zero,
             along: zero,
             stiffness: zero,
             elastic: zero,
@@ -285,8 +280,6 @@ pub(super) struct NodeRow {
     pub loose: Vectors,
     /// qᵀM⁻¹q, qᵀM⁻¹q′ and q′ᵀM⁻¹q′ of the segments before and after [1/kg].
     pub forms: [Lanes; 3],
-    /// Impulse of the segments [N s].
-    pub impulse: Vectors,
 }
 
 impl NodeRow {
@@ -309,7 +302,6 @@ impl NodeRow {
             fall: Vectors::zero(),
             loose: Vectors::zero(),
             forms: [zero; 3],
-            impulse: Vectors::zero(),
         }
     }
 

@@ -3,7 +3,7 @@
 //! Loops name the rows by index: with iterators the compiler would see that it may take four rows at once, and take them lane by lane.
 
 use super::AxialWork;
-use super::rows::{NodeRow, SegmentRow, Sizes, pulled, under};
+use super::rows::{NodeRow, SegmentRow, Sizes, under};
 use crate::dynamics::step::Step;
 use crate::math::folded_tridiagonal::Eliminated;
 use crate::math::lanes::{Lanes, Vectors};
@@ -15,9 +15,6 @@ const STRETCH_TOLERANCE: f64 = 1e-3;
 const FLAT: f64 = 1e-3;
 /// Shortest that a segment may get, over its length, for the same [-].
 const SHORT: f64 = 0.9;
-
-/// Strain over a step above which its energies tell the mean tension [-].
-const STRETCH_TOLD: f64 = 1e-9;
 
 /// What a pass found.
 #[derive(Debug, Clone, Copy)]
@@ -32,9 +29,6 @@ pub(super) struct Found {
     margin: Lanes,
     /// Greatest T̄ [N].
     pub greatest: Lanes,
-    /// Twice the energy lost, and dissipated by the averaging of tensions [J].
-    pub lost: Lanes,
-    pub numerical: Lanes,
 }
 
 impl Found {
@@ -47,8 +41,6 @@ impl Found {
             turned: zero,
             margin: Lanes::splat(f64::INFINITY),
             greatest: zero,
-            lost: zero,
-            numerical: zero,
         }
     }
 }
@@ -111,10 +103,9 @@ impl AxialWork {
         before
     }
 
-    /// New velocities, into `velocity_before`, from T̄, that of the segments before those of the first row being `before` [N]; with `BOOKS` also
-    /// what the segments' impulses are.
+    /// New velocities, into `velocity_before`, from T̄, that of the segments before those of the first row being `before` [N].
     #[inline(always)]
-    pub(super) fn find_velocities<const BED: u8, const BOOKS: bool>(&mut self, before: Lanes, sizes: &Sizes) {
+    pub(super) fn find_velocities<const BED: u8>(&mut self, before: Lanes, sizes: &Sizes) {
         let (rows, kick) = (self.rows.nodes.len(), sizes.kick);
         let (segments, new) = (
             &self.rows.segments[..rows],
@@ -127,38 +118,25 @@ impl AxialWork {
             if at > 0 {
                 below = pull(at - 1);
             }
-            let impulse = pull(at) - below;
-            if BOOKS {
-                node.impulse = impulse;
-            }
-            let velocity = node.loose + node.inverse_mass::<BED>(impulse);
-            new[at + 1] = velocity;
+            new[at + 1] = node.loose + node.inverse_mass::<BED>(pull(at) - below);
         }
         self.layout.velocity_before.wrap();
     }
 
-    /// What the new velocities say about the assumptions, and with `BOOKS` the books of the step.
+    /// Compares the new velocities with the assumptions.
     #[inline(always)]
-    pub(super) fn look_over<const BED: u8, const BOOKS: bool>(&mut self, sizes: &Sizes) -> Found {
+    pub(super) fn look_over<const BED: u8>(&mut self, sizes: &Sizes) -> Found {
         let mut found = Found::new();
         let (line, last) = (&self.layout, self.layout.fold.rows());
         let (segments, nodes) = (&self.rows.segments[..last], &self.rows.nodes[..last]);
-        let [old, new] = [&line.velocity, &line.velocity_before].map(|of| of.rows(last));
-        // no inclusive range, which has more to do in every row; what is found keeps the compiler from taking four rows at once
+        let new = line.velocity_before.rows(last);
+        // no inclusive range, which has more to do in every row; the results keep the compiler from taking four rows at once
         for at in 1..last + 1 {
-            found.check::<BOOKS>(&segments[at - 1], new[at + 1] - new[at], sizes);
+            found.check(&segments[at - 1], new[at + 1] - new[at], sizes);
         }
-        if BED != under::LEVEL && !BOOKS {
-            return found;
-        }
-        let weight = line.weight.rows(last);
-        for at in line.rows() {
-            let node = &nodes[at - 1];
-            if BED == under::LEVEL {
-                found.look_at(node, new[at]);
-            }
-            if BOOKS {
-                found.book_node(node, [old[at], new[at]], weight[at], sizes);
+        if BED == under::LEVEL {
+            for at in line.rows() {
+                found.look_at(&nodes[at - 1], new[at]);
             }
         }
         found
@@ -166,25 +144,16 @@ impl AxialWork {
 }
 
 impl Found {
-    /// Whether nodes are on the bed as they were taken to be.
+    /// Checks that the seabed pushes the nodes that it was assumed to push.
     #[inline(always)]
     fn look_at(&mut self, node: &NodeRow, velocity: Vectors) {
         let touches = node.pushed(velocity.z);
         self.landed = self.landed.max(Lanes::splat(0.0) - touches * node.touches);
     }
 
-    /// Books what is left of the momentum of nodes beside tension and weight: water, damping and bed took it. What ½ vᵀMv has along the
-    /// tangents beside what it has across them, these turning between the kicks, is booked at both ends of the advance.
+    /// Whether segments are as slack, and bent by as much, as they were taken to be.
     #[inline(always)]
-    fn book_node(&mut self, node: &NodeRow, [old, new]: [Vectors; 2], weight: Lanes, sizes: &Sizes) {
-        let mut left = node.impulse - (new - old).scale(node.mass_normal);
-        left.z = left.z - sizes.kick * weight;
-        self.lost = self.lost + node.free * left.dot(old + new);
-    }
-
-    /// Whether segments are as slack, and bent by as much, as they were taken to be; with `BOOKS`, books them.
-    #[inline(always)]
-    fn check<const BOOKS: bool>(&mut self, segment: &SegmentRow, relative: Vectors, sizes: &Sizes) {
+    fn check(&mut self, segment: &SegmentRow, relative: Vectors, sizes: &Sizes) {
         let (zero, drift) = (Lanes::splat(0.0), sizes.drift);
         let along = segment.direction.dot(relative);
         let across = relative.dot(relative) - along * along; // w²
@@ -204,39 +173,6 @@ impl Found {
         let off = (push - twice - twice).abs() + Lanes::splat(0.25 * FLAT) * push;
         self.bent = self.bent.max((off * segment.inverse).where_positive(total));
         self.greatest = self.greatest.max(segment.tension);
-        if BOOKS {
-            self.book_segments(segment, [along, across], spring.positive(), sizes);
-        }
-    }
-
-    /// Books what dampers took, and what the averaging dissipates: the work of the springs' part of T̄ less that of the discrete gradient of their energy
-    /// from half a step before t_n to half a step after it, the slopes being those of t_n. That is ½(T₋ + T₊)(T₊ − T₋)/(U₊ − U₋), U being what T would
-    /// be if springs pushed: the mean of both but in segments that slacken or snap. The averaging of ρ = 1 makes this mean, and dissipates nothing.
-    #[inline(always)]
-    fn book_segments(
-        &mut self,
-        segment: &SegmentRow,
-        [along, across]: [Lanes; 2],
-        springs: Lanes,
-        sizes: &Sizes,
-    ) {
-        let Some(slope) = sizes.slope else {
-            return; // booked with their memory
-        };
-        let half = Lanes::splat(0.5);
-        let moved = sizes.kick * (segment.along + along);
-        self.lost = self.lost + (segment.tension - springs) * moved;
-        let ahead = half * sizes.drift;
-        let longer = ahead * (along + half * ahead * across * segment.inverse);
-        let [now, ..] = segment.history;
-        let before = now + segment.more_before;
-        let after = now + segment.stiffness * slope * longer;
-        let mut centred = half * (before.positive() + after.positive());
-        let kinks = Lanes::splat(0.0) - before * after;
-        if kinks.any_positive() {
-            centred = kinks.choose(centred * before.positive_secant(after), centred);
-        }
-        self.numerical = self.numerical + (springs - centred) * moved;
     }
 }
 
@@ -276,42 +212,6 @@ impl AxialWork {
     #[inline(always)]
     pub(super) fn is_curved(&self) -> bool {
         self.layout.law != StretchLaw::Engineering && self.layout.creep.is_none()
-    }
-
-    /// What [`Found::book_segments`] books as dissipated by the averaging, twice [J], for springs that are curved: the discrete gradient is that of their
-    /// own energy, by the lengths that segments have half a step before t_n and after it.
-    #[inline(always)]
-    pub(super) fn dissipated_by_curves(&self, step: Step, sizes: &Sizes) -> Lanes {
-        let [zero, half, one] = [0.0, 0.5, 1.0].map(Lanes::splat);
-        let [lag, ahead] = [-step.lag(), 0.5 * step.drift].map(Lanes::splat);
-        let (line, law) = (&self.layout, &self.layout.law);
-        let mut twice = Lanes::splat(0.0);
-        for (row, segment) in self.rows.segments.iter().enumerate() {
-            let relative =
-                [&line.velocity, &line.velocity_before].map(|of| of.load(row + 2) - of.load(row + 1));
-            let chord = segment.direction.scale(segment.length);
-            let inverse = line.inverse_length.load(row + 1);
-            let strain = |moved: Vectors| {
-                let chord = chord + moved;
-                chord.dot(chord).sqrt() * inverse - one
-            };
-            let before = strain(relative[0].scale(lag));
-            let after = strain(relative[1].scale(ahead));
-            let [held, holds] = [before, after].map(|e| e.map(|e| law.at(e.max(0.0)).energy));
-            let stretched = after - before;
-            let tells = stretched.abs() - Lanes::splat(STRETCH_TOLD);
-            let mut secant = (holds - held) * tells.choose(stretched, one).recip();
-            if (zero - tells).any_positive() {
-                let [force, _] = pulled(law, (half * (before + after)).positive());
-                secant = tells.choose(secant, force);
-            }
-            let centred = segment.axial_stiffness * segment.unstretched_length * secant;
-            let along = segment.direction.dot(relative[1]);
-            let spring = segment.spring(along);
-            let moved = sizes.kick * (segment.along + along);
-            twice = twice + (spring.positive() - centred) * moved;
-        }
-        twice
     }
 
     /// Lays the springs' tension along the tangent of its curve where the last pass found that segments come to; whether that asks for another pass.

@@ -12,7 +12,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::dynamics::ledger::Flow;
+use crate::dynamics::energy_balance::Flow;
 use crate::model::FreePoint;
 use crate::physics::contact_step::contact_step;
 use crate::physics::fading_damper::damper_reach;
@@ -72,9 +72,9 @@ impl Body<'_> {
     pub(super) fn flow(&self, step: &BodyStep, moved: &Vector3<f64>, length: f64) -> Flow {
         let drift = length * self.water;
         Flow {
-            given: step.drag.dot(&drift),
-            lost: -step.drag.dot(&(moved - drift)) - step.push * moved.z,
-            numerical: 0.0,
+            external_work: step.drag.dot(&drift),
+            dissipation: -step.drag.dot(&(moved - drift)) - step.push * moved.z,
+            algorithmic_dissipation: 0.0,
         }
     }
 }

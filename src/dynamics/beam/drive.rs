@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::{BeamStep, BeamWork, Body, Stuck, beam_state};
-use crate::dynamics::ledger::Flow;
+use crate::dynamics::energy_balance::Flow;
 use crate::model::{Beam, Kinematics, Line, Model, State};
 use crate::physics::section::{Section, join};
 use crate::statics::beam::{BeamEnd, end_hold};

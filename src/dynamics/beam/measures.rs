@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 
-use super::super::ledger::Energy;
 use super::{beam_state, drag_of, node_mass};
+use crate::dynamics::energy_balance::Energy;
 use crate::model::{Beam, End, Line, LineState, Nodes, PointState};
 use crate::physics::morison::drag;
 use crate::physics::seabed::{ContactCoefficients, normal_force};

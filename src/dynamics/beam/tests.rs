@@ -126,7 +126,7 @@ fn assert_conserves(bending: f64, moment: Vector3<f64>) -> Flight {
     let (mut given, mut worst) = (0.0, 0.0_f64);
     let mut reference = None;
     for step in 1..=100 {
-        given += flight.step(0.1).given;
+        given += flight.step(0.1).external_work;
         let (energy, momentum) = (flight.view().energy(FREE).total(), flight.view().momentum());
         if step >= 25 {
             let (e, p) = *reference.get_or_insert((energy, momentum));
@@ -223,8 +223,8 @@ fn the_ledger_of_a_damped_beam_in_water_over_a_bed_closes_to_rounding() {
         };
         let (_, flow) = flight.work.step(&case, &mut flight.shape).unwrap();
         flight.time += 0.02;
-        given += flow.given;
-        lost += flow.lost;
+        given += flow.external_work;
+        lost += flow.dissipation;
         let energy = flight.view().energy(held).total();
         assert_relative_eq!(energy - start, given - lost, epsilon = 1e-8);
     }
@@ -281,10 +281,14 @@ fn the_ledger_of_a_beam_with_a_buoy_and_a_clump_in_a_current_closes_to_rounding(
             length: 0.02,
         };
         flow.add(flight.work.step(&case, &mut flight.shape).unwrap().1);
-        assert_relative_eq!(held(&flight) - start, flow.given - flow.lost, epsilon = 1e-8);
+        assert_relative_eq!(
+            held(&flight) - start,
+            flow.external_work - flow.dissipation,
+            epsilon = 1e-8
+        );
         lowest = flight.shape.position[12].z.min(lowest);
     }
-    assert!(flow.lost > 1.0 && flow.given > 0.1 && lowest < -0.4);
+    assert!(flow.dissipation > 1.0 && flow.external_work > 0.1 && lowest < -0.4);
 }
 
 #[test]

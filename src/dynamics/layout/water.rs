@@ -182,40 +182,23 @@ impl Layout {
         }
     }
 
-    /// Books what joined with the water, except at ends that are held.
-    pub fn book_surface(&mut self, held: [bool; 2]) {
-        let Some(surface) = &mut self.surface else {
-            return;
-        };
-        let [first, last] = held.map(usize::from);
-        for i in first..=self.segment_count - last {
-            surface.book(i, self.fold, &self.velocity);
+    /// Moves the waves on to the end of a step.
+    pub fn pass_waves(&mut self, step: Step) {
+        if let (Some(_), Some(waves)) = (&self.surface, &mut self.waves) {
+            waves.pass(step.drift);
         }
     }
 
-    /// Goes on to the end of a step, and books what waves did with the buoyancy in it, except at ends that are held.
-    pub fn leave_surface(&mut self, step: Step, held: [bool; 2]) {
-        let (Some(surface), Some(waves)) = (&mut self.surface, &mut self.waves) else {
+    /// Adds the work of the difference in buoyancy between waves and still water over a step, except at ends that are `held`.
+    pub fn balance_lift(&mut self, step: Step, held: [bool; 2]) {
+        let (Some(surface), Some(_)) = (&mut self.surface, &self.waves) else {
             return;
         };
         let [first, last] = held.map(usize::from);
         for i in first..=self.segment_count - last {
             let at = self.fold.slot(i);
             let velocities = self.velocity.get(at).z + self.velocity_before.get(at).z;
-            surface.book_lift(i, 0.5 * step.kick * velocities);
-        }
-        waves.pass(step.drift);
-    }
-
-    /// Work of waves on the buoyancy since the state was loaded [J].
-    pub fn lifted(&self) -> f64 {
-        self.surface.as_ref().map_or(0.0, |surface| surface.lifted)
-    }
-
-    /// Forgets what joined with the water.
-    pub fn clear_surface(&mut self) {
-        if let Some(surface) = &mut self.surface {
-            (surface.joined, surface.lifted) = (0.0, 0.0);
+            surface.lift(i, 0.5 * step.kick * velocities);
         }
     }
 
@@ -224,11 +207,6 @@ impl Layout {
         let node = self.end_node(end);
         let surface = self.surface.as_ref();
         surface.map_or(0.0, |surface| surface.lack(node, self.waves.is_some()))
-    }
-
-    /// Energy of motion that joined with the water since the state was loaded [J].
-    pub fn joined(&self) -> f64 {
-        self.surface.as_ref().map_or(0.0, |surface| surface.joined)
     }
 
     /// Sets what multiplies the current at t_n [-].

@@ -1,13 +1,10 @@
-//! A step of a line in a sweep over its rows, four nodes at a time.
+//! Stages of a step of a line over its rows, four nodes at a time.
 //!
-//! It passes over them three times: pulls of the segments; what water and damping resist with; and the kick, after which the nodes drift on at
-//! once. A row goes through a chain of some forty operations that wait for each other, with roots and quotients among them. A machine holds
-//! no more than about one row of them at a time, but several rows of a third of them: so those of neighbouring rows run side by side, and
-//! what a pass works with fits into the registers.
+//! Three loops: forces of the segments; resistance of water and damping; and the kick, after which the nodes drift on at once. A row has a chain of some
+//! forty dependent operations, with roots and quotients among them. A processor holds about one row of them at a time, but several rows of a third of
+//! them: in three loops the operations of neighbouring rows overlap, and the operands of a loop fit into the registers.
 //!
-//! What the ghosts repeat is taken before any node has moved, and in the end the ends are put where their points are.
-//!
-//! Lines that are not plain have their pulls found beforehand, by [`LineWork::pull_beforehand`].
+//! Halo rows are copied before any node has moved, and the ends are put where their points are at the end.
 
 use nalgebra::Vector3;
 use pulp::NullaryFnOnce;
@@ -18,31 +15,45 @@ use crate::dynamics::step::Step;
 use crate::math::lanes::{Lanes, Vectors};
 use crate::model::End;
 use crate::physics::morison::DragCoefficients;
-use crate::physics::stretch::total_tension;
+use crate::physics::stretch::{StretchLaw, total_tension};
 
-/// Where an end of a line goes.
+/// Prescribed motion of an end of a line.
 #[derive(Debug, Clone, Copy)]
 pub struct Placed {
     /// Position [m].
     pub position: Vector3<f64>,
-    /// The velocity that the next step takes as lagged [m/s].
+    /// Velocity half a step earlier [m/s], which the next step reads.
     pub velocity: Vector3<f64>,
 }
 
-/// What is around the nodes.
+/// Water around the nodes.
 mod around {
-    /// No water.
+    /// None.
     pub const DRY: u8 = 0;
-    /// Still water.
+    /// At rest, or damping in proportion to mass.
     pub const STILL: u8 = 1;
-    /// Water that flows.
+    /// In motion.
     pub const FLOWING: u8 = 2;
 }
 
-/// A sweep for the vector unit of the machine.
+/// [`LineWork::pull`] for the vector unit of the machine.
+pub(super) struct Pull<'a>(pub &'a mut LineWork);
+
+impl NullaryFnOnce for Pull<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        self.0.pull_segments();
+    }
+}
+
+/// Resistance and kick for the vector unit of the machine.
 pub(super) struct Sweep<'a> {
     pub work: &'a mut LineWork,
     pub size: &'a Step,
+    /// True if the nodes drift and the ends are placed too.
+    pub drifts: bool,
     pub ends: [&'a Placed; 2],
 }
 
@@ -51,10 +62,16 @@ impl NullaryFnOnce for Sweep<'_> {
 
     #[inline(always)]
     fn call(self) {
-        let work = self.work;
-        work.choose_sweep(self.size);
-        if work.settled.is_none() {
-            work.layout.place_ends(self.ends, work.parted);
+        let Sweep {
+            work,
+            size,
+            drifts,
+            ends,
+        } = self;
+        let drift = if drifts { size.drift } else { 0.0 };
+        work.choose_sweep(size, drift);
+        if drifts {
+            work.layout.place_ends(ends, work.parted);
         }
     }
 }
@@ -98,32 +115,21 @@ struct Sizes {
     extrapolation: Lanes,
 }
 
-/// What moves, row by row.
+/// Motion and forces, row by row.
 struct Moving<'a> {
     position: &'a mut [Vectors],
     velocity: &'a [Vectors],
     velocity_before: &'a mut [Vectors],
-    pull: &'a mut [Vectors],
-    spring: &'a mut [Vectors],
+    pull: &'a [Vectors],
     resistance: &'a mut [Vectors],
     inverse_square: &'a mut [Lanes],
     press: &'a mut [Vectors],
 }
 
-/// What the segments are made of, row by row.
-struct SegmentRows<'a> {
-    inverse_length: &'a [Lanes],
-    stiffness: &'a [Lanes],
-    damping: &'a [Lanes],
-    negative_tension: bool,
-}
-
-/// What the nodes are made of, row by row.
+/// Coefficients of the nodes, row by row.
 struct NodeRows<'a> {
     weight: &'a [Lanes],
     inverse_mass: &'a [Lanes],
-    mass: &'a [Lanes],
-    interior: &'a [Lanes],
     mass_damping: Option<&'a [Lanes]>,
     water: WaterRows<'a>,
     current: Option<&'a CurrentNow>,
@@ -139,7 +145,7 @@ struct WaterRows<'a> {
     excess: &'a [Lanes],
 }
 
-/// The bed; empty without one.
+/// Level seabed without friction; empty without one.
 #[derive(Default)]
 struct ContactRows<'a> {
     level: &'a [Lanes],
@@ -148,7 +154,48 @@ struct ContactRows<'a> {
 }
 
 impl LineWork {
-    /// Everything that a sweep needs, cut to the rows of the line.
+    /// Forces of the segments from positions at t_n and velocities at t_{n−½}.
+    #[inline(always)]
+    fn pull_segments(&mut self) {
+        self.layout.renew_neighbours(self.parted);
+        match (&self.layout.creep, &self.layout.law) {
+            (None, StretchLaw::Engineering) => {
+                self.pull_by(|line, at, strain| line.axial_stiffness.load(at) * strain)
+            }
+            _ => {
+                self.pull_by(Layout::elastic);
+                self.layout.keep_strains();
+            }
+        }
+    }
+
+    /// The same by an elastic force of a row at a strain [N].
+    #[inline(always)]
+    fn pull_by(&mut self, elastic: impl Fn(&Layout, usize, Lanes) -> Lanes) {
+        let line = &self.layout;
+        let (positions, velocities) = (
+            line.position.rows(line.fold.rows()),
+            line.velocity.rows(line.fold.rows()),
+        );
+        for at in line.rows() {
+            let chord = positions[at + 1] - positions[at];
+            let square = chord.dot(chord);
+            let inverse_l = inverse_norm(square);
+            let inverse_length = line.inverse_length.load(at);
+            let strain = square * inverse_l * inverse_length - Lanes::splat(1.0);
+            let stretching = chord.dot(velocities[at + 1] - velocities[at]) * inverse_l;
+            let damping = line.axial_damping.load(at) * stretching * inverse_length;
+            let tension = total_tension(
+                elastic(line, at, strain),
+                damping,
+                Lanes::splat(0.0),
+                line.negative_tension,
+            );
+            self.pull.store(chord.scale(tension * inverse_l), at);
+        }
+    }
+
+    /// Slices of the rows of the line for the loops of a sweep.
     #[inline(always)]
     fn cut(&mut self) -> Swept<'_> {
         let (last, line) = (self.layout.fold.rows(), &mut self.layout);
@@ -156,8 +203,7 @@ impl LineWork {
             position: line.position.rows_mut(last),
             velocity: line.velocity.rows(last),
             velocity_before: line.velocity_before.rows_mut(last),
-            pull: self.pull.rows_mut(last),
-            spring: self.spring.rows_mut(last),
+            pull: self.pull.rows(last),
             resistance: self.resistance.rows_mut(last),
             inverse_square: self.inverse_square.rows_mut(last),
             press: match &mut self.press {
@@ -165,26 +211,15 @@ impl LineWork {
                 None => &mut [],
             },
         };
-        let segments = SegmentRows {
-            inverse_length: line.inverse_length.rows(last),
-            stiffness: line.axial_stiffness.rows(last),
-            damping: line.axial_damping.rows(last),
-            negative_tension: line.negative_tension,
-        };
         let mut nodes = NodeRows {
             weight: line.weight.rows(last),
             inverse_mass: self.inverse_mass.rows(last),
-            mass: self.mass.rows(last),
-            interior: self.interior.rows(last),
-            mass_damping: None,
+            mass_damping: line.mass_damping.as_ref().map(|damping| damping.rows(last)),
             water: WaterRows::default(),
             current: line.current.as_ref(),
             waves: line.waves.as_ref(),
             contact: ContactRows::default(),
         };
-        if let Some(damping) = &line.mass_damping {
-            nodes.mass_damping = Some(damping.rows(last));
-        }
         if let Some(water) = &self.water {
             nodes.water = WaterRows {
                 normal: water.drag_normal.rows(last),
@@ -199,88 +234,45 @@ impl LineWork {
                 damping: contact.damping.rows(last),
             };
         }
-        let zero = Lanes::splat(0.0);
-        let sums = Sums {
-            given: zero,
-            dragged: zero,
-            left: zero,
-        };
-        Swept {
-            moving,
-            segments,
-            nodes,
-            sums,
-        }
+        Swept { moving, nodes }
     }
 }
 
-impl SegmentRows<'_> {
-    /// T q of the segments of a row and the part of it that springs have [N]; `rate` is how their chords [m] change [m/s].
-    #[inline(always)]
-    fn pull(&self, row: usize, chord: Vectors, rate: Vectors) -> (Vectors, Vectors) {
-        let square = chord.dot(chord);
-        let inverse_l = inverse_norm(square);
-        let inverse_length = self.inverse_length[row];
-        let strain = square * inverse_l * inverse_length - Lanes::splat(1.0);
-        let elastic = self.stiffness[row] * strain;
-        let spring = elastic.positive();
-        let stretching = chord.dot(rate) * inverse_l;
-        let damping = self.damping[row] * stretching * inverse_length;
-        let tension = total_tension(elastic, damping, Lanes::splat(0.0), self.negative_tension);
-        (chord.scale(tension * inverse_l), chord.scale(spring * inverse_l))
-    }
-}
-
-/// What a sweep sums up over the rows.
-#[derive(Clone, Copy)]
-struct Sums {
-    /// Power given by moving water [W], and what of it the drag takes.
-    given: Lanes,
-    dragged: Lanes,
-    /// Twice the work of springs, weights and waves that is not left in ½ M_n v² [J]: dampers, water and bed took it, or ½ vᵀMv has it along the
-    /// tangents, which is booked at both ends of an advance as those turn between the kicks.
-    left: Lanes,
-}
-
-/// What a row is kicked by.
+/// Geometry and forces of a row of nodes.
 struct Kicking {
-    /// Height of its nodes [m].
+    /// Height [m].
     z: Lanes,
-    /// Sum of the pulls on them, and the part of it that springs have [N].
+    /// Sum of the forces of the segments [N].
     pull: Vectors,
-    spring: Vectors,
-    /// What water and damping resist with [N].
+    /// Resistance of water and damping [N].
     resistance: Vectors,
-    /// What water presses with that waves accelerate [N].
+    /// Froude-Krylov force [N].
     press: Vectors,
     /// From the nodes before to those after [m].
     chord: Vectors,
-    /// Its square's inverse [1/m²].
+    /// Its inverse square [1/m²].
     inverse_square: Lanes,
 }
 
 impl NodeRows<'_> {
-    /// The velocities at t_{n+½} [m/s] of row number `at`; with `BOOKS`, books the step.
+    /// Velocities at t_{n+½} [m/s] of row number `at`.
     #[inline(always)]
-    fn kick<const AROUND: u8, const BED: bool, const PLAIN: bool, const BOOKS: bool>(
+    fn kick<const AROUND: u8, const BED: bool>(
         &self,
         at: usize,
         by: &Kicking,
         velocity: Vectors,
         sizes: Sizes,
-        sums: &mut Sums,
     ) -> Vectors {
-        let (mut force, mut driven) = (by.pull, by.spring);
+        let mut force = by.pull;
         force.z = force.z - self.weight[at];
-        driven.z = driven.z - self.weight[at];
-        if AROUND != around::DRY || !PLAIN {
+        if AROUND != around::DRY {
             force = force - by.resistance;
         }
         if AROUND == around::FLOWING {
             force = force + by.press;
-            driven = driven + by.press;
         }
-        // Δt M⁻¹f, and Δt M⁻¹ẑ for the bed
+        // Δt M⁻¹f, and Δt M⁻¹ẑ for the seabed
         let inverse_mass = self.inverse_mass[at] * sizes.kick;
         let (mut kick, mut response) = (force.scale(inverse_mass), Vectors::zero());
         if AROUND != around::DRY {
@@ -293,15 +285,6 @@ impl NodeRows<'_> {
         if BED {
             let push = self.contact.push(at, by.z, [kicked.z, response.z], sizes);
             kicked = kicked + response.scale(push);
-        }
-        if BOOKS {
-            let (both, interior) = (velocity + kicked, self.interior[at]);
-            let left = driven.scale(sizes.kick) - (kicked - velocity).scale(self.mass[at]);
-            sums.left = sums.left + interior * left.dot(both);
-            if AROUND == around::FLOWING {
-                let pressed = Lanes::splat(0.5) * by.press.dot(both);
-                sums.given = sums.given + interior * pressed;
-            }
         }
         kicked
     }
@@ -339,148 +322,91 @@ impl ContactRows<'_> {
 
 impl LineWork {
     #[inline(always)]
-    fn choose_sweep(&mut self, step: &Step) {
+    fn choose_sweep(&mut self, step: &Step, drift: f64) {
         match (&self.water, self.layout.flows()) {
-            (None, _) => self.choose_bed::<{ around::DRY }>(step),
-            (Some(_), false) => self.choose_bed::<{ around::STILL }>(step),
-            (Some(_), true) => self.choose_bed::<{ around::FLOWING }>(step),
+            (None, _) => self.choose_bed::<{ around::DRY }>(step, drift),
+            (Some(_), false) => self.choose_bed::<{ around::STILL }>(step, drift),
+            (Some(_), true) => self.choose_bed::<{ around::FLOWING }>(step, drift),
         }
     }
 
-    /// A bed that slopes or rubs is looked after by [`LineWork::settle`].
+    /// [`LineWork::settle`] solves the contact with a seabed that slopes or has friction.
     #[inline(always)]
-    fn choose_bed<const AROUND: u8>(&mut self, step: &Step) {
-        let level = self.layout.contact.is_some() && self.settled.is_none();
-        match (level, self.plain) {
-            (false, false) => self.sweep::<AROUND, false, false>(step),
-            (false, true) => self.sweep::<AROUND, false, true>(step),
-            (true, false) => self.sweep::<AROUND, true, false>(step),
-            (true, true) => self.sweep::<AROUND, true, true>(step),
+    fn choose_bed<const AROUND: u8>(&mut self, step: &Step, drift: f64) {
+        match self.layout.contact.is_some() && !self.rough {
+            false => self.sweep::<AROUND, false>(step, drift),
+            true => self.sweep::<AROUND, true>(step, drift),
         }
     }
 
     #[inline(always)]
-    fn sweep<const AROUND: u8, const BED: bool, const PLAIN: bool>(&mut self, step: &Step) {
-        self.layout.renew_neighbours(self.parted);
+    fn sweep<const AROUND: u8, const BED: bool>(&mut self, step: &Step, drift: f64) {
         let sizes = Sizes {
             kick: Lanes::splat(step.kick),
             drift: Lanes::splat(step.drift),
             extrapolation: Lanes::splat(step.extrapolation),
         };
-        // what is settled afterwards drifts afterwards
-        let drift = match self.settled {
-            None => sizes.drift,
-            Some(_) => Lanes::splat(0.0),
-        };
-        let books = self.layout.books;
         let mut swept = self.cut();
-        match (PLAIN, books) {
-            (true, true) => swept.pull::<true>(),
-            (true, false) => swept.pull::<false>(),
-            (false, _) => {}
+        if AROUND != around::DRY {
+            swept.resist::<AROUND>(sizes);
         }
-        if AROUND != around::DRY || !PLAIN {
-            swept.resist::<AROUND, PLAIN>(sizes);
-        }
-        // lines that are not plain book in passing
-        match books || !PLAIN {
-            true => swept.kick::<AROUND, BED, PLAIN, true>(sizes, drift),
-            false => swept.kick::<AROUND, BED, PLAIN, false>(sizes, drift),
-        }
-        let Sums { given, dragged, left } = swept.sums;
-        self.lost = self.lost + Lanes::splat(0.5) * left - dragged * sizes.kick;
-        self.given_by_current = self.given_by_current + given * sizes.kick;
+        swept.kick::<AROUND, BED>(sizes, Lanes::splat(drift));
         let line = &mut self.layout;
         std::mem::swap(&mut line.velocity, &mut line.velocity_before);
     }
 }
 
-/// What a sweep works on.
+/// Rows of a line.
 struct Swept<'a> {
     moving: Moving<'a>,
-    segments: SegmentRows<'a>,
     nodes: NodeRows<'a>,
-    sums: Sums,
 }
 
 impl Swept<'_> {
-    /// The last of the rows that are no ghosts.
+    /// The last row without the halo.
     #[inline(always)]
     fn last(&self) -> usize {
         self.moving.position.len() - 2
     }
 
-    /// Finds the pulls of the segments, and with `BOOKS` what of them springs have.
+    /// Evaluates resistance and Froude-Krylov force.
     #[inline(always)]
-    fn pull<const BOOKS: bool>(&mut self) {
+    fn resist<const AROUND: u8>(&mut self, sizes: Sizes) {
         for at in 1..=self.last() {
-            let moving = &mut self.moving;
-            let chord = moving.position[at + 1] - moving.position[at];
-            let rate = moving.velocity[at + 1] - moving.velocity[at];
-            let (pull, spring) = self.segments.pull(at, chord, rate);
-            moving.pull[at] = pull;
-            if BOOKS {
-                moving.spring[at] = spring;
-            }
-        }
-    }
-
-    /// Finds what resists the motion of the nodes, and what else moving water does to them.
-    #[inline(always)]
-    fn resist<const AROUND: u8, const PLAIN: bool>(&mut self, sizes: Sizes) {
-        for at in 1..=self.last() {
-            let (moving, nodes, sums) = (&mut self.moving, &self.nodes, &mut self.sums);
+            let (moving, nodes) = (&mut self.moving, &self.nodes);
             let velocity = moving.velocity[at];
-            let mut resistance = Vectors::zero();
-            if AROUND != around::DRY {
-                let chord = moving.position[at + 1] - moving.position[at - 1];
-                let inverse_square = (chord.dot(chord) + Lanes::splat(LENGTH2_MIN)).recip();
-                let change = velocity - moving.velocity_before[at];
-                let now = velocity + change.scale(sizes.extrapolation);
-                moving.inverse_square[at] = inverse_square;
-                if AROUND == around::FLOWING {
-                    let z = moving.position[at].z;
-                    let water = water_flow(nodes.current, nodes.waves, at, z);
-                    resistance = nodes.water.drag(at, now - water, chord, inverse_square);
-                    // power of the drag on the way of the water
-                    let on_drag = nodes.interior[at] * resistance.dot(water);
-                    sums.given = sums.given - on_drag;
-                    sums.dragged = sums.dragged + on_drag;
-                    if let Some(waves) = nodes.waves {
-                        moving.press[at] = waves.press(at, chord.scale(inverse_square.sqrt()));
-                    }
-                } else {
-                    resistance = nodes.water.drag(at, now, chord, inverse_square);
+            let chord = moving.position[at + 1] - moving.position[at - 1];
+            let inverse_square = (chord.dot(chord) + Lanes::splat(LENGTH2_MIN)).recip();
+            let change = velocity - moving.velocity_before[at];
+            let mut now = velocity + change.scale(sizes.extrapolation);
+            moving.inverse_square[at] = inverse_square;
+            if AROUND == around::FLOWING {
+                now = now - water_flow(nodes.current, nodes.waves, at, moving.position[at].z);
+                if let Some(waves) = nodes.waves {
+                    moving.press[at] = waves.press(at, chord.scale(inverse_square.sqrt()));
                 }
             }
-            if !PLAIN && let Some(damping) = nodes.mass_damping {
+            let mut resistance = nodes.water.drag(at, now, chord, inverse_square);
+            if let Some(damping) = nodes.mass_damping {
                 resistance = resistance + velocity.scale(damping[at]);
             }
             moving.resistance[at] = resistance;
         }
     }
 
-    /// Kicks the nodes, which then move for `drift` [s]; with `BOOKS`, books the step.
+    /// Kicks the nodes, which then move for `drift` [s].
     #[inline(always)]
-    fn kick<const AROUND: u8, const BED: bool, const PLAIN: bool, const BOOKS: bool>(
-        &mut self,
-        sizes: Sizes,
-        drift: Lanes,
-    ) {
+    fn kick<const AROUND: u8, const BED: bool>(&mut self, sizes: Sizes, drift: Lanes) {
         let last = self.last();
         let mut low = self.moving.position[0];
-        let none = Vectors::zero();
-        let mut pull_low = self.moving.pull[last].moved_up_after(none);
-        let mut spring_low = self.moving.spring[last].moved_up_after(none);
+        let mut pull_low = self.moving.pull[last].moved_up_after(Vectors::zero());
         for at in 1..=last {
             let (moving, nodes) = (&mut self.moving, &self.nodes);
             let (here, velocity) = (moving.position[at], moving.velocity[at]);
             let pull = moving.pull[at];
-            let spring = if BOOKS { moving.spring[at] } else { pull };
             let mut by = Kicking {
                 z: here.z,
                 pull: pull - pull_low,
-                spring: spring - spring_low,
                 resistance: moving.resistance[at],
                 press: Vectors::zero(),
                 chord: moving.position[at + 1] - low,
@@ -489,15 +415,10 @@ impl Swept<'_> {
             if AROUND == around::FLOWING && nodes.waves.is_some() {
                 by.press = moving.press[at];
             }
-            let sums = &mut self.sums;
-            let kicked = nodes.kick::<AROUND, BED, PLAIN, BOOKS>(at, &by, velocity, sizes, sums);
+            let kicked = nodes.kick::<AROUND, BED>(at, &by, velocity, sizes);
             moving.velocity_before[at] = kicked; // v_{n−3/2} has been read
             moving.position[at] = here + kicked.scale(drift);
-            if !PLAIN {
-                // with the dampers, for what is settled afterwards
-                moving.resistance[at] = by.resistance - (by.pull - by.spring);
-            }
-            (low, pull_low, spring_low) = (here, pull, spring);
+            (low, pull_low) = (here, pull);
         }
     }
 }

@@ -43,8 +43,6 @@ pub(super) struct WinchWork {
     next: Reel,
     /// Energy of the end segment at t_n per unstretched length [N].
     density: f64,
-    /// Energy given since the state was loaded [J].
-    given: f64,
 }
 
 impl WinchWork {
@@ -57,13 +55,7 @@ impl WinchWork {
             reel: Reel::at_rest(0.0),
             next: Reel::at_rest(0.0),
             density: 0.0,
-            given: 0.0,
         }))
-    }
-
-    /// Energy given since the state was loaded [J].
-    pub fn given(&self) -> f64 {
-        self.given
     }
 
     fn winch(&self) -> &Winch {
@@ -76,18 +68,17 @@ impl WinchWork {
         self.winch().end_length(self.line.segment_count(), change)
     }
 
-    /// What the neighbour of the end takes up between t_{n−½} and t_{n+½}: ½ M_n v² and energy of height [J], from its velocities [m/s] and
-    /// heights [m] then. What it has along its tangent beside that is booked with the turning of the tangents.
-    fn taken_up(&self, halves: [f64; 2], velocities: [Vector3<f64>; 2], heights: [f64; 2]) -> f64 {
+    /// Energy that the neighbour of the end takes up between t_{n−½} and t_{n+½}, and the kinetic part of it, ½ M_n v² [J], from its
+    /// velocities [m/s] and heights [m] then.
+    fn taken_up(&self, halves: [f64; 2], velocities: [Vector3<f64>; 2], heights: [f64; 2]) -> [f64; 2] {
         let (n, nodes) = (self.line.segment_count(), &self.line.nodes);
         let per_length = |values: &[f64]| 0.5 * values[n] / nodes.length[n];
         let [mass, weight] = [&nodes.mass_normal, &nodes.weight].map(|values| per_length(values));
         let grown = [self.reel.change - halves[0], halves[1] - self.reel.change];
-        let energy = |side: usize| {
-            let motion = 0.5 * mass * velocities[side].norm_squared();
-            grown[side] * (motion + weight * heights[side])
-        };
-        energy(0) + energy(1)
+        let motion = |side: usize| grown[side] * 0.5 * mass * velocities[side].norm_squared();
+        let height = |side: usize| grown[side] * weight * heights[side];
+        let kinetic = motion(0) + motion(1);
+        [kinetic + height(0) + height(1), kinetic]
     }
 }
 
@@ -97,7 +88,6 @@ impl LineWork {
         let Some(winch) = &mut self.winch else {
             return;
         };
-        winch.given = 0.0;
         winch.reel = state.reel.unwrap_or(Reel::at_rest(0.0));
         let count = state.position.len() - 1;
         winch.line.pay_out(count, winch.reel.change);
@@ -145,10 +135,10 @@ impl LineWork {
         layout.velocity.set(end, velocity);
     }
 
-    /// After the tensions of t_n: what a length of the end segment holds.
+    /// Evaluates the energy density of the end segment at t_n for the energy balance.
     #[inline]
     pub fn weigh_reel(&mut self) {
-        let Some(winch) = &mut self.winch else {
+        let (Some(winch), Some(_)) = (&mut self.winch, &self.balance) else {
             return;
         };
         let (layout, i) = (&self.layout, self.layout.segment_count - 1);
@@ -182,8 +172,10 @@ impl LineWork {
         let height = layout.position.get(at).z - step.drift * after; // at t_n
         let lag = step.lag();
         let heights = [height - lag * before, height + 0.5 * step.drift * after];
-        winch.given += winch.density * (halves[1] - halves[0]);
-        winch.given += winch.taken_up(halves, velocities, heights);
+        if let Some(balance) = &mut self.balance {
+            balance.supply([winch.density * (halves[1] - halves[0]), 0.0]);
+            balance.supply(winch.taken_up(halves, velocities, heights));
+        }
         let next = winch.next;
         self.transport(next, 0.5 * step.drift);
     }
@@ -255,16 +247,16 @@ impl LineWork {
         winch.line.pay_out(count, reel.half_step[0]);
         layout.set_segment_count(count);
         let after = self.energy_from(first, lag);
-        if let Some(winch) = &mut self.winch {
-            winch.given += after - before;
+        if let Some(balance) = &mut self.balance {
+            balance.supply([0, 1].map(|part| after[part] - before[part]));
         }
     }
 
-    /// Energy [J] of the segments from `first` on and of the nodes between them, their mass along the line being that across it, at the time of the
-    /// velocities, `lag` [s] before the positions.
-    fn energy_from(&self, first: usize, lag: f64) -> f64 {
-        let Some(winch) = &self.winch else {
-            return 0.0;
+    /// Energy of the segments from `first` on and of the nodes between them, their mass along the line being that across it, and the kinetic part of
+    /// it [J], at the time of the velocities, `lag` [s] before the positions; zero without an energy balance.
+    fn energy_from(&self, first: usize, lag: f64) -> [f64; 2] {
+        let (Some(winch), Some(_)) = (&self.winch, &self.balance) else {
+            return [0.0; 2];
         };
         let (layout, line) = (&self.layout, &winch.line);
         let n = layout.segment_count;
@@ -281,11 +273,11 @@ impl LineWork {
             let strain = (place(i + 1) - place(i)).norm() / line.segments.length[i] - 1.0;
             line.spring(i, strain).energy * line.segments.length[i]
         };
-        let carried = |i: usize| {
-            let nodes = &line.nodes;
-            0.5 * nodes.mass_normal[i] * velocity(i).norm_squared() + nodes.weight[i] * place(i).z
-        };
-        (first..n).map(axial).sum::<f64>() + (first + 1..n).map(carried).sum::<f64>()
+        let height = |i: usize| line.nodes.weight[i] * place(i).z;
+        let motion = |i: usize| 0.5 * line.nodes.mass_normal[i] * velocity(i).norm_squared();
+        let kinetic: f64 = (first + 1..n).map(motion).sum();
+        let rest = (first..n).map(axial).sum::<f64>() + (first + 1..n).map(height).sum::<f64>();
+        [kinetic + rest, kinetic]
     }
 
     /// Writes segments and nodes from `from` on into the arrays of the kernel, with padding behind them.
@@ -325,7 +317,6 @@ impl LineWork {
             |i| 1.0 / nodes.mass_normal[i],
             0.0,
         );
-        put(&mut self.mass, from, n + 1, |i| nodes.mass_normal[i], 0.0);
         let first = self.interior[layout.slot(0)];
         let interior = |i: usize| if i == 0 { first } else { 1.0 };
         put(&mut self.interior, from, n, interior, 0.0);
@@ -363,12 +354,6 @@ impl LineWork {
         }
         let inverse = |i: usize| 1.0 / nodes.mass_tangent[i] - 1.0 / nodes.mass_normal[i];
         put(&mut water.inverse_mass_excess, from, n + 1, inverse, 0.0);
-        let first = water.mass_excess[self.layout.slot(0)];
-        let excess = |i: usize| match i {
-            0 => first,
-            _ => nodes.mass_tangent[i] - nodes.mass_normal[i],
-        };
-        put(&mut water.mass_excess, from, n, excess, 0.0); // the end on the winch is held
     }
 }
 
@@ -411,9 +396,8 @@ fn merge(velocity: &mut Field, fold: Fold, end: usize, old: [f64; 3], new: [f64;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dynamics::layout::Water;
     use crate::model::Model;
-    use crate::scene::{Scene, Solver};
+    use crate::scene::Scene;
     use approx::assert_relative_eq;
 
     const SCENE: &str = r#"
@@ -428,9 +412,7 @@ mod tests {
     /// The line with 6.2 m of end segment, in wild motion.
     fn work() -> LineWork {
         let model = Model::new(&Scene::from_toml(SCENE).unwrap()).unwrap();
-        let line = &model.lines[0];
-        let water = Water::around(&model, line);
-        let mut work = LineWork::new(line, water, [true; 2], &Solver::default()).unwrap();
+        let mut work = LineWork::new(&model, &model.lines[0], [true; 2]).unwrap();
         let wild = |i: usize, k: f64| {
             let i = i as f64;
             Vector3::new((3.0 * i + k).sin(), (5.0 * i * k).cos(), (i + 2.0 * k).sin())

@@ -15,8 +15,9 @@ use crate::statics::equilibrium::current::drag_at_rest;
 pub fn work_at_rest(model: &Model, network: &Network, states: [&State; 2], times: [f64; 2]) -> Flow {
     let mut flow = Flow::default();
     for &index in &network.lines {
-        flow.given += end_work(model, index, states, times) + current_work(model, index, states, times);
-        flow.lost -= bed_work(&model.lines[index], states.map(|state| &state.lines[index]));
+        flow.external_work +=
+            end_work(model, index, states, times) + current_work(model, index, states, times);
+        flow.dissipation -= bed_work(&model.lines[index], states.map(|state| &state.lines[index]));
     }
     for &index in &network.free_points {
         let (point, at) = (&model.points[index], states.map(|state| &state.points[index]));
@@ -26,10 +27,10 @@ pub fn work_at_rest(model: &Model, network: &Network, states: [&State; 2], times
             let drag = stream.map(|stream| free.drag_at_rest(at[k].position.z, stream));
             point.load_at(times[k]) + drag.unwrap_or_default()
         };
-        flow.given += work([0, 1].map(force), at.map(|at| at.position));
+        flow.external_work += work([0, 1].map(force), at.map(|at| at.position));
         let (line, _) = point.attached[0];
         if states[1].lines[line].closed_form.is_none() {
-            flow.lost -= point_bed_work(model, free, at);
+            flow.dissipation -= point_bed_work(model, free, at);
         }
     }
     flow

@@ -1,37 +1,38 @@
-//! The energy ledger: what a network holds, what it was given, and what it lost.
+//! Energy balance of the networks: stored energy, external work, dissipation. An observer: it reads the results of a step and changes none of them.
 //!
-//! Held:  E = Σ ½ vᵀM v + Σ EA·W(ε)·L + Σ ½B(|κb| − k₀)² + Σ w z + Σ C  over free nodes, segments that carry force, joints, free
-//!        points and segments out of the water, C being the energy of the buoyancy that these lack, by kind in [`Energy`].
-//! Given: the work of the held ends on the line, −∫ (T q + S)·V + M·Ω dt with the shear S of lines that bend and the moment M on
-//!        clamps that turn, of point loads, and of moments on the ends of lines that bend; the work Σ f·u dt of the drag f on the way of the water u; the work of the water that
-//!        waves accelerate, and of the buoyancy by which a wave exceeds the still water at a free point.
-//! Lost:  drag at the velocity through the water, axial, bending and mass damping, and what the seabed takes (its springs give
-//!        some of it back). The added mass of a free point or node that dips into the water brings ½ v² of what joins it, which counts
-//!        as a negative loss; so does ½ vᵀṀv of nodes whose added mass differs along and across the line, which turns.
+//! Stored:  E = Σ ½ vᵀM v + Σ EA·W(ε)·L + Σ ½B(|κb| − k₀)² + Σ w z + Σ C  over free nodes, segments, joints, free points and dry segments, with
+//!        C the energy of the buoyancy that dry segments lack; by kind in [`Energy`].
+//! External work: of prescribed ends on the line, −∫ (T q + S)·V + M·Ω dt with the shear S of lines that bend and the moment M of clamps that
+//!        turn; of point loads and end moments; Σ f·u dt of the drag f in water of velocity u; of the Froude-Krylov force, and of the
+//!        difference between the buoyancy under a wave and that in still water.
+//! Dissipation: drag at the velocity relative to the water; axial, bending and mass damping; the seabed, whose springs return some of it. Added mass
+//!        that enters the water, or turns with its line (½ vᵀṀ v), counts as negative dissipation.
 //!
-//! A held end that jumps, at a communication point, gives what the line has more afterwards, all else being where it was: no time passes, and no damper moves.
+//! A prescribed end that jumps at a communication point does the work by which the stored energy rises, all other nodes being where they were: no time
+//! passes, and no damper acts.
 //!
-//! The springs of viscoelastic segments count as held, what their dampers take as lost. An end that parts from a held point brings the energy of
-//! its half node along, which counts as given.
+//! The springs of viscoelastic segments store energy, their dampers dissipate it. An end that is released from a prescribed point brings the energy of its
+//! half node, which counts as external work.
 //!
-//! Dissipated: what an implicit integrator takes by its own damping, found from how it weighs the forces of a step and those of the past, by
-//! a formula for each of them that knows nothing of the balance. What it makes or loses beside that, where joints turn and surfaces are pierced within a
-//! step, is no part of it; segments are moved by the discrete gradient of their energy, which makes and loses nothing.
+//! Algorithmic dissipation: that of an implicit integrator, from the weights that it gives to the forces of a step and those before, by a formula
+//! that is independent of the balance. Segments are moved by the discrete gradient of their energy, which neither produces nor dissipates
+//! energy; the error on joints that turn and surfaces that are pierced within a step is not part of it.
 //!
-//! E − E₀ − given + lost + dissipated is the error of the time integration.
+//! E − E₀ − external work + dissipation + algorithmic dissipation is the error of the time integration.
 //!
-//! The leapfrogs sum the flows of every internal step, forces at t_n times the mean of the velocities around it; energy is then
-//! exact at t − Δt/2, where the velocities live, and so E is taken there. The implicit integrators book the work of the forces by which
-//! they make a step ([`passed`]), and so do beams, whose laws are discrete gradients. Quasi-static networks hold no kinetic energy; the work of ends and
-//! loads is that of the mean of the forces before and after a step (`at_rest`). Where they are closed-form catenaries, the whole of
-//! these counts, held ends included:
+//! The leapfrogs sum over every internal step the work of springs, weight and water on the free nodes, forces at t_n times the mean of the
+//! velocities around it (`leapfrog/balance`, `axial_implicit/balance`). The work that is not kinetic energy when the balance is read has been
+//! dissipated. Energy is exact at t − Δt/2, the time of the velocities, and E is evaluated there. The implicit integrators sum the work of the
+//! forces of each step ([`implicit`]), and so do beams, whose laws are discrete gradients. Quasi-static networks have no kinetic energy; the work of ends and loads
+//! is that of the mean of the forces before and after a step (`at_rest`). Closed-form catenaries are evaluated as wholes, half
+//! segments at prescribed ends included:
 //!
 //! ∫ T²/(2EA) ds and ∫ w z ds, exact where the line hangs.
 //!
 //! Source: the discrete energy balance of the leapfrog, e.g. Hairer, Lubich & Wanner (2003), Acta Numerica 12, section 1.
 
 mod at_rest;
-pub mod passed;
+pub mod implicit;
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -43,18 +44,18 @@ use crate::physics::slender::Slender;
 
 pub use at_rest::work_at_rest;
 
-/// Energy that crossed the border of a network, or the rate at which it does.
+/// Energy that enters and leaves a network [J], or its rate [W].
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Flow {
-    /// Work of held ends and loads [J] or their power [W].
-    pub given: f64,
-    /// Taken by water, damping and seabed [J] or [W].
-    pub lost: f64,
-    /// Taken by the damping of the integrator, negative where it brings energy [J] or [W].
-    pub numerical: f64,
+    /// Work of prescribed ends, loads and moving water.
+    pub external_work: f64,
+    /// Dissipation by water, damping and seabed.
+    pub dissipation: f64,
+    /// Dissipation by the damping of the integrator, negative where it produces energy.
+    pub algorithmic_dissipation: f64,
 }
 
-/// Energy held, by kind.
+/// Stored energy, by kind.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Energy {
     /// Of motion [J].
@@ -93,50 +94,51 @@ impl Energy {
     }
 }
 
-/// What a whole model started with, and what has crossed its border since.
+/// Energy balance of a model since the start.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-pub struct Ledger {
-    /// Energy at the start [J].
+pub struct EnergyBalance {
+    /// Stored energy at the start [J].
     pub start: f64,
-    /// All that was given and lost [J].
+    /// Stored energy now [J].
+    pub now: f64,
+    /// External work and dissipation since the start [J].
     pub flow: Flow,
 }
 
 impl Flow {
     /// Adds another flow.
     pub fn add(&mut self, other: Flow) {
-        self.given += other.given;
-        self.lost += other.lost;
-        self.numerical += other.numerical;
+        self.external_work += other.external_work;
+        self.dissipation += other.dissipation;
+        self.algorithmic_dissipation += other.algorithmic_dissipation;
     }
 
-    /// Whether it can be booked: what grew without bound and came back within a step cannot.
+    /// True unless the motion grew without bound within the step.
     pub fn is_finite(&self) -> bool {
-        self.given.is_finite() && self.lost.is_finite() && self.numerical.is_finite()
+        self.external_work.is_finite()
+            && self.dissipation.is_finite()
+            && self.algorithmic_dissipation.is_finite()
     }
 
     /// This flow times a factor.
     pub fn times(self, factor: f64) -> Flow {
         Flow {
-            given: factor * self.given,
-            lost: factor * self.lost,
-            numerical: factor * self.numerical,
+            external_work: factor * self.external_work,
+            dissipation: factor * self.dissipation,
+            algorithmic_dissipation: factor * self.algorithmic_dissipation,
         }
     }
 }
 
-impl Ledger {
-    /// At rest with an energy [J].
-    pub fn new(energy: f64) -> Ledger {
-        Ledger {
-            start: energy,
-            flow: Flow::default(),
-        }
-    }
-
-    /// Imbalance [J] where the model now holds an energy [J].
-    pub fn error(&self, held: f64) -> f64 {
-        held - self.start - self.flow.given + self.flow.lost + self.flow.numerical
+impl EnergyBalance {
+    /// Error of the time integration [J], positive where it has produced energy.
+    pub fn error(&self) -> f64 {
+        let Flow {
+            external_work,
+            dissipation,
+            algorithmic_dissipation,
+        } = self.flow;
+        self.now - self.start - external_work + dissipation + algorithmic_dissipation
     }
 }
 
@@ -228,21 +230,22 @@ fn line_energy(model: &Model, state: &State, index: usize, shape: &LineState) ->
     energy
 }
 
-/// Energy [J] that a leapfrog's line gets from held ends that jump to `ends`, positions [m] and velocities [m/s] at the time of the other
-/// velocities, while its nodes stay where they are. `moved` is room for its shape.
-pub fn jump_energy(
+/// Flow of energy into a leapfrog's line whose prescribed ends jump to `ends`, positions [m] and velocities [m/s] at the time of the other
+/// velocities, while its nodes stay where they are. The kinetic energy that the turn of the segments brings counts as dissipation, as in the flow of a
+/// leapfrog. `moved` is room for its shape.
+pub fn jump_flow(
     model: &Model,
     state: &State,
     index: usize,
     ends: [[Vector3<f64>; 2]; 2],
     moved: &mut LineState,
-) -> f64 {
+) -> Flow {
     let (line, shape) = (&model.lines[index], &state.lines[index]);
     let ((velocities, lag), last) = (shape.velocities_before(), shape.position.len() - 1);
     let places = [0, last].map(|i| [shape.position[i], velocities[i]]);
     let is_held = |end: End| line.is_held(model, shape, end);
     if (0..2).all(|side| places[side] == ends[side] || !is_held([End::A, End::B][side])) {
-        return 0.0;
+        return Flow::default();
     }
     moved.clone_from(shape);
     for ((end, i), [position, velocity]) in [(End::A, 0), (End::B, last)].into_iter().zip(ends) {
@@ -260,8 +263,12 @@ pub fn jump_energy(
         moved.half_step.velocity[last] -= passing;
     }
     let shapes = [&*moved, shape];
-    let [after, before] = shapes.map(|shape| line_energy(model, state, index, shape).total());
-    after - before
+    let [after, before] = shapes.map(|shape| line_energy(model, state, index, shape));
+    Flow {
+        external_work: after.total() - before.total(),
+        dissipation: after.kinetic - before.kinetic,
+        algorithmic_dissipation: 0.0,
+    }
 }
 
 /// Energy of the buoyancy that a line lacks whose nodes are at `position` [m] [J].

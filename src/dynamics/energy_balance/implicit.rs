@@ -62,7 +62,7 @@ pub fn flow(model: &Model, network: &Network, passed: &Passed) -> Flow {
     for &line in &network.lines {
         flow.add(passed.inertia(model, line));
         flow.add(passed.stretching(model, line));
-        flow.numerical += passed.weight_and_joint_dissipation(model, line);
+        flow.algorithmic_dissipation += passed.weight_and_joint_dissipation(model, line);
     }
     for &point in &network.free_points {
         flow.add(passed.point_inertia(model, point));
@@ -145,7 +145,7 @@ impl Passed<'_> {
         let mut flow = self.inertia_of(masses, v, a, self.point_velocity_mean(point));
         let heights = points.map(|point| point.position.z);
         let weights = heights.map(|z| free.at(z).weight);
-        flow.numerical += self.beyond_mean(weights) * (heights[1] - heights[0]);
+        flow.algorithmic_dissipation += self.beyond_mean(weights) * (heights[1] - heights[0]);
         flow
     }
 
@@ -165,9 +165,9 @@ impl Passed<'_> {
         let change = v1 - v0;
         let gained = 0.25 * (v0 + v1).dot(&(old.times(&change) + new.times(&change)));
         Flow {
-            given: 0.0,
-            lost: -0.25 * (changed(&v0) + changed(&v1)),
-            numerical: self.length() * mean.dot(&inertia) - gained,
+            external_work: 0.0,
+            dissipation: -0.25 * (changed(&v0) + changed(&v1)),
+            algorithmic_dissipation: self.length() * mean.dot(&inertia) - gained,
         }
     }
 
@@ -189,14 +189,14 @@ impl Passed<'_> {
             let change = ends[1].force() - ends[0].force();
             let beyond = (0.5 - self.scheme.alpha_f) * change;
             let stretched = way(i + 1) - way(i);
-            flow.numerical += beyond.dot(&stretched);
-            flow.lost += step.mean.taken * line.segments.length[i];
+            flow.algorithmic_dissipation += beyond.dot(&stretched);
+            flow.dissipation += step.mean.taken * line.segments.length[i];
             let force = step.force() + beyond;
             if i == 0 && a {
-                flow.given -= force.dot(&way(0));
+                flow.external_work -= force.dot(&way(0));
             }
             if i + 1 == n && b {
-                flow.given += force.dot(&way(n));
+                flow.external_work += force.dot(&way(n));
             }
         }
         flow
@@ -277,7 +277,7 @@ impl Side<'_> {
         }
         for &point in &network.free_points {
             let load = self.model.points[point].load_at(self.t);
-            flow.given += load.dot(&self.passed.point_velocity_mean(point));
+            flow.external_work += load.dot(&self.passed.point_velocity_mean(point));
             if let Some(free) = self.model.points[point].free() {
                 flow.add(self.point_power(free, point));
             }
@@ -297,18 +297,18 @@ impl Side<'_> {
             let damping = tension(line, shape, i, negative) - segment.spring.tension;
             let force = damping * segment.direction();
             let [low, high] = [i, i + 1].map(|node| self.passed.velocity_mean(index, node));
-            flow.lost += force.dot(&(high - low));
+            flow.dissipation += force.dot(&(high - low));
             if i == 0 && a {
-                flow.given -= force.dot(&low);
+                flow.external_work -= force.dot(&low);
             }
             if i + 1 == n && b {
-                flow.given += force.dot(&high);
+                flow.external_work += force.dot(&high);
             }
         }
         for i in usize::from(a)..=n - usize::from(b) {
             flow.add(self.node_power(index, i, water));
         }
-        flow.given += self.surface_power(index, [a, b], water);
+        flow.external_work += self.surface_power(index, [a, b], water);
         flow
     }
 
@@ -329,15 +329,15 @@ impl Side<'_> {
                 false => water.velocity(i, shape.position[i].z),
             };
             let force = drag(k.times(wet), velocity - past, tangent(shape, i));
-            flow.given += force.dot(&past);
-            flow.lost -= force.dot(&(mean - past));
+            flow.external_work += force.dot(&past);
+            flow.dissipation -= force.dot(&(mean - past));
         }
         if let (Some(pressed), Some(waves)) = (&nodes.pressed, &water.waves) {
             let force = pressed.force(i, waves.at(i).acceleration, tangent(shape, i));
-            flow.given += wet * force.dot(&mean);
+            flow.external_work += wet * force.dot(&mean);
         }
         if let Some(damping) = &nodes.mass_damping {
-            flow.lost += damping[i] * velocity.dot(&mean);
+            flow.dissipation += damping[i] * velocity.dot(&mean);
         }
         let Some(contact) = &nodes.contact else {
             return flow;
@@ -346,7 +346,7 @@ impl Side<'_> {
         if line.bottom().is_some() {
             let push = resting_node(line, shape, i, reach, 1.0).and_then(|node| node.push());
             let force = push.map(|push| push.force + (self.friction - 1.0) * push.friction);
-            flow.lost -= force.map_or(0.0, |force| force.dot(&mean));
+            flow.dissipation -= force.map_or(0.0, |force| force.dot(&mean));
         } else {
             let k = ContactCoefficients {
                 stiffness: contact.stiffness[i],
@@ -354,7 +354,7 @@ impl Side<'_> {
             };
             let penetration = contact.level[i] - shape.position[i].z;
             let bed = FadingContact::new(k, penetration, velocity.z, reach);
-            flow.lost -= bed.map_or(0.0, |bed| bed.force) * mean.z;
+            flow.dissipation -= bed.map_or(0.0, |bed| bed.force) * mean.z;
         }
         flow
     }
@@ -402,9 +402,9 @@ impl Side<'_> {
         let passing = |node| self.passed.velocity_mean(index, node);
         let ends = [End::A, End::B].into_iter().zip(line.ends);
         Flow {
-            given: ends.map(given).sum::<f64>() + end_moment_power(&shape.position, moments, passing),
-            lost: joint_damping_power(line, shape, clamps, passing),
-            numerical: 0.0,
+            external_work: ends.map(given).sum::<f64>() + end_moment_power(&shape.position, moments, passing),
+            dissipation: joint_damping_power(line, shape, clamps, passing),
+            algorithmic_dissipation: 0.0,
         }
     }
 
@@ -423,22 +423,22 @@ impl Side<'_> {
             let still = at.weight;
             at = free.at(z - orbit.elevation);
             water += orbit.velocity;
-            flow.given += free.pressed(at.wetted, orbit).dot(&mean);
-            flow.given += (still - at.weight) * mean.z;
+            flow.external_work += free.pressed(at.wetted, orbit).dot(&mean);
+            flow.external_work += (still - at.weight) * mean.z;
         }
         let drag = free.drag(at.wetted, velocity - water);
-        flow.given += drag.dot(&water);
-        flow.lost -= drag.dot(&(mean - water));
+        flow.external_work += drag.dot(&water);
+        flow.dissipation -= drag.dot(&(mean - water));
         let reach = self.passed.work.point_reach(point);
         if let Some(bottom) = model.bottom.as_deref() {
             let push = resting_point(free, bottom, state, reach, 1.0);
             let push = push.and_then(|point| point.push());
             let force = push.map(|push| push.force + (self.friction - 1.0) * push.friction);
-            flow.lost -= force.map_or(0.0, |force| force.dot(&mean));
+            flow.dissipation -= force.map_or(0.0, |force| force.dot(&mean));
         } else if let Some(contact) = &free.contact {
             let (k, penetration) = (contact.coefficients, contact.level - z);
             let bed = FadingContact::new(k, penetration, velocity.z, reach);
-            flow.lost -= bed.map_or(0.0, |bed| bed.force) * mean.z;
+            flow.dissipation -= bed.map_or(0.0, |bed| bed.force) * mean.z;
         }
         flow
     }

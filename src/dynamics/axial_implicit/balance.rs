@@ -1,0 +1,249 @@
+//! Energy balance of the axial-implicit leapfrog, over the steps since the state was loaded. It reads what a step leaves behind and changes no motion.
+//!
+//! Work on the free nodes in a step, with the velocities v of t_{n−½} and t_{n+½}:
+//!
+//!   ½ Δt Σ [−T̄ q·Δ(v_{n−½} + v_{n+½}) − w ẑ·(v_{n−½} + v_{n+½})]
+//!
+//! This, the work (T̄ − S) of the dampers and that of the drag on the moving water is dissipated, except for the kinetic energy at the end of the steps
+//! ([`crate::dynamics::energy_balance`]), S being the part of T̄ that the springs have.
+//!
+//! The averaging dissipates the work of S less that of the discrete gradient of the springs' energy from half a step before t_n to half a step after
+//! it. That is ½(T₋ + T₊)(T₊ − T₋)/(U₊ − U₋) for springs whose tension is proportional to strain, with U the tension they would have if
+//! they pushed too: the mean of both except in segments that slacken or snap taut. The averaging of ρ = 1 is this mean and dissipates nothing.
+
+use super::AxialWork;
+use super::rows::{SegmentRow, Sizes, pulled};
+use crate::dynamics::creep::Crept;
+use crate::dynamics::energy_balance::Flow;
+use crate::dynamics::step::Step;
+use crate::math::lanes::{Lanes, Vectors};
+
+/// Change of strain above which the difference of the energies gives the mean tension [-].
+const STRAIN_RESOLVED: f64 = 1e-9;
+
+/// Work and dissipation since the state was loaded.
+#[derive(Debug, Clone)]
+pub(super) struct LineBalance {
+    /// Work on the free nodes and on dampers [J].
+    work: Lanes,
+    /// Work of moving water [J].
+    water_work: Lanes,
+    /// Dissipation by the averaging of tensions [J].
+    algorithmic: Lanes,
+    /// Work of prescribed ends and of releases [J].
+    external_work: f64,
+    /// Kinetic energy that releases have brought [J].
+    kinetic: f64,
+}
+
+impl Default for LineBalance {
+    fn default() -> LineBalance {
+        let zero = Lanes::splat(0.0);
+        LineBalance {
+            work: zero,
+            water_work: zero,
+            algorithmic: zero,
+            external_work: 0.0,
+            kinetic: 0.0,
+        }
+    }
+}
+
+impl LineBalance {
+    /// Adds external work [J], of which a part is kinetic energy.
+    pub fn supply(&mut self, [energy, kinetic]: [f64; 2]) {
+        self.external_work += energy;
+        self.kinetic += kinetic;
+    }
+}
+
+impl AxialWork {
+    /// Flow of energy since the state was loaded, the kinetic energy included in the dissipation; zero without a balance.
+    pub fn flow(&self) -> Flow {
+        let Some(balance) = &self.balance else {
+            return Flow::default();
+        };
+        let lifted = self.layout.surface.as_ref().map_or(0.0, |surface| surface.lifted);
+        Flow {
+            external_work: balance.external_work + balance.water_work.sum() + lifted,
+            dissipation: balance.work.sum() + balance.kinetic,
+            algorithmic_dissipation: balance.algorithmic.sum(),
+        }
+    }
+
+    /// Starts at no flow.
+    pub(super) fn clear_balance(&mut self) {
+        if let Some(balance) = &mut self.balance {
+            *balance = LineBalance::default();
+        }
+        if let Some(surface) = &mut self.layout.surface {
+            surface.lifted = 0.0;
+        }
+    }
+
+    /// Adds a step; `velocity_before` holds the new velocities, positions and rows are those of t_n.
+    #[inline(always)]
+    pub(super) fn balance_step(&mut self, step: Step, sizes: &Sizes) {
+        let Some(mut balance) = self.balance.take() else {
+            return;
+        };
+        let half = Lanes::splat(0.5);
+        for at in self.layout.rows() {
+            balance.work =
+                balance.work + half * (self.work_on_nodes(at, sizes) + self.work_on_dampers(at, sizes));
+            if self.layout.creep.is_none() {
+                balance.algorithmic = balance.algorithmic + half * self.averaged(at, step, sizes);
+            }
+            if self.rows.current.is_some() {
+                let dragged = sizes.kick * self.water_power(at);
+                balance.water_work = balance.water_work + dragged;
+                balance.work = balance.work + dragged;
+            }
+        }
+        for end in self.held_ends() {
+            let line = &self.layout;
+            let (at, (segment, sign)) = (line.end_slot(end), line.end_segment(end));
+            let after = 0.5 * step.drift;
+            let way = after * line.velocity_before.get(at) + (step.kick - after) * line.velocity.get(at);
+            let pull = sign * self.rows.pull(segment);
+            balance.external_work += line.end_lack(end) * way.z - pull.dot(&way);
+        }
+        self.balance = Some(balance);
+        if self.layout.surface.is_some() {
+            let held = self.parted.map(|parted| !parted);
+            self.layout.balance_lift(step, held);
+        }
+    }
+
+    /// Sum of old and new velocities of the free nodes of a row, and of those after them [m/s].
+    #[inline(always)]
+    fn both(&self, at: usize) -> [Vectors; 2] {
+        let (line, nodes) = (&self.layout, &self.rows.nodes);
+        let sum = |at: usize| line.velocity.load(at) + line.velocity_before.load(at);
+        let free_after = match nodes.get(at) {
+            Some(next) => next.free,
+            None => nodes[0].free.moved_down_before(Lanes::splat(0.0)),
+        };
+        [sum(at).scale(nodes[at - 1].free), sum(at + 1).scale(free_after)]
+    }
+
+    /// Twice the work of tensions and weights on the free nodes of a row [J].
+    #[inline(always)]
+    fn work_on_nodes(&self, at: usize, sizes: &Sizes) -> Lanes {
+        let segment = &self.rows.segments[at - 1];
+        let [own, next] = self.both(at);
+        let stretched = segment.tension * segment.direction.dot(next - own);
+        Lanes::splat(0.0) - sizes.kick * (stretched + self.layout.weight.load(at) * own.z)
+    }
+
+    /// Twice the work on the dampers of a row of segments [J].
+    #[inline(always)]
+    fn work_on_dampers(&self, at: usize, sizes: &Sizes) -> Lanes {
+        if self.layout.creep.is_some() {
+            return Lanes::splat(0.0); // part of the memory
+        }
+        let (segment, [along, moved]) = (&self.rows.segments[at - 1], self.stretching(at, sizes));
+        (segment.tension - segment.spring(along).positive()) * moved
+    }
+
+    /// New stretching velocity [m/s], and twice the stretch over the step [m].
+    #[inline(always)]
+    fn stretching(&self, at: usize, sizes: &Sizes) -> [Lanes; 2] {
+        let (velocity, segment) = (&self.layout.velocity_before, &self.rows.segments[at - 1]);
+        let along = segment.direction.dot(velocity.load(at + 1) - velocity.load(at));
+        [along, sizes.kick * (segment.along + along)]
+    }
+
+    /// Twice the energy that the averaging dissipates on a row of segments [J].
+    #[inline(always)]
+    fn averaged(&self, at: usize, step: Step, sizes: &Sizes) -> Lanes {
+        let (segment, [along, moved]) = (&self.rows.segments[at - 1], self.stretching(at, sizes));
+        let line = &self.layout;
+        let relative = [&line.velocity, &line.velocity_before].map(|of| of.load(at + 1) - of.load(at));
+        let gradient = match self.is_curved() {
+            true => self.curved_gradient(at, relative, step),
+            false => segment.linear_gradient(relative, step),
+        };
+        (segment.spring(along).positive() - gradient) * moved
+    }
+
+    /// Discrete gradient of the energy of springs that are curved [N].
+    #[inline(always)]
+    fn curved_gradient(&self, at: usize, relative: [Vectors; 2], step: Step) -> Lanes {
+        let [zero, half, one] = [0.0, 0.5, 1.0].map(Lanes::splat);
+        let (law, segment) = (&self.layout.law, &self.rows.segments[at - 1]);
+        let chord = segment.direction.scale(segment.length);
+        let inverse = self.layout.inverse_length.load(at);
+        let strain = |moved: Vectors| {
+            let chord = chord + moved;
+            chord.dot(chord).sqrt() * inverse - one
+        };
+        let before = strain(relative[0].scale(Lanes::splat(-step.lag())));
+        let after = strain(relative[1].scale(Lanes::splat(0.5 * step.drift)));
+        let [held, holds] = [before, after].map(|e| e.map(|e| law.at(e.max(0.0)).energy));
+        let stretched = after - before;
+        let resolved = stretched.abs() - Lanes::splat(STRAIN_RESOLVED);
+        let mut secant = (holds - held) * resolved.choose(stretched, one).recip();
+        if (zero - resolved).any_positive() {
+            let [force, _] = pulled(law, (half * (before + after)).positive());
+            secant = resolved.choose(secant, force);
+        }
+        segment.axial_stiffness * segment.unstretched_length * secant
+    }
+
+    /// Power of the drag on the velocity of the water and of the Froude-Krylov force on a row of nodes [W].
+    #[inline(always)]
+    fn water_power(&self, at: usize) -> Lanes {
+        let (line, node) = (&self.layout, &self.rows.nodes[at - 1]);
+        let Some(current) = self.rows.current.as_ref().map(|rows| &rows[at - 1]) else {
+            return Lanes::splat(0.0);
+        };
+        let mean = (line.velocity.load(at) + line.velocity_before.load(at)).scale(Lanes::splat(0.5));
+        let (flow, tangent) = (current.flow, node.tangent);
+        let past = flow - mean;
+        let [across, along] = node.drag;
+        let after = flow - line.velocity_before.load(at);
+        let drawn = along * after.dot(tangent) - node.drag_rest;
+        let power = across * past.dot(flow) + (drawn - across * past.dot(tangent)) * flow.dot(tangent);
+        node.free * (power + current.press.dot(mean))
+    }
+
+    /// Adds the dissipation of the dampers of viscoelastic segments, and that of the averaging: the work of T̄ less that of the tension of the
+    /// memory over the step. The new velocities are in place.
+    #[inline(always)]
+    pub(super) fn balance_creep(&mut self, at: usize, crept: Crept, step: Step) {
+        let (velocity, row) = (&self.layout.velocity, &self.rows.segments[at - 1]);
+        let along = row.direction.dot(velocity.load(at + 1) - velocity.load(at));
+        let moved = Lanes::splat(0.5 * step.kick) * (row.along + along);
+        let averaged = (row.tension - crept.tension) * moved;
+        if let Some(balance) = &mut self.balance {
+            balance.work = balance.work + crept.taken;
+            balance.algorithmic = balance.algorithmic + averaged;
+        }
+    }
+}
+
+impl SegmentRow {
+    /// Discrete gradient of the energy of springs whose tension is proportional to strain [N]; `relative` are the old and new velocities of their upper
+    /// nodes relative to the lower ones [m/s].
+    #[inline(always)]
+    fn linear_gradient(&self, relative: [Vectors; 2], step: Step) -> Lanes {
+        let half = Lanes::splat(0.5);
+        let [now, ..] = self.history;
+        let tension = |relative: Vectors, time: f64| {
+            let (time, along) = (Lanes::splat(time), self.direction.dot(relative));
+            let across = relative.dot(relative) - along * along;
+            now + self.axial_stiffness * time * (along + half * time * across * self.inverse)
+        };
+        let [before, after] = [
+            tension(relative[0], -step.lag()),
+            tension(relative[1], 0.5 * step.drift),
+        ];
+        let kinks = Lanes::splat(0.0) - before * after;
+        let mean = half * (before.positive() + after.positive());
+        if kinks.any_positive() {
+            return kinks.choose(mean * before.positive_secant(after), mean);
+        }
+        mean
+    }
+}
