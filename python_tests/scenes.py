@@ -37,6 +37,7 @@ CLUMPED = CHAIN.replace('kind = "coupled"', 'kind = "coupled"\nmass = 500.0\nvol
 SHORT_PROFILE = CHAIN.replace("density = 1025.0",
                               "density = 1025.0\ncurrent = { profile = [[0.0, 0.5, 0.0], [-10.0, 0.2, 0.0]] }")
 
+CHAIN_BALANCED = CHAIN.replace("interval = 0.05", "interval = 0.05\nenergy_balance = true")
 CHAIN_PROFILE = CHAIN.replace("interval = 0.05", "interval = 0.05\nprofile = true")
 
 CURRENT = CHAIN.replace("density = 1025.0", "density = 1025.0\ncurrent = { velocity = [1.0, 0.5, 0.0] }")
@@ -136,4 +137,4 @@ ROPE = scene(
     table("line_types.rope", "mass = 20.0", "static_stiffness = 4.0e7", "dynamic_stiffness = 9.0e7",
           "static_damping = 2.0e8", "dynamic_damping = 2.0e6"),
     point("anchor", [0.0, 0.0, -100.0], "fixed"), point("fairlead", [202.0, 0.0, -90.0], "coupled"),
-    line("line1", ("anchor", "fairlead"), [("rope", 200.0, 20)], 'release = "b"'), table("output", *OUTPUT))
+    line("line1", ("anchor", "fairlead"), [("rope", 200.0, 20)], 'release = "b"'), table("output", *OUTPUT, "energy_balance = true"))

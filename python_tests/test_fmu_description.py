@@ -48,8 +48,7 @@ def test_names_and_causalities_are_those_that_hosts_rely_on(library, version):
     assert d.names("input") == [f"fairlead.{a}" for a in ("x", "y", "z", "vx", "vy", "vz")]
     assert d.names("output") == [
         "fairlead.fx", "fairlead.fy", "fairlead.fz", "line1.tension_b", "line1.tension_a", "line1.tension_max",
-        "line1.laid_length", "line1.sag", "solver.substeps", "solver.energy_error", "solver.power_residual",
-        "solver.input_error"]
+        "line1.laid_length", "line1.sag", "solver.substeps", "solver.input_error"]
     assert d.names("calculatedParameter") == [
         "line1.catenary_sag", "line1.catenary_horizontal", "line1.catenary_tension_b"]
     assert set(d.names("parameter")) == {
@@ -57,6 +56,11 @@ def test_names_and_causalities_are_those_that_hosts_rely_on(library, version):
         "chain.drag_tangential", "chain.added_mass_normal", "chain.added_mass_tangential", "line1.length",
         "water.density", "seabed.depth", "gravity", "solver.tolerance", "solver.input_reconstruction"}
     assert [v["reference"] for v in d.variables.values()] == list(range(1, len(d.variables) + 1))
+
+
+def test_a_scene_that_asks_for_the_energy_balance_has_its_outputs(library, version):
+    plain, balanced = (set(library(name, version).description.names("output")) for name in ("CHAIN", "CHAIN_BALANCED"))
+    assert balanced - plain == {"solver.energy_error", "solver.power_residual"}
 
 
 def test_only_what_the_scene_gives_is_a_parameter(library, version):

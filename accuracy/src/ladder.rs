@@ -91,8 +91,8 @@ impl Setting {
         }
     }
 
-    /// The scene with this setting, its own mesh, integrator and step put aside. A setting that moorline chooses keeps its energy ledger,
-    /// and inputs are those of the start of a step, as by default; other settings keep none, and get inputs of the end, as other codes do.
+    /// The scene with this setting, its own mesh, integrator and step put aside. A setting that moorline chooses gets the inputs of the start of a step, as by
+    /// default; other settings get those of the end, as other codes do.
     pub fn apply(&self, scene: &Scene) -> Scene {
         let mut scene = scene.clone();
         let length = |line: &moorline::scene::Line| -> f64 {

@@ -7,7 +7,7 @@
 //! resolution: nothing below that is a statement.
 //!
 //! With peers, all codes solve the peers' equations, damping that acts in compression too
-//! ([`moorline::scene::Solver::negative_tension`]); and none keeps an energy ledger, but moorline where it chooses its setting itself.
+//! ([`moorline::scene::Solver::negative_tension`]); and none keeps an energy balance.
 
 #![forbid(unsafe_code)]
 

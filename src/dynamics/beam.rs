@@ -68,6 +68,8 @@ pub struct BeamStep<'a> {
     pub bodies: [Option<Body<'a>>; 2],
     /// Length of the step [s].
     pub length: f64,
+    /// Whether the flow of energy is evaluated.
+    pub energy_balance: bool,
 }
 
 /// Why a step failed, and where.
@@ -163,7 +165,11 @@ impl BeamWork {
                     let reason = StuckReason::Folded;
                     return Err(Stuck { node, reason });
                 }
-                let flow = self.flow(case, shape);
+                let flow = if case.energy_balance {
+                    self.flow(case, shape)
+                } else {
+                    Flow::default()
+                };
                 self.store(case, shape);
                 return Ok((solves, flow));
             }

@@ -47,6 +47,7 @@ pub fn drive<K: Fn(usize, f64) -> Kinematics>(
             targets: ends.map(|end| end.target),
             bodies: ends.map(|end| end.body),
             length: step,
+            energy_balance: model.energy_balance,
         };
         let (solves, flow) = work.step(&case, &mut state.lines[index])?;
         driven.solves += solves;

@@ -98,6 +98,7 @@ impl Flight {
             targets: [at(0), at(self.shape.position.len() - 1)],
             bodies: [None; 2],
             length: dt,
+            energy_balance: true,
         };
         let (solves, flow) = self.work.step(&case, &mut self.shape).unwrap();
         self.solves += solves;
@@ -220,6 +221,7 @@ fn the_ledger_of_a_damped_beam_in_water_over_a_bed_closes_to_rounding() {
             targets: [target(flight.time + 0.02); 2],
             bodies: [None; 2],
             length: 0.02,
+            energy_balance: true,
         };
         let (_, flow) = flight.work.step(&case, &mut flight.shape).unwrap();
         flight.time += 0.02;
@@ -279,6 +281,7 @@ fn the_ledger_of_a_beam_with_a_buoy_and_a_clump_in_a_current_closes_to_rounding(
             }; 2],
             bodies,
             length: 0.02,
+            energy_balance: true,
         };
         flow.add(flight.work.step(&case, &mut flight.shape).unwrap().1);
         assert_relative_eq!(
@@ -311,6 +314,7 @@ fn a_turn_of_more_than_half_a_circle_in_a_step_is_refused_and_changes_nothing() 
         }; 2],
         bodies: [None; 2],
         length: 1.0,
+        energy_balance: true,
     };
     assert!(flight.work.step(&case, &mut flight.shape).is_err());
     assert_eq!(flight.shape, before);
