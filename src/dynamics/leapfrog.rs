@@ -5,11 +5,11 @@
 //! 1. segments: strain, lagged strain rate, tension T q;
 //! 2. free points, which take the forces of the segments at them;
 //! 3. nodes: v_{n+½} = v_{n−½} + Δt M⁻¹ f, with drag at the extrapolated velocity 1.5 v_{n−½} − 0.5 v_{n−3/2}, the
-//!    anisotropic mass inverted in closed form and the seabed solved implicitly, node by node, by a rank-one update;
-//! 4. nodes on a seabed that slopes or has friction, one by one;
-//! 5. r_{n+1} = r_n + Δt v_{n+½}; the ends are put where their points are.
+//!    anisotropic mass inverted in closed form and the seabed solved implicitly, node by node, by a rank-one update or, with a slope or friction, by
+//!    [`crate::physics::friction_step`];
+//! 4. r_{n+1} = r_n + Δt v_{n+½}; the ends are put where their points are.
 //!
-//! Stage 5 is part of the loop of stage 3 where nothing comes between them.
+//! Stage 4 is part of the loop of stage 3 unless the energy balance is evaluated between them.
 //!
 //! One force evaluation a step, second order, stable below [`super::limit::explicit_limit`] whatever the seabed.
 //!
@@ -29,7 +29,6 @@ use super::step::Step;
 use crate::math::fold::{Column, Field, Slot};
 use crate::math::lanes::{LANES, Lanes};
 use crate::model::{End, Line, LineState, Model, Parting, WaveSpan};
-use crate::physics::friction_step::Landing;
 use crate::physics::morison::{self, DragCoefficients};
 use crate::physics::slender::Slender;
 use crate::physics::stretch::{StretchLaw, total_tension};
@@ -61,8 +60,6 @@ pub struct LineWork {
     tied: [bool; 2],
     /// Whether they have parted from their points.
     parted: [bool; 2],
-    /// Whether the seabed slopes or has friction.
-    rough: bool,
     /// The energy balance, where the scene asks for it.
     balance: Option<LineBalance>,
     /// The winch at end B, where the line is on one.
@@ -181,7 +178,6 @@ impl LineWork {
             interior: interior(layout.fold, layout.segment_count),
             tied: held,
             parted: [false; 2],
-            rough: layout.bottom().is_some(),
             balance: layout.energy_balance.then(LineBalance::default),
             layout,
             winch,
@@ -313,7 +309,7 @@ impl LineWork {
     /// A step from t_n to `t` [s], with the ends going where `ends` says; after [`Self::pull`].
     pub fn advance(&mut self, t: f64, step: Step, ends: [&Placed; 2]) {
         let (unit, size) = (self.layout.vector_unit, &step);
-        let drifts = !self.rough && self.balance.is_none();
+        let drifts = self.balance.is_none();
         unit.dispatch(Sweep {
             work: self,
             size,
@@ -321,9 +317,6 @@ impl LineWork {
             ends,
         });
         if !drifts {
-            if self.rough {
-                self.settle(step);
-            }
             self.balance_nodes(step);
             unit.dispatch(Drift {
                 work: self,
@@ -342,41 +335,6 @@ impl LineWork {
         }
         if self.winch.is_some() {
             self.renew_reel(step);
-        }
-    }
-
-    /// Solves contact and friction of the nodes on a seabed that slopes or has friction, from the velocities at t_{n+½} without them.
-    fn settle(&mut self, step: Step) {
-        let line = &mut self.layout;
-        for (i, at) in line.nodes().enumerate() {
-            if self.interior[at] == 0.0 {
-                continue; // tied to its point
-            }
-            let (penetration, normal) = line.stand(at);
-            let free = line.velocity.get(at);
-            if penetration <= step.drift * normal.dot(&free) {
-                line.set_rub(at, Vector3::zeros());
-                continue;
-            }
-            let excess = self.water.as_ref().map_or(0.0, |w| w.inverse_mass_excess[at]);
-            let inverse_mass = self.inverse_mass[at];
-            let Some((contact, friction)) = line.rubbing() else {
-                return;
-            };
-            let node = Landing {
-                mass: [1.0 / inverse_mass, 1.0 / (inverse_mass + excess)],
-                tangent: line.tangent_of(i),
-                normal,
-                penetration,
-                coefficients: contact.coefficients(at),
-                steps: [step.kick, step.drift],
-            };
-            let Some(landed) = node.solve(free, friction) else {
-                line.set_rub(at, Vector3::zeros());
-                continue;
-            };
-            line.velocity.set(at, landed.velocity);
-            line.set_rub(at, landed.rub / step.kick);
         }
     }
 

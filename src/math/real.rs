@@ -18,6 +18,10 @@ pub trait Real: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Se
     fn abs(self) -> Self;
     /// The greater of two, lane by lane; `other` where either is not a number.
     fn max(self, other: Self) -> Self;
+    /// `yes` where this is positive, else `no`.
+    fn choose(self, yes: Self, no: Self) -> Self;
+    /// True if a lane is positive.
+    fn any_positive(self) -> bool;
 }
 
 /// A vector in space, or one in every lane.
@@ -28,6 +32,23 @@ pub trait RealVector: Copy + Add<Output = Self> + Sub<Output = Self> {
     fn inner(self, other: Self) -> Self::Real;
     /// The vector times a factor.
     fn scaled(self, factor: Self::Real) -> Self;
+    /// Vector product.
+    fn crossed(self, other: Self) -> Self;
+    /// Components along x, y and z.
+    fn components(self) -> [Self::Real; 3];
+    /// The vector of components along x, y and z.
+    fn of(components: [Self::Real; 3]) -> Self;
+}
+
+/// `yes` where the gate is positive, else `no`.
+#[inline(always)]
+pub fn choose<V: RealVector>(gate: V::Real, yes: V, no: V) -> V {
+    let (yes, no) = (yes.components(), no.components());
+    V::of([
+        gate.choose(yes[0], no[0]),
+        gate.choose(yes[1], no[1]),
+        gate.choose(yes[2], no[2]),
+    ])
 }
 
 impl Real for f64 {
@@ -55,6 +76,16 @@ impl Real for f64 {
     fn max(self, other: f64) -> f64 {
         if self > other { self } else { other }
     }
+
+    #[inline(always)]
+    fn choose(self, yes: f64, no: f64) -> f64 {
+        if self > 0.0 { yes } else { no }
+    }
+
+    #[inline(always)]
+    fn any_positive(self) -> bool {
+        self > 0.0
+    }
 }
 
 impl RealVector for Vector3<f64> {
@@ -68,6 +99,21 @@ impl RealVector for Vector3<f64> {
     #[inline(always)]
     fn scaled(self, factor: f64) -> Vector3<f64> {
         self * factor
+    }
+
+    #[inline(always)]
+    fn crossed(self, other: Vector3<f64>) -> Vector3<f64> {
+        self.cross(&other)
+    }
+
+    #[inline(always)]
+    fn components(self) -> [f64; 3] {
+        [self.x, self.y, self.z]
+    }
+
+    #[inline(always)]
+    fn of(components: [f64; 3]) -> Vector3<f64> {
+        components.into()
     }
 }
 
@@ -96,6 +142,16 @@ impl Real for Lanes {
     fn max(self, other: Lanes) -> Lanes {
         Lanes::max(self, other)
     }
+
+    #[inline(always)]
+    fn choose(self, yes: Lanes, no: Lanes) -> Lanes {
+        Lanes::choose(self, yes, no)
+    }
+
+    #[inline(always)]
+    fn any_positive(self) -> bool {
+        Lanes::any_positive(self)
+    }
 }
 
 impl RealVector for Vectors {
@@ -109,5 +165,24 @@ impl RealVector for Vectors {
     #[inline(always)]
     fn scaled(self, factor: Lanes) -> Vectors {
         Vectors::scale(self, factor)
+    }
+
+    #[inline(always)]
+    fn crossed(self, other: Vectors) -> Vectors {
+        Vectors {
+            x: self.y * other.z - self.z * other.y,
+            y: self.z * other.x - self.x * other.z,
+            z: self.x * other.y - self.y * other.x,
+        }
+    }
+
+    #[inline(always)]
+    fn components(self) -> [Lanes; 3] {
+        [self.x, self.y, self.z]
+    }
+
+    #[inline(always)]
+    fn of([x, y, z]: [Lanes; 3]) -> Vectors {
+        Vectors { x, y, z }
     }
 }

@@ -19,6 +19,8 @@
 
 use nalgebra::{Matrix2, Vector2, Vector3};
 
+use crate::math::real::{Real, RealVector, choose};
+
 /// Coefficients of friction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Friction {
@@ -28,15 +30,15 @@ pub struct Friction {
     pub transverse: f64,
 }
 
-/// Axes in the plane of the bed.
+/// Axes in the plane of the seabed.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Axes {
+pub struct Axes<V: RealVector = Vector3<f64>> {
     /// Along the line [-].
-    pub along: Vector3<f64>,
+    pub along: V,
     /// Across the line [-].
-    pub across: Vector3<f64>,
+    pub across: V,
     /// Part s of the line's tangent that lies in the plane [-].
-    pub share: f64,
+    pub share: V::Real,
 }
 
 /// Part of the tangent below which a line stands on the bed [-].
@@ -46,28 +48,36 @@ const BORDER: f64 = 1e-7;
 /// Iterations for γ.
 const ITERATIONS_MAX: usize = 30;
 
-impl Axes {
-    /// Of a line along the unit vector `tangent` on a bed with the unit normal `normal`.
-    pub fn new(normal: Vector3<f64>, tangent: Vector3<f64>) -> Axes {
-        let flat = tangent - normal.dot(&tangent) * normal;
-        let share = flat.norm();
-        let along = if share > STANDING {
-            flat / share
-        } else {
-            let level = if normal.x.abs() < 0.7 {
-                Vector3::x()
-            } else {
-                Vector3::y()
-            };
-            normal.cross(&level).normalize()
-        };
+impl<V: RealVector> Axes<V> {
+    /// Axes of a line along the unit vector `tangent` on a seabed with the unit normal `normal`.
+    #[inline(always)]
+    pub fn new(normal: V, tangent: V) -> Axes<V> {
+        let [zero, one] = [0.0, 1.0].map(V::Real::splat);
+        let flat = tangent - normal.scaled(normal.inner(tangent));
+        let share = flat.inner(flat).sqrt();
+        let lies = share - V::Real::splat(STANDING);
+        let mut along = flat.scaled(lies.choose(share, one).recip());
+        if (zero - lies).any_positive() {
+            let leans = normal.components()[0].abs() - V::Real::splat(0.7);
+            let level = choose(leans, V::of([zero, one, zero]), V::of([one, zero, zero]));
+            let level = normal.crossed(level);
+            along = choose(lies, along, level.scaled(level.inner(level).sqrt().recip()));
+        }
         Axes {
             along,
-            across: normal.cross(&along),
+            across: normal.crossed(along),
             share,
         }
     }
 
+    /// The vector of components along the axes, in their unit [-].
+    #[inline(always)]
+    pub fn combine(&self, [along, across]: [V::Real; 2]) -> V {
+        self.along.scaled(along) + self.across.scaled(across)
+    }
+}
+
+impl Axes {
     /// Components of a vector along the axes, in its unit [-].
     pub fn components(&self, vector: &Vector3<f64>) -> Vector2<f64> {
         Vector2::new(self.along.dot(vector), self.across.dot(vector))
@@ -79,7 +89,99 @@ impl Axes {
     }
 }
 
-/// Friction at a node.
+impl Friction {
+    /// The greater of the coefficients [-].
+    pub fn greatest(&self) -> f64 {
+        self.axial.max(self.transverse)
+    }
+
+    /// Semi-axes of the ellipse [N], along and across the line of which a part `share` [-] lies in the plane, under a normal force [N].
+    #[inline(always)]
+    pub fn limits<R: Real>(&self, share: R, normal_force: R) -> [R; 2] {
+        let one = R::splat(1.0);
+        let square = share * share;
+        let lying = (square - one).choose(one, square);
+        let [axial, transverse] = [self.axial, self.transverse].map(|part| R::splat(part * part));
+        let along = lying * axial + (one - lying) * transverse;
+        [
+            along.sqrt() * normal_force,
+            R::splat(self.transverse) * normal_force,
+        ]
+    }
+}
+
+/// Friction from the force that would hold a node.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Slide<R> {
+    /// Along and across the line [N].
+    pub force: [R; 2],
+    /// Positive where the node slides.
+    pub slides: R,
+    /// γ of nodes that slide, in the unit of W D² [N² m/N, N² m/(N s)].
+    pub multiplier: R,
+}
+
+/// Terms of the ellipse: those of the force that acts along axes with friction, times W D, and W D².
+#[derive(Clone, Copy)]
+struct Ellipse<R> {
+    scaled: [R; 2],
+    stiffness: [R; 2],
+}
+
+impl<R: Real> Ellipse<R> {
+    /// Force over the semi-axis i, and 1/(W D² + γ).
+    #[inline(always)]
+    fn part(&self, i: usize, gamma: R) -> [R; 2] {
+        let softness = (self.stiffness[i] + gamma)
+            .max(R::splat(f64::MIN_POSITIVE))
+            .recip();
+        [self.scaled[i] * softness, softness]
+    }
+
+    /// Square of the force over the semi-axes, and minus half its slope with γ.
+    #[inline(always)]
+    fn size(&self, gamma: R) -> [R; 2] {
+        let ([a, soft_a], [b, soft_b]) = (self.part(0, gamma), self.part(1, gamma));
+        [a * a + b * b, a * a * soft_a + b * b * soft_b]
+    }
+}
+
+/// The friction at a node that `holding` [N] would hold, in the ellipse of the semi-axes `limits` [N].
+#[inline(always)]
+pub fn slide<R: Real>(holding: [R; 2], compliance: [R; 2], limits: [R; 2]) -> Slide<R> {
+    let [zero, one] = [0.0, 1.0].map(R::splat);
+    let rough = [limits[0].choose(one, zero), limits[1].choose(one, zero)];
+    let acting = [rough[0] * holding[0], rough[1] * holding[1]];
+    let yields = [compliance[0] * limits[0], compliance[1] * limits[1]]; // W D
+    let ellipse = Ellipse {
+        scaled: [acting[0] * yields[0], acting[1] * yields[1]],
+        stiffness: [yields[0] * limits[0], yields[1] * limits[1]],
+    };
+    let outside = ellipse.size(zero)[0] - R::splat((1.0 - BORDER) * (1.0 - BORDER));
+    let mut gamma = zero;
+    if outside.any_positive() {
+        for _ in 0..ITERATIONS_MAX {
+            let [size, slope] = ellipse.size(gamma);
+            let excess = size.sqrt() - one;
+            let open = outside.choose(excess.abs() - R::splat(4.0 * f64::EPSILON), zero);
+            if !open.any_positive() {
+                break;
+            }
+            let change = size * excess * slope.max(R::splat(f64::MIN_POSITIVE)).recip();
+            gamma = open.choose((gamma + change).max(zero), gamma);
+        }
+    }
+    let kept = [0, 1].map(|i| outside.choose(ellipse.part(i, gamma)[1] * ellipse.stiffness[i], one));
+    // without friction along an axis any force slides
+    let unheld = (holding[0] - acting[0]).abs().max((holding[1] - acting[1]).abs());
+    Slide {
+        force: [acting[0] * kept[0], acting[1] * kept[1]],
+        slides: outside.max(unheld),
+        multiplier: gamma,
+    }
+}
+
+/// Friction at one node.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Held {
     /// Along and across the line [N].
@@ -88,63 +190,16 @@ pub struct Held {
     pub multiplier: Option<f64>,
 }
 
-impl Friction {
-    /// The greater of the coefficients [-].
-    pub fn greatest(&self) -> f64 {
-        self.axial.max(self.transverse)
-    }
-
-    /// The axes of the ellipse [N] under a normal force [N].
-    pub fn limits(&self, axes: &Axes, normal_force: f64) -> Vector2<f64> {
-        let lying = (axes.share * axes.share).min(1.0);
-        let along = lying * self.axial * self.axial + (1.0 - lying) * self.transverse * self.transverse;
-        Vector2::new(along.sqrt(), self.transverse) * normal_force
-    }
-}
-
-/// The friction at a node that `holding` [N] would hold, in the ellipse of the axes `limits` [N].
+/// [`slide`] of one node.
 pub fn held(holding: Vector2<f64>, compliance: Vector2<f64>, limits: Vector2<f64>) -> Held {
-    let border = (1.0 - BORDER) * (1.0 - BORDER);
-    let rough = limits.x > 0.0 && limits.y > 0.0;
-    if rough && holding.component_div(&limits).norm_squared() <= border {
-        return Held {
-            force: holding,
-            multiplier: None,
-        };
-    }
-    let stiffness = compliance.component_mul(&limits.component_mul(&limits)); // W D²
-    let scaled = holding.component_mul(&compliance).component_mul(&limits);
-    let acts = |i: usize| limits[i] > 0.0 && scaled[i] != 0.0;
-    let sum = |gamma: f64, power: i32| -> f64 {
-        (0..2)
-            .filter(|&i| acts(i))
-            .map(|i| scaled[i] * scaled[i] / (stiffness[i] + gamma).powi(power))
-            .sum()
-    };
-    let unlimited = (0..2).all(|i| limits[i] > 0.0 || holding[i] == 0.0);
-    if sum(0.0, 2) <= border {
-        let force = Vector2::from_fn(|i, _| if limits[i] > 0.0 { holding[i] } else { 0.0 });
-        return Held {
-            force,
-            multiplier: (!unlimited).then_some(0.0),
-        };
-    }
-    let mut gamma = 0.0;
-    for _ in 0..ITERATIONS_MAX {
-        let size = sum(gamma, 2);
-        let excess = size.sqrt() - 1.0;
-        gamma += (size * excess / sum(gamma, 3)).max(-gamma);
-        if excess.abs() <= 4.0 * f64::EPSILON {
-            break;
-        }
-    }
-    let force = |i: usize| match acts(i) {
-        true => holding[i] * stiffness[i] / (stiffness[i] + gamma),
-        false => 0.0,
-    };
+    let Slide {
+        force,
+        slides,
+        multiplier,
+    } = slide::<f64>(holding.into(), compliance.into(), limits.into());
     Held {
-        force: Vector2::from_fn(|i, _| force(i)),
-        multiplier: Some(gamma),
+        force: force.into(),
+        multiplier: (slides > 0.0).then_some(multiplier),
     }
 }
 
@@ -245,9 +300,15 @@ mod tests {
             transverse: 0.7,
         };
         let axes = Axes::new(Vector3::z(), Vector3::z());
-        assert_relative_eq!(friction.limits(&axes, 10.0), Vector2::new(7.0, 7.0));
+        assert_relative_eq!(
+            Vector2::from(friction.limits(axes.share, 10.0)),
+            Vector2::new(7.0, 7.0)
+        );
         let lying = Axes::new(Vector3::z(), Vector3::y());
-        assert_relative_eq!(friction.limits(&lying, 10.0), Vector2::new(4.0, 7.0));
+        assert_relative_eq!(
+            Vector2::from(friction.limits(lying.share, 10.0)),
+            Vector2::new(4.0, 7.0)
+        );
         assert_relative_eq!(axes.along.dot(&Vector3::z()), 0.0);
     }
 }

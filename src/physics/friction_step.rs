@@ -13,95 +13,108 @@
 //! Source: backward Euler on Coulomb's law, as in Moreau (1988), Unilateral contact and dry friction in finite freedom
 //! dynamics, CISM 302; friction by [`super::friction`]. Stable for any stiffness; valid as `seabed` is.
 
-use nalgebra::{Vector2, Vector3};
+use super::friction::{Axes, Friction, slide};
+use crate::math::real::{Real, RealVector, choose};
 
-use super::friction::{Axes, Friction, held};
-use super::seabed::ContactCoefficients;
-
-/// A node and how it meets the bed.
+/// A node, or one in every lane, and how it meets the seabed.
 #[derive(Debug, Clone, Copy)]
-pub struct Landing {
+pub struct Landing<V: RealVector> {
     /// Mass across and along the line [kg].
-    pub mass: [f64; 2],
+    pub mass: [V::Real; 2],
     /// Direction t of the line [-].
-    pub tangent: Vector3<f64>,
-    /// Normal n of the bed [-].
-    pub normal: Vector3<f64>,
-    /// Distance p below the level from which the bed pushes [m].
-    pub penetration: f64,
-    /// Spring and damper.
-    pub coefficients: ContactCoefficients,
+    pub tangent: V,
+    /// Normal n of the seabed [-].
+    pub normal: V,
+    /// Distance p below the level from which the seabed pushes [m].
+    pub penetration: V::Real,
+    /// Stiffness [N/m] and damping [N s/m] of the contact.
+    pub contact: [V::Real; 2],
     /// Δt of the velocities and of the positions [s].
-    pub steps: [f64; 2],
+    pub steps: [V::Real; 2],
 }
 
-/// What a node leaves the step with.
+/// Motion of a node after the step.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Landed {
+pub struct Landed<V: RealVector> {
     /// Velocity [m/s].
-    pub velocity: Vector3<f64>,
-    /// Impulse of the bed [N s].
-    pub impulse: Vector3<f64>,
-    /// The part of it in the plane of the bed [N s].
-    pub rub: Vector3<f64>,
+    pub velocity: V,
+    /// Impulse of friction [N s].
+    pub friction: V,
+    /// Positive where the seabed pushes.
+    pub pushed: V::Real,
 }
 
-impl Landing {
-    /// What a node leaves the step with that would have the velocity `free` [m/s]; `None` where the bed does not push.
-    pub fn solve(&self, free: Vector3<f64>, friction: Option<&Friction>) -> Option<Landed> {
-        let [normal_mass, along_mass] = self.mass;
-        let [kick, drift] = self.steps;
-        let k = self.coefficients;
-        let resistance = kick * (k.stiffness * drift + k.damping);
-        let rise = self.normal.dot(&free);
-        let upright = self.normal.dot(&self.tangent);
-        let excess = 1.0 / along_mass - 1.0 / normal_mass;
-        let response = self.normal / normal_mass + excess * upright * self.tangent; // M⁻¹n
-        let spring = kick * k.stiffness * self.penetration;
-        let push = (spring - resistance * rise) / (1.0 + resistance * self.normal.dot(&response));
-        if self.penetration - drift * rise <= 0.0 || push <= 0.0 {
-            return None;
+impl<V: RealVector> Landing<V> {
+    /// Motion after the step of a node that would have the velocity `free` [m/s] without seabed.
+    #[inline(always)]
+    pub fn solve(&self, free: V, friction: Option<&Friction>) -> Landed<V> {
+        let one = V::Real::splat(1.0);
+        let [across, along] = self.mass.map(V::Real::recip);
+        let ([kick, drift], [stiffness, damping]) = (self.steps, self.contact);
+        let resistance = kick * (stiffness * drift + damping);
+        let rise = self.normal.inner(free);
+        let upright = self.normal.inner(self.tangent);
+        let response = self.normal.scaled(across) + self.tangent.scaled((along - across) * upright); // M⁻¹n
+        let spring = kick * stiffness * self.penetration;
+        let push = (spring - resistance * rise) * (one + resistance * self.normal.inner(response)).recip();
+        let none = Landed {
+            velocity: free,
+            friction: free - free,
+            pushed: (self.penetration - drift * rise).choose(push, V::Real::splat(-1.0)),
+        };
+        let landed = Landed {
+            velocity: choose(none.pushed, free + response.scaled(push), free),
+            ..none
+        };
+        match friction {
+            Some(friction) if landed.pushed.any_positive() => {
+                self.rub(free, [spring, resistance], friction, landed)
+            }
+            _ => landed,
         }
-        let rubbed = friction.and_then(|friction| self.rub(free, spring, resistance, friction));
-        Some(rubbed.unwrap_or(Landed {
-            velocity: free + push * response,
-            impulse: push * self.normal,
-            rub: Vector3::zeros(),
-        }))
     }
 
-    /// With friction; `None` where the bed would not push a node that sticks.
-    fn rub(&self, free: Vector3<f64>, spring: f64, resistance: f64, friction: &Friction) -> Option<Landed> {
+    /// The same with friction, where the seabed pushes a node that sticks; `smooth` is the motion without.
+    #[inline(always)]
+    fn rub(
+        &self,
+        free: V,
+        [spring, resistance]: [V::Real; 2],
+        friction: &Friction,
+        smooth: Landed<V>,
+    ) -> Landed<V> {
         let [m, along_mass] = self.mass;
         let axes = Axes::new(self.normal, self.tangent);
-        let (upright, excess) = (self.normal.dot(&self.tangent), along_mass - m);
-        let lying = axes.along.dot(&self.tangent);
-        let momentum = m * free + excess * self.tangent.dot(&free) * self.tangent;
-        let driven = self.normal.dot(&momentum) + spring;
-        let stiff = m + excess * upright * upright + resistance;
-        let push = spring - resistance * driven / stiff; // of a node that sticks
-        if push <= 0.0 {
-            return None;
-        }
+        let (upright, excess) = (self.normal.inner(self.tangent), along_mass - m);
+        let lying = axes.along.inner(self.tangent);
+        let momentum = free.scaled(m) + self.tangent.scaled(excess * self.tangent.inner(free));
+        let driven = self.normal.inner(momentum) + spring;
+        let softness = (m + excess * upright * upright + resistance).recip();
+        let push = spring - resistance * driven * softness; // of a node that sticks
         let coupling = excess * upright * lying;
-        let along = m + excess * lying * lying - coupling * coupling / stiff;
-        let drive = axes.along.dot(&momentum) - coupling * driven / stiff;
-        let across = axes.across.dot(&free);
-        let holding = Vector2::new(-drive, -m * across);
-        let compliance = Vector2::new(1.0 / along, 1.0 / m);
-        let held = held(holding, compliance, friction.limits(&axes, push));
-        let slid = match held.multiplier {
-            None => Vector2::zeros(),
-            Some(_) => (held.force - holding).component_mul(&compliance),
-        };
-        let sinking = (driven - coupling * slid.x) / stiff;
-        let rub = axes.vector(&held.force);
-        let push = spring - resistance * sinking;
-        (push > 0.0).then(|| Landed {
-            velocity: axes.vector(&slid) + sinking * self.normal,
-            impulse: push * self.normal + rub,
-            rub,
-        })
+        let along = m + excess * lying * lying - coupling * coupling * softness;
+        let drive = axes.along.inner(momentum) - coupling * driven * softness;
+        let zero = V::Real::splat(0.0);
+        let holding = [zero - drive, zero - m * axes.across.inner(free)];
+        let compliance = [along.recip(), m.recip()];
+        let slide = slide(holding, compliance, friction.limits(axes.share, push));
+        let slid = [0, 1].map(|i| {
+            let moved = (slide.force[i] - holding[i]) * compliance[i];
+            slide.slides.choose(moved, zero)
+        });
+        let sinking = (driven - coupling * slid[0]) * softness;
+        let pushes = smooth
+            .pushed
+            .choose(push.choose(spring - resistance * sinking, zero), zero);
+        Landed {
+            velocity: choose(
+                pushes,
+                axes.combine(slid) + self.normal.scaled(sinking),
+                smooth.velocity,
+            ),
+            friction: choose(pushes, axes.combine(slide.force), smooth.friction),
+            pushed: smooth.pushed,
+        }
     }
 }
 
@@ -109,18 +122,17 @@ impl Landing {
 mod tests {
     use super::*;
     use approx::assert_relative_eq;
-    use nalgebra::{Matrix3, Rotation3};
+    use nalgebra::{Matrix3, Rotation3, Vector3};
 
-    fn landing() -> Landing {
+    use crate::math::lanes::{LANES, Lanes, Vectors};
+
+    fn landing() -> Landing<Vector3<f64>> {
         Landing {
             mass: [120.0, 100.0],
             tangent: Vector3::new(0.9, 0.2, 0.15).normalize(),
             normal: Vector3::z(),
             penetration: 0.01,
-            coefficients: ContactCoefficients {
-                stiffness: 5e4,
-                damping: 3e3,
-            },
+            contact: [5e4, 3e3],
             steps: [0.02, 0.025],
         }
     }
@@ -130,11 +142,12 @@ mod tests {
         transverse: 0.7,
     };
 
-    fn balance(node: &Landing, free: Vector3<f64>, landed: &Landed) -> Vector3<f64> {
+    /// Impulse of the seabed beside friction [N s].
+    fn push(node: &Landing<Vector3<f64>>, free: Vector3<f64>, landed: &Landed<Vector3<f64>>) -> Vector3<f64> {
         let [m, along] = node.mass;
         let t = node.tangent;
         let mass = m * Matrix3::identity() + (along - m) * t * t.transpose();
-        mass * (landed.velocity - free) - landed.impulse
+        mass * (landed.velocity - free) - landed.friction
     }
 
     #[test]
@@ -143,20 +156,21 @@ mod tests {
         for free in [[0.0, 0.0, -0.1], [0.05, -0.3, -0.2], [2.0, 1.0, 0.1]] {
             let free = Vector3::from(free);
             for friction in [None, Some(&ROUGH)] {
-                let landed = node.solve(free, friction).unwrap();
-                assert_relative_eq!(balance(&node, free, &landed), Vector3::zeros(), epsilon = 1e-10);
-                let k = node.coefficients;
-                let resistance = k.stiffness * node.steps[1] + k.damping;
-                let push = k.stiffness * node.penetration - resistance * landed.velocity.z;
-                assert_relative_eq!(landed.impulse.z, node.steps[0] * push, epsilon = 1e-10);
+                let landed = node.solve(free, friction);
+                let [stiffness, damping] = node.contact;
+                let resistance = stiffness * node.steps[1] + damping;
+                let force = stiffness * node.penetration - resistance * landed.velocity.z;
+                let impulse = node.steps[0] * force * Vector3::z();
+                assert_relative_eq!(push(&node, free, &landed), impulse, epsilon = 1e-10);
             }
         }
     }
 
     #[test]
     fn a_node_that_sticks_does_not_move_along_the_bed_by_a_digit() {
-        let landed = landing().solve(Vector3::new(1e-3, 2e-3, 0.0), Some(&ROUGH));
-        let velocity = landed.unwrap().velocity;
+        let velocity = landing()
+            .solve(Vector3::new(1e-3, 2e-3, 0.0), Some(&ROUGH))
+            .velocity;
         assert_eq!((velocity.x, velocity.y), (0.0, 0.0));
     }
 
@@ -169,19 +183,55 @@ mod tests {
             normal: turn * node.normal,
             ..node
         };
-        let here = node.solve(free, Some(&ROUGH)).unwrap();
-        let there = turned.solve(turn * free, Some(&ROUGH)).unwrap();
+        let here = node.solve(free, Some(&ROUGH));
+        let there = turned.solve(turn * free, Some(&ROUGH));
         assert_relative_eq!(turn * here.velocity, there.velocity, epsilon = 1e-14);
-        assert_relative_eq!(turn * here.impulse, there.impulse, epsilon = 1e-12);
+        assert_relative_eq!(turn * here.friction, there.friction, epsilon = 1e-12);
     }
 
     #[test]
-    fn the_bed_never_pulls() {
-        assert_eq!(landing().solve(Vector3::new(0.0, 0.0, 5.0), Some(&ROUGH)), None);
+    fn the_seabed_never_pulls() {
+        let rises = Vector3::new(0.0, 0.0, 5.0);
+        let landed = landing().solve(rises, Some(&ROUGH));
+        assert!(landed.velocity == rises && landed.friction == Vector3::zeros());
         let above = Landing {
             penetration: -0.01,
             ..landing()
         };
-        assert_eq!(above.solve(Vector3::zeros(), Some(&ROUGH)), None);
+        assert_eq!(
+            above.solve(Vector3::zeros(), Some(&ROUGH)).velocity,
+            Vector3::zeros()
+        );
+    }
+
+    #[test]
+    fn four_nodes_at_once_move_as_each_alone() {
+        let frees = [
+            [0.0, 0.0, -0.1],
+            [0.05, -0.3, -0.2],
+            [2.0, 1.0, 0.1],
+            [0.0, 0.0, 5.0],
+        ]
+        .map(Vector3::from);
+        let each = |f: &dyn Fn(usize) -> Vector3<f64>| {
+            let mut all = Vectors::zero();
+            (0..LANES).for_each(|lane| all.set(lane, f(lane)));
+            all
+        };
+        let node = landing();
+        let lanes = Landing {
+            mass: node.mass.map(Lanes::splat),
+            tangent: each(&|_| node.tangent),
+            normal: each(&|_| node.normal),
+            penetration: Lanes::splat(node.penetration),
+            contact: node.contact.map(Lanes::splat),
+            steps: node.steps.map(Lanes::splat),
+        };
+        let together = lanes.solve(each(&|lane| frees[lane]), Some(&ROUGH));
+        for (lane, free) in frees.into_iter().enumerate() {
+            let alone = node.solve(free, Some(&ROUGH));
+            assert_eq!(together.velocity.get(lane), alone.velocity);
+            assert_eq!(together.friction.get(lane), alone.friction);
+        }
     }
 }

@@ -20,6 +20,8 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use crate::math::lanes::{LANES, Lanes, Vectors};
+use crate::math::real::{Real, RealVector};
 use crate::math::shape_preserving::{End, slopes, smooth_slopes};
 
 /// Slopes at the rows of a table.
@@ -51,6 +53,8 @@ pub struct Grid {
     y: Vec<f64>,
     /// Per point, row by row of equal y: h [m], h_x [-], h_y [-], h_xy [1/m].
     nodes: Vec<[f64; 4]>,
+    /// Bound of the heights of the surface [m].
+    highest: f64,
 }
 
 /// Height of a surface at a place, and its derivatives.
@@ -101,18 +105,39 @@ impl Ground {
     /// Penetration [m] and normal of [`Self::touch`] alone.
     #[inline]
     pub fn stand(&self, place: Vector3<f64>) -> (f64, Vector3<f64>) {
-        let (height, [hx, hy]) = match self {
+        let (height, slope) = match self {
             Ground::Plane { height, slope } => (height + slope[0] * place.x + slope[1] * place.y, *slope),
-            Ground::Grid(grid) => {
-                let relief = grid.relief(place.x, place.y);
-                (relief.height, relief.slope)
-            }
+            Ground::Grid(grid) => grid.level(place.x, place.y),
         };
-        let upright = 1.0 / (1.0 + hx * hx + hy * hy).sqrt(); // n_z
-        (
-            (height - place.z) * upright,
-            upright * Vector3::new(-hx, -hy, 1.0),
-        )
+        stand(height, slope, place)
+    }
+
+    /// [`Self::stand`] of four nodes.
+    #[inline(always)]
+    pub fn stand_of_four(&self, place: Vectors) -> (Lanes, Vectors) {
+        match self {
+            Ground::Plane { height, slope } => {
+                let slope = slope.map(Lanes::splat);
+                let height = Lanes::splat(*height) + slope[0] * place.x + slope[1] * place.y;
+                stand(height, slope, place)
+            }
+            Ground::Grid(grid) => {
+                let (mut height, mut slope) = (Lanes::splat(0.0), [Lanes::splat(0.0); 2]);
+                for lane in 0..LANES {
+                    let level = grid.level(place.x[lane], place.y[lane]);
+                    (height[lane], [slope[0][lane], slope[1][lane]]) = level;
+                }
+                stand(height, slope, place)
+            }
+        }
+    }
+
+    /// Height that no point of the surface exceeds [m]; infinite on a plane.
+    pub fn highest(&self) -> f64 {
+        match self {
+            Ground::Plane { .. } => f64::INFINITY,
+            Ground::Grid(grid) => grid.highest,
+        }
     }
 
     /// Height of the surface at a place [m].
@@ -169,6 +194,7 @@ impl Grid {
             x: x.to_vec(),
             y: y.to_vec(),
             nodes: Vec::with_capacity(x.len() * y.len()),
+            highest: highest(heights),
         };
         for j in 0..y.len() {
             for i in 0..x.len() {
@@ -209,25 +235,57 @@ impl Grid {
         corners
     }
 
+    /// Height at a place [m], and its slopes [-].
+    fn level(&self, x: f64, y: f64) -> (f64, [f64; 2]) {
+        let sums = self.sums::<1>(x, y);
+        (sums[0][0], [sums[1][0], sums[0][1]])
+    }
+
     fn relief(&self, x: f64, y: f64) -> Relief {
-        let (along, across) = (Cell::new(&self.x, x), Cell::new(&self.y, y));
-        let mut sums = [[0.0; 3]; 3]; // by the orders of derivatives with x and y
-        for (j, by_y) in [across.at, across.next].into_iter().zip(across.weights) {
-            for (i, by_x) in [along.at, along.next].into_iter().zip(along.weights) {
-                let [h, hx, hy, hxy] = self.nodes[j * self.x.len() + i];
-                for (p, x) in by_x.iter().enumerate() {
-                    for (q, y) in by_y.iter().enumerate().take(3 - p) {
-                        sums[p][q] += y[0] * (x[0] * h + x[1] * hx) + y[1] * (x[0] * hy + x[1] * hxy);
-                    }
-                }
-            }
-        }
+        let sums = self.sums::<2>(x, y);
         Relief {
             height: sums[0][0],
             slope: [sums[1][0], sums[0][1]],
             curvature: [sums[2][0], sums[1][1], sums[0][2]],
         }
     }
+
+    /// Derivatives of the height up to an order, by the orders with x and with y.
+    #[inline(always)]
+    fn sums<const ORDER: usize>(&self, x: f64, y: f64) -> [[f64; 3]; 3] {
+        let (along, across) = (Cell::new(&self.x, x), Cell::new(&self.y, y));
+        let mut sums = [[0.0; 3]; 3];
+        for (j, by_y) in [across.at, across.next].into_iter().zip(across.weights) {
+            for (i, by_x) in [along.at, along.next].into_iter().zip(along.weights) {
+                let [h, hx, hy, hxy] = self.nodes[j * self.x.len() + i];
+                for (p, x) in by_x.iter().enumerate().take(ORDER + 1) {
+                    for (q, y) in by_y.iter().enumerate().take(ORDER + 1 - p) {
+                        sums[p][q] += y[0] * (x[0] * h + x[1] * hx) + y[1] * (x[0] * hy + x[1] * hxy);
+                    }
+                }
+            }
+        }
+        sums
+    }
+}
+
+/// Bound of the heights of a surface through these soundings [m].
+fn highest(heights: &[Vec<f64>]) -> f64 {
+    let soundings = || heights.iter().flatten().copied();
+    let [low, high] = [
+        soundings().fold(f64::INFINITY, f64::min),
+        soundings().fold(f64::NEG_INFINITY, f64::max),
+    ];
+    high + EXCURSION_MAX * (high - low)
+}
+
+/// Penetration [m] and unit normal of a node at a place [m] over or under a surface of this height [m] and slope [-].
+#[inline(always)]
+fn stand<V: RealVector>(height: V::Real, [hx, hy]: [V::Real; 2], place: V) -> (V::Real, V) {
+    let [zero, one] = [0.0, 1.0].map(V::Real::splat);
+    let upright = (one + hx * hx + hy * hy).sqrt().recip(); // n_z
+    let normal = V::of([zero - hx, zero - hy, one]).scaled(upright);
+    ((height - place.components()[2]) * upright, normal)
 }
 
 /// Limits what a node of a grid gives to a cell, over the sides of the cell from that node: control points of the cell's Bézier net.

@@ -180,7 +180,7 @@ impl AxialWork {
         let stops = slides.component_mul(&Vector2::new(along, node.mass[0]));
         let holding = axes.components(&needed) - stops;
         let compliance = Vector2::new(1.0 / along, 1.0 / node.mass[0]);
-        let held = held(holding, compliance, friction.limits(&axes, push));
+        let held = held(holding, compliance, friction.limits(axes.share, push).into());
         let still = mode == Mode::Off && slides.norm() <= STILL;
         if held.multiplier.is_none() || still {
             stand.mode = Mode::Sticks;

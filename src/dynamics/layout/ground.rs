@@ -9,7 +9,6 @@ use crate::math::fold::{Column, Field, Fold, Slot};
 use crate::math::lanes::Lanes;
 use crate::model::{Bottom, Contact};
 use crate::physics::friction::Friction;
-use crate::physics::seabed::ContactCoefficients;
 
 /// Lumped contact coefficients [N/m, N s/m] and the z [m] below which they push; over a bed that slopes or rubs the height above it, along its normal.
 #[derive(Debug, Clone)]
@@ -52,14 +51,6 @@ impl ContactArrays {
             level: keep(&level),
             stiffness: keep(&contact.stiffness),
             damping: keep(&contact.damping),
-        }
-    }
-
-    /// Spring and damper of the node at `at`.
-    pub fn coefficients(&self, at: Slot) -> ContactCoefficients {
-        ContactCoefficients {
-            stiffness: self.stiffness[at],
-            damping: self.damping[at],
         }
     }
 }

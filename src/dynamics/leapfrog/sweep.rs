@@ -13,7 +13,9 @@ use super::LineWork;
 use crate::dynamics::layout::{CurrentNow, LENGTH2_MIN, Layout, WaveArrays, inverse_norm, water_flow};
 use crate::dynamics::step::Step;
 use crate::math::lanes::{Lanes, Vectors};
-use crate::model::End;
+use crate::math::real::choose;
+use crate::model::{Bottom, End};
+use crate::physics::friction_step::Landing;
 use crate::physics::morison::DragCoefficients;
 use crate::physics::stretch::{StretchLaw, total_tension};
 
@@ -34,6 +36,16 @@ mod around {
     pub const STILL: u8 = 1;
     /// In motion.
     pub const FLOWING: u8 = 2;
+}
+
+/// Seabed under the nodes.
+mod under {
+    /// None.
+    pub const NOTHING: u8 = 0;
+    /// Level and without friction.
+    pub const LEVEL: u8 = 1;
+    /// With a slope, soundings or friction.
+    pub const ROUGH: u8 = 2;
 }
 
 /// [`LineWork::pull`] for the vector unit of the machine.
@@ -124,6 +136,7 @@ struct Moving<'a> {
     resistance: &'a mut [Vectors],
     inverse_square: &'a mut [Lanes],
     press: &'a mut [Vectors],
+    friction: &'a mut [Vectors],
 }
 
 /// Coefficients of the nodes, row by row.
@@ -135,6 +148,9 @@ struct NodeRows<'a> {
     current: Option<&'a CurrentNow>,
     waves: Option<&'a WaveArrays>,
     contact: ContactRows<'a>,
+    bottom: Option<&'a Bottom>,
+    /// 1 for nodes that move freely, 0 elsewhere.
+    interior: &'a [Lanes],
 }
 
 /// Drag coefficients and 1/M_t − 1/M_n; empty without water.
@@ -145,7 +161,7 @@ struct WaterRows<'a> {
     excess: &'a [Lanes],
 }
 
-/// Level seabed without friction; empty without one.
+/// Contact with the seabed; empty without one.
 #[derive(Default)]
 struct ContactRows<'a> {
     level: &'a [Lanes],
@@ -199,7 +215,7 @@ impl LineWork {
     #[inline(always)]
     fn cut(&mut self) -> Swept<'_> {
         let (last, line) = (self.layout.fold.rows(), &mut self.layout);
-        let moving = Moving {
+        let mut moving = Moving {
             position: line.position.rows_mut(last),
             velocity: line.velocity.rows(last),
             velocity_before: line.velocity_before.rows_mut(last),
@@ -210,6 +226,7 @@ impl LineWork {
                 Some(press) => press.rows_mut(last),
                 None => &mut [],
             },
+            friction: &mut [],
         };
         let mut nodes = NodeRows {
             weight: line.weight.rows(last),
@@ -219,6 +236,8 @@ impl LineWork {
             current: line.current.as_ref(),
             waves: line.waves.as_ref(),
             contact: ContactRows::default(),
+            bottom: None,
+            interior: self.interior.rows(last),
         };
         if let Some(water) = &self.water {
             nodes.water = WaterRows {
@@ -227,12 +246,16 @@ impl LineWork {
                 excess: water.inverse_mass_excess.rows(last),
             };
         }
-        if let Some(contact) = &line.contact {
+        if let Some(contact) = &mut line.contact {
             nodes.contact = ContactRows {
                 level: contact.level.rows(last),
                 stiffness: contact.stiffness.rows(last),
                 damping: contact.damping.rows(last),
             };
+            if let Some(rough) = &mut contact.bottom {
+                nodes.bottom = Some(&rough.bottom);
+                moving.friction = rough.rub.rows_mut(last);
+            }
         }
         Swept { moving, nodes }
     }
@@ -240,8 +263,8 @@ impl LineWork {
 
 /// Geometry and forces of a row of nodes.
 struct Kicking {
-    /// Height [m].
-    z: Lanes,
+    /// Position [m].
+    place: Vectors,
     /// Sum of the forces of the segments [N].
     pull: Vectors,
     /// Resistance of water and damping [N].
@@ -257,7 +280,7 @@ struct Kicking {
 impl NodeRows<'_> {
     /// Velocities at t_{n+½} [m/s] of row number `at`.
     #[inline(always)]
-    fn kick<const AROUND: u8, const BED: bool>(
+    fn kick<const AROUND: u8, const UNDER: u8>(
         &self,
         at: usize,
         by: &Kicking,
@@ -282,11 +305,46 @@ impl NodeRows<'_> {
         }
         response.z = response.z + inverse_mass;
         let mut kicked = velocity + kick;
-        if BED {
-            let push = self.contact.push(at, by.z, [kicked.z, response.z], sizes);
+        if UNDER == under::LEVEL {
+            let push = self.contact.push(at, by.place.z, [kicked.z, response.z], sizes);
             kicked = kicked + response.scale(push);
         }
         kicked
+    }
+
+    /// Velocities [m/s] of row number `at` on a seabed with a slope, soundings or friction, and the force of friction [N], from the velocities without it.
+    #[inline(always)]
+    fn land(&self, at: usize, by: &Kicking, free: Vectors, sizes: Sizes) -> (Vectors, Vectors) {
+        let none = (free, Vectors::zero());
+        let (Some(bottom), level) = (self.bottom, self.contact.level[at]) else {
+            return none;
+        };
+        let highest = Lanes::splat(bottom.ground.highest()) + level - by.place.z;
+        if !(highest + sizes.drift * free.dot(free).sqrt()).any_positive() {
+            return none;
+        }
+        let (below, normal) = bottom.ground.stand_of_four(by.place);
+        let penetration = below + level;
+        let lands = (penetration - sizes.drift * normal.dot(free)) * self.interior[at];
+        if !lands.any_positive() {
+            return none;
+        }
+        let inverse = self.inverse_mass[at];
+        let excess = self.water.excess.get(at).copied().unwrap_or(Lanes::splat(0.0));
+        let landing = Landing {
+            mass: [inverse.recip(), (inverse + excess).recip()],
+            tangent: by.chord.scale(inverse_norm(by.chord.dot(by.chord))),
+            normal,
+            penetration,
+            contact: [self.contact.stiffness[at], self.contact.damping[at]],
+            steps: [sizes.kick, sizes.drift],
+        };
+        let landed = landing.solve(free, bottom.friction.as_ref());
+        let friction = landed.friction.scale(sizes.kick.recip());
+        (
+            choose(lands, landed.velocity, free),
+            choose(lands, friction, Vectors::zero()),
+        )
     }
 }
 
@@ -330,17 +388,17 @@ impl LineWork {
         }
     }
 
-    /// [`LineWork::settle`] solves the contact with a seabed that slopes or has friction.
     #[inline(always)]
     fn choose_bed<const AROUND: u8>(&mut self, step: &Step, drift: f64) {
-        match self.layout.contact.is_some() && !self.rough {
-            false => self.sweep::<AROUND, false>(step, drift),
-            true => self.sweep::<AROUND, true>(step, drift),
+        match (&self.layout.contact, self.layout.bottom()) {
+            (None, _) => self.sweep::<AROUND, { under::NOTHING }>(step, drift),
+            (Some(_), None) => self.sweep::<AROUND, { under::LEVEL }>(step, drift),
+            (Some(_), Some(_)) => self.sweep::<AROUND, { under::ROUGH }>(step, drift),
         }
     }
 
     #[inline(always)]
-    fn sweep<const AROUND: u8, const BED: bool>(&mut self, step: &Step, drift: f64) {
+    fn sweep<const AROUND: u8, const UNDER: u8>(&mut self, step: &Step, drift: f64) {
         let sizes = Sizes {
             kick: Lanes::splat(step.kick),
             drift: Lanes::splat(step.drift),
@@ -350,7 +408,7 @@ impl LineWork {
         if AROUND != around::DRY {
             swept.resist::<AROUND>(sizes);
         }
-        swept.kick::<AROUND, BED>(sizes, Lanes::splat(drift));
+        swept.kick::<AROUND, UNDER>(sizes, Lanes::splat(drift));
         let line = &mut self.layout;
         std::mem::swap(&mut line.velocity, &mut line.velocity_before);
     }
@@ -396,7 +454,7 @@ impl Swept<'_> {
 
     /// Kicks the nodes, which then move for `drift` [s].
     #[inline(always)]
-    fn kick<const AROUND: u8, const BED: bool>(&mut self, sizes: Sizes, drift: Lanes) {
+    fn kick<const AROUND: u8, const UNDER: u8>(&mut self, sizes: Sizes, drift: Lanes) {
         let last = self.last();
         let mut low = self.moving.position[0];
         let mut pull_low = self.moving.pull[last].moved_up_after(Vectors::zero());
@@ -405,7 +463,7 @@ impl Swept<'_> {
             let (here, velocity) = (moving.position[at], moving.velocity[at]);
             let pull = moving.pull[at];
             let mut by = Kicking {
-                z: here.z,
+                place: here,
                 pull: pull - pull_low,
                 resistance: moving.resistance[at],
                 press: Vectors::zero(),
@@ -415,7 +473,10 @@ impl Swept<'_> {
             if AROUND == around::FLOWING && nodes.waves.is_some() {
                 by.press = moving.press[at];
             }
-            let kicked = nodes.kick::<AROUND, BED>(at, &by, velocity, sizes);
+            let mut kicked = nodes.kick::<AROUND, UNDER>(at, &by, velocity, sizes);
+            if UNDER == under::ROUGH {
+                (kicked, moving.friction[at]) = nodes.land(at, &by, kicked, sizes);
+            }
             moving.velocity_before[at] = kicked; // v_{n−3/2} has been read
             moving.position[at] = here + kicked.scale(drift);
             (low, pull_low) = (here, pull);
