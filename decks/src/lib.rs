@@ -135,9 +135,6 @@ fn finish(draft: &mut Draft<'_>, folder: &Path) -> Result<Vec<Note>, Vec<SceneEr
         return Err(mistakes);
     }
     notes.extend(draft.scene.notes());
-    // The reader of MoorDyn's decks notes diameters itself, with narrower limits.
-    let of_moordyn = draft.format.starts_with("MoorDyn");
-    notes.retain(|note| !(of_moordyn && note.at.ends_with(".diameter")));
     Ok(notes)
 }
 

@@ -19,7 +19,7 @@ const STRAIN: f64 = 0.05;
 const FIRST_GUESS_STRAIN: f64 = 0.5;
 /// Mass over volume of the diameter [kg/m³]: foam has 200, steel 7850, lead 11 340. The upper limit is the geometric mean of steel and of
 /// the bar's diameter of a chain, three times steel.
-const MASS_PER_VOLUME: [f64; 2] = [200.0, 14_000.0];
+pub const MASS_PER_VOLUME: [f64; 2] = [200.0, 14_000.0];
 /// Weight in water over volume of the diameter [kg/m³] of a line whose mass is not given, without sign: ropes that nearly float have 30.
 const EXCESS_MIN: f64 = 1.0;
 /// Density of steel [kg/m³].
@@ -29,7 +29,7 @@ pub const STEEL: f64 = 7850.0;
 const CHAIN: std::ops::Range<f64> = 2.7..4.0;
 /// Normal drag coefficient [-] from which it refers to the bar of a chain (2.4 on the bar, 1.3 on the volume-equivalent diameter): the
 /// diameter is then the bar's by intention, as in several published systems.
-const DRAG_ON_BAR: f64 = 1.8;
+pub const DRAG_ON_BAR: f64 = 1.8;
 /// Height of an end above the seabed, over the length of its line [-], up to which it is taken to lie on it.
 const ON_SEABED: f64 = 0.02;
 /// Distance of a fairlead from its vessel's origin [m]: the longest vessel is 488 m long.

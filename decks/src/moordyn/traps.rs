@@ -1,6 +1,6 @@
 //! Remarks on what is right in a deck but often meant otherwise.
 
-use moorline::scene::plausibility::{STEEL, dense};
+use moorline::scene::plausibility::{DRAG_ON_BAR, MASS_PER_VOLUME, dense};
 
 use super::deck::{Attachment, Deck, LineType, Property, Version};
 use super::sections::{Kind, Sections};
@@ -78,13 +78,14 @@ fn ratio_or_damping(kind: &LineType, sections: &Sections<'_>, findings: &mut Fin
     }
 }
 
-/// The diameter is that of a cylinder of the line's volume, not that of a chain's bar.
+/// The diameter is that of a cylinder of the line's volume, not that of a chain's bar. A drag coefficient that refers to the bar makes that
+/// certain: a scene is then silent, and other lines are noted as in a scene.
 fn chain_diameter(kind: &LineType, findings: &mut Findings) {
     let (diameter, mass) = (kind.diameter.value, kind.mass.value);
-    if diameter <= 0.0 || mass <= 0.0 {
+    if diameter <= 0.0 || mass <= 0.0 || kind.drag_normal.value < DRAG_ON_BAR {
         return;
     }
-    if let Some(text) = dense(diameter, mass, DENSITY_MAX, "Diam") {
+    if let Some(text) = dense(diameter, mass, MASS_PER_VOLUME[1], "Diam") {
         let text = format!("{}: {text}", kind.name.value);
         findings.remark(&kind.diameter, text);
     }
