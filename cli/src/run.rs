@@ -37,6 +37,16 @@ pub enum Pace {
     },
 }
 
+impl Pace {
+    /// Time between rows of the results [s].
+    fn interval(self, scene: &Scene) -> f64 {
+        match self {
+            Pace::Scene => scene.output.interval,
+            Pace::Host { step, .. } => step,
+        }
+    }
+}
+
 /// Runs a scene, with its own motion or with a given one, and writes all results into a folder.
 pub fn run(input: &Input, drive: &Drive, folder: &Path, pace: Pace) -> Result<(), Failure> {
     let mut loaded = read_scene(&input.scene, &input.host.supplement())?;
@@ -57,6 +67,8 @@ pub fn run(input: &Input, drive: &Drive, folder: &Path, pace: Pace) -> Result<()
     let _open = Folder::open(folder)?;
     if pace == Pace::Scene {
         discretise(&mut loaded, discretisation::select);
+    let expense = discretisation::expense(&loaded.scene, &simulation, pace.interval(&loaded.scene));
+    remark_all(&loaded, expense.into_iter().collect());
     }
     let mut simulation = simulate(&loaded)?;
     let still = simulation.in_equilibrium().ok();
@@ -99,11 +111,7 @@ fn step_through(
     watch: &mut Watch,
 ) -> Result<Record, Failure> {
     let scene = &loaded.scene;
-    let interval = match pace {
-        Pace::Scene => scene.output.interval,
-        Pace::Host { step, .. } => step,
-    };
-    let times = Times::new(scene.output.duration, interval);
+    let times = Times::new(scene.output.duration, pace.interval(scene));
     let ahead = usize::from(scene.solver.input_reconstruction == Reconstruction::Interpolate);
     let stride = times.frame_stride(scene.output.profile);
     record.add_row(0.0, recorder.row(simulation, 0.0));
