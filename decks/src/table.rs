@@ -164,9 +164,15 @@ pub(crate) fn check_unique<'d, T: Ord + Display + 'd>(
     }
 }
 
-/// `, did you mean DTM?`, where a known name is near.
-pub(crate) fn meant<'a>(name: &str, known: impl IntoIterator<Item = &'a str> + Clone) -> String {
-    nearest(name, known).map_or(String::new(), |known| format!(", did you mean {known}?"))
+/// The remark on an option or flag that is not known.
+pub(crate) fn left_out<'a>(
+    what: &str,
+    name: &str,
+    known: impl IntoIterator<Item = &'a str> + Clone,
+) -> String {
+    let meant = nearest(name, known);
+    let meant = meant.map_or(String::new(), |known| format!(", did you mean {known}?"));
+    format!("the {what} {} is not known and left out{meant}", shown(name))
 }
 
 /// Remarks on names above a table that are those of other columns: readers go by the place of a column, not by its name.

@@ -5,7 +5,7 @@ use moorline::scene::rows::{Row, number, shown};
 use super::deck::{Options, Property};
 use super::tables::word_property;
 use crate::findings::{Findings, Placed};
-use crate::table::{ROWS_MAX, is_one_of, meant, placed_text};
+use crate::table::{ROWS_MAX, is_one_of, left_out, placed_text};
 
 /// Keys in capitals that choose how MoorDyn solves, starts and writes: nothing here needs them.
 const UNNEEDED: &str = "DTM DT CFL TSCHEME DTIC ICDT CDSCALEIC ICDFAC THRESHIC ICTHRESH FILEIC ICGENDYNAMIC \
@@ -96,12 +96,7 @@ pub(super) fn read(rows: &[Row<'_>], findings: &mut Findings) -> Options {
         } else {
             let keys = NEEDED.iter().map(|(_, keys)| *keys).chain([UNNEEDED]);
             let known: Vec<&str> = keys.flat_map(|keys| keys.split(' ')).collect();
-            let meant = meant(&key.value, known.iter().copied());
-            let text = format!(
-                "the option {} is not known and left out{meant}",
-                shown(&key.value)
-            );
-            findings.remark(key, text);
+            findings.remark(key, left_out("option", &key.value, known.iter().copied()));
         }
     }
     options

@@ -311,11 +311,6 @@ fn a_wrong_map_deck_is_refused_at_its_place() {
         ),
         (
             "tension_fair",
-            "OMIT_CONTCAT",
-            "unknown flag \"OMIT_CONTCAT\", did you mean OMIT_CONTACT?",
-        ),
-        (
-            "tension_fair",
             "LINEAR_SPRING",
             "a line as a linear spring is not modelled",
         ),
@@ -323,11 +318,6 @@ fn a_wrong_map_deck_is_refused_at_its_place() {
             "tension_fair",
             "DAMAGE_TIME",
             "lines that come off are not modelled",
-        ),
-        (
-            "outer_tol 1e-5",
-            "outer_tolerance 1e-5",
-            "SOLVER OPTIONS: unknown option \"outer_tolerance\", did you mean OUTER_TOL?",
         ),
         (
             "repeat 120 240",

@@ -238,6 +238,17 @@ const TRAPS: &[Trap] = &[
         notes: &["\"outer_fd inner only\" is a comment"],
         holds: |scene| scene.lines.len() == 2,
     },
+    Trap {
+        file: "unknown_words.map",
+        supplement: deep_116,
+        closed: Ok(2),
+        notes: &[
+            "the option \"outer_tolerance\" is not known and left out, did you mean OUTER_TOL?",
+            "the flag \"OMIT_CONTCAT\" is not known and left out, did you mean OMIT_CONTACT?",
+            "the flag \"colour\" is not known and left out",
+        ],
+        holds: |scene| scene.seabed.is_some(),
+    },
 ];
 
 /// What is wrong with a deck, if anything.
