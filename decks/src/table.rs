@@ -6,6 +6,7 @@ use std::ops::Range;
 
 use moorline::scene::nearest::nearest;
 use moorline::scene::rows::{Field, Row, number, shown};
+use moorline::scene::units::differ;
 
 use crate::findings::{Findings, Placed};
 
@@ -173,6 +174,25 @@ pub(crate) fn left_out<'a>(
     let meant = nearest(name, known);
     let meant = meant.map_or(String::new(), |known| format!(", did you mean {known}?"));
     format!("the {what} {} is not known and left out{meant}", shown(name))
+}
+
+/// Refuses a unit above a column that has numbers other than 0 and is read in another unit of the same quantity. The programs of such decks
+/// read no units either.
+pub(crate) fn check_units(units: &Row<'_>, columns: &[Column], rows: &[Row<'_>], findings: &mut Findings) {
+    for (place, (unit, column)) in units.fields().iter().zip(columns).enumerate() {
+        let counts = |row: &Row<'_>| {
+            row.fields()
+                .get(place)
+                .is_some_and(|cell| number(cell.text) != Ok(0.0))
+        };
+        if differ(unit.text, column.unit) && rows.iter().take(ROWS_MAX).any(counts) {
+            let problem = format!(
+                "the header has {} over {}, but numbers there are read in {}, whatever stands above them: convert them, and write that unit",
+                unit.text, column.name, column.unit
+            );
+            findings.mistake("", unit.span.clone(), problem);
+        }
+    }
 }
 
 /// Remarks on names above a table that are those of other columns: readers go by the place of a column, not by its name.

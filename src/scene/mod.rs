@@ -73,7 +73,7 @@ pub mod table;
 mod table_ends;
 mod tension_strain;
 mod time_function;
-mod units;
+pub mod units;
 mod value;
 mod water;
 mod water_file;

@@ -4,7 +4,7 @@ use moorline::scene::rows::{Field, Row, number, shown};
 
 use crate::findings::{Findings, Placed};
 use crate::table::{
-    Cells, Column, ROWS_MAX, check_unique, column, compare_header, is_one_of, left_out,
+    Cells, Column, ROWS_MAX, check_unique, check_units, column, compare_header, is_one_of, left_out,
     placed_text, read_rows, title,
 };
 
@@ -273,6 +273,9 @@ fn table<T>(
 ) -> Vec<T> {
     if let Some(header) = section.rows.first() {
         compare_header(header, columns, findings);
+    }
+    if let Some(units) = section.rows.get(1) {
+        check_units(units, columns, section.body(), findings);
     }
     read_rows(section.name, section.body(), &[columns], findings, read)
 }

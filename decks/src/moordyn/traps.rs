@@ -6,10 +6,7 @@ use super::deck::{Attachment, Deck, LineType, Property, Version};
 use super::sections::{Kind, Sections};
 use super::tables::columns_of;
 use crate::findings::Findings;
-use crate::table::compare_header;
-
-/// Density [kg/m³] above which the diameter is unlikely to be that of the volume: steel with a margin for rounded numbers.
-const DENSITY_MAX: f64 = 1.2 * STEEL;
+use crate::table::{check_units, compare_header};
 
 /// BA [N s] below which a ratio without its minus sign is likelier.
 const RATIO_LIKE: f64 = 10.0;
@@ -41,6 +38,9 @@ fn headers(deck: &Deck, sections: &Sections<'_>, findings: &mut Findings) {
     for section in &sections.list {
         if let (Some(names), Some(columns)) = (&section.names, columns_of(section, deck)) {
             compare_header(names, columns, findings);
+        }
+        if let (Some(units), Some(columns)) = (&section.units, columns_of(section, deck)) {
+            check_units(units, columns, &section.rows, findings);
         }
     }
 }

@@ -343,6 +343,61 @@ fn mistakes_of_a_stage_are_reported_together_in_the_order_of_the_file() {
     let text = with(OPENFAST, "113.35", "heavy");
     let text = with(&text, "1    fixed", "1    moored");
     let text = with(&text, "2.0e6    kbot", "2.0e6x    kbot");
+#[test]
+fn a_unit_above_a_column_that_it_is_not_read_in_is_refused_with_the_one_that_is() {
+    let read = |old: &str, new: &str| said(&with(VERSION_1, old, new));
+    for (old, new, part) in [
+        (
+            "(N)   (N)  (N) ",
+            "(kN)  (kN) (kN)",
+            "input:10:59: the header has (kN) over FZ, but numbers there are read in N",
+        ),
+        (
+            "(m)    (kg/m) ",
+            "(mm)   (kg/m) ",
+            "the header has (mm) over Diam, but numbers there are read in m",
+        ),
+        (
+            "(kg/m)         (N) ",
+            "(t/m)          (N) ",
+            "the header has (t/m) over MassDen, but numbers there are read in kg/m",
+        ),
+        ("(Pa-s/-)", "(kN-s/-)", "the header has (kN-s/-) over BA/-zeta"),
+    ] {
+        assert!(
+            read(old, new).contains(part),
+            "{old} -> {new}\n{}",
+            read(old, new)
+        );
+    }
+    let other = with(VERSION_1, "(kg)  (m^3)", "(-)  (#)");
+    assert!(load_text(&other).is_ok());
+    let of_zeros = with(
+        &with(VERSION_1, "1e3   1.5", "0     1.5"),
+        "(N)   (N)  (N) ",
+        "(kN)  (kN) (kN)",
+    );
+    assert!(load_text(&of_zeros).is_ok());
+    let map = with(MAP, "(N)           (-)   (Pa-s)", "(kN)          (-)   (Pa-s)");
+    let error = load_bytes(map.as_bytes(), &deep()).unwrap_err().list();
+    assert!(
+        error.contains("the header has (kN) over EA, but numbers there are read in N"),
+        "{error}"
+    );
+}
+
+#[test]
+fn advice_on_what_a_deck_leaves_to_its_host_is_that_of_every_command() {
+    let depth = load_text(MAP).unwrap_err().list();
+    assert!(depth.contains("add `--depth 320` to the command"), "{depth}");
+    let place = load_text(FARM).unwrap_err().list();
+    assert!(
+        place.contains("add `--at turbine1=X,Y,Z` to the command"),
+        "{place}"
+    );
+    assert!(!depth.contains("convert") && !place.contains("convert"));
+}
+
     let said = said(&text);
     let places: Vec<&str> = said
         .lines()
