@@ -96,6 +96,43 @@ fn interrupt(signal: &str) {
     let folder = folder();
     let child = Command::new(env!("CARGO_BIN_EXE_moorline"))
         .args(["run", "scene.toml", "-o", "new/out", "--duration", "90000"])
+/// Each waits for a scene that does not come.
+#[cfg(unix)]
+#[test]
+fn every_command_that_is_interrupted_says_so_and_leaves_no_file() {
+    let folder = folder();
+    let fmu = ["fmu", "/dev/stdin", "-o", "x.fmu"];
+    let commands = [
+        ["check", "/dev/stdin"].as_slice(),
+        &["statics", "/dev/stdin"],
+        &fmu,
+    ];
+    for (arguments, signal) in commands.into_iter().zip(["-TERM", "-INT", "-TERM"]) {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_moorline"))
+            .args(arguments)
+            .current_dir(folder.path())
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let _open = child.stdin.take();
+        std::thread::sleep(std::time::Duration::from_millis(300));
+        assert!(
+            Command::new("kill")
+                .args([signal, &child.id().to_string()])
+                .status()
+                .unwrap()
+                .success()
+        );
+        let output = child.wait_with_output().unwrap();
+        assert_eq!(output.status.code(), Some(130), "{arguments:?}: {}", err(&output));
+        let said = "interrupted: nothing was written\n";
+        assert_eq!(err(&output), said, "{arguments:?}");
+    }
+    assert_eq!(names(folder.path()), ["scene.toml"]);
+}
+
         .current_dir(folder.path())
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
