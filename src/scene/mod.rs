@@ -82,6 +82,7 @@ mod words;
 use std::collections::BTreeMap;
 
 pub use crate::math::attitude::Order as AngleOrder;
+pub use check::name_problem;
 pub use drive::{Drive, RegularMotion};
 pub use error::{LoadError, SceneError};
 pub use line::{Break, InitialShape, Line, LineEnd, RestShape, Section, Winch};

@@ -96,7 +96,7 @@ fn unneeded_options(deck: &Deck, findings: &mut Findings) {
     if let Some(first) = unneeded.first() {
         let keys: Vec<&str> = unneeded.iter().map(|key| key.value.as_str()).collect();
         let text = format!(
-            "options that nothing here needs, since steps and the start from equilibrium are found without them: {}",
+            "options that nothing here needs, since steps and the start are found without them: {}",
             keys.join(", ")
         );
         findings.remark(first, text);
@@ -127,12 +127,21 @@ fn friction(deck: &Deck, findings: &mut Findings) {
     }
 }
 
-/// Start of a run: MoorDyn comes to rest from the positions in the file, in no time where `TmaxIC` is 0.
+/// Start of a run: MoorDyn comes to rest from the positions in the file, in no time where `TmaxIC` is 0, or takes a state from another file.
 fn start(deck: &Deck, findings: &mut Findings) {
-    if let Some(at_once) = &deck.options.starts_at_once {
-        let text = "TmaxIC 0: runs start with free points where the file has them and every line on its catenary between its ends, \
-                    or straight where it has none, as in MoorDyn; leave it out to start from equilibrium";
-        findings.remark(at_once, text);
+    let at_once = &deck.options.starts_at_once;
+    let start = match at_once {
+        Some(_) => {
+            "TmaxIC 0: runs start with free points where the file has them and every line on its catenary between its ends, or \
+             straight where it has none, as in MoorDyn; leave it out to start from equilibrium"
+        }
+        None => "the run starts from equilibrium",
+    };
+    if let Some(file) = &deck.options.state_file {
+        let text = format!("{}: the state in this file is not read; {start}", file.value);
+        findings.remark(file, text);
+    } else if let Some(at_once) = at_once {
+        findings.remark(at_once, start);
     }
 }
 

@@ -249,6 +249,11 @@ fn bodies_and_rods_that_move_are_refused_with_what_to_do() {
     let refusals = [
         (
             "1    Coupled     0",
+            "1    Pinned     0",
+            "input:15:6: body 1: a body is Fixed, Coupled or Vessel\n",
+        ),
+        (
+            "1    Coupled     0",
             "1    Free     0",
             "input:15:6: body 1: a free body is not modelled",
         ),
@@ -339,11 +344,6 @@ fn a_wrong_map_deck_is_refused_at_its_place() {
 }
 
 #[test]
-fn mistakes_of_a_stage_are_reported_together_in_the_order_of_the_file() {
-    let text = with(OPENFAST, "113.35", "heavy");
-    let text = with(&text, "1    fixed", "1    moored");
-    let text = with(&text, "2.0e6    kbot", "2.0e6x    kbot");
-#[test]
 fn a_unit_above_a_column_that_it_is_not_read_in_is_refused_with_the_one_that_is() {
     let read = |old: &str, new: &str| said(&with(VERSION_1, old, new));
     for (old, new, part) in [
@@ -398,6 +398,11 @@ fn advice_on_what_a_deck_leaves_to_its_host_is_that_of_every_command() {
     assert!(!depth.contains("convert") && !place.contains("convert"));
 }
 
+#[test]
+fn mistakes_of_a_stage_are_reported_together_in_the_order_of_the_file() {
+    let text = with(OPENFAST, "113.35", "heavy");
+    let text = with(&text, "1    fixed", "1    moored");
+    let text = with(&text, "2.0e6    kbot", "2.0e6x    kbot");
     let said = said(&text);
     let places: Vec<&str> = said
         .lines()
