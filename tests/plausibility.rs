@@ -68,7 +68,7 @@ interval = 0.1
 "#;
 
 /// What was written, the slip, the key that is noted, and a phrase of the note.
-const SLIPS: [(&str, &str, &str, &str); 23] = [
+const SLIPS: &[(&str, &str, &str, &str)] = &[
     (
         "density = 1025.0",
         "density = 1.025",
@@ -192,12 +192,108 @@ const SLIPS: [(&str, &str, &str, &str); 23] = [
         "lines[1]",
         "strained by at least",
     ),
+    (
+        "density = 1025.0",
+        "density = 1025.0\ncurrent = { velocity = [0.0, -36.0, 0.0] }",
+        "water.current.velocity[1]",
+        "less than 5 m/s",
+    ),
+    (
+        "density = 1025.0",
+        "density = 1025.0\ncurrent = { profile = [[0.0, 4.0, 4.0], [-20.0, 1.0, 0.0]] }",
+        "water.current.profile[0]",
+        "5.657 m/s is unusual: less than 5 m/s",
+    ),
+    (
+        "density = 1025.0",
+        "density = 1025.0\ncurrent = { profile = [[0.0, 1.0, 0.0], [20.0, 0.5, 0.0]] }",
+        "water.current.profile[1]",
+        "20 m above the water: heights count upwards",
+    ),
+    (
+        "density = 1025.0",
+        "density = 1025.0\ncurrent = { velocity = [1.0, 0.0, 0.0], factor = { ramp = [0.0, 0.0, 9.0, 100.0] } }",
+        "water.current.factor",
+        "100 m/s with it is unusual",
+    ),
+    (
+        "depth = 120.0",
+        "depth = 120.0\nstiffness = 3.0e3",
+        "seabed.stiffness",
+        "1e4 to 2e9 Pa/m is usual",
+    ),
+    (
+        "depth = 120.0",
+        "depth = 120.0\nstiffness = 3.0e9",
+        "seabed.stiffness",
+        "1e4 to 2e9 Pa/m is usual",
+    ),
+    (
+        "depth = 120.0",
+        "depth = 120.0\nslope = [0.0, -1.5]",
+        "seabed.slope[1]",
+        "no angle in degrees",
+    ),
+    (
+        "axial_damping = 1.0e6",
+        "damping_ratio = 80.0",
+        "line_types.chain.damping_ratio",
+        "0 to 1 is usual",
+    ),
+    (
+        "axial_damping = 1.0e6",
+        "axial_damping = 1.0e6\nrayleigh = { ratios = [0.9, 1.5], frequencies = [1.0, 10.0] }",
+        "line_types.chain.rayleigh.ratios[1]",
+        "0 to 1 is usual",
+    ),
+    (
+        "axial_damping = 3.0e5",
+        "axial_damping = 3.0e5\nsolid_section = { diameter = 0.02, youngs_modulus = 210.0 }",
+        "line_types.rope.solid_section.youngs_modulus",
+        "2.1e11 Pa of steel",
+    ),
+    (
+        "position = [-405.0, 0.0, -120.0]",
+        "position = [-405.0, 0.0, 120.0]",
+        "points[2].position",
+        "120 m above the water: a fixed point is usually an anchor below it",
+    ),
+    (
+        "length = 450.0",
+        "length = 45000.0",
+        "lines[1]",
+        "less than 20 km is usual",
+    ),
+    (
+        "length = 450.0",
+        "length = 9450.0",
+        "lines[1]",
+        "9450 m long, and its ends are 414.8 m apart: less than 20 times their distance",
+    ),
+    (
+        "x = [[2.0, 12.0]]",
+        "x = [[2.0, 0.08]]",
+        "motion.platform.x",
+        "a frequency of 0.08 Hz is a period of 12.5 s",
+    ),
+    (
+        "attitude = [0.0, 0.0, 0.3]",
+        "attitude = [0.0, -5.0, 0.3]",
+        "vessels[0].attitude[1]",
+        "pitch of 5 rad is a turn by 286 degrees: 5 degrees are 0.0873 rad",
+    ),
+    (
+        "pitch = [[0.05, 9.0]]",
+        "roll = [[1.6, 9.0]]",
+        "motion.platform.roll",
+        "is a turn by 92 degrees",
+    ),
 ];
 
 #[test]
 fn twenty_slips_of_units_are_each_noted_by_key_line_and_what_is_usual() {
     let folder = tempfile::tempdir().unwrap();
-    for (right, slip, at, phrase) in SLIPS {
+    for &(right, slip, at, phrase) in SLIPS {
         assert!(SCENE.contains(right), "{right}");
         let text = SCENE.replacen(right, slip, 1);
         let path = folder.path().join("scene.toml");
@@ -286,6 +382,73 @@ fn missing_axial_damping_is_advice_with_a_value_and_no_note() {
         advice[0]
     );
     assert_eq!(Scene::from_toml(SCENE).unwrap().advice(), []);
+}
+
+#[test]
+fn values_of_models_turned_vessels_and_bench_tests_are_not_noted() {
+    for (usual, other) in [
+        ("x = [[2.0, 12.0]]", "x = [[0.02, 0.15]]"),
+        ("attitude = [0.0, 0.0, 0.3]", "attitude = [0.2, -0.1, 0.3]"),
+        (
+            "density = 1025.0",
+            "density = 1025.0\ncurrent = { profile = [[0.5, 4.0, 0.0], [-120.0, 0.0, 0.0]] }",
+        ),
+        (
+            "[[points]]\nname = \"buoy\"\nposition = [-5.0, 0.0, -10.0]",
+            "[[points]]\nname = \"buoy\"\nposition = [-405.0, 0.0, -120.0]",
+        ),
+    ] {
+        let text = SCENE.replacen(usual, other, 1);
+        assert!(text != SCENE, "{usual}");
+        let notes = Scene::from_toml(&text).unwrap().plausibility();
+        assert_eq!(notes, [], "{other}");
+    }
+    let bench = SCENE.replace("[water]\ndensity = 1025.0\n[water.waves]\nregular = { height = 4.0, period = 10.0, direction = 0.5 }\nramp = 20.0\n", "");
+    let bench = bench.replace("position = [-405.0, 0.0, -120.0]", "position = [-5.0, 0.0, 5.0]");
+    let notes = Scene::from_toml(&bench).unwrap().plausibility();
+    assert_eq!(notes, []);
+}
+
+#[test]
+fn a_line_that_its_tension_at_rest_breaks_is_noted_at_the_start() {
+    let noted = |tension: &str| {
+        let line = "sections = [{ type = \"chain\", length = 450.0 }]";
+        let text = SCENE.replace(
+            line,
+            &format!("{line}\nbreak = {{ at = \"b\", tension = {tension} }}"),
+        );
+        let scene = Scene::from_toml(&text).unwrap();
+        let simulation = Simulation::new(&scene).unwrap();
+        let mut watch = Watch::new(&scene, &simulation);
+        let notes = watch.look(&simulation);
+        assert_eq!(watch.look(&simulation), []);
+        notes
+    };
+    let [note] = &noted("1.0e3")[..] else {
+        panic!("{:?}", noted("1.0e3"));
+    };
+    assert_eq!(note.at, "lines[1].break.tension");
+    assert!(
+        note.text.contains("breaks in its first step") && note.text.contains("1000 N breaks it"),
+        "{note}"
+    );
+    assert_eq!(noted("1.0e8"), []);
+}
+
+#[test]
+fn a_run_of_hours_is_noted_with_its_elements_and_steps_and_what_to_change() {
+    let expense = |elements: usize| {
+        let text = ROPE.replace("elements = 6", &format!("elements = {elements}"));
+        let scene = Scene::from_toml(&(text + "[solver]\nintegrator = \"leapfrog\"\n")).unwrap();
+        let simulation = Simulation::new(&scene).unwrap();
+        moorline::discretisation::expense(&scene, &simulation, scene.output.interval)
+    };
+    assert_eq!(expense(100), None);
+    let note = expense(20_000).unwrap();
+    assert_eq!(note.at, "lines[0]");
+    for part in ["hours on one thread: 20000 elements, ", "fewer `elements`"] {
+        assert!(note.text.contains(part), "{note}");
+    }
 }
 
 /// A rope between two points in the dry, 10 m long.

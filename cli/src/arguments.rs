@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
-use moorline::scene::{Drive, RegularMotion};
+use moorline::scene::{Drive, RegularMotion, name_problem};
 use moorline_decks::Supplement;
 
 /// Mooring-line dynamics: statics, time-domain runs, FMUs.
@@ -130,7 +130,7 @@ pub struct FromHost {
     #[arg(long, value_name = "NAME=X,Y,Z", value_parser = placed_vessel)]
     at: Vec<(String, [f64; 3])>,
     /// Join all coupled points of a deck to one vessel of this name, with its origin at (0, 0, 0)
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", value_parser = vessel_name)]
     vessel: Option<String>,
 }
 
@@ -181,6 +181,11 @@ fn positive_number(text: &str) -> Result<f64, String> {
         Ok(_) => Err("must be positive and finite".to_string()),
         Err(_) => Err("is not a number".to_string()),
     }
+}
+
+/// Reads the name of a vessel.
+fn vessel_name(text: &str) -> Result<String, String> {
+    name_problem(text).map_or(Ok(text.to_string()), Err)
 }
 
 /// Reads `NAME=X,Y,Z`: a vessel and its reference position [m].

@@ -56,7 +56,9 @@ pub fn check(input: &Input) -> Result<(), Failure> {
         let integrators = simulation.choices().map(|choice| choice.integrator);
         loaded.scene.idle_with(integrators)
     });
-    let later = at_rest.chain(idle).chain(loaded.scene.advice());
+    let interval = scene.output.interval;
+    let expense = started().filter_map(|simulation| discretisation::expense(scene, simulation, interval));
+    let later = at_rest.chain(idle).chain(expense).chain(loaded.scene.advice());
     let later = later.map(|note| loaded.locate_note(note));
     for note in loaded.notes.iter().cloned().chain(later) {
         text.push_str(&format!("{}\n", noted(&loaded.path, &note)));

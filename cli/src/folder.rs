@@ -1,8 +1,10 @@
-//! The folder that a command writes into: made and tried before any work, and gone again where nothing came to be in it.
+//! The folder that a command writes into: made and tried before any work, and gone again where nothing came to be in it. What an interrupted
+//! command leaves behind.
 
 use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 
 use moorline::output::{open_folder, remove_partial};
 
@@ -11,12 +13,17 @@ use crate::failure::Failure;
 /// Exit code of a program that Ctrl-C ends, as shells have it: 128 and the signal's number.
 const INTERRUPTED: i32 = 130;
 
-/// A folder for results.
+/// Where the command writes, as long as it does.
+static OPEN: Mutex<Option<Place>> = Mutex::new(None);
+
+/// A folder that files come to be in.
 #[derive(Debug, Clone)]
 struct Place {
     path: PathBuf,
     /// Folders that were not there before, the innermost first.
     made: Vec<PathBuf>,
+    /// True if it is for results alone; false of the folder of one file.
+    is_own: bool,
 }
 
 /// A folder that is open for results as long as this lives.
@@ -24,26 +31,40 @@ struct Place {
 pub struct Folder(Place);
 
 impl Folder {
-    /// Makes a folder where it is missing, and checks that it takes files. From now on Ctrl-C names what is kept in it.
+    /// Makes a folder where it is missing, and checks that it takes files. An interrupted command names what is kept in it.
     pub fn open(path: &Path) -> Result<Folder, Failure> {
         let above = path.ancestors();
         let missing = above.take_while(|path| !path.as_os_str().is_empty() && !path.exists());
-        let folder = Folder(Place {
-            path: path.to_path_buf(),
-            made: missing.map(Path::to_path_buf).collect(),
-        });
+        let made = missing.map(Path::to_path_buf).collect();
         open_folder(path)?;
-        let place = folder.0.clone();
-        // Without a handler, Ctrl-C ends the program as it ends any other.
-        let _ = ctrlc::set_handler(move || place.interrupt());
-        Ok(folder)
+        Ok(Folder::of(path, made, true))
+    }
+
+    /// The folder of one file, whose beginning an interrupted command removes.
+    pub fn of_file(target: &Path) -> Folder {
+        let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty());
+        Folder::of(folder.unwrap_or(Path::new(".")), Vec::new(), false)
+    }
+
+    fn of(path: &Path, made: Vec<PathBuf>, is_own: bool) -> Folder {
+        let path = path.to_path_buf();
+        let place = Place { path, made, is_own };
+        set_open(Some(place.clone()));
+        Folder(place)
     }
 }
 
 impl Drop for Folder {
     fn drop(&mut self) {
+        set_open(None);
         self.0.remove_empty();
     }
+}
+
+/// Sets where the command writes; returns where it wrote before.
+fn set_open(place: Option<Place>) -> Option<Place> {
+    let mut open = OPEN.lock().unwrap_or_else(PoisonError::into_inner);
+    std::mem::replace(&mut open, place)
 }
 
 impl Place {
@@ -57,17 +78,24 @@ impl Place {
         }
     }
 
-    /// Ends the program with a message on what is kept.
-    fn interrupt(&self) -> ! {
+    /// Removes what is not whole; returns whether results are left.
+    fn clear(&self) -> bool {
         remove_partial(&self.path);
         self.remove_empty();
-        let holds = fs::read_dir(&self.path).is_ok_and(|mut entries| entries.next().is_some());
-        let kept = match holds {
-            true => format!("{} holds what was written before", self.path.display()),
-            false => "nothing was written".to_string(),
+        self.is_own && fs::read_dir(&self.path).is_ok_and(|mut entries| entries.next().is_some())
+    }
+}
+
+/// Lets Ctrl-C and requests to end, such as SIGTERM, end the program with a message on what is kept.
+pub fn end_on_interrupt() {
+    // Without a handler, they end the program as they end any other.
+    let _ = ctrlc::set_handler(|| {
+        let kept = match set_open(None).filter(Place::clear) {
+            Some(place) => format!("{} holds what was written before", place.path.display()),
+            None => "nothing was written".to_string(),
         };
         // A message that cannot be written changes nothing.
         let _ = writeln!(io::stderr(), "interrupted: {kept}");
         std::process::exit(INTERRUPTED)
-    }
+    });
 }

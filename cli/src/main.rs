@@ -25,7 +25,9 @@ use arguments::{Arguments, Command};
 use run::Pace;
 
 fn main() -> ExitCode {
-    let result = match Arguments::parse().command {
+    let command = Arguments::parse().command;
+    folder::end_on_interrupt();
+    let result = match command {
         Command::Check { input } => check::check(&input),
         Command::Statics { input, json } => statics::statics(&input, json),
         Command::Modes {

@@ -10,14 +10,14 @@ use moorline::output::channels::Channels;
 use moorline::output::figures::ELEVATION;
 use moorline::output::record::{Column, Record};
 use moorline::output::{collect, write_run};
-use moorline::scene::{Drive, LoadedScene, Reconstruction};
+use moorline::scene::{Drive, LoadedScene, MotionPath, Reconstruction, Scene};
 use moorline::simulation::{Simulation, Watch};
 
 use crate::arguments::Input;
 use crate::failure::Failure;
 use crate::folder::Folder;
 use crate::summary::run_summary;
-use crate::terminal::{discretise, print, progress, read_scene, remark_all, simulate};
+use crate::terminal::{discretise, print, progress, read_scene, remark, remark_all, simulate};
 
 /// Shapes kept of a run whose scene does not ask for all of them [-].
 const FRAMES_MAX: usize = 240;
@@ -37,6 +37,16 @@ pub enum Pace {
     },
 }
 
+impl Pace {
+    /// Time between rows of the results [s].
+    fn interval(self, scene: &Scene) -> f64 {
+        match self {
+            Pace::Scene => scene.output.interval,
+            Pace::Host { step, .. } => step,
+        }
+    }
+}
+
 /// Runs a scene, with its own motion or with a given one, and writes all results into a folder.
 pub fn run(input: &Input, drive: &Drive, folder: &Path, pace: Pace) -> Result<(), Failure> {
     let mut loaded = read_scene(&input.scene, &input.host.supplement())?;
@@ -48,17 +58,17 @@ pub fn run(input: &Input, drive: &Drive, folder: &Path, pace: Pace) -> Result<()
     }
     let mut motion = None;
     if !drive.is_empty() {
-        let known = loaded.scene.notes();
+        let before = loaded.scene.clone();
         motion = loaded.scene.drive(drive).map_err(Failure::Argument)?;
-        let mut notes = loaded.scene.notes();
-        notes.retain(|note| !known.contains(note));
-        remark_all(&loaded, notes);
+        remark_driven(&loaded, &before, drive);
     }
     let _open = Folder::open(folder)?;
     if pace == Pace::Scene {
         discretise(&mut loaded, discretisation::select);
     }
     let mut simulation = simulate(&loaded)?;
+    let expense = discretisation::expense(&loaded.scene, &simulation, pace.interval(&loaded.scene));
+    remark_all(&loaded, expense.into_iter().collect());
     let still = simulation.in_equilibrium().ok();
     let start = match pace {
         Pace::Scene => simulation.follow_scene(),
@@ -89,6 +99,25 @@ pub fn run(input: &Input, drive: &Drive, folder: &Path, pace: Pace) -> Result<()
     ))
 }
 
+/// Remarks on a scene that a drive has changed, except those on the scene before. Remarks on motions of the drive name its file or argument.
+fn remark_driven(loaded: &LoadedScene, before: &Scene, drive: &Drive) {
+    let (known, mut notes) = (before.notes(), loaded.scene.notes());
+    notes.retain(|note| !known.contains(note));
+    for note in notes {
+        let body = note
+            .at
+            .strip_prefix("motion.")
+            .and_then(|at| at.split('.').next());
+        let of = |scene: &Scene| body.and_then(|body| scene.motion.get(body).cloned());
+        let motion = of(&loaded.scene).filter(|motion| of(before).as_ref() != Some(motion));
+        match (motion, &drive.file) {
+            (Some(MotionPath::Table(_)), Some(file)) => remark(file, &note),
+            (Some(_), _) => remark(Path::new("--move"), &note),
+            (None, _) => remark_all(loaded, vec![note]),
+        }
+    }
+}
+
 /// Steps from the start to the scene's duration, and adds a row and where wanted a shape at every step to the record; `watch` sees every row.
 fn step_through(
     loaded: &LoadedScene,
@@ -99,11 +128,7 @@ fn step_through(
     watch: &mut Watch,
 ) -> Result<Record, Failure> {
     let scene = &loaded.scene;
-    let interval = match pace {
-        Pace::Scene => scene.output.interval,
-        Pace::Host { step, .. } => step,
-    };
-    let times = Times::new(scene.output.duration, interval);
+    let times = Times::new(scene.output.duration, pace.interval(scene));
     let ahead = usize::from(scene.solver.input_reconstruction == Reconstruction::Interpolate);
     let stride = times.frame_stride(scene.output.profile);
     record.add_row(0.0, recorder.row(simulation, 0.0));

@@ -18,8 +18,8 @@ pub fn read_scene(path: &Path, supplement: &Supplement) -> Result<LoadedScene, F
     Ok(loaded)
 }
 
-/// Writes a remark on a scene to standard error. A remark that cannot be written does not end the command.
-fn remark(path: &Path, note: &Note) {
+/// Writes a remark on a scene, or on another file, to standard error. A remark that cannot be written does not end the command.
+pub fn remark(path: &Path, note: &Note) {
     let _ = writeln!(io::stderr(), "{}", noted(path, note));
 }
 

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
+use moorline::scene::name_problem;
 use moorline::scene::path::quoted;
 use moorline::scene::{
     AngleOrder, Line, LineType, Places, Point, PointForce, PointKind, Scene, Section, TimeFunction, Vessel,
@@ -105,8 +106,9 @@ impl<'s> Draft<'s> {
         self.scene.lines.push(line);
     }
 
-    /// Depth of the seabed [m]: that of the deck, that of the supplement, else that of the deepest fixed point, with a remark.
-    pub(crate) fn depth(&mut self, given: Option<f64>) -> Option<f64> {
+    /// Depth of the seabed [m]: that of the deck, that of the supplement, else that of the deepest fixed point, with a remark unless soundings
+    /// have the depth. Where these are all there is, it is 0.
+    pub(crate) fn depth(&mut self, given: Option<f64>, is_sounded: bool) -> Option<f64> {
         if let Some(depth) = given {
             if let Some(other) = self.supplement.depth.filter(|other| *other != depth) {
                 let text = format!("the depth of {depth} m in the file counts, not {other} m");
@@ -119,6 +121,9 @@ impl<'s> Draft<'s> {
         }
         let deepest = self.deepest_anchor().map(|anchor| -anchor.position[2]);
         let deepest = deepest.filter(|depth| *depth > 0.0);
+        if is_sounded {
+            return deepest.or(Some(0.0));
+        }
         self.findings.remark_on_all(match deepest {
             Some(depth) => format!(
                 "no water depth in the file, for the host gives it: taken from the deepest fixed point, {depth} m"
@@ -169,53 +174,59 @@ impl<'s> Draft<'s> {
         }
     }
 
-    /// Checks that the vessel of all coupled points has a name of its own and no other place.
+    /// Checks that the vessel of all coupled points has a name that a scene takes, and no other place; `others` are those of the file.
     pub(crate) fn check_given(&mut self, mut others: impl Iterator<Item = String>) {
         let Some(name) = &self.supplement.vessel else {
             return;
         };
+        if let Some(problem) = name_problem(name) {
+            self.findings
+                .beside
+                .push(format!("the vessel given for all coupled points: {problem}"));
+        }
         if others.any(|other| other == *name) {
-            let problem = format!(
-                "the vessel of all coupled points cannot be `{name}`, which the file has already: give it another name"
-            );
-            self.findings.mistake("", 0..0, problem);
+            self.findings.beside.push(taken(name));
         }
         if self.supplement.positions.contains_key(name) {
             let problem = format!(
                 "`{name}` takes the coupled points where they are, with its origin at (0, 0, 0): give no position for it"
             );
-            self.findings.mistake("", 0..0, problem);
+            self.findings.beside.push(problem);
         }
     }
 
-    /// Checks that the scene has every vessel of the supplement.
+    /// Checks that the scene has every vessel of the supplement, and no point or line of the name of one.
     pub(crate) fn check_vessels(&mut self) {
-        let known: Vec<&str> = self
-            .scene
-            .vessels
-            .iter()
-            .map(|vessel| vessel.name.as_str())
-            .collect();
+        let vessels = self.scene.vessels.iter();
+        let known: Vec<&str> = vessels.map(|vessel| vessel.name.as_str()).collect();
         let in_words = match known.is_empty() {
             true => "no vessel".to_string(),
             false => format!("the vessels {}", known.join(", ")),
         };
-        let of_all = self.supplement.vessel.iter().map(|name| {
-            let problem = format!(
-                "the vessel `{name}` is given for all coupled points, but the file has none: leave it out"
-            );
-            (name, problem)
-        });
-        let placed = self.supplement.positions.keys().map(|name| {
-            let problem = format!("a position is given for `{name}`, but the file has {in_words}");
-            (name, problem)
-        });
-        for (name, problem) in of_all.chain(placed) {
-            if !known.contains(&name.as_str()) {
-                self.findings.mistake("", 0..0, problem);
+        if let Some(name) = &self.supplement.vessel {
+            let points = self.scene.points.iter().map(|point| &point.name);
+            let mut names = points.chain(self.scene.lines.iter().map(|line| &line.name));
+            if names.any(|other| other == name) {
+                self.findings.beside.push(taken(name));
+            } else if !known.contains(&name.as_str()) {
+                let problem = format!(
+                    "the vessel `{name}` is given for all coupled points, but the file has none: leave it out"
+                );
+                self.findings.beside.push(problem);
             }
         }
+        let placed = self.supplement.positions.keys();
+        for name in placed.filter(|name| !known.contains(&name.as_str())) {
+            let problem = format!("a position is given for `{name}`, but the file has {in_words}");
+            self.findings.beside.push(problem);
+        }
     }
+}
+
+fn taken(name: &str) -> String {
+    format!(
+        "the vessel of all coupled points cannot be `{name}`, which the file has already: give it another name"
+    )
 }
 
 /// A name of a line type as a scene takes it: variables of the FMU are called after it.

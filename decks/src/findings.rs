@@ -27,6 +27,8 @@ impl<T> Placed<T> {
 #[derive(Debug, Default)]
 pub(crate) struct Findings {
     pub mistakes: Vec<SceneError>,
+    /// Mistakes in what is given beside the file.
+    pub beside: Vec<String>,
     remarks: Vec<Remark>,
 }
 

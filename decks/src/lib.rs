@@ -90,6 +90,10 @@ pub fn load_with(path: &Path, supplement: &Supplement) -> Result<LoadedScene, Lo
     };
     let mut draft = read(&text, supplement);
     let path = path.to_path_buf();
+    if !draft.findings.beside.is_empty() {
+        let problem = draft.findings.beside.join("; ");
+        return Err(LoadError::Unreadable { path, problem });
+    }
     match finish(&mut draft, folder_of(&path)) {
         Ok(notes) => Ok(LoadedScene {
             notes: [draft.findings.notes(&text), located(&draft.places, &text, notes)].concat(),
@@ -128,6 +132,7 @@ fn finish(draft: &mut Draft<'_>, folder: &Path) -> Result<Vec<Note>, Vec<SceneEr
         return Err(mistakes);
     }
     let of_files = draft.scene.read_files(folder);
+    sound_depth(&mut draft.scene);
     let mut notes = cut_tables(&mut draft.scene);
     let mistakes = draft.scene.mistakes_with(of_files).into_iter();
     let mistakes: Vec<SceneError> = mistakes.map(|mistake| draft.places.locate(mistake)).collect();
@@ -135,10 +140,17 @@ fn finish(draft: &mut Draft<'_>, folder: &Path) -> Result<Vec<Note>, Vec<SceneEr
         return Err(mistakes);
     }
     notes.extend(draft.scene.notes());
-    // The reader of MoorDyn's decks notes diameters itself, with narrower limits.
-    let of_moordyn = draft.format.starts_with("MoorDyn");
-    notes.retain(|note| !(of_moordyn && note.at.ends_with(".diameter")));
     Ok(notes)
+}
+
+/// Takes the greatest of the soundings as the depth for waves, where a deck gives no other.
+fn sound_depth(scene: &mut Scene) {
+    if let Some(seabed) = &mut scene.seabed
+        && seabed.depth == 0.0
+        && let Some(grid) = &seabed.grid
+    {
+        seabed.depth = grid.depth.iter().flatten().copied().fold(0.0, f64::max);
+    }
 }
 
 fn located(places: &moorline::scene::Places, text: &str, notes: Vec<Note>) -> Vec<Note> {

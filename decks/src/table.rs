@@ -6,6 +6,7 @@ use std::ops::Range;
 
 use moorline::scene::nearest::nearest;
 use moorline::scene::rows::{Field, Row, number, shown};
+use moorline::scene::units::differ;
 
 use crate::findings::{Findings, Placed};
 
@@ -164,9 +165,34 @@ pub(crate) fn check_unique<'d, T: Ord + Display + 'd>(
     }
 }
 
-/// `, did you mean DTM?`, where a known name is near.
-pub(crate) fn meant<'a>(name: &str, known: impl IntoIterator<Item = &'a str> + Clone) -> String {
-    nearest(name, known).map_or(String::new(), |known| format!(", did you mean {known}?"))
+/// The remark on an option or flag that is not known.
+pub(crate) fn left_out<'a>(
+    what: &str,
+    name: &str,
+    known: impl IntoIterator<Item = &'a str> + Clone,
+) -> String {
+    let meant = nearest(name, known);
+    let meant = meant.map_or(String::new(), |known| format!(", did you mean {known}?"));
+    format!("the {what} {} is not known and left out{meant}", shown(name))
+}
+
+/// Refuses a unit above a column that has numbers other than 0 and is read in another unit of the same quantity. The programs of such decks
+/// read no units either.
+pub(crate) fn check_units(units: &Row<'_>, columns: &[Column], rows: &[Row<'_>], findings: &mut Findings) {
+    for (place, (unit, column)) in units.fields().iter().zip(columns).enumerate() {
+        let counts = |row: &Row<'_>| {
+            row.fields()
+                .get(place)
+                .is_some_and(|cell| number(cell.text) != Ok(0.0))
+        };
+        if differ(unit.text, column.unit) && rows.iter().take(ROWS_MAX).any(counts) {
+            let problem = format!(
+                "the header has {} over {}, but numbers there are read in {}, whatever stands above them: convert them, and write that unit",
+                unit.text, column.name, column.unit
+            );
+            findings.mistake("", unit.span.clone(), problem);
+        }
+    }
 }
 
 /// Remarks on names above a table that are those of other columns: readers go by the place of a column, not by its name.

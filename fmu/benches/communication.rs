@@ -13,7 +13,7 @@ use moorline::simulation::Simulation;
 use moorline_host::FmiVersion;
 
 /// Repetitions of which the fastest counts.
-const REPETITIONS: usize = 6000;
+const REPETITIONS: usize = 40;
 /// Timed communication steps.
 const STEPS: usize = 400;
 /// Communication step [s]: one internal step.

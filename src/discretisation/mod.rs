@@ -24,6 +24,7 @@
 //! integrator keeps the rule that elements follow from the tolerance alone. Whatever motion or rule ask for, elements are added until the tension at
 //! rest is within the tolerance of the closed-form catenary, where there is one to compare with.
 
+mod expense;
 mod rest;
 mod search;
 
@@ -33,6 +34,8 @@ use crate::model::mesh::line_elements;
 use crate::model::{Model, line_shares};
 use crate::scene::{Integrator, Line, Scene, percent};
 use search::Search;
+
+pub use expense::expense;
 
 /// Part of the tolerance that the estimated error is to keep [-].
 const AIM: f64 = 0.85;

@@ -23,7 +23,7 @@ mod threads;
 use crate::statics::StaticsError;
 
 pub use choice::Choice;
-pub use cost::AXIAL_IMPLICIT_COST;
+pub use cost::{AXIAL_IMPLICIT_COST, node_time};
 pub use threads::{Aside, as_worker, is_worker, make_threads_aside};
 
 /// A step that could not be made, with its place. The state is as it was before.

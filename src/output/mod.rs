@@ -37,7 +37,7 @@ pub enum OutputError {
         source: io::Error,
     },
     /// Something that is not a folder has the folder's name.
-    #[error("{} is a file: give the name of a folder", .path.display())]
+    #[error("{} is no folder: give the name of one", .path.display())]
     NotAFolder {
         /// What has the name.
         path: PathBuf,
@@ -146,29 +146,24 @@ pub fn check_file(path: &Path) -> Result<(), OutputError> {
 
 /// The regular file, or the free name, that a path leads to; links are followed.
 fn target_of(path: &Path) -> io::Result<PathBuf> {
+    let refuse = |problem: String| Err(io::Error::new(io::ErrorKind::InvalidInput, problem));
+    // the link that /dev/stdout is leads to no name where standard output is a pipe
+    if let Ok(found) = fs::metadata(path) {
+        let what = match (found.is_file(), found.is_dir()) {
+            (true, _) => return fs::canonicalize(path),
+            (_, true) => "a folder",
+            _ => "a device or a pipe",
+        };
+        return refuse(format!("it is {what}: give the name of a file"));
+    }
     let mut target = path.to_path_buf();
     for _ in 0..LINKS_MAX {
-        let found = match fs::symlink_metadata(&target) {
-            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(target),
-            found => found?,
-        };
-        if found.is_symlink() {
-            let next = fs::read_link(&target)?;
-            target = target.parent().unwrap_or(Path::new("")).join(next);
-            continue;
-        }
-        let what = if found.is_dir() {
-            "a folder"
-        } else if found.is_file() {
+        let Ok(next) = fs::read_link(&target) else {
             return Ok(target);
-        } else {
-            "a device or a pipe"
         };
-        let problem = format!("it is {what}: give the name of a file");
-        return Err(io::Error::new(io::ErrorKind::InvalidInput, problem));
+        target = target.parent().unwrap_or(Path::new("")).join(next);
     }
-    let problem = format!("more than {LINKS_MAX} links lead from it");
-    Err(io::Error::new(io::ErrorKind::InvalidInput, problem))
+    refuse(format!("more than {LINKS_MAX} links lead from it"))
 }
 
 /// A new file for writing, in place of what an ended process may have left under a temporary name.

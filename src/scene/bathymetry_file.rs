@@ -37,7 +37,20 @@ pub(super) fn read(path: &Path) -> Result<DepthGrid, String> {
     let looked_for = " (it is looked for beside the scene)";
     let bytes = input_file::read_table(path, "a file of soundings", looked_for)?;
     let text = String::from_utf8(bytes).map_err(|error| format!("{name} cannot be read as text: {error}"))?;
-    parse(&text).map_err(|problem| format!("{name}{problem}"))
+    let grid = parse(&text).and_then(below_water);
+    grid.map_err(|problem| format!("{name}{problem}"))
+}
+
+/// Refuses soundings above z = 0.
+fn below_water(grid: DepthGrid) -> Result<DepthGrid, String> {
+    for (y, row) in grid.y.iter().zip(&grid.depth) {
+        if let Some((x, depth)) = grid.x.iter().zip(row).find(|(_, depth)| **depth < 0.0) {
+            return Err(format!(
+                ": the depth at x = {x} m, y = {y} m is {depth} m, above the water: depths count downwards from z = 0, heights upwards"
+            ));
+        }
+    }
+    Ok(grid)
 }
 
 /// The soundings in a text; problems begin with a comma and a line, or a colon.

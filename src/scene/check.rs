@@ -174,25 +174,31 @@ pub(super) fn quantity(value: f64, unit: &str) -> String {
     }
 }
 
-/// Names that are the stem of variables of the FMU.
-fn check_name(findings: &mut Findings, at: &str, name: &str) {
+/// Returns the refusal of a name of a line type, point, line or vessel, which is the stem of variables of the FMU.
+pub fn name_problem(name: &str) -> Option<String> {
     let allowed = "a name starts with a letter or _ and holds letters a-z A-Z, digits, _ and - only, \
                    since the variables of the FMU are called after it";
     let first = name.chars().next();
     let other = |c: &char| !(c.is_ascii_alphanumeric() || *c == '_' || *c == '-');
-    if first.is_none() {
-        findings.say(at, format!("the name is empty: {allowed}"));
+    Some(if first.is_none() {
+        format!("the name is empty: {allowed}")
     } else if let Some(wrong) = name.chars().find(other) {
-        findings.say(at, format!("{name:?} holds {wrong:?}: {allowed}"));
+        format!("{name:?} holds {wrong:?}: {allowed}")
     } else if first.is_some_and(|c| c.is_ascii_digit() || c == '-') {
-        findings.say(at, format!("{name:?} starts with a digit or -: {allowed}"));
+        format!("{name:?} starts with a digit or -: {allowed}")
     } else if name.len() > 64 {
-        findings.say(at, format!("the name has {} characters, 64 at most", name.len()));
+        format!("the name has {} characters, 64 at most", name.len())
     } else if ["time", "solver"].contains(&name) {
-        findings.say(
-            at,
-            format!("`{name}` is the name of variables of every FMU: take another"),
-        );
+        format!("`{name}` is the name of variables of every FMU: take another")
+    } else {
+        return None;
+    })
+}
+
+/// Checks a name.
+fn check_name(findings: &mut Findings, at: &str, name: &str) {
+    if let Some(problem) = name_problem(name) {
+        findings.say(at, problem);
     }
 }
 

@@ -45,7 +45,7 @@ table! {
         pub axial_damping: Option<f64> => not_negative(1e15).elsewhere(&["ba"]).acts(Acts::InMotion).parameter(),
         /// Axial damping as a ratio of the critical damping of each segment [-]; instead of `axial_damping`. It becomes one BA, the same on every
         /// mesh, as `damping_elements` of a section says.
-        pub damping_ratio: Option<f64> => not_negative(100.0).label("axial damping ratio").acts(Acts::InMotion)
+        pub damping_ratio: Option<f64> => RATIO.label("axial damping ratio").acts(Acts::InMotion)
             .instead_of(&["axial_damping", "dynamic_damping"]).parameter(),
         /// Rayleigh damping, in addition to the axial damping.
         pub rayleigh: Option<Rayleigh> => PLAIN.label("Rayleigh damping").acts(Acts::InMotion),
@@ -71,6 +71,9 @@ table! {
         pub fibre_law: FibreLaw = FibreLaw::Linear => PLAIN.label("fibre law"),
     }
 }
+
+/// The rule of damping ratios.
+const RATIO: super::table::Rule = not_negative(100.0).usual([0.0, 1.0], "0 to 1 is usual, 1 being critical");
 
 /// The rule of coefficients of drag and added mass: 3.8 is measured in model chains.
 const fn coefficient(acts: Acts) -> super::table::Rule {
@@ -142,7 +145,8 @@ table! {
         /// Diameter of the load-bearing section [m].
         pub diameter: f64 => positive(100.0),
         /// Young's modulus E [Pa].
-        pub youngs_modulus: f64 => positive(1e15).elsewhere(&["e"]),
+        pub youngs_modulus: f64 => positive(1e15).elsewhere(&["e"])
+            .usual([1e6, 1e13], "1e6 Pa and more is usual, and 2.1e11 Pa of steel"),
         /// Poisson's ratio ν [-], for shear and torsion.
         pub poisson: f64 = STEEL_POISSON => within(0.0, 0.5).elsewhere(&["nu"]),
     }
@@ -166,7 +170,7 @@ table! {
     #[derive(Copy)]
     pub struct Rayleigh, "`rayleigh`" {
         /// Damping ratios at the two frequencies [-].
-        pub ratios: [f64; 2] => not_negative(100.0).label("ratios"),
+        pub ratios: [f64; 2] => RATIO.label("ratios"),
         /// Circular frequencies [rad/s].
         pub frequencies: [f64; 2] => positive(1e9).label("at"),
     }

@@ -73,7 +73,7 @@ pub mod table;
 mod table_ends;
 mod tension_strain;
 mod time_function;
-mod units;
+pub mod units;
 mod value;
 mod water;
 mod water_file;
@@ -82,6 +82,7 @@ mod words;
 use std::collections::BTreeMap;
 
 pub use crate::math::attitude::Order as AngleOrder;
+pub use check::name_problem;
 pub use drive::{Drive, RegularMotion};
 pub use error::{LoadError, SceneError};
 pub use line::{Break, InitialShape, Line, LineEnd, RestShape, Section, Winch};

@@ -128,7 +128,9 @@ fn note_line_type(scene: &Scene, name: &str, line_type: &LineType, notes: &mut V
             }
             _ => "no `drag_normal`: the water does not damp the line's transverse motion",
         };
-        say(notes, at.clone(), text);
+        if waves || current || scene.solver.integrator != Integrator::QuasiStatic {
+            say(notes, at.clone(), text);
+        }
     }
     if scene.seabed.is_some() && scene.weight(line_type) < 0.0 {
         say(notes, at, "lighter than the water: it floats up from the seabed");

@@ -43,6 +43,20 @@ pub(super) fn push(path: &mut String, step: Step<'_>) {
     }
 }
 
+/// Keys whose values may stand in the `file` beside them.
+const IN_FILE: [&str; 3] = [".profile", ".components", ".grid"];
+
+/// The path of the `file` that holds the value at a path, where the text has that in its place.
+pub(super) fn file_of(root: &Spanned<DeValue<'_>>, path: &str) -> Option<String> {
+    let holder = IN_FILE
+        .iter()
+        .find_map(|key| path.split_once(key))
+        .map(|(holder, _)| holder)?;
+    let held = |key: &str| locate(root, &format!("{holder}{key}"));
+    let (own, file) = (held(&path[holder.len()..]), held(".file"));
+    (file != own && own == locate(root, holder)).then(|| format!("{holder}.file"))
+}
+
 /// Bytes of the value at a path; where there is none, of the last table or array on the way.
 pub(super) fn locate(root: &Spanned<DeValue<'_>>, path: &str) -> Option<Range<usize>> {
     let mut span = None;

@@ -4,9 +4,12 @@
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use super::check::{Findings, number, quantity};
+use super::motion_file::AXES;
 use super::notes::{Note, chord, reference_position, say};
 use super::path::quoted;
 use super::table::check_table;
+use super::table_ends::motions;
+use super::water::SPEED_USUAL;
 use super::{Line, LineType, MotionPath, Point, PointKind, Scene, Sea, Strain, WaveComponents};
 
 /// Speed of axial waves √(EA/m) [m/s]: 350 in a chain of a 1:50 model, 5200 in solid steel, 5700 in carbon fibre with its coat.
@@ -19,7 +22,7 @@ const STRAIN: f64 = 0.05;
 const FIRST_GUESS_STRAIN: f64 = 0.5;
 /// Mass over volume of the diameter [kg/m³]: foam has 200, steel 7850, lead 11 340. The upper limit is the geometric mean of steel and of
 /// the bar's diameter of a chain, three times steel.
-const MASS_PER_VOLUME: [f64; 2] = [200.0, 14_000.0];
+pub const MASS_PER_VOLUME: [f64; 2] = [200.0, 14_000.0];
 /// Weight in water over volume of the diameter [kg/m³] of a line whose mass is not given, without sign: ropes that nearly float have 30.
 const EXCESS_MIN: f64 = 1.0;
 /// Density of steel [kg/m³].
@@ -29,11 +32,19 @@ pub const STEEL: f64 = 7850.0;
 const CHAIN: std::ops::Range<f64> = 2.7..4.0;
 /// Normal drag coefficient [-] from which it refers to the bar of a chain (2.4 on the bar, 1.3 on the volume-equivalent diameter): the
 /// diameter is then the bar's by intention, as in several published systems.
-const DRAG_ON_BAR: f64 = 1.8;
+pub const DRAG_ON_BAR: f64 = 1.8;
 /// Height of an end above the seabed, over the length of its line [-], up to which it is taken to lie on it.
 const ON_SEABED: f64 = 0.02;
 /// Distance of a fairlead from its vessel's origin [m]: the longest vessel is 488 m long.
 const FAIRLEAD_DISTANCE: f64 = 300.0;
+/// Unstretched length of a line [m]: the longest moorings, in water 3000 m deep, have less than half of it.
+const LENGTH: f64 = 20e3;
+/// Unstretched length of a line over the distance of its ends [-].
+const LENGTH_OVER_CHORD: f64 = 20.0;
+/// Period of a motion [s]; in models at 1:100, waves have periods of a few tenths of a second.
+const PERIOD: f64 = 0.1;
+/// Height above z = 0 of the highest row of a current [m].
+const CURRENT_HEIGHT: f64 = 1.0;
 /// Height over length from which a wave breaks in deep water (Michell 1893) [-].
 const BREAKING_DEEP: f64 = 0.142;
 /// Height over depth from which a wave breaks in shallow water (McCowan 1894) [-].
@@ -43,15 +54,19 @@ const BREAKING_SHALLOW: f64 = 0.78;
 type Rule = fn(&Scene, &mut Vec<Note>);
 
 /// The rules, in the order of a scene.
-const RULES: [Rule; 8] = [
+const RULES: [Rule; 12] = [
+    current,
     wave_steepness,
     sea_angles,
     line_type_properties,
     fairlead_distance,
+    anchor_height,
+    line_length,
     line_strain,
     weight_strain,
     swapped_ends,
-    motion_angles,
+    turns,
+    sines,
 ];
 
 impl Scene {
@@ -68,6 +83,42 @@ impl Scene {
 /// Returns whether a value lies outside a range.
 fn outside(value: f64, [lower, upper]: [f64; 2]) -> bool {
     !(lower..=upper).contains(&value)
+}
+
+/// Rows of a current's profile, and its factor; the velocity has a usual range of its own.
+fn current(scene: &Scene, notes: &mut Vec<Note>) {
+    let Some(current) = scene.current() else {
+        return;
+    };
+    let at = "water.current";
+    let rows = current.profile.as_deref().unwrap_or_default();
+    let speed = |[_, x, y]: &[f64; 3]| x.hypot(*y);
+    if let Some(row) = rows.iter().position(|row| speed(row) > SPEED_USUAL) {
+        let speed = quantity(significant(speed(&rows[row])), "m/s");
+        let text = format!(
+            "{speed} is unusual: less than {SPEED_USUAL} m/s is usual, with rows of z [m], vx and vy [m/s]"
+        );
+        say(notes, format!("{at}.profile[{row}]"), text);
+    }
+    if let Some(row) = rows.iter().position(|row| row[0] > CURRENT_HEIGHT) {
+        let height = quantity(rows[row][0], "m");
+        let text = format!(
+            "{height} above the water: heights count upwards from the surface, and depths are negative"
+        );
+        say(notes, format!("{at}.profile[{row}]"), text);
+    }
+    let velocity = current.velocity.unwrap_or_default();
+    let fastest = rows
+        .iter()
+        .map(speed)
+        .fold(velocity[0].hypot(velocity[1]), f64::max);
+    let factors = current.factor.iter().flat_map(|factor| factor.corners());
+    let factor = factors.map(f64::abs).fold(0.0, f64::max);
+    if fastest <= SPEED_USUAL && factor * fastest > SPEED_USUAL {
+        let speed = quantity(significant(factor * fastest), "m/s");
+        let text = format!("a current of {speed} with it is unusual: less than {SPEED_USUAL} m/s is usual");
+        say(notes, format!("{at}.factor"), text);
+    }
 }
 
 fn seas(scene: &Scene) -> impl Iterator<Item = (String, &Sea)> {
@@ -261,6 +312,24 @@ fn fairlead_distance(scene: &Scene, notes: &mut Vec<Note>) {
     }
 }
 
+/// Fixed points above the water with lines into it, or to what a host moves: most are anchors at a depth without its minus sign.
+fn anchor_height(scene: &Scene, notes: &mut Vec<Note>) {
+    for (i, point) in scene.points.iter().enumerate().filter(|_| scene.water.is_some()) {
+        let lines = scene.lines.iter().filter(|line| line.joins(&point.name));
+        let others = lines
+            .flat_map(|line| [&line.from, &line.to])
+            .filter_map(|name| scene.point(name));
+        let mut moored = others.filter(|other| other.kind == PointKind::Coupled || other.position[2] < 0.0);
+        if point.kind == PointKind::Fixed && point.position[2] > 0.0 && moored.next().is_some() {
+            let text = format!(
+                "{} above the water: a fixed point is usually an anchor below it, where z is negative",
+                quantity(point.position[2], "m")
+            );
+            say(notes, format!("points[{i}].position"), text);
+        }
+    }
+}
+
 impl Scene {
     /// Strain [-] beyond which a line is noted: 5 %, or where its tables of tension end; none where a measure of large strains is chosen.
     pub fn usual_strain(&self, line: &Line) -> f64 {
@@ -277,12 +346,34 @@ impl Scene {
     }
 }
 
+/// Returns whether a line ends at a free point, whose position is a first guess.
+fn is_guessed(scene: &Scene, line: &Line) -> bool {
+    let mut free = scene.points.iter().filter(|point| point.kind == PointKind::Free);
+    free.any(|point| line.joins(&point.name))
+}
+
+/// Lines that are too long; without water a scene is a bench test, and ends at one place make a loop.
+fn line_length(scene: &Scene, notes: &mut Vec<Note>) {
+    for (i, line) in scene.lines.iter().enumerate().filter(|_| scene.water.is_some()) {
+        let length = line.length();
+        let chord = chord(scene, line).filter(|chord| *chord > 0.0 && !is_guessed(scene, line));
+        let text = match chord {
+            _ if length > LENGTH => format!("{} long: less than 20 km is usual", quantity(length, "m")),
+            Some(chord) if length > LENGTH_OVER_CHORD * chord => format!(
+                "it is {} long, and its ends are {} apart: less than 20 times their distance is usual, with lengths and positions in m",
+                quantity(length, "m"),
+                quantity(significant(chord), "m")
+            ),
+            _ => continue,
+        };
+        say(notes, format!("lines[{i}]"), text);
+    }
+}
+
 fn line_strain(scene: &Scene, notes: &mut Vec<Note>) {
     for (i, line) in scene.lines.iter().enumerate() {
         let length = line.length();
-        let ends_here = |point: &Point| point.name == line.from || point.name == line.to;
-        let mut free = scene.points.iter().filter(|p| p.kind == PointKind::Free);
-        let strain_max = match free.any(ends_here) {
+        let strain_max = match is_guessed(scene, line) {
             true => FIRST_GUESS_STRAIN.max(scene.usual_strain(line)),
             false => scene.usual_strain(line),
         };
@@ -352,41 +443,63 @@ fn swapped_ends(scene: &Scene, notes: &mut Vec<Note>) {
     }
 }
 
-/// Angles of the scene's motion: greatest rotations, and phases.
-fn motion_angles(scene: &Scene, notes: &mut Vec<Note>) {
-    let of_points = scene
-        .points
-        .iter()
-        .enumerate()
-        .filter_map(|(i, point)| Some((format!("points[{i}].motion"), point.motion.as_ref()?)));
-    let of_run = scene.motion.iter();
-    let of_run = of_run.map(|(name, motion)| (format!("motion.{}", quoted(name)), motion));
-    for (at, motion) in of_points.chain(of_run) {
-        let greatest = motion.greatest();
-        for (axis, limit) in [(3, FRAC_PI_2), (4, FRAC_PI_2), (5, TAU)] {
-            let (name, angle) = (super::motion_file::AXES[axis], greatest[axis]);
-            if angle > limit {
-                let text = format!(
-                    "{name} reaches {}, {:.0} degrees: {} degrees are {:.4} rad",
-                    quantity(significant(angle), "rad"),
-                    angle.to_degrees(),
-                    number(significant(angle)),
-                    angle.to_radians()
-                );
-                let key = match motion {
-                    MotionPath::Harmonic(_) => format!("{at}.{name}"),
-                    MotionPath::File(_) => format!("{at}.file"),
-                    MotionPath::Table(_) => format!("{at}.table"),
-                };
-                say(notes, key, text);
-            }
+/// Returns the note on a roll, pitch (beyond a right angle) or yaw (beyond a turn), the axes 3, 4 and 5, that may be given in degrees [rad].
+fn turned(axis: usize, angle: f64) -> Option<String> {
+    let limit = if axis == 5 { TAU } else { FRAC_PI_2 };
+    let angle = significant(angle.abs());
+    (angle > limit).then(|| {
+        format!(
+            "{} of {} is a turn by {:.0} degrees: {} degrees are {:.4} rad",
+            AXES[axis],
+            quantity(angle, "rad"),
+            angle.to_degrees(),
+            number(angle),
+            angle.to_radians()
+        )
+    })
+}
+
+/// Angles of the vessels, and the greatest ones of motions.
+fn turns(scene: &Scene, notes: &mut Vec<Note>) {
+    for (i, vessel) in scene.vessels.iter().enumerate() {
+        let angles = vessel.attitude.iter().enumerate();
+        for (axis, text) in angles.filter_map(|(axis, angle)| Some((axis, turned(3 + axis, *angle)?))) {
+            say(notes, format!("vessels[{i}].attitude[{axis}]"), text);
         }
-        if let MotionPath::Harmonic(harmonic) = motion {
-            for (name, sines) in harmonic.axes() {
-                let mut phases = sines.iter().filter_map(|sine| sine.get(2));
-                if let Some(text) = phases.find_map(|phase| degrees(*phase)) {
-                    say(notes, format!("{at}.{name}"), format!("phase: {text}"));
-                }
+    }
+    for (at, motion) in motions(scene) {
+        let greatest = motion.greatest();
+        for (axis, text) in (3..6).filter_map(|axis| Some((axis, turned(axis, greatest[axis])?))) {
+            let key = match motion {
+                MotionPath::Harmonic(_) => AXES[axis],
+                MotionPath::File(_) => "file",
+                MotionPath::Table(_) => "table",
+            };
+            say(notes, format!("{at}.{key}"), text);
+        }
+    }
+}
+
+/// Phases and periods of motions.
+fn sines(scene: &Scene, notes: &mut Vec<Note>) {
+    for (at, motion) in motions(scene) {
+        let MotionPath::Harmonic(harmonic) = motion else {
+            continue;
+        };
+        for (name, sines) in harmonic.axes() {
+            let mut phases = sines.iter().filter_map(|sine| sine.get(2));
+            let phase = phases.find_map(|phase| Some(format!("phase: {}", degrees(*phase)?)));
+            let mut periods = sines.iter().filter_map(|sine| sine.get(1));
+            let short = periods.find(|period| **period < PERIOD).map(|period| {
+                format!(
+                    "a period of {} is unusual: {PERIOD} s and more is usual, and a frequency of {} Hz is a period of {}",
+                    quantity(*period, "s"),
+                    number(*period),
+                    quantity(significant(1.0 / period), "s")
+                )
+            });
+            for text in phase.into_iter().chain(short) {
+                say(notes, format!("{at}.{name}"), text);
             }
         }
     }

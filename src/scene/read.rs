@@ -156,6 +156,9 @@ fn scene_of(text: &str, folder: &Path) -> Result<Scene, Vec<SceneError>> {
 fn with_lines(text: &str, mut notes: Vec<Note>) -> Vec<Note> {
     if let Ok(document) = Document::parse(text) {
         for note in &mut notes {
+            if let Some(file) = path::file_of(&document.root, &note.at) {
+                note.at = file;
+            }
             let span = path::locate(&document.root, &note.at);
             note.line = span.map(|span| path::line_column(text, span.start).0);
         }

@@ -9,6 +9,8 @@ use super::table::{Key, Kind, PLAIN, Table, Value, choice, magnitude, not_negati
 
 /// Default normal stiffness [Pa/m].
 const STIFFNESS: f64 = 3.0e6;
+/// Stiffness of soft mud, and of the concrete floor under the chain of a model [Pa/m].
+const STIFFNESS_USUAL: [f64; 2] = [1e4, 2e9];
 /// Default normal damping [Pa s/m].
 const DAMPING: f64 = 3.0e5;
 
@@ -18,11 +20,13 @@ table! {
         /// Depth of the seabed below z = 0 [m]; of a slope, the depth at the origin; with soundings, the depth for waves.
         pub depth: f64 => not_negative(1e5).hint("the depth counts downwards from z = 0").elsewhere(&["wtrdpth"]).parameter(),
         /// Normal stiffness [Pa/m], per metre of line and metre of diameter.
-        pub stiffness: f64 = STIFFNESS => positive(1e12).elsewhere(&["kbot"]),
+        pub stiffness: f64 = STIFFNESS => positive(1e12).usual(STIFFNESS_USUAL, "1e4 to 2e9 Pa/m is usual")
+            .elsewhere(&["kbot"]),
         /// Normal damping [Pa s/m], per metre of line and metre of diameter.
         pub damping: f64 = DAMPING => not_negative(1e12).elsewhere(&["cbot"]),
         /// Slope dz/dx and dz/dy of a plane through (0, 0, −depth) [-].
         pub slope: Option<[f64; 2]> => magnitude(SLOPE_MAX)
+            .usual([-1.0, 1.0], "-1 to 1 is usual, a slope being a rise over a length and no angle in degrees")
             .hint("steeper than any bed; the slope is dz/dx and dz/dy, 0.1 rises by 1 m in 10 m"),
         /// File of soundings, a table in CSV or a bathymetry file of MoorDyn-F or MoorDyn-C, relative to the scene.
         pub file: Option<String> => PLAIN.instead_of(&["slope", "grid"]),
@@ -46,7 +50,7 @@ table! {
         /// y of the grid's lines [m], increasing.
         pub y: Vec<f64> => magnitude(1e7),
         /// Depths [m]: a row for every y, with one number for every x.
-        pub depth: Vec<Vec<f64>> => magnitude(1e5),
+        pub depth: Vec<Vec<f64>> => not_negative(1e5).hint("depths count downwards from z = 0"),
     }
 }
 

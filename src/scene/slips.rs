@@ -13,7 +13,57 @@ pub(super) fn slip(text: &str, place: usize) -> Option<String> {
         return None; // the header of a table
     }
     let tokens = tokens(line);
-    tokens.iter().find_map(odd).or_else(|| unjoined(line, &tokens))
+    let commas = tokens
+        .iter()
+        .position(is_behind_comma)
+        .map(|at| comma(&tokens, at));
+    commas
+        .or_else(|| tokens.iter().find_map(odd))
+        .or_else(|| unjoined(line, &tokens))
+}
+
+fn is_number(text: &str) -> bool {
+    text.parse::<f64>().is_ok() && text.contains(|c: char| c.is_ascii_digit())
+}
+
+/// Returns whether a number stands behind a number and a comma, outside of brackets.
+fn is_behind_comma(token: &Token) -> bool {
+    token.before == ','
+        && !token.in_array
+        && token.after != '='
+        && is_number(token.last)
+        && is_number(token.text)
+}
+
+/// The slip in numbers with commas between them of which the second stands at `at`: a decimal comma, perhaps behind points of thousands, or a list
+/// without brackets.
+fn comma(tokens: &[Token], at: usize) -> String {
+    let more = tokens[at..].iter().take_while(|token| is_behind_comma(token));
+    let numbers: Vec<&str> = [tokens[at].last]
+        .into_iter()
+        .chain(more.map(|token| token.text))
+        .collect();
+    let (whole, given) = (numbers[0], numbers.join(","));
+    let thousands = whole.split('.').skip(1).collect::<Vec<_>>();
+    match numbers[..] {
+        [_, decimals]
+            if !decimals.contains('.')
+                && !decimals.starts_with('-')
+                && thousands.iter().all(|group| group.len() == 3) =>
+        {
+            let more = if thousands.is_empty() {
+                ""
+            } else {
+                ", and nothing between thousands"
+            };
+            let whole = whole.replace('.', "");
+            format!("`{given}` has a decimal comma: numbers have a point, {whole}.{decimals}{more}")
+        }
+        _ => format!(
+            "several numbers stand in brackets, [{}], and a single one has no comma",
+            numbers.join(", ")
+        ),
+    }
 }
 
 /// Text between two delimiters of a line, outside of quotes.
@@ -70,18 +120,6 @@ fn tokens(line: &str) -> Vec<Token<'_>> {
 /// Returns the slip in a value.
 fn odd(token: &Token) -> Option<String> {
     let text = token.text;
-    let is_number = |text: &str| text.parse::<f64>().is_ok() && text.contains(|c: char| c.is_ascii_digit());
-    if token.before == ','
-        && !token.in_array
-        && token.after != '='
-        && is_number(token.last)
-        && is_number(text)
-    {
-        return Some(format!(
-            "`{},{text}` has a decimal comma: numbers have a point, {}.{text}",
-            token.last, token.last
-        ));
-    }
     if token.before == '=' && text.is_empty() && !matches!(token.after, '[' | '{') {
         return Some(format!("no value stands after `{} =`", token.last));
     }
@@ -90,8 +128,9 @@ fn odd(token: &Token) -> Option<String> {
         return None;
     }
     let lower = text.to_lowercase();
-    if ["true", "false"].contains(&lower.as_str()) {
-        return (lower != text).then(|| format!("`{text}` is written `{lower}`"));
+    let truths = [(true, ["true", "yes", "on"]), (false, ["false", "no", "off"])];
+    if let Some((truth, _)) = truths.iter().find(|(_, words)| words.contains(&lower.as_str())) {
+        return (text != truth.to_string()).then(|| format!("`{text}` is written `{truth}`"));
     }
     if is_number(text) {
         return unfinished(text);
@@ -167,6 +206,28 @@ mod tests {
             ("points = [{ name = \"a\", kind = fixed }]", "`fixed` is a word"),
             ("free = [x, z]", "`x` is a word"),
             ("profile = True", "`True` is written `true`"),
+            ("surface = yes", "`yes` is written `true`"),
+            ("water = { surface = Off }", "`Off` is written `false`"),
+            (
+                "position = 405.0, 0.0, -120.0",
+                "several numbers stand in brackets, [405.0, 0.0, -120.0], and a single one",
+            ),
+            (
+                "position = 405, 0, -120",
+                "several numbers stand in brackets, [405, 0, -120], and a single one",
+            ),
+            (
+                "slope = 0, 0.2",
+                "several numbers stand in brackets, [0, 0.2], and a single one",
+            ),
+            (
+                "slope = 0.1, 0.2",
+                "several numbers stand in brackets, [0.1, 0.2], and a single one",
+            ),
+            (
+                "density = 1.025,0",
+                "`1.025,0` has a decimal comma: numbers have a point, 1025.0, and nothing",
+            ),
             (
                 "gravity = 9,81",
                 "`9,81` has a decimal comma: numbers have a point, 9.81",

@@ -13,7 +13,8 @@ pub(super) fn notes(scene: &Scene) -> Vec<Note> {
     motions.chain(functions).collect()
 }
 
-fn motions(scene: &Scene) -> impl Iterator<Item = (String, &MotionPath)> {
+/// Motions of a scene by their key paths.
+pub(super) fn motions(scene: &Scene) -> impl Iterator<Item = (String, &MotionPath)> {
     let driven = scene.motion.iter();
     let driven = driven.map(|(name, motion)| (format!("motion.{}", quoted(name)), motion));
     let points = scene.points.iter().enumerate();

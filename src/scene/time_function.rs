@@ -6,7 +6,7 @@ use super::SceneError;
 use super::check::{Bounds, Findings, quantity};
 use super::document::Node;
 use super::table::{Key, Kind, MIXED, Table, Value, magnitude, positive, table};
-use super::value::entry;
+use super::value::{decimal_commas, entry};
 use super::words::motion_in_words;
 
 /// A scalar function of time: `20.0`, `{ step = [t0, f0, t1, f1] }`, `{ ramp = [t0, f0, t1, f1] }` or
@@ -424,7 +424,8 @@ impl Value for TableRow {
         let count = numbers.len();
         if ![4, 7].contains(&count) {
             let expected = "an array of 4 numbers (t, x, y, z), or of 7 (with roll, pitch, yaw of a vessel)";
-            return Err(node.expected_instead_of(expected, &format!("an array of {count}")));
+            let commas = decimal_commas(&numbers, &[4, 7]);
+            return Err(node.expected_instead_of(expected, &format!("an array of {count}{commas}")));
         }
         self.0[..count].copy_from_slice(&numbers);
         Ok(())
@@ -534,8 +535,9 @@ fn check_harmonic(findings: &mut Findings, at: &str, key: &Key, harmonic: &Harmo
             let at = format!("{at}.{axis}[{i}]");
             if ![2, 3].contains(&sine.len()) {
                 let problem = format!(
-                    "expected [amplitude [{unit}], period [s]] or [amplitude, period, phase [rad]], found {} numbers",
-                    sine.len()
+                    "expected [amplitude [{unit}], period [s]] or [amplitude, period, phase [rad]], found {} numbers{}",
+                    sine.len(),
+                    decimal_commas(sine, &[2, 3])
                 );
                 findings.say(at, problem);
                 continue;

@@ -9,6 +9,7 @@ pub(super) enum Quantity {
     Length,
     Angle,
     Speed,
+    Mass,
     Force,
     Number,
 }
@@ -31,6 +32,9 @@ const HEADER_UNITS: &[(Quantity, &[&str], f64)] = &[
     (Quantity::Speed, &["m/s"], 1.0),
     (Quantity::Speed, &["cm/s"], 1e-2),
     (Quantity::Speed, &["ft/s"], 0.3048),
+    (Quantity::Mass, &["kg"], 1.0),
+    (Quantity::Mass, &["g"], 1e-3),
+    (Quantity::Mass, &["t"], 1e3),
     (Quantity::Force, &["N"], 1.0),
     (Quantity::Force, &["kN"], 1e3),
     (Quantity::Force, &["MN"], 1e6),
@@ -76,6 +80,17 @@ pub(super) fn factor(text: &str, quantity: Quantity) -> Result<f64, String> {
     })
 }
 
+/// Returns whether two units are different ones of the same quantity, as far as their first factors tell, such as `(kN-s)` and `N s`.
+pub fn differ(one: &str, other: &str) -> bool {
+    let [one, other] = [one, other].map(|text| {
+        let text = bare(text);
+        &text[..text.find(|c: char| !c.is_alphabetic()).unwrap_or(text.len())]
+    });
+    let mut quantities = HEADER_UNITS.iter().map(|(quantity, ..)| *quantity);
+    let both = quantities.find_map(|quantity| factor(one, quantity).ok().zip(factor(other, quantity).ok()));
+    both.is_some_and(|(one, other)| one != other)
+}
+
 /// The groups in square and round brackets of a heading, such as the units in `y [km] / x [km]`.
 pub(super) fn bracketed(heading: &str) -> Vec<&str> {
     let groups = heading.split(['[', '(']).skip(1);
@@ -109,6 +124,19 @@ mod tests {
             ("(-)", Quantity::Number, 1.0),
         ] {
             assert_eq!(factor(text, quantity), Ok(value), "{text}");
+        }
+        for (one, other, apart) in [
+            ("(kN-s)", "N s, or a ratio", true),
+            ("(mm)", "m", true),
+            ("[t/m]", "kg/m", true),
+            ("(rad)", "deg", true),
+            ("(N-m^2)", "N m²", false),
+            ("(kg)", "m³", false),
+            ("(Pa-s/-)", "N s", false),
+            ("(-)", "N", false),
+            ("(m)", "-", false),
+        ] {
+            assert_eq!(differ(one, other), apart, "{one} {other}");
         }
         for (text, quantity) in [
             ("mN", Quantity::Force),

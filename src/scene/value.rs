@@ -178,6 +178,22 @@ fn list_of(kind: Kind) -> Kind {
     }
 }
 
+/// The end of the refusal of a list that would have one of the lengths if its commas were decimal ones.
+pub(super) fn decimal_commas(numbers: &[f64], lengths: &[usize]) -> String {
+    let is_whole = |number: &f64| number.fract() == 0.0;
+    let pairs = numbers
+        .chunks_exact(2)
+        .filter(|pair| pair.iter().all(is_whole) && pair[1] >= 0.0);
+    let joined: Vec<String> = pairs.map(|pair| format!("{}.{}", pair[0], pair[1])).collect();
+    match 2 * joined.len() == numbers.len() && lengths.contains(&joined.len()) {
+        true => format!(
+            ": if these are decimal commas, write points, [{}]",
+            joined.join(", ")
+        ),
+        false => String::new(),
+    }
+}
+
 /// Reads the elements of an array one by one.
 fn read_all<T: Value>(node: &Node<'_>, mut keep: impl FnMut(T)) -> Result<(), SceneError> {
     for element in node.elements().ok_or_else(|| node.expected("an array"))? {
@@ -199,10 +215,12 @@ impl<T: Value, const N: usize> Value for [T; N] {
 
     fn read(&mut self, node: &Node<'_>) -> Result<(), SceneError> {
         let expected = format!("an array of {N} numbers");
-        match node.elements().map(|elements| elements.len()) {
-            Some(count) if count == N => {}
-            Some(count) => return Err(node.expected_instead_of(&expected, &format!("an array of {count}"))),
-            None => return Err(node.expected(&expected)),
+        let elements = node.elements().ok_or_else(|| node.expected(&expected))?;
+        let count = elements.len();
+        if count != N {
+            let numbers = elements.map_while(|element| element.number("a number").ok());
+            let commas = decimal_commas(&numbers.collect::<Vec<f64>>(), &[N]);
+            return Err(node.expected_instead_of(&expected, &format!("an array of {count}{commas}")));
         }
         let mut index = 0;
         read_all(node, |value| {

@@ -33,7 +33,12 @@ impl Water {
 }
 
 /// Fastest water [m/s]; the strongest tidal streams reach 10 m/s.
-pub(super) const SPEED: Rule = magnitude(100.0);
+pub(super) const SPEED: Rule = magnitude(100.0).usual(
+    [-SPEED_USUAL, SPEED_USUAL],
+    "less than 5 m/s in any direction is usual",
+);
+/// Speed of the fastest currents that moorings are laid in [m/s].
+pub(super) const SPEED_USUAL: f64 = 5.0;
 
 table! {
     /// A current: one `velocity` at all heights, or a `profile` over the height, which may stand in a `file`; with `factor`, a function of

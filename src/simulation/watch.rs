@@ -6,6 +6,7 @@ use left_tables::LeftTables;
 use nalgebra::Vector3;
 
 use super::Simulation;
+use crate::model::{End, Parting};
 use crate::scene::{Note, Scene};
 
 /// Part of its unstretched length [-] that the end of a line may move by in one communication step.
@@ -25,6 +26,8 @@ struct Watched {
     ends: [Vector3<f64>; 2],
     /// Strain that is noted [-]; infinite where it was noted, or where large strains are meant.
     strain_max: f64,
+    /// Tension that breaks the line [N], at an end; `None` where it was compared with that of the first state.
+    breaks_at: Option<(End, f64)>,
 }
 
 impl Watch {
@@ -34,6 +37,7 @@ impl Watch {
         let watched = lines.map(|(index, line)| Watched {
             ends: ends(simulation, index),
             strain_max: scene.usual_strain(line),
+            breaks_at: simulation.model.lines[index].parting.and_then(breaking_tension),
         });
         Watch {
             lines: watched.collect(),
@@ -58,6 +62,9 @@ impl Watch {
             if let Some(note) = jump(simulation, index, before, now).filter(|_| !self.has_jumped) {
                 self.has_jumped = true;
                 notes.push(note);
+            }
+            if let Some((end, tension)) = watched.breaks_at.take() {
+                notes.extend(breaks_at_once(simulation, index, end, tension));
             }
             if watched.strain_max.is_finite() && exceeds_strain(simulation, index, watched.strain_max) {
                 let strain = strain(simulation, index);
@@ -100,6 +107,28 @@ fn jump(
         data.name
     );
     Some(Note::new(format!("lines[{line}]"), text))
+}
+
+/// End that a tension breaks off its point, and that tension [N]; `None` where no tension does.
+fn breaking_tension(partings: [Parting; 2]) -> Option<(End, f64)> {
+    let ends = [End::A, End::B].into_iter().zip(partings);
+    ends.filter_map(|(end, parting)| Some((end, parting.tension?)))
+        .next()
+}
+
+/// A note on a line whose tension breaks it at the start.
+fn breaks_at_once(simulation: &Simulation, line: usize, end: End, limit: f64) -> Option<Note> {
+    let data = &simulation.model.lines[line];
+    let node = match end {
+        End::A => 0,
+        End::B => data.segment_count(),
+    };
+    let tension = simulation.segment_tension(line, node);
+    let text = format!(
+        "{} breaks in its first step: its tension there is {tension:.0} N at the start, and {limit:.0} N breaks it",
+        data.name
+    );
+    (tension >= limit).then(|| Note::new(format!("lines[{line}].break.tension"), text))
 }
 
 /// Squares of the stretched [m²] and unstretched lengths [m] of a line's segments, without the segment that a winch changes.

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use crate::common::{assert_says, draft, start};
-use moorline::scene::{LoadError, LoadedScene, MotionPath, Scene, load};
+use moorline::scene::{LoadError, LoadedScene, MotionPath, Note, Scene, load};
 use tempfile::tempdir;
 
 use crate::{SCENE, said};
@@ -193,4 +193,41 @@ fn a_scene_names_files_of_waves_and_current_as_a_deck_does() {
     fs::remove_file(folder.path().join(WAVES.0)).unwrap();
     let refusal = format!("{:?}", written(folder.path(), &text, &[]).unwrap_err());
     assert_says(&refusal, &["no such file"]);
+}
+
+#[test]
+fn soundings_above_the_water_are_refused_by_file_and_place() {
+    let folder = tempdir().unwrap();
+    let text = SCENE.replace("depth = 50.0", "depth = 50.0\nfile = \"bed.csv\"");
+    fs::write(folder.path().join("scene.toml"), text).unwrap();
+    let load = |soundings: &str| {
+        fs::write(folder.path().join("bed.csv"), soundings).unwrap();
+        load(&folder.path().join("scene.toml"))
+    };
+    let error = load("y/x, 0, 200\n0, -50, -60\n").unwrap_err().list();
+    let said = "scene.toml:9:8: seabed.file: ";
+    let place = "bed.csv: the depth at x = 0 m, y = 0 m is -50 m, above the water: depths count downwards";
+    assert!(error.contains(said) && error.contains(place), "{error}");
+    assert!(load("y/x, 0, 200\n0, 50, 60\n").is_ok());
+}
+
+#[test]
+fn a_note_on_what_stands_in_a_file_names_the_key_of_the_file() {
+    let folder = tempdir().unwrap();
+    let current = "density = 1025.0\ncurrent = { file = \"current.txt\" }";
+    let text = SCENE.replace("density = 1025.0", current);
+    fs::write(folder.path().join("scene.toml"), text).unwrap();
+    let rows = "a\nb\n(m) (m/s) (m/s) (m/s)\n0 0.5 0 0\n-50 50 0 0\n";
+    fs::write(folder.path().join("current.txt"), rows).unwrap();
+    let loaded = load(&folder.path().join("scene.toml")).unwrap();
+    let note = loaded
+        .notes
+        .iter()
+        .find(|note| note.text.contains("50 m/s is unusual"));
+    let note = note.unwrap_or_else(|| panic!("{:?}", loaded.notes));
+    assert_eq!((note.at.as_str(), note.line), ("water.current.file", Some(6)));
+    let left = loaded.locate_note(Note::new("water.current.profile", "left"));
+    assert_eq!(left.at, "water.current.file");
+    let elsewhere = loaded.locate_note(Note::new("seabed.grid", "left"));
+    assert_eq!(elsewhere.at, "seabed.grid");
 }

@@ -19,6 +19,44 @@ const SLIPS: &[Refusal] = &[
         "2:12: not TOML: `9,81` has a decimal comma: numbers have a point, 9.81",
     ),
     (
+        "density = 1025.0",
+        "density = 1.025,0",
+        "5:16: not TOML: `1.025,0` has a decimal comma: numbers have a point, 1025.0, and nothing between thousands",
+    ),
+    (
+        "density = 1025.0",
+        "density = 1025.0\nsurface = yes",
+        "6:11: not TOML: `yes` is written `true`",
+    ),
+    (
+        "position = [100.0, 0.0, -50.0]",
+        "position = 100.0, 0.0, -50.0",
+        "18:17: not TOML: several numbers stand in brackets, [100.0, 0.0, -50.0], and a single one",
+    ),
+    (
+        "position = [100.0, 0.0, -50.0]",
+        "position = [100,0, 0,0, -50,0]",
+        "18:12: points[0].position: expected an array of 3 numbers [m], found an array of 6: if these are decimal commas, write points, \
+         [100.0, 0.0, -50.0]",
+    ),
+    (
+        "position = [100.0, 0.0, -50.0]",
+        "position = [100.5, 0.0, -50.0, 1, 2, 3]",
+        "18:12: points[0].position: expected an array of 3 numbers [m], found an array of 6",
+    ),
+    (
+        "[[1.0, 10.0]]",
+        "[[1,0, 10,0]]",
+        "44:19: motion.fairlead.x[0]: expected [amplitude [m], period [s]] or [amplitude, period, phase [rad]], found 4 numbers: if these \
+         are decimal commas, write points, [1.0, 10.0]",
+    ),
+    (
+        "x = [[1.0, 10.0]]",
+        "table = [[0,0, 1,0, 0,0, 0,5]]",
+        "44:23: motion.fairlead.table[0]: expected an array of 4 numbers (t, x, y, z), or of 7 (with roll, pitch, yaw of a vessel), found \
+         an array of 8: if these are decimal commas, write points, [0.0, 1.0, 0.0, 0.5]",
+    ),
+    (
         "kind = \"fixed\"",
         "kind = fixed",
         "19:8: not TOML: `fixed` is a word without quotes: write \"fixed\"",

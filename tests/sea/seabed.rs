@@ -410,6 +410,10 @@ fn beds_that_make_no_sense_are_refused_with_their_key() {
             "seabed.grid.depth[0][1]: inf is not a finite number",
         ),
         (
+            "grid = { x = [0.0, 10.0], y = [0.0], depth = [[100.0, -1.0]] }",
+            "seabed.grid.depth[0][1]: -1 m is negative: depths count downwards from z = 0",
+        ),
+        (
             "grid = { x = [], y = [0.0], depth = [[]] }",
             "seabed.grid.x: the grid has no x",
         ),
@@ -426,7 +430,7 @@ fn beds_that_make_no_sense_are_refused_with_their_key() {
 
 #[test]
 fn a_scene_with_a_rough_grid_is_written_and_read_back_the_same() {
-    let grid = soundings(|x, y| 100.0 - 0.1 * x + 0.2 * y);
+    let grid = soundings(|x, y| 100.0 - 0.05 * x + 0.2 * y);
     let scene = chain(
         &format!("{grid}, friction = {{ transverse = 0.7, axial = 0.4 }}"),
         560.0,

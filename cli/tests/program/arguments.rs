@@ -48,6 +48,10 @@ fn wrong_arguments_are_refused_with_what_would_be_right() {
     with_step("inf", "must be positive and finite");
     with_step("NaN", "must be positive and finite");
     with_step("fast", "is not a number");
+    refused(
+        &["check", "scene.toml", "--vessel", "a b"],
+        "invalid value 'a b' for '--vessel <NAME>': \"a b\" holds ' '",
+    );
     assert_eq!(names(folder.path()), ["scene.toml"]);
 }
 

@@ -135,6 +135,47 @@ fn coupled_points_of_a_deck_move_as_the_one_vessel_that_is_given() {
 }
 
 #[test]
+fn a_note_on_a_motion_beside_a_scene_names_its_file_or_argument() {
+    let folder = folder(
+        DECK,
+        &[(
+            "m.csv",
+            "time,x,y,z,roll,pitch,yaw\n0,0,0,0,0,0,0\n1,0,0,0,0,2.0,0\n",
+        )],
+    );
+    let remarks = |arguments: &[&str]| {
+        let arguments = [&RUN, arguments, &["--duration", "1"]].concat();
+        err(&moorline(folder.path(), &arguments))
+    };
+    let said = remarks(&["--motion", "m.csv"]);
+    assert!(
+        said.contains("note: m.csv: motion.vessel.table: pitch of 2 rad is a turn by"),
+        "{said}"
+    );
+    let said = remarks(&["--move", "vessel.x=0.01,0.05"]);
+    assert!(
+        said.contains("note: --move: motion.vessel.x: a period of 0.05 s is unusual"),
+        "{said}"
+    );
+    let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/oc3_catenary.toml");
+    let moved = [
+        "run",
+        scene,
+        "-o",
+        "out",
+        "--move",
+        "fairlead.x=0.01,0.05",
+        "--duration",
+        "1",
+    ];
+    let said = err(&moorline(folder.path(), &moved));
+    assert!(
+        said.contains("note: --move: motion.fairlead.x: a period"),
+        "{said}"
+    );
+}
+
+#[test]
 fn without_a_motion_a_deck_stays_at_rest() {
     let columns = run(DECK, &[], &["--duration", "3"]);
     let tension = &columns["FairTen2"];

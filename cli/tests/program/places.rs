@@ -14,9 +14,14 @@ fn an_output_folder_that_cannot_be_made_is_refused_before_the_run() {
     let run = |output: &str, parts: &[&str]| {
         refused(folder.path(), &["run", "scene.toml", "-o", output], 2, parts);
     };
-    run("taken", &["taken is a file: give the name of a folder"]);
+    run("taken", &["taken is no folder: give the name of one"]);
     run("taken/below", &["cannot make the folder taken/below"]);
-    refused(folder.path(), &["demo", "-o", "taken"], 2, &["taken is a file"]);
+    refused(
+        folder.path(),
+        &["demo", "-o", "taken"],
+        2,
+        &["taken is no folder"],
+    );
     assert_eq!(names(folder.path()), ["scene.toml", "taken"]);
 }
 
@@ -91,6 +96,43 @@ fn an_interrupted_run_says_so_and_leaves_no_empty_folder() {
     }
 }
 
+/// Each waits for a scene that does not come.
+#[cfg(unix)]
+#[test]
+fn every_command_that_is_interrupted_says_so_and_leaves_no_file() {
+    let folder = folder();
+    let fmu = ["fmu", "/dev/stdin", "-o", "x.fmu"];
+    let commands = [
+        ["check", "/dev/stdin"].as_slice(),
+        &["statics", "/dev/stdin"],
+        &fmu,
+    ];
+    for (arguments, signal) in commands.into_iter().zip(["-TERM", "-INT", "-TERM"]) {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_moorline"))
+            .args(arguments)
+            .current_dir(folder.path())
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let _open = child.stdin.take();
+        std::thread::sleep(std::time::Duration::from_millis(300));
+        assert!(
+            Command::new("kill")
+                .args([signal, &child.id().to_string()])
+                .status()
+                .unwrap()
+                .success()
+        );
+        let output = child.wait_with_output().unwrap();
+        assert_eq!(output.status.code(), Some(130), "{arguments:?}: {}", err(&output));
+        let said = "interrupted: nothing was written\n";
+        assert_eq!(err(&output), said, "{arguments:?}");
+    }
+    assert_eq!(names(folder.path()), ["scene.toml"]);
+}
+
 #[cfg(unix)]
 fn interrupt(signal: &str) {
     let folder = folder();
@@ -155,6 +197,28 @@ fn outputs_follow_links_and_replace_nothing_but_regular_files() {
     assert!(fs::read_to_string(at("real.toml")).unwrap().contains("[[lines]]"));
     assert!(fs::symlink_metadata(at("pipe")).unwrap().file_type().is_fifo());
     assert!(!fs::metadata("/dev/null").unwrap().is_file());
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn standard_output_that_is_a_pipe_takes_no_file() {
+    let folder = folder();
+    let deck = format!("{}/../decks/tests/decks/oc3.map", env!("CARGO_MANIFEST_DIR"));
+    let what = "cannot write /dev/stdout: it is a device or a pipe: give the name of a file";
+    let convert = ["convert", &deck, "--depth", "320", "-o", "/dev/stdout"];
+    refused(folder.path(), &convert, 2, &[what]);
+    refused(
+        folder.path(),
+        &["fmu", "scene.toml", "-o", "/dev/stdout"],
+        2,
+        &[what],
+    );
+    refused(
+        folder.path(),
+        &["run", "scene.toml", "-o", "/dev/stdout"],
+        2,
+        &["/dev/stdout is no folder"],
+    );
 }
 
 #[cfg(unix)]

@@ -205,6 +205,27 @@ fn a_run_that_stays_within_its_tables_says_nothing_of_them() {
     );
 }
 
+#[test]
+fn a_run_of_hours_and_a_line_that_breaks_at_once_are_noted_before_the_run() {
+    let folder = folder();
+    let line = "sections = [{ type = \"rope\", length = 14.1421, elements = 8 }]";
+    let breaks = SCENE.replace(line, &format!("{line}\nbreak = {{ at = \"b\", tension = 0.5 }}"));
+    let said = remarks(&folder, &breaks, &["-o", "out"]);
+    assert!(
+        said.contains("lines[0].break.tension: line1 breaks in its first step"),
+        "{said}"
+    );
+    let shown = err(&moorline(folder.path(), &["statics", "left.toml"]));
+    assert!(shown.contains("line1 breaks in its first step"), "{shown}");
+    let long = SCENE
+        .replace("elements = 8", "elements = 8000")
+        .replace("duration = 1.0", "duration = 1000.0");
+    fs::write(folder.path().join("long.toml"), long).unwrap();
+    let said = done(folder.path(), &["check", "long.toml"]);
+    assert!(said.contains("hours on one thread: 8000 elements"), "{said}");
+    assert!(!done(folder.path(), &["check", "scene.toml"]).contains("hours on one thread"));
+}
+
 /// Source: span and sag of the inextensible wire as in `tests/quasi_static.rs`.
 #[test]
 fn the_command_line_draws_the_collar_out_too() {

@@ -49,8 +49,8 @@ fn needs_depth(deck: &Deck, draft: &mut Draft<'_>) {
         draft.findings.wrong(
             "NODE PROPERTIES, Z",
             word,
-            "the host of MAP++ gives the water depth, and the file has none: say it with `moorline convert FILE --depth 320 \
-             -o scene.toml`, or write the z of the bed in place of `depth`",
+            "the host of MAP++ gives the water depth, and the file has none: add `--depth 320` to the command, or write the z of the \
+             seabed in place of `depth`",
         );
     }
 }
@@ -149,7 +149,7 @@ fn seabed(deck: &Deck, draft: &mut Draft<'_>) {
         ),
         Some(_) => {}
         None => {
-            let depth = draft.depth(None);
+            let depth = draft.depth(None, false);
             let friction = Friction::isotropic(friction(deck, draft));
             draft.scene.seabed = depth.map(|depth| Seabed {
                 friction,

@@ -4,8 +4,8 @@ use moorline::scene::rows::{Field, Row, number, shown};
 
 use crate::findings::{Findings, Placed};
 use crate::table::{
-    Cells, Column, ROWS_MAX, check_unique, column, compare_header, is_one_of, meant, placed_text, read_rows,
-    title,
+    Cells, Column, ROWS_MAX, check_unique, check_units, column, compare_header, is_one_of, left_out,
+    placed_text, read_rows, title,
 };
 
 /// A whole deck.
@@ -274,6 +274,9 @@ fn table<T>(
     if let Some(header) = section.rows.first() {
         compare_header(header, columns, findings);
     }
+    if let Some(units) = section.rows.get(1) {
+        check_units(units, columns, section.body(), findings);
+    }
     read_rows(section.name, section.body(), &[columns], findings, read)
 }
 
@@ -348,7 +351,9 @@ fn line(cells: &mut Cells<'_, '_>) -> Line {
             }
             _ => {
                 let known = OUTPUT_FLAGS.split(' ').chain([OMIT_CONTACT]);
-                format!("unknown flag {}{}", shown(flag.text), meant(&upper, known))
+                let text = left_out("flag", flag.text, known);
+                cells.findings.remark_at(flag.span.start, text);
+                continue;
             }
         };
         let at = format!("{}, flags", cells.place);
@@ -385,8 +390,7 @@ fn options(section: &Section<'_>, deck: &mut Deck, findings: &mut Findings) {
             deck.unneeded.push(placed_text(key.text, &key.span));
         } else {
             let known = UNNEEDED.split(' ').chain([REPEAT]);
-            let problem = format!("unknown option {}{}", shown(key.text), meant(&upper, known));
-            findings.mistake("SOLVER OPTIONS", key.span.clone(), problem);
+            findings.remark_at(key.span.start, left_out("option", key.text, known));
         }
     }
 }

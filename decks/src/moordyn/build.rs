@@ -158,8 +158,8 @@ fn needs_position(number: usize, attachment: &Placed<Attachment>, deck: &Deck, d
     let placed = draft.supplement.positions.contains_key(&name);
     if several && !placed && !draft.has_vessel(&name) {
         let problem = format!(
-            "the deck of a farm leaves to its host where the turbines stand: say it with `moorline convert DECK --at {name}=X,Y,Z \
-             -o scene.toml`, once for every turbine"
+            "the deck of a farm leaves to its host where the turbines stand: add `--at {name}=X,Y,Z` to the command, once for every \
+             turbine"
         );
         draft
             .findings
@@ -230,7 +230,8 @@ fn surroundings(deck: &Deck, draft: &mut Draft<'_>) {
         Property::Number(value) => Some(down_to_the_anchors(&depth.with(value), draft)),
         _ => None,
     });
-    let Some(depth) = draft.depth(given) else {
+    let file = soundings(deck, draft);
+    let Some(depth) = draft.depth(given, file.is_some()) else {
         return;
     };
     if let Some(depth) = &options.depth {
@@ -241,7 +242,7 @@ fn surroundings(deck: &Deck, draft: &mut Draft<'_>) {
         stiffness: stiffness.unwrap_or(level.stiffness),
         damping: damping.unwrap_or(level.damping),
         friction: friction(deck, draft),
-        file: soundings(deck, draft),
+        file,
         ..level
     });
 }
@@ -279,13 +280,13 @@ fn moving_water(deck: &Deck, water: &mut Water, draft: &mut Draft<'_>) {
                 ..Sea::default()
             };
             water.waves = Some(Waves { seas: vec![sea] });
-            "water.waves.file"
+            "water.waves"
         } else {
             water.current = Some(Current {
                 file,
                 ..Current::default()
             });
-            "water.current.file"
+            "water.current"
         };
         draft.places.put(at, &value.span, format!("OPTIONS, {key}"));
     }
@@ -298,7 +299,9 @@ fn soundings(deck: &Deck, draft: &mut Draft<'_>) -> Option<String> {
         _ => None,
     });
     let file = named.or(deck.options.soundings.clone())?;
-    draft.places.put("seabed.file", &file.span, "OPTIONS, bathymetry");
+    for at in ["seabed.file", "seabed.grid"] {
+        draft.places.put(at, &file.span, "OPTIONS, bathymetry");
+    }
     Some(file.value.trim_matches('"').to_string())
 }
 

@@ -218,6 +218,8 @@ pub(super) struct Options {
     pub output_interval: Option<Placed<f64>>,
     /// TmaxIC of 0: MoorDyn starts from the positions in the file, without time to come to rest.
     pub starts_at_once: Option<Placed<String>>,
+    /// A file with the state to start from: key and value.
+    pub state_file: Option<Placed<String>>,
     /// Waves and currents: key and value.
     pub surroundings: Vec<(String, Placed<String>)>,
     /// Keys that need nothing here.

@@ -5,7 +5,7 @@ use moorline::scene::rows::{Row, number, shown};
 use super::deck::{Options, Property};
 use super::tables::word_property;
 use crate::findings::{Findings, Placed};
-use crate::table::{ROWS_MAX, is_one_of, meant, placed_text};
+use crate::table::{ROWS_MAX, is_one_of, left_out, placed_text};
 
 /// Keys in capitals that choose how MoorDyn solves, starts and writes: nothing here needs them.
 const UNNEEDED: &str = "DTM DT CFL TSCHEME DTIC ICDT CDSCALEIC ICDFAC THRESHIC ICTHRESH FILEIC ICGENDYNAMIC \
@@ -83,8 +83,9 @@ pub(super) fn read(rows: &[Row<'_>], findings: &mut Findings) -> Options {
             findings.remark(key, text);
         } else if let Some(meaning) = meaning(&key.value) {
             take(&mut options, meaning, choice, findings);
+        } else if is_one_of(&key.value, STATE_FILES) && number(&value.value) != Ok(0.0) {
+            options.state_file = Some(key.with(format!("{} {}", key.value, value.value)));
         } else if is_one_of(&key.value, UNNEEDED) {
-            remark_on_state_file(choice, findings);
             options.unneeded.push(key.clone());
         } else if meaning(&value.value).is_some() || is_one_of(&value.value, UNNEEDED) {
             let problem = format!(
@@ -96,12 +97,7 @@ pub(super) fn read(rows: &[Row<'_>], findings: &mut Findings) -> Options {
         } else {
             let keys = NEEDED.iter().map(|(_, keys)| *keys).chain([UNNEEDED]);
             let known: Vec<&str> = keys.flat_map(|keys| keys.split(' ')).collect();
-            let meant = meant(&key.value, known.iter().copied());
-            let text = format!(
-                "the option {} is not known and left out{meant}",
-                shown(&key.value)
-            );
-            findings.remark(key, text);
+            findings.remark(key, left_out("option", &key.value, known.iter().copied()));
         }
     }
     options
@@ -120,17 +116,6 @@ fn choices(rows: &[Row<'_>], findings: &mut Findings) -> Vec<Choice> {
         choices.push(Choice { key, value });
     }
     choices
-}
-
-/// MoorDyn would start from the state in the file.
-fn remark_on_state_file(Choice { key, value }: &Choice, findings: &mut Findings) {
-    if is_one_of(&key.value, STATE_FILES) && number(&value.value) != Ok(0.0) {
-        let text = format!(
-            "{} {}: the state in this file is not read, the run starts from equilibrium",
-            key.value, value.value
-        );
-        findings.remark(key, text);
-    }
 }
 
 fn take(options: &mut Options, meaning: Meaning, Choice { key, value }: &Choice, findings: &mut Findings) {

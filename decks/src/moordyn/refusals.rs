@@ -97,7 +97,7 @@ fn bodies(deck: &Deck, findings: &mut Findings) {
                 continue;
             }
             Attachment::Body(_) | Attachment::Pinned(_) => {
-                findings.wrong(at(), &body.attachment, "a body is Fixed, Coupled, Vessel or Free");
+                findings.wrong(at(), &body.attachment, "a body is Fixed, Coupled or Vessel");
                 continue;
             }
             Attachment::Free => "a free body",

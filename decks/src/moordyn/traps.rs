@@ -1,15 +1,12 @@
 //! Remarks on what is right in a deck but often meant otherwise.
 
-use moorline::scene::plausibility::{STEEL, dense};
+use moorline::scene::plausibility::{DRAG_ON_BAR, MASS_PER_VOLUME, dense};
 
 use super::deck::{Attachment, Deck, LineType, Property, Version};
 use super::sections::{Kind, Sections};
 use super::tables::columns_of;
 use crate::findings::Findings;
-use crate::table::compare_header;
-
-/// Density [kg/m³] above which the diameter is unlikely to be that of the volume: steel with a margin for rounded numbers.
-const DENSITY_MAX: f64 = 1.2 * STEEL;
+use crate::table::{check_units, compare_header};
 
 /// BA [N s] below which a ratio without its minus sign is likelier.
 const RATIO_LIKE: f64 = 10.0;
@@ -41,6 +38,9 @@ fn headers(deck: &Deck, sections: &Sections<'_>, findings: &mut Findings) {
     for section in &sections.list {
         if let (Some(names), Some(columns)) = (&section.names, columns_of(section, deck)) {
             compare_header(names, columns, findings);
+        }
+        if let (Some(units), Some(columns)) = (&section.units, columns_of(section, deck)) {
+            check_units(units, columns, &section.rows, findings);
         }
     }
 }
@@ -78,13 +78,14 @@ fn ratio_or_damping(kind: &LineType, sections: &Sections<'_>, findings: &mut Fin
     }
 }
 
-/// The diameter is that of a cylinder of the line's volume, not that of a chain's bar.
+/// The diameter is that of a cylinder of the line's volume, not that of a chain's bar. A drag coefficient that refers to the bar makes that
+/// certain: a scene is then silent, and other lines are noted as in a scene.
 fn chain_diameter(kind: &LineType, findings: &mut Findings) {
     let (diameter, mass) = (kind.diameter.value, kind.mass.value);
-    if diameter <= 0.0 || mass <= 0.0 {
+    if diameter <= 0.0 || mass <= 0.0 || kind.drag_normal.value < DRAG_ON_BAR {
         return;
     }
-    if let Some(text) = dense(diameter, mass, DENSITY_MAX, "Diam") {
+    if let Some(text) = dense(diameter, mass, MASS_PER_VOLUME[1], "Diam") {
         let text = format!("{}: {text}", kind.name.value);
         findings.remark(&kind.diameter, text);
     }
@@ -95,7 +96,7 @@ fn unneeded_options(deck: &Deck, findings: &mut Findings) {
     if let Some(first) = unneeded.first() {
         let keys: Vec<&str> = unneeded.iter().map(|key| key.value.as_str()).collect();
         let text = format!(
-            "options that nothing here needs, since steps and the start from equilibrium are found without them: {}",
+            "options that nothing here needs, since steps and the start are found without them: {}",
             keys.join(", ")
         );
         findings.remark(first, text);
@@ -126,12 +127,21 @@ fn friction(deck: &Deck, findings: &mut Findings) {
     }
 }
 
-/// Start of a run: MoorDyn comes to rest from the positions in the file, in no time where `TmaxIC` is 0.
+/// Start of a run: MoorDyn comes to rest from the positions in the file, in no time where `TmaxIC` is 0, or takes a state from another file.
 fn start(deck: &Deck, findings: &mut Findings) {
-    if let Some(at_once) = &deck.options.starts_at_once {
-        let text = "TmaxIC 0: runs start with free points where the file has them and every line on its catenary between its ends, \
-                    or straight where it has none, as in MoorDyn; leave it out to start from equilibrium";
-        findings.remark(at_once, text);
+    let at_once = &deck.options.starts_at_once;
+    let start = match at_once {
+        Some(_) => {
+            "TmaxIC 0: runs start with free points where the file has them and every line on its catenary between its ends, or \
+             straight where it has none, as in MoorDyn; leave it out to start from equilibrium"
+        }
+        None => "the run starts from equilibrium",
+    };
+    if let Some(file) = &deck.options.state_file {
+        let text = format!("{}: the state in this file is not read; {start}", file.value);
+        findings.remark(file, text);
+    } else if let Some(at_once) = at_once {
+        findings.remark(at_once, start);
     }
 }
 

@@ -7,7 +7,7 @@ use std::fs;
 use std::path::Path;
 
 use approx::assert_relative_eq;
-use moorline::scene::{AngleOrder, Drive, LoadError, LoadedScene, MotionPath, Scene};
+use moorline::scene::{AngleOrder, Drive, LoadError, LoadedScene, MotionPath, Note, Scene};
 use moorline::simulation::Simulation;
 use moorline_decks::load;
 use nalgebra::Vector3;
@@ -67,6 +67,8 @@ fn a_deck_of_moordyn_brings_its_waves_and_current_from_files() {
     simulation.advance(0.1).unwrap();
     assert_converted(&loaded);
     assert!(loaded.notes.iter().any(|note| note.text.contains(WAVES.0)));
+    let left = loaded.locate_note(Note::new("water.current.profile", "left"));
+    assert_eq!(left.to_string(), "file line 24, OPTIONS, Currents: left");
 }
 
 #[test]
@@ -113,6 +115,19 @@ fn a_seafloor_file_of_moordyn_c_is_read_as_heights_of_the_bed() {
         .unwrap();
     assert_eq!((grid.x, grid.y), (vec![-900.0, 900.0], vec![-900.0, 900.0]));
     assert_eq!(grid.depth, [[100.0, 110.0], [100.0, 110.0]]);
+    for (anchors, depth) in [("-100.0 ", 100.0), ("0.0 ", 110.0)] {
+        let deck = deck.replace("110 WtrDpth\n", "").replace("-100.0 ", anchors);
+        let found = loaded(folder.path(), &deck, &[("bed.txt", &heights)]).unwrap();
+        assert_eq!(found.scene.seabed.unwrap().depth, depth);
+        assert!(
+            found
+                .notes
+                .iter()
+                .all(|note| !note.text.contains("no water depth")),
+            "{:?}",
+            found.notes
+        );
+    }
     let error = loaded(folder.path(), &deck, &[("bed.txt", axes)]).unwrap_err();
     let lack = "bed.txt: no height at x = 900 m, y = -900 m";
     assert_says(&error.list(), &["mooring.dat:27:1: OPTIONS, bathymetry: ", lack]);

@@ -81,7 +81,6 @@ fn the_traps_of_a_deck_are_named_with_their_lines() {
         ("file line 7: ", "is a damping ratio of 0.8"),
         ("file line 7: ", "fit a chain whose bar has this diameter"),
         ("file line 8: ", "BA 0.5 N s is next to none"),
-        ("file line 8: ", "more than steel"),
         ("file: ", "damping within a line acts in compression too"),
         ("file: ", "taken from the deepest fixed point, 100 m"),
         ("file line 25: ", "dtM, dtIC, TmaxIC, CdScaleIC, threshIC"),
@@ -99,6 +98,27 @@ fn the_traps_of_a_deck_are_named_with_their_lines() {
         "{said}"
     );
     assert!(said.contains("read as MoorDyn v1"), "{said}");
+}
+
+#[test]
+fn a_diameter_that_is_too_large_or_too_small_for_the_mass_is_noted_and_that_of_oc3_is_not() {
+    let of = |wire: &str| {
+        let deck = with(OPENFAST, "0.09     77.7 ", wire);
+        let said = notes(&load_text(&deck).unwrap());
+        let line = |note: &&str| note.starts_with("file line 8, line type wire, Diam: ");
+        said.lines().filter(line).collect::<Vec<_>>().join("\n")
+    };
+    assert_eq!(of("0.09     77.7 "), "");
+    let light = "make 12.214 kg/m³: 200 to 12 000 kg/m³ is usual, with the diameter in m";
+    assert!(of("0.09  0.0777  ").contains(light), "{}", of("0.09  0.0777  "));
+    assert!(of("90.0     77.7 ").contains("with the diameter in m"));
+    assert!(of("0.009    77.7 ").contains("more than steel"));
+    let map = with(MAP, "77.7066 ", "0.077707");
+    let said = notes(&load_bytes(map.as_bytes(), &deep()).unwrap());
+    assert!(
+        said.contains("line type Material, Diam: a mass of 0.07771 kg/m"),
+        "{said}"
+    );
 }
 
 #[test]

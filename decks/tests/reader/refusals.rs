@@ -249,6 +249,11 @@ fn bodies_and_rods_that_move_are_refused_with_what_to_do() {
     let refusals = [
         (
             "1    Coupled     0",
+            "1    Pinned     0",
+            "input:15:6: body 1: a body is Fixed, Coupled or Vessel\n",
+        ),
+        (
+            "1    Coupled     0",
             "1    Free     0",
             "input:15:6: body 1: a free body is not modelled",
         ),
@@ -311,11 +316,6 @@ fn a_wrong_map_deck_is_refused_at_its_place() {
         ),
         (
             "tension_fair",
-            "OMIT_CONTCAT",
-            "unknown flag \"OMIT_CONTCAT\", did you mean OMIT_CONTACT?",
-        ),
-        (
-            "tension_fair",
             "LINEAR_SPRING",
             "a line as a linear spring is not modelled",
         ),
@@ -323,11 +323,6 @@ fn a_wrong_map_deck_is_refused_at_its_place() {
             "tension_fair",
             "DAMAGE_TIME",
             "lines that come off are not modelled",
-        ),
-        (
-            "outer_tol 1e-5",
-            "outer_tolerance 1e-5",
-            "SOLVER OPTIONS: unknown option \"outer_tolerance\", did you mean OUTER_TOL?",
         ),
         (
             "repeat 120 240",
@@ -346,6 +341,61 @@ fn a_wrong_map_deck_is_refused_at_its_place() {
             .list();
         assert!(error.contains(part), "{old:?} -> {new:?}\n{error}");
     }
+}
+
+#[test]
+fn a_unit_above_a_column_that_it_is_not_read_in_is_refused_with_the_one_that_is() {
+    let read = |old: &str, new: &str| said(&with(VERSION_1, old, new));
+    for (old, new, part) in [
+        (
+            "(N)   (N)  (N) ",
+            "(kN)  (kN) (kN)",
+            "input:10:59: the header has (kN) over FZ, but numbers there are read in N",
+        ),
+        (
+            "(m)    (kg/m) ",
+            "(mm)   (kg/m) ",
+            "the header has (mm) over Diam, but numbers there are read in m",
+        ),
+        (
+            "(kg/m)         (N) ",
+            "(t/m)          (N) ",
+            "the header has (t/m) over MassDen, but numbers there are read in kg/m",
+        ),
+        ("(Pa-s/-)", "(kN-s/-)", "the header has (kN-s/-) over BA/-zeta"),
+    ] {
+        assert!(
+            read(old, new).contains(part),
+            "{old} -> {new}\n{}",
+            read(old, new)
+        );
+    }
+    let other = with(VERSION_1, "(kg)  (m^3)", "(-)  (#)");
+    assert!(load_text(&other).is_ok());
+    let of_zeros = with(
+        &with(VERSION_1, "1e3   1.5", "0     1.5"),
+        "(N)   (N)  (N) ",
+        "(kN)  (kN) (kN)",
+    );
+    assert!(load_text(&of_zeros).is_ok());
+    let map = with(MAP, "(N)           (-)   (Pa-s)", "(kN)          (-)   (Pa-s)");
+    let error = load_bytes(map.as_bytes(), &deep()).unwrap_err().list();
+    assert!(
+        error.contains("the header has (kN) over EA, but numbers there are read in N"),
+        "{error}"
+    );
+}
+
+#[test]
+fn advice_on_what_a_deck_leaves_to_its_host_is_that_of_every_command() {
+    let depth = load_text(MAP).unwrap_err().list();
+    assert!(depth.contains("add `--depth 320` to the command"), "{depth}");
+    let place = load_text(FARM).unwrap_err().list();
+    assert!(
+        place.contains("add `--at turbine1=X,Y,Z` to the command"),
+        "{place}"
+    );
+    assert!(!depth.contains("convert") && !place.contains("convert"));
 }
 
 #[test]

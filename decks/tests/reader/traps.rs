@@ -96,8 +96,8 @@ const TRAPS: &[Trap] = &[
         supplement: nothing,
         closed: Ok(1),
         notes: &[
-            "ICfile start.ic: the state in this file is not read, the run starts from equilibrium",
-            "are found without them: genDynamicIC, ICfile",
+            "ICfile start.ic: the state in this file is not read; the run starts from equilibrium",
+            "are found without them: genDynamicIC",
         ],
         holds: |_| true,
     },
@@ -238,6 +238,17 @@ const TRAPS: &[Trap] = &[
         notes: &["\"outer_fd inner only\" is a comment"],
         holds: |scene| scene.lines.len() == 2,
     },
+    Trap {
+        file: "unknown_words.map",
+        supplement: deep_116,
+        closed: Ok(2),
+        notes: &[
+            "the option \"outer_tolerance\" is not known and left out, did you mean OUTER_TOL?",
+            "the flag \"OMIT_CONTCAT\" is not known and left out, did you mean OMIT_CONTACT?",
+            "the flag \"colour\" is not known and left out",
+        ],
+        holds: |scene| scene.seabed.is_some(),
+    },
 ];
 
 /// What is wrong with a deck, if anything.
@@ -291,6 +302,28 @@ fn every_trap_is_read_solved_as_the_closed_form_has_it_and_named() {
 }
 
 #[test]
+fn a_state_file_without_time_to_come_to_rest_is_one_note() {
+    let text = fs::read_to_string(deck("traps").join("state_file.txt")).unwrap();
+    let at_once = with(&text, "----- need this", "0 TmaxIC\n----- need this");
+    let said = notes(&load_text(&at_once).unwrap());
+    let start: Vec<&str> = said
+        .lines()
+        .filter(|note| note.contains("runs start") || note.contains("start.ic"))
+        .collect();
+    let [note] = start[..] else {
+        panic!("{start:#?}");
+    };
+    let read = "ICfile start.ic: the state in this file is not read; TmaxIC 0: runs start with free points where the file has them";
+    assert!(note.contains(read), "{note}");
+}
+
+#[test]
+fn the_quasi_static_lines_of_map_have_no_note_on_drag() {
+    let said = notes(&load_with(&deck("oc3.map"), &deep()).unwrap());
+    assert!(!said.contains("drag_normal"), "{said}");
+}
+
+#[test]
 fn every_deck_of_a_trap_is_in_the_table() {
     let files = fs::read_dir(deck("traps")).unwrap();
     for file in files.map(|entry| entry.unwrap().file_name().into_string().unwrap()) {
@@ -340,11 +373,27 @@ fn a_vessel_of_all_coupled_points_must_be_another_and_have_some() {
             None,
             "but the file has none",
         ),
-        (OPENFAST, "point4", None, "point4"),
-        (OPENFAST, "a barge", None, "a barge"),
+        (
+            OPENFAST,
+            "point4",
+            None,
+            "cannot be `point4`, which the file has already",
+        ),
+        (
+            OPENFAST,
+            "line1",
+            None,
+            "cannot be `line1`, which the file has already",
+        ),
+        (
+            OPENFAST,
+            "a barge",
+            None,
+            "the vessel given for all coupled points: \"a barge\" holds ' '",
+        ),
     ] {
         let error = joined_as(text, name, at).expect_err(part).list();
-        assert!(error.contains(part), "{error}");
+        assert!(error.contains(part) && !error.contains(":1:1"), "{error}");
     }
 }
 
