@@ -47,9 +47,9 @@
 
 mod balance;
 mod bed;
+mod friction;
 mod prepare;
 mod rows;
-mod rubbing;
 mod solve;
 
 use nalgebra::Vector3;
@@ -62,8 +62,8 @@ use crate::math::lanes::Lanes;
 use crate::model::{End, Line, LineState, Model, Parting, WaveSpan};
 use crate::physics::stretch::StretchLaw;
 use balance::LineBalance;
+use friction::SeabedRow;
 use rows::{CurrentRow, NodeRow, Rows, SegmentRow, Sizes, springs, under};
-use rubbing::Rubbing;
 
 /// Passes over slack and contact flags, at most [-].
 const PASSES_MAX: usize = 8;
@@ -127,8 +127,8 @@ pub struct AxialWork {
     /// Greatest rate at which axial dampers would take velocities away [1/s].
     damping_rate: f64,
     rows: Rows,
-    /// The bed under the nodes, where it is more than a level plane without friction.
-    rubbing: Option<Rubbing>,
+    /// State of the nodes on a seabed with a slope, soundings or friction; empty without one.
+    seabed: Vec<SeabedRow>,
     /// Whether ends A and B have parted from their points.
     parted: [bool; 2],
     /// The energy balance, where the scene asks for it.
@@ -173,7 +173,7 @@ impl AxialWork {
                 current: layout.flows().then(|| vec![CurrentRow::new(); count]),
             },
             parted: [false; 2],
-            rubbing: layout.bottom().map(|_| Rubbing::new(line.segment_count() + 1)),
+            seabed: vec![SeabedRow::new(); if layout.bottom().is_some() { count } else { 0 }],
             balance: layout.energy_balance.then(LineBalance::default),
             tension_peak: Lanes::splat(0.0),
             tensions: [0.0; 2],
@@ -357,10 +357,10 @@ impl AxialWork {
     /// What is under the nodes.
     #[inline(always)]
     fn bed_under(&self) -> u8 {
-        match (&self.rubbing, &self.layout.contact) {
-            (Some(_), _) => under::ROUGH,
-            (None, Some(_)) => under::LEVEL,
-            (None, None) => under::NOTHING,
+        match (&self.layout.contact, self.seabed.is_empty()) {
+            (None, _) => under::NOTHING,
+            (Some(_), true) => under::LEVEL,
+            (Some(_), false) => under::ROUGH,
         }
     }
 
@@ -380,7 +380,7 @@ impl AxialWork {
         match BED {
             under::NOTHING => {}
             under::LEVEL => self.prepare_contact(step),
-            _ => self.meet_bed(step),
+            _ => self.meet_seabed(step),
         }
         self.weigh_nodes::<BED>();
         let mut passes = 0;
@@ -391,7 +391,7 @@ impl AxialWork {
             self.find_velocities::<BED>(before, &sizes);
             let found = self.look_over::<BED>(&sizes);
             self.tension_peak = self.tension_peak.max(found.greatest);
-            let bed_holds = self.bed_holds::<BED>(&found, step);
+            let bed_holds = self.bed_holds::<BED>(&found);
             let holds = self.segments_hold(&found, &sizes) && bed_holds;
             if holds || passes == PASSES_MAX {
                 self.settled &= holds;
@@ -402,7 +402,7 @@ impl AxialWork {
             }
         }
         if BED == under::ROUGH {
-            self.keep_rub(step);
+            self.keep_friction(step);
         }
         if self.balance.is_some() {
             self.balance_step(step, &sizes);

@@ -293,6 +293,6 @@ mod tests {
         let path = folder.path().join("taken");
         fs::write(&path, "").unwrap();
         let message = make_folder(&path).unwrap_err().to_string();
-        assert!(message.ends_with("taken is a file: give the name of a folder"));
+        assert!(message.ends_with("taken is no folder: give the name of one"));
     }
 }

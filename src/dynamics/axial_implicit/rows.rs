@@ -278,6 +278,8 @@ pub(super) struct NodeRow {
     /// Velocity without tension, without and with the bed [m/s].
     pub fall: Vectors,
     pub loose: Vectors,
+    /// Impulse of the segments on nodes over a seabed with a slope, soundings or friction [N s].
+    pub impulse: Vectors,
     /// qᵀM⁻¹q, qᵀM⁻¹q′ and q′ᵀM⁻¹q′ of the segments before and after [1/kg].
     pub forms: [Lanes; 3],
 }
@@ -301,6 +303,7 @@ impl NodeRow {
             touches: Lanes::splat(-1.0),
             fall: Vectors::zero(),
             loose: Vectors::zero(),
+            impulse: Vectors::zero(),
             forms: [zero; 3],
         }
     }

@@ -4,7 +4,6 @@
 
 use super::AxialWork;
 use super::rows::{NodeRow, SegmentRow, Sizes, under};
-use crate::dynamics::step::Step;
 use crate::math::folded_tridiagonal::Eliminated;
 use crate::math::lanes::{Lanes, Vectors};
 use crate::physics::stretch::StretchLaw;
@@ -118,7 +117,11 @@ impl AxialWork {
             if at > 0 {
                 below = pull(at - 1);
             }
-            new[at + 1] = node.loose + node.inverse_mass::<BED>(pull(at) - below);
+            let impulse = pull(at) - below;
+            if BED == under::ROUGH {
+                node.impulse = impulse;
+            }
+            new[at + 1] = node.loose + node.inverse_mass::<BED>(impulse);
         }
         self.layout.velocity_before.wrap();
     }
@@ -179,9 +182,9 @@ impl Found {
 impl AxialWork {
     /// Corrects how the nodes meet the bed where a pass found it not to be as assumed; false if that asks for another pass.
     #[inline(always)]
-    pub(super) fn bed_holds<const BED: u8>(&mut self, found: &Found, step: Step) -> bool {
+    pub(super) fn bed_holds<const BED: u8>(&mut self, found: &Found) -> bool {
         if BED == under::ROUGH {
-            return self.check_bed(step);
+            return self.seabed_holds();
         }
         let landed = BED == under::LEVEL && found.landed.any_positive();
         if landed {

@@ -2,13 +2,12 @@
 
 use std::sync::Arc;
 
-use nalgebra::Vector3;
-
 use super::Layout;
-use crate::math::fold::{Column, Field, Fold, Slot};
-use crate::math::lanes::Lanes;
+use crate::math::fold::{Column, Field, Fold};
+use crate::math::lanes::{Lanes, Vectors};
 use crate::model::{Bottom, Contact};
 use crate::physics::friction::Friction;
+use crate::physics::ground::Ground;
 
 /// Lumped contact coefficients [N/m, N s/m] and the z [m] below which they push; over a bed that slopes or rubs the height above it, along its normal.
 #[derive(Debug, Clone)]
@@ -61,32 +60,25 @@ impl Layout {
         self.contact.as_ref()?.bottom.as_ref()
     }
 
-    /// The contact with a bed that slopes or rubs, and its friction.
-    pub fn rubbing(&self) -> Option<(&ContactArrays, Option<&Friction>)> {
-        let contact = self.contact.as_ref()?;
-        let bottom = contact.bottom.as_ref()?;
-        Some((contact, bottom.bottom.friction.as_ref()))
+    /// Shape of the seabed, where it is more than a level plane without friction.
+    #[inline(always)]
+    pub fn ground(&self) -> Option<&Ground> {
+        Some(&self.bottom()?.bottom.ground)
     }
 
-    /// Remembers the friction on a node [N].
-    pub fn set_rub(&mut self, at: Slot, rub: Vector3<f64>) {
+    /// Friction of the seabed.
+    #[inline(always)]
+    pub fn friction(&self) -> Option<&Friction> {
+        self.bottom()?.bottom.friction.as_ref()
+    }
+
+    /// Keeps the friction on a row of nodes [N].
+    #[inline(always)]
+    pub fn set_rub(&mut self, at: usize, rub: Vectors) {
         if let Some(contact) = &mut self.contact
             && let Some(bottom) = &mut contact.bottom
         {
-            bottom.rub.set(at, rub);
+            bottom.rub.store(rub, at);
         }
-    }
-
-    /// How far the node at `at` is below the level from which the bed pushes it [m], and the bed's normal there; it must lie over a bed that
-    /// slopes or rubs.
-    #[inline]
-    pub fn stand(&self, at: Slot) -> (f64, Vector3<f64>) {
-        let contact = self.contact.as_ref().expect("asked over a bed only");
-        let bottom = contact
-            .bottom
-            .as_ref()
-            .expect("asked over a bed that slopes or rubs only");
-        let (below, normal) = bottom.bottom.ground.stand(self.position.get(at));
-        (below + contact.level[at], normal)
     }
 }

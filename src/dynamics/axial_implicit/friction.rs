@@ -1,0 +1,194 @@
+//! A seabed with a slope, soundings or friction under the axial-implicit leapfrog.
+//!
+//! With the parts of water and damping in its mass M, a node on the seabed obeys M (v − u) = Δt pull + λ_n n + λ_t, u being its velocity
+//! without tension and seabed. It is in one of three states, which are assumed before the system in T̄ is solved and checked after:
+//!
+//! ```text
+//! off       λ = 0                                    v = u + M⁻¹ Δt pull
+//! slides    λ_t from the last pass                   λ_n = a − b v_n eliminated by a rank-one update, as on a level seabed
+//! sticks    v = v_n n                                v_n = (n·M u + a + Δt n·pull)/(n·M n + b): of rank one itself
+//! ```
+//!
+//! a and b are those of [`super::bed`]. After a pass every node on the seabed takes the friction that Coulomb's law allows of the impulse that would stop it
+//! ([`crate::physics::friction`]); the step is repeated until states and friction hold. Without friction nodes slide with λ_t = 0.
+
+use super::AxialWork;
+use super::bed::Bed;
+use super::rows::NodeRow;
+use crate::dynamics::step::Step;
+use crate::math::lanes::{Lanes, Vectors};
+use crate::math::real::choose;
+use crate::physics::friction::{Axes, Friction, slide};
+use crate::physics::slender::Slender;
+
+/// Change of friction over the push of the seabed that asks for another pass [-].
+const FRICTION_TOLERANCE: f64 = 1e-4;
+/// Speed below which a node is first assumed to stick [m/s].
+const STILL: f64 = 1e-9;
+
+/// State of a row of nodes on the seabed.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct SeabedRow {
+    /// 1 where nodes slide or stick, else −1.
+    slides: Lanes,
+    sticks: Lanes,
+    /// Normal n of the seabed [-].
+    normal: Vectors,
+    /// Inverse mass off the seabed: across the line, and the excess along it [1/kg].
+    inverse: [Lanes; 2],
+    /// λ_t of nodes that slide [N s].
+    friction: Vectors,
+}
+
+impl SeabedRow {
+    /// Nodes off the seabed.
+    pub fn new() -> SeabedRow {
+        let off = Lanes::splat(-1.0);
+        SeabedRow {
+            slides: off,
+            sticks: off,
+            normal: Vectors::zero(),
+            inverse: [Lanes::splat(0.0); 2],
+            friction: Vectors::zero(),
+        }
+    }
+
+    /// Mass across the line, and along it, off the seabed [kg].
+    #[inline(always)]
+    fn mass(&self) -> Slender<Lanes> {
+        let [across, excess] = self.inverse;
+        Slender::inverse([across, across + excess])
+    }
+
+    /// Impulse of friction in the pass that gave the nodes a velocity [m/s] under an impulse of the segments [N s].
+    #[inline(always)]
+    fn needed(&self, node: &NodeRow, velocity: Vectors) -> Vectors {
+        let momentum = self.mass().times(velocity - node.fall, node.tangent) - node.impulse;
+        let holding = momentum - self.normal.scale(self.normal.dot(momentum));
+        let moving = choose(self.slides, self.friction, Vectors::zero());
+        choose(self.sticks, holding, moving)
+    }
+
+    /// Revises states and friction from a velocity [m/s]; positive where they change.
+    #[inline(always)]
+    fn revise(&mut self, node: &NodeRow, velocity: Vectors, friction: Option<&Friction>) -> Lanes {
+        let [on, off] = [1.0, -1.0].map(Lanes::splat);
+        let rise = self.normal.dot(velocity);
+        let pushes = node.bed.pushes(rise).where_positive(node.free);
+        let before = *self;
+        (self.slides, self.sticks) = (pushes.choose(on, off), off);
+        let mut changed = Lanes::splat(0.0);
+        if let (Some(friction), true) = (friction, pushes.any_positive()) {
+            let push = node.bed.push(rise);
+            let needed = before.needed(node, velocity);
+            let axes = Axes::new(self.normal, node.tangent);
+            let mass = self.mass();
+            let along = mass.across + mass.excess * axes.share * axes.share;
+            let yields = [along.recip(), mass.across.recip()];
+            let sliding = [axes.along.dot(velocity), axes.across.dot(velocity)];
+            let holding = [
+                axes.along.dot(needed) - sliding[0] * along,
+                axes.across.dot(needed) - sliding[1] * mass.across,
+            ];
+            let found = slide(holding, yields, friction.limits(axes.share, push));
+            let speed = (sliding[0] * sliding[0] + sliding[1] * sliding[1]).sqrt();
+            let was_off = Lanes::splat(0.0) - before.slides.max(before.sticks);
+            let still = (Lanes::splat(STILL) - speed).where_positive(was_off);
+            let moves = pushes.choose(still.choose(off, found.slides), off);
+            self.slides = moves.choose(on, off);
+            self.sticks = moves.choose(off, pushes.choose(on, off));
+            self.friction = choose(moves, axes.combine(found.force), self.friction);
+            let step = self.friction - before.friction;
+            let more = step.dot(step).sqrt() - Lanes::splat(FRICTION_TOLERANCE) * push;
+            changed = more.where_positive(moves);
+        }
+        let flips = off * (self.slides * before.slides).min(self.sticks * before.sticks);
+        changed.max(flips)
+    }
+}
+
+impl NodeRow {
+    /// Puts the seabed into the equations of the nodes.
+    #[inline(always)]
+    fn settle_on(&mut self, seabed: &SeabedRow) {
+        let (zero, one) = (Lanes::splat(0.0), Lanes::splat(1.0));
+        [self.across, self.excess] = seabed.inverse;
+        (self.held, self.loose) = (zero, self.fall);
+        if !seabed.slides.max(seabed.sticks).any_positive() {
+            return;
+        }
+        let ([across, excess], normal) = (seabed.inverse, seabed.normal);
+        let inverse = Slender { across, excess };
+        let (spring, resistance) = (self.bed.spring, self.bed.resistance);
+        // sliding
+        let response = inverse.times(normal, self.tangent);
+        let fall = self.fall + inverse.times(seabed.friction, self.tangent);
+        let share = (one + resistance * normal.dot(response)).recip();
+        let push = (spring - resistance * normal.dot(fall)) * share;
+        // sticking
+        let mass = seabed.mass();
+        let softness = (normal.dot(mass.times(normal, self.tangent)) + resistance).recip();
+        let momentum = normal.dot(mass.times(self.fall, self.tangent)) + spring;
+        let (slides, sticks) = (seabed.slides, seabed.sticks);
+        self.across = sticks.choose(zero, self.across);
+        self.excess = sticks.choose(zero, self.excess);
+        self.held = sticks.choose(zero - softness, (resistance * share).where_positive(slides));
+        self.response = choose(sticks, normal, response);
+        let slid = choose(slides, fall + response.scale(push), self.fall);
+        self.loose = choose(sticks, normal.scale(momentum * softness), slid);
+    }
+}
+
+impl AxialWork {
+    /// Finds how the nodes stand to the seabed, and what state they are first assumed to be in.
+    #[inline(always)]
+    pub(super) fn meet_seabed(&mut self, step: Step) {
+        let (line, friction) = (&self.layout, self.layout.friction());
+        let (Some(contact), Some(ground)) = (&line.contact, line.ground()) else {
+            return;
+        };
+        for at in line.rows() {
+            let (node, seabed) = (&mut self.rows.nodes[at - 1], &mut self.seabed[at - 1]);
+            let (below, normal) = ground.stand_of_four(line.position.load(at));
+            let velocity = line.velocity.load(at);
+            let upright = normal.dot(node.tangent);
+            let yields = node.across + node.excess * upright * upright;
+            let penetration = below + contact.level.load(at);
+            node.bed = Bed::new(contact.law(at), penetration, normal.dot(velocity), yields, step);
+            *seabed = SeabedRow {
+                normal,
+                inverse: [node.across, node.excess],
+                ..SeabedRow::new()
+            };
+            seabed.revise(node, velocity, friction);
+            node.settle_on(seabed);
+        }
+    }
+
+    /// Compares the states with those assumed; false if that asks for another pass.
+    #[inline(always)]
+    pub(super) fn seabed_holds(&mut self) -> bool {
+        let (line, friction) = (&self.layout, self.layout.friction());
+        let mut changed = Lanes::splat(0.0);
+        for at in line.rows() {
+            let (node, seabed) = (&mut self.rows.nodes[at - 1], &mut self.seabed[at - 1]);
+            let change = seabed.revise(node, line.velocity_before.load(at), friction);
+            if change.any_positive() {
+                node.settle_on(seabed);
+            }
+            changed = changed.max(change);
+        }
+        !changed.any_positive()
+    }
+
+    /// Keeps the friction of the step for the state.
+    #[inline(always)]
+    pub(super) fn keep_friction(&mut self, step: Step) {
+        let per_kick = Lanes::splat(1.0 / step.kick);
+        for at in self.layout.rows() {
+            let needed =
+                self.seabed[at - 1].needed(&self.rows.nodes[at - 1], self.layout.velocity_before.load(at));
+            self.layout.set_rub(at, needed.scale(per_kick));
+        }
+    }
+}
