@@ -1,10 +1,95 @@
-//! Cost of each piece of physics: one scene, with one feature after another taken out of it.
+//! Cost of each piece of physics: one scene, with one feature after another taken out of it; and the cost of laws that take more than a plain line does.
 
 mod common;
 
-use moorline::scene::{Integrator, Scene};
+use moorline::scene::{DepthGrid, Friction, Integrator, LineType, Scene, Strain, TensionStrain};
 
 fn main() {
+    taken_out();
+    for integrator in [Integrator::Leapfrog, Integrator::AxialImplicit] {
+        other_laws(integrator);
+    }
+}
+
+/// One law after another that takes more than a plain line does.
+fn other_laws(integrator: Integrator) {
+    let plain = || {
+        let mut scene = common::scene("oc3_catenary");
+        scene.solver.integrator = integrator;
+        scene.solver.time_step_max = 0.0125;
+        scene
+    };
+    let mut cases: Vec<(&str, Scene)> = vec![("plain", plain())];
+    let mut with = |name, change: &dyn Fn(&mut Scene)| {
+        let mut scene = plain();
+        change(&mut scene);
+        cases.push((name, scene));
+    };
+    let seabed = |scene: &mut Scene, change: &dyn Fn(&mut moorline::scene::Seabed)| {
+        scene.seabed.iter_mut().for_each(change);
+    };
+    let rope = |scene: &mut Scene, change: &dyn Fn(&mut LineType)| {
+        scene.line_types.values_mut().for_each(change);
+    };
+    with("friction", &|scene| {
+        seabed(scene, &|bed| bed.friction = Friction::isotropic(0.5))
+    });
+    with("slope", &|scene| {
+        seabed(scene, &|bed| bed.slope = Some([0.01, 0.01]))
+    });
+    with("slope and friction", &|scene| {
+        seabed(scene, &|bed| {
+            (bed.slope, bed.friction) = (Some([0.01, 0.01]), Friction::isotropic(0.5));
+        });
+    });
+    with("soundings", &|scene| {
+        seabed(scene, &|bed| {
+            let line: Vec<f64> = (-10..=10).map(|i| 100.0 * f64::from(i)).collect();
+            let depth = |y: &f64| {
+                line.iter()
+                    .map(|x| bed.depth + 0.5 * (0.01 * (x + y)).sin())
+                    .collect()
+            };
+            let depth = line.iter().map(depth).collect();
+            bed.grid = Some(DepthGrid {
+                x: line.clone(),
+                y: line,
+                depth,
+            });
+        });
+    });
+    with("Green strain", &|scene| {
+        rope(scene, &|line| line.strain = Strain::Green)
+    });
+    with("table", &|scene| {
+        rope(scene, &|line| {
+            let stiffness = line.axial_stiffness.take().expect("a stiffness");
+            let row = |strain: f64| [strain, stiffness * strain * (1.0 + strain)];
+            line.tension_strain = Some(TensionStrain {
+                file: None,
+                rows: (0..=10).map(|i| row(0.01 * f64::from(i))).collect(),
+            });
+        });
+    });
+    with("viscoelastic", &|scene| {
+        rope(scene, &|line| {
+            let stiffness = line.axial_stiffness.take().expect("a stiffness");
+            (line.axial_damping, line.damping_ratio) = (None, None);
+            (line.static_stiffness, line.dynamic_stiffness) = (Some(stiffness), Some(2.0 * stiffness));
+            (line.static_damping, line.dynamic_damping) = (Some(stiffness), Some(1e-3 * stiffness));
+        });
+    });
+    with("may pierce the surface", &|scene| {
+        scene
+            .water
+            .iter_mut()
+            .for_each(|water| water.surface = Some(true))
+    });
+    table(&format!("oc3_catenary, n = 40, {integrator:?}"), cases);
+}
+
+/// One piece of physics after another taken out.
+fn taken_out() {
     let full = || {
         let mut scene = common::scene("oc3_catenary");
         scene.solver.integrator = Integrator::Leapfrog;
@@ -39,16 +124,18 @@ fn main() {
         scene.seabed = None;
         chain(scene, &|line| line.axial_damping = Some(0.0));
     });
-    println!(
-        "{:<34} {:>14} {:>10}",
-        "oc3_catenary, n = 40, leapfrog", "ns/node/step", "of all"
-    );
-    let mut all = None;
+    table("oc3_catenary, n = 40, leapfrog", cases);
+}
+
+/// Prints the cost of scenes, beside the first.
+fn table(title: &str, cases: Vec<(&str, Scene)>) {
+    println!("{title:<34} {:>14} {:>10}", "ns/node/step", "of first");
+    let mut first = None;
     for (name, scene) in cases {
         let cost = common::measure(&scene).node_step;
         println!(
             "{name:<34} {cost:>14.2} {:>9.0}%",
-            100.0 * cost / *all.get_or_insert(cost)
+            100.0 * cost / *first.get_or_insert(cost)
         );
     }
 }

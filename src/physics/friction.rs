@@ -157,8 +157,12 @@ pub fn slide<R: Real>(holding: [R; 2], compliance: [R; 2], limits: [R; 2]) -> Sl
         scaled: [acting[0] * yields[0], acting[1] * yields[1]],
         stiffness: [yields[0] * limits[0], yields[1] * limits[1]],
     };
-    let outside = ellipse.size(zero)[0] - R::splat((1.0 - BORDER) * (1.0 - BORDER));
+    // the ellipse without quotients: (h_a D_b)² + (h_b D_a)² over (D_a D_b)²
+    let axes = [limits[0].choose(limits[0], one), limits[1].choose(limits[1], one)];
+    let (a, b, both) = (acting[0] * axes[1], acting[1] * axes[0], axes[0] * axes[1]);
+    let outside = a * a + b * b - R::splat((1.0 - BORDER) * (1.0 - BORDER)) * both * both;
     let mut gamma = zero;
+    let mut force = acting;
     if outside.any_positive() {
         for _ in 0..ITERATIONS_MAX {
             let [size, slope] = ellipse.size(gamma);
@@ -170,12 +174,16 @@ pub fn slide<R: Real>(holding: [R; 2], compliance: [R; 2], limits: [R; 2]) -> Sl
             let change = size * excess * slope.max(R::splat(f64::MIN_POSITIVE)).recip();
             gamma = open.choose((gamma + change).max(zero), gamma);
         }
+        let kept = [0, 1].map(|i| ellipse.part(i, gamma)[1] * ellipse.stiffness[i] * acting[i]);
+        force = [
+            outside.choose(kept[0], force[0]),
+            outside.choose(kept[1], force[1]),
+        ];
     }
-    let kept = [0, 1].map(|i| outside.choose(ellipse.part(i, gamma)[1] * ellipse.stiffness[i], one));
     // without friction along an axis any force slides
     let unheld = (holding[0] - acting[0]).abs().max((holding[1] - acting[1]).abs());
     Slide {
-        force: [acting[0] * kept[0], acting[1] * kept[1]],
+        force,
         slides: outside.max(unheld),
         multiplier: gamma,
     }

@@ -14,13 +14,14 @@
 //! dynamics, CISM 302; friction by [`super::friction`]. Stable for any stiffness; valid as `seabed` is.
 
 use super::friction::{Axes, Friction, slide};
+use super::slender::Slender;
 use crate::math::real::{Real, RealVector, choose};
 
 /// A node, or one in every lane, and how it meets the seabed.
 #[derive(Debug, Clone, Copy)]
 pub struct Landing<V: RealVector> {
-    /// Mass across and along the line [kg].
-    pub mass: [V::Real; 2],
+    /// Inverse mass across the line, and its excess along the line [1/kg].
+    pub inverse_mass: Slender<V::Real>,
     /// Direction t of the line [-].
     pub tangent: V,
     /// Normal n of the seabed [-].
@@ -49,12 +50,10 @@ impl<V: RealVector> Landing<V> {
     #[inline(always)]
     pub fn solve(&self, free: V, friction: Option<&Friction>) -> Landed<V> {
         let one = V::Real::splat(1.0);
-        let [across, along] = self.mass.map(V::Real::recip);
         let ([kick, drift], [stiffness, damping]) = (self.steps, self.contact);
         let resistance = kick * (stiffness * drift + damping);
         let rise = self.normal.inner(free);
-        let upright = self.normal.inner(self.tangent);
-        let response = self.normal.scaled(across) + self.tangent.scaled((along - across) * upright); // M⁻¹n
+        let response = self.inverse_mass.times(self.normal, self.tangent);
         let spring = kick * stiffness * self.penetration;
         let push = (spring - resistance * rise) * (one + resistance * self.normal.inner(response)).recip();
         let none = Landed {
@@ -83,11 +82,11 @@ impl<V: RealVector> Landing<V> {
         friction: &Friction,
         smooth: Landed<V>,
     ) -> Landed<V> {
-        let [m, along_mass] = self.mass;
+        let Slender { across: m, excess } = self.inverse_mass.inverted();
         let axes = Axes::new(self.normal, self.tangent);
-        let (upright, excess) = (self.normal.inner(self.tangent), along_mass - m);
+        let upright = self.normal.inner(self.tangent);
         let lying = axes.along.inner(self.tangent);
-        let momentum = free.scaled(m) + self.tangent.scaled(excess * self.tangent.inner(free));
+        let momentum = Slender { across: m, excess }.times(free, self.tangent);
         let driven = self.normal.inner(momentum) + spring;
         let softness = (m + excess * upright * upright + resistance).recip();
         let push = spring - resistance * driven * softness; // of a node that sticks
@@ -96,7 +95,7 @@ impl<V: RealVector> Landing<V> {
         let drive = axes.along.inner(momentum) - coupling * driven * softness;
         let zero = V::Real::splat(0.0);
         let holding = [zero - drive, zero - m * axes.across.inner(free)];
-        let compliance = [along.recip(), m.recip()];
+        let compliance = [along.recip(), self.inverse_mass.across];
         let slide = slide(holding, compliance, friction.limits(axes.share, push));
         let slid = [0, 1].map(|i| {
             let moved = (slide.force[i] - holding[i]) * compliance[i];
@@ -122,13 +121,13 @@ impl<V: RealVector> Landing<V> {
 mod tests {
     use super::*;
     use approx::assert_relative_eq;
-    use nalgebra::{Matrix3, Rotation3, Vector3};
+    use nalgebra::{Rotation3, Vector3};
 
     use crate::math::lanes::{LANES, Lanes, Vectors};
 
     fn landing() -> Landing<Vector3<f64>> {
         Landing {
-            mass: [120.0, 100.0],
+            inverse_mass: Slender::inverse([120.0, 100.0]),
             tangent: Vector3::new(0.9, 0.2, 0.15).normalize(),
             normal: Vector3::z(),
             penetration: 0.01,
@@ -144,9 +143,7 @@ mod tests {
 
     /// Impulse of the seabed beside friction [N s].
     fn push(node: &Landing<Vector3<f64>>, free: Vector3<f64>, landed: &Landed<Vector3<f64>>) -> Vector3<f64> {
-        let [m, along] = node.mass;
-        let t = node.tangent;
-        let mass = m * Matrix3::identity() + (along - m) * t * t.transpose();
+        let mass = node.inverse_mass.inverted().matrix(node.tangent);
         mass * (landed.velocity - free) - landed.friction
     }
 
@@ -220,7 +217,10 @@ mod tests {
         };
         let node = landing();
         let lanes = Landing {
-            mass: node.mass.map(Lanes::splat),
+            inverse_mass: Slender {
+                across: Lanes::splat(node.inverse_mass.across),
+                excess: Lanes::splat(node.inverse_mass.excess),
+            },
             tangent: each(&|_| node.tangent),
             normal: each(&|_| node.normal),
             penetration: Lanes::splat(node.penetration),

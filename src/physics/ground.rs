@@ -51,8 +51,8 @@ pub struct Grid {
     x: Vec<f64>,
     /// y of the grid's lines [m], increasing.
     y: Vec<f64>,
-    /// Per point, row by row of equal y: h [m], h_x [-], h_y [-], h_xy [1/m].
-    nodes: Vec<[f64; 4]>,
+    /// Per cell, row by row along y: coefficients of the powers of the parts of the cell along x and along y [m].
+    cells: Vec<[[f64; 4]; 4]>,
     /// Bound of the heights of the surface [m].
     highest: f64,
 }
@@ -193,16 +193,20 @@ impl Grid {
         let mut grid = Grid {
             x: x.to_vec(),
             y: y.to_vec(),
-            nodes: Vec::with_capacity(x.len() * y.len()),
+            cells: Vec::with_capacity(cells(x) * cells(y)),
             highest: highest(heights),
         };
+        let mut nodes = Vec::with_capacity(x.len() * y.len()); // h [m], h_x [-], h_y [-], h_xy [1/m]
         for j in 0..y.len() {
             for i in 0..x.len() {
                 let twist = 0.5 * (xy[i][j] + yx[j][i]);
                 let corners = grid.corners(heights, [i, j]);
                 let [hx, hy, hxy] = limit(&corners, [hx[j][i], hy[i][j], twist]);
-                grid.nodes.push([heights[j][i], hx, hy, hxy]);
+                nodes.push([heights[j][i], hx, hy, hxy]);
             }
+        }
+        for (j, i) in (0..cells(y)).flat_map(|j| (0..cells(x)).map(move |i| (j, i))) {
+            grid.cells.push(grid.cell_of(&nodes, [i, j]));
         }
         Some(grid)
     }
@@ -236,37 +240,68 @@ impl Grid {
     }
 
     /// Height at a place [m], and its slopes [-].
+    #[inline]
     fn level(&self, x: f64, y: f64) -> (f64, [f64; 2]) {
-        let sums = self.sums::<1>(x, y);
-        (sums[0][0], [sums[1][0], sums[0][1]])
+        let (along, across) = (Place::of(&self.x, x), Place::of(&self.y, y));
+        let ([value, slope, _], [v, w, _]) = (along.powers(), across.powers());
+        let rows = self
+            .cell(&along, &across)
+            .map(|row| [dot(&row, &v), dot(&row, &w)]);
+        let column = |of: usize| rows.map(|row| row[of]);
+        (
+            dot(&column(0), &value),
+            [dot(&column(0), &slope), dot(&column(1), &value)],
+        )
     }
 
     fn relief(&self, x: f64, y: f64) -> Relief {
-        let sums = self.sums::<2>(x, y);
+        let (along, across) = (Place::of(&self.x, x), Place::of(&self.y, y));
+        let (by_x, by_y) = (along.powers(), across.powers());
+        let cell = self.cell(&along, &across);
+        let sum = |p: usize, q: usize| dot(&cell.map(|row| dot(&row, &by_y[q])), &by_x[p]);
         Relief {
-            height: sums[0][0],
-            slope: [sums[1][0], sums[0][1]],
-            curvature: [sums[2][0], sums[1][1], sums[0][2]],
+            height: sum(0, 0),
+            slope: [sum(1, 0), sum(0, 1)],
+            curvature: [sum(2, 0), sum(1, 1), sum(0, 2)],
         }
     }
 
-    /// Derivatives of the height up to an order, by the orders with x and with y.
-    #[inline(always)]
-    fn sums<const ORDER: usize>(&self, x: f64, y: f64) -> [[f64; 3]; 3] {
-        let (along, across) = (Cell::new(&self.x, x), Cell::new(&self.y, y));
-        let mut sums = [[0.0; 3]; 3];
-        for (j, by_y) in [across.at, across.next].into_iter().zip(across.weights) {
-            for (i, by_x) in [along.at, along.next].into_iter().zip(along.weights) {
-                let [h, hx, hy, hxy] = self.nodes[j * self.x.len() + i];
-                for (p, x) in by_x.iter().enumerate().take(ORDER + 1) {
-                    for (q, y) in by_y.iter().enumerate().take(ORDER + 1 - p) {
-                        sums[p][q] += y[0] * (x[0] * h + x[1] * hx) + y[1] * (x[0] * hy + x[1] * hxy);
-                    }
-                }
-            }
-        }
-        sums
+    /// Coefficients of the powers along x (rows) and y (columns) [m] of a cell.
+    fn cell(&self, along: &Place, across: &Place) -> [[f64; 4]; 4] {
+        self.cells[across.cell * cells(&self.x) + along.cell]
     }
+
+    /// The cell between the lines `i` and `i + 1` along x and `j` and `j + 1` along y, from h [m], h_x [-], h_y [-] and h_xy [1/m] of the points.
+    fn cell_of(&self, nodes: &[[f64; 4]], [i, j]: [usize; 2]) -> [[f64; 4]; 4] {
+        let next = |line: &[f64], at: usize| (at + 1).min(line.len() - 1);
+        let ([i1, j1], columns) = ([next(&self.x, i), next(&self.y, j)], self.x.len());
+        let (width, depth) = (self.x[i1] - self.x[i], self.y[j1] - self.y[j]);
+        // Hermite data along y of the values and of the slopes along x, each as a cubic
+        let along_y = |i: usize, [value, slope]: [usize; 2]| {
+            let [low, high] = [j, j1].map(|j| nodes[j * columns + i]);
+            cubic([low[value], depth * low[slope], high[value], depth * high[slope]])
+        };
+        let [v0, v1] = [i, i1].map(|i| along_y(i, [0, 2]));
+        let [s0, s1] = [i, i1].map(|i| along_y(i, [1, 3]));
+        let by_power = [0, 1, 2, 3].map(|q| cubic([v0[q], width * s0[q], v1[q], width * s1[q]]));
+        std::array::from_fn(|p| by_power.map(|of_power| of_power[p]))
+    }
+}
+
+/// Number of cells along a line of places.
+fn cells(line: &[f64]) -> usize {
+    (line.len() - 1).max(1)
+}
+
+/// Coefficients of the powers of the part t of a cell, from value and slope at both its ends.
+fn cubic([v0, s0, v1, s1]: [f64; 4]) -> [f64; 4] {
+    let (rise, bend) = (v1 - v0, s0 + s1);
+    [v0, s0, 3.0 * rise - bend - s0, bend - 2.0 * rise]
+}
+
+#[inline(always)]
+fn dot(a: &[f64; 4], b: &[f64; 4]) -> f64 {
+    (a[0] * b[0] + a[1] * b[1]) + (a[2] * b[2] + a[3] * b[3])
 }
 
 /// Bound of the heights of a surface through these soundings [m].
@@ -330,56 +365,53 @@ fn limit(corners: &[Corner], [hx, hy, hxy]: [f64; 3]) -> [f64; 3] {
     [hx, hy, twist * hxy]
 }
 
-/// Weights of value and slope.
-type Pair = [f64; 2];
-
-/// Where a coordinate lies among a grid's lines, and the Hermite cubics there.
-struct Cell {
-    at: usize,
-    next: usize,
-    /// Of value and slope at both lines: the cubics, their first and their second derivatives.
-    weights: [[Pair; 3]; 2],
+/// Place of a coordinate among the lines of a grid.
+struct Place {
+    cell: usize,
+    /// Part of the cell before it [-].
+    part: f64,
+    /// 1 over the width of the cell [1/m]; 0 outside the grid, where nothing changes.
+    per_width: f64,
 }
 
-impl Cell {
-    fn new(line: &[f64], place: f64) -> Cell {
+impl Place {
+    #[inline(always)]
+    fn of(line: &[f64], place: f64) -> Place {
         let (first, last) = (line[0], line[line.len() - 1]);
-        let none = [0.0; 2];
-        // Outside, and across a single line, nothing changes.
-        let still = |at: usize| Cell {
-            at,
-            next: at,
-            weights: [[[1.0, 0.0], none, none], [none; 3]],
+        let outside = |cell: usize, part: f64| Place {
+            cell,
+            part,
+            per_width: 0.0,
         };
         if place.is_nan() || place < first || line.len() == 1 {
-            return still(0);
+            return outside(0, 0.0);
         }
         if place > last {
-            return still(line.len() - 1);
+            return outside(cells(line) - 1, 1.0);
         }
-        let next = line.partition_point(|known| *known <= place).min(line.len() - 1);
-        let width = line[next] - line[next - 1];
-        let t = (place - line[next - 1]) / width;
-        let (square, cube) = (t * t, t * t * t);
-        let bend = (6.0 - 12.0 * t) / (width * width);
-        let rise = 3.0 * square - 2.0 * cube;
-        let grade = 6.0 * (t - square) / width;
-        Cell {
-            at: next - 1,
-            next,
-            weights: [
-                [
-                    [1.0 - rise, width * (t - 2.0 * square + cube)],
-                    [-grade, 1.0 - 4.0 * t + 3.0 * square],
-                    [-bend, (6.0 * t - 4.0) / width],
-                ],
-                [
-                    [rise, width * (cube - square)],
-                    [grade, 3.0 * square - 2.0 * t],
-                    [bend, (6.0 * t - 2.0) / width],
-                ],
-            ],
+        // soundings are mostly evenly spaced
+        let guess = ((place - first) / (last - first) * cells(line) as f64) as usize;
+        let mut cell = guess.min(cells(line) - 1);
+        if place < line[cell] || place > line[cell + 1] {
+            cell = line.partition_point(|known| *known <= place).min(line.len() - 1) - 1;
         }
+        let per_width = 1.0 / (line[cell + 1] - line[cell]);
+        Place {
+            cell,
+            part: (place - line[cell]) * per_width,
+            per_width,
+        }
+    }
+
+    /// Powers of the part, and their first and second derivatives [1/m, 1/m²].
+    #[inline(always)]
+    fn powers(&self) -> [[f64; 4]; 3] {
+        let (t, d) = (self.part, self.per_width);
+        [
+            [1.0, t, t * t, t * t * t],
+            [0.0, d, 2.0 * t * d, 3.0 * t * t * d],
+            [0.0, 0.0, 2.0 * d * d, 6.0 * t * d * d],
+        ]
     }
 }
 
@@ -416,9 +448,9 @@ mod tests {
         let Ground::Grid(grid) = hilly() else {
             unreachable!()
         };
-        for (j, &y) in Y.iter().enumerate() {
-            for (i, &x) in X.iter().enumerate() {
-                let sounding = grid.nodes[j * X.len() + i][0];
+        for y in Y {
+            for x in X {
+                let sounding = -50.0 + 3.0 * (0.1 * x).sin() - 2.0 * (0.07 * y).cos();
                 assert_relative_eq!(grid.relief(x, y).height, sounding, max_relative = 1e-15);
             }
         }

@@ -36,6 +36,12 @@ impl<R: Real> Slender<R> {
         Slender::new(masses.map(R::recip))
     }
 
+    /// The inverse of this matrix.
+    #[inline(always)]
+    pub fn inverted(self) -> Slender<R> {
+        Slender::inverse([self.across, self.across + self.excess])
+    }
+
     /// (a I + b t tᵀ) x.
     #[inline(always)]
     pub fn times<V: RealVector<Real = R>>(self, x: V, tangent: V) -> V {

@@ -34,38 +34,48 @@ pub(super) struct SeabedRow {
     sticks: Lanes,
     /// Normal n of the seabed [-].
     normal: Vectors,
-    /// Inverse mass off the seabed: across the line, and the excess along it [1/kg].
-    inverse: [Lanes; 2],
+    /// Inverse mass off the seabed [1/kg].
+    inverse: Slender<Lanes>,
     /// λ_t of nodes that slide [N s].
     friction: Vectors,
 }
 
 impl SeabedRow {
-    /// Nodes off the seabed.
-    pub fn new() -> SeabedRow {
+    /// Nodes off a seabed with a normal, with an inverse mass [1/kg].
+    #[inline(always)]
+    fn off(normal: Vectors, inverse: Slender<Lanes>) -> SeabedRow {
         let off = Lanes::splat(-1.0);
         SeabedRow {
             slides: off,
             sticks: off,
-            normal: Vectors::zero(),
-            inverse: [Lanes::splat(0.0); 2],
+            normal,
+            inverse,
             friction: Vectors::zero(),
         }
     }
 
-    /// Mass across the line, and along it, off the seabed [kg].
-    #[inline(always)]
-    fn mass(&self) -> Slender<Lanes> {
-        let [across, excess] = self.inverse;
-        Slender::inverse([across, across + excess])
+    /// Nodes without a seabed.
+    pub fn new() -> SeabedRow {
+        let zero = Lanes::splat(0.0);
+        SeabedRow::off(
+            Vectors::zero(),
+            Slender {
+                across: zero,
+                excess: zero,
+            },
+        )
     }
 
     /// Impulse of friction in the pass that gave the nodes a velocity [m/s] under an impulse of the segments [N s].
     #[inline(always)]
     fn needed(&self, node: &NodeRow, velocity: Vectors) -> Vectors {
-        let momentum = self.mass().times(velocity - node.fall, node.tangent) - node.impulse;
-        let holding = momentum - self.normal.scale(self.normal.dot(momentum));
         let moving = choose(self.slides, self.friction, Vectors::zero());
+        if !self.sticks.any_positive() {
+            return moving;
+        }
+        let mass = self.inverse.inverted();
+        let momentum = mass.times(velocity - node.fall, node.tangent) - node.impulse;
+        let holding = momentum - self.normal.scale(self.normal.dot(momentum));
         choose(self.sticks, holding, moving)
     }
 
@@ -81,10 +91,9 @@ impl SeabedRow {
         if let (Some(friction), true) = (friction, pushes.any_positive()) {
             let push = node.bed.push(rise);
             let needed = before.needed(node, velocity);
-            let axes = Axes::new(self.normal, node.tangent);
-            let mass = self.mass();
+            let (axes, mass) = (Axes::new(self.normal, node.tangent), self.inverse.inverted());
             let along = mass.across + mass.excess * axes.share * axes.share;
-            let yields = [along.recip(), mass.across.recip()];
+            let yields = [along.recip(), self.inverse.across];
             let sliding = [axes.along.dot(velocity), axes.across.dot(velocity)];
             let holding = [
                 axes.along.dot(needed) - sliding[0] * along,
@@ -112,13 +121,12 @@ impl NodeRow {
     #[inline(always)]
     fn settle_on(&mut self, seabed: &SeabedRow) {
         let (zero, one) = (Lanes::splat(0.0), Lanes::splat(1.0));
-        [self.across, self.excess] = seabed.inverse;
+        (self.across, self.excess) = (seabed.inverse.across, seabed.inverse.excess);
         (self.held, self.loose) = (zero, self.fall);
         if !seabed.slides.max(seabed.sticks).any_positive() {
             return;
         }
-        let ([across, excess], normal) = (seabed.inverse, seabed.normal);
-        let inverse = Slender { across, excess };
+        let (inverse, normal) = (seabed.inverse, seabed.normal);
         let (spring, resistance) = (self.bed.spring, self.bed.resistance);
         // sliding
         let response = inverse.times(normal, self.tangent);
@@ -126,7 +134,7 @@ impl NodeRow {
         let share = (one + resistance * normal.dot(response)).recip();
         let push = (spring - resistance * normal.dot(fall)) * share;
         // sticking
-        let mass = seabed.mass();
+        let mass = inverse.inverted();
         let softness = (normal.dot(mass.times(normal, self.tangent)) + resistance).recip();
         let momentum = normal.dot(mass.times(self.fall, self.tangent)) + spring;
         let (slides, sticks) = (seabed.slides, seabed.sticks);
@@ -155,11 +163,11 @@ impl AxialWork {
             let yields = node.across + node.excess * upright * upright;
             let penetration = below + contact.level.load(at);
             node.bed = Bed::new(contact.law(at), penetration, normal.dot(velocity), yields, step);
-            *seabed = SeabedRow {
-                normal,
-                inverse: [node.across, node.excess],
-                ..SeabedRow::new()
+            let inverse = Slender {
+                across: node.across,
+                excess: node.excess,
             };
+            *seabed = SeabedRow::off(normal, inverse);
             seabed.revise(node, velocity, friction);
             node.settle_on(seabed);
         }

@@ -17,6 +17,7 @@ use crate::math::real::choose;
 use crate::model::{Bottom, End};
 use crate::physics::friction_step::Landing;
 use crate::physics::morison::DragCoefficients;
+use crate::physics::slender::Slender;
 use crate::physics::stretch::{StretchLaw, total_tension};
 
 /// Prescribed motion of an end of a line.
@@ -332,7 +333,10 @@ impl NodeRows<'_> {
         let inverse = self.inverse_mass[at];
         let excess = self.water.excess.get(at).copied().unwrap_or(Lanes::splat(0.0));
         let landing = Landing {
-            mass: [inverse.recip(), (inverse + excess).recip()],
+            inverse_mass: Slender {
+                across: inverse,
+                excess,
+            },
             tangent: by.chord.scale(inverse_norm(by.chord.dot(by.chord))),
             normal,
             penetration,
