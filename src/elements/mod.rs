@@ -19,6 +19,7 @@
 //! indefinite where `convex` is asked for. Statics keeps springs, weight and the drag of a current, whose forces are held while the
 //! shape is sought. A line that may pierce the water's surface lacks there what `surface` says.
 
+pub mod beam;
 mod contact;
 pub mod friction;
 mod joint;

@@ -1,26 +1,18 @@
 //! Equilibrium of a geometrically exact beam.
 //!
-//! Unknowns are position and spin of every node. With the gradient B of the strains (see `physics::section`) the nodes' forces and
-//! moments out of balance are
-//!
-//!   R = Σ L Bᵀ S + w ẑ − contact − loads,   J = Σ (L Bᵀ C B + geometric part) + contact,
-//!
-//! solved by Newton's method; spins are applied by the Cayley transform, and steps are shortened to a fraction of a turn. Where the
+//! The system of [`crate::elements::beam`] is solved by Newton's method; spins are applied by the Cayley transform, and steps are shortened to a
+//! fraction of a turn. Where the
 //! beam starts free of stress the loads are raised in parts, the fewer the better. Elsewhere, and where that fails, the search goes down
 //! in energy: J + λ D with D the nodes' own stiffness, λ lowered where the energy falls and raised where it does not, on a beam that is soft
 //! in stretch and shear at first. So it ends at a minimum. Clamps begin along the beam and are turned to where they are held.
-//!
-//! A beam that neither end holds from turning about itself does so without resistance: its first node then resists a turn about d₃, which
-//! changes the way to the equilibrium and not the equilibrium.
 
-use nalgebra::{Matrix3, Rotation3, Vector3};
+use nalgebra::{Matrix3, Rotation3};
 
+use crate::elements::beam::{BeamCase, BeamEnd, end_hold, folded};
 use crate::math::pivoted_chain::PivotedChain;
 use crate::math::rotation::{cayley, turned_to};
-use crate::model::{Beam, BeamElement, FreePoint, Model, Nodes, Point, PointState, State};
-use crate::physics::section::{
-    Mixture, Response, Section, Sextuple, geometric_stiffness, join, response, split, strain, strain_gradient,
-};
+use crate::model::{Beam, BeamElement, Model, PointState, State};
+use crate::physics::section::{Section, join, split};
 use crate::statics::StaticsError;
 
 /// Change of position over the beam's length, and spin [rad], that end the search [-].
@@ -45,54 +37,6 @@ const STIFFENING: f64 = 30.0;
 const SOFTNESS: f64 = 100.0;
 /// Turn of a clamp from one equilibrium to the next on the way to where it is held [rad].
 const CLAMP_TURN: f64 = 0.25;
-
-/// What holds and loads an end of a beam.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct BeamEnd {
-    /// Whether x, y, z and the turns about them are held.
-    pub held: [bool; 6],
-    /// Force [N] and moment [N m] on the end, along the global axes.
-    pub load: Sextuple,
-}
-
-impl BeamEnd {
-    /// Neither held nor loaded.
-    pub fn free() -> BeamEnd {
-        BeamEnd {
-            held: [false; 6],
-            load: Sextuple::zeros(),
-        }
-    }
-
-    /// Held in place, free to turn.
-    pub fn pinned() -> BeamEnd {
-        BeamEnd {
-            held: [true, true, true, false, false, false],
-            ..BeamEnd::free()
-        }
-    }
-
-    /// Held in place and from turning.
-    pub fn clamped() -> BeamEnd {
-        BeamEnd {
-            held: [true; 6],
-            ..BeamEnd::free()
-        }
-    }
-}
-
-/// What holds an end that lies at a point: the point's axes, and the clamp.
-pub(crate) fn end_hold(point: &Point, clamped: bool) -> BeamEnd {
-    let axes = point.free().map_or([false; 3], |free| free.axes);
-    let mut held = [clamped; 6];
-    for (held, free) in held.iter_mut().zip(axes) {
-        *held = !free;
-    }
-    BeamEnd {
-        held,
-        ..BeamEnd::free()
-    }
-}
 
 /// Brings the beam `index` of `state` to rest under the loads of time `t` [s], from where its nodes and frames are.
 ///
@@ -194,21 +138,6 @@ fn refusal(line: &str, case: &BeamCase, restless: Restless) -> StaticsError {
     }
 }
 
-/// A beam and what acts on it.
-#[derive(Debug, Clone, Copy)]
-pub struct BeamCase<'a> {
-    /// Its elements.
-    pub beam: &'a Beam,
-    /// Its lumped weight and contact.
-    pub nodes: &'a Nodes,
-    /// Strains of the elements without stress.
-    pub rest: &'a [Sextuple],
-    /// What holds and loads ends A and B.
-    pub ends: [BeamEnd; 2],
-    /// What is there, where they are free: it weighs, floats and rests on the bed.
-    pub bodies: [Option<&'a FreePoint>; 2],
-}
-
 /// Why no equilibrium was found.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Restless {
@@ -228,62 +157,6 @@ pub enum Restless {
     },
 }
 
-/// Cosine of the turn from node to node below which an element is refused [-]: 60°; its moment is greatest at 56°.
-const COSINE_MIN: f64 = 0.5;
-
-/// The first element whose sections differ by more than its strains can tell, by its lower node.
-pub(crate) fn folded(sections: &[Section]) -> Option<usize> {
-    let cosine = |pair: &[Section]| 0.5 * (pair[0].frame.dot(&pair[1].frame) - 1.0);
-    sections.windows(2).position(|pair| cosine(pair) < COSINE_MIN)
-}
-
-/// Where the sections of a beam are before, at the mean of, and after a step; in statics all are the same.
-pub(crate) struct Span<'a> {
-    pub mean: &'a [Section],
-    pub now: &'a [Section],
-    /// Plain strains before the step; `None` in statics.
-    pub strain_before: Option<&'a [Sextuple]>,
-    /// T of every node: what spin a change of its unknown makes.
-    pub spin: &'a [Matrix3<f64>],
-}
-
-/// Subtracts the forces of all elements from the right-hand side and adds their slopes to the matrix.
-pub(crate) fn add_elements(
-    chain: &mut PivotedChain,
-    beam: &Beam,
-    rest: &[Sextuple],
-    span: &Span,
-    mixture: Mixture,
-) {
-    for (i, element) in beam.elements.iter().enumerate() {
-        let (now, mean) = (
-            [&span.now[i], &span.now[i + 1]],
-            [&span.mean[i], &span.mean[i + 1]],
-        );
-        let after = strain(now[0], now[1], element.length);
-        let before = span.strain_before.map_or(after, |strains| strains[i]);
-        let laws = [&element.law, &element.damping];
-        let Response { stress, slope } = response(laws, element.length, [&before, &after], &rest[i], mixture);
-        let weights = strain_gradient(mean[0], mean[1], element.length);
-        let slopes =
-            strain_gradient(now[0], now[1], element.length).map(|gradient| element.length * slope * gradient);
-        let geometric = geometric_stiffness(mean, now, &stress, mixture.share);
-        let block = |row: usize, column: usize| {
-            let mut block = weights[row].tr_mul(&slopes[column]) + geometric[row][column];
-            let turned = block.fixed_view::<6, 3>(0, 3) * span.spin[i + column];
-            block.fixed_view_mut::<6, 3>(0, 3).copy_from(&turned);
-            block
-        };
-        chain.diagonal[i] += block(0, 0);
-        chain.diagonal[i + 1] += block(1, 1);
-        chain.upper[i] = block(0, 1);
-        chain.lower[i] = block(1, 0);
-        for (node, weight) in [i, i + 1].into_iter().zip(&weights) {
-            chain.right[node] -= element.length * weight.tr_mul(&stress);
-        }
-    }
-}
-
 /// Axial and shear stiffness that the search begins with [N].
 fn softest(case: &BeamCase) -> f64 {
     let weight: f64 = case.nodes.weight.iter().map(|w| w.abs()).sum();
@@ -301,42 +174,6 @@ fn rounding(case: &BeamCase, sections: &[Section]) -> f64 {
     let noise =
         |element: &BeamElement| element.law.axial.max(element.law.shear) * (reach / element.length + 1.0);
     f64::EPSILON * case.beam.elements.iter().map(noise).fold(0.0, f64::max)
-}
-
-/// Potential energy, and the size of what it is the sum of [J].
-struct Energy {
-    value: f64,
-    size: f64,
-}
-
-/// Of strain, weight, contact and the forces at the ends; moments on ends have no potential and are left out.
-fn energy(case: &BeamCase, sections: &[Section]) -> Energy {
-    let (mut value, mut size) = (0.0, 0.0);
-    let mut add = |part: f64| {
-        value += part;
-        size += part.abs();
-    };
-    for (i, element) in case.beam.elements.iter().enumerate() {
-        let strain = element.strain(&sections[i], &sections[i + 1], &case.rest[i]);
-        add(element.energy(&strain).total());
-    }
-    for (i, section) in sections.iter().enumerate() {
-        add(case.nodes.weight[i] * section.position.z);
-        if let Some(contact) = &case.nodes.contact {
-            let penetration = (contact.level[i] - section.position.z).max(0.0);
-            add(0.5 * contact.stiffness[i] * penetration * penetration);
-        }
-    }
-    for (end, node) in [0, sections.len() - 1].into_iter().enumerate() {
-        let position = &sections[node].position;
-        add(-split(&case.ends[end].load).0.dot(position));
-        if let Some(body) = case.bodies[end] {
-            add(body.potential(position.z));
-            let bed = body.bed_at_rest(position.z);
-            add(bed.map_or(0.0, |(stiffness, push)| 0.5 * push * push / stiffness));
-        }
-    }
-    Energy { value, size }
 }
 
 /// Scratch of the search for an equilibrium.
@@ -442,12 +279,12 @@ impl BeamStatics {
     /// Goes down in energy until steps are short: J + λ D, λ lowered where the energy fell and raised where it did not. Gives the λ it ended
     /// with [-].
     fn descend(&mut self, case: &BeamCase, sections: &mut Vec<Section>, from: f64) -> f64 {
-        let (mut anchoring, mut last) = (from.max(1e-6), energy(case, sections));
+        let (mut anchoring, mut last) = (from.max(1e-6), case.energy(sections));
         for _ in 0..DESCENT_SOLVES_MAX {
             self.assemble(case, sections, 1.0, anchoring);
             self.trial.clone_from(sections);
             let step = self.step(case, sections);
-            let now = energy(case, sections);
+            let now = case.energy(sections);
             let rounding = 1e-12 * (now.size + last.size);
             match step {
                 Some(step) if now.value <= last.value + rounding => {
@@ -467,59 +304,11 @@ impl BeamStatics {
     }
 
     fn assemble(&mut self, case: &BeamCase, sections: &[Section], load: f64, anchoring: f64) {
-        self.chain.clear();
-        let span = Span {
-            mean: sections,
-            now: sections,
-            strain_before: None,
-            spin: &self.unit,
-        };
-        let still = Mixture {
-            share: 1.0,
-            rate: 0.0,
-        };
-        add_elements(&mut self.chain, case.beam, case.rest, &span, still);
-        for (i, section) in sections.iter().enumerate() {
-            self.chain.right[i].z -= load * case.nodes.weight[i];
-            if let Some(contact) = &case.nodes.contact {
-                let penetration = contact.level[i] - section.position.z;
-                if penetration > 0.0 {
-                    self.chain.right[i].z += contact.stiffness[i] * penetration;
-                    self.chain.diagonal[i][(2, 2)] += contact.stiffness[i];
-                }
-            }
-        }
-        let last = sections.len() - 1;
-        for (end, node) in [0, last].into_iter().enumerate() {
-            self.chain.right[node] += load * case.ends[end].load;
-            let Some(body) = case.bodies[end] else {
-                continue;
-            };
-            let height = sections[node].position.z;
-            let at = body.at(height);
-            self.chain.right[node].z -= load * at.weight;
-            self.chain.diagonal[node][(2, 2)] += load * at.weight_slope;
-            if let Some((stiffness, push)) = body.bed_at_rest(height) {
-                self.chain.right[node].z += push;
-                self.chain.diagonal[node][(2, 2)] += stiffness;
-            }
-        }
+        case.assemble(&mut self.chain, sections, load, &self.unit);
         if anchoring > 0.0 {
             self.anchor(case.beam, anchoring);
         }
-        let turns_freely = case.ends.iter().all(|end| end.held[3..].iter().all(|held| !held));
-        if turns_freely {
-            let element = &case.beam.elements[0];
-            let axis: Vector3<f64> = sections[0].frame.column(2).into_owned();
-            let brake = element.law.torsion / element.length * axis * axis.transpose();
-            let mut turn = self.chain.diagonal[0].fixed_view_mut::<3, 3>(3, 3);
-            turn += brake;
-        }
-        for (node, end) in [0, last].into_iter().zip(&case.ends) {
-            (0..6)
-                .filter(|&unknown| end.held[unknown])
-                .for_each(|unknown| self.chain.hold(node, unknown, 0.0));
-        }
+        case.constrain(&mut self.chain, sections);
     }
 
     /// λ D: every node resists to be moved by a part of what its elements do.

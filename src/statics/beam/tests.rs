@@ -1,8 +1,9 @@
 use super::*;
 use crate::math::rotation::turned_to;
-use crate::model::BeamElement;
-use crate::physics::section::{SectionLaw, corrected, join, straight, strain};
+use crate::model::{BeamElement, Nodes};
+use crate::physics::section::{SectionLaw, Sextuple, corrected, join, straight, strain};
 use approx::assert_relative_eq;
+use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::{FRAC_PI_4, TAU};
 
 /// Stiffness so high beside bending that the elastica's closed form holds.
