@@ -274,7 +274,7 @@ impl BeamWork {
         };
         add_elements(
             &mut self.chain,
-            case.beam,
+            &case.beam.elements,
             &state.rest,
             &span,
             mixture(case.length),

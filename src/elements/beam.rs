@@ -13,9 +13,9 @@
 use nalgebra::{Matrix3, Vector3};
 
 use crate::math::pivoted_chain::PivotedChain;
-use crate::model::{Beam, FreePoint, Nodes, Point};
+use crate::model::{BeamElement, FreePoint, Point};
 use crate::physics::section::{
-    Mixture, Response, Section, Sextuple, geometric_stiffness, response, split, strain, strain_gradient,
+    Mixture, Response, Section, Sextuple, geometric_stiffness, join, response, split, strain, strain_gradient,
 };
 
 /// Constraints and loads of an end of a beam.
@@ -67,18 +67,59 @@ pub(crate) fn end_hold(point: &Point, clamped: bool) -> BeamEnd {
 }
 
 /// A beam with its constraints and loads.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct BeamCase<'a> {
     /// Elements.
-    pub beam: &'a Beam,
-    /// Lumped weight and contact.
-    pub nodes: &'a Nodes,
+    pub elements: Vec<BeamElement>,
     /// Strains of the elements without stress.
-    pub rest: &'a [Sextuple],
+    pub rest: Vec<Sextuple>,
+    /// Weight of the nodes [N].
+    pub weight: Vec<f64>,
+    /// Seabed under the nodes; empty without contact.
+    pub seabed: Vec<NodeSpring>,
     /// Constraints and loads of ends A and B.
     pub ends: [BeamEnd; 2],
     /// Free points at ends A and B: their weight, buoyancy and contact act on the beam.
     pub bodies: [Option<&'a FreePoint>; 2],
+}
+
+/// Spring of the seabed under a node.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NodeSpring {
+    /// Height below which it pushes [m].
+    pub level: f64,
+    /// Stiffness [N/m].
+    pub stiffness: f64,
+}
+
+/// Parts of the loads that act [-].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct LoadShare {
+    /// Of weight, buoyancy and forces.
+    pub force: f64,
+    /// Of the moments on the ends.
+    pub moment: f64,
+}
+
+impl LoadShare {
+    /// The whole load.
+    pub(crate) const WHOLE: LoadShare = LoadShare {
+        force: 1.0,
+        moment: 1.0,
+    };
+
+    /// Load on an end.
+    fn of_end(self, end: &BeamEnd) -> Sextuple {
+        let (force, moment) = split(&end.load);
+        join(self.force * force, self.moment * moment)
+    }
+}
+
+impl NodeSpring {
+    /// Depth of a node below the spring's level [m].
+    fn penetration(&self, section: &Section) -> f64 {
+        (self.level - section.position.z).max(0.0)
+    }
 }
 
 /// Potential energy of a beam.
@@ -90,13 +131,12 @@ pub(crate) struct Energy {
 }
 
 impl BeamCase<'_> {
-    /// Sets the system of a beam at `sections` under a part `load` of weight and loads [-]: tangent J, right-hand side −R. `unit` holds one
-    /// identity per node.
+    /// Sets the system of a beam at `sections` under a part of its loads: tangent J, right-hand side −R. `unit` holds one identity per node.
     pub(crate) fn assemble(
         &self,
         chain: &mut PivotedChain,
         sections: &[Section],
-        load: f64,
+        share: LoadShare,
         unit: &[Matrix3<f64>],
     ) {
         chain.clear();
@@ -110,27 +150,27 @@ impl BeamCase<'_> {
             share: 1.0,
             rate: 0.0,
         };
-        add_elements(chain, self.beam, self.rest, &span, still);
-        for (i, section) in sections.iter().enumerate() {
-            chain.right[i].z -= load * self.nodes.weight[i];
-            if let Some(contact) = &self.nodes.contact {
-                let penetration = contact.level[i] - section.position.z;
-                if penetration > 0.0 {
-                    chain.right[i].z += contact.stiffness[i] * penetration;
-                    chain.diagonal[i][(2, 2)] += contact.stiffness[i];
-                }
+        add_elements(chain, &self.elements, &self.rest, &span, still);
+        for (i, weight) in self.weight.iter().enumerate() {
+            chain.right[i].z -= share.force * weight;
+        }
+        for (i, spring) in self.seabed.iter().enumerate() {
+            let penetration = spring.penetration(&sections[i]);
+            if penetration > 0.0 {
+                chain.right[i].z += spring.stiffness * penetration;
+                chain.diagonal[i][(2, 2)] += spring.stiffness;
             }
         }
-        let last = sections.len() - 1;
-        for (end, node) in [0, last].into_iter().enumerate() {
-            chain.right[node] += load * self.ends[end].load;
-            let Some(body) = self.bodies[end] else {
+        let ends = self.ends.iter().zip(&self.bodies);
+        for ((end, body), node) in ends.zip([0, sections.len() - 1]) {
+            chain.right[node] += share.of_end(end);
+            let Some(body) = body else {
                 continue;
             };
             let height = sections[node].position.z;
             let at = body.at(height);
-            chain.right[node].z -= load * at.weight;
-            chain.diagonal[node][(2, 2)] += load * at.weight_slope;
+            chain.right[node].z -= share.force * at.weight;
+            chain.diagonal[node][(2, 2)] += share.force * at.weight_slope;
             if let Some((stiffness, push)) = body.bed_at_rest(height) {
                 chain.right[node].z += push;
                 chain.diagonal[node][(2, 2)] += stiffness;
@@ -142,7 +182,7 @@ impl BeamCase<'_> {
     pub(crate) fn constrain(&self, chain: &mut PivotedChain, sections: &[Section]) {
         let turns_freely = self.ends.iter().all(|end| end.held[3..].iter().all(|held| !held));
         if turns_freely {
-            let element = &self.beam.elements[0];
+            let element = &self.elements[0];
             let axis: Vector3<f64> = sections[0].frame.column(2).into_owned();
             let brake = element.law.torsion / element.length * axis * axis.transpose();
             let mut turn = chain.diagonal[0].fixed_view_mut::<3, 3>(3, 3);
@@ -162,16 +202,15 @@ impl BeamCase<'_> {
             value += part;
             size += part.abs();
         };
-        for (i, element) in self.beam.elements.iter().enumerate() {
+        for (i, element) in self.elements.iter().enumerate() {
             let strain = element.strain(&sections[i], &sections[i + 1], &self.rest[i]);
             add(element.energy(&strain).total());
         }
-        for (i, section) in sections.iter().enumerate() {
-            add(self.nodes.weight[i] * section.position.z);
-            if let Some(contact) = &self.nodes.contact {
-                let penetration = (contact.level[i] - section.position.z).max(0.0);
-                add(0.5 * contact.stiffness[i] * penetration * penetration);
-            }
+        for (weight, section) in self.weight.iter().zip(sections) {
+            add(weight * section.position.z);
+        }
+        for (spring, section) in self.seabed.iter().zip(sections) {
+            add(0.5 * spring.stiffness * spring.penetration(section).powi(2));
         }
         for (end, node) in [0, sections.len() - 1].into_iter().enumerate() {
             let position = &sections[node].position;
@@ -208,12 +247,12 @@ pub(crate) struct Span<'a> {
 /// Subtracts the forces of all elements from the right-hand side and adds their slopes to the matrix.
 pub(crate) fn add_elements(
     chain: &mut PivotedChain,
-    beam: &Beam,
+    elements: &[BeamElement],
     rest: &[Sextuple],
     span: &Span,
     mixture: Mixture,
 ) {
-    for (i, element) in beam.elements.iter().enumerate() {
+    for (i, element) in elements.iter().enumerate() {
         let (now, mean) = (
             [&span.now[i], &span.now[i + 1]],
             [&span.mean[i], &span.mean[i + 1]],
