@@ -143,7 +143,7 @@ enum Failure {
         /// Linear solves spent [-].
         solves: usize,
     },
-    /// It was found with an element bent or twisted beyond the resolution of two sections.
+    /// The equilibrium has an element bent or twisted beyond the resolution of two sections.
     Folded {
         /// Node at the lower end of the element.
         node: usize,
