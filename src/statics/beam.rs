@@ -228,7 +228,7 @@ impl BeamStatics {
     }
 
     /// Finds the equilibrium with the clamped ends along their neighbours, then turns them step by step to their prescribed attitudes.
-    fn turn_clamps_in(&mut self, case: &BeamCase, sections: &mut Vec<Section>) -> Result<(), Failure> {
+    fn turn_clamps_in(&mut self, case: &BeamCase, sections: &mut [Section]) -> Result<(), Failure> {
         let last = sections.len() - 1;
         let clamps = [(0, 1), (last, last - 1)].map(|(node, next)| {
             let target = sections[node].frame;
@@ -262,9 +262,9 @@ impl BeamStatics {
     ///
     /// # Errors
     /// None was found; the sections are then where they were.
-    fn solve(&mut self, case: &BeamCase, sections: &mut Vec<Section>) -> Result<(), Failure> {
+    fn solve(&mut self, case: &BeamCase, sections: &mut [Section]) -> Result<(), Failure> {
         self.search(case, sections, |search, case, sections| {
-            let start = sections.clone();
+            let start = sections.to_vec();
             search.assemble(case, sections, UNLOADED, 0.0);
             let unloaded = search.imbalance(case).1;
             search.assemble(case, sections, LoadShare::WHOLE, 0.0);
@@ -281,7 +281,7 @@ impl BeamStatics {
                         false => search.settle(case, sections, start),
                     };
                     if rests && folded(sections).is_some() {
-                        bent = Some(sections.clone());
+                        bent = Some(sections.to_vec());
                     }
                     rests && folded(sections).is_none()
                 })
@@ -289,7 +289,7 @@ impl BeamStatics {
             let found = found(&start, from_rest)
                 || unstressed(case, &start).is_some_and(|unstressed| found(&unstressed, true));
             if let Some(bent) = bent.filter(|_| !found) {
-                *sections = bent;
+                sections.copy_from_slice(&bent);
                 return true;
             }
             found
@@ -300,11 +300,11 @@ impl BeamStatics {
     fn search(
         &mut self,
         case: &BeamCase,
-        sections: &mut Vec<Section>,
-        method: impl Fn(&mut Self, &BeamCase, &mut Vec<Section>) -> bool,
+        sections: &mut [Section],
+        method: impl Fn(&mut Self, &BeamCase, &mut [Section]) -> bool,
     ) -> Result<(), Failure> {
         self.resize(sections.len());
-        let start = sections.clone();
+        let start = sections.to_vec();
         let found = method(self, case, sections);
         self.assemble(case, sections, LoadShare::WHOLE, 0.0);
         let (node, residual) = self.imbalance(case);
@@ -317,7 +317,7 @@ impl BeamStatics {
                 solves: self.solves,
             },
         };
-        *sections = start;
+        sections.copy_from_slice(&start);
         Err(failure)
     }
 
@@ -329,8 +329,8 @@ impl BeamStatics {
     }
 
     /// From close to the equilibrium: Newton's method, else down in energy.
-    fn newton_or_settle(&mut self, case: &BeamCase, sections: &mut Vec<Section>) -> bool {
-        let start = sections.clone();
+    fn newton_or_settle(&mut self, case: &BeamCase, sections: &mut [Section]) -> bool {
+        let start = sections.to_vec();
         self.newton(case, sections, LoadShare::WHOLE) || self.settle(case, sections, &start)
     }
 
@@ -338,7 +338,7 @@ impl BeamStatics {
     fn raise(
         &mut self,
         case: &BeamCase,
-        sections: &mut Vec<Section>,
+        sections: &mut [Section],
         start: &[Section],
         share: impl Fn(f64) -> LoadShare,
     ) -> bool {
@@ -369,7 +369,7 @@ impl BeamStatics {
 
     /// The search from `start` by falling energy, on beams that are stiffened from soft to as they are; Newton's method ends it and raises
     /// the moments.
-    fn settle(&mut self, case: &BeamCase, sections: &mut Vec<Section>, start: &[Section]) -> bool {
+    fn settle(&mut self, case: &BeamCase, sections: &mut [Section], start: &[Section]) -> bool {
         sections.copy_from_slice(start);
         let stiffest = |element: &BeamElement| element.law.axial.max(element.law.shear);
         let full = case.elements.iter().map(stiffest).fold(0.0, f64::max);
@@ -392,20 +392,21 @@ impl BeamStatics {
             moment: part,
         };
         let found = self.newton(case, sections, turned(0.0));
-        let without_moments = sections.clone();
+        let without_moments = sections.to_vec();
         found && self.raise(case, sections, &without_moments, turned)
     }
 
     /// Goes down in energy until steps are short: J + λ D, λ lowered where the energy fell and raised where it did not. Returns the λ it ended
     /// with [-].
-    fn descend(&mut self, case: &BeamCase, sections: &mut Vec<Section>, from: f64) -> f64 {
+    fn descend(&mut self, case: &BeamCase, sections: &mut [Section], from: f64) -> f64 {
         let (mut anchoring, mut last) = (from.max(1e-6), case.energy(sections));
         for _ in 0..DESCENT_SOLVES_MAX {
             if self.work > WORK_MAX {
                 break;
             }
             self.assemble(case, sections, MOMENT_FREE, anchoring);
-            self.trial.clone_from(sections);
+            self.trial.clear();
+            self.trial.extend_from_slice(sections);
             let step = self.step(case, sections);
             let now = case.energy(sections);
             let rounding = 1e-12 * (now.size + last.size);
@@ -418,7 +419,7 @@ impl BeamStatics {
                     last = now;
                 }
                 _ => {
-                    sections.clone_from(&self.trial);
+                    sections.copy_from_slice(&self.trial);
                     anchoring *= 6.0;
                 }
             }

@@ -60,6 +60,23 @@ pub fn serves(model: &Model, network: &Network) -> bool {
     })
 }
 
+/// As [`equilibrium::solve`], with every network on closed-form catenaries that can be.
+///
+/// # Errors
+/// No equilibrium was found, or there is none.
+pub fn solve(
+    model: &Model,
+    points: &[PointState],
+    t: f64,
+    work: &mut Workspace,
+) -> Result<State, StaticsError> {
+    let mut state = equilibrium::hang(model, points, t, work)?;
+    for number in 0..model.networks.len() {
+        rest(model, number, &mut state, work)?;
+    }
+    Ok(state)
+}
+
 /// As [`equilibrium::rest`], on closed-form catenaries where that is possible; a network whose free points find no rest on these is
 /// brought to rest on its elements first.
 ///

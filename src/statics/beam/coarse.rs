@@ -60,9 +60,9 @@ fn gathered(values: &[f64]) -> Vec<f64> {
     let kept = kept(values.len() - 1);
     let mut sums: Vec<f64> = kept.iter().map(|&node| values[node]).collect();
     for (i, pair) in kept.windows(2).enumerate() {
-        for between in pair[0] + 1..pair[1] {
-            sums[i] += 0.5 * values[between];
-            sums[i + 1] += 0.5 * values[between];
+        for value in &values[pair[0] + 1..pair[1]] {
+            sums[i] += 0.5 * value;
+            sums[i + 1] += 0.5 * value;
         }
     }
     sums
