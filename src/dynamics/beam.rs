@@ -25,6 +25,7 @@ mod measures;
 use nalgebra::{Matrix3, Vector3};
 
 use super::energy_balance::Flow;
+use crate::elements::beam::{BeamEnd, Span, add_elements, folded};
 use crate::math::pivoted_chain::PivotedChain;
 use crate::math::rotation::{cayley, cayley_vector, skew, spin_of_cayley};
 use crate::model::{Beam, LineState, Nodes};
@@ -36,7 +37,6 @@ use crate::physics::section::{
     Mixture, Section, Sextuple, corrected, join, response, split, strain, strain_gradient,
 };
 use crate::physics::slender::Slender;
-use crate::statics::beam::{BeamEnd, Span, add_elements, folded};
 
 pub use body::Body;
 pub use drive::{Driven, attitude, drive, held};
@@ -280,7 +280,7 @@ impl BeamWork {
         };
         add_elements(
             &mut self.chain,
-            case.beam,
+            &case.beam.elements,
             &state.rest,
             &span,
             mixture(case.length),

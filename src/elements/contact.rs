@@ -1,4 +1,4 @@
-//! The bed under the nodes of a line in the assembled system.
+//! The seabed under the nodes of a line in the assembled system.
 
 use nalgebra::Vector3;
 
@@ -8,8 +8,8 @@ use crate::physics::fading_damper::{FadingContact, damper_reach};
 use crate::physics::seabed::ContactCoefficients;
 
 impl LineWork {
-    /// The bed's springs under nodes at rest.
-    pub(super) fn add_bed_at_rest(&mut self, line: &Line, position: &[Vector3<f64>]) {
+    /// Adds the seabed's springs under nodes at rest.
+    pub(super) fn add_seabed_at_rest(&mut self, line: &Line, position: &[Vector3<f64>]) {
         let Some(contact) = &line.nodes.contact else {
             return;
         };

@@ -1,14 +1,14 @@
-//! What a bed that slopes or rubs does to the nodes of lines and to free points, and the exact tangent of it.
+//! Forces of a seabed with slope or friction on the nodes of lines and on free points, with their exact tangent.
 //!
-//! The spring and the damper act along the normal n of the bed. Friction is a spring from the anchor a of a node, where the node would lie if the bed let
-//! go of it, to the node itself, in the plane of the bed, and gives way where it would leave the ellipse of Coulomb's law:
+//! The spring and the damper act along the normal n of the seabed. Friction is a spring from the anchor a of a node, where the node would lie
+//! without friction, to the node itself, in the plane of the seabed, and gives way where it would leave the ellipse of Coulomb's law:
 //!
 //!   f* = k_t P (a − r),  P = I − n nᵀ,   f = the point of the ellipse of N closest to f*,   a ← r + f/k_t after every step.
 //!
-//! So a node at rest does not creep under any load inside the ellipse: it has moved by f/k_t and stays there. −∂f/∂r = k_t B S Bᵀ − B g ⊗ ∂N/∂r with the axes B of the
+//! A node at rest therefore stays in place under any load inside the ellipse, at a distance f/k_t from its anchor. −∂f/∂r = k_t B S Bᵀ − B g ⊗ ∂N/∂r with the axes B of the
 //! plane, the slope S of f with f* and that of f with N, g = (f − S f*)/N, for f is homogeneous in f* and N.
 //!
-//! The tangent is exact on a plane, the direction of the line being frozen as for drag; on a curved bed it leaves out how the axes turn.
+//! The tangent is exact on a plane, the direction of the line being frozen as for drag; on a curved seabed it leaves out the turn of the axes.
 //!
 //! Source: the return mapping of Coulomb friction, Wriggers (2006), Computational Contact Mechanics, 2nd ed., chapter 5.
 
@@ -27,13 +27,13 @@ pub(crate) const AT_REST: f64 = 1.0 - 1e-5;
 /// Part of the limit that holds where nodes at [`AT_REST`] must be found to slide whatever the rounding [-].
 pub(crate) const SLIDING: f64 = 1.0 - 1e-3;
 
-/// Stiffness along the bed of a point that sticks, over its stiffness across it [-].
+/// Stiffness along the seabed of a point that sticks, over its stiffness across it [-].
 const POINT_STICK: f64 = 1e3;
 
-/// A node, or a point, on the bed.
+/// A node, or a point, on the seabed.
 #[derive(Debug, Clone, Copy)]
 pub struct Resting<'a> {
-    /// How it stands to the level from which the bed pushes.
+    /// Penetration and normal, from the level below which the seabed pushes.
     pub touch: Touch,
     /// Spring and damper.
     pub coefficients: ContactCoefficients,
@@ -43,18 +43,18 @@ pub struct Resting<'a> {
     pub place: Vector3<f64>,
     /// Velocity [m/s].
     pub velocity: Vector3<f64>,
-    /// Friction and what it holds by, where there is any.
+    /// Friction, where there is any.
     pub rub: Option<Rub<'a>>,
 }
 
-/// What friction holds a node by.
+/// Friction of a node.
 #[derive(Debug, Clone, Copy)]
 pub struct Rub<'a> {
     /// The law.
     pub friction: &'a Friction,
     /// Direction of the line; any unit vector for a point.
     pub tangent: Vector3<f64>,
-    /// Where the node would lie if it were let go [m].
+    /// Place of the node without friction [m].
     pub anchor: Vector3<f64>,
     /// k_t [N/m].
     pub stick: f64,
@@ -64,12 +64,12 @@ pub struct Rub<'a> {
     pub normal_force: Option<f64>,
 }
 
-/// What the bed does to a node.
+/// Force of the seabed on a node, with its slopes.
 #[derive(Debug, Clone, Copy)]
 pub struct Push {
     /// Force [N].
     pub force: Vector3<f64>,
-    /// The part of it that friction has [N].
+    /// Part of it due to friction [N].
     pub friction: Vector3<f64>,
     /// Normal force [N].
     normal_force: f64,
@@ -93,7 +93,7 @@ impl<'a> Resting<'a> {
         }
     }
 
-    /// What the bed does to it; `None` where it does nothing.
+    /// Returns the force of the seabed; `None` without contact.
     pub fn push(&self) -> Option<Push> {
         let Touch {
             penetration,
@@ -149,7 +149,7 @@ impl Push {
     }
 }
 
-/// How a node of a line meets the bed; it sticks with `part` of its stiffness.
+/// Contact of a node of a line with the seabed; it sticks with `part` of its stiffness.
 pub fn resting_node<'a>(
     line: &'a Line,
     state: &LineState,
@@ -177,7 +177,7 @@ pub fn resting_node<'a>(
     })
 }
 
-/// How a free point meets the bed; it sticks with `part` of its stiffness.
+/// Contact of a free point with the seabed; it sticks with `part` of its stiffness.
 pub fn resting_point<'a>(
     free: &FreePoint,
     bottom: &'a Bottom,
@@ -205,14 +205,14 @@ pub fn resting_point<'a>(
     })
 }
 
-/// Stiffness along the bed of a free point that sticks [N/m].
+/// Stiffness along the seabed of a free point that sticks [N/m].
 pub fn point_stick(free: &FreePoint) -> f64 {
     free.contact
         .map_or(0.0, |contact| POINT_STICK * contact.coefficients.stiffness)
 }
 
 impl LineWork {
-    /// The bed's springs and friction under a line at rest.
+    /// Adds the seabed's springs and friction under a line at rest.
     pub(super) fn add_static_bottom(&mut self, line: &Line, state: &LineState, case: &StaticCase) {
         for i in 0..state.position.len() {
             let still = Vector3::zeros();
@@ -230,7 +230,7 @@ impl LineWork {
         }
     }
 
-    /// The bed under a moving line.
+    /// Adds the seabed under a moving line.
     pub(super) fn add_bottom<const TANGENT: bool>(
         &mut self,
         line: &Line,
@@ -250,7 +250,7 @@ impl LineWork {
 }
 
 impl PointWork {
-    /// The bed under a point at rest.
+    /// Adds the seabed under a point at rest.
     pub(super) fn add_static_bottom(
         &mut self,
         free: &FreePoint,
@@ -271,7 +271,7 @@ impl PointWork {
         }
     }
 
-    /// The bed under a moving point.
+    /// Adds the seabed under a moving point.
     pub(super) fn add_bottom<const TANGENT: bool>(
         &mut self,
         free: &FreePoint,
@@ -329,7 +329,7 @@ pub(crate) fn hold_at_rest(
     work.move_anchors(model, network, state);
 }
 
-/// What a spring gives way under a force.
+/// Displacement of a spring under a force.
 fn stretch(force: Vector3<f64>, stiffness: f64) -> Vector3<f64> {
     if stiffness > 0.0 {
         force / stiffness
@@ -355,8 +355,8 @@ pub fn drop_anchors(model: &Model, state: &mut State) {
     }
 }
 
-/// Takes the anchors of a network away: nothing rubs.
-pub(crate) fn weigh_anchors(model: &Model, network: &Network, state: &mut State) {
+/// Removes the anchors of a network, and with them its friction.
+pub(crate) fn remove_anchors(model: &Model, network: &Network, state: &mut State) {
     for &index in &network.lines {
         state.lines[index].anchor.clear();
     }
@@ -399,7 +399,7 @@ mod tests {
         bottom(Ground::Grid(Grid::new(&lines, &lines, &rows).unwrap()))
     }
 
-    /// A node a little under the bed that moves, `slid` from its anchor.
+    /// A node a little under the seabed that moves, `slid` from its anchor.
     fn resting(
         bottom: &Bottom,
         shift: Vector3<f64>,

@@ -14,7 +14,7 @@ use crate::physics::bending::{Couple, Hessian};
 /// Scratch of a line that bends.
 #[derive(Debug, Clone)]
 pub(crate) struct BendingWork {
-    /// Whether the last assembly had bending in it.
+    /// True where the last assembly had bending in it.
     pub active: bool,
     /// J of the joints in the rows of nodes and the columns of the next ones, transposed the other way.
     pub near: Vec<Matrix3<f64>>,
@@ -28,7 +28,7 @@ pub(crate) struct BendingWork {
     chain: Chain<true>,
 }
 
-/// Which parts of residual and tangent to add.
+/// Parts of residual and tangent to add.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Parts {
     /// Of the joints' forces in R [-].
@@ -37,9 +37,9 @@ pub(super) struct Parts {
     pub position: f64,
     /// c_c: of ∂R/∂v [1/s].
     pub velocity: f64,
-    /// Whether the tangent is needed.
+    /// True where the tangent is needed.
     pub tangent: bool,
-    /// Whether it must not be indefinite, rather than exact.
+    /// True where it must not be indefinite, rather than exact.
     pub convex: bool,
 }
 
@@ -240,7 +240,7 @@ pub fn end_moment_power(
         .sum()
 }
 
-/// Rates [m/s] of the vectors that meet at a node, those up to `last` moving as `velocity` tells; zero where a clamp or nothing moves.
+/// Rates [m/s] of the vectors that meet at a node, those up to `last` moving at `velocity`; zero where a clamp or nothing moves.
 pub(crate) fn rates(node: usize, last: usize, velocity: impl Fn(usize) -> Vector3<f64>) -> [Vector3<f64>; 2] {
     let rate = |from: usize| velocity(from + 1) - velocity(from);
     [

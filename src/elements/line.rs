@@ -30,13 +30,13 @@ pub(crate) struct LineWork {
     pub tension: Vec<f64>,
     /// Elastic and damping force of the segment at the last assembly [N], unclipped.
     pub elastic: Vec<f64>,
-    /// Its slope dN/dl [N/m].
+    /// Slope dN/dl [N/m].
     pub slope: Vec<f64>,
-    /// Its direction q [-].
+    /// Direction q [-].
     pub direction: Vec<Vector3<f64>>,
     /// Segments at the start of the step.
     pub(super) start: Vec<Stretched>,
-    /// What the time integrator carries over from the last step, per node [N].
+    /// Terms that the time integrator carries over from the last step, per node [N].
     pub history: Vec<Vector3<f64>>,
     /// Half the range of penetrations over which the seabed damper fades in, per node [m].
     pub reach: Vec<f64>,
@@ -44,19 +44,19 @@ pub(crate) struct LineWork {
     pub push: Vec<f64>,
     /// Drag of the current that statics holds for a while, per node [N]; empty where none acts.
     pub load: Vec<Vector3<f64>>,
-    /// What the water's surface does to every node; empty where the line does not meet it.
+    /// Effect of the water's surface on every node; empty where the line does not meet it.
     pub dry: Vec<Dry>,
     /// Joints, where the line has bending stiffness.
     pub bending: Option<BendingWork>,
-    /// Friction of the bed at the last assembly, per node [N]; empty over a level bed without friction.
+    /// Friction of the seabed at the last assembly, per node [N]; empty over a level seabed without friction.
     pub rubbed: Vec<Vector3<f64>>,
     /// Normal force that friction at rest may go by, per node [N]; empty like `rubbed`.
     pub pressed: Vec<f64>,
     /// Memory of viscoelastic segments, where the line has any.
     pub(super) creep: Option<CreepWork>,
-    /// Whether ends A and B have parted from their points.
+    /// True where ends A and B are released from their points.
     pub(super) parted: [bool; 2],
-    /// What was eliminated of them last.
+    /// Blocks of the last elimination of released ends.
     pub(super) loose: Option<Parted>,
     /// Elimination where nothing bends.
     pub(super) chain: Chain<false>,
@@ -120,7 +120,7 @@ impl LineWork {
         }
     }
 
-    /// How much the segments push: nothing unless the line `bends`.
+    /// Sets the greatest compression of the segments: none unless the line `bends`.
     fn set_push(&mut self, line: &Line, bends: bool) {
         if let (Some(bending), Some(work)) = (&line.bending, &mut self.bending) {
             work.active = bends;
@@ -180,7 +180,7 @@ impl LineWork {
             }
         }
         match line.bottom() {
-            None => self.add_bed_at_rest(line, position),
+            None => self.add_seabed_at_rest(line, position),
             Some(_) => self.add_static_bottom(line, state, case),
         }
     }

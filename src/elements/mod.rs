@@ -16,9 +16,10 @@
 //!
 //! The geometric stiffness T/l P is never negative in a line that cannot push. A line with bending stiffness has the joints of
 //! `bending` at its nodes and pushes up to what its segments carry, T ≥ −P; its tangent is exact, or made such that it cannot be
-//! indefinite where `convex` is asked for. Statics keeps springs, weight and the drag of a current, whose forces are held while the
+//! indefinite where `convex` is asked for. Statics keeps springs, weight and the drag of a current, whose forces are kept while the
 //! shape is sought. A line that may pierce the water's surface lacks there what `surface` says.
 
+pub mod beam;
 mod contact;
 pub mod friction;
 mod joint;
@@ -70,7 +71,7 @@ pub struct Workspace {
     pub(crate) counters: Counters,
 }
 
-/// What the implicit solvers did.
+/// Counts of the work of the implicit solvers.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Counters {
     /// Time steps or load steps.
@@ -120,12 +121,12 @@ impl Workspace {
         }
     }
 
-    /// What was done since the last call.
+    /// Returns the counts since the last call.
     pub fn take_counters(&mut self) -> Counters {
         std::mem::take(&mut self.counters)
     }
 }
-/// What statics solves for: the full problem, or an easier one on the way to it.
+/// Problem that statics solves: the full one, or an easier one on the way to it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct StaticCase {
     /// Time of the loads [s].
@@ -138,19 +139,19 @@ pub(crate) struct StaticCase {
     pub tension_min: f64,
     /// Pseudo-transient mass over Δτ² on every unknown [N/m].
     pub anchoring: f64,
-    /// Whether the geometric stiffness comes from the predicted tension instead of the elastic one.
+    /// True where the geometric stiffness comes from the predicted tension instead of the elastic one.
     pub predicted: bool,
-    /// Whether lines with bending stiffness have it, and push.
+    /// True where lines with bending stiffness have it, and push.
     pub bends: bool,
     /// Part of the stiffness that friction sticks with, on nodes that have anchors [-].
     pub stick: f64,
     /// Part of the limit of friction that holds: [`friction::AT_REST`], or [`friction::SLIDING`] where nodes at rest at that limit are to slide on [-].
     pub limit: f64,
-    /// Whether friction goes by the normal forces of the last assembly that did not keep them.
+    /// True where friction takes the normal forces of the last assembly that did not keep them.
     pub keeps_pressure: bool,
     /// Least radius with which lines pierce the water's surface [m].
     pub breadth: f64,
-    /// Whether no correction turns a segment by more than is sensible, however many corrections that takes.
+    /// True where no correction turns a segment by more than is sensible, however many corrections that takes.
     pub cautious: bool,
     /// Tension of a segment that is shortened to nothing; none where slack segments are to pull at nothing [N].
     pub slack: f64,
@@ -182,7 +183,7 @@ impl StaticCase {
 pub(crate) struct Weights {
     /// Of all forces but inertia in R [-].
     pub force: f64,
-    /// Of the bed's friction in R [-], which is taken whole at the end of a step: forces that jump feed vibrations where a mean of old and
+    /// Of the seabed's friction in R [-], which is taken whole at the end of a step: forces that jump feed vibrations where a mean of old and
     /// new ones is taken.
     pub friction: f64,
     /// Of inertia in R [-].
@@ -195,7 +196,7 @@ pub(crate) struct Weights {
     pub acceleration: f64,
     /// When the segments pull.
     pub stretch: Stretch,
-    /// Whether the tangent must not be indefinite, rather than exact.
+    /// True where the tangent must not be indefinite, rather than exact.
     pub convex: bool,
 }
 
@@ -241,7 +242,7 @@ impl Workspace {
             point.assemble_static(data, free, state, stream, case);
             match model.bottom.as_deref() {
                 Some(bottom) => point.add_static_bottom(free, bottom, state, case),
-                None => point.add_bed_at_rest(free, state.position.z),
+                None => point.add_seabed_at_rest(free, state.position.z),
             }
         });
         self.gather(model, network);
@@ -413,7 +414,7 @@ impl Workspace {
         });
     }
 
-    /// Half the range of penetrations over which the bed's damper under a node of a line fades in [m].
+    /// Half the range of penetrations over which the seabed's damper under a node of a line fades in [m].
     pub(crate) fn reach(&self, line: usize, node: usize) -> f64 {
         self.lines[line].reach[node]
     }
@@ -423,7 +424,7 @@ impl Workspace {
         self.points[point].reach
     }
 
-    /// Moves the anchors of nodes that slid along the bed, after an assembly of the state.
+    /// Moves the anchors of nodes that slid along the seabed, after an assembly of the state.
     pub(crate) fn move_anchors(&self, model: &Model, network: &Network, state: &mut State) {
         if model.friction().is_some() {
             friction::move_anchors(model, network, state, self);

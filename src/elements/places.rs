@@ -1,8 +1,6 @@
-//! Where the parts of a network are: names for messages, states to copy.
+//! Places in a network: names for messages, copies of states.
 
-use nalgebra::Vector3;
-
-use crate::model::{Line, LineState, Model, Network, PointState, State};
+use crate::model::{LineState, Model, Network, Point, PointState, State};
 
 /// A node between the ends of a line, or a free point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -55,13 +53,13 @@ pub(crate) fn place_ends(model: &Model, network: &Network, state: &mut State) {
     }
 }
 
-/// Copies a network's points and nodes from one state to another, without allocating.
+/// Copies a network's points and nodes from one state to another, which allocates room for them the first time only.
 pub(crate) fn copy_network(model: &Model, network: &Network, from: &State, to: &mut State) {
     for &index in &network.lines {
         let (from_line, to_line) = (&from.lines[index], &mut to.lines[index]);
-        to_line.position.copy_from_slice(&from_line.position);
-        to_line.velocity.copy_from_slice(&from_line.velocity);
-        to_line.acceleration.copy_from_slice(&from_line.acceleration);
+        to_line.position.clone_from(&from_line.position);
+        to_line.velocity.clone_from(&from_line.velocity);
+        to_line.acceleration.clone_from(&from_line.acceleration);
         to_line.creep.clone_from(&from_line.creep);
         to_line.parted = from_line.parted;
         to_line.beam.clone_from(&from_line.beam);
@@ -73,23 +71,17 @@ pub(crate) fn copy_network(model: &Model, network: &Network, from: &State, to: &
     }
 }
 
-/// A state of `model` with room for everything and nothing in place.
+/// A state of `model` without nodes, for [`copy_network`] to fill.
 pub(super) fn blank_state(model: &Model) -> State {
-    let line = |line: &Line| {
-        let count = line.segment_count() + 1;
-        let mut shape = LineState::at_rest(vec![Vector3::zeros(); count]);
-        shape.become_viscoelastic(line);
-        shape.anchor = Vec::with_capacity(line.friction().map_or(0, |_| count));
-        shape
-    };
+    let point = |point: &Point| PointState::at_rest(point.reference);
     State {
         time: 0.0,
-        points: model
-            .points
+        points: model.points.iter().map(point).collect(),
+        lines: model
+            .lines
             .iter()
-            .map(|point| PointState::at_rest(point.reference))
+            .map(|_| LineState::at_rest(Vec::new()))
             .collect(),
-        lines: model.lines.iter().map(line).collect(),
         waves: None,
     }
 }

@@ -15,23 +15,23 @@ pub(crate) struct PointWork {
     pub slot: Option<usize>,
     /// R of the point alone, without its lines [N].
     pub residual: Vector3<f64>,
-    /// R with its lines [N]; zero along held axes.
+    /// R with its lines [N]; zero along prescribed axes.
     pub total: Vector3<f64>,
     /// J of the point alone.
     pub diagonal: Matrix3<f64>,
     /// Solution of the linear system.
     pub solution: Vector3<f64>,
-    /// What the time integrator carries over from the last step [N].
+    /// Terms that the time integrator carries over from the last step [N].
     pub history: Vector3<f64>,
     /// Half the range of penetrations over which its seabed damper fades in [m].
     pub reach: f64,
-    /// Friction of the bed at the last assembly [N].
+    /// Friction of the seabed at the last assembly [N].
     pub rubbed: Vector3<f64>,
     /// Normal force that friction at rest may go by [N].
     pub pressed: f64,
 }
 impl PointWork {
-    /// Scratch of a point that is held, until it gets a slot.
+    /// Workspace of a prescribed point, until it gets a slot.
     pub(super) fn new() -> PointWork {
         PointWork {
             slot: None,
@@ -70,8 +70,8 @@ impl PointWork {
         self.residual = -case.load * force;
     }
 
-    /// A level bed without friction under a point at rest at a height `z` [m].
-    pub(super) fn add_bed_at_rest(&mut self, free: &FreePoint, z: f64) {
+    /// Adds a level seabed without friction under a point at rest at a height `z` [m].
+    pub(super) fn add_seabed_at_rest(&mut self, free: &FreePoint, z: f64) {
         if let Some((stiffness, push)) = free.bed_at_rest(z) {
             self.residual.z -= push;
             self.diagonal[(2, 2)] += stiffness;
@@ -135,7 +135,7 @@ mod tests {
     use crate::scene::Scene;
     use approx::assert_relative_eq;
 
-    /// A buoy on a line, over a bed of its own and in a sheared current, which may pierce the surface and touch the bed at once.
+    /// A buoy on a line, over a seabed of its own and in a sheared current, which may pierce the surface and touch the seabed at once.
     fn model() -> Model {
         let text = r#"
             water = { density = 1025.0, current = { profile = [[1.0, 0.9, -0.4], [-3.0, 0.1, 0.3]], factor = 1.3 } }
@@ -179,7 +179,7 @@ mod tests {
         }
     }
 
-    /// Deep, touching the bed, half in the water, touching the surface from below and out of it; no kink nearby.
+    /// Deep, touching the seabed, half in the water, touching the surface from below and out of it; no kink nearby.
     const HEIGHTS: [f64; 5] = [-0.995, -0.9, 0.1, 0.6, 2.0];
 
     #[test]

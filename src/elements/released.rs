@@ -1,11 +1,11 @@
-//! Ends that have parted from their points: unknowns of their own line, solved with it.
+//! Ends that are released from their points: unknowns of their own line, solved with it.
 
 use nalgebra::{Matrix3, Vector3};
 
 use super::LineWork;
 use crate::math::block_banded::Ends;
 
-/// What is left of a line's equations on its ends, for the parted of them.
+/// Equations of a line condensed on its ends, for the released of them.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Parted {
     ends: Ends,
@@ -14,7 +14,7 @@ pub(super) struct Parted {
 }
 
 impl LineWork {
-    /// Removes parted ends from what remains of the line; `None` if a block cannot be inverted.
+    /// Removes released ends from the condensed equations of the line; `None` if a block cannot be inverted.
     pub(super) fn eliminate_parted(&mut self, mut ends: Ends) -> Option<Ends> {
         if self.parted == [false; 2] {
             return Some(ends);

@@ -54,27 +54,27 @@ pub(crate) fn stretch_step(
     (ends, StretchStep::new([before, after], mean))
 }
 
-/// How a segment responds to its strain.
+/// Response of a segment to its strain.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Response {
     /// Elastic force, uncut [N].
     pub elastic: f64,
-    /// Its slope with the strain [N].
+    /// Slope with the strain [N].
     pub tangent: f64,
     /// Damping of the strain rate [N s]; none of a memory in a step, which has it in its mean.
     pub damping: f64,
 }
 
-/// What is known of a segment's tension at the end of a step.
+/// Tension of a segment at the end of a step, from the last solution.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct StepEnd {
-    /// Whether it goes on to pull by the last solution, though it is slack as its nodes now are.
+    /// True where it pulls by the last solution, though its present nodes leave it slack.
     pub keeps: bool,
-    /// Tension by the last solution beyond that as its nodes now are [N].
+    /// Tension by the last solution beyond that of its present nodes [N].
     pub excess: f64,
 }
 
-/// What a segment does over a step beyond what the weights make of its force at the end.
+/// Force of a segment over a step beyond the weighted force at its end.
 pub(super) struct Beyond {
     /// [N]
     pub force: Vector3<f64>,
@@ -90,7 +90,7 @@ impl LineWork {
         }
     }
 
-    /// How segment `i` responds to a strain [-].
+    /// Response of segment `i` to a strain [-].
     #[inline(always)]
     pub(super) fn respond(
         &self,

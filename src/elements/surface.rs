@@ -42,7 +42,7 @@ impl LineWork {
         }
     }
 
-    /// What the surface does to a node; nothing where the line does not meet it.
+    /// Effect of the surface on a node; none where the line does not meet it.
     #[inline(always)]
     pub(super) fn dry(&self, node: usize) -> Dry {
         self.dry.get(node).copied().unwrap_or_default()

@@ -74,6 +74,8 @@ fn random_state(model: &Model, size: f64) -> State {
     let mut seed = 3;
     for (line, nodes) in model.lines.iter().zip(&mut state.lines) {
         let [a, b] = line.ends.map(|point| model.points[point].reference);
+        *nodes = LineState::at_rest(vec![Vector3::zeros(); line.segment_count() + 1]);
+        nodes.become_viscoelastic(line);
         for i in 0..nodes.position.len() {
             let along = line.nodes.arc[i] / line.unstretched_length();
             nodes.position[i] = a + 1.2 * along * (b - a) + random_vector(&mut seed, 0.1 * size);
@@ -181,7 +183,7 @@ fn block(line: &LineWork, row: usize, column: usize) -> Matrix3<f64> {
     }
 }
 
-/// Gives both lines bending stiffness, damped, and clamps them where they are held; taut enough not to push.
+/// Gives both lines bending stiffness, damped, and clamps them at fixed points; taut enough not to push.
 fn stiffen(model: &mut Model) {
     for (line, along) in model.lines.iter_mut().zip([Vector3::x(), -Vector3::x()]) {
         let n = line.segment_count();

@@ -7,7 +7,7 @@ use crate::model::{Line, LineState};
 use crate::physics::stretch_step::Mean;
 use crate::physics::viscoelastic::Viscoelastic;
 
-/// What a line knows of its memory in a step.
+/// Viscoelastic internal variables of a line in a step.
 #[derive(Debug, Clone)]
 pub(super) struct CreepWork {
     laws: Vec<Viscoelastic>,
@@ -15,7 +15,7 @@ pub(super) struct CreepWork {
     start: Vec<[f64; 2]>,
     /// Length of the step [s].
     dt: f64,
-    /// Whether the line has a memory: it has none at rest.
+    /// True where the line moves: at rest it has no internal variables.
     pub moves: bool,
 }
 

@@ -9,7 +9,7 @@
 use nalgebra::{Matrix6, Vector6};
 
 /// A system, and after [`PivotedChain::solve`] its solution.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct PivotedChain {
     /// D: blocks of every node on itself.
     pub diagonal: Vec<Matrix6<f64>>,

@@ -1,26 +1,24 @@
 //! Equilibrium of a geometrically exact beam.
 //!
-//! Unknowns are position and spin of every node. With the gradient B of the strains (see `physics::section`) the nodes' forces and
-//! moments out of balance are
+//! The system of [`crate::elements::beam`] is solved by Newton's method; spins are applied by the Cayley transform, and steps are shortened to a
+//! fraction of a turn. A beam of many elements starts from the equilibrium of the same beam on half as many ([`coarse`]), so that
+//! all but the coarsest of them start close to where they rest, and all meshes find the same one of several equilibria.
 //!
-//!   R = Σ L Bᵀ S + w ẑ − contact − loads,   J = Σ (L Bᵀ C B + geometric part) + contact,
-//!
-//! solved by Newton's method; spins are applied by the Cayley transform, and steps are shortened to a fraction of a turn. Where the
-//! beam starts free of stress the loads are raised in parts, the fewer the better. Elsewhere, and where that fails, the search goes down
-//! in energy: J + λ D with D the nodes' own stiffness, λ lowered where the energy falls and raised where it does not, on a beam that is soft
-//! in stretch and shear at first. So it ends at a minimum. Clamps begin along the beam and are turned to where they are held.
-//!
-//! A beam that neither end holds from turning about itself does so without resistance: its first node then resists a turn about d₃, which
-//! changes the way to the equilibrium and not the equilibrium.
+//! The coarsest beam, and one that is not found from a coarser one, is sought from where its sections are. Where it is free of stress there, the
+//! loads are raised in parts, the fewer the better. Elsewhere, and where that fails, the search without the moments on the ends, which have no
+//! potential, goes down in energy: J + λ D with D the nodes' own stiffness, λ lowered where the energy falls and raised where it does not, on
+//! a beam that is soft in stretch and shear at first. So it ends at a minimum, from where the moments are raised in parts. Clamps begin along the
+//! beam and are turned to where they are prescribed. An end that can move and is not found so is sought from the beam without stress.
 
-use nalgebra::{Matrix3, Rotation3, Vector3};
+mod coarse;
 
+use nalgebra::{Matrix3, Rotation3};
+
+use crate::elements::beam::{BeamCase, BeamEnd, LoadShare, NodeSpring, end_hold, folded};
 use crate::math::pivoted_chain::PivotedChain;
 use crate::math::rotation::{cayley, turned_to};
-use crate::model::{Beam, BeamElement, FreePoint, Model, Nodes, Point, PointState, State};
-use crate::physics::section::{
-    Mixture, Response, Section, Sextuple, geometric_stiffness, join, response, split, strain, strain_gradient,
-};
+use crate::model::{BeamElement, Model, PointState, State};
+use crate::physics::section::{Section, join, split};
 use crate::statics::StaticsError;
 
 /// Change of position over the beam's length, and spin [rad], that end the search [-].
@@ -43,56 +41,22 @@ const ANCHORING_MIN: f64 = 1e-12;
 const STIFFENING: f64 = 30.0;
 /// Least axial and shear stiffness on the way, over weight, loads and EI/l² [-].
 const SOFTNESS: f64 = 100.0;
-/// Turn of a clamp from one equilibrium to the next on the way to where it is held [rad].
+/// Elements of a beam that is not sought from a coarser one at first [-].
+const COARSE_ELEMENTS_MAX: usize = 12;
+/// Linear solves of a search times their nodes: some five seconds [-].
+const WORK_MAX: usize = 4_000_000;
+/// No weight, forces and moments.
+const UNLOADED: LoadShare = LoadShare {
+    force: 0.0,
+    moment: 0.0,
+};
+/// Weight and forces without the moments on the ends.
+const MOMENT_FREE: LoadShare = LoadShare {
+    force: 1.0,
+    moment: 0.0,
+};
+/// Turn of a clamp from one equilibrium to the next on the way to its prescribed attitude [rad].
 const CLAMP_TURN: f64 = 0.25;
-
-/// What holds and loads an end of a beam.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct BeamEnd {
-    /// Whether x, y, z and the turns about them are held.
-    pub held: [bool; 6],
-    /// Force [N] and moment [N m] on the end, along the global axes.
-    pub load: Sextuple,
-}
-
-impl BeamEnd {
-    /// Neither held nor loaded.
-    pub fn free() -> BeamEnd {
-        BeamEnd {
-            held: [false; 6],
-            load: Sextuple::zeros(),
-        }
-    }
-
-    /// Held in place, free to turn.
-    pub fn pinned() -> BeamEnd {
-        BeamEnd {
-            held: [true, true, true, false, false, false],
-            ..BeamEnd::free()
-        }
-    }
-
-    /// Held in place and from turning.
-    pub fn clamped() -> BeamEnd {
-        BeamEnd {
-            held: [true; 6],
-            ..BeamEnd::free()
-        }
-    }
-}
-
-/// What holds an end that lies at a point: the point's axes, and the clamp.
-pub(crate) fn end_hold(point: &Point, clamped: bool) -> BeamEnd {
-    let axes = point.free().map_or([false; 3], |free| free.axes);
-    let mut held = [clamped; 6];
-    for (held, free) in held.iter_mut().zip(axes) {
-        *held = !free;
-    }
-    BeamEnd {
-        held,
-        ..BeamEnd::free()
-    }
-}
 
 /// Brings the beam `index` of `state` to rest under the loads of time `t` [s], from where its nodes and frames are.
 ///
@@ -104,7 +68,7 @@ pub fn rest(model: &Model, index: usize, state: &mut State, t: f64) -> Result<()
         return Ok(());
     };
     let position = &state.lines[index].position;
-    let mut sections: Vec<Section> = position
+    let sections: Vec<Section> = position
         .iter()
         .zip(&shape.frames)
         .map(|(position, frame)| Section {
@@ -119,14 +83,20 @@ pub fn rest(model: &Model, index: usize, state: &mut State, t: f64) -> Result<()
             ..end_hold(point, beam.clamped[end].is_some())
         }
     };
+    let contact = line.nodes.contact.iter();
+    let springs = contact.flat_map(|contact| contact.level.iter().zip(&contact.stiffness));
     let case = BeamCase {
-        beam,
-        nodes: &line.nodes,
-        rest: &shape.rest,
+        elements: beam.elements.clone(),
+        rest: shape.rest.clone(),
+        weight: line.nodes.weight.clone(),
+        seabed: springs
+            .map(|(&level, &stiffness)| NodeSpring { level, stiffness })
+            .collect(),
         ends: [end(0), end(1)],
         bodies: line.ends.map(|point| model.points[point].free()),
     };
-    turn_clamps_in(&case, &mut sections).map_err(|restless| refusal(&line.name, &case, restless))?;
+    let found = BeamStatics::default().solve_from_coarser(&case, &sections);
+    let sections = found.map_err(|failure| refusal(&line.name, &case, failure))?;
     let line_state = &mut state.lines[index];
     for (i, section) in sections.iter().enumerate() {
         line_state.position[i] = section.position;
@@ -142,45 +112,12 @@ pub fn rest(model: &Model, index: usize, state: &mut State, t: f64) -> Result<()
     Ok(())
 }
 
-/// Finds the equilibrium with the clamped ends along their neighbours, then turns them step by step to where they are held.
-fn turn_clamps_in(case: &BeamCase, sections: &mut Vec<Section>) -> Result<usize, Restless> {
-    let last = sections.len() - 1;
-    let mut work = BeamStatics::new(last + 1);
-    let held = [(0, 1), (last, last - 1)].map(|(node, next)| {
-        let target = sections[node].frame;
-        let along = sections[next].frame.column(2).into_owned();
-        let start = match case.ends[node / last].held[3] && last > 1 {
-            true => turned_to(&target, along),
-            false => target,
-        };
-        let turn = Rotation3::from_matrix_unchecked(target * start.transpose());
-        (node, start, turn.scaled_axis(), target)
-    });
-    let angle = held[0].2.norm().max(held[1].2.norm());
-    let parts = (angle / CLAMP_TURN).ceil() as usize;
-    let mut solves = 0;
-    for part in 0..parts {
-        for (node, start, turn, _) in &held {
-            if case.ends[node / last].held[3] {
-                let share = part as f64 / parts as f64;
-                sections[*node].frame = Rotation3::new(share * turn).matrix() * start;
-            }
-        }
-        // an equilibrium on the way that is not found is passed over
-        solves += work.solve(case, sections).unwrap_or(0);
-    }
-    for (node, _, _, target) in &held {
-        sections[*node].frame = *target;
-    }
-    Ok(solves + work.solve(case, sections)?)
-}
-
-fn refusal(line: &str, case: &BeamCase, restless: Restless) -> StaticsError {
+fn refusal(line: &str, case: &BeamCase, failure: Failure) -> StaticsError {
     let line = line.to_string();
     let flies = case.ends.iter().all(|end| end.held == [false; 6]);
-    match restless {
-        Restless::Imbalance { residual, .. } if flies => StaticsError::BeamFlies { line, residual },
-        Restless::Imbalance {
+    match failure {
+        Failure::Imbalance { residual, .. } if flies => StaticsError::BeamFlies { line, residual },
+        Failure::Imbalance {
             node,
             residual,
             solves,
@@ -190,28 +127,13 @@ fn refusal(line: &str, case: &BeamCase, restless: Restless) -> StaticsError {
             residual,
             iterations: solves,
         },
-        Restless::Folded { node } => StaticsError::BeamFolded { line, node },
+        Failure::Folded { node } => StaticsError::BeamFolded { line, node },
     }
-}
-
-/// A beam and what acts on it.
-#[derive(Debug, Clone, Copy)]
-pub struct BeamCase<'a> {
-    /// Its elements.
-    pub beam: &'a Beam,
-    /// Its lumped weight and contact.
-    pub nodes: &'a Nodes,
-    /// Strains of the elements without stress.
-    pub rest: &'a [Sextuple],
-    /// What holds and loads ends A and B.
-    pub ends: [BeamEnd; 2],
-    /// What is there, where they are free: it weighs, floats and rests on the bed.
-    pub bodies: [Option<&'a FreePoint>; 2],
 }
 
 /// Why no equilibrium was found.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Restless {
+enum Failure {
     /// The search ended without one.
     Imbalance {
         /// Node where the forces and moments are farthest from balance.
@@ -221,77 +143,21 @@ pub enum Restless {
         /// Linear solves spent [-].
         solves: usize,
     },
-    /// It was found with an element bent or twisted beyond what two sections can tell.
+    /// The equilibrium has an element bent or twisted beyond the resolution of two sections.
     Folded {
         /// Node at the lower end of the element.
         node: usize,
     },
 }
 
-/// Cosine of the turn from node to node below which an element is refused [-]: 60°; its moment is greatest at 56°.
-const COSINE_MIN: f64 = 0.5;
-
-/// The first element whose sections differ by more than its strains can tell, by its lower node.
-pub(crate) fn folded(sections: &[Section]) -> Option<usize> {
-    let cosine = |pair: &[Section]| 0.5 * (pair[0].frame.dot(&pair[1].frame) - 1.0);
-    sections.windows(2).position(|pair| cosine(pair) < COSINE_MIN)
-}
-
-/// Where the sections of a beam are before, at the mean of, and after a step; in statics all are the same.
-pub(crate) struct Span<'a> {
-    pub mean: &'a [Section],
-    pub now: &'a [Section],
-    /// Plain strains before the step; `None` in statics.
-    pub strain_before: Option<&'a [Sextuple]>,
-    /// T of every node: what spin a change of its unknown makes.
-    pub spin: &'a [Matrix3<f64>],
-}
-
-/// Subtracts the forces of all elements from the right-hand side and adds their slopes to the matrix.
-pub(crate) fn add_elements(
-    chain: &mut PivotedChain,
-    beam: &Beam,
-    rest: &[Sextuple],
-    span: &Span,
-    mixture: Mixture,
-) {
-    for (i, element) in beam.elements.iter().enumerate() {
-        let (now, mean) = (
-            [&span.now[i], &span.now[i + 1]],
-            [&span.mean[i], &span.mean[i + 1]],
-        );
-        let after = strain(now[0], now[1], element.length);
-        let before = span.strain_before.map_or(after, |strains| strains[i]);
-        let laws = [&element.law, &element.damping];
-        let Response { stress, slope } = response(laws, element.length, [&before, &after], &rest[i], mixture);
-        let weights = strain_gradient(mean[0], mean[1], element.length);
-        let slopes =
-            strain_gradient(now[0], now[1], element.length).map(|gradient| element.length * slope * gradient);
-        let geometric = geometric_stiffness(mean, now, &stress, mixture.share);
-        let block = |row: usize, column: usize| {
-            let mut block = weights[row].tr_mul(&slopes[column]) + geometric[row][column];
-            let turned = block.fixed_view::<6, 3>(0, 3) * span.spin[i + column];
-            block.fixed_view_mut::<6, 3>(0, 3).copy_from(&turned);
-            block
-        };
-        chain.diagonal[i] += block(0, 0);
-        chain.diagonal[i + 1] += block(1, 1);
-        chain.upper[i] = block(0, 1);
-        chain.lower[i] = block(1, 0);
-        for (node, weight) in [i, i + 1].into_iter().zip(&weights) {
-            chain.right[node] -= element.length * weight.tr_mul(&stress);
-        }
-    }
-}
-
 /// Axial and shear stiffness that the search begins with [N].
 fn softest(case: &BeamCase) -> f64 {
-    let weight: f64 = case.nodes.weight.iter().map(|w| w.abs()).sum();
+    let weight: f64 = case.weight.iter().map(|w| w.abs()).sum();
     let bodies: f64 = case.bodies.iter().flatten().map(|b| b.weight_max()).sum();
     let loads = case.ends.iter().map(|end| split(&end.load).0.norm());
     let bending =
         |element: &BeamElement| element.law.bending.max(element.law.torsion) / element.length.powi(2);
-    let bending = case.beam.elements.iter().map(bending).fold(0.0, f64::max);
+    let bending = case.elements.iter().map(bending).fold(0.0, f64::max);
     SOFTNESS * (weight + bodies + loads.sum::<f64>()).max(bending)
 }
 
@@ -300,109 +166,193 @@ fn rounding(case: &BeamCase, sections: &[Section]) -> f64 {
     let reach = sections.iter().map(|s| s.position.norm()).fold(0.0, f64::max);
     let noise =
         |element: &BeamElement| element.law.axial.max(element.law.shear) * (reach / element.length + 1.0);
-    f64::EPSILON * case.beam.elements.iter().map(noise).fold(0.0, f64::max)
+    f64::EPSILON * case.elements.iter().map(noise).fold(0.0, f64::max)
 }
 
-/// Potential energy, and the size of what it is the sum of [J].
-struct Energy {
-    value: f64,
-    size: f64,
+/// Sections of the beam without stress, from end A on where end B can move, else back from end B where end A can; `None` where both ends are
+/// fixed in place. The end that can move keeps its prescribed unknowns.
+fn unstressed(case: &BeamCase, start: &[Section]) -> Option<Vec<Section>> {
+    let last = start.len() - 1;
+    let end = [1, 0]
+        .into_iter()
+        .find(|&end| case.ends[end].held[..3].contains(&false))?;
+    let mut sections = start.to_vec();
+    for k in 0..last {
+        let (from, to, sign) = match end {
+            1 => (k, k + 1, 1.0),
+            _ => (last - k, last - k - 1, -1.0),
+        };
+        let length = sign * case.elements[from.min(to)].length;
+        let (stretch, turn) = split(&case.rest[from.min(to)]);
+        let frame = sections[from].frame * cayley(length * turn);
+        let position = sections[from].position + 0.5 * length * (sections[from].frame + frame) * stretch;
+        sections[to] = Section { position, frame };
+    }
+    let (node, held) = (end * last, case.ends[end].held);
+    for axis in (0..3).filter(|&axis| held[axis]) {
+        sections[node].position[axis] = start[node].position[axis];
+    }
+    if held[3] {
+        sections[node].frame = start[node].frame;
+    }
+    Some(sections)
 }
 
-/// Of strain, weight, contact and the forces at the ends; moments on ends have no potential and are left out.
-fn energy(case: &BeamCase, sections: &[Section]) -> Energy {
-    let (mut value, mut size) = (0.0, 0.0);
-    let mut add = |part: f64| {
-        value += part;
-        size += part.abs();
-    };
-    for (i, element) in case.beam.elements.iter().enumerate() {
-        let strain = element.strain(&sections[i], &sections[i + 1], &case.rest[i]);
-        add(element.energy(&strain).total());
-    }
-    for (i, section) in sections.iter().enumerate() {
-        add(case.nodes.weight[i] * section.position.z);
-        if let Some(contact) = &case.nodes.contact {
-            let penetration = (contact.level[i] - section.position.z).max(0.0);
-            add(0.5 * contact.stiffness[i] * penetration * penetration);
-        }
-    }
-    for (end, node) in [0, sections.len() - 1].into_iter().enumerate() {
-        let position = &sections[node].position;
-        add(-split(&case.ends[end].load).0.dot(position));
-        if let Some(body) = case.bodies[end] {
-            add(body.potential(position.z));
-            let bed = body.bed_at_rest(position.z);
-            add(bed.map_or(0.0, |(stiffness, push)| 0.5 * push * push / stiffness));
-        }
-    }
-    Energy { value, size }
-}
-
-/// Scratch of the search for an equilibrium.
-#[derive(Debug, Clone)]
-pub struct BeamStatics {
+/// Search for an equilibrium: its workspace and the effort so far.
+#[derive(Debug, Clone, Default)]
+struct BeamStatics {
     chain: PivotedChain,
     unit: Vec<Matrix3<f64>>,
-    start: Vec<Section>,
     trial: Vec<Section>,
+    /// Linear solves [-].
     solves: usize,
+    /// Linear solves times their nodes [-].
+    work: usize,
 }
 
 impl BeamStatics {
-    /// Scratch for a beam of so many nodes.
-    pub fn new(nodes: usize) -> BeamStatics {
-        BeamStatics {
-            chain: PivotedChain::new(nodes),
-            unit: vec![Matrix3::identity(); nodes],
-            start: Vec::with_capacity(nodes),
-            trial: Vec::with_capacity(nodes),
-            solves: 0,
+    /// Returns the sections in equilibrium, found from the equilibrium on half as many elements, else from the sections `start`.
+    fn solve_from_coarser(&mut self, case: &BeamCase, start: &[Section]) -> Result<Vec<Section>, Failure> {
+        let elements = case.elements.len();
+        if elements > COARSE_ELEMENTS_MAX {
+            let kept = coarse::kept(elements).into_iter().map(|node| start[node]);
+            let found = self.solve_from_coarser(&coarse::coarser(case), &kept.collect::<Vec<_>>());
+            let mut sections = found.map_or(vec![], |found| coarse::finer(&found, &case.elements));
+            if !sections.is_empty() && self.search(case, &mut sections, Self::newton_or_settle).is_ok() {
+                return Ok(sections);
+            }
         }
+        let mut sections = start.to_vec();
+        self.turn_clamps_in(case, &mut sections)?;
+        Ok(sections)
     }
 
-    /// Moves `sections` to equilibrium; held unknowns stay as they are. Gives the number of linear solves.
+    /// Finds the equilibrium with the clamped ends along their neighbours, then turns them step by step to their prescribed attitudes.
+    fn turn_clamps_in(&mut self, case: &BeamCase, sections: &mut [Section]) -> Result<(), Failure> {
+        let last = sections.len() - 1;
+        let clamps = [(0, 1), (last, last - 1)].map(|(node, next)| {
+            let target = sections[node].frame;
+            let along = sections[next].frame.column(2).into_owned();
+            let start = match case.ends[node / last].held[3] && last > 1 {
+                true => turned_to(&target, along),
+                false => target,
+            };
+            let turn = Rotation3::from_matrix_unchecked(target * start.transpose());
+            (node, start, turn.scaled_axis(), target)
+        });
+        let angle = clamps[0].2.norm().max(clamps[1].2.norm());
+        let parts = (angle / CLAMP_TURN).ceil() as usize;
+        for part in 0..parts {
+            for (node, start, turn, _) in &clamps {
+                if case.ends[node / last].held[3] {
+                    let share = part as f64 / parts as f64;
+                    sections[*node].frame = Rotation3::new(share * turn).matrix() * start;
+                }
+            }
+            // an equilibrium on the way that is not found is passed over
+            let _ = self.solve(case, sections);
+        }
+        for (node, _, _, target) in &clamps {
+            sections[*node].frame = *target;
+        }
+        self.solve(case, sections)
+    }
+
+    /// Moves `sections` to equilibrium; prescribed unknowns stay as they are.
     ///
     /// # Errors
     /// None was found; the sections are then where they were.
-    pub fn solve(&mut self, case: &BeamCase, sections: &mut Vec<Section>) -> Result<usize, Restless> {
-        self.start.clone_from(sections);
-        self.solves = 0;
-        self.assemble(case, sections, 0.0, 0.0);
-        let unloaded = self.imbalance(case);
-        self.assemble(case, sections, 1.0, 0.0);
-        let from_rest = unloaded.1 <= 1e-9 * self.imbalance(case).1;
-        let found = [from_rest, !from_rest].into_iter().any(|raise| match raise {
-            true => self.raise_load(case, sections),
-            false => self.settle(case, sections),
-        });
-        self.assemble(case, sections, 1.0, 0.0);
+    fn solve(&mut self, case: &BeamCase, sections: &mut [Section]) -> Result<(), Failure> {
+        self.search(case, sections, |search, case, sections| {
+            let start = sections.to_vec();
+            search.assemble(case, sections, UNLOADED, 0.0);
+            let unloaded = search.imbalance(case).1;
+            search.assemble(case, sections, LoadShare::WHOLE, 0.0);
+            let from_rest = unloaded <= 1e-9 * search.imbalance(case).1;
+            let all = |part| LoadShare {
+                force: part,
+                moment: part,
+            };
+            let mut bent = None;
+            let mut found = |start: &[Section], raise_first: bool| {
+                [raise_first, !raise_first].into_iter().any(|raise| {
+                    let rests = match raise {
+                        true => search.raise(case, sections, start, all),
+                        false => search.settle(case, sections, start),
+                    };
+                    if rests && folded(sections).is_some() {
+                        bent = Some(sections.to_vec());
+                    }
+                    rests && folded(sections).is_none()
+                })
+            };
+            let found = found(&start, from_rest)
+                || unstressed(case, &start).is_some_and(|unstressed| found(&unstressed, true));
+            if let Some(bent) = bent.filter(|_| !found) {
+                sections.copy_from_slice(&bent);
+                return true;
+            }
+            found
+        })
+    }
+
+    /// Moves `sections` by a method that says whether it found the equilibrium, and checks what it found.
+    fn search(
+        &mut self,
+        case: &BeamCase,
+        sections: &mut [Section],
+        method: impl Fn(&mut Self, &BeamCase, &mut [Section]) -> bool,
+    ) -> Result<(), Failure> {
+        self.resize(sections.len());
+        let start = sections.to_vec();
+        let found = method(self, case, sections);
+        self.assemble(case, sections, LoadShare::WHOLE, 0.0);
         let (node, residual) = self.imbalance(case);
-        let restless = match (found, folded(sections)) {
-            (true, None) => return Ok(self.solves),
-            (true, Some(node)) => Restless::Folded { node },
-            (false, _) => Restless::Imbalance {
+        let failure = match (found, folded(sections)) {
+            (true, None) => return Ok(()),
+            (true, Some(node)) => Failure::Folded { node },
+            (false, _) => Failure::Imbalance {
                 node,
                 residual,
                 solves: self.solves,
             },
         };
-        sections.clone_from(&self.start);
-        Err(restless)
+        sections.copy_from_slice(&start);
+        Err(failure)
     }
 
-    fn raise_load(&mut self, case: &BeamCase, sections: &mut Vec<Section>) -> bool {
+    fn resize(&mut self, nodes: usize) {
+        if self.unit.len() != nodes {
+            self.chain = PivotedChain::new(nodes);
+            self.unit = vec![Matrix3::identity(); nodes];
+        }
+    }
+
+    /// From close to the equilibrium: Newton's method, else down in energy.
+    fn newton_or_settle(&mut self, case: &BeamCase, sections: &mut [Section]) -> bool {
+        let start = sections.to_vec();
+        self.newton(case, sections, LoadShare::WHOLE) || self.settle(case, sections, &start)
+    }
+
+    /// Raises loads in parts from `start`.
+    fn raise(
+        &mut self,
+        case: &BeamCase,
+        sections: &mut [Section],
+        start: &[Section],
+        share: impl Fn(f64) -> LoadShare,
+    ) -> bool {
         LOAD_PARTS.into_iter().any(|parts| {
-            sections.clone_from(&self.start);
-            (1..=parts).all(|part| self.newton(case, sections, part as f64 / parts as f64))
+            sections.copy_from_slice(start);
+            (1..=parts).all(|part| self.newton(case, sections, share(part as f64 / parts as f64)))
         })
     }
 
-    /// Newton's method at a part of the load [-].
-    fn newton(&mut self, case: &BeamCase, sections: &mut [Section], load: f64) -> bool {
+    /// Newton's method under a part of the loads.
+    fn newton(&mut self, case: &BeamCase, sections: &mut [Section], share: LoadShare) -> bool {
         let (mut last, rounding) = (f64::INFINITY, rounding(case, sections));
         for _ in 0..NEWTON_SOLVES_MAX {
-            self.assemble(case, sections, load, 0.0);
+            self.assemble(case, sections, share, 0.0);
             if self.imbalance(case).1 <= rounding {
                 return true;
             }
@@ -417,37 +367,48 @@ impl BeamStatics {
         false
     }
 
-    /// The search at full load by falling energy, on beams that are stiffened from soft to as they are; Newton's method ends it.
-    fn settle(&mut self, case: &BeamCase, sections: &mut Vec<Section>) -> bool {
-        sections.clone_from(&self.start);
+    /// The search from `start` by falling energy, on beams that are stiffened from soft to as they are; Newton's method ends it and raises
+    /// the moments.
+    fn settle(&mut self, case: &BeamCase, sections: &mut [Section], start: &[Section]) -> bool {
+        sections.copy_from_slice(start);
         let stiffest = |element: &BeamElement| element.law.axial.max(element.law.shear);
-        let full = case.beam.elements.iter().map(stiffest).fold(0.0, f64::max);
+        let full = case.elements.iter().map(stiffest).fold(0.0, f64::max);
         let mut stiffness = softest(case).min(full);
-        let mut soft = case.beam.clone();
+        let mut soft = case.clone();
         let mut anchoring = 1.0;
         loop {
-            for (soft, element) in soft.elements.iter_mut().zip(&case.beam.elements) {
+            for (soft, element) in soft.elements.iter_mut().zip(&case.elements) {
                 soft.law.axial = element.law.axial.min(stiffness);
                 soft.law.shear = element.law.shear.min(stiffness);
             }
-            let softened = BeamCase { beam: &soft, ..*case };
-            anchoring = self.descend(&softened, sections, anchoring);
+            anchoring = self.descend(&soft, sections, anchoring);
             if stiffness >= full {
-                return self.newton(case, sections, 1.0);
+                break;
             }
             stiffness = (STIFFENING * stiffness).min(full);
         }
+        let turned = |part| LoadShare {
+            force: 1.0,
+            moment: part,
+        };
+        let found = self.newton(case, sections, turned(0.0));
+        let without_moments = sections.to_vec();
+        found && self.raise(case, sections, &without_moments, turned)
     }
 
-    /// Goes down in energy until steps are short: J + λ D, λ lowered where the energy fell and raised where it did not. Gives the λ it ended
+    /// Goes down in energy until steps are short: J + λ D, λ lowered where the energy fell and raised where it did not. Returns the λ it ended
     /// with [-].
-    fn descend(&mut self, case: &BeamCase, sections: &mut Vec<Section>, from: f64) -> f64 {
-        let (mut anchoring, mut last) = (from.max(1e-6), energy(case, sections));
+    fn descend(&mut self, case: &BeamCase, sections: &mut [Section], from: f64) -> f64 {
+        let (mut anchoring, mut last) = (from.max(1e-6), case.energy(sections));
         for _ in 0..DESCENT_SOLVES_MAX {
-            self.assemble(case, sections, 1.0, anchoring);
-            self.trial.clone_from(sections);
+            if self.work > WORK_MAX {
+                break;
+            }
+            self.assemble(case, sections, MOMENT_FREE, anchoring);
+            self.trial.clear();
+            self.trial.extend_from_slice(sections);
             let step = self.step(case, sections);
-            let now = energy(case, sections);
+            let now = case.energy(sections);
             let rounding = 1e-12 * (now.size + last.size);
             match step {
                 Some(step) if now.value <= last.value + rounding => {
@@ -458,7 +419,7 @@ impl BeamStatics {
                     last = now;
                 }
                 _ => {
-                    sections.clone_from(&self.trial);
+                    sections.copy_from_slice(&self.trial);
                     anchoring *= 6.0;
                 }
             }
@@ -466,65 +427,17 @@ impl BeamStatics {
         anchoring
     }
 
-    fn assemble(&mut self, case: &BeamCase, sections: &[Section], load: f64, anchoring: f64) {
-        self.chain.clear();
-        let span = Span {
-            mean: sections,
-            now: sections,
-            strain_before: None,
-            spin: &self.unit,
-        };
-        let still = Mixture {
-            share: 1.0,
-            rate: 0.0,
-        };
-        add_elements(&mut self.chain, case.beam, case.rest, &span, still);
-        for (i, section) in sections.iter().enumerate() {
-            self.chain.right[i].z -= load * case.nodes.weight[i];
-            if let Some(contact) = &case.nodes.contact {
-                let penetration = contact.level[i] - section.position.z;
-                if penetration > 0.0 {
-                    self.chain.right[i].z += contact.stiffness[i] * penetration;
-                    self.chain.diagonal[i][(2, 2)] += contact.stiffness[i];
-                }
-            }
-        }
-        let last = sections.len() - 1;
-        for (end, node) in [0, last].into_iter().enumerate() {
-            self.chain.right[node] += load * case.ends[end].load;
-            let Some(body) = case.bodies[end] else {
-                continue;
-            };
-            let height = sections[node].position.z;
-            let at = body.at(height);
-            self.chain.right[node].z -= load * at.weight;
-            self.chain.diagonal[node][(2, 2)] += load * at.weight_slope;
-            if let Some((stiffness, push)) = body.bed_at_rest(height) {
-                self.chain.right[node].z += push;
-                self.chain.diagonal[node][(2, 2)] += stiffness;
-            }
-        }
+    fn assemble(&mut self, case: &BeamCase, sections: &[Section], share: LoadShare, anchoring: f64) {
+        case.assemble(&mut self.chain, sections, share, &self.unit);
         if anchoring > 0.0 {
-            self.anchor(case.beam, anchoring);
+            self.anchor(case, anchoring);
         }
-        let turns_freely = case.ends.iter().all(|end| end.held[3..].iter().all(|held| !held));
-        if turns_freely {
-            let element = &case.beam.elements[0];
-            let axis: Vector3<f64> = sections[0].frame.column(2).into_owned();
-            let brake = element.law.torsion / element.length * axis * axis.transpose();
-            let mut turn = self.chain.diagonal[0].fixed_view_mut::<3, 3>(3, 3);
-            turn += brake;
-        }
-        for (node, end) in [0, last].into_iter().zip(&case.ends) {
-            (0..6)
-                .filter(|&unknown| end.held[unknown])
-                .for_each(|unknown| self.chain.hold(node, unknown, 0.0));
-        }
+        case.constrain(&mut self.chain, sections);
     }
 
-    /// λ D: every node resists to be moved by a part of what its elements do.
-    fn anchor(&mut self, beam: &Beam, anchoring: f64) {
-        for (i, element) in beam.elements.iter().enumerate() {
+    /// Adds λ D: a part of the stiffness of its elements, on every node.
+    fn anchor(&mut self, case: &BeamCase, anchoring: f64) {
+        for (i, element) in case.elements.iter().enumerate() {
             let (law, l) = (&element.law, element.length);
             let push = anchoring * law.axial.max(law.shear) / l;
             let turn = 0.25 * push * l * l + anchoring * law.bending.max(law.torsion) / l;
@@ -539,10 +452,10 @@ impl BeamStatics {
 
     /// Node and size of the greatest force out of balance [N]; moments count over an element's length.
     fn imbalance(&self, case: &BeamCase) -> (usize, f64) {
-        let last = case.beam.elements.len() - 1;
+        let last = case.elements.len() - 1;
         let size = |i: usize| {
             let (force, moment) = split(&self.chain.right[i]);
-            force.norm() + moment.norm() / case.beam.elements[i.min(last)].length
+            force.norm() + moment.norm() / case.elements[i.min(last)].length
         };
         (0..self.chain.right.len())
             .map(|i| (i, size(i)))
@@ -554,13 +467,14 @@ impl BeamStatics {
             )
     }
 
-    /// Solves and moves the sections, by no more than a step may; the size of the whole step [-].
+    /// Solves and moves the sections by at most STEP_MAX; returns the size of the whole step [-].
     fn step(&mut self, case: &BeamCase, sections: &mut [Section]) -> Option<f64> {
         self.solves += 1;
-        if !self.chain.solve() {
+        self.work += sections.len();
+        if self.work > WORK_MAX || !self.chain.solve() {
             return None;
         }
-        let length: f64 = case.beam.elements.iter().map(|e| e.length).sum();
+        let length: f64 = case.elements.iter().map(|e| e.length).sum();
         let (mut moved, mut turned) = (0.0_f64, 0.0_f64);
         for change in &self.chain.right {
             let (position, spin) = split(change);

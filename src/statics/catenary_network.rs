@@ -5,13 +5,13 @@
 //!   R = Σ F_line + F_load(t) − w ẑ,
 //!
 //! w the weight less the buoyancy of what is in the water, F the end force of a catenary, which lies in the vertical plane through its ends. Newton's method; the stiffness of a line in
-//! free flight is exact (see `stiffness`), that of a line on the bed a difference quotient of its closed form; across its plane a line
+//! free flight is exact (see `stiffness`), that of a line on the seabed a difference quotient of its closed form; across its plane a line
 //! has H/X. Steps are limited, and cut until the power R·δ has not turned: without friction the potential energy is convex
-//! in the positions of the points, so this finds the one equilibrium. A point whose lines can touch the bed rests on it
+//! in the positions of the points, so this finds the one equilibrium. A point whose lines can touch the seabed rests on it
 //! where it would sink.
 //!
-//! Valid for engineering strain, which the closed form is made for, and where no end lies under the bed. A line's friction on the bed
-//! is that of [`super::catenary`]: towards end A, as hauled at B, or the other way about. Where it leaves no tension at a point on the bed, the point may lie
+//! Valid for engineering strain, which the closed form is made for, and where no end lies under the seabed. A line's friction on the seabed
+//! is that of [`super::catenary`]: towards end A, as hauled at B, or the other way about. Where it leaves no tension at a point on the seabed, the point may lie
 //! anywhere in a range, and stays where it was.
 //!
 //! Source: energy and convexity as for cables under gravity, Irvine (1981), Cable Structures, chapter 2; the rest is derived here.
@@ -43,7 +43,7 @@ const RELAXATION: [f64; 2] = [1.0, 1e-13];
 /// Displacement of the difference quotients, over the length of the line [-].
 const DIFFERENCE: f64 = 1e-9;
 
-/// Whether every line of a network has a closed form and nothing of it feels a current.
+/// Returns true where every line of a network has a closed form and no part of the network has drag in a current.
 pub fn serves(model: &Model, network: &Network) -> bool {
     let mut lines = network.lines.iter().map(|&line| &model.lines[line]);
     let points = network.free_points.iter();
@@ -98,7 +98,7 @@ pub fn rest(
 
 /// Moves the free points of a network from where they are in `state` to where they rest at time `t` [s], and puts its lines on
 /// their catenaries. Held points stay where they are. False, and the state as it was, where that is not possible: a line
-/// without a closed form, out of the water, or with an end under the bed, or no rest found in a bounded number of steps.
+/// without a closed form, out of the water, or with an end under the seabed, or no equilibrium found in a bounded number of steps.
 pub fn solve_network(model: &Model, number: usize, state: &mut State, t: f64, work: &mut Workspace) -> bool {
     let network = &model.networks[number];
     if !serves(model, network) {
@@ -123,7 +123,7 @@ pub fn solve_network(model: &Model, number: usize, state: &mut State, t: f64, wo
     true
 }
 
-/// How the lines of a network on its catenaries resist.
+/// Stiffness of the lines of a network on its catenaries.
 pub(crate) struct HungNetwork {
     /// In the order of the network.
     pub lines: Vec<HungLine>,
@@ -131,7 +131,7 @@ pub(crate) struct HungNetwork {
     held: Vec<[bool; 3]>,
 }
 
-/// How one line on its catenary resists.
+/// Stiffness of one line on its catenary.
 pub(crate) struct HungLine {
     /// Forces on the points at ends A and B [N].
     pub end_force: [Vector3<f64>; 2],
@@ -161,7 +161,7 @@ pub(crate) fn hung(model: &Model, number: usize, state: &State, work: &mut Works
 }
 
 impl HungNetwork {
-    /// How the ends A and B of every line move [m] as held points do by `moved` [m] and the free points follow; `None` where those
+    /// Displacements [m] of ends A and B of every line as prescribed points move by `moved` [m] and the free points follow; `None` where those
     /// find no balance.
     pub(crate) fn respond(
         &self,
@@ -429,7 +429,7 @@ impl<'a> Problem<'a> {
             .fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// Whether a free point cannot move along an axis: not free there, or pressed on the bed.
+    /// Returns true where a free point cannot move along an axis: not free there, or pressed on the seabed.
     fn is_held(&self, state: &State, work: &Workspace, point: usize, axes: [bool; 3], axis: usize) -> bool {
         let pressed =
             work.points[point].residual.z <= 0.0 && state.points[point].position.z <= self.bed_under(point);
@@ -494,7 +494,7 @@ impl<'a> Problem<'a> {
         slopes.stiffness(&plane, pulls, length)
     }
 
-    /// Slopes of a line that touches the bed, by difference quotients, with the number of catenaries solved.
+    /// Slopes of a line that touches the seabed, by difference quotients, with the number of catenaries solved.
     fn slopes_on_bed(&self, state: &State, line: &Line, solved: &Catenary) -> (Slopes, usize) {
         let forces = |c: &Catenary| [c.horizontal_a(), c.vertical_a(), c.horizontal(), c.vertical_b()];
         let [a, b] = line.ends.map(|point| state.points[point].position);
@@ -520,7 +520,7 @@ impl<'a> Problem<'a> {
         (slopes, 3)
     }
 
-    /// Whether a line on its catenary comes out of the water, of which the closed form knows nothing.
+    /// Returns true where a line on its catenary comes out of the water, which the closed form does not model.
     fn is_pierced(&self, state: &State, work: &Workspace) -> bool {
         self.network.lines.iter().any(|&index| {
             let line = &self.model.lines[index];

@@ -54,7 +54,7 @@ const DESCENT_SOLVES_MAX: usize = 200;
 /// Linear solves of one search times the nodes of the network: some ten seconds [-].
 const WORK_MAX: usize = 20_000_000;
 /// Force out of balance that a minimisation leaves to Newton's method, over the sum of the loads, and where nodes that stick and nodes that
-/// slide must be told apart [-].
+/// slide must be distinguished [-].
 const ROUGH_SHARE: f64 = 1e-6;
 const FINE_SHARE: f64 = 1e-10;
 /// Cuts of one step of a minimisation.
@@ -74,7 +74,7 @@ const JUMP_MAX: f64 = 0.1;
 /// Smallest increment of the loads on a softening line [-].
 const LOAD_INCREMENT_MIN: f64 = 1e-5;
 
-/// Finds the equilibrium of all lines at time `t` [s], for the places of all points: held ones as they are, with the orientations that
+/// Finds the equilibrium of all lines at time `t` [s], for the places of all points: prescribed ones as given, with the orientations that
 /// clamped lines follow, free ones as a guess. Lines start on the shape the scene gives them, else on their catenary.
 ///
 /// # Errors
@@ -137,7 +137,7 @@ pub fn rest(
     Problem::new(model, number, state.time, work).solve(state, work)
 }
 
-/// Moves the held points of every network to `points` [m] and finds the equilibrium at time `t` [s] closest to `state`.
+/// Moves the prescribed points of every network to `points` [m] and finds the equilibrium at time `t` [s] closest to `state`.
 ///
 /// # Errors
 /// No equilibrium was found, or there is none; the state is then as it was.
@@ -231,7 +231,7 @@ fn check_finite(model: &Model, points: &[Vector3<f64>]) -> Result<(), StaticsErr
     Ok(())
 }
 
-/// Greatest stiffness along the bed of a node that sticks [N/m].
+/// Greatest stiffness along the seabed of a node that sticks [N/m].
 fn stiffest_stick(line: &Line) -> f64 {
     let contact = line.nodes.contact.iter();
     let stick = contact.flat_map(|contact| &contact.stick);
@@ -248,7 +248,7 @@ struct Problem<'a> {
     force: f64,
     /// Length of the longest line [m].
     length: f64,
-    /// Whether any of its lines has bending stiffness, and that is not left out.
+    /// True where a line has bending stiffness and it is not left out.
     bends: bool,
     /// Count of linear solves that ends the search [-].
     solves_end: usize,
@@ -292,7 +292,7 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// Whether the search has taken all the solves that it may.
+    /// Returns true once the search has taken its greatest number of solves.
     fn is_spent(&self, work: &Workspace) -> bool {
         work.counters.solves >= self.solves_end
     }
@@ -308,11 +308,11 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// Equilibrium under weight, point loads and the drag that is held.
+    /// Equilibrium under weight, point loads and a given drag.
     fn solve_loaded(&self, state: &mut State, work: &mut Workspace) -> Result<(), StaticsError> {
-        let rubs = self.rubs();
-        if rubs {
-            self.let_go(state);
+        let has_friction = self.has_friction();
+        if has_friction {
+            self.remove_friction(state);
         }
         let mut guess = std::mem::take(&mut work.saved);
         copy_network(self.model, self.network, state, &mut guess);
@@ -323,7 +323,7 @@ impl<'a> Problem<'a> {
         };
         work.saved = guess;
         match result {
-            Ok(()) if rubs => self.rub(state, work),
+            Ok(()) if has_friction => self.add_friction(state, work),
             result => result,
         }
     }
@@ -385,13 +385,13 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// What may help where no equilibrium is found.
+    /// Advice for a network whose equilibrium is not found.
     fn advice(&self, work: &Workspace) -> &'static str {
         if self.is_spent(work) {
             "use fewer elements: a search on this mesh takes too long"
         } else if !self.network.free_points.is_empty() {
             "bring the free points' reference positions closer to where they will rest, or use more elements"
-        } else if self.rubs() {
+        } else if self.has_friction() {
             "use another number of elements, or less friction of the seabed"
         } else {
             "use another number of elements"
@@ -451,7 +451,7 @@ impl<'a> Problem<'a> {
         false
     }
 
-    /// Whether the forces of a shape are in balance by themselves, without predicted tensions.
+    /// Returns true where the forces of a shape are in balance by themselves, without predicted tensions.
     fn is_balanced(&self, state: &State, work: &mut Workspace) -> bool {
         work.assemble_static(self.model, self.network, state, &self.case(f64::INFINITY));
         let (residual, _) = work.greatest_residual(self.network);
@@ -475,7 +475,7 @@ impl<'a> Problem<'a> {
         8.0 * f64::EPSILON * lines.map(spring).fold(0.0, f64::max)
     }
 
-    /// Greatest stiffness of a segment of at most this EA [N], of the bed under a node, or of a joint [N/m].
+    /// Greatest stiffness of a segment of at most this EA [N], of the seabed under a node, or of a joint [N/m].
     fn stiffest_spring(&self, line: &Line, stiffness_max: f64) -> f64 {
         let segments = line.segments.axial_stiffness.iter().zip(&line.segments.length);
         let bed = line
@@ -534,7 +534,7 @@ impl<'a> Problem<'a> {
         FORCE_TOLERANCE * force + rounding.max(stuck)
     }
 
-    /// Whether no segment that the last assembly took as taut pushes.
+    /// Returns true where no segment that the last assembly took as taut pushes.
     fn no_push(&self, work: &Workspace, tolerance: f64) -> bool {
         self.network.lines.iter().all(|&line| {
             let line = &work.lines[line];
@@ -704,7 +704,7 @@ impl<'a> Problem<'a> {
         laws.into_iter().any(|law| law.limit_strain().is_some())
     }
 
-    /// Whether the tangent of a converged state is positive definite.
+    /// Returns true where the tangent of a converged state is positive definite.
     fn stable(&self, state: &State, work: &mut Workspace, case: StaticCase) -> bool {
         let least = if self.bends {
             bending::INSTABILITY

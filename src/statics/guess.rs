@@ -1,4 +1,4 @@
-//! Where a line is expected to hang, before the assembled equilibrium is solved.
+//! First guess of the shape of a line, before the assembled equilibrium is solved.
 
 use nalgebra::Vector3;
 
@@ -7,7 +7,7 @@ use crate::model::{Line, Model};
 use crate::scene::InitialShape;
 
 /// Puts the nodes of a line between its ends at `a` and `b` [m] on its closed-form catenary, with the tensions of its segments [N].
-/// Where there is none, because an end lies under the bed, on a parabola of about the right length.
+/// Where there is none, because an end lies under the seabed, on a parabola of about the right length.
 pub(crate) fn hang(
     model: &Model,
     line: &Line,

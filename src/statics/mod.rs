@@ -1,4 +1,4 @@
-//! Statics: what a mooring does when nothing moves.
+//! Statics: equilibrium, stiffness and natural modes of a mooring.
 
 pub mod beam;
 pub use crate::physics::catenary;
@@ -21,7 +21,7 @@ pub enum StaticsError {
     LimitLoad {
         /// Name of the line.
         line: String,
-        /// Its most stretched segment, from 0 at end A.
+        /// Most stretched segment, from 0 at end A.
         segment: usize,
         /// Strain of that segment at the greatest load that has an equilibrium [-].
         strain: f64,
@@ -36,15 +36,15 @@ pub enum StaticsError {
          allowed; {advice}"
     )]
     NotConverged {
-        /// Where the imbalance is greatest: line and node, or point.
+        /// Place of the greatest imbalance: line and node, or point.
         place: String,
         /// Force out of balance there [N].
         residual: f64,
-        /// What would have been accepted [N].
+        /// Accepted force out of balance [N].
         tolerance: f64,
         /// Linear solves spent [-].
         iterations: usize,
-        /// What may help.
+        /// Advice.
         advice: &'static str,
     },
     /// The search for the equilibrium of a beam ended without one.
@@ -89,7 +89,7 @@ pub enum StaticsError {
     NotFinite {
         /// Which input.
         place: String,
-        /// Its value [m].
+        /// Value [m].
         value: f64,
     },
 }

@@ -1,7 +1,7 @@
 //! Natural frequencies and mode shapes of a network of lines about a state at rest.
 //!
 //! K φ = ω² M φ over the nodes between the ends of every line and the free axes of free points. K is the assembled tangent
-//! of statics: axial, geometric and bending stiffness of the lines, the bed's springs where they touch, and the surface's where it is pierced. M is that of dynamics:
+//! of statics: axial, geometric and bending stiffness of the lines, the seabed's springs where they touch, and the surface's where it is pierced. M is that of dynamics:
 //! lumped, added mass included, M_n I + (M_t − M_n) t tᵀ at a node. M couples the axes of a node only, so that with the Cholesky factors
 //! M = L Lᵀ of its blocks L⁻¹ K L⁻ᵀ y = ω² y is as sparse as K, φ = L⁻ᵀ y. Damping and drag are left out.
 //!
@@ -62,9 +62,9 @@ pub struct Modes {
 /// The nodes of a network that move.
 #[derive(Debug, Clone)]
 struct Nodes {
-    /// Place of every node, by line of the network and node; `None` where it is held.
+    /// Place of every node, by line of the network and node; `None` where it is prescribed.
     places: Vec<Vec<Option<usize>>>,
-    /// Unknown of every axis of every place; `None` where it is held.
+    /// Unknown of every axis of every place; `None` where it is prescribed.
     unknowns: Vec<[Option<usize>; 3]>,
     /// L⁻¹ of every place [1/√kg].
     scale: Vec<Matrix3<f64>>,

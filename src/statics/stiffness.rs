@@ -1,4 +1,4 @@
-//! How the mooring's force on a vessel changes as the vessel moves: its 6×6 stiffness.
+//! Stiffness of the mooring on a vessel: the 6×6 slope of its force with the vessel's displacements.
 //!
 //! The vessel moves by x, y and z [m] and by small rotations about the global axes through its origin [rad]. A point on it at the
 //! arm r [m] from the origin follows by u = δ + ω × r, clamps turn by ω × d, and everything that forces move goes to where it is in
@@ -13,12 +13,12 @@
 //! the second term because the arms turn. The moment on a clamp of direction d is m = −d × g with g the slope of the energy of its
 //! joint with d, and −δm = (ω × d) × g + d × δg.
 //!
-//! A network whose lines lie on closed-form catenaries takes the stiffness of those, bed friction included, in place of J; others
-//! have that of their elements: springs, weight, bending and the springs of the bed; nodes that stick to it hold by their friction, those that slide go on sliding. Drag, inertia and dampers are not in it.
+//! A network whose lines lie on closed-form catenaries takes the stiffness of those, seabed friction included, in place of J; others
+//! have that of their elements: springs, weight, bending and the springs of the seabed; nodes that stick to it hold by their friction, those that slide go on sliding. Drag, inertia and dampers are not in it.
 //! Without friction the mooring is conservative: the parts of K that concern displacements are symmetric, and K − Kᵀ of the rotations is ω ↦ M × ω,
 //! for finite rotations do not commute.
 //!
-//! Source: derived here. Valid where the equilibrium is stable. A line that lies slack on the bed resists nothing sideways; anchoring springs of a part of 10⁻¹⁵ to 10⁻⁹ of its
+//! Source: derived here. Valid where the equilibrium is stable. A line that lies slack on the seabed resists nothing sideways; anchoring springs of a part of 10⁻¹⁵ to 10⁻⁹ of its
 //! axial stiffness then keep it where it is. Beams have no tangent here.
 
 use std::ops::SubAssign;
@@ -162,7 +162,7 @@ impl Clamp {
         })
     }
 
-    /// What a turn ω of the clamp alone adds to the slope of the energy with the segment [N].
+    /// Change of the slope of the energy with the segment for a turn ω of the clamp alone [N].
     fn push(&self, spin: &Vector3<f64>) -> Vector3<f64> {
         let turned = spin.cross(&self.direction);
         match self.stands {
@@ -212,7 +212,7 @@ impl Problem<'_> {
         self.state.points[point].position - self.origin
     }
 
-    /// How a point moves with the vessel [m]; not at all where it is not on it.
+    /// Displacement of a point with the vessel [m]; zero where it is not on it.
     fn moved(&self, point: usize, motion: &Motion) -> Vector3<f64> {
         if self.rides(point) {
             motion.shift + motion.spin.cross(&self.arm(point))

@@ -304,6 +304,35 @@ fn bending_stiffness_from_a_hair_to_a_girder_finds_its_rest_on_the_bed() {
     }
 }
 
+/// Tip [m] at rest of a cable of 100 m that is clamped along a seabed and starts with its other end, which can move, 55 m above it.
+fn dropped(elements: usize, keys: &str) -> Vector3<f64> {
+    let cable = draft(
+        "water.density = 1025.0
+        seabed.depth = 60.0
+        line_types.cable = { model = 'beam', mass = 30.0, diameter = 0.15, axial_stiffness = 4e8, bending_stiffness = 1e4,
+          shear_stiffness = 1e8, torsional_stiffness = 1e4, rotary_inertia = 0.1 }",
+    );
+    let ends = cable.fixed("a", [0.0, 0.0, -60.0]).free("b", [60.0, 0.0, -5.0]);
+    let line = ends.with(keys).line("l", ["a", "b"], "cable", 100.0, elements);
+    place(&line.with(CLAMP).start(), "b")
+}
+
+#[test]
+fn a_beam_that_drops_to_the_seabed_finds_the_same_rest_on_every_mesh() {
+    let turned = "mass = 10.0, free = ['x', 'z'], moment = { z = -80.0 }";
+    for keys in [turned, "mass = 10.0, moment = { z = -80.0 }", "mass = 10.0"] {
+        let finest = dropped(20_000, keys);
+        for elements in [8, 10, 13, 20, 31, 40, 64, 100, 160, 320, 640, 1500, 5000] {
+            let tip = dropped(elements, keys);
+            let far = (tip - finest).xy().norm();
+            assert!(
+                far < 0.2 / (elements * elements) as f64 + 1e-6,
+                "{elements}: {tip}"
+            );
+        }
+    }
+}
+
 #[test]
 fn a_beam_in_water_over_a_bed_has_a_ledger_that_closes() {
     let mut beam = following(&balanced(mooring_beam(1e5)));

@@ -32,10 +32,27 @@ use crate::{layout, surroundings, survey};
 
 /// Scenes.
 const SCENES: usize = 200;
-/// Communication steps.
-const STEPS: usize = 2;
-/// Their greatest length [s], and the same over the shortest internal step [-].
-const STEP_MAX: [f64; 2] = [0.05, 20.0];
+/// The communication steps of a run.
+#[derive(Debug, Clone, Copy)]
+struct Span {
+    steps: usize,
+    /// Greatest length of one [s].
+    step_max: f64,
+    /// Greatest length of one over the shortest internal step [-].
+    internal: f64,
+}
+/// A few internal steps.
+const SHORT: Span = Span {
+    steps: 2,
+    step_max: 0.05,
+    internal: 20.0,
+};
+/// Some seconds, or as much as ten thousand internal steps make.
+const LONG: Span = Span {
+    steps: 10,
+    step_max: 0.3,
+    internal: 1000.0,
+};
 /// Integrators, in turns.
 const INTEGRATORS: [Integrator; 4] = [
     Integrator::Leapfrog,
@@ -49,7 +66,8 @@ struct Base {
     scene: Scene,
     size: f64,
     number: usize,
-    /// Communication step [s].
+    /// Communication steps, and the length of each [s].
+    steps: usize,
     step: f64,
     /// Runs so far.
     runs: RefCell<Vec<(Scene, Outcome)>>,
@@ -59,7 +77,7 @@ struct Base {
 type Outcome = Rc<Result<Run, String>>;
 
 impl Base {
-    fn of(number: usize) -> Base {
+    fn of(number: usize, span: Span) -> Base {
         let tape: Tape = survey::tape(number);
         let integrator = INTEGRATORS[number % INTEGRATORS.len()];
         let drawn = Plan::of(&tape);
@@ -87,7 +105,11 @@ impl Base {
         for section in scene.lines.iter_mut().flat_map(|line| &mut line.sections) {
             section.elements = Some(section.elements.unwrap_or(6).min(8));
         }
-        let [most, internal] = STEP_MAX;
+        let Span {
+            steps: count,
+            step_max,
+            internal,
+        } = span;
         let steps = Simulation::new(&scene).map(|simulation| {
             let steps = simulation.choices().map(|choice| choice.step_max);
             internal * steps.fold(f64::INFINITY, f64::min)
@@ -96,7 +118,8 @@ impl Base {
             scene,
             size: plan.size,
             number,
-            step: steps.map_or(most, |step| step.min(most)),
+            steps: count,
+            step: steps.map_or(step_max, |step| step.min(step_max)),
             runs: RefCell::default(),
         }
     }
@@ -107,7 +130,7 @@ impl Base {
         if let Some((_, run)) = runs.iter().find(|(known, _)| known == scene) {
             return run.clone();
         }
-        let run = Rc::new(run(scene, self.step));
+        let run = Rc::new(run(scene, self.steps, self.step));
         runs.push((scene.clone(), run.clone()));
         run
     }
@@ -126,19 +149,22 @@ impl Base {
 /// Places [m] of nodes and forces [N] at ends of lines by name, at every communication step.
 #[derive(Clone)]
 struct Run {
+    /// Lines of the scene.
+    lines: usize,
     places: Vec<(String, Vec<Vector3<f64>>)>,
     forces: Vec<(String, Vec<Vector3<f64>>)>,
 }
 
-fn run(scene: &Scene, step: f64) -> Result<Run, String> {
+fn run(scene: &Scene, steps: usize, step: f64) -> Result<Run, String> {
     let mut simulation = Simulation::new(scene).map_err(|error| error.to_string())?;
     simulation.follow_scene().map_err(|error| error.to_string())?;
     let mut run = Run {
+        lines: scene.lines.len(),
         places: Vec::new(),
         forces: Vec::new(),
     };
     run.read(&simulation, scene);
-    for _ in 0..STEPS {
+    for _ in 0..steps {
         simulation.advance(step).map_err(|error| error.to_string())?;
         run.read(&simulation, scene);
     }
@@ -176,7 +202,7 @@ impl Run {
 
     /// The run with its lines in the order of another's names, and without the rest.
     fn sorted(mut self, like: &Run) -> Run {
-        let names = like.places[..like.lines()].iter().map(|(name, _)| name.clone());
+        let names = like.places[..like.lines].iter().map(|(name, _)| name.clone());
         let names: Vec<String> = names.collect();
         for values in [&mut self.places, &mut self.forces] {
             values.retain(|(name, _)| names.contains(name));
@@ -187,16 +213,11 @@ impl Run {
         self
     }
 
-    fn lines(&self) -> usize {
-        self.places.len() / (STEPS + 1)
-    }
-
     /// Difference from another run whose vectors are the images of these.
     fn gap(&self, other: &Run, size: f64, [place, turn]: [&Image; 2]) -> Gap {
         let forces = self.forces.iter().flat_map(|(_, forces)| forces);
         let greatest = forces.map(|force| force.norm()).fold(1e-6, f64::max);
         let mut gap = Gap::default();
-        let per_step = self.lines();
         for row in 0..self.places.len() {
             let pairs = [
                 ("node", &self.places[row], &other.places[row], place, size),
@@ -208,7 +229,7 @@ impl Run {
                     let apart = (image(*a) - b).norm() / unit;
                     gap.most = gap.most.max(apart);
                     if apart > FIRST && gap.first.is_empty() {
-                        let step = row / per_step;
+                        let step = row / self.lines;
                         gap.first = format!("step {step}, {name}, {what} {i}: {apart:.1e}");
                     }
                 }
@@ -223,28 +244,34 @@ const FIRST: f64 = 1e-10;
 
 /// Displacements of points, over the size of the scene [-].
 const NUDGE: f64 = 1e-10;
+/// Displaced scenes.
+const NUDGES: usize = 12;
 /// Bound of the difference of runs that such displacements make in a smooth scene [-], or half the bound of a relation where that is less. (With
 /// half the bound alone two scenes fail at 1e-6, of stiff lines that hardly pull: 154 turned and moved, 189 moved.)
 const NUDGED_MAX: f64 = 5e-9;
 /// Least tension of a line at rest that is determined by forces, over its greatest [-].
 const TAUT: f64 = 1e-9;
+/// Bound of smooth scenes of leapfrogs that part from their images after some seconds for a reason that is not known [-].
+const OPEN_MAX: f64 = 1e-3;
 /// Greatest share of the scenes of a relation that may fail because they are not smooth [-].
 const ROUGH_MAX: f64 = 0.2;
 
 /// Returns true where a scene is smooth: small displacements of its points change its run in proportion. Of a line that snaps they do not, nor of one that may rest in
 /// many places, and rounding changes the run as much.
 fn is_smooth(base: &Base, scene: &Scene, bound: f64) -> bool {
-    is_taut_at_rest(scene)
-        && [1.0, 2.0, 3.0].into_iter().all(|seed: f64| {
-            let mut other = scene.clone();
-            let points = other.points.iter_mut().filter(|point| point.on.is_none());
-            let places = points.map(|point| &mut point.position);
-            let vessels = other.vessels.iter_mut().map(|vessel| &mut vessel.position);
-            for (i, value) in places.chain(vessels).flatten().enumerate() {
-                *value += NUDGE * base.size * (seed * (i + 1) as f64).sin();
-            }
-            same(base, scene, &other).is_some_and(|(_, gap)| gap.most < NUDGED_MAX.min(0.5 * bound))
-        })
+    is_taut_at_rest(scene) && (1..=NUDGES).all(|seed| nudged(base, scene, seed) < NUDGED_MAX.min(0.5 * bound))
+}
+
+/// Difference that small displacements of the points of a scene make in its run [-]; infinite where the displaced scene fails.
+fn nudged(base: &Base, scene: &Scene, seed: usize) -> f64 {
+    let mut other = scene.clone();
+    let points = other.points.iter_mut().filter(|point| point.on.is_none());
+    let places = points.map(|point| &mut point.position);
+    let vessels = other.vessels.iter_mut().map(|vessel| &mut vessel.position);
+    for (i, value) in places.chain(vessels).flatten().enumerate() {
+        *value += NUDGE * base.size * ((seed * (i + 1)) as f64).sin();
+    }
+    same(base, scene, &other).map_or(f64::INFINITY, |(_, gap)| gap.most)
 }
 
 /// Returns true where every segment that starts at rest pulls: the place of slack ones on a seabed is not determined.
@@ -274,8 +301,8 @@ struct Found {
 }
 
 /// Compares one scene by all relations.
-fn compare(number: usize, relations: &[(&str, Relation, f64)]) -> Vec<Found> {
-    let base = Base::of(number);
+fn compare(number: usize, span: Span, relations: &[(&str, Relation, f64)]) -> Vec<Found> {
+    let base = Base::of(number, span);
     let mut found = Vec::new();
     for (which, (_, relation, bound)) in relations.iter().enumerate() {
         if let Some((scene, gap)) = relation(&base) {
@@ -293,13 +320,13 @@ fn compare(number: usize, relations: &[(&str, Relation, f64)]) -> Vec<Found> {
     found
 }
 
-/// Holds relations to their bounds over all smooth scenes, on two threads.
-fn claim(relations: &[(&str, Relation, f64)]) {
+/// Holds relations to their bounds over all smooth scenes, on two threads, and to [`OPEN_MAX`] in the `open` ones, by relation and number.
+fn claim(span: Span, relations: &[(&str, Relation, f64)], open: &[(&str, usize)]) {
     let next = AtomicUsize::new(0);
     let work = || {
         let numbers = std::iter::from_fn(|| Some(next.fetch_add(1, Ordering::Relaxed)));
         let numbers = numbers.take_while(|number| *number < SCENES);
-        let found = numbers.flat_map(|number| compare(number, relations));
+        let found = numbers.flat_map(|number| compare(number, span, relations));
         found.collect::<Vec<_>>()
     };
     let found: Vec<Found> = std::thread::scope(|scope| {
@@ -318,6 +345,10 @@ fn claim(relations: &[(&str, Relation, f64)]) {
         assert!(few, "{name}: {rough} of {all} scenes are not smooth");
         for one in own().filter(|one| !one.holds && !one.rough) {
             let (number, Gap { most, first }) = (one.scene, &one.gap);
+            if open.contains(&(*name, number)) && *most < OPEN_MAX {
+                println!("{name}, scene {number}: {most:.1e}, open");
+                continue;
+            }
             let integrator = INTEGRATORS[number % INTEGRATORS.len()];
             broken.push(format!(
                 "{name}, scene {number}, {integrator:?}: {most:.1e}, from {first}"
@@ -501,20 +532,30 @@ fn without_motion(base: &Base) -> Option<(Scene, Gap)> {
     limit(base, |scene| scene.motion.clear(), move_all)
 }
 
+/// Limits of size zero, each with its bound.
+const LIMITS: [(&str, Relation, f64); 9] = [
+    ("density", without_density, 1e-9),
+    ("current", without_current, 1e-9),
+    ("height of waves", without_wave_height, 1e-9),
+    ("bending stiffness", without_bending_stiffness, 1e-9),
+    ("friction", without_friction, 1e-9),
+    ("slope", without_slope, 1e-9),
+    ("drag or added mass", without_coefficients, 1e-9),
+    ("bodies of free points", without_point_bodies, 1e-9),
+    ("motion", without_motion, 1e-9),
+];
+
 #[test]
 #[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
 fn a_thing_of_size_zero_is_a_thing_that_is_absent() {
-    claim(&[
-        ("density", without_density, 1e-9),
-        ("current", without_current, 1e-9),
-        ("height of waves", without_wave_height, 1e-9),
-        ("bending stiffness", without_bending_stiffness, 1e-9),
-        ("friction", without_friction, 1e-9),
-        ("slope", without_slope, 1e-9),
-        ("drag or added mass", without_coefficients, 1e-9),
-        ("bodies of free points", without_point_bodies, 1e-9),
-        ("motion", without_motion, 1e-9),
-    ]);
+    claim(SHORT, &LIMITS, &[]);
+}
+
+#[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
+fn a_thing_of_size_zero_is_absent_through_some_seconds() {
+    let through_seconds = LIMITS.map(|(name, relation, _)| (name, relation, 1e-6));
+    claim(LONG, &through_seconds, &[("friction", 176), ("slope", 176)]);
 }
 
 /// The scene with every path a sum of sines, level and free of what has axes of its own.
@@ -698,6 +739,18 @@ fn reordered_joined(base: &Base) -> Option<(Scene, Gap)> {
     is_joined(base).then(|| reordered(base)).flatten()
 }
 
+fn has_waves(base: &Base) -> bool {
+    base.water().is_some_and(|water| water.waves.is_some())
+}
+
+fn beside_a_far_line_in_waves(base: &Base) -> Option<(Scene, Gap)> {
+    has_waves(base).then(|| beside_a_far_line(base)).flatten()
+}
+
+fn beside_a_far_line_in_still_water(base: &Base) -> Option<(Scene, Gap)> {
+    (!has_waves(base)).then(|| beside_a_far_line(base)).flatten()
+}
+
 fn beside_a_far_line(base: &Base) -> Option<(Scene, Gap)> {
     let other = base.changed(|scene| {
         let bed = scene.seabed.as_ref();
@@ -729,16 +782,32 @@ fn beside_a_far_line(base: &Base) -> Option<(Scene, Gap)> {
     same(base, &base.scene, &other)
 }
 
+/// Images of a scene, each with its bound.
+const IMAGES: [(&str, Relation, f64); 8] = [
+    ("turned about z", turned, 1e-6),
+    ("moved", moved, 1e-6),
+    ("lines reversed", reversed, 1e-6),
+    ("sections split", split, 1e-6),
+    ("reordered, joined lines", reordered_joined, 1e-6),
+    ("reordered, single lines", reordered_single, 0.0),
+    ("beside a far line", beside_a_far_line_in_still_water, 0.0),
+    (FAR_IN_WAVES, beside_a_far_line_in_waves, 0.0),
+];
+const FAR_IN_WAVES: &str = "beside a far line, waves";
+
 #[test]
 #[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
 fn a_scene_turned_moved_reversed_split_or_reordered_is_the_same_scene() {
-    claim(&[
-        ("turned about z", turned, 1e-6),
-        ("moved", moved, 1e-6),
-        ("lines reversed", reversed, 1e-6),
-        ("sections split", split, 1e-6),
-        ("reordered, joined lines", reordered_joined, 1e-6),
-        ("reordered, single lines", reordered_single, 0.0),
-        ("beside a far line", beside_a_far_line, 0.0),
-    ]);
+    claim(SHORT, &IMAGES, &[]);
+}
+
+/// A long communication step in waves is cut where the wave span of any line ends, so that a far line changes the steps of all.
+#[test]
+#[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
+fn a_scene_and_its_images_are_the_same_through_some_seconds() {
+    let through_seconds = IMAGES.map(|(name, relation, bound)| match name {
+        FAR_IN_WAVES => (name, relation, 1e-6),
+        _ => (name, relation, bound),
+    });
+    claim(LONG, &through_seconds, &[("lines reversed", 16)]);
 }

@@ -4,9 +4,9 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::{BeamStep, BeamWork, Body, Stuck, beam_state};
 use crate::dynamics::energy_balance::Flow;
+use crate::elements::beam::{BeamEnd, end_hold};
 use crate::model::{Beam, Kinematics, Line, Model, State};
 use crate::physics::section::{Section, join};
-use crate::statics::beam::{BeamEnd, end_hold};
 
 /// Linear solves, and the energy that crossed the border.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]

@@ -1,8 +1,9 @@
 use super::*;
 use crate::math::rotation::turned_to;
 use crate::model::BeamElement;
-use crate::physics::section::{SectionLaw, corrected, join, straight, strain};
+use crate::physics::section::{SectionLaw, Sextuple, corrected, join, straight, strain};
 use approx::assert_relative_eq;
+use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::{FRAC_PI_4, TAU};
 
 /// Stiffness so high beside bending that the elastica's closed form holds.
@@ -10,10 +11,22 @@ const STIFF: f64 = 1e8;
 
 /// A weightless beam on given sections, free of stress there.
 struct Bench {
-    beam: Beam,
-    nodes: Nodes,
+    elements: Vec<BeamElement>,
     sections: Vec<Section>,
     rest: Vec<Sextuple>,
+}
+
+impl Bench {
+    fn case(&self, ends: [BeamEnd; 2]) -> BeamCase<'static> {
+        BeamCase {
+            elements: self.elements.clone(),
+            rest: self.rest.clone(),
+            weight: vec![0.0; self.sections.len()],
+            seabed: Vec::new(),
+            ends,
+            bodies: [None; 2],
+        }
+    }
 }
 
 fn law(axial: f64, bending: f64) -> SectionLaw {
@@ -36,7 +49,6 @@ fn bench(sections: Vec<Section>, length: f64, law: SectionLaw, rests: bool) -> B
         law,
         damping: none(),
     };
-    let zeros = || vec![0.0; n + 1];
     Bench {
         rest: (0..n)
             .map(|i| {
@@ -51,24 +63,7 @@ fn bench(sections: Vec<Section>, length: f64, law: SectionLaw, rests: bool) -> B
             })
             .collect(),
         sections,
-        beam: Beam {
-            elements: vec![element; n],
-            rotary_inertia: vec![Vector3::zeros(); n + 1],
-            clamped: [Some(Vector3::x()), None],
-            rests_as_it_starts: rests,
-        },
-        nodes: Nodes {
-            arc: (0..=n).map(|i| i as f64 * element.length).collect(),
-            length: zeros(),
-            mass: zeros(),
-            mass_normal: zeros(),
-            mass_tangent: zeros(),
-            weight: zeros(),
-            drag: None,
-            pressed: None,
-            contact: None,
-            mass_damping: None,
-        },
+        elements: vec![element; n],
     }
 }
 
@@ -88,17 +83,9 @@ fn loaded(bench: &Bench, force: Vector3<f64>, moment: Vector3<f64>) -> Vec<Secti
         load: join(force, moment),
         ..BeamEnd::free()
     };
-    let case = BeamCase {
-        beam: &bench.beam,
-        nodes: &bench.nodes,
-        rest: &bench.rest,
-        ends: [BeamEnd::clamped(), tip],
-        bodies: [None; 2],
-    };
+    let case = bench.case([BeamEnd::clamped(), tip]);
     let mut sections = bench.sections.clone();
-    BeamStatics::new(sections.len())
-        .solve(&case, &mut sections)
-        .unwrap();
+    BeamStatics::default().solve(&case, &mut sections).unwrap();
     sections
 }
 
@@ -156,7 +143,7 @@ fn a_uniform_moment_makes_the_same_curvature_in_every_element_and_tends_to_it_ov
         let curvature: Vec<f64> = sections
             .windows(2)
             .zip(&bench.rest)
-            .map(|(pair, rest)| bench.beam.elements[0].strain(&pair[0], &pair[1], rest))
+            .map(|(pair, rest)| bench.elements[0].strain(&pair[0], &pair[1], rest))
             .map(|strain| split(&strain).1.norm())
             .collect();
         for other in &curvature {
@@ -215,14 +202,8 @@ fn a_beam_bent_far_from_rest_springs_back() {
             }
         })
         .collect();
-    let case = BeamCase {
-        beam: &bench.beam,
-        nodes: &bench.nodes,
-        rest: &bench.rest,
-        ends: [BeamEnd::clamped(), BeamEnd::free()],
-        bodies: [None; 2],
-    };
-    BeamStatics::new(n + 1).solve(&case, &mut sections).unwrap();
+    let case = bench.case([BeamEnd::clamped(), BeamEnd::free()]);
+    BeamStatics::default().solve(&case, &mut sections).unwrap();
     assert_relative_eq!(sections[n].position, 10.0 * Vector3::x(), epsilon = 1e-7);
 }
 
@@ -233,15 +214,9 @@ fn a_beam_that_nothing_holds_is_refused_and_left_where_it_was() {
         load: join(Vector3::y(), Vector3::zeros()),
         ..BeamEnd::free()
     };
-    let case = BeamCase {
-        beam: &bench.beam,
-        nodes: &bench.nodes,
-        rest: &bench.rest,
-        ends: [BeamEnd::free(), tip],
-        bodies: [None; 2],
-    };
+    let case = bench.case([BeamEnd::free(), tip]);
     let mut sections = bench.sections.clone();
-    assert!(BeamStatics::new(7).solve(&case, &mut sections).is_err());
+    assert!(BeamStatics::default().solve(&case, &mut sections).is_err());
     assert_eq!(sections, bench.sections);
 }
 
@@ -255,14 +230,8 @@ fn an_equilibrium_that_folds_its_elements_is_refused() {
     sections[1].position = Vector3::new(0.4, 0.2, 0.0);
     sections[2].position = Vector3::new(0.2, 0.6, 0.0);
     let start = sections.clone();
-    let case = BeamCase {
-        beam: &bench.beam,
-        nodes: &bench.nodes,
-        rest: &bench.rest,
-        ends: [BeamEnd::clamped(), BeamEnd::clamped()],
-        bodies: [None; 2],
-    };
-    let refused = BeamStatics::new(3).solve(&case, &mut sections);
-    assert!(matches!(refused, Err(Restless::Folded { .. })), "{refused:?}");
+    let case = bench.case([BeamEnd::clamped(), BeamEnd::clamped()]);
+    let refused = BeamStatics::default().solve(&case, &mut sections);
+    assert!(matches!(refused, Err(Failure::Folded { .. })), "{refused:?}");
     assert_eq!(sections, start);
 }

@@ -1,4 +1,4 @@
-//! How the end forces of a solved catenary change as its ends move, in the vertical plane through them.
+//! Slopes of the end forces of a solved catenary with the displacements of its ends, in the vertical plane through them.
 //!
 //! A line in free flight under end forces (H, V) spans (X, Z). Every element ds turns and stretches under a change of them, so that
 //! with t the direction of the tension T and p the unit vector across it
@@ -12,7 +12,7 @@
 //! ∫ H²/T³ ds = (1/w) [V/T],   ∫ HV/T³ ds = −(H/w) [1/T],   ∫ V²/T³ ds = (1/w) [asinh(V/H) − V/T].
 //!
 //! Source: derived here. Valid for any weights, H = 0 included: there a folded line has no stiffness across and w/2 along.
-//! A line that touches the bed is solved again with its ends moved a little instead.
+//! A line that touches the seabed is solved again with its ends moved a little instead.
 
 use nalgebra::{Matrix2, Vector2};
 

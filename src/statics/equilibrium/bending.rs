@@ -102,7 +102,7 @@ impl Problem<'_> {
         self.remember_tensions(work);
     }
 
-    /// Whether an equilibrium is stable and within the limits of its strain measures, or another one was found from it after a small wave.
+    /// Returns true where an equilibrium is stable and within the limits of its strain measures, or another one was found from it after a small wave.
     fn settle(&self, state: &mut State, work: &mut Workspace) -> bool {
         let full = self.case(f64::INFINITY);
         let found =
@@ -110,7 +110,7 @@ impl Problem<'_> {
         found && self.strain_over_limit(state).0 <= 1.0
     }
 
-    /// Lets the lines move as if in honey, from a small wave on their shape: Newton's method with predicted tensions, whose anchoring
+    /// Relaxes the lines from a small wave on their shape: Newton's method with predicted tensions, whose anchoring
     /// springs follow the nodes and fade only as fast as the exact tangent stays positive definite, so that what is unstable grows.
     fn relax(&self, state: &mut State, work: &mut Workspace) -> bool {
         self.wave(state);
@@ -178,7 +178,7 @@ impl Problem<'_> {
         }
     }
 
-    /// Lays every clamped line on a smooth curve along its clamps; whether there was one. A free point alone at the other end goes
+    /// Lays every clamped line on a smooth curve along its clamps; returns true where there was one. A free point alone at the other end goes
     /// along.
     fn follow_clamps(&self, state: &mut State) -> bool {
         let mut any = false;

@@ -1,7 +1,7 @@
 //! Equilibrium in a current.
 //!
 //! The drag of the current on a node depends on where the node is and on how the line lies there, so that it is part of what is sought.
-//! The drag F of all nodes is held while the network finds its equilibrium as under any dead load; the drag G(F) of the
+//! The drag F of all nodes is kept while the network finds its equilibrium as under any dead load; the drag G(F) of the
 //! shape found so takes its place until both agree, F = G(F), accelerated by [`Anderson`], without which light lines in a
 //! strong current would wander about. Where that does not settle, the current is raised in parts.
 //!
@@ -108,7 +108,7 @@ impl Problem<'_> {
         }
     }
 
-    /// Hands the loads to the assembly; the sum of their sizes [N].
+    /// Sets the loads of the assembly; returns the sum of their sizes [N].
     fn put_loads(&self, loads: &[f64], work: &mut Workspace) -> f64 {
         let mut nodes = loads.chunks(3).map(Vector3::from_column_slice);
         let mut sum = 0.0;

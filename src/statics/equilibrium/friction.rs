@@ -1,6 +1,6 @@
-//! Equilibrium with the friction of the bed.
+//! Equilibrium with the friction of the seabed.
 //!
-//! How far friction holds a line depends on how it came to lie. As the closed-form catenary does, this takes every line as laid from end A without tension and hauled at
+//! The friction of a line at rest depends on how it was laid. As the closed-form catenary does, this takes every line as laid from end A without tension and hauled at
 //! end B, or from B where only that lies on the bed: the network first finds its equilibrium without friction; there every node gets an anchor, where it would lie if the line
 //! lay on the same path without stretch,
 //!
@@ -32,19 +32,19 @@ const GROWTH: f64 = 3.0;
 const ROUNDS_MAX: usize = 20;
 
 impl Problem<'_> {
-    /// Whether the bed may hold any of it by friction.
-    pub(super) fn rubs(&self) -> bool {
+    /// Returns true where the seabed may resist by friction.
+    pub(super) fn has_friction(&self) -> bool {
         let mut lines = self.network.lines.iter();
         lines.any(|&line| self.model.lines[line].friction().is_some())
     }
 
-    /// Takes friction away before the equilibrium without it is sought.
-    pub(super) fn let_go(&self, state: &mut State) {
-        friction::weigh_anchors(self.model, self.network, state);
+    /// Removes friction before the equilibrium without it is sought.
+    pub(super) fn remove_friction(&self, state: &mut State) {
+        friction::remove_anchors(self.model, self.network, state);
     }
 
     /// From the equilibrium without friction to that with it.
-    pub(super) fn rub(&self, state: &mut State, work: &mut Workspace) -> Result<(), StaticsError> {
+    pub(super) fn add_friction(&self, state: &mut State, work: &mut Workspace) -> Result<(), StaticsError> {
         let start = work.counters.solves;
         self.lay(state);
         let case = |stick| StaticCase {
@@ -59,7 +59,7 @@ impl Problem<'_> {
     }
 
     /// Minimises the potential energy that the network has under kept normal forces, which are then those of what was found, until Newton's
-    /// method finds the equilibrium from there; whether it did.
+    /// method finds the equilibrium from there; returns true where it did.
     fn settle_pressure(&self, state: &mut State, work: &mut Workspace) -> bool {
         let full = self.case(f64::INFINITY);
         let mut found = std::mem::take(&mut work.trial);

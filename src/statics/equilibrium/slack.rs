@@ -37,13 +37,13 @@ const TENSION_MIN: f64 = 0.01;
 const BREADTH: f64 = 0.1;
 
 impl Problem<'_> {
-    /// Whether any line may pierce the water's surface.
+    /// Returns true where any line may pierce the water's surface.
     pub(super) fn meets_surface(&self) -> bool {
         let mut lines = self.network.lines.iter();
         lines.any(|&line| self.model.lines[line].surface.is_some())
     }
 
-    /// Follows the equilibrium from taut straight lines between their points to the slack ones they are; whether it came there.
+    /// Follows the equilibrium from taut straight lines between their points to the slack ones they are; returns true where it converged.
     pub(super) fn slacken(&self, state: &mut State, work: &mut Workspace) -> bool {
         self.pull_straight(state, work);
         let mut found = std::mem::take(&mut work.trial);
@@ -75,7 +75,7 @@ impl Problem<'_> {
         balanced
     }
 
-    /// From a soft network with a broad water surface, whose energy is minimised, to lines that become thinner and thinner; whether it came to what they are.
+    /// From a soft network with a broad water surface, whose energy is minimised, to lines that become thinner and thinner; returns true where it converged.
     /// Where the end of a floating line is free and weighs next to nothing, no m leaves its last segment a direction, and this finds the equilibrium.
     pub(super) fn thin_gradually(&self, state: &mut State, work: &mut Workspace) -> bool {
         let lines = self.network.lines.iter();
@@ -117,7 +117,7 @@ impl Problem<'_> {
         }
     }
 
-    /// Newton's method on positions and tensions of taut segments; whether it converged.
+    /// Newton's method on positions and tensions of taut segments; returns true where it converged.
     fn newton_taut(&self, state: &mut State, work: &mut Workspace, mut case: StaticCase) -> bool {
         case.predicted = true;
         case.anchoring = self.rounding_stiffness(&case);

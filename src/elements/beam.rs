@@ -1,0 +1,282 @@
+//! A geometrically exact beam at rest, from the laws of its sections to forces and moments on its nodes.
+//!
+//! Unknowns are position and spin of every node. With the gradient B of the strains (see [`crate::physics::section`]) the nodes' forces and
+//! moments out of balance are
+//!
+//!   R = Σ L Bᵀ S + w ẑ − contact − loads,   J = Σ (L Bᵀ C B + geometric part) + contact.
+//!
+//! The elements of a step in time are the same with the gradient at the mean of both of its ends ([`Span`]).
+//!
+//! A beam that neither end keeps from turning about itself does so without resistance: its first node then resists a turn about d₃, which
+//! changes the way to the equilibrium and not the equilibrium.
+
+use nalgebra::{Matrix3, Vector3};
+
+use crate::math::pivoted_chain::PivotedChain;
+use crate::model::{BeamElement, FreePoint, Point};
+use crate::physics::section::{
+    Mixture, Response, Section, Sextuple, geometric_stiffness, join, response, split, strain, strain_gradient,
+};
+
+/// Constraints and loads of an end of a beam.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BeamEnd {
+    /// Prescribed unknowns: x, y, z and the turns about them.
+    pub held: [bool; 6],
+    /// Force [N] and moment [N m] on the end, along the global axes.
+    pub load: Sextuple,
+}
+
+impl BeamEnd {
+    /// End without constraints and loads.
+    pub fn free() -> BeamEnd {
+        BeamEnd {
+            held: [false; 6],
+            load: Sextuple::zeros(),
+        }
+    }
+
+    /// End fixed in place, free to turn.
+    pub fn pinned() -> BeamEnd {
+        BeamEnd {
+            held: [true, true, true, false, false, false],
+            ..BeamEnd::free()
+        }
+    }
+
+    /// End fixed in place and attitude.
+    pub fn clamped() -> BeamEnd {
+        BeamEnd {
+            held: [true; 6],
+            ..BeamEnd::free()
+        }
+    }
+}
+
+/// Constraints of an end that lies at a point: the axes that the point is not free on, and the clamp.
+pub(crate) fn end_hold(point: &Point, clamped: bool) -> BeamEnd {
+    let axes = point.free().map_or([false; 3], |free| free.axes);
+    let mut held = [clamped; 6];
+    for (held, free) in held.iter_mut().zip(axes) {
+        *held = !free;
+    }
+    BeamEnd {
+        held,
+        ..BeamEnd::free()
+    }
+}
+
+/// A beam with its constraints and loads.
+#[derive(Debug, Clone)]
+pub struct BeamCase<'a> {
+    /// Elements.
+    pub elements: Vec<BeamElement>,
+    /// Strains of the elements without stress.
+    pub rest: Vec<Sextuple>,
+    /// Weight of the nodes [N].
+    pub weight: Vec<f64>,
+    /// Seabed under the nodes; empty without contact.
+    pub seabed: Vec<NodeSpring>,
+    /// Constraints and loads of ends A and B.
+    pub ends: [BeamEnd; 2],
+    /// Free points at ends A and B: their weight, buoyancy and contact act on the beam.
+    pub bodies: [Option<&'a FreePoint>; 2],
+}
+
+/// Spring of the seabed under a node.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NodeSpring {
+    /// Height below which it pushes [m].
+    pub level: f64,
+    /// Stiffness [N/m].
+    pub stiffness: f64,
+}
+
+/// Parts of the loads that act [-].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct LoadShare {
+    /// Of weight, buoyancy and forces.
+    pub force: f64,
+    /// Of the moments on the ends.
+    pub moment: f64,
+}
+
+impl LoadShare {
+    /// The whole load.
+    pub(crate) const WHOLE: LoadShare = LoadShare {
+        force: 1.0,
+        moment: 1.0,
+    };
+
+    /// Load on an end.
+    fn of_end(self, end: &BeamEnd) -> Sextuple {
+        let (force, moment) = split(&end.load);
+        join(self.force * force, self.moment * moment)
+    }
+}
+
+impl NodeSpring {
+    /// Depth of a node below the spring's level [m].
+    fn penetration(&self, section: &Section) -> f64 {
+        (self.level - section.position.z).max(0.0)
+    }
+}
+
+/// Potential energy of a beam.
+pub(crate) struct Energy {
+    /// Sum of its parts [J].
+    pub value: f64,
+    /// Sum of the magnitudes of its parts [J].
+    pub size: f64,
+}
+
+impl BeamCase<'_> {
+    /// Sets the system of a beam at `sections` under a part of its loads: tangent J, right-hand side −R. `unit` holds one identity per node.
+    pub(crate) fn assemble(
+        &self,
+        chain: &mut PivotedChain,
+        sections: &[Section],
+        share: LoadShare,
+        unit: &[Matrix3<f64>],
+    ) {
+        chain.clear();
+        let span = Span {
+            mean: sections,
+            now: sections,
+            strain_before: None,
+            spin: unit,
+        };
+        let still = Mixture {
+            share: 1.0,
+            rate: 0.0,
+        };
+        add_elements(chain, &self.elements, &self.rest, &span, still);
+        for (i, weight) in self.weight.iter().enumerate() {
+            chain.right[i].z -= share.force * weight;
+        }
+        for (i, spring) in self.seabed.iter().enumerate() {
+            let penetration = spring.penetration(&sections[i]);
+            if penetration > 0.0 {
+                chain.right[i].z += spring.stiffness * penetration;
+                chain.diagonal[i][(2, 2)] += spring.stiffness;
+            }
+        }
+        let ends = self.ends.iter().zip(&self.bodies);
+        for ((end, body), node) in ends.zip([0, sections.len() - 1]) {
+            chain.right[node] += share.of_end(end);
+            let Some(body) = body else {
+                continue;
+            };
+            let height = sections[node].position.z;
+            let at = body.at(height);
+            chain.right[node].z -= share.force * at.weight;
+            chain.diagonal[node][(2, 2)] += share.force * at.weight_slope;
+            if let Some((stiffness, push)) = body.bed_at_rest(height) {
+                chain.right[node].z += push;
+                chain.diagonal[node][(2, 2)] += stiffness;
+            }
+        }
+    }
+
+    /// Sets the changes of the prescribed unknowns to zero, and adds the resistance of the first node to the turn of a beam about itself.
+    pub(crate) fn constrain(&self, chain: &mut PivotedChain, sections: &[Section]) {
+        let turns_freely = self.ends.iter().all(|end| end.held[3..].iter().all(|held| !held));
+        if turns_freely {
+            let element = &self.elements[0];
+            let axis: Vector3<f64> = sections[0].frame.column(2).into_owned();
+            let brake = element.law.torsion / element.length * axis * axis.transpose();
+            let mut turn = chain.diagonal[0].fixed_view_mut::<3, 3>(3, 3);
+            turn += brake;
+        }
+        for (node, end) in [0, sections.len() - 1].into_iter().zip(&self.ends) {
+            (0..6)
+                .filter(|&unknown| end.held[unknown])
+                .for_each(|unknown| chain.hold(node, unknown, 0.0));
+        }
+    }
+
+    /// Potential energy of strain, weight, contact and the forces at the ends; moments on ends have no potential and are left out.
+    pub(crate) fn energy(&self, sections: &[Section]) -> Energy {
+        let (mut value, mut size) = (0.0, 0.0);
+        let mut add = |part: f64| {
+            value += part;
+            size += part.abs();
+        };
+        for (i, element) in self.elements.iter().enumerate() {
+            let strain = element.strain(&sections[i], &sections[i + 1], &self.rest[i]);
+            add(element.energy(&strain).total());
+        }
+        for (weight, section) in self.weight.iter().zip(sections) {
+            add(weight * section.position.z);
+        }
+        for (spring, section) in self.seabed.iter().zip(sections) {
+            add(0.5 * spring.stiffness * spring.penetration(section).powi(2));
+        }
+        for (end, node) in [0, sections.len() - 1].into_iter().enumerate() {
+            let position = &sections[node].position;
+            add(-split(&self.ends[end].load).0.dot(position));
+            if let Some(body) = self.bodies[end] {
+                add(body.potential(position.z));
+                let bed = body.bed_at_rest(position.z);
+                add(bed.map_or(0.0, |(stiffness, push)| 0.5 * push * push / stiffness));
+            }
+        }
+        Energy { value, size }
+    }
+}
+
+/// Cosine of the turn from node to node below which an element is refused [-]: 60°; its moment is greatest at 56°.
+const COSINE_MIN: f64 = 0.5;
+
+/// Returns the lower node of the first element that turns by more than its strains can resolve.
+pub(crate) fn folded(sections: &[Section]) -> Option<usize> {
+    let cosine = |pair: &[Section]| 0.5 * (pair[0].frame.dot(&pair[1].frame) - 1.0);
+    sections.windows(2).position(|pair| cosine(pair) < COSINE_MIN)
+}
+
+/// Sections of a beam at the mean of a step and after it; both are the same in statics.
+pub(crate) struct Span<'a> {
+    pub mean: &'a [Section],
+    pub now: &'a [Section],
+    /// Plain strains before the step; `None` in statics.
+    pub strain_before: Option<&'a [Sextuple]>,
+    /// T of every node: spin over change of its rotational unknown.
+    pub spin: &'a [Matrix3<f64>],
+}
+
+/// Subtracts the forces of all elements from the right-hand side and adds their slopes to the matrix.
+pub(crate) fn add_elements(
+    chain: &mut PivotedChain,
+    elements: &[BeamElement],
+    rest: &[Sextuple],
+    span: &Span,
+    mixture: Mixture,
+) {
+    for (i, element) in elements.iter().enumerate() {
+        let (now, mean) = (
+            [&span.now[i], &span.now[i + 1]],
+            [&span.mean[i], &span.mean[i + 1]],
+        );
+        let after = strain(now[0], now[1], element.length);
+        let before = span.strain_before.map_or(after, |strains| strains[i]);
+        let laws = [&element.law, &element.damping];
+        let Response { stress, slope } = response(laws, element.length, [&before, &after], &rest[i], mixture);
+        let weights = strain_gradient(mean[0], mean[1], element.length);
+        let slopes =
+            strain_gradient(now[0], now[1], element.length).map(|gradient| element.length * slope * gradient);
+        let geometric = geometric_stiffness(mean, now, &stress, mixture.share);
+        let block = |row: usize, column: usize| {
+            let mut block = weights[row].tr_mul(&slopes[column]) + geometric[row][column];
+            let turned = block.fixed_view::<6, 3>(0, 3) * span.spin[i + column];
+            block.fixed_view_mut::<6, 3>(0, 3).copy_from(&turned);
+            block
+        };
+        chain.diagonal[i] += block(0, 0);
+        chain.diagonal[i + 1] += block(1, 1);
+        chain.upper[i] = block(0, 1);
+        chain.lower[i] = block(1, 0);
+        for (node, weight) in [i, i + 1].into_iter().zip(&weights) {
+            chain.right[node] -= element.length * weight.tr_mul(&stress);
+        }
+    }
+}
