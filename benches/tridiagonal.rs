@@ -4,10 +4,10 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use moorline::math::fold::Fold;
-use moorline::math::folded_tridiagonal::{Eliminated, Equations};
 use moorline::math::lanes::Lanes;
 use moorline::math::random::Random;
+use moorline::math::striped_tridiagonal::{Eliminated, Equations};
+use moorline::math::striping::Striping;
 use pulp::{Arch, NullaryFnOnce};
 
 /// Repetitions of which the fastest counts, and solves of each.
@@ -23,8 +23,8 @@ struct Folded {
 
 impl Folded {
     fn new(system: &System) -> Folded {
-        let fold = Fold::new(system.right.len());
-        let column = |values: &[f64], padding| fold.column(values, padding);
+        let striping = Striping::new(system.right.len());
+        let column = |values: &[f64], padding| striping.column(values, padding);
         let [lower, upper, right] =
             [&system.lower, &system.upper, &system.right].map(|values| column(values, 0.0));
         let diagonal = column(&system.diagonal, 1.0);
@@ -35,9 +35,9 @@ impl Folded {
             right: right.load(row),
         };
         Folded {
-            equations: (1..=fold.rows()).map(equation).collect(),
-            eliminated: vec![Eliminated::start(); fold.rows()],
-            solution: vec![Lanes::splat(0.0); fold.rows()],
+            equations: (1..=striping.rows()).map(equation).collect(),
+            eliminated: vec![Eliminated::start(); striping.rows()],
+            solution: vec![Lanes::splat(0.0); striping.rows()],
         }
     }
 }

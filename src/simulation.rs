@@ -21,7 +21,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::dynamics::advance::{Counters, Workspace};
 use crate::dynamics::energy_balance::{self, EnergyBalance};
-use crate::dynamics::motion::Foresight;
+use crate::dynamics::motion::Extrapolation;
 use crate::dynamics::{Choice, StepError};
 use crate::model::{Line, LineState, Model, State};
 use crate::scene::{InitialShape, Scene, SceneError};
@@ -79,7 +79,7 @@ pub struct Simulation {
     work: Workspace,
     /// The paths of the step that is made.
     paths: Box<Paths>,
-    foresight: Foresight,
+    extrapolation: Extrapolation,
     held: Held,
     reactions: Reactions,
     scale: Scale,
@@ -100,7 +100,7 @@ impl Simulation {
         Ok(Simulation {
             catenaries: lines.map(|line| reference_catenary(&model, line)).collect(),
             paths: snapshot.paths.clone(),
-            foresight: Foresight::none(),
+            extrapolation: Extrapolation::none(),
             held: Held::new(&model, false),
             reactions: Reactions::new(&model),
             scale: Scale::new(&model),
@@ -214,7 +214,7 @@ impl Simulation {
         }
         self.check_inputs(step)?;
         self.extend_paths(step)?;
-        let before = self.let_go();
+        let before = self.release_lines();
         let record = self.record_inputs();
         let model = &*self.model;
         let follows_scene = self.snapshot.follows_scene;
@@ -239,7 +239,7 @@ impl Simulation {
         }
         std::mem::swap(&mut self.snapshot.paths, &mut self.paths);
         self.reactions.clear();
-        if !self.paths.reels.is_empty() {
+        if !self.paths.winch_paths.is_empty() {
             winches::follow(&mut self.model, &self.snapshot.state);
         }
         Ok(())
@@ -255,7 +255,7 @@ impl Simulation {
     }
 
     /// Parts the lines from their points that are to let go; returns the state before.
-    fn let_go(&mut self) -> Option<(State, Option<EnergyBalance>)> {
+    fn release_lines(&mut self) -> Option<(State, Option<EnergyBalance>)> {
         if !self.snapshot.inputs.releases.contains(&true) {
             return None;
         }
@@ -263,9 +263,9 @@ impl Simulation {
         let lines = model.lines.iter().zip(&self.snapshot.inputs.releases);
         let states = self.snapshot.state.lines.iter();
         let released = |((line, release), shape): ((&Line, &bool), &LineState)| {
-            let partings = line.parting.filter(|_| *release);
-            let lets_go = |side: usize| partings.is_some_and(|p| p[side].on_release);
-            (0..2).any(|side| lets_go(side) && !shape.parted[side])
+            let releases = line.release.filter(|_| *release);
+            let lets_go = |side: usize| releases.is_some_and(|p| p[side].on_release);
+            (0..2).any(|side| lets_go(side) && !shape.released[side])
         };
         if !lines.clone().zip(states).any(released) {
             return None;
@@ -273,9 +273,9 @@ impl Simulation {
         self.work.forget();
         let before = (self.snapshot.state.clone(), self.snapshot.balance);
         for ((line, release), shape) in lines.zip(&mut self.snapshot.state.lines) {
-            if let Some(partings) = line.parting.filter(|_| *release) {
-                for (parted, parting) in shape.parted.iter_mut().zip(partings) {
-                    *parted |= parting.on_release;
+            if let Some(releases) = line.release.filter(|_| *release) {
+                for (released, release) in shape.released.iter_mut().zip(releases) {
+                    *released |= release.on_release;
                 }
             }
         }

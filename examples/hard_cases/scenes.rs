@@ -212,7 +212,7 @@ pub fn released_in_swing() -> Scene {
         line_type.axial_damping = None;
     }
     scene.lines[0].release = Some(LineEnd::B);
-    scene.lines[0].parting = Some(Break {
+    scene.lines[0].failure = Some(Break {
         at: LineEnd::A,
         tension: None,
         time: Some(RELEASE),
@@ -335,10 +335,10 @@ pub fn nearly_massless(mass: f64, wet: bool) -> Scene {
 /// Length of the folded chain [m].
 pub const CHAIN: f64 = 10.0;
 
-/// A chain of 10 m folded so that both ends are at one height, `fold` elements apart; the free one is released. Node 0 is the free end.
-pub fn folded_chain(elements: usize, fold: usize) -> Scene {
+/// A chain of 10 m folded so that both ends are at one height, `striping` elements apart; the free one is released. Node 0 is the free end.
+pub fn folded_chain(elements: usize, striping: usize) -> Scene {
     let h = CHAIN / elements as f64;
-    let gap = fold as f64 * h;
+    let gap = striping as f64 * h;
     let pieces = piece("chain", CHAIN, elements);
     let mut scene = single(
         &format!("gravity = {G}\nline_types.chain = {{ mass = 1.0, axial_stiffness = 1.0e6 }}"),
@@ -351,10 +351,10 @@ pub fn folded_chain(elements: usize, fold: usize) -> Scene {
         ),
     );
     // two arms, and a bottom of as many elements as the gap is wide
-    let arm = (elements - fold) / 2;
+    let arm = (elements - striping) / 2;
     let node = |i: usize| {
         let down = i.min(elements - i).min(arm);
-        let x = (arm + fold).saturating_sub(i.max(arm)) as f64;
+        let x = (arm + striping).saturating_sub(i.max(arm)) as f64;
         [x * h, 0.0, -(down as f64) * h]
     };
     scene.lines[0].initial = InitialShape::Nodes((0..=elements).map(node).collect());

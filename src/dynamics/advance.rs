@@ -49,7 +49,7 @@ pub struct Workspace {
     /// The state before a step that is made in parts.
     before: State,
     /// Paths of the winches, by line; empty where there are none.
-    reels: Vec<AxisPath>,
+    winch_paths: Vec<AxisPath>,
     /// Whether the leapfrogs still hold the state that they handed back last.
     holds: bool,
     threads: ThreadPool,
@@ -92,7 +92,7 @@ impl Workspace {
             networks,
             sea: SeaWork::new(),
             before: State::default(),
-            reels: Vec::new(),
+            winch_paths: Vec::new(),
             holds: false,
         }
     }
@@ -103,9 +103,9 @@ impl Workspace {
     }
 
     /// Sets how the winches pay out in the next step, by line.
-    pub fn set_reels(&mut self, paths: impl Iterator<Item = AxisPath>) {
-        self.reels.clear();
-        self.reels.extend(paths);
+    pub fn set_winch_paths(&mut self, paths: impl Iterator<Item = AxisPath>) {
+        self.winch_paths.clear();
+        self.winch_paths.extend(paths);
     }
 
     /// Returns the integrators chosen, by network.
@@ -235,7 +235,7 @@ impl Workspace {
             start: state.time,
             length: whole,
             held,
-            reels: &self.reels,
+            winch_paths: &self.winch_paths,
             holds: false,
             jumps: false,
         };
@@ -265,7 +265,7 @@ impl Workspace {
             start: state.time,
             length,
             held,
-            reels: &self.reels,
+            winch_paths: &self.winch_paths,
             holds: std::mem::take(&mut self.holds),
             jumps: model.solver.input_reconstruction == Reconstruction::Jump,
         };
@@ -357,15 +357,15 @@ fn place_held(model: &Model, state: &mut State, held: &impl Fn(usize, f64) -> Ki
     for (line, shape) in model.lines.iter().zip(&mut state.lines) {
         let last = shape.position.len() - 1;
         let ends = [0, last].into_iter().zip(line.ends);
-        for ((node, point), parted) in ends.zip(shape.parted) {
-            if !parted {
+        for ((node, point), released) in ends.zip(shape.released) {
+            if !released {
                 shape.velocity[node] = state.points[point].velocity;
             }
         }
-        if let (Some(winch), Some(reel)) = (&line.winch, shape.reel) {
+        if let (Some(winch), Some(winch_state)) = (&line.winch, shape.winch_state) {
             let chord = shape.position[last] - shape.position[last - 1];
-            let length = winch.end_length(last, reel.change);
-            shape.velocity[last] -= reel.rate / length * chord; // that of the material
+            let length = winch.end_length(last, winch_state.change);
+            shape.velocity[last] -= winch_state.rate / length * chord; // that of the material
         }
     }
 }

@@ -8,7 +8,7 @@
 //! is multiplied by −ρ and −b at infinite frequency, and the spectral radius is ρ as long as b ≤ ρ, that is from ρ = ½, which damps most, to
 //! ρ = 1 (¼, ½, ¼). Below ½ it rises again, and below ⅓ it is more than 1. Averaging makes waves late by (3σ−1)(ωΔt)²/24, and up to ωΔt = 2 they are stable
 //! without. So σ is max(⅓, 1 − 3.2/(ωΔt)²) with the line's greatest axial frequency ω, which is stable for all ρ from ½ to 1; it is 1 where springs may stiffen
-//! or creep, or an end has parted. The new strain is linear in the new velocity, ε^{n+1} = ε^n + κ + Δt q·G(v), κ = Δt²(|G(v⁻)|² − (q·G(v⁻))²)/(2|G(r)|), so that
+//! or viscoelastic, or an end has released. The new strain is linear in the new velocity, ε^{n+1} = ε^n + κ + Δt q·G(v), κ = Δt²(|G(v⁻)|² − (q·G(v⁻))²)/(2|G(r)|), so that
 //!
 //! S^{n+1} = EA(ε^n + κ + Δt q·G(v)),  C = ½BA[(1+θ) q·G(v) + (1−θ) q·G(v⁻)],  T̄ = b₁(S^{n+1} + C) + Σ h_i (S^i + C)⁺,
 //!
@@ -31,9 +31,9 @@
 //! A held end moves by the secant of its path, which so is its v_{n+½}. Only where it sets out, at rest or after a jump, v_{n−½} is
 //! V − ½Δt A of its path.
 //!
-//! A step ([`AxialWork::step`]) goes over the rows of the folded line ([`crate::math::fold`]) once for each thing it finds out: geometry,
+//! A step ([`AxialWork::step`]) goes over the rows of the folded line ([`crate::math::striping`]) once for each thing it finds out: geometry,
 //! segments, drag, inverse masses, contact (`prepare`), couplings; then, until the assumptions hold, the equations, T̄ by
-//! [`crate::math::folded_tridiagonal`], velocities and what they say about the assumptions (`solve`). Each sweep has little to do in a
+//! [`crate::math::striped_tridiagonal`], velocities and what they say about the assumptions (`solve`). Each sweep has little to do in a
 //! row, and keeps in memory what the next one goes on with: the processor, which waits for roots, quotients and sums, then works on several rows at
 //! once, and the compiler finds whole vectors, which it loses where much waits for much, or is carried from row to row.
 //!
@@ -59,7 +59,7 @@ use super::layout::{Layout, Water, interior};
 use super::limit::{axial_frequency_squared, transverse_step};
 use super::step::Step;
 use crate::math::lanes::Lanes;
-use crate::model::{End, Line, LineState, Model, Parting, WaveSpan};
+use crate::model::{End, Line, LineState, Model, Release, WaveSpan};
 use crate::physics::stretch::StretchLaw;
 use balance::LineBalance;
 use friction::SeabedRow;
@@ -129,8 +129,8 @@ pub struct AxialWork {
     rows: Rows,
     /// State of the nodes on a seabed with a slope, soundings or friction; empty without one.
     seabed: Vec<SeabedRow>,
-    /// Whether ends A and B have parted from their points.
-    parted: [bool; 2],
+    /// Whether ends A and B have released from their points.
+    released: [bool; 2],
     /// The energy balance, where the scene asks for it.
     balance: Option<LineBalance>,
     /// Greatest T̄ since then [N].
@@ -152,9 +152,9 @@ impl AxialWork {
         let water = Water::around(model, line);
         let layout = Layout::new(model, (line, water), FEW_ROWS, true)?;
         let count = layout.rows().count();
-        let column = |values: &[f64]| layout.fold.column(values, 1.0);
+        let column = |values: &[f64]| layout.striping.column(values, 1.0);
         let masses = [&line.nodes.mass_normal, &line.nodes.mass_tangent].map(|m| column(m));
-        let free = interior(layout.fold, layout.segment_count);
+        let free = interior(layout.striping, layout.segment_count);
         let node = |at: usize| NodeRow {
             mass_normal: masses[0].load(at),
             mass_tangent: masses[1].load(at),
@@ -172,7 +172,7 @@ impl AxialWork {
                 nodes: layout.rows().map(node).collect(),
                 current: layout.flows().then(|| vec![CurrentRow::new(); count]),
             },
-            parted: [false; 2],
+            released: [false; 2],
             seabed: vec![SeabedRow::new(); if layout.bottom().is_some() { count } else { 0 }],
             balance: layout.energy_balance.then(LineBalance::default),
             tension_peak: Lanes::splat(0.0),
@@ -193,9 +193,9 @@ impl AxialWork {
     /// Takes over the state of a line.
     pub fn load(&mut self, state: &LineState) {
         self.layout.load(state);
-        self.parted = state.parted;
+        self.released = state.released;
         for end in ENDS {
-            self.set_free(end, self.parted[end as usize]);
+            self.set_free(end, self.released[end as usize]);
         }
         self.resume();
         self.starts = state.half_step.is_unset();
@@ -205,21 +205,21 @@ impl AxialWork {
             for row in &mut self.rows.segments {
                 row.history = [Lanes::splat(0.0); 3]; // of padding
             }
-            for (at, tensions) in self.layout.fold.slots().zip(now.iter().zip(before)) {
+            for (at, tensions) in self.layout.striping.slots().zip(now.iter().zip(before)) {
                 let [own, own_before, _] = &mut self.rows.segments[at.row - 1].history;
                 (own[at.lane], own_before[at.lane]) = (*tensions.0, *tensions.1);
             }
             return;
         }
-        self.layout.renew_ghosts(self.parted);
+        self.layout.renew_halo(self.released);
         for at in self.layout.rows() {
             let strain = self.layout.strain(at);
-            let tension = match &self.layout.creep {
+            let tension = match &self.layout.viscoelastic {
                 None => {
                     let force = strain.map(|strain| self.layout.law.at(strain).force);
                     self.layout.axial_stiffness.load(at) * force
                 }
-                Some(creep) => creep.elastic(at, strain),
+                Some(viscoelastic) => viscoelastic.elastic(at, strain),
             };
             self.rows.segments[at - 1].history = [tension; 3];
         }
@@ -252,7 +252,7 @@ impl AxialWork {
 
     /// Hands the state back after steps of `steps` [s]. Whether all nodes have finite positions, and speeds that mooring lines reach.
     pub fn store(&mut self, state: &mut LineState, steps: [f64; 2]) -> bool {
-        state.parted = self.parted;
+        state.released = self.released;
         let unit = self.layout.vector_unit;
         let is_sound;
         (is_sound, self.tensions) = unit.dispatch(HandBack(self, state, steps));
@@ -297,7 +297,7 @@ impl AxialWork {
 
     /// Puts an end at a position [m] with the velocity [m/s] that the next step takes as lagged.
     pub fn put_end(&mut self, end: End, position: Vector3<f64>, velocity: Vector3<f64>) {
-        if self.parted[end as usize] {
+        if self.released[end as usize] {
             return;
         }
         self.layout.put_end(end, position, velocity);
@@ -309,14 +309,14 @@ impl AxialWork {
     }
 
     /// Parts the ends from their points that the tensions of t_n, `t` [s], are too much for, or the time has come for.
-    pub fn part_ends(&mut self, partings: &[Parting; 2], t: f64, step: Step) {
+    pub fn release_ends(&mut self, releases: &[Release; 2], t: f64, step: Step) {
         for end in ENDS {
             let (side, at) = (end as usize, self.layout.end_slot(end));
-            if self.parted[side] {
+            if self.released[side] {
                 continue;
             }
             let tension = self.layout.end_tension(end, step);
-            if !partings[side].parts(tension, t) {
+            if !releases[side].is_due(tension, t) {
                 continue;
             }
             let node = &self.rows.nodes[at.row - 1];
@@ -324,15 +324,15 @@ impl AxialWork {
             if let Some(balance) = &mut self.balance {
                 balance.supply(self.layout.joining_energy(end, masses, step));
             }
-            self.parted[side] = true;
+            self.released[side] = true;
             self.set_free(end, true);
         }
     }
 
     /// Ends that a point holds.
     fn held_ends(&self) -> impl Iterator<Item = End> + use<> {
-        let parted = self.parted;
-        ENDS.into_iter().filter(move |&end| !parted[end as usize])
+        let released = self.released;
+        ENDS.into_iter().filter(move |&end| !released[end as usize])
     }
 
     /// One step; `ends` are the positions [m] of both ends after it. Returns the passes it took.
@@ -415,7 +415,7 @@ impl AxialWork {
     /// Weights of as much averaging as the step needs.
     #[inline(always)]
     fn choose_weights(&mut self, step: Step) {
-        let share = match self.parted {
+        let share = match self.released {
             [false, false] => averaged_share(self.frequency_squared, step),
             _ => 1.0,
         };
@@ -425,13 +425,13 @@ impl AxialWork {
     #[inline(always)]
     fn choose_springs(&mut self, step: Step, sizes: &Sizes) {
         let line = &mut self.layout;
-        if let Some(creep) = &mut line.creep {
-            creep.prepare(step.drift);
-            line.renew_ghosts(self.parted);
+        if let Some(viscoelastic) = &mut line.viscoelastic {
+            viscoelastic.prepare(step.drift);
+            line.renew_halo(self.released);
             self.prepare_geometry();
-            return self.prepare_segments::<{ springs::CREEPING }>(sizes);
+            return self.prepare_segments::<{ springs::VISCOELASTIC }>(sizes);
         }
-        line.renew_neighbours(self.parted);
+        line.renew_neighbours(self.released);
         self.prepare_geometry();
         match self.layout.law {
             StretchLaw::Engineering => self.prepare_segments::<{ springs::LINEAR }>(sizes),
@@ -447,9 +447,9 @@ impl AxialWork {
             let at = self.layout.end_slot(end);
             self.layout.position.set(at, ends[end as usize]);
         }
-        if self.layout.creep.is_some() {
+        if self.layout.viscoelastic.is_some() {
             self.layout.position.wrap();
-            self.creep(step);
+            self.relax_segments(step);
         }
         self.layout.pass_waves(step);
         self.meet_surface();
@@ -457,11 +457,11 @@ impl AxialWork {
 
     /// Takes the memory of viscoelastic segments to t_{n+1}, where the nodes now are.
     #[inline(always)]
-    fn creep(&mut self, step: Step) {
+    fn relax_segments(&mut self, step: Step) {
         for at in self.layout.rows() {
-            let crept = self.layout.creep(at, step);
+            let relaxed = self.layout.relax_segments(at, step);
             if self.balance.is_some() {
-                self.balance_creep(at, crept, step);
+                self.balance_viscoelastic(at, relaxed, step);
             }
         }
     }

@@ -38,8 +38,8 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use super::beam::{self, BeamView};
-use super::creep::Creeping;
-use crate::model::{End, Line, LineState, Model, Network, Reel, State, Surface, WaterAlong, joint};
+use super::viscoelastic::ViscoelasticSegment;
+use crate::model::{End, Line, LineState, Model, Network, State, Surface, WaterAlong, WinchState, joint};
 use crate::physics::slender::Slender;
 
 pub use at_rest::work_at_rest;
@@ -186,7 +186,9 @@ fn line_energy(model: &Model, state: &State, index: usize, shape: &LineState) ->
     }
     let water = model.water_along(state, index, state.time);
     let (velocity, lag) = shape.velocities_before();
-    let then = shape.reel.map(|reel| line_before(line, shape, reel, lag));
+    let then = shape
+        .winch_state
+        .map(|winch_state| line_before(line, shape, winch_state, lag));
     let line = then.as_ref().unwrap_or(line);
     let passing = passing(line, shape, lag);
     let position = |i: usize| {
@@ -201,9 +203,9 @@ fn line_energy(model: &Model, state: &State, index: usize, shape: &LineState) ->
     let mut energy = Energy::default();
     for i in 0..n {
         let strain = (position(i + 1) - position(i)).norm() / line.segments.length[i] - 1.0;
-        energy.axial += match Creeping::at_velocities(line, shape, i) {
+        energy.axial += match ViscoelasticSegment::at_velocities(line, shape, i) {
             None => line.spring(i, strain).energy * line.segments.length[i],
-            Some(creep) => creep.energy(strain) * line.segments.length[i],
+            Some(viscoelastic) => viscoelastic.energy(strain) * line.segments.length[i],
         };
     }
     let free = |i: usize| match i {
@@ -257,8 +259,8 @@ pub fn jump_flow(
             moved.half_step.velocity[i] = velocity;
         }
     }
-    if let Some(reel) = shape.reel.filter(|_| lag > 0.0) {
-        let then = line_before(line, moved, reel, lag);
+    if let Some(winch_state) = shape.winch_state.filter(|_| lag > 0.0) {
+        let then = line_before(line, moved, winch_state, lag);
         let passing = passing(&then, moved, lag) / lag;
         moved.half_step.velocity[last] -= passing;
     }
@@ -280,22 +282,22 @@ fn lacking_energy(surface: &Surface, position: &[Vector3<f64>]) -> f64 {
 }
 
 /// A line on a winch as it was laid out `lag` [s] ago, when the leapfrog has its velocities.
-fn line_before(line: &Line, shape: &LineState, reel: Reel, lag: f64) -> Line {
+fn line_before(line: &Line, shape: &LineState, winch_state: WinchState, lag: f64) -> Line {
     let mut then = line.clone();
     if lag > 0.0 {
-        then.pay_out(shape.position.len() - 1, reel.half_step[0]);
+        then.pay_out(shape.position.len() - 1, winch_state.half_step[0]);
     }
     then
 }
 
 /// How far the material at a winch has gone beyond the winch in `lag` [s], by which its velocity misses the winch's own place [m].
 fn passing(line: &Line, shape: &LineState, lag: f64) -> Vector3<f64> {
-    let Some(reel) = shape.reel else {
+    let Some(winch_state) = shape.winch_state else {
         return Vector3::zeros();
     };
     let last = line.segment_count();
     let chord = shape.position[last] - shape.position[last - 1];
-    lag * reel.half_step[1] / line.segments.length[last - 1] * chord
+    lag * winch_state.half_step[1] / line.segments.length[last - 1] * chord
 }
 
 /// Energy of motion of a node at a velocity [m/s], with what it carries along across and along the line [J].
@@ -310,13 +312,13 @@ fn dry_part(line: &Line, shape: &LineState, i: usize, water: WaterAlong) -> f64 
     surface.map_or(0.0, |surface| surface.node_in(water, i, &shape.position).part)
 }
 
-/// How many ends of a network's lines have parted from their points.
-pub fn parted_ends(network: &Network, state: &State) -> usize {
-    let ends = network.lines.iter().flat_map(|&line| state.lines[line].parted);
-    ends.filter(|parted| *parted).count()
+/// How many ends of a network's lines have released from their points.
+pub fn released_ends(network: &Network, state: &State) -> usize {
+    let ends = network.lines.iter().flat_map(|&line| state.lines[line].released);
+    ends.filter(|released| *released).count()
 }
 
-/// Energy [J] that the half nodes bring to their lines which have parted from held points between two states.
+/// Energy [J] that the half nodes bring to their lines which have released from held points between two states.
 pub fn joined_energy(model: &Model, network: &Network, [before, after]: [&State; 2]) -> f64 {
     let mut sum = 0.0;
     for &index in &network.lines {

@@ -251,7 +251,7 @@ pub struct Held<'a, K> {
     pub scheme: &'a Scheme,
 }
 
-/// [`advance`], showing every internal step, and once more as one of no length where ends parted after it.
+/// [`advance`], showing every internal step, and once more as one of no length where ends released after it.
 ///
 /// # Errors
 /// As there.
@@ -326,7 +326,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
             let span = [at(done), at(done + parts)];
             if self.step(span, &before, state, work) {
                 observe(&self.passed([&before, state], span, work));
-                if self.part_ends(state, span[1]) {
+                if self.release_ends(state, span[1]) {
                     observe(&self.passed([&before, state], [span[1]; 2], work));
                 }
                 work.counters.steps += 1;
@@ -358,18 +358,18 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
     }
 
     /// Parts the ends from their points that the tension at `t` [s] is too much for, or the time has come for; whether there were any.
-    fn part_ends(&self, state: &mut State, t: f64) -> bool {
+    fn release_ends(&self, state: &mut State, t: f64) -> bool {
         let mut any = false;
         for &index in &self.network.lines {
             let (line, shape) = (&self.model.lines[index], &mut state.lines[index]);
-            let Some(partings) = &line.parting else {
+            let Some(releases) = &line.release else {
                 continue;
             };
             for (side, segment) in [0, line.segment_count() - 1].into_iter().enumerate() {
                 let negative = self.model.solver.negative_tension;
                 let tension = reaction::tension(line, shape, segment, negative);
-                if !shape.parted[side] && partings[side].parts(tension, t) {
-                    shape.parted[side] = true;
+                if !shape.released[side] && releases[side].is_due(tension, t) {
+                    shape.released[side] = true;
                     any = true;
                 }
             }
@@ -423,7 +423,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
             self.correct(state, work, part, rates);
             let consistent = work.predict_tensions(self.model, self.network, part);
             if correction <= tolerance && consistent {
-                work.creep(self.model, self.network, state);
+                work.relax_segments(self.model, self.network, state);
                 self.shift_accelerations(state, before);
                 return true;
             }

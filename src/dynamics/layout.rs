@@ -1,7 +1,7 @@
-//! A line laid out for the leapfrog kernels: folded into four lanes ([`crate::math::fold`]), padded and with ghosts.
+//! A line laid out for the leapfrog kernels: folded into four lanes ([`crate::math::striping`]), padded and with a halo.
 //!
 //! Node i and segment i, which lies between nodes i and i + 1, stand in the same slot. Padding has no stiffness, no weight and no drag, so
-//! that it stays at rest and no loop has a remainder. Ghosts are renewed when the nodes that they repeat have moved.
+//! that it stays at rest and no loop has a remainder. The halo is renewed when the nodes that they repeat have moved.
 
 mod ground;
 mod handover;
@@ -10,11 +10,11 @@ mod water;
 use nalgebra::Vector3;
 use pulp::Arch;
 
-use super::creep::{CreepArrays, Crept};
 use super::step::Step;
 use super::surface::SurfaceNow;
-use crate::math::fold::{Column, Field, Fold, Slot};
+use super::viscoelastic::{Relaxed, ViscoelasticArrays};
 use crate::math::lanes::{Lanes, Vectors};
+use crate::math::striping::{Column, Field, Slot, Striping};
 use crate::math::unit;
 use crate::model::{End, Line, Model};
 use crate::physics::slender::Slender;
@@ -37,7 +37,7 @@ pub(super) struct Layout {
     /// Where the last node and the last segment stand.
     last: [Slot; 2],
     /// Where nodes and segments stand.
-    pub fold: Fold,
+    pub striping: Striping,
     /// The vectors of the machine that kernels run with; results do not depend on it.
     pub vector_unit: Arch,
     /// Rows that vectors of eight numbers do not pay for [-].
@@ -64,7 +64,7 @@ pub(super) struct Layout {
     pub mass_damping: Option<Column>,
     pub contact: Option<ContactArrays>,
     /// Memory of viscoelastic segments, where the line has any.
-    pub creep: Option<CreepArrays>,
+    pub viscoelastic: Option<ViscoelasticArrays>,
     /// The water's surface, where the line may pierce it.
     pub surface: Option<SurfaceNow>,
 }
@@ -92,16 +92,16 @@ impl Layout {
         held: bool,
     ) -> Option<Layout> {
         let n = line.segment_count();
-        let fold = match held && is_plain_at_b(line) {
-            true => Fold::without_last(n + 1),
-            false => Fold::new(n + 1),
+        let striping = match held && is_plain_at_b(line) {
+            true => Striping::without_last(n + 1),
+            false => Striping::new(n + 1),
         };
-        let keep = |values: &[f64]| fold.column(values, 0.0);
+        let keep = |values: &[f64]| striping.column(values, 0.0);
         let nodes = &line.nodes;
         let inverse_lengths: Vec<f64> = line.segments.length.iter().map(|l| 1.0 / l).collect();
-        let creep = CreepArrays::new(line, fold);
-        let (stiffness, damping) = match &creep {
-            Some(creep) => (creep.stiffness.clone(), creep.damping.clone()),
+        let viscoelastic = ViscoelasticArrays::new(line, striping);
+        let (stiffness, damping) = match &viscoelastic {
+            Some(viscoelastic) => (viscoelastic.stiffness.clone(), viscoelastic.damping.clone()),
             None => (
                 keep(&line.segments.axial_stiffness),
                 keep(&line.segments.axial_damping),
@@ -109,17 +109,17 @@ impl Layout {
         };
         Some(Layout {
             segment_count: n,
-            last: [n, n - 1].map(|i| fold.slot(i)),
-            fold,
-            vector_unit: unit::over_rows(fold.rows(), few_rows),
+            last: [n, n - 1].map(|i| striping.slot(i)),
+            striping,
+            vector_unit: unit::over_rows(striping.rows(), few_rows),
             few_rows,
             law: line.uniform_law()?,
             negative_tension: model.solver.negative_tension,
             energy_balance: model.energy_balance,
-            position: padded_positions(fold),
-            velocity: Field::zeros(fold),
-            velocity_before: Field::zeros(fold),
-            inverse_length: fold.column(&inverse_lengths, 1.0),
+            position: padded_positions(striping),
+            velocity: Field::zeros(striping),
+            velocity_before: Field::zeros(striping),
+            inverse_length: striping.column(&inverse_lengths, 1.0),
             axial_stiffness: stiffness,
             axial_damping: damping,
             weight: keep(&nodes.weight),
@@ -127,7 +127,7 @@ impl Layout {
                 normal: keep(&drag.normal),
                 tangent: keep(&drag.tangent),
             }),
-            waves: water.waves.then(|| WaveArrays::new(line, fold)),
+            waves: water.waves.then(|| WaveArrays::new(line, striping)),
             current: water
                 .profile
                 .filter(|_| nodes.drag.is_some())
@@ -139,8 +139,8 @@ impl Layout {
             contact: nodes
                 .contact
                 .as_ref()
-                .map(|contact| ContactArrays::new(contact, fold)),
-            creep,
+                .map(|contact| ContactArrays::new(contact, striping)),
+            viscoelastic,
             surface: SurfaceNow::new(line),
         })
     }
@@ -149,7 +149,7 @@ impl Layout {
     pub fn set_portable(&mut self, portable: bool) {
         self.vector_unit = match portable {
             true => Arch::Scalar,
-            false => unit::over_rows(self.fold.rows(), self.few_rows),
+            false => unit::over_rows(self.striping.rows(), self.few_rows),
         };
     }
 
@@ -160,29 +160,29 @@ impl Layout {
         }
     }
 
-    /// Makes the ghosts repeat the nodes where they are now. Ends that have parted have no neighbour beyond them.
+    /// Makes the halo repeats the nodes where they are now. Ends that have released have no neighbour beyond them.
     #[inline(always)]
-    pub fn renew_ghosts(&mut self, parted: [bool; 2]) {
+    pub fn renew_halo(&mut self, released: [bool; 2]) {
         self.position.wrap();
         self.velocity.wrap();
         self.velocity_before.wrap();
-        self.part_ghosts(parted);
+        self.close_halo(released);
     }
 
     /// The same, for what needs no more than the positions of the nodes beside a node and the velocity of the one after.
     #[inline(always)]
-    pub fn renew_neighbours(&mut self, parted: [bool; 2]) {
+    pub fn renew_neighbours(&mut self, released: [bool; 2]) {
         self.position.wrap();
         self.velocity.wrap_after();
-        self.part_ghosts(parted);
+        self.close_halo(released);
     }
 
-    /// Puts the ghosts beyond ends that have parted where these ends are.
+    /// Puts the halo beyond ends that have released where these ends are.
     #[inline(always)]
-    pub fn part_ghosts(&mut self, parted: [bool; 2]) {
+    pub fn close_halo(&mut self, released: [bool; 2]) {
         for end in [End::A, End::B] {
             let at = self.end_slot(end);
-            if parted[end as usize] && self.has_row(at) {
+            if released[end as usize] && self.has_row(at) {
                 let beyond = if end == End::A { at.before() } else { at.after() };
                 self.position.set(beyond, self.position.get(at));
             }
@@ -192,17 +192,17 @@ impl Layout {
     /// Sets how many of the segments that there is room for the line has.
     pub fn set_segment_count(&mut self, count: usize) {
         self.segment_count = count;
-        self.last = [count, count - 1].map(|i| self.fold.slot(i));
+        self.last = [count, count - 1].map(|i| self.striping.slot(i));
     }
 
     /// Where node `i` and segment `i` stand.
     pub fn slot(&self, i: usize) -> Slot {
-        self.fold.slot(i)
+        self.striping.slot(i)
     }
 
     /// Where the nodes stand, in their order.
     pub fn nodes(&self) -> impl Iterator<Item = Slot> + use<> {
-        self.fold.slots().take(self.segment_count + 1)
+        self.striping.slots().take(self.segment_count + 1)
     }
 
     /// Unit vector along the chord of the nodes beside node `i`, at an end along the segment.
@@ -229,19 +229,19 @@ impl Layout {
     /// Makes viscoelastic segments at the ends take these to have come as they go on, from where they were `lag` [s] ago: what jumps does not flow
     /// through dampers.
     pub fn set_out_anew(&mut self, lag: f64) {
-        let Some(mut creep) = self.creep.take() else {
+        let Some(mut viscoelastic) = self.viscoelastic.take() else {
             return;
         };
         for end in [End::A, End::B] {
             let (segment, _) = self.end_segment(end);
             let places = [self.end_slot(end), self.end_neighbour(end)];
             let [place, near] = places.map(|at| self.place_before(at, lag));
-            creep.set_out(
+            viscoelastic.set_out(
                 segment,
                 (near - place).norm() * self.inverse_length[segment] - 1.0,
             );
         }
-        self.creep = Some(creep);
+        self.viscoelastic = Some(viscoelastic);
     }
 
     /// The node at an end.
@@ -255,7 +255,7 @@ impl Layout {
     /// Whether a node has a row, or stands behind the last one.
     #[inline(always)]
     pub fn has_row(&self, at: Slot) -> bool {
-        at.row <= self.fold.rows()
+        at.row <= self.striping.rows()
     }
 
     /// Where the node at an end stands.
@@ -285,7 +285,7 @@ impl Layout {
     /// Rows of nodes, and of segments.
     #[inline(always)]
     pub fn rows(&self) -> std::ops::RangeInclusive<usize> {
-        1..=self.fold.rows()
+        1..=self.striping.rows()
     }
 
     /// Tension [N] of the segment at an end at t_n.
@@ -299,8 +299,8 @@ impl Layout {
         let now = relative + step.extrapolation * (relative - before);
         let (l, inverse) = (chord.norm(), self.inverse_length[at]);
         let strain = l * inverse - 1.0;
-        let elastic = match &self.creep {
-            Some(creep) => creep.elastic_of(at, strain),
+        let elastic = match &self.viscoelastic {
+            Some(viscoelastic) => viscoelastic.elastic_of(at, strain),
             None => self.axial_stiffness[at] * self.law.at(strain).force,
         };
         let rate = if l > 0.0 {
@@ -331,8 +331,8 @@ impl Layout {
     #[inline(always)]
     pub fn elastic(&self, at: usize, strain: Lanes) -> Lanes {
         let stiffness = self.axial_stiffness.load(at);
-        match (&self.creep, &self.law) {
-            (Some(creep), _) => creep.elastic(at, strain),
+        match (&self.viscoelastic, &self.law) {
+            (Some(viscoelastic), _) => viscoelastic.elastic(at, strain),
             (None, StretchLaw::Engineering) => stiffness * strain,
             (None, law) => stiffness * strain.map(|strain| law.at(strain).force),
         }
@@ -356,7 +356,7 @@ impl Layout {
     /// Takes the memory of viscoelastic segments from t_n to t_{n+1}, where the nodes now are, with the velocities of the step. Returns the tension that
     /// they have over it [N], and what their dampers take [J].
     #[inline(always)]
-    pub fn creep(&mut self, at: usize, step: Step) -> Crept {
+    pub fn relax_segments(&mut self, at: usize, step: Step) -> Relaxed {
         let lag = Lanes::splat(0.5 * step.drift);
         let (chord, inverse_l) = self.chord(at);
         let half = chord - (self.velocity.load(at + 1) - self.velocity.load(at)).scale(lag);
@@ -366,24 +366,24 @@ impl Layout {
             strain(half.dot(half).sqrt()),
             strain(chord.dot(chord) * inverse_l),
         ];
-        let creep = self.creep.as_mut().expect("this line creeps");
-        let crept = creep.advance(at, strains, step);
-        Crept {
-            taken: crept.taken * inverse.recip(),
-            ..crept
+        let viscoelastic = self.viscoelastic.as_mut().expect("this line creeps");
+        let relaxed = viscoelastic.advance(at, strains, step);
+        Relaxed {
+            taken: relaxed.taken * inverse.recip(),
+            ..relaxed
         }
     }
 
     /// Keeps the strains of viscoelastic segments at t_n for the step to come.
     #[inline(always)]
     pub fn keep_strains(&mut self) {
-        let Some(mut creep) = self.creep.take() else {
+        let Some(mut viscoelastic) = self.viscoelastic.take() else {
             return;
         };
         for at in self.rows() {
-            creep.strain.store(self.strain(at), at);
+            viscoelastic.strain.store(self.strain(at), at);
         }
-        self.creep = Some(creep);
+        self.viscoelastic = Some(viscoelastic);
     }
 
     /// Vectors along the segments, and the inverse of their lengths.
@@ -407,14 +407,14 @@ impl Layout {
 /// Whether nothing is worked out for the node at end B of a line where a point holds it: it does not part, and neither winch nor water's surface,
 /// rough bed or memory know it.
 fn is_plain_at_b(line: &Line) -> bool {
-    let parts = line.parting.is_some_and(|[_, b]| b.may_part());
+    let parts = line.release.is_some_and(|[_, b]| b.may_release());
     let knows = line.surface.is_some() || line.bottom().is_some() || line.winch.is_some();
     !parts && !knows && line.segments.viscoelastic.is_none()
 }
 
 /// 1 for nodes between the ends, 0 elsewhere.
-pub(super) fn interior(fold: Fold, segment_count: usize) -> Column {
+pub(super) fn interior(striping: Striping, segment_count: usize) -> Column {
     let mut interior = vec![1.0; segment_count + 1];
     (interior[0], interior[segment_count]) = (0.0, 0.0);
-    fold.column(&interior, 0.0)
+    striping.column(&interior, 0.0)
 }

@@ -26,9 +26,9 @@ use pulp::NullaryFnOnce;
 use super::layout::{Layout, Water, interior};
 use super::limit::expected_slope;
 use super::step::Step;
-use crate::math::fold::{Column, Field, Slot};
 use crate::math::lanes::{LANES, Lanes};
-use crate::model::{End, Line, LineState, Model, Parting, WaveSpan};
+use crate::math::striping::{Column, Field, Slot};
+use crate::model::{End, Line, LineState, Model, Release, WaveSpan};
 use crate::physics::morison::{self, DragCoefficients};
 use crate::physics::slender::Slender;
 use crate::physics::stretch::{StretchLaw, total_tension};
@@ -49,17 +49,17 @@ pub struct LineWork {
     /// Resistance of water and mass damping at t_n [N].
     resistance: Field,
     /// Force of water that waves accelerate at t_n [N], where there are waves.
-    press: Option<Field>,
+    froude_krylov: Option<Field>,
     /// Inverse square of the chord between the nodes beside a node at t_n [1/m²].
     inverse_square: Column,
     inverse_mass: Column,
     water: Option<WaterWork>,
     /// 1 for nodes between prescribed ends and at released ones, 0 elsewhere.
     interior: Column,
-    /// Whether ends A and B are held, were none parted.
+    /// Whether ends A and B are held, were none released.
     tied: [bool; 2],
-    /// Whether they have parted from their points.
-    parted: [bool; 2],
+    /// Whether they have released from their points.
+    released: [bool; 2],
     /// The energy balance, where the scene asks for it.
     balance: Option<LineBalance>,
     /// The winch at end B, where the line is on one.
@@ -82,7 +82,7 @@ struct WaterWork {
 impl WaterWork {
     fn new(line: &Line, layout: &Layout) -> Option<WaterWork> {
         let nodes = &line.nodes;
-        let zeros = Column::new(layout.fold, 0.0);
+        let zeros = Column::new(layout.striping, 0.0);
         let masses = || nodes.mass_tangent.iter().zip(&nodes.mass_normal);
         let excess: Vec<f64> = masses().map(|(t, n)| 1.0 / t - 1.0 / n).collect();
         let needed = layout.drag.is_some()
@@ -99,11 +99,11 @@ impl WaterWork {
         let along = over_mass(given.map(|drag| &drag.tangent[..]), &nodes.mass_tangent);
         let counts = along.iter().zip(&across).any(|(along, across)| along > across);
         needed.then(|| WaterWork {
-            drag_over_mass: layout.fold.column(&across, 0.0),
-            drag_over_mass_along: counts.then(|| layout.fold.column(&along, 0.0)),
+            drag_over_mass: layout.striping.column(&across, 0.0),
+            drag_over_mass_along: counts.then(|| layout.striping.column(&along, 0.0)),
             drag_normal: drag.map_or(zeros.clone(), |drag| drag.normal.clone()),
             drag_tangent: drag.map_or(zeros, |drag| drag.tangent.clone()),
-            inverse_mass_excess: layout.fold.column(&excess, 0.0),
+            inverse_mass_excess: layout.striping.column(&excess, 0.0),
         })
     }
 }
@@ -138,7 +138,7 @@ impl NullaryFnOnce for PutEnds<'_> {
     #[inline(always)]
     fn call(self) {
         let PutEnds(work, ends) = self;
-        work.layout.place_ends(ends, work.parted);
+        work.layout.place_ends(ends, work.released);
     }
 }
 
@@ -150,12 +150,12 @@ pub struct EndLoad {
     /// The part of it that water and damping resist with [N].
     pub resistance: Vector3<f64>,
     /// The part of it that accelerated water presses with [N].
-    pub press: Vector3<f64>,
+    pub froude_krylov: Vector3<f64>,
     /// Power of the drag on the water's way [W].
     pub current_power: f64,
     /// Mass matrix of the half node [kg].
     pub mass: Matrix3<f64>,
-    /// Contact stiffness [N/m] and damping [N s/m] of the half node, and its force at z = 0, or at no height over a bed that slopes or rubs [N].
+    /// Contact stiffness [N/m] and damping [N s/m] of the half node, and its force at z = 0, or at no height over a seabed with a slope, soundings or friction [N].
     pub contact: [f64; 3],
 }
 
@@ -165,19 +165,19 @@ impl LineWork {
         let winch = WinchWork::new(line);
         let is_held = held[1] && winch.is_none();
         let water = Water::around(model, line);
-        let line = line.winch.as_ref().map_or(line, |winch| winch.reel());
+        let line = line.winch.as_ref().map_or(line, |winch| winch.longest());
         let layout = Layout::new(model, (line, water), FEW_ROWS, is_held)?;
         let inverse_mass: Vec<f64> = line.nodes.mass_normal.iter().map(|mass| 1.0 / mass).collect();
         Some(LineWork {
-            pull: Field::zeros(layout.fold),
-            resistance: Field::zeros(layout.fold),
-            press: layout.waves.as_ref().map(|_| Field::zeros(layout.fold)),
-            inverse_square: Column::new(layout.fold, 0.0),
-            inverse_mass: layout.fold.column(&inverse_mass, 0.0),
+            pull: Field::zeros(layout.striping),
+            resistance: Field::zeros(layout.striping),
+            froude_krylov: layout.waves.as_ref().map(|_| Field::zeros(layout.striping)),
+            inverse_square: Column::new(layout.striping, 0.0),
+            inverse_mass: layout.striping.column(&inverse_mass, 0.0),
             water: WaterWork::new(line, &layout),
-            interior: interior(layout.fold, layout.segment_count),
+            interior: interior(layout.striping, layout.segment_count),
             tied: held,
-            parted: [false; 2],
+            released: [false; 2],
             balance: layout.energy_balance.then(LineBalance::default),
             layout,
             winch,
@@ -191,12 +191,12 @@ impl LineWork {
 
     /// Takes over the state of a line.
     pub fn load(&mut self, state: &LineState) {
-        self.load_reel(state);
+        self.load_winch(state);
         self.layout.load(state);
-        self.parted = state.parted;
+        self.released = state.released;
         for end in [End::A, End::B] {
             let at = self.layout.end_slot(end);
-            self.interior[at] = f64::from(u8::from(self.is_parted(end)));
+            self.interior[at] = f64::from(u8::from(self.is_released(end)));
         }
         self.interior.wrap();
         self.layout.still();
@@ -253,28 +253,28 @@ impl LineWork {
 
     /// Hands the state back after steps of `steps` [s].
     pub fn store(&self, state: &mut LineState, steps: [f64; 2]) {
-        state.parted = self.parted;
-        self.store_reel(state);
+        state.released = self.released;
+        self.store_winch(state);
         self.layout.store(state, steps);
     }
 
-    /// Whether an end has parted from its point.
-    pub fn is_parted(&self, end: End) -> bool {
-        self.parted[end as usize]
+    /// Whether an end has released from its point.
+    pub fn is_released(&self, end: End) -> bool {
+        self.released[end as usize]
     }
 
     /// Parts the ends from their points that the tensions of t_n, `t` [s], are too much for, or the time has come for.
-    pub fn part_ends(&mut self, partings: &[Parting; 2], t: f64, step: Step) {
+    pub fn release_ends(&mut self, releases: &[Release; 2], t: f64, step: Step) {
         for end in [End::A, End::B] {
             let side = end as usize;
             let layout = &self.layout;
-            if self.parted[side] || !partings[side].parts(layout.end_tension(end, step), t) {
+            if self.released[side] || !releases[side].is_due(layout.end_tension(end, step), t) {
                 continue;
             }
             if self.tied[side] {
                 self.balance_release(end, step);
             }
-            self.parted[side] = true;
+            self.released[side] = true;
             let at = self.layout.end_slot(end);
             self.interior[at] = 1.0;
             self.interior.wrap();
@@ -288,18 +288,18 @@ impl LineWork {
     }
 
     /// Takes the memory of viscoelastic segments to t_{n+1}.
-    fn creep(&mut self, step: Step) {
-        if self.layout.creep.is_none() {
+    fn relax_segments(&mut self, step: Step) {
+        if self.layout.viscoelastic.is_none() {
             return;
         }
-        self.layout.renew_ghosts(self.parted);
+        self.layout.renew_halo(self.released);
         let rows = self.layout.rows();
-        if let Some(creep) = &mut self.layout.creep {
-            creep.prepare(step.drift);
+        if let Some(viscoelastic) = &mut self.layout.viscoelastic {
+            viscoelastic.prepare(step.drift);
         }
         let mut taken = Lanes::splat(0.0);
         for at in rows {
-            taken = taken + self.layout.creep(at, step).taken;
+            taken = taken + self.layout.relax_segments(at, step).taken;
         }
         if let Some(balance) = &mut self.balance {
             balance.dissipate(taken.sum());
@@ -327,18 +327,18 @@ impl LineWork {
         if self.winch.is_some() {
             self.wind(t, step);
         }
-        self.creep(step);
+        self.relax_segments(step);
         self.balance_ends(step);
         if self.layout.surface.is_some() {
             self.layout.pass_waves(step);
             self.meet_surface();
         }
         if self.winch.is_some() {
-            self.renew_reel(step);
+            self.renew_end_segment(step);
         }
     }
 
-    /// Puts the ends somewhere that have not parted from their points.
+    /// Puts the ends somewhere that have not released from their points.
     pub fn put_ends(&mut self, ends: [&Placed; 2]) {
         self.layout.vector_unit.dispatch(PutEnds(self, ends));
     }
@@ -374,17 +374,18 @@ impl LineWork {
         if let Some(damping) = &line.mass_damping {
             resistance -= damping[at] * velocity;
         }
-        let press = line.waves.as_ref();
-        let press = press.map_or(Vector3::zeros(), |waves| waves.press_of(at, tangent));
+        let froude_krylov = line.waves.as_ref();
+        let froude_krylov =
+            froude_krylov.map_or(Vector3::zeros(), |waves| waves.froude_krylov_of(at, tangent));
         let inverse = self.inverse_mass[at];
         let mass = Slender::inverse([inverse, inverse + excess]);
         let contact = line.contact.as_ref().map_or([0.0; 3], |c| {
             [c.stiffness[at], c.damping[at], c.stiffness[at] * c.level[at]]
         });
         EndLoad {
-            force: force + resistance + press,
+            force: force + resistance + froude_krylov,
             resistance,
-            press,
+            froude_krylov,
             current_power,
             mass: mass.matrix(tangent),
             contact,

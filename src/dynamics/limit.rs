@@ -130,7 +130,7 @@ impl ExplicitLimit {
 /// Explicit step limit of a line; none for a line without nodes that may move.
 pub fn explicit_limit(line: &Line) -> ExplicitLimit {
     if let Some(winch) = &line.winch {
-        return explicit_limit(winch.reel()).or(reeled_limit(winch.reel()));
+        return explicit_limit(winch.longest()).or(winch_limit(winch.longest()));
     }
     let (segments, enough) = (&line.segments, damping_enough(line));
     let mut limit = ExplicitLimit::none();
@@ -152,7 +152,10 @@ fn fading(line: &Line, node: usize) -> f64 {
 
 /// Nodes that no point holds, or that one may let go of.
 fn loose_nodes(line: &Line) -> RangeInclusive<usize> {
-    let parts = |end: End| line.parting.is_some_and(|sides| sides[end as usize].may_part());
+    let parts = |end: End| {
+        line.release
+            .is_some_and(|sides| sides[end as usize].may_release())
+    };
     let [first, last] = [End::A, End::B].map(|end| usize::from(parts(end)));
     1 - first..=line.segment_count() - 1 + last
 }
@@ -163,15 +166,18 @@ fn beside(line: &Line, node: usize) -> Range<usize> {
 }
 
 /// Explicit step limit of the node before the end segment of a line on a winch when that is shortest, wherever it may be.
-fn reeled_limit(reel: &Line) -> ExplicitLimit {
+fn winch_limit(winch_state: &Line) -> ExplicitLimit {
     let limit = |i: usize| {
-        let (left, right) = (stiffness(reel, i - 1), stiffness(reel, i) / SHORTEST);
-        let mass = 0.5 * (1.0 + SHORTEST) * reel.least_mass(i);
-        let lag = lag(&reel.segments, i - 1).max(lag(&reel.segments, i));
+        let (left, right) = (
+            stiffness(winch_state, i - 1),
+            stiffness(winch_state, i) / SHORTEST,
+        );
+        let mass = 0.5 * (1.0 + SHORTEST) * winch_state.least_mass(i);
+        let lag = lag(&winch_state.segments, i - 1).max(lag(&winch_state.segments, i));
         let omega = (2.0 * (left + right) / mass).sqrt();
-        ExplicitLimit::new(omega, lag, fading(reel, i), DAMPING_RATIO_ENOUGH)
+        ExplicitLimit::new(omega, lag, fading(winch_state, i), DAMPING_RATIO_ENOUGH)
     };
-    let nodes = 1..reel.segment_count();
+    let nodes = 1..winch_state.segment_count();
     nodes.map(limit).fold(ExplicitLimit::none(), ExplicitLimit::or)
 }
 
@@ -193,7 +199,7 @@ pub fn free_point_limit(model: &Model, point: usize) -> ExplicitLimit {
         };
         mass += line.least_mass(node);
         sum += stiffness(line, segment) + 0.5 * heave(line, node);
-        if line.parting.is_some() {
+        if line.release.is_some() {
             alone = lone_rates(model, point);
         }
         longest = longest.max(lag(&line.segments, segment));
@@ -236,7 +242,7 @@ fn lag(segments: &Segments, i: usize) -> f64 {
 
 /// Damping ratio from which a line uses the full safety [-].
 fn damping_enough(line: &Line) -> f64 {
-    match &line.parting {
+    match &line.release {
         None => DAMPING_RATIO_ENOUGH,
         Some(_) => DAMPING_RATIO_WHIP,
     }

@@ -5,7 +5,6 @@ pub mod axial_implicit;
 pub mod beam;
 mod choice;
 mod cost;
-mod creep;
 pub mod energy_balance;
 pub mod implicit;
 mod layout;
@@ -19,6 +18,7 @@ mod sea;
 pub mod step;
 mod surface;
 mod threads;
+mod viscoelastic;
 
 use crate::statics::StaticsError;
 

@@ -30,7 +30,7 @@
 //! the longest step in sight the older one is passed over, and all are dropped when the host steps back.
 
 mod differences;
-mod foresight;
+mod extrapolation;
 
 use std::array::from_fn;
 
@@ -42,8 +42,8 @@ use crate::math::lanes::{LANES, Lanes};
 use crate::model::{Kinematics, Pose};
 use crate::scene::Reconstruction;
 use differences::Differences;
-pub use foresight::{Clock, Foresight};
-use foresight::{Order, SAMPLES_MAX, Samples};
+pub use extrapolation::{Clock, Extrapolation};
+use extrapolation::{Order, SAMPLES_MAX, Samples};
 
 /// Acceleration that what a prediction missed by may be made up with in any case [m/s²]: a fiftieth of g.
 const EASE: f64 = 0.2;
@@ -54,7 +54,7 @@ const SHARE: f64 = 0.5;
 
 /// What a host says of up to four axes at a time.
 #[derive(Debug, Clone, Copy)]
-pub struct Said {
+pub struct InputSample {
     /// Where it is along them [m, rad].
     pub position: Lanes,
     /// How fast [m/s, rad/s].
@@ -65,18 +65,18 @@ pub struct Said {
     ease: f64,
 }
 
-impl Said {
+impl InputSample {
     /// Of N axes, the last of which stands for those that are not there too.
     #[inline(always)]
-    pub fn new<const N: usize>(position: [f64; N], velocity: [Option<f64>; N]) -> Said {
-        Said::rated(position, rates(velocity))
+    pub fn new<const N: usize>(position: [f64; N], velocity: [Option<f64>; N]) -> InputSample {
+        InputSample::rated(position, rates(velocity))
     }
 
-    /// [`Said::new`] from what [`rates`] makes of the velocities.
+    /// [`InputSample::new`] from what [`rates`] makes of the velocities.
     #[inline(always)]
-    pub fn rated<const N: usize>(position: [f64; N], [velocity, rated]: [[f64; N]; 2]) -> Said {
+    pub fn rated<const N: usize>(position: [f64; N], [velocity, rated]: [[f64; N]; 2]) -> InputSample {
         let last = |lane: usize| lane.min(N - 1);
-        Said {
+        InputSample {
             position: Lanes::new(from_fn(|lane| position[last(lane)])),
             velocity: Lanes::new(from_fn(|lane| velocity[last(lane)])),
             rated: Lanes::new(from_fn(|lane| rated[last(lane)])),
@@ -97,7 +97,7 @@ pub fn rates<const N: usize>(told: [Option<f64>; N]) -> [[f64; N]; 2] {
 /// The C1 path of something along four axes side by side, and the samples it is predicted from.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct AxesPath {
-    /// What the host said, newest first, at the times of the clock [m, rad].
+    /// What the host sample, newest first, at the times of the clock [m, rad].
     positions: Samples,
     /// The same of the velocities, as far as it did along the same axes [m/s, rad/s].
     velocities: Samples,
@@ -117,7 +117,7 @@ impl AxesPath {
     /// At rest at a position [m, rad].
     pub fn at_rest<const N: usize>(position: [f64; N]) -> AxesPath {
         let zero = Lanes::splat(0.0);
-        let Said { position, .. } = Said::new(position, [None; N]);
+        let InputSample { position, .. } = InputSample::new(position, [None; N]);
         AxesPath {
             positions: [position; SAMPLES_MAX],
             velocities: [zero; SAMPLES_MAX],
@@ -132,118 +132,140 @@ impl AxesPath {
     /// Becomes the path `before` continued by a communication step from what the host says at its start; at its end where it is
     /// [`Reconstruction::Interpolate`]. Returns its ends, as [`AxesPath::ends`]: read again at once, what was written would hold up the step.
     #[inline(always)]
-    pub fn extend(&mut self, before: &AxesPath, foresight: &Foresight, said: &Said) -> [[Lanes; 3]; 2] {
-        if foresight.reconstruction == Reconstruction::Interpolate {
-            return self.interpolate(before, foresight, said);
+    pub fn extend(
+        &mut self,
+        before: &AxesPath,
+        extrapolation: &Extrapolation,
+        sample: &InputSample,
+    ) -> [[Lanes; 3]; 2] {
+        if extrapolation.reconstruction == Reconstruction::Interpolate {
+            return self.interpolate(before, extrapolation, sample);
         }
-        let goes_on = foresight.order == Order::After && said.rated == before.rated;
-        if !goes_on || !foresight.all {
-            self.turn(before, foresight, said);
+        let goes_on = extrapolation.order == Order::After && sample.rated == before.rated;
+        if !goes_on || !extrapolation.all {
+            self.turn(before, extrapolation, sample);
             return self.ends();
         }
         // arrays are taken apart, so that they stay in registers
         let [a, b, c, d, e, _] = before.positions;
         let [v, w, x, y, z, _] = before.velocities;
         (self.rated, self.degree) = (before.rated, before.degree);
-        self.positions = [said.position, a, b, c, d, e];
-        let to = if said.rated.all_positive() {
-            self.velocities = [said.velocity, v, w, x, y, z];
+        self.positions = [sample.position, a, b, c, d, e];
+        let to = if sample.rated.all_positive() {
+            self.velocities = [sample.velocity, v, w, x, y, z];
             self.times_rated = (before.times_rated + 1).min(SAMPLES_MAX);
-            self.rate(foresight, said, [said.velocity, v, w, x, y, z])
-        } else if !said.rated.any_positive() {
+            self.rate(extrapolation, sample, [sample.velocity, v, w, x, y, z])
+        } else if !sample.rated.any_positive() {
             self.velocities = before.velocities;
             self.times_rated = 0;
-            self.predict(foresight, [said.position, a, b, c, d, e])
+            self.predict(extrapolation, [sample.position, a, b, c, d, e])
         } else {
-            self.turn(before, foresight, said);
+            self.turn(before, extrapolation, sample);
             return self.ends();
         };
-        self.bridge(before, foresight, said, to);
+        self.bridge(before, extrapolation, sample, to);
         self.ends()
     }
 
     /// [`AxesPath::extend`] to what the host says of the step's end. A velocity that it does not tell is the slope there of the parabola
     /// through the last three places.
     #[inline(always)]
-    fn interpolate(&mut self, before: &AxesPath, foresight: &Foresight, said: &Said) -> [[Lanes; 3]; 2] {
-        let mut velocity = said.velocity;
-        if !said.rated.all_positive() {
-            let [_, length, rate] = foresight.span;
+    fn interpolate(
+        &mut self,
+        before: &AxesPath,
+        extrapolation: &Extrapolation,
+        sample: &InputSample,
+    ) -> [[Lanes; 3]; 2] {
+        let mut velocity = sample.velocity;
+        if !sample.rated.all_positive() {
+            let [_, length, rate] = extrapolation.span;
             let (slope_before, rate_before) = before.curve.secant();
-            let slope = (said.position - before.end[0]) * Lanes::splat(rate);
+            let slope = (sample.position - before.end[0]) * Lanes::splat(rate);
             let bend = length * rate_before / (1.0 + length * rate_before);
             let derived = slope + Lanes::splat(bend) * (slope - slope_before);
-            velocity = said.rated.choose(said.velocity, derived);
+            velocity = sample.rated.choose(sample.velocity, derived);
         }
-        let curve = Hermites::bridge(foresight.span, before.end, [said.position, velocity]);
-        (self.curve, self.end) = (curve, [said.position, velocity]);
+        let curve = Hermites::bridge(extrapolation.span, before.end, [sample.position, velocity]);
+        (self.curve, self.end) = (curve, [sample.position, velocity]);
         let [start, [.., curvature]] = curve.ends();
-        [start, [said.position, velocity, curvature]]
+        [start, [sample.position, velocity, curvature]]
     }
 
     /// [`AxesPath::extend`] where the host goes back in time or leaves samples behind that do not count, or tells the velocity along other axes
     /// than before, or along some only.
     #[cold]
     #[inline(never)]
-    fn turn(&mut self, before: &AxesPath, foresight: &Foresight, said: &Said) {
-        let (order, forgets) = (foresight.order, foresight.order == Order::Before);
+    fn turn(&mut self, before: &AxesPath, extrapolation: &Extrapolation, sample: &InputSample) {
+        let (order, forgets) = (extrapolation.order, extrapolation.order == Order::Before);
         let again = usize::from(matches!(order, Order::Instead | Order::Again));
-        let known = match forgets || said.rated != before.rated {
+        let known = match forgets || sample.rated != before.rated {
             true => 0,
             false => before.times_rated.saturating_sub(again),
         };
         *self = *before;
-        self.rated = said.rated;
+        self.rated = sample.rated;
         self.times_rated = (known + 1).min(SAMPLES_MAX);
-        self.positions = order.push(&before.positions, said.position);
-        self.velocities = order.push(&before.velocities, said.velocity);
+        self.positions = order.push(&before.positions, sample.position);
+        self.velocities = order.push(&before.velocities, sample.velocity);
         if forgets {
             self.degree = Lanes::splat(0.0);
         }
         let degree = self.degree;
-        let predicted = self.predict(foresight, foresight.pick(&self.positions));
+        let predicted = self.predict(extrapolation, extrapolation.pick(&self.positions));
         let judged = std::mem::replace(&mut self.degree, degree);
-        let rated = self.rate(foresight, said, foresight.pick(&self.velocities));
-        self.degree = said.rated.choose(self.degree, judged);
-        let to = from_fn(|k| said.rated.choose(rated[k], predicted[k]));
-        self.bridge(before, foresight, said, to);
+        let rated = self.rate(extrapolation, sample, extrapolation.pick(&self.velocities));
+        self.degree = sample.rated.choose(self.degree, judged);
+        let to = from_fn(|k| sample.rated.choose(rated[k], predicted[k]));
+        self.bridge(before, extrapolation, sample, to);
     }
 
     /// Lays the segments from the end of the path `before` to what is predicted.
     #[inline(always)]
-    fn bridge(&mut self, before: &AxesPath, foresight: &Foresight, said: &Said, to: Prediction) {
-        let jumps = foresight.reconstruction == Reconstruction::Jump;
-        if jumps || foresight.late.is_some() {
-            return self.bridge_over(before, foresight, said, to);
+    fn bridge(
+        &mut self,
+        before: &AxesPath,
+        extrapolation: &Extrapolation,
+        sample: &InputSample,
+        to: Prediction,
+    ) {
+        let jumps = extrapolation.reconstruction == Reconstruction::Jump;
+        if jumps || extrapolation.late.is_some() {
+            return self.bridge_over(before, extrapolation, sample, to);
         }
         let [position, velocity, _] = to;
         self.end = [position, velocity];
-        self.curve = Hermites::bridge(foresight.span, before.end, self.end);
+        self.curve = Hermites::bridge(extrapolation.span, before.end, self.end);
     }
 
     /// [`AxesPath::bridge`] where the path jumps to what the host says, or what it missed is made up over more than the step.
     #[cold]
     #[inline(never)]
-    fn bridge_over(&mut self, before: &AxesPath, foresight: &Foresight, said: &Said, to: Prediction) {
-        let ([position, velocity, velocity_before], [_, length, _]) = (to, foresight.span);
+    fn bridge_over(
+        &mut self,
+        before: &AxesPath,
+        extrapolation: &Extrapolation,
+        sample: &InputSample,
+        to: Prediction,
+    ) {
+        let ([position, velocity, velocity_before], [_, length, _]) = (to, extrapolation.span);
         let mut from = before.end;
         self.end = [position, velocity];
-        if foresight.reconstruction == Reconstruction::Jump {
-            from = [said.position, said.velocity];
-            let reached = said.position + Lanes::splat(length) * said.velocity;
-            self.end = [reached, said.velocity];
-        } else if let Some(late) = foresight.late {
-            let missed = [from[0] - said.position, from[1] - velocity_before];
+        if extrapolation.reconstruction == Reconstruction::Jump {
+            from = [sample.position, sample.velocity];
+            let reached = sample.position + Lanes::splat(length) * sample.velocity;
+            self.end = [reached, sample.velocity];
+        } else if let Some(late) = extrapolation.late {
+            let missed = [from[0] - sample.position, from[1] - velocity_before];
             for axis in 0..LANES {
                 let change = (velocity[axis] - velocity_before[axis]).abs();
-                let acceleration = said.ease + SHARE * change / length;
+                let acceleration = sample.ease + SHARE * change / length;
                 let missed = missed.map(|lanes| lanes[axis]);
                 let left = left(missed, length, late, acceleration);
                 self.end[0][axis] += left[0];
                 self.end[1][axis] += left[1];
             }
         }
-        self.curve = Hermites::bridge(foresight.span, from, self.end);
+        self.curve = Hermites::bridge(extrapolation.span, from, self.end);
     }
 
     /// Continues the path over a span of time [s] to positions [m, rad] and velocities [m/s, rad/s] that are known.
@@ -275,27 +297,27 @@ impl AxesPath {
 
     /// Predicts from what the host said of the position.
     #[inline(always)]
-    fn predict(&mut self, foresight: &Foresight, samples: Samples) -> Prediction {
-        let differences = Differences::new(foresight, samples);
-        let degree = differences.degree(foresight.count, &mut self.degree);
-        let slope = |terms| differences.sum(degree, terms) * Lanes::splat(foresight.unit[1]);
+    fn predict(&mut self, extrapolation: &Extrapolation, samples: Samples) -> Prediction {
+        let differences = Differences::new(extrapolation, samples);
+        let degree = differences.degree(extrapolation.count, &mut self.degree);
+        let slope = |terms| differences.sum(degree, terms) * Lanes::splat(extrapolation.unit[1]);
         [
-            differences.sum(degree, &foresight.value),
-            slope(&foresight.slope),
-            slope(&foresight.slope_before),
+            differences.sum(degree, &extrapolation.value),
+            slope(&extrapolation.slope),
+            slope(&extrapolation.slope_before),
         ]
     }
 
     /// Predicts from what it said of the velocity, and the position [m, rad] at the start of a step.
     #[inline(always)]
-    fn rate(&mut self, foresight: &Foresight, said: &Said, samples: Samples) -> Prediction {
-        let differences = Differences::new(foresight, samples);
-        let degree = differences.degree(foresight.known(self.times_rated), &mut self.degree);
-        let rise = differences.sum(degree, &foresight.integral);
+    fn rate(&mut self, extrapolation: &Extrapolation, sample: &InputSample, samples: Samples) -> Prediction {
+        let differences = Differences::new(extrapolation, samples);
+        let degree = differences.degree(extrapolation.known(self.times_rated), &mut self.degree);
+        let rise = differences.sum(degree, &extrapolation.integral);
         [
-            said.position + rise * Lanes::splat(foresight.unit[0]),
-            differences.sum(degree, &foresight.value),
-            said.velocity,
+            sample.position + rise * Lanes::splat(extrapolation.unit[0]),
+            differences.sum(degree, &extrapolation.value),
+            sample.velocity,
         ]
     }
 }
@@ -340,10 +362,10 @@ impl AxisPath {
     }
 
     /// Continues the path by a communication step from a position [m] and perhaps a velocity [m/s] at its start.
-    pub fn extend(&mut self, foresight: &Foresight, position: f64, velocity: Option<f64>) {
+    pub fn extend(&mut self, extrapolation: &Extrapolation, position: f64, velocity: Option<f64>) {
         let before = self.0;
         self.0
-            .extend(&before, foresight, &Said::new([position], [velocity]));
+            .extend(&before, extrapolation, &InputSample::new([position], [velocity]));
     }
 
     /// Continues the path over a span of time [s] to a position [m] and a velocity [m/s] that are known.
@@ -410,18 +432,18 @@ impl VesselPath {
     pub fn extend(
         &mut self,
         before: &VesselPath,
-        foresight: &Foresight,
+        extrapolation: &Extrapolation,
         [x, y, z, roll, pitch, yaw]: [f64; 6],
         [vx, vy, vz, wx, wy, wz]: [Option<f64>; 6],
     ) {
-        let place = Said::new([x, y, z], [vx, vy, vz]);
-        let angles = Said {
+        let place = InputSample::new([x, y, z], [vx, vy, vz]);
+        let angles = InputSample {
             ease: EASE_OF_ANGLES,
-            ..Said::new([roll, pitch, yaw], [wx, wy, wz])
+            ..InputSample::new([roll, pitch, yaw], [wx, wy, wz])
         };
         let paths = self.0.iter_mut().zip(&before.0);
-        for ((path, before), said) in paths.zip([place, angles]) {
-            path.extend(before, foresight, &said);
+        for ((path, before), sample) in paths.zip([place, angles]) {
+            path.extend(before, extrapolation, &sample);
         }
     }
 
@@ -442,7 +464,7 @@ impl VesselPath {
 
 #[cfg(test)]
 mod tests {
-    use super::foresight::DEGREE_MAX;
+    use super::extrapolation::DEGREE_MAX;
     use super::*;
     use approx::assert_relative_eq;
 
@@ -454,17 +476,21 @@ mod tests {
     }
 
     /// A path and its clock.
-    struct Guided(Clock, AxisPath, Foresight);
+    struct Guided(Clock, AxisPath, Extrapolation);
 
     impl Guided {
         fn at_rest(time: f64, position: f64) -> Guided {
-            Guided(Clock::new(time), AxisPath::at_rest(position), Foresight::none())
+            Guided(
+                Clock::new(time),
+                AxisPath::at_rest(position),
+                Extrapolation::none(),
+            )
         }
 
         fn extend(&mut self, sample: Sample, step: f64, reconstruction: Reconstruction) {
-            let foresight = &mut self.2;
-            self.0.tell(sample.time, step, reconstruction, foresight);
-            self.1.extend(foresight, sample.position, sample.velocity);
+            let extrapolation = &mut self.2;
+            self.0.tell(sample.time, step, reconstruction, extrapolation);
+            self.1.extend(extrapolation, sample.position, sample.velocity);
         }
 
         fn at(&self, t: f64) -> hermite::Sample {
@@ -490,11 +516,11 @@ mod tests {
 
     #[test]
     fn what_is_foreseen_does_not_depend_on_what_was_foreseen_before() {
-        let (mut clock, mut kept, mut time) = (Clock::new(0.0), Foresight::none(), 0.0);
+        let (mut clock, mut kept, mut time) = (Clock::new(0.0), Extrapolation::none(), 0.0);
         for k in 0..200 {
             // equal steps, short ones between them, the same instant again and leaps back
             let step = if k % 31 == 30 { 0.007 } else { 0.05 };
-            let mut fresh = Foresight::none();
+            let mut fresh = Extrapolation::none();
             clock.clone().tell(time, step, Reconstruction::Smooth, &mut fresh);
             clock.tell(time, step, Reconstruction::Smooth, &mut kept);
             assert_eq!(format!("{kept:?}"), format!("{fresh:?}"), "at {time} s");
@@ -531,7 +557,7 @@ mod tests {
 
     #[test]
     fn axes_are_foreseen_as_each_would_be_alone() {
-        let (mut clock, mut foresight) = (Clock::new(0.0), Foresight::none());
+        let (mut clock, mut extrapolation) = (Clock::new(0.0), Extrapolation::none());
         let mut together = AxesPath::at_rest([0.0; 3]);
         let mut alone = [0.0; 3].map(AxisPath::at_rest);
         for k in 0..300 {
@@ -539,11 +565,11 @@ mod tests {
             let time = 0.1 * f64::from(k) + if k % 50 > 25 { 0.03 } else { 0.0 };
             let places = [position(time), position(0.4 * time), position(2.0 * time)];
             let rates = [Some(velocity(time)), None, Some(2.0 * velocity(2.0 * time))];
-            clock.tell(time, 0.1, Reconstruction::Smooth, &mut foresight);
+            clock.tell(time, 0.1, Reconstruction::Smooth, &mut extrapolation);
             let before = together;
-            together.extend(&before, &foresight, &Said::new(places, rates));
+            together.extend(&before, &extrapolation, &InputSample::new(places, rates));
             for axis in 0..3 {
-                alone[axis].extend(&foresight, places[axis], rates[axis]);
+                alone[axis].extend(&extrapolation, places[axis], rates[axis]);
             }
             for axis in 0..3 {
                 let [value, slope, _] = together.at(time + 0.1).map(|lanes| lanes[axis]);
@@ -563,11 +589,11 @@ mod tests {
                 Reconstruction::Interpolate => time + h,
                 _ => time,
             };
-            let said = Sample {
+            let given = Sample {
                 velocity: with_velocity.then(|| velocity(told)),
                 ..sample(time, position(told))
             };
-            path.extend(said, h, reconstruction);
+            path.extend(given, h, reconstruction);
             if time > 5.0 {
                 let middle = time + 0.5 * h;
                 worst = worst.max((path.at(middle).value - position(middle)).abs());
@@ -621,12 +647,12 @@ mod tests {
         let mut time = 0.0;
         for step in [0.3, 0.1, 1e-3, 2.0, 0.3, 0.3] {
             let end = time + step;
-            let said = Sample {
+            let given = Sample {
                 velocity: Some(velocity(end)),
                 ..sample(time, position(end))
             };
             let before = path.at(time);
-            path.extend(said, step, Reconstruction::Interpolate);
+            path.extend(given, step, Reconstruction::Interpolate);
             assert_relative_eq!(path.at(time).value, before.value, epsilon = 1e-12);
             assert_relative_eq!(path.at(end).value, position(end), epsilon = 1e-12);
             assert_relative_eq!(path.at(end).slope, velocity(end), epsilon = 1e-9);
@@ -657,8 +683,8 @@ mod tests {
         let degree = |k: usize| {
             let rounding = noise * ((k * 7919) % 101) as f64 / 50.0 - noise;
             let time = k as f64 * step;
-            let said = sample(time * (1.0 + rounding), motion(time));
-            path.extend(said, step, Reconstruction::Smooth);
+            let given = sample(time * (1.0 + rounding), motion(time));
+            path.extend(given, step, Reconstruction::Smooth);
             path.1.0.degree[0] as usize
         };
         (0..(120.0 / step) as usize).map(degree).collect()
@@ -718,11 +744,11 @@ mod tests {
         let mut path = Guided::at_rest(0.0, position(0.0));
         let (mut time, mut worst) = (0.0, [0.0_f64; 3]);
         for step in steps.iter().cycle() {
-            let said = Sample {
+            let given = Sample {
                 velocity: with_velocity.then(|| velocity(time)),
                 ..sample(time, position(time))
             };
-            path.extend(said, *step, Reconstruction::Smooth);
+            path.extend(given, *step, Reconstruction::Smooth);
             for part in [0.0, 0.25, 0.5, 0.75, 1.0] {
                 let t = time + part * step;
                 let is = path.at(t);
@@ -813,13 +839,13 @@ mod tests {
 
     #[test]
     fn samples_that_are_kept_are_not_crowded_by_short_steps() {
-        let (mut clock, mut foresight) = (Clock::new(0.0), Foresight::none());
+        let (mut clock, mut extrapolation) = (Clock::new(0.0), Extrapolation::none());
         let mut time = 0.0;
         for k in 0..60 {
             let step = [0.2, 1e-3, 1e-5, 1e-5, 0.13][k % 5];
-            clock.tell(time, step, Reconstruction::Smooth, &mut foresight);
+            clock.tell(time, step, Reconstruction::Smooth, &mut extrapolation);
             time += step;
-            assert!(k < 15 || foresight.count == SAMPLES_MAX, "{clock:?}");
+            assert!(k < 15 || extrapolation.count == SAMPLES_MAX, "{clock:?}");
         }
     }
 

@@ -275,11 +275,11 @@ impl NetworkWork {
     ) {
         self.set_current(model, t);
         for (work, &line) in self.lines.iter_mut().zip(&network.lines) {
-            if let Some(partings) = &model.lines[line].parting {
-                work.part_ends(partings, t, step);
+            if let Some(releases) = &model.lines[line].release {
+                work.release_ends(releases, t, step);
             }
             work.pull();
-            work.weigh_reel();
+            work.weigh_end_segment();
         }
         if !self.points.is_empty() {
             self.step_points(model, network, t, step);
@@ -294,10 +294,10 @@ impl NetworkWork {
     }
 
     /// Sets the paths of the winches, by the line they pay out, from `t` [s] on; after [`Self::put_ends`].
-    pub fn start_reels(&mut self, network: &Network, state: &State, paths: &[AxisPath], step: Step) {
+    pub fn start_winches(&mut self, network: &Network, state: &State, paths: &[AxisPath], step: Step) {
         for (work, &line) in self.lines.iter_mut().zip(&network.lines) {
             let fresh = state.lines[line].half_step.is_unset();
-            work.start_reel(paths.get(line), state.time, fresh, step);
+            work.start_winch(paths.get(line), state.time, fresh, step);
         }
     }
 
@@ -360,7 +360,7 @@ impl NetworkWork {
             self.springs.clear();
             self.springs.extend(Spring::new(load.contact, bed.height, step));
             for &(at, end) in &self.attached[free] {
-                if self.lines[at].is_parted(end) {
+                if self.lines[at].is_released(end) {
                     continue;
                 }
                 let brought = self.lines[at].end_load(end, now);
@@ -372,7 +372,7 @@ impl NetworkWork {
             let Kicked { velocity, .. } = kicked;
             if model.energy_balance {
                 let way = step.kick * 0.5 * (last + velocity);
-                let by_water = load.press.dot(&way) + step.kick * load.current_power;
+                let by_water = load.froude_krylov.dot(&way) + step.kick * load.current_power;
                 self.point_flow.external_work += point.load_at(t).dot(&way) + by_water;
                 self.point_flow.dissipation +=
                     (load.force - load.resistance).dot(&way) + step.kick * load.current_power;
@@ -382,7 +382,7 @@ impl NetworkWork {
             state.acceleration = (velocity - last) / step.kick;
             state.position += step.drift * velocity;
             if state.anchor.is_some() {
-                let held = kicked.rub / (step.kick * point_stick(law));
+                let held = kicked.friction / (step.kick * point_stick(law));
                 state.anchor = Some(state.position + held);
             }
         }
@@ -413,17 +413,17 @@ fn load_in_water(
     let at = law.at(height - surface);
     let stream = model.stream(t);
     let mut water = stream.map_or(Vector3::zeros(), |stream| stream.velocity(height));
-    let (mut press, mut weight) = (Vector3::zeros(), at.weight);
+    let (mut froude_krylov, mut weight) = (Vector3::zeros(), at.weight);
     if let Some(orbit) = &waves {
         water += orbit.velocity;
         weight = law.at(height).weight;
-        press = law.pressed(at.wetted, orbit) + (weight - at.weight) * Vector3::z();
+        froude_krylov = law.froude_krylov(at.wetted, orbit) + (weight - at.weight) * Vector3::z();
     }
     let drag = law.drag(at.wetted, now - water);
     EndLoad {
-        force: point.load_at(t) - weight * Vector3::z() + drag + press,
+        force: point.load_at(t) - weight * Vector3::z() + drag + froude_krylov,
         resistance: drag,
-        press,
+        froude_krylov,
         current_power: drag.dot(&water),
         mass: at.mass * Matrix3::identity(),
         contact: law.contact.map_or([0.0; 3], |contact| {
@@ -468,7 +468,7 @@ impl EndLoad {
     fn add(&mut self, other: &EndLoad) {
         self.force += other.force;
         self.resistance += other.resistance;
-        self.press += other.press;
+        self.froude_krylov += other.froude_krylov;
         self.current_power += other.current_power;
         self.mass += other.mass;
     }
@@ -492,21 +492,21 @@ impl EndLoad {
         let Some(inverse) = mass.try_inverse() else {
             return Kicked {
                 velocity: last,
-                rub: zero,
+                friction: zero,
             };
         };
         let velocity = last + step.kick * inverse * self.force.component_mul(&free);
         let response = inverse * bed.normal.component_mul(&free);
         let mut push = pushed(velocity, response, springs, bed, step);
-        let mut rub = zero;
-        if let (Some(friction), true) = (bed.friction, push > 0.0) {
+        let mut friction = zero;
+        if let (Some(law), true) = (bed.friction, push > 0.0) {
             let sliding = Sliding::new(bed.normal, &inverse, &free);
             let scale = push;
             for _ in 0..ROUNDS_MAX {
                 let before = push;
-                rub += sliding.rub(velocity + response * push, rub, friction.transverse * push);
+                friction += sliding.friction(velocity + response * push, friction, law.transverse * push);
                 push = pushed(
-                    velocity + inverse * rub.component_mul(&free),
+                    velocity + inverse * friction.component_mul(&free),
                     response,
                     springs,
                     bed,
@@ -518,8 +518,8 @@ impl EndLoad {
             }
         }
         Kicked {
-            velocity: velocity + response * push + inverse * rub.component_mul(&free),
-            rub,
+            velocity: velocity + response * push + inverse * friction.component_mul(&free),
+            friction,
         }
     }
 }
@@ -532,12 +532,12 @@ struct Kicked {
     /// v_{n+½} [m/s].
     velocity: Vector3<f64>,
     /// Impulse of friction [N s].
-    rub: Vector3<f64>,
+    friction: Vector3<f64>,
 }
 
 /// The bed under a point.
 struct Bed<'a> {
-    /// Height of the point over z = 0; over a bed that slopes or rubs, over that along its normal [m].
+    /// Height of the point over z = 0; over a seabed with a slope, soundings or friction, over that along its normal [m].
     height: f64,
     /// Unit normal of the bed, upwards.
     normal: Vector3<f64>,
@@ -607,12 +607,12 @@ impl Sliding {
         }
     }
 
-    /// What must be added to the impulse `rub` so that the point stops, or the impulse is at its limit [N s]; `velocity` [m/s] is without any.
-    fn rub(&self, velocity: Vector3<f64>, rub: Vector3<f64>, limit: f64) -> Vector3<f64> {
+    /// What must be added to the impulse `friction` so that the point stops, or the impulse is at its limit [N s]; `velocity` [m/s] is without any.
+    fn friction(&self, velocity: Vector3<f64>, friction: Vector3<f64>, limit: f64) -> Vector3<f64> {
         let slides = Vector2::from_fn(|i, _| self.axes[i].dot(&velocity));
         let wanted = -self.mass * slides;
         let size = wanted.norm();
         let part = if size > limit { limit / size } else { 1.0 };
-        part * (wanted.x * self.axes[0] + wanted.y * self.axes[1]) - rub
+        part * (wanted.x * self.axes[0] + wanted.y * self.axes[1]) - friction
     }
 }

@@ -36,10 +36,10 @@
 use nalgebra::Vector3;
 
 use super::beam::BeamView;
-use super::creep::{Creeping, Stretching};
 use super::leapfrog::segment_tension;
+use super::viscoelastic::{Stretching, ViscoelasticSegment};
 use crate::elements::shear;
-use crate::model::{Bending, Dry, End, Line, LineState, PointState, Reel, WaterAlong};
+use crate::model::{Bending, Dry, End, Line, LineState, PointState, WaterAlong, WinchState};
 use crate::physics::morison;
 use crate::physics::slender::Slender;
 
@@ -55,9 +55,9 @@ pub fn tension(line: &Line, state: &LineState, i: usize, negative_tension: bool)
         return 0.5 * (closed_form.tension[i] + closed_form.tension[i + 1]);
     }
     let pair = |values: &[Vector3<f64>]| [values[i], values[i + 1]];
-    if let Some(creep) = Creeping::of(line, state, i) {
+    if let Some(viscoelastic) = ViscoelasticSegment::of(line, state, i) {
         let strain = Stretching::of(line, i, pair(&state.position), pair(&state.velocity));
-        return creep.tension(strain, line.compression_max(i), negative_tension);
+        return viscoelastic.tension(strain, line.compression_max(i), negative_tension);
     }
     segment_tension(
         line,
@@ -69,10 +69,10 @@ pub fn tension(line: &Line, state: &LineState, i: usize, negative_tension: bool)
 }
 
 /// What the winch feels of the material that it speeds up and that its half node holds, over −λq [N]: m ℓ̇² + M ℓ̈.
-fn passing(line: &Line, reel: Reel) -> f64 {
+fn passing(line: &Line, winch_state: WinchState) -> f64 {
     let (node, nodes) = (line.segment_count(), &line.nodes);
     let density = nodes.mass[node] / nodes.length[node]; // [kg/m]
-    density * reel.rate.powi(2) + nodes.mass_tangent[node] * reel.acceleration
+    density * winch_state.rate.powi(2) + nodes.mass_tangent[node] * winch_state.acceleration
 }
 
 /// Force [N] of the line on the point at one of its ends, in water that moves or rests, with `moments` [N m] on its ends.
@@ -84,7 +84,7 @@ pub fn end_force(
     (water, moments): (WaterAlong, [Vector3<f64>; 2]),
     negative_tension: bool,
 ) -> Vector3<f64> {
-    if state.parted[usize::from(end == End::B)] {
+    if state.released[usize::from(end == End::B)] {
         return Vector3::zeros();
     }
     if let Some(view) = BeamView::of(line, state) {
@@ -120,8 +120,8 @@ pub fn end_force(
     };
     let pull = tension(line, state, segment, negative_tension) * inward + half.shear(state, segment);
     let mut force = pull + half.load(inward, dry.part);
-    if let (Some(reel), End::B) = (state.reel, end) {
-        force -= passing(line, reel) * chord / line.segments.length[segment];
+    if let (Some(winch_state), End::B) = (state.winch_state, end) {
+        force -= passing(line, winch_state) * chord / line.segments.length[segment];
     }
     force.z -= nodes.weight[node] + dry.weight;
     if let Some(contact) = &nodes.contact {
@@ -170,8 +170,8 @@ impl HalfNode<'_> {
         if nodes.drag.is_some() {
             load += self.drag(velocity - self.flow(), inward, dry);
         }
-        if let (Some(pressed), Some(waves)) = (&nodes.pressed, &self.water.waves) {
-            load += (1.0 - dry) * pressed.force(node, waves.at(node).acceleration, inward);
+        if let (Some(froude_krylov), Some(waves)) = (&nodes.froude_krylov, &self.water.waves) {
+            load += (1.0 - dry) * froude_krylov.force(node, waves.at(node).acceleration, inward);
         }
         if let Some(damping) = &nodes.mass_damping {
             load -= damping[node] * velocity;
@@ -194,7 +194,7 @@ impl HalfNode<'_> {
         // the clamp of the other end turns the next node's segment too
         let is_clamped = |bending: &Bending| bending.joint[far] > 0.0 && next.abs_diff(far) < 2;
         line.segment_count() > 1
-            && state.reel.is_none()
+            && state.winch_state.is_none()
             && !line.bending.as_ref().is_some_and(is_clamped)
             && line.nodes.is_alike(self.node, next)
     }

@@ -1,7 +1,7 @@
 //! The water's surface over the line of a leapfrog: between two steps, weight, drag and mass of the nodes that it crosses are set
 //! to what they are there, so that the kernels need not know of it.
 
-use crate::math::fold::{Field, Fold};
+use crate::math::striping::{Field, Striping};
 use crate::model::{Dry, Line, Nodes, Surface};
 
 /// A line that may pierce the surface, as it lies at t_n.
@@ -30,7 +30,7 @@ pub(super) struct NodeNow {
     /// Drag coefficients across and along the line [N s²/m²].
     pub drag: [f64; 2],
     /// Mass of the water that presses, across and along the line [kg].
-    pub pressed: [f64; 2],
+    pub froude_krylov: [f64; 2],
 }
 
 impl SurfaceNow {
@@ -49,13 +49,13 @@ impl SurfaceNow {
     }
 
     /// Finds what is dry of a line whose nodes are at `position` [m].
-    pub fn find(&mut self, fold: Fold, position: &Field) {
+    pub fn find(&mut self, striping: Striping, position: &Field) {
         for (before, dry) in self.before.iter_mut().zip(&mut self.dry) {
             *before = dry.part;
             *dry = Dry::default();
         }
         for i in 0..self.surface.radius.len() {
-            let heights = [i, i + 1].map(|node| position.get(fold.slot(node)).z - self.level[node]);
+            let heights = [i, i + 1].map(|node| position.get(striping.slot(node)).z - self.level[node]);
             let Some(at) = self.surface.segment(i, heights, 0.0) else {
                 continue;
             };
@@ -68,10 +68,10 @@ impl SurfaceNow {
     }
 
     /// Finds what nodes at `position` [m] would lack in calm water.
-    pub fn find_calm(&mut self, fold: Fold, position: &Field) {
+    pub fn find_calm(&mut self, striping: Striping, position: &Field) {
         self.calm.fill(0.0);
         for i in 0..self.surface.radius.len() {
-            let heights = [i, i + 1].map(|node| position.get(fold.slot(node)).z);
+            let heights = [i, i + 1].map(|node| position.get(striping.slot(node)).z);
             if let Some(at) = self.surface.segment(i, heights, 0.0) {
                 for end in 0..2 {
                     self.calm[i + end] += self.surface.buoyancy[i] * at.parts[end];
@@ -100,10 +100,10 @@ impl SurfaceNow {
             weight: nodes.weight[i] + dry.weight,
             masses: nodes.masses(i, dry.part),
             drag: drag.map_or([0.0; 2], |drag| [wet * drag.normal[i], wet * drag.tangent[i]]),
-            pressed: nodes
-                .pressed
+            froude_krylov: nodes
+                .froude_krylov
                 .as_ref()
-                .map_or([0.0; 2], |pressed| pressed.masses(i, dry.part)),
+                .map_or([0.0; 2], |masses| masses.masses(i, dry.part)),
         }
     }
 

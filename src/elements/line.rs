@@ -3,9 +3,9 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::joint::Parts;
-use super::released::Parted;
+use super::released::Released;
 use super::segment::StepEnd;
-use super::viscoelastic::CreepWork;
+use super::viscoelastic::ViscoelasticWork;
 use super::{BendingWork, StaticCase, Stretch, Weights, surface};
 use crate::math::block_banded::Chain;
 use crate::model::{Dry, Line, LineState, Model, WaterAlong};
@@ -53,11 +53,11 @@ pub(crate) struct LineWork {
     /// Normal force that friction at rest may go by, per node [N]; empty like `rubbed`.
     pub pressed: Vec<f64>,
     /// Memory of viscoelastic segments, where the line has any.
-    pub(super) creep: Option<CreepWork>,
+    pub(super) viscoelastic: Option<ViscoelasticWork>,
     /// True where ends A and B are released from their points.
-    pub(super) parted: [bool; 2],
+    pub(super) released: [bool; 2],
     /// Blocks of the last elimination of released ends.
-    pub(super) loose: Option<Parted>,
+    pub(super) loose: Option<Released>,
     /// Elimination where nothing bends.
     pub(super) chain: Chain<false>,
 }
@@ -113,8 +113,8 @@ impl LineWork {
             bending: line.bending.as_ref().map(|_| BendingWork::new(n + 1)),
             rubbed: vec![Vector3::zeros(); line.bottom().map_or(0, |_| n + 1)],
             pressed: vec![0.0; line.bottom().map_or(0, |_| n + 1)],
-            creep: CreepWork::new(line),
-            parted: [false; 2],
+            viscoelastic: ViscoelasticWork::new(line),
+            released: [false; 2],
             loose: None,
             chain: Chain::new(n + 1),
         }
@@ -262,7 +262,7 @@ impl LineWork {
         if line.nodes.drag.is_some() {
             self.add_drag::<TANGENT>(line, state, water, weights);
         }
-        self.add_press(line, state, water, weights);
+        self.add_froude_krylov(line, state, water, weights);
         if line.nodes.contact.is_some() {
             self.add_contact::<TANGENT>(line, state, weights);
         }
@@ -365,8 +365,8 @@ impl LineWork {
     }
 
     /// Force of water that waves accelerate; it does not depend on the state but by the tangent, which is frozen.
-    fn add_press(&mut self, line: &Line, state: &LineState, water: WaterAlong, weights: &Weights) {
-        let (Some(pressed), Some(waves)) = (&line.nodes.pressed, &water.waves) else {
+    fn add_froude_krylov(&mut self, line: &Line, state: &LineState, water: WaterAlong, weights: &Weights) {
+        let (Some(pressed), Some(waves)) = (&line.nodes.froude_krylov, &water.waves) else {
             return;
         };
         for i in 0..self.residual.len() {

@@ -290,7 +290,7 @@ impl Workspace {
         for_free_points(model, network, |index, free| {
             let mut total = self.points[index].residual;
             for &(line, end) in &model.points[index].attached {
-                if self.lines[line].parted[usize::from(end == End::B)] {
+                if self.lines[line].released[usize::from(end == End::B)] {
                     continue;
                 }
                 total += self.lines[line].residual[model.lines[line].end_node(end)];
@@ -324,11 +324,11 @@ impl Workspace {
         for &index in &network.lines {
             let work = &mut self.lines[index];
             let [a, b] = model.lines[index].ends.map(|point| self.points[point].slot);
-            let [a, b] = [a.filter(|_| !work.parted[0]), b.filter(|_| !work.parted[1])];
-            let Some(ends) = work.eliminate(a.is_some() || work.parted[0], pivots) else {
+            let [a, b] = [a.filter(|_| !work.released[0]), b.filter(|_| !work.released[1])];
+            let Some(ends) = work.eliminate(a.is_some() || work.released[0], pivots) else {
                 return false;
             };
-            let Some(ends) = work.eliminate_parted(ends) else {
+            let Some(ends) = work.eliminate_released(ends) else {
                 return false;
             };
             if let Some(a) = a {
@@ -392,10 +392,10 @@ impl Workspace {
     pub(crate) fn fade_dampers(&mut self, model: &Model, network: &Network, state: &State, dt: f64) {
         for &index in &network.lines {
             self.lines[index].fade_dampers(&model.lines[index], &state.lines[index], dt);
-            self.lines[index].parted = state.lines[index].parted;
+            self.lines[index].released = state.lines[index].released;
             self.lines[index].begin(&model.lines[index], &state.lines[index]);
-            if let Some(creep) = &mut self.lines[index].creep {
-                creep.begin(&model.lines[index], &state.lines[index], dt);
+            if let Some(viscoelastic) = &mut self.lines[index].viscoelastic {
+                viscoelastic.begin(&model.lines[index], &state.lines[index], dt);
             }
         }
         for_free_points(model, network, |index, free| {
@@ -432,10 +432,10 @@ impl Workspace {
     }
 
     /// Takes the memory of viscoelastic lines to the end of a step, where the nodes now are.
-    pub(crate) fn creep(&self, model: &Model, network: &Network, state: &mut State) {
+    pub(crate) fn relax_segments(&self, model: &Model, network: &Network, state: &mut State) {
         for &index in &network.lines {
-            if let Some(creep) = &self.lines[index].creep {
-                creep.finish(&model.lines[index], &mut state.lines[index]);
+            if let Some(viscoelastic) = &self.lines[index].viscoelastic {
+                viscoelastic.finish(&model.lines[index], &mut state.lines[index]);
             }
         }
     }

@@ -42,9 +42,9 @@ impl Place {
 pub(crate) fn place_ends(model: &Model, network: &Network, state: &mut State) {
     for &index in &network.lines {
         let line = &model.lines[index];
-        let parted = state.lines[index].parted;
+        let released = state.lines[index].released;
         let ends = line.ends.into_iter().zip([0, line.segment_count()]);
-        for ((point, node), _) in ends.zip(parted).filter(|(_, parted)| !parted) {
+        for ((point, node), _) in ends.zip(released).filter(|(_, released)| !released) {
             let (point, nodes) = (&state.points[point], &mut state.lines[index]);
             nodes.position[node] = point.position;
             nodes.velocity[node] = point.velocity;
@@ -60,8 +60,8 @@ pub(crate) fn copy_network(model: &Model, network: &Network, from: &State, to: &
         to_line.position.clone_from(&from_line.position);
         to_line.velocity.clone_from(&from_line.velocity);
         to_line.acceleration.clone_from(&from_line.acceleration);
-        to_line.creep.clone_from(&from_line.creep);
-        to_line.parted = from_line.parted;
+        to_line.viscoelastic.clone_from(&from_line.viscoelastic);
+        to_line.released = from_line.released;
         to_line.beam.clone_from(&from_line.beam);
         to_line.anchor.clone_from(&from_line.anchor);
         to_line.closed_form.clone_from(&from_line.closed_form);

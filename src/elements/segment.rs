@@ -22,7 +22,7 @@ pub(crate) fn stretched(line: &Line, state: &LineState, i: usize) -> Stretched {
     let [low, high] = [i, i + 1].map(|node| state.position[node]);
     let g = Geometry::new(low, high, line.segments.length[i]);
     let mut spring = line.spring(i, g.strain);
-    let memory = line.segments.viscoelastic.as_ref().zip(state.creep.get(i));
+    let memory = line.segments.viscoelastic.as_ref().zip(state.viscoelastic.get(i));
     if let Some((laws, slow)) = memory {
         let elastic = laws[i].elastic(g.strain, *slow);
         spring.tension = elastic.max(0.0 - line.compression_max(i));
@@ -44,7 +44,7 @@ pub(crate) fn stretch_step(
     let ends = states.map(|state| stretched(line, state, i));
     let [before, after] = ends.each_ref();
     let memory = line.segments.viscoelastic.as_ref();
-    let mean = match memory.zip(states[0].creep.get(i)) {
+    let mean = match memory.zip(states[0].viscoelastic.get(i)) {
         Some((laws, slow)) => {
             let strains = [before.spring.strain, after.spring.strain];
             laws[i].step(strains, *slow, step).mean
@@ -100,8 +100,8 @@ impl LineWork {
         strain: f64,
         when: Stretch,
     ) -> Response {
-        match &self.creep {
-            Some(creep) => creep.respond(line, state, i, strain, when),
+        match &self.viscoelastic {
+            Some(viscoelastic) => viscoelastic.respond(line, state, i, strain, when),
             None => {
                 let spring = line.uncut_spring(i, strain);
                 Response {
@@ -133,8 +133,8 @@ impl LineWork {
         let pulls = end.keeps || response.elastic > least;
         after.spring.tension = if pulls { response.elastic } else { least };
         after.spring.slope = if pulls { response.tangent } else { 0.0 };
-        let mean = match &self.creep {
-            Some(creep) if creep.moves => creep.mean(i, g.strain, end.keeps),
+        let mean = match &self.viscoelastic {
+            Some(viscoelastic) if viscoelastic.moves => viscoelastic.mean(i, g.strain, end.keeps),
             _ if end.keeps => Mean::of_tensions(&start.spring, &after.spring),
             _ => Mean::of_spring(&start.spring, &after.spring),
         };

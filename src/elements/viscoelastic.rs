@@ -9,7 +9,7 @@ use crate::physics::viscoelastic::Viscoelastic;
 
 /// Viscoelastic internal variables of a line in a step.
 #[derive(Debug, Clone)]
-pub(super) struct CreepWork {
+pub(super) struct ViscoelasticWork {
     laws: Vec<Viscoelastic>,
     /// Strain and slow strain of every segment at the start of the step [-].
     start: Vec<[f64; 2]>,
@@ -19,11 +19,11 @@ pub(super) struct CreepWork {
     pub moves: bool,
 }
 
-impl CreepWork {
+impl ViscoelasticWork {
     /// Scratch for a line; `None` where it is not viscoelastic.
-    pub fn new(line: &Line) -> Option<CreepWork> {
+    pub fn new(line: &Line) -> Option<ViscoelasticWork> {
         let laws = line.segments.viscoelastic.clone()?;
-        Some(CreepWork {
+        Some(ViscoelasticWork {
             start: vec![[0.0; 2]; laws.len()],
             laws,
             dt: 0.0,
@@ -34,7 +34,7 @@ impl CreepWork {
     /// Begins a step of `dt` [s] from a state.
     pub fn begin(&mut self, line: &Line, state: &LineState, dt: f64) {
         self.dt = dt;
-        self.moves = !state.creep.is_empty();
+        self.moves = !state.viscoelastic.is_empty();
         for (i, start) in self.start.iter_mut().enumerate() {
             *start = [strain(line, state, i), memory(state, i)];
         }
@@ -43,7 +43,7 @@ impl CreepWork {
     /// Force and slope of segment `i` at a strain [-]: at the end of the step, or of the state as it is.
     #[inline(always)]
     pub fn respond(&self, line: &Line, state: &LineState, i: usize, strain: f64, when: Stretch) -> Response {
-        if state.creep.is_empty() {
+        if state.viscoelastic.is_empty() {
             let ea = line.segments.axial_stiffness[i];
             return Response {
                 elastic: ea * strain,
@@ -54,8 +54,8 @@ impl CreepWork {
         let law = &self.laws[i];
         let (slow, slope) = if when == Stretch::OverStep {
             let [before, slow] = self.start[i];
-            let creep = law.step([before, strain], slow, self.dt);
-            (creep.slow, creep.slow_slope)
+            let viscoelastic = law.step([before, strain], slow, self.dt);
+            (viscoelastic.slow, viscoelastic.slow_slope)
         } else {
             (memory(state, i), 0.0)
         };
@@ -79,12 +79,12 @@ impl CreepWork {
 
     /// Puts the memory at the end of the step into the state, whose nodes are there.
     pub fn finish(&self, line: &Line, state: &mut LineState) {
-        if state.creep.is_empty() {
+        if state.viscoelastic.is_empty() {
             return;
         }
         for (i, law) in self.laws.iter().enumerate() {
             let [before, slow] = self.start[i];
-            state.creep[i] = law.step([before, strain(line, state, i)], slow, self.dt).slow;
+            state.viscoelastic[i] = law.step([before, strain(line, state, i)], slow, self.dt).slow;
         }
     }
 }
@@ -95,5 +95,5 @@ fn strain(line: &Line, state: &LineState, i: usize) -> f64 {
 }
 
 fn memory(state: &LineState, i: usize) -> f64 {
-    state.creep.get(i).copied().unwrap_or(0.0)
+    state.viscoelastic.get(i).copied().unwrap_or(0.0)
 }

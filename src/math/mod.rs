@@ -4,8 +4,6 @@ pub mod attitude;
 pub mod block_banded;
 pub mod eigen;
 pub mod elementary;
-pub mod fold;
-pub mod folded_tridiagonal;
 pub mod hermite;
 pub mod lanes;
 pub mod low_pass;
@@ -15,6 +13,8 @@ pub mod real;
 pub mod rotation;
 pub mod shape_preserving;
 pub mod sparse_blocks;
+pub mod striped_tridiagonal;
+pub mod striping;
 #[cfg(test)]
 pub(crate) mod tests;
 pub mod unit;

@@ -12,8 +12,8 @@ use nalgebra::Vector3;
 
 use self::reach::may_touch_bed;
 use super::{
-    Bending, Bottom, Contact, Current, Drag, End, FreePoint, Line, Model, Motion, Network, Nodes, Parting,
-    Point, PointContact, Pressed, Role, Section, Segments, Surface, Vessel, Winch, mesh,
+    Bending, Bottom, Contact, Current, Drag, End, FreePoint, FroudeKrylov, Line, Model, Motion, Network,
+    Nodes, Point, PointContact, Release, Role, Section, Segments, Surface, Vessel, Winch, mesh,
 };
 use crate::physics::bending;
 use crate::physics::flow::Profile;
@@ -126,7 +126,7 @@ const STICK: f64 = 10.0;
 /// Gives a line the bed's surface.
 fn lay_on(line: &mut Line, bottom: Option<&Arc<Bottom>>) {
     if let Some(winch) = &mut line.winch {
-        lay_on(winch.reel_mut(), bottom);
+        lay_on(winch.longest_mut(), bottom);
     }
     let springs: Vec<f64> = line
         .segments
@@ -445,7 +445,7 @@ fn build_line(
         sections: sections.collect(),
         initial: line.initial.clone(),
         beam,
-        parting: partings(line),
+        release: releases(line),
         winch: None,
     };
     if let (Some(winch), Some(segments)) = (&line.winch, reeled) {
@@ -487,11 +487,11 @@ fn reel(
 /// A line on a winch as it is at no change of its length, out of the line with all that can be paid out.
 fn on_winch(
     index: usize,
-    reel: Line,
+    winch_state: Line,
     segments: [usize; 2],
     winch: &scene::Winch,
 ) -> Result<Line, SceneError> {
-    if reel.uniform_law().is_none() {
+    if winch_state.uniform_law().is_none() {
         return Err(SceneError::new(
             format!("lines[{index}].winch"),
             "a line on a winch has one strain measure all along",
@@ -503,8 +503,8 @@ fn on_winch(
             "a line on a winch needs at least 2 elements",
         ));
     }
-    let mut line = reel.clone();
-    line.winch = Some(Winch::new(reel, segments, winch));
+    let mut line = winch_state.clone();
+    line.winch = Some(Winch::new(winch_state, segments, winch));
     line.pay_out(segments[1], 0.0);
     Ok(line)
 }
@@ -519,17 +519,17 @@ fn segment_parts<'a>(laws: &'a [LineLaw], lengths: &[Vec<f64>]) -> Vec<SegmentPa
 }
 
 /// When the ends of a line part from their points.
-fn partings(line: &scene::Line) -> Option<[Parting; 2]> {
-    let mut partings = [Parting::default(); 2];
+fn releases(line: &scene::Line) -> Option<[Release; 2]> {
+    let mut releases = [Release::default(); 2];
     let side = |end: LineEnd| usize::from(end == LineEnd::B);
     if let Some(end) = line.release {
-        partings[side(end)].on_release = true;
+        releases[side(end)].on_release = true;
     }
-    if let Some(parting) = &line.parting {
-        let end = &mut partings[side(parting.at)];
-        (end.tension, end.time) = (parting.tension, parting.time);
+    if let Some(failure) = &line.failure {
+        let end = &mut releases[side(failure.at)];
+        (end.tension, end.time) = (failure.tension, failure.time);
     }
-    (line.release.is_some() || line.parting.is_some()).then_some(partings)
+    (line.release.is_some() || line.failure.is_some()).then_some(releases)
 }
 
 /// Refuses a viscoelastic section beside one of another strain measure.
@@ -631,7 +631,7 @@ fn nodes(scene: &Scene, parts: &[SegmentPart], may_touch_bed: bool) -> Nodes {
         tangent: lump(&|law| law.drag.map_or(0.0, |drag| drag.tangent)),
     });
     let waves = scene.water.as_ref().is_some_and(|w| w.waves.is_some());
-    let pressed = (waves && any(&|law| law.displaced > 0.0)).then(|| Pressed {
+    let froude_krylov = (waves && any(&|law| law.displaced > 0.0)).then(|| FroudeKrylov {
         normal: lump(&|law| law.displaced + law.added_normal),
         tangent: lump(&|law| law.displaced + law.added_tangent),
     });
@@ -655,7 +655,7 @@ fn nodes(scene: &Scene, parts: &[SegmentPart], may_touch_bed: bool) -> Nodes {
         length,
         weight,
         drag,
-        pressed,
+        froude_krylov,
         contact,
     }
 }

@@ -39,7 +39,7 @@ pub use build::line_shares;
 pub use motion::{Derivatives, Kinematics, Motion, Pose};
 pub use moving::Moving;
 pub use sea::{WaterAlong, WaveSpan, WaveSpans, WavesAlong};
-pub use state::{ClosedForm, LineState, PointState, Reel, State};
+pub use state::{ClosedForm, LineState, PointState, State, WinchState};
 pub use surface::{Dry, Surface};
 pub use vessel::{Frame, Vessel};
 pub use winch::{LONGEST, Passage, SHORTEST, Winch};
@@ -229,30 +229,30 @@ pub struct Line {
     /// What makes it a beam, where it is one.
     pub beam: Option<Beam>,
     /// When ends A and B part from their points, where one of them may.
-    pub parting: Option<[Parting; 2]>,
+    pub release: Option<[Release; 2]>,
     /// The winch at end B, where it is on one; the line is then laid out as it is at present.
     pub winch: Option<Winch>,
 }
 
 /// When an end of a line parts from its point.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Parting {
+pub struct Release {
     /// Tension of the end's segment that parts it [N].
     pub tension: Option<f64>,
-    /// Time from which on it is parted [s].
+    /// Time from which on it is released [s].
     pub time: Option<f64>,
     /// Whether the host's input parts it.
     pub on_release: bool,
 }
 
-impl Parting {
+impl Release {
     /// Whether anything may part the end.
-    pub fn may_part(&self) -> bool {
+    pub fn may_release(&self) -> bool {
         self.tension.is_some() || self.time.is_some() || self.on_release
     }
 
     /// Whether an end under a tension [N] at time `t` [s] parts by itself.
-    pub fn parts(&self, tension: f64, t: f64) -> bool {
+    pub fn is_due(&self, tension: f64, t: f64) -> bool {
         self.tension.is_some_and(|most| tension >= most) || self.time.is_some_and(|time| t >= time)
     }
 }
@@ -303,7 +303,7 @@ pub struct Nodes {
     /// Drag, where there is water and a coefficient.
     pub drag: Option<Drag>,
     /// What the water presses with where waves accelerate it.
-    pub pressed: Option<Pressed>,
+    pub froude_krylov: Option<FroudeKrylov>,
     /// Contact, where there is a seabed in reach.
     pub contact: Option<Contact>,
     /// Mass-proportional damping α·m [N s/m], where a line type has it.
@@ -323,7 +323,7 @@ pub struct Drag {
 /// Krylov), and the added mass. Across the line ρA(1 + C_an)l, along it ρA(1 + C_at)l, since the pressure that the effective tension leaves
 /// out acts along the line too.
 #[derive(Debug, Clone)]
-pub struct Pressed {
+pub struct FroudeKrylov {
     /// Across the line [kg].
     pub normal: Vec<f64>,
     /// Along the line [kg].
@@ -341,7 +341,7 @@ impl Drag {
     }
 }
 
-impl Pressed {
+impl FroudeKrylov {
     /// Force [N] on a node whose unit tangent is `tangent` [-], by water of an acceleration [m/s²].
     #[inline]
     pub fn force(&self, node: usize, acceleration: Vector3<f64>, tangent: Vector3<f64>) -> Vector3<f64> {
@@ -459,15 +459,15 @@ impl Line {
         }
     }
 
-    /// Whether an end is held: by a point that forces do not move, and that it has not parted from.
+    /// Whether an end is held: by a point that forces do not move, and that it has not released from.
     pub fn is_held(&self, model: &Model, state: &LineState, end: End) -> bool {
         let side = usize::from(end == End::B);
-        model.points[self.ends[side]].free().is_none() && !state.parted[side]
+        model.points[self.ends[side]].free().is_none() && !state.released[side]
     }
 
     /// Whether waves act on it.
     pub fn heaves(&self, model: &Model) -> bool {
-        model.waves.is_some() && (self.nodes.drag.is_some() || self.nodes.pressed.is_some())
+        model.waves.is_some() && (self.nodes.drag.is_some() || self.nodes.froude_krylov.is_some())
     }
 
     /// Index of the node at an end.
@@ -542,7 +542,7 @@ impl FreePoint {
 
     /// Force [N] of the water that waves accelerate, where it is wet.
     #[inline]
-    pub fn pressed(&self, wetted: Wetted, orbit: &Orbit) -> Vector3<f64> {
+    pub fn froude_krylov(&self, wetted: Wetted, orbit: &Orbit) -> Vector3<f64> {
         let sphere = self.sphere.as_ref();
         let mass = sphere.map_or(0.0, |sphere| sphere.displaced + sphere.added_mass);
         mass * wetted.part * orbit.acceleration
@@ -561,7 +561,7 @@ impl FreePoint {
         let mut sum = load - at.weight * Vector3::z();
         if let Some(orbit) = &waves {
             past -= orbit.velocity;
-            sum += self.pressed(at.wetted, orbit);
+            sum += self.froude_krylov(at.wetted, orbit);
         }
         if let Some(sphere) = &self.sphere {
             sum += sphere.drag(at.wetted, past);

@@ -51,20 +51,20 @@ pub struct LineState {
     /// The rest of the closed-form catenary that the nodes lie on; kept by quasi-static networks only.
     pub closed_form: Option<ClosedForm>,
     /// Strain of the slow part of every segment [-]; empty unless the line is viscoelastic and in motion.
-    pub creep: Vec<f64>,
-    /// Whether ends A and B have parted from their points.
-    pub parted: [bool; 2],
+    pub viscoelastic: Vec<f64>,
+    /// Whether ends A and B have released from their points.
+    pub released: [bool; 2],
     /// What the nodes of a beam have beside positions and velocities.
     pub beam: Option<BeamState>,
     /// Where the nodes would lie if the friction of the bed let go of them [m]; empty without friction.
     pub anchor: Vec<Vector3<f64>>,
     /// How far its winch is, where it is on one.
-    pub reel: Option<Reel>,
+    pub winch_state: Option<WinchState>,
 }
 
 /// How far the winch of a line is.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Reel {
+pub struct WinchState {
     /// Length paid out beyond that at no change [m].
     pub change: f64,
     /// Its rate [m/s].
@@ -75,10 +75,10 @@ pub struct Reel {
     pub half_step: [f64; 2],
 }
 
-impl Reel {
+impl WinchState {
     /// At rest at a length change [m].
-    pub fn at_rest(change: f64) -> Reel {
-        Reel {
+    pub fn at_rest(change: f64) -> WinchState {
+        WinchState {
             change,
             rate: 0.0,
             acceleration: 0.0,
@@ -121,7 +121,7 @@ pub struct HalfStep {
     /// Tensions of the segments' springs at t − Δt and t − 2Δt as if they pushed too [N]; kept by the axial-implicit leapfrog only.
     pub tension: [Vec<f64>; 2],
     /// Slow strains of viscoelastic segments at t − Δt/2 [-]; none before the first step.
-    pub creep: Vec<f64>,
+    pub viscoelastic: Vec<f64>,
 }
 
 impl HalfStep {
@@ -195,11 +195,11 @@ impl LineState {
 
     /// Gives a viscoelastic line at rest on its positions the slow strains that belong to them.
     pub fn become_viscoelastic(&mut self, line: &Line) {
-        self.creep.clear();
+        self.viscoelastic.clear();
         if let Some(laws) = &line.segments.viscoelastic {
             let chords = self.position.windows(2).map(|pair| (pair[1] - pair[0]).norm());
             let strains = chords.zip(&line.segments.length).map(|(l, l0)| l / l0 - 1.0);
-            self.creep
+            self.viscoelastic
                 .extend(laws.iter().zip(strains).map(|(law, strain)| law.rest(strain)));
         }
     }
@@ -213,11 +213,11 @@ impl LineState {
             position,
             half_step: HalfStep::default(),
             closed_form: None,
-            creep: Vec::new(),
-            parted: [false; 2],
+            viscoelastic: Vec::new(),
+            released: [false; 2],
             beam: None,
             anchor: Vec::new(),
-            reel: None,
+            winch_state: None,
         }
     }
 }
@@ -249,11 +249,11 @@ clone_in_place!(LineState {
     acceleration,
     half_step,
     closed_form,
-    creep,
-    parted,
+    viscoelastic,
+    released,
     beam,
     anchor,
-    reel
+    winch_state
 });
 clone_in_place!(ClosedForm {
     tension,
@@ -268,7 +268,7 @@ clone_in_place!(ClosedForm {
 clone_in_place!(HalfStep {
     velocity,
     velocity_before,
-    creep,
+    viscoelastic,
     steps,
     tension
 });

@@ -49,7 +49,7 @@ pub struct Viscoelastic {
 
 /// What a step comes to.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct CreepStep {
+pub struct ViscoelasticStep {
     /// Slow strain ε₁' at its end [-].
     pub slow: f64,
     /// Its slope with the strain at the end of the step [-].
@@ -103,11 +103,11 @@ impl Series {
     }
 
     /// The step at whose end the parts have these strains [-], as the fast one pulls.
-    fn step(&self, after: [f64; 2], fast: Pull) -> CreepStep {
+    fn step(&self, after: [f64; 2], fast: Pull) -> ViscoelasticStep {
         let slow_slope = fast.slope / (self.pull + fast.slope);
         let moved = [0, 1].map(|part| after[part] - self.before[part]);
         let pulled = after[1].max(0.0) - self.before[1].max(0.0);
-        CreepStep {
+        ViscoelasticStep {
             slow: after[0],
             slow_slope,
             mean: Mean {
@@ -237,7 +237,7 @@ impl Viscoelastic {
     }
 
     /// A step of `dt` [s] between two strains [-].
-    pub fn step(&self, strains: [f64; 2], slow: f64, dt: f64) -> CreepStep {
+    pub fn step(&self, strains: [f64; 2], slow: f64, dt: f64) -> ViscoelasticStep {
         if self.yielding == 0.0 {
             return self.plain_step(strains, gradient(self.fast, strains), dt);
         }
@@ -276,18 +276,18 @@ impl Viscoelastic {
         let damps = if after > 0.0 { damper } else { 0.0 };
         let slope = gradient(self.fast, [before, after]).slope + damps;
         let tension = pulls(after);
-        let crept = (tension - series.offset) / series.pull;
-        series.step([crept, after], Pull { tension, slope })
+        let relaxed = (tension - series.offset) / series.pull;
+        series.step([relaxed, after], Pull { tension, slope })
     }
 
     /// A step as if the fast part could push at its end, which is what [`Viscoelastic::step`] comes to where it pulls throughout.
-    pub fn held(&self, strains: [f64; 2], slow: f64, dt: f64) -> CreepStep {
+    pub fn held(&self, strains: [f64; 2], slow: f64, dt: f64) -> ViscoelasticStep {
         let (damper, stiffness) = (self.fast_damping / dt, 0.5 * self.fast);
         let slope = stiffness + damper;
         let before = (strains[0] - slow).max(0.0);
         let kept = (stiffness - damper) * before;
         if self.yielding == 0.0 {
-            return CreepStep {
+            return ViscoelasticStep {
                 slow: 0.0,
                 slow_slope: 0.0,
                 mean: Mean {
@@ -298,14 +298,14 @@ impl Viscoelastic {
             };
         }
         let series = Series::of(self, strains[0], slow, dt);
-        let crept = (kept + slope * strains[1] - series.offset) / (series.pull + slope);
-        let after = strains[1] - crept;
+        let relaxed = (kept + slope * strains[1] - series.offset) / (series.pull + slope);
+        let after = strains[1] - relaxed;
         let tension = kept + slope * after;
-        series.step([crept, after], Pull { tension, slope })
+        series.step([relaxed, after], Pull { tension, slope })
     }
 
     /// A step without memory, of a spring that has a mean tension.
-    fn plain_step(&self, strains: [f64; 2], spring: Mean, dt: f64) -> CreepStep {
+    fn plain_step(&self, strains: [f64; 2], spring: Mean, dt: f64) -> ViscoelasticStep {
         let pulled = strains.map(|strain| strain.max(0.0));
         let (damper, change) = (self.fast_damping / dt, strains[1] - strains[0]);
         let damped = damper * (pulled[1] - pulled[0]);
@@ -313,7 +313,7 @@ impl Viscoelastic {
             return self.slack(strains, [0.0; 2]);
         }
         let damps = if strains[1] > 0.0 { damper } else { 0.0 };
-        CreepStep {
+        ViscoelasticStep {
             slow: 0.0,
             slow_slope: 0.0,
             mean: Mean {
@@ -325,8 +325,8 @@ impl Viscoelastic {
     }
 
     /// A step in which nothing is carried, between two strains of the rope and of its slow part [-].
-    fn slack(&self, [before, after]: [f64; 2], slow: [f64; 2]) -> CreepStep {
-        CreepStep {
+    fn slack(&self, [before, after]: [f64; 2], slow: [f64; 2]) -> ViscoelasticStep {
+        ViscoelasticStep {
             slow: slow[1],
             slow_slope: 0.0,
             mean: Mean {
@@ -378,16 +378,16 @@ mod tests {
         let [mut storage, mut loss] = [0.0; 2];
         let settled = (40.0 / (omega * 2.0)).ceil() as usize + 3;
         for k in 0..(settled + 1) * steps {
-            let crept = law.step([strain(k), strain(k + 1)], slow, dt).slow;
+            let relaxed = law.step([strain(k), strain(k + 1)], slow, dt).slow;
             let rate = (strain(k + 1) - strain(k)) / dt;
             let tension =
-                law.elastic(0.5 * (strain(k) + strain(k + 1)), 0.5 * (slow + crept)) + law.damping * rate;
+                law.elastic(0.5 * (strain(k) + strain(k + 1)), 0.5 * (slow + relaxed)) + law.damping * rate;
             if k >= settled * steps {
                 let phase = omega * (k as f64 + 0.5) * dt;
                 storage += 2.0 / steps as f64 / amplitude * tension * phase.sin();
                 loss += 2.0 / steps as f64 / amplitude * tension * phase.cos();
             }
-            slow = crept;
+            slow = relaxed;
         }
         [storage, loss]
     }

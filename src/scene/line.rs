@@ -34,7 +34,7 @@ table! {
         /// End that is released from its point when the host's input `L.release` becomes true; there is no such input where absent.
         pub release: Option<LineEnd>,
         /// Tension or time at which the line breaks off one of its points.
-        pub parting: Option<Break> => super::table::PLAIN.called("break"),
+        pub failure: Option<Break> => super::table::PLAIN.called("break"),
         /// Winch that pays out and hauls in the line at one of its ends.
         pub winch: Option<Winch>,
     }

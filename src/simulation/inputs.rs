@@ -129,9 +129,9 @@ impl Simulation {
         self.snapshot.inputs.releases[line]
     }
 
-    /// Whether ends A and B of a line have parted from their points.
-    pub fn parted(&self, line: usize) -> [bool; 2] {
-        self.snapshot.state.lines[line].parted
+    /// Whether ends A and B of a line have released from their points.
+    pub fn released(&self, line: usize) -> [bool; 2] {
+        self.snapshot.state.lines[line].released
     }
 
     /// Sets the length that the winch of a line is to have paid out now beyond that of the scene [m], negative where it is to have hauled in.

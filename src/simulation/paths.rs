@@ -6,9 +6,9 @@ use serde::{Deserialize, Serialize};
 
 use super::held::HostEnds;
 use super::inputs::{Inputs, PointInput};
-use super::winches::{self, ReelPath};
+use super::winches::{self, WinchPath};
 use super::{Simulation, Snapshot};
-use crate::dynamics::motion::{Clock, Foresight, HostPath, Said, VesselPath};
+use crate::dynamics::motion::{Clock, Extrapolation, HostPath, InputSample, VesselPath};
 use crate::dynamics::{StepError, StepFailure};
 use crate::math::unit;
 use crate::model::{Line, Model, Point, Role};
@@ -23,7 +23,7 @@ pub(super) struct Paths {
     /// Of the vessels, in the order of the model.
     pub vessels: Vec<VesselPath>,
     /// Lengths that the winches pay out, by line; empty where there are none.
-    pub reels: Vec<ReelPath>,
+    pub winch_paths: Vec<WinchPath>,
 }
 
 impl Clone for Paths {
@@ -32,7 +32,7 @@ impl Clone for Paths {
             clock: self.clock,
             points: self.points.clone(),
             vessels: self.vessels.clone(),
-            reels: self.reels.clone(),
+            winch_paths: self.winch_paths.clone(),
         }
     }
 
@@ -40,7 +40,7 @@ impl Clone for Paths {
         self.clock = source.clock;
         self.points.clone_from(&source.points);
         self.vessels.clone_from(&source.vessels);
-        self.reels.clone_from(&source.reels);
+        self.winch_paths.clone_from(&source.winch_paths);
     }
 }
 
@@ -62,7 +62,7 @@ impl Paths {
             clock: Clock::new(time),
             points: coupled.map(place).collect(),
             vessels: vessels.map(|input| VesselPath::at_rest(input.pose)).collect(),
-            reels: winches::paths(model, &inputs.length_changes, time, follows_scene),
+            winch_paths: winches::paths(model, &inputs.length_changes, time, follows_scene),
         }
     }
 
@@ -72,11 +72,11 @@ impl Paths {
     }
 
     /// Continues the paths of the winches by a step [s].
-    fn extend_reels(
+    fn extend_winch_paths(
         &mut self,
         model: &Model,
         snapshot: &Snapshot,
-        foresight: &Foresight,
+        extrapolation: &Extrapolation,
         step: f64,
     ) -> Result<(), StepError> {
         let (time, changes) = (snapshot.state.time, &snapshot.inputs.length_changes);
@@ -84,15 +84,15 @@ impl Paths {
             Reconstruction::Interpolate => time + step,
             _ => time,
         };
-        for (index, reel) in self.reels.iter_mut().enumerate() {
+        for (index, winch_state) in self.winch_paths.iter_mut().enumerate() {
             let line = &model.lines[index];
             let Some(winch) = &line.winch else { continue };
             match (snapshot.follows_scene, &winch.path) {
-                (true, Some(path)) => reel.follow(path, time, step),
+                (true, Some(path)) => winch_state.follow(path, time, step),
                 _ => {
                     winches::check(line, changes[index])
                         .map_err(|reason| out_of_bounds(line, time, reason))?;
-                    reel.extend(winch.speed_max, [told, changes[index]], foresight);
+                    winch_state.extend(winch.speed_max, [told, changes[index]], extrapolation);
                 }
             }
         }
@@ -106,7 +106,7 @@ struct Extend<'a> {
     before: &'a Paths,
     model: &'a Model,
     inputs: &'a Inputs,
-    foresight: &'a Foresight,
+    extrapolation: &'a Extrapolation,
     /// Becomes where the points are at both ends of the step.
     ends: &'a mut [HostEnds],
 }
@@ -127,14 +127,14 @@ impl NullaryFnOnce for Extend<'_> {
                 break;
             };
             let place: [f64; 3] = (point.reference + Vector3::from(input.displacement)).into();
-            let said = Said::rated(place, input.rates);
-            *ends = path.0.extend(&before.0, self.foresight, &said);
+            let sample = InputSample::rated(place, input.rates);
+            *ends = path.0.extend(&before.0, self.extrapolation, &sample);
         }
         let paths = self.paths.vessels.iter_mut().zip(&self.before.vessels);
         let vessels = self.model.vessels.iter().zip(&self.inputs.vessels);
         for ((path, before), (vessel, input)) in paths.zip(vessels) {
             let rates = input.rates(vessel.attitude);
-            path.extend(before, self.foresight, input.pose, rates);
+            path.extend(before, self.extrapolation, input.pose, rates);
         }
     }
 }
@@ -153,15 +153,15 @@ impl Simulation {
     pub(super) fn extend_paths(&mut self, step: f64) -> Result<(), StepError> {
         let (model, snapshot, paths) = (&*self.model, &self.snapshot, &mut self.paths);
         let before = &snapshot.paths;
-        if snapshot.follows_scene && before.reels.is_empty() {
+        if snapshot.follows_scene && before.winch_paths.is_empty() {
             return Ok(());
         }
-        let (time, foresight) = (snapshot.state.time, &mut self.foresight);
+        let (time, extrapolation) = (snapshot.state.time, &mut self.extrapolation);
         match model.solver.input_reconstruction {
-            Reconstruction::Interpolate => foresight.reach(time, step),
+            Reconstruction::Interpolate => extrapolation.reach(time, step),
             reconstruction => {
                 paths.clock = before.clock;
-                paths.clock.tell(time, step, reconstruction, foresight);
+                paths.clock.tell(time, step, reconstruction, extrapolation);
             }
         }
         if !snapshot.follows_scene {
@@ -171,15 +171,15 @@ impl Simulation {
                 before,
                 model,
                 inputs,
-                foresight,
+                extrapolation,
                 ends: self.held.hosted(),
             });
         }
-        if !before.reels.is_empty() {
-            paths.reels.clone_from(&before.reels);
-            paths.extend_reels(model, snapshot, foresight, step)?;
-            let reels = paths.reels.iter().map(|reel| reel.path);
-            self.work.set_reels(reels);
+        if !before.winch_paths.is_empty() {
+            paths.winch_paths.clone_from(&before.winch_paths);
+            paths.extend_winch_paths(model, snapshot, extrapolation, step)?;
+            let winch_paths = paths.winch_paths.iter().map(|winch_state| winch_state.path);
+            self.work.set_winch_paths(winch_paths);
         }
         Ok(())
     }

@@ -11,7 +11,7 @@ use crate::dynamics::advance::{Counters, Workspace};
 use crate::dynamics::energy_balance::{EnergyBalance, Flow};
 use crate::dynamics::{beam, reaction};
 use crate::elements;
-use crate::model::{End, Line, LineState, Model, PointState, Reel, State};
+use crate::model::{End, Line, LineState, Model, PointState, State, WinchState};
 use crate::physics::stretch::StretchLaw;
 use crate::scene::{InitialShape, Integrator};
 use crate::statics::catenary::{self, Bed, Catenary};
@@ -41,9 +41,9 @@ pub(super) fn begin(
         .map(|point| PointState::held(&held(point, time)))
         .collect();
     let mut state = at_rest(model, time, &places, shapes)?;
-    for ((line, shape), reel) in model.lines.iter().zip(&mut state.lines).zip(&paths.reels) {
-        let change = reel.path.at(time).value;
-        shape.reel = line.winch.as_ref().map(|_| Reel::at_rest(change));
+    for ((line, shape), winch_state) in model.lines.iter().zip(&mut state.lines).zip(&paths.winch_paths) {
+        let change = winch_state.path.at(time).value;
+        shape.winch_state = line.winch.as_ref().map(|_| WinchState::at_rest(change));
     }
     if model.solver.integrator != Integrator::QuasiStatic {
         for (line, shape) in model.lines.iter().zip(&mut state.lines) {

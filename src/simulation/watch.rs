@@ -6,7 +6,7 @@ use left_tables::LeftTables;
 use nalgebra::Vector3;
 
 use super::Simulation;
-use crate::model::{End, Parting};
+use crate::model::{End, Release};
 use crate::scene::{Note, Scene};
 
 /// Part of its unstretched length [-] that the end of a line may move by in one communication step.
@@ -37,7 +37,7 @@ impl Watch {
         let watched = lines.map(|(index, line)| Watched {
             ends: ends(simulation, index),
             strain_max: scene.usual_strain(line),
-            breaks_at: simulation.model.lines[index].parting.and_then(breaking_tension),
+            breaks_at: simulation.model.lines[index].release.and_then(breaking_tension),
         });
         Watch {
             lines: watched.collect(),
@@ -110,9 +110,9 @@ fn jump(
 }
 
 /// End that a tension breaks off its point, and that tension [N]; `None` where no tension does.
-fn breaking_tension(partings: [Parting; 2]) -> Option<(End, f64)> {
-    let ends = [End::A, End::B].into_iter().zip(partings);
-    ends.filter_map(|(end, parting)| Some((end, parting.tension?)))
+fn breaking_tension(releases: [Release; 2]) -> Option<(End, f64)> {
+    let ends = [End::A, End::B].into_iter().zip(releases);
+    ends.filter_map(|(end, release)| Some((end, release.tension?)))
         .next()
 }
 

@@ -4,28 +4,33 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use crate::dynamics::motion::{AxisPath, Foresight};
+use crate::dynamics::motion::{AxisPath, Extrapolation};
 use crate::model::{Line, Model, State, Winch};
 use crate::scene::{SceneError, TimeFunction};
 
 /// The length that a winch pays out.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub(super) struct ReelPath {
+pub(super) struct WinchPath {
     /// Length change [m] in time.
     pub path: AxisPath,
     /// When the winch was told last [s], and what, within its speed [m].
     told: [f64; 2],
 }
 
-impl ReelPath {
+impl WinchPath {
     /// Continues by a communication step from what a host says at a time [s] of the length change [m]; a winch that has a greatest speed
     /// [m/s] lags behind what is faster.
-    pub fn extend(&mut self, speed_max: Option<f64>, [time, wanted]: [f64; 2], foresight: &Foresight) {
+    pub fn extend(
+        &mut self,
+        speed_max: Option<f64>,
+        [time, wanted]: [f64; 2],
+        extrapolation: &Extrapolation,
+    ) {
         let [last, before] = self.told;
         let reach = speed_max.map_or(f64::INFINITY, |speed| speed * (time - last).max(0.0));
         let position = wanted.clamp(before - reach, before + reach);
         self.told = [time, position];
-        self.path.extend(foresight, position, None);
+        self.path.extend(extrapolation, position, None);
     }
 
     /// Continues along the scene's own path from a time [s] by a communication step [s]: through its value there, at its mean rate around it.
@@ -61,7 +66,7 @@ pub(super) fn check(line: &Line, change: f64) -> Result<(), String> {
 }
 
 /// Paths at rest from a time on [s], by line; none where there is no winch.
-pub(super) fn paths(model: &Model, told: &[f64], time: f64, follows_scene: bool) -> Vec<ReelPath> {
+pub(super) fn paths(model: &Model, told: &[f64], time: f64, follows_scene: bool) -> Vec<WinchPath> {
     if model.lines.iter().all(|line| line.winch.is_none()) {
         return Vec::new();
     }
@@ -69,7 +74,7 @@ pub(super) fn paths(model: &Model, told: &[f64], time: f64, follows_scene: bool)
     let path = |(line, told): (&Line, &f64)| {
         let winch = line.winch.as_ref();
         let change = winch.map_or(0.0, |winch| start(winch, *told, follows_scene.then_some(time)));
-        ReelPath {
+        WinchPath {
             path: AxisPath::at_rest(change),
             told: [time, change],
         }
@@ -98,9 +103,9 @@ pub(super) fn lay_out(model: &mut Arc<Model>, told: &[f64], follows: Option<f64>
 /// Lays out the lines on winches as a state has them.
 pub(super) fn follow(model: &mut Arc<Model>, state: &State) {
     for (index, shape) in state.lines.iter().enumerate() {
-        if let (Some(reel), Some(_)) = (shape.reel, &model.lines[index].winch) {
+        if let (Some(winch_state), Some(_)) = (shape.winch_state, &model.lines[index].winch) {
             let line = &mut Arc::make_mut(model).lines[index];
-            line.pay_out(shape.position.len() - 1, reel.change);
+            line.pay_out(shape.position.len() - 1, winch_state.change);
         }
     }
 }

@@ -53,7 +53,7 @@ fn a_chain_that_is_released_at_both_ends_falls_freely() {
         let first = centre(&simulation);
         simulation.set_release(0, true);
         run(&mut simulation, 0.05, 20);
-        assert_eq!(simulation.parted(0), [true, true]);
+        assert_eq!(simulation.released(0), [true, true]);
         assert_relative_eq!(first - centre(&simulation), 0.5 * G, max_relative = 4e-3);
         assert_balanced(&simulation);
     }
@@ -65,14 +65,14 @@ fn a_point_feels_nothing_of_a_line_that_was_released() {
         let mut simulation = started("release = 'b'", integrator, 1e-3);
         assert!(simulation.tension_b(0) > 1e3);
         simulation.advance(0.1).unwrap();
-        assert_eq!(simulation.parted(0), [false, false]);
+        assert_eq!(simulation.released(0), [false, false]);
         simulation.set_release(0, true);
         simulation.advance(0.1).unwrap();
         assert_eq!(simulation.end_force(1), [0.0; 3]);
         assert!(simulation.line_end_force(0, End::A).norm() > 100.0);
         simulation.set_release(0, false);
         simulation.advance(0.1).unwrap();
-        assert_eq!(simulation.parted(0), [false, true], "for good");
+        assert_eq!(simulation.released(0), [false, true], "for good");
     }
 }
 
@@ -92,7 +92,7 @@ fn the_ledger_balances_through_a_break() {
         let lost = simulation.energy_balance().unwrap().flow.dissipation;
         let (jump, error) = ((errors[41] - errors[38]).abs(), errors[119].abs());
         println!("{integrator:?}: jump {jump:.3e}, error {error:.3e}, lost {lost:.3e}");
-        assert_eq!(simulation.parted(0), [false, true]);
+        assert_eq!(simulation.released(0), [false, true]);
         assert!(jump < 5e-3 * lost, "{integrator:?}: {jump} of {lost}");
         assert!(error < 2e-2 * lost, "{integrator:?}: {error} of {lost}");
     }
@@ -105,7 +105,7 @@ fn a_line_breaks_when_its_end_carries_too_much() {
         let keys = format!("break = {{ at = 'b', tension = {} }}", 1.5 * still);
         let mut simulation = started(&keys, integrator, 2e-3);
         let (mut step, mut before) = (0, 0.0);
-        while simulation.parted(0) == [false; 2] {
+        while simulation.released(0) == [false; 2] {
             step += 1;
             before = simulation.tension_b(0);
             let t = 0.05 * f64::from(step);
@@ -115,7 +115,7 @@ fn a_line_breaks_when_its_end_carries_too_much() {
         }
         assert!(step > 10 && before < 1.6 * still, "{step} {before} {still}");
         assert_eq!(simulation.tension_b(0), 0.0);
-        assert_eq!(simulation.parted(0), [false, true]);
+        assert_eq!(simulation.released(0), [false, true]);
     }
 }
 
@@ -156,7 +156,7 @@ fn one_of_two_lines_at_a_free_point_is_released_and_the_other_carries_on() {
             .scene();
         let mut simulation = start(&balanced(with_integrator(scene, integrator, 1e-3)));
         run(&mut simulation, 0.05, 40);
-        assert_eq!(simulation.parted(1), [true, false]);
+        assert_eq!(simulation.released(1), [true, false]);
         let clump = place(&simulation, "clump");
         let [left, right] = [0, 1].map(|line| &simulation.state().lines[line].position);
         assert!((clump - left[8]).norm() < 1e-9 && (clump - right[0]).norm() > 1.0);
@@ -187,7 +187,7 @@ fn an_end_that_could_be_released_and_is_not_moves_as_one_that_cannot() {
                 simulation.advance(0.05).unwrap();
                 history.push(simulation.tension_b(0));
             }
-            assert_eq!(simulation.parted(0), [!way.is_empty(), false]);
+            assert_eq!(simulation.released(0), [!way.is_empty(), false]);
             (
                 history,
                 simulation.energy().total(),

@@ -241,7 +241,7 @@ fn a_winch_that_is_given_a_sudden_length_goes_at_its_own_speed() {
     let mut simulation = start(&with_integrator(line.scene(), Integrator::Leapfrog, 5e-3));
     simulation.set_length_change(0, 10.0);
     run(&mut simulation, 0.1, 100);
-    let out = simulation.state().lines[0].reel.unwrap();
+    let out = simulation.state().lines[0].winch_state.unwrap();
     assert_relative_eq!(out.change, 5.0, epsilon = 0.06);
     assert_relative_eq!(out.rate, 0.5, epsilon = 1e-6);
 }

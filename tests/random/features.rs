@@ -160,7 +160,7 @@ fn lines(scene: &Scene) -> Vec<&'static str> {
             any(|line| line.clamped_a.is_some() || line.clamped_b.is_some()),
         ),
         ("release", any(|line| line.release.is_some())),
-        ("break", any(|line| line.parting.is_some())),
+        ("break", any(|line| line.failure.is_some())),
         ("winch", any(|line| line.winch.is_some())),
     ])
     .collect()

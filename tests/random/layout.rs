@@ -348,7 +348,7 @@ impl Layout<'_> {
                 kind @ (1 | 2) => {
                     let time = (kind == 1).then(|| dice.between(0.0, 60.0));
                     let tension = (kind == 2).then(|| dice.log(1e2, 1e7));
-                    line.parting = Some(Break {
+                    line.failure = Some(Break {
                         at: end,
                         tension,
                         time,

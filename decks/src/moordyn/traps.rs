@@ -113,7 +113,7 @@ fn friction(deck: &Deck, findings: &mut Findings) {
     }
     if let Some(damping) = &deck.options.friction_damping {
         let text = "friction here sticks and lets go at its limit: it needs no damping to fade in with, which in MoorDyn lets a \
-                    line at rest creep";
+                    line at rest viscoelastic";
         findings.remark(damping, text);
     }
     if let Some(scale) = &deck.options.static_friction

@@ -128,7 +128,7 @@ pub(super) struct Communication<'a, K> {
     pub(super) length: f64,
     pub(super) held: &'a K,
     /// How the winches pay out, by line; empty where there are none.
-    pub(super) reels: &'a [AxisPath],
+    pub(super) winch_paths: &'a [AxisPath],
     /// Whether the leapfrogs hold the state.
     pub(super) holds: bool,
     /// Whether held points may set out from elsewhere than where the last step took them.
@@ -186,7 +186,7 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
                     flow.add(self.jump_energy(line, steps[0], next));
                 }
             }
-            work.start_reels(network, self.state, self.reels, step);
+            work.start_winches(network, self.state, self.winch_paths, step);
             work.begin();
             for k in 0..count {
                 let t = self.start + k as f64 * drift;
@@ -263,8 +263,8 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
                 work.set_time(t - drift);
                 let [a, b] = line.ends;
                 let ends = [self.place(a, t), self.place(b, t)];
-                if let Some(partings) = &line.parting {
-                    work.part_ends(partings, t - drift, Step::after(steps, drift));
+                if let Some(releases) = &line.release {
+                    work.release_ends(releases, t - drift, Step::after(steps, drift));
                 }
                 solves += work.step(Step::after(steps, drift), ends);
                 steps = [drift, steps[0]];
@@ -358,16 +358,16 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
         };
         let (model, network) = (self.model, &self.model.networks[number]);
         let mut flow = Flow::default();
-        let mut parted = energy_balance::parted_ends(network, self.state);
+        let mut released = energy_balance::released_ends(network, self.state);
         let count = |passed: &Passed| {
             if !model.energy_balance {
                 return;
             }
             let [before, after] = passed.states;
-            let now_parted = energy_balance::parted_ends(network, after);
-            if now_parted != parted {
+            let now_released = energy_balance::released_ends(network, after);
+            if now_released != released {
                 flow.external_work += energy_balance::joined_energy(model, network, [before, after]);
-                parted = now_parted;
+                released = now_released;
             } else {
                 flow.add(implicit_balance::flow(model, network, passed));
             }

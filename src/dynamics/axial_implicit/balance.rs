@@ -13,9 +13,9 @@
 
 use super::AxialWork;
 use super::rows::{SegmentRow, Sizes, pulled};
-use crate::dynamics::creep::Crept;
 use crate::dynamics::energy_balance::Flow;
 use crate::dynamics::step::Step;
+use crate::dynamics::viscoelastic::Relaxed;
 use crate::math::lanes::{Lanes, Vectors};
 
 /// Change of strain above which the difference of the energies gives the mean tension [-].
@@ -91,7 +91,7 @@ impl AxialWork {
         for at in self.layout.rows() {
             balance.work =
                 balance.work + half * (self.work_on_nodes(at, sizes) + self.work_on_dampers(at, sizes));
-            if self.layout.creep.is_none() {
+            if self.layout.viscoelastic.is_none() {
                 balance.algorithmic = balance.algorithmic + half * self.averaged(at, step, sizes);
             }
             if self.rows.current.is_some() {
@@ -110,7 +110,7 @@ impl AxialWork {
         }
         self.balance = Some(balance);
         if self.layout.surface.is_some() {
-            let held = self.parted.map(|parted| !parted);
+            let held = self.released.map(|released| !released);
             self.layout.balance_lift(step, held);
         }
     }
@@ -139,7 +139,7 @@ impl AxialWork {
     /// Twice the work on the dampers of a row of segments [J].
     #[inline(always)]
     fn work_on_dampers(&self, at: usize, sizes: &Sizes) -> Lanes {
-        if self.layout.creep.is_some() {
+        if self.layout.viscoelastic.is_some() {
             return Lanes::splat(0.0); // part of the memory
         }
         let (segment, [along, moved]) = (&self.rows.segments[at - 1], self.stretching(at, sizes));
@@ -205,19 +205,19 @@ impl AxialWork {
         let after = flow - line.velocity_before.load(at);
         let drawn = along * after.dot(tangent) - node.drag_rest;
         let power = across * past.dot(flow) + (drawn - across * past.dot(tangent)) * flow.dot(tangent);
-        node.free * (power + current.press.dot(mean))
+        node.free * (power + current.froude_krylov.dot(mean))
     }
 
     /// Adds the dissipation of the dampers of viscoelastic segments, and that of the averaging: the work of T̄ less that of the tension of the
     /// memory over the step. The new velocities are in place.
     #[inline(always)]
-    pub(super) fn balance_creep(&mut self, at: usize, crept: Crept, step: Step) {
+    pub(super) fn balance_viscoelastic(&mut self, at: usize, relaxed: Relaxed, step: Step) {
         let (velocity, row) = (&self.layout.velocity, &self.rows.segments[at - 1]);
         let along = row.direction.dot(velocity.load(at + 1) - velocity.load(at));
         let moved = Lanes::splat(0.5 * step.kick) * (row.along + along);
-        let averaged = (row.tension - crept.tension) * moved;
+        let averaged = (row.tension - relaxed.tension) * moved;
         if let Some(balance) = &mut self.balance {
-            balance.work = balance.work + crept.taken;
+            balance.work = balance.work + relaxed.taken;
             balance.algorithmic = balance.algorithmic + averaged;
         }
     }

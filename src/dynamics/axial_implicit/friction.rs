@@ -196,7 +196,7 @@ impl AxialWork {
         for at in self.layout.rows() {
             let needed =
                 self.seabed[at - 1].needed(&self.rows.nodes[at - 1], self.layout.velocity_before.load(at));
-            self.layout.set_rub(at, needed.scale(per_kick));
+            self.layout.set_friction(at, needed.scale(per_kick));
         }
     }
 }

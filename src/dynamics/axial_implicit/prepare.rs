@@ -43,8 +43,8 @@ impl AxialWork {
     /// Springs of a row of segments.
     #[inline(always)]
     fn springs<const SPRINGS: u8>(&mut self, at: usize) -> Springs {
-        if SPRINGS == springs::CREEPING {
-            return self.creeping(at);
+        if SPRINGS == springs::VISCOELASTIC {
+            return self.viscoelastic_springs(at);
         }
         let row = &self.rows.segments[at - 1];
         let (stiffness, longer) = (row.axial_stiffness, row.length - row.unstretched_length);
@@ -69,13 +69,13 @@ impl AxialWork {
 
     /// Viscoelastic springs.
     #[inline(always)]
-    fn creeping(&mut self, at: usize) -> Springs {
+    fn viscoelastic_springs(&mut self, at: usize) -> Springs {
         let strain = self.layout.strain(at);
-        let creep = self.layout.creep.as_mut().expect("this line creeps");
-        creep.strain.store(strain, at);
-        let now = creep.elastic(at, strain);
+        let viscoelastic = self.layout.viscoelastic.as_mut().expect("this line creeps");
+        viscoelastic.strain.store(strain, at);
+        let now = viscoelastic.elastic(at, strain);
         let inverse = self.layout.inverse_length.load(at);
-        let (coming, stiffness) = creep.ahead(at, strain);
+        let (coming, stiffness) = viscoelastic.ahead(at, strain);
         let b1 = Lanes::splat(self.weights.0[0]);
         Springs {
             now,
@@ -87,7 +87,7 @@ impl AxialWork {
     /// Directions of segments and tangents of nodes.
     #[inline(always)]
     pub(super) fn prepare_geometry(&mut self) {
-        let (line, last) = (&self.layout, self.layout.fold.rows());
+        let (line, last) = (&self.layout, self.layout.striping.rows());
         let position = line.position.rows(last);
         let (segments, nodes) = (&mut self.rows.segments[..last], &mut self.rows.nodes[..last]);
         for at in line.rows() {
@@ -161,7 +161,7 @@ impl AxialWork {
     /// t_{n+½}, with the slope that it has where these are extrapolated to.
     #[inline(always)]
     pub(super) fn prepare_drag<const CURRENT: bool>(&mut self, step: Step) {
-        let (line, last) = (&self.layout, self.layout.fold.rows());
+        let (line, last) = (&self.layout, self.layout.striping.rows());
         let Some(drag) = &line.drag else {
             return;
         };
@@ -194,25 +194,25 @@ impl AxialWork {
     /// Inverse masses, and the velocities that nodes would come to without tension and bed.
     #[inline(always)]
     pub(super) fn prepare_nodes<const CURRENT: bool>(&mut self, sizes: &Sizes) {
-        let (line, last) = (&self.layout, self.layout.fold.rows());
+        let (line, last) = (&self.layout, self.layout.striping.rows());
         let (velocities, weight) = (line.velocity.rows(last), line.weight.rows(last));
         let (nodes, drawn) = (&mut self.rows.nodes[..last], line.drag.is_some());
         for at in line.rows() {
             let node = &mut nodes[at - 1];
             let velocity = velocities[at];
-            let (mut past, mut press) = (velocity, None);
+            let (mut past, mut froude_krylov) = (velocity, None);
             if CURRENT && let Some(current) = &mut self.rows.current {
                 let current = &mut current[at - 1];
                 past = past - current.flow;
                 if let Some(waves) = &line.waves {
-                    current.press = waves.press(at, node.tangent);
-                    press = Some(current.press);
+                    current.froude_krylov = waves.froude_krylov(at, node.tangent);
+                    froude_krylov = Some(current.froude_krylov);
                 }
             }
             let damping = line.mass_damping.as_ref().map(|d| d.load(at));
             node.invert(drawn, damping, sizes);
             node.fall(weight[at], [velocity, past], drawn, sizes);
-            node.press(press, velocity, damping, sizes);
+            node.froude_krylov(froude_krylov, velocity, damping, sizes);
             node.loose = node.fall;
         }
     }
@@ -220,7 +220,7 @@ impl AxialWork {
     /// Lets the nodes meet the level bed.
     #[inline(always)]
     pub(super) fn prepare_contact(&mut self, step: Step) {
-        let (line, last) = (&self.layout, self.layout.fold.rows());
+        let (line, last) = (&self.layout, self.layout.striping.rows());
         let Some(contact) = &line.contact else {
             return;
         };
@@ -296,8 +296,14 @@ impl NodeRow {
 
     /// Adds what accelerated water presses with [N], and what damping by mass [N s/m] takes from `velocity` [m/s].
     #[inline(always)]
-    fn press(&mut self, press: Option<Vectors>, velocity: Vectors, damping: Option<Lanes>, sizes: &Sizes) {
-        let mut force = press;
+    fn froude_krylov(
+        &mut self,
+        froude_krylov: Option<Vectors>,
+        velocity: Vectors,
+        damping: Option<Lanes>,
+        sizes: &Sizes,
+    ) {
+        let mut force = froude_krylov;
         if let Some(damping) = damping {
             let taken = velocity.scale(damping);
             force = Some(force.unwrap_or(Vectors::zero()) - taken);

@@ -4,9 +4,9 @@ use nalgebra::Vector3;
 
 use super::bed::Bed;
 use crate::dynamics::layout::Layout;
-use crate::math::fold::Slot;
-use crate::math::folded_tridiagonal::{Eliminated, Equations};
 use crate::math::lanes::{LANES, Lanes, Vectors};
+use crate::math::striped_tridiagonal::{Eliminated, Equations};
+use crate::math::striping::Slot;
 use crate::physics::stretch::StretchLaw;
 
 /// Strain below which slack springs go on along their tangent: further down measures of strain bend back [-].
@@ -19,7 +19,7 @@ pub(super) mod springs {
     /// Another measure of strain, or a table.
     pub const CURVED: u8 = 1;
     /// Viscoelastic.
-    pub const CREEPING: u8 = 2;
+    pub const VISCOELASTIC: u8 = 2;
 }
 
 /// What is under the nodes.
@@ -28,7 +28,7 @@ pub(super) mod under {
     pub const NOTHING: u8 = 0;
     /// A level bed without friction.
     pub const LEVEL: u8 = 1;
-    /// A bed that slopes or rubs.
+    /// a seabed with a slope, soundings or friction.
     pub const ROUGH: u8 = 2;
 }
 
@@ -267,7 +267,7 @@ pub(super) struct NodeRow {
     pub excess: Lanes,
     /// t.
     pub tangent: Vectors,
-    /// s of nodes on a bed that slopes or rubs [1/kg].
+    /// s of nodes on a seabed with a slope, soundings or friction [1/kg].
     pub response: Vectors,
     /// c, 0 off the bed [kg].
     pub held: Lanes,
@@ -372,14 +372,14 @@ pub(super) struct CurrentRow {
     /// Velocity of the water [m/s].
     pub flow: Vectors,
     /// Force of water that waves accelerate [N].
-    pub press: Vectors,
+    pub froude_krylov: Vectors,
 }
 
 impl CurrentRow {
     pub fn new() -> CurrentRow {
         CurrentRow {
             flow: Vectors::zero(),
-            press: Vectors::zero(),
+            froude_krylov: Vectors::zero(),
         }
     }
 }

@@ -4,8 +4,8 @@
 
 use super::AxialWork;
 use super::rows::{NodeRow, SegmentRow, Sizes, under};
-use crate::math::folded_tridiagonal::Eliminated;
 use crate::math::lanes::{Lanes, Vectors};
+use crate::math::striped_tridiagonal::Eliminated;
 use crate::physics::stretch::StretchLaw;
 
 /// Change of tension by the true stretch, relative to the greatest tension, that asks for another pass [-].
@@ -130,7 +130,7 @@ impl AxialWork {
     #[inline(always)]
     pub(super) fn look_over<const BED: u8>(&mut self, sizes: &Sizes) -> Found {
         let mut found = Found::new();
-        let (line, last) = (&self.layout, self.layout.fold.rows());
+        let (line, last) = (&self.layout, self.layout.striping.rows());
         let (segments, nodes) = (&self.rows.segments[..last], &self.rows.nodes[..last]);
         let new = line.velocity_before.rows(last);
         // no inclusive range, which has more to do in every row; the results keep the compiler from taking four rows at once
@@ -214,7 +214,7 @@ impl AxialWork {
     /// Whether springs have tensions that are not proportional to their strain, and no memory.
     #[inline(always)]
     pub(super) fn is_curved(&self) -> bool {
-        self.layout.law != StretchLaw::Engineering && self.layout.creep.is_none()
+        self.layout.law != StretchLaw::Engineering && self.layout.viscoelastic.is_none()
     }
 
     /// Lays the springs' tension along the tangent of its curve where the last pass found that segments come to; whether that asks for another pass.

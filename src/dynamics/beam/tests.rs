@@ -46,7 +46,7 @@ fn beam(n: usize, a: Vector3<f64>, b: Vector3<f64>, law: SectionLaw) -> (Beam, N
         weight: vec![0.0; n + 1],
         length: lengths,
         drag: None,
-        pressed: None,
+        froude_krylov: None,
         contact: None,
         mass_damping: None,
     };
@@ -208,7 +208,7 @@ fn dragged(n: usize) -> (Flight, impl Fn(f64) -> Section) {
 }
 
 #[test]
-fn the_ledger_of_a_damped_beam_in_water_over_a_bed_closes_to_rounding() {
+fn the_energy_balance_of_a_damped_beam_in_water_over_a_seabed_closes_to_rounding() {
     let (mut flight, target) = dragged(20);
     let held = [[true; 6], [false; 6]];
     let start = flight.view().energy(held).total();
@@ -253,7 +253,7 @@ fn body(mass: f64, volume: f64, bed: f64) -> FreePoint {
 }
 
 #[test]
-fn the_ledger_of_a_beam_with_a_buoy_and_a_clump_in_a_current_closes_to_rounding() {
+fn the_energy_balance_of_a_beam_with_a_buoy_and_a_clump_in_a_current_closes_to_rounding() {
     let mut flight = Flight::new(12, 100.0, Vector3::zeros());
     let (buoy, clump) = (body(20.0, 0.1, -9.0), body(40.0, 0.01, -0.4));
     let bodies = [&buoy, &clump].map(|point| {

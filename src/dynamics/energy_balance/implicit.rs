@@ -291,7 +291,7 @@ impl Side<'_> {
         let after = &self.passed.states[1].lines[index];
         let [a, b] = [End::A, End::B].map(|end| line.is_held(model, after, end));
         let mut flow = Flow::default();
-        let damped = if shape.creep.is_empty() { n } else { 0 }; // a memory has its dampers in what is taken over the step
+        let damped = if shape.viscoelastic.is_empty() { n } else { 0 }; // a memory has its dampers in what is taken over the step
         for i in 0..damped {
             let segment = stretched(line, shape, i);
             let damping = tension(line, shape, i, negative) - segment.spring.tension;
@@ -332,8 +332,8 @@ impl Side<'_> {
             flow.external_work += force.dot(&past);
             flow.dissipation -= force.dot(&(mean - past));
         }
-        if let (Some(pressed), Some(waves)) = (&nodes.pressed, &water.waves) {
-            let force = pressed.force(i, waves.at(i).acceleration, tangent(shape, i));
+        if let (Some(froude_krylov), Some(waves)) = (&nodes.froude_krylov, &water.waves) {
+            let force = froude_krylov.force(i, waves.at(i).acceleration, tangent(shape, i));
             flow.external_work += wet * force.dot(&mean);
         }
         if let Some(damping) = &nodes.mass_damping {
@@ -423,7 +423,7 @@ impl Side<'_> {
             let still = at.weight;
             at = free.at(z - orbit.elevation);
             water += orbit.velocity;
-            flow.external_work += free.pressed(at.wetted, orbit).dot(&mean);
+            flow.external_work += free.froude_krylov(at.wetted, orbit).dot(&mean);
             flow.external_work += (still - at.weight) * mean.z;
         }
         let drag = free.drag(at.wetted, velocity - water);

@@ -3,13 +3,13 @@
 use std::sync::Arc;
 
 use super::Layout;
-use crate::math::fold::{Column, Field, Fold};
 use crate::math::lanes::{Lanes, Vectors};
+use crate::math::striping::{Column, Field, Striping};
 use crate::model::{Bottom, Contact};
 use crate::physics::friction::Friction;
 use crate::physics::ground::Ground;
 
-/// Lumped contact coefficients [N/m, N s/m] and the z [m] below which they push; over a bed that slopes or rubs the height above it, along its normal.
+/// Lumped contact coefficients [N/m, N s/m] and the z [m] below which they push; over a seabed with a slope, soundings or friction the height above it, along its normal.
 #[derive(Debug, Clone)]
 pub(in crate::dynamics) struct ContactArrays {
     pub level: Column,
@@ -19,14 +19,14 @@ pub(in crate::dynamics) struct ContactArrays {
     pub bottom: Option<BottomArrays>,
 }
 
-/// A bed that slopes or rubs.
+/// a seabed with a slope, soundings or friction.
 #[derive(Debug, Clone)]
 pub(in crate::dynamics) struct BottomArrays {
     pub bottom: Arc<Bottom>,
     /// Stiffness along the bed of a node that sticks [N/m]; 0 without friction.
     pub stick: Column,
     /// Friction on the nodes in the last step [N].
-    pub rub: Field,
+    pub friction: Field,
 }
 
 impl ContactArrays {
@@ -36,16 +36,16 @@ impl ContactArrays {
         [self.stiffness.load(at), self.damping.load(at)]
     }
 
-    pub(super) fn new(contact: &Contact, fold: Fold) -> ContactArrays {
+    pub(super) fn new(contact: &Contact, striping: Striping) -> ContactArrays {
         let lifts = || (0..contact.level.len()).map(|i| contact.lift(i)).collect();
         let bottom = contact.bottom.as_ref();
         let level: Vec<f64> = bottom.map_or_else(|| contact.level.clone(), |_| lifts());
-        let keep = |values: &[f64]| fold.column(values, 0.0);
+        let keep = |values: &[f64]| striping.column(values, 0.0);
         ContactArrays {
             bottom: bottom.map(|bottom| BottomArrays {
                 bottom: bottom.clone(),
                 stick: keep(&contact.stick),
-                rub: Field::zeros(fold),
+                friction: Field::zeros(striping),
             }),
             level: keep(&level),
             stiffness: keep(&contact.stiffness),
@@ -74,11 +74,11 @@ impl Layout {
 
     /// Keeps the friction on a row of nodes [N].
     #[inline(always)]
-    pub fn set_rub(&mut self, at: usize, rub: Vectors) {
+    pub fn set_friction(&mut self, at: usize, friction: Vectors) {
         if let Some(contact) = &mut self.contact
             && let Some(bottom) = &mut contact.bottom
         {
-            bottom.rub.store(rub, at);
+            bottom.friction.store(friction, at);
         }
     }
 }

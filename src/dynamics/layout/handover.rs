@@ -5,8 +5,8 @@ use pulp::NullaryFnOnce;
 
 use super::Layout;
 use crate::dynamics::step::Step;
-use crate::math::fold::{Field, Fold, Slot};
 use crate::math::lanes::{Lanes, Vectors};
+use crate::math::striping::{Field, Slot, Striping};
 use crate::model::LineState;
 
 /// Speed that only an unstable step reaches [m/s]: the fastest axial waves run at about this speed.
@@ -73,9 +73,9 @@ impl NullaryFnOnce for AreSound<'_> {
 }
 
 /// Padding far away and apart: its chords are never zero.
-pub(super) fn padded_positions(fold: Fold) -> Field {
-    let mut position = Field::zeros(fold);
-    for (i, at) in fold.slots().enumerate() {
+pub(super) fn padded_positions(striping: Striping) -> Field {
+    let mut position = Field::zeros(striping);
+    for (i, at) in striping.slots().enumerate() {
         position.set(at, padding(i));
     }
     position
@@ -87,23 +87,23 @@ fn padding(i: usize) -> Vector3<f64> {
 }
 
 impl Layout {
-    /// Takes over positions and velocities of a line; the ghosts are yet to be renewed. Padding starts anew: it may have met what a step
+    /// Takes over positions and velocities of a line; the halo is yet to be renewed. Padding starts anew: it may have met what a step
     /// that was too long made of the nodes beside it.
     pub fn load(&mut self, state: &LineState) {
         let memory = &state.half_step;
         let fresh = memory.is_unset();
-        if let Some(creep) = &mut self.creep {
+        if let Some(viscoelastic) = &mut self.viscoelastic {
             let half = match fresh {
-                true => &state.creep,
-                false => &memory.creep,
+                true => &state.viscoelastic,
+                false => &memory.viscoelastic,
             };
             let chords = state.chords_before();
-            let slots = chords.zip(self.fold.slots());
+            let slots = chords.zip(self.striping.slots());
             let strains = slots.map(|(l, at)| l.norm() * self.inverse_length[at] - 1.0);
-            creep.load([&state.creep, half], strains);
+            viscoelastic.load([&state.viscoelastic, half], strains);
         }
         let zero = Vector3::zeros();
-        for (i, at) in self.fold.slots().enumerate() {
+        for (i, at) in self.striping.slots().enumerate() {
             let Some(position) = state.position.get(i) else {
                 self.position.set(at, padding(i));
                 self.velocity.set(at, zero);
@@ -130,8 +130,8 @@ impl Layout {
     /// [`Self::store`], wherever it is compiled into.
     #[inline(always)]
     pub fn hand_back(&self, state: &mut LineState, steps: [f64; 2]) -> bool {
-        if let Some(creep) = &self.creep {
-            creep.store(&mut state.creep, &mut state.half_step.creep);
+        if let Some(viscoelastic) = &self.viscoelastic {
+            viscoelastic.store(&mut state.viscoelastic, &mut state.half_step.viscoelastic);
         }
         let memory = &mut state.half_step;
         let count = state.position.len();
@@ -146,7 +146,7 @@ impl Layout {
             before: &mut memory.velocity_before,
         };
         let mut nodes = nodes.first(count);
-        let (rows, mut sound) = (self.fold.rows(), Lanes::splat(1.0));
+        let (rows, mut sound) = (self.striping.rows(), Lanes::splat(1.0));
         for row in 0..rows {
             let values = self.motion(row + 1, extrapolation);
             sound = sound.where_positive(self.soundness(row + 1));
@@ -161,9 +161,9 @@ impl Layout {
             nodes.take(4 * rows, 3, &self.motion(rows + 1, extrapolation));
         }
         if let Some(bottom) = self.bottom() {
-            let places = state.position.iter().zip(self.fold.slots());
+            let places = state.position.iter().zip(self.striping.slots());
             for (anchor, (position, at)) in state.anchor.iter_mut().zip(places) {
-                *anchor = position + bottom.rub.get(at) / bottom.stick[at];
+                *anchor = position + bottom.friction.get(at) / bottom.stick[at];
             }
         }
         sound.all_positive()

@@ -4,9 +4,9 @@ use nalgebra::Vector3;
 
 use super::Layout;
 use crate::dynamics::step::Step;
-use crate::math::fold::{Column, Field, Fold, Slot};
 use crate::math::hermite::Hermite;
 use crate::math::lanes::{Lanes, Vectors};
+use crate::math::striping::{Column, Field, Slot, Striping};
 use crate::model::{End, Line, Model, WaveSpan};
 use crate::physics::airy::{Orbit, cubics};
 use crate::physics::flow::{Profile, Stream};
@@ -67,18 +67,18 @@ pub(in crate::dynamics) struct WaveArrays {
 }
 
 impl WaveArrays {
-    pub(super) fn new(line: &Line, fold: Fold) -> WaveArrays {
-        let zeros = || Field::zeros(fold);
-        let pressed = line.nodes.pressed.as_ref();
-        let mass = |of: fn(&crate::model::Pressed) -> &Vec<f64>| {
-            let values = pressed.map_or(&[][..], |pressed| of(pressed));
-            fold.column(values, 0.0)
+    pub(super) fn new(line: &Line, striping: Striping) -> WaveArrays {
+        let zeros = || Field::zeros(striping);
+        let froude_krylov = line.nodes.froude_krylov.as_ref();
+        let mass = |of: fn(&crate::model::FroudeKrylov) -> &Vec<f64>| {
+            let values = froude_krylov.map_or(&[][..], |masses| of(masses));
+            striping.column(values, 0.0)
         };
         WaveArrays {
             velocity: std::array::from_fn(|_| zeros()),
             acceleration: std::array::from_fn(|_| zeros()),
-            normal: mass(|pressed| &pressed.normal),
-            tangent: mass(|pressed| &pressed.tangent),
+            normal: mass(|masses| &masses.normal),
+            tangent: mass(|masses| &masses.tangent),
             times: [0.0; 2],
             passed: 0.0,
             surface: Vec::new(),
@@ -112,13 +112,13 @@ impl WaveArrays {
 
     /// Forces of the accelerated water on nodes with these unit tangents [N].
     #[inline(always)]
-    pub fn press(&self, at: usize, tangent: Vectors) -> Vectors {
+    pub fn froude_krylov(&self, at: usize, tangent: Vectors) -> Vectors {
         let acceleration = polynomial(&self.acceleration, self.passed, at);
         Slender::new([self.normal.load(at), self.tangent.load(at)]).times(acceleration, tangent)
     }
 
     /// Force of the accelerated water on a node with this unit tangent [N].
-    pub fn press_of(&self, at: Slot, tangent: Vector3<f64>) -> Vector3<f64> {
+    pub fn froude_krylov_of(&self, at: Slot, tangent: Vector3<f64>) -> Vector3<f64> {
         let acceleration = self.value(&self.acceleration, at);
         Slender::new([self.normal[at], self.tangent[at]]).times(acceleration, tangent)
     }
@@ -166,15 +166,15 @@ impl Layout {
             for (i, level) in surface.level.iter_mut().enumerate() {
                 *level = waves.elevation(i);
             }
-            surface.find_calm(self.fold, &self.position);
+            surface.find_calm(self.striping, &self.position);
         }
-        surface.find(self.fold, &self.position);
+        surface.find(self.striping, &self.position);
         for i in surface.crossed() {
             let now = surface.node(i);
-            let at = self.fold.slot(i);
+            let at = self.striping.slot(i);
             self.weight[at] = now.weight;
             if let Some(waves) = &mut self.waves {
-                [waves.normal[at], waves.tangent[at]] = now.pressed;
+                [waves.normal[at], waves.tangent[at]] = now.froude_krylov;
             }
             if let Some(drag) = &mut self.drag {
                 [drag.normal[at], drag.tangent[at]] = now.drag;
@@ -196,7 +196,7 @@ impl Layout {
         };
         let [first, last] = held.map(usize::from);
         for i in first..=self.segment_count - last {
-            let at = self.fold.slot(i);
+            let at = self.striping.slot(i);
             let velocities = self.velocity.get(at).z + self.velocity_before.get(at).z;
             surface.lift(i, 0.5 * step.kick * velocities);
         }
@@ -236,7 +236,7 @@ impl Layout {
             waves.surface.extend(nodes.map(|(b, a)| [of(b), of(a)]));
         }
         let nodes = before.iter().zip(after);
-        for (at, (before, after)) in self.fold.slots().zip(nodes) {
+        for (at, (before, after)) in self.striping.slots().zip(nodes) {
             let [velocity, acceleration] = cubics(before, after, span.times);
             for power in 0..4 {
                 waves.velocity[power].set(at, velocity[power]);

@@ -144,9 +144,9 @@ impl LineWork {
         for at in line.rows() {
             let (own, next) = (both(at), both(at + 1));
             work = work - half * (self.spring(at).dot(next - own) + line.weight.load(at) * own.z);
-            if let Some(press) = &self.press {
-                let pressed = half * press.load(at).dot(own);
-                (work, water_work) = (work + pressed, water_work + pressed);
+            if let Some(froude_krylov) = &self.froude_krylov {
+                let froude_krylov = half * froude_krylov.load(at).dot(own);
+                (work, water_work) = (work + froude_krylov, water_work + froude_krylov);
             }
             if line.flows() {
                 let dragged = (half + half) * self.interior.load(at) * self.drag_power(at);
@@ -159,7 +159,7 @@ impl LineWork {
     /// Force of the springs of a row of segments on their lower nodes [N]; of viscoelastic segments that of the dampers included.
     #[inline(always)]
     fn spring(&self, at: usize) -> Vectors {
-        match self.layout.creep {
+        match self.layout.viscoelastic {
             Some(_) => self.pull.load(at),
             None => self.layout.spring(at),
         }
@@ -182,7 +182,7 @@ impl LineWork {
         };
         for end in [End::A, End::B] {
             let side = end as usize;
-            if self.is_parted(end) {
+            if self.is_released(end) {
                 continue;
             }
             let way = self.end_way(end, step, &mut balance.half_places[side]);
@@ -196,7 +196,7 @@ impl LineWork {
         self.balance = Some(balance);
         if self.layout.surface.is_some() {
             self.layout
-                .balance_lift(step, [0, 1].map(|side| self.tied[side] && !self.parted[side]));
+                .balance_lift(step, [0, 1].map(|side| self.tied[side] && !self.released[side]));
         }
     }
 

@@ -84,7 +84,7 @@ impl NullaryFnOnce for Sweep<'_> {
         let drift = if drifts { size.drift } else { 0.0 };
         work.choose_sweep(size, drift);
         if drifts {
-            work.layout.place_ends(ends, work.parted);
+            work.layout.place_ends(ends, work.released);
         }
     }
 }
@@ -103,16 +103,16 @@ impl NullaryFnOnce for Drift<'_> {
     fn call(self) {
         let layout = &mut self.work.layout;
         layout.drift(self.size.drift);
-        layout.place_ends(self.ends, self.work.parted);
+        layout.place_ends(self.ends, self.work.released);
     }
 }
 
 impl Layout {
-    /// Puts the ends that have not parted from their points where these are.
+    /// Puts the ends that have not released from their points where these are.
     #[inline(always)]
-    pub(super) fn place_ends(&mut self, ends: [&Placed; 2], parted: [bool; 2]) {
+    pub(super) fn place_ends(&mut self, ends: [&Placed; 2], released: [bool; 2]) {
         for end in [End::A, End::B] {
-            if !parted[end as usize] {
+            if !released[end as usize] {
                 let Placed { position, velocity } = *ends[end as usize];
                 self.put_end(end, position, velocity);
             }
@@ -136,7 +136,7 @@ struct Moving<'a> {
     pull: &'a [Vectors],
     resistance: &'a mut [Vectors],
     inverse_square: &'a mut [Lanes],
-    press: &'a mut [Vectors],
+    froude_krylov: &'a mut [Vectors],
     friction: &'a mut [Vectors],
 }
 
@@ -174,8 +174,8 @@ impl LineWork {
     /// Forces of the segments from positions at t_n and velocities at t_{n−½}.
     #[inline(always)]
     fn pull_segments(&mut self) {
-        self.layout.renew_neighbours(self.parted);
-        match (&self.layout.creep, &self.layout.law) {
+        self.layout.renew_neighbours(self.released);
+        match (&self.layout.viscoelastic, &self.layout.law) {
             (None, StretchLaw::Engineering) => {
                 self.pull_by(|line, at, strain| line.axial_stiffness.load(at) * strain)
             }
@@ -191,8 +191,8 @@ impl LineWork {
     fn pull_by(&mut self, elastic: impl Fn(&Layout, usize, Lanes) -> Lanes) {
         let line = &self.layout;
         let (positions, velocities) = (
-            line.position.rows(line.fold.rows()),
-            line.velocity.rows(line.fold.rows()),
+            line.position.rows(line.striping.rows()),
+            line.velocity.rows(line.striping.rows()),
         );
         for at in line.rows() {
             let chord = positions[at + 1] - positions[at];
@@ -215,7 +215,7 @@ impl LineWork {
     /// Slices of the rows of the line for the loops of a sweep.
     #[inline(always)]
     fn cut(&mut self) -> Swept<'_> {
-        let (last, line) = (self.layout.fold.rows(), &mut self.layout);
+        let (last, line) = (self.layout.striping.rows(), &mut self.layout);
         let mut moving = Moving {
             position: line.position.rows_mut(last),
             velocity: line.velocity.rows(last),
@@ -223,8 +223,8 @@ impl LineWork {
             pull: self.pull.rows(last),
             resistance: self.resistance.rows_mut(last),
             inverse_square: self.inverse_square.rows_mut(last),
-            press: match &mut self.press {
-                Some(press) => press.rows_mut(last),
+            froude_krylov: match &mut self.froude_krylov {
+                Some(froude_krylov) => froude_krylov.rows_mut(last),
                 None => &mut [],
             },
             friction: &mut [],
@@ -255,7 +255,7 @@ impl LineWork {
             };
             if let Some(rough) = &mut contact.bottom {
                 nodes.bottom = Some(&rough.bottom);
-                moving.friction = rough.rub.rows_mut(last);
+                moving.friction = rough.friction.rows_mut(last);
             }
         }
         Swept { moving, nodes }
@@ -271,7 +271,7 @@ struct Kicking {
     /// Resistance of water and damping [N].
     resistance: Vectors,
     /// Froude-Krylov force [N].
-    press: Vectors,
+    froude_krylov: Vectors,
     /// From the nodes before to those after [m].
     chord: Vectors,
     /// Its inverse square [1/m²].
@@ -294,7 +294,7 @@ impl NodeRows<'_> {
             force = force - by.resistance;
         }
         if AROUND == around::FLOWING {
-            force = force + by.press;
+            force = force + by.froude_krylov;
         }
         // Δt M⁻¹f, and Δt M⁻¹ẑ for the seabed
         let inverse_mass = self.inverse_mass[at] * sizes.kick;
@@ -445,7 +445,7 @@ impl Swept<'_> {
             if AROUND == around::FLOWING {
                 now = now - water_flow(nodes.current, nodes.waves, at, moving.position[at].z);
                 if let Some(waves) = nodes.waves {
-                    moving.press[at] = waves.press(at, chord.scale(inverse_square.sqrt()));
+                    moving.froude_krylov[at] = waves.froude_krylov(at, chord.scale(inverse_square.sqrt()));
                 }
             }
             let mut resistance = nodes.water.drag(at, now, chord, inverse_square);
@@ -470,12 +470,12 @@ impl Swept<'_> {
                 place: here,
                 pull: pull - pull_low,
                 resistance: moving.resistance[at],
-                press: Vectors::zero(),
+                froude_krylov: Vectors::zero(),
                 chord: moving.position[at + 1] - low,
                 inverse_square: moving.inverse_square[at],
             };
             if AROUND == around::FLOWING && nodes.waves.is_some() {
-                by.press = moving.press[at];
+                by.froude_krylov = moving.froude_krylov[at];
             }
             let mut kicked = nodes.kick::<AROUND, UNDER>(at, &by, velocity, sizes);
             if UNDER == under::ROUGH {

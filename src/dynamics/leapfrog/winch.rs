@@ -25,8 +25,8 @@ use nalgebra::Vector3;
 use super::LineWork;
 use crate::dynamics::motion::AxisPath;
 use crate::dynamics::step::Step;
-use crate::math::fold::{Column, Field, Fold, Slot};
-use crate::model::{End, Line, LineState, Passage, Reel, Winch};
+use crate::math::striping::{Column, Field, Slot, Striping};
+use crate::model::{End, Line, LineState, Passage, Winch, WinchState};
 
 /// Segments from the winch on whose energy a split or a merge can change.
 const CHANGED: usize = 3;
@@ -38,9 +38,9 @@ pub(super) struct WinchWork {
     line: Line,
     /// Length paid out in time [m].
     path: AxisPath,
-    reel: Reel,
-    /// The reel at t_{n+1}, while a step is booked.
-    next: Reel,
+    winch_state: WinchState,
+    /// The winch_state at t_{n+1}, while a step is booked.
+    next: WinchState,
     /// Energy of the end segment at t_n per unstretched length [N].
     density: f64,
 }
@@ -52,8 +52,8 @@ impl WinchWork {
         Some(Box::new(WinchWork {
             line: line.clone(),
             path: AxisPath::at_rest(0.0),
-            reel: Reel::at_rest(0.0),
-            next: Reel::at_rest(0.0),
+            winch_state: WinchState::at_rest(0.0),
+            next: WinchState::at_rest(0.0),
             density: 0.0,
         }))
     }
@@ -74,7 +74,10 @@ impl WinchWork {
         let (n, nodes) = (self.line.segment_count(), &self.line.nodes);
         let per_length = |values: &[f64]| 0.5 * values[n] / nodes.length[n];
         let [mass, weight] = [&nodes.mass_normal, &nodes.weight].map(|values| per_length(values));
-        let grown = [self.reel.change - halves[0], halves[1] - self.reel.change];
+        let grown = [
+            self.winch_state.change - halves[0],
+            halves[1] - self.winch_state.change,
+        ];
         let motion = |side: usize| grown[side] * 0.5 * mass * velocities[side].norm_squared();
         let height = |side: usize| grown[side] * weight * heights[side];
         let kinetic = motion(0) + motion(1);
@@ -84,21 +87,21 @@ impl WinchWork {
 
 impl LineWork {
     /// Takes over how far the winch is, and lays out the line accordingly.
-    pub(super) fn load_reel(&mut self, state: &LineState) {
+    pub(super) fn load_winch(&mut self, state: &LineState) {
         let Some(winch) = &mut self.winch else {
             return;
         };
-        winch.reel = state.reel.unwrap_or(Reel::at_rest(0.0));
+        winch.winch_state = state.winch_state.unwrap_or(WinchState::at_rest(0.0));
         let count = state.position.len() - 1;
-        winch.line.pay_out(count, winch.reel.change);
+        winch.line.pay_out(count, winch.winch_state.change);
         self.lay_out(0);
     }
 
     /// Hands back how far the winch is, with room for the nodes.
-    pub(super) fn store_reel(&self, state: &mut LineState) {
+    pub(super) fn store_winch(&self, state: &mut LineState) {
         if let Some(winch) = &self.winch {
             let nodes = self.layout.segment_count + 1;
-            state.reel = Some(winch.reel);
+            state.winch_state = Some(winch.winch_state);
             for values in [&mut state.position, &mut state.velocity, &mut state.acceleration] {
                 values.resize(nodes, Vector3::zeros());
             }
@@ -109,24 +112,24 @@ impl LineWork {
     }
 
     /// Sets the path of the winch from `t` [s] on, after the end was put where it is then; `fresh` before the first step from rest.
-    pub fn start_reel(&mut self, path: Option<&AxisPath>, t: f64, fresh: bool, step: Step) {
+    pub fn start_winch(&mut self, path: Option<&AxisPath>, t: f64, fresh: bool, step: Step) {
         let (Some(winch), Some(path)) = (&mut self.winch, path) else {
             return;
         };
         winch.path = *path;
         if fresh {
-            winch.reel.half_step = [winch.reel.change, path.at(t).slope];
+            winch.winch_state.half_step = [winch.winch_state.change, path.at(t).slope];
         }
-        let reel = winch.reel;
-        self.transport(reel, step.lag());
+        let winch_state = winch.winch_state;
+        self.transport(winch_state, step.lag());
     }
 
     /// Gives the end the velocity of its material half a step, `lag` [s], before the time of the positions.
-    fn transport(&mut self, reel: Reel, lag: f64) {
+    fn transport(&mut self, winch_state: WinchState, lag: f64) {
         let Some(winch) = &self.winch else {
             return;
         };
-        let [change, rate] = reel.half_step;
+        let [change, rate] = winch_state.half_step;
         let layout = &mut self.layout;
         let (end, near) = (layout.end_slot(End::B), layout.end_neighbour(End::B));
         let place = |at: Slot| layout.position.get(at) - lag * layout.velocity.get(at);
@@ -137,7 +140,7 @@ impl LineWork {
 
     /// Evaluates the energy density of the end segment at t_n for the energy balance.
     #[inline]
-    pub fn weigh_reel(&mut self) {
+    pub fn weigh_end_segment(&mut self) {
         let (Some(winch), Some(_)) = (&mut self.winch, &self.balance) else {
             return;
         };
@@ -155,8 +158,8 @@ impl LineWork {
         let Some(winch) = &mut self.winch else {
             return;
         };
-        let (now, path) = (winch.reel, winch.path.at(t));
-        winch.next = Reel {
+        let (now, path) = (winch.winch_state, winch.path.at(t));
+        winch.next = WinchState {
             change: path.value,
             rate: path.slope,
             acceleration: path.curvature,
@@ -181,12 +184,12 @@ impl LineWork {
     }
 
     /// After the work of the ends was booked: lays out the end segment at its new length, and splits or merges it.
-    pub(super) fn renew_reel(&mut self, step: Step) {
+    pub(super) fn renew_end_segment(&mut self, step: Step) {
         let Some(winch) = &mut self.winch else {
             return;
         };
-        winch.reel = winch.next;
-        let change = winch.reel.change;
+        winch.winch_state = winch.next;
+        let change = winch.winch_state.change;
         let passage = |work: &WinchWork| {
             let count = work.line.segment_count();
             work.winch().passage(count, change)
@@ -210,9 +213,9 @@ impl LineWork {
         let Some(winch) = &mut self.winch else {
             return;
         };
-        let (n, reel) = (self.layout.segment_count, winch.reel);
-        let (first, fold) = (n.saturating_sub(CHANGED), self.layout.fold);
-        winch.line.set_length_change(reel.half_step[0]); // the time of the energies
+        let (n, winch_state) = (self.layout.segment_count, winch.winch_state);
+        let (first, striping) = (n.saturating_sub(CHANGED), self.layout.striping);
+        winch.line.set_length_change(winch_state.half_step[0]); // the time of the energies
         let before = self.energy_from(first, lag);
         let layout = &mut self.layout;
         let Some(winch) = &mut self.winch else {
@@ -225,26 +228,26 @@ impl LineWork {
         ];
         let count = match passage {
             Passage::Split => {
-                let nominal = winch.winch().reel().segments.length[n - 1];
-                let part = nominal / winch.end_length(reel.change);
+                let nominal = winch.winch().longest().segments.length[n - 1];
+                let part = nominal / winch.end_length(winch_state.change);
                 for motion in motions {
-                    split(motion, fold, n, part);
+                    split(motion, striping, n, part);
                 }
                 n + 1
             }
             Passage::Merge => {
                 let [place, velocity, velocity_before] = motions;
                 let old = last_masses(&winch.line, n - 2);
-                winch.line.pay_out(n - 1, reel.half_step[0]);
+                winch.line.pay_out(n - 1, winch_state.half_step[0]);
                 let new = last_masses(&winch.line, n - 2);
                 for motion in [velocity, velocity_before] {
-                    merge(motion, fold, n, old, new);
+                    merge(motion, striping, n, old, new);
                 }
-                place.set(fold.slot(n - 1), place.get(fold.slot(n)));
+                place.set(striping.slot(n - 1), place.get(striping.slot(n)));
                 n - 1
             }
         };
-        winch.line.pay_out(count, reel.half_step[0]);
+        winch.line.pay_out(count, winch_state.half_step[0]);
         layout.set_segment_count(count);
         let after = self.energy_from(first, lag);
         if let Some(balance) = &mut self.balance {
@@ -263,8 +266,8 @@ impl LineWork {
         let position = |i: usize| layout.position.get(layout.slot(i));
         let velocity = |i: usize| layout.velocity.get(layout.slot(i));
         let last = |i: usize| position(i) - position(i - 1);
-        let [_, rate] = winch.reel.half_step;
-        let stretch = last(n) / winch.end_length(winch.reel.change);
+        let [_, rate] = winch.winch_state.half_step;
+        let stretch = last(n) / winch.end_length(winch.winch_state.change);
         let place = |i: usize| {
             let transport = if i == n { rate } else { 0.0 };
             position(i) - lag * (velocity(i) + transport * stretch)
@@ -335,7 +338,7 @@ impl LineWork {
                 put(&mut bottom.stick, from, n + 1, |i| contact.stick[i], 0.0);
             }
         }
-        for at in beyond(layout.fold, from, n + 1) {
+        for at in beyond(layout.striping, from, n + 1) {
             layout.velocity.set(at, Vector3::zeros());
             layout.velocity_before.set(at, Vector3::zeros());
         }
@@ -365,28 +368,28 @@ fn last_masses(line: &Line, first: usize) -> [f64; 3] {
 
 /// Writes `count` values, from number `from` on, and padding behind them.
 fn put(into: &mut Column, from: usize, count: usize, value: impl Fn(usize) -> f64, padding: f64) {
-    let fold = into.fold();
-    (from..count).for_each(|i| into[fold.slot(i)] = value(i));
-    beyond(fold, from, count).for_each(|at| into[at] = padding);
+    let striping = into.striping();
+    (from..count).for_each(|i| into[striping.slot(i)] = value(i));
+    beyond(striping, from, count).for_each(|at| into[at] = padding);
     into.wrap();
 }
 
 /// The slots behind `count` nodes that need to be padded anew, where nodes from `from` on have changed: none if the end is where it was.
-fn beyond(fold: Fold, from: usize, count: usize) -> impl Iterator<Item = Slot> {
-    let end = if from == 0 { fold.room() } else { count };
-    (count..end).map(move |i| fold.slot(i))
+fn beyond(striping: Striping, from: usize, count: usize) -> impl Iterator<Item = Slot> {
+    let end = if from == 0 { striping.room() } else { count };
+    (count..end).map(move |i| striping.slot(i))
 }
 
 /// Puts a node into the last segment, which ends at node `end`, at a part [-] of it.
-fn split(motion: &mut Field, fold: Fold, end: usize, part: f64) {
-    let [near, far] = [end - 1, end].map(|i| motion.get(fold.slot(i)));
-    motion.set(fold.slot(end), near + part * (far - near));
-    motion.set(fold.slot(end + 1), far);
+fn split(motion: &mut Field, striping: Striping, end: usize, part: f64) {
+    let [near, far] = [end - 1, end].map(|i| motion.get(striping.slot(i)));
+    motion.set(striping.slot(end), near + part * (far - near));
+    motion.set(striping.slot(end + 1), far);
 }
 
 /// Takes out the neighbour of the end, so that momentum stays: of masses `old` of the three last nodes and `new` of the two that are left and none [kg].
-fn merge(velocity: &mut Field, fold: Fold, end: usize, old: [f64; 3], new: [f64; 3]) {
-    let last = [end - 2, end - 1, end].map(|i| fold.slot(i));
+fn merge(velocity: &mut Field, striping: Striping, end: usize, old: [f64; 3], new: [f64; 3]) {
+    let last = [end - 2, end - 1, end].map(|i| striping.slot(i));
     let [before, near, far] = last.map(|at| velocity.get(at));
     let momentum = old[0] * before + old[1] * near + (old[2] - new[1]) * far;
     velocity.set(last[0], momentum / new[0]);
@@ -424,7 +427,7 @@ mod tests {
         );
         state.half_step.velocity = (0..=10).map(|i| wild(i, 1.0)).collect();
         state.half_step.velocity_before = (0..=10).map(|i| wild(i, 2.0)).collect();
-        state.reel = Some(Reel {
+        state.winch_state = Some(WinchState {
             change: 2.2,
             rate: 0.7,
             acceleration: 0.0,

@@ -1,6 +1,6 @@
 //! The polynomials through the newest samples, and the degree that is to be expected to predict best.
 
-use super::foresight::{DEGREE_MAX, Foresight, JUDGED, Reciprocals, SAMPLES_MAX, Samples, Terms};
+use super::extrapolation::{DEGREE_MAX, Extrapolation, JUDGED, Reciprocals, SAMPLES_MAX, Samples, Terms};
 use crate::math::lanes::{LANES, Lanes};
 
 /// Error of another degree over that of the present one, below which it takes over [-]. On harmonic motions anything from 0.3 to 0.9 but
@@ -28,13 +28,13 @@ pub(super) struct Differences {
 
 impl Differences {
     #[inline(always)]
-    pub(super) fn new(foresight: &Foresight, [a, b, c, d, e, f]: Samples) -> Differences {
+    pub(super) fn new(extrapolation: &Extrapolation, [a, b, c, d, e, f]: Samples) -> Differences {
         let Reciprocals {
             first: [ab, bc, cd, de, ef],
             second: [ac, bd, ce, df],
             third: [ad, be, cf],
             fourth: [ae, bf],
-        } = foresight.inverse;
+        } = extrapolation.inverse;
         let over = |change: Lanes, inverse: f64| change * Lanes::splat(inverse);
         let (p, q, r) = (over(a - b, ab), over(b - c, bc), over(c - d, cd));
         let (s, t) = (over(d - e, de), over(e - f, ef));
@@ -42,18 +42,18 @@ impl Differences {
         let (pr, qs, rt) = (over(pq - qr, ad), over(qr - rs, be), over(rs - st, cf));
         let (ps, qt) = (over(pr - qs, ae), over(qs - rt, bf));
         // the remainder of the polynomial of degree k is the difference of order k + 1 times its nodes' distances
-        let [[r0, r1, r2, r3], [s0, s1, s2, s3]] = foresight.reach;
+        let [[r0, r1, r2, r3], [s0, s1, s2, s3]] = extrapolation.reach;
         let miss = |next: Lanes, reach: f64| over(next, reach).abs();
         let newest = miss(ps, r3);
         // where a sample is passed over, there is no other difference of fourth order
-        let before = if foresight.all { miss(qt, s3) } else { newest };
+        let before = if extrapolation.all { miss(qt, s3) } else { newest };
         Differences {
             newest: [a, p, pq, pr],
             miss: [
                 [miss(p, r0), miss(pq, r1), miss(pr, r2), newest],
                 [miss(q, s0), miss(qr, s1), miss(qs, s2), before],
             ],
-            stretch: (!foresight.even).then_some(foresight.stretch),
+            stretch: (!extrapolation.even).then_some(extrapolation.stretch),
         }
     }
 

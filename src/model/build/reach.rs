@@ -25,7 +25,7 @@ pub(super) fn may_touch_bed(scene: &Scene, line: &Line) -> bool {
     };
     let lowest = held.iter().flatten().copied().fold(f64::INFINITY, f64::min);
     let moves = held_heights(scene, &tied).contains(&None);
-    let parts = |line: &&Line| line.release.is_some() || line.parting.is_some();
+    let parts = |line: &&Line| line.release.is_some() || line.failure.is_some();
     let reaches = held.is_empty() || lowest - STRETCH_MAX * length <= -bed.depth;
     !bed.is_level() || moves || reaches || tied.iter().any(parts)
 }

@@ -30,7 +30,7 @@ const RISE_BENT: f64 = 5.0;
 /// Lowers the level from which softened contact pushes, from where a line would rest on the bed to where what hangs is right.
 pub(super) fn sink(line: &mut Line, points: &[Point]) {
     if let Some(winch) = &mut line.winch {
-        sink(winch.reel_mut(), points);
+        sink(winch.longest_mut(), points);
     }
     let (length, stiffness) = (line.unstretched_length(), greatest_stiffness(line));
     let Nodes {

@@ -1,4 +1,4 @@
-//! The waves of the water, and how heavy the water is that they press on lines.
+//! The waves of the water, and how heavy the water is that they froude_krylov on lines.
 
 use std::f64::consts::TAU;
 

@@ -55,7 +55,7 @@ pub(super) fn increasing(
             -reach.copysign(value)
         };
         let (mut next, close) = (at + step, 2.0 * f64::EPSILON * at.abs());
-        // a bracket that hardly shrinks is halved: Newton may creep along a kink
+        // a bracket that hardly shrinks is halved: Newton may viscoelastic along a kink
         let width = upper - lower;
         if step.abs() <= close || width <= close {
             return Root {

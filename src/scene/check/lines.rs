@@ -15,7 +15,7 @@ pub(super) fn check(scene: &Scene, findings: &mut Findings) {
         check_sections(findings, &at, line, scene);
         check_start(findings, &format!("{at}.initial"), line, scene);
         check_clamps(findings, &at, line, scene);
-        check_parting(findings, &at, line, scene);
+        check_release(findings, &at, line, scene);
         super::winch::check(findings, &at, line, scene);
     }
     check_held(scene, findings);
@@ -72,9 +72,9 @@ fn check_sections(findings: &mut Findings, at: &str, line: &Line, scene: &Scene)
 }
 
 /// Lines that are released or break off their points.
-fn check_parting(findings: &mut Findings, at: &str, line: &Line, scene: &Scene) {
+fn check_release(findings: &mut Findings, at: &str, line: &Line, scene: &Scene) {
     let Some(key) = line
-        .parting
+        .failure
         .as_ref()
         .map(|_| "break")
         .or(line.release.map(|_| "release"))
@@ -82,9 +82,9 @@ fn check_parting(findings: &mut Findings, at: &str, line: &Line, scene: &Scene) 
         return;
     };
     let open = line
-        .parting
+        .failure
         .as_ref()
-        .is_some_and(|parting| parting.tension.is_none() && parting.time.is_none());
+        .is_some_and(|failure| failure.tension.is_none() && failure.time.is_none());
     let unmoved = matches!(
         scene.solver.integrator,
         Integrator::QuasiStatic | Integrator::Beam

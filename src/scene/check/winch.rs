@@ -60,9 +60,9 @@ fn misplaced(line: &Line, scene: &Scene) -> Option<&'static str> {
         );
     }
     let parts = line
-        .parting
+        .failure
         .as_ref()
-        .is_some_and(|parting| parting.at == LineEnd::B);
+        .is_some_and(|failure| failure.at == LineEnd::B);
     (parts || line.release == Some(LineEnd::B)).then_some(
         "end B is on the winch, so that it can neither break off nor be released: leave one of them out",
     )

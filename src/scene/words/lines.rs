@@ -100,12 +100,12 @@ fn release_in_words(line: &Line) -> Option<String> {
 }
 
 fn break_in_words(line: &Line) -> Option<String> {
-    let parting = line.parting.as_ref()?;
-    let (end, point) = end_of(line, parting.at);
-    let tension = parting
+    let failure = line.failure.as_ref()?;
+    let (end, point) = end_of(line, failure.at);
+    let tension = failure
         .tension
         .map(|tension| format!("under {}", quantity(tension, "N")));
-    let time = parting.time.map(|time| format!("at t = {}", quantity(time, "s")));
+    let time = failure.time.map(|time| format!("at t = {}", quantity(time, "s")));
     let when: Vec<String> = tension.into_iter().chain(time).collect();
     Some(format!("{end} breaks off {point} {}", when.join(" or ")))
 }

@@ -92,12 +92,12 @@ fn hanging_vertically(sections: &[Section], mut vertical: f64) -> Matrix2<f64> {
             (true, false) => (vertical / start).ln() / w * start.signum(),
             _ => f64::INFINITY,
         };
-        let fold = match (start * vertical > 0.0, w == 0.0) {
+        let striping = match (start * vertical > 0.0, w == 0.0) {
             (true, _) => 0.0,
             (_, true) => f64::INFINITY,
             _ => 2.0 / w.abs(),
         };
-        compliance += Vector2::new(swing + stretch, fold + stretch);
+        compliance += Vector2::new(swing + stretch, striping + stretch);
     }
     Matrix2::from_diagonal(&compliance.map(|c| 1.0 / c))
 }

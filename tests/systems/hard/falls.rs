@@ -18,8 +18,12 @@ const FREE: [Integrator; 3] = [
 const PARTS: [f64; 5] = [0.3, 0.5, 0.7, 0.8, 0.9];
 
 /// The folded chain when its free end should have fallen by [`PARTS`], and how far it has [-].
-fn falling(elements: usize, fold: usize, integrator: Integrator) -> (Run, Vec<f64>) {
-    let scene = by(folded_chain(elements, fold), integrator, 0.01 / elements as f64);
+fn falling(elements: usize, striping: usize, integrator: Integrator) -> (Run, Vec<f64>) {
+    let scene = by(
+        folded_chain(elements, striping),
+        integrator,
+        0.01 / elements as f64,
+    );
     Run::watched(&scene, &PARTS.map(fall_time), |now| {
         -now.state().lines[0].position[0].z / CHAIN
     })
@@ -42,7 +46,7 @@ fn the_free_end_of_a_folded_chain_outruns_free_fall_as_its_energy_says() {
             let now = [errors[1], errors[4]];
             case.at_most(bound, "up to 0.9 of the drop", now[1]);
             for (part, (now, last)) in [0.5, 0.9].iter().zip(now.iter().zip(last)) {
-                // no full order: the fold is as wide as two elements, and tightens with them
+                // no full order: the striping is as wide as two elements, and tightens with them
                 case.at_most(0.75 * last, &format!("at {part} of the drop"), *now);
             }
             last = now;
@@ -61,10 +65,10 @@ fn the_fall_over_a_fold_of_half_a_metre_converges() {
     for elements in [40, 80, 160] {
         let pairs = run(elements).into_iter().zip(&fine);
         let error = pairs.map(|(x, y)| (x - y).abs()).fold(0.0, f64::max);
-        Case(format!("wide fold of {elements}")).at_most(last / 3.0, "fall", error);
+        Case(format!("wide striping of {elements}")).at_most(last / 3.0, "fall", error);
         last = error;
     }
-    assert!(last <= 4e-3, "wide fold of 160: {last}");
+    assert!(last <= 4e-3, "wide striping of 160: {last}");
 }
 
 #[test]

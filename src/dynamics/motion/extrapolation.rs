@@ -81,8 +81,14 @@ impl Clock {
         (self.count > 1 && gaps.iter().all(|&gap| gap > 0.0)).then_some(gaps)
     }
 
-    /// A host speaks at a time [s] of a step from then on [s]: `foresight` becomes what all paths need to continue by it, whatever it was.
-    pub fn tell(&mut self, time: f64, step: f64, reconstruction: Reconstruction, foresight: &mut Foresight) {
+    /// A host speaks at a time [s] of a step from then on [s]: `extrapolation` becomes what all paths need to continue by it, whatever it was.
+    pub fn tell(
+        &mut self,
+        time: f64,
+        step: f64,
+        reconstruction: Reconstruction,
+        extrapolation: &mut Extrapolation,
+    ) {
         let last_step = time - self.times[0];
         let order = if last_step > 0.0 {
             self.made_up = self.made_up.max(time + last_step);
@@ -94,7 +100,7 @@ impl Clock {
             Order::Again
         };
         self.times = order.push(&self.times, time);
-        foresight.renew(self, order, step, reconstruction);
+        extrapolation.renew(self, order, step, reconstruction);
     }
 
     /// Takes in a time [s] that comes a step [s] after the newest, before another one [s].
@@ -138,7 +144,7 @@ impl Clock {
 /// A host that keeps its step is taken at its word: its samples and the end of the step are evenly apart, whatever rounding says. What
 /// follows from that is then the same for every step.
 #[derive(Debug, Clone)]
-pub struct Foresight {
+pub struct Extrapolation {
     pub(super) order: Order,
     pub(super) reconstruction: Reconstruction,
     /// Start of the step [s], its length [s] and 1/length [1/s].
@@ -190,11 +196,11 @@ impl Reciprocals {
 /// A number for every term of a polynomial.
 pub(super) type Terms = [f64; DEGREE_MAX + 1];
 
-impl Foresight {
+impl Extrapolation {
     /// Of nothing, as it is before [`Clock::tell`].
-    pub fn none() -> Foresight {
+    pub fn none() -> Extrapolation {
         let zeros = [0.0; DEGREE_MAX + 1];
-        Foresight {
+        Extrapolation {
             order: Order::Before,
             reconstruction: Reconstruction::Smooth,
             span: [f64::NAN; 3],

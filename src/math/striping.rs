@@ -3,20 +3,20 @@
 //! With m = ⌈count/4⌉ rows, node i stands in row i mod m of lane ⌊i/m⌋:
 //!
 //! ```text
-//! row 0, a ghost     ·    m−1   2m−1   3m−1
+//! row 0, halo        ·    m−1   2m−1   3m−1
 //! row 1              0     m     2m     3m
 //! row 2              1    m+1   2m+1   3m+1
 //! …
 //! row m             m−1  2m−1   3m−1   4m−1
-//! row m+1, a ghost   m    2m     3m     ·
+//! row m+1, halo      m    2m     3m     ·
 //! ```
 //!
 //! The nodes before and after those of a row are those of the rows before and after it: no lane is shifted, and no vector is read that
-//! overlaps two that were written. The ghost rows repeat the rows m and 1, moved on by a lane, and are renewed by `wrap` when these
+//! overlaps two that were written. The halo rows repeat the rows m and 1, moved on by a lane, and are renewed by `wrap` when these
 //! have changed. Nodes beyond the last one are padding. Segment i, which lies between the nodes i and i + 1, stands where node i does.
 //!
-//! The last lane of the last ghost row repeats nothing: node 4m stands there, and `wrap` leaves it alone. A chain whose last node needs no row, since
-//! nothing is worked out for it, has one row less where its segments fill their rows ([`Fold::without_last`]).
+//! The last lane of the last halo row repeats nothing: node 4m stands there, and `wrap` leaves it alone. A chain whose last node needs no row, since
+//! nothing is worked out for it, has one row less where its segments fill their rows ([`Striping::without_last`]).
 
 use nalgebra::Vector3;
 use std::ops::{Index, IndexMut};
@@ -25,7 +25,7 @@ use super::lanes::{LANES, Lanes, Vectors};
 
 /// How many rows a chain is folded into.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Fold {
+pub struct Striping {
     rows: usize,
 }
 
@@ -38,20 +38,20 @@ pub struct Slot {
     pub lane: usize,
 }
 
-impl Fold {
+impl Striping {
     /// For `count` nodes.
-    pub fn new(count: usize) -> Fold {
-        Fold {
+    pub fn new(count: usize) -> Striping {
+        Striping {
             rows: count.div_ceil(LANES).max(1),
         }
     }
 
     /// For `count` nodes, of which the last needs no row.
-    pub fn without_last(count: usize) -> Fold {
-        Fold::new(count - 1)
+    pub fn without_last(count: usize) -> Striping {
+        Striping::new(count - 1)
     }
 
-    /// Number of rows without ghosts [-].
+    /// Number of rows without the halo [-].
     pub fn rows(self) -> usize {
         self.rows
     }
@@ -87,7 +87,7 @@ impl Fold {
 }
 
 impl Slot {
-    /// Where the node before stands: in a ghost row, if need be.
+    /// Where the node before stands: in a halo row, if need be.
     pub fn before(self) -> Slot {
         Slot {
             row: self.row - 1,
@@ -95,7 +95,7 @@ impl Slot {
         }
     }
 
-    /// Where the node after stands: in a ghost row, if need be.
+    /// Where the node after stands: in a halo row, if need be.
     pub fn after(self) -> Slot {
         Slot {
             row: self.row + 1,
@@ -112,19 +112,19 @@ pub struct Column {
 
 impl Column {
     /// The same number everywhere.
-    pub fn new(fold: Fold, value: f64) -> Column {
+    pub fn new(striping: Striping, value: f64) -> Column {
         Column {
-            rows: vec![Lanes::splat(value); fold.rows + 2],
+            rows: vec![Lanes::splat(value); striping.rows + 2],
         }
     }
 
-    /// The rows up to the ghost behind row `last`.
+    /// The rows up to the halo behind row `last`.
     #[inline(always)]
     pub fn rows(&self, last: usize) -> &[Lanes] {
         &self.rows[..last + 2]
     }
 
-    /// The rows up to the ghost behind row `last`, to be written.
+    /// The rows up to the halo behind row `last`, to be written.
     #[inline(always)]
     pub fn rows_mut(&mut self, last: usize) -> &mut [Lanes] {
         &mut self.rows[..last + 2]
@@ -149,17 +149,17 @@ impl Column {
 
     /// Writes the numbers of the first nodes.
     pub fn assign(&mut self, values: &[f64]) {
-        let slots = self.fold().slots();
+        let slots = self.striping().slots();
         slots.zip(values).for_each(|(at, value)| self[at] = *value);
         self.wrap();
     }
 
     /// The numbers of the first `count` nodes.
     pub fn values(&self, count: usize) -> impl Iterator<Item = f64> + '_ {
-        self.fold().slots().take(count).map(|at| self[at])
+        self.striping().slots().take(count).map(|at| self[at])
     }
 
-    /// Renews the ghosts.
+    /// Renews the halo.
     #[inline(always)]
     pub fn wrap(&mut self) {
         let last = self.rows.len() - 1;
@@ -169,8 +169,8 @@ impl Column {
     }
 
     /// How it is folded.
-    pub fn fold(&self) -> Fold {
-        Fold {
+    pub fn striping(&self) -> Striping {
+        Striping {
             rows: self.rows.len() - 2,
         }
     }
@@ -197,19 +197,19 @@ pub struct Field {
 
 impl Field {
     /// Zero vectors.
-    pub fn zeros(fold: Fold) -> Field {
+    pub fn zeros(striping: Striping) -> Field {
         Field {
-            rows: vec![Vectors::zero(); fold.rows + 2],
+            rows: vec![Vectors::zero(); striping.rows + 2],
         }
     }
 
-    /// The rows up to the ghost behind row `last`.
+    /// The rows up to the halo behind row `last`.
     #[inline(always)]
     pub fn rows(&self, last: usize) -> &[Vectors] {
         &self.rows[..last + 2]
     }
 
-    /// The rows up to the ghost behind row `last`, to be written.
+    /// The rows up to the halo behind row `last`, to be written.
     #[inline(always)]
     pub fn rows_mut(&mut self, last: usize) -> &mut [Vectors] {
         &mut self.rows[..last + 2]
@@ -239,7 +239,7 @@ impl Field {
         self.rows[at.row].set(at.lane, vector);
     }
 
-    /// Renews the ghosts.
+    /// Renews the halo.
     #[inline(always)]
     pub fn wrap(&mut self) {
         let last = self.rows.len() - 1;
@@ -247,7 +247,7 @@ impl Field {
         self.wrap_after();
     }
 
-    /// Renews the ghosts behind the last nodes of the lanes.
+    /// Renews the halo behind the last nodes of the lanes.
     #[inline(always)]
     pub fn wrap_after(&mut self) {
         let last = self.rows.len() - 1;
@@ -263,14 +263,14 @@ mod tests {
     #[test]
     fn neighbours_stand_in_the_rows_before_and_after() {
         for count in 1..30 {
-            let fold = Fold::new(count);
-            assert!(fold.room() >= count && fold.room() < count + LANES);
+            let striping = Striping::new(count);
+            assert!(striping.room() >= count && striping.room() < count + LANES);
             let values: Vec<f64> = (0..count).map(|i| i as f64).collect();
-            let column = fold.column(&values, -1.0);
+            let column = striping.column(&values, -1.0);
             assert!(column.values(count).eq(values));
             for i in 0..count {
-                let at = fold.slot(i);
-                assert_eq!(fold.slots().nth(i), Some(at));
+                let at = striping.slot(i);
+                assert_eq!(striping.slots().nth(i), Some(at));
                 assert_eq!(column[at], i as f64);
                 assert!(i == 0 || column[at.before()] == i as f64 - 1.0);
                 assert!(i + 1 == count || column[at.after()] == i as f64 + 1.0);
@@ -281,27 +281,27 @@ mod tests {
     #[test]
     fn a_last_node_without_a_row_stands_behind_the_others() {
         for count in 2..30 {
-            let fold = Fold::without_last(count);
-            assert!(fold.room() + 1 >= count);
+            let striping = Striping::without_last(count);
+            assert!(striping.room() + 1 >= count);
             let values: Vec<f64> = (0..count).map(|i| i as f64).collect();
-            let mut column = fold.column(&values, -1.0);
+            let mut column = striping.column(&values, -1.0);
             column.wrap();
             assert!(column.values(count).eq(values));
-            let last = fold.slot(count - 1);
-            assert_eq!(last.row > fold.rows(), fold.room() == count - 1);
+            let last = striping.slot(count - 1);
+            assert_eq!(last.row > striping.rows(), striping.room() == count - 1);
             assert_eq!(column[last.before()], count as f64 - 2.0);
         }
     }
 
     #[test]
     fn vectors_stand_where_numbers_do() {
-        let fold = Fold::new(11);
-        let mut field = Field::zeros(fold);
+        let striping = Striping::new(11);
+        let mut field = Field::zeros(striping);
         let vector = |i: usize| Vector3::new(i as f64, -1.0, 2.0 * i as f64);
-        (0..11).for_each(|i| field.set(fold.slot(i), vector(i)));
+        (0..11).for_each(|i| field.set(striping.slot(i), vector(i)));
         field.wrap();
         for i in 1..10 {
-            let at = fold.slot(i);
+            let at = striping.slot(i);
             let near = [at.before(), at, at.after()].map(|at| field.get(at));
             assert_eq!(near, [i - 1, i, i + 1].map(vector));
         }

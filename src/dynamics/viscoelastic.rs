@@ -3,15 +3,15 @@
 use nalgebra::Vector3;
 
 use super::step::Step;
-use crate::math::fold::{Column, Fold, Slot};
 use crate::math::lanes::Lanes;
+use crate::math::striping::{Column, Slot, Striping};
 use crate::model::{Line, LineState};
 use crate::physics::stretch::total_tension;
 use crate::physics::viscoelastic::Viscoelastic;
 
 /// A viscoelastic segment in motion.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Creeping {
+pub(super) struct ViscoelasticSegment {
     law: Viscoelastic,
     /// Strain of the slow part [-].
     slow: f64,
@@ -43,20 +43,20 @@ impl Stretching {
     }
 }
 
-impl Creeping {
+impl ViscoelasticSegment {
     /// Segment `i` of a line; `None` where the line is not viscoelastic, or at rest.
-    pub fn of(line: &Line, state: &LineState, i: usize) -> Option<Creeping> {
+    pub fn of(line: &Line, state: &LineState, i: usize) -> Option<ViscoelasticSegment> {
         let law = line.segments.viscoelastic.as_ref()?[i];
-        let slow = *state.creep.get(i)?;
-        Some(Creeping { law, slow })
+        let slow = *state.viscoelastic.get(i)?;
+        Some(ViscoelasticSegment { law, slow })
     }
 
     /// The same at the time of the velocities: half a step before where a leapfrog serves.
-    pub fn at_velocities(line: &Line, state: &LineState, i: usize) -> Option<Creeping> {
-        let now = Creeping::of(line, state, i)?;
-        let before = state.half_step.creep.get(i);
+    pub fn at_velocities(line: &Line, state: &LineState, i: usize) -> Option<ViscoelasticSegment> {
+        let now = ViscoelasticSegment::of(line, state, i)?;
+        let before = state.half_step.viscoelastic.get(i);
         let slow = before.copied().unwrap_or(now.slow);
-        Some(Creeping { slow, ..now })
+        Some(ViscoelasticSegment { slow, ..now })
     }
 
     /// Energy per unstretched length [N] at a strain [-].
@@ -79,7 +79,7 @@ impl Creeping {
 
 /// Laws and memory of a line's segments, laid out for the leapfrog kernels; padding has none.
 #[derive(Debug, Clone)]
-pub(super) struct CreepArrays {
+pub(super) struct ViscoelasticArrays {
     laws: Vec<Viscoelastic>,
     /// K [N] and C [N s].
     pub stiffness: Column,
@@ -113,27 +113,27 @@ struct Relaxing {
 
 /// What viscoelastic segments do from t_{n−½} to t_{n+½}.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Crept {
+pub(super) struct Relaxed {
     /// Tension by the discrete gradient of the springs' energy [N].
     pub tension: Lanes,
     /// Energy that dampers take [J], or per unstretched length [N].
     pub taken: Lanes,
 }
 
-impl CreepArrays {
+impl ViscoelasticArrays {
     /// For a line; `None` where it is not viscoelastic.
-    pub fn new(line: &Line, fold: Fold) -> Option<CreepArrays> {
+    pub fn new(line: &Line, striping: Striping) -> Option<ViscoelasticArrays> {
         let laws = line.segments.viscoelastic.as_deref()?;
-        Some(CreepArrays::of(laws, fold))
+        Some(ViscoelasticArrays::of(laws, striping))
     }
 
-    fn of(laws: &[Viscoelastic], fold: Fold) -> CreepArrays {
+    fn of(laws: &[Viscoelastic], striping: Striping) -> ViscoelasticArrays {
         let each = |value: fn(&Viscoelastic) -> f64| {
             let values: Vec<f64> = laws.iter().map(value).collect();
-            fold.column(&values, 0.0)
+            striping.column(&values, 0.0)
         };
-        let zero = || fold.column(&[], 0.0);
-        CreepArrays {
+        let zero = || striping.column(&[], 0.0);
+        ViscoelasticArrays {
             laws: laws.to_vec(),
             stiffness: each(|law| law.stiffness),
             damping: each(|law| law.damping),
@@ -165,7 +165,7 @@ impl CreepArrays {
     fn relax(&mut self, dt: f64) {
         self.step = dt;
         let of = &mut self.relaxation;
-        for (at, law) in self.strain.fold().slots().zip(&self.laws) {
+        for (at, law) in self.strain.striping().slots().zip(&self.laws) {
             let relaxation = law.relaxation(dt);
             of.kept[at] = relaxation.kept;
             of.first[at] = relaxation.first;
@@ -181,7 +181,7 @@ impl CreepArrays {
             column.assign(values);
         }
         self.half[0].fill(0.0);
-        for (at, strain) in self.half[0].fold().slots().zip(strains) {
+        for (at, strain) in self.half[0].striping().slots().zip(strains) {
             self.half[0][at] = strain;
         }
     }
@@ -217,23 +217,23 @@ impl CreepArrays {
         let load = |values: &Column| values.load(at);
         let (of, memory) = (&self.relaxation, load(&self.memory));
         let last = load(&of.last);
-        let crept = load(&of.kept) * load(&self.slow) + (load(&of.first) + last) * strain;
+        let relaxed = load(&of.kept) * load(&self.slow) + (load(&of.first) + last) * strain;
         let stiffness = load(&self.stiffness);
-        (stiffness * strain + memory * crept, stiffness + memory * last)
+        (stiffness * strain + memory * relaxed, stiffness + memory * last)
     }
 
     /// Takes the memory from t_n to t_{n+1} by [`Viscoelastic::relaxation`], to strains of half a step after t_n and a whole one; what both halves around
     /// t_n come to.
     #[inline(always)]
-    pub fn advance(&mut self, at: usize, strains: [Lanes; 2], step: Step) -> Crept {
+    pub fn advance(&mut self, at: usize, strains: [Lanes; 2], step: Step) -> Relaxed {
         let load = |values: &Column| values.load(at);
         let (of, half) = (&self.relaxation, Lanes::splat(0.5));
         let (slow, before, now) = (load(&self.slow), load(&self.strain), strains[1]);
-        let crept = load(&of.kept) * slow + load(&of.first) * before + load(&of.last) * now;
-        let twice = load(&self.stiffness) * (before + now) + load(&self.memory) * (slow + crept);
+        let relaxed = load(&of.kept) * slow + load(&of.first) * before + load(&of.last) * now;
+        let twice = load(&self.stiffness) * (before + now) + load(&self.memory) * (slow + relaxed);
         let impulse = half * Lanes::splat(step.drift) * twice + load(&self.damping) * (now - before);
         let slack = (load(&of.slack) * slow).positive();
-        let after = impulse.choose(crept, slack);
+        let after = impulse.choose(relaxed, slack);
         self.slow.store(after, at);
         self.pass_half(at, [strains[0], half * (slow + after)], step.kick)
     }
@@ -241,22 +241,22 @@ impl CreepArrays {
     /// Goes on by a step of `kick` [s] to a strain and a slow strain of half a step later: the fast part pulls with the discrete gradient of its energy
     /// and with its damper, as in [`Viscoelastic::step`].
     #[inline(always)]
-    fn pass_half(&mut self, at: usize, after: [Lanes; 2], kick: f64) -> Crept {
+    fn pass_half(&mut self, at: usize, after: [Lanes; 2], kick: f64) -> Relaxed {
         let load = |values: &Column| values.load(at);
         let (half, rate) = (Lanes::splat(0.5), Lanes::splat(1.0 / kick));
         let before = self.half.each_ref().map(load);
-        let crept = after[1] - before[1];
+        let relaxed = after[1] - before[1];
         let fast = [before, after].map(|[strain, slow]| strain - slow);
         let [pulled, pulls] = fast.map(Lanes::positive);
         let (change, pull) = (fast[1] - fast[0], pulls - pulled);
         let mean = half * load(&self.fast_stiffness) * (pulled + pulls);
         let gradient = mean * fast[0].positive_secant(fast[1]);
         let tension = (gradient + load(&self.fast_damping) * pull * rate).positive();
-        let of_slow = load(&self.slow_damping) * crept * crept * rate;
+        let of_slow = load(&self.slow_damping) * relaxed * relaxed * rate;
         for (column, value) in self.half.iter_mut().zip(after) {
             column.store(value, at);
         }
-        Crept {
+        Relaxed {
             tension,
             taken: of_slow + tension * change - mean * pull,
         }
@@ -276,8 +276,8 @@ mod tests {
         ];
         let step = Step::after([0.02; 2], 0.02);
         for (before, now) in [(0.01, 0.012), (-0.01, -0.02), (0.003, 0.01)] {
-            let fold = Fold::new(laws.len() + 1); // one row
-            let mut arrays = CreepArrays::of(&laws, fold);
+            let striping = Striping::new(laws.len() + 1); // one row
+            let mut arrays = ViscoelasticArrays::of(&laws, striping);
             arrays.strain.fill(before);
             let slow = [0.002, 0.0, 0.001];
             arrays.load([&slow; 2], [before; 3].into_iter());
@@ -286,9 +286,9 @@ mod tests {
             arrays.advance(1, [halfway, now].map(Lanes::splat), step);
             for (i, law) in laws.iter().enumerate() {
                 let of = law.relaxation(0.02);
-                let crept = of.kept * slow[i] + of.first * before + of.last * now;
-                let exact = if now > 0.0 { crept } else { of.slack * slow[i] };
-                approx::assert_relative_eq!(arrays.slow[fold.slot(i)], exact, max_relative = 1e-13);
+                let relaxed = of.kept * slow[i] + of.first * before + of.last * now;
+                let exact = if now > 0.0 { relaxed } else { of.slack * slow[i] };
+                approx::assert_relative_eq!(arrays.slow[striping.slot(i)], exact, max_relative = 1e-13);
             }
         }
     }
@@ -297,7 +297,7 @@ mod tests {
     fn what_halves_of_steps_pull_by_is_held_or_taken_however_fast_the_rope_relaxes() {
         for damping in [[4.0e9, 1.1e7], [1.0e6, 0.0], [1.0e2, 1.0e3]] {
             let law = [Viscoelastic::new([1.4e8, 2.0e8], damping)];
-            let mut arrays = CreepArrays::of(&law, Fold::new(2));
+            let mut arrays = ViscoelasticArrays::of(&law, Striping::new(2));
             let strain = |k: f64| 0.01 + 1e-4 * k;
             let rest = [law[0].rest(strain(0.0))];
             arrays.load([&rest; 2], [strain(0.0)].into_iter());
@@ -308,14 +308,14 @@ mod tests {
                 let before = arrays.half.each_ref().map(|of| of.load(1)[0]);
                 let ahead = [0.5, 1.0].map(|part| Lanes::splat(strain(k as f64 + part)));
                 arrays.prepare(step.drift);
-                let crept = arrays.advance(1, ahead, step);
+                let relaxed = arrays.advance(1, ahead, step);
                 let after = arrays.half.each_ref().map(|of| of.load(1)[0]);
-                let given = crept.tension[0] * (after[0] - before[0]);
+                let given = relaxed.tension[0] * (after[0] - before[0]);
                 let now = law[0].energy(after[0], after[1]);
                 if k > 1 {
-                    let off = given - crept.taken[0] - (now - held);
+                    let off = given - relaxed.taken[0] - (now - held);
                     assert!(off.abs() < 1e-6 * given, "{damping:?}, {k}: {off} of {given}");
-                    assert!(crept.taken[0] > 0.0);
+                    assert!(relaxed.taken[0] > 0.0);
                 }
                 (steps, held) = ([0.02, steps[0]], now);
             }
