@@ -2,7 +2,7 @@
 
 mod common;
 
-use moorline::scene::{DepthGrid, Friction, Integrator, LineType, Scene, Strain, TensionStrain};
+use moorline::scene::{DepthGrid, Friction, Integrator, LineType, Scene, Seabed, Strain, TensionStrain};
 
 fn main() {
     taken_out();
@@ -10,6 +10,9 @@ fn main() {
         other_laws(integrator);
     }
 }
+
+/// Changes of a scene by name.
+type Changes = Vec<(&'static str, Box<dyn Fn(&mut Scene)>)>;
 
 /// One law after another that takes more than a plain line does.
 fn other_laws(integrator: Integrator) {
@@ -19,73 +22,82 @@ fn other_laws(integrator: Integrator) {
         scene.solver.time_step_max = 0.0125;
         scene
     };
-    let mut cases: Vec<(&str, Scene)> = vec![("plain", plain())];
-    let mut with = |name, change: &dyn Fn(&mut Scene)| {
+    let mut cases = vec![("plain", plain())];
+    for (name, change) in other_seabeds().into_iter().chain(other_ropes()) {
         let mut scene = plain();
         change(&mut scene);
         cases.push((name, scene));
-    };
-    let seabed = |scene: &mut Scene, change: &dyn Fn(&mut moorline::scene::Seabed)| {
-        scene.seabed.iter_mut().for_each(change);
-    };
-    let rope = |scene: &mut Scene, change: &dyn Fn(&mut LineType)| {
-        scene.line_types.values_mut().for_each(change);
-    };
-    with("friction", &|scene| {
-        seabed(scene, &|bed| bed.friction = Friction::isotropic(0.5))
-    });
-    with("slope", &|scene| {
-        seabed(scene, &|bed| bed.slope = Some([0.01, 0.01]))
-    });
-    with("slope and friction", &|scene| {
-        seabed(scene, &|bed| {
-            (bed.slope, bed.friction) = (Some([0.01, 0.01]), Friction::isotropic(0.5));
-        });
-    });
-    with("soundings", &|scene| {
-        seabed(scene, &|bed| {
-            let line: Vec<f64> = (-10..=10).map(|i| 100.0 * f64::from(i)).collect();
-            let depth = |y: &f64| {
-                line.iter()
-                    .map(|x| bed.depth + 0.5 * (0.01 * (x + y)).sin())
-                    .collect()
-            };
-            let depth = line.iter().map(depth).collect();
-            bed.grid = Some(DepthGrid {
-                x: line.clone(),
-                y: line,
-                depth,
-            });
-        });
-    });
-    with("Green strain", &|scene| {
-        rope(scene, &|line| line.strain = Strain::Green)
-    });
-    with("table", &|scene| {
-        rope(scene, &|line| {
-            let stiffness = line.axial_stiffness.take().expect("a stiffness");
-            let row = |strain: f64| [strain, stiffness * strain * (1.0 + strain)];
-            line.tension_strain = Some(TensionStrain {
-                file: None,
-                rows: (0..=10).map(|i| row(0.01 * f64::from(i))).collect(),
-            });
-        });
-    });
-    with("viscoelastic", &|scene| {
-        rope(scene, &|line| {
-            let stiffness = line.axial_stiffness.take().expect("a stiffness");
-            (line.axial_damping, line.damping_ratio) = (None, None);
-            (line.static_stiffness, line.dynamic_stiffness) = (Some(stiffness), Some(2.0 * stiffness));
-            (line.static_damping, line.dynamic_damping) = (Some(stiffness), Some(1e-3 * stiffness));
-        });
-    });
-    with("may pierce the surface", &|scene| {
-        scene
-            .water
-            .iter_mut()
-            .for_each(|water| water.surface = Some(true))
-    });
+    }
     table(&format!("oc3_catenary, n = 40, {integrator:?}"), cases);
+}
+
+/// Seabeds that are not level planes without friction.
+fn other_seabeds() -> Changes {
+    let seabed = |change: fn(&mut Seabed)| -> Box<dyn Fn(&mut Scene)> {
+        Box::new(move |scene| scene.seabed.iter_mut().for_each(change))
+    };
+    vec![
+        ("friction", seabed(|bed| bed.friction = Friction::isotropic(0.5))),
+        ("slope", seabed(|bed| bed.slope = Some([0.01, 0.01]))),
+        (
+            "slope and friction",
+            seabed(|bed| (bed.slope, bed.friction) = (Some([0.01, 0.01]), Friction::isotropic(0.5))),
+        ),
+        (
+            "soundings",
+            seabed(|bed| {
+                let line: Vec<f64> = (-10..=10).map(|i| 100.0 * f64::from(i)).collect();
+                let depth = |y: &f64| {
+                    line.iter()
+                        .map(|x| bed.depth + 0.5 * (0.01 * (x + y)).sin())
+                        .collect()
+                };
+                let depth = line.iter().map(depth).collect();
+                bed.grid = Some(DepthGrid {
+                    x: line.clone(),
+                    y: line,
+                    depth,
+                });
+            }),
+        ),
+    ]
+}
+
+/// Ropes that are not springs in proportion to strain, and one that may come out of the water.
+fn other_ropes() -> Changes {
+    let rope = |change: fn(&mut LineType)| -> Box<dyn Fn(&mut Scene)> {
+        Box::new(move |scene| scene.line_types.values_mut().for_each(change))
+    };
+    vec![
+        ("Green strain", rope(|line| line.strain = Strain::Green)),
+        (
+            "table",
+            rope(|line| {
+                let stiffness = line.axial_stiffness.take().expect("a stiffness");
+                let row = |strain: f64| [strain, stiffness * strain * (1.0 + strain)];
+                let rows = (0..=10).map(|i| row(0.01 * f64::from(i))).collect();
+                line.tension_strain = Some(TensionStrain { file: None, rows });
+            }),
+        ),
+        (
+            "viscoelastic",
+            rope(|line| {
+                let stiffness = line.axial_stiffness.take().expect("a stiffness");
+                (line.axial_damping, line.damping_ratio) = (None, None);
+                (line.static_stiffness, line.dynamic_stiffness) = (Some(stiffness), Some(2.0 * stiffness));
+                (line.static_damping, line.dynamic_damping) = (Some(stiffness), Some(1e-3 * stiffness));
+            }),
+        ),
+        (
+            "may pierce the surface",
+            Box::new(|scene| {
+                scene
+                    .water
+                    .iter_mut()
+                    .for_each(|water| water.surface = Some(true))
+            }),
+        ),
+    ]
 }
 
 /// One piece of physics after another taken out.

@@ -513,6 +513,61 @@ fn nothing_is_left_to_be_done() {
     assert_none(&complaints, "what is merged is done");
 }
 
+/// Laws by a part of their code that no other file has: law, fingerprint, home. Blanks do not count.
+const FINGERPRINTS: [(&str, &str, &str); 9] = [
+    ("area of a circle", "0.25*PI", "math/circle.rs"),
+    ("second moment of area, of EI", "/64.0", "math/circle.rs"),
+    (
+        "drag of a slender cylinder",
+        "0.5*density*diameter",
+        "physics/morison.rs",
+    ),
+    (
+        "resistance by drag coefficients",
+        "fnresistance",
+        "physics/morison.rs",
+    ),
+    (
+        "tension of spring and damper",
+        "fntotal_tension",
+        "physics/stretch.rs",
+    ),
+    (
+        "matrix of a slender node",
+        "x.scaled(self.across)+tangent",
+        "physics/slender.rs",
+    ),
+    ("ellipse of friction", "fnslide<", "physics/friction.rs"),
+    (
+        "contact over a leapfrog step with friction",
+        "fnsolve(&self,free:V",
+        "physics/friction_step.rs",
+    ),
+    (
+        "normal force of the seabed",
+        "fnnormal_force",
+        "physics/seabed.rs",
+    ),
+];
+
+#[test]
+fn each_law_is_written_in_one_file() {
+    let sources = sources();
+    let mut complaints = Vec::new();
+    for (law, fingerprint, home) in FINGERPRINTS {
+        let dense = |source: &Source| source.code.replace(char::is_whitespace, "");
+        let library = sources.iter().filter(|source| source.is_under("src"));
+        let homes = library.filter(|source| dense(source).contains(fingerprint));
+        let homes: Vec<&str> = homes.map(|source| source.path.as_str()).collect();
+        if homes != [format!("src/{home}")] {
+            complaints.push(format!(
+                "{law}: {fingerprint} is in {homes:?}, its home is src/{home}"
+            ));
+        }
+    }
+    assert_none(&complaints, "one law, one home");
+}
+
 /// Folders that exist on somebody's machine only.
 const MACHINE_FOLDERS: [&str; 5] = [
     concat!("/ho", "me/"),

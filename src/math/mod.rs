@@ -2,6 +2,7 @@
 pub mod anderson;
 pub mod attitude;
 pub mod block_banded;
+pub mod circle;
 pub mod eigen;
 pub mod elementary;
 pub mod hermite;

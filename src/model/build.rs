@@ -15,6 +15,7 @@ use super::{
     Bending, Bottom, Contact, Current, Drag, End, FreePoint, FroudeKrylov, Line, Model, Motion, Network,
     Nodes, Point, PointContact, Release, Role, Section, Segments, Surface, Vessel, Winch, mesh,
 };
+use crate::math::circle;
 use crate::physics::bending;
 use crate::physics::flow::Profile;
 use crate::physics::friction::Friction;
@@ -26,7 +27,7 @@ use crate::physics::seabed::{ContactCoefficients, regularised, under_point};
 use crate::physics::stretch::StretchLaw;
 use crate::physics::tension_table::TensionTable;
 use crate::physics::viscoelastic::Viscoelastic;
-use crate::physics::weight::{cross_section, submerged_weight};
+use crate::physics::weight::submerged_weight;
 use crate::scene::channel::LineEnd;
 use crate::scene::{
     self, Axis, ContactLaw, FibreLaw, Integrator, LineModel, LineType, PointKind, RestShape, Scene,
@@ -336,7 +337,7 @@ fn stretch_law(line_type: &LineType) -> (StretchLaw, f64) {
 /// The law of a line type, whose damping ratio refers to segments of the length `damped` [m].
 fn line_law(scene: &Scene, line_type: &LineType, damped: f64) -> LineLaw {
     let density = scene.water.as_ref().map_or(0.0, |water| water.density);
-    let displaced = line_type.diameter.map_or(0.0, |d| density * cross_section(d));
+    let displaced = line_type.diameter.map_or(0.0, |d| density * circle::area(d));
     let mass = line_type
         .mass
         .unwrap_or_else(|| line_type.weight.unwrap_or(0.0) / scene.gravity);

@@ -33,9 +33,9 @@
 //! Valid for slender lines, l̄ well below the radius of curvature, and for φ < 180°, where the energy is infinite. A rest curvature has a
 //! size but no direction, as in a line that is free to twist: its force is not smooth where the line is straight.
 
-use std::f64::consts::PI;
-
 use nalgebra::{Matrix3, Vector3};
+
+use crate::math::circle;
 
 /// |κb| below which the direction of a rest curvature fades [-].
 const REST_FADE: f64 = 1e-6;
@@ -260,7 +260,7 @@ fn across(direction: &Direction) -> Matrix3<f64> {
 
 /// EI [N m²] of a solid round section of a diameter [m] and Young's modulus [Pa].
 pub fn solid_round(diameter: f64, youngs_modulus: f64) -> f64 {
-    youngs_modulus * PI * diameter.powi(4) / 64.0
+    youngs_modulus * circle::second_moment(diameter)
 }
 
 /// EI [N m²] of a section of loose strands, from that of one solid section: divided by their number to the power of 1 or, in the other

@@ -4,11 +4,6 @@
 //!
 //! Source: Archimedes; the volume is that of the unstretched line. Valid below the water surface.
 
-/// Cross-section area of the volume-equivalent `diameter` [m], in [m²].
-pub fn cross_section(diameter: f64) -> f64 {
-    0.25 * std::f64::consts::PI * diameter * diameter
-}
-
 /// Weight [N/m] of a line of `mass` [kg/m] and displaced fluid mass ρA `displaced` [kg/m]; negative when buoyant.
 pub fn submerged_weight(mass: f64, displaced: f64, gravity: f64) -> f64 {
     (mass - displaced) * gravity
@@ -21,7 +16,7 @@ mod tests {
 
     #[test]
     fn oc3_hywind_line_weighs_698_newtons_per_metre() {
-        let displaced = 1025.0 * cross_section(0.09);
+        let displaced = 1025.0 * crate::math::circle::area(0.09);
         assert_relative_eq!(
             submerged_weight(77.7066, displaced, 9.80665),
             698.1,

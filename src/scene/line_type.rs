@@ -1,13 +1,12 @@
 //! Line types: properties of a line per unstretched length.
 
-use std::f64::consts::PI;
-
 use super::SceneError;
 use super::check::{Findings, number};
 use super::document::Node;
 use super::table::{Acts, PLAIN, choice, magnitude, not_negative, positive, table, within};
 use super::table::{Key, Kind, Words};
 use super::{Integrator, Line, Scene, TensionStrain, Value};
+use crate::math::circle;
 
 table! {
     /// Properties of a line per unstretched length. Give `mass` or `weight`, and `diameter` where there is water or a seabed.
@@ -109,7 +108,7 @@ impl Scene {
     /// Weight per unstretched length in the scene's surroundings [N/m].
     pub(super) fn weight(&self, line_type: &LineType) -> f64 {
         let displaced = match (&self.water, line_type.diameter) {
-            (Some(water), Some(diameter)) => water.density * 0.25 * PI * diameter * diameter,
+            (Some(water), Some(diameter)) => water.density * circle::area(diameter),
             _ => 0.0,
         };
         let wet = || (self.mass(line_type) - displaced) * self.gravity;

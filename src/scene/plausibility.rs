@@ -1,7 +1,7 @@
 //! Notes on values that a scene may have but a mooring seldom has: most of them are slips of units. Single values are noted by the usual range of
 //! their key in the property table; the rules here concern several keys.
 
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::f64::consts::{FRAC_PI_2, TAU};
 
 use super::check::{Findings, number, quantity};
 use super::motion_file::AXES;
@@ -11,6 +11,7 @@ use super::table::check_table;
 use super::table_ends::motions;
 use super::water::SPEED_USUAL;
 use super::{Line, LineType, MotionPath, Point, PointKind, Scene, Sea, Strain, WaveComponents};
+use crate::math::circle;
 
 /// Speed of axial waves √(EA/m) [m/s]: 350 in a chain of a 1:50 model, 5200 in solid steel, 5700 in carbon fibre with its coat.
 const WAVE_SPEED: [f64; 2] = [300.0, 6000.0];
@@ -252,7 +253,7 @@ fn mass_per_volume(scene: &Scene, line_type: &LineType, at: &str, notes: &mut Ve
     let at = format!("{at}.diameter");
     let on_bar = line_type.drag_normal.is_some_and(|drag| drag >= DRAG_ON_BAR);
     let mass = scene.mass(line_type);
-    let density = mass / (0.25 * PI * diameter * diameter);
+    let density = mass / (circle::area(diameter));
     if mass == 0.0 || !density.is_finite() {
         return;
     }
@@ -277,11 +278,11 @@ fn mass_per_volume(scene: &Scene, line_type: &LineType, at: &str, notes: &mut Ve
 /// Returns the note on a diameter [m] and a mass [kg/m] that make a density above a limit [kg/m³]: the diameter is that of a cylinder
 /// of the line's volume, not that of a chain's bar.
 pub fn dense(diameter: f64, mass: f64, limit: f64, key: &str) -> Option<String> {
-    let density = mass / (0.25 * PI * diameter * diameter);
+    let density = mass / (circle::area(diameter));
     if density <= limit {
         return None;
     }
-    let steel_diameter = (mass / (0.25 * PI * STEEL)).sqrt();
+    let steel_diameter = (mass / (STEEL * circle::area(1.0))).sqrt();
     let as_steel = format!(
         "{key} counts for buoyancy and drag as that of a cylinder of the line's volume ({steel_diameter:.4} m, were it of steel)"
     );

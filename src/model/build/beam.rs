@@ -6,12 +6,12 @@
 //!
 //! Source of κ: Cowper (1966), J. Appl. Mech. 33, 335-340, table 1.
 
-use std::f64::consts::PI;
-
 use nalgebra::Vector3;
 
 use super::LineLaw;
+use crate::math::circle;
 use crate::model::{Beam, BeamElement};
+use crate::physics::bending::solid_round;
 use crate::physics::rayleigh;
 use crate::physics::section::SectionLaw;
 use crate::scene::{
@@ -163,13 +163,13 @@ fn shear_modulus(solid: &SolidSection) -> f64 {
 fn shear(solid: &SolidSection) -> f64 {
     let nu = solid.poisson;
     let kappa = 6.0 * (1.0 + nu) / (7.0 + 6.0 * nu); // κ [-]
-    kappa * shear_modulus(solid) * 0.25 * PI * solid.diameter.powi(2)
+    kappa * shear_modulus(solid) * circle::area(solid.diameter)
 }
 
 fn bending(solid: &SolidSection) -> f64 {
-    solid.youngs_modulus * PI * solid.diameter.powi(4) / 64.0
+    solid_round(solid.diameter, solid.youngs_modulus)
 }
 
 fn torsion(solid: &SolidSection) -> f64 {
-    shear_modulus(solid) * PI * solid.diameter.powi(4) / 32.0
+    shear_modulus(solid) * 2.0 * circle::second_moment(solid.diameter)
 }

@@ -1,8 +1,7 @@
 //! Line types in words.
 
-use std::f64::consts::PI;
-
 use super::{given, significant};
+use crate::math::circle;
 use crate::scene::check::{number, quantity};
 use crate::scene::table::Table;
 use crate::scene::{
@@ -105,7 +104,7 @@ impl Scene {
 fn solid_stiffness(line_type: &LineType) -> Option<f64> {
     let of_section = || {
         let section = line_type.solid_section?;
-        Some(section.youngs_modulus * PI * section.diameter.powi(4) / 64.0)
+        Some(section.youngs_modulus * circle::second_moment(section.diameter))
     };
     let solid = line_type.bending_stiffness.or_else(of_section);
     solid.filter(|ei| *ei > 0.0 && line_type.model == LineModel::Cable)

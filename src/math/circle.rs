@@ -1,0 +1,13 @@
+//! Area and second moment of area of a circle.
+
+use std::f64::consts::PI;
+
+/// Area πd²/4 of a circle of a diameter [m] in [m²].
+pub fn area(diameter: f64) -> f64 {
+    0.25 * PI * diameter * diameter
+}
+
+/// Second moment of area πd⁴/64 of a circle of a diameter [m] about a diameter, in [m⁴].
+pub fn second_moment(diameter: f64) -> f64 {
+    PI * diameter.powi(4) / 64.0
+}
