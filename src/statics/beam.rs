@@ -2,7 +2,7 @@
 //!
 //! The system of [`crate::elements::beam`] is solved by Newton's method; spins are applied by the Cayley transform, and steps are shortened to a
 //! fraction of a turn. A beam of many elements starts from the equilibrium of the same beam on half as many ([`coarse`]), so that
-//! all but the coarsest of them start close to where they rest, and all meshes find the same one of several equilibria.
+//! only the coarsest starts far from where it rests, and fine meshes follow coarse ones to one of several equilibria.
 //!
 //! The coarsest beam, and one that is not found from a coarser one, is sought from where its sections are. Where it is free of stress there, the
 //! loads are raised in parts, the fewer the better. Elsewhere, and where that fails, the search without the moments on the ends, which have no

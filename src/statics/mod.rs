@@ -50,7 +50,7 @@ pub enum StaticsError {
     /// The search for the equilibrium of a beam ended without one.
     #[error(
         "line \"{line}\", node {node}: no equilibrium of the beam found in {iterations} solves, {residual:.3e} N are out of balance; \
-         start it from a shape closer to rest, hold its ends, or `run` it from its `initial` shape"
+         use more elements, start it from a shape closer to rest, hold its ends, or `run` it from its `initial` shape"
     )]
     BeamNotConverged {
         /// Name of the line.
