@@ -90,7 +90,7 @@ table! {
         pub profile: bool = false,
         /// True if the energy balance is evaluated, with `solver.energy_error` and `solver.power_residual`; explicit steps then cost about half as much
         /// again.
-        pub energy_balance: bool = false => PLAIN.elsewhere(&["energy_ledger"]),
+        pub energy_balance: bool = false,
         /// Further columns of `moorline run`, by MoorDyn's names such as `FairTen1`.
         pub channels: Vec<String> = Vec::new(),
     }
