@@ -5,7 +5,7 @@
 //!
 //!   R = Σ L Bᵀ S + w ẑ − contact − loads,   J = Σ (L Bᵀ C B + geometric part) + contact.
 //!
-//! The elements of a step in time are the same with the gradient at the mean of both of its ends ([`Span`]).
+//! The elements of a step in time are the same with the gradient at the mean of both of its ends (`Span`).
 //!
 //! A beam that neither end keeps from turning about itself does so without resistance: its first node then resists a turn about d₃, which
 //! changes the way to the equilibrium and not the equilibrium.

@@ -58,7 +58,7 @@ impl<V: RealVector> Landing<V> {
         let push = (spring - resistance * rise) * (one + resistance * self.normal.inner(response)).recip();
         let none = Landed {
             velocity: free,
-            friction: free - free,
+            friction: V::of([V::Real::splat(0.0); 3]),
             pushed: (self.penetration - drift * rise).choose(push, V::Real::splat(-1.0)),
         };
         let landed = Landed {

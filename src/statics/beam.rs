@@ -1,7 +1,7 @@
 //! Equilibrium of a geometrically exact beam.
 //!
 //! The system of [`crate::elements::beam`] is solved by Newton's method; spins are applied by the Cayley transform, and steps are shortened to a
-//! fraction of a turn. A beam of many elements starts from the equilibrium of the same beam on half as many ([`coarse`]), so that
+//! fraction of a turn. A beam of many elements starts from the equilibrium of the same beam on half as many (`coarse`), so that
 //! only the coarsest starts far from where it rests, and fine meshes follow coarse ones to one of several equilibria.
 //!
 //! The coarsest beam, and one that is not found from a coarser one, is sought from where its sections are. Where it is free of stress there, the
