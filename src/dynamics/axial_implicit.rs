@@ -8,7 +8,7 @@
 //! is multiplied by −ρ and −b at infinite frequency, and the spectral radius is ρ as long as b ≤ ρ, that is from ρ = ½, which damps most, to
 //! ρ = 1 (¼, ½, ¼). Below ½ it rises again, and below ⅓ it is more than 1. Averaging makes waves late by (3σ−1)(ωΔt)²/24, and up to ωΔt = 2 they are stable
 //! without. So σ is max(⅓, 1 − 3.2/(ωΔt)²) with the line's greatest axial frequency ω, which is stable for all ρ from ½ to 1; it is 1 where springs may stiffen
-//! or viscoelastic, or an end has released. The new strain is linear in the new velocity, ε^{n+1} = ε^n + κ + Δt q·G(v), κ = Δt²(|G(v⁻)|² − (q·G(v⁻))²)/(2|G(r)|), so that
+//! or viscoelastic, or an end is released. The new strain is linear in the new velocity, ε^{n+1} = ε^n + κ + Δt q·G(v), κ = Δt²(|G(v⁻)|² − (q·G(v⁻))²)/(2|G(r)|), so that
 //!
 //! S^{n+1} = EA(ε^n + κ + Δt q·G(v)),  C = ½BA[(1+θ) q·G(v) + (1−θ) q·G(v⁻)],  T̄ = b₁(S^{n+1} + C) + Σ h_i (S^i + C)⁺,
 //!
@@ -129,7 +129,7 @@ pub struct AxialWork {
     rows: Rows,
     /// State of the nodes on a seabed with a slope, soundings or friction; empty without one.
     seabed: Vec<SeabedRow>,
-    /// Whether ends A and B have released from their points.
+    /// Whether ends A and B are released from their points.
     released: [bool; 2],
     /// The energy balance, where the scene asks for it.
     balance: Option<LineBalance>,
@@ -308,7 +308,7 @@ impl AxialWork {
         self.layout.set_out_anew(lag);
     }
 
-    /// Parts the ends from their points that the tensions of t_n, `t` [s], are too much for, or the time has come for.
+    /// Releases the ends whose tension at t_n, `t` [s], or time is due.
     pub fn release_ends(&mut self, releases: &[Release; 2], t: f64, step: Step) {
         for end in ENDS {
             let (side, at) = (end as usize, self.layout.end_slot(end));

@@ -312,13 +312,13 @@ fn dry_part(line: &Line, shape: &LineState, i: usize, water: WaterAlong) -> f64 
     surface.map_or(0.0, |surface| surface.node_in(water, i, &shape.position).part)
 }
 
-/// How many ends of a network's lines have released from their points.
+/// How many ends of a network's lines are released from their points.
 pub fn released_ends(network: &Network, state: &State) -> usize {
     let ends = network.lines.iter().flat_map(|&line| state.lines[line].released);
     ends.filter(|released| *released).count()
 }
 
-/// Energy [J] that the half nodes bring to their lines which have released from held points between two states.
+/// Energy [J] that the half nodes bring to their lines which are released from held points between two states.
 pub fn joined_energy(model: &Model, network: &Network, [before, after]: [&State; 2]) -> f64 {
     let mut sum = 0.0;
     for &index in &network.lines {

@@ -251,7 +251,7 @@ pub struct Held<'a, K> {
     pub scheme: &'a Scheme,
 }
 
-/// [`advance`], showing every internal step, and once more as one of no length where ends released after it.
+/// [`advance`], showing every internal step, and once more as one of no length where ends were released after it.
 ///
 /// # Errors
 /// As there.
@@ -357,7 +357,7 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
         }
     }
 
-    /// Parts the ends from their points that the tension at `t` [s] is too much for, or the time has come for; whether there were any.
+    /// Releases the ends whose tension at `t` [s] or time is due; returns whether there were any.
     fn release_ends(&self, state: &mut State, t: f64) -> bool {
         let mut any = false;
         for &index in &self.network.lines {

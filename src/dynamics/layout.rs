@@ -160,7 +160,7 @@ impl Layout {
         }
     }
 
-    /// Makes the halo repeats the nodes where they are now. Ends that have released have no neighbour beyond them.
+    /// Copies the nodes to the halo. Released ends have no neighbour beyond them.
     #[inline(always)]
     pub fn renew_halo(&mut self, released: [bool; 2]) {
         self.position.wrap();
@@ -177,7 +177,7 @@ impl Layout {
         self.close_halo(released);
     }
 
-    /// Puts the halo beyond ends that have released where these ends are.
+    /// Puts the halo beyond released ends where these ends are.
     #[inline(always)]
     pub fn close_halo(&mut self, released: [bool; 2]) {
         for end in [End::A, End::B] {

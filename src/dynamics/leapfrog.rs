@@ -58,7 +58,7 @@ pub struct LineWork {
     interior: Column,
     /// Whether ends A and B are held, were none released.
     tied: [bool; 2],
-    /// Whether they have released from their points.
+    /// Whether they are released from their points.
     released: [bool; 2],
     /// The energy balance, where the scene asks for it.
     balance: Option<LineBalance>,
@@ -258,12 +258,12 @@ impl LineWork {
         self.layout.store(state, steps);
     }
 
-    /// Whether an end has released from its point.
+    /// Whether an end is released from its point.
     pub fn is_released(&self, end: End) -> bool {
         self.released[end as usize]
     }
 
-    /// Parts the ends from their points that the tensions of t_n, `t` [s], are too much for, or the time has come for.
+    /// Releases the ends whose tension at t_n, `t` [s], or time is due.
     pub fn release_ends(&mut self, releases: &[Release; 2], t: f64, step: Step) {
         for end in [End::A, End::B] {
             let side = end as usize;
@@ -338,7 +338,7 @@ impl LineWork {
         }
     }
 
-    /// Puts the ends somewhere that have not released from their points.
+    /// Puts the ends somewhere that are not released from their points.
     pub fn put_ends(&mut self, ends: [&Placed; 2]) {
         self.layout.vector_unit.dispatch(PutEnds(self, ends));
     }

@@ -488,11 +488,11 @@ fn reel(
 /// A line on a winch as it is at no change of its length, out of the line with all that can be paid out.
 fn on_winch(
     index: usize,
-    winch_state: Line,
+    longest: Line,
     segments: [usize; 2],
     winch: &scene::Winch,
 ) -> Result<Line, SceneError> {
-    if winch_state.uniform_law().is_none() {
+    if longest.uniform_law().is_none() {
         return Err(SceneError::new(
             format!("lines[{index}].winch"),
             "a line on a winch has one strain measure all along",
@@ -504,8 +504,8 @@ fn on_winch(
             "a line on a winch needs at least 2 elements",
         ));
     }
-    let mut line = winch_state.clone();
-    line.winch = Some(Winch::new(winch_state, segments, winch));
+    let mut line = longest.clone();
+    line.winch = Some(Winch::new(longest, segments, winch));
     line.pay_out(segments[1], 0.0);
     Ok(line)
 }

@@ -459,7 +459,7 @@ impl Line {
         }
     }
 
-    /// Whether an end is held: by a point that forces do not move, and that it has not released from.
+    /// Whether an end is held: by a point that forces do not move, and that it is not released from.
     pub fn is_held(&self, model: &Model, state: &LineState, end: End) -> bool {
         let side = usize::from(end == End::B);
         model.points[self.ends[side]].free().is_none() && !state.released[side]

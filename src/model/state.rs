@@ -52,7 +52,7 @@ pub struct LineState {
     pub closed_form: Option<ClosedForm>,
     /// Strain of the slow part of every segment [-]; empty unless the line is viscoelastic and in motion.
     pub viscoelastic: Vec<f64>,
-    /// Whether ends A and B have released from their points.
+    /// Whether ends A and B are released from their points.
     pub released: [bool; 2],
     /// What the nodes of a beam have beside positions and velocities.
     pub beam: Option<BeamState>,

@@ -1,6 +1,6 @@
 //! Lines whose end B is on a winch: how they are laid out at any length paid out.
 //!
-//! The winch_state is the line with all that can be paid out, in segments of nominal lengths l_i. With n segments out, the last one has the length
+//! The longest line is the one with all that can be paid out, in segments of nominal lengths l_i. With n segments out, the last one has the length
 //!
 //!   e = S + ΔL − Σ_{i<n−1} l_i,
 //!
@@ -26,7 +26,7 @@ const SEGMENTS_MIN: usize = 2;
 #[derive(Debug, Clone)]
 pub struct Winch {
     /// The line with all that can be paid out.
-    winch_state: Box<Line>,
+    longest: Box<Line>,
     /// Unstretched length at no change [m].
     length: f64,
     /// Segments at no change.
@@ -51,12 +51,12 @@ pub enum Passage {
 }
 
 impl Winch {
-    /// On the line `winch_state` that has all that can be paid out, of whose segments `nominal` are out at no change; the last section begins at
+    /// On the line `longest`, with all that can be paid out, of whose segments `nominal` are out at no change; the last section begins at
     /// segment `first`.
-    pub(super) fn new(winch_state: Line, [first, nominal]: [usize; 2], winch: &crate::scene::Winch) -> Winch {
+    pub(super) fn new(longest: Line, [first, nominal]: [usize; 2], winch: &crate::scene::Winch) -> Winch {
         Winch {
-            length: winch_state.nodes.arc[nominal],
-            winch_state: Box::new(winch_state),
+            length: longest.nodes.arc[nominal],
+            longest: Box::new(longest),
             nominal,
             least: SEGMENTS_MIN.max(first + 1),
             length_max: winch.length_max,
@@ -67,30 +67,30 @@ impl Winch {
 
     /// The line with all that can be paid out.
     pub fn longest(&self) -> &Line {
-        &self.winch_state
+        &self.longest
     }
 
     /// The same, to be completed.
     pub(super) fn longest_mut(&mut self) -> &mut Line {
-        &mut self.winch_state
+        &mut self.longest
     }
 
     /// Length change [m] at which nothing more can be hauled in.
     pub fn length_min(&self) -> f64 {
-        let end = self.winch_state.segments.length[self.least - 1];
-        self.winch_state.nodes.arc[self.least - 1] + SHORTEST * end - self.length
+        let end = self.longest.segments.length[self.least - 1];
+        self.longest.nodes.arc[self.least - 1] + SHORTEST * end - self.length
     }
 
     /// Length [m] of the last of `count` segments at a length change [m].
     pub fn end_length(&self, count: usize, change: f64) -> f64 {
-        let left = self.length + change - self.winch_state.nodes.arc[count - 1];
-        left.max(LAST * self.winch_state.segments.length[count - 1])
+        let left = self.length + change - self.longest.nodes.arc[count - 1];
+        left.max(LAST * self.longest.segments.length[count - 1])
     }
 
     /// What becomes of the last of `count` segments at a length change [m].
     pub fn passage(&self, count: usize, change: f64) -> Option<Passage> {
-        let part = self.end_length(count, change) / self.winch_state.segments.length[count - 1];
-        if part > LONGEST && count < self.winch_state.segment_count() {
+        let part = self.end_length(count, change) / self.longest.segments.length[count - 1];
+        if part > LONGEST && count < self.longest.segment_count() {
             Some(Passage::Split)
         } else if part < SHORTEST && count > self.least {
             Some(Passage::Merge)
@@ -116,7 +116,7 @@ impl Line {
     /// Most nodes that it ever has.
     pub fn nodes_max(&self) -> usize {
         let winch = self.winch.as_ref();
-        winch.map_or(self.nodes.arc.len(), |winch| winch.winch_state.nodes.arc.len())
+        winch.map_or(self.nodes.arc.len(), |winch| winch.longest.nodes.arc.len())
     }
 
     /// Lays out a line on a winch with so many segments at a length change [m].
@@ -124,24 +124,24 @@ impl Line {
         let Some(winch) = self.winch.take() else {
             return;
         };
-        let winch_state = winch.longest();
+        let longest = winch.longest();
         let keep = |values: &mut Vec<f64>, of: &[f64], count: usize| {
             values.clear();
             values.extend_from_slice(&of[..count]);
         };
-        let (segments, full) = (&mut self.segments, &winch_state.segments);
+        let (segments, full) = (&mut self.segments, &longest.segments);
         keep(&mut segments.length, &full.length, count);
         keep(&mut segments.axial_stiffness, &full.axial_stiffness, count);
         keep(&mut segments.axial_damping, &full.axial_damping, count);
         segments.law.clone_from(&full.law);
         segments.law.truncate(count);
-        keep(&mut self.nodes.arc, &winch_state.nodes.arc, count + 1);
-        for (values, of) in extensive(&mut self.nodes, &winch_state.nodes) {
+        keep(&mut self.nodes.arc, &longest.nodes.arc, count + 1);
+        for (values, of) in extensive(&mut self.nodes, &longest.nodes) {
             keep(values, of, count + 1);
         }
-        if let (Some(contact), Some(full)) = (&mut self.nodes.contact, &winch_state.nodes.contact) {
+        if let (Some(contact), Some(full)) = (&mut self.nodes.contact, &longest.nodes.contact) {
             keep(&mut contact.level, &full.level, count + 1);
-            contact.level[count] = full.level[winch_state.segment_count()];
+            contact.level[count] = full.level[longest.segment_count()];
             keep(&mut contact.stick, &full.stick, full.stick.len().min(count + 1));
         }
         self.winch = Some(winch);
@@ -153,16 +153,13 @@ impl Line {
         let Some(winch) = self.winch.take() else {
             return;
         };
-        let (count, winch_state) = (self.segment_count(), winch.longest());
+        let (count, longest) = (self.segment_count(), winch.longest());
         let end = winch.end_length(count, change);
-        let (last, nominal) = (
-            winch_state.segment_count(),
-            winch_state.segments.length[count - 1],
-        );
+        let (last, nominal) = (longest.segment_count(), longest.segments.length[count - 1]);
         self.segments.length[count - 1] = end;
         self.nodes.arc[count] = self.nodes.arc[count - 1] + end;
-        for (values, of) in extensive(&mut self.nodes, &winch_state.nodes) {
-            let density = of[last] / winch_state.nodes.length[last]; // the winch_state's end is half a segment of the section at the winch
+        for (values, of) in extensive(&mut self.nodes, &longest.nodes) {
+            let density = of[last] / longest.nodes.length[last]; // the end of the longest line is half a segment of the section at the winch
             values[count - 1] = of[count - 1] + 0.5 * (end - nominal) * density;
             values[count] = 0.5 * end * density;
         }
@@ -174,27 +171,27 @@ impl Line {
     }
 }
 
-/// What is proportional to the length that a node stands for, with that of the winch_state.
+/// What is proportional to the length that a node stands for, with that of the longest line.
 fn extensive<'a>(
     nodes: &'a mut Nodes,
-    winch_state: &'a Nodes,
+    longest: &'a Nodes,
 ) -> impl Iterator<Item = (&'a mut Vec<f64>, &'a Vec<f64>)> {
     let (drag, froude_krylov) = (&mut nodes.drag, &mut nodes.froude_krylov);
-    let drag = drag.as_mut().zip(winch_state.drag.as_ref());
-    let froude_krylov = froude_krylov.as_mut().zip(winch_state.froude_krylov.as_ref());
-    let contact = nodes.contact.as_mut().zip(winch_state.contact.as_ref());
+    let drag = drag.as_mut().zip(longest.drag.as_ref());
+    let froude_krylov = froude_krylov.as_mut().zip(longest.froude_krylov.as_ref());
+    let contact = nodes.contact.as_mut().zip(longest.contact.as_ref());
     let always = [
-        (&mut nodes.length, &winch_state.length),
-        (&mut nodes.mass, &winch_state.mass),
-        (&mut nodes.mass_normal, &winch_state.mass_normal),
-        (&mut nodes.mass_tangent, &winch_state.mass_tangent),
-        (&mut nodes.weight, &winch_state.weight),
+        (&mut nodes.length, &longest.length),
+        (&mut nodes.mass, &longest.mass),
+        (&mut nodes.mass_normal, &longest.mass_normal),
+        (&mut nodes.mass_tangent, &longest.mass_tangent),
+        (&mut nodes.weight, &longest.weight),
     ];
     let drag = drag.map(|(a, b)| [(&mut a.normal, &b.normal), (&mut a.tangent, &b.tangent)]);
     let froude_krylov =
         froude_krylov.map(|(a, b)| [(&mut a.normal, &b.normal), (&mut a.tangent, &b.tangent)]);
     let contact = contact.map(|(a, b)| [(&mut a.stiffness, &b.stiffness), (&mut a.damping, &b.damping)]);
-    let damping = nodes.mass_damping.as_mut().zip(winch_state.mass_damping.as_ref());
+    let damping = nodes.mass_damping.as_mut().zip(longest.mass_damping.as_ref());
     let pairs = drag.into_iter().chain(froude_krylov).flatten();
     let bed = contact.into_iter().flatten();
     always.into_iter().chain(pairs).chain(bed).chain(damping)

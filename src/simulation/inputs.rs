@@ -129,7 +129,7 @@ impl Simulation {
         self.snapshot.inputs.releases[line]
     }
 
-    /// Whether ends A and B of a line have released from their points.
+    /// Whether ends A and B of a line are released from their points.
     pub fn released(&self, line: usize) -> [bool; 2] {
         self.snapshot.state.lines[line].released
     }

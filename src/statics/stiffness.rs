@@ -35,7 +35,7 @@ const ANCHORING: [f64; 4] = [0.0, 1e-15, 1e-12, 1e-9];
 
 /// Minus the change of force [N/m, N] and moment [N, N m] of the mooring on a vessel, about its `origin` [m], with displacement and
 /// rotation along and about the global axes. `None` where the present state is not stable, a beam is attached, or a line
-/// has released from a point.
+/// is released from a point.
 pub fn of_vessel(
     model: &Model,
     state: &State,

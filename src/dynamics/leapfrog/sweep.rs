@@ -108,7 +108,7 @@ impl NullaryFnOnce for Drift<'_> {
 }
 
 impl Layout {
-    /// Puts the ends that have not released from their points where these are.
+    /// Puts the ends that are not released from their points where these are.
     #[inline(always)]
     pub(super) fn place_ends(&mut self, ends: [&Placed; 2], released: [bool; 2]) {
         for end in [End::A, End::B] {

@@ -39,7 +39,7 @@ pub(super) struct WinchWork {
     /// Length paid out in time [m].
     path: AxisPath,
     winch_state: WinchState,
-    /// The winch_state at t_{n+1}, while a step is booked.
+    /// The winch at t_{n+1}, while a step is booked.
     next: WinchState,
     /// Energy of the end segment at t_n per unstretched length [N].
     density: f64,
