@@ -12,11 +12,10 @@ use std::hint::black_box;
 use std::process::ExitCode;
 use std::time::Instant;
 
-use moorline::dynamics::axial_implicit::AxialWork;
-use moorline::dynamics::network::NetworkWork;
-use moorline::dynamics::step::Step;
+use moorline::dynamics::leapfrog::step::Step;
+use moorline::dynamics::leapfrog::{AxialImplicit, Explicit, Kernel, NetworkWork};
 use moorline::math::lanes::{LANES, Lanes};
-use moorline::model::{End, Kinematics, Model, State};
+use moorline::model::{Kinematics, Model, State};
 use moorline::scene::{Integrator, Scene};
 use moorline::simulation::Simulation;
 use nalgebra::Vector3;
@@ -27,9 +26,7 @@ const ELEMENTS: [usize; 6] = [10, 20, 28, 40, 80, 160];
 /// Elements of the axial-implicit kernel alone, and its steps in an advance.
 const ELEMENTS_AXIAL: [usize; 7] = [5, 10, 20, 40, 48, 80, 160];
 const STEPS_AXIAL: [usize; 2] = [1, 10];
-/// Spectral radius of the axial-implicit kernel.
-const RADIUS: f64 = 0.9;
-/// Axial-implicit runs, without a ledger, by which the public scenes are compared with other codes: scene, elements, step and communication
+/// Axial-implicit runs, without an energy balance, by which the public scenes are compared with other codes: scene, elements, step and communication
 /// step [s].
 const COMPARED: [(&str, usize, f64, f64); 4] = [
     ("lindahl_fast", 47, 0.05 / 7.0, 0.05),
@@ -120,15 +117,15 @@ fn meshed(name: &str, integrator: Integrator, elements: usize) -> Scene {
     scene
 }
 
-/// A mesh with an energy ledger, and without one: what a table calls it, and whether it has one.
+/// A mesh with an energy balance, and without one: what a table calls it, and whether it has one.
 fn with_and_without(elements: usize) -> [(usize, (&'static str, bool)); 2] {
-    [("", true), (" without ledger", false)].map(|kind| (elements, kind))
+    [("", true), (" without balance", false)].map(|kind| (elements, kind))
 }
 
 /// A scene one communication step after its start.
-fn stepped(name: &str, integrator: Integrator, elements: usize, ledger: bool) -> Simulation {
+fn stepped(name: &str, integrator: Integrator, elements: usize, balance: bool) -> Simulation {
     let mut scene = meshed(name, integrator, elements);
-    scene.output.energy_balance = ledger;
+    scene.output.energy_balance = balance;
     let mut simulation = Simulation::new(&scene).expect("an equilibrium");
     simulation.follow_scene().expect("an equilibrium");
     simulation.advance(0.05).expect("a step");
@@ -168,8 +165,8 @@ fn note_kernel(
 fn kernels(table: &mut String) {
     kernel_heading("explicit alone", "lines");
     for name in SCENES {
-        for (elements, (booked, ledger)) in ELEMENTS.into_iter().flat_map(with_and_without) {
-            let simulation = stepped(name, Integrator::Leapfrog, elements, ledger);
+        for (elements, (booked, balance)) in ELEMENTS.into_iter().flat_map(with_and_without) {
+            let simulation = stepped(name, Integrator::Leapfrog, elements, balance);
             let step = 0.05 / simulation.substeps() as f64;
             for lines in [1, LINES] {
                 let [wide, portable] = [false, true]
@@ -185,8 +182,8 @@ fn kernels(table: &mut String) {
 fn axial_kernels(table: &mut String) {
     kernel_heading("axial-implicit", "steps");
     for name in SCENES {
-        for (elements, (booked, ledger)) in ELEMENTS_AXIAL.into_iter().flat_map(with_and_without) {
-            let simulation = stepped(name, Integrator::AxialImplicit, elements, ledger);
+        for (elements, (booked, balance)) in ELEMENTS_AXIAL.into_iter().flat_map(with_and_without) {
+            let simulation = stepped(name, Integrator::AxialImplicit, elements, balance);
             let step = 0.05 / simulation.substeps() as f64;
             for count in STEPS_AXIAL {
                 let costs = [false, true].map(|portable| {
@@ -213,58 +210,47 @@ fn sway(state: &State) -> impl Fn(usize, f64) -> Kinematics + '_ {
     }
 }
 
-/// Time of a step of one line [ns] where an advance takes `count`, with the fairlead swaying.
+/// Time of a step [ns] of a line's axial-implicit kernel where an advance takes `count`, with the fairlead swaying.
 fn axial_cost(model: &Model, state: &State, size: f64, count: usize, portable: bool) -> f64 {
-    let line = &model.lines[0];
-    let mut work = AxialWork::new(model, line, RADIUS).expect("one strain measure");
-    work.set_portable(portable);
-    work.load(&state.lines[0]);
-    let (mut shape, sways) = (state.lines[0].clone(), sway(state));
-    let [anchor, fairlead] = line.ends;
-    let held = |end: End, t: f64| match end {
-        End::A => sways(anchor, state.time),
-        End::B => sways(fairlead, t),
-    };
+    let mut work = loaded::<AxialImplicit>(model, state, portable);
+    let (mut end, held) = (state.clone(), sway(state));
     let step = Step::after([size; 2], size);
     let (mut t, mut best) = (state.time, f64::INFINITY);
     let advances = TURNS * TURN / 2 / count;
     for _ in 0..REPETITIONS {
         let clock = Instant::now();
         for _ in 0..advances {
-            work.resume();
-            for end in [End::A, End::B] {
-                let k = held(end, t);
-                work.put_end(end, k.position, k.velocity - 0.5 * size * k.acceleration);
-            }
+            work.resume(&end);
+            work.set_out(t, size, true, &held);
             work.meet_surface();
             for _ in 0..count {
+                work.step(model, [t, t + size], step, &held);
                 t += size;
-                work.step(step, [End::A, End::B].map(|end| held(end, t).position));
             }
             black_box(work.flow());
-            work.store(&mut shape, [size; 2]);
+            assert!(work.store(&mut end, [size; 2]), "a stable step");
         }
         best = best.min(clock.elapsed().as_secs_f64());
     }
-    assert!(work.broken_node().is_none(), "a stable step");
     1e9 * best / (advances * count) as f64
+}
+
+/// A leapfrog that holds a state.
+fn loaded<K: Kernel>(model: &Model, state: &State, portable: bool) -> NetworkWork<K> {
+    let mut work = NetworkWork::new(model, &model.networks[0]).expect("one strain measure");
+    work.set_portable(portable);
+    work.load(state);
+    work
 }
 
 /// Time of a step of one line [ns] where `lines` alike take turns, with the fairlead swaying.
 fn step_cost(model: &Model, state: &State, size: f64, lines: usize, portable: bool) -> f64 {
-    let network = &model.networks[0];
-    let mut works: Vec<NetworkWork> = (0..lines)
-        .map(|_| {
-            let mut work = NetworkWork::new(model, network).expect("one strain measure");
-            work.set_portable(portable);
-            work.load(network, state);
-            work
-        })
-        .collect();
+    let work = |_| loaded::<Explicit>(model, state, portable);
+    let mut works: Vec<NetworkWork<Explicit>> = (0..lines).map(work).collect();
     let held = sway(state);
     let step = Step::after([size; 2], size);
     for work in &mut works {
-        work.put_ends(state.time, size, &held);
+        work.set_out(state.time, size, false, &held);
     }
     let (mut t, mut best) = (state.time, f64::INFINITY);
     for _ in 0..REPETITIONS {
@@ -272,14 +258,16 @@ fn step_cost(model: &Model, state: &State, size: f64, lines: usize, portable: bo
         for _ in 0..TURNS / lines {
             for work in &mut works {
                 for k in 0..TURN {
-                    work.step(model, network, t + k as f64 * size, step, &held);
+                    let times = [k, k + 1].map(|k| t + k as f64 * size);
+                    work.step(model, times, step, &held);
                 }
             }
             t += TURN as f64 * size;
         }
         best = best.min(clock.elapsed().as_secs_f64());
     }
-    let sound = works.iter_mut().all(NetworkWork::is_sound);
+    let mut end = state.clone();
+    let sound = works.iter_mut().all(|work| work.store(&mut end, [size; 2]));
     assert!(sound, "a stable step");
     1e9 * best / (TURNS / lines * lines * TURN) as f64
 }

@@ -372,7 +372,7 @@ mod tests {
     use nalgebra::DMatrix;
 
     use super::*;
-    use crate::dynamics::step::Step;
+    use crate::dynamics::leapfrog::step::Step;
     use crate::scene::Scene;
 
     /// A line of sections of [mass per length [kg/m], length [m], elements], EA = 1 MN.

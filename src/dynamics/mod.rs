@@ -1,22 +1,17 @@
 //! Time integration of the discrete lines: which integrator serves which network, and how far it steps.
 
 pub mod advance;
-pub mod axial_implicit;
 pub mod beam;
 mod choice;
 mod cost;
 pub mod energy_balance;
 pub mod implicit;
-mod layout;
 pub mod leapfrog;
 pub mod limit;
 pub mod motion;
-pub mod network;
 pub mod quasi_static;
 pub mod reaction;
 mod sea;
-pub mod step;
-mod surface;
 mod threads;
 mod viscoelastic;
 

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::step::Step;
+use super::leapfrog::step::Step;
 use crate::math::lanes::Lanes;
 use crate::math::striping::{Column, Slot, Striping};
 use crate::model::{Line, LineState};
@@ -79,7 +79,7 @@ impl ViscoelasticSegment {
 
 /// Laws and memory of a line's segments, laid out for the leapfrog kernels; padding has none.
 #[derive(Debug, Clone)]
-pub(super) struct ViscoelasticArrays {
+pub struct ViscoelasticArrays {
     laws: Vec<Viscoelastic>,
     /// K [N] and C [N s].
     pub stiffness: Column,
@@ -113,7 +113,7 @@ struct Relaxing {
 
 /// What viscoelastic segments do from t_{n−½} to t_{n+½}.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Relaxed {
+pub struct Relaxed {
     /// Tension by the discrete gradient of the springs' energy [N].
     pub tension: Lanes,
     /// Energy that dampers take [J], or per unstretched length [N].

@@ -1,28 +1,21 @@
 //! What one network does over a communication step: its integrator, in as many internal steps as it needs, and once more in shorter ones
 //! where those were too long.
 
-use nalgebra::Vector3;
-
 use super::Counters;
 use super::Done;
-use crate::dynamics::axial_implicit::AxialWork;
 use crate::dynamics::beam::{self, BeamWork, Driven, Stuck, StuckReason};
 use crate::dynamics::energy_balance::implicit::{self as implicit_balance, Passed};
 use crate::dynamics::energy_balance::{self, Flow};
 use crate::dynamics::implicit::{self, Scheme};
+use crate::dynamics::leapfrog::step::Step;
+use crate::dynamics::leapfrog::{AxialImplicit, Explicit, Kernel, NetworkWork};
 use crate::dynamics::motion::AxisPath;
-use crate::dynamics::network::NetworkWork;
 use crate::dynamics::quasi_static;
-use crate::dynamics::step::Step;
 use crate::dynamics::{Choice, StepError, StepFailure};
 use crate::elements::{self, copy_network};
-use crate::model::{End, Kinematics, Model, Network, Role, State};
-use crate::scene::{AXIAL_RADIUS_MIN, Integrator};
+use crate::model::{Kinematics, Model, Network, State};
+use crate::scene::Integrator;
 
-/// Spectral radius of the axial-implicit leapfrog where the scene gives none [-].
-const AXIAL_SPECTRAL_RADIUS: f64 = 0.9;
-/// Tension that may arise within a step, over the greatest one before it [-].
-const SNAP_GROWTH: f64 = 1.5;
 /// Internal steps of a communication step, at most [-].
 const SUBSTEPS_MAX: f64 = 1e7;
 /// Parts of a communication step in waves, at most [-]: each asks the waves at every node.
@@ -56,8 +49,8 @@ pub(super) fn within_guard(
 /// An integrator and its scratch.
 #[derive(Debug, Clone)]
 pub(super) enum Solver {
-    Leapfrog(NetworkWork),
-    AxialImplicit(Box<AxialWork>),
+    Leapfrog(Box<NetworkWork<Explicit>>),
+    AxialImplicit(Box<NetworkWork<AxialImplicit>>),
     Implicit(Scheme),
     Beam(Box<BeamWork>),
     QuasiStatic,
@@ -75,31 +68,23 @@ impl Solver {
     }
 
     pub(super) fn new(model: &Model, network: &Network, integrator: Integrator) -> Solver {
-        let kernel = |solver: Option<Solver>| solver.expect("the integrator was chosen for these lines");
         match integrator {
             Integrator::QuasiStatic => Solver::QuasiStatic,
             Integrator::Beam => {
                 let nodes = model.lines[network.lines[0]].segment_count() + 1;
                 Solver::Beam(Box::new(BeamWork::new(nodes)))
             }
-            Integrator::AxialImplicit => {
-                let work = axial_work(model, network);
-                kernel(work.map(|work| Solver::AxialImplicit(Box::new(work))))
-            }
-            Integrator::Leapfrog => kernel(NetworkWork::new(model, network).map(Solver::Leapfrog)),
+            Integrator::AxialImplicit => Solver::AxialImplicit(Box::new(leapfrog(model, network))),
+            Integrator::Leapfrog => Solver::Leapfrog(Box::new(leapfrog(model, network))),
             _ => Solver::Implicit(Scheme::new(&model.solver)),
         }
     }
 }
 
-/// Scratch of the axial-implicit leapfrog for a network of one line; `None` where it does not serve that.
-fn axial_work(model: &Model, network: &Network) -> Option<AxialWork> {
-    let rho = model
-        .solver
-        .spectral_radius
-        .unwrap_or(AXIAL_SPECTRAL_RADIUS)
-        .max(AXIAL_RADIUS_MIN);
-    AxialWork::new(model, &model.lines[network.lines[0]], rho)
+/// Scratch of a leapfrog.
+fn leapfrog<K: Kernel>(model: &Model, network: &Network) -> NetworkWork<K> {
+    let work = NetworkWork::new(model, network);
+    work.expect("a leapfrog is chosen for lines of one strain measure")
 }
 
 /// Scratch of a thread.
@@ -110,23 +95,15 @@ pub(super) struct Scratch {
     pub(super) next: State,
 }
 
-/// New scratch for one that a motion without bound went through: numbers that are none would stay where no node is, and in masses of nodes
-/// that the water's surface seems not to meet.
-fn renew<W>(work: &mut W, new: Option<W>) {
-    if let Some(new) = new {
-        *work = new;
-    }
-}
-
 /// One communication step: where it starts from, and what moves the held points.
-pub(super) struct Communication<'a, K> {
+pub(super) struct Communication<'a, H> {
     pub(super) model: &'a Model,
     pub(super) state: &'a State,
     /// [s]
     pub(super) start: f64,
     /// [s]
     pub(super) length: f64,
-    pub(super) held: &'a K,
+    pub(super) held: &'a H,
     /// How the winches pay out, by line; empty where there are none.
     pub(super) winch_paths: &'a [AxisPath],
     /// Whether the leapfrogs hold the state.
@@ -135,7 +112,7 @@ pub(super) struct Communication<'a, K> {
     pub(super) jumps: bool,
 }
 
-impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
+impl<H: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, H> {
     /// Advances one network over the step, with its new state in `next`.
     pub(super) fn network(
         &self,
@@ -145,7 +122,7 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
     ) -> Result<Done, StepError> {
         let step_max = choice.step_max;
         match solver {
-            Solver::AxialImplicit(work) => self.axial_implicit(number, choice, work, next),
+            Solver::AxialImplicit(work) => self.leapfrog(number, choice, work, next),
             Solver::Leapfrog(work) => self.leapfrog(number, choice, work, next),
             Solver::Implicit(scheme) => self.implicit(number, step_max, scheme, implicit, next),
             Solver::Beam(work) => self.beam(number, step_max, work, next),
@@ -154,189 +131,91 @@ impl<K: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, K> {
     }
 
     #[inline(never)]
-    fn leapfrog(
+    fn leapfrog<K: Kernel>(
         &self,
         number: usize,
         choice: &Choice,
-        work: &mut NetworkWork,
+        work: &mut NetworkWork<K>,
         next: &mut State,
     ) -> Result<Done, StepError> {
         let (model, network) = (self.model, &self.model.networks[number]);
+        let end = self.start + self.length;
         let mut broken = (0, 0);
         for retry in 0..=RETRIES_MAX {
-            if self.holds && retry == 0 {
-                work.resume(network, self.state);
-            } else {
-                work.load(network, self.state);
+            match self.holds && retry == 0 {
+                true => work.resume(self.state),
+                false => work.load(self.state),
             }
-            work.set_current(model, self.start);
-            let (stiffening, limit) = (work.stiffening(), choice.explicit);
-            let limit = limit.stiffened(stiffening);
-            let longest = choice.step_max / stiffening.sqrt();
-            let longest = longest.min(limit.with_drag(work.drag_rate(model, network, self.start)));
-            let count = self.substeps(network.lines[0], longest, retry)?;
-            let drift = self.length / count as f64;
-            let mut steps = self.state.lines[network.lines[0]].half_step.steps;
-            let mut step = Step::after(steps, drift);
-            work.put_ends(self.start, steps[0], self.held);
-            let mut flow = Flow::default();
-            if self.jumps {
-                work.set_out_anew(steps[0]);
-                for &line in &network.lines {
-                    flow.add(self.jump_energy(line, steps[0], next));
-                }
-            }
-            work.start_winches(network, self.state, self.winch_paths, step);
-            work.begin();
-            for k in 0..count {
-                let t = self.start + k as f64 * drift;
-                work.step(model, network, t, step, self.held);
-                steps = [drift, steps[0]];
-                step = Step::after(steps, drift);
-            }
-            flow.add(work.flow());
-            let is_sound = work.is_sound() && flow.is_finite();
-            let end = self.start + self.length;
-            let holds = limit.holds(work.drag_rate(model, network, end), drift);
-            if is_sound && (holds || retry == RETRIES_MAX) {
-                work.store(network, next, steps);
-                let counters = Counters {
-                    substeps: count,
-                    solves: count,
-                };
-                return Ok(Done { counters, flow });
-            }
-            if !is_sound {
-                broken = work.broken_node();
-                renew(work, NetworkWork::new(model, network));
-            }
-        }
-        let (line, node) = broken;
-        Err(self.diverged(network.lines[line], node))
-    }
-
-    /// Longest axial-implicit step [s] of a line under the tensions that it may come to have.
-    fn transverse_step(&self, line: usize, work: &AxialWork, longest: f64) -> f64 {
-        let tension_now = match self.holds {
-            true => work.tension_before(),
-            false => {
-                let tensions = self.state.lines[line].half_step.tension[0].iter();
-                tensions.fold(0.0, |a, &b| if b > a { b } else { a })
-            }
-        };
-        let (transverse, expected) = (work.transverse, SNAP_GROWTH * tension_now);
-        // what holds over the whole communication step is told without roots and quotients
-        match self.length * self.length * expected <= transverse * transverse {
-            true => longest,
-            false => longest.min(transverse / expected.sqrt()),
-        }
-    }
-
-    #[inline(never)]
-    fn axial_implicit(
-        &self,
-        number: usize,
-        choice: &Choice,
-        work: &mut AxialWork,
-        next: &mut State,
-    ) -> Result<Done, StepError> {
-        let network = &self.model.networks[number];
-        let (index, transverse) = (network.lines[0], work.transverse);
-        let line = &self.model.lines[index];
-        let mut longest = self.transverse_step(index, work, choice.longest);
-        let mut stuck = 0;
-        for retry in 0..=RETRIES_MAX {
+            work.set_water(model, self.start);
+            let (mut longest, bound) = K::longest_step(work, model, choice, [self.start, self.length]);
             if retry > 0 {
                 longest = longest.min(choice.step_max); // a snap came
             }
-            let count = self.substeps(index, longest, retry)?;
+            let count = self.substeps(network.lines[0], longest, retry)?;
             let drift = self.length / count as f64;
-            self.set_out(index, drift, work, self.holds && retry == 0);
-            let mut flow = self.jump_energy(index, drift, next);
-            let mut steps = self.state.lines[index].half_step.steps;
+            let mut steps = self.state.lines[network.lines[0]].half_step.steps;
+            let mut flow = self.set_out(network, drift, work, next);
             let mut solves = 0;
-            for k in 1..=count {
-                let t = self.start + k as f64 * drift;
-                if let Some(stream) = self.model.stream(t - drift) {
-                    work.set_current(stream.factor);
-                }
-                work.set_time(t - drift);
-                let [a, b] = line.ends;
-                let ends = [self.place(a, t), self.place(b, t)];
-                if let Some(releases) = &line.release {
-                    work.release_ends(releases, t - drift, Step::after(steps, drift));
-                }
-                solves += work.step(Step::after(steps, drift), ends);
+            for k in 0..count {
+                let times = [k, k + 1].map(|k| self.start + k as f64 * drift);
+                solves += work.step(model, times, Step::after(steps, drift), self.held);
                 steps = [drift, steps[0]];
             }
-            let is_sound = work.store(&mut next.lines[index], steps);
+            let is_sound = work.store(next, steps);
             flow.add(work.flow());
-            let stretch = drift * drift * work.tension_peak();
-            let too_long = stretch > transverse * transverse || !work.is_settled();
-            let whole = is_sound && flow.is_finite();
-            if whole && !(too_long && retry < RETRIES_MAX) {
+            let is_whole = is_sound && flow.is_finite();
+            if is_whole && (K::were_short(work, model, &bound, [end, drift]) || retry == RETRIES_MAX) {
                 let counters = Counters {
                     substeps: count,
                     solves,
                 };
                 return Ok(Done { counters, flow });
             }
-            if !whole {
-                let broken = work.broken_node();
-                stuck = broken.unwrap_or_else(|| work.fastest_node());
-                renew(work, axial_work(self.model, network));
+            if !is_whole {
+                // numbers that are none would stay in padding, and in masses of nodes that the water's surface seems not to meet
+                broken = work.broken_node();
+                *work = leapfrog(model, network);
             }
         }
-        Err(self.diverged(index, stuck))
+        let (line, node) = broken;
+        Err(self.diverged(network.lines[line], node))
     }
 
-    /// Makes a line ready for steps of `drift` [s], of which it may still hold the state.
-    fn set_out(&self, index: usize, drift: f64, work: &mut AxialWork, holds: bool) {
-        if holds {
-            work.resume();
-        } else {
-            work.load(&self.state.lines[index]);
-        }
-        if let Some(waves) = &self.state.waves {
-            work.load_waves(&waves.lines[index]);
-        }
-        let ends = [End::A, End::B].into_iter();
-        let ends = ends.zip(&self.model.lines[index].ends);
-        let places_them = self.jumps || work.starts();
-        for (end, &point) in ends.filter(|_| places_them) {
-            let k = (self.held)(point, self.start);
-            work.put_end(end, k.position, k.velocity - 0.5 * drift * k.acceleration);
-        }
+    /// Makes a leapfrog ready for steps of `drift` [s] of a network. Returns the flow of energy into lines whose prescribed ends jump; these lines in
+    /// `next` are overwritten.
+    fn set_out<K: Kernel>(
+        &self,
+        network: &Network,
+        drift: f64,
+        work: &mut NetworkWork<K>,
+        next: &mut State,
+    ) -> Flow {
+        let steps = self.state.lines[network.lines[0]].half_step.steps;
+        let last = if K::SECANTS { drift } else { steps[0] };
+        work.set_out(self.start, last, self.jumps, self.held);
+        let mut flow = Flow::default();
         if self.jumps {
-            work.set_out_anew(self.state.lines[index].velocities_before().1);
+            work.set_out_anew(steps[0]);
+            for &line in &network.lines {
+                flow.add(self.jump_energy(line, last, next));
+            }
         }
-        work.set_time(self.start);
+        work.start_winches(self.state, self.winch_paths, Step::after(steps, drift));
         work.meet_surface();
+        flow
     }
 
-    /// Flow of energy into a leapfrog's line whose prescribed ends jump at the start of the step, to velocities half a step of `drift` [s] earlier. The line
+    /// Flow of energy into a leapfrog's line whose prescribed ends jump at the start of the step, to velocities half a step of `last` [s] earlier. The line
     /// in `next` is overwritten.
-    fn jump_energy(&self, index: usize, drift: f64, next: &mut State) -> Flow {
-        if !self.jumps || !self.model.energy_balance {
+    fn jump_energy(&self, index: usize, last: f64, next: &mut State) -> Flow {
+        if !self.model.energy_balance {
             return Flow::default();
         }
         let ends = self.model.lines[index].ends.map(|point| {
             let k = (self.held)(point, self.start);
-            [k.position, k.velocity - 0.5 * drift * k.acceleration]
+            [k.position, k.velocity - 0.5 * last * k.acceleration]
         });
         energy_balance::jump_flow(self.model, self.state, index, ends, &mut next.lines[index])
-    }
-
-    fn is_fixed(&self, point: usize) -> bool {
-        matches!(self.model.points[point].role, Role::Fixed)
-    }
-
-    /// Where a held point is at `t` [s].
-    fn place(&self, point: usize, t: f64) -> Vector3<f64> {
-        match self.is_fixed(point) {
-            true => self.model.points[point].reference,
-            false => (self.held)(point, t).position,
-        }
     }
 
     #[inline(never)]

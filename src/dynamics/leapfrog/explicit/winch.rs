@@ -22,9 +22,9 @@
 
 use nalgebra::Vector3;
 
-use super::LineWork;
+use super::ExplicitLine;
+use crate::dynamics::leapfrog::step::Step;
 use crate::dynamics::motion::AxisPath;
-use crate::dynamics::step::Step;
 use crate::math::striping::{Column, Field, Slot, Striping};
 use crate::model::{End, Line, LineState, Passage, Winch, WinchState};
 
@@ -85,10 +85,10 @@ impl WinchWork {
     }
 }
 
-impl LineWork {
+impl ExplicitLine {
     /// Takes over how far the winch is, and lays out the line accordingly.
     pub(super) fn load_winch(&mut self, state: &LineState) {
-        let Some(winch) = &mut self.winch else {
+        let Some(winch) = &mut self.kernel.winch else {
             return;
         };
         winch.winch_state = state.winch_state.unwrap_or(WinchState::at_rest(0.0));
@@ -99,7 +99,7 @@ impl LineWork {
 
     /// Hands back how far the winch is, with room for the nodes.
     pub(super) fn store_winch(&self, state: &mut LineState) {
-        if let Some(winch) = &self.winch {
+        if let Some(winch) = &self.kernel.winch {
             let nodes = self.layout.segment_count + 1;
             state.winch_state = Some(winch.winch_state);
             for values in [&mut state.position, &mut state.velocity, &mut state.acceleration] {
@@ -112,8 +112,8 @@ impl LineWork {
     }
 
     /// Sets the path of the winch from `t` [s] on, after the end was put where it is then; `fresh` before the first step from rest.
-    pub fn start_winch(&mut self, path: Option<&AxisPath>, t: f64, fresh: bool, step: Step) {
-        let (Some(winch), Some(path)) = (&mut self.winch, path) else {
+    pub(super) fn start_winch(&mut self, path: &AxisPath, (t, fresh): (f64, bool), step: Step) {
+        let Some(winch) = &mut self.kernel.winch else {
             return;
         };
         winch.path = *path;
@@ -126,7 +126,7 @@ impl LineWork {
 
     /// Gives the end the velocity of its material half a step, `lag` [s], before the time of the positions.
     fn transport(&mut self, winch_state: WinchState, lag: f64) {
-        let Some(winch) = &self.winch else {
+        let Some(winch) = &self.kernel.winch else {
             return;
         };
         let [change, rate] = winch_state.half_step;
@@ -141,7 +141,7 @@ impl LineWork {
     /// Evaluates the energy density of the end segment at t_n for the energy balance.
     #[inline]
     pub fn weigh_end_segment(&mut self) {
-        let (Some(winch), Some(_)) = (&mut self.winch, &self.balance) else {
+        let (Some(winch), Some(_)) = (&mut self.kernel.winch, &self.balance) else {
             return;
         };
         let (layout, i) = (&self.layout, self.layout.segment_count - 1);
@@ -155,7 +155,7 @@ impl LineWork {
     /// Winds on to `t` [s], the end of a step, after the end was put where it is then: books what the winch gives, and gives the end the
     /// velocity of its material.
     pub(super) fn wind(&mut self, t: f64, step: Step) {
-        let Some(winch) = &mut self.winch else {
+        let Some(winch) = &mut self.kernel.winch else {
             return;
         };
         let (now, path) = (winch.winch_state, winch.path.at(t));
@@ -175,17 +175,18 @@ impl LineWork {
         let height = layout.position.get(at).z - step.drift * after; // at t_n
         let lag = step.lag();
         let heights = [height - lag * before, height + 0.5 * step.drift * after];
-        if let Some(balance) = &mut self.balance {
-            balance.supply([winch.density * (halves[1] - halves[0]), 0.0]);
-            balance.supply(winch.taken_up(halves, velocities, heights));
-        }
         let next = winch.next;
+        let brought = [
+            [winch.density * (halves[1] - halves[0]), 0.0],
+            winch.taken_up(halves, velocities, heights),
+        ];
+        brought.into_iter().for_each(|energy| self.supply(energy));
         self.transport(next, 0.5 * step.drift);
     }
 
     /// After the work of the ends was booked: lays out the end segment at its new length, and splits or merges it.
     pub(super) fn renew_end_segment(&mut self, step: Step) {
-        let Some(winch) = &mut self.winch else {
+        let Some(winch) = &mut self.kernel.winch else {
             return;
         };
         winch.winch_state = winch.next;
@@ -199,10 +200,10 @@ impl LineWork {
             let last = self.layout.segment_count - 1;
             return self.lay_out(last);
         }
-        while let Some(passage) = self.winch.as_deref().and_then(passage) {
+        while let Some(passage) = self.kernel.winch.as_deref().and_then(passage) {
             self.pass(passage, 0.5 * step.drift);
         }
-        if let Some(winch) = &mut self.winch {
+        if let Some(winch) = &mut self.kernel.winch {
             winch.line.set_length_change(change);
         }
         self.lay_out(0);
@@ -210,7 +211,7 @@ impl LineWork {
 
     /// Splits the end segment or merges it; the velocities are those of a time `lag` [s] before the positions.
     fn pass(&mut self, passage: Passage, lag: f64) {
-        let Some(winch) = &mut self.winch else {
+        let Some(winch) = &mut self.kernel.winch else {
             return;
         };
         let (n, winch_state) = (self.layout.segment_count, winch.winch_state);
@@ -218,7 +219,7 @@ impl LineWork {
         winch.line.set_length_change(winch_state.half_step[0]); // the time of the energies
         let before = self.energy_from(first, lag);
         let layout = &mut self.layout;
-        let Some(winch) = &mut self.winch else {
+        let Some(winch) = &mut self.kernel.winch else {
             return;
         };
         let motions = [
@@ -250,15 +251,13 @@ impl LineWork {
         winch.line.pay_out(count, winch_state.half_step[0]);
         layout.set_segment_count(count);
         let after = self.energy_from(first, lag);
-        if let Some(balance) = &mut self.balance {
-            balance.supply([0, 1].map(|part| after[part] - before[part]));
-        }
+        self.supply([0, 1].map(|part| after[part] - before[part]));
     }
 
     /// Energy of the segments from `first` on and of the nodes between them, their mass along the line being that across it, and the kinetic part of
     /// it [J], at the time of the velocities, `lag` [s] before the positions; zero without an energy balance.
     fn energy_from(&self, first: usize, lag: f64) -> [f64; 2] {
-        let (Some(winch), Some(_)) = (&self.winch, &self.balance) else {
+        let (Some(winch), Some(_)) = (&self.kernel.winch, &self.balance) else {
             return [0.0; 2];
         };
         let (layout, line) = (&self.layout, &winch.line);
@@ -285,7 +284,7 @@ impl LineWork {
 
     /// Writes segments and nodes from `from` on into the arrays of the kernel, with padding behind them.
     fn lay_out(&mut self, from: usize) {
-        let Some(winch) = &self.winch else {
+        let Some(winch) = &self.kernel.winch else {
             return;
         };
         let (layout, segments, nodes) = (&mut self.layout, &winch.line.segments, &winch.line.nodes);
@@ -314,15 +313,15 @@ impl LineWork {
         );
         put(&mut layout.weight, from, n + 1, |i| nodes.weight[i], 0.0);
         put(
-            &mut self.inverse_mass,
+            &mut self.kernel.inverse_mass,
             from,
             n + 1,
             |i| 1.0 / nodes.mass_normal[i],
             0.0,
         );
-        let first = self.interior[layout.slot(0)];
+        let first = self.kernel.interior[layout.slot(0)];
         let interior = |i: usize| if i == 0 { first } else { 1.0 };
-        put(&mut self.interior, from, n, interior, 0.0);
+        put(&mut self.kernel.interior, from, n, interior, 0.0);
         if let (Some(into), Some(values)) = (&mut layout.mass_damping, &nodes.mass_damping) {
             put(into, from, n + 1, |i| values[i], 0.0);
         }
@@ -347,7 +346,7 @@ impl LineWork {
 
     /// Writes what the water does to the nodes from `from` on.
     fn lay_out_water(&mut self, from: usize) {
-        let (Some(winch), Some(water)) = (&self.winch, &mut self.water) else {
+        let (Some(winch), Some(water)) = (&self.kernel.winch, &mut self.kernel.water) else {
             return;
         };
         let (nodes, n) = (&winch.line.nodes, winch.line.segment_count());
@@ -413,9 +412,9 @@ mod tests {
     "#;
 
     /// The line with 6.2 m of end segment, in wild motion.
-    fn work() -> LineWork {
+    fn work() -> ExplicitLine {
         let model = Model::new(&Scene::from_toml(SCENE).unwrap()).unwrap();
-        let mut work = LineWork::new(&model, &model.lines[0], [true; 2]).unwrap();
+        let mut work = ExplicitLine::new(&model, &model.lines[0], [true; 2]).unwrap();
         let wild = |i: usize, k: f64| {
             let i = i as f64;
             Vector3::new((3.0 * i + k).sin(), (5.0 * i * k).cos(), (i + 2.0 * k).sin())
@@ -438,8 +437,8 @@ mod tests {
     }
 
     /// Mass [kg] and momenta [kg m/s] of all nodes, that of the half node at the winch counted in.
-    fn content(work: &LineWork) -> (f64, [Vector3<f64>; 2]) {
-        let nodes = &work.winch.as_ref().unwrap().line.nodes;
+    fn content(work: &ExplicitLine) -> (f64, [Vector3<f64>; 2]) {
+        let nodes = &work.kernel.winch.as_ref().unwrap().line.nodes;
         let motions = [&work.layout.velocity, &work.layout.velocity_before];
         let momenta = motions.map(|motion| {
             let nodes = nodes.mass.iter().enumerate();

@@ -25,13 +25,13 @@
 //! Drag across the line, C v, is folded into the node's mass by θΔt C, θ = max(½, 1 − M/(Δt C)): trapezoidal, but where it outweighs inertia no
 //! more than that no velocity changes its sign by it, which would go on for ever. Drag along the line, K|u|u, is what T̄ has to balance, and averaged as T̄ is:
 //! the mean of those at t_{n−½} and t_{n+½}, the latter by a tangent at the extrapolated u. Taken at t_n alone, its harmonics of short periods appear
-//! 1/(1 − σ sin²(ωΔt/2)) times as great in T^n. The seabed is folded in too (`bed`); flags of slack, memory and contact are checked after
+//! 1/(1 − σ sin²(ωΔt/2)) times as great in T^n. The seabed is folded in too (`contact`); flags of slack, memory and contact are checked after
 //! the solve and the step repeated until they hold.
 //!
 //! A held end moves by the secant of its path, which so is its v_{n+½}. Only where it sets out, at rest or after a jump, v_{n−½} is
 //! V − ½Δt A of its path.
 //!
-//! A step ([`AxialWork::step`]) goes over the rows of the folded line ([`crate::math::striping`]) once for each thing it finds out: geometry,
+//! A step goes over the rows of the folded line ([`crate::math::striping`]) once for each thing it finds out: geometry,
 //! segments, drag, inverse masses, contact (`prepare`), couplings; then, until the assumptions hold, the equations, T̄ by
 //! [`crate::math::striped_tridiagonal`], velocities and what they say about the assumptions (`solve`). Each sweep has little to do in a
 //! row, and keeps in memory what the next one goes on with: the processor, which waits for roots, quotients and sums, then works on several rows at
@@ -43,10 +43,10 @@
 //!
 //! Source: Stern & Grinspun (2009), Implicit-explicit variational integration of highly oscillatory problems, Multiscale
 //! Model. Simul. 7, 1779-1794, with controllable dissipation added. The limit left is transverse:
-//! [`super::limit::transverse_step`].
+//! [`crate::dynamics::limit::transverse_step`].
 
 mod balance;
-mod bed;
+mod contact;
 mod friction;
 mod prepare;
 mod rows;
@@ -55,13 +55,16 @@ mod solve;
 use nalgebra::Vector3;
 use pulp::NullaryFnOnce;
 
-use super::layout::{Layout, Water, interior};
-use super::limit::{axial_frequency_squared, transverse_step};
+use super::layout::{Layout, interior};
+use super::network::NetworkWork;
 use super::step::Step;
+use super::{ENDS, EndMotion, Kernel, LineWork};
+use crate::dynamics::Choice;
+use crate::dynamics::limit::{axial_frequency_squared, transverse_step};
 use crate::math::lanes::Lanes;
-use crate::model::{End, Line, LineState, Model, Release, WaveSpan};
+use crate::model::{End, Line, LineState, Model};
 use crate::physics::stretch::StretchLaw;
-use balance::LineBalance;
+use crate::scene::AXIAL_RADIUS_MIN;
 use friction::SeabedRow;
 use rows::{CurrentRow, NodeRow, Rows, SegmentRow, Sizes, springs, under};
 
@@ -71,10 +74,13 @@ const PASSES_MAX: usize = 8;
 const EXPLICIT_PART: f64 = 3.2;
 /// Share of T̄ that is averaged at least: axial waves then run in time up to (ωΔt)⁴ [-].
 const SHARE_MIN: f64 = 1.0 / 3.0;
-/// Rows of nodes that vectors of eight numbers do not pay for [-].
-const FEW_ROWS: usize = 2;
-/// Ends in the order of the line.
-const ENDS: [End; 2] = [End::A, End::B];
+/// Spectral radius at infinite frequency where the scene gives none [-].
+const SPECTRAL_RADIUS: f64 = 0.9;
+/// Tension that may arise within a step, over the greatest one before it [-].
+const SNAP_GROWTH: f64 = 1.5;
+
+/// A line with implicit tension.
+pub(super) type AxialLine = LineWork<AxialImplicit>;
 
 /// Weights of T^{n+1}, T^n, T^{n−1}, T^{n−2} in T̄.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -113,12 +119,11 @@ fn damping_rate(line: &Line) -> f64 {
     (0..line.segment_count()).map(rate).fold(0.0, f64::max)
 }
 
-/// A line and the scratch of its steps.
+/// Scratch of the stages with implicit tension.
 #[derive(Debug, Clone)]
-pub struct AxialWork {
-    layout: Layout,
+pub struct AxialImplicit {
     /// Longest step times √T [s √N].
-    pub transverse: f64,
+    transverse: f64,
     /// Weights of the averaging, and those of the step.
     averaging: Weights,
     weights: Weights,
@@ -129,28 +134,27 @@ pub struct AxialWork {
     rows: Rows,
     /// State of the nodes on a seabed with a slope, soundings or friction; empty without one.
     seabed: Vec<SeabedRow>,
-    /// Whether ends A and B are released from their points.
-    released: [bool; 2],
-    /// The energy balance, where the scene asks for it.
-    balance: Option<LineBalance>,
-    /// Greatest T̄ since then [N].
+    /// Greatest T̄ since the state was loaded or stored last [N].
     tension_peak: Lanes,
-    /// Greatest tension of the springs, and greatest T̄, when the state was handed back last [N].
+    /// Greatest tension of the springs, and greatest T̄, when the state was stored last [N].
     tensions: [f64; 2],
-    /// Whether the flags and the true stretch of all steps since then were found.
+    /// True if slack, contact and true stretch of all steps since then were found.
     settled: bool,
-    /// Whether springs up to t_n may push, of which not all is in T̄ then.
+    /// True if springs up to t_n may push, of which not all is in T̄ then.
     forgets: bool,
-    /// Whether no step has been made yet.
+    /// True if no step has been made yet.
     starts: bool,
 }
 
-impl AxialWork {
-    /// Scratch for a line of a model, with the spectral radius ρ [-]; `None` where its sections have different strain measures, which the
-    /// kernel does not mix.
-    pub fn new(model: &Model, line: &Line, rho: f64) -> Option<AxialWork> {
-        let water = Water::around(model, line);
-        let layout = Layout::new(model, (line, water), FEW_ROWS, true)?;
+impl Kernel for AxialImplicit {
+    const FEW_ROWS: usize = 2;
+    const SECANTS: bool = true;
+    /// Square of the longest step times √T [s² N].
+    type Bound = f64;
+
+    fn new(model: &Model, line: &Line, layout: &Layout) -> AxialImplicit {
+        let radius = model.solver.spectral_radius.unwrap_or(SPECTRAL_RADIUS);
+        let averaging = Weights::new(radius.max(AXIAL_RADIUS_MIN));
         let count = layout.rows().count();
         let column = |values: &[f64]| layout.striping.column(values, 1.0);
         let masses = [&line.nodes.mass_normal, &line.nodes.mass_tangent].map(|m| column(m));
@@ -161,190 +165,161 @@ impl AxialWork {
             free: free.load(at),
             ..NodeRow::new()
         };
-        Some(AxialWork {
+        AxialImplicit {
             transverse: transverse_step(line, 1.0),
-            averaging: Weights::new(rho),
-            weights: Weights::new(rho),
+            averaging,
+            weights: averaging,
             frequency_squared: axial_frequency_squared(line),
             damping_rate: damping_rate(line),
             rows: Rows {
-                segments: layout.rows().map(|at| SegmentRow::new(&layout, at)).collect(),
+                segments: layout.rows().map(|at| SegmentRow::new(layout, at)).collect(),
                 nodes: layout.rows().map(node).collect(),
                 current: layout.flows().then(|| vec![CurrentRow::new(); count]),
             },
-            released: [false; 2],
             seabed: vec![SeabedRow::new(); if layout.bottom().is_some() { count } else { 0 }],
-            balance: layout.energy_balance.then(LineBalance::default),
             tension_peak: Lanes::splat(0.0),
             tensions: [0.0; 2],
             settled: true,
             forgets: false,
             starts: true,
-            layout,
-        })
-    }
-
-    /// Runs the kernel as it is compiled for any machine of the target, or for the best vectors of this one, as is the default.
-    /// Results do not depend on it.
-    pub fn set_portable(&mut self, portable: bool) {
-        self.layout.set_portable(portable);
-    }
-
-    /// Takes over the state of a line.
-    pub fn load(&mut self, state: &LineState) {
-        self.layout.load(state);
-        self.released = state.released;
-        for end in ENDS {
-            self.set_free(end, self.released[end as usize]);
-        }
-        self.resume();
-        self.starts = state.half_step.is_unset();
-        let count = self.layout.segment_count;
-        if state.half_step.tension[0].len() == count {
-            let [now, before] = &state.half_step.tension;
-            for row in &mut self.rows.segments {
-                row.history = [Lanes::splat(0.0); 3]; // of padding
-            }
-            for (at, tensions) in self.layout.striping.slots().zip(now.iter().zip(before)) {
-                let [own, own_before, _] = &mut self.rows.segments[at.row - 1].history;
-                (own[at.lane], own_before[at.lane]) = (*tensions.0, *tensions.1);
-            }
-            return;
-        }
-        self.layout.renew_halo(self.released);
-        for at in self.layout.rows() {
-            let strain = self.layout.strain(at);
-            let tension = match &self.layout.viscoelastic {
-                None => {
-                    let force = strain.map(|strain| self.layout.law.at(strain).force);
-                    self.layout.axial_stiffness.load(at) * force
-                }
-                Some(viscoelastic) => viscoelastic.elastic(at, strain),
-            };
-            self.rows.segments[at - 1].history = [tension; 3];
         }
     }
 
-    /// Goes on from the state that [`Self::store`] handed back last.
-    pub fn resume(&mut self) {
-        self.clear_balance();
-        (self.tension_peak, self.settled) = (Lanes::splat(0.0), true);
-        self.starts = false;
-    }
-
-    /// Whether no step has been made yet, so that the ends are yet to be put where they set out.
-    pub fn starts(&self) -> bool {
-        self.starts
-    }
-
-    fn set_free(&mut self, end: End, free: bool) {
-        let at = self.layout.end_slot(end);
-        if self.layout.has_row(at) {
-            self.rows.nodes[at.row - 1].free[at.lane] = f64::from(u8::from(free));
+    fn load(work: &mut AxialLine, state: &LineState) {
+        let memory = &state.half_step;
+        let fresh = memory.tension[0].len() != work.layout.segment_count;
+        match fresh {
+            true => work.start_tensions(),
+            false => work.kernel.load_tensions(&work.layout, &memory.tension),
         }
+        let kernel = &mut work.kernel;
+        kernel.restart();
+        kernel.starts = memory.is_unset();
+        kernel.tensions[0] = memory.tension[0]
+            .iter()
+            .fold(0.0, |a, &b| if b > a { b } else { a });
     }
 
-    /// Whether every step since [`Self::load`] found which segments are slack, where the bed pushes and how far stiff segments stretch.
-    /// Where one did not, its tension is wrong by more than the tolerance: the steps were too long.
-    pub fn is_settled(&self) -> bool {
-        self.settled
+    fn resume(work: &mut AxialLine, _: &LineState) {
+        work.clear_balance();
+        work.kernel.restart();
     }
 
-    /// Hands the state back after steps of `steps` [s]. Whether all nodes have finite positions, and speeds that mooring lines reach.
-    pub fn store(&mut self, state: &mut LineState, steps: [f64; 2]) -> bool {
-        state.released = self.released;
-        let unit = self.layout.vector_unit;
+    fn store(work: &mut AxialLine, state: &mut LineState, steps: [f64; 2]) -> bool {
+        let unit = work.layout.vector_unit;
         let is_sound;
-        (is_sound, self.tensions) = unit.dispatch(HandBack(self, state, steps));
+        (is_sound, work.kernel.tensions) = unit.dispatch(Store(work, state, steps));
         is_sound
     }
 
-    /// Takes over what waves do at the nodes of this line, by its number, over a span of time.
-    pub fn load_waves(&mut self, span: &WaveSpan) {
-        self.layout.load_waves(span);
-    }
-
-    /// Finds the nodes at the water's surface at t_n and sets their coefficients.
-    #[inline]
-    pub fn meet_surface(&mut self) {
-        if self.layout.surface.is_some() {
-            self.pierce_surface();
+    fn set_free(work: &mut AxialLine, end: End, free: bool) {
+        let at = work.layout.end_slot(end);
+        if work.layout.has_row(at) {
+            work.kernel.rows.nodes[at.row - 1].free[at.lane] = f64::from(u8::from(free));
         }
     }
 
-    /// [`Self::meet_surface`] of a line that may pierce it.
-    fn pierce_surface(&mut self) {
-        self.layout.find_surface();
-        let Some(surface) = &self.layout.surface else {
+    fn end_masses(work: &AxialLine, end: End) -> [f64; 2] {
+        let at = work.layout.end_slot(end);
+        let node = &work.kernel.rows.nodes[at.row - 1];
+        [node.mass_normal[at.lane], node.mass_tangent[at.lane]]
+    }
+
+    fn meet_surface(work: &mut AxialLine) {
+        let Some(surface) = &work.layout.surface else {
             return;
         };
         for i in surface.crossed() {
-            let at = self.layout.slot(i);
-            let node = &mut self.rows.nodes[at.row - 1];
+            let at = work.layout.slot(i);
+            let node = &mut work.kernel.rows.nodes[at.row - 1];
             [node.mass_normal[at.lane], node.mass_tangent[at.lane]] = surface.node(i).masses;
         }
     }
 
-    /// Sets what multiplies the current at t_n [-].
-    pub fn set_current(&mut self, factor: f64) {
-        self.layout.set_current(factor);
+    fn starts(work: &AxialLine) -> bool {
+        work.kernel.starts
     }
 
-    /// Sets the waves to those of t_n [s].
-    pub fn set_time(&mut self, t: f64) {
-        self.layout.set_time(t);
+    /// Tensions are found with the velocities.
+    fn pull(_: &mut NetworkWork<AxialImplicit>, _: &Model, _: f64, _: Step) {}
+
+    fn advance(work: &mut AxialLine, _: f64, step: Step, ends: [&EndMotion; 2]) -> usize {
+        let ends = ends.map(|end| end.position);
+        work.layout.vector_unit.dispatch(AxialStep(work, &step, &ends))
     }
 
-    /// Puts an end at a position [m] with the velocity [m/s] that the next step takes as lagged.
-    pub fn put_end(&mut self, end: End, position: Vector3<f64>, velocity: Vector3<f64>) {
-        if self.released[end as usize] {
-            return;
+    /// The bound is that of transverse waves, under half as much tension again as there was in the last step.
+    fn longest_step(
+        network: &mut NetworkWork<AxialImplicit>,
+        _: &Model,
+        choice: &Choice,
+        [_, length]: [f64; 2],
+    ) -> (f64, f64) {
+        let (mut longest, mut bound) = (choice.longest, f64::INFINITY);
+        for AxialImplicit {
+            transverse, tensions, ..
+        } in network.lines.iter().map(|line| &line.kernel)
+        {
+            let expected = SNAP_GROWTH * tensions[0];
+            // most bounds hold over the whole communication step, without roots and quotients
+            if length * length * expected > transverse * transverse {
+                longest = longest.min(transverse / expected.sqrt());
+            }
+            bound = bound.min(transverse * transverse);
         }
-        self.layout.put_end(end, position, velocity);
+        (longest, bound)
     }
 
-    /// Makes viscoelastic segments at the ends take these to have come as they go on, from where they were `lag` [s] ago.
-    pub fn set_out_anew(&mut self, lag: f64) {
-        self.layout.set_out_anew(lag);
+    fn were_short(
+        network: &mut NetworkWork<AxialImplicit>,
+        _: &Model,
+        bound: &f64,
+        [_, drift]: [f64; 2],
+    ) -> bool {
+        let mut lines = network.lines.iter().map(|line| &line.kernel);
+        lines.all(|line| line.settled && !(drift * drift * line.tensions[1] > *bound))
+    }
+}
+
+impl AxialImplicit {
+    /// Starts counting passes and tensions anew.
+    fn restart(&mut self) {
+        (self.tension_peak, self.settled) = (Lanes::splat(0.0), true);
+        self.starts = false;
     }
 
-    /// Releases the ends whose tension at t_n, `t` [s], or time is due.
-    pub fn release_ends(&mut self, releases: &[Release; 2], t: f64, step: Step) {
-        for end in ENDS {
-            let (side, at) = (end as usize, self.layout.end_slot(end));
-            if self.released[side] {
-                continue;
-            }
-            let tension = self.layout.end_tension(end, step);
-            if !releases[side].is_due(tension, t) {
-                continue;
-            }
-            let node = &self.rows.nodes[at.row - 1];
-            let masses = [node.mass_normal[at.lane], node.mass_tangent[at.lane]];
-            if let Some(balance) = &mut self.balance {
-                balance.supply(self.layout.joining_energy(end, masses, step));
-            }
-            self.released[side] = true;
-            self.set_free(end, true);
+    /// Loads the tensions of the segments at t_{n−1} and t_{n−2} [N].
+    fn load_tensions(&mut self, layout: &Layout, [now, before]: &[Vec<f64>; 2]) {
+        for row in &mut self.rows.segments {
+            row.history = [Lanes::splat(0.0); 3]; // of padding
+        }
+        for (at, tensions) in layout.striping.slots().zip(now.iter().zip(before)) {
+            let [own, own_before, _] = &mut self.rows.segments[at.row - 1].history;
+            (own[at.lane], own_before[at.lane]) = (*tensions.0, *tensions.1);
+        }
+    }
+}
+
+impl AxialLine {
+    /// Takes the tensions of the segments for those that they had before.
+    fn start_tensions(&mut self) {
+        self.layout.renew_halo();
+        for at in self.layout.rows() {
+            let strain = self.layout.strain(at);
+            self.kernel.rows.segments[at - 1].history = [self.layout.elastic(at, strain); 3];
         }
     }
 
     /// Ends that a point holds.
     fn held_ends(&self) -> impl Iterator<Item = End> + use<> {
-        let released = self.released;
+        let released = self.layout.released;
         ENDS.into_iter().filter(move |&end| !released[end as usize])
-    }
-
-    /// One step; `ends` are the positions [m] of both ends after it. Returns the passes it took.
-    pub fn step(&mut self, step: Step, ends: [Vector3<f64>; 2]) -> usize {
-        let unit = self.layout.vector_unit;
-        unit.dispatch(AxialStep(self, &step, &ends))
     }
 
     #[inline(always)]
     fn choose_step(&mut self, step: &Step, ends: &[Vector3<f64>; 2]) -> usize {
         use under::{LEVEL, NOTHING, ROUGH};
-        match (self.rows.current.is_some(), self.bed_under()) {
+        match (self.kernel.rows.current.is_some(), self.bed_under()) {
             (false, NOTHING) => self.step_vectors::<false, NOTHING>(step, ends),
             (false, LEVEL) => self.step_vectors::<false, LEVEL>(step, ends),
             (false, _) => self.step_vectors::<false, ROUGH>(step, ends),
@@ -357,7 +332,7 @@ impl AxialWork {
     /// What is under the nodes.
     #[inline(always)]
     fn bed_under(&self) -> u8 {
-        match (&self.layout.contact, self.seabed.is_empty()) {
+        match (&self.layout.contact, self.kernel.seabed.is_empty()) {
             (None, _) => under::NOTHING,
             (Some(_), true) => under::LEVEL,
             (Some(_), false) => under::ROUGH,
@@ -390,11 +365,11 @@ impl AxialWork {
             let before = self.solve_tensions();
             self.find_velocities::<BED>(before, &sizes);
             let found = self.look_over::<BED>(&sizes);
-            self.tension_peak = self.tension_peak.max(found.greatest);
+            self.kernel.tension_peak = self.kernel.tension_peak.max(found.greatest);
             let bed_holds = self.bed_holds::<BED>(&found);
             let holds = self.segments_hold(&found, &sizes) && bed_holds;
             if holds || passes == PASSES_MAX {
-                self.settled &= holds;
+                self.kernel.settled &= holds;
                 break;
             }
             if !bed_holds {
@@ -415,11 +390,11 @@ impl AxialWork {
     /// Weights of as much averaging as the step needs.
     #[inline(always)]
     fn choose_weights(&mut self, step: Step) {
-        let share = match self.released {
-            [false, false] => averaged_share(self.frequency_squared, step),
+        let share = match self.layout.released {
+            [false, false] => averaged_share(self.kernel.frequency_squared, step),
             _ => 1.0,
         };
-        self.weights = self.averaging.shared(share);
+        self.kernel.weights = self.kernel.averaging.shared(share);
     }
 
     #[inline(always)]
@@ -427,11 +402,11 @@ impl AxialWork {
         let line = &mut self.layout;
         if let Some(viscoelastic) = &mut line.viscoelastic {
             viscoelastic.prepare(step.drift);
-            line.renew_halo(self.released);
+            line.renew_halo();
             self.prepare_geometry();
             return self.prepare_segments::<{ springs::VISCOELASTIC }>(sizes);
         }
-        line.renew_neighbours(self.released);
+        line.renew_neighbours();
         self.prepare_geometry();
         match self.layout.law {
             StretchLaw::Engineering => self.prepare_segments::<{ springs::LINEAR }>(sizes),
@@ -465,30 +440,10 @@ impl AxialWork {
             }
         }
     }
-
-    /// Greatest T̄ [N] between the last time the state was loaded and [`Self::store`].
-    pub fn tension_peak(&self) -> f64 {
-        self.tensions[1]
-    }
-
-    /// Greatest tension [N] that [`Self::store`] handed back as that of t − Δt.
-    pub fn tension_before(&self) -> f64 {
-        self.tensions[0]
-    }
-
-    /// Index of the node that moves fastest.
-    pub fn fastest_node(&self) -> usize {
-        self.layout.fastest_node()
-    }
-
-    /// Index of the first node that has no finite position, or a speed that no mooring line reaches.
-    pub fn broken_node(&self) -> Option<usize> {
-        self.layout.broken_node()
-    }
 }
 
-/// [`AxialWork::step`] for the vector unit of the machine.
-struct AxialStep<'a>(&'a mut AxialWork, &'a Step, &'a [Vector3<f64>; 2]);
+/// A step for the vector unit of the machine.
+struct AxialStep<'a>(&'a mut AxialLine, &'a Step, &'a [Vector3<f64>; 2]);
 
 impl NullaryFnOnce for AxialStep<'_> {
     type Output = usize;
@@ -499,24 +454,24 @@ impl NullaryFnOnce for AxialStep<'_> {
     }
 }
 
-/// [`AxialWork::store`] for the vector unit of the machine; gives the greatest tensions too.
-struct HandBack<'a>(&'a AxialWork, &'a mut LineState, [f64; 2]);
+/// [`AxialImplicit::store`] for the vector unit of the machine; returns the greatest tensions too.
+struct Store<'a>(&'a AxialLine, &'a mut LineState, [f64; 2]);
 
-impl NullaryFnOnce for HandBack<'_> {
+impl NullaryFnOnce for Store<'_> {
     type Output = (bool, [f64; 2]);
 
     #[inline(always)]
     fn call(self) -> (bool, [f64; 2]) {
-        let HandBack(work, state, steps) = self;
+        let Store(work, state, steps) = self;
         let is_sound = work.layout.hand_back(state, steps);
-        let (count, rows) = (work.layout.segment_count, work.rows.segments.len());
+        let (count, rows) = (work.layout.segment_count, work.kernel.rows.segments.len());
         let [now, before] = &mut state.half_step.tension;
         now.resize(count, 0.0);
         before.resize(count, 0.0);
         let (now, before) = (&mut now[..count], &mut before[..count]);
         let mut tensions = Tensions { now, before };
         let mut greatest = Lanes::splat(0.0);
-        for (row, segment) in work.rows.segments.iter().enumerate() {
+        for (row, segment) in work.kernel.rows.segments.iter().enumerate() {
             let of = &segment.history;
             greatest = of[0].max(greatest);
             tensions.take(row, 0, of);
@@ -524,7 +479,7 @@ impl NullaryFnOnce for HandBack<'_> {
             tensions.take(2 * rows + row, 2, of);
             tensions.take(3 * rows + row, 3, of);
         }
-        let peak = work.tension_peak.greatest()[0];
+        let peak = work.kernel.tension_peak.greatest()[0];
         (is_sound, [greatest.greatest()[0], peak])
     }
 }

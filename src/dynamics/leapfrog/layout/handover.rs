@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use pulp::NullaryFnOnce;
 
 use super::Layout;
-use crate::dynamics::step::Step;
+use crate::dynamics::leapfrog::step::Step;
 use crate::math::lanes::{Lanes, Vectors};
 use crate::math::striping::{Field, Slot, Striping};
 use crate::model::LineState;
@@ -90,6 +90,7 @@ impl Layout {
     /// Takes over positions and velocities of a line; the halo is yet to be renewed. Padding starts anew: it may have met what a step
     /// that was too long made of the nodes beside it.
     pub fn load(&mut self, state: &LineState) {
+        self.released = state.released;
         let memory = &state.half_step;
         let fresh = memory.is_unset();
         if let Some(viscoelastic) = &mut self.viscoelastic {
@@ -130,6 +131,7 @@ impl Layout {
     /// [`Self::store`], wherever it is compiled into.
     #[inline(always)]
     pub fn hand_back(&self, state: &mut LineState, steps: [f64; 2]) -> bool {
+        state.released = self.released;
         if let Some(viscoelastic) = &self.viscoelastic {
             viscoelastic.store(&mut state.viscoelastic, &mut state.half_step.viscoelastic);
         }

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use super::Layout;
-use crate::dynamics::step::Step;
+use crate::dynamics::leapfrog::step::Step;
 use crate::math::hermite::Hermite;
 use crate::math::lanes::{Lanes, Vectors};
 use crate::math::striping::{Column, Field, Slot, Striping};
@@ -33,7 +33,7 @@ impl<'a> Water<'a> {
 
 /// The current at t_n.
 #[derive(Debug, Clone)]
-pub(in crate::dynamics) struct CurrentNow {
+pub struct CurrentNow {
     pub profile: Profile,
     /// What multiplies it [-].
     pub factor: f64,
@@ -50,7 +50,7 @@ impl CurrentNow {
 
 /// Motion of the water by waves over a span of time: coefficients of the powers of the part of the span that has passed.
 #[derive(Debug, Clone)]
-pub(in crate::dynamics) struct WaveArrays {
+pub struct WaveArrays {
     /// Of the velocity [m/s].
     velocity: [Field; 4],
     /// Of the acceleration [m/s²].
@@ -131,7 +131,7 @@ impl WaveArrays {
 
 /// Velocities of the water at the nodes of a row at the heights z [m], in [m/s].
 #[inline(always)]
-pub(in crate::dynamics) fn water_flow(
+pub(in crate::dynamics::leapfrog) fn water_flow(
     current: Option<&CurrentNow>,
     waves: Option<&WaveArrays>,
     at: usize,

@@ -6,28 +6,21 @@
 //!
 //! Halo rows are copied before any node has moved, and the ends are put where their points are at the end.
 
-use nalgebra::Vector3;
 use pulp::NullaryFnOnce;
 
-use super::LineWork;
-use crate::dynamics::layout::{CurrentNow, LENGTH2_MIN, Layout, WaveArrays, inverse_norm, water_flow};
-use crate::dynamics::step::Step;
+use super::ExplicitLine;
+use crate::dynamics::leapfrog::EndMotion;
+use crate::dynamics::leapfrog::layout::{
+    CurrentNow, LENGTH2_MIN, Layout, WaveArrays, inverse_norm, water_flow,
+};
+use crate::dynamics::leapfrog::step::Step;
 use crate::math::lanes::{Lanes, Vectors};
 use crate::math::real::choose;
-use crate::model::{Bottom, End};
+use crate::model::Bottom;
 use crate::physics::friction_step::Landing;
 use crate::physics::morison::DragCoefficients;
 use crate::physics::slender::Slender;
 use crate::physics::stretch::{StretchLaw, total_tension};
-
-/// Prescribed motion of an end of a line.
-#[derive(Debug, Clone, Copy)]
-pub struct Placed {
-    /// Position [m].
-    pub position: Vector3<f64>,
-    /// Velocity half a step earlier [m/s], which the next step reads.
-    pub velocity: Vector3<f64>,
-}
 
 /// Water around the nodes.
 mod around {
@@ -49,8 +42,8 @@ mod under {
     pub const ROUGH: u8 = 2;
 }
 
-/// [`LineWork::pull`] for the vector unit of the machine.
-pub(super) struct Pull<'a>(pub &'a mut LineWork);
+/// [`ExplicitLine::pull`] for the vector unit of the machine.
+pub(super) struct Pull<'a>(pub &'a mut ExplicitLine);
 
 impl NullaryFnOnce for Pull<'_> {
     type Output = ();
@@ -63,11 +56,11 @@ impl NullaryFnOnce for Pull<'_> {
 
 /// Resistance and kick for the vector unit of the machine.
 pub(super) struct Sweep<'a> {
-    pub work: &'a mut LineWork,
+    pub work: &'a mut ExplicitLine,
     pub size: &'a Step,
     /// True if the nodes drift and the ends are placed too.
     pub drifts: bool,
-    pub ends: [&'a Placed; 2],
+    pub ends: [&'a EndMotion; 2],
 }
 
 impl NullaryFnOnce for Sweep<'_> {
@@ -84,16 +77,16 @@ impl NullaryFnOnce for Sweep<'_> {
         let drift = if drifts { size.drift } else { 0.0 };
         work.choose_sweep(size, drift);
         if drifts {
-            work.layout.place_ends(ends, work.released);
+            work.layout.place_ends(ends);
         }
     }
 }
 
 /// [`Layout::drift`] for the vector unit of the machine.
 pub(super) struct Drift<'a> {
-    pub work: &'a mut LineWork,
+    pub work: &'a mut ExplicitLine,
     pub size: &'a Step,
-    pub ends: [&'a Placed; 2],
+    pub ends: [&'a EndMotion; 2],
 }
 
 impl NullaryFnOnce for Drift<'_> {
@@ -103,20 +96,7 @@ impl NullaryFnOnce for Drift<'_> {
     fn call(self) {
         let layout = &mut self.work.layout;
         layout.drift(self.size.drift);
-        layout.place_ends(self.ends, self.work.released);
-    }
-}
-
-impl Layout {
-    /// Puts the ends that are not released from their points where these are.
-    #[inline(always)]
-    pub(super) fn place_ends(&mut self, ends: [&Placed; 2], released: [bool; 2]) {
-        for end in [End::A, End::B] {
-            if !released[end as usize] {
-                let Placed { position, velocity } = *ends[end as usize];
-                self.put_end(end, position, velocity);
-            }
-        }
+        layout.place_ends(self.ends);
     }
 }
 
@@ -170,11 +150,11 @@ struct ContactRows<'a> {
     damping: &'a [Lanes],
 }
 
-impl LineWork {
+impl ExplicitLine {
     /// Forces of the segments from positions at t_n and velocities at t_{n−½}.
     #[inline(always)]
     fn pull_segments(&mut self) {
-        self.layout.renew_neighbours(self.released);
+        self.layout.renew_neighbours();
         match (&self.layout.viscoelastic, &self.layout.law) {
             (None, StretchLaw::Engineering) => {
                 self.pull_by(|line, at, strain| line.axial_stiffness.load(at) * strain)
@@ -208,7 +188,7 @@ impl LineWork {
                 Lanes::splat(0.0),
                 line.negative_tension,
             );
-            self.pull.store(chord.scale(tension * inverse_l), at);
+            self.kernel.pull.store(chord.scale(tension * inverse_l), at);
         }
     }
 
@@ -220,10 +200,10 @@ impl LineWork {
             position: line.position.rows_mut(last),
             velocity: line.velocity.rows(last),
             velocity_before: line.velocity_before.rows_mut(last),
-            pull: self.pull.rows(last),
-            resistance: self.resistance.rows_mut(last),
-            inverse_square: self.inverse_square.rows_mut(last),
-            froude_krylov: match &mut self.froude_krylov {
+            pull: self.kernel.pull.rows(last),
+            resistance: self.kernel.resistance.rows_mut(last),
+            inverse_square: self.kernel.inverse_square.rows_mut(last),
+            froude_krylov: match &mut self.kernel.froude_krylov {
                 Some(froude_krylov) => froude_krylov.rows_mut(last),
                 None => &mut [],
             },
@@ -231,16 +211,16 @@ impl LineWork {
         };
         let mut nodes = NodeRows {
             weight: line.weight.rows(last),
-            inverse_mass: self.inverse_mass.rows(last),
+            inverse_mass: self.kernel.inverse_mass.rows(last),
             mass_damping: line.mass_damping.as_ref().map(|damping| damping.rows(last)),
             water: WaterRows::default(),
             current: line.current.as_ref(),
             waves: line.waves.as_ref(),
             contact: ContactRows::default(),
             bottom: None,
-            interior: self.interior.rows(last),
+            interior: self.kernel.interior.rows(last),
         };
-        if let Some(water) = &self.water {
+        if let Some(water) = &self.kernel.water {
             nodes.water = WaterRows {
                 normal: water.drag_normal.rows(last),
                 tangent: water.drag_tangent.rows(last),
@@ -382,10 +362,10 @@ impl ContactRows<'_> {
     }
 }
 
-impl LineWork {
+impl ExplicitLine {
     #[inline(always)]
     fn choose_sweep(&mut self, step: &Step, drift: f64) {
-        match (&self.water, self.layout.flows()) {
+        match (&self.kernel.water, self.layout.flows()) {
             (None, _) => self.choose_bed::<{ around::DRY }>(step, drift),
             (Some(_), false) => self.choose_bed::<{ around::STILL }>(step, drift),
             (Some(_), true) => self.choose_bed::<{ around::FLOWING }>(step, drift),

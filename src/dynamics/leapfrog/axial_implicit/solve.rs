@@ -2,7 +2,7 @@
 //!
 //! Loops name the rows by index: with iterators the compiler would see that it may take four rows at once, and take them lane by lane.
 
-use super::AxialWork;
+use super::AxialLine;
 use super::rows::{NodeRow, SegmentRow, Sizes, under};
 use crate::math::lanes::{Lanes, Vectors};
 use crate::math::striped_tridiagonal::Eliminated;
@@ -44,14 +44,14 @@ impl Found {
     }
 }
 
-impl AxialWork {
+impl AxialLine {
     /// Finds what couples the segments through their nodes.
     #[inline(always)]
     pub(super) fn weigh_nodes<const BED: u8>(&mut self) {
-        let segments = &self.rows.segments[..self.rows.nodes.len()];
+        let segments = &self.kernel.rows.segments[..self.kernel.rows.nodes.len()];
         let direction = |at: usize| segments[at].direction;
         let mut q = direction(segments.len() - 1).moved_up_after(Vectors::zero());
-        for (at, node) in self.rows.nodes.iter_mut().enumerate() {
+        for (at, node) in self.kernel.rows.nodes.iter_mut().enumerate() {
             if at > 0 {
                 q = direction(at - 1);
             }
@@ -62,9 +62,9 @@ impl AxialWork {
     /// Writes the rows of the system in T̄.
     #[inline(always)]
     pub(super) fn assemble(&mut self, sizes: &Sizes) {
-        let nodes = &self.rows.nodes;
+        let nodes = &self.kernel.rows.nodes;
         let last = nodes.len() - 1;
-        for (at, segment) in self.rows.segments.iter_mut().enumerate() {
+        for (at, segment) in self.kernel.rows.segments.iter_mut().enumerate() {
             let (low, high) = (&nodes[at], &nodes[(at + 1).min(last)]);
             let relative = high.loose - low.loose;
             segment.assemble(relative, [low.forms, high.forms], sizes);
@@ -75,13 +75,13 @@ impl AxialWork {
         let behind = self.layout.velocity_before.load(nodes.len() + 1);
         let relative = high.loose.moved_down_before(behind) - low.loose;
         let forms = [low.forms, high.forms.map(|form| form.moved_down_before(zero))];
-        self.rows.segments[last].assemble(relative, forms, sizes);
+        self.kernel.rows.segments[last].assemble(relative, forms, sizes);
     }
 
     /// Solves for T̄, down the rows and up again. Returns T̄ of the segments before those of the first row [N].
     #[inline(always)]
     pub(super) fn solve_tensions(&mut self) -> Lanes {
-        let segments = &mut self.rows.segments[..];
+        let segments = &mut self.kernel.rows.segments[..];
         let last = segments.len() - 1;
         let mut start = Eliminated::start();
         for at in 0..last {
@@ -105,15 +105,15 @@ impl AxialWork {
     /// New velocities, into `velocity_before`, from T̄, that of the segments before those of the first row being `before` [N].
     #[inline(always)]
     pub(super) fn find_velocities<const BED: u8>(&mut self, before: Lanes, sizes: &Sizes) {
-        let (rows, kick) = (self.rows.nodes.len(), sizes.kick);
+        let (rows, kick) = (self.kernel.rows.nodes.len(), sizes.kick);
         let (segments, new) = (
-            &self.rows.segments[..rows],
+            &self.kernel.rows.segments[..rows],
             self.layout.velocity_before.rows_mut(rows),
         );
         let pull = |at: usize| segments[at].direction.scale(kick * segments[at].tension);
         let last = segments[segments.len() - 1].direction;
         let mut below = last.moved_up_after(Vectors::zero()).scale(kick * before);
-        for (at, node) in self.rows.nodes.iter_mut().enumerate() {
+        for (at, node) in self.kernel.rows.nodes.iter_mut().enumerate() {
             if at > 0 {
                 below = pull(at - 1);
             }
@@ -131,7 +131,10 @@ impl AxialWork {
     pub(super) fn look_over<const BED: u8>(&mut self, sizes: &Sizes) -> Found {
         let mut found = Found::new();
         let (line, last) = (&self.layout, self.layout.striping.rows());
-        let (segments, nodes) = (&self.rows.segments[..last], &self.rows.nodes[..last]);
+        let (segments, nodes) = (
+            &self.kernel.rows.segments[..last],
+            &self.kernel.rows.nodes[..last],
+        );
         let new = line.velocity_before.rows(last);
         // no inclusive range, which has more to do in every row; the results keep the compiler from taking four rows at once
         for at in 1..last + 1 {
@@ -179,7 +182,7 @@ impl Found {
     }
 }
 
-impl AxialWork {
+impl AxialLine {
     /// Corrects how the nodes meet the bed where a pass found it not to be as assumed; false if that asks for another pass.
     #[inline(always)]
     pub(super) fn bed_holds<const BED: u8>(&mut self, found: &Found) -> bool {
@@ -200,11 +203,11 @@ impl AxialWork {
         let off = found.bent - Lanes::splat(2.0 * SHORT) * tolerance;
         let stretched = off.max(found.flipped).max(found.turned).any_positive();
         let recalls = (Lanes::splat(0.0) - found.margin).any_positive();
-        if recalls && !self.forgets {
-            for segment in &mut self.rows.segments {
+        if recalls && !self.kernel.forgets {
+            for segment in &mut self.kernel.rows.segments {
                 segment.memory = segment.all_remembered(sizes);
             }
-            self.forgets = true;
+            self.kernel.forgets = true;
         }
         let revised = (stretched || recalls) && self.revise_segments(sizes, tolerance);
         let curved = self.is_curved() && self.follow_curve(sizes, tolerance);
@@ -221,9 +224,9 @@ impl AxialWork {
     #[inline(always)]
     fn follow_curve(&mut self, sizes: &Sizes, tolerance: Lanes) -> bool {
         let (velocity, law) = (&self.layout.velocity_before, &self.layout.law);
-        let share = Lanes::splat(self.weights.0[0]);
+        let share = Lanes::splat(self.kernel.weights.0[0]);
         let mut again = Lanes::splat(0.0);
-        for (row, segment) in self.rows.segments.iter_mut().enumerate() {
+        for (row, segment) in self.kernel.rows.segments.iter_mut().enumerate() {
             let relative = velocity.load(row + 2) - velocity.load(row + 1);
             let along = segment.direction.dot(relative);
             let inverse = self.layout.inverse_length.load(row + 1);
@@ -244,7 +247,7 @@ impl AxialWork {
     #[inline(always)]
     fn revise_contact(&mut self) {
         let velocity = &self.layout.velocity_before;
-        for (row, node) in self.rows.nodes.iter_mut().enumerate() {
+        for (row, node) in self.kernel.rows.nodes.iter_mut().enumerate() {
             node.touches = node.pushed(velocity.load(row + 1).z);
             node.settle();
         }
@@ -258,7 +261,7 @@ impl AxialWork {
         let per_drift = drift.recip();
         let velocity = &self.layout.velocity_before;
         let mut revised = false;
-        for (row, segment) in self.rows.segments.iter_mut().enumerate() {
+        for (row, segment) in self.kernel.rows.segments.iter_mut().enumerate() {
             let relative = velocity.load(row + 2) - velocity.load(row + 1);
             let along = segment.direction.dot(relative);
             let [total, more] = segment.total(along, sizes);
@@ -272,7 +275,7 @@ impl AxialWork {
             let off = (curvature - segment.curvature).abs().max(more.abs()) - tolerance;
             let again = (zero - taut * segment.taut).max(off.where_positive(taut));
             if again.any_positive() {
-                if self.forgets {
+                if self.kernel.forgets {
                     segment.remember(segment.rate(along, sizes), sizes);
                 }
                 (segment.curvature, segment.taut) = (curvature, taut);

@@ -6,7 +6,7 @@ use crate::model::{Dry, Line, Nodes, Surface};
 
 /// A line that may pierce the surface, as it lies at t_n.
 #[derive(Debug, Clone)]
-pub(super) struct SurfaceNow {
+pub struct SurfaceNow {
     surface: Surface,
     nodes: Nodes,
     /// Height of the water at the nodes [m].
@@ -22,7 +22,7 @@ pub(super) struct SurfaceNow {
 
 /// A node at t_n.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct NodeNow {
+pub struct NodeNow {
     /// Weight less buoyancy [N].
     pub weight: f64,
     /// Mass across and along the line [kg].

@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 
-use super::bed::Bed;
-use crate::dynamics::layout::Layout;
+use super::contact::Bed;
+use crate::dynamics::leapfrog::layout::Layout;
 use crate::math::lanes::{LANES, Lanes, Vectors};
 use crate::math::striped_tridiagonal::{Eliminated, Equations};
 use crate::math::striping::Slot;
@@ -74,7 +74,7 @@ pub(super) struct SegmentRow {
     pub stiffness: Lanes,
     /// Part of T̄ that springs have at no stretching velocity, along the tangent they are laid along [N].
     pub elastic: Lanes,
-    /// The part of it that the springs up to t_n have [N], kept where springs are curved or [`super::AxialWork::forgets`].
+    /// The part of it that the springs up to t_n have [N], kept where springs are curved or [`super::AxialLine::forgets`].
     pub memory: Lanes,
     /// What of BA/L acts in T̄ [N s/m].
     pub damping: Lanes,

@@ -12,7 +12,8 @@ use pulp::Arch;
 
 use super::step::Step;
 use super::surface::SurfaceNow;
-use super::viscoelastic::{Relaxed, ViscoelasticArrays};
+use super::{ENDS, EndMotion};
+use crate::dynamics::viscoelastic::{Relaxed, ViscoelasticArrays};
 use crate::math::lanes::{Lanes, Vectors};
 use crate::math::striping::{Column, Field, Slot, Striping};
 use crate::math::unit;
@@ -32,7 +33,7 @@ pub(super) const LENGTH2_MIN: f64 = 1e-200;
 
 /// Geometry, motion and coefficients of a line.
 #[derive(Debug, Clone)]
-pub(super) struct Layout {
+pub struct Layout {
     pub segment_count: usize,
     /// Where the last node and the last segment stand.
     last: [Slot; 2],
@@ -46,6 +47,8 @@ pub(super) struct Layout {
     pub negative_tension: bool,
     /// Whether the scene asks for the energy balance.
     pub energy_balance: bool,
+    /// True for ends A and B that are released from their points.
+    pub released: [bool; 2],
     /// Node positions at t_n [m].
     pub position: Field,
     /// Velocities at t_{n−½} [m/s].
@@ -71,7 +74,7 @@ pub(super) struct Layout {
 
 /// Lumped drag coefficients [N s²/m²].
 #[derive(Debug, Clone)]
-pub(super) struct DragArrays {
+pub struct DragArrays {
     pub normal: Column,
     pub tangent: Column,
 }
@@ -116,6 +119,7 @@ impl Layout {
             law: line.uniform_law()?,
             negative_tension: model.solver.negative_tension,
             energy_balance: model.energy_balance,
+            released: [false; 2],
             position: padded_positions(striping),
             velocity: Field::zeros(striping),
             velocity_before: Field::zeros(striping),
@@ -162,27 +166,27 @@ impl Layout {
 
     /// Copies the nodes to the halo. Released ends have no neighbour beyond them.
     #[inline(always)]
-    pub fn renew_halo(&mut self, released: [bool; 2]) {
+    pub fn renew_halo(&mut self) {
         self.position.wrap();
         self.velocity.wrap();
         self.velocity_before.wrap();
-        self.close_halo(released);
+        self.close_halo();
     }
 
     /// The same, for what needs no more than the positions of the nodes beside a node and the velocity of the one after.
     #[inline(always)]
-    pub fn renew_neighbours(&mut self, released: [bool; 2]) {
+    pub fn renew_neighbours(&mut self) {
         self.position.wrap();
         self.velocity.wrap_after();
-        self.close_halo(released);
+        self.close_halo();
     }
 
     /// Puts the halo beyond released ends where these ends are.
     #[inline(always)]
-    pub fn close_halo(&mut self, released: [bool; 2]) {
-        for end in [End::A, End::B] {
+    pub fn close_halo(&mut self) {
+        for end in ENDS {
             let at = self.end_slot(end);
-            if released[end as usize] && self.has_row(at) {
+            if self.released[end as usize] && self.has_row(at) {
                 let beyond = if end == End::A { at.before() } else { at.after() };
                 self.position.set(beyond, self.position.get(at));
             }
@@ -213,12 +217,17 @@ impl Layout {
         chord.try_normalize(0.0).unwrap_or_else(Vector3::zeros)
     }
 
-    /// Puts an end at a position [m] with the velocity [m/s] that the next step takes as lagged.
+    /// Puts the ends that are not released from their points where these are.
     #[inline(always)]
-    pub fn put_end(&mut self, end: End, position: Vector3<f64>, velocity: Vector3<f64>) {
-        let at = self.end_slot(end);
-        self.position.set(at, position);
-        self.velocity.set(at, velocity);
+    pub fn place_ends(&mut self, ends: [&EndMotion; 2]) {
+        for end in ENDS {
+            if !self.released[end as usize] {
+                let EndMotion { position, velocity } = *ends[end as usize];
+                let at = self.end_slot(end);
+                self.position.set(at, position);
+                self.velocity.set(at, velocity);
+            }
+        }
     }
 
     /// Where a node was `lag` [s] ago by its velocity [m].
@@ -232,7 +241,7 @@ impl Layout {
         let Some(mut viscoelastic) = self.viscoelastic.take() else {
             return;
         };
-        for end in [End::A, End::B] {
+        for end in ENDS {
             let (segment, _) = self.end_segment(end);
             let places = [self.end_slot(end), self.end_neighbour(end)];
             let [place, near] = places.map(|at| self.place_before(at, lag));

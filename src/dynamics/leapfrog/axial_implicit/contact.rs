@@ -14,7 +14,7 @@
 //!
 //! Source: the θ-method, e.g. Hairer & Wanner (1996), Solving Ordinary Differential Equations II, section IV.3. Stable for any k and c.
 
-use crate::dynamics::step::Step;
+use crate::dynamics::leapfrog::step::Step;
 use crate::math::lanes::Lanes;
 
 /// How nodes meet the bed in a step.

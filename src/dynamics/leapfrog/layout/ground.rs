@@ -11,7 +11,7 @@ use crate::physics::ground::Ground;
 
 /// Lumped contact coefficients [N/m, N s/m] and the z [m] below which they push; over a seabed with a slope, soundings or friction the height above it, along its normal.
 #[derive(Debug, Clone)]
-pub(in crate::dynamics) struct ContactArrays {
+pub struct ContactArrays {
     pub level: Column,
     pub stiffness: Column,
     pub damping: Column,
@@ -21,7 +21,7 @@ pub(in crate::dynamics) struct ContactArrays {
 
 /// a seabed with a slope, soundings or friction.
 #[derive(Debug, Clone)]
-pub(in crate::dynamics) struct BottomArrays {
+pub struct BottomArrays {
     pub bottom: Arc<Bottom>,
     /// Stiffness along the bed of a node that sticks [N/m]; 0 without friction.
     pub stick: Column,

@@ -9,13 +9,13 @@
 //! sticks    v = v_n n                                v_n = (n·M u + a + Δt n·pull)/(n·M n + b): of rank one itself
 //! ```
 //!
-//! a and b are those of [`super::bed`]. After a pass every node on the seabed takes the friction that Coulomb's law allows of the impulse that would stop it
+//! a and b are those of [`super::contact`]. After a pass every node on the seabed takes the friction that Coulomb's law allows of the impulse that would stop it
 //! ([`crate::physics::friction`]); the step is repeated until states and friction hold. Without friction nodes slide with λ_t = 0.
 
-use super::AxialWork;
-use super::bed::Bed;
+use super::AxialLine;
+use super::contact::Bed;
 use super::rows::NodeRow;
-use crate::dynamics::step::Step;
+use crate::dynamics::leapfrog::step::Step;
 use crate::math::lanes::{Lanes, Vectors};
 use crate::math::real::choose;
 use crate::physics::friction::{Axes, Friction, slide};
@@ -147,7 +147,7 @@ impl NodeRow {
     }
 }
 
-impl AxialWork {
+impl AxialLine {
     /// Finds how the nodes stand to the seabed, and what state they are first assumed to be in.
     #[inline(always)]
     pub(super) fn meet_seabed(&mut self, step: Step) {
@@ -156,7 +156,10 @@ impl AxialWork {
             return;
         };
         for at in line.rows() {
-            let (node, seabed) = (&mut self.rows.nodes[at - 1], &mut self.seabed[at - 1]);
+            let (node, seabed) = (
+                &mut self.kernel.rows.nodes[at - 1],
+                &mut self.kernel.seabed[at - 1],
+            );
             let (below, normal) = ground.stand_of_four(line.position.load(at));
             let velocity = line.velocity.load(at);
             let upright = normal.dot(node.tangent);
@@ -179,7 +182,10 @@ impl AxialWork {
         let (line, friction) = (&self.layout, self.layout.friction());
         let mut changed = Lanes::splat(0.0);
         for at in line.rows() {
-            let (node, seabed) = (&mut self.rows.nodes[at - 1], &mut self.seabed[at - 1]);
+            let (node, seabed) = (
+                &mut self.kernel.rows.nodes[at - 1],
+                &mut self.kernel.seabed[at - 1],
+            );
             let change = seabed.revise(node, line.velocity_before.load(at), friction);
             if change.any_positive() {
                 node.settle_on(seabed);
@@ -194,8 +200,10 @@ impl AxialWork {
     pub(super) fn keep_friction(&mut self, step: Step) {
         let per_kick = Lanes::splat(1.0 / step.kick);
         for at in self.layout.rows() {
-            let needed =
-                self.seabed[at - 1].needed(&self.rows.nodes[at - 1], self.layout.velocity_before.load(at));
+            let needed = self.kernel.seabed[at - 1].needed(
+                &self.kernel.rows.nodes[at - 1],
+                self.layout.velocity_before.load(at),
+            );
             self.layout.set_friction(at, needed.scale(per_kick));
         }
     }

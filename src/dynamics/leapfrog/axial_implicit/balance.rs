@@ -1,86 +1,20 @@
-//! Energy balance of the axial-implicit leapfrog, over the steps since the state was loaded. It reads what a step leaves behind and changes no motion.
-//!
-//! Work on the free nodes in a step, with the velocities v of t_{n−½} and t_{n+½}:
-//!
-//!   ½ Δt Σ [−T̄ q·Δ(v_{n−½} + v_{n+½}) − w ẑ·(v_{n−½} + v_{n+½})]
-//!
-//! This, the work (T̄ − S) of the dampers and that of the drag on the moving water is dissipated, except for the kinetic energy at the end of the steps
-//! ([`crate::dynamics::energy_balance`]), S being the part of T̄ that the springs have.
+//! Energy balance of the axial-implicit leapfrog ([`crate::dynamics::leapfrog::balance`]): T̄ works on the free nodes, and (T̄ − S) on the dampers, S
+//! being the part of T̄ that the springs have.
 //!
 //! The averaging dissipates the work of S less that of the discrete gradient of the springs' energy from half a step before t_n to half a step after
 //! it. That is ½(T₋ + T₊)(T₊ − T₋)/(U₊ − U₋) for springs whose tension is proportional to strain, with U the tension they would have if
 //! they pushed too: the mean of both except in segments that slacken or snap taut. The averaging of ρ = 1 is this mean and dissipates nothing.
 
-use super::AxialWork;
+use super::AxialLine;
 use super::rows::{SegmentRow, Sizes, pulled};
-use crate::dynamics::energy_balance::Flow;
-use crate::dynamics::step::Step;
+use crate::dynamics::leapfrog::step::Step;
 use crate::dynamics::viscoelastic::Relaxed;
 use crate::math::lanes::{Lanes, Vectors};
 
 /// Change of strain above which the difference of the energies gives the mean tension [-].
 const STRAIN_RESOLVED: f64 = 1e-9;
 
-/// Work and dissipation since the state was loaded.
-#[derive(Debug, Clone)]
-pub(super) struct LineBalance {
-    /// Work on the free nodes and on dampers [J].
-    work: Lanes,
-    /// Work of moving water [J].
-    water_work: Lanes,
-    /// Dissipation by the averaging of tensions [J].
-    algorithmic: Lanes,
-    /// Work of prescribed ends and of releases [J].
-    external_work: f64,
-    /// Kinetic energy that releases have brought [J].
-    kinetic: f64,
-}
-
-impl Default for LineBalance {
-    fn default() -> LineBalance {
-        let zero = Lanes::splat(0.0);
-        LineBalance {
-            work: zero,
-            water_work: zero,
-            algorithmic: zero,
-            external_work: 0.0,
-            kinetic: 0.0,
-        }
-    }
-}
-
-impl LineBalance {
-    /// Adds external work [J], of which a part is kinetic energy.
-    pub fn supply(&mut self, [energy, kinetic]: [f64; 2]) {
-        self.external_work += energy;
-        self.kinetic += kinetic;
-    }
-}
-
-impl AxialWork {
-    /// Flow of energy since the state was loaded, the kinetic energy included in the dissipation; zero without a balance.
-    pub fn flow(&self) -> Flow {
-        let Some(balance) = &self.balance else {
-            return Flow::default();
-        };
-        let lifted = self.layout.surface.as_ref().map_or(0.0, |surface| surface.lifted);
-        Flow {
-            external_work: balance.external_work + balance.water_work.sum() + lifted,
-            dissipation: balance.work.sum() + balance.kinetic,
-            algorithmic_dissipation: balance.algorithmic.sum(),
-        }
-    }
-
-    /// Starts at no flow.
-    pub(super) fn clear_balance(&mut self) {
-        if let Some(balance) = &mut self.balance {
-            *balance = LineBalance::default();
-        }
-        if let Some(surface) = &mut self.layout.surface {
-            surface.lifted = 0.0;
-        }
-    }
-
+impl AxialLine {
     /// Adds a step; `velocity_before` holds the new velocities, positions and rows are those of t_n.
     #[inline(always)]
     pub(super) fn balance_step(&mut self, step: Step, sizes: &Sizes) {
@@ -94,7 +28,7 @@ impl AxialWork {
             if self.layout.viscoelastic.is_none() {
                 balance.algorithmic = balance.algorithmic + half * self.averaged(at, step, sizes);
             }
-            if self.rows.current.is_some() {
+            if self.kernel.rows.current.is_some() {
                 let dragged = sizes.kick * self.water_power(at);
                 balance.water_work = balance.water_work + dragged;
                 balance.work = balance.work + dragged;
@@ -105,12 +39,12 @@ impl AxialWork {
             let (at, (segment, sign)) = (line.end_slot(end), line.end_segment(end));
             let after = 0.5 * step.drift;
             let way = after * line.velocity_before.get(at) + (step.kick - after) * line.velocity.get(at);
-            let pull = sign * self.rows.pull(segment);
+            let pull = sign * self.kernel.rows.pull(segment);
             balance.external_work += line.end_lack(end) * way.z - pull.dot(&way);
         }
         self.balance = Some(balance);
         if self.layout.surface.is_some() {
-            let held = self.released.map(|released| !released);
+            let held = self.layout.released.map(|released| !released);
             self.layout.balance_lift(step, held);
         }
     }
@@ -118,7 +52,7 @@ impl AxialWork {
     /// Sum of old and new velocities of the free nodes of a row, and of those after them [m/s].
     #[inline(always)]
     fn both(&self, at: usize) -> [Vectors; 2] {
-        let (line, nodes) = (&self.layout, &self.rows.nodes);
+        let (line, nodes) = (&self.layout, &self.kernel.rows.nodes);
         let sum = |at: usize| line.velocity.load(at) + line.velocity_before.load(at);
         let free_after = match nodes.get(at) {
             Some(next) => next.free,
@@ -130,7 +64,7 @@ impl AxialWork {
     /// Twice the work of tensions and weights on the free nodes of a row [J].
     #[inline(always)]
     fn work_on_nodes(&self, at: usize, sizes: &Sizes) -> Lanes {
-        let segment = &self.rows.segments[at - 1];
+        let segment = &self.kernel.rows.segments[at - 1];
         let [own, next] = self.both(at);
         let stretched = segment.tension * segment.direction.dot(next - own);
         Lanes::splat(0.0) - sizes.kick * (stretched + self.layout.weight.load(at) * own.z)
@@ -142,14 +76,14 @@ impl AxialWork {
         if self.layout.viscoelastic.is_some() {
             return Lanes::splat(0.0); // part of the memory
         }
-        let (segment, [along, moved]) = (&self.rows.segments[at - 1], self.stretching(at, sizes));
+        let (segment, [along, moved]) = (&self.kernel.rows.segments[at - 1], self.stretching(at, sizes));
         (segment.tension - segment.spring(along).positive()) * moved
     }
 
     /// New stretching velocity [m/s], and twice the stretch over the step [m].
     #[inline(always)]
     fn stretching(&self, at: usize, sizes: &Sizes) -> [Lanes; 2] {
-        let (velocity, segment) = (&self.layout.velocity_before, &self.rows.segments[at - 1]);
+        let (velocity, segment) = (&self.layout.velocity_before, &self.kernel.rows.segments[at - 1]);
         let along = segment.direction.dot(velocity.load(at + 1) - velocity.load(at));
         [along, sizes.kick * (segment.along + along)]
     }
@@ -157,7 +91,7 @@ impl AxialWork {
     /// Twice the energy that the averaging dissipates on a row of segments [J].
     #[inline(always)]
     fn averaged(&self, at: usize, step: Step, sizes: &Sizes) -> Lanes {
-        let (segment, [along, moved]) = (&self.rows.segments[at - 1], self.stretching(at, sizes));
+        let (segment, [along, moved]) = (&self.kernel.rows.segments[at - 1], self.stretching(at, sizes));
         let line = &self.layout;
         let relative = [&line.velocity, &line.velocity_before].map(|of| of.load(at + 1) - of.load(at));
         let gradient = match self.is_curved() {
@@ -171,7 +105,7 @@ impl AxialWork {
     #[inline(always)]
     fn curved_gradient(&self, at: usize, relative: [Vectors; 2], step: Step) -> Lanes {
         let [zero, half, one] = [0.0, 0.5, 1.0].map(Lanes::splat);
-        let (law, segment) = (&self.layout.law, &self.rows.segments[at - 1]);
+        let (law, segment) = (&self.layout.law, &self.kernel.rows.segments[at - 1]);
         let chord = segment.direction.scale(segment.length);
         let inverse = self.layout.inverse_length.load(at);
         let strain = |moved: Vectors| {
@@ -194,8 +128,8 @@ impl AxialWork {
     /// Power of the drag on the velocity of the water and of the Froude-Krylov force on a row of nodes [W].
     #[inline(always)]
     fn water_power(&self, at: usize) -> Lanes {
-        let (line, node) = (&self.layout, &self.rows.nodes[at - 1]);
-        let Some(current) = self.rows.current.as_ref().map(|rows| &rows[at - 1]) else {
+        let (line, node) = (&self.layout, &self.kernel.rows.nodes[at - 1]);
+        let Some(current) = self.kernel.rows.current.as_ref().map(|rows| &rows[at - 1]) else {
             return Lanes::splat(0.0);
         };
         let mean = (line.velocity.load(at) + line.velocity_before.load(at)).scale(Lanes::splat(0.5));
@@ -212,7 +146,7 @@ impl AxialWork {
     /// memory over the step. The new velocities are in place.
     #[inline(always)]
     pub(super) fn balance_viscoelastic(&mut self, at: usize, relaxed: Relaxed, step: Step) {
-        let (velocity, row) = (&self.layout.velocity, &self.rows.segments[at - 1]);
+        let (velocity, row) = (&self.layout.velocity, &self.kernel.rows.segments[at - 1]);
         let along = row.direction.dot(velocity.load(at + 1) - velocity.load(at));
         let moved = Lanes::splat(0.5 * step.kick) * (row.along + along);
         let averaged = (row.tension - relaxed.tension) * moved;

@@ -4,11 +4,11 @@
 
 use nalgebra::Vector3;
 
-use super::AxialWork;
-use super::bed::Bed;
+use super::AxialLine;
+use super::contact::Bed;
 use super::rows::{NodeRow, Sizes, pulled, springs};
-use crate::dynamics::layout::inverse_norm;
-use crate::dynamics::step::Step;
+use crate::dynamics::leapfrog::layout::inverse_norm;
+use crate::dynamics::leapfrog::step::Step;
 use crate::math::lanes::{Lanes, Vectors};
 
 /// Weight of the new strain rate over the old one in the axial damping, at most [-].
@@ -24,11 +24,11 @@ struct Springs {
     slope: Lanes,
 }
 
-impl AxialWork {
+impl AxialLine {
     /// Sizes of a step.
     #[inline(always)]
     pub(super) fn sizes(&self, step: Step) -> Sizes {
-        let hardness = self.damping_rate * step.kick;
+        let hardness = self.kernel.damping_rate * step.kick;
         let shift = DAMPING_SHIFT * (hardness / DAMPING_HARD).min(1.0);
         let push = f64::from(u8::from(self.layout.negative_tension));
         Sizes {
@@ -36,7 +36,7 @@ impl AxialWork {
             drift: Lanes::splat(step.drift),
             damping: [0.5 * (1.0 + shift), 0.5 * (1.0 - shift)].map(Lanes::splat),
             push: Lanes::splat(push),
-            weights: self.weights.0.map(Lanes::splat),
+            weights: self.kernel.weights.0.map(Lanes::splat),
         }
     }
 
@@ -46,9 +46,9 @@ impl AxialWork {
         if SPRINGS == springs::VISCOELASTIC {
             return self.viscoelastic_springs(at);
         }
-        let row = &self.rows.segments[at - 1];
+        let row = &self.kernel.rows.segments[at - 1];
         let (stiffness, longer) = (row.axial_stiffness, row.length - row.unstretched_length);
-        let share = Lanes::splat(self.weights.0[0]) * stiffness;
+        let share = Lanes::splat(self.kernel.weights.0[0]) * stiffness;
         if SPRINGS == springs::LINEAR {
             return Springs {
                 now: stiffness * longer,
@@ -76,7 +76,7 @@ impl AxialWork {
         let now = viscoelastic.elastic(at, strain);
         let inverse = self.layout.inverse_length.load(at);
         let (coming, stiffness) = viscoelastic.ahead(at, strain);
-        let b1 = Lanes::splat(self.weights.0[0]);
+        let b1 = Lanes::splat(self.kernel.weights.0[0]);
         Springs {
             now,
             ahead: b1 * coming,
@@ -89,7 +89,10 @@ impl AxialWork {
     pub(super) fn prepare_geometry(&mut self) {
         let (line, last) = (&self.layout, self.layout.striping.rows());
         let position = line.position.rows(last);
-        let (segments, nodes) = (&mut self.rows.segments[..last], &mut self.rows.nodes[..last]);
+        let (segments, nodes) = (
+            &mut self.kernel.rows.segments[..last],
+            &mut self.kernel.rows.nodes[..last],
+        );
         for at in line.rows() {
             let (before, here, after) = (position[at - 1], position[at], position[at + 1]);
             let segment = &mut segments[at - 1];
@@ -112,7 +115,7 @@ impl AxialWork {
             let found = self.springs::<SPRINGS>(at);
             let velocity = &self.layout.velocity;
             let relative = velocity.load(at + 1) - velocity.load(at);
-            let row = &mut self.rows.segments[at - 1];
+            let row = &mut self.kernel.rows.segments[at - 1];
             let along = row.direction.dot(relative);
             let [last, before, _] = row.history;
             row.along = along;
@@ -137,8 +140,11 @@ impl AxialWork {
             let total = row.spring(along) + pull;
             row.taut = total.choose(Lanes::splat(1.0), Lanes::splat(-1.0));
         }
-        let forgot = std::mem::replace(&mut self.forgets, (Lanes::splat(0.0) - least).any_positive());
-        if forgot || self.forgets {
+        let forgot = std::mem::replace(
+            &mut self.kernel.forgets,
+            (Lanes::splat(0.0) - least).any_positive(),
+        );
+        if forgot || self.kernel.forgets {
             self.remember_segments(sizes);
         }
     }
@@ -146,7 +152,7 @@ impl AxialWork {
     /// Remembers the springs up to t_n, some of which push in this step or did in the last one.
     #[inline(always)]
     fn remember_segments(&mut self, sizes: &Sizes) {
-        for row in &mut self.rows.segments {
+        for row in &mut self.kernel.rows.segments {
             (row.memory, row.damping) = (row.all_remembered(sizes), row.axial_damping);
             let pull = row.pull(row.along, sizes);
             if (Lanes::splat(0.0) - row.margins[0] - pull).any_positive() {
@@ -167,13 +173,13 @@ impl AxialWork {
         };
         let [normals, tangents] = [&drag.normal, &drag.tangent].map(|of| of.rows(last));
         let [velocity, before] = [&line.velocity, &line.velocity_before].map(|of| of.rows(last));
-        let nodes = &mut self.rows.nodes[..last];
+        let nodes = &mut self.kernel.rows.nodes[..last];
         let extrapolation = Lanes::splat(step.extrapolation);
         for at in line.rows() {
             let node = &mut nodes[at - 1];
             let mut past = velocity[at];
             let mut now = past + (past - before[at]).scale(extrapolation);
-            if CURRENT && let Some(current) = &mut self.rows.current {
+            if CURRENT && let Some(current) = &mut self.kernel.rows.current {
                 let flow = line.water_velocity(at);
                 current[at - 1].flow = flow;
                 (past, now) = (past - flow, now - flow);
@@ -196,12 +202,12 @@ impl AxialWork {
     pub(super) fn prepare_nodes<const CURRENT: bool>(&mut self, sizes: &Sizes) {
         let (line, last) = (&self.layout, self.layout.striping.rows());
         let (velocities, weight) = (line.velocity.rows(last), line.weight.rows(last));
-        let (nodes, drawn) = (&mut self.rows.nodes[..last], line.drag.is_some());
+        let (nodes, drawn) = (&mut self.kernel.rows.nodes[..last], line.drag.is_some());
         for at in line.rows() {
             let node = &mut nodes[at - 1];
             let velocity = velocities[at];
             let (mut past, mut froude_krylov) = (velocity, None);
-            if CURRENT && let Some(current) = &mut self.rows.current {
+            if CURRENT && let Some(current) = &mut self.kernel.rows.current {
                 let current = &mut current[at - 1];
                 past = past - current.flow;
                 if let Some(waves) = &line.waves {
@@ -226,7 +232,7 @@ impl AxialWork {
         };
         let (position, velocity) = (line.position.rows(last), line.velocity.rows(last));
         let level = contact.level.rows(last);
-        let nodes = &mut self.rows.nodes[..last];
+        let nodes = &mut self.kernel.rows.nodes[..last];
         for at in 1..last + 1 {
             let node = &mut nodes[at - 1];
             let penetration = level[at] - position[at].z;
@@ -248,7 +254,7 @@ impl AxialWork {
                 self.layout.velocity_before.set(at, secant); // where the new velocities go
                 continue;
             }
-            let node = &mut self.rows.nodes[at.row - 1];
+            let node = &mut self.kernel.rows.nodes[at.row - 1];
             node.fall.set(at.lane, secant);
             node.loose.set(at.lane, secant);
         }

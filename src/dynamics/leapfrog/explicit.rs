@@ -1,0 +1,400 @@
+//! Explicit leapfrog: the default for cables without bending.
+//!
+//! The stages of a step of a line are
+//!
+//! 1. segments: strain, lagged strain rate, tension T q;
+//! 2. resistance of water and damping, at the extrapolated velocity 1.5 v_{n−½} − 0.5 v_{n−3/2};
+//! 3. nodes: v_{n+½} = v_{n−½} + Δt M⁻¹ f, with the anisotropic mass inverted in closed form and the seabed solved implicitly, node by node, by a
+//!    rank-one update or, with a slope or friction, by [`crate::physics::friction_step`];
+//! 4. r_{n+1} = r_n + Δt v_{n+½}; the ends are put where their points are.
+//!
+//! Stage 4 is part of the loop of stage 3 unless the energy balance is evaluated between them.
+//!
+//! One force evaluation a step, second order, stable below [`crate::dynamics::limit::explicit_limit`] whatever the seabed.
+//!
+//! Source: Verlet's scheme as in Hairer, Lubich & Wanner (2003), Acta Numerica 12, 399-450; the inverse of
+//! M_n I + (M_t − M_n) t tᵀ by Sherman & Morrison (1950); contact: backward Euler on the penetrating spring and damper.
+
+mod balance;
+mod sweep;
+mod winch;
+
+use nalgebra::Vector3;
+use pulp::NullaryFnOnce;
+
+use super::layout::{Layout, interior};
+use super::network::NetworkWork;
+use super::point::EndLoad;
+use super::step::Step;
+use super::{EndMotion, Kernel, LineWork};
+use crate::dynamics::Choice;
+use crate::dynamics::limit::{ExplicitLimit, expected_slope};
+use crate::dynamics::motion::AxisPath;
+use crate::math::lanes::{LANES, Lanes};
+use crate::math::striping::{Column, Field, Slot};
+use crate::model::{End, Line, LineState, Model};
+use crate::physics::morison::{self, DragCoefficients};
+use crate::physics::slender::Slender;
+use crate::physics::stretch::{StretchLaw, total_tension};
+use sweep::{Drift, Pull, Sweep};
+use winch::WinchWork;
+
+/// A line with explicit tension.
+pub(super) type ExplicitLine = LineWork<Explicit>;
+
+/// Scratch of the explicit stages.
+#[derive(Debug, Clone)]
+pub struct Explicit {
+    /// Force of a segment on its lower node, T q [N].
+    pull: Field,
+    /// Resistance of water and mass damping at t_n [N].
+    resistance: Field,
+    /// Force of water that waves accelerate at t_n [N], where there are waves.
+    froude_krylov: Option<Field>,
+    /// Inverse square of the chord between the nodes beside a node at t_n [1/m²].
+    inverse_square: Column,
+    inverse_mass: Column,
+    water: Option<WaterWork>,
+    /// 1 for nodes between prescribed ends and at released ones, 0 elsewhere.
+    interior: Column,
+    /// The winch at end B, where the line is on one.
+    winch: Option<Box<WinchWork>>,
+}
+
+/// Coefficients of resistance, and of a mass that differs along and across the line.
+#[derive(Debug, Clone)]
+struct WaterWork {
+    drag_normal: Column,
+    drag_tangent: Column,
+    /// 1/M_t − 1/M_n [1/kg].
+    inverse_mass_excess: Column,
+    /// Drag coefficient over mass of a node that is wholly in the water, across the line [1/m].
+    drag_over_mass: Column,
+    /// The same along the line, where it is greater at some node [1/m].
+    drag_over_mass_along: Option<Column>,
+}
+
+impl WaterWork {
+    fn new(line: &Line, layout: &Layout) -> Option<WaterWork> {
+        let nodes = &line.nodes;
+        let zeros = Column::new(layout.striping, 0.0);
+        let masses = || nodes.mass_tangent.iter().zip(&nodes.mass_normal);
+        let excess: Vec<f64> = masses().map(|(t, n)| 1.0 / t - 1.0 / n).collect();
+        let needed = layout.drag.is_some()
+            || layout.waves.is_some()
+            || layout.mass_damping.is_some()
+            || excess.iter().any(|excess| *excess != 0.0);
+        let drag = layout.drag.as_ref();
+        let over_mass = |drag: Option<&[f64]>, mass: &[f64]| -> Vec<f64> {
+            let pairs = drag.unwrap_or_default().iter().zip(mass);
+            pairs.map(|(drag, mass)| drag / mass).collect()
+        };
+        let given = nodes.drag.as_ref();
+        let across = over_mass(given.map(|drag| &drag.normal[..]), &nodes.mass_normal);
+        let along = over_mass(given.map(|drag| &drag.tangent[..]), &nodes.mass_tangent);
+        let counts = along.iter().zip(&across).any(|(along, across)| along > across);
+        needed.then(|| WaterWork {
+            drag_over_mass: layout.striping.column(&across, 0.0),
+            drag_over_mass_along: counts.then(|| layout.striping.column(&along, 0.0)),
+            drag_normal: drag.map_or(zeros.clone(), |drag| drag.normal.clone()),
+            drag_tangent: drag.map_or(zeros, |drag| drag.tangent.clone()),
+            inverse_mass_excess: layout.striping.column(&excess, 0.0),
+        })
+    }
+}
+
+/// [`ExplicitLine::drag_rate`] for the vector unit of the machine.
+struct DragRate<'a>(&'a ExplicitLine);
+
+impl NullaryFnOnce for DragRate<'_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn call(self) -> f64 {
+        self.0.greatest_drag_rate()
+    }
+}
+
+impl Kernel for Explicit {
+    const FEW_ROWS: usize = 5;
+    const SECANTS: bool = false;
+    type Bound = ExplicitLimit;
+
+    fn new(_: &Model, line: &Line, layout: &Layout) -> Explicit {
+        let winch = WinchWork::new(line);
+        let line = line.winch.as_ref().map_or(line, |winch| winch.longest());
+        let inverse_mass: Vec<f64> = line.nodes.mass_normal.iter().map(|mass| 1.0 / mass).collect();
+        Explicit {
+            pull: Field::zeros(layout.striping),
+            resistance: Field::zeros(layout.striping),
+            froude_krylov: layout.waves.as_ref().map(|_| Field::zeros(layout.striping)),
+            inverse_square: Column::new(layout.striping, 0.0),
+            inverse_mass: layout.striping.column(&inverse_mass, 0.0),
+            water: WaterWork::new(line, layout),
+            interior: interior(layout.striping, layout.segment_count),
+            winch,
+        }
+    }
+
+    fn load(work: &mut ExplicitLine, state: &LineState) {
+        work.load_winch(state);
+        work.layout.still();
+    }
+
+    /// A line on a winch is laid out anew.
+    fn resume(work: &mut ExplicitLine, state: &LineState) {
+        if work.kernel.winch.is_some() {
+            return work.load(state);
+        }
+        work.layout.still();
+        work.clear_balance();
+    }
+
+    fn store(work: &mut ExplicitLine, state: &mut LineState, steps: [f64; 2]) -> bool {
+        work.store_winch(state);
+        work.layout.store(state, steps)
+    }
+
+    fn set_free(work: &mut ExplicitLine, end: End, free: bool) {
+        let at = work.layout.end_slot(end);
+        work.kernel.interior[at] = f64::from(u8::from(free));
+        work.kernel.interior.wrap();
+    }
+
+    fn end_masses(work: &ExplicitLine, end: End) -> [f64; 2] {
+        let at = work.layout.end_slot(end);
+        let water = work.kernel.water.as_ref();
+        let excess = water.map_or(0.0, |water| water.inverse_mass_excess[at]);
+        let across = work.kernel.inverse_mass[at];
+        [1.0 / across, 1.0 / (across + excess)]
+    }
+
+    fn meet_surface(work: &mut ExplicitLine) {
+        let Some(surface) = &work.layout.surface else {
+            return;
+        };
+        let kernel = &mut work.kernel;
+        for i in surface.crossed() {
+            let (at, now) = (work.layout.slot(i), surface.node(i));
+            let [across, along] = now.masses.map(|mass| 1.0 / mass);
+            kernel.inverse_mass[at] = across;
+            if let Some(water) = &mut kernel.water {
+                [water.drag_normal[at], water.drag_tangent[at]] = now.drag;
+                water.inverse_mass_excess[at] = along - across;
+            }
+        }
+    }
+
+    fn starts(_: &ExplicitLine) -> bool {
+        true
+    }
+
+    fn start_winch(work: &mut ExplicitLine, path: &AxisPath, start: (f64, bool), step: Step) {
+        work.start_winch(path, start, step);
+    }
+
+    fn pull(network: &mut NetworkWork<Explicit>, model: &Model, t: f64, step: Step) {
+        for line in &mut network.lines {
+            line.layout.vector_unit.dispatch(Pull(line));
+            line.weigh_end_segment();
+        }
+        network.step_points(model, t, step);
+    }
+
+    fn advance(work: &mut ExplicitLine, t: f64, step: Step, ends: [&EndMotion; 2]) -> usize {
+        let (unit, size) = (work.layout.vector_unit, &step);
+        let drifts = work.balance.is_none();
+        unit.dispatch(Sweep {
+            work,
+            size,
+            drifts,
+            ends,
+        });
+        if !drifts {
+            work.balance_nodes(step);
+            unit.dispatch(Drift { work, size, ends });
+        }
+        work.wind(t, step);
+        work.relax_segments(step);
+        work.balance_ends(step);
+        work.layout.pass_waves(step);
+        work.meet_surface();
+        work.renew_end_segment(step);
+        1
+    }
+
+    /// The bound is the limit under the stiffness that the springs have, to which the drag at the present velocities is added.
+    fn longest_step(
+        network: &mut NetworkWork<Explicit>,
+        model: &Model,
+        choice: &Choice,
+        [t, _]: [f64; 2],
+    ) -> (f64, ExplicitLimit) {
+        if !network.lines.iter().all(ExplicitLine::keeps_drag_rate) {
+            network.drag_rate = None;
+        }
+        let lines = network.lines.iter().map(ExplicitLine::stiffening);
+        let stiffening = lines.fold(1.0, f64::max);
+        let limit = choice.explicit.stiffened(stiffening);
+        let longest = choice.step_max / stiffening.sqrt();
+        let rate = network.drag_rate(model, t);
+        (longest.min(limit.with_drag(rate)), limit)
+    }
+
+    fn were_short(
+        network: &mut NetworkWork<Explicit>,
+        model: &Model,
+        limit: &ExplicitLimit,
+        [t, drift]: [f64; 2],
+    ) -> bool {
+        network.survey_drag();
+        limit.holds(network.drag_rate(model, t), drift)
+    }
+}
+
+impl ExplicitLine {
+    /// Takes the memory of viscoelastic segments to t_{n+1}.
+    fn relax_segments(&mut self, step: Step) {
+        if self.layout.viscoelastic.is_none() {
+            return;
+        }
+        self.layout.renew_halo();
+        let rows = self.layout.rows();
+        if let Some(viscoelastic) = &mut self.layout.viscoelastic {
+            viscoelastic.prepare(step.drift);
+        }
+        let mut taken = Lanes::splat(0.0);
+        for at in rows {
+            taken = taken + self.layout.relax_segments(at, step).taken;
+        }
+        if let Some(balance) = &mut self.balance {
+            balance.dissipation += taken.sum();
+        }
+    }
+
+    /// What the end brings to a free point, after [`Self::pull`]; `velocity` [m/s] is the point's at t_n.
+    pub(super) fn end_load(&self, end: End, velocity: Vector3<f64>) -> EndLoad {
+        let line = &self.layout;
+        let (at, other) = (line.end_slot(end), line.end_neighbour(end));
+        let (segment, sign) = line.end_segment(end);
+        let chord = line.position.get(other) - line.position.get(at);
+        let tangent = chord.try_normalize(0.0).unwrap_or_else(Vector3::zeros);
+        let (mut resistance, mut current_power) = (Vector3::zeros(), 0.0);
+        let force = sign * self.kernel.pull.get(segment) - line.weight[at] * Vector3::z();
+        let mut excess = 0.0;
+        if let Some(water) = &self.kernel.water {
+            let coefficients = DragCoefficients {
+                normal: water.drag_normal[at],
+                tangent: water.drag_tangent[at],
+            };
+            let flow = line.water_velocity_of(at);
+            resistance += morison::drag(coefficients, velocity - flow, tangent);
+            current_power = resistance.dot(&flow);
+            excess = water.inverse_mass_excess[at];
+        }
+        if let Some(damping) = &line.mass_damping {
+            resistance -= damping[at] * velocity;
+        }
+        let froude_krylov = line.waves.as_ref();
+        let froude_krylov =
+            froude_krylov.map_or(Vector3::zeros(), |waves| waves.froude_krylov_of(at, tangent));
+        let inverse = self.kernel.inverse_mass[at];
+        let mass = Slender::inverse([inverse, inverse + excess]);
+        let contact = line.contact.as_ref().map_or([0.0; 3], |c| {
+            [c.stiffness[at], c.damping[at], c.stiffness[at] * c.level[at]]
+        });
+        EndLoad {
+            force: force + resistance + froude_krylov,
+            resistance,
+            froude_krylov,
+            current_power,
+            mass: mass.matrix(tangent),
+            contact,
+        }
+    }
+
+    /// How much stiffer than the limit of the step expects the stiffest segment is [-], at least 1.
+    pub(super) fn stiffening(&self) -> f64 {
+        let line = &self.layout;
+        if line.law == StretchLaw::Engineering {
+            return 1.0;
+        }
+        let slope = |i: usize| {
+            let [low, high] = [i, i + 1].map(|node| line.position.get(line.slot(node)));
+            let strain = (high - low).norm() * line.inverse_length[line.slot(i)] - 1.0;
+            line.law.at(strain).slope
+        };
+        let greatest = (0..line.segment_count).map(slope).fold(0.0, f64::max);
+        (greatest / expected_slope(&line.law)).max(1.0)
+    }
+
+    /// Greatest ratio K |v| / M [1/s], v relative to the water, or of its part along the line: explicit drag wants Δt below its inverse.
+    pub(super) fn drag_rate(&self) -> f64 {
+        match self.kernel.water {
+            Some(_) => self.layout.vector_unit.dispatch(DragRate(self)),
+            None => 0.0,
+        }
+    }
+
+    #[inline(always)]
+    fn greatest_drag_rate(&self) -> f64 {
+        let (line, flows) = (&self.layout, self.layout.flows());
+        let Some(water) = &self.kernel.water else {
+            return 0.0;
+        };
+        let mut greatest = Lanes::splat(0.0);
+        for row in line.rows() {
+            let mut past = line.velocity.load(row);
+            if flows {
+                past = past - line.water_velocity(row);
+            }
+            let rate = past.scale(water.drag_over_mass.load(row));
+            greatest = rate.dot(rate).max(greatest);
+        }
+        let square = (0..LANES).fold(0.0, |sum: f64, lane| sum.max(greatest[lane]));
+        square.sqrt().max(self.drag_rate_along(water))
+    }
+
+    /// Greatest ratio K |v·t| / M along the line [1/s], where that may exceed the one across it.
+    fn drag_rate_along(&self, water: &WaterWork) -> f64 {
+        let Some(over_mass) = &water.drag_over_mass_along else {
+            return 0.0;
+        };
+        let line = &self.layout;
+        let rate = |(i, at): (usize, Slot)| {
+            let past = line.velocity.get(at) - line.water_velocity_of(at);
+            over_mass[at] * past.dot(&line.tangent_of(i)).abs()
+        };
+        line.nodes().enumerate().map(rate).fold(0.0, f64::max)
+    }
+
+    /// Returns whether [`Self::drag_rate`] is that of the last step also at the start of the next one.
+    pub(super) fn keeps_drag_rate(&self) -> bool {
+        !self.layout.flows() && self.kernel.winch.is_none()
+    }
+}
+
+/// Tension [N] of one segment from its end positions [m] and velocities [m/s]: the pointwise law of the kernel.
+pub fn segment_tension(
+    line: &Line,
+    segment: usize,
+    [low, high]: [Vector3<f64>; 2],
+    [low_velocity, high_velocity]: [Vector3<f64>; 2],
+    negative_tension: bool,
+) -> f64 {
+    let segments = &line.segments;
+    let (chord, length) = (high - low, segments.length[segment]);
+    let l = chord.norm();
+    let elastic = segments.axial_stiffness[segment] * segments.law[segment].at(l / length - 1.0).force;
+    let rate = if l > 0.0 {
+        chord.dot(&(high_velocity - low_velocity)) / (l * length)
+    } else {
+        0.0
+    };
+    total_tension(
+        elastic,
+        segments.axial_damping[segment] * rate,
+        0.0 - line.compression_max(segment),
+        negative_tension,
+    )
+}

@@ -1,0 +1,278 @@
+//! A network of lines advanced by a leapfrog: its lines, and the free points that join them.
+
+use nalgebra::Vector3;
+
+use super::point::{self, Spring};
+use super::step::Step;
+use super::{EndMotion, Kernel, LineWork};
+use crate::dynamics::energy_balance::Flow;
+use crate::dynamics::motion::AxisPath;
+use crate::model::{End, Kinematics, Model, Network, PointState, Role, State, WaveSpan};
+
+/// Scratch of a network: its lines laid out for the kernels, and its free points.
+#[derive(Debug, Clone)]
+pub struct NetworkWork<K> {
+    /// Lines, in the order of the network.
+    pub(super) lines: Vec<LineWork<K>>,
+    /// Numbers of the lines in the model.
+    line_numbers: Vec<usize>,
+    /// Ends of the lines.
+    ends: Vec<[LineEnd; 2]>,
+    /// Free points, in the order of the network.
+    pub(super) points: Vec<PointState>,
+    /// Numbers of the free points in the model.
+    pub(super) point_numbers: Vec<usize>,
+    /// Lines, by their place in the network, and ends at the free points.
+    pub(super) attached: Vec<Vec<(usize, End)>>,
+    /// Motion of the water by waves at the free points, where there are waves.
+    pub(super) waves: Vec<WaveSpan>,
+    /// Springs of the seabed under the point that is stepped.
+    pub(super) springs: Vec<Spring>,
+    /// Flow of energy of the free points since the state was loaded.
+    pub(super) point_flow: Flow,
+    /// Greatest ratio K |v| / M of the lines' nodes after the last step, where it is known [1/s].
+    pub(super) drag_rate: Option<f64>,
+}
+
+/// An end of a line.
+#[derive(Debug, Clone, Copy)]
+struct LineEnd {
+    tie: Tie,
+    motion: EndMotion,
+}
+
+/// The point that an end of a line is tied to.
+#[derive(Debug, Clone, Copy)]
+enum Tie {
+    /// A point that never moves.
+    Fixed,
+    /// A point with prescribed motion, by its number.
+    Prescribed(usize),
+    /// A free point, by its place in the network.
+    Free(usize),
+}
+
+impl LineEnd {
+    fn new(model: &Model, network: &Network, point: usize) -> LineEnd {
+        let free = network.free_points.iter().position(|&free| free == point);
+        let tie = match (free, &model.points[point].role) {
+            (Some(free), _) => Tie::Free(free),
+            (None, Role::Fixed) => Tie::Fixed,
+            (None, _) => Tie::Prescribed(point),
+        };
+        let motion = EndMotion {
+            position: model.points[point].reference,
+            velocity: Vector3::zeros(),
+        };
+        LineEnd { tie, motion }
+    }
+
+    /// Finds where the point is at `t` [s], and its velocity half a step of `length` [s] earlier.
+    #[inline]
+    fn find(&mut self, points: &[PointState], t: f64, length: f64, held: &impl Fn(usize, f64) -> Kinematics) {
+        self.motion = match self.tie {
+            Tie::Fixed => return,
+            Tie::Prescribed(point) => {
+                let k = held(point, t);
+                EndMotion {
+                    position: k.position,
+                    velocity: k.velocity - 0.5 * length * k.acceleration,
+                }
+            }
+            Tie::Free(free) => EndMotion {
+                position: points[free].position,
+                velocity: points[free].half_step[0],
+            },
+        };
+    }
+}
+
+impl<K: Kernel> NetworkWork<K> {
+    /// Scratch for a network; `None` where a line mixes strain measures.
+    pub fn new(model: &Model, network: &Network) -> Option<NetworkWork<K>> {
+        let ends_of = |line: usize| model.lines[line].ends;
+        let line = |&line: &usize| {
+            let tied = ends_of(line).map(|point| model.points[point].free().is_none());
+            LineWork::new(model, &model.lines[line], tied)
+        };
+        let ends = |&line: &usize| ends_of(line).map(|point| LineEnd::new(model, network, point));
+        let free_points = &network.free_points;
+        let attached = free_points
+            .iter()
+            .map(|&point| point::attached(model, network, point));
+        let attached: Vec<Vec<(usize, End)>> = attached.collect();
+        let springs = attached.iter().map(|ends| ends.len() + 1).max();
+        Some(NetworkWork {
+            lines: network.lines.iter().map(line).collect::<Option<_>>()?,
+            line_numbers: network.lines.clone(),
+            ends: network.lines.iter().map(ends).collect(),
+            points: vec![PointState::at_rest(Vector3::zeros()); free_points.len()],
+            point_numbers: free_points.clone(),
+            waves: vec![
+                WaveSpan::default();
+                if model.waves.is_some() {
+                    free_points.len()
+                } else {
+                    0
+                }
+            ],
+            springs: Vec::with_capacity(springs.unwrap_or(0)),
+            attached,
+            point_flow: Flow::default(),
+            drag_rate: None,
+        })
+    }
+
+    /// Runs the kernels as they are compiled for any machine of the target, or for the best vectors of this one, as is the default.
+    /// Results do not depend on it.
+    pub fn set_portable(&mut self, portable: bool) {
+        self.lines
+            .iter_mut()
+            .for_each(|line| line.layout.set_portable(portable));
+    }
+
+    /// Lines and their numbers in the model.
+    fn numbered_lines(&mut self) -> impl Iterator<Item = (&mut LineWork<K>, usize)> {
+        self.lines.iter_mut().zip(self.line_numbers.iter().copied())
+    }
+
+    /// Loads the state.
+    pub fn load(&mut self, state: &State) {
+        self.drag_rate = None;
+        self.numbered_lines()
+            .for_each(|(work, line)| work.load(&state.lines[line]));
+        self.load_surroundings(state);
+    }
+
+    /// Continues from the state that [`Self::store`] stored last.
+    pub fn resume(&mut self, state: &State) {
+        self.numbered_lines()
+            .for_each(|(work, line)| K::resume(work, &state.lines[line]));
+        self.load_surroundings(state);
+    }
+
+    /// Loads waves and free points.
+    fn load_surroundings(&mut self, state: &State) {
+        if let Some(waves) = &state.waves {
+            self.numbered_lines()
+                .for_each(|(work, line)| work.load_waves(&waves.lines[line]));
+            for (own, &point) in self.waves.iter_mut().zip(&self.point_numbers) {
+                own.clone_from(&waves.points[point]);
+            }
+        }
+        self.point_flow = Flow::default();
+        for (point, &number) in self.points.iter_mut().zip(&self.point_numbers) {
+            *point = state.points[number];
+            let first = self.line_numbers.first();
+            if first.is_none_or(|&line| state.lines[line].half_step.is_unset()) {
+                point.half_step = [point.velocity; 2];
+            }
+        }
+    }
+
+    /// Stores the state after a step of size `steps[0]` [s], the one before being `steps[1]`. Returns whether all nodes have finite positions, and
+    /// speeds that mooring lines reach.
+    pub fn store(&mut self, state: &mut State, steps: [f64; 2]) -> bool {
+        let mut is_sound = true;
+        for (work, line) in self.numbered_lines() {
+            is_sound &= K::store(work, &mut state.lines[line], steps);
+        }
+        let extrapolation = Step::after(steps, steps[0]).extrapolation;
+        for (point, &number) in self.points.iter().zip(&self.point_numbers) {
+            let [last, before] = point.half_step;
+            state.points[number] = PointState {
+                velocity: last + extrapolation * (last - before),
+                ..*point
+            };
+        }
+        is_sound
+    }
+
+    /// The first line, by its place in the network, and node whose position is not finite, or whose speed is one that no mooring line reaches;
+    /// where there is none, the fastest node of the first line whose energy is not finite.
+    pub fn broken_node(&self) -> (usize, usize) {
+        let mut lines = self.lines.iter().enumerate();
+        let broken = lines.find_map(|(line, work)| Some((line, work.layout.broken_node()?)));
+        broken.unwrap_or_else(|| {
+            let mut lines = self.lines.iter();
+            let grown = lines.position(|work| !work.flow().is_finite()).unwrap_or(0);
+            (grown, self.lines[grown].layout.fastest_node())
+        })
+    }
+
+    /// Puts the ends of the lines where their points are at the start of a communication step, `t` [s], with velocities half a step of `last` [s]
+    /// earlier, as those of the nodes are; where they `jump` they are at rest on their new paths.
+    pub fn set_out(&mut self, t: f64, last: f64, jump: bool, held: &impl Fn(usize, f64) -> Kinematics) {
+        for (work, ends) in self.lines.iter_mut().zip(&mut self.ends) {
+            if jump || K::starts(work) {
+                ends.iter_mut()
+                    .for_each(|end| end.find(&self.points, t, last, held));
+                work.put_ends([&ends[0].motion, &ends[1].motion]);
+            }
+        }
+    }
+
+    /// As [`LineWork::set_out_anew`].
+    pub fn set_out_anew(&mut self, last: f64) {
+        self.lines.iter_mut().for_each(|line| line.set_out_anew(last));
+    }
+
+    /// Sets the paths of the winches, by the line they pay out, from `t` [s] on; after [`Self::set_out`].
+    pub fn start_winches(&mut self, state: &State, paths: &[AxisPath], step: Step) {
+        for (work, line) in self.numbered_lines() {
+            if let Some(path) = paths.get(line) {
+                let fresh = state.lines[line].half_step.is_unset();
+                K::start_winch(work, path, (state.time, fresh), step);
+            }
+        }
+    }
+
+    /// Sets current and waves to those of `t` [s].
+    #[inline]
+    pub fn set_water(&mut self, model: &Model, t: f64) {
+        if model.waves.is_some() {
+            self.lines.iter_mut().for_each(|line| line.layout.set_time(t));
+        }
+        if let Some(stream) = model.stream(t) {
+            let lines = self.lines.iter_mut();
+            lines.for_each(|line| line.layout.set_current(stream.factor));
+        }
+    }
+
+    /// Finds the nodes at the water's surface before the first step.
+    pub fn meet_surface(&mut self) {
+        self.lines.iter_mut().for_each(LineWork::meet_surface);
+    }
+
+    /// A step from one time [s] to the next, with prescribed points where `held` says. Returns the number of solutions.
+    pub fn step(
+        &mut self,
+        model: &Model,
+        [t, after]: [f64; 2],
+        step: Step,
+        held: &impl Fn(usize, f64) -> Kinematics,
+    ) -> usize {
+        self.set_water(model, t);
+        for (work, line) in self.numbered_lines() {
+            if let Some(releases) = &model.lines[line].release {
+                work.release_ends(releases, t, step);
+            }
+        }
+        K::pull(self, model, t, step);
+        let mut solutions = 0;
+        for (work, ends) in self.lines.iter_mut().zip(&mut self.ends) {
+            ends.iter_mut()
+                .for_each(|end| end.find(&self.points, after, step.drift, held));
+            let solved = K::advance(work, after, step, [&ends[0].motion, &ends[1].motion]);
+            solutions = solved.max(solutions);
+        }
+        solutions
+    }
+
+    /// Flow of energy since the state was loaded, the kinetic energy included in the dissipation; zero without a balance.
+    pub fn flow(&self) -> Flow {
+        let mut flow = self.point_flow;
+        self.lines.iter().for_each(|line| flow.add(line.flow()));
+        flow
+    }
+}

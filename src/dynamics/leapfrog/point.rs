@@ -1,0 +1,345 @@
+//! Free points of a network with explicit tension: a step of each from the forces of the lines at it, water and seabed.
+
+use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
+
+use super::explicit::{Explicit, ExplicitLine};
+use super::network::NetworkWork;
+use super::step::Step;
+use crate::elements::friction::point_stick;
+use crate::model::{End, FreePoint, Model, Network};
+use crate::physics::airy::Orbit;
+use crate::physics::friction::{Axes, Friction};
+
+/// What an end of a line brings to the free point it is tied to.
+#[derive(Debug, Clone, Copy)]
+pub struct EndLoad {
+    /// Force of the line on the point without contact [N].
+    pub force: Vector3<f64>,
+    /// The part of it that water and damping resist with [N].
+    pub resistance: Vector3<f64>,
+    /// The part of it that accelerated water presses with [N].
+    pub froude_krylov: Vector3<f64>,
+    /// Power of the drag on the water's way [W].
+    pub current_power: f64,
+    /// Mass matrix of the half node [kg].
+    pub mass: Matrix3<f64>,
+    /// Contact stiffness [N/m] and damping [N s/m] of the half node, and its force at z = 0, or at no height over a seabed with a slope, soundings or friction [N].
+    pub contact: [f64; 3],
+}
+
+/// Spring and damper of the bed under a point: its own, or that of the half node of a line.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Spring {
+    /// Stiffness [N/m].
+    stiffness: f64,
+    /// Stiffness times drift and damping [N s/m].
+    resistance: f64,
+    /// Force at no velocity [N].
+    push: f64,
+}
+
+impl NetworkWork<Explicit> {
+    /// Greatest ratio K |v| / M of all nodes and free points at time `t` [s], v relative to the water [1/s].
+    pub(super) fn drag_rate(&self, model: &Model, t: f64) -> f64 {
+        let of_lines = self.drag_rate.unwrap_or_else(|| self.drag_rate_of_lines());
+        let points = self.points.iter().zip(&self.point_numbers).enumerate();
+        points
+            .filter_map(|(free, (point, &index))| {
+                let sphere = model.points[index].free()?.sphere?;
+                let stream = model.stream(t);
+                let mut past = point.half_step[0];
+                past -= stream.map_or(Vector3::zeros(), |now| now.velocity(point.position.z));
+                past -= self.waves_at(free, t).map_or(Vector3::zeros(), |w| w.velocity);
+                let rate = sphere.drag * past.norm();
+                (rate > 0.0).then(|| rate / tied_mass(model, index))
+            })
+            .fold(of_lines, f64::max)
+    }
+
+    /// Greatest ratio of the nodes of the lines [1/s].
+    fn drag_rate_of_lines(&self) -> f64 {
+        let rates = self.lines.iter().map(ExplicitLine::drag_rate);
+        rates.fold(0.0, f64::max)
+    }
+
+    /// Finds the ratio of the nodes after a step for the next one too.
+    pub(super) fn survey_drag(&mut self) {
+        self.drag_rate = Some(self.drag_rate_of_lines());
+    }
+
+    /// Motion of the water by waves at a free point, by its place in the network, at `t` [s].
+    fn waves_at(&self, free: usize, t: f64) -> Option<Orbit> {
+        self.waves.get(free).map(|waves| waves.at_point(t))
+    }
+
+    /// Steps the free points from `t` [s].
+    pub(super) fn step_points(&mut self, model: &Model, t: f64, step: Step) {
+        for free in 0..self.points.len() {
+            let index = self.point_numbers[free];
+            let [last, before] = self.points[free].half_step;
+            let now = last + step.extrapolation * (last - before);
+            let point = &model.points[index];
+            let Some(law) = point.free() else { continue };
+            let height = self.points[free].position.z;
+            let bed = Bed::under(model, self.points[free].position);
+            let waves = self.waves_at(free, t);
+            let mut load = load_in_water(model, index, law, [height, t], now, waves);
+            self.springs.clear();
+            self.springs.extend(Spring::new(load.contact, bed.height, step));
+            for &(at, end) in &self.attached[free] {
+                if self.lines[at].is_released(end) {
+                    continue;
+                }
+                let brought = self.lines[at].end_load(end, now);
+                load.add(&brought);
+                self.springs
+                    .extend(Spring::new(brought.contact, bed.height, step));
+            }
+            let kicked = load.kicked(last, law.axes, &self.springs, &bed, step);
+            let Kicked { velocity, .. } = kicked;
+            if model.energy_balance {
+                let way = step.kick * 0.5 * (last + velocity);
+                let by_water = load.froude_krylov.dot(&way) + step.kick * load.current_power;
+                self.point_flow.external_work += point.load_at(t).dot(&way) + by_water;
+                self.point_flow.dissipation +=
+                    (load.force - load.resistance).dot(&way) + step.kick * load.current_power;
+            }
+            let state = &mut self.points[free];
+            state.half_step = [velocity, last];
+            state.acceleration = (velocity - last) / step.kick;
+            state.position += step.drift * velocity;
+            if state.anchor.is_some() {
+                let held = kicked.friction / (step.kick * point_stick(law));
+                state.anchor = Some(state.position + held);
+            }
+        }
+    }
+}
+
+/// Lines, by their place in a network, and ends at a point of it.
+pub(super) fn attached(model: &Model, network: &Network, point: usize) -> Vec<(usize, End)> {
+    let place = |&(line, end): &(usize, End)| {
+        let place = network.lines.iter().position(|&l| l == line)?;
+        Some((place, end))
+    };
+    model.points[point].attached.iter().filter_map(place).collect()
+}
+
+/// Weight, load and water of a free point at a height [m] and a time [s] that moves at `now` [m/s]. The difference between its buoyancy and that in
+/// still water counts as Froude-Krylov force.
+fn load_in_water(
+    model: &Model,
+    index: usize,
+    law: &FreePoint,
+    [height, t]: [f64; 2],
+    now: Vector3<f64>,
+    waves: Option<Orbit>,
+) -> EndLoad {
+    let point = &model.points[index];
+    let surface = waves.map_or(0.0, |orbit| orbit.elevation);
+    let at = law.at(height - surface);
+    let stream = model.stream(t);
+    let mut water = stream.map_or(Vector3::zeros(), |stream| stream.velocity(height));
+    let (mut froude_krylov, mut weight) = (Vector3::zeros(), at.weight);
+    if let Some(orbit) = &waves {
+        water += orbit.velocity;
+        weight = law.at(height).weight;
+        froude_krylov = law.froude_krylov(at.wetted, orbit) + (weight - at.weight) * Vector3::z();
+    }
+    let drag = law.drag(at.wetted, now - water);
+    EndLoad {
+        force: point.load_at(t) - weight * Vector3::z() + drag + froude_krylov,
+        resistance: drag,
+        froude_krylov,
+        current_power: drag.dot(&water),
+        mass: at.mass * Matrix3::identity(),
+        contact: law.contact.map_or([0.0; 3], |contact| {
+            let k = contact.coefficients;
+            let level = match model.bottom {
+                Some(_) => contact.lift(),
+                None => contact.level,
+            };
+            [k.stiffness, k.damping, k.stiffness * level]
+        }),
+    }
+}
+
+/// Mass of a free point and of the half nodes tied to it, at least [kg].
+fn tied_mass(model: &Model, point: usize) -> f64 {
+    let point = &model.points[point];
+    let tied = point.attached.iter().map(|&(line, end)| {
+        let line = &model.lines[line];
+        let node = line.end_node(end);
+        line.least_mass(node)
+    });
+    point.free().map_or(0.0, |free| free.mass) + tied.sum::<f64>()
+}
+
+impl Spring {
+    /// The spring of stiffness, damping and force at no height under a point at `height` [m]; `None` where there is none.
+    fn new([stiffness, damping, force_at_zero]: [f64; 3], height: f64, step: Step) -> Option<Spring> {
+        (stiffness > 0.0).then_some(Spring {
+            stiffness,
+            resistance: stiffness * step.drift + damping,
+            push: force_at_zero - stiffness * height,
+        })
+    }
+
+    /// Whether the point would be in the bed after a step with the velocity ż [m/s].
+    fn lands(&self, velocity: f64, step: Step) -> bool {
+        self.push - self.stiffness * step.drift * velocity > 0.0
+    }
+}
+
+impl EndLoad {
+    fn add(&mut self, other: &EndLoad) {
+        self.force += other.force;
+        self.resistance += other.resistance;
+        self.froude_krylov += other.froude_krylov;
+        self.current_power += other.current_power;
+        self.mass += other.mass;
+    }
+
+    /// v_{n+½} of a point that moves along `axes` only, and the impulse of the bed, which is implicit: friction is sought that agrees with
+    /// the push of the springs, and a push that agrees with the friction.
+    fn kicked(
+        &self,
+        last: Vector3<f64>,
+        axes: [bool; 3],
+        springs: &[Spring],
+        bed: &Bed,
+        step: Step,
+    ) -> Kicked {
+        let zero = Vector3::zeros();
+        let free = Vector3::from(axes.map(|free| f64::from(u8::from(free))));
+        let mut mass = self.mass.component_mul(&(free * free.transpose()));
+        for axis in (0..3).filter(|&axis| !axes[axis]) {
+            mass[(axis, axis)] = 1.0;
+        }
+        let Some(inverse) = mass.try_inverse() else {
+            return Kicked {
+                velocity: last,
+                friction: zero,
+            };
+        };
+        let velocity = last + step.kick * inverse * self.force.component_mul(&free);
+        let response = inverse * bed.normal.component_mul(&free);
+        let mut push = pushed(velocity, response, springs, bed, step);
+        let mut friction = zero;
+        if let (Some(law), true) = (bed.friction, push > 0.0) {
+            let sliding = Sliding::new(bed.normal, &inverse, &free);
+            let scale = push;
+            for _ in 0..ROUNDS_MAX {
+                let before = push;
+                friction += sliding.friction(velocity + response * push, friction, law.transverse * push);
+                push = pushed(
+                    velocity + inverse * friction.component_mul(&free),
+                    response,
+                    springs,
+                    bed,
+                    step,
+                );
+                if (push - before).abs() <= 4.0 * f64::EPSILON * scale {
+                    break;
+                }
+            }
+        }
+        Kicked {
+            velocity: velocity + response * push + inverse * friction.component_mul(&free),
+            friction,
+        }
+    }
+}
+
+/// Rounds of push and friction on a point in a step.
+const ROUNDS_MAX: usize = 50;
+
+/// What a point leaves a step with.
+struct Kicked {
+    /// v_{n+½} [m/s].
+    velocity: Vector3<f64>,
+    /// Impulse of friction [N s].
+    friction: Vector3<f64>,
+}
+
+/// The bed under a point.
+struct Bed<'a> {
+    /// Height of the point over z = 0; over a seabed with a slope, soundings or friction, over that along its normal [m].
+    height: f64,
+    /// Unit normal of the bed, upwards.
+    normal: Vector3<f64>,
+    friction: Option<&'a Friction>,
+}
+
+impl Bed<'_> {
+    fn under(model: &Model, place: Vector3<f64>) -> Bed<'_> {
+        match model.bottom.as_deref() {
+            None => Bed {
+                height: place.z,
+                normal: Vector3::z(),
+                friction: None,
+            },
+            Some(bottom) => {
+                let touch = bottom.ground.touch(place);
+                Bed {
+                    height: -touch.penetration,
+                    normal: touch.normal,
+                    friction: bottom.friction.as_ref(),
+                }
+            }
+        }
+    }
+}
+
+/// Impulse of the springs on a point that would have the velocity `velocity` [m/s] without it. The sum of springs that
+/// only push is convex in the velocity, so that Newton's method from above finds it in as many iterations as there are springs.
+fn pushed(velocity: Vector3<f64>, response: Vector3<f64>, springs: &[Spring], bed: &Bed, step: Step) -> f64 {
+    let (rise, yielding) = (bed.normal.dot(&velocity), bed.normal.dot(&response));
+    let mut impulse = 0.0;
+    for _ in 0..springs.len() {
+        let rising = rise + yielding * impulse;
+        let (mut push, mut resistance) = (0.0, 0.0);
+        for spring in springs.iter().filter(|spring| spring.lands(rise, step)) {
+            let force = spring.push - spring.resistance * rising;
+            if force > 0.0 {
+                push += force;
+                resistance += spring.resistance;
+            }
+        }
+        let excess = step.kick * push - impulse;
+        impulse += excess / (1.0 + yielding * step.kick * resistance);
+    }
+    impulse
+}
+
+/// How a point slides along the bed.
+struct Sliding {
+    /// Axes of the plane of the bed, along those of the point that are free.
+    axes: [Vector3<f64>; 2],
+    /// Inverse of what the point yields by in the plane [kg].
+    mass: Matrix2<f64>,
+}
+
+impl Sliding {
+    fn new(normal: Vector3<f64>, inverse: &Matrix3<f64>, free: &Vector3<f64>) -> Sliding {
+        let Axes { along, across, .. } = Axes::new(normal, normal);
+        let axes = [along, across];
+        let mut yielding = Matrix2::from_fn(|i, j| axes[i].dot(&(inverse * axes[j].component_mul(free))));
+        // A point on a rail yields along that alone: the rest is held, and must not be divided by.
+        let least = 1e-12 * yielding.trace();
+        yielding += Matrix2::from_diagonal_element(least);
+        Sliding {
+            axes,
+            mass: yielding.try_inverse().unwrap_or_else(Matrix2::zeros),
+        }
+    }
+
+    /// What must be added to the impulse `friction` so that the point stops, or the impulse is at its limit [N s]; `velocity` [m/s] is without any.
+    fn friction(&self, velocity: Vector3<f64>, friction: Vector3<f64>, limit: f64) -> Vector3<f64> {
+        let slides = Vector2::from_fn(|i, _| self.axes[i].dot(&velocity));
+        let wanted = -self.mass * slides;
+        let size = wanted.norm();
+        let part = if size > limit { limit / size } else { 1.0 };
+        part * (wanted.x * self.axes[0] + wanted.y * self.axes[1]) - friction
+    }
+}
