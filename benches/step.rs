@@ -13,7 +13,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use moorline::dynamics::leapfrog::step::Step;
-use moorline::dynamics::leapfrog::{AxialImplicit, Explicit, Kernel, NetworkWork};
+use moorline::dynamics::leapfrog::{AxialImplicit, Explicit, Kernel, LeapfrogNetwork};
 use moorline::math::lanes::{LANES, Lanes};
 use moorline::model::{Kinematics, Model, State};
 use moorline::scene::{Integrator, Scene};
@@ -236,8 +236,8 @@ fn axial_cost(model: &Model, state: &State, size: f64, count: usize, portable: b
 }
 
 /// A leapfrog that holds a state.
-fn loaded<K: Kernel>(model: &Model, state: &State, portable: bool) -> NetworkWork<K> {
-    let mut work = NetworkWork::new(model, &model.networks[0]).expect("one strain measure");
+fn loaded<K: Kernel>(model: &Model, state: &State, portable: bool) -> LeapfrogNetwork<K> {
+    let mut work = LeapfrogNetwork::new(model, &model.networks[0]).expect("one strain measure");
     work.set_portable(portable);
     work.load(state);
     work
@@ -246,7 +246,7 @@ fn loaded<K: Kernel>(model: &Model, state: &State, portable: bool) -> NetworkWor
 /// Time of a step of one line [ns] where `lines` alike take turns, with the fairlead swaying.
 fn step_cost(model: &Model, state: &State, size: f64, lines: usize, portable: bool) -> f64 {
     let work = |_| loaded::<Explicit>(model, state, portable);
-    let mut works: Vec<NetworkWork<Explicit>> = (0..lines).map(work).collect();
+    let mut works: Vec<LeapfrogNetwork<Explicit>> = (0..lines).map(work).collect();
     let held = sway(state);
     let step = Step::after([size; 2], size);
     for work in &mut works {

@@ -4,11 +4,10 @@
 //! point to the next. Coupled points follow what [`Simulation::set_displacement`] says, or the scene's own motion after
 //! [`Simulation::follow_scene`].
 
-mod held;
 mod input_error;
 mod inputs;
 mod paths;
-
+mod prescribed;
 mod results;
 mod scale;
 mod start;
@@ -19,7 +18,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use crate::dynamics::advance::{Counters, Workspace};
+use crate::dynamics::advance::{Counters, Integrators};
 use crate::dynamics::energy_balance::{self, EnergyBalance};
 use crate::dynamics::motion::Extrapolation;
 use crate::dynamics::{Choice, StepError};
@@ -27,10 +26,10 @@ use crate::model::{Line, LineState, Model, State};
 use crate::scene::{InitialShape, Scene, SceneError};
 use crate::statics::StaticsError;
 use crate::statics::catenary::Catenary;
-use held::{At, Held};
 use input_error::InputRecord;
 use inputs::Inputs;
 use paths::Paths;
+use prescribed::{MotionSource, PrescribedMotion};
 use results::Reactions;
 use scale::Scale;
 
@@ -76,11 +75,11 @@ pub struct Snapshot {
 pub struct Simulation {
     model: Arc<Model>,
     snapshot: Snapshot,
-    work: Workspace,
+    work: Integrators,
     /// The paths of the step that is made.
     paths: Box<Paths>,
     extrapolation: Extrapolation,
-    held: Held,
+    prescribed: PrescribedMotion,
     reactions: Reactions,
     scale: Scale,
     catenaries: Vec<Option<Catenary>>,
@@ -101,7 +100,7 @@ impl Simulation {
             catenaries: lines.map(|line| reference_catenary(&model, line)).collect(),
             paths: snapshot.paths.clone(),
             extrapolation: Extrapolation::none(),
-            held: Held::new(&model, false),
+            prescribed: PrescribedMotion::new(&model, false),
             reactions: Reactions::new(&model),
             scale: Scale::new(&model),
             snapshot,
@@ -152,7 +151,7 @@ impl Simulation {
         (self.snapshot, self.work) = start::begin(&model, time, inputs, follows_scene, shapes)?;
         self.paths.clone_from(&self.snapshot.paths);
         self.model = model;
-        self.held = Held::new(&self.model, follows_scene);
+        self.prescribed = PrescribedMotion::new(&self.model, follows_scene);
         self.reactions.clear();
         Ok(())
     }
@@ -182,7 +181,7 @@ impl Simulation {
         self.snapshot = snapshot;
         self.paths.clone_from(&self.snapshot.paths);
         self.work.forget();
-        self.held = Held::new(&self.model, self.snapshot.follows_scene);
+        self.prescribed = PrescribedMotion::new(&self.model, self.snapshot.follows_scene);
         self.reactions.clear();
         winches::follow(&mut self.model, &self.snapshot.state);
     }
@@ -218,11 +217,11 @@ impl Simulation {
         let record = self.record_inputs();
         let model = &*self.model;
         let follows_scene = self.snapshot.follows_scene;
-        let at = At::new(model, &self.paths, follows_scene);
+        let at = MotionSource::new(model, &self.paths, follows_scene);
         let time = self.snapshot.state.time;
         let steps = self.snapshot.counters.substeps;
-        self.held.prepare(&at, [time, time + step], steps);
-        let held = |point: usize, t: f64| self.held.point(&at, point, t);
+        self.prescribed.prepare(&at, [time, time + step], steps);
+        let held = |point: usize, t: f64| self.prescribed.point(&at, point, t);
         let state = &mut self.snapshot.state;
         let advanced = self.work.advance(model, state, step, &held);
         if advanced.is_err()

@@ -41,7 +41,7 @@ pub struct Done {
 
 /// Scratch of all networks and the state being built.
 #[derive(Debug, Clone)]
-pub struct Workspace {
+pub struct Integrators {
     networks: Vec<NetworkSolver>,
     /// Per thread.
     scratch: Vec<Scratch>,
@@ -65,10 +65,10 @@ struct NetworkSolver {
     outcome: Result<Done, StepError>,
 }
 
-impl Workspace {
+impl Integrators {
     /// Chooses integrators and allocates all scratch for a model that starts from `state`; `tension` returns the static
     /// tension of a line [N].
-    pub fn new(model: &Model, state: &State, tension: impl Fn(usize) -> f64) -> Workspace {
+    pub fn new(model: &Model, state: &State, tension: impl Fn(usize) -> f64) -> Integrators {
         let networks: Vec<NetworkSolver> = model
             .networks
             .iter()
@@ -85,7 +85,7 @@ impl Workspace {
             implicit: elements::Workspace::new(model),
             next: state.clone(),
         };
-        Workspace {
+        Integrators {
             threads: ThreadPool::default(),
             estimate: WorkEstimate::new(model, networks.iter().map(|network| &network.choice)),
             scratch: vec![own],

@@ -235,7 +235,7 @@ pub fn advance<K: Fn(usize, f64) -> Kinematics>(
     scheme: &Scheme,
     work: &mut Workspace,
 ) -> Result<Counters, StepError> {
-    let held = Held {
+    let held = Driving {
         kinematics: held,
         scheme,
     };
@@ -244,7 +244,7 @@ pub fn advance<K: Fn(usize, f64) -> Kinematics>(
 
 /// What moves a network from outside, and by which scheme it follows.
 #[derive(Debug)]
-pub struct Held<'a, K> {
+pub struct Driving<'a, K> {
     /// Position, velocity and acceleration of held points.
     pub kinematics: &'a K,
     /// The integrator.
@@ -259,7 +259,7 @@ pub fn advance_observed<K: Fn(usize, f64) -> Kinematics>(
     model: &Model,
     number: usize,
     state: &mut State,
-    held: Held<K>,
+    held: Driving<K>,
     span: Span,
     work: &mut Workspace,
     mut observe: impl FnMut(&Passed),

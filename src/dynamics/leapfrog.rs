@@ -33,7 +33,7 @@ use step::Step;
 
 pub use axial_implicit::AxialImplicit;
 pub use explicit::{Explicit, segment_tension};
-pub use network::NetworkWork;
+pub use network::LeapfrogNetwork;
 
 /// Ends in the order of the line.
 const ENDS: [End; 2] = [End::A, End::B];
@@ -60,50 +60,55 @@ pub trait Kernel: Debug + Clone + Sized {
     fn new(model: &Model, line: &Line, layout: &Layout) -> Self;
 
     /// Loads the quantities that a line keeps beside those of the layout.
-    fn load(work: &mut LineWork<Self>, state: &LineState);
+    fn load(work: &mut LeapfrogLine<Self>, state: &LineState);
 
     /// Continues from the state that was stored last.
-    fn resume(work: &mut LineWork<Self>, state: &LineState);
+    fn resume(work: &mut LeapfrogLine<Self>, state: &LineState);
 
     /// Stores the state after steps of `steps` [s]. Returns whether all nodes have finite positions, and speeds that mooring lines reach.
-    fn store(work: &mut LineWork<Self>, state: &mut LineState, steps: [f64; 2]) -> bool;
+    fn store(work: &mut LeapfrogLine<Self>, state: &mut LineState, steps: [f64; 2]) -> bool;
 
     /// Sets whether the node at an end moves as those between the ends do.
-    fn set_free(work: &mut LineWork<Self>, end: End, free: bool);
+    fn set_free(work: &mut LeapfrogLine<Self>, end: End, free: bool);
 
     /// Mass of the half node at an end across and along the line [kg].
-    fn end_masses(work: &LineWork<Self>, end: End) -> [f64; 2];
+    fn end_masses(work: &LeapfrogLine<Self>, end: End) -> [f64; 2];
 
     /// Sets the coefficients of the nodes at the water's surface.
-    fn meet_surface(work: &mut LineWork<Self>);
+    fn meet_surface(work: &mut LeapfrogLine<Self>);
 
     /// Returns whether prescribed ends are yet to be put where they start.
-    fn starts(work: &LineWork<Self>) -> bool;
+    fn starts(work: &LeapfrogLine<Self>) -> bool;
 
     /// Sets the path of the winch from a time [s] on, after the end was put where it is then; `fresh` before the first step from rest.
-    fn start_winch(_: &mut LineWork<Self>, _: &AxisPath, (_t, _fresh): (f64, bool), _: Step) {}
+    fn start_winch(_: &mut LeapfrogLine<Self>, _: &AxisPath, (_t, _fresh): (f64, bool), _: Step) {}
 
     /// Stages 1 and 2 of a network at `t` [s].
-    fn pull(network: &mut NetworkWork<Self>, model: &Model, t: f64, step: Step);
+    fn pull(network: &mut LeapfrogNetwork<Self>, model: &Model, t: f64, step: Step);
 
     /// Stages 3 and 4 of a line, to `t` [s]. Returns the number of solutions.
-    fn advance(work: &mut LineWork<Self>, t: f64, step: Step, ends: [&EndMotion; 2]) -> usize;
+    fn advance(work: &mut LeapfrogLine<Self>, t: f64, step: Step, ends: [&EndMotion; 2]) -> usize;
 
     /// Longest step [s] of a network from `t` [s] on in a communication step of `length` [s].
     fn longest_step(
-        network: &mut NetworkWork<Self>,
+        network: &mut LeapfrogNetwork<Self>,
         model: &Model,
         choice: &Choice,
         span: [f64; 2],
     ) -> (f64, Self::Bound);
 
     /// Returns whether steps of `drift` [s], of which the last ended at `t` [s], were short enough.
-    fn were_short(network: &mut NetworkWork<Self>, model: &Model, bound: &Self::Bound, at: [f64; 2]) -> bool;
+    fn were_short(
+        network: &mut LeapfrogNetwork<Self>,
+        model: &Model,
+        bound: &Self::Bound,
+        at: [f64; 2],
+    ) -> bool;
 }
 
 /// A line and the scratch of its steps.
 #[derive(Debug, Clone)]
-pub struct LineWork<K> {
+pub struct LeapfrogLine<K> {
     layout: Layout,
     /// True for ends A and B at prescribed points, also if released from them.
     tied: [bool; 2],
@@ -112,7 +117,7 @@ pub struct LineWork<K> {
     kernel: K,
 }
 
-/// [`LineWork::put_ends`] for the vector unit of the machine.
+/// [`LeapfrogLine::put_ends`] for the vector unit of the machine.
 struct PutEnds<'a>(&'a mut Layout, [&'a EndMotion; 2]);
 
 impl NullaryFnOnce for PutEnds<'_> {
@@ -125,14 +130,14 @@ impl NullaryFnOnce for PutEnds<'_> {
     }
 }
 
-impl<K: Kernel> LineWork<K> {
+impl<K: Kernel> LeapfrogLine<K> {
     /// Scratch for a line; `None` where its sections have different strain measures, which the kernels do not mix.
-    fn new(model: &Model, line: &Line, tied: [bool; 2]) -> Option<LineWork<K>> {
+    fn new(model: &Model, line: &Line, tied: [bool; 2]) -> Option<LeapfrogLine<K>> {
         let is_tied = tied[1] && line.winch.is_none();
         let water = Water::around(model, line);
         let longest = line.winch.as_ref().map_or(line, |winch| winch.longest());
         let layout = Layout::new(model, (longest, water), K::FEW_ROWS, is_tied)?;
-        Some(LineWork {
+        Some(LeapfrogLine {
             kernel: K::new(model, line, &layout),
             tied,
             balance: layout.energy_balance.then(LineBalance::default),

@@ -119,7 +119,8 @@ pub fn end_force(
         moments,
     };
     let pull = tension(line, state, segment, negative_tension) * inward + half.shear(state, segment);
-    let mut force = pull + half.load(inward, dry.part);
+    let load = half.load(inward, dry.part);
+    let mut force = pull + load;
     if let (Some(winch_state), End::B) = (state.winch_state, end) {
         force -= passing(line, winch_state) * chord / line.segments.length[segment];
     }
@@ -132,7 +133,7 @@ pub fn end_force(
         End::B => [node - 1, node.saturating_sub(2)],
     };
     if half.may_be_linear(state, next[0]) {
-        force += half.linear(state, next, [inward, pull], negative_tension);
+        force += half.linear(state, next, [inward, pull, load], negative_tension);
     }
     force
 }
@@ -199,12 +200,12 @@ impl HalfNode<'_> {
             && line.nodes.is_alike(self.node, next)
     }
 
-    /// What a load that is linear to the `next` node and the one `after` adds to the force at the end [N], whose segment pulls `inward`.
+    /// Difference of a load that is linear to the `next` node and the one `after` from the `uniform` one [N]; the segment at the end pulls `inward`.
     fn linear(
         &self,
         state: &LineState,
         [next, after]: [usize; 2],
-        [inward, pull]: [Vector3<f64>; 2],
+        [inward, pull, uniform]: [Vector3<f64>; 3],
         negative_tension: bool,
     ) -> Vector3<f64> {
         let nodes = &self.line.nodes;
@@ -233,7 +234,7 @@ impl HalfNode<'_> {
         let change = share * (pull - passed_on + borne) - own;
         let ratio = own.norm_squared() / change.norm_squared().max(f64::MIN_POSITIVE);
         let bulge = self.bulge(state, next, tangents);
-        let added = own + change / 3.0 + bulge - self.load(inward, self.dry.part);
+        let added = own + change / 3.0 + bulge - uniform;
         at_surface * ratio.powi(2).min(1.0) * added
     }
 

@@ -17,7 +17,7 @@ use nalgebra::{Matrix3, Vector2, Vector3};
 use super::{LineWork, PointWork, StaticCase, Weights, node_tangent};
 use crate::model::{Bottom, FreePoint, Line, LineState, Model, Network, PointState, State};
 use crate::physics::fading_damper::FadingContact;
-use crate::physics::friction::{Axes, Friction, held};
+use crate::physics::friction::{Axes, Friction, node_friction};
 use crate::physics::ground::Touch;
 use crate::physics::seabed::ContactCoefficients;
 
@@ -120,7 +120,7 @@ impl<'a> Resting<'a> {
             let wanted = rub.stick * axes.components(&(rub.anchor - self.place));
             let normal_force = rub.normal_force.unwrap_or(bed.force);
             let limits = rub.limit * Vector2::from(rub.friction.limits(axes.share, normal_force));
-            let held = held(wanted, [1.0, 1.0].into(), limits);
+            let held = node_friction(wanted, [1.0, 1.0].into(), limits);
             let slope = held.slope(limits);
             let grows = match rub.normal_force {
                 None => axes.vector(&(held.force - slope * wanted)) / bed.force,

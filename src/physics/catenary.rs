@@ -71,7 +71,7 @@ pub use energy::CatenaryEnergy;
 use sections::Sections;
 use shape::{Kind, Piece, Shape};
 use touchdown::Touchdown;
-use uniform::{Held, Uniform};
+use uniform::{EndForces, Uniform};
 
 /// Height above the bed, over the length of the line, up to which an end lies on it as far as friction is concerned [-].
 const ON_BED: f64 = 0.02;
@@ -164,7 +164,7 @@ pub struct Point {
 #[derive(Debug, Clone)]
 pub struct Catenary {
     shape: Shape,
-    held: Held,
+    held: EndForces,
     span: f64,
     rise: f64,
 }
@@ -214,7 +214,7 @@ pub fn is_laid_from_b([a, b]: [f64; 2], length: f64) -> bool {
 }
 
 /// [`solve`] of a line that is laid from end A.
-fn solve_from_a(sections: &[Section], span: f64, rise: f64, bed: Option<Bed>) -> (Shape, Held) {
+fn solve_from_a(sections: &[Section], span: f64, rise: f64, bed: Option<Bed>) -> (Shape, EndForces) {
     match uniform(sections) {
         Some(section) => solve_uniform(&section, span, rise, bed),
         None => solve_sections(sections, span, rise, bed),
@@ -229,7 +229,7 @@ fn uniform(sections: &[Section]) -> Option<Section> {
     sections.iter().all(alike).then_some(Section { length, ..first })
 }
 
-fn solve_uniform(section: &Section, span: f64, rise: f64, bed: Option<Bed>) -> (Shape, Held) {
+fn solve_uniform(section: &Section, span: f64, rise: f64, bed: Option<Bed>) -> (Shape, EndForces) {
     let line = Uniform {
         length: section.length,
         weight: section.weight,
@@ -269,7 +269,7 @@ fn solve_uniform(section: &Section, span: f64, rise: f64, bed: Option<Bed>) -> (
 }
 
 /// Lowest point between the ends of a suspended uniform line, relative to A [m].
-fn lowest(section: &Section, held: &Held) -> f64 {
+fn lowest(section: &Section, held: &EndForces) -> f64 {
     let (h, v) = (held.horizontal_a, held.vertical_a);
     if section.weight <= 0.0 || v >= 0.0 || held.vertical_b <= 0.0 {
         return 0.0;
@@ -277,7 +277,7 @@ fn lowest(section: &Section, held: &Held) -> f64 {
     -v * v / section.weight * (1.0 / (h.hypot(v) + h) + 0.5 / section.axial_stiffness)
 }
 
-fn suspended_shape(section: &Section, held: &Held, span: f64, rise: f64) -> Shape {
+fn suspended_shape(section: &Section, held: &EndForces, span: f64, rise: f64) -> Shape {
     let mut shape = Shape::default();
     if held.horizontal_a == 0.0 && held.vertical_a == 0.0 && held.vertical_b == 0.0 {
         let (x, z) = (span / section.length, rise / section.length);
@@ -296,7 +296,7 @@ fn suspended_shape(section: &Section, held: &Held, span: f64, rise: f64) -> Shap
     shape
 }
 
-fn touchdown_shape(section: &Section, held: &Held, bed: Bed, span: f64) -> Shape {
+fn touchdown_shape(section: &Section, held: &EndForces, bed: Bed, span: f64) -> Shape {
     let mut shape = Shape::default();
     let (a, b) = (
         -held.vertical_a / section.weight,
@@ -320,7 +320,7 @@ fn touchdown_shape(section: &Section, held: &Held, bed: Bed, span: f64) -> Shape
     shape
 }
 
-fn solve_sections(sections: &[Section], span: f64, rise: f64, bed: Option<Bed>) -> (Shape, Held) {
+fn solve_sections(sections: &[Section], span: f64, rise: f64, bed: Option<Bed>) -> (Shape, EndForces) {
     let length: f64 = sections.iter().map(|s| s.length).sum();
     let flexibility: f64 = sections.iter().map(|s| s.length / s.axial_stiffness).sum();
     let mut shape = Shape::default();
@@ -353,7 +353,7 @@ fn solve_sections(sections: &[Section], span: f64, rise: f64, bed: Option<Bed>) 
     (shape, held)
 }
 
-fn suspend_weightless(sections: &[Section], span: f64, rise: f64, shape: &mut Shape) -> Held {
+fn suspend_weightless(sections: &[Section], span: f64, rise: f64, shape: &mut Shape) -> EndForces {
     let length: f64 = sections.iter().map(|s| s.length).sum();
     let flexibility: f64 = sections.iter().map(|s| s.length / s.axial_stiffness).sum();
     let alike = Uniform {

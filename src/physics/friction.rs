@@ -191,7 +191,7 @@ pub fn slide<R: Real>(holding: [R; 2], compliance: [R; 2], limits: [R; 2]) -> Sl
 
 /// Friction at one node.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Held {
+pub struct NodeFriction {
     /// Along and across the line [N].
     pub force: Vector2<f64>,
     /// γ, in the unit of W D² [N² m/N, N² m/(N s)]; `None` where the node sticks.
@@ -199,19 +199,19 @@ pub struct Held {
 }
 
 /// [`slide`] of one node.
-pub fn held(holding: Vector2<f64>, compliance: Vector2<f64>, limits: Vector2<f64>) -> Held {
+pub fn node_friction(holding: Vector2<f64>, compliance: Vector2<f64>, limits: Vector2<f64>) -> NodeFriction {
     let Slide {
         force,
         slides,
         multiplier,
     } = slide::<f64>(holding.into(), compliance.into(), limits.into());
-    Held {
+    NodeFriction {
         force: force.into(),
         multiplier: (slides > 0.0).then_some(multiplier),
     }
 }
 
-impl Held {
+impl NodeFriction {
     /// Slope of the force with what would hold the node [-], the limits held; all compliances being 1.
     pub fn slope(&self, limits: Vector2<f64>) -> Matrix2<f64> {
         let Some(gamma) = self.multiplier else {
@@ -255,10 +255,10 @@ mod tests {
     #[test]
     fn a_node_sticks_inside_the_ellipse_and_slides_on_it() {
         let inside = Vector2::new(20.0, -50.0);
-        assert_eq!(held(inside, ONES, LIMITS).force, inside);
-        assert_eq!(held(inside, ONES, LIMITS).multiplier, None);
+        assert_eq!(node_friction(inside, ONES, LIMITS).force, inside);
+        assert_eq!(node_friction(inside, ONES, LIMITS).multiplier, None);
         for outside in [[41.0, 0.0], [-3.0, 300.0], [1e6, 1e-3], [-60.0, -60.0]] {
-            let slides = held(outside.into(), Vector2::new(0.3, 0.2), LIMITS);
+            let slides = node_friction(outside.into(), Vector2::new(0.3, 0.2), LIMITS);
             assert_relative_eq!(size(&slides.force), 1.0, max_relative = 1e-12);
             assert!(slides.multiplier.is_some());
         }
@@ -266,7 +266,7 @@ mod tests {
 
     #[test]
     fn the_friction_along_each_axis_is_its_limit() {
-        let force = |holding: [f64; 2]| held(holding.into(), ONES, LIMITS).force;
+        let force = |holding: [f64; 2]| node_friction(holding.into(), ONES, LIMITS).force;
         assert_relative_eq!(force([-900.0, 0.0]), Vector2::new(-40.0, 0.0));
         assert_relative_eq!(force([0.0, 900.0]), Vector2::new(0.0, 70.0));
     }
@@ -274,7 +274,7 @@ mod tests {
     #[test]
     fn sliding_dissipates_the_most() {
         let (holding, compliance) = (Vector2::new(-500.0, 300.0), Vector2::new(0.2, 0.25));
-        let slides = held(holding, compliance, LIMITS);
+        let slides = node_friction(holding, compliance, LIMITS);
         let velocity = (slides.force - holding).component_mul(&compliance);
         let most = velocity.component_mul(&LIMITS).norm();
         assert_relative_eq!(-slides.force.dot(&velocity), most, max_relative = 1e-12);
@@ -282,7 +282,8 @@ mod tests {
 
     #[test]
     fn without_friction_along_the_line_only_the_other_axis_holds() {
-        let force = |holding: [f64; 2], limits: [f64; 2]| held(holding.into(), ONES, limits.into()).force;
+        let force =
+            |holding: [f64; 2], limits: [f64; 2]| node_friction(holding.into(), ONES, limits.into()).force;
         assert_eq!(force([30.0, 50.0], [0.0, 70.0]), Vector2::new(0.0, 50.0));
         assert_relative_eq!(force([30.0, 90.0], [0.0, 70.0]), Vector2::new(0.0, 70.0));
         assert_eq!(force([3.0, 4.0], [0.0; 2]), Vector2::zeros());
@@ -292,9 +293,9 @@ mod tests {
     fn the_slope_equals_central_differences() {
         for holding in [[20.0, -50.0], [50.0, 60.0], [-300.0, 10.0], [5.0, 500.0]] {
             let holding = Vector2::from(holding);
-            let slope = held(holding, ONES, LIMITS).slope(LIMITS);
+            let slope = node_friction(holding, ONES, LIMITS).slope(LIMITS);
             for axis in 0..2 {
-                let force = |h: f64| held(holding + h * Vector2::ith(axis, 1.0), ONES, LIMITS).force;
+                let force = |h: f64| node_friction(holding + h * Vector2::ith(axis, 1.0), ONES, LIMITS).force;
                 let difference = central(1e-4, force);
                 assert_relative_eq!(slope.column(axis).into_owned(), difference, epsilon = 1e-8);
             }

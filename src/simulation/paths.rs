@@ -4,8 +4,8 @@ use nalgebra::Vector3;
 use pulp::NullaryFnOnce;
 use serde::{Deserialize, Serialize};
 
-use super::held::HostEnds;
 use super::inputs::{Inputs, PointInput};
+use super::prescribed::HostEnds;
 use super::winches::{self, WinchPath};
 use super::{Simulation, Snapshot};
 use crate::dynamics::motion::{Clock, Extrapolation, HostPath, InputSample, VesselPath};
@@ -172,7 +172,7 @@ impl Simulation {
                 model,
                 inputs,
                 extrapolation,
-                ends: self.held.hosted(),
+                ends: self.prescribed.hosted(),
             });
         }
         if !before.winch_paths.is_empty() {

@@ -5,7 +5,8 @@ use std::sync::OnceLock;
 use nalgebra::{Vector3, Vector6};
 use serde::Serialize;
 
-use super::{Simulation, held, start};
+use super::prescribed::MotionSource;
+use super::{Simulation, start};
 use crate::dynamics::advance::Counters;
 use crate::dynamics::beam::{BeamView, Momentum};
 use crate::dynamics::energy_balance::{Energy, EnergyBalance};
@@ -215,7 +216,7 @@ impl Simulation {
     /// Where the origin of a vessel is now [m].
     fn vessel_origin(&self, vessel: usize) -> Vector3<f64> {
         let snapshot = &self.snapshot;
-        let at = held::At::new(&self.model, &snapshot.paths, snapshot.follows_scene);
+        let at = MotionSource::new(&self.model, &snapshot.paths, snapshot.follows_scene);
         at.frame(vessel, snapshot.state.time).origin.position
     }
 
@@ -337,7 +338,7 @@ impl Simulation {
         self.snapshot.state.lines[line].closed_form.as_ref()
     }
 
-    /// Elastic catenary of the reference configuration, where the line's ends are held, its strain is engineering strain, a bed
+    /// Elastic catenary of the reference configuration, where the line's ends are prescribed, its strain is engineering strain, a bed
     /// in reach is level, and it does not come out of the water.
     pub fn catenary(&self, line: usize) -> Option<&Catenary> {
         self.catenaries[line].as_ref()

@@ -2,12 +2,12 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::held::At;
 use super::input_error::InputRecord;
 use super::inputs::Inputs;
 use super::paths::Paths;
+use super::prescribed::MotionSource;
 use super::{Error, Snapshot};
-use crate::dynamics::advance::{Counters, Workspace};
+use crate::dynamics::advance::{Counters, Integrators};
 use crate::dynamics::energy_balance::{EnergyBalance, Flow};
 use crate::dynamics::{beam, reaction};
 use crate::elements;
@@ -33,9 +33,9 @@ pub(super) fn begin(
     inputs: Inputs,
     follows_scene: bool,
     shapes: Shapes,
-) -> Result<(Snapshot, Workspace), Error> {
+) -> Result<(Snapshot, Integrators), Error> {
     let paths = Paths::at_rest(model, time, &inputs, follows_scene);
-    let at = At::new(model, &paths, follows_scene);
+    let at = MotionSource::new(model, &paths, follows_scene);
     let held = |point: usize, t: f64| at.point(point, t);
     let places: Vec<PointState> = (0..model.points.len())
         .map(|point| PointState::held(&held(point, time)))
@@ -53,7 +53,7 @@ pub(super) fn begin(
     rest_beams(model, &mut state, time, shapes, |point| {
         beam::attitude(&held(point, time))
     })?;
-    let mut work = Workspace::new(model, &state, |line| static_tension(model, &state, line));
+    let mut work = Integrators::new(model, &state, |line| static_tension(model, &state, line));
     work.start(model, &mut state, &held);
     let counters = Counters::default();
     let balance = model.energy_balance.then(|| EnergyBalance {

@@ -2,7 +2,7 @@
 
 use crate::common::*;
 use moorline::dynamics::leapfrog::step::Step;
-use moorline::dynamics::leapfrog::{AxialImplicit, Explicit, Kernel, NetworkWork};
+use moorline::dynamics::leapfrog::{AxialImplicit, Explicit, Kernel, LeapfrogNetwork};
 use moorline::model::{Kinematics, LineState};
 use moorline::scene::{Integrator, Scene};
 use nalgebra::Vector3;
@@ -11,7 +11,7 @@ use nalgebra::Vector3;
 fn swayed<K: Kernel>(scene: &Scene, size: f64, steps: usize, portable: bool) -> Vec<LineState> {
     let simulation = start(scene);
     let (model, mut state) = (simulation.model(), simulation.state().clone());
-    let mut work = NetworkWork::<K>::new(model, &model.networks[0]).expect("one strain measure");
+    let mut work = LeapfrogNetwork::<K>::new(model, &model.networks[0]).expect("one strain measure");
     work.set_portable(portable);
     work.load(&state);
     let start = state.clone();

@@ -8,7 +8,7 @@ use crate::dynamics::energy_balance::implicit::{self as implicit_balance, Passed
 use crate::dynamics::energy_balance::{self, Flow};
 use crate::dynamics::implicit::{self, Scheme};
 use crate::dynamics::leapfrog::step::Step;
-use crate::dynamics::leapfrog::{AxialImplicit, Explicit, Kernel, NetworkWork};
+use crate::dynamics::leapfrog::{AxialImplicit, Explicit, Kernel, LeapfrogNetwork};
 use crate::dynamics::motion::AxisPath;
 use crate::dynamics::quasi_static;
 use crate::dynamics::{Choice, StepError, StepFailure};
@@ -49,8 +49,8 @@ pub(super) fn within_guard(
 /// An integrator and its scratch.
 #[derive(Debug, Clone)]
 pub(super) enum Solver {
-    Leapfrog(Box<NetworkWork<Explicit>>),
-    AxialImplicit(Box<NetworkWork<AxialImplicit>>),
+    Leapfrog(Box<LeapfrogNetwork<Explicit>>),
+    AxialImplicit(Box<LeapfrogNetwork<AxialImplicit>>),
     Implicit(Scheme),
     Beam(Box<BeamWork>),
     QuasiStatic,
@@ -82,8 +82,8 @@ impl Solver {
 }
 
 /// Scratch of a leapfrog.
-fn leapfrog<K: Kernel>(model: &Model, network: &Network) -> NetworkWork<K> {
-    let work = NetworkWork::new(model, network);
+fn leapfrog<K: Kernel>(model: &Model, network: &Network) -> LeapfrogNetwork<K> {
+    let work = LeapfrogNetwork::new(model, network);
     work.expect("a leapfrog is chosen for lines of one strain measure")
 }
 
@@ -135,7 +135,7 @@ impl<H: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, H> {
         &self,
         number: usize,
         choice: &Choice,
-        work: &mut NetworkWork<K>,
+        work: &mut LeapfrogNetwork<K>,
         next: &mut State,
     ) -> Result<Done, StepError> {
         let (model, network) = (self.model, &self.model.networks[number]);
@@ -187,7 +187,7 @@ impl<H: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, H> {
         &self,
         network: &Network,
         drift: f64,
-        work: &mut NetworkWork<K>,
+        work: &mut LeapfrogNetwork<K>,
         next: &mut State,
     ) -> Flow {
         let steps = self.state.lines[network.lines[0]].half_step.steps;
@@ -251,7 +251,7 @@ impl<H: Fn(usize, f64) -> Kinematics + Sync> Communication<'_, H> {
                 flow.add(implicit_balance::flow(model, network, passed));
             }
         };
-        let held = implicit::Held {
+        let held = implicit::Driving {
             kinematics: self.held,
             scheme,
         };

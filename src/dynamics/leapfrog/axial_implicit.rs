@@ -56,9 +56,9 @@ use nalgebra::Vector3;
 use pulp::NullaryFnOnce;
 
 use super::layout::{Layout, interior};
-use super::network::NetworkWork;
+use super::network::LeapfrogNetwork;
 use super::step::Step;
-use super::{ENDS, EndMotion, Kernel, LineWork};
+use super::{ENDS, EndMotion, Kernel, LeapfrogLine};
 use crate::dynamics::Choice;
 use crate::dynamics::limit::{axial_frequency_squared, transverse_step};
 use crate::math::lanes::Lanes;
@@ -80,7 +80,7 @@ const SPECTRAL_RADIUS: f64 = 0.9;
 const SNAP_GROWTH: f64 = 1.5;
 
 /// A line with implicit tension.
-pub(super) type AxialLine = LineWork<AxialImplicit>;
+pub(super) type AxialLine = LeapfrogLine<AxialImplicit>;
 
 /// Weights of T^{n+1}, T^n, T^{n−1}, T^{n−2} in T̄.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -241,7 +241,7 @@ impl Kernel for AxialImplicit {
     }
 
     /// Tensions are found with the velocities.
-    fn pull(_: &mut NetworkWork<AxialImplicit>, _: &Model, _: f64, _: Step) {}
+    fn pull(_: &mut LeapfrogNetwork<AxialImplicit>, _: &Model, _: f64, _: Step) {}
 
     fn advance(work: &mut AxialLine, _: f64, step: Step, ends: [&EndMotion; 2]) -> usize {
         let ends = ends.map(|end| end.position);
@@ -250,7 +250,7 @@ impl Kernel for AxialImplicit {
 
     /// The bound is that of transverse waves, under half as much tension again as there was in the last step.
     fn longest_step(
-        network: &mut NetworkWork<AxialImplicit>,
+        network: &mut LeapfrogNetwork<AxialImplicit>,
         _: &Model,
         choice: &Choice,
         [_, length]: [f64; 2],
@@ -271,7 +271,7 @@ impl Kernel for AxialImplicit {
     }
 
     fn were_short(
-        network: &mut NetworkWork<AxialImplicit>,
+        network: &mut LeapfrogNetwork<AxialImplicit>,
         _: &Model,
         bound: &f64,
         [_, drift]: [f64; 2],

@@ -9,7 +9,7 @@
 
 use nalgebra::Vector3;
 
-use super::{ENDS, LineWork};
+use super::{ENDS, LeapfrogLine};
 use crate::dynamics::energy_balance::Flow;
 use crate::math::lanes::Lanes;
 
@@ -47,7 +47,7 @@ impl Default for LineBalance {
     }
 }
 
-impl<K> LineWork<K> {
+impl<K> LeapfrogLine<K> {
     /// Flow of energy since the state was loaded, the kinetic energy included in the dissipation; zero without a balance.
     pub(super) fn flow(&self) -> Flow {
         let Some(balance) = &self.balance else {

@@ -23,10 +23,10 @@ use nalgebra::Vector3;
 use pulp::NullaryFnOnce;
 
 use super::layout::{Layout, interior};
-use super::network::NetworkWork;
+use super::network::LeapfrogNetwork;
 use super::point::EndLoad;
 use super::step::Step;
-use super::{EndMotion, Kernel, LineWork};
+use super::{EndMotion, Kernel, LeapfrogLine};
 use crate::dynamics::Choice;
 use crate::dynamics::limit::{ExplicitLimit, expected_slope};
 use crate::dynamics::motion::AxisPath;
@@ -40,7 +40,7 @@ use sweep::{Drift, Pull, Sweep};
 use winch::WinchWork;
 
 /// A line with explicit tension.
-pub(super) type ExplicitLine = LineWork<Explicit>;
+pub(super) type ExplicitLine = LeapfrogLine<Explicit>;
 
 /// Scratch of the explicit stages.
 #[derive(Debug, Clone)]
@@ -193,7 +193,7 @@ impl Kernel for Explicit {
         work.start_winch(path, start, step);
     }
 
-    fn pull(network: &mut NetworkWork<Explicit>, model: &Model, t: f64, step: Step) {
+    fn pull(network: &mut LeapfrogNetwork<Explicit>, model: &Model, t: f64, step: Step) {
         for line in &mut network.lines {
             line.layout.vector_unit.dispatch(Pull(line));
             line.weigh_end_segment();
@@ -225,7 +225,7 @@ impl Kernel for Explicit {
 
     /// The bound is the limit under the stiffness that the springs have, to which the drag at the present velocities is added.
     fn longest_step(
-        network: &mut NetworkWork<Explicit>,
+        network: &mut LeapfrogNetwork<Explicit>,
         model: &Model,
         choice: &Choice,
         [t, _]: [f64; 2],
@@ -242,7 +242,7 @@ impl Kernel for Explicit {
     }
 
     fn were_short(
-        network: &mut NetworkWork<Explicit>,
+        network: &mut LeapfrogNetwork<Explicit>,
         model: &Model,
         limit: &ExplicitLimit,
         [t, drift]: [f64; 2],

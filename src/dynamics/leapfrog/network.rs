@@ -2,18 +2,18 @@
 
 use nalgebra::Vector3;
 
-use super::point::{self, Spring};
+use super::point::{self, ContactSpring};
 use super::step::Step;
-use super::{EndMotion, Kernel, LineWork};
+use super::{EndMotion, Kernel, LeapfrogLine};
 use crate::dynamics::energy_balance::Flow;
 use crate::dynamics::motion::AxisPath;
 use crate::model::{End, Kinematics, Model, Network, PointState, Role, State, WaveSpan};
 
 /// Scratch of a network: its lines laid out for the kernels, and its free points.
 #[derive(Debug, Clone)]
-pub struct NetworkWork<K> {
+pub struct LeapfrogNetwork<K> {
     /// Lines, in the order of the network.
-    pub(super) lines: Vec<LineWork<K>>,
+    pub(super) lines: Vec<LeapfrogLine<K>>,
     /// Numbers of the lines in the model.
     line_numbers: Vec<usize>,
     /// Ends of the lines.
@@ -27,7 +27,7 @@ pub struct NetworkWork<K> {
     /// Motion of the water by waves at the free points, where there are waves.
     pub(super) waves: Vec<WaveSpan>,
     /// Springs of the seabed under the point that is stepped.
-    pub(super) springs: Vec<Spring>,
+    pub(super) springs: Vec<ContactSpring>,
     /// Flow of energy of the free points since the state was loaded.
     pub(super) point_flow: Flow,
     /// Greatest ratio K |v| / M of the lines' nodes after the last step, where it is known [1/s].
@@ -87,13 +87,13 @@ impl LineEnd {
     }
 }
 
-impl<K: Kernel> NetworkWork<K> {
+impl<K: Kernel> LeapfrogNetwork<K> {
     /// Scratch for a network; `None` where a line mixes strain measures.
-    pub fn new(model: &Model, network: &Network) -> Option<NetworkWork<K>> {
+    pub fn new(model: &Model, network: &Network) -> Option<LeapfrogNetwork<K>> {
         let ends_of = |line: usize| model.lines[line].ends;
         let line = |&line: &usize| {
             let tied = ends_of(line).map(|point| model.points[point].free().is_none());
-            LineWork::new(model, &model.lines[line], tied)
+            LeapfrogLine::new(model, &model.lines[line], tied)
         };
         let ends = |&line: &usize| ends_of(line).map(|point| LineEnd::new(model, network, point));
         let free_points = &network.free_points;
@@ -102,7 +102,7 @@ impl<K: Kernel> NetworkWork<K> {
             .map(|&point| point::attached(model, network, point));
         let attached: Vec<Vec<(usize, End)>> = attached.collect();
         let springs = attached.iter().map(|ends| ends.len() + 1).max();
-        Some(NetworkWork {
+        Some(LeapfrogNetwork {
             lines: network.lines.iter().map(line).collect::<Option<_>>()?,
             line_numbers: network.lines.clone(),
             ends: network.lines.iter().map(ends).collect(),
@@ -132,7 +132,7 @@ impl<K: Kernel> NetworkWork<K> {
     }
 
     /// Lines and their numbers in the model.
-    fn numbered_lines(&mut self) -> impl Iterator<Item = (&mut LineWork<K>, usize)> {
+    fn numbered_lines(&mut self) -> impl Iterator<Item = (&mut LeapfrogLine<K>, usize)> {
         self.lines.iter_mut().zip(self.line_numbers.iter().copied())
     }
 
@@ -212,7 +212,7 @@ impl<K: Kernel> NetworkWork<K> {
         }
     }
 
-    /// As [`LineWork::set_out_anew`].
+    /// As [`LeapfrogLine::set_out_anew`].
     pub fn set_out_anew(&mut self, last: f64) {
         self.lines.iter_mut().for_each(|line| line.set_out_anew(last));
     }
@@ -241,7 +241,7 @@ impl<K: Kernel> NetworkWork<K> {
 
     /// Finds the nodes at the water's surface before the first step.
     pub fn meet_surface(&mut self) {
-        self.lines.iter_mut().for_each(LineWork::meet_surface);
+        self.lines.iter_mut().for_each(LeapfrogLine::meet_surface);
     }
 
     /// A step from one time [s] to the next, with prescribed points where `held` says. Returns the number of solutions.

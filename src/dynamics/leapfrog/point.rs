@@ -3,7 +3,7 @@
 use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 
 use super::explicit::{Explicit, ExplicitLine};
-use super::network::NetworkWork;
+use super::network::LeapfrogNetwork;
 use super::step::Step;
 use crate::elements::friction::point_stick;
 use crate::model::{End, FreePoint, Model, Network};
@@ -27,9 +27,9 @@ pub struct EndLoad {
     pub contact: [f64; 3],
 }
 
-/// Spring and damper of the bed under a point: its own, or that of the half node of a line.
+/// ContactSpring and damper of the bed under a point: its own, or that of the half node of a line.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Spring {
+pub(super) struct ContactSpring {
     /// Stiffness [N/m].
     stiffness: f64,
     /// Stiffness times drift and damping [N s/m].
@@ -38,7 +38,7 @@ pub(super) struct Spring {
     push: f64,
 }
 
-impl NetworkWork<Explicit> {
+impl LeapfrogNetwork<Explicit> {
     /// Greatest ratio K |v| / M of all nodes and free points at time `t` [s], v relative to the water [1/s].
     pub(super) fn drag_rate(&self, model: &Model, t: f64) -> f64 {
         let of_lines = self.drag_rate.unwrap_or_else(|| self.drag_rate_of_lines());
@@ -81,11 +81,12 @@ impl NetworkWork<Explicit> {
             let point = &model.points[index];
             let Some(law) = point.free() else { continue };
             let height = self.points[free].position.z;
-            let bed = Bed::under(model, self.points[free].position);
+            let bed = SeabedBelow::under(model, self.points[free].position);
             let waves = self.waves_at(free, t);
             let mut load = load_in_water(model, index, law, [height, t], now, waves);
             self.springs.clear();
-            self.springs.extend(Spring::new(load.contact, bed.height, step));
+            self.springs
+                .extend(ContactSpring::new(load.contact, bed.height, step));
             for &(at, end) in &self.attached[free] {
                 if self.lines[at].is_released(end) {
                     continue;
@@ -93,7 +94,7 @@ impl NetworkWork<Explicit> {
                 let brought = self.lines[at].end_load(end, now);
                 load.add(&brought);
                 self.springs
-                    .extend(Spring::new(brought.contact, bed.height, step));
+                    .extend(ContactSpring::new(brought.contact, bed.height, step));
             }
             let kicked = load.kicked(last, law.axes, &self.springs, &bed, step);
             let Kicked { velocity, .. } = kicked;
@@ -175,10 +176,10 @@ fn tied_mass(model: &Model, point: usize) -> f64 {
     point.free().map_or(0.0, |free| free.mass) + tied.sum::<f64>()
 }
 
-impl Spring {
+impl ContactSpring {
     /// The spring of stiffness, damping and force at no height under a point at `height` [m]; `None` where there is none.
-    fn new([stiffness, damping, force_at_zero]: [f64; 3], height: f64, step: Step) -> Option<Spring> {
-        (stiffness > 0.0).then_some(Spring {
+    fn new([stiffness, damping, force_at_zero]: [f64; 3], height: f64, step: Step) -> Option<ContactSpring> {
+        (stiffness > 0.0).then_some(ContactSpring {
             stiffness,
             resistance: stiffness * step.drift + damping,
             push: force_at_zero - stiffness * height,
@@ -206,8 +207,8 @@ impl EndLoad {
         &self,
         last: Vector3<f64>,
         axes: [bool; 3],
-        springs: &[Spring],
-        bed: &Bed,
+        springs: &[ContactSpring],
+        bed: &SeabedBelow,
         step: Step,
     ) -> Kicked {
         let zero = Vector3::zeros();
@@ -263,7 +264,7 @@ struct Kicked {
 }
 
 /// The bed under a point.
-struct Bed<'a> {
+struct SeabedBelow<'a> {
     /// Height of the point over z = 0; over a seabed with a slope, soundings or friction, over that along its normal [m].
     height: f64,
     /// Unit normal of the bed, upwards.
@@ -271,17 +272,17 @@ struct Bed<'a> {
     friction: Option<&'a Friction>,
 }
 
-impl Bed<'_> {
-    fn under(model: &Model, place: Vector3<f64>) -> Bed<'_> {
+impl SeabedBelow<'_> {
+    fn under(model: &Model, place: Vector3<f64>) -> SeabedBelow<'_> {
         match model.bottom.as_deref() {
-            None => Bed {
+            None => SeabedBelow {
                 height: place.z,
                 normal: Vector3::z(),
                 friction: None,
             },
             Some(bottom) => {
                 let touch = bottom.ground.touch(place);
-                Bed {
+                SeabedBelow {
                     height: -touch.penetration,
                     normal: touch.normal,
                     friction: bottom.friction.as_ref(),
@@ -293,7 +294,13 @@ impl Bed<'_> {
 
 /// Impulse of the springs on a point that would have the velocity `velocity` [m/s] without it. The sum of springs that
 /// only push is convex in the velocity, so that Newton's method from above finds it in as many iterations as there are springs.
-fn pushed(velocity: Vector3<f64>, response: Vector3<f64>, springs: &[Spring], bed: &Bed, step: Step) -> f64 {
+fn pushed(
+    velocity: Vector3<f64>,
+    response: Vector3<f64>,
+    springs: &[ContactSpring],
+    bed: &SeabedBelow,
+    step: Step,
+) -> f64 {
     let (rise, yielding) = (bed.normal.dot(&velocity), bed.normal.dot(&response));
     let mut impulse = 0.0;
     for _ in 0..springs.len() {

@@ -17,7 +17,7 @@
 use super::flight::Flight;
 use super::root;
 use super::shape::Shape;
-use super::uniform::Held;
+use super::uniform::EndForces;
 use super::{Bed, Section};
 
 /// Horizontal tension that stands for the limit of none, over the weights of the sections [-].
@@ -149,7 +149,7 @@ impl Sections {
     ///
     /// With sections that float, strong friction can leave a span without a state that uses friction in full. Coulomb's
     /// law is an inequality: the line then uses the greatest tried share of it, halved until the ends meet.
-    pub fn solve(&mut self, guess: (f64, f64), shape: &mut Shape) -> Held {
+    pub fn solve(&mut self, guess: (f64, f64), shape: &mut Shape) -> EndForces {
         let mut steps = 0;
         for _ in 0..FRICTION_HALVINGS_MAX {
             steps += self.search(guess, shape);
@@ -162,7 +162,7 @@ impl Sections {
             });
         }
         let (a, b) = (shape.at(0.0), shape.at(self.length));
-        Held {
+        EndForces {
             horizontal_a: a.horizontal,
             horizontal_b: b.horizontal,
             vertical_a: a.vertical,

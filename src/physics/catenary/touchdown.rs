@@ -17,7 +17,7 @@
 //! friction, for A on the bed.
 
 use super::root;
-use super::uniform::{Held, Uniform, sinh_less};
+use super::uniform::{EndForces, Uniform, sinh_less};
 
 /// Horizontal tension taken for zero, over the weight of the line [-].
 const HORIZONTAL_SHARE_MIN: f64 = 1e-40;
@@ -89,7 +89,7 @@ impl Uniform {
     }
 
     /// End forces of the line, which is known to touch the bed.
-    pub fn touch_down(&self, at: &Touchdown) -> Held {
+    pub fn touch_down(&self, at: &Touchdown) -> EndForces {
         let (l, w, ea) = (self.length, self.weight, self.axial_stiffness);
         let hanging = (
             self.lift(0.0, at.height_a).vertical,
@@ -97,7 +97,7 @@ impl Uniform {
         );
         let longer = at.span - l; // negative: line to spare
         if longer + (hanging.0 + hanging.1) / w <= 0.0 {
-            return Held {
+            return EndForces {
                 horizontal_a: 0.0,
                 horizontal_b: 0.0,
                 vertical_a: -hanging.0,
@@ -121,7 +121,7 @@ impl Uniform {
         let (a, b) = (self.lift(h, at.height_a), self.lift(h, at.height_b));
         let laid = (l - (a.vertical + b.vertical) / w).max(0.0);
         debug_assert!(ea > 0.0 && h.is_finite(), "touchdown found no horizontal tension");
-        Held {
+        EndForces {
             horizontal_a: (h - at.friction * w * laid).max(0.0),
             horizontal_b: h,
             vertical_a: -a.vertical,

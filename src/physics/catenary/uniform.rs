@@ -32,7 +32,7 @@ pub(super) struct Uniform {
 
 /// End forces of a line.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Held {
+pub(super) struct EndForces {
     /// Horizontal tension at A [N].
     pub horizontal_a: f64,
     /// Horizontal tension at B [N].
@@ -47,10 +47,10 @@ pub(super) struct Held {
     pub steps: usize,
 }
 
-impl Held {
+impl EndForces {
     /// Those of the same line whose ends have changed names.
     pub fn reversed(self) -> Self {
-        Held {
+        EndForces {
             horizontal_a: self.horizontal_b,
             horizontal_b: self.horizontal_a,
             vertical_a: -self.vertical_b,
@@ -60,7 +60,7 @@ impl Held {
     }
 
     fn suspended(horizontal: f64, vertical_mean: f64, weight_half: f64, steps: usize) -> Self {
-        Held {
+        EndForces {
             horizontal_a: horizontal,
             horizontal_b: horizontal,
             vertical_a: vertical_mean - weight_half,
@@ -106,19 +106,19 @@ pub(super) fn weightless_tension(x: f64, z: f64, l: f64, flexibility: f64) -> f6
 
 impl Uniform {
     /// End forces of the line between ends `span` and `rise` apart [m], touching nothing.
-    pub fn suspend(&self, span: f64, rise: f64) -> Held {
+    pub fn suspend(&self, span: f64, rise: f64) -> EndForces {
         let (l, w, ea) = (self.length, self.weight, self.axial_stiffness);
         let weight_half = 0.5 * w * l;
         if w == 0.0 {
             let chord = span.hypot(rise);
             let tension = weightless_tension(span, rise, l, l / ea);
             let per_chord = if chord > 0.0 { tension / chord } else { 0.0 };
-            return Held::suspended(per_chord * span, per_chord * rise, 0.0, 0);
+            return EndForces::suspended(per_chord * span, per_chord * rise, 0.0, 0);
         }
         if span <= SPAN_SHARE_MIN * l {
             let taut = ea * (rise.abs() - l) / l;
             let sigma = taut.max(weight_half.abs());
-            return Held::suspended(0.0, rise * sigma / (l * (1.0 + sigma / ea)), weight_half, 0);
+            return EndForces::suspended(0.0, rise * sigma / (l * (1.0 + sigma / ea)), weight_half, 0);
         }
         let balance = Balance {
             a: (span / l) * (span / l),
@@ -137,7 +137,7 @@ impl Uniform {
         let sigma = weight_half.abs() / tanh;
         let tau = sigma / ea;
         let horizontal = span * sigma / (l * (lambda / tanh + tau));
-        Held::suspended(
+        EndForces::suspended(
             horizontal,
             rise * sigma / (l * (1.0 + tau)),
             weight_half,

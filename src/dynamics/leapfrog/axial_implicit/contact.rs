@@ -19,7 +19,7 @@ use crate::math::lanes::Lanes;
 
 /// How nodes meet the bed in a step.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Bed {
+pub(super) struct NormalContact {
     /// Penetration p [m].
     penetration: Lanes,
     /// θ Δt [s].
@@ -29,11 +29,11 @@ pub(super) struct Bed {
     pub resistance: Lanes,
 }
 
-impl Bed {
+impl NormalContact {
     /// None.
-    pub fn none() -> Bed {
+    pub fn none() -> NormalContact {
         let zero = Lanes::splat(0.0);
-        Bed {
+        NormalContact {
             penetration: zero,
             ahead: zero,
             spring: zero,
@@ -49,7 +49,7 @@ impl Bed {
         rise: Lanes,
         yields: Lanes,
         step: Step,
-    ) -> Bed {
+    ) -> NormalContact {
         let (one, half) = (Lanes::splat(1.0), Lanes::splat(0.5));
         let (kick, drift) = (Lanes::splat(step.kick), Lanes::splat(step.drift));
         let before = Lanes::splat(step.last()); // the last step may have been of another length
@@ -70,7 +70,7 @@ impl Bed {
         let start = (penetration + rest * before * rise).positive();
         let rate = damping * over;
         let slope = stiffness * theta + rate;
-        Bed {
+        NormalContact {
             penetration,
             ahead,
             spring: kick * (slope * penetration + (stiffness * rest - rate) * start),
@@ -105,7 +105,7 @@ mod tests {
     /// Impulse [N s] on 1 kg that left a bed at `before` and leaves it at `after` [m/s].
     fn impulse(k: f64, c: f64, penetration: f64, [before, after]: [f64; 2]) -> f64 {
         let lanes = Lanes::splat;
-        let bed = Bed::new(
+        let bed = NormalContact::new(
             [lanes(k), lanes(c)],
             lanes(penetration),
             lanes(before),

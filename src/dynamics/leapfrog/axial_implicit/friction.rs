@@ -13,7 +13,7 @@
 //! ([`crate::physics::friction`]); the step is repeated until states and friction hold. Without friction nodes slide with λ_t = 0.
 
 use super::AxialLine;
-use super::contact::Bed;
+use super::contact::NormalContact;
 use super::rows::NodeRow;
 use crate::dynamics::leapfrog::step::Step;
 use crate::math::lanes::{Lanes, Vectors};
@@ -165,7 +165,7 @@ impl AxialLine {
             let upright = normal.dot(node.tangent);
             let yields = node.across + node.excess * upright * upright;
             let penetration = below + contact.level.load(at);
-            node.bed = Bed::new(contact.law(at), penetration, normal.dot(velocity), yields, step);
+            node.bed = NormalContact::new(contact.law(at), penetration, normal.dot(velocity), yields, step);
             let inverse = Slender {
                 across: node.across,
                 excess: node.excess,

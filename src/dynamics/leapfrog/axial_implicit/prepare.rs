@@ -5,7 +5,7 @@
 use nalgebra::Vector3;
 
 use super::AxialLine;
-use super::contact::Bed;
+use super::contact::NormalContact;
 use super::rows::{NodeRow, Sizes, pulled, springs};
 use crate::dynamics::leapfrog::layout::inverse_norm;
 use crate::dynamics::leapfrog::step::Step;
@@ -238,7 +238,7 @@ impl AxialLine {
             let penetration = level[at] - position[at].z;
             let rise = velocity[at].z;
             let yields = node.across + node.lift() * node.tangent.z;
-            node.bed = Bed::new(contact.law(at), penetration, rise, yields, step);
+            node.bed = NormalContact::new(contact.law(at), penetration, rise, yields, step);
             node.touches = node.pushed(rise);
             node.settle();
         }

@@ -1,10 +1,10 @@
-//! Where everything that forces do not move is in time.
+//! Prescribed motion of points in time: all points but the free ones.
 //!
-//! Everything is worked out at both ends of a communication step, where it is asked for most. Between them a host's path is a cubic. Motions of
-//! the scene and points that ride on vessels take sines: a quintic through position, velocity and acceleration at the ends
-//! bridges the step, in as many pieces as keep its error below [`ERROR_MAX`]. Where that takes too many, beside the internal steps that the last
-//! communication step took, or a motion has a kink within the step, or clamped lines need to know how a point turns, everything is worked out
-//! where it is asked for.
+//! The motion is evaluated at both ends of a communication step, where it is read most often. Between them the path of a host is a cubic. Motions of
+//! the scene and points on vessels take sines: a quintic through position, velocity and acceleration at the ends bridges the step, in as many
+//! pieces as keep its error below [`ERROR_MAX`]. Where more pieces would be needed than the last communication step had internal steps, where a
+//! motion has a kink within the step, or where clamped lines need the rotation of a point, the motion is evaluated at every internal step. Bridges
+//! save a quarter of the instructions of a step of `bridle`, whose fairleads move with a vessel.
 //!
 //! The error of a quintic over a piece τ is at most max|r⁽⁶⁾| τ⁶/46080. For a sine, r⁽⁶⁾ ≤ A ω⁶. The rotation of an arm a by angles whose
 //! derivatives are bounded by x₁ … x₆ has r⁽⁶⁾ ≤ |a| B₆(x₁ … x₆), with the complete Bell polynomial B₆, since every derivative of it by an
@@ -26,18 +26,18 @@ const PIECES_MAX: usize = 16;
 /// Rounding of the times that are asked for, over a piece [-].
 const ROUNDING: f64 = 1e-6;
 
-/// What tells where things are: the model, and the paths of a communication step.
+/// Source of prescribed motions: the model, and the paths of a communication step.
 #[derive(Clone, Copy)]
-pub(super) struct At<'a> {
+pub(super) struct MotionSource<'a> {
     model: &'a Model,
     paths: &'a Paths,
     follows_scene: bool,
 }
 
-impl<'a> At<'a> {
+impl<'a> MotionSource<'a> {
     /// Along the scene's own motion or the paths of a host.
-    pub fn new(model: &'a Model, paths: &'a Paths, follows_scene: bool) -> At<'a> {
-        At {
+    pub fn new(model: &'a Model, paths: &'a Paths, follows_scene: bool) -> MotionSource<'a> {
+        MotionSource {
             model,
             paths,
             follows_scene,
@@ -102,27 +102,27 @@ impl<'a> At<'a> {
     }
 }
 
-/// How it is found where a point is.
+/// Method by which the motion of a point is evaluated.
 #[derive(Debug, Clone)]
-enum Way {
-    /// It never moves, or forces move it.
-    Still,
-    /// As the path of the host says, by its place among the coupled points.
+enum Evaluation {
+    /// A point that never moves, or that forces move.
+    Fixed,
+    /// The path of the host, by its place among the coupled points.
     Host(usize),
-    /// Over a bridge.
+    /// A bridge over the step.
     Bridged(Box<Bridge>),
-    /// As the model says.
-    Worked,
+    /// The motion of the model at the time itself.
+    Direct,
 }
 
-/// A way over a communication step.
+/// Piecewise quintic over a communication step.
 #[derive(Debug, Clone)]
 struct Bridge {
     /// Start of the step [s].
     start: f64,
     /// Pieces per second [1/s].
     rate: f64,
-    /// Empty where the way must be worked out.
+    /// Empty where the motion must be evaluated at every internal step.
     pieces: Vec<Quintic>,
     /// What bounds the error where a motion of the scene is bridged.
     derivatives: Option<Derivatives>,
@@ -196,53 +196,55 @@ impl Bridge {
 /// Where a point that a host moves is at both ends of a step, along x, y and z: position [m], velocity [m/s] and acceleration [m/s²].
 pub(super) type HostEnds = [[Lanes; 3]; 2];
 
-/// The ways of all points over a communication step.
+/// Prescribed motions over a communication step.
 #[derive(Debug, Clone)]
-pub(super) struct Held {
+pub(super) struct PrescribedMotion {
     /// Start and end of the step [s].
     span: [f64; 2],
     /// Where the points are then, but those that a host moves.
     ends: Vec<[Kinematics; 2]>,
     /// The same of these, told with their paths.
     hosted: Vec<HostEnds>,
-    ways: Vec<Way>,
+    evaluations: Vec<Evaluation>,
     /// Whether anything moves but by forces, or as a host says.
     moves: bool,
-    /// What bounds the errors of the ways of points on vessels, where these follow a motion of the scene that is no cubic.
+    /// Bounds of the derivatives of the motions of vessels, where these are motions of the scene other than cubics.
     vessels: Vec<Option<Derivatives>>,
 }
 
-impl Held {
+impl PrescribedMotion {
     /// For a model whose points follow the scene, or a host.
-    pub fn new(model: &Model, follows_scene: bool) -> Held {
+    pub fn new(model: &Model, follows_scene: bool) -> PrescribedMotion {
         let mut coupled = 0..;
-        let ways = model.points.iter().map(|point| {
+        let evaluations = model.points.iter().map(|point| {
             let place = if is_coupled(point) { coupled.next() } else { None };
             let mut clamps = point.attached.iter();
             let turns = clamps.any(|&(line, _)| model.lines[line].bends());
             match &point.role {
-                Role::Fixed | Role::Free(_) => Way::Still,
-                Role::Prescribed(motion) => Way::Bridged(Box::new(Bridge::new(motion.derivatives()))),
+                Role::Fixed | Role::Free(_) => Evaluation::Fixed,
+                Role::Prescribed(motion) => Evaluation::Bridged(Box::new(Bridge::new(motion.derivatives()))),
                 Role::Coupled { motion: Some(motion) } if follows_scene => {
-                    Way::Bridged(Box::new(Bridge::new(motion.derivatives())))
+                    Evaluation::Bridged(Box::new(Bridge::new(motion.derivatives())))
                 }
-                Role::Coupled { .. } => place.map_or(Way::Worked, Way::Host),
-                Role::Carried { .. } if turns => Way::Worked,
-                Role::Carried { .. } => Way::Bridged(Box::new(Bridge::new(None))),
+                Role::Coupled { .. } => place.map_or(Evaluation::Direct, Evaluation::Host),
+                Role::Carried { .. } if turns => Evaluation::Direct,
+                Role::Carried { .. } => Evaluation::Bridged(Box::new(Bridge::new(None))),
             }
         });
-        let ways: Vec<Way> = ways.collect();
+        let evaluations: Vec<Evaluation> = evaluations.collect();
         let motions = model.vessels.iter().map(|vessel| vessel.motion());
         let references = model.points.iter().map(|point| Kinematics {
             position: point.reference,
             ..Kinematics::default()
         });
-        Held {
+        PrescribedMotion {
             span: [f64::NAN; 2],
             ends: references.map(|k| [k; 2]).collect(),
             hosted: vec![[[Lanes::splat(0.0); 3]; 2]; coupled.start],
-            moves: ways.iter().any(|way| !matches!(way, Way::Still | Way::Host(_))),
-            ways,
+            moves: evaluations
+                .iter()
+                .any(|evaluation| !matches!(evaluation, Evaluation::Fixed | Evaluation::Host(_))),
+            evaluations,
             vessels: motions
                 .map(|motion| motion.filter(|_| follows_scene)?.derivatives())
                 .collect(),
@@ -255,7 +257,7 @@ impl Held {
     }
 
     /// Makes ready for a span of time [s], in which as many internal steps are to be expected.
-    pub fn prepare(&mut self, at: &At, span: [f64; 2], steps: usize) {
+    pub fn prepare(&mut self, at: &MotionSource, span: [f64; 2], steps: usize) {
         let goes_on = self.span[1] == span[0];
         self.span = span;
         if at.follows_scene {
@@ -266,11 +268,11 @@ impl Held {
         if !self.moves {
             return;
         }
-        for (point, (way, ends)) in self.ways.iter_mut().zip(&mut self.ends).enumerate() {
-            match way {
-                Way::Still | Way::Host(_) => (),
-                Way::Worked => *ends = span.map(|t| at.point(point, t)),
-                Way::Bridged(bridge) => {
+        for (point, (evaluation, ends)) in self.evaluations.iter_mut().zip(&mut self.ends).enumerate() {
+            match evaluation {
+                Evaluation::Fixed | Evaluation::Host(_) => (),
+                Evaluation::Direct => *ends = span.map(|t| at.point(point, t)),
+                Evaluation::Bridged(bridge) => {
                     let Some(motion) = at.own_motion(point) else {
                         continue; // on a vessel
                     };
@@ -289,7 +291,7 @@ impl Held {
         }
     }
 
-    fn prepare_vessel(&mut self, at: &At, vessel: usize, span: [f64; 2], most: usize) {
+    fn prepare_vessel(&mut self, at: &MotionSource, vessel: usize, span: [f64; 2], most: usize) {
         let model = at.model;
         let poses = span.map(|t| at.pose(vessel, t));
         let frames = poses.each_ref().map(|pose| at.frame_at(vessel, pose));
@@ -303,9 +305,11 @@ impl Held {
             None => cubic_turn(&poses, length),
         };
         let (shift, spread) = (bounds.map_or(0.0, |bounds| bounds.shift(length)), bell(turned));
-        let ways = self.ways.iter_mut().zip(&mut self.ends);
-        for (point, (way, ends)) in model.points.iter().zip(ways) {
-            let (Way::Bridged(bridge), Role::Carried { vessel: carrier, arm }) = (way, &point.role) else {
+        let evaluations = self.evaluations.iter_mut().zip(&mut self.ends);
+        for (point, (evaluation, ends)) in model.points.iter().zip(evaluations) {
+            let (Evaluation::Bridged(bridge), Role::Carried { vessel: carrier, arm }) =
+                (evaluation, &point.role)
+            else {
                 continue;
             };
             if *carrier != vessel {
@@ -322,20 +326,20 @@ impl Held {
 
     /// A point at time `t` [s] of the span; how it turns is told at its ends, and everywhere where lines are clamped.
     #[inline(always)]
-    pub fn point(&self, at: &At, point: usize, t: f64) -> Kinematics {
+    pub fn point(&self, at: &MotionSource, point: usize, t: f64) -> Kinematics {
         let [start, end] = self.span;
-        match &self.ways[point] {
-            Way::Host(path) if t == start || t == end => {
+        match &self.evaluations[point] {
+            Evaluation::Host(path) if t == start || t == end => {
                 HostPath::kinematics(&self.hosted[*path][usize::from(t == end)])
             }
             _ => self.other(at, point, t),
         }
     }
 
-    /// [`Held::point`] but at the ends of what the host says.
+    /// [`PrescribedMotion::point`] but at the ends of what the host says.
     #[inline(never)]
-    fn other(&self, at: &At, point: usize, t: f64) -> Kinematics {
-        if let Way::Host(path) = &self.ways[point] {
+    fn other(&self, at: &MotionSource, point: usize, t: f64) -> Kinematics {
+        if let Evaluation::Host(path) = &self.evaluations[point] {
             return at.paths.points[*path].at(t);
         }
         let ([first, last], [start, end]) = (&self.ends[point], self.span);
@@ -345,10 +349,10 @@ impl Held {
         if t == start {
             return *first;
         }
-        match &self.ways[point] {
-            Way::Still => *first,
-            Way::Bridged(bridge) => bridge.at(t).unwrap_or_else(|| at.point(point, t)),
-            Way::Host(_) | Way::Worked => at.point(point, t),
+        match &self.evaluations[point] {
+            Evaluation::Fixed => *first,
+            Evaluation::Bridged(bridge) => bridge.at(t).unwrap_or_else(|| at.point(point, t)),
+            Evaluation::Host(_) | Evaluation::Direct => at.point(point, t),
         }
     }
 }
@@ -438,8 +442,8 @@ mod tests {
         let scene = Scene::from_toml(SCENE).unwrap();
         let model = Model::new(&scene).unwrap();
         let paths = Paths::at_rest(&model, 0.0, &Inputs::new(&model), true);
-        let at = At::new(&model, &paths, true);
-        let mut held = Held::new(&model, true);
+        let at = MotionSource::new(&model, &paths, true);
+        let mut held = PrescribedMotion::new(&model, true);
         let point = model.point_index(point).unwrap();
         let mut worst = [0.0_f64; 2];
         for k in 0..(30.0 / step) as usize {
@@ -478,11 +482,11 @@ mod tests {
             let end = Lanes::new([0.0, 1e-4, 2e-4, 3e-4]) + Lanes::splat(first);
             path.follow([0.0, 0.1], [end, Lanes::splat(2e-3)]);
         }
-        let at = At::new(&model, &paths, false);
-        let mut held = Held::new(&model, false);
+        let at = MotionSource::new(&model, &paths, false);
+        let mut held = PrescribedMotion::new(&model, false);
         held.prepare(&at, [0.0, 0.1], 100);
         let point = model.point_index("right").unwrap();
-        let Way::Bridged(bridge) = &held.ways[point] else {
+        let Evaluation::Bridged(bridge) = &held.evaluations[point] else {
             panic!("a point on a vessel without clamps is bridged");
         };
         assert!(!bridge.pieces.is_empty());
