@@ -119,7 +119,7 @@ pub fn end_force(
         moments,
     };
     let pull = tension(line, state, segment, negative_tension) * inward + half.shear(state, segment);
-    let load = half.load(inward, dry.part);
+    let [load, _] = half.load(inward, dry.part);
     let mut force = pull + load;
     if let (Some(winch_state), End::B) = (state.winch_state, end) {
         force -= passing(line, winch_state) * chord / line.segments.length[segment];
@@ -162,22 +162,21 @@ impl HalfNode<'_> {
         shear(self.line, nodes, segment, at, self.moments)
     }
 
-    /// What acts on it beside its weight and the bed [N] were a part `dry` of it [-] out of the water: inertia, water and damping in
-    /// proportion to mass.
-    fn load(&self, inward: Vector3<f64>, dry: f64) -> Vector3<f64> {
+    /// Load without weight and seabed [N] of a half node of which a part `dry` [-] is out of the water: inertia, water and damping in proportion
+    /// to mass. The second part is the drag alone.
+    fn load(&self, inward: Vector3<f64>, dry: f64) -> [Vector3<f64>; 2] {
         let (nodes, node) = (&self.line.nodes, self.node);
         let (velocity, acceleration) = (self.point.velocity, self.point.acceleration);
         let mut load = -Slender::new(nodes.masses(node, dry)).times(acceleration, inward);
-        if nodes.drag.is_some() {
-            load += self.drag(velocity - self.flow(), inward, dry);
-        }
+        let drag = self.drag(velocity - self.flow(), inward, dry);
+        load += drag;
         if let (Some(froude_krylov), Some(waves)) = (&nodes.froude_krylov, &self.water.waves) {
             load += (1.0 - dry) * froude_krylov.force(node, waves.at(node).acceleration, inward);
         }
         if let Some(damping) = &nodes.mass_damping {
             load -= damping[node] * velocity;
         }
-        load
+        [load, drag]
     }
 
     /// Velocity of the water [m/s].
@@ -216,7 +215,7 @@ impl HalfNode<'_> {
             tension(self.line, state, segment, negative_tension) * onward + self.shear(state, segment);
         let tangents = [3.0 * inward - onward, inward, inward + onward]
             .map(|along| along.try_normalize(0.0).unwrap_or(inward));
-        let own = self.load(tangents[0], self.dry.part);
+        let [own, drag] = self.load(tangents[0], self.dry.part);
         let mut borne = nodes.weight[next] * Vector3::z();
         if let Some(contact) = &nodes.contact {
             borne -= contact.push(next, state.position[next], state.velocity[next]);
@@ -227,23 +226,29 @@ impl HalfNode<'_> {
             let dry = surface.node_in(self.water, next, &state.position);
             borne.z += dry.weight;
             let lack = (share * dry.weight - self.dry.weight).abs();
-            let jump = (self.load(tangents[0], dry.part) - own).norm() + lack;
+            let jump = (self.load(tangents[0], dry.part)[0] - own).norm() + lack;
             let square = own.norm_squared();
             at_surface = square / (square + ABRUPT * jump * jump).max(f64::MIN_POSITIVE);
         }
         let change = share * (pull - passed_on + borne) - own;
         let ratio = own.norm_squared() / change.norm_squared().max(f64::MIN_POSITIVE);
-        let bulge = self.bulge(state, next, tangents);
+        let bulge = self.bulge(state, next, tangents, drag);
         let added = own + change / 3.0 + bulge - uniform;
         at_surface * ratio.powi(2).min(1.0) * added
     }
 
-    /// What the drag in the middle of the last element adds to that of its ends [N]; `tangents` are those of the end, the middle and the
-    /// `next` node.
-    fn bulge(&self, state: &LineState, next: usize, tangents: [Vector3<f64>; 3]) -> Vector3<f64> {
+    /// Difference of the drag in the middle of the last element from the mean of its ends, over 3/2 [N]; `tangents` are those of the end, the middle
+    /// and the `next` node, `end` is the drag at the end [N].
+    fn bulge(
+        &self,
+        state: &LineState,
+        next: usize,
+        tangents: [Vector3<f64>; 3],
+        end: Vector3<f64>,
+    ) -> Vector3<f64> {
         let flow = self.water.velocity(next, state.position[next].z);
         let (past, last) = (self.point.velocity - self.flow(), state.velocity[next] - flow);
-        let [end, half_way, next] = [(0, past), (1, 0.5 * (past + last)), (2, last)]
+        let [half_way, next] = [(1, 0.5 * (past + last)), (2, last)]
             .map(|(place, velocity)| self.drag(velocity, tangents[place], self.dry.part));
         (2.0 * half_way - end - next) / 3.0
     }
