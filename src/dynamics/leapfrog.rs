@@ -26,7 +26,7 @@ use pulp::NullaryFnOnce;
 
 use super::Choice;
 use super::motion::AxisPath;
-use crate::model::{End, Line, LineState, Model, Release, WaveSpan};
+use crate::model::{End, Kinematics, Line, LineState, Model, Network, Release, WaveSpan};
 use balance::LineBalance;
 use layout::{Layout, Water};
 use step::Step;
@@ -56,8 +56,14 @@ pub trait Kernel: Debug + Clone + Sized {
     /// Quantities at the start of the steps that bound their length.
     type Bound;
 
+    /// Scratch of the free points.
+    type Coupling: Debug + Clone + Default;
+
     /// Allocates for a line in its striped layout.
     fn new(model: &Model, line: &Line, layout: &Layout) -> Self;
+
+    /// Allocates for the free points of a network.
+    fn coupling(model: &Model, network: &Network) -> Self::Coupling;
 
     /// Loads the quantities that a line keeps beside those of the layout.
     fn load(work: &mut LeapfrogLine<Self>, state: &LineState);
@@ -83,11 +89,14 @@ pub trait Kernel: Debug + Clone + Sized {
     /// Sets the path of the winch from a time [s] on, after the end was put where it is then; `fresh` before the first step from rest.
     fn start_winch(_: &mut LeapfrogLine<Self>, _: &AxisPath, (_t, _fresh): (f64, bool), _: Step) {}
 
-    /// Stages 1 and 2 of a network at `t` [s].
-    fn pull(network: &mut LeapfrogNetwork<Self>, model: &Model, t: f64, step: Step);
-
-    /// Stages 3 and 4 of a line, to `t` [s]. Returns the number of solutions.
-    fn advance(work: &mut LeapfrogLine<Self>, t: f64, step: Step, ends: [&EndMotion; 2]) -> usize;
+    /// A step of a network from one time to another [s], after its water is set and its ends are released. Returns the number of solutions.
+    fn step(
+        network: &mut LeapfrogNetwork<Self>,
+        model: &Model,
+        times: [f64; 2],
+        step: Step,
+        held: &impl Fn(usize, f64) -> Kinematics,
+    ) -> usize;
 
     /// Longest step [s] of a network from `t` [s] on in a communication step of `length` [s].
     fn longest_step(
@@ -110,8 +119,6 @@ pub trait Kernel: Debug + Clone + Sized {
 #[derive(Debug, Clone)]
 pub struct LeapfrogLine<K> {
     layout: Layout,
-    /// True for ends A and B at prescribed points, also if released from them.
-    tied: [bool; 2],
     /// The energy balance, where the scene asks for it.
     balance: Option<LineBalance>,
     kernel: K,
@@ -133,13 +140,11 @@ impl NullaryFnOnce for PutEnds<'_> {
 impl<K: Kernel> LeapfrogLine<K> {
     /// Scratch for a line; `None` where its sections have different strain measures, which the kernels do not mix.
     fn new(model: &Model, line: &Line, tied: [bool; 2]) -> Option<LeapfrogLine<K>> {
-        let is_tied = tied[1] && line.winch.is_none();
         let water = Water::around(model, line);
         let longest = line.winch.as_ref().map_or(line, |winch| winch.longest());
-        let layout = Layout::new(model, (longest, water), K::FEW_ROWS, is_tied)?;
+        let layout = Layout::new(model, (longest, water), K::FEW_ROWS, tied)?;
         Some(LeapfrogLine {
             kernel: K::new(model, line, &layout),
-            tied,
             balance: layout.energy_balance.then(LineBalance::default),
             layout,
         })
@@ -184,7 +189,7 @@ impl<K: Kernel> LeapfrogLine<K> {
             if self.layout.released[side] || !is_due() {
                 continue;
             }
-            if self.tied[side] && self.balance.is_some() {
+            if self.layout.tied[side] && self.balance.is_some() {
                 let energy = self.layout.joining_energy(end, K::end_masses(self, end), step);
                 self.supply(energy);
             }

@@ -248,20 +248,27 @@ fn damping_enough(line: &Line) -> f64 {
     }
 }
 
-/// Square of the greatest frequency of axial waves in a line whose ends are held [1/s²], its nodes having the masses that they have in air and
-/// moving along it alone; infinite where its springs may be stiffer than its axial stiffness. By bisection with Sturm's theorem (Golub & Van
+/// Square of the greatest frequency of axial waves in a line whose ends are `held`, or else free [1/s²], its nodes having the masses that they have in
+/// air and moving along it alone; infinite where its springs may be stiffer than its axial stiffness. By bisection with Sturm's theorem (Golub & Van
 /// Loan 2013, Matrix Computations, section 8.4).
-pub fn axial_frequency_squared(line: &Line) -> f64 {
+pub fn axial_frequency_squared(line: &Line, held: [bool; 2]) -> f64 {
     let law = |law: &StretchLaw| matches!(law, StretchLaw::Engineering | StretchLaw::Tabulated(_));
     if line.segments.viscoelastic.is_some() || !line.segments.law.iter().all(law) {
         return f64::INFINITY;
     }
-    let nodes = 1..line.segment_count();
+    let count = line.segment_count();
+    let [first, last] = held.map(usize::from);
+    let nodes = first..count + 1 - last;
     let mass = &line.nodes.mass;
-    let own = |i: usize| (stiffness(line, i - 1) + stiffness(line, i)) / mass[i];
-    let shared = |i: usize| match i {
-        1 => 0.0,
-        _ => stiffness(line, i - 1).powi(2) / (mass[i - 1] * mass[i]),
+    let own = |i: usize| {
+        beside(line, i)
+            .map(|segment| stiffness(line, segment))
+            .sum::<f64>()
+            / mass[i]
+    };
+    let shared = |i: usize| match i == first {
+        true => 0.0,
+        false => stiffness(line, i - 1).powi(2) / (mass[i - 1] * mass[i]),
     };
     // λ is beyond all squares if no pivot of λ − A is negative
     let is_beyond = |square: f64| {
@@ -401,15 +408,15 @@ mod tests {
             let (mass, length) = (2.0, 30.0 / n as f64);
             let phase = std::f64::consts::FRAC_PI_2 * (n - 1) as f64 / n as f64;
             let exact = 4.0 * 1e6 / (mass * length * length) * phase.sin().powi(2);
-            let found = axial_frequency_squared(&line(&[(mass, 30.0, n)], "engineering"));
+            let found = axial_frequency_squared(&line(&[(mass, 30.0, n)], "engineering"), [true; 2]);
             assert_relative_eq!(found, exact, max_relative = 1e-8);
         }
         assert_eq!(
-            axial_frequency_squared(&line(&[(2.0, 30.0, 1)], "engineering")),
+            axial_frequency_squared(&line(&[(2.0, 30.0, 1)], "engineering"), [true; 2]),
             0.0
         );
         assert_eq!(
-            axial_frequency_squared(&line(&[(2.0, 30.0, 9)], "green")),
+            axial_frequency_squared(&line(&[(2.0, 30.0, 9)], "green"), [true; 2]),
             f64::INFINITY
         );
     }
@@ -428,7 +435,11 @@ mod tests {
             stiffness / (mass[i + 1] * mass[k + 1]).sqrt()
         });
         let exact = scaled.symmetric_eigenvalues().max();
-        assert_relative_eq!(axial_frequency_squared(&line), exact, max_relative = 1e-8);
+        assert_relative_eq!(
+            axial_frequency_squared(&line, [true; 2]),
+            exact,
+            max_relative = 1e-8
+        );
     }
 
     /// Speed of a node after 200 steps over what it was, K|v|Δt/M being `courant` at first; it starts in the velocity that flips.

@@ -72,7 +72,7 @@ impl Model {
         let networks = networks(&points, &lines);
         networks.iter().try_for_each(|network| {
             check_beam(&points, &lines, network)?;
-            check_integrator(scene, &points, &lines, network)
+            check_integrator(scene, &lines, network)
         })?;
         Ok(Model {
             gravity: scene.gravity,
@@ -735,12 +735,7 @@ fn check_beam(points: &[Point], lines: &[Line], network: &Network) -> Result<(),
 }
 
 /// Refuses a leapfrog for lines that it cannot take.
-fn check_integrator(
-    scene: &Scene,
-    points: &[Point],
-    lines: &[Line],
-    network: &Network,
-) -> Result<(), SceneError> {
+fn check_integrator(scene: &Scene, lines: &[Line], network: &Network) -> Result<(), SceneError> {
     let integrator = scene.solver.integrator;
     let refuse = |what: String| {
         let right = "use \"generalised_alpha\" or \"auto\"";
@@ -755,15 +750,7 @@ fn check_integrator(
             "a leapfrog needs mass on every node, one strain measure and no bending stiffness along line \"{name}\""
         ));
     }
-    match network.free_points.first() {
-        Some(&point) if integrator == Integrator::AxialImplicit => {
-            let name = &points[point].name;
-            refuse(format!(
-                "\"axial_implicit\" serves lines between held points only, and point \"{name}\" is free"
-            ))
-        }
-        _ => Ok(()),
-    }
+    Ok(())
 }
 
 /// Lines grouped by shared free points.

@@ -47,6 +47,7 @@
 
 mod balance;
 mod contact;
+mod coupling;
 mod friction;
 mod prepare;
 mod rows;
@@ -58,13 +59,14 @@ use pulp::NullaryFnOnce;
 use super::layout::{Layout, interior};
 use super::network::LeapfrogNetwork;
 use super::step::Step;
-use super::{ENDS, EndMotion, Kernel, LeapfrogLine};
+use super::{ENDS, Kernel, LeapfrogLine};
 use crate::dynamics::Choice;
 use crate::dynamics::limit::{axial_frequency_squared, transverse_step};
 use crate::math::lanes::Lanes;
-use crate::model::{End, Line, LineState, Model};
+use crate::model::{End, Kinematics, Line, LineState, Model, Network};
 use crate::physics::stretch::StretchLaw;
 use crate::scene::AXIAL_RADIUS_MIN;
+use coupling::OpenRow;
 use friction::SeabedRow;
 use rows::{CurrentRow, NodeRow, Rows, SegmentRow, Sizes, springs, under};
 
@@ -134,6 +136,8 @@ pub struct AxialImplicit {
     rows: Rows,
     /// State of the nodes on a seabed with a slope, soundings or friction; empty without one.
     seabed: Vec<SeabedRow>,
+    /// Tensions by the velocities of free points at the ends; empty between prescribed ends.
+    open: Vec<OpenRow>,
     /// Greatest T̄ since the state was loaded or stored last [N].
     tension_peak: Lanes,
     /// Greatest tension of the springs, and greatest T̄, when the state was stored last [N].
@@ -151,6 +155,7 @@ impl Kernel for AxialImplicit {
     const SECANTS: bool = true;
     /// Square of the longest step times √T [s² N].
     type Bound = f64;
+    type Coupling = coupling::Coupling;
 
     fn new(model: &Model, line: &Line, layout: &Layout) -> AxialImplicit {
         let radius = model.solver.spectral_radius.unwrap_or(SPECTRAL_RADIUS);
@@ -169,7 +174,11 @@ impl Kernel for AxialImplicit {
             transverse: transverse_step(line, 1.0),
             averaging,
             weights: averaging,
-            frequency_squared: axial_frequency_squared(line),
+            frequency_squared: axial_frequency_squared(line, layout.tied),
+            open: match layout.tied {
+                [true, true] => Vec::new(),
+                _ => vec![OpenRow::default(); count],
+            },
             damping_rate: damping_rate(line),
             rows: Rows {
                 segments: layout.rows().map(|at| SegmentRow::new(layout, at)).collect(),
@@ -183,6 +192,10 @@ impl Kernel for AxialImplicit {
             forgets: false,
             starts: true,
         }
+    }
+
+    fn coupling(model: &Model, network: &Network) -> coupling::Coupling {
+        coupling::Coupling::new(model, network)
     }
 
     fn load(work: &mut AxialLine, state: &LineState) {
@@ -240,12 +253,23 @@ impl Kernel for AxialImplicit {
         work.kernel.starts
     }
 
-    /// Tensions are found with the velocities.
-    fn pull(_: &mut LeapfrogNetwork<AxialImplicit>, _: &Model, _: f64, _: Step) {}
-
-    fn advance(work: &mut AxialLine, _: f64, step: Step, ends: [&EndMotion; 2]) -> usize {
-        let ends = ends.map(|end| end.position);
-        work.layout.vector_unit.dispatch(AxialStep(work, &step, &ends))
+    fn step(
+        network: &mut LeapfrogNetwork<AxialImplicit>,
+        model: &Model,
+        [t, after]: [f64; 2],
+        step: Step,
+        held: &impl Fn(usize, f64) -> Kinematics,
+    ) -> usize {
+        network.find_ends(after, step.drift, held);
+        if !network.points.is_empty() {
+            return coupling::step(network, model, t, step);
+        }
+        let mut passes = 0;
+        for (line, ends) in network.lines_and_ends() {
+            let ends = &ends.map(|end| end.position);
+            passes = passes.max(line.run(Whole { step, ends }));
+        }
+        passes
     }
 
     /// The bound is that of transverse waves, under half as much tension again as there was in the last step.
@@ -310,23 +334,17 @@ impl AxialLine {
         }
     }
 
-    /// Ends that a point holds.
-    fn held_ends(&self) -> impl Iterator<Item = End> + use<> {
-        let released = self.layout.released;
-        ENDS.into_iter().filter(move |&end| !released[end as usize])
+    /// Runs a stage for the vector unit of the machine.
+    #[inline]
+    fn run<S: Stage>(&mut self, stage: S) -> S::Found {
+        let unit = self.layout.vector_unit;
+        unit.dispatch(Run(self, stage))
     }
 
-    #[inline(always)]
-    fn choose_step(&mut self, step: &Step, ends: &[Vector3<f64>; 2]) -> usize {
-        use under::{LEVEL, NOTHING, ROUGH};
-        match (self.kernel.rows.current.is_some(), self.bed_under()) {
-            (false, NOTHING) => self.step_vectors::<false, NOTHING>(step, ends),
-            (false, LEVEL) => self.step_vectors::<false, LEVEL>(step, ends),
-            (false, _) => self.step_vectors::<false, ROUGH>(step, ends),
-            (true, NOTHING) => self.step_vectors::<true, NOTHING>(step, ends),
-            (true, LEVEL) => self.step_vectors::<true, LEVEL>(step, ends),
-            (true, _) => self.step_vectors::<true, ROUGH>(step, ends),
-        }
+    /// Ends at prescribed points.
+    fn prescribed_ends(&self) -> impl Iterator<Item = End> + use<> {
+        let open = ENDS.map(|end| self.layout.is_open(end));
+        ENDS.into_iter().filter(move |&end| !open[end as usize])
     }
 
     /// What is under the nodes.
@@ -339,13 +357,9 @@ impl AxialLine {
         }
     }
 
+    /// Everything that a step finds before its tensions.
     #[inline(always)]
-    fn step_vectors<const CURRENT: bool, const BED: u8>(
-        &mut self,
-        step: &Step,
-        ends: &[Vector3<f64>; 2],
-    ) -> usize {
-        let step = *step;
+    fn prepare<const CURRENT: bool, const BED: u8>(&mut self, step: Step, ends: &[Vector3<f64>; 2]) -> Sizes {
         self.choose_weights(step);
         let sizes = self.sizes(step);
         self.choose_springs(step, &sizes);
@@ -358,33 +372,35 @@ impl AxialLine {
             _ => self.meet_seabed(step),
         }
         self.weigh_nodes::<BED>();
-        let mut passes = 0;
-        loop {
-            passes += 1;
-            self.assemble(&sizes);
-            let before = self.solve_tensions();
-            self.find_velocities::<BED>(before, &sizes);
-            let found = self.look_over::<BED>(&sizes);
-            self.kernel.tension_peak = self.kernel.tension_peak.max(found.greatest);
-            let bed_holds = self.bed_holds::<BED>(&found);
-            let holds = self.segments_hold(&found, &sizes) && bed_holds;
-            if holds || passes == PASSES_MAX {
-                self.kernel.settled &= holds;
-                break;
-            }
-            if !bed_holds {
-                self.weigh_nodes::<BED>();
-            }
+        sizes
+    }
+
+    /// Velocities from T̄, that of the segments before those of the first row being `before` [N]. Returns whether they agree with the assumptions, which
+    /// are corrected if not.
+    #[inline(always)]
+    fn pass<const BED: u8>(&mut self, before: Lanes, sizes: &Sizes) -> bool {
+        self.find_velocities::<BED>(before, sizes);
+        let found = self.look_over::<BED>(sizes);
+        self.kernel.tension_peak = self.kernel.tension_peak.max(found.greatest);
+        let bed_holds = self.bed_holds::<BED>(&found);
+        let holds = self.segments_hold(&found, sizes) && bed_holds;
+        if !bed_holds {
+            self.weigh_nodes::<BED>();
         }
+        holds
+    }
+
+    /// Energy and memory of the step, and the motion of the nodes to t_{n+1}.
+    #[inline(always)]
+    fn finish<const BED: u8>(&mut self, step: Step, ends: &[Vector3<f64>; 2], sizes: &Sizes) {
         if BED == under::ROUGH {
             self.keep_friction(step);
         }
         if self.balance.is_some() {
-            self.balance_step(step, &sizes);
+            self.balance_step(step, sizes);
         }
         std::mem::swap(&mut self.layout.velocity, &mut self.layout.velocity_before);
         self.move_on(step, ends);
-        passes
     }
 
     /// Weights of as much averaging as the step needs.
@@ -418,7 +434,10 @@ impl AxialLine {
     #[inline(always)]
     fn move_on(&mut self, step: Step, ends: &[Vector3<f64>; 2]) {
         self.layout.drift(step.drift);
-        for end in self.held_ends() {
+        for end in ENDS
+            .into_iter()
+            .filter(|&end| !self.layout.released[end as usize])
+        {
             let at = self.layout.end_slot(end);
             self.layout.position.set(at, ends[end as usize]);
         }
@@ -442,15 +461,62 @@ impl AxialLine {
     }
 }
 
-/// A step for the vector unit of the machine.
-struct AxialStep<'a>(&'a mut AxialLine, &'a Step, &'a [Vector3<f64>; 2]);
+/// A part of a step of a line.
+trait Stage {
+    /// Quantity that it finds.
+    type Found;
 
-impl NullaryFnOnce for AxialStep<'_> {
-    type Output = usize;
+    /// Runs in water that moves or not, over a kind of seabed.
+    fn run<const CURRENT: bool, const BED: u8>(self, line: &mut AxialLine) -> Self::Found;
+}
+
+/// A stage for the vector unit of the machine.
+struct Run<'a, S>(&'a mut AxialLine, S);
+
+impl<S: Stage> NullaryFnOnce for Run<'_, S> {
+    type Output = S::Found;
 
     #[inline(always)]
-    fn call(self) -> usize {
-        self.0.choose_step(self.1, self.2)
+    fn call(self) -> S::Found {
+        use under::{LEVEL, NOTHING, ROUGH};
+        let Run(line, stage) = self;
+        match (line.kernel.rows.current.is_some(), line.bed_under()) {
+            (false, NOTHING) => stage.run::<false, NOTHING>(line),
+            (false, LEVEL) => stage.run::<false, LEVEL>(line),
+            (false, _) => stage.run::<false, ROUGH>(line),
+            (true, NOTHING) => stage.run::<true, NOTHING>(line),
+            (true, LEVEL) => stage.run::<true, LEVEL>(line),
+            (true, _) => stage.run::<true, ROUGH>(line),
+        }
+    }
+}
+
+/// A whole step of a line between prescribed or released ends. Returns its passes.
+struct Whole<'a> {
+    step: Step,
+    ends: &'a [Vector3<f64>; 2],
+}
+
+impl Stage for Whole<'_> {
+    type Found = usize;
+
+    #[inline(always)]
+    fn run<const CURRENT: bool, const BED: u8>(self, line: &mut AxialLine) -> usize {
+        let Whole { step, ends } = self;
+        let sizes = line.prepare::<CURRENT, BED>(step, ends);
+        let mut passes = 0;
+        loop {
+            passes += 1;
+            line.assemble(&sizes);
+            let before = line.solve_tensions();
+            let holds = line.pass::<BED>(before, &sizes);
+            if holds || passes == PASSES_MAX {
+                line.kernel.settled &= holds;
+                break;
+            }
+        }
+        line.finish::<BED>(step, ends, &sizes);
+        passes
     }
 }
 

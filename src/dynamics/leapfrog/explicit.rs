@@ -24,7 +24,7 @@ use pulp::NullaryFnOnce;
 
 use super::layout::{Layout, interior};
 use super::network::LeapfrogNetwork;
-use super::point::EndLoad;
+use super::point::PointLoad;
 use super::step::Step;
 use super::{EndMotion, Kernel, LeapfrogLine};
 use crate::dynamics::Choice;
@@ -32,7 +32,7 @@ use crate::dynamics::limit::{ExplicitLimit, expected_slope};
 use crate::dynamics::motion::AxisPath;
 use crate::math::lanes::{LANES, Lanes};
 use crate::math::striping::{Column, Field, Slot};
-use crate::model::{End, Line, LineState, Model};
+use crate::model::{End, Kinematics, Line, LineState, Model, Network};
 use crate::physics::morison::{self, DragCoefficients};
 use crate::physics::slender::Slender;
 use crate::physics::stretch::{StretchLaw, total_tension};
@@ -119,6 +119,7 @@ impl Kernel for Explicit {
     const FEW_ROWS: usize = 5;
     const SECANTS: bool = false;
     type Bound = ExplicitLimit;
+    type Coupling = ();
 
     fn new(_: &Model, line: &Line, layout: &Layout) -> Explicit {
         let winch = WinchWork::new(line);
@@ -135,6 +136,8 @@ impl Kernel for Explicit {
             winch,
         }
     }
+
+    fn coupling(_: &Model, _: &Network) {}
 
     fn load(work: &mut ExplicitLine, state: &LineState) {
         work.load_winch(state);
@@ -193,33 +196,22 @@ impl Kernel for Explicit {
         work.start_winch(path, start, step);
     }
 
-    fn pull(network: &mut LeapfrogNetwork<Explicit>, model: &Model, t: f64, step: Step) {
+    fn step(
+        network: &mut LeapfrogNetwork<Explicit>,
+        model: &Model,
+        [t, after]: [f64; 2],
+        step: Step,
+        held: &impl Fn(usize, f64) -> Kinematics,
+    ) -> usize {
         for line in &mut network.lines {
             line.layout.vector_unit.dispatch(Pull(line));
             line.weigh_end_segment();
         }
         network.step_points(model, t, step);
-    }
-
-    fn advance(work: &mut ExplicitLine, t: f64, step: Step, ends: [&EndMotion; 2]) -> usize {
-        let (unit, size) = (work.layout.vector_unit, &step);
-        let drifts = work.balance.is_none();
-        unit.dispatch(Sweep {
-            work,
-            size,
-            drifts,
-            ends,
-        });
-        if !drifts {
-            work.balance_nodes(step);
-            unit.dispatch(Drift { work, size, ends });
+        network.find_ends(after, step.drift, held);
+        for (line, ends) in network.lines_and_ends() {
+            line.advance(after, step, ends);
         }
-        work.wind(t, step);
-        work.relax_segments(step);
-        work.balance_ends(step);
-        work.layout.pass_waves(step);
-        work.meet_surface();
-        work.renew_end_segment(step);
         1
     }
 
@@ -253,6 +245,32 @@ impl Kernel for Explicit {
 }
 
 impl ExplicitLine {
+    /// Velocities at t_{n+½}, and positions at `t` = t_{n+1} [s].
+    fn advance(&mut self, t: f64, step: Step, ends: [&EndMotion; 2]) {
+        let (unit, size) = (self.layout.vector_unit, &step);
+        let drifts = self.balance.is_none();
+        unit.dispatch(Sweep {
+            work: self,
+            size,
+            drifts,
+            ends,
+        });
+        if !drifts {
+            self.balance_nodes(step);
+            unit.dispatch(Drift {
+                work: self,
+                size,
+                ends,
+            });
+        }
+        self.wind(t, step);
+        self.relax_segments(step);
+        self.balance_ends(step);
+        self.layout.pass_waves(step);
+        self.meet_surface();
+        self.renew_end_segment(step);
+    }
+
     /// Takes the memory of viscoelastic segments to t_{n+1}.
     fn relax_segments(&mut self, step: Step) {
         if self.layout.viscoelastic.is_none() {
@@ -273,7 +291,7 @@ impl ExplicitLine {
     }
 
     /// What the end brings to a free point, after [`Self::pull`]; `velocity` [m/s] is the point's at t_n.
-    pub(super) fn end_load(&self, end: End, velocity: Vector3<f64>) -> EndLoad {
+    pub(super) fn end_load(&self, end: End, velocity: Vector3<f64>) -> PointLoad {
         let line = &self.layout;
         let (at, other) = (line.end_slot(end), line.end_neighbour(end));
         let (segment, sign) = line.end_segment(end);
@@ -303,11 +321,12 @@ impl ExplicitLine {
         let contact = line.contact.as_ref().map_or([0.0; 3], |c| {
             [c.stiffness[at], c.damping[at], c.stiffness[at] * c.level[at]]
         });
-        EndLoad {
+        PointLoad {
             force: force + resistance + froude_krylov,
             resistance,
             froude_krylov,
             current_power,
+            current_power_loss: Vector3::zeros(),
             mass: mass.matrix(tangent),
             contact,
         }

@@ -47,6 +47,8 @@ pub struct Layout {
     pub negative_tension: bool,
     /// Whether the scene asks for the energy balance.
     pub energy_balance: bool,
+    /// True for ends A and B at prescribed points, also if released from them.
+    pub tied: [bool; 2],
     /// True for ends A and B that are released from their points.
     pub released: [bool; 2],
     /// Node positions at t_n [m].
@@ -86,16 +88,16 @@ pub(super) fn inverse_norm(square: Lanes) -> Lanes {
 }
 
 impl Layout {
-    /// Arrays for a line, whose kernel has no use for vectors of eight numbers over `few_rows` or less, and whose end B is where it is put
-    /// as long as it is `held` and does not part; `None` where its sections have different strain measures, which the kernels do not mix.
+    /// Arrays for a line whose ends are `tied` to prescribed points or else to free ones, and whose kernel has no use for vectors of eight numbers over
+    /// `few_rows` or less; `None` where its sections have different strain measures, which the kernels do not mix.
     pub fn new(
         model: &Model,
         (line, water): (&Line, Water<'_>),
         few_rows: usize,
-        held: bool,
+        tied: [bool; 2],
     ) -> Option<Layout> {
         let n = line.segment_count();
-        let striping = match held && is_plain_at_b(line) {
+        let striping = match tied[1] && is_plain_at_b(line) {
             true => Striping::without_last(n + 1),
             false => Striping::new(n + 1),
         };
@@ -119,6 +121,7 @@ impl Layout {
             law: line.uniform_law()?,
             negative_tension: model.solver.negative_tension,
             energy_balance: model.energy_balance,
+            tied,
             released: [false; 2],
             position: padded_positions(striping),
             velocity: Field::zeros(striping),
@@ -181,16 +184,22 @@ impl Layout {
         self.close_halo();
     }
 
-    /// Puts the halo beyond released ends where these ends are.
+    /// Puts the halo beyond ends that move as forces say where these ends are.
     #[inline(always)]
     pub fn close_halo(&mut self) {
         for end in ENDS {
             let at = self.end_slot(end);
-            if self.released[end as usize] && self.has_row(at) {
+            if self.is_open(end) && self.has_row(at) {
                 let beyond = if end == End::A { at.before() } else { at.after() };
                 self.position.set(beyond, self.position.get(at));
             }
         }
+    }
+
+    /// Returns whether forces move an end: it is released, or at a free point.
+    #[inline(always)]
+    pub fn is_open(&self, end: End) -> bool {
+        self.released[end as usize] || !self.tied[end as usize]
     }
 
     /// Sets how many of the segments that there is room for the line has.

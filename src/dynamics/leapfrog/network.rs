@@ -11,7 +11,7 @@ use crate::model::{End, Kinematics, Model, Network, PointState, Role, State, Wav
 
 /// Scratch of a network: its lines laid out for the kernels, and its free points.
 #[derive(Debug, Clone)]
-pub struct LeapfrogNetwork<K> {
+pub struct LeapfrogNetwork<K: Kernel> {
     /// Lines, in the order of the network.
     pub(super) lines: Vec<LeapfrogLine<K>>,
     /// Numbers of the lines in the model.
@@ -28,6 +28,7 @@ pub struct LeapfrogNetwork<K> {
     pub(super) waves: Vec<WaveSpan>,
     /// Springs of the seabed under the point that is stepped.
     pub(super) springs: Vec<ContactSpring>,
+    pub(super) coupling: K::Coupling,
     /// Flow of energy of the free points since the state was loaded.
     pub(super) point_flow: Flow,
     /// Greatest ratio K |v| / M of the lines' nodes after the last step, where it is known [1/s].
@@ -117,6 +118,7 @@ impl<K: Kernel> LeapfrogNetwork<K> {
                 }
             ],
             springs: Vec::with_capacity(springs.unwrap_or(0)),
+            coupling: K::coupling(model, network),
             attached,
             point_flow: Flow::default(),
             drag_rate: None,
@@ -258,15 +260,36 @@ impl<K: Kernel> LeapfrogNetwork<K> {
                 work.release_ends(releases, t, step);
             }
         }
-        K::pull(self, model, t, step);
-        let mut solutions = 0;
-        for (work, ends) in self.lines.iter_mut().zip(&mut self.ends) {
-            ends.iter_mut()
-                .for_each(|end| end.find(&self.points, after, step.drift, held));
-            let solved = K::advance(work, after, step, [&ends[0].motion, &ends[1].motion]);
-            solutions = solved.max(solutions);
-        }
-        solutions
+        K::step(self, model, [t, after], step, held)
+    }
+
+    /// Finds the motion of the points at the ends of the lines at `t` [s], with velocities half a step of `length` [s] earlier.
+    #[inline]
+    pub(super) fn find_ends(&mut self, t: f64, length: f64, held: &impl Fn(usize, f64) -> Kinematics) {
+        let ends = self.ends.iter_mut().flatten();
+        ends.for_each(|end| end.find(&self.points, t, length, held));
+    }
+
+    /// Finds the motion of the free points at the ends of the lines.
+    pub(super) fn find_free_ends(&mut self) {
+        let ends = self.ends.iter_mut().flatten();
+        let free = ends.filter(|end| matches!(end.tie, Tie::Free(_)));
+        free.for_each(|end| end.find(&self.points, 0.0, 0.0, &|_, _| Kinematics::default()));
+    }
+
+    /// Lines and the motion of the points at their ends.
+    #[inline]
+    pub(super) fn lines_and_ends(&mut self) -> impl Iterator<Item = (&mut LeapfrogLine<K>, [&EndMotion; 2])> {
+        let ends = self.ends.iter().map(|[a, b]| [&a.motion, &b.motion]);
+        self.lines.iter_mut().zip(ends)
+    }
+
+    /// Free points at the ends of a line, by its place in the network and theirs.
+    pub(super) fn free_ends(&self, line: usize) -> [Option<usize>; 2] {
+        self.ends[line].map(|end| match end.tie {
+            Tie::Free(free) => Some(free),
+            _ => None,
+        })
     }
 
     /// Flow of energy since the state was loaded, the kinetic energy included in the dissipation; zero without a balance.

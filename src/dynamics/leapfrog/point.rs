@@ -1,7 +1,8 @@
-//! Free points of a network with explicit tension: a step of each from the forces of the lines at it, water and seabed.
+//! Free points of a network: loads, contact with the seabed, and their step where the tension is explicit.
 
 use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 
+use super::Kernel;
 use super::explicit::{Explicit, ExplicitLine};
 use super::network::LeapfrogNetwork;
 use super::step::Step;
@@ -10,24 +11,26 @@ use crate::model::{End, FreePoint, Model, Network};
 use crate::physics::airy::Orbit;
 use crate::physics::friction::{Axes, Friction};
 
-/// What an end of a line brings to the free point it is tied to.
+/// Loads and mass of a free point, of its own or of the half node of a line that is tied to it.
 #[derive(Debug, Clone, Copy)]
-pub struct EndLoad {
-    /// Force of the line on the point without contact [N].
+pub struct PointLoad {
+    /// Force without contact [N].
     pub force: Vector3<f64>,
-    /// The part of it that water and damping resist with [N].
+    /// Part of it by the resistance of water and damping [N].
     pub resistance: Vector3<f64>,
-    /// The part of it that accelerated water presses with [N].
+    /// Part of it by accelerated water [N].
     pub froude_krylov: Vector3<f64>,
-    /// Power of the drag on the water's way [W].
+    /// Power of the drag on the velocity of the water [W].
     pub current_power: f64,
-    /// Mass matrix of the half node [kg].
+    /// Its loss with the change of velocity over the step [N].
+    pub current_power_loss: Vector3<f64>,
+    /// Mass matrix [kg], with the part of the resistance that is implicit.
     pub mass: Matrix3<f64>,
     /// Contact stiffness [N/m] and damping [N s/m] of the half node, and its force at z = 0, or at no height over a seabed with a slope, soundings or friction [N].
     pub contact: [f64; 3],
 }
 
-/// ContactSpring and damper of the bed under a point: its own, or that of the half node of a line.
+/// Spring and damper of the seabed under a point: its own, or that of the half node of a line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct ContactSpring {
     /// Stiffness [N/m].
@@ -36,6 +39,40 @@ pub(super) struct ContactSpring {
     resistance: f64,
     /// Force at no velocity [N].
     push: f64,
+}
+
+impl<K: Kernel> LeapfrogNetwork<K> {
+    /// Motion of the water by waves at a free point, by its place in the network, at `t` [s].
+    pub(super) fn waves_at(&self, free: usize, t: f64) -> Option<Orbit> {
+        self.waves.get(free).map(|waves| waves.at_point(t))
+    }
+
+    /// Moves a free point, by its place in the network, over a step from `t` [s] with a velocity [m/s] under a load and an impulse of friction [N s].
+    pub(super) fn move_point(
+        &mut self,
+        free: usize,
+        model: &Model,
+        load: &PointLoad,
+        Kicked { velocity, friction }: Kicked,
+        (t, step): (f64, Step),
+    ) {
+        let point = &model.points[self.point_numbers[free]];
+        let state = &mut self.points[free];
+        let last = state.half_step[0];
+        if model.energy_balance {
+            let way = step.kick * 0.5 * (last + velocity);
+            let power = load.current_power - load.current_power_loss.dot(&(velocity - last));
+            let by_water = load.froude_krylov.dot(&way) + step.kick * power;
+            self.point_flow.external_work += point.load_at(t).dot(&way) + by_water;
+            self.point_flow.dissipation += (load.force - load.resistance).dot(&way) + step.kick * power;
+        }
+        state.half_step = [velocity, last];
+        state.acceleration = (velocity - last) / step.kick;
+        state.position += step.drift * velocity;
+        if let (Some(anchor), Some(law)) = (&mut state.anchor, point.free()) {
+            *anchor = state.position + friction / (step.kick * point_stick(law));
+        }
+    }
 }
 
 impl LeapfrogNetwork<Explicit> {
@@ -67,23 +104,19 @@ impl LeapfrogNetwork<Explicit> {
         self.drag_rate = Some(self.drag_rate_of_lines());
     }
 
-    /// Motion of the water by waves at a free point, by its place in the network, at `t` [s].
-    fn waves_at(&self, free: usize, t: f64) -> Option<Orbit> {
-        self.waves.get(free).map(|waves| waves.at_point(t))
-    }
-
     /// Steps the free points from `t` [s].
     pub(super) fn step_points(&mut self, model: &Model, t: f64, step: Step) {
         for free in 0..self.points.len() {
             let index = self.point_numbers[free];
             let [last, before] = self.points[free].half_step;
             let now = last + step.extrapolation * (last - before);
-            let point = &model.points[index];
-            let Some(law) = point.free() else { continue };
+            let Some(law) = model.points[index].free() else {
+                continue;
+            };
             let height = self.points[free].position.z;
             let bed = SeabedBelow::under(model, self.points[free].position);
             let waves = self.waves_at(free, t);
-            let mut load = load_in_water(model, index, law, [height, t], now, waves);
+            let mut load = load_in_water((model, index, law), [height, t], [now, now], waves, None);
             self.springs.clear();
             self.springs
                 .extend(ContactSpring::new(load.contact, bed.height, step));
@@ -97,22 +130,7 @@ impl LeapfrogNetwork<Explicit> {
                     .extend(ContactSpring::new(brought.contact, bed.height, step));
             }
             let kicked = load.kicked(last, law.axes, &self.springs, &bed, step);
-            let Kicked { velocity, .. } = kicked;
-            if model.energy_balance {
-                let way = step.kick * 0.5 * (last + velocity);
-                let by_water = load.froude_krylov.dot(&way) + step.kick * load.current_power;
-                self.point_flow.external_work += point.load_at(t).dot(&way) + by_water;
-                self.point_flow.dissipation +=
-                    (load.force - load.resistance).dot(&way) + step.kick * load.current_power;
-            }
-            let state = &mut self.points[free];
-            state.half_step = [velocity, last];
-            state.acceleration = (velocity - last) / step.kick;
-            state.position += step.drift * velocity;
-            if state.anchor.is_some() {
-                let held = kicked.friction / (step.kick * point_stick(law));
-                state.anchor = Some(state.position + held);
-            }
+            self.move_point(free, model, &load, kicked, (t, step));
         }
     }
 }
@@ -126,16 +144,16 @@ pub(super) fn attached(model: &Model, network: &Network, point: usize) -> Vec<(u
     model.points[point].attached.iter().filter_map(place).collect()
 }
 
-/// Weight, load and water of a free point at a height [m] and a time [s] that moves at `now` [m/s]. The difference between its buoyancy and that in
-/// still water counts as Froude-Krylov force.
-fn load_in_water(
-    model: &Model,
-    index: usize,
-    law: &FreePoint,
+/// Weight, load and water of a free point, by its number and law, at a height [m] and a time [s]: drag with the coefficient of the velocity `now` at
+/// the velocity `last` [m/s]; its change over a step of `kick` [s] is implicit where that is given. The difference between its buoyancy and that in still
+/// water counts as Froude-Krylov force.
+pub(super) fn load_in_water(
+    (model, index, law): (&Model, usize, &FreePoint),
     [height, t]: [f64; 2],
-    now: Vector3<f64>,
+    [now, last]: [Vector3<f64>; 2],
     waves: Option<Orbit>,
-) -> EndLoad {
+    kick: Option<f64>,
+) -> PointLoad {
     let point = &model.points[index];
     let surface = waves.map_or(0.0, |orbit| orbit.elevation);
     let at = law.at(height - surface);
@@ -147,13 +165,21 @@ fn load_in_water(
         weight = law.at(height).weight;
         froude_krylov = law.froude_krylov(at.wetted, orbit) + (weight - at.weight) * Vector3::z();
     }
-    let drag = law.drag(at.wetted, now - water);
-    EndLoad {
+    let mut drag = law.drag(at.wetted, now - water);
+    let mut implicit = 0.0;
+    if let Some(kick) = kick {
+        let speed = (now - water).norm().max(f64::MIN_POSITIVE);
+        let coefficient = drag.norm() / speed;
+        drag = -coefficient * (last - water);
+        implicit = (0.5 * kick * coefficient).max(kick * coefficient - at.mass);
+    }
+    PointLoad {
         force: point.load_at(t) - weight * Vector3::z() + drag + froude_krylov,
         resistance: drag,
         froude_krylov,
         current_power: drag.dot(&water),
-        mass: at.mass * Matrix3::identity(),
+        current_power_loss: implicit / kick.unwrap_or(1.0) * water,
+        mass: (at.mass + implicit) * Matrix3::identity(),
         contact: law.contact.map_or([0.0; 3], |contact| {
             let k = contact.coefficients;
             let level = match model.bottom {
@@ -178,12 +204,27 @@ fn tied_mass(model: &Model, point: usize) -> f64 {
 
 impl ContactSpring {
     /// The spring of stiffness, damping and force at no height under a point at `height` [m]; `None` where there is none.
-    fn new([stiffness, damping, force_at_zero]: [f64; 3], height: f64, step: Step) -> Option<ContactSpring> {
+    pub fn new(
+        [stiffness, damping, force_at_zero]: [f64; 3],
+        height: f64,
+        step: Step,
+    ) -> Option<ContactSpring> {
         (stiffness > 0.0).then_some(ContactSpring {
             stiffness,
             resistance: stiffness * step.drift + damping,
             push: force_at_zero - stiffness * height,
         })
+    }
+
+    /// Force at no velocity [N], and its loss with the velocity at which the point leaves the seabed [N s/m].
+    pub fn law(&self) -> [f64; 2] {
+        [self.push, self.resistance]
+    }
+
+    /// Force on a point that leaves the seabed at `rise` [m/s], in [N]; `None` where it does not push.
+    pub fn pushes(&self, rise: f64, step: Step) -> Option<f64> {
+        let force = self.push - self.resistance * rise;
+        (self.lands(rise, step) && force > 0.0).then_some(force)
     }
 
     /// Whether the point would be in the bed after a step with the velocity ż [m/s].
@@ -192,12 +233,27 @@ impl ContactSpring {
     }
 }
 
-impl EndLoad {
-    fn add(&mut self, other: &EndLoad) {
+impl PointLoad {
+    /// No load and no mass.
+    pub fn none() -> PointLoad {
+        let zero = Vector3::zeros();
+        PointLoad {
+            force: zero,
+            resistance: zero,
+            froude_krylov: zero,
+            current_power: 0.0,
+            current_power_loss: zero,
+            mass: Matrix3::zeros(),
+            contact: [0.0; 3],
+        }
+    }
+
+    pub fn add(&mut self, other: &PointLoad) {
         self.force += other.force;
         self.resistance += other.resistance;
         self.froude_krylov += other.froude_krylov;
         self.current_power += other.current_power;
+        self.current_power_loss += other.current_power_loss;
         self.mass += other.mass;
     }
 
@@ -256,24 +312,24 @@ impl EndLoad {
 const ROUNDS_MAX: usize = 50;
 
 /// What a point leaves a step with.
-struct Kicked {
+pub(super) struct Kicked {
     /// v_{n+½} [m/s].
-    velocity: Vector3<f64>,
+    pub velocity: Vector3<f64>,
     /// Impulse of friction [N s].
-    friction: Vector3<f64>,
+    pub friction: Vector3<f64>,
 }
 
-/// The bed under a point.
-struct SeabedBelow<'a> {
+/// Seabed under a point.
+pub(super) struct SeabedBelow<'a> {
     /// Height of the point over z = 0; over a seabed with a slope, soundings or friction, over that along its normal [m].
-    height: f64,
-    /// Unit normal of the bed, upwards.
-    normal: Vector3<f64>,
-    friction: Option<&'a Friction>,
+    pub height: f64,
+    /// Unit normal of the seabed, upwards.
+    pub normal: Vector3<f64>,
+    pub friction: Option<&'a Friction>,
 }
 
 impl SeabedBelow<'_> {
-    fn under(model: &Model, place: Vector3<f64>) -> SeabedBelow<'_> {
+    pub fn under(model: &Model, place: Vector3<f64>) -> SeabedBelow<'_> {
         match model.bottom.as_deref() {
             None => SeabedBelow {
                 height: place.z,
@@ -320,7 +376,7 @@ fn pushed(
 }
 
 /// How a point slides along the bed.
-struct Sliding {
+pub(super) struct Sliding {
     /// Axes of the plane of the bed, along those of the point that are free.
     axes: [Vector3<f64>; 2],
     /// Inverse of what the point yields by in the plane [kg].
@@ -328,7 +384,7 @@ struct Sliding {
 }
 
 impl Sliding {
-    fn new(normal: Vector3<f64>, inverse: &Matrix3<f64>, free: &Vector3<f64>) -> Sliding {
+    pub fn new(normal: Vector3<f64>, inverse: &Matrix3<f64>, free: &Vector3<f64>) -> Sliding {
         let Axes { along, across, .. } = Axes::new(normal, normal);
         let axes = [along, across];
         let mut yielding = Matrix2::from_fn(|i, j| axes[i].dot(&(inverse * axes[j].component_mul(free))));
@@ -342,7 +398,7 @@ impl Sliding {
     }
 
     /// What must be added to the impulse `friction` so that the point stops, or the impulse is at its limit [N s]; `velocity` [m/s] is without any.
-    fn friction(&self, velocity: Vector3<f64>, friction: Vector3<f64>, limit: f64) -> Vector3<f64> {
+    pub fn friction(&self, velocity: Vector3<f64>, friction: Vector3<f64>, limit: f64) -> Vector3<f64> {
         let slides = Vector2::from_fn(|i, _| self.axes[i].dot(&velocity));
         let wanted = -self.mass * slides;
         let size = wanted.norm();

@@ -7,6 +7,7 @@
 
 use super::AxialLine;
 use super::rows::{SegmentRow, Sizes, pulled};
+use crate::dynamics::leapfrog::ENDS;
 use crate::dynamics::leapfrog::step::Step;
 use crate::dynamics::viscoelastic::Relaxed;
 use crate::math::lanes::{Lanes, Vectors};
@@ -34,7 +35,7 @@ impl AxialLine {
                 balance.work = balance.work + dragged;
             }
         }
-        for end in self.held_ends() {
+        for end in self.prescribed_ends() {
             let line = &self.layout;
             let (at, (segment, sign)) = (line.end_slot(end), line.end_segment(end));
             let after = 0.5 * step.drift;
@@ -44,7 +45,7 @@ impl AxialLine {
         }
         self.balance = Some(balance);
         if self.layout.surface.is_some() {
-            let held = self.layout.released.map(|released| !released);
+            let held = ENDS.map(|end| !self.layout.is_open(end));
             self.layout.balance_lift(step, held);
         }
     }

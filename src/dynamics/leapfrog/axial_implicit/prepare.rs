@@ -247,7 +247,7 @@ impl AxialLine {
     /// Held ends move by the secant of their path and yield to no force.
     #[inline(always)]
     pub(super) fn prepare_ends(&mut self, step: Step, ends: &[Vector3<f64>; 2]) {
-        for end in self.held_ends() {
+        for end in self.prescribed_ends() {
             let at = self.layout.end_slot(end);
             let secant = (ends[end as usize] - self.layout.position.get(at)) / step.drift;
             if !self.layout.has_row(at) {

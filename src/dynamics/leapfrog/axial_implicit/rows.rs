@@ -130,10 +130,9 @@ impl SegmentRow {
         sizes: &Sizes,
     ) {
         let (zero, one, push) = (Lanes::splat(0.0), Lanes::splat(1.0), sizes.push);
-        let damping = self.damping * sizes.damping[0];
         let damped = self.damping * sizes.damping[1] * self.along;
         let springs = self.elastic + self.curvature;
-        let resistance = self.taut.choose(self.stiffness + damping, push * damping);
+        let resistance = self.resistance(sizes);
         let known = self.taut.choose(springs + damped, push * damped);
         let k = resistance * sizes.kick;
         self.equations = Equations {
@@ -142,6 +141,13 @@ impl SegmentRow {
             upper: zero - k * to_after,
             right: known + resistance * self.direction.dot(relative),
         };
+    }
+
+    /// Slope of T̄ with the stretching velocity [N s/m].
+    #[inline(always)]
+    pub fn resistance(&self, sizes: &Sizes) -> Lanes {
+        let damping = self.damping * sizes.damping[0];
+        self.taut.choose(self.stiffness + damping, sizes.push * damping)
     }
 
     /// Lays the springs along the tangent of their curve where a stretching velocity [m/s] takes them in a step of `drift` [s], `share` being b₁ and

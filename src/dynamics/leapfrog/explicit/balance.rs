@@ -98,7 +98,7 @@ impl ExplicitLine {
             let (segment, sign) = self.layout.end_segment(end);
             let pull = sign * self.kernel.pull.get(segment);
             balance.dissipation += (balance.springs[side] - pull).dot(&way);
-            if self.tied[side] {
+            if self.layout.tied[side] {
                 balance.external_work += self.layout.end_lack(end) * way.z - pull.dot(&way);
             }
         }
@@ -106,7 +106,7 @@ impl ExplicitLine {
         if self.layout.surface.is_some() {
             self.layout.balance_lift(
                 step,
-                [0, 1].map(|side| self.tied[side] && !self.layout.released[side]),
+                [0, 1].map(|side| self.layout.tied[side] && !self.layout.released[side]),
             );
         }
     }
@@ -118,7 +118,7 @@ impl ExplicitLine {
         let [before, after] = [&self.layout.velocity_before, &self.layout.velocity].map(|of| of.get(at));
         let place = self.layout.position.get(at) - 0.5 * step.drift * after;
         let gone = place - std::mem::replace(half_place, place);
-        match self.tied[end as usize] && self.kernel.winch.is_none() {
+        match self.layout.tied[end as usize] && self.kernel.winch.is_none() {
             true => gone,
             false => 0.5 * step.kick * (before + after),
         }
