@@ -2,7 +2,7 @@
 
 use super::{AIM, ELEMENTS_MAX, Mesh, Networks, Trial};
 use crate::dynamics::AXIAL_IMPLICIT_COST;
-use crate::model::{Model, Network, Role};
+use crate::model::{Model, Role};
 use crate::scene::{Integrator, MotionPath, Scene};
 use crate::simulation::{Error, Simulation};
 
@@ -293,8 +293,7 @@ impl<'a> Search<'a> {
     fn explicit_work(&self, scene: &Scene) -> Option<Explicit> {
         let simulation = Simulation::new(scene).ok()?;
         let model = simulation.model();
-        let free = |network: &Network| !network.free_points.is_empty();
-        if model.networks.iter().any(free) || model.lines.iter().any(|line| line.winch.is_some()) {
+        if model.lines.iter().any(|line| line.winch.is_some()) {
             return None;
         }
         let limits = simulation.choices().map(|choice| choice.explicit.step);

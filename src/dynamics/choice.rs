@@ -13,8 +13,8 @@
 
 use super::cost::{AXIAL_IMPLICIT_COST, IMPLICIT_COST};
 use super::limit::{
-    ExplicitLimit, axial_accuracy_step, explicit_limit, free_point_limit, heave_step, point_accuracy_step,
-    transverse_period, transverse_step,
+    ExplicitLimit, axial_accuracy_step, end_shares, explicit_limit, free_point_limit, heave_step,
+    point_accuracy_step, point_heave_step, transverse_period, transverse_step,
 };
 use crate::model::{Line, Model, Network};
 use crate::scene::Integrator;
@@ -88,13 +88,27 @@ impl Choice {
         let transverse_limit = network
             .lines
             .iter()
-            .map(|&line| transverse_step(&model.lines[line], SNAP_MARGIN * tension(line)))
+            .map(|&line| {
+                let (own, tension) = (&model.lines[line], SNAP_MARGIN * tension(line));
+                transverse_step(own, tension, end_shares(model, own))
+            })
             .fold(f64::INFINITY, f64::min);
-        let accurate = least(&|line| axial_accuracy_step(line, model.solver.tolerance))
+        let tolerance = model.solver.tolerance;
+        let least_of_points = |limit: &dyn Fn(usize) -> f64| {
+            let points = network.free_points.iter().map(|&point| limit(point));
+            points.fold(f64::INFINITY, f64::min)
+        };
+        let accurate = match network.free_points.is_empty() {
+            true => least(&|line| axial_accuracy_step(line, tolerance)),
+            false => least_of_points(&|point| point_accuracy_step(model, point, tolerance)),
+        };
+        let accurate = accurate
             .max(AXIAL_RESOLUTION_MIN * transverse_limit)
             .min(transverse_limit);
         let longest = model.solver.time_step_max;
-        let longest_axial = least(&heave_step).min(longest);
+        let longest_axial = least(&heave_step)
+            .min(least_of_points(&|point| point_heave_step(model, point)))
+            .min(longest);
         let asked = model.solver.integrator;
         let steps = Steps {
             explicit: explicit.step.min(longest),
@@ -171,11 +185,7 @@ fn choose(model: &Model, network: &Network, steps: &Steps, tension: &impl Fn(usi
     let quick = network.lines.iter().all(at_rest);
     let rates = [
         (Integrator::Leapfrog, 1.0 / steps.explicit, true),
-        (
-            Integrator::AxialImplicit,
-            AXIAL_IMPLICIT_COST / steps.axial,
-            !joined,
-        ),
+        (Integrator::AxialImplicit, AXIAL_IMPLICIT_COST / steps.axial, true),
         (
             Integrator::GeneralisedAlpha,
             IMPLICIT_COST / steps.implicit,

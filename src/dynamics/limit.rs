@@ -150,14 +150,40 @@ fn fading(line: &Line, node: usize) -> f64 {
     damping.map_or(0.0, |damping| damping[node] / line.least_mass(node))
 }
 
-/// Nodes that no point holds, or that one may let go of.
+/// Masses of the free points at ends A and B of a line, each shared by its lines [kg]; `None` at prescribed points.
+pub type EndShares = [Option<f64>; 2];
+
+/// Shares of a line of a model.
+pub fn end_shares(model: &Model, line: &Line) -> EndShares {
+    line.ends.map(|index| {
+        let point = &model.points[index];
+        let free = point.free()?;
+        Some(free.mass / point.attached.len() as f64)
+    })
+}
+
+/// Nodes between the ends of a line, and those at ends that may be released.
 fn loose_nodes(line: &Line) -> RangeInclusive<usize> {
     let parts = |end: End| {
         line.release
             .is_some_and(|sides| sides[end as usize].may_release())
     };
-    let [first, last] = [End::A, End::B].map(|end| usize::from(parts(end)));
+    nodes_between(line, [End::A, End::B].map(parts))
+}
+
+/// Nodes between the ends of a line, and those at ends that are included.
+fn nodes_between(line: &Line, includes: [bool; 2]) -> RangeInclusive<usize> {
+    let [first, last] = includes.map(usize::from);
     1 - first..=line.segment_count() - 1 + last
+}
+
+/// Share of the mass of the point at a node [kg]; zero between the ends.
+fn share_at(line: &Line, node: usize, shares: EndShares) -> f64 {
+    match node {
+        0 => shares[0].unwrap_or(0.0),
+        node if node == line.segment_count() => shares[1].unwrap_or(0.0),
+        _ => 0.0,
+    }
 }
 
 /// The segments beside a node: one at an end.
@@ -248,27 +274,24 @@ fn damping_enough(line: &Line) -> f64 {
     }
 }
 
-/// Square of the greatest frequency of axial waves in a line whose ends are `held`, or else free [1/s²], its nodes having the masses that they have in
-/// air and moving along it alone; infinite where its springs may be stiffer than its axial stiffness. By bisection with Sturm's theorem (Golub & Van
+/// Square of the greatest frequency of axial waves in a line whose ends are at prescribed points, or have shares of free ones [1/s²], its nodes having
+/// the masses that they have in air and moving along it alone; infinite where its springs may be stiffer than its axial stiffness. By bisection with Sturm's theorem (Golub & Van
 /// Loan 2013, Matrix Computations, section 8.4).
-pub fn axial_frequency_squared(line: &Line, held: [bool; 2]) -> f64 {
+pub fn axial_frequency_squared(line: &Line, shares: EndShares) -> f64 {
     let law = |law: &StretchLaw| matches!(law, StretchLaw::Engineering | StretchLaw::Tabulated(_));
     if line.segments.viscoelastic.is_some() || !line.segments.law.iter().all(law) {
         return f64::INFINITY;
     }
-    let count = line.segment_count();
-    let [first, last] = held.map(usize::from);
-    let nodes = first..count + 1 - last;
-    let mass = &line.nodes.mass;
+    let nodes = nodes_between(line, shares.map(|share| share.is_some()));
+    let first = *nodes.start();
+    let mass = |i: usize| line.nodes.mass[i] + share_at(line, i, shares);
     let own = |i: usize| {
-        beside(line, i)
-            .map(|segment| stiffness(line, segment))
-            .sum::<f64>()
-            / mass[i]
+        let springs = beside(line, i).map(|segment| stiffness(line, segment));
+        springs.sum::<f64>() / mass(i)
     };
     let shared = |i: usize| match i == first {
         true => 0.0,
-        false => stiffness(line, i - 1).powi(2) / (mass[i - 1] * mass[i]),
+        false => stiffness(line, i - 1).powi(2) / (mass(i - 1) * mass(i)),
     };
     // λ is beyond all squares if no pivot of λ − A is negative
     let is_beyond = |square: f64| {
@@ -344,6 +367,23 @@ fn heave(line: &Line, node: usize) -> f64 {
     surface.map_or(0.0, |surface| surface.stiffness_max(node))
 }
 
+/// Step limit [s] of the heave of a free point, with safety; infinite where it does not meet the water's surface.
+pub fn point_heave_step(model: &Model, point: usize) -> f64 {
+    let sphere = model.points[point].free().and_then(|free| free.sphere);
+    let stiffness = sphere.map_or(0.0, |sphere| sphere.stiffness_max());
+    SAFETY * 2.0 / (stiffness / least_mass(model, point)).sqrt()
+}
+
+/// Mass of a free point and of the half nodes tied to it, at least [kg].
+pub fn least_mass(model: &Model, point: usize) -> f64 {
+    let point = &model.points[point];
+    let tied = point.attached.iter().map(|&(line, end)| {
+        let line = &model.lines[line];
+        line.least_mass(line.end_node(end))
+    });
+    point.free().map_or(0.0, |free| free.mass) + tied.sum::<f64>()
+}
+
 /// Explicit step limit [s] of a line that floats, with safety; infinite where it does not meet the water's surface.
 pub fn heave_step(line: &Line) -> f64 {
     let limit = |i: usize| SAFETY * 2.0 / (heave(line, i) / line.least_mass(i)).sqrt();
@@ -355,16 +395,22 @@ pub fn heave_step(line: &Line) -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
-/// Transverse step limit [s] of a line under a tension [N]; infinite without tension. Gershgorin's bound again, with the transverse stiffness
+/// Transverse step limit [s] of a line with shares of free points under a tension [N]; infinite without tension. Gershgorin's bound again, with the transverse stiffness
 /// T/l of the segments: where these are alike it is 0.6 h/c.
-pub fn transverse_step(line: &Line, tension: f64) -> f64 {
+pub fn transverse_step(line: &Line, tension: f64, shares: EndShares) -> f64 {
     let lengths = &line.segments.length;
     let mut limit = f64::INFINITY;
-    for i in loose_nodes(line) {
-        let mass = match &line.surface {
-            None => line.nodes.mass_normal[i],
-            Some(_) => line.nodes.mass[i], // in air
-        };
+    let may_release = loose_nodes(line);
+    let includes = [
+        *may_release.start() == 0 || shares[0].is_some(),
+        *may_release.end() == line.segment_count() || shares[1].is_some(),
+    ];
+    for i in nodes_between(line, includes) {
+        let mass = share_at(line, i, shares)
+            + match &line.surface {
+                None => line.nodes.mass_normal[i],
+                Some(_) => line.nodes.mass[i], // in air
+            };
         let inverse: f64 = lengths[beside(line, i)].iter().map(|l| 1.0 / l).sum();
         let stiffness = tension.max(0.0) * inverse;
         let omega = (2.0 * stiffness / mass).sqrt();
@@ -408,15 +454,15 @@ mod tests {
             let (mass, length) = (2.0, 30.0 / n as f64);
             let phase = std::f64::consts::FRAC_PI_2 * (n - 1) as f64 / n as f64;
             let exact = 4.0 * 1e6 / (mass * length * length) * phase.sin().powi(2);
-            let found = axial_frequency_squared(&line(&[(mass, 30.0, n)], "engineering"), [true; 2]);
+            let found = axial_frequency_squared(&line(&[(mass, 30.0, n)], "engineering"), [None; 2]);
             assert_relative_eq!(found, exact, max_relative = 1e-8);
         }
         assert_eq!(
-            axial_frequency_squared(&line(&[(2.0, 30.0, 1)], "engineering"), [true; 2]),
+            axial_frequency_squared(&line(&[(2.0, 30.0, 1)], "engineering"), [None; 2]),
             0.0
         );
         assert_eq!(
-            axial_frequency_squared(&line(&[(2.0, 30.0, 9)], "green"), [true; 2]),
+            axial_frequency_squared(&line(&[(2.0, 30.0, 9)], "green"), [None; 2]),
             f64::INFINITY
         );
     }
@@ -436,7 +482,7 @@ mod tests {
         });
         let exact = scaled.symmetric_eigenvalues().max();
         assert_relative_eq!(
-            axial_frequency_squared(&line, [true; 2]),
+            axial_frequency_squared(&line, [None; 2]),
             exact,
             max_relative = 1e-8
         );

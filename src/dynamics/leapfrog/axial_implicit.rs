@@ -61,7 +61,7 @@ use super::network::LeapfrogNetwork;
 use super::step::Step;
 use super::{ENDS, Kernel, LeapfrogLine};
 use crate::dynamics::Choice;
-use crate::dynamics::limit::{axial_frequency_squared, transverse_step};
+use crate::dynamics::limit::{axial_frequency_squared, end_shares, transverse_step};
 use crate::math::lanes::Lanes;
 use crate::model::{End, Kinematics, Line, LineState, Model, Network};
 use crate::physics::stretch::StretchLaw;
@@ -170,11 +170,12 @@ impl Kernel for AxialImplicit {
             free: free.load(at),
             ..NodeRow::new()
         };
+        let shares = end_shares(model, line);
         AxialImplicit {
-            transverse: transverse_step(line, 1.0),
+            transverse: transverse_step(line, 1.0, shares),
             averaging,
             weights: averaging,
-            frequency_squared: axial_frequency_squared(line, layout.tied),
+            frequency_squared: axial_frequency_squared(line, shares),
             open: match layout.tied {
                 [true, true] => Vec::new(),
                 _ => vec![OpenRow::default(); count],

@@ -6,6 +6,7 @@ use super::Kernel;
 use super::explicit::{Explicit, ExplicitLine};
 use super::network::LeapfrogNetwork;
 use super::step::Step;
+use crate::dynamics::limit::least_mass;
 use crate::elements::friction::point_stick;
 use crate::model::{End, FreePoint, Model, Network};
 use crate::physics::airy::Orbit;
@@ -88,7 +89,7 @@ impl LeapfrogNetwork<Explicit> {
                 past -= stream.map_or(Vector3::zeros(), |now| now.velocity(point.position.z));
                 past -= self.waves_at(free, t).map_or(Vector3::zeros(), |w| w.velocity);
                 let rate = sphere.drag * past.norm();
-                (rate > 0.0).then(|| rate / tied_mass(model, index))
+                (rate > 0.0).then(|| rate / least_mass(model, index))
             })
             .fold(of_lines, f64::max)
     }
@@ -189,17 +190,6 @@ pub(super) fn load_in_water(
             [k.stiffness, k.damping, k.stiffness * level]
         }),
     }
-}
-
-/// Mass of a free point and of the half nodes tied to it, at least [kg].
-fn tied_mass(model: &Model, point: usize) -> f64 {
-    let point = &model.points[point];
-    let tied = point.attached.iter().map(|&(line, end)| {
-        let line = &model.lines[line];
-        let node = line.end_node(end);
-        line.least_mass(node)
-    });
-    point.free().map_or(0.0, |free| free.mass) + tied.sum::<f64>()
 }
 
 impl ContactSpring {
