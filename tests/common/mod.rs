@@ -18,14 +18,14 @@ pub const RHO: f64 = 1025.0;
 /// Gravity [m/s²].
 pub const G: f64 = 9.80665;
 
-/// The integrators of single lines.
+/// The integrators of single lines and of networks.
 pub const INTEGRATORS: [Integrator; 3] = [
     Integrator::Leapfrog,
     Integrator::AxialImplicit,
     Integrator::GeneralisedAlpha,
 ];
 /// The integrators of lines that meet at free points.
-pub const JOINED: [Integrator; 2] = [Integrator::Leapfrog, Integrator::GeneralisedAlpha];
+pub const JOINED: [Integrator; 3] = INTEGRATORS;
 
 /// Coarse steps [s] of the three integrators at which errors fall by their order.
 pub const COARSE_STEPS: [(Integrator, f64); 3] = [

@@ -94,7 +94,7 @@ fn drag_along_a_line_that_is_light_beside_the_water_it_displaces_shortens_the_st
         let history = History::record(&mut following(&hose(integrator)), 0.1, 200);
         history.tension[1..].to_vec()
     };
-    let [found, reference] = JOINED.map(tensions);
+    let [found, .., reference] = JOINED.map(tensions);
     let mean = reference.iter().sum::<f64>() / 200.0;
     let rms = |values: &[f64]| (values.iter().map(|v| v * v).sum::<f64>() / 200.0).sqrt();
     let swing: Vec<f64> = reference.iter().map(|v| v - mean).collect();

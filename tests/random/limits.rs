@@ -93,7 +93,7 @@ impl Base {
                 _ => Some(drawn.law.unwrap_or(0)),
             },
             winch: false,
-            junctions: drawn.junctions && integrator != Integrator::AxialImplicit,
+            junctions: drawn.junctions,
             parts: false,
             ..drawn
         };

@@ -94,7 +94,7 @@ impl Plan {
             wet: dice.chance(0.75),
             bed: dice.chance(0.7),
             winch,
-            junctions: integrator != Integrator::AxialImplicit && dice.chance(0.4),
+            junctions: dice.chance(0.4),
             parts: plain && integrator != Integrator::QuasiStatic && dice.chance(0.2),
         }
     }

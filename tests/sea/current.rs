@@ -503,7 +503,7 @@ fn explicit_steps_stay_stable_where_drag_or_damping_by_mass_is_hard_beside_axial
             let scene = with_integrator(streaming(water, drag, move_by), integrator, 0.05);
             History::record(&mut following(&scene), 0.05, 1000)
         };
-        let [explicit, implicit] = JOINED.map(record);
+        let [explicit, .., implicit] = JOINED.map(record);
         let error = explicit.tension_error(&implicit, 200);
         println!("{drag}: {error:.2e}");
         assert!(error < 0.02, "{drag}: {error}");

@@ -11,6 +11,7 @@ use crate::elements::friction::point_stick;
 use crate::model::{End, FreePoint, Model, Network};
 use crate::physics::airy::Orbit;
 use crate::physics::friction::{Axes, Friction};
+use crate::physics::slender::Slender;
 
 /// Loads and mass of a free point, of its own or of the half node of a line that is tied to it.
 #[derive(Debug, Clone, Copy)]
@@ -117,7 +118,7 @@ impl LeapfrogNetwork<Explicit> {
             let height = self.points[free].position.z;
             let bed = SeabedBelow::under(model, self.points[free].position);
             let waves = self.waves_at(free, t);
-            let mut load = load_in_water((model, index, law), [height, t], [now, now], waves, None);
+            let mut load = load_in_water((model, index, law), [height, t], now, waves, None);
             self.springs.clear();
             self.springs
                 .extend(ContactSpring::new(load.contact, bed.height, step));
@@ -145,13 +146,13 @@ pub(super) fn attached(model: &Model, network: &Network, point: usize) -> Vec<(u
     model.points[point].attached.iter().filter_map(place).collect()
 }
 
-/// Weight, load and water of a free point, by its number and law, at a height [m] and a time [s]: drag with the coefficient of the velocity `now` at
-/// the velocity `last` [m/s]; its change over a step of `kick` [s] is implicit where that is given. The difference between its buoyancy and that in still
-/// water counts as Froude-Krylov force.
+/// Weight, load and water of a free point, by its number and law, at a height [m] and a time [s] that moves at a velocity [m/s]. Over a step of `kick` [s],
+/// where that is given, the change of the drag C|u|u is implicit by its slope C(|u| I + u uᵀ/|u|): trapezoidal, but where it outweighs inertia no more
+/// than that no velocity changes its sign by it. The difference between its buoyancy and that in still water counts as Froude-Krylov force.
 pub(super) fn load_in_water(
     (model, index, law): (&Model, usize, &FreePoint),
     [height, t]: [f64; 2],
-    [now, last]: [Vector3<f64>; 2],
+    velocity: Vector3<f64>,
     waves: Option<Orbit>,
     kick: Option<f64>,
 ) -> PointLoad {
@@ -166,21 +167,21 @@ pub(super) fn load_in_water(
         weight = law.at(height).weight;
         froude_krylov = law.froude_krylov(at.wetted, orbit) + (weight - at.weight) * Vector3::z();
     }
-    let mut drag = law.drag(at.wetted, now - water);
-    let mut implicit = 0.0;
-    if let Some(kick) = kick {
-        let speed = (now - water).norm().max(f64::MIN_POSITIVE);
-        let coefficient = drag.norm() / speed;
-        drag = -coefficient * (last - water);
-        implicit = (0.5 * kick * coefficient).max(kick * coefficient - at.mass);
+    let past = velocity - water;
+    let drag = law.drag(at.wetted, past);
+    let mut implicit = Matrix3::zeros();
+    if let (Some(kick), Some(along)) = (kick, past.try_normalize(0.0)) {
+        let across = kick * drag.norm() / past.norm();
+        let part = |impulse: f64| (0.5 * impulse).max(impulse - at.mass);
+        implicit = Slender::new([part(across), part(2.0 * across)]).matrix(along);
     }
     PointLoad {
         force: point.load_at(t) - weight * Vector3::z() + drag + froude_krylov,
         resistance: drag,
         froude_krylov,
         current_power: drag.dot(&water),
-        current_power_loss: implicit / kick.unwrap_or(1.0) * water,
-        mass: (at.mass + implicit) * Matrix3::identity(),
+        current_power_loss: implicit * water / kick.unwrap_or(1.0),
+        mass: at.mass * Matrix3::identity() + implicit,
         contact: law.contact.map_or([0.0; 3], |contact| {
             let k = contact.coefficients;
             let level = match model.bottom {

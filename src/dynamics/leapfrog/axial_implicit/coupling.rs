@@ -209,11 +209,10 @@ impl CoupledPoint {
         let Some(law) = model.points[index].free() else {
             return;
         };
-        let [last, before] = state.half_step;
-        let now = last + step.extrapolation * (last - before);
+        let last = state.half_step[0];
         let bed = SeabedBelow::under(model, state.position);
         let (waves, place) = (network.waves_at(free, t), [state.position.z, t]);
-        let mut load = load_in_water((model, index, law), place, [now, last], waves, Some(step.kick));
+        let mut load = load_in_water((model, index, law), place, last, waves, Some(step.kick));
         let rise = bed.normal.dot(&last);
         self.springs.clear();
         let mut add = |contact: [f64; 3]| {
