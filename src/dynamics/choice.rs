@@ -1,12 +1,11 @@
 //! Which integrator serves a network, and its largest step.
 //!
 //! Of the integrators that serve a network, the one whose steps cost least for a second of motion. The explicit leapfrog costs least a step, and
-//! takes those of its axial limit. Its axial-implicit variant costs about three times as much; it serves single lines between held ends, and
-//! takes the steps that accuracy asks for, or, where the scene names it, the longest that transverse waves allow under the tensions as they
-//! come: on lindahl_slow 0.7 as many as under three times the static tension throughout, with the same errors. Generalised-α costs about
-//! fifty times as much: it serves networks joined at free points, with steps that follow the elastic oscillation of these, and single lines
-//! whose slowest wave runs through them within one step of the longest allowed, such as a taut line almost without mass: they are at rest in
-//! every step, whatever its length.
+//! takes those of its axial limit. Its axial-implicit variant costs about three times as much; it takes the steps that accuracy asks for, which follow
+//! the axial waves of single lines and the elastic oscillation of free points, or, where the scene names it, the longest that transverse waves allow
+//! under the tensions as they come: on lindahl_slow 0.7 as many as under three times the static tension throughout, with the same errors.
+//! Generalised-α costs about fifty times as much: it serves networks joined at free points, and single lines whose slowest wave runs through them
+//! within one step of the longest allowed, such as a taut line almost without mass: they are at rest in every step, whatever its length.
 //!
 //! Lines that bend, mix strain measures or have nodes without mass are integrated fully implicitly whatever that costs. Beams have an
 //! integrator of their own.

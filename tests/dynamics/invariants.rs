@@ -40,9 +40,6 @@ fn the_energy_balance_changes_no_bit_of_the_motion() {
             ("a chain in a current", in_current.clone()),
             ("lines at a free point", shipped("bridle")),
         ] {
-            if name == "lines at a free point" && integrator == Integrator::AxialImplicit {
-                continue; // serves single lines
-            }
             let mut scene = with_integrator(with_elements(scene, 20), integrator, 0.05);
             let mut without = following(&scene);
             run(&mut without, 0.05, 60);
@@ -95,9 +92,6 @@ fn the_ledger_closes_where_held_points_jump() {
         ("a viscoelastic rope through the surface", pierces, 0.1),
     ] {
         for integrator in INTEGRATORS {
-            if name == "lines at a free point" && integrator == Integrator::AxialImplicit {
-                continue; // serves single lines
-            }
             let scene = with_integrator(with_elements(scene.clone(), 20), integrator, 0.01);
             let error = jumping_balance(scene);
             println!("{name}, {integrator:?}: {error:e}");

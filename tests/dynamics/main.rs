@@ -5,6 +5,7 @@ mod common;
 
 mod analytic;
 mod convergence;
+mod coupling;
 mod implicit;
 mod invariants;
 mod shorter_steps;

@@ -1,0 +1,75 @@
+//! Networks of lines joined at free points whose axial tension is implicit.
+
+use crate::common::*;
+use moorline::scene::{Integrator, MotionPath, Scene};
+use moorline::simulation::Simulation;
+
+const IMPLICIT: Integrator = Integrator::AxialImplicit;
+
+/// A dry rope of 40 m between a fixed point and one that sways, whole or cut in its middle by a free point without mass.
+fn rope(cut: bool) -> Draft {
+    let rope = draft(
+        "line_types.rope = { mass = 20.0, axial_stiffness = 1e6, axial_damping = 2e3 }
+        motion.high = { x = [[1.0, 3.0]], z = [[0.5, 2.0]], ramp = 4.0 }
+        solver = { integrator = 'axial_implicit', time_step_max = 0.005 }",
+    )
+    .fixed("low", [0.0, 0.0, -20.0])
+    .coupled("high", [34.0, 0.0, 0.0]);
+    match cut {
+        false => rope.line("rope", ["low", "high"], "rope", 40.0, 8),
+        true => rope
+            .free("middle", [17.0, 0.0, -11.0])
+            .line("lower", ["low", "middle"], "rope", 20.0, 4)
+            .line("upper", ["middle", "high"], "rope", 20.0, 4),
+    }
+}
+
+#[test]
+fn a_dry_rope_cut_by_a_free_point_without_mass_moves_as_the_whole() {
+    let [mut whole, mut cut] = [false, true].map(|cut| following(&rope(cut).scene()));
+    let tension = |simulation: &Simulation, line: usize| simulation.tension_b(line);
+    for _ in 0..400 {
+        run(&mut whole, 0.05, 1);
+        run(&mut cut, 0.05, 1);
+        let [one, other] = [tension(&whole, 0), tension(&cut, 1)];
+        assert!((one - other).abs() < 1e-7 * one.max(1e3), "{one} N, {other} N");
+    }
+}
+
+/// The clump weight on its line, in a fifth of its motion.
+fn clump(step: f64) -> Scene {
+    let mut scene = with_integrator(with_elements(shipped("clump_weight"), 10), IMPLICIT, step);
+    if let Some(MotionPath::Harmonic(motion)) = scene.motion.get_mut("fairlead") {
+        for sine in motion.x.iter_mut().chain(&mut motion.z) {
+            sine[0] *= 0.2;
+        }
+    }
+    scene
+}
+
+#[test]
+fn halving_the_step_of_a_line_with_a_clump_weight_quarters_the_error_at_least() {
+    let steps = [0.05, 0.025, 0.0125, 0.00625];
+    let record = |step: f64| History::record(&mut following(&clump(step)), 0.05, 1200);
+    let reference = record(0.05 / 256.0);
+    let errors = steps.map(|step| record(step).tension_error(&reference, 400));
+    assert!(errors[0] < 2e-3, "{errors:?}");
+    assert_order_at_least(2.0, &steps, &errors);
+}
+
+#[test]
+fn a_bridle_takes_a_fortieth_of_the_explicit_steps_and_has_the_same_tension() {
+    let record = |integrator| {
+        let mut simulation = following(&with_integrator(
+            with_elements(shipped("bridle"), 6),
+            integrator,
+            0.05,
+        ));
+        let history = History::record(&mut simulation, 0.05, 1200);
+        (history, simulation.substeps())
+    };
+    let ((explicit, many), (implicit, few)) = (record(Integrator::Leapfrog), record(IMPLICIT));
+    let error = implicit.tension_error(&explicit, 400);
+    assert!(error < 5e-3, "{error}");
+    assert!(40 * few <= many, "{few} steps, {many} explicit ones");
+}
