@@ -263,6 +263,11 @@ impl LineWork {
         self.released[end as usize]
     }
 
+    /// Returns true for an end that moves as its point is prescribed to.
+    fn is_prescribed(&self, end: End) -> bool {
+        self.tied[end as usize] && !self.released[end as usize]
+    }
+
     /// Releases the ends whose tension at t_n, `t` [s], or time is due.
     pub fn release_ends(&mut self, releases: &[Release; 2], t: f64, step: Step) {
         for end in [End::A, End::B] {
@@ -423,10 +428,14 @@ impl LineWork {
             if flows {
                 past = past - line.water_velocity(row);
             }
-            let rate = past.scale(water.drag_over_mass.load(row));
+            let rate = past.scale(water.drag_over_mass.load(row) * self.interior.load(row));
             greatest = rate.dot(rate).max(greatest);
         }
-        let square = (0..LANES).fold(0.0, |sum: f64, lane| sum.max(greatest[lane]));
+        let ends = [End::A, End::B].map(|end| self.drag_rate_at(end).powi(2));
+        let square = (0..LANES)
+            .map(|lane| greatest[lane])
+            .chain(ends)
+            .fold(0.0, f64::max);
         let along = self
             .water
             .as_ref()
@@ -435,6 +444,15 @@ impl LineWork {
             drag_rate: square.sqrt().max(along),
             is_sound: sound.all_positive(),
         }
+    }
+
+    /// Ratio K |v| / M at an end on a free point [1/s], v relative to the water; zero at a prescribed end, whose motion no drag changes.
+    fn drag_rate_at(&self, end: End) -> f64 {
+        let Some(water) = self.water.as_ref().filter(|_| !self.is_prescribed(end)) else {
+            return 0.0;
+        };
+        let (line, at) = (&self.layout, self.layout.end_slot(end));
+        water.drag_over_mass[at] * (line.velocity.get(at) - line.water_velocity_of(at)).norm()
     }
 
     /// Greatest ratio K |v·t| / M along the line [1/s], where that may exceed the one across it.
@@ -447,7 +465,12 @@ impl LineWork {
             let past = line.velocity.get(at) - line.water_velocity_of(at);
             over_mass[at] * past.dot(&line.tangent_of(i)).abs()
         };
-        line.nodes().enumerate().map(rate).fold(0.0, f64::max)
+        let prescribed = [End::A, End::B].map(|end| self.is_prescribed(end).then(|| line.end_slot(end)));
+        let moving = line
+            .nodes()
+            .enumerate()
+            .filter(|(_, at)| !prescribed.contains(&Some(*at)));
+        moving.map(rate).fold(0.0, f64::max)
     }
 
     /// Whether its nodes move as they did when they were surveyed last and [`Self::resume`] went on from there, and nothing else matters to a survey.

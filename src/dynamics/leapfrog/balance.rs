@@ -196,7 +196,7 @@ impl LineWork {
         self.balance = Some(balance);
         if self.layout.surface.is_some() {
             self.layout
-                .balance_lift(step, [0, 1].map(|side| self.tied[side] && !self.released[side]));
+                .balance_lift(step, [End::A, End::B].map(|end| self.is_prescribed(end)));
         }
     }
 
