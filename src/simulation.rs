@@ -100,7 +100,7 @@ impl Simulation {
             catenaries: lines.map(|line| reference_catenary(&model, line)).collect(),
             paths: snapshot.paths.clone(),
             extrapolation: Extrapolation::none(),
-            prescribed: PrescribedMotion::new(&model, false),
+            prescribed: PrescribedMotion::new(&model, false, work.choices()),
             reactions: Reactions::new(&model),
             scale: Scale::new(&model),
             snapshot,
@@ -151,7 +151,7 @@ impl Simulation {
         (self.snapshot, self.work) = start::begin(&model, time, inputs, follows_scene, shapes)?;
         self.paths.clone_from(&self.snapshot.paths);
         self.model = model;
-        self.prescribed = PrescribedMotion::new(&self.model, follows_scene);
+        self.prescribed = PrescribedMotion::new(&self.model, follows_scene, self.work.choices());
         self.reactions.clear();
         Ok(())
     }
@@ -181,7 +181,8 @@ impl Simulation {
         self.snapshot = snapshot;
         self.paths.clone_from(&self.snapshot.paths);
         self.work.forget();
-        self.prescribed = PrescribedMotion::new(&self.model, self.snapshot.follows_scene);
+        self.prescribed =
+            PrescribedMotion::new(&self.model, self.snapshot.follows_scene, self.work.choices());
         self.reactions.clear();
         winches::follow(&mut self.model, &self.snapshot.state);
     }
@@ -219,8 +220,7 @@ impl Simulation {
         let follows_scene = self.snapshot.follows_scene;
         let at = MotionSource::new(model, &self.paths, follows_scene);
         let time = self.snapshot.state.time;
-        let steps = self.snapshot.counters.substeps;
-        self.prescribed.prepare(&at, [time, time + step], steps);
+        self.prescribed.prepare(&at, [time, time + step]);
         let held = |point: usize, t: f64| self.prescribed.point(&at, point, t);
         let state = &mut self.snapshot.state;
         let advanced = self.work.advance(model, state, step, &held);

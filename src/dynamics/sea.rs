@@ -148,17 +148,14 @@ impl SeaWork {
         span.times = [state.time; 2];
     }
 
-    /// How far the next step goes [s] on the way over `length` [s]: not beyond the end of a span.
+    /// How far the next step goes [s] on the way over `length` [s]: not beyond the end of a span. A span that ends with an equal part but for rounding
+    /// does not change that part.
     pub fn reach(&self, model: &Model, waves: &Waves, state: &State, length: f64) -> f64 {
         let parts = length / waves.interval_below(f64::INFINITY) - ROUNDING;
         let part = length / parts.ceil().max(1.0);
         let left = Place::of(model).map(|place| left(place, state, length));
-        let left = left.filter(|left| *left > 0.0).fold(part, f64::min);
-        if left > (1.0 - ROUNDING) * length {
-            length
-        } else {
-            left
-        }
+        let shorter = left.filter(|left| *left > 0.0 && *left < (1.0 - ROUNDING) * part);
+        shorter.fold(part, f64::min)
     }
 
     /// Begins new spans where old ones are over, for steps of `step` [s], on so many threads of a pool; returns whether there were any.

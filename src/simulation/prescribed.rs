@@ -2,7 +2,7 @@
 //!
 //! The motion is evaluated at both ends of a communication step, where it is read most often. Between them the path of a host is a cubic. Motions of
 //! the scene and points on vessels take sines: a quintic through position, velocity and acceleration at the ends bridges the step, in as many
-//! pieces as keep its error below [`ERROR_MAX`]. Where more pieces would be needed than the last communication step had internal steps, where a
+//! pieces as keep its error below [`ERROR_MAX`]. Where more pieces would be needed than the networks at the point have internal steps, where a
 //! motion has a kink within the step, or where clamped lines need the rotation of a point, the motion is evaluated at every internal step. Bridges
 //! save a quarter of the instructions of a step of `bridle`, whose fairleads move with a vessel.
 //!
@@ -12,10 +12,12 @@
 //!
 //! Source: [`crate::math::hermite`]; Faà di Bruno's formula, e.g. Comtet (1974), Advanced Combinatorics, section 3.3.
 
+use crate::dynamics::Choice;
 use crate::dynamics::motion::HostPath;
 use crate::math::hermite::{QUINTIC_ERROR, Quintic};
 use crate::math::lanes::Lanes;
 use crate::model::{Derivatives, Frame, Kinematics, Model, Motion, Point, Pose, Role};
+use crate::scene::Integrator;
 
 use super::paths::{Paths, is_coupled};
 
@@ -210,11 +212,24 @@ pub(super) struct PrescribedMotion {
     moves: bool,
     /// Bounds of the derivatives of the motions of vessels, where these are motions of the scene other than cubics.
     vessels: Vec<Option<Derivatives>>,
+    /// Longest internal step of the networks at every point [s]; infinite where nothing steps between the ends of a communication step.
+    step_max: Vec<f64>,
 }
 
 impl PrescribedMotion {
-    /// For a model whose points follow the scene, or a host.
-    pub fn new(model: &Model, follows_scene: bool) -> PrescribedMotion {
+    /// For a model whose points follow the scene, or a host; `choices` are those of its networks.
+    pub fn new<'a>(
+        model: &Model,
+        follows_scene: bool,
+        choices: impl Iterator<Item = &'a Choice>,
+    ) -> PrescribedMotion {
+        let mut step_max = vec![f64::INFINITY; model.points.len()];
+        let networks = model.networks.iter().zip(choices);
+        for (network, choice) in networks.filter(|(_, choice)| choice.integrator != Integrator::QuasiStatic) {
+            for point in network.lines.iter().flat_map(|&line| model.lines[line].ends) {
+                step_max[point] = choice.longest.min(step_max[point]);
+            }
+        }
         let mut coupled = 0..;
         let evaluations = model.points.iter().map(|point| {
             let place = if is_coupled(point) { coupled.next() } else { None };
@@ -248,6 +263,7 @@ impl PrescribedMotion {
             vessels: motions
                 .map(|motion| motion.filter(|_| follows_scene)?.derivatives())
                 .collect(),
+            step_max,
         }
     }
 
@@ -256,8 +272,8 @@ impl PrescribedMotion {
         &mut self.hosted
     }
 
-    /// Makes ready for a span of time [s], in which as many internal steps are to be expected.
-    pub fn prepare(&mut self, at: &MotionSource, span: [f64; 2], steps: usize) {
+    /// Makes ready for a span of time [s].
+    pub fn prepare(&mut self, at: &MotionSource, span: [f64; 2]) {
         let goes_on = self.span[1] == span[0];
         self.span = span;
         if at.follows_scene {
@@ -279,7 +295,8 @@ impl PrescribedMotion {
                     let [start, end] = span;
                     let first = if goes_on { ends[1] } else { at.point(point, start) };
                     *ends = [first, at.point(point, end)];
-                    let count = bridge.pieces_over(end - start, steps / 2);
+                    let most = internal_steps(span, self.step_max[point]) / 2;
+                    let count = bridge.pieces_over(end - start, most);
                     let count = count.filter(|_| motion.is_smooth(span));
                     let knot = |k: usize| at.point(point, knot_time(span, k, count));
                     bridge.build(span, count.unwrap_or(0), ends, knot);
@@ -287,11 +304,11 @@ impl PrescribedMotion {
             }
         }
         for vessel in 0..self.vessels.len() {
-            self.prepare_vessel(at, vessel, span, steps - steps.min(1));
+            self.prepare_vessel(at, vessel, span);
         }
     }
 
-    fn prepare_vessel(&mut self, at: &MotionSource, vessel: usize, span: [f64; 2], most: usize) {
+    fn prepare_vessel(&mut self, at: &MotionSource, vessel: usize, span: [f64; 2]) {
         let model = at.model;
         let poses = span.map(|t| at.pose(vessel, t));
         let frames = poses.each_ref().map(|pose| at.frame_at(vessel, pose));
@@ -305,8 +322,12 @@ impl PrescribedMotion {
             None => cubic_turn(&poses, length),
         };
         let (shift, spread) = (bounds.map_or(0.0, |bounds| bounds.shift(length)), bell(turned));
-        let evaluations = self.evaluations.iter_mut().zip(&mut self.ends);
-        for (point, (evaluation, ends)) in model.points.iter().zip(evaluations) {
+        let evaluations = self
+            .evaluations
+            .iter_mut()
+            .zip(&mut self.ends)
+            .zip(&self.step_max);
+        for (point, ((evaluation, ends), step_max)) in model.points.iter().zip(evaluations) {
             let (Evaluation::Bridged(bridge), Role::Carried { vessel: carrier, arm }) =
                 (evaluation, &point.role)
             else {
@@ -316,6 +337,7 @@ impl PrescribedMotion {
                 continue;
             }
             let carry = |frame: &Frame| model.vessels[vessel].carry(frame, *arm);
+            let most = internal_steps(span, *step_max).saturating_sub(1);
             let count = pieces(shift + arm.norm() * spread, most).filter(|_| smooth);
             *ends = frames.each_ref().map(carry);
             bridge.build(span, count.unwrap_or(0), ends, |knot| {
@@ -355,6 +377,11 @@ impl PrescribedMotion {
             Evaluation::Host(_) | Evaluation::Direct => at.point(point, t),
         }
     }
+}
+
+/// Internal steps of at most `step_max` [s] in a span of time [s].
+fn internal_steps([start, end]: [f64; 2], step_max: f64) -> usize {
+    ((end - start) / step_max).ceil() as usize
 }
 
 /// Time of a knot between pieces [s].
@@ -435,20 +462,23 @@ mod tests {
         [motion]
         left = { x = [[-6.0, 10.0], [-0.3, 1.6]], z = [[2.0, 8.0, 0.3]], ramp = 20.0 }
         buoy = { x = [[4.0, 11.0]], roll = [[0.1, 9.0]], pitch = [[0.2, 7.0, 1.0], [0.02, 2.0]], ramp = 20.0 }
+        [solver]
+        time_step_max = 0.002
     "#;
 
     /// Greatest distances of a bridged point from where it is [m] and of its velocities [m/s], over steps of a length [s].
     fn misses(point: &str, step: f64) -> [f64; 2] {
         let scene = Scene::from_toml(SCENE).unwrap();
         let model = Model::new(&scene).unwrap();
-        let paths = Paths::at_rest(&model, 0.0, &Inputs::new(&model), true);
-        let at = MotionSource::new(&model, &paths, true);
-        let mut held = PrescribedMotion::new(&model, true);
+        let inputs = Inputs::new(&model);
+        let (snapshot, work) = start::begin(&model, 0.0, inputs, true, start::Shapes::AsGiven).unwrap();
+        let at = MotionSource::new(&model, &snapshot.paths, true);
+        let mut held = PrescribedMotion::new(&model, true, work.choices());
         let point = model.point_index(point).unwrap();
         let mut worst = [0.0_f64; 2];
         for k in 0..(30.0 / step) as usize {
             let start = k as f64 * step;
-            held.prepare(&at, [start, start + step], 100);
+            held.prepare(&at, [start, start + step]);
             for part in [0.0, 0.21, 0.5, 0.83, 1.0] {
                 let t = start + part * step;
                 let (is, should) = (held.point(&at, point, t), at.point(point, t));
@@ -474,7 +504,7 @@ mod tests {
     fn a_carried_point_is_bridged_along_the_path_of_a_host_too() {
         let scene = Scene::from_toml(SCENE).unwrap();
         let model = Model::new(&scene).unwrap();
-        let (snapshot, _) =
+        let (snapshot, work) =
             start::begin(&model, 0.0, Inputs::new(&model), false, start::Shapes::AsGiven).unwrap();
         let mut paths = snapshot.paths.clone();
         let [place, angles] = &mut paths.vessels[0].0;
@@ -483,8 +513,8 @@ mod tests {
             path.follow([0.0, 0.1], [end, Lanes::splat(2e-3)]);
         }
         let at = MotionSource::new(&model, &paths, false);
-        let mut held = PrescribedMotion::new(&model, false);
-        held.prepare(&at, [0.0, 0.1], 100);
+        let mut held = PrescribedMotion::new(&model, false, work.choices());
+        held.prepare(&at, [0.0, 0.1]);
         let point = model.point_index("right").unwrap();
         let Evaluation::Bridged(bridge) = &held.evaluations[point] else {
             panic!("a point on a vessel without clamps is bridged");

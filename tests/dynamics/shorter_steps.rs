@@ -101,3 +101,33 @@ fn drag_along_a_line_that_is_light_beside_the_water_it_displaces_shortens_the_st
     let error: Vec<f64> = found.iter().zip(&reference).map(|(a, b)| a - b).collect();
     assert!(rms(&error) < 0.02 * rms(&swing), "{} N", rms(&error));
 }
+
+/// Internal steps of the communication steps of a light rope in deep water, over a level seabed or one with a slope, whose buoy heaves.
+fn steps_of_a_heave(seabed: &str, ends: [&str; 2]) -> Vec<usize> {
+    let rope = draft(format!(
+        "water = {{ density = 1025.0, surface = false }}
+        seabed = {seabed}
+        motion.buoy = {{ z = [[2.0, 4.0]] }}
+        line_types.rope = {{ mass = 0.6, diameter = 0.03, axial_stiffness = 2.0e4, axial_damping = 20.0, drag_normal = 1.6 }}",
+    ))
+    .fixed("anchor", [60.0, 0.0, -58.0])
+    .coupled("buoy", [0.0; 3])
+    .line("rope", ends, "rope", 95.0, 4);
+    let mut simulation = following(&with_integrator(rope.scene(), Integrator::Leapfrog, 0.05));
+    let steps = (0..40).map(|_| {
+        simulation.advance(0.1).unwrap();
+        simulation.substeps()
+    });
+    steps.collect()
+}
+
+#[test]
+fn drag_at_an_end_that_is_held_shortens_no_step_whatever_lies_below_and_wherever_the_line_starts() {
+    let ends = ["anchor", "buoy"];
+    let level = steps_of_a_heave("{ depth = 600.0 }", ends);
+    assert_eq!(
+        level,
+        steps_of_a_heave("{ depth = 600.0, slope = [0.02, 0.01] }", ends)
+    );
+    assert_eq!(level, steps_of_a_heave("{ depth = 600.0 }", ["buoy", "anchor"]));
+}

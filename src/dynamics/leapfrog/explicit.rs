@@ -26,7 +26,7 @@ use super::layout::{Layout, interior};
 use super::network::LeapfrogNetwork;
 use super::point::PointLoad;
 use super::step::Step;
-use super::{EndMotion, Kernel, LeapfrogLine};
+use super::{ENDS, EndMotion, Kernel, LeapfrogLine};
 use crate::dynamics::Choice;
 use crate::dynamics::limit::{ExplicitLimit, expected_slope};
 use crate::dynamics::motion::AxisPath;
@@ -367,11 +367,22 @@ impl ExplicitLine {
             if flows {
                 past = past - line.water_velocity(row);
             }
-            let rate = past.scale(water.drag_over_mass.load(row));
+            let rate = past.scale(water.drag_over_mass.load(row) * self.kernel.interior.load(row));
             greatest = rate.dot(rate).max(greatest);
         }
         let square = (0..LANES).fold(0.0, |sum: f64, lane| sum.max(greatest[lane]));
-        square.sqrt().max(self.drag_rate_along(water))
+        let ends = ENDS.map(|end| self.drag_rate_at(end, water));
+        let across = ends.into_iter().fold(square.sqrt(), f64::max);
+        across.max(self.drag_rate_along(water))
+    }
+
+    /// Ratio K |v| / M at an end that forces move [1/s], v relative to the water; zero at a prescribed end, whose motion no drag changes.
+    fn drag_rate_at(&self, end: End, water: &WaterWork) -> f64 {
+        let (line, at) = (&self.layout, self.layout.end_slot(end));
+        match line.is_open(end) {
+            true => water.drag_over_mass[at] * (line.velocity.get(at) - line.water_velocity_of(at)).norm(),
+            false => 0.0,
+        }
     }
 
     /// Greatest ratio K |v·t| / M along the line [1/s], where that may exceed the one across it.
@@ -384,7 +395,10 @@ impl ExplicitLine {
             let past = line.velocity.get(at) - line.water_velocity_of(at);
             over_mass[at] * past.dot(&line.tangent_of(i)).abs()
         };
-        line.nodes().enumerate().map(rate).fold(0.0, f64::max)
+        let prescribed = ENDS.map(|end| (!line.is_open(end)).then(|| line.end_slot(end)));
+        let nodes = line.nodes().enumerate();
+        let moving = nodes.filter(|(_, at)| !prescribed.contains(&Some(*at)));
+        moving.map(rate).fold(0.0, f64::max)
     }
 
     /// Returns whether [`Self::drag_rate`] is that of the last step also at the start of the next one.
