@@ -1,9 +1,13 @@
 //! Scenes, runs, histories, measures of error and claims that many tests make.
 #![allow(dead_code, unused_imports)] // each test binary uses a part
 
+mod chance;
 mod draft;
+mod text;
 
+pub use chance::Chance;
 pub use draft::{Draft, draft};
+pub use text::{assert_answers, assert_says};
 
 use moorline::elements::Workspace;
 use moorline::model::{Model, PointState, State};
@@ -230,18 +234,6 @@ pub fn assert_written_and_read(scene: &Scene) {
     assert_eq!(Scene::from_toml(&text).unwrap(), *scene, "{text}");
 }
 
-/// Claims that a text has all of these parts.
-pub fn assert_says(text: &str, parts: &[&str]) {
-    for part in parts {
-        assert!(text.contains(part), "`{part}` is not in: {text}");
-    }
-}
-
-/// Claims that a scene is refused with a message that has all of these parts.
-pub fn assert_refused(text: &str, parts: &[&str]) {
-    assert_says(&Scene::from_toml(text).unwrap_err().to_string(), parts);
-}
-
 /// The words of `check` on a scene, in one line.
 pub fn in_words(scene: &Scene) -> String {
     scene.in_words().split_whitespace().collect::<Vec<_>>().join(" ")
@@ -416,31 +408,9 @@ pub fn zero_crossings(samples: &[f64], step: f64) -> Vec<f64> {
     pairs.filter_map(crossing).collect()
 }
 
-/// A number in 0 … 1, and the next seed.
+/// A number in 0 … 1, and the next seed: the upper bits of a linear congruential generator with Knuth's multiplier and increment.
 pub fn random(seed: &mut u64) -> f64 {
-    let mut chance = Chance(*seed);
-    chance.next();
-    *seed = chance.0;
+    let multiplied = seed.wrapping_mul(6_364_136_223_846_793_005);
+    *seed = multiplied.wrapping_add(1_442_695_040_888_963_407);
     (*seed >> 11) as f64 / (1u64 << 53) as f64
-}
-
-/// A generator of numbers from a seed: Knuth's multiplier and increment of the linear congruential kind, upper bits.
-pub struct Chance(pub u64);
-
-impl Chance {
-    fn next(&mut self) {
-        let multiplied = self.0.wrapping_mul(6_364_136_223_846_793_005);
-        self.0 = multiplied.wrapping_add(1_442_695_040_888_963_407);
-    }
-
-    /// A number below `count`.
-    pub fn below(&mut self, count: usize) -> usize {
-        self.next();
-        ((self.0 >> 33) as usize) % count.max(1)
-    }
-
-    /// An element of a list.
-    pub fn one_of<'a, T>(&mut self, list: &'a [T]) -> &'a T {
-        &list[self.below(list.len())]
-    }
 }

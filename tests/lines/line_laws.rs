@@ -159,31 +159,6 @@ fn a_rope_that_dampers_draw_before_it_is_taut_converges_to_the_motion_of_explici
 }
 
 #[test]
-fn a_table_that_does_not_rise_is_refused_with_its_row() {
-    let text = rope("axial_stiffness = 1.0", 200.0, "").to_toml();
-    for (table, at, said) in [
-        (
-            "[[0.0, 0.0], [0.01, 5.0], [0.02, 5.0]]",
-            "[2]",
-            "tension must rise",
-        ),
-        (
-            "[[0.0, 0.0], [0.01, 5.0], [0.01, 6.0]]",
-            "[2]",
-            "strain must rise",
-        ),
-        ("[[0.0, 10.0], [0.01, 50.0]]", "[0]", "[0.0, 0.0]"),
-        ("[[0.0, 0.0]]", "", "two rows"),
-        ("{ file = \"rope.txt\" }", "", "rope.txt"),
-    ] {
-        let text = text.replace("axial_stiffness = 1.0", &format!("tension_strain = {table}"));
-        let mistake = Scene::from_toml(&text).unwrap_err();
-        assert_eq!(mistake.at, format!("line_types.rope.tension_strain{at}"));
-        assert_says(&mistake.problem, &[said]);
-    }
-}
-
-#[test]
 fn a_scene_with_a_table_is_written_and_read_back_to_the_same() {
     assert_written_and_read(&rope(TABLE, 203.0, SWAY));
 }

@@ -279,16 +279,3 @@ fn an_end_that_may_be_released_limits_the_step_as_the_half_node_that_it_becomes(
         assert_relative_eq!(limit(keys), 0.76 / omega, max_relative = 1e-9);
     }
 }
-
-#[test]
-fn lines_that_cannot_be_released_are_refused() {
-    let text = chain("release = 'b'", "").to_toml();
-    let bending = text.replace("mass = 20.0", "mass = 20.0\nbending_stiffness = 10.0");
-    assert_refused(&bending, &["bending"]);
-    assert_refused(
-        &text.replace("integrator = \"auto\"", "integrator = \"quasi_static\""),
-        &["falls"],
-    );
-    let breaking = chain("break = { at = 'a', time = 1.0 }", "").to_toml();
-    assert_refused(&breaking.replace("time = 1.0\n", ""), &["nothing breaks"]);
-}

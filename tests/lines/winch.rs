@@ -259,23 +259,6 @@ fn a_length_that_the_winch_does_not_have_is_refused_and_leaves_the_state() {
 }
 
 #[test]
-fn a_line_that_no_winch_can_serve_is_refused() {
-    let text = chain(100.0, 25).with(WINCH).scene().to_toml();
-    for (right, wrong, said) in [
-        ("end = \"b\"", "end = \"a\"", "the other way round"),
-        ("length_max = 30.0", "length_max = -1.0", "not positive"),
-        ("mass = 20.0", "mass = 20.0\nbending_stiffness = 10.0", "bending"),
-        (
-            "integrator = \"auto\"",
-            "integrator = \"generalised_alpha\"",
-            "leapfrog",
-        ),
-    ] {
-        assert_refused(&text.replace(right, wrong), &[said]);
-    }
-}
-
-#[test]
 fn a_line_on_a_rough_bed_stays_at_rest_and_pays_out_as_on_a_smooth_one() {
     let text = chain(100.0, 25).with(WINCH).scene().to_toml();
     let text = text.replace("\nfriction = 0.0", "");

@@ -393,57 +393,6 @@ fn a_scene_with_a_current_survives_being_written_and_read() {
 }
 
 #[test]
-fn every_mistake_in_a_current_is_refused_with_its_place() {
-    let draft_in = |current: &str| {
-        draft(format!(
-            "water = {{ density = 1025.0, current = {current} }}
-            line_types.rope = {{ mass = 12.0, diameter = 0.1, axial_stiffness = 1e6, drag_normal = 1.0 }}"
-        ))
-        .fixed("a", [0.0, 0.0, -10.0])
-        .coupled("b", [0.0; 3])
-        .line("rope", ["a", "b"], "rope", 11.0, None)
-    };
-    for (current, place, problem) in [
-        ("{}", "", "a current needs"),
-        (
-            "{ velocity = [1.0, 0.0, 0.0], profile = [[0.0, 1.0, 0.0]] }",
-            "",
-            "cannot both",
-        ),
-        (
-            "{ velocity = [300.0, 0.0, 0.0] }",
-            ".velocity[0]",
-            "beyond the limit of 100 m/s",
-        ),
-        (
-            "{ velocity = [0.0, nan, 0.0] }",
-            ".velocity[1]",
-            "not a finite number",
-        ),
-        ("{ profile = [] }", ".profile", "no rows"),
-        (
-            "{ profile = [[0.0, 1.0, 0.0], [0.0, 2.0, 0.0]] }",
-            ".profile[1][0]",
-            "row 0 is at 0 m too",
-        ),
-        (
-            "{ profile = [[inf, 1.0, 0.0]] }",
-            ".profile[0][0]",
-            "not a finite number",
-        ),
-        (
-            "{ velocity = [1.0, 0.0, 0.0], factor = { ramp = [5.0, 0.0, 1.0, 1.0] } }",
-            ".factor.ramp",
-            "not after its start",
-        ),
-    ] {
-        let place = format!("water.current{place}");
-        assert_refused(&draft_in(current).text(), &[&place, problem]);
-    }
-    assert_refused(&draft_in("{ speed = 1.0 }").text(), &["speed"]);
-}
-
-#[test]
 fn a_current_does_not_act_on_beams_and_says_so() {
     let mut by_type = riser(8, SHEARED);
     by_type

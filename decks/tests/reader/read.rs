@@ -93,11 +93,13 @@ fn the_traps_of_a_deck_are_named_with_their_lines() {
         assert!(found, "{line}{part}\n{said}");
     }
     let said = notes(&read("moordyn_v1.dat"));
-    assert!(
-        said.contains("file line 6: chain: the header has Pa s above the damping"),
-        "{said}"
+    assert_says(
+        &said,
+        &[
+            "file line 6: chain: the header has Pa s above the damping",
+            "read as MoorDyn v1",
+        ],
     );
-    assert!(said.contains("read as MoorDyn v1"), "{said}");
 }
 
 #[test]
@@ -114,34 +116,26 @@ fn a_diameter_that_is_too_large_or_too_small_for_the_mass_is_noted_and_that_of_o
     assert!(of("90.0     77.7 ").contains("with the diameter in m"));
     assert!(of("0.009    77.7 ").contains("more than steel"));
     let map = with(MAP, "77.7066 ", "0.077707");
-    let said = notes(&load_bytes(map.as_bytes(), &deep()).unwrap());
-    assert!(
-        said.contains("line type Material, Diam: a mass of 0.07771 kg/m"),
-        "{said}"
-    );
+    let said = notes(&load_deep(&map).unwrap());
+    assert_says(&said, &["line type Material, Diam: a mass of 0.07771 kg/m"]);
 }
 
 #[test]
 fn the_words_for_a_deck_tell_of_its_vessel_and_of_where_points_are_on_it() {
-    let words = read("moordyn_c.txt").scene.in_words();
-    let words = words.split_whitespace().collect::<Vec<_>>().join(" ");
-    assert!(
-        words.contains("body1: moved by the host, its origin at (0, 0, -20) m, at roll 0 rad, pitch 0 rad, yaw 1.5708 rad"),
-        "{words}"
+    let words = in_words(&read("moordyn_c.txt").scene);
+    assert_says(
+        &words,
+        &[
+            "body1: moved by the host, its origin at (0, 0, -20) m, at roll 0 rad, pitch 0 rad, yaw 1.5708 rad",
+        ],
     );
-    assert!(
-        words.contains("carries point7; in `run` it stays where it is"),
-        "{words}"
-    );
-    assert!(
-        words.contains("point7: rides on body1, at (5, 0, 15) m in its frame"),
-        "{words}"
-    );
+    assert_says(&words, &["carries point7; in `run` it stays where it is"]);
+    assert_says(&words, &["point7: rides on body1, at (5, 0, 15) m in its frame"]);
     // In its body's frame the point is above z = 0, but the body lies deep, and turned.
     assert!(!notes(&read("moordyn_c.txt")).contains("above z = 0"));
-    assert!(
-        words.contains("line1: from rod1a to point7, 160 m of cable in 16 elements; 27.902 m longer"),
-        "{words}"
+    assert_says(
+        &words,
+        &["line1: from rod1a to point7, 160 m of cable in 16 elements; 27.902 m longer"],
     );
 }
 
@@ -187,9 +181,7 @@ fn a_line_is_clamped_as_it_runs_along_or_against_its_rod() {
     let direction = |end: &str, line: &str| {
         let deck = with(C_STYLE, "118    0    -60   0 ", "118    0    -60   4 ");
         let deck = with(&deck, "cable      R1A      7  ", line);
-        let scene = load_text(&deck)
-            .unwrap_or_else(|error| panic!("{}", error.list()))
-            .scene;
+        let scene = loaded(&deck).scene;
         let clamped = (scene.lines[0].clamped_a, scene.lines[0].clamped_b);
         assert!(scene.points.iter().any(|point| point.name == end));
         clamped
@@ -205,9 +197,7 @@ fn a_line_is_clamped_as_it_runs_along_or_against_its_rod() {
 fn a_clamp_on_a_turned_body_is_a_direction_in_global_axes() {
     let rod = "1    clamp     Fixed      120   0    -60   118    0    -60   0";
     let deck = with(C_STYLE, rod, "1 clamp Body1 5 0 0 3 0 0 0");
-    let scene = load_text(&deck)
-        .unwrap_or_else(|error| panic!("{}", error.list()))
-        .scene;
+    let scene = loaded(&deck).scene;
     assert_eq!(point(&scene, "rod1a").on.as_deref(), Some("body1"));
     let [x, y, z] = scene.lines[0].clamped_a.unwrap();
     assert!(
@@ -223,9 +213,7 @@ fn points_on_a_fixed_body_are_fixed_where_it_has_them() {
         "1    Coupled     0      0    -20",
         "1    Fixed     10      0    -20",
     );
-    let scene = load_text(&deck)
-        .unwrap_or_else(|error| panic!("{}", error.list()))
-        .scene;
+    let scene = loaded(&deck).scene;
     assert!(scene.vessels.is_empty());
     let held = point(&scene, "point7");
     assert_eq!(held.kind, PointKind::Fixed);
@@ -240,8 +228,7 @@ fn points_on_a_fixed_body_are_fixed_where_it_has_them() {
 fn a_farm_stands_where_its_host_says() {
     let said = said(FARM);
     assert!(said.starts_with("input:10:6: Turbine1: "), "{said}");
-    assert!(said.contains("\ninput:11:6: Turbine2: "), "{said}");
-    assert!(said.contains("--at turbine1=X,Y,Z"), "{said}");
+    assert_says(&said, &["\ninput:11:6: Turbine2: ", "--at turbine1=X,Y,Z"]);
     let scene = load_with(&deck("farm.dat"), &supplement()).unwrap().scene;
     let stands: Vec<_> = scene
         .vessels
@@ -263,7 +250,7 @@ fn a_farm_stands_where_its_host_says() {
 #[test]
 fn a_map_deck_repeats_its_lines_and_has_the_published_tension_of_oc3() {
     let error = load(&deck("oc3.map")).unwrap_err().list();
-    assert!(error.contains("oc3.map:8:32: NODE PROPERTIES, Z: "), "{error}");
+    assert_says(&error, &["oc3.map:8:32: NODE PROPERTIES, Z: "]);
     let loaded = load_with(&deck("oc3.map"), &deep()).unwrap();
     assert_eq!(loaded.format, "MAP++");
     let scene = &loaded.scene;
@@ -279,10 +266,7 @@ fn a_map_deck_repeats_its_lines_and_has_the_published_tension_of_oc3() {
         assert!((tension / 911_089.46 - 1.0).abs() < 1e-5, "{tension}");
     }
     let said = notes(&loaded);
-    assert!(
-        said.contains("file line 17: \"inner_ftol 1e-6\" is a comment"),
-        "{said}"
-    );
+    assert_says(&said, &["file line 17: \"inner_ftol 1e-6\" is a comment"]);
 }
 
 #[test]
@@ -294,9 +278,7 @@ fn a_nodes_mass_volume_and_force_in_a_map_deck_reach_the_scene() {
     );
     let deck = with(&deck, "902.2       1         2 ", "600 1 3\n2 Material 350 3 2 ");
     let deck = with(&deck, "repeat 120 240\n", "");
-    let scene = load_bytes(deck.as_bytes(), &deep())
-        .unwrap_or_else(|e| panic!("{}", e.list()))
-        .scene;
+    let scene = load_deep(&deck).unwrap_or_else(|e| panic!("{}", e.list())).scene;
     let node = point(&scene, "point3");
     assert_eq!(
         (node.kind, node.position),
@@ -398,19 +380,15 @@ fn a_converted_deck_says_units_and_lines_of_the_file() {
     }
 }
 
-fn loaded(text: &str) -> LoadedScene {
-    load_text(text).unwrap_or_else(|error| panic!("{}", error.list()))
-}
-
 #[test]
 fn a_map_deck_is_quasi_static_and_says_so() {
     let loaded = load_with(&deck("oc3.map"), &deep()).unwrap();
     assert_eq!(loaded.scene.solver.integrator, Integrator::QuasiStatic);
     let said = notes(&loaded);
-    assert!(said.contains("quasi-static, as MAP++ is"), "{said}");
-    assert!(loaded.scene.in_words().contains("quasi-static: an equilibrium"));
+    assert_says(&said, &["quasi-static, as MAP++ is"]);
+    assert_says(&loaded.scene.in_words(), &["quasi-static: an equilibrium"]);
     let converted = loaded.to_commented_toml();
-    assert!(converted.contains("integrator = \"quasi_static\""), "{converted}");
+    assert_says(&converted, &["integrator = \"quasi_static\""]);
 }
 
 #[test]
@@ -432,10 +410,7 @@ fn mass_of_a_coupled_point_in_a_deck_reaches_the_force_on_what_moves_it() {
     assert_eq!(point(&heavy.scene, "point7").mass, Some(400.0));
     assert_eq!(point(&heavy.scene, "point3").mass, None);
     let said = notes(&heavy);
-    assert!(
-        said.contains("point 3: mass, volume and drag of a fixed point"),
-        "{said}"
-    );
+    assert_says(&said, &["point 3: mass, volume and drag of a fixed point"]);
     assert!(!said.contains("point 2: mass"), "{said}");
     let force = |loaded: &LoadedScene| {
         let simulation = Simulation::new(&loaded.scene).unwrap();
@@ -444,12 +419,8 @@ fn mass_of_a_coupled_point_in_a_deck_reaches_the_force_on_what_moves_it() {
     };
     let own = force(&heavy) - force(&light);
     assert!((own + (9000.0 - 1028.0 * 0.9) * 9.81).abs() < 1e-6, "{own} N");
-    let words = heavy.scene.in_words();
-    let words = words.split_whitespace().collect::<Vec<_>>().join(" ");
-    assert!(
-        words.contains("add to the force of its lines on what moves it"),
-        "{words}"
-    );
+    let words = in_words(&heavy.scene);
+    assert_says(&words, &["add to the force of its lines on what moves it"]);
 }
 
 #[test]
@@ -462,7 +433,7 @@ fn a_deck_that_gives_no_time_to_come_to_rest_starts_from_its_positions() {
         "---------------------- LINES --------------------------------------\n",
         free,
     );
-    assert!(text.contains(buoy));
+    assert_says(&text, &[buoy]);
     let text = with(
         &text,
         "1        chain        1         4      340.0 ",
@@ -495,17 +466,13 @@ fn a_deck_that_gives_no_time_to_come_to_rest_starts_from_its_positions() {
         assert!((node.z - z).abs() < 1e-9, "{} {z}", node.z);
     }
     let said = notes(&at_once);
-    assert!(
-        said.contains("TmaxIC 0: runs start with free points where the file has them"),
-        "{said}"
+    assert_says(
+        &said,
+        &["TmaxIC 0: runs start with free points where the file has them"],
     );
     assert!(!said.contains("dtIC, TmaxIC"), "{said}");
-    let words = at_once.scene.in_words();
-    let words = words.split_whitespace().collect::<Vec<_>>().join(" ");
-    assert!(
-        words.contains("starts on the catenary between its ends"),
-        "{words}"
-    );
+    let words = in_words(&at_once.scene);
+    assert_says(&words, &["starts on the catenary between its ends"]);
     let converted = Scene::from_toml(&at_once.to_commented_toml()).unwrap();
     assert_eq!(converted, at_once.scene);
 }
@@ -513,7 +480,7 @@ fn a_deck_that_gives_no_time_to_come_to_rest_starts_from_its_positions() {
 #[test]
 fn a_deck_with_friction_says_how_much_of_it_holds_at_rest() {
     let said = notes(&loaded(C_STYLE));
-    assert!(said.contains("friction at rest: "), "{said}");
+    assert_says(&said, &["friction at rest: "]);
     let said = notes(&read("openfast_v2.dat"));
     assert!(!said.contains("friction at rest: "), "{said}");
 }
@@ -602,14 +569,12 @@ fn the_motion_of_a_decks_vessel_turns_it_as_moordyn_does_and_an_fmu_as_it_says()
 
 #[test]
 fn the_words_for_a_deck_name_both_orders_of_angles() {
-    let words = loaded(C_STYLE).scene.in_words();
-    let words = words.split_whitespace().collect::<Vec<_>>().join(" ");
-    assert!(
-        words.contains("Rx(roll)·Ry(pitch)·Rz(yaw), as in MoorDyn"),
-        "{words}"
-    );
-    assert!(
-        words.contains("of the FMU by Rz(yaw)·Ry(pitch)·Rx(roll)"),
-        "{words}"
+    let words = in_words(&loaded(C_STYLE).scene);
+    assert_says(
+        &words,
+        &[
+            "Rx(roll)·Ry(pitch)·Rz(yaw), as in MoorDyn",
+            "of the FMU by Rz(yaw)·Ry(pitch)·Rx(roll)",
+        ],
     );
 }

@@ -314,7 +314,7 @@ fn a_state_file_without_time_to_come_to_rest_is_one_note() {
         panic!("{start:#?}");
     };
     let read = "ICfile start.ic: the state in this file is not read; TmaxIC 0: runs start with free points where the file has them";
-    assert!(note.contains(read), "{note}");
+    assert_says(&note, &[read]);
 }
 
 #[test]
@@ -404,9 +404,6 @@ fn a_deck_of_rods_or_bodies_alone_is_told_so() {
     let mut text = C_STYLE.to_string();
     text.replace_range(start..end, "");
     let error = said(&text);
-    assert!(
-        error.contains("no lines in LINES: rods and bodies without lines"),
-        "{error}"
-    );
+    assert_says(&error, &["no lines in LINES: rods and bodies without lines"]);
     assert_eq!(error.lines().count(), 1, "{error}");
 }
