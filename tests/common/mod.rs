@@ -9,6 +9,7 @@ pub use chance::Chance;
 pub use draft::{Draft, draft};
 pub use text::{assert_answers, assert_says};
 
+use moorline::dynamics::energy_balance::Flow;
 use moorline::elements::Workspace;
 use moorline::model::{Model, PointState, State};
 use moorline::scene::{InitialShape, Integrator, Scene};
@@ -172,15 +173,24 @@ pub fn balanced(mut scene: Scene) -> Scene {
     scene
 }
 
+/// Error of the energy balance [J].
+pub fn balance_error(simulation: &Simulation) -> f64 {
+    simulation.energy_balance().unwrap().error()
+}
+
+/// Energy that has entered and left the lines since the start [J].
+pub fn flow(simulation: &Simulation) -> Flow {
+    simulation.energy_balance().unwrap().flow
+}
+
 /// Error of the energy balance over the external work [-].
 pub fn error_of_given(simulation: &Simulation) -> f64 {
-    simulation.energy_balance().unwrap().error().abs()
-        / simulation.energy_balance().unwrap().flow.external_work
+    balance_error(simulation).abs() / flow(simulation).external_work
 }
 
 /// Error of the energy balance over the dissipation [-].
 pub fn error_of_lost(simulation: &Simulation) -> f64 {
-    simulation.energy_balance().unwrap().error().abs() / simulation.energy_balance().unwrap().flow.dissipation
+    balance_error(simulation).abs() / flow(simulation).dissipation
 }
 
 /// Claims that a simulation goes on bit for bit from its own snapshot put back, and another simulation of the scene from the snapshot's bytes.

@@ -68,12 +68,12 @@ fn jumping_balance(mut scene: Scene) -> f64 {
         let [x, y, z] = [(0.9 * t).sin(), 0.5 * (0.7 * t).sin(), -1.5 * t.sin()];
         simulation.set_body(body, [x, y, z, 0.0, 0.0, 0.0], [None; 6]);
         simulation.advance(0.1).unwrap();
-        let flow = simulation.energy_balance().unwrap().flow;
+        let flow = flow(&simulation);
         booked +=
             (flow.external_work - last.external_work).abs() + (flow.dissipation - last.dissipation).abs();
         last = flow;
     }
-    simulation.energy_balance().unwrap().error() / booked
+    balance_error(&simulation) / booked
 }
 
 #[test]

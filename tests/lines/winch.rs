@@ -142,10 +142,10 @@ fn the_ledger_closes_through_splits() {
         let mut worst: f64 = 0.0;
         for _ in 0..200 {
             simulation.advance(0.1).unwrap();
-            worst = worst.max(simulation.energy_balance().unwrap().error().abs());
+            worst = worst.max(balance_error(&simulation).abs());
         }
         assert!(nodes(&simulation).len() > 26);
-        worst / simulation.energy_balance().unwrap().flow.dissipation
+        worst / flow(&simulation).dissipation
     });
     println!("ledger: {errors:?}");
     assert!(

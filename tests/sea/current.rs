@@ -290,7 +290,7 @@ fn the_ledger_of_a_line_in_a_changing_current_closes_at_second_order_or_at_any_s
         assert_ledger_order(integrator, coarse, 1e-6, |step| {
             let mut simulation = start(&balanced(tidal(integrator, step)));
             run(&mut simulation, 0.4, 20);
-            let flow = &simulation.energy_balance().unwrap().flow;
+            let flow = flow(&simulation);
             assert!(flow.external_work > 1e4 && flow.dissipation > 1e4, "{flow:?}");
             error_of_given(&simulation)
         });

@@ -150,9 +150,9 @@ fn the_ledger_of_a_line_that_dips_in_and_out_closes_with_the_step() {
             let mut worst = 0.0_f64;
             for _ in 0..16 {
                 simulation.advance(0.5).unwrap();
-                worst = worst.max(simulation.energy_balance().unwrap().error().abs());
+                worst = worst.max(balance_error(&simulation).abs());
             }
-            worst / simulation.energy_balance().unwrap().flow.dissipation.abs()
+            worst / flow(&simulation).dissipation.abs()
         });
         println!("{integrator:?}: {coarse:e}, {fine:e} of the energy lost");
         assert!(fine < 1e-4 && fine < 0.1 * coarse, "{integrator:?}");

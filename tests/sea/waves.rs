@@ -202,7 +202,7 @@ fn the_ledger_closes_in_waves_at_second_order_or_at_any_step() {
         assert_ledger_order(integrator, coarse, 1e-4, |step| {
             let mut simulation = start(&balanced(riser(integrator, step)));
             run(&mut simulation, 0.4, 40);
-            let flow = &simulation.energy_balance().unwrap().flow;
+            let flow = flow(&simulation);
             assert!(flow.external_work > 1e3 && flow.dissipation > 1e3, "{flow:?}");
             error_of_given(&simulation)
         });
