@@ -9,7 +9,7 @@
 //!     11:8: line_types.chain.mass: -100 kg/m is negative
 //! ```
 //!
-//! `\n` stands for a line break. Words that go on over several lines are joined by blanks.
+//! A line without `=>` is put before the base text: all of the text where that is empty. `\n` stands for a line break. Words that go on over several lines are joined by blanks.
 #![allow(dead_code)] // each test binary uses a part
 
 /// Claims that a text has all of these parts.
@@ -39,9 +39,7 @@ fn cases(table: &str) -> Vec<Case> {
             *last += if last.is_empty() { "" } else { " " };
             *last += &words.replace("\\n", "\n");
         } else {
-            let (old, new) = line
-                .split_once("=>")
-                .unwrap_or_else(|| panic!("no `=>` in {line}"));
+            let (old, new) = line.split_once("=>").unwrap_or(("", line));
             let change = [old, new].map(|part| part.trim().replace("\\n", "\n"));
             match found.last_mut().filter(|case| case.words.is_empty()) {
                 Some(case) => case.changes.push(change),
