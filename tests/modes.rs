@@ -15,7 +15,7 @@ use moorline::statics::modes::{Modes, ModesError};
 
 /// A flat net without gravity or water, its ropes of one element drawn to 10 m from 9.5 m.
 fn taut_net(count: usize) -> Scene {
-    let mut scene = scene(&net::net(count, 1));
+    let mut scene = net::net(count, 1);
     (scene.gravity, scene.water) = (0.0, None);
     for section in scene.lines.iter_mut().flat_map(|line| &mut line.sections) {
         section.length = 9.5;
@@ -54,7 +54,7 @@ fn a_taut_net_has_the_frequencies_of_its_masses_between_springs() {
 #[test]
 fn the_lowest_modes_of_a_large_net_are_those_that_all_modes_begin_with() {
     const COUNT: usize = 12;
-    let simulation = Simulation::new(&scene(&net::net(6, 3))).unwrap();
+    let simulation = Simulation::new(&net::net(6, 3)).unwrap();
     let model = simulation.model();
     let mut work = Workspace::new(model);
     let all = Modes::new(model, 0, simulation.state(), &mut work).unwrap();

@@ -7,6 +7,8 @@ mod analytic;
 mod convergence;
 mod implicit;
 mod invariants;
+#[path = "../common/net.rs"]
+mod net;
 mod shorter_steps;
 mod threads;
 mod vector_unit;
