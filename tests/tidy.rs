@@ -52,7 +52,7 @@ struct Source {
     /// Path from the root of the repository, with forward slashes.
     path: String,
     text: String,
-    /// Its tokens: comments are none but for those that document, which are attributes.
+    /// Tokens of the text: comments are none but for those that document, which are attributes.
     tokens: Vec<Token>,
 }
 

@@ -61,7 +61,7 @@ fn a_study_of_a_rope_says_what_each_error_costs() {
     );
 }
 
-/// What is written of a study without peers: a row for every run, one for every level reached, and a figure.
+/// Tables of a study without peers: a row for every run, one for every level reached, and a figure.
 fn told(study: &Study) {
     let rows = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap().lines().count() - 1;
     let studies = std::slice::from_ref(study);

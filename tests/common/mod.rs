@@ -225,9 +225,9 @@ pub fn assert_second_order_in_time(coarse: f64, place: impl Fn(f64) -> Vector3<f
     assert_order(2.0, &steps[..4], &errors);
 }
 
-/// Claims that the error of the ledger over the work given is below `bound` [-] in 0.125 of the coarse step, falls by its order by the axial-implicit
+/// Claims that the error of the energy balance over the work given is below `bound` [-] in 0.125 of the coarse step, falls by its order by the axial-implicit
 /// integrator, and is that of Newton's method by generalised-α.
-pub fn assert_ledger_order(integrator: Integrator, coarse: f64, bound: f64, error: impl Fn(f64) -> f64) {
+pub fn assert_balance_order(integrator: Integrator, coarse: f64, bound: f64, error: impl Fn(f64) -> f64) {
     let steps = [1.0, 0.5, 0.25, 0.125].map(|part| part * coarse);
     let errors = steps.map(error);
     assert!(errors[3] < bound, "{integrator:?}: {errors:?}");
@@ -387,6 +387,18 @@ pub fn set_node_velocities(simulation: &mut Simulation, velocities: &[Vector3<f6
 pub fn half_period(samples: &[f64], step: f64) -> f64 {
     let crossings = zero_crossings(samples, step);
     (crossings[crossings.len() - 1] - crossings[0]) / (crossings.len() - 1) as f64
+}
+
+/// Cosine and sine of the angle from the horizontal [-] at which a cable of a weight [N/m], diameter [m] and drag coefficients along and across
+/// streams behind its upper end, and the slope of its tension [N/m], in a flow of a speed [m/s].
+///
+///   w cos φ = R_n sin²φ: cos φ = ½(√(a² + 4) − a), a = w/R_n; dT/ds = w sin φ + R_t cos²φ
+pub fn streaming_cable([w, d, normal, tangential]: [f64; 4], speed: f64) -> [f64; 3] {
+    let a = w / (0.5 * RHO * d * normal * speed * speed);
+    let cos = 0.5 * ((a * a + 4.0).sqrt() - a);
+    let sin = (1.0 - cos * cos).sqrt();
+    let along = 0.5 * RHO * std::f64::consts::PI * d * tangential * speed * speed * cos * cos;
+    [cos, sin, w * sin + along]
 }
 
 /// Arithmetic-geometric mean.

@@ -16,10 +16,10 @@ fn spaghetti(elements: usize, step: f64) -> Scene {
     scene
 }
 
-/// Energy held [J], by the ledger.
+/// Energy held [J], by the energy balance.
 fn energy(simulation: &Simulation) -> f64 {
-    let ledger = simulation.energy_balance().unwrap();
-    balance_error(&simulation) + ledger.start + ledger.flow.external_work - ledger.flow.dissipation
+    let balance = simulation.energy_balance().unwrap();
+    balance_error(&simulation) + balance.start + balance.flow.external_work - balance.flow.dissipation
 }
 
 /// A flight of 10 s in steps of 0.1 s: energy and momenta stay after the load, and the impulse is exact.
@@ -237,7 +237,7 @@ fn twist_and_slacken(scene: &Scene) -> Result<Simulation, String> {
 }
 
 #[test]
-fn a_twisted_rod_drawn_in_leaves_its_plane_and_its_ledger_closes() {
+fn a_twisted_rod_drawn_in_leaves_its_plane_and_its_energy_balance_closes() {
     for (elements, turns) in [(40, 2.0), (80, 4.0)] {
         let end = twist_and_slacken(&balanced(hockle(elements, turns))).unwrap();
         assert!(balance_error(&end).abs() < 1e-8);
@@ -333,7 +333,7 @@ fn a_beam_that_drops_to_the_seabed_finds_the_same_rest_on_every_mesh() {
 }
 
 #[test]
-fn a_beam_in_water_over_a_bed_has_a_ledger_that_closes() {
+fn a_beam_in_water_over_a_bed_has_an_energy_balance_that_closes() {
     let mut beam = following(&balanced(mooring_beam(1e5)));
     let start = beam.energy_balance().unwrap().start.abs();
     run(&mut beam, 0.05, 400);
@@ -462,7 +462,7 @@ fn collar(elements: usize) -> Scene {
 }
 
 #[test]
-fn a_heavy_collar_that_slides_has_a_ledger_that_closes() {
+fn a_heavy_collar_that_slides_has_an_energy_balance_that_closes() {
     let mut scene = collar(20);
     scene.points[1].mass = Some(3.0);
     for free in [vec![Axis::X], vec![Axis::X, Axis::Z]] {

@@ -264,7 +264,7 @@ fn a_cable_at_rest_under_an_end_moment_stays_there_in_every_integrator_that_bend
 }
 
 #[test]
-fn the_work_of_an_end_moment_is_in_the_ledger() {
+fn the_work_of_an_end_moment_is_in_the_energy_balance() {
     for (solver, tolerance) in BENDING.into_iter().zip([2e-3, 2e-3, 1e-3]) {
         let mut rod = turned("{ ramp = [0.0, 0.0, 2.0, 2.0] }", 20, solver);
         run(&mut rod, 0.005, 400);
@@ -335,7 +335,7 @@ fn a_vessel_feels_the_moment_of_a_line_that_is_clamped_to_it() {
 }
 
 #[test]
-fn the_work_of_a_clamp_that_turns_is_in_the_ledger() {
+fn the_work_of_a_clamp_that_turns_is_in_the_energy_balance() {
     let errors = [0.02, 0.01, 0.005, 0.0025].map(|step| {
         let solver = format!("integrator = 'generalised_alpha', time_step_max = {step}");
         let mut rod = carried(&solver, 0.0);
@@ -448,7 +448,7 @@ fn the_energy_of_a_swinging_cantilever_stays_and_moves_between_its_kinds() {
 }
 
 #[test]
-fn the_ledger_of_a_driven_cable_closes_at_any_step() {
+fn the_energy_balance_of_a_driven_cable_closes_at_any_step() {
     for step in [0.04, 0.02, 0.01] {
         let cable = with_elements(shipped("power_cable"), 12);
         let mut cable = with_integrator(cable, Integrator::GeneralisedAlpha, step);

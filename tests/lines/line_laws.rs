@@ -121,14 +121,14 @@ fn a_rope_that_snaps_taut_is_held_by_the_stiffness_that_it_comes_to() {
         let history = History::record(&mut simulation, 0.1, 400);
         let error = history.tension_error(&reference, 300);
         let flow = flow(&simulation);
-        let ledger = balance_error(&simulation).abs() / (flow.external_work.abs() + flow.dissipation);
+        let balance = balance_error(&simulation).abs() / (flow.external_work.abs() + flow.dissipation);
         let found = format!(
-            "{integrator:?}, {step} s: {error:.4}, ledger {ledger:.1e}, {} steps",
+            "{integrator:?}, {step} s: {error:.4}, balance {balance:.1e}, {} steps",
             history.substeps
         );
         println!("{found}, {} solves", history.solves);
         assert!(
-            error < bound && ledger < 1e-3 && history.substeps < steps,
+            error < bound && balance < 1e-3 && history.substeps < steps,
             "{found}"
         );
     }
@@ -257,7 +257,7 @@ fn the_loops_of_a_viscoelastic_rope_are_those_of_the_closed_form() {
 }
 
 #[test]
-fn the_ledger_of_a_viscoelastic_rope_that_slackens_balances() {
+fn the_energy_balance_of_a_viscoelastic_rope_that_slackens_closes() {
     let sway = "fairlead = { x = [[3.0, 7.0]], z = [[1.0, 5.0]], ramp = 5.0 }";
     for integrator in INTEGRATORS {
         let errors = [8e-3, 1e-3].map(|step| {

@@ -1,7 +1,7 @@
 //! Lines whose ends are released: by the host, under too much tension, or at a time.
 //!
 //! Claims: a light straight line under tension snaps back as a bar does; a hanging chain falls freely, its middle with g; the point feels nothing of it
-//! any more; the ledger balances through it; a snapshot replays it.
+//! any more; the energy balance closes through it; a snapshot replays it.
 
 use crate::common::*;
 use approx::assert_relative_eq;
@@ -28,7 +28,7 @@ fn started(keys: &str, integrator: Integrator, step: f64) -> Simulation {
     start(&balanced(with_integrator(chain(keys, ""), integrator, step)))
 }
 
-/// Claims that the error of the ledger is below 2 % of the kinetic energy.
+/// Claims that the error of the energy balance is below 2 % of the kinetic energy.
 fn assert_balanced(simulation: &Simulation) {
     let (error, kinetic) = (balance_error(&simulation).abs(), simulation.energy().kinetic);
     assert!(error < 2e-2 * kinetic, "{error} of {kinetic} J");
@@ -74,7 +74,7 @@ fn a_point_feels_nothing_of_a_line_that_was_released() {
 }
 
 #[test]
-fn the_ledger_balances_through_a_break() {
+fn the_energy_balance_closes_through_a_break() {
     let surroundings = "water = { density = 1025.0 }
         seabed = { depth = 60.0 }
         motion.fairlead = { x = [[2.0, 6.0]], z = [[2.0, 5.0]] }";

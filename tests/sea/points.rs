@@ -71,7 +71,7 @@ fn a_floating_sphere_heaves_with_the_stiffness_of_its_waterplane() {
 }
 
 #[test]
-fn place_and_ledger_of_a_sphere_that_heaves_by_most_of_its_radius_are_of_second_order() {
+fn place_and_energy_balance_of_a_sphere_that_heaves_by_most_of_its_radius_are_of_second_order() {
     let amplitude = 0.5;
     let body = format!("mass = {}, volume = 1.0, added_mass = 0.5", 0.5 * RHO);
     for integrator in JOINED {

@@ -49,7 +49,7 @@ fn a_block_on_a_slope_slides_as_the_closed_form_says_above_the_friction_angle() 
 }
 
 #[test]
-fn a_block_below_the_friction_angle_does_not_creep_in_600_s() {
+fn a_block_below_the_friction_angle_does_not_move_in_600_s() {
     for integrator in JOINED {
         let scene = block("slope = [0.3, 0.2], friction = 0.5", "");
         let mut simulation = start(&with_integrator(scene, integrator, 0.05));
@@ -209,7 +209,7 @@ fn a_line_dragged_across_itself_resists_with_the_transverse_coefficient() {
 }
 
 #[test]
-fn the_ledger_closes_over_a_bed_with_slope_and_friction() {
+fn the_energy_balance_closes_over_a_bed_with_slope_and_friction() {
     for integrator in ALL {
         let bed = "friction = { transverse = 0.8, axial = 0.3 }, slope = [0.05, -0.1]";
         let mut simulation = start(&balanced(with_integrator(

@@ -143,7 +143,7 @@ fn a_line_that_dips_in_and_out_is_followed_to_second_order_in_time() {
 }
 
 #[test]
-fn the_ledger_of_a_line_that_dips_in_and_out_closes_with_the_step() {
+fn the_energy_balance_of_a_line_that_dips_in_and_out_closes_with_the_step() {
     for integrator in INTEGRATORS {
         let [coarse, fine] = [0.008, 0.001].map(|step| {
             let mut simulation = following(&balanced(dipping(8, integrator, step)));

@@ -197,9 +197,9 @@ fn halving_the_time_step_quarters_the_error_in_waves() {
 }
 
 #[test]
-fn the_ledger_closes_in_waves_at_second_order_or_at_any_step() {
+fn the_energy_balance_closes_in_waves_at_second_order_or_at_any_step() {
     for (integrator, coarse) in COARSE_STEPS {
-        assert_ledger_order(integrator, coarse, 1e-4, |step| {
+        assert_balance_order(integrator, coarse, 1e-4, |step| {
             let mut simulation = start(&balanced(riser(integrator, step)));
             run(&mut simulation, 0.4, 40);
             let flow = flow(&simulation);
@@ -210,7 +210,7 @@ fn the_ledger_closes_in_waves_at_second_order_or_at_any_step() {
 }
 
 #[test]
-fn the_ledger_closes_with_free_points_in_waves() {
+fn the_energy_balance_closes_with_free_points_in_waves() {
     for integrator in JOINED {
         let mut scene = with_integrator(system(integrator, STORM), integrator, 0.005);
         scene.points[1].position[2] = -1.0; // at the surface
@@ -492,7 +492,7 @@ fn a_piece_at_the_surface_is_wet_under_crests_and_dry_over_troughs() {
 }
 
 #[test]
-fn the_ledger_closes_where_lines_pierce_the_surface_of_waves() {
+fn the_energy_balance_closes_where_lines_pierce_the_surface_of_waves() {
     for integrator in INTEGRATORS {
         let errors = [0.01, 0.005].map(|step| {
             let mut scene = riser(integrator, step);

@@ -1,4 +1,4 @@
-//! Where results go: folders, pipes, and what is left of an interrupted run.
+//! Destinations of results: folders, pipes, and the rest of an interrupted run.
 
 use std::ffi::OsStr;
 use std::io::Read;

@@ -35,7 +35,7 @@ fn read(name: &str) -> LoadedScene {
     load(&deck(name)).unwrap_or_else(|error| panic!("{}", error.list()))
 }
 
-/// What the host of the decks that leave something out would give.
+/// Depth and places that the host of the decks gives that leave them out.
 fn supplement() -> Supplement {
     let at = |name: &str, x| (name.to_string(), [x, 0.0, 0.0]);
     Supplement {
@@ -45,7 +45,7 @@ fn supplement() -> Supplement {
     }
 }
 
-/// What the host of the MAP++ deck would give.
+/// Depth that the host of the MAP++ deck gives.
 fn deep() -> Supplement {
     Supplement {
         depth: Some(320.0),

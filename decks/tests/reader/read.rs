@@ -1,4 +1,4 @@
-//! What is read of decks.
+//! Scenes that are read from decks.
 
 use std::fs;
 
