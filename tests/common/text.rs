@@ -56,6 +56,12 @@ fn cases(table: &str) -> Vec<Case> {
 
 /// Claims that each case of a table is answered by words that begin as the table has it.
 pub fn assert_answers(base: &str, table: &str, answer: impl Fn(&str) -> String) {
+    let wrong = wrong_answers(base, table, answer);
+    assert!(wrong.is_empty(), "{wrong}");
+}
+
+/// Cases of a table that are answered by other words than the table has, with both.
+pub fn wrong_answers(base: &str, table: &str, answer: impl Fn(&str) -> String) -> String {
     let mut wrong = String::new();
     for Case {
         claim,
@@ -72,5 +78,5 @@ pub fn assert_answers(base: &str, table: &str, answer: impl Fn(&str) -> String) 
             wrong += &format!("{claim}\n  {changes:?}\n  found:  {found}\n  wanted: {words}\n");
         }
     }
-    assert!(wrong.is_empty(), "{wrong}");
+    wrong
 }
