@@ -34,31 +34,9 @@ fn least(mut call: impl FnMut()) -> f64 {
 
 /// `lines` copies of one line, each driven at its own fairlead.
 fn alone(lines: usize) -> Scene {
-    let one = common::scene("oc3_catenary");
-    let mut scene = Scene {
-        points: Vec::new(),
-        lines: Vec::new(),
-        motion: Default::default(),
-        ..one.clone()
-    };
+    let mut scene = net::copies(&common::scene("oc3_catenary"), lines, 0, 0.0);
     (scene.solver.integrator, scene.solver.elements) = (Integrator::Leapfrog, Some(20));
     scene.solver.threads = Threads::Number(1);
-    for unit in 0..lines {
-        let named = |name: &str| format!("{name}_{unit}");
-        scene.points.extend(one.points.iter().cloned().map(|mut point| {
-            point.name = named(&point.name);
-            point
-        }));
-        scene.lines.extend(one.lines.iter().cloned().map(|mut line| {
-            line.name = named(&line.name);
-            (line.from, line.to) = (named(&line.from), named(&line.to));
-            line
-        }));
-        let motion = one.motion.iter();
-        scene
-            .motion
-            .extend(motion.map(|(name, motion)| (named(name), motion.clone())));
-    }
     scene
 }
 
@@ -89,7 +67,7 @@ fn main() {
         "points", "lines", "elements [ms]", "catenary [ms]", "step [ms]", "steps", "solves"
     );
     for count in [1, 2, 3, 10, 17, 24] {
-        let scene = Scene::from_toml(&net::net(count, ELEMENTS)).expect("a scene that passes its checks");
+        let scene = net::net(count, ELEMENTS);
         let model = Model::new(&scene).expect("a scene that passes its checks");
         let places: Vec<PointState> = model
             .points

@@ -2,6 +2,8 @@
 //! in turns, so that what else the machine does falls on all of them.
 
 mod common;
+#[path = "../tests/common/net.rs"]
+mod net;
 
 use std::time::Instant;
 
@@ -30,43 +32,7 @@ fn semi(elements: usize, waves: bool) -> Scene {
 
 /// Five such vessels, three kilometres apart: sixty lines.
 fn farm(elements: usize, waves: bool) -> Scene {
-    let one = semi(elements, waves);
-    let mut scene = Scene {
-        points: Vec::new(),
-        lines: Vec::new(),
-        vessels: Vec::new(),
-        motion: Default::default(),
-        ..one.clone()
-    };
-    for unit in 0..5 {
-        let named = |name: &str| format!("{name}_{unit}");
-        let east = 3000.0 * f64::from(unit);
-        scene
-            .vessels
-            .extend(one.vessels.iter().cloned().map(|mut vessel| {
-                vessel.name = named(&vessel.name);
-                vessel.position[0] += east;
-                vessel
-            }));
-        scene.points.extend(one.points.iter().cloned().map(|mut point| {
-            point.name = named(&point.name);
-            if point.on.is_none() {
-                point.position[0] += east;
-            }
-            point.on = point.on.as_deref().map(named);
-            point
-        }));
-        scene.lines.extend(one.lines.iter().cloned().map(|mut line| {
-            line.name = named(&line.name);
-            (line.from, line.to) = (named(&line.from), named(&line.to));
-            line
-        }));
-        let motion = one.motion.iter();
-        scene
-            .motion
-            .extend(motion.map(|(name, motion)| (named(name), motion.clone())));
-    }
-    scene
+    net::copies(&semi(elements, waves), 5, 0, 3000.0)
 }
 
 /// A simulation past its start-up, on a number of threads.

@@ -1,37 +1,19 @@
 """What users will compare first: published cases and exact motion, through the FMU in FMPy, for both FMI versions."""
 
-import csv
 import math
 import pathlib
-import re
 
-import fmpy
 import numpy as np
 import pytest
+
+from runs import driven, packaged, run
 
 SCENES = pathlib.Path(__file__).resolve().parent.parent / "scenes"
 
 # SeaFEM validation case 11: closed-form elastic catenary, and the equilibrium of 22 two-node elements
 CATENARY_SAG, CATENARY_HORIZONTAL, END_REACTION = 0.7177774654, 17.00889855, 3.4648145
 DISCRETE_SAG = 0.7182741621
-
-
-def packaged(moorline, scene, version, folder):
-    fmu = folder / "scene.fmu"
-    done = moorline("fmu", scene, "-o", fmu, "--fmi", version)
-    assert done.returncode == 0, done.stderr
-    return str(fmu)
-
-
-def edited(name, folder, **changes):
-    """A copy of a scene with `key = value` replaced."""
-    text = (SCENES / f"{name}.toml").read_text()
-    for key, value in changes.items():
-        text, count = re.subn(rf"\b{key} = [^,\s}}]+", f"{key} = {value}", text)
-        assert count == 1, key
-    path = folder / f"{name}.toml"
-    path.write_text(text)
-    return path
+MINUTE = {"time": [0.0, 0.05, 60.0]}  # a communication step, and the end [s]
 
 
 @pytest.mark.parametrize("initial", ["{ parabola = 0.72 }", '"straight"'], ids=["parabola", "straight"])
@@ -40,33 +22,12 @@ def test_seafem_case_11_settles_from_any_start(moorline, version, tmp_path, init
     scene = tmp_path / "scene.toml"
     scene.write_text(text)
     outputs = ["line1.sag", "fairlead.fz", "line1.catenary_sag", "line1.catenary_horizontal"]
-    result = fmpy.simulate_fmu(packaged(moorline, scene, version, tmp_path), stop_time=60.0, output_interval=0.05,
-                               output=outputs)
+    result = driven(packaged(moorline, scene, version, tmp_path), MINUTE, outputs)
     assert result["line1.catenary_sag"][0] == pytest.approx(CATENARY_SAG, rel=1e-9)
     assert result["line1.catenary_horizontal"][0] == pytest.approx(CATENARY_HORIZONTAL, rel=1e-9)
     assert abs(result["line1.sag"][0] - DISCRETE_SAG) > 1e-3  # it did start elsewhere
     assert result["line1.sag"][-1] == pytest.approx(DISCRETE_SAG, abs=1e-6)
     assert result["fairlead.fz"][-1] == pytest.approx(-END_REACTION, abs=1e-6)
-
-
-def test_the_settled_sag_tends_to_the_catenary_at_second_order(moorline, tmp_path):
-    errors = []
-    for elements in (10, 22, 50, 100):
-        scene = edited("seafem11", tmp_path, elements=elements)
-        result = fmpy.simulate_fmu(packaged(moorline, scene, 2, tmp_path), stop_time=60.0, output_interval=0.05,
-                                   output=["line1.sag"])
-        errors.append(result["line1.sag"][-1] - CATENARY_SAG)
-    slope = np.polyfit(np.log([1 / 10, 1 / 22, 1 / 50, 1 / 100]), np.log(np.abs(errors)), 1)[0]
-    assert slope == pytest.approx(2.0, abs=0.1), errors
-
-
-def exact_tension(moorline, folder):
-    """Times and fairlead tension of the run with the exact motion."""
-    done = moorline("run", SCENES / "oc3_catenary.toml", "-o", folder)
-    assert done.returncode == 0, done.stderr
-    with open(folder / "results.csv") as file:
-        rows = list(csv.DictReader(file))
-    return np.array([[float(row["time"]), float(row["line1.tension_b"])] for row in rows]).T
 
 
 def ramped(t, amplitude, period, ramp=20.0):
@@ -81,7 +42,7 @@ def ramped(t, amplitude, period, ramp=20.0):
 
 def test_a_host_disturbs_the_tension_less_than_promised(moorline, version, tmp_path):
     """RMS over the last 60 s, relative to the standard deviation of the tension."""
-    times, tension = exact_tension(moorline, tmp_path / "exact")
+    exact = run(moorline, SCENES / "oc3_catenary.toml", tmp_path / "exact")
     fmu = packaged(moorline, SCENES / "oc3_catenary.toml", version, tmp_path)
 
     def error(step, velocities):
@@ -90,15 +51,10 @@ def test_a_host_disturbs_the_tension_less_than_promised(moorline, version, tmp_p
         columns = {"time": t, "fairlead.x": x, "fairlead.z": z}
         if velocities:
             columns |= {"fairlead.vx": vx, "fairlead.vz": vz}
-        signals = np.array(list(zip(*columns.values())), dtype=[(name, float) for name in columns])
-        result = fmpy.simulate_fmu(fmu, stop_time=120.0, output_interval=step, input=signals, output=["line1.tension_b"])
+        result = driven(fmu, columns, ["line1.tension_b"], list(columns)[1:])
         window = result["time"] > 60.0
-        reference = np.interp(result["time"][window], times, tension)
+        reference = np.interp(result["time"][window], exact["time"], exact["line1.tension_b"])
         return np.sqrt(np.mean((result["line1.tension_b"][window] - reference) ** 2)) / reference.std()
 
     assert error(0.05, velocities=False) < 2e-3
     assert error(0.05, velocities=True) < 5e-4
-    if version == 2:
-        steps = [0.4, 0.2, 0.1, 0.05]
-        errors = [error(step, velocities=False) for step in steps]
-        assert np.polyfit(np.log(steps), np.log(errors), 1)[0] > 2.0, errors

@@ -503,57 +503,33 @@ fn check_unique(variables: &[Variable]) -> Result<(), SceneError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::draft::draft;
 
-    const SCENE: &str = r#"
-        [seabed]
-        depth = 50.0
-        [line_types.rope]
-        mass = 2.0
-        diameter = 0.05
-        axial_stiffness = 1.0e6
-        [line_types.wire]
-        weight = 3.0
-        diameter = 0.02
-        axial_stiffness = 1.0e7
-        damping_ratio = 0.1
-        [[points]]
-        name = "anchor"
-        position = [0.0, 0.0, 0.0]
-        kind = "fixed"
-        [[points]]
-        name = "knot"
-        position = [8.0, 0.0, -2.0]
-        kind = "free"
-        [[points]]
-        name = "left"
-        position = [16.0, 0.0, 0.0]
-        kind = "coupled"
-        [[points]]
-        name = "right"
-        position = [30.0, 0.0, 0.0]
-        kind = "coupled"
-        [[lines]]
-        name = "lower"
-        from = "anchor"
-        to = "knot"
-        sections = [{ type = "rope", length = 9.0, elements = 4 }]
-        [[lines]]
-        name = "upper"
-        from = "knot"
-        to = "left"
-        sections = [{ type = "wire", length = 5.0 }, { type = "rope", length = 4.0, elements = 4 }]
-        [[lines]]
-        name = "span"
-        from = "left"
-        to = "right"
-        sections = [{ type = "wire", length = 15.0, elements = 4 }]
-        [output]
-        profile = true
-    "#;
+    /// A line of two sections from a driven point to a free one, which hangs on another line, and a span between two driven points.
+    fn scene() -> Scene {
+        let upper = [("wire", 5.0, None), ("rope", 4.0, Some(4))];
+        draft(
+            "seabed.depth = 50.0
+            line_types.rope = { mass = 2.0, diameter = 0.05, axial_stiffness = 1.0e6 }
+            line_types.wire = { weight = 3.0, diameter = 0.02, axial_stiffness = 1.0e7, damping_ratio = 0.1 }
+            output.profile = true",
+        )
+        .fixed("anchor", [0.0; 3])
+        .free("knot", [8.0, 0.0, -2.0])
+        .coupled("left", [16.0, 0.0, 0.0])
+        .coupled("right", [30.0, 0.0, 0.0])
+        .line("lower", ["anchor", "knot"], "rope", 9.0, 4)
+        .sections("upper", ["knot", "left"], &upper)
+        .line("span", ["left", "right"], "wire", 15.0, 4)
+        .scene()
+    }
 
-    fn interface(text: &str, layout: Layout) -> Interface {
-        let scene = Scene::from_toml(text).unwrap();
-        Interface::new(&scene, &Model::new(&scene).unwrap(), layout).unwrap()
+    fn interface_of(scene: &Scene, layout: Layout) -> Interface {
+        Interface::new(scene, &Model::new(scene).unwrap(), layout).unwrap()
+    }
+
+    fn interface(layout: Layout) -> Interface {
+        interface_of(&scene(), layout)
     }
 
     fn dependencies(interface: &Interface, name: &str) -> Vec<String> {
@@ -567,7 +543,7 @@ mod tests {
 
     #[test]
     fn a_value_reference_is_a_position_counted_from_one() {
-        let interface = interface(SCENE, Layout::Scalars);
+        let interface = interface(Layout::Scalars);
         for (index, variable) in interface.variables().iter().enumerate() {
             let reference = Interface::reference(index);
             assert_eq!(interface.variable(reference), Some(variable));
@@ -579,39 +555,18 @@ mod tests {
 
     #[test]
     fn a_line_depends_on_what_its_network_hangs_on_and_on_nothing_beyond_a_driven_point() {
-        let interface = interface(SCENE, Layout::Arrays);
+        let interface = interface(Layout::Arrays);
         let upper = dependencies(&interface, "upper.tension_b");
-        for name in [
-            "left.x",
-            "rope.mass",
-            "wire.weight",
-            "lower.length",
-            "upper.section1.length",
-            "seabed.depth",
-            "gravity",
-            "solver.tolerance",
-        ] {
+        let names = "left.x rope.mass wire.weight lower.length upper.section1.length seabed.depth gravity solver.tolerance";
+        for name in names.split(' ') {
             assert!(upper.iter().any(|known| known == name), "{name}");
         }
         for name in ["right.x", "left.vx", "span.length", "wire.damping_ratio"] {
             assert!(upper.iter().all(|known| known != name), "{name}");
         }
-        assert_eq!(
-            dependencies(&interface, "span.tension_b"),
-            [
-                "left.x",
-                "left.y",
-                "left.z",
-                "right.x",
-                "right.y",
-                "right.z",
-                "wire.axial_stiffness",
-                "wire.weight",
-                "wire.diameter",
-                "span.length",
-                "seabed.depth"
-            ]
-        );
+        let span = "left.x left.y left.z right.x right.y right.z \
+                    wire.axial_stiffness wire.weight wire.diameter span.length seabed.depth";
+        assert_eq!(dependencies(&interface, "span.tension_b").join(" "), span);
         let both = dependencies(&interface, "left.fx");
         for name in ["lower.length", "span.length", "right.z"] {
             assert!(both.iter().any(|known| known == name), "{name}");
@@ -620,7 +575,7 @@ mod tests {
 
     #[test]
     fn only_lines_with_held_ends_have_a_closed_form_catenary() {
-        let interface = interface(SCENE, Layout::Scalars);
+        let interface = interface(Layout::Scalars);
         let has = |name: &str| interface.variables().iter().any(|v| v.name == name);
         assert!(has("span.catenary_sag") && !has("lower.catenary_sag") && !has("upper.catenary_sag"));
         assert!(!dependencies(&interface, "span.catenary_sag").contains(&"left.x".to_string()));
@@ -628,9 +583,11 @@ mod tests {
 
     #[test]
     fn profiles_stand_last_and_move_no_other_variable() {
-        let without = interface(&SCENE.replace("profile = true", ""), Layout::Scalars);
+        let mut plain = scene();
+        plain.output.profile = false;
+        let without = interface_of(&plain, Layout::Scalars);
         for layout in [Layout::Scalars, Layout::Arrays] {
-            let with = interface(SCENE, layout);
+            let with = interface(layout);
             let count = without.variables().len();
             assert_eq!(with.variables()[..count], *without.variables());
             let profiles = &with.variables()[count..];
@@ -647,8 +604,8 @@ mod tests {
 
     #[test]
     fn every_parameter_can_be_set_and_read_back() {
-        let mut scene = Scene::from_toml(SCENE).unwrap();
-        for variable in interface(SCENE, Layout::Scalars).variables() {
+        let mut scene = scene();
+        for variable in interface(Layout::Scalars).variables() {
             if let Binding::Parameter(parameter) = &variable.binding {
                 let other = match variable.kind {
                     Kind::Int32 => 1.0,

@@ -75,3 +75,12 @@ pub mod physics;
 pub mod scene;
 pub mod simulation;
 pub mod statics;
+
+#[cfg(test)]
+extern crate self as moorline; // tests build scenes and compare texts as those in `tests` do
+#[cfg(test)]
+#[path = "../tests/common/draft.rs"]
+mod draft;
+#[cfg(test)]
+#[path = "../tests/common/text.rs"]
+mod text;

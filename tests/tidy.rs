@@ -1,9 +1,12 @@
 //! The manners of the house that a compiler does not check: layers, length of functions, units, no loose ends.
 //!
-//! Rules read source text with comments and literals blanked out, so they see no types; each names file and line.
+//! Rules read tokens, so they see no types; each names file and line.
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
+
+use proc_macro2::{Delimiter, Span, TokenStream, TokenTree};
 
 /// Longest function, in lines.
 const FUNCTION_LINES_MAX: usize = 70;
@@ -38,27 +41,190 @@ const PACKAGES: [(&str, &[&str]); 7] = [
     ("fmu/host", &["moorline"]),
 ];
 
-/// A source file, as it is and without comments and literals.
+/// A word, sign, literal or bracket, and its line.
+struct Token {
+    text: String,
+    line: usize,
+}
+
+/// A source file.
 struct Source {
     /// Path from the root of the repository, with forward slashes.
     path: String,
     text: String,
-    /// The same text, with the inside of comments, strings and characters replaced by blanks.
-    code: String,
+    /// Tokens of the text: comments are none but for those that document, which are attributes.
+    tokens: Vec<Token>,
+}
+
+/// Adds the tokens of a stream, brackets included.
+fn flatten(stream: TokenStream, tokens: &mut Vec<Token>) {
+    let token = |text: &str, span: Span| Token {
+        text: text.to_string(),
+        line: span.start().line,
+    };
+    for tree in stream {
+        match tree {
+            TokenTree::Group(group) => {
+                let [open, close] = match group.delimiter() {
+                    Delimiter::Parenthesis => ["(", ")"],
+                    Delimiter::Brace => ["{", "}"],
+                    Delimiter::Bracket => ["[", "]"],
+                    Delimiter::None => ["", ""],
+                };
+                tokens.push(token(open, group.span_open()));
+                flatten(group.stream(), tokens);
+                tokens.push(token(close, group.span_close()));
+            }
+            other => tokens.push(token(&other.to_string(), other.span())),
+        }
+    }
 }
 
 impl Source {
-    fn line_of(&self, byte: usize) -> usize {
-        self.text[..byte].matches('\n').count() + 1
-    }
-
-    fn place(&self, byte: usize) -> String {
-        format!("{}:{}", self.path, self.line_of(byte))
+    fn new(path: String, text: String) -> Source {
+        let stream: TokenStream = text.parse().unwrap_or_else(|error| panic!("{path}: {error}"));
+        let mut tokens = Vec::new();
+        flatten(stream, &mut tokens);
+        Source { path, text, tokens }
     }
 
     fn is_under(&self, folder: &str) -> bool {
         self.path.starts_with(&format!("{folder}/"))
     }
+
+    /// Text of a token, or nothing beyond the last.
+    fn at(&self, index: usize) -> &str {
+        self.tokens.get(index).map_or("", |token| &token.text)
+    }
+
+    /// Places of a word or sign.
+    fn places(&self, word: &str) -> impl Iterator<Item = usize> {
+        (0..self.tokens.len()).filter(move |i| self.tokens[*i].text == word)
+    }
+
+    /// Lines in which a macro is called, with its name.
+    fn calls(&self, name: &str) -> impl Iterator<Item = (usize, String)> {
+        let calls = self.places(name).filter(|i| self.at(i + 1) == "!");
+        calls.map(move |i| (self.tokens[i].line, format!("{name}!")))
+    }
+
+    /// The bracket that closes what is open at a token.
+    fn closing(&self, open: usize) -> usize {
+        let mut depth = 0;
+        let closes = |i: &usize| {
+            match self.at(*i) {
+                "(" | "[" | "{" => depth += 1,
+                ")" | "]" | "}" => depth -= 1,
+                _ => {}
+            }
+            depth == 0
+        };
+        (open..self.tokens.len()).find(closes).expect("a closing bracket")
+    }
+
+    /// The brace or semicolon at which the head of a function ends.
+    fn head_end(&self, start: usize) -> usize {
+        let mut at = start;
+        while !["{", ";", ""].contains(&self.at(at)) {
+            at = if ["(", "["].contains(&self.at(at)) {
+                self.closing(at) + 1
+            } else {
+                at + 1
+            };
+        }
+        at
+    }
+
+    /// First and last line of every function with a body; a type such as `fn(f64) -> f64` has no name.
+    fn functions(&self) -> impl Iterator<Item = [usize; 2]> {
+        let named = self.places("fn").filter(|i| is_name(self.at(i + 1)));
+        let bodies = named.map(|start| (start, self.head_end(start)));
+        let bodies = bodies.filter(|(_, open)| self.at(*open) == "{");
+        bodies.map(|(start, open)| [start, self.closing(open)].map(|i| self.tokens[i].line))
+    }
+
+    /// Layers named after `crate::` or within `crate::{…}`, with their lines.
+    fn layers_used(&self) -> Vec<(usize, usize)> {
+        let mut used = Vec::new();
+        for at in self.places("crate").filter(|i| self.at(i + 1) == ":") {
+            let mut names = vec![at + 3];
+            if self.at(at + 3) == "{" {
+                let mut inside = at + 4;
+                names = vec![inside];
+                while inside < self.closing(at + 3) {
+                    inside = if self.at(inside) == "{" {
+                        self.closing(inside) + 1
+                    } else {
+                        inside + 1
+                    };
+                    names.extend((self.at(inside) == ",").then_some(inside + 1));
+                }
+            }
+            let layer = |name: &usize| LAYERS.iter().position(|layer| *layer == self.at(*name));
+            used.extend(
+                names
+                    .iter()
+                    .filter_map(layer)
+                    .map(|layer| (self.tokens[at].line, layer)),
+            );
+        }
+        used
+    }
+
+    /// Documentation of the item that begins at a token; other attributes do not matter.
+    fn documentation(&self, item: usize) -> String {
+        let (mut at, mut lines) = (item, String::new());
+        while at > 0 && self.at(at - 1) == "]" {
+            let open = (0..at)
+                .rev()
+                .find(|i| self.at(*i) == "[" && self.closing(*i) == at - 1);
+            let open = open.expect("an opening bracket");
+            if self.at(open + 1) == "doc" {
+                lines.insert_str(0, self.at(open + 3));
+            }
+            at = open - 1;
+        }
+        lines
+    }
+
+    /// Public fields and functions that carry an f64 in the open: token and name.
+    fn public_numbers(&self) -> Vec<(usize, &str)> {
+        let mut found = Vec::new();
+        for at in self.places("pub") {
+            let start = if self.at(at + 1) == "const" {
+                at + 2
+            } else {
+                at + 1
+            };
+            let (name, declared) = match (self.at(start), self.at(start + 1), self.at(start + 2)) {
+                ("fn", name, _) => {
+                    let arrow = |i: &usize| self.at(*i) == "-" && self.at(i + 1) == ">";
+                    let end = self.head_end(start);
+                    (name, (start..end).find(arrow).unwrap_or(end)..end)
+                }
+                (name, ":", next) if is_name(name) && next != ":" => {
+                    let same_line = |i: &usize| self.tokens[*i].line == self.tokens[start].line;
+                    (
+                        name,
+                        start
+                            ..(start..self.tokens.len())
+                                .take_while(same_line)
+                                .last()
+                                .unwrap_or(start),
+                    )
+                }
+                _ => continue,
+            };
+            if declared.into_iter().any(|i| self.at(i) == "f64") {
+                found.push((at, name));
+            }
+        }
+        found
+    }
+}
+
+fn is_name(word: &str) -> bool {
+    word.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
 }
 
 fn root() -> PathBuf {
@@ -93,136 +259,27 @@ fn relative(path: &Path) -> String {
 }
 
 /// All Rust files of the workspace.
-fn sources() -> Vec<Source> {
+static SOURCES: LazyLock<Vec<Source>> = LazyLock::new(|| {
     let mut found = Vec::new();
     files(&root(), &["rs"], &mut found);
     found.sort();
-    let sources: Vec<Source> = found
-        .iter()
-        .map(|path| {
-            let text = fs::read_to_string(path).unwrap();
-            Source {
-                path: relative(path),
-                code: blanked(&text),
-                text,
-            }
-        })
-        .collect();
+    let read = |path: &PathBuf| Source::new(relative(path), fs::read_to_string(path).unwrap());
+    let sources: Vec<Source> = found.iter().map(read).collect();
     assert!(sources.iter().any(|source| source.path == "src/lib.rs"));
     sources
-}
-
-/// The same bytes, but comments and the inside of literals are blanks; line breaks stay.
-fn blanked(text: &str) -> String {
-    let bytes = text.as_bytes();
-    let mut code = bytes.to_vec();
-    let mut at = 0;
-    while at < bytes.len() {
-        let end = literal_end(text, at);
-        match end {
-            Some(end) => {
-                for byte in &mut code[at..end] {
-                    if *byte != b'\n' {
-                        *byte = b' ';
-                    }
-                }
-                at = end;
-            }
-            None => at += 1,
-        }
-    }
-    String::from_utf8(code).unwrap_or_else(|error| {
-        // Bytes outside ASCII occur in code only as whole characters, which blanking leaves whole.
-        panic!("blanking split a character: {error}")
-    })
-}
-
-/// End of the comment or literal that starts at this byte, where one does.
-fn literal_end(text: &str, at: usize) -> Option<usize> {
-    let rest = &text.as_bytes()[at..];
-    let previous_is_name = at > 0 && is_name_byte(text.as_bytes()[at - 1]);
-    match rest {
-        [b'/', b'/', ..] => Some(text[at..].find('\n').map_or(text.len(), |n| at + n)),
-        [b'/', b'*', ..] => Some(block_comment_end(text, at)),
-        [b'"', ..] => Some(string_end(text, at + 1)),
-        [b'r', b'"' | b'#', ..] if !previous_is_name => raw_string_end(text, at + 1),
-        [b'b', b'r', b'"' | b'#', ..] if !previous_is_name => raw_string_end(text, at + 2),
-        [b'\'', ..] => char_end(text, at),
-        _ => None,
-    }
-}
-
-fn is_name_byte(byte: u8) -> bool {
-    byte.is_ascii_alphanumeric() || byte == b'_'
-}
-
-fn block_comment_end(text: &str, start: usize) -> usize {
-    let bytes = text.as_bytes();
-    let mut depth = 0;
-    let mut at = start;
-    while at + 1 < bytes.len() {
-        match &bytes[at..at + 2] {
-            b"/*" => {
-                depth += 1;
-                at += 2;
-            }
-            b"*/" => {
-                depth -= 1;
-                at += 2;
-                if depth == 0 {
-                    return at;
-                }
-            }
-            _ => at += 1,
-        }
-    }
-    bytes.len()
-}
-
-fn string_end(text: &str, inside: usize) -> usize {
-    let mut escaped = false;
-    for (offset, byte) in text.as_bytes()[inside..].iter().enumerate() {
-        if *byte == b'"' && !escaped {
-            return inside + offset + 1;
-        }
-        escaped = *byte == b'\\' && !escaped;
-    }
-    text.len()
-}
-
-fn raw_string_end(text: &str, after_r: usize) -> Option<usize> {
-    let rest = &text[after_r..];
-    let hashes = rest.len() - rest.trim_start_matches('#').len();
-    let inside = rest[hashes..].strip_prefix('"')?;
-    let closing = format!("\"{}", "#".repeat(hashes));
-    let length = inside.find(&closing).map_or(inside.len(), |n| n + closing.len());
-    Some(after_r + hashes + 1 + length)
-}
-
-/// End of a character; a lifetime is none.
-fn char_end(text: &str, at: usize) -> Option<usize> {
-    let inside = &text[at + 1..];
-    if inside.starts_with('\\') {
-        let closing = inside[2..].find('\'')?;
-        return Some(at + 1 + 2 + closing + 1);
-    }
-    let character = inside.chars().next()?;
-    let after = &inside[character.len_utf8()..];
-    after.starts_with('\'').then(|| at + 1 + character.len_utf8() + 1)
-}
-
-/// Places where a whole word stands in code.
-fn words<'t>(code: &'t str, word: &'t str) -> impl Iterator<Item = usize> + 't {
-    code.match_indices(word).map(|(at, _)| at).filter(move |at| {
-        let bytes = code.as_bytes();
-        let after = at + word.len();
-        let free_before = *at == 0 || !is_name_byte(bytes[at - 1]);
-        free_before && bytes.get(after).is_none_or(|byte| !is_name_byte(*byte))
-    })
-}
+});
 
 fn assert_none(complaints: &[String], rule: &str) {
     assert!(complaints.is_empty(), "{rule}\n  {}", complaints.join("\n  "));
+}
+
+/// Claims that no source breaks a rule; `breaks` finds the lines that do, with words about each.
+fn assert_kept(rule: &str, breaks: impl Fn(&Source) -> Vec<(usize, String)>) {
+    let of = |source: &'static Source| {
+        let broken = breaks(source).into_iter();
+        broken.map(|(line, words)| format!("{}:{line}: {words}", source.path))
+    };
+    assert_none(&SOURCES.iter().flat_map(of).collect::<Vec<_>>(), rule);
 }
 
 /// The layer a file of the library belongs to.
@@ -232,61 +289,21 @@ fn layer_of(path: &str) -> Option<usize> {
     LAYERS.iter().position(|layer| *layer == name)
 }
 
-/// Layers named after `crate::` or within `crate::{…}`, with their places.
-fn layers_used(code: &str) -> Vec<(usize, usize)> {
-    let mut used = Vec::new();
-    for at in words(code, "crate") {
-        let Some(path) = code[at..].strip_prefix("crate::") else {
-            continue;
-        };
-        let names: Vec<&str> = match path.strip_prefix('{') {
-            Some(group) => outer_names(group),
-            None => vec![path],
-        };
-        for name in names {
-            let end = name.bytes().position(|byte| !is_name_byte(byte));
-            let name = &name[..end.unwrap_or(name.len())];
-            if let Some(layer) = LAYERS.iter().position(|layer| *layer == name) {
-                used.push((at, layer));
-            }
-        }
-    }
-    used
-}
-
-/// Beginnings of the parts of a group in braces, without groups inside it.
-fn outer_names(group: &str) -> Vec<&str> {
-    let mut depth = 0;
-    let mut names = vec![group.trim_start()];
-    for (at, byte) in group.bytes().enumerate() {
-        match byte {
-            b'{' => depth += 1,
-            b'}' if depth == 0 => break,
-            b'}' => depth -= 1,
-            b',' if depth == 0 => names.push(group[at + 1..].trim_start()),
-            _ => {}
-        }
-    }
-    names
-}
-
 #[test]
 fn layers_use_only_the_layers_below_them() {
-    let mut complaints = Vec::new();
-    for source in sources() {
+    assert_kept("layers point one way (DESIGN, section 3)", |source| {
         let Some(layer) = layer_of(&source.path) else {
-            continue;
+            return Vec::new();
         };
-        for (at, used) in layers_used(&source.code) {
-            // The scene uses no law.
-            let scene_and_physics = LAYERS[layer] == "scene" && LAYERS[used] == "physics";
-            if used > layer || scene_and_physics {
-                let place = source.place(at);
-                complaints.push(format!("{place}: {} uses {}", LAYERS[layer], LAYERS[used]));
-            }
-        }
-    }
-    assert_none(&complaints, "layers point one way (DESIGN, section 3)");
+        // the scene uses no law
+        let forbidden = |used: usize| used > layer || (LAYERS[layer], LAYERS[used]) == ("scene", "physics");
+        let used = source
+            .layers_used()
+            .into_iter()
+            .filter(|(_, used)| forbidden(*used));
+        used.map(|(line, used)| (line, format!("{} uses {}", LAYERS[layer], LAYERS[used])))
+            .collect()
+    });
 }
 
 /// Names of the dependencies of a manifest, development ones included.
@@ -324,69 +341,15 @@ fn packages_use_only_the_packages_below_them() {
     assert_none(&complaints, "packages point one way (DESIGN, section 3)");
 }
 
-/// First and last byte of every function with a body.
-fn functions(code: &str) -> Vec<(usize, usize)> {
-    words(code, "fn")
-        .filter_map(|start| {
-            let rest = &code[start..];
-            // A type such as `fn(f64) -> f64` has no name.
-            rest[2..]
-                .trim_start()
-                .bytes()
-                .next()
-                .filter(|byte| is_name_byte(*byte))?;
-            let open = body_start(rest)?;
-            Some((start, start + open + block_length(&rest[open..])?))
-        })
-        .collect()
-}
-
-/// First byte of the body; a declaration without one ends in a semicolon first.
-fn body_start(code: &str) -> Option<usize> {
-    let mut depth = 0;
-    for (at, byte) in code.bytes().enumerate() {
-        match byte {
-            b'(' | b'[' => depth += 1,
-            b')' | b']' => depth -= 1,
-            b'{' if depth == 0 => return Some(at),
-            b';' if depth == 0 => return None,
-            _ => {}
-        }
-    }
-    None
-}
-
-fn block_length(code: &str) -> Option<usize> {
-    let mut depth = 0;
-    for (at, byte) in code.bytes().enumerate() {
-        match byte {
-            b'{' => depth += 1,
-            b'}' => {
-                depth -= 1;
-                if depth == 0 {
-                    return Some(at);
-                }
-            }
-            _ => {}
-        }
-    }
-    None
-}
-
 #[test]
 fn a_function_fits_a_screen() {
-    let mut complaints = Vec::new();
-    for source in sources() {
-        for (start, end) in functions(&source.code) {
-            let lines = source.line_of(end) - source.line_of(start) + 1;
-            if lines > FUNCTION_LINES_MAX {
-                let place = source.place(start);
-                complaints.push(format!("{place}: {lines} lines"));
-            }
-        }
-    }
     let rule = format!("a function has at most {FUNCTION_LINES_MAX} lines");
-    assert_none(&complaints, &rule);
+    assert_kept(&rule, |source| {
+        let lines = source.functions().map(|[start, end]| (start, end - start + 1));
+        let long = lines.filter(|(_, lines)| *lines > FUNCTION_LINES_MAX);
+        long.map(|(start, lines)| (start, format!("{lines} lines")))
+            .collect()
+    });
 }
 
 /// Returns true where a doc comment names a unit in brackets, such as `[m]`; links to items in backticks are none.
@@ -397,120 +360,64 @@ fn says_a_unit(doc: &str) -> bool {
     })
 }
 
-/// The doc comment above the line that starts at this byte; attributes in between do not matter.
-fn doc_above(text: &str, line_start: usize) -> String {
-    let lines = text[..line_start].lines().rev().map(str::trim);
-    let mut doc: Vec<&str> = lines
-        .take_while(|line| line.starts_with("///") || line.starts_with("#["))
-        .filter(|line| line.starts_with("///"))
-        .collect();
-    doc.reverse();
-    doc.join("\n")
-}
-
-/// Public fields and functions that carry an f64 in the open.
-fn public_numbers(source: &Source) -> Vec<(usize, String)> {
-    let mut found = Vec::new();
-    for at in words(&source.code, "pub") {
-        let rest = source.code[at + 3..].trim_start();
-        let rest = rest.strip_prefix("const ").unwrap_or(rest);
-        let declaration = if rest.starts_with("fn ") {
-            let body = rest.find(['{', ';']).unwrap_or(rest.len());
-            let head = &rest[..body];
-            head.split_once("->").map_or("", |(_, output)| output)
-        } else if is_field(rest) {
-            let line = rest.lines().next().unwrap_or("");
-            line.split_once(':').map_or("", |(_, kind)| kind)
-        } else {
-            continue;
-        };
-        if words(declaration, "f64").next().is_some() {
-            let name = rest.strip_prefix("fn ").unwrap_or(rest);
-            let end = name.bytes().position(|byte| !is_name_byte(byte)).unwrap_or(0);
-            found.push((at, name[..end].to_string()));
-        }
-    }
-    found
-}
-
-/// `name: type`, but not `NAME: type = …`, nor `use`, `struct` and the like.
-fn is_field(declaration: &str) -> bool {
-    let name_end = declaration.bytes().position(|byte| !is_name_byte(byte));
-    name_end.is_some_and(|end| {
-        end > 0 && declaration[end..].starts_with(':') && !declaration[end..].starts_with("::")
-    })
-}
-
 #[test]
 fn every_public_number_says_its_unit() {
-    let mut complaints = Vec::new();
     let layers = ["src/physics", "src/model", "src/scene", "decks/src"];
-    for source in sources() {
-        if !layers.iter().any(|layer| source.is_under(layer)) {
-            continue;
-        }
-        for (at, name) in public_numbers(&source) {
-            let line_start = source.text[..at].rfind('\n').map_or(0, |n| n + 1);
-            if !says_a_unit(&doc_above(&source.text, line_start)) {
-                let place = source.place(at);
-                complaints.push(format!("{place}: `{name}` says no unit"));
-            }
-        }
-    }
-    assert_none(
-        &complaints,
+    assert_kept(
         "the docs of a public f64 name its unit, as in [m] or [-]",
+        |source| {
+            if !layers.iter().any(|layer| source.is_under(layer)) {
+                return Vec::new();
+            }
+            let numbers = source.public_numbers().into_iter();
+            let silent = numbers.filter(|(at, _)| !says_a_unit(&source.documentation(*at)));
+            silent
+                .map(|(at, name)| (source.tokens[at].line, format!("`{name}` says no unit")))
+                .collect()
+        },
     );
 }
 
 #[test]
 fn only_the_fmu_is_unsafe() {
-    let mut complaints = Vec::new();
-    for source in sources() {
-        if !source.is_under("fmu") {
-            complaints.extend(words(&source.code, "unsafe").map(|at| source.place(at)));
-        }
-    }
-    assert_none(&complaints, "`unsafe` stands in fmu/ only");
+    assert_kept("`unsafe` stands in fmu/ only", |source| {
+        let places = source.places("unsafe").filter(|_| !source.is_under("fmu"));
+        places
+            .map(|i| (source.tokens[i].line, "unsafe".to_string()))
+            .collect()
+    });
 }
 
 #[test]
 fn only_the_command_line_prints() {
-    let mut complaints = Vec::new();
-    let printing = ["print", "println", "eprint", "eprintln", "dbg"];
-    for source in sources() {
-        let libraries = ["src", "accuracy/src", "decks/src", "fmu/src"];
-        if !libraries.iter().any(|folder| source.is_under(folder)) {
-            continue;
-        }
-        for name in printing {
-            for at in words(&source.code, name) {
-                if source.code[at + name.len()..].starts_with('!') {
-                    complaints.push(format!("{}: {name}!", source.place(at)));
-                }
-            }
-        }
-    }
-    assert_none(&complaints, "the library does not print");
+    let libraries = ["src", "accuracy/src", "decks/src", "fmu/src"];
+    assert_kept("the library does not print", |source| {
+        let printing = ["print", "println", "eprint", "eprintln", "dbg"];
+        let calls = printing.iter().flat_map(|name| source.calls(name));
+        calls
+            .filter(|_| libraries.iter().any(|folder| source.is_under(folder)))
+            .collect()
+    });
 }
 
 #[test]
 fn nothing_is_left_to_be_done() {
-    let mut complaints = Vec::new();
-    for source in sources() {
-        for name in ["todo", "unimplemented"] {
-            for at in words(&source.code, name) {
-                if source.code[at + name.len()..].starts_with('!') {
-                    complaints.push(format!("{}: {name}!", source.place(at)));
-                }
-            }
+    let marks = [concat!("TO", "DO"), concat!("FIX", "ME"), concat!("XX", "X")];
+    assert_kept("all that is merged is done", |source| {
+        let mut left: Vec<_> = ["todo", "unimplemented"]
+            .iter()
+            .flat_map(|name| source.calls(name))
+            .collect();
+        for (number, line) in source.text.lines().enumerate() {
+            let mut words = line.split(|c: char| !c.is_alphanumeric() && c != '_');
+            left.extend(
+                words
+                    .find(|word| marks.contains(word))
+                    .map(|mark| (number + 1, mark.to_string())),
+            );
         }
-        for mark in [concat!("TO", "DO"), concat!("FIX", "ME"), concat!("XX", "X")] {
-            let marks = words(&source.text, mark).map(|at| format!("{}: {mark}", source.place(at)));
-            complaints.extend(marks);
-        }
-    }
-    assert_none(&complaints, "what is merged is done");
+        left
+    });
 }
 
 /// Laws by a part of their code that no other file has: law, fingerprint, home. Blanks do not count.
@@ -552,11 +459,13 @@ const FINGERPRINTS: [(&str, &str, &str); 9] = [
 
 #[test]
 fn each_law_is_written_in_one_file() {
-    let sources = sources();
     let mut complaints = Vec::new();
     for (law, fingerprint, home) in FINGERPRINTS {
-        let dense = |source: &Source| source.code.replace(char::is_whitespace, "");
-        let library = sources.iter().filter(|source| source.is_under("src"));
+        let dense = |source: &Source| {
+            let code = source.tokens.iter().filter(|token| !token.text.contains('"'));
+            code.map(|token| token.text.as_str()).collect::<String>()
+        };
+        let library = SOURCES.iter().filter(|source| source.is_under("src"));
         let homes = library.filter(|source| dense(source).contains(fingerprint));
         let homes: Vec<&str> = homes.map(|source| source.path.as_str()).collect();
         if homes != [format!("src/{home}")] {
@@ -608,35 +517,33 @@ fn no_file_names_a_folder_of_one_machine() {
 
 #[test]
 fn the_rules_find_what_they_look_for() {
+    let source = |text: &str| Source::new("src/model/x.rs".into(), text.into());
     let text = "fn a<'a>(x: &'a str) -> char {\n  // } unsafe\n  let s = r#\"} \" {\"#;\n  '}' /* { /* } */ */\n}\nfn b();\n";
-    let code = blanked(text);
-    assert_eq!(code.len(), text.len());
-    assert!(words(&code, "unsafe").next().is_none());
-    let found = functions(&code);
-    assert_eq!(found.len(), 1);
-    assert_eq!(&text[found[0].1..found[0].1 + 1], "}");
-    assert_eq!(text[..found[0].1].matches('\n').count(), 4);
+    let one = source(text);
+    assert!(one.places("unsafe").next().is_none());
+    assert_eq!(one.functions().collect::<Vec<_>>(), [[1, 5]]);
 
-    let used = layers_used("use crate::{math::x, output::{self, y}};\nuse crate::model;\n");
+    let used = source("use crate::{math::x, output::{self, y}};\nuse crate::model;\n").layers_used();
     let names: Vec<&str> = used.iter().map(|(_, layer)| LAYERS[*layer]).collect();
     assert_eq!(names, ["math", "output", "model"]);
     assert_eq!(
-        layer_of("src/simulation.rs"),
-        LAYERS.iter().position(|l| *l == "simulation")
+        layer_of("src/simulation.rs").map(|layer| LAYERS[layer]),
+        Some("simulation")
     );
 
-    let text = "/// Length [m].\npub length: f64,\n/// See [`Line`].\n#[serde(default)]\npub mass: Option<f64>,\npub name: String,\n";
-    let source = Source {
-        path: "src/model/x.rs".into(),
-        text: text.into(),
-        code: blanked(text),
-    };
-    let numbers = public_numbers(&source);
-    let silent: Vec<&str> = numbers
+    let fields = source(
+        "struct A {\n/// Length [m].\npub length: f64,\n/// See [`Line`].\n#[serde(default)]\npub mass: Option<f64>,\npub name: String,\n}",
+    );
+    let numbers = fields.public_numbers();
+    assert_eq!(
+        numbers.iter().map(|(_, name)| *name).collect::<Vec<_>>(),
+        ["length", "mass"]
+    );
+    let silent = numbers
         .iter()
-        .filter(|(at, _)| !says_a_unit(&doc_above(text, *at)))
-        .map(|(_, name)| name.as_str())
-        .collect();
-    assert_eq!(numbers.len(), 2);
-    assert_eq!(silent, ["mass"]);
+        .filter(|(at, _)| !says_a_unit(&fields.documentation(*at)));
+    assert_eq!(silent.map(|(_, name)| *name).collect::<Vec<_>>(), ["mass"]);
+    let function =
+        source("/// Mass [kg].\npub fn mass(x: f64) -> Option<f64> {\n}\npub fn name(x: f64) -> String {}");
+    assert_eq!(function.public_numbers().len(), 1);
 }

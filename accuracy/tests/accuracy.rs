@@ -11,43 +11,7 @@ use moorline_accuracy::tables::{summary, write_runs, write_verdicts};
 use moorline_accuracy::{Code, LEVELS, Metric, PeerError, Peers, Study, StudyError, study, uncertainty};
 
 /// A taut rope of 100 m that its upper end pulls with a period of 2 s.
-const ROPE: &str = r#"
-title = "a taut rope, pulled"
-
-[water]
-density = 1025.0
-
-[line_types.rope]
-mass = 20.0
-diameter = 0.15
-axial_stiffness = 5.0e6
-axial_damping = 2.0e3
-drag_normal = 1.2
-added_mass_normal = 1.0
-
-[[points]]
-name = "anchor"
-position = [80.0, 0.0, -70.0]
-kind = "fixed"
-
-[[points]]
-name = "fairlead"
-position = [0.0, 0.0, -10.0]
-kind = "coupled"
-
-[[lines]]
-name = "rope"
-from = "anchor"
-to = "fairlead"
-sections = [{ type = "rope", length = 99.5 }]
-
-[motion]
-fairlead = { x = [[-0.1, 2.0]], z = [[0.05, 2.0]], ramp = 1.0 }
-
-[output]
-duration = 4.0
-interval = 0.02
-"#;
+const ROPE: &str = include_str!("../../tests/scenes/pulled_rope.toml");
 
 fn studied() -> &'static Study {
     static STUDY: LazyLock<Study> = LazyLock::new(new_study);
@@ -97,7 +61,7 @@ fn a_study_of_a_rope_says_what_each_error_costs() {
     );
 }
 
-/// What is written of a study without peers: a row for every run, one for every level reached, and a figure.
+/// Tables of a study without peers: a row for every run, one for every level reached, and a figure.
 fn told(study: &Study) {
     let rows = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap().lines().count() - 1;
     let studies = std::slice::from_ref(study);

@@ -773,24 +773,7 @@ fn wrong_type(variable: &Variable, asked: &str) -> Refusal {
 mod tests {
     use super::*;
 
-    const SCENE: &str = r#"
-        [line_types.rope]
-        mass = 0.2
-        axial_stiffness = 2505.0
-        [[points]]
-        name = "wall"
-        position = [0.0, 0.0, 0.0]
-        kind = "fixed"
-        [[points]]
-        name = "hand"
-        position = [9.0, 0.0, 0.0]
-        kind = "coupled"
-        [[lines]]
-        name = "rope"
-        from = "wall"
-        to = "hand"
-        sections = [{ type = "rope", length = 10.0, elements = 6 }]
-    "#;
+    const SCENE: &str = include_str!("../../tests/scenes/hand.toml");
 
     fn instance(version: FmiVersion) -> Instance {
         instance_of(SCENE, version)

@@ -425,27 +425,29 @@ mod tests {
     use nalgebra::DMatrix;
 
     use super::*;
+    use crate::draft::draft;
     use crate::dynamics::leapfrog::step::Step;
-    use crate::scene::Scene;
 
     /// A line of sections of [mass per length [kg/m], length [m], elements], EA = 1 MN.
     fn line(sections: &[(f64, f64, usize)], strain: &str) -> Line {
-        let types: String = (sections.iter().enumerate())
-            .map(|(k, (mass, _, _))| {
-                format!("line_types.t{k} = {{ mass = {mass}, weight = 0.0, axial_stiffness = 1e6, strain = '{strain}' }}\n")
-            })
-            .collect();
-        let list: Vec<_> = (sections.iter().enumerate())
-            .map(|(k, (_, length, n))| format!("{{ type = 't{k}', length = {length}, elements = {n} }}"))
-            .collect();
+        let names = ["one", "two", "three"];
+        let named = || names.into_iter().zip(sections);
+        let keys = |(name, (mass, _, _)): (&str, &(f64, f64, usize))| {
+            format!(
+                "line_types.{name} = {{ mass = {mass}, weight = 0.0, axial_stiffness = 1e6, strain = '{strain}' }}\n"
+            )
+        };
         let span: f64 = sections.iter().map(|(_, length, _)| length).sum();
-        let scene = Scene::from_toml(&format!(
-            "{types}points = [{{ name = 'a', position = [0.0, 0.0, 0.0], kind = 'fixed' }},
-                      {{ name = 'b', position = [{span}, 0.0, 0.0], kind = 'coupled' }}]
-            lines = [{{ name = 'line', from = 'a', to = 'b', sections = [{}] }}]",
-            list.join(", ")
-        ));
-        Model::new(&scene.unwrap()).unwrap().lines.remove(0)
+        let sections: Vec<_> = named()
+            .map(|(name, (_, length, n))| (name, *length, Some(*n)))
+            .collect();
+        let ends = draft(named().map(keys).collect::<String>())
+            .fixed("a", [0.0; 3])
+            .coupled("b", [span, 0.0, 0.0]);
+        ends.sections("line", ["a", "b"], &sections)
+            .model()
+            .lines
+            .remove(0)
     }
 
     #[test]

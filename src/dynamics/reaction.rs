@@ -267,8 +267,8 @@ mod tests {
     use approx::assert_relative_eq;
 
     use super::*;
+    use crate::draft::draft;
     use crate::model::Model;
-    use crate::scene::Scene;
 
     const LENGTH: f64 = 100.0;
     const STIFFNESS: f64 = 1e6;
@@ -279,17 +279,15 @@ mod tests {
     fn model(elements: usize, other: f64) -> Model {
         let (half, each) = (0.5 * LENGTH, elements / 2);
         let like = format!("weight = 0.0, axial_stiffness = {STIFFNESS}, axial_damping = 0.0");
-        let section = |kind| format!("{{ type = '{kind}', length = {half}, elements = {each} }}");
-        let scene = Scene::from_toml(&format!(
+        let sections = [("other", half, Some(each)), ("rope", half, Some(each))];
+        draft(format!(
             "line_types.rope = {{ mass = {MASS}, {like} }}
-            line_types.other = {{ mass = {other}, {like} }}
-            points = [{{ name = 'a', position = [0.0, 0.0, 0.0], kind = 'fixed' }},
-                      {{ name = 'b', position = [{LENGTH}, 0.0, 0.0], kind = 'coupled' }}]
-            lines = [{{ name = 'line', from = 'a', to = 'b', sections = [{}, {}] }}]",
-            section("other"),
-            section("rope")
-        ));
-        Model::new(&scene.unwrap()).unwrap()
+            line_types.other = {{ mass = {other}, {like} }}"
+        ))
+        .fixed("a", [0.0; 3])
+        .coupled("b", [LENGTH, 0.0, 0.0])
+        .sections("line", ["a", "b"], &sections)
+        .model()
     }
 
     /// The line at the turn of a harmonic motion of its end B along itself, u = U sin(ks)/sin(kL), where nothing moves.

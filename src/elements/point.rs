@@ -132,22 +132,21 @@ pub(crate) fn for_free_points(model: &Model, network: &Network, mut visit: impl 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Scene;
+    use crate::draft::draft;
     use approx::assert_relative_eq;
 
     /// A buoy on a line, over a seabed of its own and in a sheared current, which may pierce the surface and touch the seabed at once.
     fn model() -> Model {
-        let text = r#"
-            water = { density = 1025.0, current = { profile = [[1.0, 0.9, -0.4], [-3.0, 0.1, 0.3]], factor = 1.3 } }
+        draft(
+            "water = { density = 1025.0, current = { profile = [[1.0, 0.9, -0.4], [-3.0, 0.1, 0.3]], factor = 1.3 } }
             seabed = { depth = 1.0, stiffness = 2e4, damping = 900.0 }
-            line_types.rope = { mass = 2.0, diameter = 0.05, axial_stiffness = 4e4 }
-            points = [
-              { name = "anchor", position = [0.0, 0.0, -1.0], kind = "fixed" },
-              { name = "buoy", position = [0.3, 0.0, 0.2], kind = "free", mass = 300.0, volume = 1.5, drag_area = 1.2, added_mass = 0.5 },
-            ]
-            lines = [{ name = "rope", from = "anchor", to = "buoy", sections = [{ type = "rope", length = 3.0, elements = 4 }] }]
-        "#;
-        Model::new(&Scene::from_toml(text).unwrap()).unwrap()
+            line_types.rope = { mass = 2.0, diameter = 0.05, axial_stiffness = 4e4 }",
+        )
+        .fixed("anchor", [0.0, 0.0, -1.0])
+        .free("buoy", [0.3, 0.0, 0.2])
+        .with("mass = 300.0, volume = 1.5, drag_area = 1.2, added_mass = 0.5")
+        .line("rope", ["anchor", "buoy"], "rope", 3.0, 4)
+        .model()
     }
 
     fn at(z: f64) -> PointState {

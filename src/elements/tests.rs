@@ -4,8 +4,8 @@ use approx::assert_relative_eq;
 use nalgebra::{Matrix3, Rotation3, Unit};
 
 use super::*;
+use crate::draft::draft;
 use crate::model::{Bending, LineState};
-use crate::scene::Scene;
 
 const FORCES: Weights = Weights {
     force: 1.0,
@@ -32,40 +32,17 @@ fn random_vector(seed: &mut u64, size: f64) -> Vector3<f64> {
 
 /// Two lines that meet in a free point, with the given surroundings and line type.
 fn network(surroundings: &str, line_type: &str) -> Model {
-    let text = format!(
-        r#"
-        {surroundings}
-        [line_types.cable]
-        axial_stiffness = 4.0e4
-        axial_damping = 900.0
-        {line_type}
-        [[points]]
-        name = "a"
-        position = [0.0, 0.0, 0.0]
-        kind = "fixed"
-        [[points]]
-        name = "joint"
-        position = [3.0, 0.0, 0.0]
-        kind = "free"
-        mass = 5.0
-        force = {{ y = 3.0 }}
-        [[points]]
-        name = "b"
-        position = [6.0, 0.0, 0.0]
-        kind = "fixed"
-        [[lines]]
-        name = "one"
-        from = "a"
-        to = "joint"
-        sections = [{{ type = "cable", length = 3.0, elements = 4 }}]
-        [[lines]]
-        name = "two"
-        from = "b"
-        to = "joint"
-        sections = [{{ type = "cable", length = 3.0, elements = 3 }}]
-        "#
-    );
-    Model::new(&Scene::from_toml(&text).unwrap()).unwrap()
+    draft(format!(
+        "{surroundings}
+        line_types.cable = {{ axial_stiffness = 4.0e4, axial_damping = 900.0, {line_type} }}"
+    ))
+    .fixed("a", [0.0; 3])
+    .free("joint", [3.0, 0.0, 0.0])
+    .with("mass = 5.0, force = { y = 3.0 }")
+    .fixed("b", [6.0, 0.0, 0.0])
+    .line("one", ["a", "joint"], "cable", 3.0, 4)
+    .line("two", ["b", "joint"], "cable", 3.0, 3)
+    .model()
 }
 
 /// Both lines bent, stretched by about a tenth, and moving.
@@ -196,13 +173,13 @@ fn stiffen(model: &mut Model) {
     }
 }
 
-const WATER: &str = "[water]\ndensity = 1025.0";
-const BED: &str = "[seabed]\ndepth = 0.05\nstiffness = 2.0e4\ndamping = 900.0\ncontact = \"as_given\"";
+const WATER: &str = "water.density = 1025.0";
+const BED: &str = "seabed = { depth = 0.05, stiffness = 2.0e4, damping = 900.0, contact = 'as_given' }";
 
 #[test]
 fn the_stiffness_is_the_slope_of_the_residual_stretched_and_on_the_bed() {
-    for law in ["\"engineering\"", "\"green\"", "{ logarithmic = 0.3 }"] {
-        let line_type = format!("mass = 2.0\ndiameter = 0.05\nstrain = {law}");
+    for law in ["'engineering'", "'green'", "{ logarithmic = 0.3 }"] {
+        let line_type = format!("mass = 2.0, diameter = 0.05, strain = {law}");
         let model = network(BED, &line_type);
         assert!(model.lines.iter().all(|line| line.nodes.contact.is_some()));
         assert_tangent(&model, &random_state(&model, 1.0), Varied::Position);
@@ -211,7 +188,7 @@ fn the_stiffness_is_the_slope_of_the_residual_stretched_and_on_the_bed() {
 
 #[test]
 fn the_stiffness_is_the_slope_of_the_residual_where_lines_bend_push_and_are_clamped() {
-    let mut model = network("", "mass = 2.0\ndiameter = 0.05");
+    let mut model = network("", "mass = 2.0, diameter = 0.05");
     stiffen(&mut model);
     for stretch in [1.0, 0.75] {
         let mut state = random_state(&model, 0.5);
@@ -225,7 +202,7 @@ fn the_stiffness_is_the_slope_of_the_residual_where_lines_bend_push_and_are_clam
 
 #[test]
 fn the_stiffness_is_the_slope_of_the_residual_where_a_moment_turns_an_end() {
-    let mut model = network("", "mass = 2.0\ndiameter = 0.05");
+    let mut model = network("", "mass = 2.0, diameter = 0.05");
     stiffen(&mut model);
     let about = |moment| Some(crate::scene::TimeFunction::Constant(moment));
     model.points[1].moment = Some(crate::scene::PointMoment {
@@ -247,14 +224,14 @@ fn the_stiffness_is_the_slope_of_the_residual_where_a_moment_turns_an_end() {
 
 #[test]
 fn the_damping_is_the_slope_of_the_residual_where_lines_bend() {
-    let mut model = network("", "mass = 2.0\ndiameter = 0.05");
+    let mut model = network("", "mass = 2.0, diameter = 0.05");
     stiffen(&mut model);
     assert_tangent(&model, &random_state(&model, 1.0), Varied::Velocity);
 }
 
 #[test]
 fn the_convex_tangent_of_a_bent_line_has_positive_pivots() {
-    let mut model = network("", "mass = 2.0\ndiameter = 0.05");
+    let mut model = network("", "mass = 2.0, diameter = 0.05");
     stiffen(&mut model);
     let state = random_state(&model, 1.0);
     let mut work = Workspace::new(&model);
@@ -275,7 +252,7 @@ fn the_convex_tangent_of_a_bent_line_has_positive_pivots() {
 
 #[test]
 fn the_damping_is_the_slope_of_the_residual_in_water_and_on_the_bed() {
-    let line_type = "mass = 2.0\ndiameter = 0.05\ndrag_normal = 1.2\ndrag_tangential = 0.3\n\
+    let line_type = "mass = 2.0, diameter = 0.05, drag_normal = 1.2, drag_tangential = 0.3, \
                      rayleigh = { ratios = [0.02, 0.02], frequencies = [1.0, 9.0] }";
     let model = network(&format!("{WATER}\n{BED}"), line_type);
     assert_tangent(&model, &random_state(&model, 1.0), Varied::Velocity);
@@ -283,25 +260,25 @@ fn the_damping_is_the_slope_of_the_residual_in_water_and_on_the_bed() {
 
 #[test]
 fn the_damping_is_the_slope_of_the_residual_in_a_sheared_current() {
-    let line_type = "mass = 2.0\ndiameter = 0.05\ndrag_normal = 1.2\ndrag_tangential = 0.3";
-    let current = "current = { profile = [[1.0, 0.9, -0.4], [-1.0, 0.1, 0.3]], factor = 1.3 }";
+    let line_type = "mass = 2.0, diameter = 0.05, drag_normal = 1.2, drag_tangential = 0.3";
+    let current = "water.current = { profile = [[1.0, 0.9, -0.4], [-1.0, 0.1, 0.3]], factor = 1.3 }";
     let model = network(&format!("{WATER}\n{current}"), line_type);
     assert_tangent(&model, &random_state(&model, 1.0), Varied::Velocity);
 }
 
 #[test]
 fn the_mass_is_the_slope_of_the_residual_with_unequal_added_mass() {
-    let line_type = "mass = 2.0\ndiameter = 0.05\nadded_mass_normal = 1.0\nadded_mass_tangential = 0.1";
+    let line_type = "mass = 2.0, diameter = 0.05, added_mass_normal = 1.0, added_mass_tangential = 0.1";
     let model = network(WATER, line_type);
     assert_tangent(&model, &random_state(&model, 1.0), Varied::Acceleration);
 }
 
 /// Water whose surface, at z = 0, the lines of [`network`] cross.
-const SURFACE: &str = "[water]\ndensity = 1025.0\nsurface = true";
+const SURFACE: &str = "water = { density = 1025.0, surface = true }";
 
 #[test]
 fn the_stiffness_is_the_slope_of_the_residual_where_lines_pierce_the_surface() {
-    let model = network(SURFACE, "mass = 2.0\ndiameter = 0.2");
+    let model = network(SURFACE, "mass = 2.0, diameter = 0.2");
     let mut state = random_state(&model, 1.0);
     for nodes in &mut state.lines {
         nodes.velocity.fill(Vector3::zeros());
@@ -316,8 +293,8 @@ fn the_stiffness_is_the_slope_of_the_residual_where_lines_pierce_the_surface() {
 
 #[test]
 fn damping_and_mass_are_slopes_of_the_residual_where_lines_pierce_the_surface() {
-    let line_type = "mass = 2.0\ndiameter = 0.2\ndrag_normal = 1.2\ndrag_tangential = 0.3\n\
-                     added_mass_normal = 1.0\nadded_mass_tangential = 0.1";
+    let line_type = "mass = 2.0, diameter = 0.2, drag_normal = 1.2, drag_tangential = 0.3, \
+                     added_mass_normal = 1.0, added_mass_tangential = 0.1";
     let model = network(SURFACE, line_type);
     assert_tangent(&model, &random_state(&model, 1.0), Varied::Velocity);
     assert_tangent(&model, &random_state(&model, 1.0), Varied::Acceleration);
@@ -326,7 +303,7 @@ fn damping_and_mass_are_slopes_of_the_residual_where_lines_pierce_the_surface() 
 #[test]
 fn drag_and_added_mass_have_their_own_slope_with_a_nodes_height() {
     // alike along and across, so that the frozen tangent of the line changes nothing
-    let line_type = "mass = 2.0\ndiameter = 0.2\nadded_mass_normal = 1.0\nadded_mass_tangential = 1.0";
+    let line_type = "mass = 2.0, diameter = 0.2, added_mass_normal = 1.0, added_mass_tangential = 1.0";
     let model = network(SURFACE, line_type);
     let mut state = random_state(&model, 1.0);
     for nodes in &mut state.lines {
@@ -367,8 +344,8 @@ fn tensions_of_a_line_sum_to_zero() {
 
 #[test]
 fn rotating_the_world_rotates_the_forces() {
-    let line_type = "mass = 2.0\nweight = 0.0\ndiameter = 0.05\ndrag_normal = 1.2\ndrag_tangential = 0.3\n\
-                     added_mass_normal = 1.0\nadded_mass_tangential = 0.1";
+    let line_type = "mass = 2.0, weight = 0.0, diameter = 0.05, drag_normal = 1.2, drag_tangential = 0.3, \
+                     added_mass_normal = 1.0, added_mass_tangential = 0.1";
     let mut model = network(WATER, line_type);
     let mut state = random_state(&model, 1.0);
     let mut work = Workspace::new(&model);
@@ -396,7 +373,7 @@ fn rotating_the_world_rotates_the_forces() {
 
 #[test]
 fn the_linear_solution_satisfies_the_system_of_both_lines_and_the_point() {
-    let model = network(BED, "mass = 2.0\ndiameter = 0.05");
+    let model = network(BED, "mass = 2.0, diameter = 0.05");
     let state = random_state(&model, 1.0);
     let mut work = Workspace::new(&model);
     let weights = Weights {

@@ -159,31 +159,12 @@ fn value(source: Source, simulation: &Simulation) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    const SCENE: &str = r#"
-        [line_types.wire]
-        mass = 0.2
-        axial_stiffness = 5.35e6
-
-        [[points]]
-        name = "point1"
-        position = [0.0, 0.0, 0.0]
-        kind = "fixed"
-
-        [[points]]
-        name = "point2"
-        position = [15.0, 0.0, 2.0]
-        kind = "coupled"
-
-        [[lines]]
-        name = "line1"
-        from = "point1"
-        to = "point2"
-        sections = [{ type = "wire", length = 20.0, elements = 10 }]
-    "#;
+    use crate::draft::draft;
 
     fn simulation(channels: &[&str]) -> (Scene, Simulation) {
-        let mut scene = Scene::from_toml(SCENE).unwrap();
+        let wire = draft("line_types.wire = { mass = 0.2, axial_stiffness = 5.35e6 }");
+        let ends = wire.fixed("point1", [0.0; 3]).coupled("point2", [15.0, 0.0, 2.0]);
+        let mut scene = ends.line("line1", ["point1", "point2"], "wire", 20.0, 10).scene();
         scene.output.channels = channels.iter().map(|name| (*name).to_string()).collect();
         let simulation = Simulation::new(&scene).unwrap();
         (scene, simulation)

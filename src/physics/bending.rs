@@ -90,7 +90,7 @@ impl Hessian {
         }
     }
 
-    /// Its product with changes of e₁ and e₂.
+    /// Product with changes of e₁ and e₂ [m]: changes of the slopes [N].
     #[inline(always)]
     pub fn product(&self, [v1, v2]: [Vector3<f64>; 2]) -> [Vector3<f64>; 2] {
         [

@@ -223,6 +223,7 @@ fn table(header: &Row, rows: &[Row], skipped: usize) -> Result<DepthGrid, String
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::text::assert_answers;
 
     fn grid() -> DepthGrid {
         DepthGrid {
@@ -265,48 +266,11 @@ mod tests {
 
     #[test]
     fn what_is_wrong_is_said_with_its_line() {
-        for (text, problem) in [
-            ("", ": no soundings in it"),
-            (
-                "y/x, 0, 1\n0, 5\n",
-                ", line 2: expected y and 2 depths, found 2 numbers",
-            ),
-            (
-                "y/x, 0, 1\n0, 5, NaN\n",
-                ", line 2: expected a finite number [m], found \"NaN\"",
-            ),
-            (
-                "---\nnGridX 2\n3 nRows\n",
-                ", line 3: expected `NGRIDY` and a whole number",
-            ),
-            (
-                "---\nnGridX 2\nnGridY 2\n0 1\n0 5 6\n",
-                ": nGridX and nGridY say 2 by 2, and 2 by 1 soundings are there",
-            ),
-            ("2 2\n", ": no row of 2 x below the two counts"),
-            (
-                "2 2\n0 1\n0\n0 0 -9\n",
-                ", line 3: expected 2 y, as many as line 1 says, found 1 numbers",
-            ),
-            (
-                "2 1\n0 1\n0\n0 0 -9\n1 0\n",
-                ", line 5: expected x, y and the height z of the seabed, found 2 numbers",
-            ),
-            (
-                "2 1\n0 1\n0\n0 0 -9\n2 0 -9\n",
-                ", line 5: x = 2 m is not in the list of x",
-            ),
-            (
-                "2 1\n0 1\n0\n0 0 -9\n0 0 -8\n",
-                ", line 5: a second height at x = 0 m, y = 0 m",
-            ),
-            ("2 1\n0 1\n0\n0 0 -9\n", ": no height at x = 1 m, y = 0 m"),
-            (
-                "2 1\n0 1\n0\n0 0 9\n1 0 9\n",
-                ": every height is above the water: z is that of the seabed, negative below z = 0",
-            ),
-        ] {
-            assert_eq!(parse(text), Err(problem.to_string()));
-        }
+        assert_eq!(parse(""), Err(": no soundings in it".to_string()));
+        assert_answers(
+            "",
+            include_str!("../../tests/scene/bathymetry_files.txt"),
+            |text| parse(text).err().unwrap_or_default() + "\n",
+        );
     }
 }

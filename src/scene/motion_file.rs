@@ -508,6 +508,7 @@ fn axis_of(name: &str) -> Option<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::text::assert_answers;
     use approx::assert_relative_eq;
     use std::fs;
 
@@ -591,42 +592,9 @@ mod tests {
 
     #[test]
     fn broken_files_are_refused_with_their_line_and_what_would_be_right() {
-        for (text, problem) in [
-            (
-                "time,x [furlong],y,z\n0,0,0,0\n",
-                ", line 1: column x: unknown unit \"furlong\": one of m, mm, cm, km, ft, in would be right",
-            ),
-            (
-                "time,x [deg],y,z\n0,0,0,0\n",
-                ", line 1: column x: unknown unit \"deg\"",
-            ),
-            (
-                "time;x;y;z\ns;m;m;mile\n0;0;0;0\n",
-                ", line 2: column z: unknown unit \"mile\"",
-            ),
-            (
-                "time;x [mm];y;z\ns;m;m;m\n0;0;0;0\n",
-                ", line 2: column x: the unit m is not that of the header",
-            ),
-            (
-                "time,x,y,z\n0,0,0,5,0,0\n",
-                ", line 2: expected 4 numbers (time, x, y, z), found 6; decimal commas are read where `;`",
-            ),
-            ("time x y z\n0 0,5 0 0\n", ", line 2: expected 4 numbers"),
-            (
-                "time;x;y;z\n0;0,5;0;0\n1;0.5;0;0\n",
-                ", line 3: column x: \"0.5\" has a decimal '.', and the numbers before it have ','",
-            ),
-            ("0 0 0\n", ", line 1: the header must be"),
-            ("0;0;0;0\n", ", line 1: the header must be"),
-            ("time,surge,x,y\n0,0,0,0\n", ", line 1: surge and x are the same"),
-            ("time,x,y,roll\n0,0,0,0\n", ", line 1: the header must be"),
-            ("time,x,y,z\ns,m,m,m\n", ": no rows below the header"),
-        ] {
-            let found = of(text).unwrap_err();
-            let found_hint = text == "time x y z\n0 0,5 0 0\n" && found.contains("decimal commas");
-            assert!(found.starts_with(problem) || found_hint, "{text}: {found}");
-        }
+        assert_answers("", include_str!("../../tests/scene/motion_files.txt"), |text| {
+            of(text).err().unwrap_or_default()
+        });
     }
 
     #[test]

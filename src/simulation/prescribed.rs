@@ -424,52 +424,31 @@ fn bell([a, b, c, d, e, f]: [f64; 6]) -> f64 {
 mod tests {
     use super::super::start;
     use super::*;
-    use crate::scene::Scene;
+    use crate::draft::draft;
     use crate::simulation::inputs::Inputs;
     use approx::assert_relative_eq;
 
-    const SCENE: &str = r#"
-        [line_types.rope]
-        mass = 2.0
-        diameter = 0.05
-        axial_stiffness = 1.0e6
-        [[vessels]]
-        name = "buoy"
-        attitude = [0.0, 0.1, 0.8]
-        [[points]]
-        name = "anchor"
-        position = [0.0, 0.0, 0.0]
-        kind = "fixed"
-        [[points]]
-        name = "left"
-        position = [16.0, 0.0, 0.0]
-        kind = "coupled"
-        [[points]]
-        name = "right"
-        position = [10.0, 5.0, -4.0]
-        kind = "coupled"
-        on = "buoy"
-        [[lines]]
-        name = "one"
-        from = "anchor"
-        to = "left"
-        sections = [{ type = "rope", length = 17.0, elements = 4 }]
-        [[lines]]
-        name = "two"
-        from = "anchor"
-        to = "right"
-        sections = [{ type = "rope", length = 15.0, elements = 4 }]
-        [motion]
-        left = { x = [[-6.0, 10.0], [-0.3, 1.6]], z = [[2.0, 8.0, 0.3]], ramp = 20.0 }
-        buoy = { x = [[4.0, 11.0]], roll = [[0.1, 9.0]], pitch = [[0.2, 7.0, 1.0], [0.02, 2.0]], ramp = 20.0 }
-        [solver]
-        time_step_max = 0.002
-    "#;
+    /// Two lines, one to a point that a motion drives and one to a point on a vessel.
+    fn model() -> Model {
+        draft(
+            "line_types.rope = { mass = 2.0, diameter = 0.05, axial_stiffness = 1.0e6 }
+            vessels = [{ name = 'buoy', attitude = [0.0, 0.1, 0.8] }]
+            motion.left = { x = [[-6.0, 10.0], [-0.3, 1.6]], z = [[2.0, 8.0, 0.3]], ramp = 20.0 }
+            motion.buoy = { x = [[4.0, 11.0]], roll = [[0.1, 9.0]], pitch = [[0.2, 7.0, 1.0], [0.02, 2.0]], ramp = 20.0 }
+            solver.time_step_max = 0.002",
+        )
+        .fixed("anchor", [0.0; 3])
+        .coupled("left", [16.0, 0.0, 0.0])
+        .coupled("right", [10.0, 5.0, -4.0])
+        .with("on = 'buoy'")
+        .line("one", ["anchor", "left"], "rope", 17.0, 4)
+        .line("two", ["anchor", "right"], "rope", 15.0, 4)
+        .model()
+    }
 
     /// Greatest distances of a bridged point from where it is [m] and of its velocities [m/s], over steps of a length [s].
     fn misses(point: &str, step: f64) -> [f64; 2] {
-        let scene = Scene::from_toml(SCENE).unwrap();
-        let model = Model::new(&scene).unwrap();
+        let model = model();
         let inputs = Inputs::new(&model);
         let (snapshot, work) = start::begin(&model, 0.0, inputs, true, start::Shapes::AsGiven).unwrap();
         let at = MotionSource::new(&model, &snapshot.paths, true);
@@ -502,8 +481,7 @@ mod tests {
 
     #[test]
     fn a_carried_point_is_bridged_along_the_path_of_a_host_too() {
-        let scene = Scene::from_toml(SCENE).unwrap();
-        let model = Model::new(&scene).unwrap();
+        let model = model();
         let (snapshot, work) =
             start::begin(&model, 0.0, Inputs::new(&model), false, start::Shapes::AsGiven).unwrap();
         let mut paths = snapshot.paths.clone();

@@ -264,27 +264,20 @@ fn node_mass(line: &Line, position: &[Vector3<f64>], i: usize) -> Matrix3<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::draft::draft;
     use crate::model::{LineState, PointState, Role};
-    use crate::scene::Scene;
     use approx::assert_relative_eq;
 
     /// A mass that slides along x between two springs of one element each.
-    const SPRINGS: &str = r#"
-        gravity = 0.0
-        line_types.spring = { mass = 0.3, axial_stiffness = 500.0 }
-        points = [
-          { name = "left", position = [-1.5, 0.0, 0.0], kind = "fixed" },
-          { name = "mass", position = [0.0, 0.0, 0.0], kind = "free", free = ["x"], mass = 2.0 },
-          { name = "right", position = [3.0, 0.0, 0.0], kind = "fixed" },
-        ]
-        lines = [
-          { name = "a", from = "left", to = "mass", sections = [{ type = "spring", length = 1.0, elements = 1 }] },
-          { name = "b", from = "mass", to = "right", sections = [{ type = "spring", length = 2.0, elements = 1 }] },
-        ]
-    "#;
-
     fn springs() -> Model {
-        Model::new(&Scene::from_toml(SPRINGS).unwrap()).unwrap()
+        draft("gravity = 0.0\nline_types.spring = { mass = 0.3, axial_stiffness = 500.0 }")
+            .fixed("left", [-1.5, 0.0, 0.0])
+            .free("mass", [0.0; 3])
+            .with("free = ['x'], mass = 2.0")
+            .fixed("right", [3.0, 0.0, 0.0])
+            .line("a", ["left", "mass"], "spring", 1.0, 1)
+            .line("b", ["mass", "right"], "spring", 2.0, 1)
+            .model()
     }
 
     fn modes(model: &Model) -> Result<Modes, ModesError> {

@@ -1,5 +1,7 @@
 //! Scenes in the making: points and lines one to a row, all else as TOML, read as a user's scene is.
 
+#![allow(dead_code)] // each test binary uses a part
+
 use moorline::model::Model;
 use moorline::scene::Scene;
 use moorline::simulation::Simulation;

@@ -181,7 +181,7 @@ fn the_leapfrogs_agree_on_snapping_chains_under_the_peers_law() {
 }
 
 /// Inputs that a host gives.
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 enum Gives {
     Displacements,
     VelocitiesToo,
@@ -221,10 +221,11 @@ fn a_host_disturbs_tension_by_less_than_two_per_mille_and_with_velocities_by_hal
 }
 
 #[test]
-fn the_error_of_the_host_motion_falls_at_second_order_or_better() {
+fn the_error_of_the_host_motion_falls_at_more_than_second_order() {
     let steps = [0.4, 0.2, 0.1, 0.05];
     for gives in [Gives::Displacements, Gives::VelocitiesToo] {
         let errors = steps.map(|step| host_error(step, gives));
-        assert!(order(&steps, &errors) > 1.9, "{errors:?}");
+        let found = order(&steps, &errors);
+        assert!(found > 2.0, "{gives:?}: order {found}, {errors:?}");
     }
 }

@@ -242,7 +242,7 @@ fn fall(model: &Model, scheme: Scheme, steps: usize) -> Fall {
 }
 
 #[test]
-fn a_falling_cable_that_snaps_taut_never_gains_energy() {
+fn a_falling_cable_that_snaps_taut_gains_less_than_a_thousandth_of_the_energy_of_its_drop() {
     for axial_stiffness in [1e4, 1e6, 1e8] {
         let model = falling(axial_stiffness);
         let fall = fall(&model, Scheme::generalised_alpha(SPECTRAL_RADIUS), 1000);
@@ -259,7 +259,7 @@ fn a_falling_cable_that_snaps_taut_never_gains_energy() {
 }
 
 #[test]
-fn whatever_the_dissipation_no_snap_makes_energy_and_without_it_none_is_lost() {
+fn no_snap_makes_a_thousandth_of_energy_by_any_dissipation_and_without_it_none_is_lost() {
     for axial_stiffness in [1e4, 1e6] {
         let mut model = falling(axial_stiffness);
         model.lines[0].segments.axial_damping.fill(0.0);

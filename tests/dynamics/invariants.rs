@@ -50,7 +50,7 @@ fn the_energy_balance_changes_no_bit_of_the_motion() {
     }
 }
 
-/// Error of the ledger over all that it has booked, of a scene whose vessel or second point a host puts elsewhere every 0.1 s for 10 s, at once.
+/// Error of the energy balance over all the energy that it has counted, of a scene whose vessel or second point a host puts elsewhere every 0.1 s for 10 s, at once.
 fn jumping_balance(mut scene: Scene) -> f64 {
     scene.solver.input_reconstruction = Reconstruction::Jump;
     let mut simulation = start(&balanced(scene.clone()));
@@ -59,22 +59,22 @@ fn jumping_balance(mut scene: Scene) -> f64 {
     } else {
         Body::Vessel(0)
     };
-    let (mut booked, mut last): (f64, Flow) = (0.0, Flow::default());
+    let (mut counted, mut last): (f64, Flow) = (0.0, Flow::default());
     for step in 0..100 {
         let t = 0.1 * f64::from(step);
         let [x, y, z] = [(0.9 * t).sin(), 0.5 * (0.7 * t).sin(), -1.5 * t.sin()];
         simulation.set_body(body, [x, y, z, 0.0, 0.0, 0.0], [None; 6]);
         simulation.advance(0.1).unwrap();
-        let flow = simulation.energy_balance().unwrap().flow;
-        booked +=
+        let flow = flow(&simulation);
+        counted +=
             (flow.external_work - last.external_work).abs() + (flow.dissipation - last.dissipation).abs();
         last = flow;
     }
-    simulation.energy_balance().unwrap().error() / booked
+    balance_error(&simulation) / counted
 }
 
 #[test]
-fn the_ledger_closes_where_held_points_jump() {
+fn the_energy_balance_closes_where_held_points_jump() {
     let pierces = draft(
         "water = { density = 1025.0, surface = true, waves = [{ regular = { height = 2.0, period = 6.0 } }] }
         line_types.rope = { mass = 20.0, diameter = 0.12, static_stiffness = 2.0e6, dynamic_stiffness = 6.0e6,

@@ -8,6 +8,8 @@ mod convergence;
 mod coupling;
 mod implicit;
 mod invariants;
+#[path = "../common/net.rs"]
+mod net;
 mod shorter_steps;
 mod threads;
 mod vector_unit;

@@ -1,6 +1,7 @@
 //! Threads share the networks of a system; what they find must not depend on how many they are.
 
 use crate::common::*;
+use crate::net::copies;
 use moorline::model::Body;
 use moorline::scene::{Integrator, Scene, Threads};
 use moorline::simulation::{Simulation, Snapshot};
@@ -12,31 +13,6 @@ fn semi(elements: usize, waves: bool, integrator: Integrator) -> Scene {
     if let Some(water) = &mut scene.water {
         water.waves.iter_mut().for_each(|waves| waves.seas[0].ramp = None);
         water.waves = water.waves.take().filter(|_| waves);
-    }
-    scene
-}
-
-/// A scene beside itself: what is joined stays so, and the two have nothing in common.
-fn twice(one: &Scene) -> Scene {
-    let mut scene = one.clone();
-    let named = |name: &str| format!("other_{name}");
-    for mut vessel in one.vessels.clone() {
-        vessel.name = named(&vessel.name);
-        vessel.position[1] += 4000.0;
-        scene.vessels.push(vessel);
-    }
-    for mut point in one.points.clone() {
-        point.name = named(&point.name);
-        point.on = point.on.as_deref().map(named);
-        if point.on.is_none() {
-            point.position[1] += 4000.0;
-        }
-        scene.points.push(point);
-    }
-    for mut line in one.lines.clone() {
-        line.name = named(&line.name);
-        (line.from, line.to) = (named(&line.from), named(&line.to));
-        scene.lines.push(line);
     }
     scene
 }
@@ -64,8 +40,12 @@ fn any_number_of_threads_gives_the_same_state_bit_for_bit() {
         semi(9, false, Integrator::AxialImplicit),
         semi(6, true, Integrator::GeneralisedAlpha),
         semi(6, false, Integrator::QuasiStatic),
-        twice(&shipped("bridle")),
-        with_integrator(twice(&shipped("bridle")), Integrator::GeneralisedAlpha, 0.05),
+        copies(&shipped("bridle"), 2, 1, 4000.0),
+        with_integrator(
+            copies(&shipped("bridle"), 2, 1, 4000.0),
+            Integrator::GeneralisedAlpha,
+            0.05,
+        ),
     ];
     // one network by one integrator, the other by another
     let mut mixed = semi(8, true, Integrator::Auto);

@@ -113,7 +113,7 @@ fn rendered(path: &[String]) -> String {
     steps.collect::<String>().trim_start_matches('.').to_string()
 }
 
-/// What a scene comes to.
+/// Outcome of a scene.
 struct Outcome {
     loaded: LoadedScene,
     names: Vec<String>,
@@ -254,14 +254,14 @@ fn folder() -> tempfile::TempDir {
     folder
 }
 
-/// What another value of a key comes to.
+/// Outcome of another value of a key.
 enum Fate {
     Acts,
     Told(String),
     Silent(String),
 }
 
-/// Whether a text names one of these, as a key or in words.
+/// Returns true where a text names one of these, as a key or in words.
 fn names(text: &str, known: &[&str]) -> bool {
     let is_name = |c: char| c.is_alphanumeric() || c == '_';
     known.iter().filter(|name| !name.is_empty()).any(|name| {
@@ -318,7 +318,7 @@ fn change(scene: &mut Value, path: &[String], key: &str, value: &Value) -> Strin
     name
 }
 
-/// What the keys of the objects of all scenes come to: those that act, and changes that are refused or noted or that pass in silence, each
+/// Outcomes of the keys of the objects of all scenes: those that act, and changes that are refused or noted or that pass in silence, each
 /// after the scene's name.
 #[derive(Default)]
 struct Found {

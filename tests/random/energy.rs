@@ -1,8 +1,8 @@
-//! Error of the energy ledger.
+//! Error of the energy balance.
 
 use moorline::simulation::Simulation;
 
-/// Energy that the ledger has counted.
+/// Energy that a balance has counted.
 #[derive(Default)]
 pub struct Balance {
     /// All that was given and lost, whatever its sign [J].
@@ -32,7 +32,7 @@ impl Balance {
         self.held = self.held.max(energy.total() - height + height.abs());
     }
 
-    /// Energy that the damping of the integrators brought in all, over all that was booked; negative where it took some [-].
+    /// Energy that the damping of the integrators brought in all, over all that was counted; negative where it took some [-].
     pub fn created(&self) -> f64 {
         match self.numerical {
             0.0 => 0.0,
@@ -40,7 +40,7 @@ impl Balance {
         }
     }
 
-    /// Error of the ledger over all that it has booked [-].
+    /// Error of the energy balance over all the energy that it has counted [-].
     pub fn imbalance(&self, simulation: &Simulation) -> f64 {
         match simulation.energy_balance().unwrap().error() {
             0.0 => 0.0,

@@ -1,5 +1,5 @@
 //! Random scenes: any of the physics, extreme but legal numbers, random motion, 60 s each. None panics, gives a number that is not
-//! finite or hangs; what cannot be run says why and leaves the state as it was; snapshots replay to the last bit; energy ledgers close
+//! finite or hangs; what cannot be run says why and leaves the state as it was; snapshots replay to the last bit; energy balances close
 //! where they can.
 //!
 //! Every scene has a number and is always the same. Beside the suite there are
@@ -9,8 +9,8 @@
 //! SCENE=123 cargo test --release --test random -- --ignored --nocapture one     a scene as TOML, its host, and what becomes of it
 //! ```
 //!
-//! A ledger closes where its error is at most 2 % of the energy that it counts. The damping of an integrator may bring energy: the share of ledgers to which
-//! it brought no more than that is claimed too. Beams conserve energy: their ledgers close in every scene. Lines that slacken and snap
+//! An energy balance closes where its error is at most 2 % of the energy that it counts. The damping of an integrator may bring energy: the share of energy balances to which
+//! it brought no more than that is claimed too. Beams conserve energy: their energy balances close in every scene. Lines that slacken and snap
 //! do so by a kink in their tension law, which no fixed step of a leapfrog resolves where they are as stiff and as little damped as these may be; the implicit
 //! integrators count all of their work, but may bring energy where their steps are halved and doubled in turns, or an end is released; and a quasi-static
 //! line may jump from one equilibrium to another: of these, the shares are claimed. Held points that jump to where a host says pull stiff lines by more than steps
@@ -38,7 +38,7 @@ const SUITE: usize = 500;
 /// Scenes of the long run.
 const LONG: usize = 10_000;
 
-/// Shares of ledgers that close, and of those to which integrators brought nothing, where a host's steps are equal, where they differ, and where held
+/// Shares of energy balances that close, and of those to which integrators brought nothing, where a host's steps are equal, where they differ, and where held
 /// points jump to where it says [-], as scenes 0..10 000 were measured to have them.
 const CLOSED_SHARES: [(&str, [[f64; 2]; 3]); 6] = [
     ("AxialImplicit", [[0.980, 0.978], [0.971, 0.961], [0.747, 0.742]]),
@@ -55,7 +55,7 @@ const CLOSED_SHARES: [(&str, [[f64; 2]; 3]); 6] = [
 const TOO_DEAR: f64 = 0.170;
 /// Standard deviations by which a draw of scenes may miss it by chance [-].
 const BY_CHANCE: f64 = 3.0;
-/// Greatest error of a beam's ledger, over the energy that it counts [-].
+/// Greatest error of a beam's energy balance, over the energy that it counts [-].
 const BEAM: f64 = 1e-9;
 /// Least share of the scenes with any feature that run [-].
 const RUN_MIN: f64 = 0.5;
@@ -98,7 +98,7 @@ fn claim(numbers: Range<usize>) {
                 (sound, share_sound, "close with nothing brought"),
             ] {
                 let least = (share - by_chance(share, all)) * all;
-                assert!(count >= least, "{name}: {count} of {all} ledgers {words}");
+                assert!(count >= least, "{name}: {count} of {all} balances {words}");
             }
         }
     }
@@ -121,8 +121,8 @@ fn ten_thousand_random_scenes_run_or_say_why_not() {
 }
 
 #[test]
-#[ignore = "compares the ledger of the scene of the number in SCENE with those of shorter steps"]
-fn one_random_ledger_closes_better_in_shorter_steps() {
+#[ignore = "compares the energy balance of the scene of the number in SCENE with those of shorter steps"]
+fn one_random_balance_closes_better_in_shorter_steps() {
     for number in std::env::var("SCENE").expect("SCENE is a number").split(',') {
         let case = survey::case(number.parse().expect("SCENE is a number"));
         let outcomes: Vec<String> = [1.0, 0.5, 0.25].map(|part| outcome(&case, part)).into();

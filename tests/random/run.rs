@@ -65,7 +65,7 @@ pub struct Account {
     pub fate: Fate,
     /// Integrators that served it, by name.
     pub integrators: Vec<String>,
-    /// Error of the energy ledger, over the energy that it counts [-].
+    /// Error of the energy balance, over the energy that it counts [-].
     pub imbalance: f64,
     /// Energy that the damping of the integrators brought on balance, over the same [-].
     pub created: f64,

@@ -18,7 +18,7 @@ use crate::run::{Account, Case, Fate, run};
 const THREADS: usize = 2;
 /// Runs that shrinking a failing scene may take.
 const SHRINKS_MAX: u32 = 200;
-/// Error of a ledger that closes, over the energy that it counts [-].
+/// Error of an energy balance that closes, over the energy that it counts [-].
 pub const CLOSED: f64 = 0.02;
 
 fn runner(number: usize) -> TestRunner {
@@ -59,18 +59,18 @@ pub fn shrunk(number: usize) -> Option<(Case, String)> {
     }
 }
 
-/// Balance of the energy ledger of a scene.
+/// Energy balance of a scene.
 #[derive(Debug, Clone, Copy)]
 pub struct Closing {
     pub scene: usize,
-    /// Error of the ledger, over the energy that it counts [-].
+    /// Error of the energy balance, over the energy that it counts [-].
     pub imbalance: f64,
     /// Energy that the damping of integrators brought, over the same [-].
     pub created: f64,
 }
 
 impl Closing {
-    /// Returns true where the ledger closes.
+    /// Returns true where the energy balance closes.
     pub fn close(&self) -> bool {
         self.imbalance.abs() <= CLOSED
     }
@@ -90,7 +90,7 @@ pub struct Survey {
     pub fates: BTreeMap<&'static str, usize>,
     /// By feature: how many ran for the whole span or as far as they may cost, of how many.
     pub features: BTreeMap<&'static str, [usize; 2]>,
-    /// Energy ledgers, by integrator.
+    /// Energy balances, by integrator.
     pub balances: BTreeMap<String, Vec<Closing>>,
     /// Scenes that break a claim, with the claim.
     pub broken: Vec<(usize, String)>,
@@ -180,17 +180,17 @@ impl Survey {
         self.fates.get(fate).copied().unwrap_or(0) as f64 / self.scenes as f64
     }
 
-    /// Numbers of the ledgers of an integrator that close, of those that are sound, and of all [-].
+    /// Numbers of the energy balances of an integrator that close, of those that are sound, and of all [-].
     pub fn closed(&self, integrator: &str) -> [f64; 3] {
         let balances = self.balances.get(integrator).map_or(&[][..], Vec::as_slice);
         let count = |which: fn(&Closing) -> bool| balances.iter().filter(|balance| which(balance)).count();
         [count(Closing::close), count(Closing::are_sound), balances.len()].map(|count| count as f64)
     }
 
-    /// Greatest error of the ledgers of an integrator, whatever a host's steps [-].
+    /// Greatest error of the energy balances of an integrator, whatever a host's steps [-].
     pub fn worst(&self, integrator: &str) -> f64 {
-        let ledgers = self.balances.iter();
-        let balances = ledgers
+        let found = self.balances.iter();
+        let balances = found
             .filter(|(name, _)| name.starts_with(integrator))
             .flat_map(|(_, balances)| balances);
         balances
@@ -228,7 +228,7 @@ impl fmt::Display for Survey {
             let [closed, sound, all] = self.closed(integrator);
             writeln!(
                 f,
-                "{integrator}: {all} ledgers, {:.1} % close within {CLOSED}, {:.1} % with nothing brought; half of them within {:.1e}, \
+                "{integrator}: {all} balances, {:.1} % close within {CLOSED}, {:.1} % with nothing brought; half of them within {:.1e}, \
                  nine in ten within {:.1e}, worst {:+.1e} in scene {}",
                 100.0 * closed / all,
                 100.0 * sound / all,

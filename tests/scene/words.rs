@@ -6,6 +6,7 @@ use std::path::Path;
 use moorline::scene::Scene;
 
 use crate::SCENE;
+use crate::common::{assert_says, assert_written_and_read, draft, in_words};
 
 /// Text and name of every scene of the repository.
 fn repository_scenes() -> Vec<(String, String)> {
@@ -29,43 +30,37 @@ fn every_scene_of_the_repository_is_right_and_survives_being_written() {
     assert!(scenes.len() >= 9);
     for (name, text) in scenes {
         let scene = Scene::from_toml(&text).unwrap_or_else(|mistake| panic!("{name}: {mistake}"));
-        let written = scene.to_toml();
-        assert_eq!(Scene::from_toml(&written).unwrap(), scene, "{name}\n{written}");
+        assert_written_and_read(&scene);
     }
 }
 
 #[test]
 fn words_say_what_is_modelled_and_what_is_not() {
-    let words = Scene::from_toml(SCENE).unwrap().in_words();
-    assert!(words.contains("still water of 1025 kg/m³"));
+    let words = in_words(&Scene::from_toml(SCENE).unwrap());
     // (100 − 1025·π/4·0.1²)·9.81 = 902.03 N/m
-    assert!(words.contains("weight 902.03 N/m in water"), "{words}");
-    let flat = words.split_whitespace().collect::<Vec<_>>().join(" ");
-    assert!(
-        flat.contains("normal drag coefficient 1.2,")
-            && flat.contains("no tangential drag, no normal added mass, no tangential added mass"),
-        "{words}"
-    );
+    let weight = "weight 902.03 N/m in water";
+    let drag = "normal drag coefficient 1.2,";
+    let absent = "no tangential drag, no normal added mass, no tangential added mass";
+    assert_says(&words, &["still water of 1025 kg/m³", weight, drag, absent]);
     let dry = SCENE
         .replace("[water]\ndensity = 1025.0\n", "")
         .replace("[seabed]\ndepth = 50.0\n", "");
     let scene = Scene::from_toml(&dry).unwrap();
-    let words = scene.in_words();
+    let words = in_words(&scene);
+    assert_says(&words, &["no water", "weight 981 N/m in air"]);
     let absent = words.split("not modelled").nth(1).unwrap();
-    assert!(
-        words.contains("no water") && words.contains("weight 981 N/m in air"),
-        "{words}"
+    assert_says(
+        absent,
+        &["buoyancy, drag and added mass", "contact with a seabed"],
     );
-    assert!(absent.contains("buoyancy, drag and added mass"), "{words}");
-    assert!(absent.contains("contact with a\n      seabed") || absent.contains("contact with a seabed"));
-    let notes = scene.notes();
-    let note = notes
+    let notes = scene
+        .notes()
         .iter()
-        .find(|note| note.text.contains("without [water]"))
-        .unwrap();
-    assert_eq!(
-        note.to_string(),
-        "line_types.chain: without [water], `drag_normal` changes nothing"
+        .map(|note| format!("{note}\n"))
+        .collect::<String>();
+    assert_says(
+        &notes,
+        &["line_types.chain: without [water], `drag_normal` changes nothing\n"],
     );
 }
 
@@ -78,33 +73,31 @@ fn notes_speak_of_what_is_unused_or_strange() {
         .replace("density = 1025.0", "density = 1025.0\nsurface = false")
         .replace("interval = 0.1", "interval = 0.7");
     let scene = Scene::from_toml(&text).unwrap();
-    let notes: Vec<String> = scene.notes().iter().map(ToString::to_string).collect();
-    for beginning in [
-        "line_types.spare: no line uses this line type",
-        "lines[0]: its ends are 85.44003745317531 m apart, and it is 40 m long unstretched: it is strained by at least 114 %",
-        "points[2].position: above z = 0",
-        "output.interval: the duration of 60 s is not a whole number of intervals",
-    ] {
-        assert!(
-            notes.iter().any(|note| note.starts_with(beginning)),
-            "{beginning}\n{notes:#?}"
-        );
-    }
+    let notes: String = scene.notes().iter().map(|note| format!("\n{note}")).collect();
+    let strained = "it is 40 m long unstretched: it is strained by at least 114 %";
+    assert_says(
+        &notes,
+        &[
+            "\nline_types.spare: no line uses this line type",
+            &format!("\nlines[0]: its ends are 85.44003745317531 m apart, and {strained}"),
+            "\npoints[2].position: above z = 0",
+            "\noutput.interval: the duration of 60 s is not a whole number of intervals",
+        ],
+    );
 }
 
 #[test]
 fn a_motion_is_described_with_its_rotations_whatever_it_is_made_of() {
     let with = |motion: &str| {
-        let text = format!(
-            "[line_types.rope]\nmass = 1.0\naxial_stiffness = 1e4\n\
-             [[vessels]]\nname = \"ship\"\n\
-             [[points]]\nname = \"a\"\nposition = [0.0, 0.0, 0.0]\nkind = \"fixed\"\n\
-             [[points]]\nname = \"b\"\nposition = [9.0, 0.0, 0.0]\nkind = \"coupled\"\non = \"ship\"\n\
-             [[lines]]\nname = \"l\"\nfrom = \"a\"\nto = \"b\"\nsections = [{{ type = \"rope\", length = 10.0 }}]\n\
-             [motion]\nship = {motion}\n[output]\nduration = 1.0\ninterval = 0.1\n"
-        );
-        let words = Scene::from_toml(&text).unwrap().in_words();
-        words.split_whitespace().collect::<Vec<_>>().join(" ")
+        let rope = "line_types.rope = { mass = 1.0, axial_stiffness = 1e4 }\nvessels = [{ name = 'ship' }]";
+        let ends = draft(format!(
+            "{rope}\nmotion.ship = {motion}\noutput = {{ duration = 1.0, interval = 0.1 }}"
+        ));
+        let ends = ends
+            .fixed("a", [0.0; 3])
+            .coupled("b", [9.0, 0.0, 0.0])
+            .with("on = 'ship'");
+        in_words(&ends.line("l", ["a", "b"], "rope", 10.0, None).scene())
     };
     for (motion, said) in [
         (
@@ -121,7 +114,7 @@ fn a_motion_is_described_with_its_rotations_whatever_it_is_made_of() {
         ),
     ] {
         let words = with(motion);
-        assert!(words.contains(said), "{said}\n{words}");
+        assert_says(&words, &[said]);
         assert!(!words.contains("stays where it is"), "{words}");
     }
 }

@@ -197,12 +197,12 @@ fn halving_the_time_step_quarters_the_error_in_waves() {
 }
 
 #[test]
-fn the_ledger_closes_in_waves_at_second_order_or_at_any_step() {
+fn the_energy_balance_closes_in_waves_at_second_order_or_at_any_step() {
     for (integrator, coarse) in COARSE_STEPS {
-        assert_ledger_order(integrator, coarse, 1e-4, |step| {
+        assert_balance_order(integrator, coarse, 1e-4, |step| {
             let mut simulation = start(&balanced(riser(integrator, step)));
             run(&mut simulation, 0.4, 40);
-            let flow = &simulation.energy_balance().unwrap().flow;
+            let flow = flow(&simulation);
             assert!(flow.external_work > 1e3 && flow.dissipation > 1e3, "{flow:?}");
             error_of_given(&simulation)
         });
@@ -210,7 +210,7 @@ fn the_ledger_closes_in_waves_at_second_order_or_at_any_step() {
 }
 
 #[test]
-fn the_ledger_closes_with_free_points_in_waves() {
+fn the_energy_balance_closes_with_free_points_in_waves() {
     for integrator in JOINED {
         let mut scene = with_integrator(system(integrator, STORM), integrator, 0.005);
         scene.points[1].position[2] = -1.0; // at the surface
@@ -407,113 +407,6 @@ fn scenes_with_waves_survive_being_written_and_read() {
     }
 }
 
-/// Claims that seas are refused with a place and a problem.
-fn assert_seas_refused(cases: &[(&str, &str, &str)]) {
-    let text = system(Integrator::Auto, STORM).to_toml();
-    let start = text.find("[water.waves]").unwrap();
-    let end = start + text[start..].find("\n[").unwrap_or(text.len() - start);
-    let calm = format!("{}{}", &text[..start], &text[end..]);
-    for (waves, place, problem) in cases {
-        let density = format!("density = 1025.0\nwaves = {waves}");
-        let place = format!("water.waves{place}");
-        assert_refused(
-            &calm.replacen("density = 1025.0", &density, 1),
-            &[&place, problem],
-        );
-    }
-}
-
-#[test]
-fn every_mistake_in_waves_is_refused_with_its_place() {
-    assert_seas_refused(&[
-        ("{}", "", "a sea needs"),
-        ("[]", "", "no sea in the array"),
-        ("3.0", "", "expected a sea"),
-        (
-            "{ regular = { height = 1.0, period = 0.0 } }",
-            ".regular.period",
-            "is not between 0.05",
-        ),
-        (
-            "{ regular = { height = -1.0, period = 5.0 } }",
-            ".regular.height",
-            "is not positive",
-        ),
-        (
-            "{ regular = { period = 5.0 } }",
-            ".regular",
-            "either its `height` or its `amplitude`",
-        ),
-        (
-            "{ regular = { height = 1.0, amplitude = 0.5, period = 5.0 } }",
-            ".regular",
-            "either",
-        ),
-        (
-            "{ components = [[1.0, 5.0, 0.0]] }",
-            ".components[0]",
-            "an array of 4 numbers",
-        ),
-        (
-            "{ components = [[1.0, -5.0, 0.0, 0.0]] }",
-            ".components[0][1]",
-            "is not between",
-        ),
-    ]);
-    let waves = "water = { density = 1025.0, waves = { regular = { height = 1.0 } } }";
-    assert_refused(waves, &["regular", "period"]);
-}
-
-#[test]
-fn every_mistake_in_a_spectrum_is_refused_with_its_place() {
-    let of = |kind: &str, rest: &str| format!("{{ spectrum = \"{kind}\", significant_height = 2.0{rest} }}");
-    let full = |rest: &str| of("jonswap", &format!(", peak_period = 8.0, {rest}"));
-    let regular = |period: f64| format!("regular = {{ height = 1.0, period = {period:?} }}");
-    assert_seas_refused(&[
-        ("{ components = 50 }", "", "a sea needs"),
-        (&of("jonswap", ""), "", "missing key `peak_period` [s]"),
-        (
-            &full("peakedness = 12.0"),
-            ".peakedness",
-            "is not between 1 and 10",
-        ),
-        (
-            &full("components = 0"),
-            ".components",
-            "is not between 1 and 100000",
-        ),
-        (&full("ramp = 0.0"), ".ramp", "is not positive"),
-        (
-            &of("pierson_moskowitz", ", peak_period = 8.0, peakedness = 2.0"),
-            ".peakedness",
-            "only a JONSWAP",
-        ),
-        (
-            &of("bretschneider", ", peak_period = 8.0"),
-            ".spectrum",
-            "pierson_moskowitz",
-        ),
-        (
-            &format!("{{ {}, seed = 4 }}", regular(5.0)),
-            ".seed",
-            "belongs to a spectrum",
-        ),
-        (
-            &format!(
-                "[{{ {}, ramp = 4.0 }}, {{ {}, ramp = 5.0 }}]",
-                regular(5.0),
-                regular(9.0)
-            ),
-            "[1].ramp",
-            "write one ramp",
-        ),
-    ]);
-    assert_refused(
-        "water = { density = 1025.0, waves = { swell = 1.0 } }",
-        &["swell", "unknown key"],
-    );
-}
-
 #[test]
 fn waves_do_not_act_on_beams_or_quasi_static_lines_and_say_so() {
     let says = |scene: &Scene, words: &str| {
@@ -599,7 +492,7 @@ fn a_piece_at_the_surface_is_wet_under_crests_and_dry_over_troughs() {
 }
 
 #[test]
-fn the_ledger_closes_where_lines_pierce_the_surface_of_waves() {
+fn the_energy_balance_closes_where_lines_pierce_the_surface_of_waves() {
     for integrator in INTEGRATORS {
         let errors = [0.01, 0.005].map(|step| {
             let mut scene = riser(integrator, step);

@@ -95,7 +95,7 @@ fn a_line_at_rest_has_as_many_elements_as_its_static_tension_needs() {
     let mesh = &settled.meshes[0];
     let [before, after] = mesh.rest.unwrap().errors;
     assert!(before > 0.05 && after < 0.02 && mesh.elements > 40);
-    assert!(settled.in_words()[0].contains("at rest"));
+    assert_says(&settled.in_words()[0], &["at rest"]);
     let mut still = open(shipped("oc3_catenary"));
     still.motion.clear();
     assert!(discretisation::select(&still).is_none());

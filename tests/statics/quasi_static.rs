@@ -478,15 +478,12 @@ fn imbalance_of(scene: &Scene, point: usize, reach: f64, parts: usize) -> (f64, 
         let away = [phase.sin(), 0.4 * (phase.cos() - 1.0), 0.3 * phase.sin()].map(|a| reach * a);
         simulation.set_displacement(point, away);
         simulation.advance(1.0 / parts as f64).unwrap();
-        let now = simulation.energy_balance().unwrap().flow.external_work;
+        let now = flow(&simulation).external_work;
         turnover += (now - given).abs();
         given = now;
         substeps += simulation.counters().substeps;
     }
-    (
-        simulation.energy_balance().unwrap().error().abs() / turnover,
-        substeps,
-    )
+    (balance_error(&simulation).abs() / turnover, substeps)
 }
 
 #[test]

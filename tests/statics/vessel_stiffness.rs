@@ -315,16 +315,6 @@ fn oc3_hywind_has_its_published_stiffness() {
 }
 
 #[test]
-fn oc3_hywind_has_the_fairlead_tension_of_map() {
-    // summary file of MAP++ in the regression tests of OpenFAST
-    let simulation = start(&OC3.scene(20, ""));
-    let closed = simulation.catenary(0).unwrap();
-    assert_close(closed.tension_b(), 911_089.46, 1e-5);
-    assert_close(closed.horizontal(), 736_939.29, 1e-5);
-    assert_close(closed.vertical_b(), 535_727.99, 1e-5);
-}
-
-#[test]
 fn oc4_deepcwind_has_its_published_stiffness() {
     // Robertson et al. (2014), NREL/TP-5000-60601
     let (diagonal, _) = published(&OC4);

@@ -1,7 +1,7 @@
 //! Hard first looks: coarse runs of unfriendly lines. None may blow up.
 
 use crate::common::*;
-use moorline::scene::{InitialShape, Integrator, MotionPath, Scene};
+use moorline::scene::{Integrator, MotionPath, Scene};
 
 /// A change to a scene that makes it harder.
 type Change = fn(&mut Scene);
@@ -115,15 +115,6 @@ fn a_snap_of_eleven_times_the_static_tension_does_not_blow_up() {
             "{n} elements: {greatest} times the static tension"
         );
     }
-}
-
-#[test]
-fn a_line_released_without_tension_settles() {
-    let mut scene = shipped("seafem11");
-    scene.lines[0].initial = InitialShape::Straight;
-    let mut simulation = start(&scene);
-    run(&mut simulation, 0.05, 400);
-    assert!((simulation.sag(0) - 0.7182741621).abs() < 1e-9);
 }
 
 #[test]

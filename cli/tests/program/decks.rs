@@ -1,24 +1,15 @@
 //! The command line on decks.
 
-use std::fs;
-
 use moorline::simulation::Simulation;
 use moorline_decks::{Supplement, load_with};
 
-use super::{columns, err, moorline, out, refused, table};
-
-const VERSION_1: &str = include_str!("../../../decks/tests/decks/moordyn_v1.dat");
-const FARM: &str = include_str!("../../../decks/tests/decks/farm.dat");
-const MAP: &str = include_str!("../../../decks/tests/decks/oc3.map");
+use super::*;
 
 #[test]
 fn the_command_line_converts_a_deck_with_what_its_host_would_give() {
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("farm.dat"), FARM).unwrap();
-    let convert = ["convert", "farm.dat", "-o", "farm.toml"];
-    refused(folder.path(), &convert, 2, &["--at turbine1=X,Y,Z"]);
-    let places = ["--at", "turbine1=0,0,0", "--at", "turbine2=1000,0,0"];
-    let output = moorline(folder.path(), &[&convert, places.as_slice()].concat());
+    let folder = folder_with(&[("farm.dat", FARM)]);
+    folder.refused("convert farm.dat -o farm.toml", &["--at turbine1=X,Y,Z"]);
+    let output = folder.run("convert farm.dat -o farm.toml --at turbine1=0,0,0 --at turbine2=1000,0,0");
     assert_eq!(
         (output.status.code(), err(&output).as_str()),
         (Some(0), ""),
@@ -26,26 +17,20 @@ fn the_command_line_converts_a_deck_with_what_its_host_would_give() {
     );
     let said = out(&output);
     assert!(said.starts_with("written to farm.toml\nnote: file"), "{said}");
-    let again = ["convert", "farm.toml", "-o", "again.toml"];
-    refused(folder.path(), &again, 2, &["is a scene of moorline already"]);
+    folder.refused(
+        "convert farm.toml -o again.toml",
+        &["is a scene of moorline already"],
+    );
 }
 
 #[test]
 fn a_run_of_a_deck_writes_its_channels_beside_moorlines_columns() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut text = VERSION_1.to_string();
-    for (old, new) in [
-        (
-            "FairTen2 AnchTen1",
-            "FairTen2 AnchTen1 L2N0Px Point2Pz Con3Fx L1NBVz",
-        ),
-        ("0.02   dtOut", "5.0   dtOut"),
-    ] {
-        assert!(text.contains(old), "{old}");
-        text = text.replacen(old, new, 1);
-    }
-    fs::write(folder.path().join("deck.dat"), text).unwrap();
-    let columns = columns(folder.path(), &["run", "deck.dat", "-o", "out"]);
+    let channels = "FairTen2 AnchTen1 L2N0Px Point2Pz Con3Fx L1NBVz";
+    let text = VERSION_1
+        .replace("FairTen2 AnchTen1", channels)
+        .replace("0.02   dtOut", "5.0   dtOut");
+    let folder = folder_with(&[("deck.dat", &text)]);
+    let columns = folder.columns("run deck.dat -o out");
     let column = |name: &str| columns.get(name).unwrap_or_else(|| panic!("{name}: {columns:?}"));
     assert_eq!(column("time").len(), 13);
     // The tension of the last segment; the force on the point has half a segment's weight besides, save what the seabed carries.
@@ -60,22 +45,18 @@ fn a_run_of_a_deck_writes_its_channels_beside_moorlines_columns() {
 
 #[test]
 fn a_map_deck_runs_through_equilibria_without_trials_of_elements() {
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("oc3.map"), MAP).unwrap();
     let motion = "time,x,y,z\n0,0,0,0\n10,4,0,0\n20,4,0,0\n";
-    fs::write(folder.path().join("motion.csv"), motion).unwrap();
-    let moved = ["--depth", "320", "--motion", "motion.csv"];
-    let arguments = [&["run", "oc3.map", "-o", "out"], &moved[..]].concat();
-    let output = moorline(folder.path(), &arguments);
+    let folder = folder_with(&[("oc3.map", MAP), ("motion.csv", motion)]);
+    let output = folder.run("run oc3.map -o out --depth 320 --motion motion.csv");
     let (said, remarks) = (out(&output), err(&output));
     assert_eq!(output.status.code(), Some(0), "{remarks}");
-    assert!(remarks.contains("quasi-static, as MAP++ is"), "{remarks}");
-    let report = fs::read_to_string(folder.path().join("out/report.html")).unwrap();
+    assert_says(&remarks, &["quasi-static, as MAP++ is"]);
+    let report = folder.read("out/report.html");
     assert!(
         !report.contains("tried on") && !said.contains("tried on"),
         "{said}"
     );
-    let (names, rows) = table(&folder.path().join("out/results.csv"));
+    let (names, rows) = table(&folder.path("out/results.csv"));
     let index = names.iter().position(|name| name == "line1.tension_b").unwrap();
     let tension = rows[rows.len() - 1][index];
     let moved = Supplement {
@@ -83,7 +64,7 @@ fn a_map_deck_runs_through_equilibria_without_trials_of_elements() {
         positions: [("vessel".to_string(), [4.0, 0.0, 0.0])].into(),
         ..Supplement::default()
     };
-    let there = load_with(&folder.path().join("oc3.map"), &moved).unwrap_or_else(|e| panic!("{}", e.list()));
+    let there = load_with(&folder.path("oc3.map"), &moved).unwrap_or_else(|e| panic!("{}", e.list()));
     let exact = Simulation::new(&there.scene).unwrap();
     let exact = exact.catenary(0).unwrap().tension_b();
     assert!((tension / exact - 1.0).abs() < 1e-6, "{tension} {exact}");

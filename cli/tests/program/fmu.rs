@@ -1,23 +1,19 @@
 //! `moorline fmu` and `moorline demo`: FMUs from the command line.
 
-use std::fs;
 use std::io::Read;
-use std::process::Command;
 
-use super::{done, err, folder, names, refused};
+use super::*;
 
 #[test]
 fn an_fmu_that_cannot_be_placed_is_refused() {
     let folder = folder();
-    let fmu = |output: &str, part: &str| {
-        refused(folder.path(), &["fmu", "scene.toml", "-o", output], 2, &[part]);
-    };
-    fmu(".", "cannot write .: it is a folder: give the name of a file");
-    fmu(
-        "nowhere/x.fmu",
-        "cannot write nowhere/x.fmu: there is no folder nowhere",
+    folder.refused(
+        "fmu scene.toml -o .",
+        &["cannot write .: it is a folder: give the name of a file"],
     );
-    assert_eq!(names(folder.path()), ["scene.toml"]);
+    let nowhere = "cannot write nowhere/x.fmu: there is no folder nowhere";
+    folder.refused("fmu scene.toml -o nowhere/x.fmu", &[nowhere]);
+    assert_eq!(folder.names(), ["scene.toml"]);
 }
 
 /// Puts the FMU library beside the program under test, once: `cargo test` does not build it for the tests of another package.
@@ -25,16 +21,9 @@ fn build_library() {
     static BUILT: std::sync::Once = std::sync::Once::new();
     BUILT.call_once(|| {
         let profile = if cfg!(debug_assertions) { "dev" } else { "release" };
+        let arguments = format!("build --quiet --package moorline-fmu --lib --profile {profile}");
         let output = Command::new(env!("CARGO"))
-            .args([
-                "build",
-                "--quiet",
-                "--package",
-                "moorline-fmu",
-                "--lib",
-                "--profile",
-                profile,
-            ])
+            .args(arguments.split(' '))
             .current_dir(env!("CARGO_MANIFEST_DIR"))
             .output()
             .unwrap();
@@ -48,41 +37,37 @@ fn an_fmu_of_either_version_is_one_whole_file() {
     let folder = folder();
     for version in ["2", "3"] {
         let target = format!("rope{version}.fmu");
-        let arguments = ["fmu", "scene.toml", "-o", &target, "--fmi", version];
-        assert_eq!(done(folder.path(), &arguments), format!("written to {target}\n"));
-        let file = fs::File::open(folder.path().join(&target)).unwrap();
+        let said = folder.done(&format!("fmu scene.toml -o {target} --fmi {version}"));
+        assert_eq!(said, format!("written to {target}\n"));
+        let file = fs::File::open(folder.path(&target)).unwrap();
         let mut archive = zip::ZipArchive::new(file).unwrap();
         let mut xml = String::new();
         let mut entry = archive.by_name("modelDescription.xml").unwrap();
         entry.read_to_string(&mut xml).unwrap();
         drop(entry);
-        assert!(xml.contains(&format!("fmiVersion=\"{version}.0\"")));
-        let names: Vec<String> = (0..archive.len())
-            .map(|i| archive.by_index(i).unwrap().name().unwrap().to_string())
-            .collect();
+        assert_says(&xml, &[&format!("fmiVersion=\"{version}.0\"")]);
+        let names: Vec<_> = archive.file_names().map(Result::unwrap).collect();
         assert!(
             names.iter().any(|name| name.starts_with("binaries/")),
             "{names:?}"
         );
-        assert!(names.contains(&"resources/scene.toml".to_string()), "{names:?}");
+        assert!(names.contains(&"resources/scene.toml".into()), "{names:?}");
     }
-    assert_eq!(names(folder.path()), ["rope2.fmu", "rope3.fmu", "scene.toml"]);
+    assert_eq!(folder.names(), ["rope2.fmu", "rope3.fmu", "scene.toml"]);
 }
 
 #[test]
 fn the_demo_drives_an_fmu_that_gives_the_bits_of_a_run() {
     build_library();
-    let folder = folder();
-    let text = done(folder.path(), &["demo"]);
-    for part in [
+    let folder = folder_of("demo");
+    let parts = [
         "static equilibrium",
         "catenary",
         "line1 tension at end B [N]",
         "times real time",
-    ] {
-        assert!(text.contains(part), "{part} in {text}");
-    }
-    let made = names(&folder.path().join("moorline-demo"));
+    ];
+    folder.shows("demo", &parts);
+    let made = folder.names_in("moorline-demo");
     for name in [
         "demo.fmu",
         "profile.svg",
@@ -92,13 +77,9 @@ fn the_demo_drives_an_fmu_that_gives_the_bits_of_a_run() {
     ] {
         assert!(made.contains(&name.to_string()), "{name} in {made:?}");
     }
-    let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/demo.toml");
-    done(
-        folder.path(),
-        &["run", scene, "-o", "run", "--communication-step", "0.05"],
-    );
+    folder.done("run scene.toml -o run --communication-step 0.05");
     for table in ["results.csv", "profile.csv"] {
-        let read = |of: &str| fs::read_to_string(folder.path().join(of).join(table)).unwrap();
+        let read = |of: &str| folder.read(&format!("{of}/{table}"));
         let (run, demo) = (read("run"), read("moorline-demo"));
         let differing = run.lines().zip(demo.lines()).find(|(run, demo)| run != demo);
         assert_eq!(differing, None, "{table}");
@@ -118,11 +99,10 @@ fn a_missing_fmu_library_is_named_with_how_to_build_it() {
     fs::hard_link(env!("CARGO_BIN_EXE_moorline"), &program).unwrap();
     let output = Command::new(&program)
         .args(["fmu", "scene.toml", "-o", "x.fmu"])
-        .current_dir(folder.path())
+        .current_dir(folder.path(""))
         .output()
         .unwrap();
     assert_eq!(output.status.code(), Some(1));
-    assert!(err(&output).contains("moorline_fmu"), "{}", err(&output));
-    assert!(err(&output).contains("cargo build --release"), "{}", err(&output));
-    assert!(!folder.path().join("x.fmu").exists());
+    assert_says(&err(&output), &["moorline_fmu", "cargo build --release"]);
+    assert!(!folder.path("x.fmu").exists());
 }

@@ -9,60 +9,156 @@ mod places;
 mod run;
 mod statics;
 mod study;
+#[path = "../../../tests/common/text.rs"]
+mod text;
 
 use std::collections::BTreeMap;
-use std::ffi::OsStr;
 use std::fs;
-use std::path::Path;
-use std::process::{Command, Output};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
 
 use tempfile::TempDir;
+use text::assert_says;
 
 /// A hanging line in still air, quick to run.
-const SCENE: &str = r#"title = "a rope between two poles"
+const SCENE: &str = include_str!("../../../tests/scenes/rope.toml");
 
-[line_types.rope]
-mass = 0.05
-axial_stiffness = 2505.0
-axial_damping = 5.0
+const OPENFAST: &str = include_str!("../../../decks/tests/decks/openfast_v2.dat");
+const VERSION_1: &str = include_str!("../../../decks/tests/decks/moordyn_v1.dat");
+const C_STYLE: &str = include_str!("../../../decks/tests/decks/moordyn_c.txt");
+const FARM: &str = include_str!("../../../decks/tests/decks/farm.dat");
+const MAP: &str = include_str!("../../../decks/tests/decks/oc3.map");
 
-[[points]]
-name = "anchor"
-position = [0.0, 0.0, 0.0]
-kind = "fixed"
-
-[[points]]
-name = "fairlead"
-position = [14.0, 0.0, 0.0]
-kind = "coupled"
-
-[[lines]]
-name = "line1"
-from = "anchor"
-to = "fairlead"
-sections = [{ type = "rope", length = 14.1421, elements = 8 }]
-
-[motion]
-fairlead = { x = [[0.05, 2.0]], ramp = 1.0 }
-
-[output]
-duration = 1.0
-interval = 0.1
-"#;
+/// A folder in which the program runs.
+struct Folder(TempDir);
 
 /// A folder with the scene in it.
-fn folder() -> TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("scene.toml"), SCENE).unwrap();
+fn folder() -> Folder {
+    folder_with(&[("scene.toml", SCENE)])
+}
+
+/// A folder with files of these names and texts in it.
+fn folder_with(files: &[(&str, &str)]) -> Folder {
+    let folder = Folder(tempfile::tempdir().unwrap());
+    files.iter().for_each(|(name, text)| folder.write(name, text));
     folder
 }
 
-fn moorline<S: AsRef<OsStr>>(folder: &Path, arguments: &[S]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_moorline"))
-        .args(arguments)
-        .current_dir(folder)
-        .output()
-        .unwrap()
+/// A folder with a scene of the repository in it, as `scene.toml`.
+fn folder_of(name: &str) -> Folder {
+    let path = format!("{}/../scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    folder_with(&[("scene.toml", &fs::read_to_string(path).unwrap())])
+}
+
+impl Folder {
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    fn write(&self, name: &str, text: impl AsRef<[u8]>) {
+        fs::write(self.path(name), text).unwrap();
+    }
+
+    fn read(&self, name: &str) -> String {
+        fs::read_to_string(self.path(name)).unwrap()
+    }
+
+    /// The program with these arguments, which blanks divide, in the folder.
+    fn command(&self, arguments: &str) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_moorline"));
+        command
+            .args(arguments.split_whitespace())
+            .current_dir(self.0.path());
+        command
+    }
+
+    fn run(&self, arguments: &str) -> Output {
+        self.command(arguments).output().unwrap()
+    }
+
+    /// Runs a command to its end with all of its pipes; `meanwhile` may act on it first.
+    fn piped(&self, arguments: &str, meanwhile: impl FnOnce(&mut Child)) -> Output {
+        let mut command = self.command(arguments);
+        let pipes = command
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped());
+        let mut child = pipes.spawn().unwrap();
+        meanwhile(&mut child);
+        child.wait_with_output().unwrap()
+    }
+
+    /// Runs what must be done, and returns what it shows.
+    fn done(&self, arguments: &str) -> String {
+        let output = self.run(arguments);
+        assert_eq!(output.status.code(), Some(0), "{arguments}: {}", err(&output));
+        out(&output)
+    }
+
+    /// Runs what must be done and show all these parts.
+    fn shows(&self, arguments: &str, parts: &[&str]) {
+        assert_says(&self.done(arguments), parts);
+    }
+
+    /// Runs what must be done, and returns its remarks.
+    fn remarks(&self, arguments: &str) -> String {
+        let output = self.run(arguments);
+        assert_eq!(output.status.code(), Some(0), "{arguments}: {}", err(&output));
+        err(&output)
+    }
+
+    /// Runs what must be done, and reads the columns of its results by name.
+    fn columns(&self, arguments: &str) -> BTreeMap<String, Vec<f64>> {
+        self.done(arguments);
+        let (names, rows) = table(&self.path("out/results.csv"));
+        let column = |index: usize| rows.iter().map(|row| row[index]).collect();
+        let columns = names.into_iter().enumerate();
+        columns.map(|(index, name)| (name, column(index))).collect()
+    }
+
+    /// Runs what must be refused as wrong input with a message that has all these parts.
+    fn refused(&self, arguments: &str, parts: &[&str]) {
+        self.ends(arguments, 2, parts);
+    }
+
+    /// Runs a computation that must fail with a message that has all these parts.
+    fn fails(&self, arguments: &str, parts: &[&str]) {
+        self.ends(arguments, 1, parts);
+    }
+
+    /// Runs what must end with this exit code and a message that has all these parts and no backtrace.
+    fn ends(&self, arguments: &str, code: i32, parts: &[&str]) {
+        let output = self.run(arguments);
+        let message = err(&output);
+        assert_eq!(output.status.code(), Some(code), "{arguments}: {message}");
+        // a message that is broken into lines is compared as if it were not
+        let words = message.split_whitespace().filter(|word| *word != "│");
+        assert_says(&words.collect::<Vec<_>>().join(" "), parts);
+        assert!(!message.contains("panicked"), "{message}");
+        assert!(output.stdout.is_empty(), "{arguments}: {}", out(&output));
+    }
+
+    /// Names of all files, sorted, with forward slashes.
+    fn names(&self) -> Vec<String> {
+        self.names_in("")
+    }
+
+    /// Names of the files below a folder in it.
+    fn names_in(&self, below: &str) -> Vec<String> {
+        fn collect(folder: &Path, prefix: &str, names: &mut Vec<String>) {
+            for entry in fs::read_dir(folder).unwrap().map(Result::unwrap) {
+                let name = format!("{prefix}{}", entry.file_name().to_string_lossy());
+                match entry.path().is_dir() {
+                    true => collect(&entry.path(), &format!("{name}/"), names),
+                    false => names.push(name),
+                }
+            }
+        }
+        let mut found = Vec::new();
+        collect(&self.path(below), "", &mut found);
+        found.sort();
+        found
+    }
 }
 
 fn out(output: &Output) -> String {
@@ -71,61 +167,6 @@ fn out(output: &Output) -> String {
 
 fn err(output: &Output) -> String {
     String::from_utf8(output.stderr.clone()).unwrap()
-}
-
-/// Runs what must be done, and reads the columns of its results by name.
-fn columns(folder: &Path, arguments: &[&str]) -> BTreeMap<String, Vec<f64>> {
-    done(folder, arguments);
-    let (names, rows) = table(&folder.join("out/results.csv"));
-    let column = |index: usize| rows.iter().map(|row| row[index]).collect();
-    names
-        .into_iter()
-        .enumerate()
-        .map(|(index, name)| (name, column(index)))
-        .collect()
-}
-
-/// Runs what must be refused with this exit code and a message that has all these parts and no backtrace.
-fn refused(folder: &Path, arguments: &[&str], code: i32, parts: &[&str]) {
-    let output = moorline(folder, arguments);
-    let message = err(&output);
-    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {message}");
-    // A message that is broken into lines is compared as if it were not.
-    let flat = message
-        .split_whitespace()
-        .filter(|word| *word != "│")
-        .collect::<Vec<_>>()
-        .join(" ");
-    for part in parts {
-        assert!(flat.contains(part), "{arguments:?}: no \"{part}\" in\n{message}");
-    }
-    assert!(!message.contains("panicked"), "{message}");
-    assert!(output.stdout.is_empty(), "{arguments:?}: {}", out(&output));
-}
-
-/// Runs what must be done.
-fn done(folder: &Path, arguments: &[&str]) -> String {
-    let output = moorline(folder, arguments);
-    assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", err(&output));
-    out(&output)
-}
-
-/// Names below a folder, sorted, with forward slashes.
-fn names(folder: &Path) -> Vec<String> {
-    fn collect(folder: &Path, prefix: &str, names: &mut Vec<String>) {
-        for entry in fs::read_dir(folder).unwrap().map(Result::unwrap) {
-            let name = format!("{prefix}{}", entry.file_name().to_string_lossy());
-            if entry.path().is_dir() {
-                collect(&entry.path(), &format!("{name}/"), names);
-            } else {
-                names.push(name);
-            }
-        }
-    }
-    let mut found = Vec::new();
-    collect(folder, "", &mut found);
-    found.sort();
-    found
 }
 
 /// Numbers of a results table: header and rows.

@@ -15,26 +15,7 @@ use fmi::schema::MajorVersion;
 use fmi::schema::traits::FmiModelDescription as _;
 use fmi::traits::FmiImport as _;
 
-const SCENE: &str = r#"
-title = "one rope"
-[line_types.rope]
-weight = 0.49
-axial_stiffness = 2505.0
-axial_damping = 5.0
-[[points]]
-name = "wall"
-position = [0.0, 0.0, 0.0]
-kind = "fixed"
-[[points]]
-name = "hand"
-position = [14.0, 0.0, 0.0]
-kind = "coupled"
-[[lines]]
-name = "rope"
-from = "wall"
-to = "hand"
-sections = [{ type = "rope", length = 14.5, elements = 10 }]
-"#;
+const SCENE: &str = include_str!("../../../tests/scenes/hand.toml");
 
 /// Value references of `hand.x` and `rope.tension_b`: positions in the table, the same in both versions.
 const HAND_X: u32 = 1;
@@ -89,7 +70,7 @@ fn drive2() -> Vec<u64> {
     let import: Fmi2Import = fmi::import::from_path(&fmu).unwrap();
     let description = import.model_description();
     assert_eq!(description.major_version().unwrap(), MajorVersion::FMI2);
-    assert_eq!(description.model_name, "one rope");
+    assert_eq!(description.model_name, "a rope in the hand");
     let mut slave = import.instantiate_cs("mooring", false, true).unwrap();
     slave.setup_experiment(None, 0.0, None).unwrap();
     slave.enter_initialization_mode().unwrap();

@@ -10,31 +10,7 @@ use moorline::scene::Scene;
 use moorline_host::{FmiVersion, Fmu};
 
 /// One chain on a seabed, 20 elements.
-pub const SCENE: &str = r#"
-title = "one chain line"
-[water]
-density = 1025.0
-[seabed]
-depth = 200.0
-[line_types.chain]
-mass = 113.35
-diameter = 0.0766
-axial_stiffness = 753.6e6
-axial_damping = 2.0e6
-[[points]]
-name = "anchor"
-position = [837.6, 0.0, -200.0]
-kind = "fixed"
-[[points]]
-name = "fairlead"
-position = [40.868, 0.0, -14.0]
-kind = "coupled"
-[[lines]]
-name = "line1"
-from = "anchor"
-to = "fairlead"
-sections = [{ type = "chain", length = 835.35, elements = 20 }]
-"#;
+pub const SCENE: &str = include_str!("../../../tests/scenes/chain.toml");
 
 /// Builds the library as it is now, with the profile of this test, and returns a copy that later builds leave alone.
 /// Cargo by itself does not: nothing links to a library for C.

@@ -82,57 +82,53 @@ fn length_max(line: &Line) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::draft::{Draft, draft};
 
     const DEPTH: f64 = 100.0;
 
     /// A line of 20 m from a fixed point at z = −10 m, with more of the scene.
-    fn hung(end: &str, line: &str, more: &str) -> Scene {
-        let text = format!(
+    fn hung([kind, end]: [&str; 2], line: &str, more: &str) -> Draft {
+        draft(format!(
             "seabed = {{ depth = {DEPTH:?} }}
             line_types.rope = {{ mass = 5.0, diameter = 0.05, axial_stiffness = 1e6 }}
-            points = [{{ name = 'top', position = [0.0, 0.0, -10.0], kind = 'fixed' }},
-                      {{ name = 'end', position = [5.0, 0.0, -15.0], {end} }}]
-            [[lines]]
-            name = 'line'
-            from = 'top'
-            to = 'end'
-            sections = [{{ type = 'rope', length = 20.0 }}]
-            {line}
             {more}"
-        );
-        Scene::from_toml(&text).unwrap()
+        ))
+        .fixed("top", [0.0, 0.0, -10.0])
+        .point(kind, "end", [5.0, 0.0, -15.0])
+        .with(end)
+        .line("line", ["top", "end"], "rope", 20.0, None)
+        .with(line)
     }
 
     fn touches(scene: &Scene) -> bool {
         may_touch_bed(scene, &scene.lines[0])
     }
 
+    const FIXED: [&str; 2] = ["fixed", ""];
+
     #[test]
     fn a_line_far_above_the_bed_is_made_without_it() {
-        assert!(!touches(&hung("kind = 'fixed'", "", "")));
-        assert!(!touches(&hung("kind = 'free'", "", "")));
-        let vessel = "[[vessels]]\nname = 'barge'\nposition = [0.0, 0.0, -5.0]";
-        assert!(!touches(&hung("kind = 'coupled', on = 'barge'", "", vessel)));
+        assert!(!touches(&hung(FIXED, "", "").scene()));
+        assert!(!touches(&hung(["free", ""], "", "").scene()));
+        let vessel = "vessels = [{ name = 'barge', position = [0.0, 0.0, -5.0] }]";
+        assert!(!touches(&hung(["coupled", "on = 'barge'"], "", vessel).scene()));
     }
 
     #[test]
     fn what_can_move_or_come_loose_may_touch_the_bed() {
-        assert!(touches(&hung("kind = 'coupled'", "", "")));
-        assert!(touches(&hung("kind = 'fixed'", "release = 'b'", "")));
-        assert!(touches(&hung(
-            "kind = 'fixed'",
-            "break = { at = 'b', time = 1.0 }",
-            ""
-        )));
+        assert!(touches(&hung(["coupled", ""], "", "").scene()));
+        assert!(touches(&hung(FIXED, "release = 'b'", "").scene()));
+        assert!(touches(
+            &hung(FIXED, "break = { at = 'b', time = 1.0 }", "").scene()
+        ));
     }
 
     #[test]
     fn a_line_reaches_as_far_as_those_it_hangs_together_with_and_what_a_winch_pays_out() {
-        let ends = "kind = 'free' }, { name = 'low', position = [5.0, 0.0, -20.0], kind = 'free'";
-        let longer = "[[lines]]\nname = 'other'\nfrom = 'end'\nto = 'low'\nsections = [{ type = 'rope', length = 50.0 }]";
-        let scene = hung(ends, "", longer);
+        let joined = hung(["free", ""], "", "").free("low", [5.0, 0.0, -20.0]);
+        let scene = joined.line("other", ["end", "low"], "rope", 50.0, None).scene();
         assert!(!touches(&scene) && may_touch_bed(&scene, &scene.lines[1]));
         let winch = "winch = { end = 'b', length_max = 60.0 }";
-        assert!(touches(&hung("kind = 'fixed'", winch, "")));
+        assert!(touches(&hung(FIXED, winch, "").scene()));
     }
 }

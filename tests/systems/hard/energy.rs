@@ -39,12 +39,12 @@ fn snaps_after_slack_peak_as_in_a_converged_run() {
 }
 
 #[test]
-fn ten_times_the_damping_and_none_keep_the_ledger() {
+fn ten_times_the_damping_and_none_keep_the_energy_balance() {
     for integrator in INTEGRATORS {
-        for (damping, ledger, steps) in [(10.0, 1e-2, 9000.0), (0.0, 6e-2, 1300.0)] {
+        for (damping, balance, steps) in [(10.0, 1e-2, 9000.0), (0.0, 6e-2, 1300.0)] {
             let run = snapping(40, integrator, damping);
             let case = Case(format!("damping × {damping}, {integrator:?}"));
-            case.sound(&run, ledger, steps);
+            case.sound(&run, balance, steps);
             case.at_most(1e-4, "gain", run.energy_gain());
         }
     }
@@ -82,11 +82,11 @@ fn a_fairlead_that_jumps_by_a_metre_leaves_a_line_that_settles() {
                 let run = jump(name, integrator, reconstruction);
                 let case = Case(format!("jump, {name}, {integrator:?}, {reconstruction:?}"));
                 // a jump makes waves as short as elements are, which explicit steps resolve least
-                let ledger = match reconstruction {
+                let balance = match reconstruction {
                     Reconstruction::Jump => 0.1,
                     _ => 0.02,
                 };
-                case.sound(&run, ledger, 250.0);
+                case.sound(&run, balance, 250.0);
                 case.at_most(3.0, "peak over the start", run.peak() / run.tension[0]);
                 let last = run.tension[run.tension.len() - 1];
                 case.at_most(2e-3, "settled", (last / rest - 1.0).abs());

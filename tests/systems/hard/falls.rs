@@ -74,7 +74,7 @@ fn the_fall_over_a_fold_of_half_a_metre_converges() {
 #[test]
 #[cfg_attr(not(feature = "slow-tests"), ignore = "slow")]
 fn a_whip_crack_gains_2_permille_of_energy_at_most_and_8_percent_by_the_axial_implicit_leapfrog() {
-    for (integrator, gain, ledger) in [
+    for (integrator, gain, balance) in [
         (Integrator::Leapfrog, 2e-3, 0.25),
         (Integrator::AxialImplicit, 0.08, 0.01),
         (Integrator::GeneralisedAlpha, 1e-3, 1e-6),
@@ -83,7 +83,7 @@ fn a_whip_crack_gains_2_permille_of_energy_at_most_and_8_percent_by_the_axial_im
             let scene = by(folded_chain(elements, 2), integrator, 0.01 / elements as f64);
             let run = Run::of(&scene, 5.0, 0.005);
             let case = Case(format!("whip of {elements}, {integrator:?}"));
-            case.sound(&run, ledger, 17_500.0);
+            case.sound(&run, balance, 17_500.0);
             case.at_most(gain, "gain", run.energy_gain());
         }
     }

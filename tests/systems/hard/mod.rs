@@ -1,4 +1,4 @@
-//! Hard cases: where cable solvers lose energy, accuracy, steps or themselves. Every case states what must hold: how far the energy ledger may be
+//! Hard cases: where cable solvers lose energy, accuracy, steps or themselves. Every case states what must hold: how far the energy balance may be
 //! from closing, how far tension or place from a closed form or a converged run, and how many internal steps it may take.
 //!
 //! The scenes are those of the example `hard_cases`, which draws the figures of `docs/hard-cases.md`. `--nocapture` prints what is found.
@@ -20,7 +20,7 @@ mod stiffness;
 /// A run that claims are made of, by name.
 struct Case(String);
 
-/// Error that Newton's method leaves of a ledger, over the energy that flowed [-].
+/// Error that Newton's method leaves of an energy balance, over the energy that flowed [-].
 const NEWTON: f64 = 1e-5;
 
 impl Case {
@@ -34,15 +34,15 @@ impl Case {
         );
     }
 
-    /// Claims that a run stayed finite, that its ledger closes to a share of the energy that flowed [-], by an implicit integrator to the error that Newton's
+    /// Claims that a run stayed finite, that its energy balance closes to a share of the energy that flowed [-], by an implicit integrator to the error that Newton's
     /// method leaves, and that it took no more than a number of internal steps for a second [1/s].
-    fn sound(&self, run: &run::Run, ledger: f64, steps: f64) {
+    fn sound(&self, run: &run::Run, balance: f64, steps: f64) {
         assert!(run.is_finite(), "{}", self.0);
-        let ledger = match run.chosen {
-            Integrator::GeneralisedAlpha => ledger.min(NEWTON),
-            _ => ledger,
+        let balance = match run.chosen {
+            Integrator::GeneralisedAlpha => balance.min(NEWTON),
+            _ => balance,
         };
-        self.at_most(ledger, "ledger", run.ledger_error());
+        self.at_most(balance, "balance", run.ledger_error());
         self.at_most(steps, "steps for a second", run.substeps_per_second());
     }
 }

@@ -31,7 +31,7 @@ fn storm(integrator: Integrator, hours: f64) {
     let run = Run::of(&scene, 3600.0 * hours, 0.5);
     let case = Case(format!("{hours} h, {integrator:?}"));
     case.sound(&run, 2e-3, 200.0);
-    // the ledger's error grows no faster than the energy that flows
+    // the energy balance's error grows no faster than the energy that flows
     let share = run.error[run.error.len() - 1].abs() / run.flowed;
     case.at_most(2e-3, "drift", share);
 }

@@ -131,10 +131,10 @@ fn a_tonne_on_a_light_rope_swings_as_a_pendulum() {
 fn a_tonne_dropped_into_a_light_rope_is_caught_with_its_energy() {
     let fall = 1.0;
     let exact = caught_pull(fall);
-    for (integrator, ledger) in JOINED.into_iter().zip([5e-3, 5e-3, 0.05, 5e-3]) {
+    for (integrator, balance) in JOINED.into_iter().zip([5e-3, 5e-3, 0.05, 5e-3]) {
         let run = Run::of(&by(clump(10, fall, 0.0), integrator, 0.001), 2.0, 0.01);
         let case = Case(format!("dropped clump, {integrator:?}"));
-        case.sound(&run, ledger, 5000.0);
+        case.sound(&run, balance, 5000.0);
         case.at_most(0.03, "tension", (run.peak() / exact - 1.0).abs());
     }
 }
@@ -146,8 +146,8 @@ fn a_line_almost_without_mass_pulls_as_it_should() {
         for mass in [1e-3, 1e-5] {
             let scene = || nearly_massless(mass, wet);
             let truth = Run::of(&by(scene(), Integrator::GeneralisedAlpha, 0.002), 12.0, 0.05);
-            // `auto` steps as far as the host does where the line is at rest in every step; the ledger's sums have as many terms
-            for (integrator, ledger, steps) in [
+            // `auto` steps as far as the host does where the line is at rest in every step; the energy balance's sums have as many terms
+            for (integrator, balance, steps) in [
                 (Integrator::Leapfrog, 1e-4, 120_000.0), // in water half again by the drag along it
                 (Integrator::AxialImplicit, 1e-4, 10_000.0),
                 (Integrator::GeneralisedAlpha, 1e-4, 110.0),
@@ -155,7 +155,7 @@ fn a_line_almost_without_mass_pulls_as_it_should() {
             ] {
                 let run = Run::of(&by(scene(), integrator, 0.01), 12.0, 0.05);
                 let case = Case(format!("{mass} kg/m, wet {wet}, {integrator:?}"));
-                case.sound(&run, ledger, steps);
+                case.sound(&run, balance, steps);
                 case.at_most(1e-5, "tension", run.tension_error(&truth, 4.0));
             }
         }

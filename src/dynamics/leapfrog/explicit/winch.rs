@@ -398,22 +398,17 @@ fn merge(velocity: &mut Field, striping: Striping, end: usize, old: [f64; 3], ne
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::Model;
-    use crate::scene::Scene;
+    use crate::draft::draft;
     use approx::assert_relative_eq;
-
-    const SCENE: &str = r#"
-        line_types.rope = { mass = 20.0, axial_stiffness = 1.0e6 }
-        points = [
-          { name = "low", position = [0.0, 0.0, -20.0], kind = "fixed" },
-          { name = "high", position = [30.0, 0.0, 0.0], kind = "fixed" },
-        ]
-        lines = [{ name = "rope", from = "low", to = "high", winch = { end = "b", length_max = 20.0 }, sections = [{ type = "rope", length = 40.0, elements = 10 }] }]
-    "#;
 
     /// The line with 6.2 m of end segment, in wild motion.
     fn work() -> ExplicitLine {
-        let model = Model::new(&Scene::from_toml(SCENE).unwrap()).unwrap();
+        let rope = draft("line_types.rope = { mass = 20.0, axial_stiffness = 1.0e6 }");
+        let ends = rope
+            .fixed("low", [0.0, 0.0, -20.0])
+            .fixed("high", [30.0, 0.0, 0.0]);
+        let line = ends.line("rope", ["low", "high"], "rope", 40.0, 10);
+        let model = line.with("winch = { end = 'b', length_max = 20.0 }").model();
         let mut work = ExplicitLine::new(&model, &model.lines[0], [true; 2]).unwrap();
         let wild = |i: usize, k: f64| {
             let i = i as f64;
