@@ -302,7 +302,7 @@ impl Kernel for AxialImplicit {
         [_, drift]: [f64; 2],
     ) -> bool {
         let mut lines = network.lines.iter().map(|line| &line.kernel);
-        lines.all(|line| line.settled && !(drift * drift * line.tensions[1] > *bound))
+        lines.all(|line| line.settled && drift * drift * line.tensions[1] <= *bound)
     }
 }
 
