@@ -1,7 +1,7 @@
 //! Hard first looks: coarse runs of unfriendly lines. None may blow up.
 
 use crate::common::*;
-use moorline::scene::{InitialShape, Integrator, MotionPath, Scene};
+use moorline::scene::{Integrator, MotionPath, Scene};
 use moorline::simulation::Simulation;
 
 /// A change to a scene that makes it harder.
