@@ -2,6 +2,10 @@
 //! few and among many others.
 
 mod common;
+#[path = "../tests/common/copies.rs"]
+mod copies;
+#[path = "../tests/common/draft.rs"]
+mod draft;
 #[path = "../tests/common/net.rs"]
 mod net;
 
@@ -34,7 +38,7 @@ fn least(mut call: impl FnMut()) -> f64 {
 
 /// `lines` copies of one line, each driven at its own fairlead.
 fn alone(lines: usize) -> Scene {
-    let mut scene = net::copies(&common::scene("oc3_catenary"), lines, 0, 0.0);
+    let mut scene = copies::copies(&common::scene("oc3_catenary"), lines, 0, 0.0);
     (scene.solver.integrator, scene.solver.elements) = (Integrator::Leapfrog, Some(20));
     scene.solver.threads = Threads::Number(1);
     scene

@@ -2,8 +2,8 @@
 //! in turns, so that what else the machine does falls on all of them.
 
 mod common;
-#[path = "../tests/common/net.rs"]
-mod net;
+#[path = "../tests/common/copies.rs"]
+mod copies;
 
 use std::time::Instant;
 
@@ -32,7 +32,7 @@ fn semi(elements: usize, waves: bool) -> Scene {
 
 /// Five such vessels, three kilometres apart: sixty lines.
 fn farm(elements: usize, waves: bool) -> Scene {
-    net::copies(&semi(elements, waves), 5, 0, 3000.0)
+    copies::copies(&semi(elements, waves), 5, 0, 3000.0)
 }
 
 /// A simulation past its start-up, on a number of threads.

@@ -2,7 +2,7 @@
 #![allow(dead_code, unused_imports)] // each test binary uses a part
 
 mod chance;
-mod draft;
+pub mod draft;
 mod text;
 
 pub use chance::Chance;

@@ -1,10 +1,8 @@
-//! Many lines: a net hung from its rim, and copies of a scene beside each other, for tests and benches.
-#![allow(dead_code)] // each program uses a part
+//! A net hung from its rim: networks of any size for tests and benches.
 
 use moorline::scene::Scene;
 
-#[path = "draft.rs"]
-mod draft;
+use super::draft::draft;
 
 /// Mesh width of the net [m].
 const WIDTH: f64 = 10.0;
@@ -12,7 +10,7 @@ const WIDTH: f64 = 10.0;
 /// A square net of `count` by `count` free points, 10 m apart and 50 m under water. Neighbours are joined by ropes 2 % longer than that,
 /// of `elements` elements each; the outermost points hang on fixed anchors, those of the first column on coupled points that sway.
 pub fn net(count: usize, elements: usize) -> Scene {
-    let mut net = draft::draft(
+    let mut net = draft(
         "water.density = 1025.0
         line_types.rope = { mass = 5.0, diameter = 0.05, axial_stiffness = 2e6, axial_damping = 2e4, drag_normal = 1.2,
           drag_tangential = 0.05, added_mass_normal = 1.0 }
@@ -51,36 +49,4 @@ pub fn net(count: usize, elements: usize) -> Scene {
         }
     }
     net.scene()
-}
-
-/// `count` copies of a scene that have nothing in common, each farther from the first along an axis by a distance [m].
-pub fn copies(one: &Scene, count: usize, axis: usize, distance: f64) -> Scene {
-    let mut scene = one.clone();
-    (scene.vessels, scene.points, scene.lines) = (Vec::new(), Vec::new(), Vec::new());
-    scene.motion.clear();
-    for unit in 0..count {
-        let named = |name: &str| format!("{name}_{unit}");
-        let moved = |mut place: [f64; 3]| {
-            place[axis] += distance * unit as f64;
-            place
-        };
-        for mut vessel in one.vessels.clone() {
-            (vessel.name, vessel.position) = (named(&vessel.name), moved(vessel.position));
-            scene.vessels.push(vessel);
-        }
-        for mut point in one.points.clone() {
-            if point.on.is_none() {
-                point.position = moved(point.position);
-            }
-            (point.name, point.on) = (named(&point.name), point.on.as_deref().map(named));
-            scene.points.push(point);
-        }
-        for mut line in one.lines.clone() {
-            (line.name, line.from, line.to) = (named(&line.name), named(&line.from), named(&line.to));
-            scene.lines.push(line);
-        }
-        let motion = one.motion.iter().map(|(name, path)| (named(name), path.clone()));
-        scene.motion.extend(motion);
-    }
-    scene
 }

@@ -5,11 +5,11 @@ mod common;
 
 mod analytic;
 mod convergence;
+#[path = "../common/copies.rs"]
+mod copies;
 mod coupling;
 mod implicit;
 mod invariants;
-#[path = "../common/net.rs"]
-mod net;
 mod shorter_steps;
 mod threads;
 mod vector_unit;

@@ -1,7 +1,7 @@
 //! Threads share the networks of a system; what they find must not depend on how many they are.
 
 use crate::common::*;
-use crate::net::copies;
+use crate::copies::copies;
 use moorline::model::Body;
 use moorline::scene::{Integrator, Scene, Threads};
 use moorline::simulation::{Simulation, Snapshot};

@@ -19,7 +19,7 @@ fn spaghetti(elements: usize, step: f64) -> Scene {
 /// Energy held [J], by the energy balance.
 fn energy(simulation: &Simulation) -> f64 {
     let balance = simulation.energy_balance().unwrap();
-    balance_error(&simulation) + balance.start + balance.flow.external_work - balance.flow.dissipation
+    balance_error(simulation) + balance.start + balance.flow.external_work - balance.flow.dissipation
 }
 
 /// A flight of 10 s in steps of 0.1 s: energy and momenta stay after the load, and the impulse is exact.

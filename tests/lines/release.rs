@@ -30,7 +30,7 @@ fn started(keys: &str, integrator: Integrator, step: f64) -> Simulation {
 
 /// Claims that the error of the energy balance is below 2 % of the kinetic energy.
 fn assert_balanced(simulation: &Simulation) {
-    let (error, kinetic) = (balance_error(&simulation).abs(), simulation.energy().kinetic);
+    let (error, kinetic) = (balance_error(simulation).abs(), simulation.energy().kinetic);
     assert!(error < 2e-2 * kinetic, "{error} of {kinetic} J");
 }
 

@@ -185,7 +185,7 @@ fn finite(simulation: &Simulation) -> Result<(), String> {
             simulation.sag(line),
             simulation.stretched_length(line),
         ];
-        let numbers = [&ends[..], &lengths, &simulation.tensions(line)].concat();
+        let numbers = [&ends[..], &lengths, simulation.tensions(line)].concat();
         if numbers.iter().any(|number| !number.is_finite()) {
             return Err(format!("line {line}: {numbers:?}"));
         }

@@ -82,7 +82,8 @@ fn decks_cut_swapped_and_scrambled_never_panic_and_never_hang() {
             }
             _ => {
                 let cell = *chance.one_of(&number_cells(deck));
-                with_word(deck, cell, *chance.one_of(&extremes)).into_bytes()
+                let extreme: &&str = chance.one_of(&extremes);
+                with_word(deck, cell, extreme).into_bytes()
             }
         };
         match load_bytes(&bytes, &supplement()) {

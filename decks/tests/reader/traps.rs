@@ -168,7 +168,7 @@ fn a_state_file_without_time_to_come_to_rest_is_one_note() {
         panic!("{start:#?}");
     };
     let read = "ICfile start.ic: the state in this file is not read; TmaxIC 0: runs start with free points where the file has them";
-    assert_says(&note, &[read]);
+    assert_says(note, &[read]);
 }
 
 #[test]
