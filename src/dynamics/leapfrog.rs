@@ -8,7 +8,7 @@
 //! 4. velocities of the nodes at t_{n+½}, with water and seabed, and positions at t_{n+1}.
 //!
 //! A [`Kernel`] makes the stages of a line: [`Explicit`], or [`AxialImplicit`], whose tension is solved for in stage 4. Everything else is common: the
-//! striped [`layout`], release, surface, loading and storing the state, the energy balance.
+//! striped layout, release, surface, loading and storing the state, the energy balance.
 
 mod axial_implicit;
 mod balance;

@@ -214,7 +214,7 @@ impl<K: Kernel> LeapfrogNetwork<K> {
         }
     }
 
-    /// As [`LeapfrogLine::set_out_anew`].
+    /// Makes viscoelastic segments and the work of the ends of all lines start from the present motion of the ends, half the `last` step [s] ago.
     pub fn set_out_anew(&mut self, last: f64) {
         self.lines.iter_mut().for_each(|line| line.set_out_anew(last));
     }
