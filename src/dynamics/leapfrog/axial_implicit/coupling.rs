@@ -411,7 +411,7 @@ impl AxialLine {
                 segment.equations.right = zero;
             }
             let segment: &mut SegmentRow = &mut self.kernel.rows.segments[at.row - 1];
-            segment.equations.right[at.lane] = segment.resistance(sizes)[at.lane];
+            segment.equations.right[at.lane] = segment.rate_slope(sizes)[at.lane];
             self.solve_tensions();
             for (row, segment) in self.kernel.open.iter_mut().zip(&self.kernel.rows.segments) {
                 row.slopes[end as usize] = segment.tension;

@@ -132,7 +132,7 @@ impl SegmentRow {
         let (zero, one, push) = (Lanes::splat(0.0), Lanes::splat(1.0), sizes.push);
         let damped = self.damping * sizes.damping[1] * self.along;
         let springs = self.elastic + self.curvature;
-        let resistance = self.resistance(sizes);
+        let resistance = self.rate_slope(sizes);
         let known = self.taut.choose(springs + damped, push * damped);
         let k = resistance * sizes.kick;
         self.equations = Equations {
@@ -145,7 +145,7 @@ impl SegmentRow {
 
     /// Slope of T̄ with the stretching velocity [N s/m].
     #[inline(always)]
-    pub fn resistance(&self, sizes: &Sizes) -> Lanes {
+    pub fn rate_slope(&self, sizes: &Sizes) -> Lanes {
         let damping = self.damping * sizes.damping[0];
         self.taut.choose(self.stiffness + damping, sizes.push * damping)
     }
