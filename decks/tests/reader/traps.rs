@@ -12,7 +12,7 @@ const DEVIATION_MAX: f64 = 5e-3;
 type Trap = (&'static str, fn() -> Supplement, usize, fn(&Scene) -> bool);
 
 /// Parts of the notes on each deck, each of another note.
-const NOTES: &str = include_str!("../decks/traps_notes.txt");
+const NOTES: &str = include_str!("traps.txt");
 
 fn nothing() -> Supplement {
     Supplement::default()
