@@ -56,14 +56,14 @@ pub trait Kernel: Debug + Clone + Sized {
     /// Quantities at the start of the steps that bound their length.
     type Bound;
 
-    /// Scratch of the free points.
-    type Coupling: Debug + Clone + Default;
+    /// Scratch of the free points of a network.
+    type Points: Debug + Clone + Default;
 
     /// Allocates for a line in its striped layout.
     fn new(model: &Model, line: &Line, layout: &Layout) -> Self;
 
     /// Allocates for the free points of a network.
-    fn coupling(model: &Model, network: &Network) -> Self::Coupling;
+    fn points(model: &Model, network: &Network) -> Self::Points;
 
     /// Loads the quantities that a line keeps beside those of the layout.
     fn load(work: &mut LeapfrogLine<Self>, state: &LineState);

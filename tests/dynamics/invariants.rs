@@ -85,14 +85,20 @@ fn the_energy_balance_closes_where_held_points_jump() {
     .line("line1", ["anchor", "fairlead"], "rope", 66.0, None)
     .scene();
     // a jump makes waves as short as elements are, which explicit steps resolve least
-    for (name, scene, explicit) in [
-        ("a chain on its bed", shipped("oc4_chain"), 5e-3),
-        ("a rope", shipped("taut_polyester"), 1e-5),
-        ("lines at a free point", shipped("bridle"), 2e-3),
-        ("a viscoelastic rope through the surface", pierces, 0.1),
+    for (name, scene, explicit, axial_step) in [
+        ("a chain on its bed", shipped("oc4_chain"), 5e-3, 0.01),
+        ("a rope", shipped("taut_polyester"), 1e-5, 0.01),
+        // 4e-3 at 5 ms, where the two ropes are not resolved, 6e-4 at 2.5 ms
+        ("lines at a free point", shipped("bridle"), 2e-3, 0.0025),
+        ("a viscoelastic rope through the surface", pierces, 0.1, 0.01),
     ] {
         for integrator in INTEGRATORS {
-            let scene = with_integrator(with_elements(scene.clone(), 20), integrator, 0.01);
+            let step = if integrator == Integrator::AxialImplicit {
+                axial_step
+            } else {
+                0.01
+            };
+            let scene = with_integrator(with_elements(scene.clone(), 20), integrator, step);
             let error = jumping_balance(scene);
             println!("{name}, {integrator:?}: {error:e}");
             let bound = match integrator {

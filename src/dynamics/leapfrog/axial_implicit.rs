@@ -153,9 +153,9 @@ pub struct AxialImplicit {
 impl Kernel for AxialImplicit {
     const FEW_ROWS: usize = 2;
     const SECANTS: bool = true;
-    /// Square of the longest step times √T [s² N].
-    type Bound = f64;
-    type Coupling = coupling::Coupling;
+    /// None: each line has its own limit.
+    type Bound = ();
+    type Points = coupling::Coupling;
 
     fn new(model: &Model, line: &Line, layout: &Layout) -> AxialImplicit {
         let radius = model.solver.spectral_radius.unwrap_or(SPECTRAL_RADIUS);
@@ -195,7 +195,7 @@ impl Kernel for AxialImplicit {
         }
     }
 
-    fn coupling(model: &Model, network: &Network) -> coupling::Coupling {
+    fn points(model: &Model, network: &Network) -> coupling::Coupling {
         coupling::Coupling::new(model, network)
     }
 
@@ -273,36 +273,36 @@ impl Kernel for AxialImplicit {
         passes
     }
 
-    /// The bound is that of transverse waves, under half as much tension again as there was in the last step.
+    /// Limits of transverse waves, under half as much tension again as there was in the last step.
     fn longest_step(
         network: &mut LeapfrogNetwork<AxialImplicit>,
         _: &Model,
         choice: &Choice,
         [_, length]: [f64; 2],
-    ) -> (f64, f64) {
-        let (mut longest, mut bound) = (choice.longest, f64::INFINITY);
+    ) -> (f64, ()) {
+        let mut longest = choice.longest;
         for AxialImplicit {
             transverse, tensions, ..
         } in network.lines.iter().map(|line| &line.kernel)
         {
             let expected = SNAP_GROWTH * tensions[0];
-            // most bounds hold over the whole communication step, without roots and quotients
+            // most limits exceed the whole communication step: no root or quotient is needed for those
             if length * length * expected > transverse * transverse {
                 longest = longest.min(transverse / expected.sqrt());
             }
-            bound = bound.min(transverse * transverse);
         }
-        (longest, bound)
+        (longest, ())
     }
 
     fn were_short(
         network: &mut LeapfrogNetwork<AxialImplicit>,
         _: &Model,
-        bound: &f64,
+        _: &(),
         [_, drift]: [f64; 2],
     ) -> bool {
         let mut lines = network.lines.iter().map(|line| &line.kernel);
-        lines.all(|line| line.settled && drift * drift * line.tensions[1] <= *bound)
+        lines
+            .all(|line| line.settled && drift * drift * line.tensions[1] <= line.transverse * line.transverse)
     }
 }
 

@@ -24,7 +24,7 @@ use pulp::NullaryFnOnce;
 
 use super::layout::{Layout, interior};
 use super::network::LeapfrogNetwork;
-use super::point::PointLoad;
+use super::point::{ContactSpring, PointLoad};
 use super::step::Step;
 use super::{ENDS, EndMotion, Kernel, LeapfrogLine};
 use crate::dynamics::Choice;
@@ -59,6 +59,8 @@ pub struct Explicit {
     interior: Column,
     /// The winch at end B, where the line is on one.
     winch: Option<Box<WinchWork>>,
+    /// Greatest ratio K |v| / M of the nodes after the last step, where it is known [1/s].
+    drag_rate: Option<f64>,
 }
 
 /// Coefficients of resistance, and of a mass that differs along and across the line.
@@ -103,7 +105,7 @@ impl WaterWork {
     }
 }
 
-/// [`ExplicitLine::drag_rate`] for the vector unit of the machine.
+/// [`ExplicitLine::survey_drag`] for the vector unit of the machine.
 struct DragRate<'a>(&'a ExplicitLine);
 
 impl NullaryFnOnce for DragRate<'_> {
@@ -119,7 +121,7 @@ impl Kernel for Explicit {
     const FEW_ROWS: usize = 5;
     const SECANTS: bool = false;
     type Bound = ExplicitLimit;
-    type Coupling = ();
+    type Points = Vec<ContactSpring>;
 
     fn new(_: &Model, line: &Line, layout: &Layout) -> Explicit {
         let winch = WinchWork::new(line);
@@ -134,14 +136,20 @@ impl Kernel for Explicit {
             water: WaterWork::new(line, layout),
             interior: interior(layout.striping, layout.segment_count),
             winch,
+            drag_rate: None,
         }
     }
 
-    fn coupling(_: &Model, _: &Network) {}
+    fn points(model: &Model, network: &Network) -> Vec<ContactSpring> {
+        let attached = |&point: &usize| model.points[point].attached.len();
+        let most = network.free_points.iter().map(attached).max();
+        Vec::with_capacity(most.map_or(0, |ends| ends + 1))
+    }
 
     fn load(work: &mut ExplicitLine, state: &LineState) {
         work.load_winch(state);
         work.layout.still();
+        work.kernel.drag_rate = None;
     }
 
     /// A line on a winch is laid out anew.
@@ -151,6 +159,9 @@ impl Kernel for Explicit {
         }
         work.layout.still();
         work.clear_balance();
+        if work.layout.flows() {
+            work.kernel.drag_rate = None; // the water moves on
+        }
     }
 
     fn store(work: &mut ExplicitLine, state: &mut LineState, steps: [f64; 2]) -> bool {
@@ -222,9 +233,6 @@ impl Kernel for Explicit {
         choice: &Choice,
         [t, _]: [f64; 2],
     ) -> (f64, ExplicitLimit) {
-        if !network.lines.iter().all(ExplicitLine::keeps_drag_rate) {
-            network.drag_rate = None;
-        }
         let lines = network.lines.iter().map(ExplicitLine::stiffening);
         let stiffening = lines.fold(1.0, f64::max);
         let limit = choice.explicit.stiffened(stiffening);
@@ -239,7 +247,9 @@ impl Kernel for Explicit {
         limit: &ExplicitLimit,
         [t, drift]: [f64; 2],
     ) -> bool {
-        network.survey_drag();
+        for line in &mut network.lines {
+            line.kernel.drag_rate = Some(line.survey_drag());
+        }
         limit.holds(network.drag_rate(model, t), drift)
     }
 }
@@ -347,8 +357,13 @@ impl ExplicitLine {
         (greatest / expected_slope(&line.law)).max(1.0)
     }
 
-    /// Greatest ratio K |v| / M [1/s], v relative to the water, or of its part along the line: explicit drag wants Δt below its inverse.
+    /// Greatest ratio K |v| / M of the nodes [1/s], as far as it is known from the last step.
     pub(super) fn drag_rate(&self) -> f64 {
+        self.kernel.drag_rate.unwrap_or_else(|| self.survey_drag())
+    }
+
+    /// Greatest ratio K |v| / M [1/s], v relative to the water, or of its part along the line: explicit drag is stable for Δt below its inverse.
+    fn survey_drag(&self) -> f64 {
         match self.kernel.water {
             Some(_) => self.layout.vector_unit.dispatch(DragRate(self)),
             None => 0.0,
@@ -399,11 +414,6 @@ impl ExplicitLine {
         let nodes = line.nodes().enumerate();
         let moving = nodes.filter(|(_, at)| !prescribed.contains(&Some(*at)));
         moving.map(rate).fold(0.0, f64::max)
-    }
-
-    /// Returns whether [`Self::drag_rate`] is that of the last step also at the start of the next one.
-    pub(super) fn keeps_drag_rate(&self) -> bool {
-        !self.layout.flows() && self.kernel.winch.is_none()
     }
 }
 

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::point::{self, ContactSpring};
+use super::point;
 use super::step::Step;
 use super::{EndMotion, Kernel, LeapfrogLine};
 use crate::dynamics::energy_balance::Flow;
@@ -26,13 +26,10 @@ pub struct LeapfrogNetwork<K: Kernel> {
     pub(super) attached: Vec<Vec<(usize, End)>>,
     /// Motion of the water by waves at the free points, where there are waves.
     pub(super) waves: Vec<WaveSpan>,
-    /// Springs of the seabed under the point that is stepped.
-    pub(super) springs: Vec<ContactSpring>,
-    pub(super) coupling: K::Coupling,
+    /// Scratch of the free points.
+    pub(super) scratch: K::Points,
     /// Flow of energy of the free points since the state was loaded.
     pub(super) point_flow: Flow,
-    /// Greatest ratio K |v| / M of the lines' nodes after the last step, where it is known [1/s].
-    pub(super) drag_rate: Option<f64>,
 }
 
 /// An end of a line.
@@ -102,7 +99,6 @@ impl<K: Kernel> LeapfrogNetwork<K> {
             .iter()
             .map(|&point| point::attached(model, network, point));
         let attached: Vec<Vec<(usize, End)>> = attached.collect();
-        let springs = attached.iter().map(|ends| ends.len() + 1).max();
         Some(LeapfrogNetwork {
             lines: network.lines.iter().map(line).collect::<Option<_>>()?,
             line_numbers: network.lines.clone(),
@@ -117,11 +113,9 @@ impl<K: Kernel> LeapfrogNetwork<K> {
                     0
                 }
             ],
-            springs: Vec::with_capacity(springs.unwrap_or(0)),
-            coupling: K::coupling(model, network),
+            scratch: K::points(model, network),
             attached,
             point_flow: Flow::default(),
-            drag_rate: None,
         })
     }
 
@@ -140,7 +134,6 @@ impl<K: Kernel> LeapfrogNetwork<K> {
 
     /// Loads the state.
     pub fn load(&mut self, state: &State) {
-        self.drag_rate = None;
         self.numbered_lines()
             .for_each(|(work, line)| work.load(&state.lines[line]));
         self.load_surroundings(state);

@@ -34,7 +34,7 @@ pub struct PointLoad {
 
 /// Spring and damper of the seabed under a point: its own, or that of the half node of a line.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct ContactSpring {
+pub struct ContactSpring {
     /// Stiffness [N/m].
     stiffness: f64,
     /// Stiffness times drift and damping [N s/m].
@@ -80,7 +80,8 @@ impl<K: Kernel> LeapfrogNetwork<K> {
 impl LeapfrogNetwork<Explicit> {
     /// Greatest ratio K |v| / M of all nodes and free points at time `t` [s], v relative to the water [1/s].
     pub(super) fn drag_rate(&self, model: &Model, t: f64) -> f64 {
-        let of_lines = self.drag_rate.unwrap_or_else(|| self.drag_rate_of_lines());
+        let of_lines = self.lines.iter().map(ExplicitLine::drag_rate);
+        let of_lines = of_lines.fold(0.0, f64::max);
         let points = self.points.iter().zip(&self.point_numbers).enumerate();
         points
             .filter_map(|(free, (point, &index))| {
@@ -95,19 +96,9 @@ impl LeapfrogNetwork<Explicit> {
             .fold(of_lines, f64::max)
     }
 
-    /// Greatest ratio of the nodes of the lines [1/s].
-    fn drag_rate_of_lines(&self) -> f64 {
-        let rates = self.lines.iter().map(ExplicitLine::drag_rate);
-        rates.fold(0.0, f64::max)
-    }
-
-    /// Finds the ratio of the nodes after a step for the next one too.
-    pub(super) fn survey_drag(&mut self) {
-        self.drag_rate = Some(self.drag_rate_of_lines());
-    }
-
     /// Steps the free points from `t` [s].
     pub(super) fn step_points(&mut self, model: &Model, t: f64, step: Step) {
+        let mut springs = std::mem::take(&mut self.scratch);
         for free in 0..self.points.len() {
             let index = self.point_numbers[free];
             let [last, before] = self.points[free].half_step;
@@ -119,21 +110,20 @@ impl LeapfrogNetwork<Explicit> {
             let bed = SeabedBelow::under(model, self.points[free].position);
             let waves = self.waves_at(free, t);
             let mut load = load_in_water((model, index, law), [height, t], now, waves, None);
-            self.springs.clear();
-            self.springs
-                .extend(ContactSpring::new(load.contact, bed.height, step));
+            springs.clear();
+            springs.extend(ContactSpring::new(load.contact, bed.height, step));
             for &(at, end) in &self.attached[free] {
                 if self.lines[at].is_released(end) {
                     continue;
                 }
-                let brought = self.lines[at].end_load(end, now);
-                load.add(&brought);
-                self.springs
-                    .extend(ContactSpring::new(brought.contact, bed.height, step));
+                let share = self.lines[at].end_load(end, now);
+                load.add(&share);
+                springs.extend(ContactSpring::new(share.contact, bed.height, step));
             }
-            let kicked = load.kicked(last, law.axes, &self.springs, &bed, step);
+            let kicked = load.kicked(last, law.axes, &springs, &bed, step);
             self.move_point(free, model, &load, kicked, (t, step));
         }
+        self.scratch = springs;
     }
 }
 

@@ -134,7 +134,7 @@ pub(super) fn step(network: &mut LeapfrogNetwork<AxialImplicit>, model: &Model, 
         let ends = &ends.map(|end| end.position);
         line.run(Prepare { step, ends });
     }
-    let mut coupling = std::mem::take(&mut network.coupling);
+    let mut coupling = std::mem::take(&mut network.scratch);
     for (free, point) in coupling.points.iter_mut().enumerate() {
         point.prepare(network, free, model, (t, step));
     }
@@ -168,7 +168,7 @@ pub(super) fn step(network: &mut LeapfrogNetwork<AxialImplicit>, model: &Model, 
         load.force -= network.pull_on(free);
         network.move_point(free, model, &load, Kicked { velocity, friction }, (t, step));
     }
-    network.coupling = coupling;
+    network.scratch = coupling;
     network.find_free_ends();
     for (line, ends) in network.lines_and_ends() {
         let ends = &ends.map(|end| end.position);
@@ -306,11 +306,12 @@ impl Coupling {
             let held = Matrix3::from_diagonal(&point.free.map(|free| 1.0 - free));
             point.inverse = (masked + held).try_inverse().unwrap_or_else(Matrix3::zeros);
         }
-        if !system.solve(Pivots::Positive) {
-            return; // numbers that are none stay as they are found in the lines
-        }
+        let is_solved = system.solve(Pivots::Positive);
         for (free, point) in self.points.iter_mut().enumerate() {
-            point.velocity = system.solution(free);
+            point.velocity = match is_solved {
+                true => system.solution(free),
+                false => Vector3::repeat(f64::NAN), // the step ends in an error
+            };
         }
     }
 }
@@ -351,31 +352,33 @@ impl AxialLine {
         let lane = at.lane;
         let (tangent, velocity) = (node.tangent.get(lane), layout.velocity.get(at));
         let mut share = PointLoad::none();
-        let mut masses = [node.mass_normal[lane], node.mass_tangent[lane]];
-        let own = masses;
         let current = self.kernel.rows.current.as_ref().map(|rows| &rows[at.row - 1]);
         let flow = current.map_or(Vector3::zeros(), |current| current.flow.get(lane));
+        let kick = Lanes::splat(step.kick);
+        let masses = |damping| {
+            node.effective_masses(layout.drag.is_some(), damping, kick)
+                .map(|mass| mass[lane])
+        };
         if layout.drag.is_some() {
             let [normal, along] = node.drag.map(|drag| drag[lane]);
             let past = velocity - flow;
             let speed = past.dot(&tangent);
-            let drawn = along * speed + node.drag_rest[lane];
-            share.resistance = -normal * (past - speed * tangent) - drawn * tangent;
+            let drag_along = along * speed + node.drag_rest[lane];
+            share.resistance = -normal * (past - speed * tangent) - drag_along * tangent;
             share.current_power = share.resistance.dot(&flow);
-            masses[0] += (0.5 * step.kick * normal).max(step.kick * normal - own[0]);
-            masses[1] += step.kick * along;
-            let implicit = Slender::new([masses[0] - own[0], masses[1] - own[1]]);
+            let [across, along] = masses(None);
+            let implicit = Slender::new([across - node.mass_normal[lane], along - node.mass_tangent[lane]]);
             share.current_power_loss = implicit.times(flow, tangent) / step.kick;
         }
         if let Some(damping) = &layout.mass_damping {
             share.resistance -= damping[at] * velocity;
-            masses = masses.map(|mass| mass + 0.5 * step.kick * damping[at]);
         }
         if let (Some(current), true) = (current, layout.waves.is_some()) {
             share.froude_krylov = current.froude_krylov.get(lane);
         }
         share.force = share.resistance + share.froude_krylov - layout.weight[at] * Vector3::z();
-        share.mass = Slender::new(masses).matrix(tangent);
+        let damping = layout.mass_damping.as_ref().map(|damping| damping.load(at.row));
+        share.mass = Slender::new(masses(damping)).matrix(tangent);
         if let Some(contact) = &layout.contact {
             let stiffness = contact.stiffness[at];
             share.contact = [stiffness, contact.damping[at], stiffness * contact.level[at]];

@@ -262,19 +262,27 @@ impl AxialLine {
 }
 
 impl NodeRow {
-    /// Inverts the masses with what drag, if water draws at the nodes, and damping [N s/m] add to them; what is held yields to no force.
+    /// Masses across and along the line [kg], with the implicit parts of the drag, where there is any, and of damping by mass [N s/m] in a step of
+    /// `kick` [s].
     #[inline(always)]
-    fn invert(&mut self, drawn: bool, damping: Option<Lanes>, sizes: &Sizes) {
-        let half = Lanes::splat(0.5) * sizes.kick;
+    pub(super) fn effective_masses(&self, has_drag: bool, damping: Option<Lanes>, kick: Lanes) -> [Lanes; 2] {
+        let half = Lanes::splat(0.5) * kick;
         let [mut across, mut along] = [self.mass_normal, self.mass_tangent];
-        if drawn {
+        if has_drag {
             let [normal, tangent] = self.drag;
-            across = across + (half * normal).max(sizes.kick * normal - across);
-            along = along + sizes.kick * tangent;
+            across = across + (half * normal).max(kick * normal - across);
+            along = along + kick * tangent;
         }
         if let Some(damping) = damping {
             (across, along) = (across + half * damping, along + half * damping);
         }
+        [across, along]
+    }
+
+    /// Inverts the effective masses; nodes at prescribed ends get an inverse of zero.
+    #[inline(always)]
+    fn invert(&mut self, has_drag: bool, damping: Option<Lanes>, sizes: &Sizes) {
+        let [across, along] = self.effective_masses(has_drag, damping, sizes.kick);
         let inverse = self.free * (across * along).recip();
         self.across = along * inverse;
         self.excess = across * inverse - self.across;
