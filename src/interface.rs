@@ -374,6 +374,7 @@ impl Interface {
     }
 
     /// The row of a value reference.
+    #[inline]
     pub fn variable(&self, reference: u32) -> Option<&Variable> {
         let index = usize::try_from(reference).ok()?.checked_sub(1)?;
         self.variables.get(index)

@@ -273,56 +273,69 @@ impl Instance {
 
     /// Row of a value reference.
     fn variable(interface: &Interface, reference: u32) -> Result<&Variable, Refusal> {
-        interface.variable(reference).ok_or_else(|| {
-            Refusal(format!(
-                "no variable has the value reference {reference}: 1 to {} would be right",
-                interface.variables().len()
-            ))
-        })
+        interface
+            .variable(reference)
+            .ok_or_else(|| unknown(interface, reference))
+    }
+
+    /// Row of a value reference that the host accesses by a type.
+    #[inline]
+    fn typed(interface: &Interface, kind: Kind, reference: u32) -> Result<&Variable, Refusal> {
+        match interface.variable(reference) {
+            Some(variable) if variable.kind == kind => Ok(variable),
+            Some(variable) => Err(wrong_type(variable, &format!("{kind:?}"))),
+            None => Err(unknown(interface, reference)),
+        }
     }
 
     /// Reads variables of one type, arrays with all their values.
     pub(crate) fn get(&mut self, kind: Kind, references: &[u32], values: &mut [f64]) -> Outcome {
-        self.check_access(kind, references, values.len())?;
         if self.phase == Phase::Initialization && self.asks_for_results(references) {
             self.solve_statics()?;
         }
-        let mut rest = values;
+        let (count, mut rest) = (values.len(), values);
         for &reference in references {
-            if Some(reference) == self.time_reference {
-                rest[0] = self.time;
-                rest = &mut rest[1..];
+            if Some(reference) == self.time_reference && kind == Kind::Float64 {
+                let (own, others) = rest
+                    .split_first_mut()
+                    .ok_or_else(|| self.wrong_count(references, count))?;
+                (*own, rest) = (self.time, others);
                 continue;
             }
-            let variable = Self::variable(&self.interface, reference)?;
-            let (own, others) = rest.split_at_mut(variable.size());
+            let variable = Self::typed(&self.interface, kind, reference)?;
+            let split = rest.split_at_mut_checked(variable.size());
+            let (own, others) = split.ok_or_else(|| self.wrong_count(references, count))?;
             rest = others;
-            match &variable.binding {
-                Binding::Displacement { body, axis } => {
-                    own[0] = self.inputs[slot(&self.scene, *body)].displacement[*axis];
-                }
-                Binding::Velocity { body, axis } => {
-                    own[0] = self.inputs[slot(&self.scene, *body)].velocity[*axis];
-                }
-                Binding::Release { line } => own[0] = f64::from(u8::from(self.releases[*line])),
-                Binding::LengthChange { line } => own[0] = self.length_changes[*line],
-                Binding::Parameter(parameter) => {
-                    own[0] = parameter
-                        .value(&self.scene)
-                        .expect("the table has only parameters of the scene");
-                }
-                _ => {
-                    let simulation = self.simulation.as_ref().ok_or_else(|| {
-                        Refusal(format!(
-                            "out of order: {} has a value from initialization mode on",
-                            variable.name
-                        ))
-                    })?;
-                    Interface::read(variable, simulation, own)?;
-                    check_result(variable, own, self.time)?;
-                }
-            }
+            self.read(variable, own)?;
         }
+        match rest.is_empty() {
+            true => Ok(()),
+            false => Err(self.wrong_count(references, count)),
+        }
+    }
+
+    /// Reads a variable; `values` has its size.
+    fn read(&self, variable: &Variable, values: &mut [f64]) -> Outcome {
+        values[0] = match &variable.binding {
+            Binding::Displacement { body, axis } => self.inputs[slot(&self.scene, *body)].displacement[*axis],
+            Binding::Velocity { body, axis } => self.inputs[slot(&self.scene, *body)].velocity[*axis],
+            Binding::Release { line } => f64::from(u8::from(self.releases[*line])),
+            Binding::LengthChange { line } => self.length_changes[*line],
+            Binding::Parameter(parameter) => {
+                let value = parameter.value(&self.scene);
+                value.expect("the table has only parameters of the scene")
+            }
+            _ => {
+                let simulation = self.simulation.as_ref().ok_or_else(|| {
+                    Refusal(format!(
+                        "out of order: {} has a value from initialization mode on",
+                        variable.name
+                    ))
+                })?;
+                Interface::read(variable, simulation, values)?;
+                return check_result(variable, values, self.time);
+            }
+        };
         Ok(())
     }
 
@@ -366,27 +379,15 @@ impl Instance {
         })
     }
 
-    /// All references exist and have the type, and the values are as many as they need.
-    fn check_access(&self, kind: Kind, references: &[u32], count: usize) -> Outcome {
-        let mut size = 0;
-        for &reference in references {
-            if Some(reference) == self.time_reference && kind == Kind::Float64 {
-                size += 1;
-                continue;
-            }
-            let variable = Self::variable(&self.interface, reference)?;
-            if variable.kind != kind {
-                return Err(wrong_type(variable, &format!("{kind:?}")));
-            }
-            size += variable.size();
-        }
-        if size != count {
-            return Err(Refusal(format!(
-                "{} variables have {size} values, but the host gave room for {count}",
-                references.len()
-            )));
-        }
-        Ok(())
+    /// Refusal of an access to variables with room for another number of values than they have.
+    #[cold]
+    fn wrong_count(&self, references: &[u32], count: usize) -> Refusal {
+        let size = |&reference: &u32| self.interface.variable(reference).map_or(1, Variable::size);
+        let size: usize = references.iter().map(size).sum();
+        Refusal(format!(
+            "{} variables have {size} values, but the host gave room for {count}",
+            references.len()
+        ))
     }
 
     /// Refuses access by a type that no variable has.
@@ -399,32 +400,44 @@ impl Instance {
 
     /// Sets variables of one type: all of them or, where one is refused, none.
     pub(crate) fn set(&mut self, kind: Kind, references: &[u32], values: &[f64]) -> Outcome {
-        if references.is_empty() && values.is_empty() {
-            return Ok(());
-        }
         if self.time_reference.is_some_and(|time| references.contains(&time)) {
             return Err("time is not to be set".into());
         }
-        self.check_access(kind, references, values.len())?;
-        let mut candidate: Option<Scene> = None;
+        if references.len() != values.len() {
+            return Err(self.wrong_count(references, values.len())); // whatever may be set has one value
+        }
+        let mut has_parameters = false;
+        for (&reference, &value) in references.iter().zip(values) {
+            let variable = Self::typed(&self.interface, kind, reference)?;
+            self.check_settable(variable, value)?;
+            has_parameters |= variable.causality == Causality::Parameter;
+        }
+        if has_parameters {
+            self.set_parameters(references, values)?;
+        }
+        self.set_inputs(references, values)
+    }
+
+    /// Sets the parameters among some variables.
+    fn set_parameters(&mut self, references: &[u32], values: &[f64]) -> Outcome {
+        let mut scene = self.scene.clone();
         for (&reference, &value) in references.iter().zip(values) {
             let variable = Self::variable(&self.interface, reference)?;
-            self.check_settable(variable, value)?;
             if let Binding::Parameter(parameter) = &variable.binding {
-                let scene = candidate.get_or_insert_with(|| self.scene.clone());
-                parameter
-                    .set(scene, value)
-                    .map_err(|problem| format!("{}: {problem}", variable.name))?;
+                let set = parameter.set(&mut scene, value);
+                set.map_err(|problem| format!("{}: {problem}", variable.name))?;
             }
         }
-        if let Some(scene) = candidate {
-            self.check_scene(&scene)?;
-            self.scene = scene;
-            self.simulation = None;
-        }
+        self.check_scene(&scene)?;
+        self.scene = scene;
+        self.simulation = None;
+        Ok(())
+    }
+
+    /// Sets the inputs among some variables; the statics are solved again where they are given during initialization.
+    fn set_inputs(&mut self, references: &[u32], values: &[f64]) -> Outcome {
         for (&reference, &value) in references.iter().zip(values) {
-            let binding = &Self::variable(&self.interface, reference)?.binding;
-            match *binding {
+            match Self::variable(&self.interface, reference)?.binding {
                 Binding::Displacement { body, axis } => {
                     let input = &mut self.inputs[slot(&self.scene, body)];
                     let before = std::mem::replace(&mut input.displacement[axis], value);
@@ -454,23 +467,36 @@ impl Instance {
         Ok(())
     }
 
+    /// Refuses a value that a variable cannot take, or not in this phase.
+    #[inline]
     fn check_settable(&self, variable: &Variable, value: f64) -> Outcome {
-        let named = |problem: &str| Err(Refusal(format!("{}: {problem}", variable.name)));
-        match variable.causality {
-            Causality::Input => self.expect_phase(&[Phase::Instantiated, Phase::Initialization, Phase::Step]),
-            Causality::Parameter => self.expect_phase(&[Phase::Instantiated, Phase::Initialization]),
-            Causality::Output | Causality::CalculatedParameter => {
-                return named("an output or calculated parameter is not to be set");
+        let is_in_range = match (variable.causality, self.phase) {
+            (Causality::Input, Phase::Instantiated | Phase::Initialization | Phase::Step) => {
+                value.abs() <= INPUT_MAX
             }
+            (Causality::Parameter, Phase::Instantiated | Phase::Initialization) => value.is_finite(),
+            _ => false,
+        };
+        match is_in_range {
+            true => Ok(()),
+            false => Err(self.not_settable(variable, value)),
         }
-        .map_err(|refusal| Refusal(format!("{}: {}", variable.name, refusal.0)))?;
-        if !value.is_finite() {
-            return named(&format!("{value} is not a finite number; nothing was set"));
-        }
-        if variable.causality == Causality::Input && value.abs() > INPUT_MAX {
-            return named(&format!("{value} is beyond {INPUT_MAX:e}; nothing was set"));
-        }
-        Ok(())
+    }
+
+    #[cold]
+    fn not_settable(&self, variable: &Variable, value: f64) -> Refusal {
+        let allowed: &[Phase] = match variable.causality {
+            Causality::Input => &[Phase::Instantiated, Phase::Initialization, Phase::Step],
+            Causality::Parameter => &[Phase::Instantiated, Phase::Initialization],
+            Causality::Output | Causality::CalculatedParameter => &[],
+        };
+        let problem = match self.expect_phase(allowed) {
+            _ if allowed.is_empty() => "an output or calculated parameter is not to be set".to_string(),
+            Err(Refusal(phase)) => phase,
+            Ok(()) if !value.is_finite() => format!("{value} is not a finite number; nothing was set"),
+            Ok(()) => format!("{value} is beyond {INPUT_MAX:e}; nothing was set"),
+        };
+        Refusal(format!("{}: {problem}", variable.name))
     }
 
     /// The parameters are in range and leave the arrays of the interface as long as they are.
@@ -502,10 +528,12 @@ impl Instance {
         values: &[f64],
     ) -> Outcome {
         self.expect_phase(&[Phase::Instantiated, Phase::Initialization, Phase::Step])?;
-        self.check_access(Kind::Float64, references, values.len())?;
+        if references.len() != values.len() {
+            return Err(self.wrong_count(references, values.len()));
+        }
         let mut targets = Vec::with_capacity(references.len());
         for ((&reference, &order), &value) in references.iter().zip(orders).zip(values) {
-            let variable = Self::variable(&self.interface, reference)?;
+            let variable = Self::typed(&self.interface, Kind::Float64, reference)?;
             let named = |problem: String| Refusal(format!("{}: {problem}", variable.name));
             if variable.causality != Causality::Input {
                 return Err(named("only inputs have derivatives to set".into()));
@@ -762,6 +790,16 @@ fn hand_over(inputs: &[BodyInput], simulation: &mut Simulation) {
     }
 }
 
+/// Refusal of a value reference that no variable has.
+#[cold]
+fn unknown(interface: &Interface, reference: u32) -> Refusal {
+    Refusal(format!(
+        "no variable has the value reference {reference}: 1 to {} would be right",
+        interface.variables().len()
+    ))
+}
+
+#[cold]
 fn wrong_type(variable: &Variable, asked: &str) -> Refusal {
     Refusal(format!(
         "{} is of type {:?}, not {asked}",

@@ -39,7 +39,7 @@ use super::beam::BeamView;
 use super::leapfrog::segment_tension;
 use super::viscoelastic::{Stretching, ViscoelasticSegment};
 use crate::elements::shear;
-use crate::model::{Bending, Dry, End, Line, LineState, PointState, WaterAlong, WinchState};
+use crate::model::{Dry, End, Line, LineState, PointState, WaterAlong, WinchState};
 use crate::physics::morison;
 use crate::physics::slender::Slender;
 
@@ -112,14 +112,17 @@ pub fn end_force(
         line,
         end,
         node,
-        place: state.position[node],
         point,
         water,
+        flow: water.velocity(node, state.position[node].z),
         dry,
         moments,
     };
     let pull = tension(line, state, segment, negative_tension) * inward + half.shear(state, segment);
-    let [load, _] = half.load(inward, dry.part);
+    let load = match line.linear_load[end as usize] {
+        true => half.linear_load(state, [inward, pull], negative_tension),
+        false => half.load(inward, dry.part)[0],
+    };
     let mut force = pull + load;
     if let (Some(winch_state), End::B) = (state.winch_state, end) {
         force -= passing(line, winch_state) * chord / line.segments.length[segment];
@@ -127,13 +130,6 @@ pub fn end_force(
     force.z -= nodes.weight[node] + dry.weight;
     if let Some(contact) = &nodes.contact {
         force += contact.push(node, state.position[node], point.velocity);
-    }
-    let next = match end {
-        End::A => [1, 2],
-        End::B => [node - 1, node.saturating_sub(2)],
-    };
-    if half.may_be_linear(state, next[0]) {
-        force += half.linear(state, next, [inward, pull, load], negative_tension);
     }
     force
 }
@@ -143,11 +139,12 @@ struct HalfNode<'a> {
     line: &'a Line,
     end: End,
     node: usize,
-    place: Vector3<f64>,
     point: &'a PointState,
     water: WaterAlong<'a>,
+    /// Velocity of the water at the end [m/s].
+    flow: Vector3<f64>,
     dry: Dry,
-    /// On the line's ends [N m].
+    /// Moments on the ends of the line [N m].
     moments: [Vector3<f64>; 2],
 }
 
@@ -168,7 +165,7 @@ impl HalfNode<'_> {
         let (nodes, node) = (&self.line.nodes, self.node);
         let (velocity, acceleration) = (self.point.velocity, self.point.acceleration);
         let mut load = -Slender::new(nodes.masses(node, dry)).times(acceleration, inward);
-        let drag = self.drag(velocity - self.flow(), inward, dry);
+        let drag = self.drag(velocity - self.flow, inward, dry);
         load += drag;
         if let (Some(froude_krylov), Some(waves)) = (&nodes.froude_krylov, &self.water.waves) {
             load += (1.0 - dry) * froude_krylov.force(node, waves.at(node).acceleration, inward);
@@ -179,34 +176,17 @@ impl HalfNode<'_> {
         [load, drag]
     }
 
-    /// Velocity of the water [m/s].
-    fn flow(&self) -> Vector3<f64> {
-        self.water.velocity(self.node, self.place.z)
-    }
-
-    /// Whether its load may be taken as linear to the `next` node.
-    fn may_be_linear(&self, state: &LineState, next: usize) -> bool {
-        let line = self.line;
-        let far = match self.end {
-            End::A => line.segment_count(),
-            End::B => 0,
-        };
-        // the clamp of the other end turns the next node's segment too
-        let is_clamped = |bending: &Bending| bending.joint[far] > 0.0 && next.abs_diff(far) < 2;
-        line.segment_count() > 1
-            && state.winch_state.is_none()
-            && !line.bending.as_ref().is_some_and(is_clamped)
-            && line.nodes.is_alike(self.node, next)
-    }
-
-    /// Difference of a load that is linear to the `next` node and the one `after` from the `uniform` one [N]; the segment at the end pulls `inward`.
-    fn linear(
+    /// Load without weight and seabed [N] of a half node whose load is linear to the next node; its segment pulls with `pull` [N] along `inward`.
+    fn linear_load(
         &self,
         state: &LineState,
-        [next, after]: [usize; 2],
-        [inward, pull, uniform]: [Vector3<f64>; 3],
+        [inward, pull]: [Vector3<f64>; 2],
         negative_tension: bool,
     ) -> Vector3<f64> {
+        let [next, after] = match self.end {
+            End::A => [1, 2],
+            End::B => [self.node - 1, self.node - 2],
+        };
         let nodes = &self.line.nodes;
         let chord = state.position[after] - state.position[next];
         let onward = chord.try_normalize(0.0).unwrap_or(inward);
@@ -233,8 +213,13 @@ impl HalfNode<'_> {
         let change = share * (pull - passed_on + borne) - own;
         let ratio = own.norm_squared() / change.norm_squared().max(f64::MIN_POSITIVE);
         let bulge = self.bulge(state, next, tangents, drag);
-        let added = own + change / 3.0 + bulge - uniform;
-        at_surface * ratio.powi(2).min(1.0) * added
+        let linear = own + change / 3.0 + bulge;
+        let share = at_surface * ratio.powi(2).min(1.0);
+        if share == 1.0 {
+            return linear;
+        }
+        let [uniform, _] = self.load(inward, self.dry.part);
+        uniform + share * (linear - uniform)
     }
 
     /// Difference of the drag in the middle of the last element from the mean of its ends, over 3/2 [N]; `tangents` are those of the end, the middle
@@ -247,7 +232,7 @@ impl HalfNode<'_> {
         end: Vector3<f64>,
     ) -> Vector3<f64> {
         let flow = self.water.velocity(next, state.position[next].z);
-        let (past, last) = (self.point.velocity - self.flow(), state.velocity[next] - flow);
+        let (past, last) = (self.point.velocity - self.flow, state.velocity[next] - flow);
         let [half_way, next] = [(1, 0.5 * (past + last)), (2, last)]
             .map(|(place, velocity)| self.drag(velocity, tangents[place], self.dry.part));
         (2.0 * half_way - end - next) / 3.0

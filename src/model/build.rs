@@ -448,6 +448,7 @@ fn build_line(
         beam,
         release: releases(line),
         winch: None,
+        linear_load: [false; 2],
     };
     if let (Some(winch), Some(segments)) = (&line.winch, reeled) {
         return on_winch(index, built, segments, winch);
@@ -456,6 +457,7 @@ fn build_line(
     if scene.meets_surface(line) {
         built.surface = Some(Surface::new(&parts, &built.nodes.length));
     }
+    built.linear_load = [End::A, End::B].map(|end| built.has_linear_load(end));
     Ok(built)
 }
 

@@ -232,6 +232,9 @@ pub struct Line {
     pub release: Option<[Release; 2]>,
     /// The winch at end B, where it is on one; the line is then laid out as it is at present.
     pub winch: Option<Winch>,
+    /// True for ends whose load is taken as linear to the next node: the nodes are alike, and neither a winch nor a clamp at the other end
+    /// acts on the next one.
+    pub linear_load: [bool; 2],
 }
 
 /// When an end of a line parts from its point.
@@ -392,8 +395,8 @@ impl Segments {
 }
 
 impl Nodes {
-    /// Whether two nodes have the same mass, weight and drag per length.
-    pub fn is_alike(&self, i: usize, k: usize) -> bool {
+    /// Returns whether two nodes have the same mass, weight and drag per length.
+    fn is_alike(&self, i: usize, k: usize) -> bool {
         let (one, other) = (1.0 / self.length[i], 1.0 / self.length[k]);
         let same = |values: &[f64]| {
             let (a, b) = (one * values[i], other * values[k]);
@@ -408,6 +411,17 @@ impl Nodes {
 }
 
 impl Line {
+    /// Returns [`Line::linear_load`] of a line that is not on a winch.
+    fn has_linear_load(&self, end: End) -> bool {
+        let (count, node) = (self.segment_count(), self.end_node(end));
+        let (next, far) = match end {
+            End::A => (1, count),
+            End::B => (count - 1, 0),
+        };
+        let is_clamped = |bending: &Bending| bending.joint[far] > 0.0 && next.abs_diff(far) < 2;
+        count > 1 && !self.bending.as_ref().is_some_and(is_clamped) && self.nodes.is_alike(node, next)
+    }
+
     /// Number of segments n.
     pub fn segment_count(&self) -> usize {
         self.segments.length.len()

@@ -1,6 +1,6 @@
 //! What a simulation tells of itself: forces, tensions, shapes and energies.
 
-use std::sync::OnceLock;
+use std::cell::OnceCell;
 
 use nalgebra::{Vector3, Vector6};
 use serde::Serialize;
@@ -51,9 +51,9 @@ pub struct NodeBending {
 #[derive(Debug, Clone)]
 pub(super) struct Reactions {
     /// Stored energy.
-    energy: OnceLock<Energy>,
+    energy: OnceCell<Energy>,
     /// Force [N] and moment [N m] on every vessel.
-    vessels: Vec<OnceLock<[f64; 6]>>,
+    vessels: Vec<OnceCell<[f64; 6]>>,
     lines: Vec<LineReactions>,
 }
 
@@ -61,18 +61,18 @@ pub(super) struct Reactions {
 #[derive(Debug, Clone, Default)]
 struct LineReactions {
     /// Force on the points at ends A and B [N].
-    ends: [OnceLock<Vector3<f64>>; 2],
+    ends: [OnceCell<Vector3<f64>>; 2],
     /// Effective tension at every node [N].
-    tensions: OnceLock<Vec<f64>>,
-    bending: OnceLock<Option<Vec<NodeBending>>>,
+    tensions: OnceCell<Vec<f64>>,
+    bending: OnceCell<Option<Vec<NodeBending>>>,
 }
 
 impl Reactions {
     /// Allocates for a model; nothing is evaluated.
     pub fn new(model: &Model) -> Reactions {
         Reactions {
-            energy: OnceLock::new(),
-            vessels: vec![OnceLock::new(); model.vessels.len()],
+            energy: OnceCell::new(),
+            vessels: vec![OnceCell::new(); model.vessels.len()],
             lines: vec![LineReactions::default(); model.lines.len()],
         }
     }
