@@ -7,7 +7,7 @@
 //! M (v − u) = λ_n n + λ_a a + λ_b b,   λ_n = Δt (k p − (k Δt + c) v_n) ≥ 0,   (λ_a, λ_b) in the ellipse of λ_n
 //! ```
 //!
-//! A node that sticks leaves with v_a = v_b = 0 to the last digit: it does not viscoelastic. λ_n of the ellipse is that of the node if it stuck, which is
+//! A node that sticks leaves with v_a = v_b = 0 to the last digit: it does not creep. λ_n of the ellipse is that of the node if it stuck, which is
 //! the same where the line lies in the plane of the bed.
 //!
 //! Source: backward Euler on Coulomb's law, as in Moreau (1988), Unilateral contact and dry friction in finite freedom

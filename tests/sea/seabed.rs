@@ -3,7 +3,7 @@
 use crate::common::*;
 use approx::assert_relative_eq;
 use moorline::model::End;
-use moorline::scene::{Integrator, Scene};
+use moorline::scene::{Friction, Integrator, Scene};
 use moorline::simulation::Simulation;
 use nalgebra::Vector3;
 
@@ -343,6 +343,26 @@ fn a_hundred_times_stiffer_bed_takes_the_same_steps() {
             assert_eq!(few, many);
             assert_relative_eq!(greatest(soft), greatest(stiff), max_relative = 0.02);
         }
+    }
+}
+
+#[test]
+fn friction_asks_for_hardly_more_than_one_pass_of_the_axial_implicit_leapfrog() {
+    for bed in [Some([0.0; 2]), Some([0.01; 2])] {
+        let mut scene = with_integrator(shipped("oc3_catenary"), Integrator::AxialImplicit, 0.0125);
+        let seabed = scene.seabed.as_mut().unwrap();
+        (seabed.slope, seabed.friction) = (bed, Friction::isotropic(0.5));
+        let mut simulation = following(&scene);
+        let (mut steps, mut passes) = (0, 0);
+        for _ in 0..400 {
+            run(&mut simulation, 0.05, 1);
+            let counters = simulation.counters();
+            (steps, passes) = (steps + counters.substeps, passes + counters.solves);
+        }
+        assert!(
+            steps <= 1600 && passes * 10 <= 12 * steps,
+            "{bed:?}: {passes} passes in {steps} steps"
+        );
     }
 }
 

@@ -370,7 +370,7 @@ impl AxialLine {
         match BED {
             under::NOTHING => {}
             under::LEVEL => self.prepare_contact(step),
-            _ => self.meet_seabed(step),
+            _ => self.meet_seabed(step, &sizes),
         }
         self.weigh_nodes::<BED>();
         sizes
@@ -383,7 +383,7 @@ impl AxialLine {
         self.find_velocities::<BED>(before, sizes);
         let found = self.look_over::<BED>(sizes);
         self.kernel.tension_peak = self.kernel.tension_peak.max(found.greatest);
-        let bed_holds = self.bed_holds::<BED>(&found);
+        let bed_holds = self.bed_holds::<BED>(&found, sizes);
         let holds = self.segments_hold(&found, sizes) && bed_holds;
         if !bed_holds {
             self.weigh_nodes::<BED>();

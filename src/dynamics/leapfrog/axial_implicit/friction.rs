@@ -10,21 +10,20 @@
 //! ```
 //!
 //! a and b are those of [`super::contact`]. After a pass every node on the seabed takes the friction that Coulomb's law allows of the impulse that would stop it
-//! ([`crate::physics::friction`]); the step is repeated until states and friction hold. Without friction nodes slide with λ_t = 0.
+//! ([`crate::physics::friction`]); the step is repeated until states and friction hold. The first assumption follows in the same way from the velocities that
+//! the nodes would have under the tensions expected from t_n, without friction. Without friction nodes slide with λ_t = 0.
 
 use super::AxialLine;
 use super::contact::NormalContact;
-use super::rows::NodeRow;
+use super::rows::{NodeRow, Sizes, under};
 use crate::dynamics::leapfrog::step::Step;
 use crate::math::lanes::{Lanes, Vectors};
 use crate::math::real::choose;
 use crate::physics::friction::{Axes, Friction, slide};
 use crate::physics::slender::Slender;
 
-/// Change of friction over the push of the seabed that asks for another pass [-].
+/// Change of friction that asks for another pass, over the greater of the push of the seabed and the greatest tension [-].
 const FRICTION_TOLERANCE: f64 = 1e-4;
-/// Speed below which a node is first assumed to stick [m/s].
-const STILL: f64 = 1e-9;
 
 /// State of a row of nodes on the seabed.
 #[derive(Debug, Clone, Copy)]
@@ -79,9 +78,15 @@ impl SeabedRow {
         choose(self.sticks, holding, moving)
     }
 
-    /// Revises states and friction from a velocity [m/s]; positive where they change.
+    /// Revises states and friction from a velocity [m/s], under an impulse of the greatest tension [N s]; positive where they change.
     #[inline(always)]
-    fn revise(&mut self, node: &NodeRow, velocity: Vectors, friction: Option<&Friction>) -> Lanes {
+    fn revise(
+        &mut self,
+        node: &NodeRow,
+        velocity: Vectors,
+        friction: Option<&Friction>,
+        greatest: Lanes,
+    ) -> Lanes {
         let [on, off] = [1.0, -1.0].map(Lanes::splat);
         let rise = self.normal.dot(velocity);
         let pushes = node.bed.pushes(rise).where_positive(node.free);
@@ -100,15 +105,12 @@ impl SeabedRow {
                 axes.across.dot(needed) - sliding[1] * mass.across,
             ];
             let found = slide(holding, yields, friction.limits(axes.share, push));
-            let speed = (sliding[0] * sliding[0] + sliding[1] * sliding[1]).sqrt();
-            let was_off = Lanes::splat(0.0) - before.slides.max(before.sticks);
-            let still = (Lanes::splat(STILL) - speed).where_positive(was_off);
-            let moves = pushes.choose(still.choose(off, found.slides), off);
+            let moves = pushes.choose(found.slides, off);
             self.slides = moves.choose(on, off);
             self.sticks = moves.choose(off, pushes.choose(on, off));
             self.friction = choose(moves, axes.combine(found.force), self.friction);
             let step = self.friction - before.friction;
-            let more = step.dot(step).sqrt() - Lanes::splat(FRICTION_TOLERANCE) * push;
+            let more = step.dot(step).sqrt() - Lanes::splat(FRICTION_TOLERANCE) * push.max(greatest);
             changed = more.where_positive(moves);
         }
         let flips = off * (self.slides * before.slides).min(self.sticks * before.sticks);
@@ -148,10 +150,10 @@ impl NodeRow {
 }
 
 impl AxialLine {
-    /// Finds how the nodes stand to the seabed, and what state they are first assumed to be in.
+    /// Finds the nodes on the seabed, and the state and the friction that they are first assumed to have.
     #[inline(always)]
-    pub(super) fn meet_seabed(&mut self, step: Step) {
-        let (line, friction) = (&self.layout, self.layout.friction());
+    pub(super) fn meet_seabed(&mut self, step: Step, sizes: &Sizes) {
+        let line = &self.layout;
         let (Some(contact), Some(ground)) = (&line.contact, line.ground()) else {
             return;
         };
@@ -171,22 +173,43 @@ impl AxialLine {
                 excess: node.excess,
             };
             *seabed = SeabedRow::off(normal, inverse);
-            seabed.revise(node, velocity, friction);
+            seabed.slides = node.bed.pushes(normal.dot(velocity)).where_positive(node.free);
             node.settle_on(seabed);
+        }
+        if self.layout.friction().is_some() {
+            let greatest = self.expect_tensions(sizes);
+            self.seabed_holds(greatest, sizes);
         }
     }
 
-    /// Compares the states with those assumed; false if that asks for another pass.
+    /// Finds the velocities under the tensions that follow from t_n at unchanged stretching velocities. Returns the greatest tension in each lane [N].
     #[inline(always)]
-    pub(super) fn seabed_holds(&mut self) -> bool {
+    fn expect_tensions(&mut self, sizes: &Sizes) -> Lanes {
+        let mut greatest = Lanes::splat(0.0);
+        for segment in &mut self.kernel.rows.segments {
+            let along = segment.along;
+            let total = segment.spring(along) + segment.pull(segment.rate(along, sizes), sizes);
+            segment.tension = total.positive();
+            greatest = greatest.max(segment.tension);
+        }
+        let segments = &self.kernel.rows.segments;
+        let before = segments[segments.len() - 1].tension.moved_up();
+        self.find_velocities::<{ under::ROUGH }>(before, sizes);
+        greatest
+    }
+
+    /// Compares the states with those assumed, under a greatest tension in the lanes [N]; false if that asks for another pass.
+    #[inline(always)]
+    pub(super) fn seabed_holds(&mut self, greatest: Lanes, sizes: &Sizes) -> bool {
         let (line, friction) = (&self.layout, self.layout.friction());
         let mut changed = Lanes::splat(0.0);
+        let greatest = sizes.kick * greatest.greatest();
         for at in line.rows() {
             let (node, seabed) = (
                 &mut self.kernel.rows.nodes[at - 1],
                 &mut self.kernel.seabed[at - 1],
             );
-            let change = seabed.revise(node, line.velocity_before.load(at), friction);
+            let change = seabed.revise(node, line.velocity_before.load(at), friction, greatest);
             if change.any_positive() {
                 node.settle_on(seabed);
             }

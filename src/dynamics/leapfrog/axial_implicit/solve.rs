@@ -185,9 +185,9 @@ impl Found {
 impl AxialLine {
     /// Corrects how the nodes meet the bed where a pass found it not to be as assumed; false if that asks for another pass.
     #[inline(always)]
-    pub(super) fn bed_holds<const BED: u8>(&mut self, found: &Found) -> bool {
+    pub(super) fn bed_holds<const BED: u8>(&mut self, found: &Found, sizes: &Sizes) -> bool {
         if BED == under::ROUGH {
-            return self.seabed_holds();
+            return self.seabed_holds(found.greatest, sizes);
         }
         let landed = BED == under::LEVEL && found.landed.any_positive();
         if landed {
