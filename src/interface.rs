@@ -10,15 +10,17 @@
 mod dependencies;
 mod parameters;
 mod profile;
+mod results;
 mod rows;
 
 use std::collections::BTreeSet;
 
 use crate::model::{Body, Model};
 use crate::scene::{Axis, PointKind, Scene, SceneError};
-use crate::simulation::{NodeBending, Simulation, reference_catenary};
+use crate::simulation::{Simulation, reference_catenary};
 
 pub use parameters::{Parameter, Place};
+pub use results::{LineResult, SolverResult};
 
 /// Message for a value of an energy balance that the scene does not ask for.
 const NO_BALANCE: &str = "the scene asks for no energy balance (`energy_balance` in [output])";
@@ -124,23 +126,27 @@ impl Unit {
         rad: 1,
     };
 
-    /// Units of parameters.
-    const OF_PARAMETERS: [Unit; 9] = [
+    /// Units of the scene format and of results.
+    const KNOWN: [Unit; 13] = [
         Unit::METRE,
         Unit::METRE_PER_SECOND_SQUARED,
         Unit::NEWTON,
         Unit::NEWTON_PER_METRE,
         Unit::NEWTON_SQUARE_METRE,
         Unit::NEWTON_SECOND,
+        Unit::NEWTON_METRE,
+        Unit::PER_METRE,
         Unit::KILOGRAM_PER_METRE,
         Unit::KILOGRAM_METRE,
         Unit::KILOGRAM_PER_CUBIC_METRE,
+        Unit::JOULE,
+        Unit::WATT,
     ];
 
-    /// The unit that the scene format writes as `N m²`; dimensionless where it is none of those of parameters.
+    /// The unit that a doc comment or the scene format writes as `N m²`; dimensionless where it is not known.
     fn of_scene(text: &str) -> Unit {
         let name = text.replace(' ', ".").replace('²', "2").replace('³', "3");
-        let found = Unit::OF_PARAMETERS.into_iter().find(|unit| unit.name == name);
+        let found = Unit::KNOWN.into_iter().find(|unit| unit.name == name);
         found.unwrap_or(Unit::ONE)
     }
 
@@ -211,49 +217,7 @@ pub enum Binding {
     },
 }
 
-/// Results of a line.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum LineResult {
-    /// Size of the force at end B [N].
-    TensionB,
-    /// Size of the force at end A [N].
-    TensionA,
-    /// Greatest of the axial tension along the line and the forces at its ends [N].
-    TensionMax,
-    /// Unstretched length that lies on the seabed [m].
-    LaidLength,
-    /// Greatest vertical distance below the chord between the ends [m].
-    Sag,
-    /// Greatest curvature along the line [1/m].
-    CurvatureMax,
-    /// Greatest bending moment along the line [N m].
-    MomentMax,
-    /// Bending moment at end A [N m].
-    MomentA,
-    /// Bending moment at end B [N m].
-    MomentB,
-    /// Sag of the closed-form catenary in the reference configuration [m].
-    CatenarySag,
-    /// Horizontal tension of that catenary [N].
-    CatenaryHorizontal,
-    /// Tension of that catenary at end B [N].
-    CatenaryTensionB,
-}
-
-/// Results of the solver.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum SolverResult {
-    /// Internal steps of the last communication step [-].
-    Substeps,
-    /// Energy that the integrator made or lost [J].
-    EnergyError,
-    /// The same over the time since the start [W].
-    PowerResidual,
-    /// Error of tension that the extrapolation of the inputs causes, over the range of tension [-].
-    InputError,
-}
-
-/// What a profile gives at each node.
+/// Quantity of a profile.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ProfileQuantity {
     /// Position along a global axis [m].
@@ -324,31 +288,31 @@ impl Interface {
         for (index, point) in scene.points.iter().enumerate() {
             if point.kind == PointKind::Coupled && point.on.is_none() {
                 check_name(&point.name, &format!("points[{index}].name"))?;
-                rows::point(&mut variables, index, &point.name);
+                rows::body(&mut variables, Body::Point(index), &point.name);
             }
         }
         for (index, vessel) in scene.vessels.iter().enumerate() {
             check_name(&vessel.name, &format!("vessels[{index}].name"))?;
-            rows::vessel(&mut variables, index, &vessel.name);
+            rows::body(&mut variables, Body::Vessel(index), &vessel.name);
         }
         for (index, line) in scene.lines.iter().enumerate() {
             check_name(&line.name, &format!("lines[{index}].name"))?;
             rows::controls(&mut variables, index, line);
-            rows::winch(&mut variables, index, line);
         }
         for (index, line) in scene.lines.iter().enumerate() {
-            rows::line(&mut variables, index, &line.name);
-            if model.lines[index].bends() {
-                rows::bending(&mut variables, index, &line.name);
-            }
+            let bending = LineResult::OF_BENDING
+                .iter()
+                .filter(|_| model.lines[index].bends());
+            let results = LineResult::OF_ALL.iter().chain(bending);
+            variables.extend(results.map(|result| result.row(index, &line.name)));
         }
-        rows::solver(&mut variables);
+        variables.extend([SolverResult::Substeps, SolverResult::InputError].map(SolverResult::row));
         if scene.output.energy_balance {
-            rows::energy_balance(&mut variables);
+            variables.extend([SolverResult::EnergyError, SolverResult::PowerResidual].map(SolverResult::row));
         }
         for (index, line) in model.lines.iter().enumerate() {
             if reference_catenary(model, line).is_some() {
-                rows::catenary(&mut variables, index, &line.name);
+                variables.extend(LineResult::OF_CATENARY.map(|result| result.row(index, &line.name)));
             }
         }
         for name in scene.line_types.keys() {
@@ -400,26 +364,15 @@ impl Interface {
                 }
             }
             Binding::Line { line, result } => {
-                values[0] = line_result(simulation, line, result).ok_or_else(|| {
-                    format!(
-                        "{}: the reference configuration has no closed-form catenary",
-                        variable.name
-                    )
-                })?;
+                let missing = || {
+                    let name = &variable.name;
+                    format!("{name}: the reference configuration has no closed-form catenary")
+                };
+                values[0] = result.read(simulation, line).ok_or_else(missing)?;
             }
             Binding::Release { line } => values[0] = f64::from(u8::from(simulation.release(line))),
             Binding::LengthChange { line } => values[0] = simulation.length_change(line),
-            Binding::Solver(result) => {
-                values[0] = match result {
-                    SolverResult::Substeps => simulation.substeps() as f64,
-                    SolverResult::EnergyError => {
-                        let balance = simulation.energy_balance().ok_or(NO_BALANCE)?;
-                        balance.error()
-                    }
-                    SolverResult::PowerResidual => simulation.power_residual().ok_or(NO_BALANCE)?,
-                    SolverResult::InputError => simulation.input_error(),
-                }
-            }
+            Binding::Solver(result) => values[0] = result.read(simulation, 0).ok_or(NO_BALANCE)?,
             Binding::Profile { line, quantity, node } => {
                 profile::read(simulation, line, quantity, node, values)
             }
@@ -428,38 +381,6 @@ impl Interface {
             }
         }
         Ok(())
-    }
-}
-
-fn line_result(simulation: &Simulation, line: usize, result: LineResult) -> Option<f64> {
-    let catenary = || simulation.catenary(line);
-    match result {
-        LineResult::TensionB => Some(simulation.tension_b(line)),
-        LineResult::TensionA => Some(simulation.tension_a(line)),
-        LineResult::TensionMax => Some(simulation.tension_max(line)),
-        LineResult::LaidLength => Some(simulation.laid_length(line)),
-        LineResult::Sag => Some(simulation.sag(line)),
-        LineResult::CurvatureMax | LineResult::MomentMax | LineResult::MomentA | LineResult::MomentB => {
-            let nodes = simulation.bending(line).unwrap_or_default();
-            Some(bending_result(nodes, result))
-        }
-        LineResult::CatenarySag => catenary().map(|c| c.sag()),
-        LineResult::CatenaryHorizontal => catenary().map(|c| c.horizontal()),
-        LineResult::CatenaryTensionB => catenary().map(|c| c.tension_b()),
-    }
-}
-
-/// Zero where the host has set the bending stiffness to nothing.
-fn bending_result(nodes: &[NodeBending], result: LineResult) -> f64 {
-    let mut moments = nodes.iter().map(|node| node.moment);
-    match result {
-        LineResult::CurvatureMax => {
-            let curvatures = nodes.iter().map(|node| node.curvature);
-            curvatures.fold(0.0, f64::max)
-        }
-        LineResult::MomentA => moments.next().unwrap_or(0.0),
-        LineResult::MomentB => moments.next_back().unwrap_or(0.0),
-        _ => moments.fold(0.0, f64::max),
     }
 }
 

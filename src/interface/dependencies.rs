@@ -7,7 +7,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::{Binding, Interface, LineResult, Parameter, Place, Variable};
+use super::{Binding, Interface, Parameter, Place, Variable};
 use crate::model::{Body, Model};
 use crate::scene::table::{Acts, Table};
 use crate::scene::{LineType, Scene};
@@ -41,7 +41,7 @@ pub(super) fn fill(variables: &mut [Variable], scene: &Scene, model: &Model) {
     for variable in variables {
         let (lines, closed_form) = match &variable.binding {
             Binding::EndForce { body, .. } => (networks_of(model, attached_to(*body)), false),
-            Binding::Line { line, result } if is_catenary(*result) => (BTreeSet::from([*line]), true),
+            Binding::Line { line, result } if result.is_catenary() => (BTreeSet::from([*line]), true),
             Binding::Line { line, .. } | Binding::Profile { line, .. } => {
                 (networks_of(model, [*line]), false)
             }
@@ -61,13 +61,6 @@ pub(super) fn fill(variables: &mut [Variable], scene: &Scene, model: &Model) {
             })
             .clone();
     }
-}
-
-fn is_catenary(result: LineResult) -> bool {
-    matches!(
-        result,
-        LineResult::CatenarySag | LineResult::CatenaryHorizontal | LineResult::CatenaryTensionB
-    )
 }
 
 /// All lines of the networks that the given lines belong to.

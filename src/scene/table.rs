@@ -59,50 +59,58 @@ impl Key {
 
     /// Doc comment of the field, in one line.
     pub fn text(&self) -> String {
-        let lines: Vec<&str> = self.doc.iter().map(|line| line.trim()).collect();
-        lines.join(" ")
+        in_line(self.doc)
     }
 
     /// Unit of its numbers: that of the rule, or the first one in brackets in the doc comment; `None` of a key without numbers.
     pub fn unit(&self) -> Option<&'static str> {
-        let in_doc = || {
-            let mut inside = self.doc.iter().flat_map(|line| line.split('[').skip(1));
-            inside.find_map(|rest| rest.split_once(']').map(|(unit, _)| unit))
-        };
         match self.rule.bounds {
             Bounds::Elsewhere => self.rule.unit,
-            _ if self.kind().is_numeric() => self.rule.unit.or_else(in_doc),
+            _ if self.kind().is_numeric() => self.rule.unit.or_else(|| unit(self.doc)),
             _ => None,
         }
     }
 
     /// Meaning in a few words, for descriptions of the FMU and the sentences of `check`: the beginning of the doc comment without units.
     pub fn meaning(&self) -> String {
-        let text = self.text();
-        let mut meaning = String::new();
-        let mut depth = 0;
-        for c in text.chars() {
-            match c {
-                '[' => depth += 1,
-                ']' => depth -= 1,
-                '.' | ';' | ':' if depth == 0 => break,
-                _ if depth == 0 => meaning.push(c),
-                _ => {}
-            }
-        }
-        let meaning = meaning.trim().replace("  ", " ").replace(" ,", ",");
-        let mut letters = meaning.chars();
-        let first = letters
-            .next()
-            .map(|c| c.to_lowercase().to_string())
-            .unwrap_or_default();
-        first + letters.as_str()
+        meaning(self.doc)
     }
 
     /// Name of the property in the sentences of `check`.
     pub fn label(&self) -> String {
         self.rule.label.map_or_else(|| self.meaning(), str::to_string)
     }
+}
+
+/// A doc comment in one line.
+fn in_line(doc: &[&str]) -> String {
+    let lines: Vec<&str> = doc.iter().map(|line| line.trim()).collect();
+    lines.join(" ")
+}
+
+/// The first unit in brackets in a doc comment.
+pub(crate) fn unit(doc: &[&'static str]) -> Option<&'static str> {
+    let mut inside = doc.iter().flat_map(|line| line.split('[').skip(1));
+    inside.find_map(|rest| rest.split_once(']').map(|(unit, _)| unit))
+}
+
+/// The beginning of a doc comment, without units and the final stop.
+pub(crate) fn meaning(doc: &[&str]) -> String {
+    let mut meaning = String::new();
+    let mut depth = 0;
+    for c in in_line(doc).chars() {
+        match c {
+            '[' => depth += 1,
+            ']' => depth -= 1,
+            '.' | ';' | ':' if depth == 0 => break,
+            _ if depth == 0 => meaning.push(c),
+            _ => {}
+        }
+    }
+    let meaning = meaning.trim().replace("  ", " ").replace(" ,", ",");
+    let mut letters = meaning.chars();
+    let first = letters.next().map(|c| c.to_lowercase().to_string());
+    first.unwrap_or_default() + letters.as_str()
 }
 
 /// Facts on a key that its type and doc comment do not say.
