@@ -93,7 +93,7 @@ pub use point::{Axis, Point, PointForce, PointKind, PointMoment, Vessel};
 pub use read::{LoadedScene, TOML, folder_of, is_toml, load, load_text, part, read_text};
 pub use seabed::{ContactLaw, DepthGrid, Friction, Seabed};
 pub use settings::{Bossak, Integrator, Output, Reconstruction, Solver, Threads};
-use table::{Value, not_negative, table};
+use table::{not_negative, table};
 pub use tension_strain::TensionStrain;
 pub use time_function::{HarmonicMotion, MotionFile, MotionPath, MotionRow, TimeFunction};
 pub use water::{Current, RegularWave, Sea, SpectrumKind, Water, WaveComponents, Waves};
@@ -103,11 +103,11 @@ pub(crate) use words::percent;
 pub const STANDARD_GRAVITY: f64 = 9.80665;
 /// Elements of a line alone that a damping ratio refers to [-]: those that the default tolerance gives. The damping BA that follows is one
 /// of the line and the same on every mesh, so that finer meshes have a limit.
-pub const DAMPING_ELEMENTS: usize = 40;
+pub(crate) const DAMPING_ELEMENTS: usize = 40;
 /// Axial damping of a line whose type leaves it open, as a part of critical of one of [`DAMPING_ELEMENTS`] elements and of every longer one [-].
 /// A line that slackens and snaps without damping is driven by the kink of its own tension law when the step is explicit; codes of that kind
 /// damp the highest axial frequencies, which no mesh resolves, by as much (linear bulk viscosity).
-pub const NUMERICAL_DAMPING_RATIO: f64 = 0.02;
+pub(crate) const NUMERICAL_DAMPING_RATIO: f64 = 0.02;
 /// Least spectral radius at infinite frequency of `axial_implicit` [-], at which it damps most.
 pub const AXIAL_RADIUS_MIN: f64 = 0.5;
 
