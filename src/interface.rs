@@ -1,4 +1,4 @@
-//! The one table of a scene's inputs, outputs and parameters: names, units, roles, and what each one touches.
+//! The one table of a scene's inputs, outputs and parameters: names, units, roles and bindings.
 //!
 //! modelDescription.xml, the FMU's getters and setters, the CSV header and `moorline check` all read this table, so
 //! that they cannot drift apart. The value reference of a variable is its position in the table, counted from 1.
@@ -38,7 +38,7 @@ pub enum Causality {
     Parameter,
 }
 
-/// When a variable may change, in FMI's words.
+/// Times at which a variable may change, in FMI's words.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Variability {
     /// Not after initialization.
@@ -77,39 +77,39 @@ pub struct Unit {
 
 impl Unit {
     /// Dimensionless.
-    pub const ONE: Unit = Unit::of("1", 0, 0, 0);
+    pub(crate) const ONE: Unit = Unit::of("1", 0, 0, 0);
     /// Metre.
-    pub const METRE: Unit = Unit::of("m", 0, 1, 0);
+    pub(crate) const METRE: Unit = Unit::of("m", 0, 1, 0);
     /// Second.
-    pub const SECOND: Unit = Unit::of("s", 0, 0, 1);
+    pub(crate) const SECOND: Unit = Unit::of("s", 0, 0, 1);
     /// Metre per second.
-    pub const METRE_PER_SECOND: Unit = Unit::of("m/s", 0, 1, -1);
+    pub(crate) const METRE_PER_SECOND: Unit = Unit::of("m/s", 0, 1, -1);
     /// Metre per second squared.
-    pub const METRE_PER_SECOND_SQUARED: Unit = Unit::of("m/s2", 0, 1, -2);
+    pub(crate) const METRE_PER_SECOND_SQUARED: Unit = Unit::of("m/s2", 0, 1, -2);
     /// Newton.
-    pub const NEWTON: Unit = Unit::of("N", 1, 1, -2);
+    pub(crate) const NEWTON: Unit = Unit::of("N", 1, 1, -2);
     /// Newton per metre.
-    pub const NEWTON_PER_METRE: Unit = Unit::of("N/m", 1, 0, -2);
+    pub(crate) const NEWTON_PER_METRE: Unit = Unit::of("N/m", 1, 0, -2);
     /// One per metre.
-    pub const PER_METRE: Unit = Unit::of("1/m", 0, -1, 0);
+    pub(crate) const PER_METRE: Unit = Unit::of("1/m", 0, -1, 0);
     /// Newton metre.
-    pub const NEWTON_METRE: Unit = Unit::of("N.m", 1, 2, -2);
+    pub(crate) const NEWTON_METRE: Unit = Unit::of("N.m", 1, 2, -2);
     /// Newton square metre.
-    pub const NEWTON_SQUARE_METRE: Unit = Unit::of("N.m2", 1, 3, -2);
+    pub(crate) const NEWTON_SQUARE_METRE: Unit = Unit::of("N.m2", 1, 3, -2);
     /// Newton second.
-    pub const NEWTON_SECOND: Unit = Unit::of("N.s", 1, 1, -1);
+    pub(crate) const NEWTON_SECOND: Unit = Unit::of("N.s", 1, 1, -1);
     /// Kilogram per metre.
-    pub const KILOGRAM_PER_METRE: Unit = Unit::of("kg/m", 1, -1, 0);
+    pub(crate) const KILOGRAM_PER_METRE: Unit = Unit::of("kg/m", 1, -1, 0);
     /// Kilogram metre.
-    pub const KILOGRAM_METRE: Unit = Unit::of("kg.m", 1, 1, 0);
+    pub(crate) const KILOGRAM_METRE: Unit = Unit::of("kg.m", 1, 1, 0);
     /// Kilogram per cubic metre.
-    pub const KILOGRAM_PER_CUBIC_METRE: Unit = Unit::of("kg/m3", 1, -3, 0);
+    pub(crate) const KILOGRAM_PER_CUBIC_METRE: Unit = Unit::of("kg/m3", 1, -3, 0);
     /// Joule.
-    pub const JOULE: Unit = Unit::of("J", 1, 2, -2);
+    pub(crate) const JOULE: Unit = Unit::of("J", 1, 2, -2);
     /// Watt.
-    pub const WATT: Unit = Unit::of("W", 1, 2, -3);
+    pub(crate) const WATT: Unit = Unit::of("W", 1, 2, -3);
     /// Radian; hosts may show it in degrees.
-    pub const RADIAN: Unit = Unit {
+    pub(crate) const RADIAN: Unit = Unit {
         name: "rad",
         kg: 0,
         m: 0,
@@ -118,7 +118,7 @@ impl Unit {
     };
 
     /// Radian per second.
-    pub const RADIAN_PER_SECOND: Unit = Unit {
+    pub(crate) const RADIAN_PER_SECOND: Unit = Unit {
         name: "rad/s",
         kg: 0,
         m: 0,
@@ -161,31 +161,31 @@ impl Unit {
     }
 }
 
-/// What getting or setting a variable touches. Points and lines are counted in the scene's order.
+/// Quantity that a variable gets or sets. Points and lines are counted in the scene's order.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Binding {
     /// Displacement of a coupled point or a vessel from its reference [m] or [rad].
     Displacement {
-        /// What moves.
+        /// The point or vessel.
         body: Body,
         /// Its axis: x, y, z and of a vessel roll, pitch, yaw, 0 to 5.
         axis: usize,
     },
     /// Velocity of a coupled point or a vessel [m/s] or [rad/s].
     Velocity {
-        /// What moves.
+        /// The point or vessel.
         body: Body,
         /// Its axis, 0 to 5.
         axis: usize,
     },
     /// Force of all lines on a coupled point or a vessel [N], and moment on a vessel [N m].
     EndForce {
-        /// What the lines pull at.
+        /// The point or vessel that the lines pull at.
         body: Body,
         /// Its axis, 0 to 5.
         axis: usize,
     },
-    /// Whether a line is to let go of a point.
+    /// Release of a line from a point.
     Release {
         /// The line.
         line: usize,
@@ -210,7 +210,7 @@ pub enum Binding {
     Profile {
         /// The line.
         line: usize,
-        /// What is given at each node.
+        /// The quantity at each node.
         quantity: ProfileQuantity,
         /// The only node, counted from 0; all where absent.
         node: Option<usize>,
@@ -230,7 +230,7 @@ pub enum ProfileQuantity {
     Moment,
 }
 
-/// How profiles appear.
+/// Form of profiles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Layout {
     /// As one scalar for each value (FMI 2.0, CSV).
@@ -244,11 +244,11 @@ pub enum Layout {
 pub struct Variable {
     /// Name, dots between its parts.
     pub name: String,
-    /// What it is, in a sentence.
+    /// Description in a sentence.
     pub description: String,
     /// Role.
     pub causality: Causality,
-    /// When it may change.
+    /// Times at which it may change.
     pub variability: Variability,
     /// Type.
     pub kind: Kind,
@@ -256,12 +256,12 @@ pub struct Variable {
     pub unit: Unit,
     /// Length of an array [-]; `None` is a scalar.
     pub dimension: Option<usize>,
-    /// Value before anyone sets it; inputs and parameters have one.
+    /// Value before the host sets one; inputs and parameters have one.
     pub start: Option<f64>,
     /// Value references that it depends on during initialization; outputs and calculated parameters only. After
     /// initialization outputs change with a step only and so depend on nothing that is set between two steps.
     pub initial_dependencies: Vec<u32>,
-    /// What it touches.
+    /// Quantity that it gets or sets.
     pub binding: Binding,
 }
 

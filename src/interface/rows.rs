@@ -35,7 +35,7 @@ pub(super) fn row(
 pub(super) const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// Velocity of a body whose host gives none.
-const UNTOLD: &str = "if never set but to 0, derived from displacements that change, or 0 where solver.input_reconstruction is 1";
+const NOT_GIVEN: &str = "if never set but to 0, derived from displacements that change, or 0 where solver.input_reconstruction is 1";
 
 /// Displacements of a body; a point has the first three.
 const POSES: [&str; 6] = ["x", "y", "z", "roll", "pitch", "yaw"];
@@ -82,7 +82,7 @@ pub(super) fn body(variables: &mut Vec<Variable>, body: Body, name: &str) {
             ),
         };
         let binding = Binding::Velocity { body, axis };
-        let meaning = format!("{meaning}; {UNTOLD}");
+        let meaning = format!("{meaning}; {NOT_GIVEN}");
         add(RATES[axis], meaning, Causality::Input, unit, binding);
     }
     for axis in axes {

@@ -27,7 +27,7 @@ pub const MASS_PER_VOLUME: [f64; 2] = [200.0, 14_000.0];
 /// Weight in water over volume of the diameter [kg/m³] of a line whose mass is not given, without sign: ropes that nearly float have 30.
 const EXCESS_MIN: f64 = 1.0;
 /// Density of steel [kg/m³].
-pub const STEEL: f64 = 7850.0;
+pub(crate) const STEEL: f64 = 7850.0;
 /// Steel of a chain over that of one straight bar of its links [-]: two bars side by side, bends and perhaps studs make
 /// somewhat more than three.
 const CHAIN: std::ops::Range<f64> = 2.7..4.0;
@@ -314,7 +314,7 @@ fn anchor_height(scene: &Scene, notes: &mut Vec<Note>) {
 
 impl Scene {
     /// Strain [-] beyond which a line is noted: 5 %, or where its tables of tension end; none where a measure of large strains is chosen.
-    pub fn usual_strain(&self, line: &Line) -> f64 {
+    pub(crate) fn usual_strain(&self, line: &Line) -> f64 {
         let of_type = |line_type: &LineType| match (&line_type.tension_strain, line_type.strain) {
             (_, Strain::Green | Strain::Logarithmic(_)) => f64::INFINITY,
             (Some(table), _) => table.rows.last().map_or(STRAIN, |row| row[0].max(STRAIN)),

@@ -189,7 +189,7 @@ impl TimeFunction {
     }
 
     /// Greatest rate, in the unit of its numbers per second, such as [m/s] of a length; infinite where it jumps.
-    pub fn rate_max(&self) -> f64 {
+    pub(crate) fn rate_max(&self) -> f64 {
         let rise = |f0: f64, f1: f64, time: f64| match f1 - f0 {
             0.0 => 0.0,
             rise => (rise / time).abs(),
@@ -583,7 +583,7 @@ mod tests {
     }
 
     #[test]
-    fn a_mean_over_a_span_is_that_of_many_samples_and_knows_where_a_load_jumps() {
+    fn a_mean_over_a_span_is_that_of_many_samples_also_where_a_load_jumps() {
         let functions = [
             TimeFunction::Constant(3.0),
             TimeFunction::Step([1.0, 2.0, 3.0, 6.0]),

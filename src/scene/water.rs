@@ -169,7 +169,7 @@ impl Sea {
 
 impl RegularWave {
     /// Half the height [m]; `None` unless one of the two is given.
-    pub fn half_height(&self) -> Option<f64> {
+    pub(crate) fn half_height(&self) -> Option<f64> {
         match (self.height, self.amplitude) {
             (Some(height), None) => Some(0.5 * height),
             (None, amplitude) => amplitude,
