@@ -104,6 +104,15 @@ impl Findings {
         }
     }
 
+    /// Adds the numbers of a row that are not finite or outside the bounds of their columns, which have units.
+    pub(super) fn row(&mut self, at: &str, numbers: &[f64], columns: &[(Bounds, &str)]) {
+        for (i, (value, (bounds, unit))) in numbers.iter().zip(columns).enumerate() {
+            if !bounds.accepts(*value) {
+                self.number(format!("{at}[{i}]"), *value, *bounds, unit);
+            }
+        }
+    }
+
     /// Adds a number that breaks the rule of its key, with the hint of the rule where it is negative or only its size is bounded; or a note on one
     /// outside the usual range, and on angles beyond a turn. Zero is usual: it leaves an effect out.
     pub(super) fn ruled(&mut self, at: impl Into<String>, value: f64, rule: &Rule, unit: &str) {

@@ -25,7 +25,8 @@
 //! and in the FMU. A field of type `Option`, or with a default after `=`, may be left out. Behind `=>` stands a [`table::Rule`]: bounds, the
 //! range of moorings, names in other programs, when the property acts, whether the FMU has it as a parameter. The macro makes the struct
 //! and implements [`table::Table`] for it: a list of [`table::Key`]s and the values beside them, each a [`table::Value`] that reads, writes and
-//! checks itself. Choices of words are made by `choice!` in the same manner. Everything else is a loop over keys and values:
+//! checks itself. Choices of words are made by `choice!` in the same manner, and by `choice_of_values!` where words hold values. Everything
+//! else is a loop over keys and values:
 //!
 //! | loop | for |
 //! |---|---|
@@ -38,6 +39,8 @@
 //! | [`crate::interface`] | parameters of the FMU, and the results that depend on them |
 //! | [`page`] | the reference in `docs/scene.md` |
 //! | [`keys`] | the list of all keys that tests go through |
+//!
+//! Refusals and notes that concern several keys stand in tables too: each row of `rules!` is a key, a condition and a sentence.
 //!
 //! Values that are not single numbers (tension over strain, friction by direction, functions of time, motions, seas) implement
 //! [`table::Value`] by hand beside their type; their keys stand in a `table!` too.

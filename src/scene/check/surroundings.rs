@@ -56,13 +56,13 @@ fn check_profile(rows: &[[f64; 3]], findings: &mut Findings) {
     rules! { findings, at;
         "" if rows.is_empty() => "the profile has no rows: write [[z, vx, vy], …]";
     }
-    for (i, [z, vx, vy]) in rows.iter().enumerate() {
-        let right = findings.number(format!("{at}[{i}][0]"), *z, Bounds::Magnitude(1e5), "m");
-        findings.number(format!("{at}[{i}][1]"), *vx, SPEED.bounds, "m/s");
-        findings.number(format!("{at}[{i}][2]"), *vy, SPEED.bounds, "m/s");
+    for (i, row) in rows.iter().enumerate() {
+        let z = &row[0];
+        let (height, speed) = (Bounds::Magnitude(1e5), (SPEED.bounds, "m/s"));
+        findings.row(&format!("{at}[{i}]"), row, &[(height, "m"), speed, speed]);
         let twin = rows[..i].iter().position(|row| row[0] == *z);
         rules! { findings, at;
-            "[{i}][0]" if right && twin.is_some() =>
+            "[{i}][0]" if height.accepts(*z) && twin.is_some() =>
                 "row {} is at {} too: every height has one velocity; put the heights of a jump 1 mm apart",
                 twin.unwrap_or_default(), quantity(*z, "m");
         }
