@@ -75,89 +75,62 @@ pub struct Unit {
     pub rad: i8,
 }
 
-impl Unit {
+/// Declares units: name in the crate, name in the description, exponents of kilogram, metre, second and radian.
+macro_rules! units {
+    ($($(#[doc = $doc:literal])+ $name:ident = $text:literal $kg:literal $m:literal $s:literal $rad:literal;)+) => {
+        impl Unit {
+            $($(#[doc = $doc])+
+            pub(crate) const $name: Unit = Unit { name: $text, kg: $kg, m: $m, s: $s, rad: $rad };)+
+            const ALL: &[Unit] = &[$(Unit::$name),+];
+        }
+    };
+}
+
+units! {
     /// Dimensionless.
-    pub(crate) const ONE: Unit = Unit::of("1", 0, 0, 0);
+    ONE = "1" 0 0 0 0;
     /// Metre.
-    pub(crate) const METRE: Unit = Unit::of("m", 0, 1, 0);
+    METRE = "m" 0 1 0 0;
     /// Second.
-    pub(crate) const SECOND: Unit = Unit::of("s", 0, 0, 1);
+    SECOND = "s" 0 0 1 0;
     /// Metre per second.
-    pub(crate) const METRE_PER_SECOND: Unit = Unit::of("m/s", 0, 1, -1);
+    METRE_PER_SECOND = "m/s" 0 1 -1 0;
     /// Metre per second squared.
-    pub(crate) const METRE_PER_SECOND_SQUARED: Unit = Unit::of("m/s2", 0, 1, -2);
+    METRE_PER_SECOND_SQUARED = "m/s2" 0 1 -2 0;
     /// Newton.
-    pub(crate) const NEWTON: Unit = Unit::of("N", 1, 1, -2);
+    NEWTON = "N" 1 1 -2 0;
     /// Newton per metre.
-    pub(crate) const NEWTON_PER_METRE: Unit = Unit::of("N/m", 1, 0, -2);
+    NEWTON_PER_METRE = "N/m" 1 0 -2 0;
     /// One per metre.
-    pub(crate) const PER_METRE: Unit = Unit::of("1/m", 0, -1, 0);
+    PER_METRE = "1/m" 0 -1 0 0;
     /// Newton metre.
-    pub(crate) const NEWTON_METRE: Unit = Unit::of("N.m", 1, 2, -2);
+    NEWTON_METRE = "N.m" 1 2 -2 0;
     /// Newton square metre.
-    pub(crate) const NEWTON_SQUARE_METRE: Unit = Unit::of("N.m2", 1, 3, -2);
+    NEWTON_SQUARE_METRE = "N.m2" 1 3 -2 0;
     /// Newton second.
-    pub(crate) const NEWTON_SECOND: Unit = Unit::of("N.s", 1, 1, -1);
+    NEWTON_SECOND = "N.s" 1 1 -1 0;
     /// Kilogram per metre.
-    pub(crate) const KILOGRAM_PER_METRE: Unit = Unit::of("kg/m", 1, -1, 0);
+    KILOGRAM_PER_METRE = "kg/m" 1 -1 0 0;
     /// Kilogram metre.
-    pub(crate) const KILOGRAM_METRE: Unit = Unit::of("kg.m", 1, 1, 0);
+    KILOGRAM_METRE = "kg.m" 1 1 0 0;
     /// Kilogram per cubic metre.
-    pub(crate) const KILOGRAM_PER_CUBIC_METRE: Unit = Unit::of("kg/m3", 1, -3, 0);
+    KILOGRAM_PER_CUBIC_METRE = "kg/m3" 1 -3 0 0;
     /// Joule.
-    pub(crate) const JOULE: Unit = Unit::of("J", 1, 2, -2);
+    JOULE = "J" 1 2 -2 0;
     /// Watt.
-    pub(crate) const WATT: Unit = Unit::of("W", 1, 2, -3);
+    WATT = "W" 1 2 -3 0;
     /// Radian; hosts may show it in degrees.
-    pub(crate) const RADIAN: Unit = Unit {
-        name: "rad",
-        kg: 0,
-        m: 0,
-        s: 0,
-        rad: 1,
-    };
-
+    RADIAN = "rad" 0 0 0 1;
     /// Radian per second.
-    pub(crate) const RADIAN_PER_SECOND: Unit = Unit {
-        name: "rad/s",
-        kg: 0,
-        m: 0,
-        s: -1,
-        rad: 1,
-    };
+    RADIAN_PER_SECOND = "rad/s" 0 0 -1 1;
+}
 
-    /// Units of the scene format and of results.
-    const KNOWN: [Unit; 13] = [
-        Unit::METRE,
-        Unit::METRE_PER_SECOND_SQUARED,
-        Unit::NEWTON,
-        Unit::NEWTON_PER_METRE,
-        Unit::NEWTON_SQUARE_METRE,
-        Unit::NEWTON_SECOND,
-        Unit::NEWTON_METRE,
-        Unit::PER_METRE,
-        Unit::KILOGRAM_PER_METRE,
-        Unit::KILOGRAM_METRE,
-        Unit::KILOGRAM_PER_CUBIC_METRE,
-        Unit::JOULE,
-        Unit::WATT,
-    ];
-
+impl Unit {
     /// The unit that a doc comment or the scene format writes as `N m²`; dimensionless where it is not known.
     fn of_scene(text: &str) -> Unit {
         let name = text.replace(' ', ".").replace('²', "2").replace('³', "3");
-        let found = Unit::KNOWN.into_iter().find(|unit| unit.name == name);
-        found.unwrap_or(Unit::ONE)
-    }
-
-    const fn of(name: &'static str, kg: i8, m: i8, s: i8) -> Unit {
-        Unit {
-            name,
-            kg,
-            m,
-            s,
-            rad: 0,
-        }
+        let found = Unit::ALL.iter().find(|unit| unit.name == name);
+        *found.unwrap_or(&Unit::ONE)
     }
 }
 

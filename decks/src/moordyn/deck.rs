@@ -199,7 +199,7 @@ pub(super) enum LineEnd {
 /// OPTIONS with an effect; absent ones are `None`.
 #[derive(Debug, Default)]
 pub(super) struct Options {
-    /// Options that are one number, in the unit of their meaning.
+    /// Options that are one number in the unit of the meaning, such as g [m/s²].
     pub numbers: BTreeMap<Meaning, Placed<f64>>,
     /// WtrDpth [m].
     pub depth: Option<Placed<Property>>,
