@@ -67,7 +67,8 @@ impl Scene {
         let mut notes = Vec::new();
         let sounded = self.seabed.as_ref().is_some_and(|seabed| seabed.grid.is_some());
         rules! { &mut notes, "seabed";
-            "" if sounded && self.waves().is_none() => "with soundings and without waves, `depth` changes nothing";
+            "" if sounded && self.waves().is_none() =>
+                "with soundings and without waves, `depth` changes nothing";
         }
         notes
     }
@@ -109,7 +110,8 @@ impl Scene {
         let ratio = section.is_some_and(|section| section.poisson != super::line_type::STEEL_POISSON);
         let bare = self.water.is_none() && self.seabed.is_none();
         rules! { notes, at;
-            "" if bare && line_type.diameter.is_some() && !spun => "without [water] and [seabed], `diameter` changes nothing";
+            "" if bare && line_type.diameter.is_some() && !spun =>
+                "without [water] and [seabed], `diameter` changes nothing";
             "" if section.is_some() && !sheared && !bent =>
                 "what follows from it is given or not modelled, so that `solid_section` changes nothing";
             "solid_section" if ratio && !sheared =>

@@ -103,9 +103,11 @@ fn current(scene: &Scene, notes: &mut Vec<Note>) {
         let (speed, height) = (significant(speed(&rows[row])), rows[row][0]);
         rules! { notes, "water.current";
             "profile[{row}]" if is_fast =>
-                "{} is unusual: less than {SPEED_USUAL} m/s is usual, with rows of z [m], vx and vy [m/s]", quantity(speed, "m/s");
+                "{} is unusual: less than {SPEED_USUAL} m/s is usual, with rows of z [m], vx and vy [m/s]",
+                quantity(speed, "m/s");
             "profile[{row}]" if !is_fast =>
-                "{} above the water: heights count upwards from the surface, and depths are negative", quantity(height, "m");
+                "{} above the water: heights count upwards from the surface, and depths are negative",
+                quantity(height, "m");
         }
     }
     let [x, y, _] = current.velocity.unwrap_or_default();
@@ -115,7 +117,8 @@ fn current(scene: &Scene, notes: &mut Vec<Note>) {
     let speed = significant(factor * fastest);
     rules! { notes, "water.current";
         "factor" if fastest <= SPEED_USUAL && factor * fastest > SPEED_USUAL =>
-            "a current of {} with it is unusual: less than {SPEED_USUAL} m/s is usual", quantity(speed, "m/s");
+            "a current of {} with it is unusual: less than {SPEED_USUAL} m/s is usual",
+            quantity(speed, "m/s");
     }
 }
 
@@ -307,7 +310,8 @@ fn anchor_height(scene: &Scene, notes: &mut Vec<Note>) {
         let height = point.position[2];
         rules! { notes, "points";
             "[{i}].position" if point.kind == PointKind::Fixed && height > 0.0 && others.any(is_moored) =>
-                "{} above the water: a fixed point is usually an anchor below it, where z is negative", quantity(height, "m");
+                "{} above the water: a fixed point is usually an anchor below it, where z is negative",
+                quantity(height, "m");
         }
     }
 }

@@ -133,7 +133,8 @@ fn check_model(findings: &mut Findings, at: &str, line_type: &LineType, scene: &
         let unit = key.unit().unwrap_or_default();
         let given = value.number().is_some_and(|number| !bending || number > 0.0);
         rules! { findings, at;
-            "{name}" if !beam && !bending && given => "only a beam has it: write model = \"beam\" or leave it out";
+            "{name}" if !beam && !bending && given =>
+                "only a beam has it: write model = \"beam\" or leave it out";
             "" if beam && !given && line_type.solid_section.is_none() =>
                 "a beam needs `{name}` [{unit}], or a `solid_section` that it follows from{why}";
         }

@@ -54,7 +54,8 @@ fn check_freedom(findings: &mut Findings, at: &str, point: &Point) {
     let Some(axes) = &point.free else { return };
     let free = point.kind == PointKind::Free;
     rules! { findings, at;
-        "free" if !free => "only a free point has `free`, and this one is {kind}: leave it out or write kind = \"free\"";
+        "free" if !free =>
+            "only a free point has `free`, and this one is {kind}: leave it out or write kind = \"free\"";
         "free" if free && axes.is_empty() => "free along no axis: write kind = \"fixed\"";
     }
     for (i, axis) in axes.iter().enumerate() {
@@ -73,7 +74,8 @@ fn check_carrier(findings: &mut Findings, at: &str, point: &Point, scene: &Scene
     }
     rules! { findings, at;
         "on" if point.kind != PointKind::Coupled =>
-            "a point on a vessel moves with it, and this one is {}: write kind = \"coupled\"", point.kind.word();
+            "a point on a vessel moves with it, and this one is {}: write kind = \"coupled\"",
+            point.kind.word();
     }
 }
 

@@ -58,7 +58,8 @@ fn check_output(scene: &Scene, findings: &mut Findings) {
     }
     let [interval, duration] = [output.interval, output.duration].map(|time| quantity(time, "s"));
     rules! { findings, "output";
-        "interval" if output.interval > output.duration => "{interval} is longer than the duration of {duration}";
+        "interval" if output.interval > output.duration =>
+            "{interval} is longer than the duration of {duration}";
         "interval" if output.duration / output.interval > STEPS_MAX =>
             "{duration} in steps of {interval} is more than 1e7 steps: give a longer interval or a shorter duration";
     }
