@@ -1,4 +1,4 @@
-//! The one table of a scene's inputs, outputs and parameters: names, units, roles, and what each one touches.
+//! The one table of a scene's inputs, outputs and parameters: names, units, roles and bindings.
 //!
 //! modelDescription.xml, the FMU's getters and setters, the CSV header and `moorline check` all read this table, so
 //! that they cannot drift apart. The value reference of a variable is its position in the table, counted from 1.
@@ -10,15 +10,17 @@
 mod dependencies;
 mod parameters;
 mod profile;
+mod results;
 mod rows;
 
 use std::collections::BTreeSet;
 
 use crate::model::{Body, Model};
 use crate::scene::{Axis, PointKind, Scene, SceneError};
-use crate::simulation::{NodeBending, Simulation, reference_catenary};
+use crate::simulation::{Simulation, reference_catenary};
 
 pub use parameters::{Parameter, Place};
+pub use results::{LineResult, SolverResult};
 
 /// Message for a value of an energy balance that the scene does not ask for.
 const NO_BALANCE: &str = "the scene asks for no energy balance (`energy_balance` in [output])";
@@ -36,7 +38,7 @@ pub enum Causality {
     Parameter,
 }
 
-/// When a variable may change, in FMI's words.
+/// Times at which a variable may change, in FMI's words.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Variability {
     /// Not after initialization.
@@ -73,113 +75,90 @@ pub struct Unit {
     pub rad: i8,
 }
 
-impl Unit {
+/// Declares units: name in the crate, name in the description, exponents of kilogram, metre, second and radian.
+macro_rules! units {
+    ($($(#[doc = $doc:literal])+ $name:ident = $text:literal $kg:literal $m:literal $s:literal $rad:literal;)+) => {
+        impl Unit {
+            $($(#[doc = $doc])+
+            pub(crate) const $name: Unit = Unit { name: $text, kg: $kg, m: $m, s: $s, rad: $rad };)+
+            const ALL: &[Unit] = &[$(Unit::$name),+];
+        }
+    };
+}
+
+units! {
     /// Dimensionless.
-    pub const ONE: Unit = Unit::of("1", 0, 0, 0);
+    ONE = "1" 0 0 0 0;
     /// Metre.
-    pub const METRE: Unit = Unit::of("m", 0, 1, 0);
+    METRE = "m" 0 1 0 0;
     /// Second.
-    pub const SECOND: Unit = Unit::of("s", 0, 0, 1);
+    SECOND = "s" 0 0 1 0;
     /// Metre per second.
-    pub const METRE_PER_SECOND: Unit = Unit::of("m/s", 0, 1, -1);
+    METRE_PER_SECOND = "m/s" 0 1 -1 0;
     /// Metre per second squared.
-    pub const METRE_PER_SECOND_SQUARED: Unit = Unit::of("m/s2", 0, 1, -2);
+    METRE_PER_SECOND_SQUARED = "m/s2" 0 1 -2 0;
     /// Newton.
-    pub const NEWTON: Unit = Unit::of("N", 1, 1, -2);
+    NEWTON = "N" 1 1 -2 0;
     /// Newton per metre.
-    pub const NEWTON_PER_METRE: Unit = Unit::of("N/m", 1, 0, -2);
+    NEWTON_PER_METRE = "N/m" 1 0 -2 0;
     /// One per metre.
-    pub const PER_METRE: Unit = Unit::of("1/m", 0, -1, 0);
+    PER_METRE = "1/m" 0 -1 0 0;
     /// Newton metre.
-    pub const NEWTON_METRE: Unit = Unit::of("N.m", 1, 2, -2);
+    NEWTON_METRE = "N.m" 1 2 -2 0;
     /// Newton square metre.
-    pub const NEWTON_SQUARE_METRE: Unit = Unit::of("N.m2", 1, 3, -2);
+    NEWTON_SQUARE_METRE = "N.m2" 1 3 -2 0;
     /// Newton second.
-    pub const NEWTON_SECOND: Unit = Unit::of("N.s", 1, 1, -1);
+    NEWTON_SECOND = "N.s" 1 1 -1 0;
     /// Kilogram per metre.
-    pub const KILOGRAM_PER_METRE: Unit = Unit::of("kg/m", 1, -1, 0);
+    KILOGRAM_PER_METRE = "kg/m" 1 -1 0 0;
     /// Kilogram metre.
-    pub const KILOGRAM_METRE: Unit = Unit::of("kg.m", 1, 1, 0);
+    KILOGRAM_METRE = "kg.m" 1 1 0 0;
     /// Kilogram per cubic metre.
-    pub const KILOGRAM_PER_CUBIC_METRE: Unit = Unit::of("kg/m3", 1, -3, 0);
+    KILOGRAM_PER_CUBIC_METRE = "kg/m3" 1 -3 0 0;
     /// Joule.
-    pub const JOULE: Unit = Unit::of("J", 1, 2, -2);
+    JOULE = "J" 1 2 -2 0;
     /// Watt.
-    pub const WATT: Unit = Unit::of("W", 1, 2, -3);
+    WATT = "W" 1 2 -3 0;
     /// Radian; hosts may show it in degrees.
-    pub const RADIAN: Unit = Unit {
-        name: "rad",
-        kg: 0,
-        m: 0,
-        s: 0,
-        rad: 1,
-    };
-
+    RADIAN = "rad" 0 0 0 1;
     /// Radian per second.
-    pub const RADIAN_PER_SECOND: Unit = Unit {
-        name: "rad/s",
-        kg: 0,
-        m: 0,
-        s: -1,
-        rad: 1,
-    };
+    RADIAN_PER_SECOND = "rad/s" 0 0 -1 1;
+}
 
-    /// Units of parameters.
-    const OF_PARAMETERS: [Unit; 9] = [
-        Unit::METRE,
-        Unit::METRE_PER_SECOND_SQUARED,
-        Unit::NEWTON,
-        Unit::NEWTON_PER_METRE,
-        Unit::NEWTON_SQUARE_METRE,
-        Unit::NEWTON_SECOND,
-        Unit::KILOGRAM_PER_METRE,
-        Unit::KILOGRAM_METRE,
-        Unit::KILOGRAM_PER_CUBIC_METRE,
-    ];
-
-    /// The unit that the scene format writes as `N m²`; dimensionless where it is none of those of parameters.
+impl Unit {
+    /// The unit that a doc comment or the scene format writes as `N m²`; dimensionless where it is not known.
     fn of_scene(text: &str) -> Unit {
         let name = text.replace(' ', ".").replace('²', "2").replace('³', "3");
-        let found = Unit::OF_PARAMETERS.into_iter().find(|unit| unit.name == name);
-        found.unwrap_or(Unit::ONE)
-    }
-
-    const fn of(name: &'static str, kg: i8, m: i8, s: i8) -> Unit {
-        Unit {
-            name,
-            kg,
-            m,
-            s,
-            rad: 0,
-        }
+        let found = Unit::ALL.iter().find(|unit| unit.name == name);
+        *found.unwrap_or(&Unit::ONE)
     }
 }
 
-/// What getting or setting a variable touches. Points and lines are counted in the scene's order.
+/// Quantity that a variable gets or sets. Points and lines are counted in the scene's order.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Binding {
     /// Displacement of a coupled point or a vessel from its reference [m] or [rad].
     Displacement {
-        /// What moves.
+        /// The point or vessel.
         body: Body,
         /// Its axis: x, y, z and of a vessel roll, pitch, yaw, 0 to 5.
         axis: usize,
     },
     /// Velocity of a coupled point or a vessel [m/s] or [rad/s].
     Velocity {
-        /// What moves.
+        /// The point or vessel.
         body: Body,
         /// Its axis, 0 to 5.
         axis: usize,
     },
     /// Force of all lines on a coupled point or a vessel [N], and moment on a vessel [N m].
     EndForce {
-        /// What the lines pull at.
+        /// The point or vessel that the lines pull at.
         body: Body,
         /// Its axis, 0 to 5.
         axis: usize,
     },
-    /// Whether a line is to let go of a point.
+    /// Release of a line from a point.
     Release {
         /// The line.
         line: usize,
@@ -204,56 +183,14 @@ pub enum Binding {
     Profile {
         /// The line.
         line: usize,
-        /// What is given at each node.
+        /// The quantity at each node.
         quantity: ProfileQuantity,
         /// The only node, counted from 0; all where absent.
         node: Option<usize>,
     },
 }
 
-/// Results of a line.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum LineResult {
-    /// Size of the force at end B [N].
-    TensionB,
-    /// Size of the force at end A [N].
-    TensionA,
-    /// Greatest of the axial tension along the line and the forces at its ends [N].
-    TensionMax,
-    /// Unstretched length that lies on the seabed [m].
-    LaidLength,
-    /// Greatest vertical distance below the chord between the ends [m].
-    Sag,
-    /// Greatest curvature along the line [1/m].
-    CurvatureMax,
-    /// Greatest bending moment along the line [N m].
-    MomentMax,
-    /// Bending moment at end A [N m].
-    MomentA,
-    /// Bending moment at end B [N m].
-    MomentB,
-    /// Sag of the closed-form catenary in the reference configuration [m].
-    CatenarySag,
-    /// Horizontal tension of that catenary [N].
-    CatenaryHorizontal,
-    /// Tension of that catenary at end B [N].
-    CatenaryTensionB,
-}
-
-/// Results of the solver.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum SolverResult {
-    /// Internal steps of the last communication step [-].
-    Substeps,
-    /// Energy that the integrator made or lost [J].
-    EnergyError,
-    /// The same over the time since the start [W].
-    PowerResidual,
-    /// Error of tension that the extrapolation of the inputs causes, over the range of tension [-].
-    InputError,
-}
-
-/// What a profile gives at each node.
+/// Quantity of a profile.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ProfileQuantity {
     /// Position along a global axis [m].
@@ -266,7 +203,7 @@ pub enum ProfileQuantity {
     Moment,
 }
 
-/// How profiles appear.
+/// Form of profiles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Layout {
     /// As one scalar for each value (FMI 2.0, CSV).
@@ -280,11 +217,11 @@ pub enum Layout {
 pub struct Variable {
     /// Name, dots between its parts.
     pub name: String,
-    /// What it is, in a sentence.
+    /// Description in a sentence.
     pub description: String,
     /// Role.
     pub causality: Causality,
-    /// When it may change.
+    /// Times at which it may change.
     pub variability: Variability,
     /// Type.
     pub kind: Kind,
@@ -292,12 +229,12 @@ pub struct Variable {
     pub unit: Unit,
     /// Length of an array [-]; `None` is a scalar.
     pub dimension: Option<usize>,
-    /// Value before anyone sets it; inputs and parameters have one.
+    /// Value before the host sets one; inputs and parameters have one.
     pub start: Option<f64>,
     /// Value references that it depends on during initialization; outputs and calculated parameters only. After
     /// initialization outputs change with a step only and so depend on nothing that is set between two steps.
     pub initial_dependencies: Vec<u32>,
-    /// What it touches.
+    /// Quantity that it gets or sets.
     pub binding: Binding,
 }
 
@@ -324,31 +261,31 @@ impl Interface {
         for (index, point) in scene.points.iter().enumerate() {
             if point.kind == PointKind::Coupled && point.on.is_none() {
                 check_name(&point.name, &format!("points[{index}].name"))?;
-                rows::point(&mut variables, index, &point.name);
+                rows::body(&mut variables, Body::Point(index), &point.name);
             }
         }
         for (index, vessel) in scene.vessels.iter().enumerate() {
             check_name(&vessel.name, &format!("vessels[{index}].name"))?;
-            rows::vessel(&mut variables, index, &vessel.name);
+            rows::body(&mut variables, Body::Vessel(index), &vessel.name);
         }
         for (index, line) in scene.lines.iter().enumerate() {
             check_name(&line.name, &format!("lines[{index}].name"))?;
             rows::controls(&mut variables, index, line);
-            rows::winch(&mut variables, index, line);
         }
         for (index, line) in scene.lines.iter().enumerate() {
-            rows::line(&mut variables, index, &line.name);
-            if model.lines[index].bends() {
-                rows::bending(&mut variables, index, &line.name);
-            }
+            let bending = LineResult::OF_BENDING
+                .iter()
+                .filter(|_| model.lines[index].bends());
+            let results = LineResult::OF_ALL.iter().chain(bending);
+            variables.extend(results.map(|result| result.row(index, &line.name)));
         }
-        rows::solver(&mut variables);
+        variables.extend([SolverResult::Substeps, SolverResult::InputError].map(SolverResult::row));
         if scene.output.energy_balance {
-            rows::energy_balance(&mut variables);
+            variables.extend([SolverResult::EnergyError, SolverResult::PowerResidual].map(SolverResult::row));
         }
         for (index, line) in model.lines.iter().enumerate() {
             if reference_catenary(model, line).is_some() {
-                rows::catenary(&mut variables, index, &line.name);
+                variables.extend(LineResult::OF_CATENARY.map(|result| result.row(index, &line.name)));
             }
         }
         for name in scene.line_types.keys() {
@@ -401,26 +338,15 @@ impl Interface {
                 }
             }
             Binding::Line { line, result } => {
-                values[0] = line_result(simulation, line, result).ok_or_else(|| {
-                    format!(
-                        "{}: the reference configuration has no closed-form catenary",
-                        variable.name
-                    )
-                })?;
+                let missing = || {
+                    let name = &variable.name;
+                    format!("{name}: the reference configuration has no closed-form catenary")
+                };
+                values[0] = result.read(simulation, line).ok_or_else(missing)?;
             }
             Binding::Release { line } => values[0] = f64::from(u8::from(simulation.release(line))),
             Binding::LengthChange { line } => values[0] = simulation.length_change(line),
-            Binding::Solver(result) => {
-                values[0] = match result {
-                    SolverResult::Substeps => simulation.substeps() as f64,
-                    SolverResult::EnergyError => {
-                        let balance = simulation.energy_balance().ok_or(NO_BALANCE)?;
-                        balance.error()
-                    }
-                    SolverResult::PowerResidual => simulation.power_residual().ok_or(NO_BALANCE)?,
-                    SolverResult::InputError => simulation.input_error(),
-                }
-            }
+            Binding::Solver(result) => values[0] = result.read(simulation, 0).ok_or(NO_BALANCE)?,
             Binding::Profile { line, quantity, node } => {
                 profile::read(simulation, line, quantity, node, values)
             }
@@ -429,38 +355,6 @@ impl Interface {
             }
         }
         Ok(())
-    }
-}
-
-fn line_result(simulation: &Simulation, line: usize, result: LineResult) -> Option<f64> {
-    let catenary = || simulation.catenary(line);
-    match result {
-        LineResult::TensionB => Some(simulation.tension_b(line)),
-        LineResult::TensionA => Some(simulation.tension_a(line)),
-        LineResult::TensionMax => Some(simulation.tension_max(line)),
-        LineResult::LaidLength => Some(simulation.laid_length(line)),
-        LineResult::Sag => Some(simulation.sag(line)),
-        LineResult::CurvatureMax | LineResult::MomentMax | LineResult::MomentA | LineResult::MomentB => {
-            let nodes = simulation.bending(line).unwrap_or_default();
-            Some(bending_result(nodes, result))
-        }
-        LineResult::CatenarySag => catenary().map(|c| c.sag()),
-        LineResult::CatenaryHorizontal => catenary().map(|c| c.horizontal()),
-        LineResult::CatenaryTensionB => catenary().map(|c| c.tension_b()),
-    }
-}
-
-/// Zero where the host has set the bending stiffness to nothing.
-fn bending_result(nodes: &[NodeBending], result: LineResult) -> f64 {
-    let mut moments = nodes.iter().map(|node| node.moment);
-    match result {
-        LineResult::CurvatureMax => {
-            let curvatures = nodes.iter().map(|node| node.curvature);
-            curvatures.fold(0.0, f64::max)
-        }
-        LineResult::MomentA => moments.next().unwrap_or(0.0),
-        LineResult::MomentB => moments.next_back().unwrap_or(0.0),
-        _ => moments.fold(0.0, f64::max),
     }
 }
 

@@ -1,4 +1,4 @@
-//! What the static solution, and so every output during initialization, depends on.
+//! Variables that the static solution, and so every output during initialization, depends on.
 //!
 //! Lines that share free points are one network; a network depends on the displacements of the coupled points that it
 //! hangs on and on the parameters that enter its equilibrium. Velocities, rotary inertia and damping do not: nothing moves. Drag does where
@@ -7,7 +7,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::{Binding, Interface, LineResult, Parameter, Place, Variable};
+use super::{Binding, Interface, Parameter, Place, Variable};
 use crate::model::{Body, Model};
 use crate::scene::table::{Acts, Table};
 use crate::scene::{LineType, Scene};
@@ -41,7 +41,7 @@ pub(super) fn fill(variables: &mut [Variable], scene: &Scene, model: &Model) {
     for variable in variables {
         let (lines, closed_form) = match &variable.binding {
             Binding::EndForce { body, .. } => (networks_of(model, attached_to(*body)), false),
-            Binding::Line { line, result } if is_catenary(*result) => (BTreeSet::from([*line]), true),
+            Binding::Line { line, result } if result.is_catenary() => (BTreeSet::from([*line]), true),
             Binding::Line { line, .. } | Binding::Profile { line, .. } => {
                 (networks_of(model, [*line]), false)
             }
@@ -63,13 +63,6 @@ pub(super) fn fill(variables: &mut [Variable], scene: &Scene, model: &Model) {
     }
 }
 
-fn is_catenary(result: LineResult) -> bool {
-    matches!(
-        result,
-        LineResult::CatenarySag | LineResult::CatenaryHorizontal | LineResult::CatenaryTensionB
-    )
-}
-
 /// All lines of the networks that the given lines belong to.
 fn networks_of(model: &Model, lines: impl IntoIterator<Item = usize>) -> BTreeSet<usize> {
     lines
@@ -84,7 +77,7 @@ fn networks_of(model: &Model, lines: impl IntoIterator<Item = usize>) -> BTreeSe
         .collect()
 }
 
-/// What a host may set before the simulation starts.
+/// A variable that a host may set before the simulation starts.
 struct Known {
     reference: u32,
     binding: Binding,
@@ -160,7 +153,7 @@ impl Scope<'_> {
         }
     }
 
-    /// Whether buoyancy is subtracted from the weight of a line type, under water or where it comes out.
+    /// Returns whether buoyancy is subtracted from the weight of a line type, under water or where it comes out.
     fn is_buoyant(&self, name: &str) -> bool {
         let line_type = &self.scene.line_types[name];
         self.scene.water.is_some()
@@ -168,7 +161,7 @@ impl Scope<'_> {
             && (line_type.weight.is_none() || self.emerges())
     }
 
-    /// Whether the water moves, which closed forms know nothing of.
+    /// Returns whether the water moves; closed forms are those of still water.
     fn flows(&self) -> bool {
         let water = self.scene.water.as_ref();
         !self.closed_form && water.is_some_and(|water| water.current.is_some() || water.waves.is_some())
@@ -179,12 +172,12 @@ impl Scope<'_> {
         !self.closed_form && water.is_some_and(|water| water.waves.is_some())
     }
 
-    /// Whether moving water pushes a line type.
+    /// Returns whether moving water exerts a force on a line type.
     fn is_pushed(&self, name: &str) -> bool {
         self.flows() && self.scene.line_types[name].diameter.is_some()
     }
 
-    /// Whether a line may come out of the water, which closed forms never do.
+    /// Returns whether a line may come out of the water; in closed forms it never does.
     fn emerges(&self) -> bool {
         let mut lines = self.lines.iter();
         !self.closed_form && lines.any(|&line| self.model.lines[line].surface.is_some())

@@ -9,56 +9,59 @@ use crate::simulation::Simulation;
 /// Rows of the profiles of all lines.
 pub(super) fn push(variables: &mut Vec<Variable>, model: &Model, layout: Layout) {
     for (line, built) in model.lines.iter().enumerate() {
-        let nodes = built.nodes_max();
-        let mut push = |label: &str, meaning: &str, unit: Unit, quantity: ProfileQuantity| {
-            let name = format!("{}.profile.{label}", built.name);
-            let description = format!("{}: {meaning} at the nodes from end A to end B", built.name);
-            let mut push = |name, description, node, dimension| {
+        let (nodes, owner) = (built.nodes_max(), &built.name);
+        for (label, meaning, unit, quantity) in quantities(built.bends()) {
+            let name = format!("{owner}.profile.{label}");
+            let row = |name, place: String, node| {
+                let description = format!("{owner}: {meaning} at {place} from end A");
                 let binding = Binding::Profile { line, quantity, node };
-                let mut variable = row(name, description, Causality::Output, unit, binding);
-                variable.dimension = dimension;
-                variables.push(variable);
+                row(name, description, Causality::Output, unit, binding)
             };
             match layout {
-                Layout::Arrays => push(name, description, None, Some(nodes)),
-                Layout::Scalars => {
-                    for node in 0..nodes {
-                        let number = node + 1;
-                        let description = format!("{}: {meaning} at node {number} from end A", built.name);
-                        push(format!("{name}[{number}]"), description, Some(node), None);
-                    }
+                Layout::Arrays => {
+                    let mut array = row(name, "the nodes".into(), None);
+                    array.description += " to end B";
+                    array.dimension = Some(nodes);
+                    variables.push(array);
                 }
+                Layout::Scalars => variables.extend((0..nodes).map(|node| {
+                    let number = node + 1;
+                    row(format!("{name}[{number}]"), format!("node {number}"), Some(node))
+                })),
             }
-        };
-        for (axis, label) in [Axis::X, Axis::Y, Axis::Z].into_iter().zip(AXES) {
-            push(
-                label,
-                &format!("global {label}"),
-                Unit::METRE,
-                ProfileQuantity::Position(axis),
-            );
-        }
-        push(
-            "tension",
-            "effective tension (at the ends the size of the line's force)",
-            Unit::NEWTON,
-            ProfileQuantity::Tension,
-        );
-        if built.bends() {
-            push(
-                "curvature",
-                "curvature",
-                Unit::PER_METRE,
-                ProfileQuantity::Curvature,
-            );
-            push(
-                "moment",
-                "bending moment",
-                Unit::NEWTON_METRE,
-                ProfileQuantity::Moment,
-            );
         }
     }
+}
+
+/// Label, meaning, unit and binding of the quantities of a line's nodes.
+fn quantities(bends: bool) -> Vec<(&'static str, String, Unit, ProfileQuantity)> {
+    let axes = [Axis::X, Axis::Y, Axis::Z].into_iter().zip(AXES);
+    let position = |(axis, label)| {
+        (
+            label,
+            format!("global {label}"),
+            Unit::METRE,
+            ProfileQuantity::Position(axis),
+        )
+    };
+    let mut quantities: Vec<_> = axes.map(position).collect();
+    let tension = "effective tension (at the ends the size of the line's force)".into();
+    quantities.push(("tension", tension, Unit::NEWTON, ProfileQuantity::Tension));
+    if bends {
+        quantities.push((
+            "curvature",
+            "curvature".into(),
+            Unit::PER_METRE,
+            ProfileQuantity::Curvature,
+        ));
+        quantities.push((
+            "moment",
+            "bending moment".into(),
+            Unit::NEWTON_METRE,
+            ProfileQuantity::Moment,
+        ));
+    }
+    quantities
 }
 
 /// Writes the values of a profile variable; nodes that a winch has not paid out are at the winch.

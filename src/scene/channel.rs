@@ -12,14 +12,14 @@ pub enum Channel {
     EndTension {
         /// Name of the line.
         line: String,
-        /// Which end.
+        /// The end.
         end: LineEnd,
     },
     /// `L1N10Px`: quantity of a node of a line.
     Node {
         /// Name of the line.
         line: String,
-        /// Which node.
+        /// The node.
         node: NodePlace,
         /// Quantity.
         quantity: Quantity,
@@ -147,7 +147,7 @@ fn find_line<'s>(scene: &'s Scene, name: &str) -> Result<&'s super::Line, String
 ///
 /// # Errors
 /// The number of nodes of the line.
-pub fn check_node(node: usize, elements: usize) -> Result<(), String> {
+pub(crate) fn check_node(node: usize, elements: usize) -> Result<(), String> {
     if node > elements {
         return Err(format!(
             "node {node} of a line of {elements} elements, whose nodes are 0 at end A to {elements} at end B"

@@ -41,6 +41,45 @@ impl Scene {
     }
 }
 
+/// A list that rules add to.
+pub(super) trait Report {
+    /// Adds a finding at a key path.
+    fn add(&mut self, at: String, text: String);
+}
+
+impl Report for Findings {
+    fn add(&mut self, at: String, text: String) {
+        self.say(at, text);
+    }
+}
+
+impl Report for Vec<Note> {
+    fn add(&mut self, at: String, text: String) {
+        self.push(Note::new(at, text));
+    }
+}
+
+/// The path of a key, or of an index in brackets, below a path; both may be empty.
+pub(super) fn below(at: &str, key: &str) -> String {
+    match (at, key) {
+        ("", _) => key.to_string(),
+        (_, "") => at.to_string(),
+        _ if key.starts_with('[') => format!("{at}{key}"),
+        _ => format!("{at}.{key}"),
+    }
+}
+
+/// Adds the findings of a table of rules: a key below a path, the condition, and the sentence if it holds. The rules of a table are independent.
+macro_rules! rules {
+    ($report:expr, $at:expr; $($key:literal if $holds:expr => $text:literal $(, $part:expr)*;)+) => {
+        $(if $holds {
+            let at = $crate::scene::check::below($at, &format!($key));
+            $crate::scene::check::Report::add($report, at, format!($text $(, $part)*));
+        })+
+    };
+}
+pub(super) use rules;
+
 /// The mistakes found so far, and notes on unusual values.
 #[derive(Default)]
 pub struct Findings {
@@ -54,18 +93,6 @@ impl Findings {
         self.mistakes.push(SceneError::new(at, problem));
     }
 
-    /// Adds the mistakes of which the condition holds, each at a key of a table.
-    pub(super) fn refuse(&mut self, at: &str, rules: &[(&str, bool, &str)]) {
-        for (key, _, problem) in rules.iter().filter(|(_, holds, _)| *holds) {
-            let at = if key.is_empty() {
-                at.to_string()
-            } else {
-                format!("{at}.{key}")
-            };
-            self.say(at, *problem);
-        }
-    }
-
     /// Adds a number that is not finite or outside its bounds; returns whether it is within them.
     pub(super) fn number(&mut self, at: impl Into<String>, value: f64, bounds: Bounds, unit: &str) -> bool {
         match bounds.complaint(value, unit) {
@@ -73,6 +100,15 @@ impl Findings {
             Some(problem) => {
                 self.say(at, problem);
                 false
+            }
+        }
+    }
+
+    /// Adds the numbers of a row that are not finite or outside the bounds of their columns, which have units.
+    pub(super) fn row(&mut self, at: &str, numbers: &[f64], columns: &[(Bounds, &str)]) {
+        for (i, (value, (bounds, unit))) in numbers.iter().zip(columns).enumerate() {
+            if !bounds.accepts(*value) {
+                self.number(format!("{at}[{i}]"), *value, *bounds, unit);
             }
         }
     }
@@ -197,9 +233,9 @@ pub fn name_problem(name: &str) -> Option<String> {
 
 /// Checks a name.
 fn check_name(findings: &mut Findings, at: &str, name: &str) {
-    if let Some(problem) = name_problem(name) {
-        findings.say(at, problem);
-    }
+    findings
+        .mistakes
+        .extend(name_problem(name).map(|problem| SceneError::new(at, problem)));
 }
 
 /// Checks the names of points, lines and vessels, which share the name space of the FMU's variables.

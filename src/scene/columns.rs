@@ -190,6 +190,13 @@ mod tests {
     }
 
     #[test]
+    fn a_file_without_line_ends_is_refused() {
+        let text = vec![b'x'; LINE_MAX as usize + 2];
+        let problem = Lines::new(text.as_slice()).next().unwrap_err();
+        assert_eq!(problem, ", line 1 is longer than 1024 KiB");
+    }
+
+    #[test]
     fn a_decimal_comma_is_read_between_semicolons_only() {
         assert_eq!(Separator::Semicolon.number("1,5e-1"), Ok(0.15));
         assert_eq!(Separator::Semicolon.number("1.5"), Ok(1.5));

@@ -82,8 +82,8 @@ impl Scene {
         let mut taken: Vec<String> = Vec::new();
         if let Some(file) = &drive.file {
             let name = file.display().to_string();
-            let (moves, columns) = read_moves(file)?;
-            words = Some(format!("motion from {name}, {columns}"));
+            let moves = read_moves(file, "")?;
+            words = Some(format!("motion from {name}, {}", moves.columns));
             for (body, rows) in self.bodies_of(moves, &name)? {
                 end = rows.last().map(|row| row[0]);
                 self.motion.insert(body.clone(), MotionPath::Table(rows));
@@ -117,50 +117,53 @@ impl Scene {
     /// Bodies that a motion file moves, with their rows.
     fn bodies_of(&self, moves: Moves, file: &str) -> Result<Vec<(String, Vec<MotionRow>)>, String> {
         let known = self.moved_by_a_host();
-        match moves {
-            Moves::Named(bodies) => {
-                for (body, rows) in &bodies {
-                    let turns = rows.iter().any(|row| row[4..].iter().any(|angle| *angle != 0.0));
-                    self.must_move(body)
-                        .and_then(|()| self.must_turn(body, turns))
-                        .map_err(|problem| format!("{file}, line 1: {problem}"))?;
-                }
-                Ok(bodies)
-            }
-            Moves::Recorded(bodies) => {
-                let moved = |body: &&(String, _)| known.contains(&body.0.as_str());
-                let in_order = |(body, rows): &(String, Vec<MotionRow>)| {
-                    (body.clone(), self.in_own_order(body, rows.clone()))
-                };
-                let own: Vec<_> = bodies.iter().filter(moved).map(in_order).collect();
-                match (own.is_empty(), bodies.first()) {
-                    (true, Some((body, _))) => {
-                        self.must_move(body)
-                            .map_err(|problem| format!("{file}, line 1: {problem}"))?;
-                        Ok(own)
-                    }
-                    _ => Ok(own),
-                }
-            }
-            Moves::One { rows, turns } => {
-                let alike = known.len() == 1 || self.vessels.is_empty();
-                if !alike || known.is_empty() {
-                    return Err(format!(
-                        "{file}, line 1: {}: the columns must name what moves, such as {}.x",
-                        self.movable_in_words(),
-                        known.first().copied().unwrap_or("platform")
-                    ));
-                }
-                if turns && self.vessels.is_empty() {
-                    return Err(format!(
-                        "{file}, line 1: points do not turn: the header must be \"time,x,y,z\"{}",
-                        self.joined_in_words("NAME")
-                    ));
-                }
-                let bodies = known.iter().map(|body| (body.to_string(), rows.clone()));
-                Ok(bodies.collect())
-            }
+        let on_line = |problem: String| format!("{file}, line 1: {problem}");
+        let mut named = Vec::new();
+        for (body, rows) in moves.bodies {
+            let Some(body) = body else {
+                return self.all_alike(rows, moves.turns).map_err(on_line);
+            };
+            named.push((body, rows));
         }
+        if moves.is_recorded {
+            let first = named.first().map(|(body, _)| body.clone());
+            named.retain(|(body, _)| known.contains(&body.as_str()));
+            if let Some(first) = first.filter(|_| named.is_empty()) {
+                self.must_move(&first).map_err(on_line)?;
+            }
+            let in_order = named.into_iter().map(|(body, rows)| {
+                let rows = self.in_own_order(&body, rows);
+                (body, rows)
+            });
+            return Ok(in_order.collect());
+        }
+        for (body, rows) in &named {
+            let turns = rows.iter().any(|row| row[4..] != [0.0; 3]);
+            let fits = self.must_move(body).and_then(|()| self.must_turn(body, turns));
+            fits.map_err(on_line)?;
+        }
+        Ok(named)
+    }
+
+    /// The one vessel of the scene, or without vessels all coupled points, with the same rows.
+    fn all_alike(&self, rows: Vec<MotionRow>, turns: bool) -> Result<Vec<(String, Vec<MotionRow>)>, String> {
+        let known = self.moved_by_a_host();
+        let alike = known.len() == 1 || self.vessels.is_empty();
+        if !alike || known.is_empty() {
+            return Err(format!(
+                "{}: the columns must name what moves, such as {}.x",
+                self.movable_in_words(),
+                known.first().copied().unwrap_or("platform")
+            ));
+        }
+        if turns && self.vessels.is_empty() {
+            let joined = self.joined_in_words("NAME");
+            return Err(format!(
+                "points do not turn: the header must be \"time,x,y,z\"{joined}"
+            ));
+        }
+        let bodies = known.iter().map(|body| (body.to_string(), rows.clone()));
+        Ok(bodies.collect())
     }
 
     /// Vessels and coupled points that do not ride on one.

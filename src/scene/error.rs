@@ -41,7 +41,7 @@ impl SceneError {
     }
 }
 
-/// Why a scene file cannot be used.
+/// Reason why a scene file cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum LoadError {
     /// The file cannot be used as a whole: there is none, it is a folder, or it is not of the kind that is wanted.

@@ -1,14 +1,12 @@
 //! Keys that are given and change nothing, for what else the scene is.
 
+use super::check::rules;
 use super::notes::Note;
 use super::path::quoted;
 use super::table::{Acts, Table};
 use super::{
     Integrator, Line, LineModel, LineType, Point, PointKind, Reconstruction, Scene, Seabed, Section, Solver,
 };
-
-/// A key, and whether it is given and changes nothing.
-type Key = (&'static str, bool);
 
 impl Scene {
     /// Returns a note for every object with keys that change nothing.
@@ -21,33 +19,35 @@ impl Scene {
             self.idle_by_rule(&at, line_type, &mut notes);
             self.idle_of_line_type(&at, line_type, &mut notes);
         }
+        let moves = self.water.is_some() && !self.is_quasi_static();
         for (i, point) in self.points.iter().enumerate() {
             let at = format!("points[{i}]");
             self.idle_by_rule(&at, point, &mut notes);
-            let moves = self.water.is_some() && !self.is_quasi_static();
-            let why = "it is a part of the mass of displaced water, and without `volume`";
-            let idle = moves && point.volume.is_none() && point.added_mass.is_some();
-            say(&mut notes, &at, why, &[("added_mass", idle)]);
+            rules! { &mut notes, &at;
+                "" if moves && point.volume.is_none() && point.added_mass.is_some() =>
+                    "it is a part of the mass of displaced water, and without `volume` `added_mass` changes nothing";
+            }
         }
         for (i, vessel) in self.vessels.iter().enumerate() {
             let carries = |point: &Point| point.on.as_ref() == Some(&vessel.name);
-            let bare = !self.points.iter().any(carries);
-            let keys = [
-                ("position", bare && vessel.position != [0.0; 3]),
-                ("attitude", bare && vessel.attitude != [0.0; 3]),
-                ("motion_angles", bare && !vessel.motion_angles.is_zyx()),
-            ];
-            let at = format!("vessels[{i}]");
-            say(&mut notes, &at, "no point is `on` this vessel:", &keys);
+            let mut keys = vec![];
+            keys.extend((vessel.position != [0.0; 3]).then_some("position"));
+            keys.extend((vessel.attitude != [0.0; 3]).then_some("attitude"));
+            keys.extend((!vessel.motion_angles.is_zyx()).then_some("motion_angles"));
+            rules! { &mut notes, "vessels";
+                "[{i}]" if !keys.is_empty() && !self.points.iter().any(carries) =>
+                    "no point is `on` this vessel: {}", nothing(&keys);
+            }
         }
         self.idle_of_solver(&mut notes);
-        let water = self.water.as_ref();
-        let surfaced = self.all_beams() && water.is_some_and(|water| water.surface.is_some());
-        let why = "beams are under water throughout:";
-        say(&mut notes, "water", why, &[("surface", surfaced)]);
-        let seabed = self.seabed.as_ref().filter(|_| self.is_quasi_static());
-        let damped = seabed.is_some_and(|bed| bed.damping != Seabed::level(bed.depth).damping);
-        say(&mut notes, "seabed", "quasi-static:", &[("damping", damped)]);
+        let surface = self.water.as_ref().and_then(|water| water.surface);
+        let damped = |bed: &Seabed| bed.damping != Seabed::level(bed.depth).damping;
+        rules! { &mut notes, "";
+            "water" if surface.is_some() && self.all_beams() =>
+                "beams are under water throughout: `surface` changes nothing";
+            "seabed" if self.is_quasi_static() && self.seabed.as_ref().is_some_and(damped) =>
+                "quasi-static: `damping` changes nothing";
+        }
         notes
     }
 
@@ -55,21 +55,21 @@ impl Scene {
     pub fn idle_with(&self, mut chosen: impl Iterator<Item = Integrator>) -> Vec<Note> {
         let mut notes = Vec::new();
         let radius = [Integrator::AxialImplicit, Integrator::GeneralisedAlpha];
-        let given = self.solver.spectral_radius.is_some();
-        let idle = given && !chosen.any(|integrator| radius.contains(&integrator));
-        let why = "with the integrator that is chosen here,";
-        say(&mut notes, "solver", why, &[("spectral_radius", idle)]);
+        rules! { &mut notes, "solver";
+            "" if self.solver.spectral_radius.is_some() && !chosen.any(|integrator| radius.contains(&integrator)) =>
+                "with the integrator that is chosen here, `spectral_radius` changes nothing";
+        }
         notes
     }
 
     /// Returns notes on keys without which a scene cannot be written, and which change nothing.
     pub(super) fn idle_by_need(&self) -> Vec<Note> {
         let mut notes = Vec::new();
-        let waves = self.waves().is_some();
-        let seabed = self.seabed.as_ref();
-        let sounded = seabed.is_some_and(|seabed| seabed.grid.is_some()) && !waves;
-        let why = "with soundings and without waves,";
-        say(&mut notes, "seabed", why, &[("depth", sounded)]);
+        let sounded = self.seabed.as_ref().is_some_and(|seabed| seabed.grid.is_some());
+        rules! { &mut notes, "seabed";
+            "" if sounded && self.waves().is_none() =>
+                "with soundings and without waves, `depth` changes nothing";
+        }
         notes
     }
 
@@ -86,114 +86,68 @@ impl Scene {
             Acts::InFlow => still,
             Acts::InAccelerations => self.water.is_some(),
         };
-        let idle = |condition: &dyn Fn(Acts) -> bool| -> Vec<Key> {
+        let idle = |condition: &dyn Fn(Acts) -> bool| -> Vec<&str> {
             let given = table.entries().filter(|(_, value)| !value.is_absent());
-            given
-                .map(|(key, _)| (key.name(), condition(key.rule.acts)))
-                .collect()
+            let idle = given.filter(|(key, _)| condition(key.rule.acts));
+            idle.map(|(key, _)| key.name()).collect()
         };
-        let dry = self.water.is_none();
-        say(
-            notes,
-            at,
-            "without [water],",
-            &idle(&|acts| dry && acts.in_water()),
-        );
-        say(
-            notes,
-            at,
-            "quasi-static:",
-            &idle(&|acts| self.is_quasi_static() && rests(acts)),
-        );
+        let dry = idle(&|acts| self.water.is_none() && acts.in_water());
+        let slow = idle(&|acts| self.is_quasi_static() && rests(acts));
+        rules! { notes, at;
+            "" if !dry.is_empty() => "without [water], {}", nothing(&dry);
+            "" if !slow.is_empty() => "quasi-static: {}", nothing(&slow);
+        }
     }
 
     fn idle_of_line_type(&self, at: &str, line_type: &LineType, notes: &mut Vec<Note>) {
-        let dry = self.water.is_none();
         let beam = line_type.model == LineModel::Beam || self.solver.integrator == Integrator::Beam;
         // a beam may have its rotary inertia from the diameter
         let spun = beam && line_type.rotary_inertia.is_none() && line_type.solid_section.is_none();
-        let bare = dry && self.seabed.is_none() && line_type.diameter.is_some() && !spun;
-        say(notes, at, "without [water] and [seabed],", &[("diameter", bare)]);
-        let Some(section) = &line_type.solid_section else {
-            return;
-        };
         let sheared = [line_type.shear_stiffness, line_type.torsional_stiffness];
         let sheared = beam && sheared.iter().any(Option::is_none);
         let bent = line_type.bending_stiffness.is_none() || beam && line_type.rotary_inertia.is_none();
-        let (whole, ratio) = (
-            !sheared && !bent,
-            section.poisson != super::line_type::STEEL_POISSON,
-        );
-        let why = "what follows from it is given or not modelled, so that";
-        say(notes, at, why, &[("solid_section", whole)]);
-        say(
-            notes,
-            &format!("{at}.solid_section"),
-            why,
-            &[("poisson", ratio && !sheared)],
-        );
+        let section = line_type.solid_section.as_ref();
+        let ratio = section.is_some_and(|section| section.poisson != super::line_type::STEEL_POISSON);
+        let bare = self.water.is_none() && self.seabed.is_none();
+        rules! { notes, at;
+            "" if bare && line_type.diameter.is_some() && !spun =>
+                "without [water] and [seabed], `diameter` changes nothing";
+            "" if section.is_some() && !sheared && !bent =>
+                "what follows from it is given or not modelled, so that `solid_section` changes nothing";
+            "solid_section" if ratio && !sheared =>
+                "what follows from it is given or not modelled, so that `poisson` changes nothing";
+        }
     }
 
     fn idle_of_solver(&self, notes: &mut Vec<Note>) {
         let (solver, usual) = (&self.solver, Solver::default());
-        let mut say = |why: &str, key: &'static str, idle: bool| {
-            say(notes, "solver", why, &[(key, idle)]);
-        };
         let mut points = self.points.iter();
         let alone = self.vessels.is_empty() && points.all(|point| point.kind != PointKind::Coupled);
-        let rebuilt = solver.input_reconstruction != Reconstruction::Smooth;
-        say(
-            "nothing is coupled to a host:",
-            "input_reconstruction",
-            alone && rebuilt,
-        );
-        let rests = self.is_quasi_static();
-        say(
-            "quasi-static, without damping:",
-            "negative_tension",
-            rests && solver.negative_tension,
-        );
-        let stepped = solver.time_step_max != usual.time_step_max;
-        say("quasi-static:", "time_step_max", rests && stepped);
-        let beams = self.all_beams();
-        say(
-            "beams push as they pull:",
-            "negative_tension",
-            beams && solver.negative_tension,
-        );
-        let meshed = !self.lines.iter().any(Line::is_open);
-        say(
-            "all lines or their sections have `elements`, and here",
-            "elements",
-            meshed && solver.elements.is_some(),
-        );
         let bends = |section: &Section| {
-            self.line_types
-                .get(&section.line_type)
-                .is_some_and(LineType::bends)
+            let line_type = self.line_types.get(&section.line_type);
+            line_type.is_some_and(LineType::bends)
         };
+        let (rests, meshed) = (self.is_quasi_static(), !self.lines.iter().any(Line::is_open));
         let chosen = solver.integrator != Integrator::Auto || self.sections().all(bends);
-        let aimed = solver.tolerance != usual.tolerance;
-        say(
-            "elements and integrator are given, so that",
-            "tolerance",
-            meshed && chosen && aimed,
-        );
+        rules! { notes, "solver";
+            "" if alone && solver.input_reconstruction != Reconstruction::Smooth =>
+                "nothing is coupled to a host: `input_reconstruction` changes nothing";
+            "" if rests && solver.negative_tension =>
+                "quasi-static, without damping: `negative_tension` changes nothing";
+            "" if rests && solver.time_step_max != usual.time_step_max =>
+                "quasi-static: `time_step_max` changes nothing";
+            "" if self.all_beams() && solver.negative_tension =>
+                "beams push as they pull: `negative_tension` changes nothing";
+            "" if meshed && solver.elements.is_some() =>
+                "all lines or their sections have `elements`, and here `elements` changes nothing";
+            "" if meshed && chosen && solver.tolerance != usual.tolerance =>
+                "elements and integrator are given, so that `tolerance` changes nothing";
+        }
     }
 }
 
-/// Adds a note that names the keys that change nothing, where there are any.
-fn say(notes: &mut Vec<Note>, at: &str, why: &str, keys: &[Key]) {
-    let idle: Vec<&str> = keys
-        .iter()
-        .filter(|(_, idle)| *idle)
-        .map(|(key, _)| *key)
-        .collect();
-    let verb = match idle.len() {
-        0 => return,
-        1 => "changes",
-        _ => "change",
-    };
-    let text = format!("{why} `{}` {verb} nothing", idle.join("`, `"));
-    notes.push(Note::new(at, text));
+/// "`mass` changes nothing", "`mass`, `volume` change nothing".
+fn nothing(keys: &[&str]) -> String {
+    let verb = if keys.len() == 1 { "changes" } else { "change" };
+    format!("`{}` {verb} nothing", keys.join("`, `"))
 }

@@ -10,13 +10,11 @@ use std::path::Path;
 /// Longest scene, and longest table that is not a motion file [bytes].
 pub const SIZE_MAX: u64 = 64 << 20;
 /// Longest motion file [bytes]; it is read as a stream.
-pub const MOTION_SIZE_MAX: u64 = 4 << 30;
-/// Longest row [bytes]: a file without line ends does not fill the memory.
-const ROW_MAX: usize = 1 << 20;
+pub(crate) const MOTION_SIZE_MAX: u64 = 4 << 30;
 /// Names of standard input.
 const STANDARD_INPUT: [&str; 3] = ["/dev/stdin", "/dev/fd/0", "/proc/self/fd/0"];
 
-/// Why a file was not opened: in words that follow its name.
+/// Reason why a file was not opened, in words that follow its name.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Unopened {
     /// True if there is none.
@@ -51,9 +49,6 @@ pub struct InputFile {
     /// Bytes that may still come.
     left: u64,
     size_max: u64,
-    /// Bytes since the last end of a line.
-    row: usize,
-    row_max: usize,
 }
 
 #[derive(Debug)]
@@ -87,8 +82,6 @@ pub fn open(path: &Path, noun: &str, size_max: u64) -> Result<InputFile, Unopene
         source,
         left: size_max,
         size_max,
-        row: 0,
-        row_max: usize::MAX,
     })
 }
 
@@ -111,29 +104,12 @@ fn too_long(size_max: u64) -> String {
     format!("longer than {} MiB", size_max >> 20)
 }
 
-impl InputFile {
-    /// The same file, which must end its rows within a mebibyte.
-    pub fn by_rows(self) -> InputFile {
-        InputFile {
-            row_max: ROW_MAX,
-            ..self
-        }
-    }
-}
-
 impl Read for InputFile {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let count = match &mut self.source {
             Source::File(file) => file.read(buffer)?,
             Source::StandardInput(input) => input.read(buffer)?,
         };
-        let read = &buffer[..count];
-        let end = read.iter().rposition(|byte| matches!(byte, b'\n' | b'\r'));
-        self.row = end.map_or(self.row + count, |end| count - end - 1);
-        if self.row > self.row_max {
-            let problem = format!("a row is longer than {} bytes", self.row_max);
-            return Err(io::Error::other(problem));
-        }
         self.left = self
             .left
             .checked_sub(count as u64)
@@ -146,7 +122,7 @@ impl Read for InputFile {
 ///
 /// # Errors
 /// The name of the file and the reason.
-pub fn read_table(path: &Path, noun: &str, looked_for: &str) -> Result<Vec<u8>, String> {
+pub(crate) fn read_table(path: &Path, noun: &str, looked_for: &str) -> Result<Vec<u8>, String> {
     let mut file = open(path, noun, SIZE_MAX).map_err(|unopened| unopened.at(path, looked_for))?;
     let mut bytes = Vec::new();
     file.read_to_end(&mut bytes)
@@ -159,17 +135,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_file_without_line_ends_and_one_that_is_too_long_are_refused() {
+    fn a_file_that_is_too_long_is_refused() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("long.csv");
-        fs::write(&path, vec![b'x'; ROW_MAX + 2]).unwrap();
-        let mut bytes = Vec::new();
-        let rows = open(&path, "a CSV file", SIZE_MAX).unwrap().by_rows();
-        let problem = io::BufReader::new(rows).read_to_end(&mut bytes);
-        assert!(problem.unwrap_err().to_string().contains("row is longer"));
-        let problem = open(&path, "a CSV file", ROW_MAX as u64).unwrap_err();
+        let size = (1 << 20) + 2;
+        fs::write(&path, vec![b'x'; size]).unwrap();
+        let problem = open(&path, "a CSV file", 1 << 20).unwrap_err();
         assert_eq!(problem.problem, "is longer than 1 MiB");
-        assert_eq!(read_table(&path, "a table", "").unwrap().len(), ROW_MAX + 2);
+        assert_eq!(read_table(&path, "a table", "").unwrap().len(), size);
     }
 
     #[test]

@@ -1,11 +1,7 @@
 //! Lines, their sections, and the devices at their ends.
 
-use toml::Value as Toml;
-
-use super::check::Findings;
-use super::document::Node;
-use super::table::{Key, Kind, Value, Words, choice, magnitude, not_negative, positive, table, within};
-use super::{SceneError, TimeFunction, value};
+use super::TimeFunction;
+use super::table::{choice, choice_of_values, magnitude, not_negative, positive, table, within};
 
 /// Most elements of a section, or of a line [-].
 pub(super) const ELEMENTS_MAX: f64 = 1e5;
@@ -47,7 +43,7 @@ const fn elements() -> super::table::Rule {
 
 impl Line {
     /// Returns whether the number of elements of any of its sections is left open.
-    pub fn is_open(&self) -> bool {
+    pub(crate) fn is_open(&self) -> bool {
         self.elements.is_none() && self.sections.iter().any(|section| section.elements.is_none())
     }
 
@@ -139,100 +135,18 @@ choice! {
     }
 }
 
-/// Shape of a line at t = 0, at rest.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub enum InitialShape {
-    /// Static equilibrium.
-    #[default]
-    Static,
-    /// On its own closed-form catenary between its points where the scene has them, straight where it has none.
-    Catenary,
-    /// Straight between its ends.
-    Straight,
-    /// A parabola that hangs this far [m] below the middle of the chord.
-    Parabola(f64),
-    /// Given node positions [m], one more than the line has elements.
-    Nodes(Vec<[f64; 3]>),
-}
-
-impl Value for InitialShape {
-    fn kind() -> Kind {
-        Kind::Words(Words {
-            name: "InitialShape",
-            words: &[
-                ("static", "Static equilibrium."),
-                (
-                    "catenary",
-                    "The closed-form catenary of the line between its points where the scene has them, or straight where it has none.",
-                ),
-                ("straight", "Straight between its ends."),
-                (
-                    "parabola",
-                    "`{ parabola = sag }`: a parabola that hangs `sag` [m] below the middle of the chord.",
-                ),
-                (
-                    "nodes",
-                    "`{ nodes = [[x, y, z], …] }`: node positions [m], one more than the line has elements.",
-                ),
-            ],
-        })
-    }
-
-    fn blank() -> InitialShape {
-        InitialShape::Static
-    }
-
-    fn read(&mut self, node: &Node<'_>) -> Result<(), SceneError> {
-        let known = &[
-            ("static", None),
-            ("catenary", None),
-            ("straight", None),
-            ("parabola", Some("m")),
-            ("nodes", Some("m")),
-        ];
-        *self = match node.word(known)? {
-            ("parabola", Some(sag)) => InitialShape::Parabola(sag.number("a number")?),
-            (_, Some(nodes)) => {
-                let mut positions = Vec::new();
-                Value::read(&mut positions, &nodes)?;
-                InitialShape::Nodes(positions)
-            }
-            ("catenary", _) => InitialShape::Catenary,
-            ("straight", _) => InitialShape::Straight,
-            _ => InitialShape::Static,
-        };
-        Ok(())
-    }
-
-    fn write(&self) -> Option<Toml> {
-        Some(match self {
-            InitialShape::Static => "static".into(),
-            InitialShape::Catenary => "catenary".into(),
-            InitialShape::Straight => "straight".into(),
-            InitialShape::Parabola(sag) => value::entry("parabola", *sag),
-            InitialShape::Nodes(nodes) => value::entry("nodes", nodes.write()?),
-        })
-    }
-
-    fn check(&self, at: &str, _: &Key, findings: &mut Findings) {
-        match self {
-            InitialShape::Parabola(sag) => {
-                let rule = positive(1e6).hint("a positive sag hangs below the chord");
-                findings.ruled(format!("{at}.parabola"), *sag, &rule, "m");
-            }
-            InitialShape::Nodes(nodes) => {
-                let flat = nodes
-                    .iter()
-                    .enumerate()
-                    .flat_map(|(i, node)| node.iter().map(move |x| (i, x)));
-                for (place, (i, x)) in flat.enumerate() {
-                    let at = format!("{at}.nodes[{i}][{}]", place % 3);
-                    if !findings.number(at, *x, magnitude(1e7).bounds, "m") {
-                        return;
-                    }
-                }
-            }
-            _ => {}
-        }
+choice_of_values! {
+    /// Shape of a line at t = 0, at rest.
+    pub enum InitialShape {
+        /// Static equilibrium.
+        Static = "static",
+        /// The closed-form catenary of the line between its points where the scene has them, or straight where it has none.
+        Catenary = "catenary",
+        /// Straight between its ends.
+        Straight = "straight";
+        /// `{ parabola = sag }`: a parabola that hangs `sag` [m] below the middle of the chord.
+        Parabola(f64) = "parabola" => positive(1e6).hint("a positive sag hangs below the chord").in_units("m"),
+        /// `{ nodes = [[x, y, z], …] }`: node positions [m], one more than the line has elements.
+        Nodes(Vec<[f64; 3]>) = "nodes" => magnitude(1e7).in_units("m"),
     }
 }

@@ -1,11 +1,8 @@
 //! Line types: properties of a line per unstretched length.
 
-use super::SceneError;
-use super::check::{Findings, number};
-use super::document::Node;
-use super::table::{Acts, PLAIN, choice, magnitude, not_negative, positive, table, within};
-use super::table::{Key, Kind, Words};
-use super::{Integrator, Line, Scene, TensionStrain, Value};
+use super::check::number;
+use super::table::{Acts, PLAIN, choice, choice_of_values, magnitude, not_negative, positive, table, within};
+use super::{Integrator, Line, Scene, TensionStrain};
 use crate::math::circle;
 
 table! {
@@ -90,7 +87,7 @@ impl LineType {
     }
 
     /// Returns whether no key sets the axial damping, so that segments have [`super::NUMERICAL_DAMPING_RATIO`]; beams then have none.
-    pub fn leaves_damping_open(&self) -> bool {
+    pub(crate) fn leaves_damping_open(&self) -> bool {
         self.axial_damping.is_none()
             && self.damping_ratio.is_none()
             && self.dynamic_damping.is_none()
@@ -175,64 +172,16 @@ table! {
     }
 }
 
-/// Strain measure.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub enum Strain {
-    /// ε = λ − 1.
-    #[default]
-    Engineering,
-    /// Green-Lagrange, ε = (λ² − 1)/2.
-    Green,
-    /// Hencky, ε = ln λ on the current area A·λ^(−2ν); the value is Poisson's ratio ν [-], 0 to ½.
-    Logarithmic(f64),
-}
-
-impl Value for Strain {
-    fn kind() -> Kind {
-        Kind::Words(Words {
-            name: "Strain",
-            words: &[
-                ("engineering", "ε = λ − 1."),
-                ("green", "Green-Lagrange, ε = (λ² − 1)/2."),
-                (
-                    "logarithmic",
-                    "`{ logarithmic = ν }`: Hencky, ε = ln λ on the current area A·λ^(−2ν), with Poisson's ratio ν [-], 0 to ½.",
-                ),
-            ],
-        })
-    }
-
-    fn blank() -> Strain {
-        Strain::Engineering
-    }
-
-    fn read(&mut self, node: &Node<'_>) -> Result<(), SceneError> {
-        let known = &[("engineering", None), ("green", None), ("logarithmic", Some("-"))];
-        *self = match node.word(known)? {
-            (_, Some(poisson)) => Strain::Logarithmic(poisson.number("a number")?),
-            ("green", _) => Strain::Green,
-            _ => Strain::Engineering,
-        };
-        Ok(())
-    }
-
-    fn write(&self) -> Option<toml::Value> {
-        Some(match self {
-            Strain::Engineering => "engineering".into(),
-            Strain::Green => "green".into(),
-            Strain::Logarithmic(poisson) => super::value::entry("logarithmic", *poisson),
-        })
-    }
-
-    fn check(&self, at: &str, _: &Key, findings: &mut Findings) {
-        if let Strain::Logarithmic(poisson) = self {
-            findings.number(
-                format!("{at}.logarithmic"),
-                *poisson,
-                within(0.0, 0.5).bounds,
-                "-",
-            );
-        }
+choice_of_values! {
+    /// Strain measure.
+    #[derive(Copy)]
+    pub enum Strain {
+        /// ε = λ − 1.
+        Engineering = "engineering",
+        /// Green-Lagrange, ε = (λ² − 1)/2.
+        Green = "green";
+        /// `{ logarithmic = ν }`: Hencky, ε = ln λ on the current area A·λ^(−2ν), with Poisson's ratio ν [-], 0 to ½.
+        Logarithmic(f64) = "logarithmic" => within(0.0, 0.5).in_units("-"),
     }
 }
 

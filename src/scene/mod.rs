@@ -25,7 +25,8 @@
 //! and in the FMU. A field of type `Option`, or with a default after `=`, may be left out. Behind `=>` stands a [`table::Rule`]: bounds, the
 //! range of moorings, names in other programs, when the property acts, whether the FMU has it as a parameter. The macro makes the struct
 //! and implements [`table::Table`] for it: a list of [`table::Key`]s and the values beside them, each a [`table::Value`] that reads, writes and
-//! checks itself. Choices of words are made by `choice!` in the same manner. Everything else is a loop over keys and values:
+//! checks itself. Choices of words are made by `choice!` in the same manner, and by `choice_of_values!` where words hold values. Everything
+//! else is a loop over keys and values:
 //!
 //! | loop | for |
 //! |---|---|
@@ -38,6 +39,8 @@
 //! | [`crate::interface`] | parameters of the FMU, and the results that depend on them |
 //! | [`page`] | the reference in `docs/scene.md` |
 //! | [`keys`] | the list of all keys that tests go through |
+//!
+//! Refusals and notes that concern several keys stand in tables too: each row of `rules!` is a key, a condition and a sentence.
 //!
 //! Values that are not single numbers (tension over strain, friction by direction, functions of time, motions, seas) implement
 //! [`table::Value`] by hand beside their type; their keys stand in a `table!` too.
@@ -93,7 +96,7 @@ pub use point::{Axis, Point, PointForce, PointKind, PointMoment, Vessel};
 pub use read::{LoadedScene, TOML, folder_of, is_toml, load, load_text, part, read_text};
 pub use seabed::{ContactLaw, DepthGrid, Friction, Seabed};
 pub use settings::{Bossak, Integrator, Output, Reconstruction, Solver, Threads};
-use table::{Value, not_negative, table};
+use table::{not_negative, table};
 pub use tension_strain::TensionStrain;
 pub use time_function::{HarmonicMotion, MotionFile, MotionPath, MotionRow, TimeFunction};
 pub use water::{Current, RegularWave, Sea, SpectrumKind, Water, WaveComponents, Waves};
@@ -103,11 +106,11 @@ pub(crate) use words::percent;
 pub const STANDARD_GRAVITY: f64 = 9.80665;
 /// Elements of a line alone that a damping ratio refers to [-]: those that the default tolerance gives. The damping BA that follows is one
 /// of the line and the same on every mesh, so that finer meshes have a limit.
-pub const DAMPING_ELEMENTS: usize = 40;
+pub(crate) const DAMPING_ELEMENTS: usize = 40;
 /// Axial damping of a line whose type leaves it open, as a part of critical of one of [`DAMPING_ELEMENTS`] elements and of every longer one [-].
 /// A line that slackens and snaps without damping is driven by the kink of its own tension law when the step is explicit; codes of that kind
 /// damp the highest axial frequencies, which no mesh resolves, by as much (linear bulk viscosity).
-pub const NUMERICAL_DAMPING_RATIO: f64 = 0.02;
+pub(crate) const NUMERICAL_DAMPING_RATIO: f64 = 0.02;
 /// Least spectral radius at infinite frequency of `axial_implicit` [-], at which it damps most.
 pub const AXIAL_RADIUS_MIN: f64 = 0.5;
 

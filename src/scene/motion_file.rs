@@ -27,20 +27,18 @@ const SYNONYMS: [[&str; 2]; 6] = [
 /// Most rows that are read: a day at 100 Hz.
 const ROWS_MAX: usize = 8_640_000;
 
-/// Bodies that a motion file moves.
+/// Motions in a file.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Moves {
-    /// One body, which the file does not name; whether it may turn.
-    One {
-        /// Rows of time [s], displacement x, y, z [m] and rotation [rad].
-        rows: Vec<MotionRow>,
-        /// True if the file has columns of rotation.
-        turns: bool,
-    },
-    /// Bodies by name, in the order of the file, with rows of time [s], displacement x, y, z [m] and rotation [rad].
-    Named(Vec<(String, Vec<MotionRow>)>),
-    /// The same from the results of a run, which may have bodies that nothing moves.
-    Recorded(Vec<(String, Vec<MotionRow>)>),
+pub(super) struct Moves {
+    /// Rows of time [s], displacement x, y, z [m] and rotation [rad] of bodies in the order of the file; of one body without a name where the file
+    /// names none.
+    pub bodies: Vec<(Option<String>, Vec<MotionRow>)>,
+    /// Description of the columns that were read.
+    pub columns: String,
+    /// True if the file has columns of rotation.
+    pub turns: bool,
+    /// True if the file holds the results of a run, whose angles are Z-Y-X and which may have bodies that nothing moves.
+    pub is_recorded: bool,
 }
 
 /// Motion of one body in a file.
@@ -53,76 +51,58 @@ pub(super) struct OneBody {
     pub is_recorded: bool,
 }
 
-/// Rows of time [s], displacement x, y, z [m] and rotation [rad] of one body, and how they were read.
+/// Rows of time [s], displacement x, y, z [m] and rotation [rad] of one body, and a description of the columns.
 ///
 /// # Errors
 /// The file, the line and what would be right.
 pub(super) fn read(path: &Path, body: &str) -> Result<OneBody, String> {
-    let (moves, columns) = read_any(path, false)?;
-    let is_recorded = matches!(moves, Moves::Recorded(_));
-    let bodies = match moves {
-        Moves::One { rows, .. } => {
-            return Ok(OneBody {
-                rows,
-                columns,
-                is_recorded,
-            });
-        }
-        Moves::Named(bodies) | Moves::Recorded(bodies) => bodies,
+    let moves = read_moves(path, " (it is looked for beside the scene)")?;
+    let (columns, is_recorded) = (moves.columns, moves.is_recorded);
+    let names: Vec<String> = moves.bodies.iter().filter_map(|(name, _)| name.clone()).collect();
+    let is_meant = |name: &Option<String>| name.as_ref().is_none_or(|name| name == body);
+    let (name, rows) = moves
+        .bodies
+        .into_iter()
+        .find(|(name, _)| is_meant(name))
+        .ok_or_else(|| {
+            let (file, names) = (path.display(), names.join(", "));
+            format!("{file}, line 1: no column moves `{body}`: there are columns of {names}")
+        })?;
+    let columns = match name {
+        Some(_) => format!("those of {body} in {columns}"),
+        None => columns,
     };
-    let names: Vec<String> = bodies.iter().map(|(name, _)| name.clone()).collect();
-    let mut bodies = bodies.into_iter();
-    match bodies.find(|(name, _)| name == body) {
-        Some((_, rows)) => Ok(OneBody {
-            rows,
-            columns: format!("those of {body} in {columns}"),
-            is_recorded,
-        }),
-        None => Err(format!(
-            "{}, line 1: no column moves `{body}`: there are columns of {}",
-            path.display(),
-            names.join(", ")
-        )),
-    }
+    Ok(OneBody {
+        rows,
+        columns,
+        is_recorded,
+    })
 }
 
-/// The motion of one body, or of bodies that the header names, and how it was read.
+/// The motions of all bodies in a file; `looked_for` says where a missing one is looked for.
 ///
 /// # Errors
 /// The file, the line and what would be right.
-pub(super) fn read_moves(path: &Path) -> Result<(Moves, String), String> {
-    read_any(path, true)
-}
-
-fn read_any(path: &Path, names: bool) -> Result<(Moves, String), String> {
-    let name = path.display();
-    let looked_for = match names {
-        true => "",
-        false => " (it is looked for beside the scene)",
-    };
+pub(super) fn read_moves(path: &Path, looked_for: &str) -> Result<Moves, String> {
     let file = input_file::open(path, "a CSV file", input_file::MOTION_SIZE_MAX)
         .map_err(|unopened| unopened.at(path, looked_for))?;
     let beside = units_beside(path)?;
-    parse(BufReader::new(file), &beside).map_err(|problem| format!("{name}{problem}"))
+    parse(BufReader::new(file), &beside).map_err(|problem| format!("{}{problem}", path.display()))
 }
 
-/// The motion in a text, and how it was read; problems begin with a comma and a line, or a colon.
-fn parse(input: impl BufRead, beside: &BTreeMap<String, String>) -> Result<(Moves, String), String> {
+/// The motions in a text; problems begin with a comma and a line, or a colon.
+fn parse(input: impl BufRead, beside: &BTreeMap<String, String>) -> Result<Moves, String> {
     let mut lines = Lines::new(input);
     let (line, first) = lines.next()?.unwrap_or((1, String::new()));
     let separator = Separator::of(&first);
-    let cells = separator.cells(&first);
-    let bare = cells.iter().all(|cell| is_number(cell));
-    let on_line = |problem: String| format!(", line {line}: {problem}");
-    let (mut table, mut row) = if bare {
-        let table = Table::without_header(separator, &first).map_err(on_line)?;
-        (table, Some((line, first)))
-    } else {
-        let table = Table::of_header(separator, &first, beside).map_err(on_line)?;
-        (table, lines.next()?)
+    let bare = separator.cells(&first).iter().all(|cell| is_number(cell));
+    let table = match bare {
+        true => Table::without_header(separator, &first),
+        false => Table::of_header(separator, &first, beside),
     };
-    if let Some((line, text)) = &row
-        && !bare
+    let mut table = table.map_err(|problem| format!(", line {line}: {problem}"))?;
+    let mut row = if bare { Some((line, first)) } else { lines.next()? };
+    if let Some((line, text)) = row.as_ref().filter(|_| !bare)
         && table
             .take_units(text)
             .map_err(|problem| format!(", line {line}: {problem}"))?
@@ -130,8 +110,7 @@ fn parse(input: impl BufRead, beside: &BTreeMap<String, String>) -> Result<(Move
         row = lines.next()?;
     }
     let rows = table.rows(row, &mut lines)?;
-    let said = table.in_words();
-    Ok((table.moves(&rows), said))
+    Ok(table.moves(&rows))
 }
 
 /// Units of columns by name, in the file that a run writes beside its results; none where there is no such file.
@@ -432,23 +411,19 @@ impl Table {
             };
             rows.iter().map(motion).collect::<Vec<MotionRow>>()
         };
-        let mut names: Vec<&str> = Vec::new();
-        for body in self.columns.iter().filter_map(|column| column.body.as_deref()) {
+        let mut names: Vec<Option<&str>> = Vec::new();
+        for column in self.columns.iter().filter(|column| column.entry > 0) {
+            let body = column.body.as_deref();
             if !names.contains(&body) {
                 names.push(body);
             }
         }
-        if names.is_empty() {
-            let turns = self.columns.iter().any(|column| column.entry > 3);
-            return Moves::One {
-                rows: of(None),
-                turns,
-            };
-        }
-        let bodies = names.into_iter().map(|name| (name.to_string(), of(Some(name))));
-        match self.is_recorded {
-            true => Moves::Recorded(bodies.collect()),
-            false => Moves::Named(bodies.collect()),
+        let bodies = names.into_iter().map(|name| (name.map(str::to_string), of(name)));
+        Moves {
+            bodies: bodies.collect(),
+            columns: self.in_words(),
+            turns: self.columns.iter().any(|column| column.entry > 3),
+            is_recorded: self.is_recorded,
         }
     }
 }
@@ -512,15 +487,16 @@ mod tests {
     use approx::assert_relative_eq;
     use std::fs;
 
-    fn of(text: &str) -> Result<(Moves, String), String> {
+    fn of(text: &str) -> Result<Moves, String> {
         parse(text.as_bytes(), &BTreeMap::new())
     }
 
     fn one(text: &str) -> (Vec<MotionRow>, String) {
-        match of(text) {
-            Ok((Moves::One { rows, .. }, said)) => (rows, said),
-            other => panic!("{text}: {other:?}"),
-        }
+        let moves = of(text).unwrap();
+        let [(None, rows)] = &moves.bodies[..] else {
+            panic!("{text}: {moves:?}");
+        };
+        (rows.clone(), moves.columns)
     }
 
     #[test]
@@ -583,11 +559,11 @@ mod tests {
             let pitch = one(text).0[0][5];
             assert_relative_eq!(pitch, 5.0_f64.to_radians(), max_relative = 1e-15);
         }
-        let Ok((Moves::Named(bodies), said)) = of("t [s],barge.pitch [deg]\n0,5\n") else {
-            panic!("the header names a body");
-        };
-        assert_relative_eq!(bodies[0].1[0][5], 5.0_f64.to_radians(), max_relative = 1e-15);
-        assert!(said.contains("barge.pitch [deg]"));
+        let moves = of("t [s],barge.pitch [deg]\n0,5\n").unwrap();
+        let (name, rows) = &moves.bodies[0];
+        assert_eq!(name.as_deref(), Some("barge"));
+        assert_relative_eq!(rows[0][5], 5.0_f64.to_radians(), max_relative = 1e-15);
+        assert!(moves.columns.contains("barge.pitch [deg]"));
     }
 
     #[test]

@@ -5,7 +5,7 @@ use std::fmt;
 
 use nalgebra::Vector3;
 
-use super::check::{number, quantity};
+use super::check::{number, quantity, rules};
 use super::path::quoted;
 use super::table_ends;
 use super::{Integrator, Line, LineModel, LineType, Point, PointKind, Scene, Waves};
@@ -107,33 +107,21 @@ impl Scene {
     }
 }
 
-/// Adds a note.
-pub(super) fn say(notes: &mut Vec<Note>, at: impl Into<String>, text: impl Into<String>) {
-    notes.push(Note::new(at, text));
-}
-
 fn note_line_type(scene: &Scene, name: &str, line_type: &LineType, notes: &mut Vec<Note>) {
-    let at = format!("line_types.{}", quoted(name));
-    if scene.sections().all(|section| section.line_type != name) {
-        return say(notes, at, "no line uses this line type");
-    }
-    if scene.water.is_some() && line_type.drag_normal.is_none() {
-        let (waves, current) = (scene.waves().is_some(), scene.current().is_some());
-        let text = match (waves, current) {
-            (true, _) => {
-                "no `drag_normal`: the waves exert no normal drag on the line, and the water does not damp it"
-            }
-            (_, true) => {
-                "no `drag_normal`: the current exerts no normal drag on the line, and the water does not damp it"
-            }
-            _ => "no `drag_normal`: the water does not damp the line's transverse motion",
-        };
-        if waves || current || scene.solver.integrator != Integrator::QuasiStatic {
-            say(notes, at.clone(), text);
-        }
-    }
-    if scene.seabed.is_some() && scene.weight(line_type) < 0.0 {
-        say(notes, at, "lighter than the water: it floats up from the seabed");
+    let used = scene.sections().any(|section| section.line_type == name);
+    let drags = !used || scene.water.is_none() || line_type.drag_normal.is_some();
+    let (waves, current) = (scene.waves().is_some(), scene.current().is_some());
+    let moves = scene.solver.integrator != Integrator::QuasiStatic;
+    rules! { notes, &format!("line_types.{}", quoted(name));
+        "" if !used => "no line uses this line type";
+        "" if !drags && waves =>
+            "no `drag_normal`: the waves exert no normal drag on the line, and the water does not damp it";
+        "" if !drags && !waves && current =>
+            "no `drag_normal`: the current exerts no normal drag on the line, and the water does not damp it";
+        "" if !drags && !waves && !current && moves =>
+            "no `drag_normal`: the water does not damp the line's transverse motion";
+        "" if used && scene.seabed.is_some() && scene.weight(line_type) < 0.0 =>
+            "lighter than the water: it floats up from the seabed";
     }
 }
 
@@ -163,84 +151,63 @@ fn note_point(scene: &Scene, at: &str, point: &Point, notes: &mut Vec<Note>) {
         .iter()
         .filter(|line| line.joins(&point.name))
         .peekable();
-    if joined.peek().is_none() {
-        say(notes, at, "no line ends at this point");
-    }
-    let height = reference_position(scene, point).map_or(0.0, |place| place[2]);
+    let alone = joined.peek().is_none();
+    let place = reference_position(scene, point);
+    let height = place.map_or(0.0, |place| place[2]);
     let lifted = height + scene.rise(point);
-    let submerged = joined.any(|line| !scene.meets_surface(line));
-    let water = scene.water.as_ref().filter(|_| submerged);
+    let water = scene
+        .water
+        .as_ref()
+        .filter(|_| joined.any(|line| !scene.meets_surface(line)));
+    let open = water.is_some_and(|water| water.surface.is_none());
     let everywhere =
         "but the water is taken to fill all space for its lines, so that they are submerged there too";
-    if water.is_some() && height > 0.0 {
-        say(
-            notes,
-            format!("{at}.position"),
-            format!("above z = 0, {everywhere}"),
-        );
-    } else if water.is_some_and(|water| water.surface.is_none()) && lifted > 0.0 {
-        let end = match scene.all_beams() {
-            true => "",
-            false => "; `surface = true` in [water] ends it at z = 0",
-        };
-        let text = format!("the scene's motion takes it to z = {lifted:.3} m, {everywhere}{end}");
-        say(notes, at, text);
-    }
-    if let (Some(seabed), Some([x, y, z])) = (&scene.seabed, reference_position(scene, point))
-        && !seabed.is_level()
-        && z < seabed.lowest_at([x, y]) - BURIED
-    {
-        let buried = number(seabed.lowest_at([x, y]) - z);
-        let text = format!("lies {buried} m below the seabed there: nodes next to it are pushed up");
-        say(notes, format!("{at}.position"), text);
-    }
-    if point.force.is_some() && point.kind != PointKind::Free {
-        let text = "a force on a point that forces do not move only changes the reaction of its support";
-        say(notes, format!("{at}.force"), text);
+    let end = match scene.all_beams() {
+        true => "",
+        false => "; `surface = true` in [water] ends it at z = 0",
+    };
+    let bed = scene.seabed.as_ref().filter(|seabed| !seabed.is_level());
+    let buried = bed
+        .zip(place)
+        .map_or(0.0, |(bed, [x, y, z])| bed.lowest_at([x, y]) - z);
+    rules! { notes, at;
+        "" if alone => "no line ends at this point";
+        "position" if water.is_some() && height > 0.0 => "above z = 0, {everywhere}";
+        "" if open && height <= 0.0 && lifted > 0.0 =>
+            "the scene's motion takes it to z = {lifted:.3} m, {everywhere}{end}";
+        "position" if buried > BURIED =>
+            "lies {} m below the seabed there: nodes next to it are pushed up", number(buried);
+        "force" if point.force.is_some() && point.kind != PointKind::Free =>
+            "a force on a point that forces do not move only changes the reaction of its support";
     }
 }
 
 fn note_waves(scene: &Scene, waves: &Waves, notes: &mut Vec<Note>) {
-    let at = "water.waves";
-    if waves.ramp().is_none() {
-        let text = "no `ramp`: lines at rest are in the full sea from the start, and swing in";
-        say(notes, at, text);
+    rules! { notes, "water.waves";
+        "" if waves.ramp().is_none() =>
+            "no `ramp`: lines at rest are in the full sea from the start, and swing in";
     }
-    for (name, _) in scene
-        .line_types
-        .iter()
-        .filter(|(_, kind)| kind.diameter.is_none())
-    {
-        let at = format!("line_types.{}", quoted(name));
-        say(notes, at, "no `diameter`: the waves have no effect on it");
+    for (name, line_type) in &scene.line_types {
+        rules! { notes, &format!("line_types.{}", quoted(name));
+            "" if line_type.diameter.is_none() => "no `diameter`: the waves have no effect on it";
+        }
     }
-    if let Some(ramp) = waves.ramp().filter(|ramp| *ramp > scene.output.duration) {
-        let text = format!("the ramp of {} is longer than the run", quantity(ramp, "s"));
-        say(notes, at, text);
+    let ramp = waves.ramp().unwrap_or(0.0);
+    rules! { notes, "water.waves";
+        "" if ramp > scene.output.duration => "the ramp of {} is longer than the run", quantity(ramp, "s");
     }
 }
 
 fn note_whole(scene: &Scene, notes: &mut Vec<Note>) {
-    if scene.gravity == 0.0 {
-        say(notes, "gravity", "0: lines and points are weightless");
-    }
     let slides = scene.seabed.as_ref().is_some_and(|seabed| seabed.friction.acts());
-    if slides
-        && scene
-            .line_types
-            .values()
-            .any(|kind| kind.model == LineModel::Beam)
-    {
-        let text = "beams lie on the seabed without friction: for them `friction` changes nothing";
-        say(notes, "seabed.friction", text);
-    }
-    let output = &scene.output;
-    let steps = output.duration / output.interval;
-    if (steps - steps.round()).abs() > 1e-6 * steps {
-        let text = format!(
+    let mut types = scene.line_types.values();
+    let steps = scene.output.duration / scene.output.interval;
+    rules! { notes, "";
+        "gravity" if scene.gravity == 0.0 => "0: lines and points are weightless";
+        "seabed.friction" if slides && types.any(|kind| kind.model == LineModel::Beam) =>
+            "beams lie on the seabed without friction: for them `friction` changes nothing";
+        "output.interval" if (steps - steps.round()).abs() > 1e-6 * steps =>
             "the duration of {} s is not a whole number of intervals: the last one is shorter",
-            number(output.duration)
-        );
-        say(notes, "output.interval", text);
+            number(scene.output.duration);
     }
 }

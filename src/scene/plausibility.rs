@@ -3,9 +3,9 @@
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-use super::check::{Findings, number, quantity};
+use super::check::{Findings, number, quantity, rules};
 use super::motion_file::AXES;
-use super::notes::{Note, chord, reference_position, say};
+use super::notes::{Note, chord, reference_position};
 use super::path::quoted;
 use super::table::check_table;
 use super::table_ends::motions;
@@ -27,7 +27,7 @@ pub const MASS_PER_VOLUME: [f64; 2] = [200.0, 14_000.0];
 /// Weight in water over volume of the diameter [kg/m³] of a line whose mass is not given, without sign: ropes that nearly float have 30.
 const EXCESS_MIN: f64 = 1.0;
 /// Density of steel [kg/m³].
-pub const STEEL: f64 = 7850.0;
+pub(crate) const STEEL: f64 = 7850.0;
 /// Steel of a chain over that of one straight bar of its links [-]: two bars side by side, bends and perhaps studs make
 /// somewhat more than three.
 const CHAIN: std::ops::Range<f64> = 2.7..4.0;
@@ -91,43 +91,49 @@ fn current(scene: &Scene, notes: &mut Vec<Note>) {
     let Some(current) = scene.current() else {
         return;
     };
-    let at = "water.current";
     let rows = current.profile.as_deref().unwrap_or_default();
     let speed = |[_, x, y]: &[f64; 3]| x.hypot(*y);
-    if let Some(row) = rows.iter().position(|row| speed(row) > SPEED_USUAL) {
-        let speed = quantity(significant(speed(&rows[row])), "m/s");
-        let text = format!(
-            "{speed} is unusual: less than {SPEED_USUAL} m/s is usual, with rows of z [m], vx and vy [m/s]"
-        );
-        say(notes, format!("{at}.profile[{row}]"), text);
+    let fast = rows.iter().position(|row| speed(row) > SPEED_USUAL);
+    let high = rows.iter().position(|row| row[0] > CURRENT_HEIGHT);
+    for (row, is_fast) in fast
+        .map(|row| (row, true))
+        .into_iter()
+        .chain(high.map(|row| (row, false)))
+    {
+        let (speed, height) = (significant(speed(&rows[row])), rows[row][0]);
+        rules! { notes, "water.current";
+            "profile[{row}]" if is_fast =>
+                "{} is unusual: less than {SPEED_USUAL} m/s is usual, with rows of z [m], vx and vy [m/s]",
+                quantity(speed, "m/s");
+            "profile[{row}]" if !is_fast =>
+                "{} above the water: heights count upwards from the surface, and depths are negative",
+                quantity(height, "m");
+        }
     }
-    if let Some(row) = rows.iter().position(|row| row[0] > CURRENT_HEIGHT) {
-        let height = quantity(rows[row][0], "m");
-        let text = format!(
-            "{height} above the water: heights count upwards from the surface, and depths are negative"
-        );
-        say(notes, format!("{at}.profile[{row}]"), text);
-    }
-    let velocity = current.velocity.unwrap_or_default();
-    let fastest = rows
-        .iter()
-        .map(speed)
-        .fold(velocity[0].hypot(velocity[1]), f64::max);
+    let [x, y, _] = current.velocity.unwrap_or_default();
+    let fastest = rows.iter().map(speed).fold(x.hypot(y), f64::max);
     let factors = current.factor.iter().flat_map(|factor| factor.corners());
     let factor = factors.map(f64::abs).fold(0.0, f64::max);
-    if fastest <= SPEED_USUAL && factor * fastest > SPEED_USUAL {
-        let speed = quantity(significant(factor * fastest), "m/s");
-        let text = format!("a current of {speed} with it is unusual: less than {SPEED_USUAL} m/s is usual");
-        say(notes, format!("{at}.factor"), text);
+    let speed = significant(factor * fastest);
+    rules! { notes, "water.current";
+        "factor" if fastest <= SPEED_USUAL && factor * fastest > SPEED_USUAL =>
+            "a current of {} with it is unusual: less than {SPEED_USUAL} m/s is usual",
+            quantity(speed, "m/s");
     }
 }
 
+/// The seas of a scene, with their key paths.
 fn seas(scene: &Scene) -> impl Iterator<Item = (String, &Sea)> {
-    let waves = scene.waves();
-    waves.into_iter().flat_map(|waves| {
-        let seas = waves.seas.iter().enumerate();
-        seas.map(|(index, sea)| (waves.path(index), sea))
-    })
+    let waves = scene.waves().into_iter();
+    waves.flat_map(|waves| (0..).map(|index| waves.path(index)).zip(&waves.seas))
+}
+
+/// Rows of the components of a sea.
+fn trains(sea: &Sea) -> &[[f64; 4]] {
+    match &sea.components {
+        Some(WaveComponents::Rows(rows)) => rows,
+        _ => &[],
+    }
 }
 
 fn wave_steepness(scene: &Scene, notes: &mut Vec<Note>) {
@@ -138,18 +144,15 @@ fn wave_steepness(scene: &Scene, notes: &mut Vec<Note>) {
         });
         let spectrum = sea.significant_height.zip(sea.peak_period);
         let spectrum = spectrum.map(|(height, period)| (format!("{at}.significant_height"), height, period));
-        let rows = match &sea.components {
-            Some(WaveComponents::Rows(rows)) => rows.as_slice(),
-            _ => &[],
-        };
-        let rows = rows.iter().enumerate().map(|(row, [amplitude, period, ..])| {
-            (format!("{at}.components[{row}]"), 2.0 * amplitude, *period)
-        });
-        let steep = regular.into_iter().chain(spectrum).chain(rows);
-        let mut steep = steep.filter_map(|(at, height, period)| Some((at, breaking(scene, height, period)?)));
-        if let Some((at, text)) = steep.next() {
-            say(notes, at, text);
-        }
+        let rows = trains(sea)
+            .iter()
+            .enumerate()
+            .map(|(row, [amplitude, period, ..])| {
+                (format!("{at}.components[{row}]"), 2.0 * amplitude, *period)
+            });
+        let mut steep = regular.into_iter().chain(spectrum).chain(rows);
+        let note = |(at, height, period)| Some(Note::new(at, breaking(scene, height, period)?));
+        notes.extend(steep.find_map(note));
     }
 }
 
@@ -192,14 +195,9 @@ pub(super) fn degrees(angle: f64) -> Option<String> {
 /// Angles in rows of components; those of single keys are noted by their unit.
 fn sea_angles(scene: &Scene, notes: &mut Vec<Note>) {
     for (at, sea) in seas(scene) {
-        let rows = match &sea.components {
-            Some(WaveComponents::Rows(rows)) => rows.as_slice(),
-            _ => &[],
-        };
-        let mut angles = rows.iter().flat_map(|row| &row[2..]);
-        if let Some(text) = angles.find_map(|angle| degrees(*angle)) {
-            say(notes, format!("{at}.components"), text);
-        }
+        let mut angles = trains(sea).iter().flat_map(|row| &row[2..]);
+        let text = angles.find_map(|angle| degrees(*angle));
+        notes.extend(text.map(|text| Note::new(format!("{at}.components"), text)));
     }
 }
 
@@ -232,12 +230,10 @@ fn wave_speed(scene: &Scene, line_type: &LineType, at: &str, notes: &mut Vec<Not
         return;
     };
     let speed = (ea / mass).sqrt();
-    if outside(speed, WAVE_SPEED) {
-        let text = format!(
-            "EA of {ea:.3e} N and a mass of {} make axial waves travel at {speed:.0} m/s: 300 to 6000 m/s is usual, with EA in N and the mass in kg/m",
-            quantity(significant(mass), "kg/m")
-        );
-        say(notes, format!("{at}.{key}"), text);
+    rules! { notes, at;
+        "{key}" if outside(speed, WAVE_SPEED) =>
+            "EA of {ea:.3e} N and a mass of {} make axial waves travel at {speed:.0} m/s: 300 to 6000 m/s is usual, with EA in N and the \
+             mass in kg/m", quantity(significant(mass), "kg/m");
     }
 }
 
@@ -250,7 +246,6 @@ fn mass_per_volume(scene: &Scene, line_type: &LineType, at: &str, notes: &mut Ve
     let Some(diameter) = line_type.diameter.filter(|diameter| *diameter > 0.0) else {
         return;
     };
-    let at = format!("{at}.diameter");
     let on_bar = line_type.drag_normal.is_some_and(|drag| drag >= DRAG_ON_BAR);
     let mass = scene.mass(line_type);
     let density = mass / (circle::area(diameter));
@@ -261,17 +256,12 @@ fn mass_per_volume(scene: &Scene, line_type: &LineType, at: &str, notes: &mut Ve
         Some(_) => density < MASS_PER_VOLUME[0],
         None => density.abs() < EXCESS_MIN,
     };
-    if light {
-        let text = format!(
+    let heavy = dense(diameter, mass, MASS_PER_VOLUME[1], "diameter").filter(|_| !light && !on_bar);
+    rules! { notes, at;
+        "diameter" if light =>
             "a mass of {} and a diameter of {} make {density:.3} kg/m³: 200 to 12 000 kg/m³ is usual, with the diameter in m",
-            quantity(significant(mass), "kg/m"),
-            quantity(diameter, "m")
-        );
-        say(notes, at, text);
-    } else if let Some(text) = dense(diameter, mass, MASS_PER_VOLUME[1], "diameter")
-        && !on_bar
-    {
-        say(notes, at, text);
+            quantity(significant(mass), "kg/m"), quantity(diameter, "m");
+        "diameter" if heavy.is_some() => "{}", heavy.unwrap_or_default();
     }
 }
 
@@ -300,15 +290,12 @@ pub fn dense(diameter: f64, mass: f64, limit: f64, key: &str) -> Option<String> 
 
 fn fairlead_distance(scene: &Scene, notes: &mut Vec<Note>) {
     for (i, point) in scene.points.iter().enumerate() {
+        let Some(vessel) = &point.on else { continue };
         let [x, y, z] = point.position;
         let distance = x.hypot(y).hypot(z);
-        if let Some(vessel) = &point.on
-            && distance > FAIRLEAD_DISTANCE
-        {
-            let text = format!(
-                "{distance:.0} m from the origin of {vessel}: positions of points on a vessel are in its own frame, usually within its size"
-            );
-            say(notes, format!("points[{i}].position"), text);
+        rules! { notes, "points";
+            "[{i}].position" if distance > FAIRLEAD_DISTANCE =>
+                "{distance:.0} m from the origin of {vessel}: positions of points on a vessel are in its own frame, usually within its size";
         }
     }
 }
@@ -317,23 +304,21 @@ fn fairlead_distance(scene: &Scene, notes: &mut Vec<Note>) {
 fn anchor_height(scene: &Scene, notes: &mut Vec<Note>) {
     for (i, point) in scene.points.iter().enumerate().filter(|_| scene.water.is_some()) {
         let lines = scene.lines.iter().filter(|line| line.joins(&point.name));
-        let others = lines
-            .flat_map(|line| [&line.from, &line.to])
-            .filter_map(|name| scene.point(name));
-        let mut moored = others.filter(|other| other.kind == PointKind::Coupled || other.position[2] < 0.0);
-        if point.kind == PointKind::Fixed && point.position[2] > 0.0 && moored.next().is_some() {
-            let text = format!(
+        let others = lines.flat_map(|line| [&line.from, &line.to]);
+        let mut others = others.filter_map(|name| scene.point(name));
+        let is_moored = |other: &Point| other.kind == PointKind::Coupled || other.position[2] < 0.0;
+        let height = point.position[2];
+        rules! { notes, "points";
+            "[{i}].position" if point.kind == PointKind::Fixed && height > 0.0 && others.any(is_moored) =>
                 "{} above the water: a fixed point is usually an anchor below it, where z is negative",
-                quantity(point.position[2], "m")
-            );
-            say(notes, format!("points[{i}].position"), text);
+                quantity(height, "m");
         }
     }
 }
 
 impl Scene {
     /// Strain [-] beyond which a line is noted: 5 %, or where its tables of tension end; none where a measure of large strains is chosen.
-    pub fn usual_strain(&self, line: &Line) -> f64 {
+    pub(crate) fn usual_strain(&self, line: &Line) -> f64 {
         let of_type = |line_type: &LineType| match (&line_type.tension_strain, line_type.strain) {
             (_, Strain::Green | Strain::Logarithmic(_)) => f64::INFINITY,
             (Some(table), _) => table.rows.last().map_or(STRAIN, |row| row[0].max(STRAIN)),
@@ -358,16 +343,13 @@ fn line_length(scene: &Scene, notes: &mut Vec<Note>) {
     for (i, line) in scene.lines.iter().enumerate().filter(|_| scene.water.is_some()) {
         let length = line.length();
         let chord = chord(scene, line).filter(|chord| *chord > 0.0 && !is_guessed(scene, line));
-        let text = match chord {
-            _ if length > LENGTH => format!("{} long: less than 20 km is usual", quantity(length, "m")),
-            Some(chord) if length > LENGTH_OVER_CHORD * chord => format!(
+        let far = chord.filter(|chord| length > LENGTH_OVER_CHORD * chord);
+        rules! { notes, "lines";
+            "[{i}]" if length > LENGTH => "{} long: less than 20 km is usual", quantity(length, "m");
+            "[{i}]" if length <= LENGTH && far.is_some() =>
                 "it is {} long, and its ends are {} apart: less than 20 times their distance is usual, with lengths and positions in m",
-                quantity(length, "m"),
-                quantity(significant(chord), "m")
-            ),
-            _ => continue,
-        };
-        say(notes, format!("lines[{i}]"), text);
+                quantity(length, "m"), quantity(significant(far.unwrap_or_default()), "m");
+        }
     }
 }
 
@@ -378,16 +360,11 @@ fn line_strain(scene: &Scene, notes: &mut Vec<Note>) {
             true => FIRST_GUESS_STRAIN.max(scene.usual_strain(line)),
             false => scene.usual_strain(line),
         };
-        if let Some(chord) = chord(scene, line)
-            && chord > (1.0 + strain_max) * length
-        {
-            let text = format!(
+        let chord = chord(scene, line).unwrap_or(0.0);
+        rules! { notes, "lines";
+            "[{i}]" if chord > (1.0 + strain_max) * length =>
                 "its ends are {} m apart, and it is {} m long unstretched: it is strained by at least {:.0} %",
-                number(chord),
-                number(length),
-                100.0 * (chord / length - 1.0)
-            );
-            say(notes, format!("lines[{i}]"), text);
+                number(chord), number(length), 100.0 * (chord / length - 1.0);
         }
     }
 }
@@ -406,12 +383,10 @@ fn weight_strain(scene: &Scene, notes: &mut Vec<Note>) {
             .filter_map(|(line_type, _)| stiffness(line_type))
             .map(|(ea, _)| ea)
             .fold(f64::INFINITY, f64::min);
-        if weight > WEIGHT_STRAIN * softest {
-            let text = format!(
+        rules! { notes, "lines";
+            "[{i}]" if weight > WEIGHT_STRAIN * softest =>
                 "its weight of {weight:.3e} N strains it by up to {:.0} %, with EA {softest:.3e} N: less than 20 % is usual, with EA in N",
-                100.0 * weight / softest
-            );
-            say(notes, format!("lines[{i}]"), text);
+                100.0 * weight / softest;
         }
     }
 }
@@ -421,10 +396,8 @@ fn swapped_ends(scene: &Scene, notes: &mut Vec<Note>) {
     let Some(seabed) = &scene.seabed else {
         return;
     };
-    let find = |name: &str| scene.point(name);
-    let moves = |point: &Point| point.kind == PointKind::Coupled;
     for (i, line) in scene.lines.iter().enumerate() {
-        let (Some(a), Some(b)) = (find(&line.from), find(&line.to)) else {
+        let (Some(a), Some(b)) = (scene.point(&line.from), scene.point(&line.to)) else {
             continue;
         };
         let (Some(from), Some(to)) = (reference_position(scene, a), reference_position(scene, b)) else {
@@ -433,13 +406,10 @@ fn swapped_ends(scene: &Scene, notes: &mut Vec<Note>) {
         let [height_a, height_b] = [from, to].map(|[x, y, z]| z - seabed.lowest_at([x, y]));
         let on_seabed = ON_SEABED * line.length();
         let reversed = to[2] < from[2] && height_b <= on_seabed && height_a > on_seabed;
-        if b.kind == PointKind::Fixed && moves(a) && reversed {
-            let text = format!(
-                "end B, {}, is on the seabed and end A, {}, is the one that moves: a line runs from its anchor to its fairlead, so that `tension_b` \
-                 is the fairlead's; here it is the anchor's",
-                line.to, line.from
-            );
-            say(notes, format!("lines[{i}].to"), text);
+        rules! { notes, "lines";
+            "[{i}].to" if b.kind == PointKind::Fixed && a.kind == PointKind::Coupled && reversed =>
+                "end B, {}, is on the seabed and end A, {}, is the one that moves: a line runs from its anchor to its fairlead, so that \
+                 `tension_b` is the fairlead's; here it is the anchor's", line.to, line.from;
         }
     }
 }
@@ -462,21 +432,23 @@ fn turned(axis: usize, angle: f64) -> Option<String> {
 
 /// Angles of the vessels, and the greatest ones of motions.
 fn turns(scene: &Scene, notes: &mut Vec<Note>) {
+    let mut say = |at: String, axis: usize, angle: f64| {
+        notes.extend(turned(axis, angle).map(|text| Note::new(at, text)));
+    };
     for (i, vessel) in scene.vessels.iter().enumerate() {
-        let angles = vessel.attitude.iter().enumerate();
-        for (axis, text) in angles.filter_map(|(axis, angle)| Some((axis, turned(3 + axis, *angle)?))) {
-            say(notes, format!("vessels[{i}].attitude[{axis}]"), text);
+        for (axis, angle) in vessel.attitude.iter().enumerate() {
+            say(format!("vessels[{i}].attitude[{axis}]"), 3 + axis, *angle);
         }
     }
     for (at, motion) in motions(scene) {
         let greatest = motion.greatest();
-        for (axis, text) in (3..6).filter_map(|axis| Some((axis, turned(axis, greatest[axis])?))) {
+        for axis in 3..6 {
             let key = match motion {
                 MotionPath::Harmonic(_) => AXES[axis],
                 MotionPath::File(_) => "file",
                 MotionPath::Table(_) => "table",
             };
-            say(notes, format!("{at}.{key}"), text);
+            say(format!("{at}.{key}"), axis, greatest[axis]);
         }
     }
 }
@@ -489,18 +461,15 @@ fn sines(scene: &Scene, notes: &mut Vec<Note>) {
         };
         for (name, sines) in harmonic.axes() {
             let mut phases = sines.iter().filter_map(|sine| sine.get(2));
-            let phase = phases.find_map(|phase| Some(format!("phase: {}", degrees(*phase)?)));
+            let phase = phases.find_map(|phase| degrees(*phase));
             let mut periods = sines.iter().filter_map(|sine| sine.get(1));
-            let short = periods.find(|period| **period < PERIOD).map(|period| {
-                format!(
+            let short = periods.find(|period| **period < PERIOD);
+            let period = *short.unwrap_or(&PERIOD);
+            rules! { notes, &at;
+                "{name}" if phase.is_some() => "phase: {}", phase.unwrap_or_default();
+                "{name}" if short.is_some() =>
                     "a period of {} is unusual: {PERIOD} s and more is usual, and a frequency of {} Hz is a period of {}",
-                    quantity(*period, "s"),
-                    number(*period),
-                    quantity(significant(1.0 / period), "s")
-                )
-            });
-            for text in phase.into_iter().chain(short) {
-                say(notes, format!("{at}.{name}"), text);
+                    quantity(period, "s"), number(period), quantity(significant(1.0 / period), "s");
             }
         }
     }

@@ -79,11 +79,31 @@ impl Scene {
 
     /// Reads the files that a scene names, which stand relative to a folder; returns what is wrong with them.
     pub fn read_files(&mut self, folder: &Path) -> Vec<SceneError> {
-        let mut mistakes = read_motions(self, folder);
-        mistakes.extend(read_water(self, folder));
-        mistakes.extend(read_tables(self, folder));
-        mistakes.extend(read_soundings(self, folder));
-        mistakes
+        let mut files = Files {
+            folder,
+            mistakes: Vec::new(),
+        };
+        read_motions(self, &mut files);
+        read_water(self, &mut files);
+        for (name, line_type) in &mut self.line_types {
+            let at = || format!("line_types.{}.tension_strain", path::quoted(name));
+            if let Some(table) = &mut line_type.tension_strain
+                && let Some(rows) = files.read(table.file.as_deref(), at, tension_strain::read)
+            {
+                table.rows = rows;
+            }
+        }
+        // two shapes are refused by the checks
+        if let Some(bed) = self.seabed.as_mut().filter(|bed| bed.grid.is_none())
+            && let Some(grid) = files.read(
+                bed.file.as_deref(),
+                || "seabed.file".into(),
+                bathymetry_file::read,
+            )
+        {
+            (bed.grid, bed.file) = (Some(grid), None);
+        }
+        files.mistakes
     }
 
     /// Mistakes in the files of a scene, and those in the scene that are not due to them.
@@ -135,7 +155,7 @@ pub fn load_text(path: &Path, text: String) -> Result<LoadedScene, LoadError> {
     }
 }
 
-/// Whether a text is TOML, of a scene or of anything else.
+/// Returns whether a text is TOML, of a scene or of anything else.
 pub fn is_toml(text: &str) -> bool {
     Document::parse(text).is_ok()
 }
@@ -171,82 +191,52 @@ pub fn folder_of(path: &Path) -> &Path {
     path.parent().unwrap_or(Path::new("."))
 }
 
-/// Reads the soundings that the seabed names a file for; returns the mistakes in them.
-fn read_soundings(scene: &mut Scene, folder: &Path) -> Option<SceneError> {
-    let bed = scene.seabed.as_mut()?;
-    if bed.grid.is_some() {
-        return None; // two shapes are refused by the checks
-    }
-    match bathymetry_file::read(&folder.join(bed.file.as_ref()?)) {
-        Ok(grid) => {
-            bed.grid = Some(grid);
-            bed.file = None;
-            None
-        }
-        Err(problem) => Some(SceneError::new("seabed.file", problem)),
+/// Reader of the files that a scene names.
+struct Files<'f> {
+    folder: &'f Path,
+    mistakes: Vec<SceneError>,
+}
+
+impl Files<'_> {
+    /// The content of a file; `None` where there is no file, and where there is a mistake in it, which is kept for its key path.
+    fn read<T>(
+        &mut self,
+        file: Option<&str>,
+        at: impl Fn() -> String,
+        read: impl Fn(&Path) -> Result<T, String>,
+    ) -> Option<T> {
+        let content = read(&self.folder.join(file?));
+        content
+            .map_err(|problem| self.mistakes.push(SceneError::new(at(), problem)))
+            .ok()
     }
 }
 
-/// Reads every table of tension over strain that stands in a file; returns the mistakes in them.
-fn read_tables(scene: &mut Scene, folder: &Path) -> Vec<SceneError> {
-    let mut mistakes = Vec::new();
-    for (name, line_type) in &mut scene.line_types {
-        let Some(table) = &mut line_type.tension_strain else {
-            continue;
-        };
-        if let Some(file) = &table.file {
-            match tension_strain::read(&folder.join(file)) {
-                Ok(rows) => table.rows = rows,
-                Err(problem) => {
-                    let at = format!("line_types.{}.tension_strain", path::quoted(name));
-                    mistakes.push(SceneError::new(at, problem));
-                }
-            }
-        }
-    }
-    mistakes
-}
-
-/// Reads the files of waves and current, whose rows take their place; returns the mistakes in them.
-fn read_water(scene: &mut Scene, folder: &Path) -> Vec<SceneError> {
-    let mut mistakes = Vec::new();
+/// Reads the files of waves and current, whose rows take their place.
+fn read_water(scene: &mut Scene, files: &mut Files<'_>) {
     let Some(water) = &mut scene.water else {
-        return mistakes;
+        return;
     };
-    if let Some(current) = &mut water.current
-        && current.profile.is_none()
-        && let Some(file) = &current.file
-    {
-        match water_file::profile(&folder.join(file)) {
-            Ok(rows) => (current.profile, current.file) = (Some(rows), None),
-            Err(problem) => mistakes.push(SceneError::new("water.current.file", problem)),
+    if let Some(current) = water.current.as_mut().filter(|current| current.profile.is_none()) {
+        let at = || "water.current.file".to_string();
+        if let Some(rows) = files.read(current.file.as_deref(), at, water_file::profile) {
+            (current.profile, current.file) = (Some(rows), None);
         }
     }
     let Some(waves) = &mut water.waves else {
-        return mistakes;
+        return;
     };
-    let count = waves.seas.len();
-    for (i, sea) in waves.seas.iter_mut().enumerate() {
-        let Some(file) = sea.file.as_ref().filter(|_| sea.components.is_none()) else {
-            continue;
-        };
-        match water_file::components(&folder.join(file)) {
-            Ok(rows) => (sea.components, sea.file) = (Some(WaveComponents::Rows(rows)), None),
-            Err(problem) => {
-                let at = match count {
-                    1 => "water.waves.file".to_string(),
-                    _ => format!("water.waves[{i}].file"),
-                };
-                mistakes.push(SceneError::new(at, problem));
-            }
+    for i in 0..waves.seas.len() {
+        let (at, sea) = (format!("{}.file", waves.path(i)), &mut waves.seas[i]);
+        let file = sea.file.as_deref().filter(|_| sea.components.is_none());
+        if let Some(rows) = files.read(file, || at.clone(), water_file::components) {
+            (sea.components, sea.file) = (Some(WaveComponents::Rows(rows)), None);
         }
     }
-    mistakes
 }
 
-/// Reads every motion file of the scene; returns the mistakes in them.
-fn read_motions(scene: &mut Scene, folder: &Path) -> Vec<SceneError> {
-    let vessels = scene.vessels.clone();
+/// Reads every motion file of the scene.
+fn read_motions(scene: &mut Scene, files: &mut Files<'_>) {
     let of_points = scene.points.iter_mut().enumerate().filter_map(|(i, point)| {
         let motion = point.motion.as_mut()?;
         Some((format!("points[{i}].motion.file"), &point.name, motion))
@@ -255,25 +245,21 @@ fn read_motions(scene: &mut Scene, folder: &Path) -> Vec<SceneError> {
         .motion
         .iter_mut()
         .map(|(name, motion)| (format!("motion.{}.file", path::quoted(name)), name, motion));
-    let mut mistakes = Vec::new();
     for (at, body, motion) in of_points.chain(of_run) {
-        if let MotionPath::File(file) = motion {
-            match motion_file::read(&folder.join(&file.file), body) {
-                Ok(read) => {
-                    let vessel = vessels
-                        .iter()
-                        .find(|vessel| vessel.name == *body && read.is_recorded);
-                    file.rows = match vessel {
-                        Some(vessel) => vessel.in_own_order(read.rows),
-                        None => read.rows,
-                    };
-                    file.columns = read.columns;
-                }
-                Err(problem) => mistakes.push(SceneError::new(at, problem)),
-            }
+        let MotionPath::File(file) = motion else {
+            continue;
+        };
+        let read = |path: &Path| motion_file::read(path, body);
+        if let Some(read) = files.read(Some(&file.file), || at.clone(), read) {
+            let mut vessels = scene.vessels.iter();
+            let vessel = vessels.find(|vessel| vessel.name == *body && read.is_recorded);
+            file.rows = match vessel {
+                Some(vessel) => vessel.in_own_order(read.rows),
+                None => read.rows,
+            };
+            file.columns = read.columns;
         }
     }
-    mistakes
 }
 
 /// Text that is TOML.
@@ -327,7 +313,7 @@ fn syntax_mistake(text: &str, error: &toml::de::Error) -> SceneError {
 /// Reads a text file; bytes that are not UTF-8 are read as Latin-1 where `is_latin_1` accepts the text that they are then.
 ///
 /// # Errors
-/// What keeps the file from being read, or the first byte that is no text.
+/// The reason why the file cannot be read, or the first byte that is no text.
 pub fn read_text(path: &Path, is_latin_1: impl Fn(&str) -> bool) -> Result<String, LoadError> {
     let unreadable = |problem: String| LoadError::Unreadable {
         path: path.to_path_buf(),

@@ -1,4 +1,4 @@
-//! Text -> rows of fields that know their place: the ground of every reader whose format is a table in columns.
+//! Text -> rows of fields with their places, for every reader whose format is a table in columns.
 
 use std::ops::Range;
 
@@ -81,7 +81,7 @@ impl<'t> Row<'t> {
 /// Returns the number [-] that a word gives in the form of C or of Fortran (`1.0D5`).
 ///
 /// # Errors
-/// What it is instead.
+/// A description of the word that was found instead.
 pub fn number(text: &str) -> Result<f64, String> {
     let fortran = text.replace(['d', 'D'], "e");
     let plain = |text: &str| {

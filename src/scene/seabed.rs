@@ -121,7 +121,7 @@ impl Seabed {
     }
 
     /// Returns whether stiffness and damping have their default values.
-    pub fn has_default_stiffness(&self) -> bool {
+    pub(crate) fn has_default_stiffness(&self) -> bool {
         self.stiffness == STIFFNESS && self.damping == DAMPING
     }
 }

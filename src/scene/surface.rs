@@ -1,4 +1,4 @@
-//! Which lines may come out of the water.
+//! Lines that may come out of the water.
 
 use super::notes::reference_position;
 use super::{Line, MotionPath, Point, PointKind, Scene};
@@ -87,24 +87,24 @@ mod tests {
         Scene::from_toml(&text).unwrap()
     }
 
-    fn knows(scene: &Scene) -> bool {
+    fn meets(scene: &Scene) -> bool {
         scene.meets_surface(&scene.lines[0])
     }
 
     #[test]
-    fn a_line_knows_the_surface_where_an_end_is_above_it_or_it_could_float_up() {
+    fn a_line_meets_the_surface_where_an_end_is_above_it_or_it_could_float_up() {
         let held = "kind = \"fixed\"";
         let (heavy, light) = ("mass = 20.0", "mass = 5.0");
-        assert!(knows(&scene("", heavy, [-20.0, 0.5], held)));
-        assert!(!knows(&scene("", heavy, [-20.0, 0.0], held)));
-        assert!(!knows(&scene("", heavy, [-10.0, -4.0], held)));
-        assert!(knows(&scene("", light, [-10.0, -4.0], held)));
-        assert!(!knows(&scene("", light, [-40.0, -4.0], held)));
+        assert!(meets(&scene("", heavy, [-20.0, 0.5], held)));
+        assert!(!meets(&scene("", heavy, [-20.0, 0.0], held)));
+        assert!(!meets(&scene("", heavy, [-10.0, -4.0], held)));
+        assert!(meets(&scene("", light, [-10.0, -4.0], held)));
+        assert!(!meets(&scene("", light, [-40.0, -4.0], held)));
         let buoy = "kind = \"free\", mass = 10.0, volume = 1.0";
         let clump = "kind = \"free\", mass = 1e4, volume = 1.0";
-        assert!(knows(&scene("", heavy, [-20.0, -5.0], buoy)));
-        assert!(!knows(&scene("", heavy, [-40.0, -5.0], buoy)));
-        assert!(!knows(&scene("", heavy, [-20.0, -5.0], clump)));
+        assert!(meets(&scene("", heavy, [-20.0, -5.0], buoy)));
+        assert!(!meets(&scene("", heavy, [-40.0, -5.0], buoy)));
+        assert!(!meets(&scene("", heavy, [-20.0, -5.0], clump)));
     }
 
     #[test]
@@ -134,14 +134,14 @@ mod tests {
     }
 
     #[test]
-    fn the_scene_can_say_whether_lines_know_the_surface() {
+    fn the_scene_decides_whether_lines_meet_the_surface() {
         let held = "kind = \"fixed\"";
         let heavy = "mass = 20.0";
-        let told = |word: &str, z: f64| {
+        let given = |word: &str, z: f64| {
             let water = format!(", surface = {word}");
-            knows(&scene(&water, heavy, [-20.0, z], held))
+            meets(&scene(&water, heavy, [-20.0, z], held))
         };
-        assert!(told("true", -19.0));
-        assert!(!told("false", 5.0));
+        assert!(given("true", -19.0));
+        assert!(!given("false", 5.0));
     }
 }

@@ -10,35 +10,18 @@ use super::nearest::suggestion;
 /// A key of the scene format.
 #[derive(Clone, Copy)]
 pub struct Key {
-    field: &'static str,
+    pub(super) field: &'static str,
     /// Lines of the doc comment of the field.
-    doc: &'static [&'static str],
+    pub(super) doc: &'static [&'static str],
     /// Bounds, spellings and other facts beside the type and the doc comment.
     pub rule: Rule,
-    kind: fn() -> Kind,
-    is_optional: fn() -> bool,
+    pub(super) kind: fn() -> Kind,
+    pub(super) is_optional: fn() -> bool,
 }
 
 impl Key {
-    /// Makes the entry of a field; only the macro `table!` calls this.
-    pub(super) const fn new(
-        field: &'static str,
-        doc: &'static [&'static str],
-        rule: Rule,
-        kind: fn() -> Kind,
-        is_optional: fn() -> bool,
-    ) -> Key {
-        Key {
-            field,
-            doc,
-            rule,
-            kind,
-            is_optional,
-        }
-    }
-
     /// Returns whether the table is refused without the key.
-    pub fn is_required(&self) -> bool {
+    pub(crate) fn is_required(&self) -> bool {
         !(self.is_optional)()
     }
 
@@ -59,50 +42,58 @@ impl Key {
 
     /// Doc comment of the field, in one line.
     pub fn text(&self) -> String {
-        let lines: Vec<&str> = self.doc.iter().map(|line| line.trim()).collect();
-        lines.join(" ")
+        in_line(self.doc)
     }
 
     /// Unit of its numbers: that of the rule, or the first one in brackets in the doc comment; `None` of a key without numbers.
     pub fn unit(&self) -> Option<&'static str> {
-        let in_doc = || {
-            let mut inside = self.doc.iter().flat_map(|line| line.split('[').skip(1));
-            inside.find_map(|rest| rest.split_once(']').map(|(unit, _)| unit))
-        };
         match self.rule.bounds {
             Bounds::Elsewhere => self.rule.unit,
-            _ if self.kind().is_numeric() => self.rule.unit.or_else(in_doc),
+            _ if self.kind().is_numeric() => self.rule.unit.or_else(|| unit(self.doc)),
             _ => None,
         }
     }
 
     /// Meaning in a few words, for descriptions of the FMU and the sentences of `check`: the beginning of the doc comment without units.
     pub fn meaning(&self) -> String {
-        let text = self.text();
-        let mut meaning = String::new();
-        let mut depth = 0;
-        for c in text.chars() {
-            match c {
-                '[' => depth += 1,
-                ']' => depth -= 1,
-                '.' | ';' | ':' if depth == 0 => break,
-                _ if depth == 0 => meaning.push(c),
-                _ => {}
-            }
-        }
-        let meaning = meaning.trim().replace("  ", " ").replace(" ,", ",");
-        let mut letters = meaning.chars();
-        let first = letters
-            .next()
-            .map(|c| c.to_lowercase().to_string())
-            .unwrap_or_default();
-        first + letters.as_str()
+        meaning(self.doc)
     }
 
     /// Name of the property in the sentences of `check`.
     pub fn label(&self) -> String {
         self.rule.label.map_or_else(|| self.meaning(), str::to_string)
     }
+}
+
+/// A doc comment in one line.
+fn in_line(doc: &[&str]) -> String {
+    let lines: Vec<&str> = doc.iter().map(|line| line.trim()).collect();
+    lines.join(" ")
+}
+
+/// The first unit in brackets in a doc comment.
+pub(crate) fn unit(doc: &[&'static str]) -> Option<&'static str> {
+    let mut inside = doc.iter().flat_map(|line| line.split('[').skip(1));
+    inside.find_map(|rest| rest.split_once(']').map(|(unit, _)| unit))
+}
+
+/// The beginning of a doc comment, without units and the final stop.
+pub(crate) fn meaning(doc: &[&str]) -> String {
+    let mut meaning = String::new();
+    let mut depth = 0;
+    for c in in_line(doc).chars() {
+        match c {
+            '[' => depth += 1,
+            ']' => depth -= 1,
+            '.' | ';' | ':' if depth == 0 => break,
+            _ if depth == 0 => meaning.push(c),
+            _ => {}
+        }
+    }
+    let meaning = meaning.trim().replace("  ", " ").replace(" ,", ",");
+    let mut letters = meaning.chars();
+    let first = letters.next().map(|c| c.to_lowercase().to_string());
+    first.unwrap_or_default() + letters.as_str()
 }
 
 /// Facts on a key that its type and doc comment do not say.
@@ -122,7 +113,7 @@ pub struct Rule {
     pub hint: Option<&'static str>,
     /// Range of moorings [unit of the key], and the note on other numbers.
     pub usual: Option<([f64; 2], &'static str)>,
-    /// When the property acts on a line or point.
+    /// Circumstances under which the property acts on a line or point.
     pub acts: Acts,
     label: Option<&'static str>,
     /// Name of the force or effect that is not modelled where the key is left out.
@@ -133,7 +124,7 @@ pub struct Rule {
     pub described: Option<&'static str>,
 }
 
-/// When a property acts.
+/// Circumstances under which a property acts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Acts {
     /// At rest and in motion.
@@ -192,62 +183,47 @@ pub(super) const fn within(least: f64, most: f64) -> Rule {
     bounded(Bounds::Within(least, most))
 }
 
-impl Rule {
+/// Declares methods that add a fact to a rule.
+macro_rules! facts {
+    ($($(#[doc = $doc:literal])+ $name:ident($($fact:ident: $type:ty),+) $field:ident = $value:expr;)+) => {
+        impl Rule {
+            $($(#[doc = $doc])+
+            pub(super) const fn $name(self, $($fact: $type),+) -> Rule {
+                Rule { $field: $value, ..self }
+            })+
+        }
+    };
+}
+
+facts! {
     /// Key that is not called as its field.
-    pub(super) const fn called(self, name: &'static str) -> Rule {
-        let name = Some(name);
-        Rule { name, ..self }
-    }
-
+    called(name: &'static str) name = Some(name);
     /// A second name that is read too.
-    pub(super) const fn or_called(self, alias: &'static str) -> Rule {
-        let alias = Some(alias);
-        Rule { alias, ..self }
-    }
-
+    or_called(alias: &'static str) alias = Some(alias);
     /// Names elsewhere.
-    pub(super) const fn elsewhere(self, spellings: &'static [&'static str]) -> Rule {
-        Rule { spellings, ..self }
-    }
-
+    elsewhere(names: &'static [&'static str]) spellings = names;
     /// Keys that cannot be given too.
-    pub(super) const fn instead_of(self, excluded: &'static [&'static str]) -> Rule {
-        Rule { excluded, ..self }
-    }
-
+    instead_of(keys: &'static [&'static str]) excluded = keys;
     /// Units of a list that holds several quantities.
-    pub(super) const fn in_units(self, unit: &'static str) -> Rule {
-        let unit = Some(unit);
-        Rule { unit, ..self }
-    }
-
+    in_units(unit: &'static str) unit = Some(unit);
     /// Sentence on a number below the bounds.
-    pub(super) const fn hint(self, hint: &'static str) -> Rule {
-        let hint = Some(hint);
-        Rule { hint, ..self }
-    }
-
+    hint(hint: &'static str) hint = Some(hint);
     /// Range of moorings, and the note on numbers outside it.
-    pub(super) const fn usual(self, range: [f64; 2], note: &'static str) -> Rule {
-        let usual = Some((range, note));
-        Rule { usual, ..self }
-    }
-
-    /// When the property acts.
-    pub(super) const fn acts(self, acts: Acts) -> Rule {
-        Rule { acts, ..self }
-    }
-
+    usual(range: [f64; 2], note: &'static str) usual = Some((range, note));
+    /// Circumstances under which the property acts.
+    acts(acts: Acts) acts = acts;
     /// Name in the sentences of `check`.
-    pub(super) const fn label(self, label: &'static str) -> Rule {
-        let label = Some(label);
-        Rule { label, ..self }
-    }
-
+    label(label: &'static str) label = Some(label);
     /// Effect that is missing where the key is left out.
-    pub(super) const fn absence(self, absence: &'static str) -> Rule {
-        let absence = Some(absence);
-        Rule { absence, ..self }
+    absence(absence: &'static str) absence = Some(absence);
+    /// Description of a parameter of the FMU, in place of the meaning.
+    in_fmu(description: &'static str) described = Some(description);
+}
+
+impl Rule {
+    /// Unit that the rule gives.
+    pub(super) const fn unit(&self) -> Option<&'static str> {
+        self.unit
     }
 
     /// Parameter of the FMU.
@@ -258,11 +234,7 @@ impl Rule {
 
     /// Parameter of the FMU with a description of its own.
     pub(super) const fn described(self, description: &'static str) -> Rule {
-        let described = Some(description);
-        Rule {
-            described,
-            ..self.parameter()
-        }
+        self.parameter().in_fmu(description)
     }
 }
 
@@ -499,13 +471,13 @@ macro_rules! table {
                 name: stringify!($name),
                 title: $title,
                 doc: &[$($about),+],
-                keys: &[$($crate::scene::table::Key::new(
-                    stringify!($field),
-                    &[$($doc),+],
-                    $crate::scene::table::table!(@rule $($rule)?),
-                    <$type as $crate::scene::table::Value>::kind,
-                    $crate::scene::table::table!(@optional $type $(, $default)?),
-                )),+],
+                keys: &[$($crate::scene::table::Key {
+                    field: stringify!($field),
+                    doc: &[$($doc),+],
+                    rule: $crate::scene::table::table!(@rule $($rule)?),
+                    kind: <$type as $crate::scene::table::Value>::kind,
+                    is_optional: $crate::scene::table::table!(@optional $type $(, $default)?),
+                }),+],
                 defaults: || {
                     let blank = $name::default();
                     let values = $crate::scene::table::Table::values(&blank);
@@ -588,7 +560,78 @@ macro_rules! choice {
     };
 }
 
-pub(super) use {choice, table};
+/// Declares a choice of words of which the last ones hold a value, written `{ word = value }`: an enum with the word of each variant, and the rule
+/// of each value. The doc comments are the meanings on the reference page; the first variant is the default.
+macro_rules! choice_of_values {
+    ($(#[doc = $about:literal])+ $(#[derive($($derive:ident),+)])? $vis:vis enum $name:ident {
+        $($(#[doc = $doc:literal])+ $plain:ident = $word:literal),+;
+        $($(#[doc = $held_doc:literal])+ $held:ident($type:ty) = $held_word:literal => $rule:expr,)+
+    }) => {
+        $(#[doc = $about])+
+        #[derive(Debug, Clone, PartialEq $($(, $derive)+)?)]
+        $vis enum $name {
+            $($(#[doc = $doc])+ $plain,)+
+            $($(#[doc = $held_doc])+ $held($type),)+
+        }
+
+        impl Default for $name {
+            fn default() -> $name {
+                let [first, ..] = [$($name::$plain),+];
+                first
+            }
+        }
+
+        impl $crate::scene::table::Value for $name {
+            fn kind() -> $crate::scene::table::Kind {
+                $crate::scene::table::Kind::Words($crate::scene::table::Words {
+                    name: stringify!($name),
+                    words: &[
+                        $(($word, concat!($($doc),+)),)+
+                        $(($held_word, concat!($($held_doc),+)),)+
+                    ],
+                })
+            }
+
+            fn blank() -> $name {
+                $name::default()
+            }
+
+            fn read(&mut self, node: &$crate::scene::document::Node<'_>) -> Result<(), $crate::scene::SceneError> {
+                const KNOWN: &[(&str, Option<&str>)] =
+                    &[$(($word, None),)+ $(($held_word, $rule.unit()),)+];
+                *self = match node.word(KNOWN)? {
+                    $(($held_word, Some(node)) => {
+                        let mut value = <$type as $crate::scene::table::Value>::blank();
+                        value.read(&node)?;
+                        $name::$held(value)
+                    })+
+                    $(($word, _) => $name::$plain,)+
+                    _ => $name::default(),
+                };
+                Ok(())
+            }
+
+            fn write(&self) -> Option<toml::Value> {
+                Some(match self {
+                    $($name::$plain => $word.into(),)+
+                    $($name::$held(value) => $crate::scene::value::entry($held_word, value.write()?),)+
+                })
+            }
+
+            fn check(&self, at: &str, key: &$crate::scene::table::Key, findings: &mut $crate::scene::check::Findings) {
+                match self {
+                    $($name::$held(value) => {
+                        let key = $crate::scene::table::Key { rule: $rule, kind: <$type>::kind, ..*key };
+                        value.check(&format!("{at}.{}", $held_word), &key, findings);
+                    })+
+                    _ => {}
+                }
+            }
+        }
+    };
+}
+
+pub(super) use {choice, choice_of_values, table};
 
 /// A choice of words.
 pub trait Choice: Copy + PartialEq + 'static {

@@ -45,21 +45,16 @@ fn functions(scene: &Scene) -> impl Iterator<Item = (String, &TimeFunction)> {
 fn note_motion(at: String, motion: &MotionPath, duration: f64) -> Option<Note> {
     let rows = motion.rows()?;
     let (first, last) = (rows.first()?[0], rows.last()?[0]);
-    let mut said = Vec::new();
-    if first > 0.0 {
-        let first = quantity(first, "s");
-        said.push(format!(
-            "the table begins at {first}: until then it stays at its first row"
-        ));
-    }
-    if last < duration {
-        let [last, end] = [last, duration].map(|time| quantity(time, "s"));
-        said.push(format!(
-            "the table ends at {last}, the run at {end}: in between it stays at its last row"
-        ));
-    }
-    let text = said.join("; ");
-    (!text.is_empty()).then_some(Note::new(at, text))
+    let [begin, end, run] = [first, last, duration].map(|time| quantity(time, "s"));
+    let late = format!("the table begins at {begin}: until then it stays at its first row");
+    let early = format!("the table ends at {end}, the run at {run}: in between it stays at its last row");
+    let text = match (first > 0.0, last < duration) {
+        (true, true) => format!("{late}; {early}"),
+        (true, false) => late,
+        (false, true) => early,
+        (false, false) => return None,
+    };
+    Some(Note::new(at, text))
 }
 
 /// One that has come to rest when it ends, or ends with a jump, is meant so.
@@ -70,12 +65,10 @@ fn note_function(at: String, function: &TimeFunction, duration: f64) -> Option<N
     let [.., before, last] = rows.as_slice() else {
         return None;
     };
-    if last[0] >= duration || before[0] == last[0] || before[1] == last[1] {
-        return None;
-    }
+    let is_meant = last[0] >= duration || before[0] == last[0] || before[1] == last[1];
     let [end, run] = [last[0], duration].map(|time| quantity(time, "s"));
     let text = format!("the table ends at {end}, the run at {run}: in between its last value holds");
-    Some(Note::new(at, text))
+    (!is_meant).then(|| Note::new(at, text))
 }
 
 #[cfg(test)]

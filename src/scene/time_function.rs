@@ -3,7 +3,7 @@
 use toml::Value as Toml;
 
 use super::SceneError;
-use super::check::{Bounds, Findings, quantity};
+use super::check::{Bounds, Findings, quantity, rules};
 use super::document::Node;
 use super::table::{Key, Kind, MIXED, Table, Value, magnitude, positive, table};
 use super::value::{decimal_commas, entry};
@@ -122,18 +122,12 @@ const TIME: Bounds = Bounds::Magnitude(1e9);
 
 /// Checks `[t0, f0, t1, f1]` of a step or ramp.
 fn check_rise(findings: &mut Findings, at: &str, [t0, f0, t1, f1]: [f64; 4], unit: &str) {
-    let mut right = findings.number(format!("{at}[0]"), t0, TIME, "s");
-    right &= findings.number(format!("{at}[2]"), t1, TIME, "s");
-    for (place, value) in [(1, f0), (3, f1)] {
-        findings.number(format!("{at}[{place}]"), value, Bounds::Magnitude(1e15), unit);
-    }
-    if right && t1 <= t0 {
-        let problem = format!(
-            "it ends at {}, not after its start at {}: write [t0, f0, t1, f1] with t1 > t0",
-            quantity(t1, "s"),
-            quantity(t0, "s")
-        );
-        findings.say(at, problem);
+    let load = (Bounds::Magnitude(1e15), unit);
+    findings.row(at, &[t0, f0, t1, f1], &[(TIME, "s"), load, (TIME, "s"), load]);
+    let [start, end] = [t0, t1].map(|time| quantity(time, "s"));
+    rules! { findings, at;
+        "" if TIME.accepts(t0) && TIME.accepts(t1) && t1 <= t0 =>
+            "it ends at {end}, not after its start at {start}: write [t0, f0, t1, f1] with t1 > t0";
     }
 }
 
@@ -189,7 +183,7 @@ impl TimeFunction {
     }
 
     /// Greatest rate, in the unit of its numbers per second, such as [m/s] of a length; infinite where it jumps.
-    pub fn rate_max(&self) -> f64 {
+    pub(crate) fn rate_max(&self) -> f64 {
         let rise = |f0: f64, f1: f64, time: f64| match f1 - f0 {
             0.0 => 0.0,
             rise => (rise / time).abs(),
@@ -507,48 +501,37 @@ const DISPLACEMENT: Bounds = Bounds::Magnitude(1e7);
 /// Rotations [rad]: many turns.
 const ROTATION: Bounds = Bounds::Magnitude(1e4);
 
+/// Columns of a motion table; times are checked by their order.
+const COLUMNS: [(Bounds, &str); 7] = [
+    (Bounds::Elsewhere, "s"),
+    (DISPLACEMENT, "m"),
+    (DISPLACEMENT, "m"),
+    (DISPLACEMENT, "m"),
+    (ROTATION, "rad"),
+    (ROTATION, "rad"),
+    (ROTATION, "rad"),
+];
+
 /// Checks rows of time, displacement and rotation.
 fn check_rows(findings: &mut Findings, at: &str, rows: &[MotionRow]) {
     check_times(findings, at, rows.iter().map(|row| row[0]), false);
     for (i, row) in rows.iter().enumerate() {
-        for (column, value) in row.iter().enumerate().skip(1) {
-            let (bounds, unit) = if column < 4 {
-                (DISPLACEMENT, "m")
-            } else {
-                (ROTATION, "rad")
-            };
-            if !bounds.accepts(*value) {
-                findings.number(format!("{at}[{i}][{column}]"), *value, bounds, unit);
-            }
-        }
+        findings.row(&format!("{at}[{i}]"), row, &COLUMNS);
     }
 }
 
 fn check_harmonic(findings: &mut Findings, at: &str, key: &Key, harmonic: &HarmonicMotion) {
-    for (number, (axis, sines)) in harmonic.axes().into_iter().enumerate() {
-        let (size, unit) = if number < 3 {
-            (DISPLACEMENT, "m")
-        } else {
-            (ROTATION, "rad")
-        };
+    for ((axis, sines), size) in harmonic.axes().into_iter().zip(&COLUMNS[1..]) {
+        let (unit, period, phase) = (size.1, Bounds::Positive(1e9), Bounds::Magnitude(1e6));
         for (i, sine) in sines.iter().enumerate() {
-            let at = format!("{at}.{axis}[{i}]");
-            if ![2, 3].contains(&sine.len()) {
-                let problem = format!(
-                    "expected [amplitude [{unit}], period [s]] or [amplitude, period, phase [rad]], found {} numbers{}",
-                    sine.len(),
-                    decimal_commas(sine, &[2, 3])
-                );
-                findings.say(at, problem);
-                continue;
+            let (at, count) = (format!("{at}.{axis}[{i}]"), sine.len());
+            let commas = decimal_commas(sine, &[2, 3]);
+            rules! { findings, &at;
+                "" if ![2, 3].contains(&count) =>
+                    "expected [amplitude [{unit}], period [s]] or [amplitude, period, phase [rad]], found {count} numbers{commas}";
             }
-            let bounds = [
-                (size, unit),
-                (Bounds::Positive(1e9), "s"),
-                (Bounds::Magnitude(1e6), "rad"),
-            ];
-            for (place, (value, (bounds, unit))) in sine.iter().zip(bounds).enumerate() {
-                findings.number(format!("{at}[{place}]"), *value, bounds, unit);
+            if [2, 3].contains(&count) {
+                findings.row(&at, sine, &[*size, (period, "s"), (phase, "rad")]);
             }
         }
     }
@@ -583,7 +566,7 @@ mod tests {
     }
 
     #[test]
-    fn a_mean_over_a_span_is_that_of_many_samples_and_knows_where_a_load_jumps() {
+    fn a_mean_over_a_span_is_that_of_many_samples_also_where_a_load_jumps() {
         let functions = [
             TimeFunction::Constant(3.0),
             TimeFunction::Step([1.0, 2.0, 3.0, 6.0]),

@@ -54,7 +54,7 @@ impl Quantity {
     }
 }
 
-/// A unit of a header, with or without brackets, in SI units. Case counts only where it tells units apart.
+/// A unit of a header, with or without brackets, in SI units. Case counts only where it distinguishes units.
 ///
 /// # Errors
 /// Units that there are of the quantity.

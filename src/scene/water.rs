@@ -2,7 +2,7 @@
 
 use toml::Value as Toml;
 
-use super::check::Findings;
+use super::check::{Bounds, Findings, rules};
 use super::document::Node;
 use super::table::{Key, Kind, MIXED, Rule, Table, Value, choice, magnitude, positive, table, within};
 use super::{SceneError, TimeFunction};
@@ -169,7 +169,7 @@ impl Sea {
 
 impl RegularWave {
     /// Half the height [m]; `None` unless one of the two is given.
-    pub fn half_height(&self) -> Option<f64> {
+    pub(crate) fn half_height(&self) -> Option<f64> {
         match (self.height, self.amplitude) {
             (Some(height), None) => Some(0.5 * height),
             (None, amplitude) => amplitude,
@@ -276,22 +276,17 @@ impl Value for WaveComponents {
                 return;
             }
         };
-        if rows.is_empty() {
-            findings.say(
-                at,
-                "there are no rows: write [[amplitude, period, direction, phase], …]",
-            );
+        rules! { findings, at;
+            "" if rows.is_empty() => "there are no rows: write [[amplitude, period, direction, phase], …]";
         }
         let columns = [
-            (magnitude(100.0), "m"),
-            (PERIOD, "s"),
-            (ANGLE, "rad"),
-            (ANGLE, "rad"),
+            (Bounds::Magnitude(100.0), "m"),
+            (PERIOD.bounds, "s"),
+            (ANGLE.bounds, "rad"),
+            (ANGLE.bounds, "rad"),
         ];
         for (i, row) in rows.iter().enumerate() {
-            for (j, (value, (rule, unit))) in row.iter().zip(columns).enumerate() {
-                findings.number(format!("{at}[{i}][{j}]"), *value, rule.bounds, unit);
-            }
+            findings.row(&format!("{at}[{i}]"), row, &columns);
         }
     }
 }

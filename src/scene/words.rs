@@ -30,97 +30,78 @@ impl Scene {
         if !self.title.is_empty() {
             paragraph(&mut text, "", &self.title);
         }
-        section(&mut text, "surroundings", &self.surroundings_in_words());
+        section(&mut text, "surroundings", self.surroundings_in_words());
         let types = self.line_types.iter();
-        let types: Vec<String> = types
-            .map(|(name, kind)| self.line_type_in_words(name, kind))
-            .collect();
-        section(&mut text, "line types", &types);
-        let vessels: Vec<String> = self
-            .vessels
-            .iter()
-            .map(|vessel| self.vessel_in_words(vessel))
-            .collect();
-        section(&mut text, "vessels", &vessels);
-        let points: Vec<String> = self
-            .points
-            .iter()
-            .map(|point| self.point_in_words(point))
-            .collect();
-        section(&mut text, "points", &points);
-        let lines: Vec<String> = self.lines.iter().map(|line| self.line_in_words(line)).collect();
-        section(&mut text, "lines", &lines);
-        section(&mut text, "solution", &self.solution_in_words());
-        section(&mut text, "not modelled", &[self.absences().join("; ")]);
+        let types = types.map(|(name, kind)| self.line_type_in_words(name, kind));
+        section(&mut text, "line types", types);
+        let vessels = self.vessels.iter().map(|vessel| self.vessel_in_words(vessel));
+        section(&mut text, "vessels", vessels);
+        let points = self.points.iter().map(|point| self.point_in_words(point));
+        section(&mut text, "points", points);
+        section(
+            &mut text,
+            "lines",
+            self.lines.iter().map(|line| self.line_in_words(line)),
+        );
+        section(&mut text, "solution", self.solution_in_words());
+        section(&mut text, "not modelled", [self.absences().join("; ")]);
         text
     }
 
     fn solution_in_words(&self) -> Vec<String> {
         let (solver, output) = (&self.solver, &self.output);
-        let mut said = vec![self.integrator_in_words()];
-        said.push(format!(
-            "target error of fairlead tension {}",
-            percent(solver.tolerance)
-        ));
-        said.push(if solver.negative_tension {
-            "axial damping acts in compression too, so tension can be negative, as in other codes".to_string()
+        let compression = if solver.negative_tension {
+            "axial damping acts in compression too, so tension can be negative, as in other codes"
         } else if self.all_beams() {
-            "beams carry compression as well as tension".to_string()
+            "beams carry compression as well as tension"
         } else {
-            self.compression_in_words().to_string()
-        });
+            self.compression_in_words()
+        };
         let nodes = if output.profile { ", with all nodes" } else { "" };
-        said.push(format!(
-            "`run` covers {} and writes every {}{nodes}",
-            quantity(output.duration, "s"),
-            quantity(output.interval, "s"),
-        ));
-        match solver.input_reconstruction {
-            Reconstruction::Smooth => {}
+        let [duration, interval] = [output.duration, output.interval].map(|time| quantity(time, "s"));
+        let inputs = match solver.input_reconstruction {
+            Reconstruction::Smooth => None,
             Reconstruction::Jump => {
-                said.push("coupled points jump to the positions that a host gives".into())
+                Some("coupled points jump to the positions that a host gives".to_string())
             }
-            Reconstruction::Interpolate => said.push("inputs of a host hold for the end of its step".into()),
-        }
-        if output.energy_balance {
-            said.push("with the energy balance".into());
-        }
-        if !output.channels.is_empty() {
-            said.push(format!(
-                "further columns of `run`: {}",
-                output.channels.join(", ")
-            ));
-        }
-        if output.channels.iter().any(|name| Channel::is_tension(name)) {
-            said.push(TENSIONS_OF_CHANNELS.into());
-        }
-        said
+            Reconstruction::Interpolate => Some("inputs of a host hold for the end of its step".to_string()),
+        };
+        let channels = (!output.channels.is_empty())
+            .then(|| format!("further columns of `run`: {}", output.channels.join(", ")));
+        let tensions = output.channels.iter().any(|name| Channel::is_tension(name));
+        let always = [
+            self.integrator_in_words(),
+            format!("target error of fairlead tension {}", percent(solver.tolerance)),
+            compression.to_string(),
+            format!("`run` covers {duration} and writes every {interval}{nodes}"),
+        ];
+        let balance = output
+            .energy_balance
+            .then(|| "with the energy balance".to_string());
+        let tensions = tensions.then(|| TENSIONS_OF_CHANNELS.to_string());
+        let rest = [inputs, balance, channels, tensions].into_iter().flatten();
+        always.into_iter().chain(rest).collect()
     }
 
     fn integrator_in_words(&self) -> String {
         let integrator = match self.solver.integrator {
             Integrator::QuasiStatic => {
-                let current = self.current().is_some();
-                let drag = if current {
-                    "no drag but the current's"
-                } else {
-                    "no drag"
-                };
                 let slides = self.seabed.as_ref().is_some_and(|seabed| seabed.friction.acts());
+                let drag = self.current().map_or("", |_| " but the current's");
                 let laid = if slides {
                     ", seabed friction found anew in each"
                 } else {
                     ""
                 };
-                return format!("quasi-static: an equilibrium at every output, no inertia, {drag}{laid}");
+                return format!(
+                    "quasi-static: an equilibrium at every output, no inertia, no drag{drag}{laid}"
+                );
             }
             Integrator::Auto => "integrator chosen from the step limits".to_string(),
             other => format!("integrator {}", other.word()),
         };
-        format!(
-            "{integrator}, steps of at most {}",
-            quantity(self.solver.time_step_max, "s")
-        )
+        let step = quantity(self.solver.time_step_max, "s");
+        format!("{integrator}, steps of at most {step}")
     }
 
     /// Effects that are not modelled.
@@ -180,14 +161,12 @@ fn triple(values: [f64; 3]) -> String {
 }
 
 /// Appends a heading and its entries; nothing where there are none.
-fn section(text: &mut String, heading: &str, entries: &[String]) {
-    if entries.is_empty() {
-        return;
-    }
-    text.push_str(heading);
-    text.push('\n');
-    for entry in entries {
-        paragraph(text, "  ", entry);
+fn section(text: &mut String, heading: &str, entries: impl IntoIterator<Item = String>) {
+    for (i, entry) in entries.into_iter().enumerate() {
+        if i == 0 {
+            *text += &format!("{heading}\n");
+        }
+        paragraph(text, "  ", &entry);
     }
 }
 

@@ -121,7 +121,7 @@ struct Outcome {
     notes: Vec<Note>,
 }
 
-/// Why there is no outcome.
+/// Reason why there is no outcome.
 #[derive(Debug)]
 enum Refusal {
     /// Mistakes with their places.

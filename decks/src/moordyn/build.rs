@@ -6,6 +6,7 @@ use moorline::scene::{
 };
 
 use super::deck::{Attachment, Body, Deck, Line, LineEnd, LineType, Point, Property, Rod};
+use super::options::Meaning;
 use crate::draft::{Draft, SEA_WATER, constant_force, coordinates, nonzero};
 use crate::findings::Placed;
 
@@ -213,15 +214,15 @@ fn add_rod(rod: &Rod, deck: &Deck, draft: &mut Draft<'_>) {
 /// Gravity, water and seabed.
 fn surroundings(deck: &Deck, draft: &mut Draft<'_>) {
     let options = &deck.options;
-    let mut option = |at: &str, given: &Option<Placed<f64>>, key: &str| {
-        let given = given.as_ref()?;
+    let mut option = |at: &str, meaning, key: &str| {
+        let given = options.numbers.get(&meaning)?;
         draft.places.put(at, &given.span, format!("OPTIONS, {key}"));
         Some(given.value)
     };
-    let gravity = option("gravity", &options.gravity, "g");
-    let density = option("water.density", &options.density, "rho");
-    let stiffness = option("seabed.stiffness", &options.bed_stiffness, "kBot");
-    let damping = option("seabed.damping", &options.bed_damping, "cBot");
+    let gravity = option("gravity", Meaning::Gravity, "g");
+    let density = option("water.density", Meaning::Density, "rho");
+    let stiffness = option("seabed.stiffness", Meaning::BedStiffness, "kBot");
+    let damping = option("seabed.damping", Meaning::BedDamping, "cBot");
     draft.scene.gravity = gravity.unwrap_or(draft.scene.gravity);
     let mut water = Water::still(density.unwrap_or(SEA_WATER));
     moving_water(deck, &mut water, draft);
@@ -409,7 +410,7 @@ fn output(deck: &Deck, draft: &mut Draft<'_>) {
         draft.places.put(at, &placed.span, format!("OUTPUTS, {name}"));
         draft.scene.output.channels.push(name.clone());
     }
-    let interval = deck.options.output_interval.as_ref();
+    let interval = deck.options.numbers.get(&Meaning::OutputInterval);
     if let Some(interval) = interval.filter(|interval| interval.value != 0.0) {
         draft
             .places

@@ -1,8 +1,11 @@
 //! Contents of a deck in its own terms: plain data with places, nothing interpreted.
 
+use std::collections::BTreeMap;
+
+use super::options::Meaning;
 use crate::findings::Placed;
 
-/// Which grammar a deck is written in.
+/// Grammar that a deck is written in.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) enum Version {
     /// Line types with nine columns.
@@ -196,26 +199,14 @@ pub(super) enum LineEnd {
 /// OPTIONS with an effect; absent ones are `None`.
 #[derive(Debug, Default)]
 pub(super) struct Options {
-    /// g [m/s²].
-    pub gravity: Option<Placed<f64>>,
-    /// rho [kg/m³].
-    pub density: Option<Placed<f64>>,
+    /// Options that are one number in the unit of the meaning, such as g [m/s²].
+    pub numbers: BTreeMap<Meaning, Placed<f64>>,
     /// WtrDpth [m].
     pub depth: Option<Placed<Property>>,
-    /// kBot [Pa/m].
-    pub bed_stiffness: Option<Placed<f64>>,
-    /// cBot [Pa s/m].
-    pub bed_damping: Option<Placed<f64>>,
     /// Friction coefficients of the bed [-], with their keys.
     pub friction: Vec<(String, Placed<f64>)>,
-    /// Slope of friction with velocity, where MoorDyn's fades in [N s/m or -].
-    pub friction_damping: Option<Placed<f64>>,
-    /// Static over kinetic friction [-].
-    pub static_friction: Option<Placed<f64>>,
     /// File of the bed's depths.
     pub soundings: Option<Placed<String>>,
-    /// dtOut [s].
-    pub output_interval: Option<Placed<f64>>,
     /// TmaxIC of 0: MoorDyn starts from the positions in the file, without time to come to rest.
     pub starts_at_once: Option<Placed<String>>,
     /// A file with the state to start from: key and value.

@@ -28,19 +28,32 @@ const NEEDED: [(Meaning, &str); 12] = [
     (Meaning::Soundings, "SEAFLOORFILE BATHYMETRYFILE BATHFILE"),
 ];
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Meaning {
+/// Meaning of an option.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Meaning {
+    /// g [m/s²].
     Gravity,
+    /// rho [kg/m³].
     Density,
+    /// WtrDpth [m], or a file of soundings.
     Depth,
+    /// kBot [Pa/m].
     BedStiffness,
+    /// cBot [Pa s/m].
     BedDamping,
+    /// Friction coefficients of the bed [-].
     Friction,
+    /// Slope of friction with velocity, where MoorDyn's fades in [N s/m or -].
     FrictionDamping,
+    /// Static over kinetic friction [-].
     StaticFriction,
+    /// dtOut [s].
     OutputInterval,
+    /// TmaxIC [s].
     Relaxation,
+    /// File of the bed's depths.
     Soundings,
+    /// Waves and currents.
     Surroundings,
 }
 
@@ -126,13 +139,6 @@ fn take(options: &mut Options, meaning: Meaning, Choice { key, value }: &Choice,
         Some(value.with(number))
     };
     match meaning {
-        Meaning::Gravity => options.gravity = placed(),
-        Meaning::Density => options.density = placed(),
-        Meaning::BedStiffness => options.bed_stiffness = placed(),
-        Meaning::BedDamping => options.bed_damping = placed(),
-        Meaning::OutputInterval => options.output_interval = placed(),
-        Meaning::FrictionDamping => options.friction_damping = placed(),
-        Meaning::StaticFriction => options.static_friction = placed(),
         Meaning::Friction => options.friction.extend(placed().map(|c| (key.value.clone(), c))),
         Meaning::Depth => match word_property(&value.value) {
             Ok(Property::Parts(_)) => wrong("expected one depth [m], or the name of a file".to_string()),
@@ -148,5 +154,6 @@ fn take(options: &mut Options, meaning: Meaning, Choice { key, value }: &Choice,
         Meaning::Relaxation => options.starts_at_once = Some(value.clone()),
         Meaning::Soundings => options.soundings = Some(value.clone()),
         Meaning::Surroundings => options.surroundings.push((key.value.clone(), value.clone())),
+        number => options.numbers.extend(placed().map(|value| (number, value))),
     }
 }

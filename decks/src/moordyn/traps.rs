@@ -3,6 +3,7 @@
 use moorline::scene::plausibility::{DRAG_ON_BAR, MASS_PER_VOLUME, dense};
 
 use super::deck::{Attachment, Deck, LineType, Property, Version};
+use super::options::Meaning;
 use super::sections::{Kind, Sections};
 use super::tables::columns_of;
 use crate::findings::Findings;
@@ -111,12 +112,13 @@ fn friction(deck: &Deck, findings: &mut Findings) {
                     at rest has none in MoorDyn";
         findings.remark(coefficient, text);
     }
-    if let Some(damping) = &deck.options.friction_damping {
+    let numbers = &deck.options.numbers;
+    if let Some(damping) = numbers.get(&Meaning::FrictionDamping) {
         let text = "friction here sticks and lets go at its limit: it needs no damping to fade in with, which in MoorDyn lets a \
                     line at rest viscoelastic";
         findings.remark(damping, text);
     }
-    if let Some(scale) = &deck.options.static_friction
+    if let Some(scale) = numbers.get(&Meaning::StaticFriction)
         && scale.value != 1.0
     {
         let text = format!(

@@ -1,6 +1,6 @@
 //! Line types: keys that do not go together, and keys that are missing.
 
-use super::{Findings, check_name, quantity};
+use super::{Findings, below, check_name, quantity, rules};
 use crate::scene::path::quoted;
 use crate::scene::table::{Acts, Table};
 use crate::scene::{FibreLaw, Integrator, LineModel, LineType, Rayleigh, Scene, Strain};
@@ -15,35 +15,29 @@ pub(super) fn check(scene: &Scene, findings: &mut Findings) {
         if let Some(rayleigh) = &line_type.rayleigh {
             check_rayleigh(findings, &format!("{at}.rayleigh"), rayleigh);
         }
-        check_bending(findings, &at, line_type);
+        let fibres = line_type.fibres;
+        rules! { findings, &at;
+            "fibres" if fibres.is_some_and(|fibres| fibres > 0) && !line_type.bends() =>
+                "fibres share a bending stiffness: give `bending_stiffness` [N m²] or `solid_section` too";
+            "fibre_law" if fibres.is_none() && line_type.fibre_law != FibreLaw::Linear =>
+                "the law divides the bending stiffness by the number of `fibres`: give that too, or leave the law out";
+        }
         check_model(findings, &at, line_type, scene);
     }
 }
 
 fn check_mass(findings: &mut Findings, at: &str, line_type: &LineType, scene: &Scene) {
-    let (mass, weight) = (line_type.mass, line_type.weight);
-    let light = format!(
-        "the mass would be weight/gravity, and {} is not positive: give `mass` [kg/m] too",
-        quantity(weight.unwrap_or_default(), "N/m")
-    );
-    let of_weight = mass.is_none() && weight.is_some();
-    let (weightless, lifted) = (scene.gravity == 0.0, weight.is_some_and(|weight| weight <= 0.0));
-    findings.refuse(
-        at,
-        &[
-            (
-                "",
-                mass.is_none() && weight.is_none(),
-                "no mass: give `mass` [kg/m], or `weight` [N/m] (the mass is then weight/gravity)",
-            ),
-            (
-                "weight",
-                of_weight && weightless,
-                "the mass would be weight/gravity, but gravity is 0: give `mass` [kg/m] too",
-            ),
-            ("weight", of_weight && !weightless && lifted, &light),
-        ],
-    );
+    let weight = line_type.weight.filter(|_| line_type.mass.is_none());
+    let weightless = scene.gravity == 0.0;
+    rules! { findings, at;
+        "" if line_type.mass.is_none() && weight.is_none() =>
+            "no mass: give `mass` [kg/m], or `weight` [N/m] (the mass is then weight/gravity)";
+        "weight" if weight.is_some() && weightless =>
+            "the mass would be weight/gravity, but gravity is 0: give `mass` [kg/m] too";
+        "weight" if !weightless && weight.is_some_and(|weight| weight <= 0.0) =>
+            "the mass would be weight/gravity, and {} is not positive: give `mass` [kg/m] too",
+            quantity(weight.unwrap_or_default(), "N/m");
+    }
 }
 
 /// Water and seabed act on a line by its diameter.
@@ -52,22 +46,23 @@ fn check_diameter(findings: &mut Findings, at: &str, name: &str, line_type: &Lin
         return;
     }
     let wet = scene.water.is_some();
-    let buoyant = wet && line_type.weight.is_none() && line_type.mass.is_some();
-    let mut sections = scene.lines.iter().flat_map(|line| &line.sections);
-    let on_seabed = scene.seabed.is_some() && sections.any(|section| section.line_type == name);
-    let needs_buoyancy =
-        "no diameter: the buoyancy in the water needs `diameter` [m], or give the `weight` in water [N/m]";
-    let needs_contact = "no diameter: the seabed's stiffness and damping are per metre of diameter; give `diameter` [m], or leave out \
-                         `[seabed]` where no line touches it";
-    let drag = "the water acts on the diameter: give `diameter` [m] too";
-    findings.refuse(at, &[("", buoyant, needs_buoyancy)]);
-    for (key, _) in line_type
-        .entries()
-        .filter(|(key, value)| key.rule.acts.in_water() && !value.is_absent())
-    {
-        findings.refuse(at, &[(key.name(), wet, drag)]);
+    let used = scene.sections().any(|section| section.line_type == name);
+    rules! { findings, at;
+        "" if wet && line_type.weight.is_none() && line_type.mass.is_some() =>
+            "no diameter: the buoyancy in the water needs `diameter` [m], or give the `weight` in water [N/m]";
     }
-    findings.refuse(at, &[("", on_seabed, needs_contact)]);
+    for (key, value) in line_type.entries() {
+        let name = key.name();
+        rules! { findings, at;
+            "{name}" if wet && key.rule.acts.in_water() && !value.is_absent() =>
+                "the water acts on the diameter: give `diameter` [m] too";
+        }
+    }
+    rules! { findings, at;
+        "" if scene.seabed.is_some() && used =>
+            "no diameter: the seabed's stiffness and damping are per metre of diameter; give `diameter` [m], or leave out \
+             `[seabed]` where no line touches it";
+    }
 }
 
 /// Keys of a viscoelastic rope.
@@ -78,92 +73,55 @@ const VISCOELASTIC: [&str; 4] = [
     "dynamic_damping",
 ];
 
+/// Refusal of what a viscoelastic rope does not have.
+const ROPE: &str = "a viscoelastic rope stretches by `static_stiffness`, `dynamic_stiffness` and the damping of each: leave this out";
+
 /// The axial force follows from a stiffness, a table, or two stiffnesses with dampers.
 fn check_axial(findings: &mut Findings, at: &str, line_type: &LineType) {
-    let (axial_stiffness, axial_damping) = (line_type.axial_stiffness, line_type.axial_damping);
-    let viscoelastic = VISCOELASTIC
-        .iter()
-        .any(|key| line_type.get(key).is_some_and(|value| !value.is_absent()));
+    let is_given = |key: &&str| line_type.get(key).is_some_and(|value| !value.is_absent());
+    let viscoelastic = VISCOELASTIC.iter().any(is_given);
     let table = line_type.tension_strain.is_some();
-    let (beam, measured) = (
-        line_type.model == LineModel::Beam,
-        line_type.strain != Strain::Engineering,
-    );
-    let rope = "a viscoelastic rope stretches by `static_stiffness`, `dynamic_stiffness` and the damping of each: leave this out";
-    let (ruled, plain) = (table && !viscoelastic, !table && !viscoelastic);
-    let missing =
-        "missing key `axial_stiffness` [N], or `tension_strain`, a table of strain [-] and tension [N]";
-    findings.refuse(
-        at,
-        &[
-            ("", plain && axial_stiffness.is_none(), missing),
-            (
-                "strain",
-                ruled && measured,
-                "a table has its own strain, the stretched length over the unstretched one less 1: leave `strain` out",
-            ),
-            ("tension_strain", ruled && beam, "a beam has one `axial_stiffness` [N], and no table"),
-            ("axial_stiffness", viscoelastic && axial_stiffness.is_some(), rope),
-            ("tension_strain", viscoelastic && table, rope),
-            ("axial_damping", viscoelastic && axial_damping.is_some(), rope),
-            ("rayleigh", viscoelastic && line_type.rayleigh.is_some(), rope),
-            ("strain", viscoelastic && measured, rope),
-            ("model", viscoelastic && beam, rope),
-        ],
-    );
-    if viscoelastic {
-        check_viscoelastic(findings, at, line_type);
+    let beam = line_type.model == LineModel::Beam;
+    let measured = line_type.strain != Strain::Engineering;
+    if !viscoelastic {
+        rules! { findings, at;
+            "" if !table && line_type.axial_stiffness.is_none() =>
+                "missing key `axial_stiffness` [N], or `tension_strain`, a table of strain [-] and tension [N]";
+            "strain" if table && measured =>
+                "a table has its own strain, the stretched length over the unstretched one less 1: leave `strain` out";
+            "tension_strain" if table && beam => "a beam has one `axial_stiffness` [N], and no table";
+        }
+        return;
     }
-}
-
-fn check_viscoelastic(findings: &mut Findings, at: &str, line_type: &LineType) {
+    let others = ["axial_stiffness", "tension_strain", "axial_damping", "rayleigh"];
+    for key in others.iter().filter(|key| is_given(key)) {
+        findings.say(below(at, key), ROPE);
+    }
+    rules! { findings, at;
+        "strain" if measured => "{ROPE}";
+        "model" if beam => "{ROPE}";
+    }
     for (key, value) in line_type.entries() {
-        if VISCOELASTIC[..3].contains(&key.name()) && value.is_absent() {
-            let unit = key.unit().unwrap_or_default();
-            findings.say(
-                at,
-                format!("missing key `{}` [{unit}] of a viscoelastic rope", key.name()),
-            );
+        let (name, unit) = (key.name(), key.unit().unwrap_or_default());
+        rules! { findings, at;
+            "" if VISCOELASTIC[..3].contains(&name) && value.is_absent() =>
+                "missing key `{name}` [{unit}] of a viscoelastic rope";
         }
     }
-    if let (Some(slow), Some(fast)) = (line_type.static_stiffness, line_type.dynamic_stiffness)
-        && fast <= slow
-    {
-        let problem = format!(
-            "{} is not above the static stiffness of {}: a rope is stiffer in fast motion",
-            quantity(fast, "N"),
-            quantity(slow, "N")
-        );
-        findings.say(format!("{at}.dynamic_stiffness"), problem);
+    if let (Some(slow), Some(fast)) = (line_type.static_stiffness, line_type.dynamic_stiffness) {
+        rules! { findings, at;
+            "dynamic_stiffness" if fast <= slow =>
+                "{} is not above the static stiffness of {}: a rope is stiffer in fast motion",
+                quantity(fast, "N"), quantity(slow, "N");
+        }
     }
-}
-
-fn check_bending(findings: &mut Findings, at: &str, line_type: &LineType) {
-    let fibres = line_type.fibres.is_some();
-    findings.refuse(
-        at,
-        &[
-            (
-                "fibres",
-                fibres && !line_type.bends() && line_type.fibres != Some(0),
-                "fibres share a bending stiffness: give `bending_stiffness` [N m²] or `solid_section` too",
-            ),
-            (
-                "fibre_law",
-                !fibres && line_type.fibre_law != FibreLaw::Linear,
-                "the law divides the bending stiffness by the number of `fibres`: give that too, or leave the law out",
-            ),
-        ],
-    );
 }
 
 /// A beam resists everything, by a number of its own or by its solid section; a cable has neither shear nor torsion.
 fn check_model(findings: &mut Findings, at: &str, line_type: &LineType, scene: &Scene) {
-    let (beam, all_beams) = (
-        line_type.model == LineModel::Beam,
-        scene.solver.integrator == Integrator::Beam,
-    );
-    let why = match beam {
+    let own = line_type.model == LineModel::Beam;
+    let beam = own || scene.solver.integrator == Integrator::Beam;
+    let why = match own {
         true => "",
         false => ", and integrator = \"beam\" makes every line a beam",
     };
@@ -172,26 +130,19 @@ fn check_model(findings: &mut Findings, at: &str, line_type: &LineType, scene: &
         if !bending && !["shear_stiffness", "torsional_stiffness", "rotary_inertia"].contains(&name) {
             continue;
         }
+        let unit = key.unit().unwrap_or_default();
         let given = value.number().is_some_and(|number| !bending || number > 0.0);
-        if !beam && !all_beams && !bending && given {
-            let problem = "only a beam has it: write model = \"beam\" or leave it out";
-            findings.say(format!("{at}.{name}"), problem);
-        } else if (beam || all_beams) && !given && line_type.solid_section.is_none() {
-            let unit = key.unit().unwrap_or_default();
-            let problem =
-                format!("a beam needs `{name}` [{unit}], or a `solid_section` that it follows from{why}");
-            findings.say(at, problem);
+        rules! { findings, at;
+            "{name}" if !beam && !bending && given =>
+                "only a beam has it: write model = \"beam\" or leave it out";
+            "" if beam && !given && line_type.solid_section.is_none() =>
+                "a beam needs `{name}` [{unit}], or a `solid_section` that it follows from{why}";
         }
     }
-    let measured = (beam || all_beams) && line_type.strain != Strain::Engineering;
-    findings.refuse(
-        at,
-        &[(
-            "strain",
-            measured,
-            "a beam stretches by the engineering strain: leave it out",
-        )],
-    );
+    rules! { findings, at;
+        "strain" if beam && line_type.strain != Strain::Engineering =>
+            "a beam stretches by the engineering strain: leave it out";
+    }
 }
 
 fn check_rayleigh(findings: &mut Findings, at: &str, rayleigh: &Rayleigh) {
@@ -209,14 +160,10 @@ fn check_rayleigh(findings: &mut Findings, at: &str, rayleigh: &Rayleigh) {
         ((frequency_2, ratio_2), (frequency_1, ratio_1))
     };
     // α = 2ω₁ω₂(ζ₁ω₂ − ζ₂ω₁)/(ω₂² − ω₁²) and β = 2(ζ₂ω₂ − ζ₁ω₁)/(ω₂² − ω₁²), both at least 0.
-    if slow_ratio * fast < fast_ratio * slow || fast_ratio * fast < slow_ratio * slow {
-        let problem = format!(
+    rules! { findings, at;
+        "ratios" if slow_ratio * fast < fast_ratio * slow || fast_ratio * fast < slow_ratio * slow =>
             "the ratios ask for negative damping of mass or stiffness: their quotient must lie between {:.4} and {:.4}, \
-             that of the frequencies and its inverse",
-            slow / fast,
-            fast / slow
-        );
-        findings.say(format!("{at}.ratios"), problem);
+             that of the frequencies and its inverse", slow / fast, fast / slow;
     }
 }
 

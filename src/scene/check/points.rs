@@ -1,6 +1,6 @@
 //! Points, their loads and their motions.
 
-use super::{Findings, check_names, quantity, unknown};
+use super::{Findings, below, check_names, quantity, rules, unknown};
 use crate::scene::path::quoted;
 use crate::scene::table::{Choice, Table};
 use crate::scene::{LineType, Point, PointKind, Scene, Section};
@@ -34,48 +34,33 @@ fn check_place(findings: &mut Findings, at: &str, point: &Point, scene: &Scene) 
     let z = point.position[2];
     // Positions typed with few digits may miss the bed by a rounding.
     let rounding = 1e-9 * seabed.depth.abs().max(1.0);
-    if seabed.is_level() && seabed.depth >= 0.0 && z < -seabed.depth - rounding {
-        let problem = format!(
-            "z = {} lies below the seabed at z = {}",
-            quantity(z, "m"),
-            quantity(-seabed.depth, "m")
-        );
-        findings.say(format!("{at}.position[2]"), problem);
+    rules! { findings, at;
+        "position[2]" if seabed.is_level() && seabed.depth >= 0.0 && z < -seabed.depth - rounding =>
+            "z = {} lies below the seabed at z = {}", quantity(z, "m"), quantity(-seabed.depth, "m");
     }
 }
 
 /// Keys that only some kinds of points may have.
 fn check_freedom(findings: &mut Findings, at: &str, point: &Point) {
-    if point.kind == PointKind::Fixed {
-        let taken = ["mass", "volume", "drag_area", "added_mass", "force"];
-        let given = point
-            .entries()
-            .filter(|(key, value)| taken.contains(&key.name()) && !value.is_absent());
-        for key in given.map(|(key, _)| key.name()) {
-            let problem = format!(
-                "a fixed point has no `{key}`, which would act on the ground alone: leave it out or write kind = \"free\""
-            );
-            findings.say(format!("{at}.{key}"), problem);
+    let kind = point.kind.word();
+    let taken = ["mass", "volume", "drag_area", "added_mass", "force"];
+    for (key, value) in point.entries() {
+        let key = key.name();
+        rules! { findings, at;
+            "{key}" if point.kind == PointKind::Fixed && taken.contains(&key) && !value.is_absent() =>
+                "a fixed point has no `{key}`, which would act on the ground alone: leave it out or write kind = \"free\"";
         }
-    }
-    if point.kind != PointKind::Free {
-        if point.free.is_some() {
-            let problem = format!(
-                "only a free point has `free`, and this one is {}: leave it out or write kind = \"free\"",
-                point.kind.word()
-            );
-            findings.say(format!("{at}.free"), problem);
-        }
-        return;
     }
     let Some(axes) = &point.free else { return };
-    if axes.is_empty() {
-        let problem = "free along no axis: write kind = \"fixed\"";
-        findings.say(format!("{at}.free"), problem);
+    let free = point.kind == PointKind::Free;
+    rules! { findings, at;
+        "free" if !free =>
+            "only a free point has `free`, and this one is {kind}: leave it out or write kind = \"free\"";
+        "free" if free && axes.is_empty() => "free along no axis: write kind = \"fixed\"";
     }
     for (i, axis) in axes.iter().enumerate() {
-        if axes[..i].contains(axis) {
-            findings.say(format!("{at}.free[{i}]"), "the axis is given twice");
+        rules! { findings, at;
+            "free[{i}]" if free && axes[..i].contains(axis) => "the axis is given twice";
         }
     }
 }
@@ -85,38 +70,30 @@ fn check_carrier(findings: &mut Findings, at: &str, point: &Point, scene: &Scene
     let Some(carrier) = &point.on else { return };
     let vessels = scene.vessels.iter().map(|vessel| vessel.name.as_str());
     if vessels.clone().all(|vessel| vessel != carrier) {
-        let problem = unknown("vessel", "vessels", carrier, vessels);
-        findings.say(format!("{at}.on"), problem);
+        findings.say(below(at, "on"), unknown("vessel", "vessels", carrier, vessels));
     }
-    if point.kind != PointKind::Coupled {
-        let problem = format!(
+    rules! { findings, at;
+        "on" if point.kind != PointKind::Coupled =>
             "a point on a vessel moves with it, and this one is {}: write kind = \"coupled\"",
-            point.kind.word()
-        );
-        findings.say(format!("{at}.on"), problem);
+            point.kind.word();
     }
 }
 
 fn check_load(findings: &mut Findings, at: &str, point: &Point, scene: &Scene) {
-    if point
-        .force
-        .as_ref()
-        .is_some_and(|force| force.entries().all(|(_, axis)| axis.is_absent()))
-    {
-        findings.say(format!("{at}.force"), "no force along `x`, `y` or `z`");
+    let force = point.force.as_ref();
+    let moment = point.moment.as_ref();
+    rules! { findings, at;
+        "force" if force.is_some_and(|force| force.entries().all(|(_, axis)| axis.is_absent())) =>
+            "no force along `x`, `y` or `z`";
+        "moment" if moment.is_some_and(|moment| moment.entries().all(|(_, axis)| axis.is_absent())) =>
+            "no moment about `x`, `y` or `z`";
     }
-    if let Some(moment) = &point.moment {
-        let at = format!("{at}.moment");
-        if moment.entries().all(|(_, axis)| axis.is_absent()) {
-            findings.say(&at, "no moment about `x`, `y` or `z`");
-        }
-        if let Some(problem) = untaken(point, scene) {
-            findings.say(at, problem);
-        }
+    if let Some(problem) = moment.and_then(|_| untaken(point, scene)) {
+        findings.say(below(at, "moment"), problem);
     }
 }
 
-/// Why nothing at a point takes its moment.
+/// Returns the reason why nothing at a point takes its moment.
 fn untaken(point: &Point, scene: &Scene) -> Option<String> {
     if point.kind != PointKind::Free {
         return Some(format!(
@@ -155,80 +132,59 @@ fn untaken(point: &Point, scene: &Scene) -> Option<String> {
     }
 }
 
+/// Refusal of a rotation.
+const TURNS: &str = "a point does not turn: only vessels have `roll`, `pitch` and `yaw`";
+
 fn check_own_motion(findings: &mut Findings, at: &str, point: &Point) {
-    match (&point.motion, point.kind) {
-        (Some(motion), PointKind::Prescribed) if motion.turns() => findings.say(
-            format!("{at}.motion"),
-            "a point does not turn: only vessels have `roll`, `pitch` and `yaw`",
-        ),
-        (Some(_), PointKind::Prescribed) => {}
-        (Some(_), PointKind::Coupled) => findings.say(
-            format!("{at}.motion"),
-            format!(
-                "the host moves a coupled point; for `run` write it under [motion] as `{} = …`, \
-                 or write kind = \"prescribed\"",
-                quoted(&point.name)
-            ),
-        ),
-        (Some(_), kind) => findings.say(
-            format!("{at}.motion"),
-            format!(
-                "a {} point has no motion of its own: write kind = \"prescribed\"",
-                kind.word()
-            ),
-        ),
-        (None, PointKind::Prescribed) => findings.say(
-            at,
-            "a prescribed point needs its `motion`; one that never moves is kind = \"fixed\"",
-        ),
-        (None, _) => {}
+    let (kind, word) = (point.kind, point.kind.word());
+    let Some(motion) = &point.motion else {
+        rules! { findings, at;
+            "" if kind == PointKind::Prescribed =>
+                "a prescribed point needs its `motion`; one that never moves is kind = \"fixed\"";
+        }
+        return;
+    };
+    rules! { findings, at;
+        "motion" if kind == PointKind::Prescribed && motion.turns() => "{TURNS}";
+        "motion" if kind == PointKind::Coupled =>
+            "the host moves a coupled point; for `run` write it under [motion] as `{} = …`, or write kind = \"prescribed\"",
+            quoted(&point.name);
+        "motion" if matches!(kind, PointKind::Fixed | PointKind::Free) =>
+            "a {word} point has no motion of its own: write kind = \"prescribed\"";
     }
 }
 
 fn check_unconnected(scene: &Scene, findings: &mut Findings) {
     for (i, point) in scene.points.iter().enumerate() {
-        let mut lines = scene.lines.iter();
-        let connected = lines.any(|line| line.from == point.name || line.to == point.name);
-        if point.kind == PointKind::Free && !connected {
-            let problem = "no line ends at this free point, so nothing holds it";
-            findings.say(format!("points[{i}]"), problem);
+        let connected = scene.lines.iter().any(|line| line.joins(&point.name));
+        rules! { findings, "points";
+            "[{i}]" if point.kind == PointKind::Free && !connected =>
+                "no line ends at this free point, so nothing holds it";
         }
     }
 }
 
 /// `[motion]` drives coupled points and vessels only.
 fn check_run_motion(scene: &Scene, findings: &mut Findings) {
-    let coupled = scene
-        .points
-        .iter()
-        .filter(|point| point.kind == PointKind::Coupled && point.on.is_none())
-        .map(|point| point.name.as_str());
+    let moved = |point: &&Point| point.kind == PointKind::Coupled && point.on.is_none();
+    let coupled = scene.points.iter().filter(moved).map(|point| point.name.as_str());
     let vessels = scene.vessels.iter().map(|vessel| vessel.name.as_str());
     for (name, motion) in &scene.motion {
         let at = format!("motion.{}", quoted(name));
         if vessels.clone().any(|vessel| vessel == name) {
             continue;
         }
-        match scene.point(name) {
-            None => {
-                findings.say(at.clone(), nothing_driven(name, coupled.clone(), vessels.clone()));
-            }
-            Some(point) if point.kind != PointKind::Coupled => {
-                let problem = format!(
-                    "`{name}` is {}, and [motion] moves coupled points and vessels only",
-                    point.kind.word()
-                );
-                findings.say(at.clone(), problem);
-            }
-            Some(Point { on: Some(vessel), .. }) => {
-                let problem = format!("`{name}` rides on the vessel `{vessel}`: write the motion of that");
-                findings.say(at.clone(), problem);
-            }
-            Some(_) if motion.turns() => {
-                let problem = "a point does not turn: only vessels have `roll`, `pitch` and `yaw`";
-                findings.say(at.clone(), problem);
-            }
-            Some(_) => {}
+        let Some(point) = scene.point(name) else {
+            findings.say(at, nothing_driven(name, coupled.clone(), vessels.clone()));
+            continue;
+        };
+        let (is_coupled, carrier) = (point.kind == PointKind::Coupled, point.on.as_deref());
+        rules! { findings, &at;
+            "" if !is_coupled =>
+                "`{name}` is {}, and [motion] moves coupled points and vessels only", point.kind.word();
+            "" if is_coupled && carrier.is_some() =>
+                "`{name}` rides on the vessel `{}`: write the motion of that", carrier.unwrap_or_default();
+            "" if is_coupled && carrier.is_none() && motion.turns() => "{TURNS}";
         }
     }
 }

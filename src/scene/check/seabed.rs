@@ -1,52 +1,40 @@
 //! Friction and shape of the seabed.
 
-use super::{Findings, quantity};
-use crate::scene::{DepthGrid, LineModel, Scene, Seabed};
+use super::{Findings, quantity, rules};
+use crate::scene::{DepthGrid, LineModel, LineType, Scene, Seabed};
 
 /// Most soundings.
 const SOUNDINGS_MAX: usize = 4_000_000;
 
 pub(super) fn check_bed(scene: &Scene, bed: &Seabed, findings: &mut Findings) {
-    if bed.file.is_some() && bed.slope.is_none() && bed.grid.is_none() {
-        let problem = "the soundings of a file must be written out here: give them as `grid`";
-        findings.say("seabed.file", problem);
+    let beam = |(_, kind): &(&String, &LineType)| kind.model == LineModel::Beam;
+    rules! { findings, "seabed";
+        "file" if bed.file.is_some() && bed.slope.is_none() && bed.grid.is_none() =>
+            "the soundings of a file must be written out here: give them as `grid`";
     }
     if let Some(grid) = &bed.grid {
         check_grid(grid, findings);
     }
-    let beams = scene
-        .line_types
-        .iter()
-        .find(|(_, kind)| kind.model == LineModel::Beam);
-    if let (Some((name, _)), false) = (beams, bed.is_level()) {
-        let problem = format!(
-            "line type {name:?} is a beam, and beams are modelled over a level bed only: use the cable model, whose lines may bend too, \
-             or a level bed"
-        );
-        findings.say("seabed", problem);
+    if let Some((name, _)) = scene.line_types.iter().find(beam) {
+        rules! { findings, "seabed";
+            "" if !bed.is_level() =>
+                "line type {name:?} is a beam, and beams are modelled over a level bed only: use the cable model, whose lines may bend \
+                 too, or a level bed";
+        }
     }
 }
 
 fn check_grid(grid: &DepthGrid, findings: &mut Findings) {
     let at = "seabed.grid";
     for (key, line) in [("x", &grid.x), ("y", &grid.y)] {
-        if line.is_empty() {
-            findings.say(
-                format!("{at}.{key}"),
-                format!("the grid has no {key}: write [{key}1, {key}2, …] [m]"),
-            );
+        rules! { findings, at;
+            "{key}" if line.is_empty() => "the grid has no {key}: write [{key}1, {key}2, …] [m]";
         }
-        for (i, place) in line.iter().enumerate() {
-            if let Some(before) = i.checked_sub(1).map(|i| line[i])
-                && *place <= before
-            {
-                let problem = format!(
-                    "{key} = {} does not come after {}: the lines of the grid must increase",
-                    quantity(*place, "m"),
-                    quantity(before, "m")
-                );
-                return findings.say(format!("{at}.{key}[{i}]"), problem);
-            }
+        if let Some(before) = line.windows(2).position(|pair| pair[1] <= pair[0]) {
+            let [place, last] = [line[before + 1], line[before]].map(|place| quantity(place, "m"));
+            let problem =
+                format!("{key} = {place} does not come after {last}: the lines of the grid must increase");
+            return findings.say(format!("{at}.{key}[{}]", before + 1), problem);
         }
     }
     let (wide, high) = (grid.x.len(), grid.y.len());

@@ -1,6 +1,6 @@
 //! Solver and output.
 
-use super::{Bounds, Findings, number, quantity};
+use super::{Bounds, Findings, number, quantity, rules};
 use crate::scene::channel::Channel;
 use crate::scene::table::Choice;
 use crate::scene::{AXIAL_RADIUS_MIN, Integrator, Scene};
@@ -15,36 +15,30 @@ pub(super) fn check(scene: &Scene, findings: &mut Findings) {
 
 fn check_solver(scene: &Scene, findings: &mut Findings) {
     let solver = &scene.solver;
+    let (integrator, word) = (solver.integrator, solver.integrator.word());
     if let Some(radius) = solver.spectral_radius {
-        let at = "solver.spectral_radius";
-        let least = match solver.integrator {
-            Integrator::AxialImplicit => AXIAL_RADIUS_MIN,
-            _ => 0.0,
+        let (damped, free) = (
+            Integrator::AxialImplicit,
+            [Integrator::Auto, Integrator::GeneralisedAlpha],
+        );
+        let least = if integrator == damped {
+            AXIAL_RADIUS_MIN
+        } else {
+            0.0
         };
-        findings.number(at, radius, Bounds::Within(least, 1.0), "-");
-        if !matches!(
-            solver.integrator,
-            Integrator::Auto | Integrator::AxialImplicit | Integrator::GeneralisedAlpha
-        ) {
-            let problem = format!(
-                "the integrator is \"{}\", and a spectral radius belongs to \"generalised_alpha\" and \"axial_implicit\"",
-                solver.integrator.word()
-            );
-            findings.say(at, problem);
+        findings.number("solver.spectral_radius", radius, Bounds::Within(least, 1.0), "-");
+        rules! { findings, "solver";
+            "spectral_radius" if integrator != damped && !free.contains(&integrator) =>
+                "the integrator is \"{word}\", and a spectral radius belongs to \"generalised_alpha\" and \"axial_implicit\"";
         }
     }
     if let Some(bossak) = &solver.bossak {
-        if solver.integrator != Integrator::Bossak {
-            let problem = format!(
-                "the integrator is \"{}\": write integrator = \"bossak\" or leave these parameters out",
-                solver.integrator.word()
-            );
-            findings.say("solver.bossak", problem);
-        }
-        // -1/3 as a decimal may be rounded either way.
-        if !(-1.0 / 3.0 - 1e-6..=0.0).contains(&bossak.alpha) {
-            let problem = format!("{} is not between -1/3 and 0", number(bossak.alpha));
-            findings.say("solver.bossak.alpha", problem);
+        rules! { findings, "solver.bossak";
+            "" if integrator != Integrator::Bossak =>
+                "the integrator is \"{word}\": write integrator = \"bossak\" or leave these parameters out";
+            // -1/3 as a decimal may be rounded either way.
+            "alpha" if !(-1.0 / 3.0 - 1e-6..=0.0).contains(&bossak.alpha) =>
+                "{} is not between -1/3 and 0", number(bossak.alpha);
         }
     }
 }
@@ -62,19 +56,11 @@ fn check_output(scene: &Scene, findings: &mut Findings) {
     if output.interval <= 0.0 || output.duration <= 0.0 {
         return; // out of bounds
     }
-    if output.interval > output.duration {
-        let problem = format!(
-            "{} is longer than the duration of {}",
-            quantity(output.interval, "s"),
-            quantity(output.duration, "s")
-        );
-        findings.say("output.interval", problem);
-    } else if output.duration / output.interval > STEPS_MAX {
-        let problem = format!(
-            "{} in steps of {} is more than 1e7 steps: give a longer interval or a shorter duration",
-            quantity(output.duration, "s"),
-            quantity(output.interval, "s")
-        );
-        findings.say("output.interval", problem);
+    let [interval, duration] = [output.interval, output.duration].map(|time| quantity(time, "s"));
+    rules! { findings, "output";
+        "interval" if output.interval > output.duration =>
+            "{interval} is longer than the duration of {duration}";
+        "interval" if output.duration / output.interval > STEPS_MAX =>
+            "{duration} in steps of {interval} is more than 1e7 steps: give a longer interval or a shorter duration";
     }
 }

@@ -1,16 +1,14 @@
 //! Title, gravity, water, seabed.
 
 use super::seabed::check_bed;
-use super::{Bounds, Findings, quantity};
+use super::{Bounds, Findings, quantity, rules};
 use crate::scene::water::SPEED;
-use crate::scene::{Current, Integrator, LineModel, Scene};
+use crate::scene::{Current, Integrator, LineModel, LineType, Scene};
 
 pub(super) fn check(scene: &Scene, findings: &mut Findings) {
-    if scene.title.chars().any(char::is_control) {
-        findings.say(
-            "title",
-            "the title holds a line break or another control character: write one line",
-        );
+    rules! { findings, "";
+        "title" if scene.title.chars().any(char::is_control) =>
+            "the title holds a line break or another control character: write one line";
     }
     if let Some(current) = scene.current() {
         check_current(scene, current, findings);
@@ -29,50 +27,44 @@ fn check_current(scene: &Scene, current: &Current, findings: &mut Findings) {
         let problem = "a scene that comes as text cannot read files: write the rows as `profile`";
         return findings.say(format!("{at}.file"), problem);
     }
-    match (&current.velocity, &current.profile) {
-        (None, None) => findings.say(
-            at,
-            "a current needs `velocity = [vx, vy, vz]` [m/s], or `profile = [[z, vx, vy], …]` [m, m/s]",
-        ),
-        (Some(_), Some(_)) => {
-            findings.say(
-                at,
-                "`velocity` and `profile` cannot both be given: the profile covers all heights",
-            );
-        }
-        (Some(_), None) => {}
-        (None, Some(rows)) => check_profile(rows, findings),
+    let (velocity, profile) = (&current.velocity, &current.profile);
+    rules! { findings, at;
+        "" if velocity.is_none() && profile.is_none() =>
+            "a current needs `velocity = [vx, vy, vz]` [m/s], or `profile = [[z, vx, vy], …]` [m, m/s]";
+        "" if velocity.is_some() && profile.is_some() =>
+            "`velocity` and `profile` cannot both be given: the profile covers all heights";
+    }
+    if let (None, Some(rows)) = (velocity, profile) {
+        check_profile(rows, findings);
     }
     let all_beams = scene.solver.integrator == Integrator::Beam;
-    for (name, line_type) in &scene.line_types {
+    let beam = |(_, line_type): &(&String, &LineType)| {
         let drags = line_type.drag_normal.is_some() || line_type.drag_tangential.is_some();
-        if (all_beams || line_type.model == LineModel::Beam) && drags {
-            let problem = format!(
-                "line type {name:?} is a beam, and beams are modelled in still water only: use the cable model, whose lines may bend \
-                 too, or leave out the current or the drag coefficients"
-            );
-            return findings.say(at, problem);
-        }
+        (all_beams || line_type.model == LineModel::Beam) && drags
+    };
+    if let Some((name, _)) = scene.line_types.iter().find(beam) {
+        let problem = format!(
+            "line type {name:?} is a beam, and beams are modelled in still water only: use the cable model, whose lines may bend \
+             too, or leave out the current or the drag coefficients"
+        );
+        findings.say(at, problem);
     }
 }
 
 fn check_profile(rows: &[[f64; 3]], findings: &mut Findings) {
     let at = "water.current.profile";
-    if rows.is_empty() {
-        findings.say(at, "the profile has no rows: write [[z, vx, vy], …]");
+    rules! { findings, at;
+        "" if rows.is_empty() => "the profile has no rows: write [[z, vx, vy], …]";
     }
-    for (i, [z, vx, vy]) in rows.iter().enumerate() {
-        let right = findings.number(format!("{at}[{i}][0]"), *z, Bounds::Magnitude(1e5), "m");
-        findings.number(format!("{at}[{i}][1]"), *vx, SPEED.bounds, "m/s");
-        findings.number(format!("{at}[{i}][2]"), *vy, SPEED.bounds, "m/s");
-        if let Some(twin) = rows[..i].iter().position(|row| row[0] == *z)
-            && right
-        {
-            let problem = format!(
-                "row {twin} is at {} too: every height has one velocity; put the heights of a jump 1 mm apart",
-                quantity(*z, "m")
-            );
-            findings.say(format!("{at}[{i}][0]"), problem);
+    for (i, row) in rows.iter().enumerate() {
+        let z = &row[0];
+        let (height, speed) = (Bounds::Magnitude(1e5), (SPEED.bounds, "m/s"));
+        findings.row(&format!("{at}[{i}]"), row, &[(height, "m"), speed, speed]);
+        let twin = rows[..i].iter().position(|row| row[0] == *z);
+        rules! { findings, at;
+            "[{i}][0]" if height.accepts(*z) && twin.is_some() =>
+                "row {} is at {} too: every height has one velocity; put the heights of a jump 1 mm apart",
+                twin.unwrap_or_default(), quantity(*z, "m");
         }
     }
 }

@@ -1,105 +1,68 @@
 //! Waves.
 
-use super::{Findings, quantity};
+use super::{Findings, quantity, rules};
 use crate::scene::table::Table;
 use crate::scene::{Integrator, LineModel, PointKind, Scene, Sea, SpectrumKind, WaveComponents, Waves};
 
 pub(super) fn check(scene: &Scene, waves: &Waves, findings: &mut Findings) {
     let at = "water.waves";
-    if waves.seas.is_empty() {
-        findings.say(
-            at,
-            "there is no sea in the array: leave `waves` out for still water",
-        );
+    rules! { findings, at;
+        "" if waves.seas.is_empty() => "there is no sea in the array: leave `waves` out for still water";
     }
     for (i, sea) in waves.seas.iter().enumerate() {
         let at = waves.path(i);
         check_sea(&at, sea, findings);
-        if let (Some(ramp), Some(other)) = (sea.ramp, waves.ramp())
-            && ramp != other
-        {
-            let problem = format!(
-                "{} here and {} in another sea: all seas grow together, write one ramp",
-                quantity(ramp, "s"),
-                quantity(other, "s")
-            );
-            findings.say(format!("{at}.ramp"), problem);
+        if let (Some(ramp), Some(other)) = (sea.ramp, waves.ramp()) {
+            rules! { findings, &at;
+                "ramp" if ramp != other =>
+                    "{} here and {} in another sea: all seas grow together, write one ramp",
+                    quantity(ramp, "s"), quantity(other, "s");
+            }
         }
     }
-    if scene.gravity <= 0.0 {
-        findings.say(at, "without gravity there are no waves: leave one of the two out");
+    rules! { findings, at;
+        "" if scene.gravity <= 0.0 => "without gravity there are no waves: leave one of the two out";
     }
     check_lines(scene, findings);
 }
 
-/// Which of the three ways to describe a sea is taken, and whether its keys belong to it.
+/// The ways to describe a sea, of which one is taken, and the keys that belong to it.
 fn check_sea(at: &str, sea: &Sea, findings: &mut Findings) {
     let rows = matches!(sea.components, Some(WaveComponents::Rows(_)));
     let file = sea.file.is_some();
     let ways = [sea.regular.is_some(), rows, sea.spectrum.is_some(), file];
-    match ways.iter().filter(|given| **given).count() {
-        0 => findings.say(
-            at,
-            "a sea needs `regular = { height = …, period = … }`, `components = [[amplitude, period, direction, phase], …]`, `file` or \
-             `spectrum = \"jonswap\"` with `significant_height` and `peak_period`",
-        ),
-        1 if file => findings.say(
-            format!("{at}.file"),
-            "a scene that comes as text cannot read files: write the rows as `components`",
-        ),
-        1 => {}
-        _ => findings.say(
-            at,
-            "only one of `regular`, rows of `components`, `file` and `spectrum` describes a sea: write several seas as an array",
-        ),
+    let ways = ways.iter().filter(|given| **given).count();
+    rules! { findings, at;
+        "" if ways == 0 =>
+            "a sea needs `regular = {{ height = …, period = … }}`, `components = [[amplitude, period, direction, phase], …]`, `file` or \
+             `spectrum = \"jonswap\"` with `significant_height` and `peak_period`";
+        "file" if ways == 1 && file =>
+            "a scene that comes as text cannot read files: write the rows as `components`";
+        "" if ways > 1 =>
+            "only one of `regular`, rows of `components`, `file` and `spectrum` describes a sea: write several seas as an array";
     }
-    check_spectrum(at, sea, findings);
-    if sea
-        .regular
-        .as_ref()
-        .is_some_and(|regular| regular.half_height().is_none())
-    {
-        findings.say(
-            format!("{at}.regular"),
-            "a regular wave needs either its `height` or its `amplitude` [m]",
-        );
-    }
-}
-
-/// Keys that only a spectrum has, and keys that it needs.
-fn check_spectrum(at: &str, sea: &Sea, findings: &mut Findings) {
-    let Some(spectrum) = sea.spectrum else {
-        let drawn = matches!(sea.components, Some(WaveComponents::Number(_)));
-        for (key, value) in sea.entries() {
-            let of_spectrum = match key.name() {
-                "significant_height" | "peak_period" | "peakedness" | "direction" | "spreading" | "seed" => {
-                    true
-                }
-                name => name == "components" && drawn,
-            };
-            if of_spectrum && !value.is_absent() {
-                let problem = "this belongs to a spectrum: give `spectrum`, or leave it out";
-                findings.say(format!("{at}.{}", key.name()), problem);
-            }
-        }
-        return;
-    };
+    let drawn = matches!(sea.components, Some(WaveComponents::Number(_)));
     for (key, value) in sea.entries() {
-        if ["significant_height", "peak_period"].contains(&key.name()) && value.is_absent() {
-            let unit = key.unit().unwrap_or_default();
-            let problem = format!("missing key `{}` [{unit}]: the spectrum needs it", key.name());
-            findings.say(at, problem);
+        let (name, unit) = (key.name(), key.unit().unwrap_or_default());
+        let needed = ["significant_height", "peak_period"].contains(&name);
+        let of_spectrum = needed || ["peakedness", "direction", "spreading", "seed"].contains(&name);
+        let of_spectrum = of_spectrum || name == "components" && drawn;
+        rules! { findings, at;
+            "{name}" if sea.spectrum.is_none() && of_spectrum && !value.is_absent() =>
+                "this belongs to a spectrum: give `spectrum`, or leave it out";
+            "" if sea.spectrum.is_some() && needed && value.is_absent() =>
+                "missing key `{name}` [{unit}]: the spectrum needs it";
         }
     }
-    let peaked = spectrum != SpectrumKind::Jonswap && sea.peakedness.is_some();
-    findings.refuse(
-        at,
-        &[(
-            "peakedness",
-            peaked,
-            "only a JONSWAP spectrum has one: leave it out",
-        )],
-    );
+    let other = sea
+        .spectrum
+        .is_some_and(|spectrum| spectrum != SpectrumKind::Jonswap);
+    let regular = sea.regular.as_ref();
+    rules! { findings, at;
+        "peakedness" if other && sea.peakedness.is_some() => "only a JONSWAP spectrum has one: leave it out";
+        "regular" if regular.is_some_and(|regular| regular.half_height().is_none()) =>
+            "a regular wave needs either its `height` or its `amplitude` [m]";
+    }
 }
 
 /// Lines that cannot be modelled in waves.

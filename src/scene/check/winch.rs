@@ -1,6 +1,6 @@
 //! Winches: lengths and speeds in range, and lines that a winch can serve.
 
-use super::{Findings, quantity};
+use super::{Findings, quantity, rules};
 use crate::scene::channel::LineEnd;
 use crate::scene::{
     InitialShape, Integrator, Line, LineModel, LineType, PointKind, Scene, TimeFunction, Winch,
@@ -21,29 +21,18 @@ pub(super) fn check(findings: &mut Findings, at: &str, line: &Line, scene: &Scen
 
 fn check_path(findings: &mut Findings, at: &str, path: &TimeFunction, winch: &Winch, line: &Line) {
     let section = line.sections.last().map_or(0.0, |section| section.length);
-    for value in path.corners() {
-        if value > winch.length_max || value <= -section {
-            let (most, least) = (quantity(winch.length_max, "m"), quantity(-section, "m"));
-            findings.say(
-                at,
-                format!(
-                    "{} is not between {least}, where the section at the winch is used up, and length_max, {most}",
-                    quantity(value, "m")
-                ),
-            );
-            return;
-        }
+    let beyond = |value: &f64| *value > winch.length_max || *value <= -section;
+    if let Some(value) = path.corners().into_iter().find(beyond) {
+        let [value, least, most] = [value, -section, winch.length_max].map(|length| quantity(length, "m"));
+        let problem = format!(
+            "{value} is not between {least}, where the section at the winch is used up, and length_max, {most}"
+        );
+        return findings.say(at, problem);
     }
-    match winch.speed_max {
-        Some(most) if path.rate_max() > most => findings.say(
-            at,
-            format!(
-                "the path takes up to {}, and speed_max is {}",
-                quantity(path.rate_max(), "m/s"),
-                quantity(most, "m/s")
-            ),
-        ),
-        _ => {}
+    let (fastest, limit) = (path.rate_max(), winch.speed_max.unwrap_or(f64::INFINITY));
+    rules! { findings, at;
+        "" if fastest > limit =>
+            "the path takes up to {}, and speed_max is {}", quantity(fastest, "m/s"), quantity(limit, "m/s");
     }
 }
 

@@ -17,8 +17,10 @@ impl Scene {
             (None, Some(_)) => "in water",
             (None, None) => "in air",
         };
-        let mut parts = vec![format!("mass {} kg/m", significant(mass))];
-        parts.push(format!("weight {weight} N/m {origin}"));
+        let mut parts = vec![
+            format!("mass {} kg/m", significant(mass)),
+            format!("weight {weight} N/m {origin}"),
+        ];
         parts.extend(given(line_type, &["model", "mass", "weight", "strain"]));
         if let Some(ea) = line_type.axial_stiffness.or(line_type.dynamic_stiffness) {
             parts.push(format!("{} strain", line_type.strain.name()));
@@ -27,23 +29,16 @@ impl Scene {
         parts.extend(bending_in_words(line_type));
         parts.extend(self.damping_in_words(name, line_type));
         if self.water.is_some() {
-            let buoyancy = if line_type.weight.is_some() {
-                "buoyancy within the weight"
-            } else {
-                "buoyancy"
-            };
-            parts.push(buoyancy.to_string());
+            let within = line_type.weight.map_or("", |_| " within the weight");
+            parts.push(format!("buoyancy{within}"));
             let left_out = line_type.entries().filter(|(_, value)| value.is_absent());
             let absent = left_out.filter_map(|(key, _)| key.rule.absence);
             parts.extend(absent.map(|effect| format!("no {effect}")));
         }
         let all_beams = self.solver.integrator == Integrator::Beam;
         let beam = line_type.model == LineModel::Beam || all_beams;
-        format!(
-            "{name}: {}{}",
-            if beam { "a beam: " } else { "" },
-            parts.join(", ")
-        )
+        let model = if beam { "a beam: " } else { "" };
+        format!("{name}: {model}{}", parts.join(", "))
     }
 
     /// Axial damping that the type leaves open, and the mesh that a ratio refers to.
@@ -117,22 +112,24 @@ fn bending_in_words(line_type: &LineType) -> Option<String> {
         None => "of the solid section",
         Some(_) => "as given",
     };
-    let said = quantity(solid, "N m²");
     let fibres = line_type.fibres.unwrap_or(1).max(1);
-    let (share, law) = match (fibres, line_type.fibre_law) {
-        (1, _) if line_type.bending_stiffness.is_some() => return None,
-        (1, _) => return Some(format!("bending stiffness EI {said} {source}")),
-        (n, FibreLaw::Linear) => (
-            solid / n as f64,
-            format!("EI/{n}: strands that slide on each other side by side"),
+    let (n, of_one) = (fibres as f64, quantity(solid, "N m²"));
+    if fibres == 1 {
+        let follows = line_type.bending_stiffness.is_none();
+        return follows.then(|| format!("bending stiffness EI {of_one} {source}"));
+    }
+    let (share, law) = match line_type.fibre_law {
+        FibreLaw::Linear => (
+            solid / n,
+            format!("EI/{fibres}: strands that slide on each other side by side"),
         ),
-        (n, FibreLaw::Squared) => (
-            solid / (n as f64).powi(2),
-            format!("EI/{n}²: that of a single strand"),
+        FibreLaw::Squared => (
+            solid / n.powi(2),
+            format!("EI/{fibres}²: that of a single strand"),
         ),
     };
     let share = quantity(share, "N m²");
     Some(format!(
-        "bending stiffness {share}, which is EI {said} {source} shared by {fibres} fibres ({law})"
+        "bending stiffness {share}, which is EI {of_one} {source} shared by {fibres} fibres ({law})"
     ))
 }

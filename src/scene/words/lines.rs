@@ -8,26 +8,23 @@ use crate::scene::{InitialShape, Line, LineEnd, RestShape, Scene, Section};
 
 impl Scene {
     pub(super) fn line_in_words(&self, line: &Line) -> String {
+        let (name, from, to) = (&line.name, &line.from, &line.to);
         let sections: Vec<String> = line.sections.iter().map(section_in_words).collect();
         let start = match &line.initial {
-            InitialShape::Static => "starts in static equilibrium".to_string(),
+            InitialShape::Static => "in static equilibrium".to_string(),
             InitialShape::Catenary => {
-                "starts on the catenary between its ends, or straight where it has none, at rest".to_string()
+                "on the catenary between its ends, or straight where it has none, at rest".to_string()
             }
-            InitialShape::Straight => "starts straight, at rest".to_string(),
+            InitialShape::Straight => "straight, at rest".to_string(),
             InitialShape::Parabola(sag) => {
-                format!(
-                    "starts as a parabola with a sag of {}, at rest",
-                    quantity(*sag, "m")
-                )
+                format!("as a parabola with a sag of {}, at rest", quantity(*sag, "m"))
             }
-            InitialShape::Nodes(_) => "starts at the given nodes, at rest".to_string(),
+            InitialShape::Nodes(_) => "at the given nodes, at rest".to_string(),
         };
-        let fit = fit_in_words(line.length(), chord(self, line).unwrap_or(0.0));
         let mut parts = vec![
-            format!("from {} to {}, {}", line.from, line.to, sections.join(", ")),
-            fit,
-            start,
+            format!("from {from} to {to}, {}", sections.join(", ")),
+            fit_in_words(line.length(), chord(self, line).unwrap_or(0.0)),
+            format!("starts {start}"),
         ];
         match (self.is_beam(line), self.bends(line)) {
             (true, _) => parts.push(format!("a beam, {}", ends_in_words(line))),
@@ -37,7 +34,7 @@ impl Scene {
         parts.extend(release_in_words(line));
         parts.extend(break_in_words(line));
         parts.extend(winch_in_words(line));
-        format!("{}: {}", line.name, parts.join("; "))
+        format!("{name}: {}", parts.join("; "))
     }
 }
 
@@ -47,11 +44,8 @@ fn section_in_words(section: &Section) -> String {
         Some(n) => format!(" in {n} elements"),
         None => String::new(),
     };
-    format!(
-        "{} of {}{elements}",
-        quantity(section.length, "m"),
-        section.line_type
-    )
+    let (length, kind) = (quantity(section.length, "m"), &section.line_type);
+    format!("{length} of {kind}{elements}")
 }
 
 /// Difference between the length of a line and the distance of its ends, both in metres.
@@ -75,11 +69,8 @@ fn ends_in_words(line: &Line) -> String {
         RestShape::Straight => "unstressed where straight",
         RestShape::Initial => "unstressed in its shape at the start",
     };
-    format!(
-        "{}, {}; {rest}",
-        end("A", line.clamped_a),
-        end("B", line.clamped_b)
-    )
+    let [a, b] = [("A", line.clamped_a), ("B", line.clamped_b)].map(|(name, clamp)| end(name, clamp));
+    format!("{a}, {b}; {rest}")
 }
 
 /// "end B", and the name of the point there.
@@ -102,9 +93,8 @@ fn release_in_words(line: &Line) -> Option<String> {
 fn break_in_words(line: &Line) -> Option<String> {
     let failure = line.failure.as_ref()?;
     let (end, point) = end_of(line, failure.at);
-    let tension = failure
-        .tension
-        .map(|tension| format!("under {}", quantity(tension, "N")));
+    let tension = failure.tension.map(|tension| quantity(tension, "N"));
+    let tension = tension.map(|tension| format!("under {tension}"));
     let time = failure.time.map(|time| format!("at t = {}", quantity(time, "s")));
     let when: Vec<String> = tension.into_iter().chain(time).collect();
     Some(format!("{end} breaks off {point} {}", when.join(" or ")))
@@ -112,18 +102,14 @@ fn break_in_words(line: &Line) -> Option<String> {
 
 fn winch_in_words(line: &Line) -> Option<String> {
     let winch = line.winch.as_ref()?;
-    let speed = winch
-        .speed_max
-        .map(|speed| format!(", at no more than {}", quantity(speed, "m/s")));
-    let path = winch
-        .path
-        .as_ref()
-        .map_or("", |_| " (its own path where the scene's motion is followed)");
+    let (name, to, most) = (&line.name, &line.to, quantity(winch.length_max, "m"));
+    let speed = winch.speed_max.map(|speed| quantity(speed, "m/s"));
+    let speed = speed.map_or(String::new(), |speed| format!(", at no more than {speed}"));
+    let path = match winch.path {
+        Some(_) => " (its own path where the scene's motion is followed)",
+        None => "",
+    };
     Some(format!(
-        "end B is on a winch at {}, which pays out up to {} and hauls in by the input {}.length_change{}{path}",
-        line.to,
-        quantity(winch.length_max, "m"),
-        line.name,
-        speed.unwrap_or_default()
+        "end B is on a winch at {to}, which pays out up to {most} and hauls in by the input {name}.length_change{speed}{path}"
     ))
 }

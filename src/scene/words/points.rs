@@ -16,8 +16,7 @@ const UNITS: [&str; 6] = ["m", "m", "m", "rad", "rad", "rad"];
 impl Scene {
     pub(super) fn point_in_words(&self, point: &Point) -> String {
         let frame = if point.on.is_some() { " in its frame" } else { "" };
-        let place = format!("at {} m{frame}", triple(point.position));
-        let mut parts = vec![role(point), place];
+        let mut parts = vec![role(point), format!("at {} m{frame}", triple(point.position))];
         parts.extend(given(point, &["name", "position", "kind", "on", "free"]));
         parts.extend(self.sea_in_words(point));
         parts.extend(self.start_in_words(point).map(str::to_string));
@@ -27,11 +26,9 @@ impl Scene {
                 "the part of the moment along the line has no effect, since a cable has no torsion".into(),
             );
         }
-        let coupled = point.kind == PointKind::Coupled && point.on.is_none();
-        let run = if coupled {
-            self.run_in_words(&point.name)
-        } else {
-            String::new()
+        let run = match (point.kind, &point.on) {
+            (PointKind::Coupled, None) => self.run_in_words(&point.name),
+            _ => String::new(),
         };
         format!("{}: {}{run}", point.name, parts.join(", "))
     }
@@ -39,32 +36,25 @@ impl Scene {
     /// "; in `run` it swings by …".
     fn run_in_words(&self, body: &str) -> String {
         let motion = self.motion.get(body).map(motion_in_words);
-        format!(
-            "; in `run` it {}",
-            motion.unwrap_or_else(|| "stays where it is".to_string())
-        )
+        let motion = motion.unwrap_or_else(|| "stays where it is".to_string());
+        format!("; in `run` it {motion}")
     }
 
     pub(super) fn vessel_in_words(&self, vessel: &Vessel) -> String {
-        let mut said = format!(
-            "{}: moved by the host, its origin at {} m",
-            vessel.name,
-            triple(vessel.position)
-        );
-        if vessel.attitude != [0.0; 3] {
-            let [roll, pitch, yaw] = vessel.attitude.map(significant);
-            said += &format!(", at roll {roll} rad, pitch {pitch} rad, yaw {yaw} rad");
-        }
-        let aboard = self
-            .points
-            .iter()
-            .filter(|point| point.on.as_ref() == Some(&vessel.name));
-        let names: Vec<&str> = aboard.map(|point| point.name.as_str()).collect();
-        let carried = if names.is_empty() {
+        let (name, origin) = (&vessel.name, triple(vessel.position));
+        let [roll, pitch, yaw] = vessel.attitude.map(significant);
+        let attitude = match vessel.attitude == [0.0; 3] {
+            true => String::new(),
+            false => format!(", at roll {roll} rad, pitch {pitch} rad, yaw {yaw} rad"),
+        };
+        let aboard = self.points.iter().filter(|point| point.on.as_ref() == Some(name));
+        let aboard: Vec<&str> = aboard.map(|point| point.name.as_str()).collect();
+        let carried = if aboard.is_empty() {
             "no point".to_string()
         } else {
-            names.join(", ")
+            aboard.join(", ")
         };
+        let run = self.run_in_words(name);
         let angles = match vessel.motion_angles {
             AngleOrder::Zyx => "",
             AngleOrder::Xyz => {
@@ -73,8 +63,7 @@ impl Scene {
             }
         };
         format!(
-            "{said}, carries {carried}{}{angles}",
-            self.run_in_words(&vessel.name)
+            "{name}: moved by the host, its origin at {origin} m{attitude}, carries {carried}{run}{angles}"
         )
     }
 
@@ -150,15 +139,12 @@ impl Scene {
             ("drag", acts(point.drag_area)),
             ("added mass", volume && acts(point.added_mass)),
         ];
-        let (acting, absent): (Vec<_>, Vec<_>) = effects.iter().partition(|(_, acts)| *acts);
-        let acting: Vec<&str> = acting.iter().map(|(effect, _)| *effect).collect();
-        let absent: String = absent
-            .iter()
-            .map(|(effect, _)| format!(", no {effect}"))
-            .collect();
+        let of = |acting: bool| effects.iter().filter(move |(_, acts)| *acts == acting);
+        let acting: Vec<&str> = of(true).map(|(effect, _)| *effect).collect();
+        let absent: String = of(false).map(|(effect, _)| format!(", no {effect}")).collect();
+        let acting = acting.join(", ");
         Some(format!(
-            "in the water {}{absent}, as of a sphere of radius {radius} m as far as it is under z = 0",
-            acting.join(", ")
+            "in the water {acting}{absent}, as of a sphere of radius {radius} m as far as it is under z = 0"
         ))
     }
 

@@ -3,8 +3,7 @@
 use super::{join, triple};
 use crate::scene::check::{number, quantity};
 use crate::scene::{
-    ContactLaw, Current, RegularWave, Scene, Sea, Seabed, SpectrumKind, TimeFunction, Water, WaveComponents,
-    Waves,
+    ContactLaw, Current, Scene, Sea, Seabed, SpectrumKind, TimeFunction, Water, WaveComponents, Waves,
 };
 
 impl Scene {
@@ -96,27 +95,23 @@ impl Scene {
     /// "linear waves (Airy) …: significant height 6 m, …".
     fn waves_in_words(&self, waves: &Waves) -> String {
         let seas: Vec<String> = waves.seas.iter().map(sea_in_words).collect();
-        let over = match &self.seabed {
-            Some(seabed) => format!("a depth of {}", quantity(seabed.depth, "m")),
-            None => "deep water".to_string(),
-        };
+        let seas = seas.join("; ");
+        let depth = self.seabed.as_ref().map(|seabed| quantity(seabed.depth, "m"));
+        let over = depth.map_or("deep water".to_string(), |depth| format!("a depth of {depth}"));
+        let height = height_of(waves.deviation());
         let all = match waves.seas.len() {
             1 => String::new(),
-            _ => format!(
-                ", together of a significant height of {}",
-                height_of(waves.deviation())
-            ),
+            _ => format!(", together of a significant height of {height}"),
         };
-        let ramp = match waves.ramp() {
-            Some(ramp) => format!(", growing over a ramp of {}", quantity(ramp, "s")),
-            None => ", at once in full".to_string(),
-        };
+        let ramp = waves.ramp().map(|ramp| quantity(ramp, "s"));
+        let ramp = ramp.map_or(", at once in full".to_string(), |ramp| {
+            format!(", growing over a ramp of {ramp}")
+        });
         format!(
-            "linear waves (Airy) over {over}: {}{all}{ramp}; velocities and accelerations are stretched to the surface as Wheeler does, and \
+            "linear waves (Airy) over {over}: {seas}{all}{ramp}; velocities and accelerations are stretched to the surface as Wheeler does, and \
              components that do not reach a place are left out there (1e-4 of the surface's acceleration); drag, Froude-Krylov force and added \
              mass act with the motion of the water past the line; no drift, no breaking, no waves made or turned by the current, and the \
-             equilibrium at the start is that of still water or of the current",
-            seas.join("; ")
+             equilibrium at the start is that of still water or of the current"
         )
     }
 }
@@ -127,42 +122,35 @@ fn height_of(deviation: f64) -> String {
 }
 
 fn sea_in_words(sea: &Sea) -> String {
+    let of = |value: Option<f64>, unit| quantity(value.unwrap_or_default(), unit);
     if let Some(regular) = &sea.regular {
-        return regular_in_words(regular);
+        let height = of(regular.half_height().map(|half| 2.0 * half), "m");
+        let [period, direction] =
+            [(regular.period, "s"), (regular.direction, "rad")].map(|(n, unit)| quantity(n, unit));
+        return format!("a regular wave of height {height} and period {period} towards {direction}");
     }
     if let Some(WaveComponents::Rows(rows)) = &sea.components {
-        let trains = if rows.len() == 1 {
-            "wave train"
-        } else {
-            "wave trains"
-        };
+        let (count, trains) = (rows.len(), if rows.len() == 1 { "train" } else { "trains" });
         let height = height_of(sea.variance().sqrt());
-        return format!("{} {trains} of a significant height of {height}", rows.len());
+        return format!("{count} wave {trains} of a significant height of {height}");
     }
     let kind = match sea.spectrum {
         Some(SpectrumKind::PiersonMoskowitz) => "a Pierson-Moskowitz spectrum".to_string(),
         _ => format!("a JONSWAP spectrum of peakedness {}", number(sea.gamma())),
     };
-    let spread = sea
-        .spreading
-        .map(|s| format!(", spread by cos²ˢ of half the angle with s = {}", number(s)));
-    format!(
-        "{kind}, significant height {}, peak period {}, towards {}{}, as {} wave trains of equal energy drawn with the seed {}",
-        quantity(sea.significant_height.unwrap_or_default(), "m"),
-        quantity(sea.peak_period.unwrap_or_default(), "s"),
-        quantity(sea.direction.unwrap_or_default(), "rad"),
-        spread.unwrap_or_default(),
+    let spread = sea.spreading.map(number);
+    let spread = spread.map(|s| format!(", spread by cos²ˢ of half the angle with s = {s}"));
+    let [height, period] =
+        [(sea.significant_height, "m"), (sea.peak_period, "s")].map(|(value, unit)| of(value, unit));
+    let (direction, seed, count) = (
+        of(sea.direction, "rad"),
+        sea.seed.unwrap_or_default(),
         sea.number(),
-        sea.seed.unwrap_or_default()
-    )
-}
-
-fn regular_in_words(regular: &RegularWave) -> String {
+    );
+    let spread = spread.unwrap_or_default();
     format!(
-        "a regular wave of height {} and period {} towards {}",
-        quantity(2.0 * regular.half_height().unwrap_or_default(), "m"),
-        quantity(regular.period, "s"),
-        quantity(regular.direction, "rad")
+        "{kind}, significant height {height}, peak period {period}, towards {direction}{spread}, as {count} wave trains of equal energy drawn \
+         with the seed {seed}"
     )
 }
 
@@ -199,20 +187,13 @@ fn profile_in_words(rows: &[[f64; 3]]) -> String {
         return "no rows".to_string();
     };
     let place = |[z, x, y]: &[f64; 3]| {
-        format!(
-            "({}, {}) m/s at z = {}",
-            number(*x),
-            number(*y),
-            quantity(*z, "m")
-        )
+        let ([x, y], z) = ([*x, *y].map(number), quantity(*z, "m"));
+        format!("({x}, {y}) m/s at z = {z}")
     };
+    let [lower, upper] = [lower, upper].map(place);
     match rows.len() {
-        1 => format!("{}, and at all other heights", place(lower)),
-        count => format!(
-            "from {} to {}, straight between {count} heights and constant outside",
-            place(lower),
-            place(upper)
-        ),
+        1 => format!("{lower}, and at all other heights"),
+        count => format!("from {lower} to {upper}, straight between {count} heights and constant outside"),
     }
 }
 
@@ -228,12 +209,13 @@ fn seabed_in_words(seabed: &Seabed) -> String {
     } else {
         ""
     };
-    format!(
-        "{}: normal spring of {} and damper of {}{chosen} per metre of line and of diameter, {law}; {}",
-        shape_in_words(seabed),
+    let (spring, damper) = (
         quantity(seabed.stiffness, "Pa/m"),
         quantity(seabed.damping, "Pa s/m"),
-        friction_in_words(seabed),
+    );
+    let (shape, friction) = (shape_in_words(seabed), friction_in_words(seabed));
+    format!(
+        "{shape}: normal spring of {spring} and damper of {damper}{chosen} per metre of line and of diameter, {law}; {friction}"
     )
 }
 
