@@ -343,7 +343,7 @@ fn a_moment_along_a_beam_that_no_end_holds_is_why_there_is_no_equilibrium() {
         )
         .fixed("a", [0.0, 0.0, -60.0])
         .free("b", [60.0, 0.0, -5.0])
-        .with("free = ['x', 'z']")
+        .with("free = ['x', 'z'], mass = 10.0")
         .with(moment)
         .line("l", ["a", "b"], "cable", 100.0, 20)
         .with(keys)
