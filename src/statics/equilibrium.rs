@@ -20,7 +20,7 @@
 //! the seabed in `friction`.
 //!
 //! Accepted is a residual of at most 1e-11 of the greatest force in the network (tension, nodal weight or load) plus what
-//! rounding of the positions makes of the stiffest segment. The equilibrium of a start is then refined to rounding.
+//! rounding of the positions makes of the stiffest segment.
 //!
 //! Source: Kelley & Keyes (1998), SIAM J. Numer. Anal. 35(2), 508-523 (pseudo-transient continuation); the elimination of
 //! predicted tensions is derived here.
@@ -43,10 +43,6 @@ use crate::physics::friction::Friction;
 const FORCE_TOLERANCE: f64 = 1e-11;
 /// Accepted last correction, over the longest line [-], unless three residuals in a row are accepted.
 const STEP_TOLERANCE: f64 = 1e-12;
-/// Least relaxation, over that of the first solve [-].
-const RELAXATION_MIN: f64 = 1e-12;
-/// Repetitions of Newton's method from the equilibrium of a start.
-const REFINEMENTS_MAX: usize = 3;
 /// Longest correction, over the longest line or, if that is more, the reach of the network [-].
 const STEP_MAX: f64 = 0.2;
 /// Solves of one Newton iteration with predicted tensions.
@@ -138,10 +134,7 @@ pub fn rest(
     if model.beam_of(number).is_some() {
         return Ok(());
     }
-    let problem = Problem::new(model, number, state.time, work);
-    problem.solve(state, work)?;
-    problem.refine(state, work);
-    Ok(())
+    Problem::new(model, number, state.time, work).solve(state, work)
 }
 
 /// Moves the prescribed points of every network to `points` [m] and finds the equilibrium at time `t` [s] closest to `state`.
@@ -452,38 +445,10 @@ impl<'a> Problem<'a> {
             work.predict_tensions(self.model, self.network, part);
             self.advance(state, work, part);
             if part == 1.0 {
-                relaxation = (0.1 * relaxation).max(RELAXATION_MIN);
+                relaxation = (0.1 * relaxation).max(1e-12);
             }
         }
         false
-    }
-
-    /// Repeats Newton's method from an equilibrium for as long as it halves the force out of balance, so that rounding alone is left of it.
-    fn refine(&self, state: &mut State, work: &mut Workspace) {
-        let mut case = self.case(f64::INFINITY);
-        (case.predicted, case.tension_min) = (true, RELAXATION_MIN * self.force);
-        case.anchoring = case.tension_min / self.length + self.rounding_stiffness(&case);
-        let mut found = std::mem::take(&mut work.trial);
-        work.assemble_static(self.model, self.network, state, &case);
-        let (mut before, _) = work.greatest_residual(self.network);
-        for _ in 0..REFINEMENTS_MAX {
-            if before == 0.0 || !work.solve(self.model, self.network, self.number) {
-                break;
-            }
-            copy_network(self.model, self.network, state, &mut found);
-            work.predict_tensions(self.model, self.network, 1.0);
-            self.advance(state, work, 1.0);
-            work.assemble_static(self.model, self.network, state, &case);
-            let (residual, _) = work.greatest_residual(self.network);
-            if residual.is_nan() || residual >= before {
-                copy_network(self.model, self.network, &found, state);
-            }
-            if residual.is_nan() || residual > 0.5 * before {
-                break;
-            }
-            before = residual;
-        }
-        work.trial = found;
     }
 
     /// Returns true where the forces of a shape are in balance by themselves, without predicted tensions.
