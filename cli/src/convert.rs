@@ -9,12 +9,13 @@ use moorline::scene::TOML;
 use moorline_decks::{Supplement, load_with};
 
 use crate::failure::Failure;
-use crate::folder::Folder;
+use crate::folder::{Folder, check_apart};
 use crate::terminal::print;
 
 /// Reads a deck with what it leaves to its host, and writes the same system as a scene with comments.
 pub fn convert(path: &Path, target: &Path, supplement: &Supplement) -> Result<(), Failure> {
     check_file(target)?;
+    check_apart(path, target)?;
     let _open = Folder::of_file(target);
     let loaded = load_with(path, supplement)?;
     if loaded.format == TOML {

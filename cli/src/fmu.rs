@@ -11,13 +11,14 @@ use moorline::simulation::Watch;
 
 use crate::arguments::Input;
 use crate::failure::Failure;
-use crate::folder::Folder;
+use crate::folder::{Folder, check_apart};
 use crate::terminal::{discretise, print, read_scene, remark_all, simulate};
 
 /// Packages a scene for the FMI version "2" or "3".
 pub fn fmu(input: &Input, target: &Path, version: &str) -> Result<(), Failure> {
     let mut loaded = read_scene(&input.scene, &input.host.supplement())?;
     check_file(target)?;
+    check_apart(&input.scene, target)?;
     let _open = Folder::of_file(target);
     discretise(&mut loaded, discretisation::select);
     // A scene without an equilibrium would make an FMU that no host can start.

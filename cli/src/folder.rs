@@ -61,6 +61,19 @@ impl Drop for Folder {
     }
 }
 
+/// Refuses a file for results that is the one which is read.
+pub fn check_apart(input: &Path, target: &Path) -> Result<(), Failure> {
+    let [read, written] = [input, target].map(|path| fs::canonicalize(path).ok());
+    if read.is_some() && read == written {
+        let text = format!(
+            "{} is the file that is read: give another name to write",
+            target.display()
+        );
+        return Err(Failure::Argument(text));
+    }
+    Ok(())
+}
+
 /// Sets where the command writes; returns where it wrote before.
 fn set_open(place: Option<Place>) -> Option<Place> {
     let mut open = OPEN.lock().unwrap_or_else(PoisonError::into_inner);

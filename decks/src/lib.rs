@@ -135,12 +135,25 @@ fn finish(draft: &mut Draft<'_>, folder: &Path) -> Result<Vec<Note>, Vec<SceneEr
     sound_depth(&mut draft.scene);
     let mut notes = cut_tables(&mut draft.scene);
     let mistakes = draft.scene.mistakes_with(of_files).into_iter();
-    let mistakes: Vec<SceneError> = mistakes.map(|mistake| draft.places.locate(mistake)).collect();
+    let mut mistakes: Vec<SceneError> = mistakes.map(|mistake| draft.places.locate(mistake)).collect();
+    drop_repeated(&mut mistakes);
     if !mistakes.is_empty() {
         return Err(mistakes);
     }
     notes.extend(draft.scene.notes());
     Ok(notes)
+}
+
+/// Leaves the first of mistakes that are alike: those of a row that the deck repeats.
+fn drop_repeated(mistakes: &mut Vec<SceneError>) {
+    let mut known: Vec<SceneError> = Vec::new();
+    mistakes.retain(|mistake| {
+        let is_new = !known.contains(mistake);
+        if is_new {
+            known.push(mistake.clone());
+        }
+        is_new
+    });
 }
 
 /// Takes the greatest of the soundings as the depth for waves, where a deck gives no other.

@@ -90,15 +90,20 @@ pub fn open_folder(path: &Path) -> Result<(), OutputError> {
     })
 }
 
-/// Removes what this process has not written to its end in a folder of a run.
+/// Removes what this process has not written to its end in a folder of a run, and beside the files that links in it lead to.
 pub fn remove_partial(folder: &Path) {
     let ending = partial_ending();
     for folder in [folder.to_path_buf(), folder.join(vtk::FRAME_FOLDER)] {
         for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
-            if entry.file_name().to_string_lossy().ends_with(&ending) {
-                // A remainder that cannot be removed does not look complete.
-                let _ = fs::remove_file(entry.path());
-            }
+            let path = entry.path();
+            // A remainder that cannot be removed does not look complete.
+            let _ = if path.is_symlink() {
+                target_of(&path).and_then(|target| fs::remove_file(partial_name(&target)))
+            } else if entry.file_name().to_string_lossy().ends_with(&ending) {
+                fs::remove_file(path)
+            } else {
+                Ok(())
+            };
         }
     }
 }
@@ -285,6 +290,24 @@ mod tests {
         assert!(!fs::symlink_metadata(at("socket")).unwrap().is_file());
         assert!(!fs::metadata("/dev/null").unwrap().is_file());
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 8);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn the_remainder_of_a_file_that_a_link_leads_to_is_removed() {
+        use std::os::unix::fs::symlink;
+        let [folder, elsewhere] = [(), ()].map(|()| tempfile::tempdir().unwrap());
+        let place = |name: &str| elsewhere.path().join(name);
+        for (link, target) in [("new.fmu", "later.fmu"), ("old.fmu", "earlier.fmu")] {
+            symlink(place(target), folder.path().join(link)).unwrap();
+            fs::write(partial_name(&place(target)), "half").unwrap();
+        }
+        fs::write(place("earlier.fmu"), "whole").unwrap();
+        remove_partial(folder.path());
+        let left = fs::read_dir(elsewhere.path()).unwrap();
+        let left: Vec<_> = left.map(|entry| entry.unwrap().file_name()).collect();
+        assert_eq!(left, ["earlier.fmu"]);
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
     }
 
     #[test]

@@ -285,7 +285,7 @@ impl Table {
         let translation = || moved.iter().all(|column| column.entry <= 3);
         match named == 0 && complete && (moved.len() == 6 || translation()) {
             true => Ok(()),
-            false => Err(unknown_column(row, named > 0)),
+            false => Err(unknown_column(row, true)),
         }
     }
 

@@ -52,6 +52,17 @@ impl Scene {
         for (i, point) in self.points.iter().enumerate() {
             note_point(self, &format!("points[{i}]"), point, &mut notes);
         }
+        for (i, line) in self.lines.iter().enumerate() {
+            if chord(self, line).is_some_and(|chord| chord <= ENDS_APART * line.length()) {
+                say(
+                    &mut notes,
+                    format!("lines[{i}]"),
+                    "both ends are at one place: it hangs in a loop",
+                );
+            }
+        }
+        note_names(self, &mut notes);
+        note_twins(self, &mut notes);
         if let Some(waves) = self.waves() {
             note_waves(self, waves, &mut notes);
         }
@@ -179,6 +190,49 @@ fn note_point(scene: &Scene, at: &str, point: &Point, notes: &mut Vec<Note>) {
             "lies {} m below the seabed there: nodes next to it are pushed up", number(buried);
         "force" if point.force.is_some() && point.kind != PointKind::Free =>
             "a force on a point that forces do not move only changes the reaction of its support";
+    }
+}
+
+/// Distance of ends that are at one place, over the length of the line [-].
+const ENDS_APART: f64 = 1e-6;
+
+/// Lines of the same sections between the same places, to a micrometre, as a row that is written or repeated twice makes them.
+fn note_twins(scene: &Scene, notes: &mut Vec<Note>) {
+    let mut known: std::collections::BTreeMap<String, &Line> = std::collections::BTreeMap::new();
+    for (i, line) in scene.lines.iter().enumerate() {
+        let ends = [&line.from, &line.to].map(|name| reference_position(scene, scene.point(name)?));
+        let [Some(a), Some(b)] = ends else { continue };
+        let place =
+            format!("{:.6?} {:.6?}", a.map(|x| x + 0.0), b.map(|x| x + 0.0)).replace("-0.000000", "0.000000");
+        let first = known.entry(place).or_insert(line);
+        if first.name != line.name && first.sections == line.sections {
+            let text = format!(
+                "lies where {} does, with the same sections: their forces add up",
+                first.name
+            );
+            say(notes, format!("lines[{i}]"), text);
+        }
+    }
+}
+
+/// Names of points, lines and vessels that are alike but for small and great letters.
+fn note_names(scene: &Scene, notes: &mut Vec<Note>) {
+    let points = scene.points.iter().map(|point| &point.name).enumerate();
+    let lines = scene.lines.iter().map(|line| &line.name).enumerate();
+    let vessels = scene.vessels.iter().map(|vessel| &vessel.name).enumerate();
+    let points = points.map(|(i, name)| (format!("points[{i}].name"), name));
+    let lines = lines.map(|(i, name)| (format!("lines[{i}].name"), name));
+    let vessels = vessels.map(|(i, name)| (format!("vessels[{i}].name"), name));
+    let mut known = std::collections::BTreeMap::new();
+    for (at, name) in points.chain(lines).chain(vessels) {
+        let first = known.entry(name.to_lowercase()).or_insert(name);
+        if *first != name {
+            say(
+                notes,
+                at,
+                format!("\"{name}\" and \"{first}\" differ in small and great letters alone"),
+            );
+        }
     }
 }
 

@@ -1,4 +1,4 @@
-//! Tables in time that end before the run does, or begin after it.
+//! Tables in time that end before the run does, begin after it, have a gap, or hold positions in place of displacements.
 
 use super::check::quantity;
 use super::notes::Note;
@@ -8,9 +8,56 @@ use super::{MotionPath, Scene, TimeFunction};
 /// Remarks on them, one a table.
 pub(super) fn notes(scene: &Scene) -> Vec<Note> {
     let duration = scene.output.duration;
-    let motions = motions(scene).filter_map(|(at, motion)| note_motion(at, motion, duration));
+    let ends = motions(scene).filter_map(|(at, motion)| note_motion(at, motion, duration));
     let functions = functions(scene).filter_map(|(at, f)| note_function(at, f, duration));
-    motions.chain(functions).collect()
+    let gaps = motions(scene).filter_map(|(at, motion)| note_gap(at, motion.rows()?));
+    let absolute = motions(scene).filter_map(|(at, motion)| note_absolute(scene, &at, motion.rows()?));
+    ends.chain(functions).chain(gaps).chain(absolute).collect()
+}
+
+/// Rows from which on a table is a record [-].
+const RECORD_ROWS: usize = 20;
+/// Time between two rows of a record that is a gap, over the median of all [-].
+const GAP: f64 = 10.0;
+/// Distance of the first row from the position of what is moved that is taken for none, over that position's from the origin [-].
+const NEAR: f64 = 0.1;
+
+/// A record that moves on over a gap.
+fn note_gap(at: String, rows: &[[f64; 7]]) -> Option<Note> {
+    if rows.len() < RECORD_ROWS {
+        return None;
+    }
+    let mut steps: Vec<f64> = rows.windows(2).map(|pair| pair[1][0] - pair[0][0]).collect();
+    let (_, median, _) = steps.select_nth_unstable_by(rows.len() / 2 - 1, f64::total_cmp);
+    let limit = GAP * *median;
+    let gap = |pair: &&[[f64; 7]]| pair[1][0] - pair[0][0] > limit && pair[0][1..] != pair[1][1..];
+    let [before, after] = rows.windows(2).find(gap)? else {
+        return None;
+    };
+    let [from, to, usual] = [before[0], after[0], limit / GAP].map(|time| quantity(time, "s"));
+    let text = format!(
+        "the table has no row between {from} and {to}, where most stand {usual} apart: the motion goes smoothly from one to the other"
+    );
+    Some(Note::new(at, text))
+}
+
+/// A table that begins where a body or point is, as seen from the origin.
+fn note_absolute(scene: &Scene, at: &str, rows: &[[f64; 7]]) -> Option<Note> {
+    let name = at.strip_prefix("motion.")?.trim_matches('"');
+    let mut vessels = scene.vessels.iter().filter(|vessel| vessel.name == name);
+    let vessel = vessels.next().map(|vessel| vessel.position);
+    let place = vessel.or_else(|| Some(scene.point(name)?.position))?;
+    let [_, x, y, z, ..] = *rows.first()?;
+    let norm = |[x, y, z]: [f64; 3]| x.hypot(y).hypot(z);
+    let apart = norm([x - place[0], y - place[1], z - place[2]]);
+    (norm(place) >= 1.0 && apart <= NEAR * norm(place)).then(|| {
+        let [x, y, z] = [x, y, z].map(super::check::number);
+        let text = format!(
+            "the table begins at ({x}, {y}, {z}) m, about the position of {name}: its rows are displacements from there, and positions have to \
+             be written without it"
+        );
+        Note::new(at, text)
+    })
 }
 
 /// Motions of a scene by their key paths.
@@ -93,6 +140,47 @@ mod tests {
             said(&[5.0, 90.0]).unwrap(),
             "motion.f: the table begins at 5 s: until then it stays at its first row"
         );
+    }
+
+    #[test]
+    fn a_record_with_a_gap_is_remarked_on_and_a_table_that_holds_is_not() {
+        let record = |gap: f64, moves: f64| -> Vec<[f64; 7]> {
+            let row = |i: i32| {
+                [
+                    f64::from(i) + if i < 12 { 0.0 } else { gap },
+                    moves * f64::from(i),
+                    0.0,
+                    0.0,
+                    0.0,
+                    0.0,
+                    0.0,
+                ]
+            };
+            (0..30).map(row).collect()
+        };
+        let said = |gap, moves| note_gap("motion.f".into(), &record(gap, moves)).map(|note| note.text);
+        assert!(
+            said(100.0, 0.1)
+                .unwrap()
+                .contains("no row between 11 s and 112 s")
+        );
+        assert_eq!([said(5.0, 0.1), said(100.0, 0.0)], [None, None]);
+        let held = [[0.0; 7], [30.0; 7], [32.0; 7], [600.0; 7]];
+        assert_eq!(note_gap("motion.f".into(), &held), None);
+    }
+
+    #[test]
+    fn a_table_of_positions_in_place_of_displacements_is_remarked_on() {
+        let mut scene = Scene::default();
+        let place = [5.0, 0.0, -10.0];
+        scene.points.push(super::super::Point::at(
+            "f",
+            place,
+            super::super::PointKind::Coupled,
+        ));
+        let said = |x: f64, z: f64| note_absolute(&scene, "motion.f", &[[0.0, x, 0.0, z, 0.0, 0.0, 0.0]]);
+        assert!(said(5.3, -10.2).unwrap().text.contains("about the position of f"));
+        assert_eq!([said(0.0, 0.0), said(2.0, -1.0)], [None, None]);
     }
 
     #[test]

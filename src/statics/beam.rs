@@ -12,7 +12,7 @@
 
 mod coarse;
 
-use nalgebra::{Matrix3, Rotation3};
+use nalgebra::{Matrix3, Rotation3, Vector3};
 
 use crate::elements::beam::{BeamCase, BeamEnd, LoadShare, NodeSpring, end_hold, folded};
 use crate::math::pivoted_chain::PivotedChain;
@@ -55,6 +55,8 @@ const MOMENT_FREE: LoadShare = LoadShare {
     force: 1.0,
     moment: 0.0,
 };
+/// Part of a moment along a beam that is taken for rounding [-].
+const TORQUE_MIN: f64 = 1e-6;
 /// Turn of a clamp from one equilibrium to the next on the way to its prescribed attitude [rad].
 const CLAMP_TURN: f64 = 0.25;
 
@@ -96,7 +98,11 @@ pub fn rest(model: &Model, index: usize, state: &mut State, t: f64) -> Result<()
         bodies: line.ends.map(|point| model.points[point].free()),
     };
     let found = BeamStatics::default().solve_from_coarser(&case, &sections);
-    let sections = found.map_err(|failure| refusal(&line.name, &case, failure))?;
+    let sections = found.map_err(|failure| {
+        let spins = |torque| Failure::Spins { torque };
+        let failure = BeamStatics::torque(&case, &sections).map_or(failure, spins);
+        refusal(&line.name, &case, failure)
+    })?;
     let line_state = &mut state.lines[index];
     for (i, section) in sections.iter().enumerate() {
         line_state.position[i] = section.position;
@@ -127,6 +133,7 @@ fn refusal(line: &str, case: &BeamCase, failure: Failure) -> StaticsError {
             residual,
             iterations: solves,
         },
+        Failure::Spins { torque } => StaticsError::BeamSpins { line, torque },
         Failure::Folded { node } => StaticsError::BeamFolded { line, node },
     }
 }
@@ -142,6 +149,12 @@ enum Failure {
         residual: f64,
         /// Linear solves spent [-].
         solves: usize,
+    },
+    /// The moments on the ends, none of which is clamped, have a part along the beam: at rest without them it has no torsion to hold it, since the
+    /// torsion of a beam of round section is the same all along, and nothing at ends that turn freely.
+    Spins {
+        /// Part of the moments along the beam [N m].
+        torque: f64,
     },
     /// The equilibrium has an element bent or twisted beyond the resolution of two sections.
     Folded {
@@ -225,6 +238,30 @@ impl BeamStatics {
         let mut sections = start.to_vec();
         self.turn_clamps_in(case, &mut sections)?;
         Ok(sections)
+    }
+
+    /// Part of the moments on the ends along the beam where it rests without them [N m], where no end is clamped and it is more than rounding.
+    fn torque(case: &BeamCase, start: &[Section]) -> Option<f64> {
+        let moments = case.ends.each_ref().map(|end| split(&end.load).1);
+        let greatest = moments[0].norm().max(moments[1].norm());
+        if case.ends.iter().any(|end| end.held[3]) || greatest == 0.0 {
+            return None;
+        }
+        let across = BeamCase {
+            ends: case.ends.each_ref().map(|end| BeamEnd {
+                load: join(split(&end.load).0, Vector3::zeros()),
+                ..*end
+            }),
+            ..case.clone()
+        };
+        let sections = BeamStatics::default().solve_from_coarser(&across, start).ok()?;
+        let last = sections.len() - 1;
+        let along = [(0, 1), (last - 1, last)].map(|(from, to)| {
+            let (from, to): (&Section, &Section) = (&sections[from], &sections[to]);
+            (to.position - from.position).normalize()
+        });
+        let torque = (moments[0].dot(&along[0]) + moments[1].dot(&along[1])).abs();
+        (torque > TORQUE_MIN * greatest).then_some(torque)
     }
 
     /// Finds the equilibrium with the clamped ends along their neighbours, then turns them step by step to their prescribed attitudes.

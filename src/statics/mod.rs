@@ -73,6 +73,17 @@ pub enum StaticsError {
         /// Greatest force out of balance [N].
         residual: f64,
     },
+    /// A moment on the end of a beam has a part along it, and no end is clamped.
+    #[error(
+        "line \"{line}\": no equilibrium: the moment on its ends has a part of {torque:.3e} N m along the beam, which spins about itself, since \
+         neither end is clamped; clamp one, give a moment across the beam, or `run` it from its `initial` shape"
+    )]
+    BeamSpins {
+        /// Name of the line.
+        line: String,
+        /// Part of the moments along the beam [N m].
+        torque: f64,
+    },
     /// The equilibrium of a beam bends or twists an element beyond what its ends can tell.
     #[error(
         "line \"{line}\", node {node}: at rest the beam turns by more than 60 degrees from this node to the next; use more elements \

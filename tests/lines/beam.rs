@@ -332,6 +332,37 @@ fn a_beam_that_drops_to_the_seabed_finds_the_same_rest_on_every_mesh() {
     }
 }
 
+/// The end hangs a little above where the rest lies, so that the moment about the vertical has a part along it.
+#[test]
+fn a_moment_along_a_beam_that_no_end_holds_is_why_there_is_no_equilibrium() {
+    let scene = |moment: &str, keys: &str| {
+        draft(
+            "seabed = { depth = 60.0 }
+            line_types.cable = { mass = 30.0, weight = 117.0, diameter = 0.15, axial_stiffness = 4e8, model = 'beam', \
+            bending_stiffness = 1e4, shear_stiffness = 1e8, torsional_stiffness = 1e4, rotary_inertia = 0.1 }",
+        )
+        .fixed("a", [0.0, 0.0, -60.0])
+        .free("b", [60.0, 0.0, -5.0])
+        .with("free = ['x', 'z'], mass = 10.0")
+        .with(moment)
+        .line("l", ["a", "b"], "cable", 100.0, 20)
+        .with(keys)
+        .scene()
+    };
+    let about_z = "moment = { z = -80.0 }";
+    let error = Simulation::new(&scene(about_z, "")).unwrap_err().to_string();
+    assert!(
+        error.contains("N m along the beam, which spins about itself"),
+        "{error}"
+    );
+    for (moment, keys) in [
+        ("moment = { y = -80.0 }", ""),
+        (about_z, "clamped_a = [1.0, 0.0, 0.0]"),
+    ] {
+        start(&scene(moment, keys));
+    }
+}
+
 #[test]
 fn a_beam_in_water_over_a_bed_has_an_energy_balance_that_closes() {
     let mut beam = following(&balanced(mooring_beam(1e5)));

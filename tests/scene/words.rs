@@ -87,6 +87,38 @@ fn notes_speak_of_what_is_unused_or_strange() {
 }
 
 #[test]
+fn rows_that_look_written_twice_or_closed_by_mistake_are_noted() {
+    let rope = "line_types.rope = { mass = 1.0, axial_stiffness = 1e4 }";
+    let ends = draft(rope)
+        .fixed("a", [0.0; 3])
+        .fixed("A", [9.0, 0.0, 0.0])
+        .fixed("c", [9.0, 0.0, 1e-9]);
+    let lines = ends
+        .line("one", ["a", "A"], "rope", 10.0, 4)
+        .line("two", ["a", "c"], "rope", 10.0, 4)
+        .line("longer", ["a", "c"], "rope", 11.0, 4)
+        .line("loop", ["A", "c"], "rope", 10.0, 4);
+    let notes = lines.scene().notes();
+    let notes: Vec<String> = notes.iter().map(ToString::to_string).collect();
+    let wanted = [
+        "lines[3]: both ends are at one place: it hangs in a loop",
+        "points[1].name: \"A\" and \"a\" differ in small and great letters alone",
+        "lines[1]: lies where one does, with the same sections: their forces add up",
+    ];
+    for part in wanted {
+        assert_eq!(
+            notes.iter().filter(|note| *note == part).count(),
+            1,
+            "{part}: {notes:?}"
+        );
+    }
+    assert!(
+        !notes.iter().any(|note| note.starts_with("lines[2]")),
+        "{notes:?}"
+    );
+}
+
+#[test]
 fn a_motion_is_described_with_its_rotations_whatever_it_is_made_of() {
     let with = |motion: &str| {
         let rope = "line_types.rope = { mass = 1.0, axial_stiffness = 1e4 }\nvessels = [{ name = 'ship' }]";

@@ -2,7 +2,7 @@
 
 use crate::common::*;
 use approx::assert_relative_eq;
-use moorline::model::End;
+use moorline::model::{End, Model};
 use moorline::scene::{Friction, Integrator, Scene};
 use moorline::simulation::Simulation;
 use nalgebra::Vector3;
@@ -285,6 +285,32 @@ fn soundings_of_a_plane_are_that_plane() {
         let [(on_plane, _), (on_grid, _)] =
             [plane, grid.as_str()].map(|bed| swung(chain(bed, 560.0, 20), integrator, 0.02, [0.6, 0.8], 100));
         assert_alike(&on_plane, &on_grid, 1e-8);
+    }
+}
+
+/// The depth that stands beside soundings is that for waves.
+#[test]
+fn the_mesh_of_a_cable_over_soundings_follows_them_and_not_the_depth() {
+    let lengths = |bed: &str| {
+        let scene = draft(format!(
+            "seabed = {{ {bed} }}
+            line_types.cable = {{ mass = 100.0, weight = 800.0, diameter = 0.1, axial_stiffness = 5e8, bending_stiffness = 1e6 }}"
+        ))
+        .fixed("anchor", [600.0, 0.0, -100.0])
+        .coupled("fairlead", [0.0, 0.0, -10.0])
+        .line("l", ["anchor", "fairlead"], "cable", 620.0, None)
+        .scene();
+        let model = Model::new(&scene).unwrap();
+        model.lines[0].segments.length.clone()
+    };
+    let sounded = |depth: f64| {
+        let level = soundings(|_, _| 100.0);
+        lengths(&format!("depth = {depth}, {level}"))
+    };
+    let level = lengths("depth = 100.0");
+    assert!(level.len() > 60, "{} elements", level.len());
+    for depth in [100.0, 40.0, 300.0] {
+        assert_eq!(sounded(depth), level, "{depth} m");
     }
 }
 

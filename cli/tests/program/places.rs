@@ -70,6 +70,21 @@ fn a_file_that_cannot_be_written_where_it_is_wanted_is_wrong_input() {
     );
 }
 
+#[test]
+fn the_file_that_is_read_is_not_written_over() {
+    let folder = folder_with(&[("oc3.map", MAP)]);
+    for command in [
+        "convert oc3.map --depth 320 -o ./oc3.map",
+        "fmu oc3.map --depth 320 -o oc3.map",
+    ] {
+        folder.refused(
+            command,
+            &["oc3.map is the file that is read: give another name to write"],
+        );
+    }
+    assert_eq!(folder.read("oc3.map"), MAP);
+}
+
 /// Sends a signal to a program.
 #[cfg(unix)]
 fn send(signal: &str, child: &Child) {

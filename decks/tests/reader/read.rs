@@ -156,6 +156,21 @@ fn a_map_deck_repeats_its_lines_and_has_the_published_tension_of_oc3() {
 }
 
 #[test]
+fn a_map_deck_that_is_repeated_by_an_angle_twice_is_noted() {
+    for (angles, twins) in [
+        ("repeat 120 240", 0),
+        ("repeat 120 120", 1),
+        ("repeat 0", 1),
+        ("repeat 360", 1),
+    ] {
+        let loaded = load_deep(&with(MAP, "repeat 120 240", angles)).unwrap();
+        let alike =
+            |note: &&moorline::scene::Note| note.text.contains("with the same sections: their forces add up");
+        assert_eq!(loaded.notes.iter().filter(alike).count(), twins, "{angles}");
+    }
+}
+
+#[test]
 fn the_words_for_a_map_deck_say_that_it_is_quasi_static() {
     assert_says(
         &load_deep(MAP).unwrap().scene.in_words(),

@@ -46,6 +46,17 @@ fn advice_on_what_a_deck_leaves_to_its_host_is_that_of_every_command() {
 }
 
 #[test]
+fn a_mistake_in_a_row_that_a_map_deck_repeats_is_said_once() {
+    for (right, wrong) in [
+        ("902.2", "-902.2"),
+        ("2     Vessel    5.2     0.0    -70.0", "2 Vessel 853.87 0 -320"),
+    ] {
+        let said = said_by(load_deep(&with(MAP, right, wrong)));
+        assert_eq!(said.trim_end().lines().count(), 1, "{said}");
+    }
+}
+
+#[test]
 fn mistakes_of_a_stage_are_reported_together_in_the_order_of_the_file() {
     let text = with(OPENFAST, "113.35", "heavy");
     let text = with(&text, "1    fixed", "1    moored");

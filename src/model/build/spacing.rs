@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::{LineLaw, line_law};
+use super::{Bottom, LineLaw, line_law};
 use crate::model::mesh::{Place, Refinement, line_elements};
 use crate::model::{Line, Model, Point, Role, Vessel};
 use crate::physics::catenary::{self, Bed, Catenary};
@@ -105,7 +105,20 @@ pub(super) fn refinements(
     if laws.iter().all(|law| law.bending_stiffness == 0.0) {
         return Vec::new();
     }
-    let (shapes, known) = shapes(scene, line, ends, vessels, laws);
+    let seabed = scene.seabed.as_ref();
+    let bottom = seabed.and_then(super::bottom);
+    let bed = |place: Vector3<f64>| {
+        let height = match &bottom {
+            Some(Bottom {
+                ground, level: false, ..
+            }) => ground.height(place.x, place.y),
+            _ => -seabed?.depth,
+        };
+        let friction = seabed?.friction.axial;
+        let height = height - place.z;
+        Some(Bed { height, friction })
+    };
+    let (shapes, known) = shapes(scene, ends, vessels, |a, b| hang(line, laws, bed(a), b - a));
     let total: f64 = line.sections.iter().map(|section| section.length).sum();
     let mut wanted = Vec::new();
     let greatest = |of: fn(&Catenary) -> f64| shapes.iter().map(of).fold(0.0, f64::max);
@@ -158,21 +171,20 @@ pub(super) fn refinements(
     wanted
 }
 
-/// The line's closed-form catenaries at the reference and in the course of the scene's motion, and whether that is known.
+/// The catenaries that `hang` gives between the ends of a line at the reference and in the course of the scene's motion, and whether that is known.
 fn shapes(
     scene: &Scene,
-    line: &scene::Line,
     ends: [&Point; 2],
     vessels: &[Vessel],
-    laws: &[LineLaw],
+    hang: impl Fn(Vector3<f64>, Vector3<f64>) -> Option<Catenary>,
 ) -> (Vec<Catenary>, bool) {
     let paths = ends.map(|point| path(scene, vessels, point));
     let [a, b] = ends.map(|point| point.reference);
     let known = paths.iter().any(|path| path.len() > 1);
-    let mut shapes = vec![hang(scene, line, laws, a, b)];
+    let mut shapes = vec![hang(a, b)];
     for k in 0..if known { MOMENTS } else { 0 } {
         let [a, b] = [0, 1].map(|end| paths[end][k.min(paths[end].len() - 1)]);
-        shapes.push(hang(scene, line, laws, a, b));
+        shapes.push(hang(a, b));
     }
     (shapes.into_iter().flatten().collect(), known)
 }
@@ -195,14 +207,8 @@ fn path(scene: &Scene, vessels: &[Vessel], point: &Point) -> Vec<Vector3<f64>> {
     places.unwrap_or_else(|| vec![point.reference])
 }
 
-/// The closed-form catenary of a line between two places [m], where it has one.
-fn hang(
-    scene: &Scene,
-    line: &scene::Line,
-    laws: &[LineLaw],
-    a: Vector3<f64>,
-    b: Vector3<f64>,
-) -> Option<Catenary> {
+/// The closed-form catenary of a line over a chord from end A [m], where it has one.
+fn hang(line: &scene::Line, laws: &[LineLaw], bed: Option<Bed>, chord: Vector3<f64>) -> Option<Catenary> {
     let sections: Vec<catenary::Section> = line
         .sections
         .iter()
@@ -213,11 +219,7 @@ fn hang(
             axial_stiffness: law.axial_stiffness,
         })
         .collect();
-    let bed = scene.seabed.as_ref().map(|bed| Bed {
-        height: -bed.depth - a.z,
-        friction: bed.friction.axial,
-    });
-    catenary::solve(&sections, (b - a).xy().norm(), b.z - a.z, bed).ok()
+    catenary::solve(&sections, chord.xy().norm(), chord.z, bed).ok()
 }
 
 /// Ranges of arc length [m] over which the ends of what lies on the bed wander; the ends of the line are none.
