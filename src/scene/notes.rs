@@ -1,5 +1,6 @@
 //! Remarks on scenes that can be used as they are.
 
+use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::fmt;
 
@@ -53,12 +54,9 @@ impl Scene {
             note_point(self, &format!("points[{i}]"), point, &mut notes);
         }
         for (i, line) in self.lines.iter().enumerate() {
-            if chord(self, line).is_some_and(|chord| chord <= ENDS_APART * line.length()) {
-                say(
-                    &mut notes,
-                    format!("lines[{i}]"),
-                    "both ends are at one place: it hangs in a loop",
-                );
+            let is_loop = chord(self, line).is_some_and(|chord| chord <= ENDS_APART * line.length());
+            rules! { &mut notes, &format!("lines[{i}]");
+                "" if is_loop => "both ends are at one place: it hangs in a loop";
             }
         }
         note_names(self, &mut notes);
@@ -196,42 +194,36 @@ fn note_point(scene: &Scene, at: &str, point: &Point, notes: &mut Vec<Note>) {
 /// Distance of ends that are at one place, over the length of the line [-].
 const ENDS_APART: f64 = 1e-6;
 
-/// Lines of the same sections between the same places, to a micrometre, as a row that is written or repeated twice makes them.
+/// Notes lines of the same sections between the same places, to a micrometre: a row that is written or repeated twice makes them.
 fn note_twins(scene: &Scene, notes: &mut Vec<Note>) {
-    let mut known: std::collections::BTreeMap<String, &Line> = std::collections::BTreeMap::new();
+    let mut known: BTreeMap<[[i64; 3]; 2], &Line> = BTreeMap::new();
     for (i, line) in scene.lines.iter().enumerate() {
         let ends = [&line.from, &line.to].map(|name| reference_position(scene, scene.point(name)?));
         let [Some(a), Some(b)] = ends else { continue };
-        let place =
-            format!("{:.6?} {:.6?}", a.map(|x| x + 0.0), b.map(|x| x + 0.0)).replace("-0.000000", "0.000000");
-        let first = known.entry(place).or_insert(line);
-        if first.name != line.name && first.sections == line.sections {
-            let text = format!(
-                "lies where {} does, with the same sections: their forces add up",
-                first.name
-            );
-            say(notes, format!("lines[{i}]"), text);
+        let micrometres = |x: f64| (1e6 * x).round() as i64;
+        let first = known
+            .entry([a, b].map(|end| end.map(micrometres)))
+            .or_insert(line);
+        let is_twin = first.name != line.name && first.sections == line.sections;
+        rules! { notes, &format!("lines[{i}]");
+            "" if is_twin => "lies where {} does, with the same sections: their forces add up", first.name;
         }
     }
 }
 
-/// Names of points, lines and vessels that are alike but for small and great letters.
+/// Notes names of points, lines and vessels that differ in small and great letters alone.
 fn note_names(scene: &Scene, notes: &mut Vec<Note>) {
     let points = scene.points.iter().map(|point| &point.name).enumerate();
     let lines = scene.lines.iter().map(|line| &line.name).enumerate();
     let vessels = scene.vessels.iter().map(|vessel| &vessel.name).enumerate();
-    let points = points.map(|(i, name)| (format!("points[{i}].name"), name));
-    let lines = lines.map(|(i, name)| (format!("lines[{i}].name"), name));
-    let vessels = vessels.map(|(i, name)| (format!("vessels[{i}].name"), name));
-    let mut known = std::collections::BTreeMap::new();
+    let points = points.map(|(i, name)| (format!("points[{i}]"), name));
+    let lines = lines.map(|(i, name)| (format!("lines[{i}]"), name));
+    let vessels = vessels.map(|(i, name)| (format!("vessels[{i}]"), name));
+    let mut known = BTreeMap::new();
     for (at, name) in points.chain(lines).chain(vessels) {
         let first = known.entry(name.to_lowercase()).or_insert(name);
-        if *first != name {
-            say(
-                notes,
-                at,
-                format!("\"{name}\" and \"{first}\" differ in small and great letters alone"),
-            );
+        rules! { notes, &at;
+            "name" if *first != name => "\"{name}\" and \"{first}\" differ in small and great letters alone";
         }
     }
 }
