@@ -105,19 +105,7 @@ pub(super) fn refinements(
     if laws.iter().all(|law| law.bending_stiffness == 0.0) {
         return Vec::new();
     }
-    let seabed = scene.seabed.as_ref();
-    let bottom = seabed.and_then(super::bottom);
-    let bed = |place: Vector3<f64>| {
-        let height = match &bottom {
-            Some(Bottom {
-                ground, level: false, ..
-            }) => ground.height(place.x, place.y),
-            _ => -seabed?.depth,
-        };
-        let friction = seabed?.friction.axial;
-        let height = height - place.z;
-        Some(Bed { height, friction })
-    };
+    let bed = bed_below(scene);
     let (shapes, known) = shapes(scene, ends, vessels, |a, b| hang(line, laws, bed(a), b - a));
     let total: f64 = line.sections.iter().map(|section| section.length).sum();
     let mut wanted = Vec::new();
@@ -169,6 +157,23 @@ pub(super) fn refinements(
         }
     }
     wanted
+}
+
+/// Seabed below a place [m], by the soundings where there are some; none without a seabed.
+fn bed_below(scene: &Scene) -> impl Fn(Vector3<f64>) -> Option<Bed> {
+    let seabed = scene.seabed.as_ref();
+    let bottom = seabed.and_then(super::bottom);
+    move |place| {
+        let height = match &bottom {
+            Some(Bottom {
+                ground, level: false, ..
+            }) => ground.height(place.x, place.y),
+            _ => -seabed?.depth,
+        };
+        let friction = seabed?.friction.axial;
+        let height = height - place.z;
+        Some(Bed { height, friction })
+    }
 }
 
 /// The catenaries that `hang` gives between the ends of a line at the reference and in the course of the scene's motion, and whether that is known.
