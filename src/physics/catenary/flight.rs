@@ -1,15 +1,15 @@
-//! A stretch of uniform line in free flight: nothing acts on it between its ends but its own weight.
+//! A stretch of uniform line in free flight, loaded between its ends by its own weight only.
 //!
 //! With H the horizontal tension, V₀ the vertical tension at the start, W = wℓ, Vₘ = V₀ + W/2, σ the mean of the two end
 //! tensions and ε = W/2σ (derived in the module above, section "One stretch"):
 //!
 //! x = Hℓ (α/σ + 1/EA),   z = Vₘℓ (1/σ + 1/EA),   α = atanh(ε)/ε,   ∫T ds = ½ℓ (σ + (Vₘ² + αH²)/σ)
 //!
-//! No term subtracts nearly equal numbers; W = 0 and W < 0 need no case of their own, and H = 0 is the vertical line.
+//! No term subtracts nearly equal numbers; W = 0 and W < 0 need no separate case, and H = 0 is the vertical line.
 
 use super::Section;
 
-/// Below this ε the formula tanh λ = ε is used for λ, above it the one for sinh λ, which does not see 1 − ε.
+/// Value of ε below which λ follows from tanh λ = ε; above it sinh λ is used, whose formula is free of 1 − ε.
 const STEEP: f64 = 0.75;
 
 /// A stretch of uniform line in free flight.
@@ -64,7 +64,7 @@ impl Flight {
         (tension(self.vertical), tension(self.vertical_end()))
     }
 
-    /// α = λ/ε: how much longer than Hℓ/σ the geometric span is.
+    /// α = λ/ε: ratio of the geometric span to Hℓ/σ.
     fn alpha(&self, tension_a: f64, tension_b: f64, sigma: f64) -> f64 {
         let epsilon = (0.5 * self.weight * self.length / sigma).abs();
         if epsilon < 1e-4 {

@@ -1,11 +1,11 @@
 //! A line of several sections, with or without a bed under it: a march from A to B, nested in one scalar search.
 //!
-//! Given the horizontal tension at A the line is laid out piece by piece. From A (or from the bed) it flies on; the one free number
-//! of a flight, its vertical tension at A or the weight left on the bed before it lifts off, is the greatest for which
-//! it runs nowhere below the bed and ends nowhere below B: a monotone function, one root. The first
-//! constraint that holds with equality says where the flight ends: at B, or touching down (V = 0) in the section concerned,
-//! from which it lies until it lifts off again. This is gift wrapping, so any number of sections may float or sink and any number
-//! of stretches may lie on the bed.
+//! Given the horizontal tension at A the line is laid out piece by piece, starting with a flight from A (or from the
+//! bed). The one free number of a flight, its vertical tension at A or the weight left on the bed before it lifts
+//! off, is the greatest for which it runs nowhere below the bed and ends nowhere below B: a monotone function, one
+//! root. The first constraint that holds with equality determines the end of the flight: at B, or touching down (V =
+//! 0) in the section concerned, from which it lies until it lifts off again. This is gift wrapping, so any number of
+//! sections may float or sink and any number of stretches may lie on the bed.
 //!
 //! The span that results grows with the tension at A, which is found on a logarithmic scale. With friction and no
 //! tension left at A, the number searched is instead the material point s₀ up to which the bed holds all tension.
@@ -26,7 +26,7 @@ const LIMP_SHARE: f64 = 1e-40;
 /// Tension that counts as none, over the weights of the sections [-].
 const NOTHING_SHARE: f64 = 1e-30;
 
-/// Weight of a section that no other feels, over the weights of all: it is taken for weightless [-].
+/// Weight of a section below which it is treated as weightless, over the weights of all [-].
 const UNFELT_SHARE: f64 = 1e-22;
 
 /// Position error that counts as none, over the unstretched length [-].
@@ -38,7 +38,8 @@ const JUMP: f64 = 1e-9;
 /// Bound on the halvings of friction: the last is below rounding.
 const FRICTION_HALVINGS_MAX: usize = 60;
 
-/// Where the vertical tension at a section's end is below this share of the unknown one, it becomes the unknown [-].
+/// Ratio of the vertical tension at a section's end to the unknown one below which the former becomes the unknown
+/// [-].
 const REFERENCE_SHARE: f64 = 1e-3;
 
 /// Bound on the unknowns that a flight is solved for in turn.
@@ -70,19 +71,19 @@ struct Departure {
     horizontal: f64,
     /// Vertical tension at the start of section `reference` [N], the end of the line being the last.
     vertical: f64,
-    /// Chosen where the vertical tension is small, so that it is known there to all its digits.
+    /// Section at which the vertical tension is small, so that it is resolved there to all its digits.
     reference: usize,
-    /// Whether it leaves the bed: there V = 0.
+    /// True if the flight leaves the bed: there V = 0.
     from_bed: bool,
 }
 
-/// How a flight ends: None at B, else touching down in a section, at a distance from its start [m].
+/// End of a flight: None at B, else touching down in a section, at a distance from its start [m].
 type Touch = Option<(usize, f64)>;
 
 /// The tightest constraint of a flight.
 #[derive(Debug, Clone, Copy)]
 struct Flown {
-    /// Height to spare over it [m].
+    /// Clearance of the constraint [m].
     gap: f64,
     /// ∂gap/∂V [m/N].
     by_vertical: f64,
@@ -91,22 +92,22 @@ struct Flown {
     touch: Touch,
 }
 
-/// A stretch of sections that do not float, after a touchdown in the first of them.
+/// Stretch of sections that do not float, after a touchdown in the first of them.
 #[derive(Debug, Clone, Copy)]
 struct Run {
     /// Section after the last one.
     end: usize,
-    /// Weight before the touchdown, which tells it as a place [N].
+    /// Weight before the touchdown, which identifies its place [N].
     first: f64,
     /// Weight before the end [N].
     last: f64,
-    /// Section in which tension begins.
+    /// First section with tension.
     tight: usize,
     /// Length from there to the end of that section [m].
     rest: f64,
 }
 
-/// What the outer search changes.
+/// Variables of the outer search.
 #[derive(Debug, Clone, Copy)]
 struct Hold {
     /// Horizontal tension at A [N].

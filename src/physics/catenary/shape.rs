@@ -1,9 +1,9 @@
-//! A solved line as a chain of pieces, and what can be read from it: a point, the sag, lengths.
+//! A solved line as a chain of pieces, and the quantities read from it: a point, the sag, lengths.
 
 use super::flight::Flight;
 use super::{Point, Section};
 
-/// What carries a piece.
+/// Support of a piece.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Kind {
     /// Its ends only.
@@ -24,7 +24,7 @@ pub(super) enum Kind {
     },
 }
 
-/// A piece of the line with what carries it and where it starts.
+/// Piece of the line with its support and start.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Piece {
     /// Unstretched arc length at the start, from end A [m].
@@ -68,7 +68,7 @@ impl Piece {
         }
     }
 
-    /// What carries it, from its end to its start.
+    /// Support, from the piece's end to its start.
     fn kind_reversed(&self) -> Kind {
         match self.kind {
             Kind::Flight(flight) => Kind::Flight(Flight {
@@ -116,12 +116,12 @@ impl Piece {
 #[derive(Debug, Clone, Default)]
 pub(super) struct Shape {
     pub pieces: Vec<Piece>,
-    /// Where the last piece ends: s, x, z [m].
+    /// End of the last piece: s, x, z [m].
     pub end: (f64, f64, f64),
 }
 
 impl Shape {
-    /// Forgets the pieces, keeps their memory.
+    /// Removes the pieces and keeps their allocation.
     pub fn clear(&mut self) {
         self.pieces.clear();
         self.end = (0.0, 0.0, 0.0);

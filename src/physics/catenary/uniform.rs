@@ -1,4 +1,4 @@
-//! The uniform line held at its two ends, nothing else touching it: one scalar equation for every case.
+//! The uniform line held at its two ends, in contact with nothing else: one scalar equation for every case.
 //!
 //! With W = wL, κ = |W|/2EA and the unknown λ > 0 (half the difference of asinh(V/H) between the ends):
 //!
@@ -48,7 +48,7 @@ pub(super) struct EndForces {
 }
 
 impl EndForces {
-    /// Those of the same line whose ends have changed names.
+    /// End forces of the same line with its ends exchanged.
     pub fn reversed(self) -> Self {
         EndForces {
             horizontal_a: self.horizontal_b,
