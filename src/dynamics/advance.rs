@@ -30,7 +30,7 @@ pub struct Counters {
     pub solves: usize,
 }
 
-/// What a communication step did.
+/// Result of a communication step.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Done {
     /// Work of the integrators.
@@ -50,7 +50,7 @@ pub struct Integrators {
     before: State,
     /// Paths of the winches, by line; empty where there are none.
     winch_paths: Vec<AxisPath>,
-    /// Whether the leapfrogs still hold the state that they handed back last.
+    /// True if the leapfrogs still hold the state that they handed back last.
     holds: bool,
     threads: ThreadPool,
     estimate: WorkEstimate,
@@ -97,7 +97,8 @@ impl Integrators {
         }
     }
 
-    /// Must be told when the state is another than the one that [`Self::advance`] left.
+    /// Discards the leapfrogs' copy of the state. Required when the state is another than the one that
+    /// [`Self::advance`] left.
     pub fn forget(&mut self) {
         self.holds = false;
     }
@@ -156,10 +157,10 @@ impl Integrators {
         next.clone_from(state);
     }
 
-    /// Advances `state` by `length` [s]; `held` tells the kinematics of held points in that time.
+    /// Advances `state` by `length` [s]; `held` returns the kinematics of held points in that time.
     ///
     /// # Errors
-    /// The state is untouched; the error says where and what to try.
+    /// The state is untouched; the error names the place and a remedy.
     pub fn advance(
         &mut self,
         model: &Model,
@@ -173,7 +174,8 @@ impl Integrators {
         }
     }
 
-    /// [`Self::advance`] in waves: in parts where the step is longer than what waves do can be foretold for.
+    /// [`Self::advance`] in waves: in parts where the step is longer than the span over which the waves can be
+    /// extrapolated.
     fn advance_in(
         &mut self,
         waves: &Waves,
@@ -249,7 +251,7 @@ impl Integrators {
         self.sea.renew((model, waves), state, step, threads)
     }
 
-    /// Advances `state` by `length` [s], over which the motion by waves is known.
+    /// Advances `state` by `length` [s], with the wave kinematics of that time in place.
     fn pass(
         &mut self,
         model: &Model,
@@ -293,7 +295,7 @@ impl Integrators {
         Ok(total)
     }
 
-    /// Makes scratch for so many threads ready for a step from `state`.
+    /// Prepares scratch of this number of threads for a step from `state`.
     fn prepare_scratch(&mut self, state: &State, threads: usize) {
         while self.scratch.len() < threads {
             self.scratch.push(self.scratch[0].clone());
@@ -325,14 +327,14 @@ impl Integrators {
 }
 
 impl Done {
-    /// Adds what another network did in the same time.
+    /// Adds the result of another network for the same time.
     fn join(&mut self, other: Done) {
         self.counters.substeps = self.counters.substeps.max(other.counters.substeps);
         self.counters.solves += other.counters.solves;
         self.flow.add(other.flow);
     }
 
-    /// Adds what a later part of the step did.
+    /// Adds the result of a later part of the step.
     fn add(&mut self, other: Done) {
         self.counters.substeps += other.counters.substeps;
         self.counters.solves += other.counters.solves;

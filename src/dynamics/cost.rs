@@ -1,7 +1,8 @@
-//! What steps cost, roughly, for choices that depend on it: which integrator serves a network cheapest, and whether threads pay.
+//! Approximate cost of steps, for the choices that depend on it: the cheapest integrator of a network, and the use of
+//! threads.
 //!
-//! Times at a node, as the bench `step` measures them on whole communication steps of short lines; choices need their ratios, and
-//! orders of magnitude.
+//! Times per node, as the bench `step` measures them on whole communication steps of short lines; choices need their
+//! ratios and orders of magnitude only.
 
 use crate::model::{Model, Network};
 use crate::scene::Integrator;

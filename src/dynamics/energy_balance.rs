@@ -8,8 +8,8 @@
 //! Dissipation: drag at the velocity relative to the water; axial, bending and mass damping; the seabed, whose springs return some of it. Added mass
 //!        that enters the water, or turns with its line (½ vᵀṀ v), counts as negative dissipation.
 //!
-//! A prescribed end that jumps at a communication point does the work by which the stored energy rises, all other nodes being where they were: no time
-//! passes, and no damper acts.
+//! A prescribed end that jumps at a communication point does the work by which the stored energy rises, with all
+//! other nodes in place: no time passes, and no damper acts.
 //!
 //! The springs of viscoelastic segments store energy, their dampers dissipate it. An end that is released from a prescribed point brings the energy of its
 //! half node, which counts as external work.
@@ -273,7 +273,7 @@ pub fn jump_flow(
     }
 }
 
-/// Energy of the buoyancy that a line lacks whose nodes are at `position` [m] [J].
+/// Energy of the buoyancy that is missing from the dry parts of a line whose nodes are at `position` [m] [J].
 fn lacking_energy(surface: &Surface, position: &[Vector3<f64>]) -> f64 {
     let segments = position.windows(2).enumerate();
     let energy =
@@ -290,7 +290,8 @@ fn line_before(line: &Line, shape: &LineState, winch_state: WinchState, lag: f64
     then
 }
 
-/// How far the material at a winch has gone beyond the winch in `lag` [s], by which its velocity misses the winch's own place [m].
+/// Distance that the material at a winch has moved beyond the winch in `lag` [s], by which its velocity misses the
+/// winch's place [m].
 fn passing(line: &Line, shape: &LineState, lag: f64) -> Vector3<f64> {
     let Some(winch_state) = shape.winch_state else {
         return Vector3::zeros();
@@ -300,7 +301,7 @@ fn passing(line: &Line, shape: &LineState, lag: f64) -> Vector3<f64> {
     lag * winch_state.half_step[1] / line.segments.length[last - 1] * chord
 }
 
-/// Energy of motion of a node at a velocity [m/s], with what it carries along across and along the line [J].
+/// Kinetic energy of a node at a velocity [m/s], with the masses that it carries across and along the line [J].
 fn node_motion(line: &Line, shape: &LineState, i: usize, velocity: Vector3<f64>, water: WaterAlong) -> f64 {
     let masses = line.nodes.masses(i, dry_part(line, shape, i, water));
     0.5 * Slender::new(masses).square(velocity, tangent(shape, i))
@@ -312,7 +313,7 @@ fn dry_part(line: &Line, shape: &LineState, i: usize, water: WaterAlong) -> f64 
     surface.map_or(0.0, |surface| surface.node_in(water, i, &shape.position).part)
 }
 
-/// How many ends of a network's lines are released from their points.
+/// Number of ends of a network's lines that are released from their points.
 pub fn released_ends(network: &Network, state: &State) -> usize {
     let ends = network.lines.iter().flat_map(|&line| state.lines[line].released);
     ends.filter(|released| *released).count()

@@ -8,23 +8,26 @@
 //!
 //!   (1 − α_f) M' b' + α_f M a = (1 − α_f) f(r', v', t') + α_f f(r, v, t),   (1 − α_f) b' = (1 − α_m) a' + (α_m − α_f) a.
 //!
-//! With a mass that does not change this is (1 − α_m) M a' + α_m M a on the left, as it is usually written. a is the acceleration at
-//! a time (α_f − α_m) Δt after that of r and v: with M' a' a mass that turns with its line, or that water joins, would be taken at the
-//! wrong time, and the scheme be of first order. b' is the acceleration at t'.
+//! With a constant mass this is (1 − α_m) M a' + α_m M a on the left, as it is usually written. a is the acceleration
+//! at a time (α_f − α_m) Δt after that of r and v. With M' a' a mass that turns with its line, or added mass that
+//! enters the water, would be taken at the wrong time, and the scheme would be of first order. b' is the acceleration
+//! at t'.
 //!
 //! * Generalised-α of spectral radius ρ at infinite frequency: α_m = (2ρ − 1)/(ρ + 1), α_f = ρ/(ρ + 1), γ = ½ − α_m + α_f,
 //!   β = ¼ (1 − α_m + α_f)².
 //! * Bossak(α, γ): α_m = α ≤ 0, α_f = 0, β = ¼ (1 − α)²; second order for γ = ½ − α.
 //!
-//! The tangent is that of [`crate::elements`], with predicted tensions as in [`crate::statics::equilibrium`]. The seabed's
-//! damper fades in over two static penetrations above and below the bed, or over what the node moves in a step if that is
-//! more, instead of switching on at touch, which Newton's method would not survive; what rests on the bed is not affected.
+//! The tangent is that of [`crate::elements`], with predicted tensions as in [`crate::statics::equilibrium`]. The
+//! seabed's damper fades in over two static penetrations above and below the bed, or over the displacement of the
+//! node in a step if that is larger. A damper that switches on at touch would prevent the convergence of Newton's
+//! method. Nodes at rest on the bed are not affected.
 //!
-//! Source: Chung & Hulbert (1993), J. Appl. Mech. 60, 371-375; Wood, Bossak & Zienkiewicz (1980), Int. J. Numer. Meth. Eng. 15,
-//! 1562-1566. Valid for ρ from 0 to 1. As it is usually written the method gains energy without bound where slack cables snap taut without
-//! damping (a dry cable of 20 segments that falls, EA/T = 1e4 and 1e6, Δt = 2 to 10 ms, ρ = 0.5 and more): forces before and after a step are no
-//! measure of what a spring takes in between. The segments therefore pull as [`crate::elements`] has them over a step, by the
-//! discrete gradient of their energy; the same cable then never gains energy at any ρ, and keeps it at ρ = 1.
+//! Source: Chung & Hulbert (1993), J. Appl. Mech. 60, 371-375; Wood, Bossak & Zienkiewicz (1980), Int. J. Numer.
+//! Meth. Eng. 15, 1562-1566. Valid for ρ from 0 to 1. As it is usually written the method gains energy without bound
+//! where slack cables snap taut without damping (a dry cable of 20 segments that falls, EA/T = 1e4 and 1e6, Δt = 2 to
+//! 10 ms, ρ = 0.5 and more): the forces before and after a step do not determine the energy that a spring takes in
+//! between. The segments therefore pull by the discrete gradient of their energy over a step ([`crate::elements`]).
+//! The same cable then never gains energy at any ρ, and conserves it at ρ = 1.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -84,7 +87,7 @@ impl Scheme {
         }
     }
 
-    /// What forces weigh before and after a step of `dt` [s], and what v' [1/s] and b' [1/s²] change by with r'.
+    /// Weights of the forces before and after a step of `dt` [s], and derivatives of v' [1/s] and b' [1/s²] with r'.
     fn weights(&self, dt: f64) -> ([Weights; 2], [f64; 2]) {
         let Scheme {
             alpha_m,
@@ -117,7 +120,7 @@ impl Scheme {
         ([before, after], [per_velocity, now])
     }
 
-    /// What a scene's solver table asks for.
+    /// Scheme that a scene's solver table selects.
     pub fn new(solver: &Solver) -> Scheme {
         match (solver.integrator, solver.bossak) {
             (Integrator::Bossak, Some(bossak)) => Scheme::bossak(bossak.alpha, bossak.gamma),
@@ -127,8 +130,8 @@ impl Scheme {
     }
 }
 
-/// Accelerations of a network that satisfy its equation of motion at time `t` [s], as the integrator needs them where a motion
-/// starts. The held points move as `held` says. Nodes without mass keep zero.
+/// Accelerations of a network that satisfy its equation of motion at time `t` [s], for the start of a motion. The
+/// held points move according to `held`. Nodes without mass keep zero.
 pub fn start<K: Fn(usize, f64) -> Kinematics>(
     model: &Model,
     number: usize,
@@ -213,9 +216,9 @@ fn hold<K: Fn(usize, f64) -> Kinematics>(
 /// A span of time to pass in equal steps.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Span {
-    /// Its start [s].
+    /// Start of the step [s].
     pub start: f64,
-    /// Its end [s].
+    /// End of the step [s].
     pub end: f64,
     /// Longest step [s].
     pub step_max: f64,
@@ -242,7 +245,7 @@ pub fn advance<K: Fn(usize, f64) -> Kinematics>(
     advance_observed(model, number, state, held, span, work, |_| {})
 }
 
-/// What moves a network from outside, and by which scheme it follows.
+/// Prescribed motion and loads of a network, with the scheme that integrates it.
 #[derive(Debug)]
 pub struct Driving<'a, K> {
     /// Position, velocity and acceleration of held points.
@@ -299,7 +302,7 @@ impl Span {
     }
 }
 
-/// What does not change from step to step.
+/// Data that stay constant from step to step.
 struct Integration<'a, K> {
     model: &'a Model,
     network: &'a Network,
@@ -415,7 +418,8 @@ impl<K: Fn(usize, f64) -> Kinematics> Integration<'_, K> {
             if !correction.is_finite() {
                 return false;
             }
-            // A part p of Newton's step leaves 1 − p of it where forces are smooth: corrections midway between that and the last go in circles.
+            // A part p of Newton's step leaves 1 − p of it where forces are smooth; a ratio of corrections midway
+            // between that and the last means a cycle.
             let left_over = (1.0 - 0.5 * part) * last;
             let circles = iteration >= CIRCLING && correction > left_over.max(tolerance);
             part = if circles { 0.5 } else { 1.0 };

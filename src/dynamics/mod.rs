@@ -76,7 +76,7 @@ pub enum StepFailure {
 }
 
 impl StepFailure {
-    /// Returns what to try.
+    /// Returns a remedy.
     pub fn advice(&self) -> &'static str {
         match self {
             StepFailure::Input(_) => "check the units of the motion, and whether the host is stable",

@@ -1,9 +1,10 @@
 //! Quasi-static stepping: at the end of every step the lines are in equilibrium.
 //!
-//! Positions are the equilibrium for the held points and the loads at that time, found from the one before. Nothing moves: nodes have neither
-//! velocity nor acceleration, and so there is no damping, no inertia and no drag but that of a current. Flexible lines of engineering
-//! strain are closed-form catenaries, joined at free points; others, and those that find no rest that way, are chains of elements. Valid where motions
-//! are slow beside the lowest natural period and drag is small beside weight.
+//! Positions are the equilibrium for the held points and the loads at that time, found from the one before. Nodes
+//! have neither velocity nor acceleration, so there is no damping, no inertia and no drag but that of a current.
+//! Flexible lines of engineering strain are closed-form catenaries, joined at free points; others, and those without
+//! a solution that way, are chains of elements. Valid where motions are slow compared with the lowest natural period
+//! and drag is small compared with weight.
 //!
 //! A step is one equilibrium. It is halved where none is found.
 

@@ -1,9 +1,11 @@
-//! What waves do at the nodes: asked of the waves once for every span of time, at the places where the nodes will be at its end.
+//! Wave kinematics at the nodes: evaluated once for every span of time, at the extrapolated places of the nodes at
+//! its end.
 //!
-//! Every line and every point has its own span: as long as cubics bridge it at its highest node ([`Waves::interval_below`]), rounded down to
-//! whole communication steps. So no line has a part in what waves do to another. A communication step that is longer than cubics bridge it at
-//! still water is cut into parts. Where a node will be is foretold from its velocity at the start of the span, r + τ v. What was found for the end of a span is
-//! the start of the next, so that velocity and acceleration of the water have no jump and no kink in time.
+//! Every line and every point has a separate span: as long as cubics bridge it at its highest node
+//! ([`Waves::interval_below`]), rounded down to whole communication steps. Lines therefore do not affect each other's
+//! waves. A communication step that is longer than cubics bridge at still water is cut into parts. The place of a
+//! node is extrapolated from its velocity at the start of the span, r + τ v. The values at the end of a span are the
+//! start of the next, so that velocity and acceleration of the water have no jump and no kink in time.
 
 use nalgebra::Vector3;
 use pulp::{Arch, NullaryFnOnce};
@@ -24,7 +26,7 @@ pub struct SeaWork {
     instants: Vec<Instant>,
     /// The spans that began last.
     due: Vec<Due>,
-    /// What waves did at the start of the span before, or room for the end of the next, by line and then by point.
+    /// Wave kinematics at the start of the span before, or room for the end of the next, by line and then by point.
     spare: Vec<Vec<Orbit>>,
 }
 
@@ -32,15 +34,15 @@ pub struct SeaWork {
 #[derive(Debug)]
 struct Due {
     place: Place,
-    /// Its length [s].
+    /// Length of the span [s].
     length: f64,
-    /// What waves do at its end.
+    /// Wave kinematics at the end of the span.
     nodes: Vec<Orbit>,
     /// Times of the span before [s].
     before: [f64; 2],
 }
 
-/// Where waves act, by its number.
+/// Line or point on which waves act, by its number.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Place {
     Line(usize),
@@ -59,7 +61,7 @@ impl Place {
             .chain(points.map(|(point, _)| Place::Point(point)))
     }
 
-    /// Its number among the lines and, after them, the points.
+    /// Number of the place among the lines and, after them, the points.
     fn slot(self, model: &Model) -> usize {
         match self {
             Place::Line(line) => line,
@@ -148,8 +150,8 @@ impl SeaWork {
         span.times = [state.time; 2];
     }
 
-    /// How far the next step goes [s] on the way over `length` [s]: not beyond the end of a span. A span that ends with an equal part but for rounding
-    /// does not change that part.
+    /// Length of the next step [s] within `length` [s]: not beyond the end of a span. A span that ends with an equal
+    /// part but for rounding does not change that part.
     pub fn reach(&self, model: &Model, waves: &Waves, state: &State, length: f64) -> f64 {
         let parts = length / waves.interval_below(f64::INFINITY) - ROUNDING;
         let part = length / parts.ceil().max(1.0);
@@ -158,7 +160,8 @@ impl SeaWork {
         shorter.fold(part, f64::min)
     }
 
-    /// Begins new spans where old ones are over, for steps of `step` [s], on so many threads of a pool; returns whether there were any.
+    /// Begins new spans where old ones are over, for steps of `step` [s], on a number of threads of a pool; returns
+    /// whether there were any.
     pub fn renew(
         &mut self,
         (model, waves): (&Model, &Waves),
@@ -234,7 +237,7 @@ impl SeaWork {
     }
 }
 
-/// Whether waves act on a point.
+/// Returns whether waves act on a point.
 fn heaves(point: &Point) -> bool {
     point.body().is_some_and(|body| body.sphere.is_some())
 }
@@ -273,7 +276,7 @@ fn left(place: Place, state: &State, step: f64) -> f64 {
     }
 }
 
-/// What waves do along a line, for the vector unit of the machine.
+/// Evaluation of the waves along a line, for the vector unit of the machine.
 struct Sampling<'a> {
     waves: &'a Waves,
     /// [m]

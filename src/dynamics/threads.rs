@@ -4,7 +4,8 @@
 //! the number of threads, and sums over networks are formed afterwards in their order. Results are therefore bit-identical on any number
 //! of threads. Each thread gets an equal, contiguous part of the networks.
 //!
-//! A thread is worth waking from [`WORTH`] of work on; the work of a step is estimated from its nodes and internal steps.
+//! Worker threads are used from [`WORTH`] of work on; the work of a step is estimated from its nodes and internal
+//! steps.
 //!
 //! Worker threads are created on first use, sleep between steps and are joined when the pool is dropped, so that a host may unload the
 //! library after it has freed its instances. Where the system grants no threads, all work is done on the calling thread. A forked process
@@ -34,7 +35,7 @@ pub fn make_threads_aside(aside: Aside) {
     let _ = ASIDE.set(aside); // every instance sets the same
 }
 
-/// Name of the worker threads, by which a host tells them from its own.
+/// Name of the worker threads, by which they can be told from those of the host.
 const THREAD_NAME: &str = "moorline";
 /// Work per thread from which `auto` adds a thread [ns].
 const WORTH: f64 = 25e3;
@@ -54,11 +55,11 @@ pub fn as_worker<T>(work: impl FnOnce() -> T) -> T {
     work()
 }
 
-/// Worker threads beside the calling one, created on first use. A clone has none yet.
+/// Worker threads in addition to the calling one, created on first use. A clone has none yet.
 #[derive(Debug, Default)]
 pub struct ThreadPool {
     workers: Option<Workers>,
-    /// Whether the system refused to create threads.
+    /// True if the system refused to create threads.
     refused: bool,
 }
 

@@ -91,7 +91,7 @@ pub struct ViscoelasticArrays {
     /// BA_s and BA_d [N s].
     slow_damping: Column,
     fast_damping: Column,
-    /// How the memory goes on over a step, and that step [s].
+    /// Evolution of the memory over a step, and that step [s].
     relaxation: Relaxing,
     step: f64,
     /// Strain at t_n [-].
@@ -111,7 +111,7 @@ struct Relaxing {
     slack: Column,
 }
 
-/// What viscoelastic segments do from t_{n−½} to t_{n+½}.
+/// State of viscoelastic segments from t_{n−½} to t_{n+½}.
 #[derive(Debug, Clone, Copy)]
 pub struct Relaxed {
     /// Tension by the discrete gradient of the springs' energy [N].
@@ -222,8 +222,8 @@ impl ViscoelasticArrays {
         (stiffness * strain + memory * relaxed, stiffness + memory * last)
     }
 
-    /// Takes the memory from t_n to t_{n+1} by [`Viscoelastic::relaxation`], to strains of half a step after t_n and a whole one; what both halves around
-    /// t_n come to.
+    /// Takes the memory from t_n to t_{n+1} by [`Viscoelastic::relaxation`], to strains of half a step after t_n and
+    /// a whole one; returns the values of both halves around t_n.
     #[inline(always)]
     pub fn advance(&mut self, at: usize, strains: [Lanes; 2], step: Step) -> Relaxed {
         let load = |values: &Column| values.load(at);

@@ -5,7 +5,7 @@
 //!   f(v̄, s)            drag at the mean velocity through the water, with the wetted part in the middle of its way
 //!   F                  of the bed, as in `physics::contact_step`
 //!
-//! Its mass over the step is the one that the wetted part at the foreseen middle of the step gives it.
+//! Its mass over the step follows from the submergence at the extrapolated middle of the step.
 //!
 //! Source: as in `physics::point`; discrete gradients, Gonzalez (1996), J. Nonlinear Sci. 6, 449-467. Valid as `physics::point` is, in
 //! water without waves.
@@ -17,7 +17,7 @@ use crate::model::FreePoint;
 use crate::physics::contact_step::contact_step;
 use crate::physics::fading_damper::damper_reach;
 
-/// What is at a free end of a beam.
+/// Body at a free end of a beam.
 #[derive(Debug, Clone, Copy)]
 pub struct Body<'a> {
     /// The point.

@@ -1,4 +1,4 @@
-//! A beam of a model over a span of time: what its points do to its ends, and what they get back.
+//! A beam of a model over a span of time: the forces of its points on its ends, and the reactions.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -13,12 +13,12 @@ use crate::physics::section::{Section, join};
 pub struct Driven {
     /// Linear solves.
     pub solves: usize,
-    /// Energy given and lost.
+    /// External work and dissipation.
     pub flow: Flow,
 }
 
-/// Advances the beam `index` of `state` from `start` to `end` [s] in `count` equal steps; `held` tells where held points are.
-/// `state.time` and held points are left to the caller.
+/// Advances the beam `index` of `state` from `start` to `end` [s] in `count` equal steps; `held` returns the
+/// kinematics of held points. `state.time` and held points are left to the caller.
 ///
 /// # Errors
 /// A step did not converge; the state is then somewhere within the span.

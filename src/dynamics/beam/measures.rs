@@ -1,4 +1,4 @@
-//! What a beam holds and carries at one time: energy, momenta, reactions, curvature and moments.
+//! Energy, momenta, reactions, curvature and moments of a beam at one time.
 
 use nalgebra::Vector3;
 
@@ -23,11 +23,11 @@ pub struct Momentum {
 /// A beam and its state at one time.
 #[derive(Debug, Clone, Copy)]
 pub struct BeamView<'a> {
-    /// Its elements.
+    /// Elements of the beam.
     pub beam: &'a Beam,
-    /// Its lumped nodes.
+    /// Lumped nodes of the beam.
     pub nodes: &'a Nodes,
-    /// Its state.
+    /// State of the beam.
     pub shape: &'a LineState,
 }
 
@@ -49,7 +49,7 @@ impl<'a> BeamView<'a> {
         }
     }
 
-    /// Energy, without that of the unknowns that `held` says are held at ends A and B.
+    /// Energy, without that of the unknowns at ends A and B that `held` marks as held.
     pub fn energy(&self, held: [[bool; 6]; 2]) -> Energy {
         let state = beam_state(self.shape);
         let last = self.shape.position.len() - 1;
@@ -118,7 +118,7 @@ impl<'a> BeamView<'a> {
         elastic.stress + element.damping.diagonal().component_mul(&rate)
     }
 
-    /// Effective tension of an element: what its stress pulls with along it [N].
+    /// Effective tension of an element: the axial component of its stress [N].
     pub fn tension(&self, i: usize) -> f64 {
         let force = self.end_stress(i, 1, true).0;
         let chord = self.shape.position[i + 1] - self.shape.position[i];
@@ -133,7 +133,8 @@ impl<'a> BeamView<'a> {
         split(&(element.length * gradient[side].tr_mul(&self.stress(i, damped))))
     }
 
-    /// Bending moment at a node [N m], of its elements' elastic stress: the mean of both sides, which differ by what turns the node.
+    /// Bending moment at a node [N m], from its elements' elastic stress: the mean of both sides, which differ by the
+    /// moment on the node.
     pub fn bending_moment(&self, node: usize) -> f64 {
         let last = self.beam.elements.len();
         let upper = (node < last).then(|| -self.end_stress(node, 0, false).1);
