@@ -75,8 +75,8 @@ impl Bending {
 }
 
 impl Line {
-    /// Direction from end A to end B that the line is held to at an end whose point is `point` [-]; pinned where there is none. The
-    /// one place where a clamp follows what it is fixed to.
+    /// Direction from end A to end B of the clamp at an end whose point is `point` [-]; pinned where there is none.
+    /// No other function relates a clamp to its support.
     pub fn clamp(&self, end: End, point: &PointState) -> Option<Vector3<f64>> {
         let [a, b] = self.bending.as_ref()?.clamps;
         let reference = match end {

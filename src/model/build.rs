@@ -90,13 +90,14 @@ impl Model {
         })
     }
 
-    /// How many elements of which lengths [m] the lines have, and why, where this is the model of that scene: one sentence a line.
+    /// Number and lengths [m] of the lines' elements with the reasons, where this is the model of that scene: one
+    /// sentence a line.
     pub fn mesh_in_words(&self, scene: &Scene) -> Vec<String> {
         spacing::in_words(scene, self)
     }
 }
 
-/// What the bed is beside a level plane without friction.
+/// Properties of the bed other than a level plane without friction.
 fn bottom(bed: &scene::Seabed) -> Option<Bottom> {
     let ground = match (&bed.grid, bed.slope) {
         (Some(grid), _) => {
@@ -120,8 +121,8 @@ fn bottom(bed: &scene::Seabed) -> Option<Bottom> {
     })
 }
 
-/// Stiffness along the bed of a node that sticks, over the greatest axial stiffness of its segments [-]: what friction gives way before it
-/// slides is then a small part of what the line stretches by between two nodes.
+/// Stiffness along the bed of a node that sticks, over the greatest axial stiffness of its segments [-]: the
+/// displacement before a node slides is then a small part of the stretch between two nodes.
 const STICK: f64 = 10.0;
 
 /// Gives a line the bed's surface.
@@ -216,7 +217,7 @@ fn build_point(scene: &Scene, vessels: &[Vessel], point: &scene::Point) -> Point
     }
 }
 
-/// Whether a point has anything that forces act on.
+/// Returns whether a point has mass, or forces from the water.
 fn has_mass_or_water(point: &scene::Point) -> bool {
     let sizes = [point.mass, point.volume, point.drag_area];
     sizes.iter().flatten().any(|size| *size > 0.0)
@@ -396,8 +397,8 @@ fn line_law(scene: &Scene, line_type: &LineType, damped: f64) -> LineLaw {
     }
 }
 
-/// A line of the scene that is to have so many elements [-] where the scene leaves them open; damping ratios refer to segments of the
-/// lengths `damped` [m], one per section.
+/// Line of the scene with this number of elements [-] where the scene leaves them open; damping ratios refer to
+/// segments of the lengths `damped` [m], one per section.
 fn build_line(
     scene: &Scene,
     index: usize,
@@ -535,7 +536,7 @@ fn releases(line: &scene::Line) -> Option<[Release; 2]> {
     (line.release.is_some() || line.failure.is_some()).then_some(releases)
 }
 
-/// Refuses a viscoelastic section beside one of another strain measure.
+/// Refuses a viscoelastic section next to one of another strain measure.
 fn check_mixture(index: usize, laws: &[LineLaw]) -> Result<(), SceneError> {
     let viscoelastic = laws.iter().any(|law| law.viscoelastic.is_some());
     if viscoelastic && laws.iter().any(|law| law.law != StretchLaw::Engineering) {
@@ -584,7 +585,7 @@ fn line_bending(
     )))
 }
 
-/// Takes the shape at the start as the one that bends nothing, where the scene says so and gives one.
+/// Takes the initial shape as the one without bending moments, where the scene selects it and gives one.
 fn rest_as_it_lies(line: &mut Line, points: &[Point], rest_shape: RestShape) {
     let [a, b] = line.ends.map(|point| points[point].reference);
     let nodes = line.given_shape(a, b);

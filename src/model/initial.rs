@@ -1,4 +1,4 @@
-//! Shapes a line may be given at the start; equilibria and catenaries are for `statics` to find.
+//! Initial shapes of a line that are given in closed form; equilibria and catenaries are found by `statics`.
 
 use nalgebra::Vector3;
 

@@ -8,7 +8,7 @@ use crate::math::hermite::Hermite;
 use crate::math::shape_preserving::{End, slopes};
 use crate::scene::{MotionPath, MotionRow};
 
-/// Where a driven point is, and how it moves.
+/// Position and motion of a driven point.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Kinematics {
     /// Position, or displacement from the reference position [m].
@@ -17,9 +17,9 @@ pub struct Kinematics {
     pub velocity: Vector3<f64>,
     /// Acceleration [m/s²].
     pub acceleration: Vector3<f64>,
-    /// Rotation from the reference attitude of what the point is fixed to [-], a unit quaternion.
+    /// Rotation from the reference attitude of the point's support [-], a unit quaternion.
     pub orientation: UnitQuaternion<f64>,
-    /// Angular velocity of what the point is fixed to, in global axes [rad/s].
+    /// Angular velocity of the point's support, in global axes [rad/s].
     pub spin: Vector3<f64>,
 }
 
@@ -147,7 +147,8 @@ impl Motion {
         })
     }
 
-    /// Whether it has no kink after the start of a span of time [s] and up to its end, where [`Self::pose`] tells how it goes on.
+    /// Returns whether the path has no kink after the start of a span of time [s] and up to its end, beyond which
+    /// [`Self::pose`] continues.
     pub fn is_smooth(&self, [start, end]: [f64; 2]) -> bool {
         let within = |kink: f64| kink > start && kink <= end;
         match self {

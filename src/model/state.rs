@@ -14,7 +14,7 @@ pub struct State {
     pub points: Vec<PointState>,
     /// Lines, in the order of the model.
     pub lines: Vec<LineState>,
-    /// What waves do at the nodes around this time, where there are waves.
+    /// Wave kinematics at the nodes around this time, where there are waves.
     pub waves: Option<WaveSpans>,
 }
 
@@ -27,13 +27,13 @@ pub struct PointState {
     pub velocity: Vector3<f64>,
     /// Acceleration [m/s²].
     pub acceleration: Vector3<f64>,
-    /// Rotation from the reference attitude of what the point is fixed to, which its clamped lines follow [-].
+    /// Rotation from the reference attitude of the point's support, which its clamped lines follow [-].
     pub orientation: UnitQuaternion<f64>,
-    /// Angular velocity of what the point is fixed to [rad/s].
+    /// Angular velocity of the point's support [rad/s].
     pub spin: Vector3<f64>,
     /// Velocities half a step and one and a half steps before the time of the position [m/s], for the leapfrog.
     pub half_step: [Vector3<f64>; 2],
-    /// Where it would lie if friction let go of it [m], where there is friction.
+    /// Place at which friction on the point would vanish [m], where there is friction.
     pub anchor: Option<Vector3<f64>>,
 }
 
@@ -46,30 +46,30 @@ pub struct LineState {
     pub velocity: Vec<Vector3<f64>>,
     /// Accelerations [m/s²]; kept by the implicit integrators only.
     pub acceleration: Vec<Vector3<f64>>,
-    /// What the leapfrogs remember of the steps before.
+    /// Memory of the leapfrogs from the steps before.
     pub half_step: HalfStep,
     /// The rest of the closed-form catenary that the nodes lie on; kept by quasi-static networks only.
     pub closed_form: Option<ClosedForm>,
     /// Strain of the slow part of every segment [-]; empty unless the line is viscoelastic and in motion.
     pub viscoelastic: Vec<f64>,
-    /// Whether ends A and B are released from their points.
+    /// True if ends A and B are released from their points.
     pub released: [bool; 2],
-    /// What the nodes of a beam have beside positions and velocities.
+    /// Frames and rates of the nodes of a beam.
     pub beam: Option<BeamState>,
-    /// Where the nodes would lie if the friction of the bed let go of them [m]; empty without friction.
+    /// Places of the nodes at which the friction of the bed would vanish [m]; empty without friction.
     pub anchor: Vec<Vector3<f64>>,
-    /// How far its winch is, where it is on one.
+    /// Position of the line's winch, where it is on one.
     pub winch_state: Option<WinchState>,
 }
 
-/// How far the winch of a line is.
+/// Position of the winch of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct WinchState {
     /// Length paid out beyond that at no change [m].
     pub change: f64,
-    /// Its rate [m/s].
+    /// Rate of the length change [m/s].
     pub rate: f64,
-    /// Its acceleration [m/s²].
+    /// Second derivative of the length change [m/s²].
     pub acceleration: f64,
     /// Length change [m] and rate [m/s] half a step before, for the leapfrog.
     pub half_step: [f64; 2],
@@ -87,13 +87,13 @@ impl WinchState {
     }
 }
 
-/// What a closed-form catenary says that its nodes do not: their chords are shorter than the arcs between them, which on a stiff line
-/// hides all of the strain.
+/// Tensions of a closed-form catenary, which do not follow from its nodes: their chords are shorter than the arcs
+/// between them, which on a stiff line hides all of the strain.
 #[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ClosedForm {
     /// Effective tension at every node [N].
     pub tension: Vec<f64>,
-    /// Horizontal part of it [N]: grows towards end B on a bed with friction, and nowhere else.
+    /// Horizontal part of the tension [N]: grows towards end B on a bed with friction, and nowhere else.
     pub horizontal: Vec<f64>,
     /// Forces of the line on the points at ends A and B [N].
     pub end_force: [Vector3<f64>; 2],
@@ -125,7 +125,7 @@ pub struct HalfStep {
 }
 
 impl HalfStep {
-    /// Whether no leapfrog has made a step from this state yet.
+    /// Returns whether no leapfrog has made a step from this state yet.
     pub fn is_unset(&self) -> bool {
         self.velocity.is_empty()
     }
@@ -185,7 +185,8 @@ impl LineState {
         nodes.map(move |(r, v)| r[1] - r[0] - lag * (v[1] - v[0]))
     }
 
-    /// Gives a line that is a beam, and rests on its positions, what beams have besides; its points have turned by `attitude` [-].
+    /// Adds the state of a beam, at rest at its positions, to a line that is a beam; its points have turned by
+    /// `attitude` [-].
     pub fn become_beam(&mut self, line: &Line, attitude: [Matrix3<f64>; 2]) {
         self.beam = line
             .beam
@@ -204,7 +205,7 @@ impl LineState {
         }
     }
 
-    /// At rest at the given node positions [m].
+    /// Line at rest at the given node positions [m].
     pub fn at_rest(position: Vec<Vector3<f64>>) -> LineState {
         let zeros = vec![Vector3::zeros(); position.len()];
         LineState {

@@ -22,12 +22,12 @@ pub struct Vessel {
     reference_rotation: UnitQuaternion<f64>,
 }
 
-/// Where a vessel is, and how it moves.
+/// Position and motion of a vessel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Frame {
-    /// Its origin.
+    /// Origin of the vessel.
     pub origin: Kinematics,
-    /// Its attitude, and how it turns.
+    /// Attitude and angular velocity of the vessel.
     pub attitude: Attitude,
 }
 
@@ -61,7 +61,8 @@ impl Vessel {
         self.turned(Order::Zyx, self.attitude, pose)
     }
 
-    /// The same displaced by a pose of the scene's motion, whose angles may be of the order X-Y-Z, as the reference angles then are.
+    /// Frame displaced by a pose of the scene's motion, whose angles may be of the order X-Y-Z, as the reference
+    /// angles then are.
     pub fn frame_of_motion(&self, pose: &Pose) -> Frame {
         let reference = match self.order {
             Order::Zyx => self.attitude,
@@ -98,7 +99,7 @@ impl Vessel {
         }
     }
 
-    /// Where a point of the body at `arm` [m] is in the reference position [m].
+    /// Place of a point of the body at `arm` [m] in the reference position [m].
     pub fn reference_place(&self, arm: Vector3<f64>) -> Vector3<f64> {
         self.position + self.reference_rotation * arm
     }

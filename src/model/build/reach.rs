@@ -1,15 +1,16 @@
-//! Which lines could ever meet the seabed: the others are made without contact.
+//! Lines that can meet the seabed; the others are built without contact.
 //!
-//! Lines reach below the lowest point that holds one of their own ends by their length, stretched by half; those between free points below the lowest
-//! that holds any of the lines they hang together with, by the length of all of these. Vessels keep about their height. What else a host or a path moves, and what may come loose, can get
-//! anywhere.
+//! Lines reach below the lowest fixed point at their ends by their length, stretched by half. Lines between free
+//! points reach below the lowest fixed point of all lines connected to them, by the length of all of these. Vessels
+//! are assumed to keep their height. Other points that a host or a path moves, and lines that may be released, can
+//! reach any place.
 
 use crate::scene::{Line, Point, PointKind, Scene};
 
 /// Stretched over unstretched length that a line is taken to reach at most [-].
 const STRETCH_MAX: f64 = 1.5;
 
-/// Whether a line could ever touch the bed.
+/// Returns whether a line could ever touch the bed.
 pub(super) fn may_touch_bed(scene: &Scene, line: &Line) -> bool {
     let Some(bed) = &scene.seabed else {
         return false;
