@@ -24,7 +24,7 @@ use crate::physics::seabed::ContactCoefficients;
 /// Part of the limit that statics lets friction go to: nodes that slid to where they rest then stick in motion, and rounding does not free
 /// them one by one [-].
 pub(crate) const AT_REST: f64 = 1.0 - 1e-5;
-/// Part of the limit that holds where nodes at [`AT_REST`] must be found to slide whatever the rounding [-].
+/// Part of the limit at which nodes at [`AT_REST`] slide regardless of rounding [-].
 pub(crate) const SLIDING: f64 = 1.0 - 1e-3;
 
 /// Stiffness along the seabed of a point that sticks, over its stiffness across it [-].
@@ -69,7 +69,7 @@ pub struct Rub<'a> {
 pub struct Push {
     /// Force [N].
     pub force: Vector3<f64>,
-    /// Part of it due to friction [N].
+    /// Part of the force due to friction [N].
     pub friction: Vector3<f64>,
     /// Normal force [N].
     normal_force: f64,

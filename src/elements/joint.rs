@@ -229,7 +229,7 @@ fn couples(position: &[Vector3<f64>], moments: [Vector3<f64>; 2]) -> impl Iterat
         .map(|(moment, i)| (Couple::new(moment, position[i + 1] - position[i]), i))
 }
 
-/// Power [W], or work [J], of moments [N m] on the ends of a line whose nodes pass at velocities [m/s], or by ways [m].
+/// Power [W], or work [J], of moments [N m] on the ends of a line whose nodes pass at velocities [m/s], or by displacements [m].
 pub fn end_moment_power(
     position: &[Vector3<f64>],
     moments: [Vector3<f64>; 2],
@@ -340,7 +340,7 @@ pub fn shear(
     }
 }
 
-/// Moment [N m] of a line on what it is clamped to at an end.
+/// Moment [N m] of a line on its clamp at an end.
 pub fn end_moment(line: &Line, position: &[Vector3<f64>], end: End, point: &PointState) -> Vector3<f64> {
     let (Some(bending), Some(clamp)) = (&line.bending, line.clamp(end, point)) else {
         return Vector3::zeros();

@@ -50,7 +50,7 @@ pub(crate) struct LineWork {
     pub bending: Option<BendingWork>,
     /// Friction of the seabed at the last assembly, per node [N]; empty over a level seabed without friction.
     pub rubbed: Vec<Vector3<f64>>,
-    /// Normal force that friction at rest may go by, per node [N]; empty like `rubbed`.
+    /// Normal force that limits friction at rest, per node [N]; empty like `rubbed`.
     pub pressed: Vec<f64>,
     /// Memory of viscoelastic segments, where the line has any.
     pub(super) viscoelastic: Option<ViscoelasticWork>,
@@ -208,12 +208,13 @@ impl LineWork {
         self.add_segment(i, tension * g.direction, stiffness);
     }
 
-    /// A segment whose tension T and what the elastic force N lacks to it are complementary but for m = `case.slack`: T (T − N) = m EA. Newton's
-    /// method on T and the nodes together, from the tension t that was predicted, leaves
+    /// Segment whose tension T is complementary to the excess of T over the elastic force N except for m =
+    /// `case.slack`: T (T − N) = m EA. Newton's method on T and the nodes together, from the predicted tension t,
+    /// gives
     ///
     ///   T ← (t² + m EA)/(2t − N) + t/(2t − N) dN.
     ///
-    /// Where t is less than N it is that which N has by itself.
+    /// Where t is less than N, t is replaced by the solution for N alone.
     fn add_taut_segment(&mut self, g: &Geometry, case: &StaticCase, [ea, unstretched]: [f64; 2], i: usize) {
         let (elastic, product) = (self.elastic[i], case.slack * ea);
         let root = elastic.hypot(2.0 * product.sqrt());

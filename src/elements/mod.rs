@@ -5,19 +5,20 @@
 //!
 //!   R_i = M_i(t) a_i − f_i,   f_i = T_i q_i − T_{i−1} q_{i−1} − w_i ẑ + drag + contact − (αm)_i v_i,
 //!
-//! with the segment's direction q, its total tension T = max(0, N(ε) + BA·ε̇) and M_i = M_n I + (M_t − M_n) t tᵀ. A line's
-//! end nodes contribute the same to their points; free points add their own mass, weight, drag, contact and load, their buoyancy and added
-//! mass as far as they are in the water.
+//! with the segment's direction q, its total tension T = max(0, N(ε) + BA·ε̇) and M_i = M_n I + (M_t − M_n) t tᵀ. A
+//! line's end nodes contribute the same to their points. Free points add their mass, weight, drag, contact and load,
+//! and the buoyancy and added mass of their submerged part.
 //!
 //! The tangent J = c_k ∂R/∂r + c_c ∂R/∂v + c_m ∂R/∂a is exact except that the tangent t of mass and drag is frozen. Per segment,
 //! with P = I − q qᵀ and ġ the rate of its end-to-end vector, J = [[A, −A], [−A, A]] with
 //!
 //!   A = c_k [EA·N'/l₀ q qᵀ + T/l P + BA/(l l₀) q (P ġ)ᵀ] + c_c BA/l₀ q qᵀ.
 //!
-//! The geometric stiffness T/l P is never negative in a line that cannot push. A line with bending stiffness has the joints of
-//! `bending` at its nodes and pushes up to what its segments carry, T ≥ −P; its tangent is exact, or made such that it cannot be
-//! indefinite where `convex` is asked for. Statics keeps springs, weight and the drag of a current, whose forces are kept while the
-//! shape is sought. A line that may pierce the water's surface lacks there what `surface` says.
+//! The geometric stiffness T/l P is never negative in a line that cannot push. A line with bending stiffness has the
+//! joints of `bending` at its nodes and carries compression up to the limit of its segments, T ≥ −P; its tangent is
+//! exact, or positive semi-definite with `convex`. Statics keeps springs, weight and the drag of a current, whose
+//! forces are constant while the shape is sought. A line that may pierce the water's surface loses there the buoyancy
+//! given by `surface`.
 
 pub mod beam;
 mod contact;
@@ -141,7 +142,7 @@ pub(crate) struct StaticCase {
     pub anchoring: f64,
     /// True where the geometric stiffness comes from the predicted tension instead of the elastic one.
     pub predicted: bool,
-    /// True where lines with bending stiffness have it, and push.
+    /// True if lines with bending stiffness have it, and push.
     pub bends: bool,
     /// Part of the stiffness that friction sticks with, on nodes that have anchors [-].
     pub stick: f64,
@@ -205,7 +206,7 @@ pub(crate) struct Weights {
 pub(crate) enum Stretch {
     /// Now.
     Now,
-    /// Before a step, for what it carries over.
+    /// Terms carried over to a step from before it.
     Before,
     /// Over the step to where the nodes now are: whether they are taut, and their geometric stiffness, come from the tension that was predicted.
     OverStep,
@@ -285,7 +286,7 @@ impl Workspace {
         self.gather(model, network);
     }
 
-    /// Adds what lines contribute to the residual of the free points.
+    /// Adds the contributions of lines to the residual of the free points.
     pub(crate) fn gather(&mut self, model: &Model, network: &Network) {
         for_free_points(model, network, |index, free| {
             let mut total = self.points[index].residual;
@@ -451,7 +452,7 @@ impl Workspace {
         }
     }
 
-    /// Adds what was remembered to the residual.
+    /// Adds the stored terms to the residual.
     pub(crate) fn add_remembered(&mut self, model: &Model, network: &Network) {
         for &index in &network.lines {
             let line = &mut self.lines[index];

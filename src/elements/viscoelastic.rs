@@ -77,7 +77,7 @@ impl ViscoelasticWork {
         }
     }
 
-    /// Puts the memory at the end of the step into the state, whose nodes are there.
+    /// Stores the memory at the end of the step in the state, whose nodes are there.
     pub fn finish(&self, line: &Line, state: &mut LineState) {
         if state.viscoelastic.is_empty() {
             return;
