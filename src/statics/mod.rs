@@ -73,7 +73,7 @@ pub enum StaticsError {
         /// Greatest force out of balance [N].
         residual: f64,
     },
-    /// The equilibrium of a beam bends or twists an element beyond what its ends can tell.
+    /// The equilibrium of a beam bends or twists an element beyond the angle that its ends resolve.
     #[error(
         "line \"{line}\", node {node}: at rest the beam turns by more than 60 degrees from this node to the next; use more elements \
          there, or a greater bending or torsional stiffness"
