@@ -253,7 +253,7 @@ impl Simulation {
         }
     }
 
-    /// Parts the lines from their points that are to let go; returns the state before.
+    /// Releases the lines from their points as commanded; returns the state before.
     fn release_lines(&mut self) -> Option<(State, Option<EnergyBalance>)> {
         if !self.snapshot.inputs.releases.contains(&true) {
             return None;

@@ -1,4 +1,4 @@
-//! What a host says to a simulation: where points and vessels are, which lines let go, what winches pay out.
+//! Inputs of a host to a simulation: positions of points and vessels, releases of lines, length changes of winches.
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -8,19 +8,19 @@ use crate::dynamics::motion::rates;
 use crate::math::attitude::angle_rates;
 use crate::model::{Body, Model};
 
-/// What a host has said about points and vessels.
+/// Inputs of a host for points and vessels.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct Inputs {
     pub points: Vec<PointInput>,
     pub vessels: Vec<VesselInput>,
-    /// Whether each line is to let go.
+    /// Release command of each line.
     pub releases: Vec<bool>,
-    /// What the winches are to have paid out, by line [m].
+    /// Length changes of the winches, by line [m].
     pub length_changes: Vec<f64>,
 }
 
 impl Inputs {
-    /// Nothing said yet.
+    /// Inputs before any is set.
     pub fn new(model: &Model) -> Inputs {
         Inputs {
             points: vec![PointInput::default(); model.points.len()],
@@ -31,16 +31,17 @@ impl Inputs {
     }
 }
 
-/// What a host has said about a point.
+/// Inputs of a host for a point.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct PointInput {
     /// Displacement from the reference position [m].
     pub displacement: [f64; 3],
-    /// Velocity [m/s], and where it is told rather than derived from the displacements, as [`rates`] has them.
+    /// Velocity [m/s], and the axes along which it is given rather than derived from the displacements, as returned
+    /// by [`rates`].
     pub rates: [[f64; 3]; 2],
 }
 
-/// What a host has said about a vessel.
+/// Inputs of a host for a vessel.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct VesselInput {
     /// Displacement from the reference position [m]; roll, pitch and yaw from the reference attitude [rad].
@@ -113,23 +114,24 @@ impl Simulation {
         }
     }
 
-    /// Sets how a vessel moves now: velocity of its origin [m/s] and angular velocity [rad/s], both in global axes. What is absent is
-    /// derived from the poses; the rotation needs all three components.
+    /// Sets the present motion of a vessel: velocity of its origin [m/s] and angular velocity [rad/s], both in global
+    /// axes. Absent components are derived from the poses; the rotation needs all three components.
     pub fn set_vessel_velocity(&mut self, vessel: usize, velocity: [Option<f64>; 6]) {
         self.snapshot.inputs.vessels[vessel].velocity = velocity;
     }
 
-    /// Says whether a line is to let go of the point that its scene names; it does so at the next step, and for good.
+    /// Sets the release command of a line, which detaches it from the point that its scene names; it is permanent
+    /// from the next step on.
     pub fn set_release(&mut self, line: usize, release: bool) {
         self.snapshot.inputs.releases[line] = release;
     }
 
-    /// Whether a line is to let go, as set.
+    /// Returns the release command of a line.
     pub fn release(&self, line: usize) -> bool {
         self.snapshot.inputs.releases[line]
     }
 
-    /// Whether ends A and B of a line are released from their points.
+    /// Returns whether ends A and B of a line are released from their points.
     pub fn released(&self, line: usize) -> [bool; 2] {
         self.snapshot.state.lines[line].released
     }

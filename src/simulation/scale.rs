@@ -1,7 +1,7 @@
-//! The size of a scene, and how far inputs may lead from it.
+//! Size of a scene, and the limits of inputs that follow from it.
 //!
-//! Beyond some thousand times the size of a scene the equations still have solutions, of rounding: such inputs are a wrong unit or a host that has
-//! lost its stability, and are refused before anything is solved.
+//! Beyond some thousand times the size of a scene the equations still have solutions, dominated by rounding. Such
+//! inputs are a wrong unit or come from an unstable host, and are refused before anything is solved.
 
 use nalgebra::Vector3;
 
@@ -17,7 +17,7 @@ const TURNS_MAX: f64 = 6283.0;
 const AXES: [&str; 6] = ["x", "y", "z", "roll", "pitch", "yaw"];
 const RATES: [&str; 6] = ["vx", "vy", "vz", "wx", "wy", "wz"];
 
-/// What lengths of a scene inputs are compared with.
+/// Lengths of a scene with which inputs are compared.
 #[derive(Debug, Clone)]
 pub(super) struct Scale {
     /// Greatest length of a line or distance between two points [m].
@@ -53,7 +53,8 @@ impl Scale {
         }
     }
 
-    /// Refuses inputs of a step of `length` [s] that lead too far, before anything is solved: the body and what is wrong.
+    /// Refuses inputs of a step of `length` [s] that exceed the limits, before anything is solved: names the body and
+    /// the fault.
     fn check(&self, model: &Model, inputs: &Inputs, length: f64) -> Result<(), (Body, String)> {
         let reach = REACH * self.size;
         for (index, point) in model.points.iter().enumerate() {
