@@ -112,7 +112,7 @@ pub fn frame(simulation: &Simulation, time: f64) -> Frame {
     }
 }
 
-/// What beams in free flight hold now, which is `time` [s]; `None` where anything holds a line.
+/// Energy and momenta of beams in free flight at the present time, `time` [s]; `None` where a line has a support.
 pub fn flight(simulation: &Simulation, time: f64) -> Option<Flight> {
     let model = simulation.model();
     let free = |line: &Line| {

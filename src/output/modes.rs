@@ -273,7 +273,7 @@ impl LineShape {
 /// Writes the modes as indented JSON with a line end behind it.
 ///
 /// # Errors
-/// Where `out` refuses.
+/// Writing to `out` fails.
 pub fn write(modes: &NaturalModes, mut out: impl Write) -> io::Result<()> {
     serde_json::to_writer_pretty(&mut out, modes)?;
     writeln!(out)

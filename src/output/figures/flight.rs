@@ -1,4 +1,4 @@
-//! Beams in free flight: stroboscopic shapes, and what such a flight keeps.
+//! Beams in free flight: stroboscopic shapes, and the conserved quantities of such a flight.
 
 use super::axis::{Axis, plain};
 use super::chart::{self, Chart, Curve, Stroke};

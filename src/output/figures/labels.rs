@@ -1,7 +1,8 @@
-//! Where words beside points stand, so that none covers other words or a mark.
+//! Placement of labels at points, so that none covers another label or a mark.
 //!
-//! Every label tries the places right and left of its point, then above and below it, farther and farther off, and takes the first that is free
-//! and inside the frame; where none is, the one that covers least. Those before it stay.
+//! The places right and left of the point are tried first, then those above and below it, at increasing distance. A
+//! label takes the first place that is free and inside the frame; where none is, the one that covers least. Labels
+//! placed before it stay.
 
 /// A rectangle: its least and its greatest x and y [px].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -47,7 +48,7 @@ pub struct Label {
     pub size: [i32; 2],
 }
 
-/// Patches that cover a curve through points [px], so far to either side of it.
+/// Patches that cover a curve through points [px], to this distance on either side of it.
 pub fn along(points: &[[i32; 2]], half: i32) -> impl Iterator<Item = Patch> {
     points.windows(2).flat_map(move |ends| {
         let [from, to] = [ends[0], ends[1]];
@@ -63,7 +64,7 @@ pub fn along(points: &[[i32; 2]], half: i32) -> impl Iterator<Item = Patch> {
 /// Rows that a label may move away from its point.
 const ROWS: i32 = 6;
 
-/// Where labels stand in a frame, `gap` [px] off their points and clear of `marks`.
+/// Placement of labels in a frame, `gap` [px] off their points and clear of `marks`.
 pub fn placed(frame: &Patch, marks: &[Patch], labels: &[Label], gap: i32) -> Vec<Patch> {
     let mut taken = marks.to_vec();
     for label in labels {
