@@ -27,7 +27,7 @@ pub enum Order {
 }
 
 impl Order {
-    /// Whether it is the order of the FMU's variables.
+    /// Returns whether it is the order of the FMU's variables.
     pub fn is_zyx(&self) -> bool {
         *self == Order::Zyx
     }

@@ -1,10 +1,10 @@
-//! Direct solution of a chain of 3×3 blocks whose two ends hang on a system of points.
+//! Direct solution of a chain of 3×3 blocks whose two ends couple to a system of points.
 //!
 //! B_{i−1} x_{i−1} + D_i x_i + A_i x_{i+1} + F_{i−2}ᵀ x_{i−2} + F_i x_{i+2} = b_i: segments couple a node to the next one, by the blocks above and
 //! below the diagonal; joints, which bend three nodes, to the second next too, by one block, transposed on the way back. [`Chain::eliminate`]
 //! removes the nodes between the ends in order and leaves the ends' own 2 × 2 blocks, which add up over all chains that meet in a point;
-//! [`super::sparse_blocks`] solves these points; [`Chain::substitute`] gives the nodes between. The first end is a border that every node comes to
-//! couple with, the last end is the last node.
+//! [`super::sparse_blocks`] solves these points; [`Chain::substitute`] gives the nodes between. The first end is a border to which every node becomes
+//! coupled, the last end is the last node.
 //!
 //! Source: Golub & Van Loan (2013), Matrix Computations, 4th ed., sections 4.3.5 (band Gaussian elimination), 4.5.1 (block tridiagonal) and 3.2 (LU).
 //! Matrices that are positive definite, or close to it where damping makes them unsymmetric, need no row exchanges, and a pivot that is not
@@ -81,7 +81,7 @@ struct Row {
 }
 
 impl Row {
-    /// Row `i`, from 1, as it is given; nothing beyond the last.
+    /// Row `i`, from 1, as given; empty beyond the last.
     #[inline(always)]
     fn new<const FAR: bool>(blocks: &Blocks, right: &[Vector3<f64>], i: usize) -> Row {
         let zero = Matrix3::zeros();

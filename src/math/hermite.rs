@@ -74,7 +74,7 @@ impl Hermite {
 }
 
 impl Hermites {
-    /// From a start over a span, whose inverse is at hand, through values and slopes at both ends.
+    /// Segment from a start over a span, with its inverse, through values and slopes at both ends.
     #[inline(always)]
     pub fn bridge([start, span, rate]: [f64; 3], [p0, m0]: [Lanes; 2], [p1, m1]: [Lanes; 2]) -> Hermites {
         let (two, three) = (Lanes::splat(2.0), Lanes::splat(3.0));

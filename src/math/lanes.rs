@@ -118,19 +118,19 @@ impl Lanes {
         pairs.max(pairs.moved_up().moved_up())
     }
 
-    /// Whether any lane is > 0.
+    /// Returns whether any lane is > 0.
     #[inline(always)]
     pub fn any_positive(self) -> bool {
         self.positive_bits(0) != 0
     }
 
-    /// Whether all lanes are > 0.
+    /// Returns whether all lanes are > 0.
     #[inline(always)]
     pub fn all_positive(self) -> bool {
         self.positive_bits(1) == 0
     }
 
-    /// A bit for every lane that is > 0, each turned over by `flip`: compilers ask in one instruction whether all are 0.
+    /// Bits of the lanes that are > 0, each inverted by `flip`: compilers test in one instruction whether all are 0.
     #[inline(always)]
     fn positive_bits(self, flip: u8) -> u8 {
         let [a, b, c, d] = self.0.map(|value| u8::from(value > 0.0) ^ flip);

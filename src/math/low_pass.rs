@@ -12,7 +12,7 @@
 
 use std::f64::consts::{PI, SQRT_2};
 
-/// The signal, sampled every `interval` [s], without what is faster than `cut_off` [Hz].
+/// Returns the signal, sampled every `interval` [s], without frequencies above `cut_off` [Hz].
 pub fn low_pass(signal: &[f64], interval: f64, cut_off: f64) -> Vec<f64> {
     if cut_off * interval >= 0.5 {
         return signal.to_vec();

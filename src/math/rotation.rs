@@ -43,7 +43,7 @@ pub fn spin_of_cayley(theta: Vector3<f64>) -> Matrix3<f64> {
     (Matrix3::identity() + 0.5 * skew(theta)) / (1.0 + 0.25 * theta.norm_squared())
 }
 
-/// A frame whose third column is the unit vector `direction` [-]; its first lies as near to `reference` as that allows.
+/// Frame whose third column is the unit vector `direction` [-]; its first is as close to `reference` as possible.
 pub fn frame_along(direction: Vector3<f64>, reference: Vector3<f64>) -> Matrix3<f64> {
     let across = |v: Vector3<f64>| {
         let rest = v - v.dot(&direction) * direction;

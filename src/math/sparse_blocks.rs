@@ -1,8 +1,9 @@
-//! Direct solution of a sparse system of 3×3 blocks with a symmetric pattern: the points that chains meet in, three unknowns each.
+//! Direct solution of a sparse system of 3×3 blocks with a symmetric pattern: the points at which chains meet, three
+//! unknowns each.
 //!
-//! The points are eliminated in an order of approximate minimum degree. Order and pattern of the factors are found once (`Order`); a
-//! solve then computes numbers only and allocates nothing. With point k next in the order, U its blocks on the later points and L those of
-//! these on it,
+//! The points are eliminated in an order of approximate minimum degree. Order and pattern of the factors are found
+//! once (`Order`); a solve then computes numbers only and allocates nothing. With point k next in the order, U its
+//! blocks on the later points and L those of these on k,
 //!
 //!   W_j = D_k⁻¹ U_kj,   y_k = D_k⁻¹ b_k,   A_ij ← A_ij − L_ik W_j,   b_i ← b_i − L_ik y_k,   at last x_k = y_k − Σ W_j x_j.
 //!
@@ -30,7 +31,7 @@ use super::block_banded::{Lu3, Pivots};
 struct Order {
     /// Place of every point in the order.
     place: Vec<usize>,
-    /// Where the blocks below the diagonal begin in each column, and their number.
+    /// Start of the blocks below the diagonal in each column, and their number.
     start: Vec<usize>,
     /// Rows of the blocks below the diagonal, ascending in each column.
     rows: Vec<usize>,
