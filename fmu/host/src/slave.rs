@@ -372,7 +372,7 @@ fn joined(messages: &[LogMessage]) -> String {
     texts.join("; ")
 }
 
-/// A path as the URI that FMI 2.0 wants (RFC 3986: everything but unreserved characters, `/` and `:` escaped).
+/// Path as the URI that FMI 2.0 requires (RFC 3986: everything but unreserved characters, `/` and `:` escaped).
 fn file_uri(path: &Path) -> String {
     let path = path.to_string_lossy().replace('\\', "/");
     let mut uri = String::from(if path.starts_with('/') {
