@@ -12,7 +12,7 @@ use crate::failure::Failure;
 use crate::folder::Folder;
 use crate::terminal::print;
 
-/// Reads a deck with what it leaves to its host, and writes the same system as a scene with comments.
+/// Reads a deck with the data that it leaves to its host, and writes the same system as a scene with comments.
 pub fn convert(path: &Path, target: &Path, supplement: &Supplement) -> Result<(), Failure> {
     check_file(target)?;
     let _open = Folder::of_file(target);

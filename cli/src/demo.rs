@@ -23,7 +23,7 @@ use crate::terminal::{discretise, print, progress, simulate};
 /// The built-in scene.
 const SCENE: &str = include_str!("../../scenes/demo.toml");
 
-/// Packages the built-in scene, drives the FMU, shows and writes what comes out.
+/// Packages the built-in scene, drives the FMU, shows and writes the results.
 pub fn demo(folder: &Path) -> Result<(), Failure> {
     let mut loaded = load_text(Path::new("demo.toml"), SCENE.to_string())?;
     discretise(&mut loaded, discretisation::select);

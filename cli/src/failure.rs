@@ -10,7 +10,7 @@ use moorline::output::package::PackageError;
 use moorline::scene::{LoadError, LoadedScene, SceneError};
 use moorline::simulation;
 
-/// The input is wrong, or a path that is to be read or written.
+/// The input is wrong, or a path cannot be read or written.
 const INPUT: u8 = 2;
 /// The computation failed.
 const COMPUTATION: u8 = 1;
@@ -71,7 +71,7 @@ impl Failure {
         }
     }
 
-    /// Says on standard error what went wrong, and returns the exit code. Who closed the pipe has read enough.
+    /// Reports the failure on standard error, and returns the exit code. A closed pipe is no failure of the reader.
     pub fn tell(self) -> ExitCode {
         let (code, text) = match self {
             Failure::Print(error) if error.kind() == ErrorKind::BrokenPipe => {

@@ -19,7 +19,7 @@ use crate::folder::Folder;
 use crate::summary::run_summary;
 use crate::terminal::{discretise, print, progress, read_scene, remark, remark_all, simulate};
 
-/// Shapes kept of a run whose scene does not ask for all of them [-].
+/// Number of shapes kept of a run whose scene does not request all of them [-].
 const FRAMES_MAX: usize = 240;
 
 /// Coupling of the motion to the mooring.

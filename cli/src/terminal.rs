@@ -11,7 +11,7 @@ use moorline_decks::{Supplement, load_with};
 
 use crate::failure::Failure;
 
-/// Reads a scene file with what a deck leaves to its host; remarks on it go to standard error.
+/// Reads a scene file with the data that a deck leaves to its host; remarks on it go to standard error.
 pub fn read_scene(path: &Path, supplement: &Supplement) -> Result<LoadedScene, Failure> {
     let loaded = load_with(path, supplement)?;
     loaded.notes.iter().for_each(|note| remark(path, note));
