@@ -31,8 +31,8 @@ const STEPS_AXIAL: [f64; 20] = [
 const STEPS_IMPLICIT: [f64; 3] = [20.0, 80.0, 320.0];
 /// Communication steps over the interval of the output that explicit runs are tried with [-].
 const COMMUNICATIONS: [usize; 10] = [1, 2, 3, 4, 8, 10, 13, 16, 20, 28];
-/// Elements up to which explicit runs are tried with more than the first of them [-]: what a communication step costs does not
-/// count on finer meshes.
+/// Elements up to which explicit runs are tried with more than the first of the communication steps [-]: the cost of
+/// a communication step is negligible on finer meshes.
 const COMMUNICATING_ELEMENTS: usize = 32;
 /// Communication steps to the shortest period, at least [-]: the motion in between is a cubic, and histories are read by cubics.
 const COMMUNICATIONS_PER_PERIOD: f64 = 5.0;
@@ -109,7 +109,7 @@ impl Setting {
         if self.tolerance.is_none() {
             scene.solver.input_reconstruction = Reconstruction::Interpolate;
         }
-        // A step that is not given is limited by the integrator's own rules only.
+        // A missing step is limited by the integrator's rules only.
         scene.solver.time_step_max = self.time_step_max.unwrap_or(scene.solver.time_step_max);
         scene.solver.tolerance = self.tolerance.unwrap_or(scene.solver.tolerance);
         // Processor time is that of one thread, as that of other codes.
@@ -137,7 +137,7 @@ impl Setting {
     }
 }
 
-/// The ladder of a scene whose motion has this shortest period [s].
+/// Ladder of a scene whose motion has this shortest period [s].
 pub fn ladder(scene: &Scene, period: f64) -> Vec<Setting> {
     if is_quasi_static(scene) {
         return ELEMENTS_STATIC.map(quasi_static).into();

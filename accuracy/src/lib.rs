@@ -43,7 +43,7 @@ const PERIOD: f64 = 10.0;
 pub enum Code {
     /// moorline with this integrator.
     Own(Integrator),
-    /// moorline with what it chose itself.
+    /// moorline with its default choices.
     Chosen,
     /// Another code, by name.
     Peer(String),
@@ -117,7 +117,7 @@ impl Run {
 pub struct Failed {
     /// Code, mesh and step.
     pub label: String,
-    /// Its message.
+    /// Message of the failure.
     pub reason: String,
 }
 
@@ -323,7 +323,7 @@ fn code(setting: &Setting) -> Code {
     }
 }
 
-/// Mesh and step of a run, in words; what became of the bed, where there is one.
+/// Mesh and step of a run, in words, with the treatment of the bed, where there is one.
 fn label(setting: &Setting, timed: &Timed, on_bed: bool) -> String {
     let communication = timed.communication.map_or(String::new(), |step| {
         format!(", communication step {}", seconds(step))

@@ -1,8 +1,9 @@
-//! One run of a scene: its histories and what they cost.
+//! One run of a scene: its histories and their cost.
 //!
-//! A timed run is driven as a host drives it: before every communication step it is given displacement and velocity of the moving bodies,
-//! made beforehand: at the end of the step, as the peers are, or with [`Reconstruction::Smooth`] at its start, and nothing later. The
-//! converged solution follows the scene's motion exactly.
+//! A timed run is driven like a run under a host: before every communication step it is given displacement and
+//! velocity of the moving bodies, computed beforehand: at the end of the step, as for the peers, or with
+//! [`Reconstruction::Smooth`] at its start, and nothing later. The converged solution follows the scene's motion
+//! exactly.
 
 use std::hint::black_box;
 
@@ -119,7 +120,8 @@ impl Trial {
             .collect()
     }
 
-    /// Runs once with reading. The time of a long pass counts, since reading takes a negligible part of it; short ones are timed anew.
+    /// Runs once with reading. The time of a long pass counts, since reading takes a negligible part of it; short
+    /// ones are timed again without reading.
     pub fn recorded(&self) -> Result<(Timed, Option<f64>), String> {
         let mut record = Record::new(&self.start, self.count);
         let mut steps = 0;
@@ -208,7 +210,7 @@ impl Record {
         }
     }
 
-    /// Histories after every interval [s] of what was read after every step [s].
+    /// Histories after every interval [s] of the samples taken after every step [s].
     fn sampled(self, step: f64, interval: f64, samples: usize) -> Histories {
         let parts = step / interval;
         let tension = self.tension.into_iter();
