@@ -107,7 +107,7 @@ impl Run {
         self.error.push(balance.error());
     }
 
-    /// Whether every node is at a finite place and every tension finite.
+    /// Returns whether every node is at a finite place and every tension finite.
     pub fn is_finite(&self) -> bool {
         let nodes = self.end.state().lines.iter().flat_map(|line| &line.position);
         self.tension.iter().all(|tension| tension.is_finite())

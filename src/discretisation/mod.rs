@@ -273,7 +273,7 @@ pub fn frozen(scene: &Scene) -> Option<Scene> {
     Some(scene)
 }
 
-/// Whether the number of elements of any line is left open.
+/// Returns whether the number of elements of any line is left open.
 fn is_open(scene: &Scene) -> bool {
     scene.solver.elements.is_none() && scene.lines.iter().any(Line::is_open)
 }
@@ -281,7 +281,7 @@ fn is_open(scene: &Scene) -> bool {
 /// The lines of a scene, by network.
 struct Networks {
     lines: Vec<Vec<usize>>,
-    /// Whether the elements of any line of a network are left open.
+    /// True if the elements of any line of a network are left open.
     open: Vec<bool>,
     /// Elements of every line over those of a line alone [-].
     shares: Vec<f64>,
