@@ -32,7 +32,7 @@ struct Sequence {
 
 impl Converged {
     /// Finds it by the first family of settings that serves.
-    pub fn find(name: &str, scene: &Scene) -> Result<Converged, StudyError> {
+    pub(crate) fn find(name: &str, scene: &Scene) -> Result<Converged, StudyError> {
         let name = || name.to_string();
         let mut reason = String::new();
         for family in ladder::converged(scene, shortest_period(scene)) {

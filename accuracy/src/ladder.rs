@@ -138,7 +138,7 @@ impl Setting {
 }
 
 /// Ladder of a scene whose motion has this shortest period [s].
-pub fn ladder(scene: &Scene, period: f64) -> Vec<Setting> {
+pub(crate) fn ladder(scene: &Scene, period: f64) -> Vec<Setting> {
     if is_quasi_static(scene) {
         return ELEMENTS_STATIC.map(quasi_static).into();
     }
@@ -169,7 +169,7 @@ pub fn ladder(scene: &Scene, period: f64) -> Vec<Setting> {
 }
 
 /// Returns whether a scene is quasi-static: dynamics is then no measure of it.
-pub fn is_quasi_static(scene: &Scene) -> bool {
+pub(crate) fn is_quasi_static(scene: &Scene) -> bool {
     scene.solver.integrator == Integrator::QuasiStatic
 }
 
@@ -234,7 +234,7 @@ fn stepping(wanted: f64, interval: f64) -> (usize, f64) {
 /// Families of settings for a converged solution, in the order they are tried: the first that serves the scene is taken. Each holds one or
 /// more sequences of finer and finer settings, the best of which is followed to its end: a bed may be softened with the mesh, or have the
 /// scene's own coefficients.
-pub fn converged(scene: &Scene, period: f64) -> Vec<Vec<Vec<Setting>>> {
+pub(crate) fn converged(scene: &Scene, period: f64) -> Vec<Vec<Vec<Setting>>> {
     if is_quasi_static(scene) {
         return vec![vec![CONVERGED_ELEMENTS_STATIC.map(quasi_static).into()]];
     }

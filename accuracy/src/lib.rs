@@ -391,7 +391,7 @@ mod tests {
     use super::*;
 
     /// A study of these runs, certain to 0.1 %.
-    pub fn study_of(runs: Vec<Run>) -> Study {
+    pub(crate) fn study_of(runs: Vec<Run>) -> Study {
         Study {
             name: "scene".to_string(),
             title: "a scene".to_string(),
@@ -411,12 +411,12 @@ mod tests {
     }
 
     /// A run of moorline with one error [-] in all respects.
-    pub fn own(cost: f64, error: f64) -> Run {
+    pub(crate) fn own(cost: f64, error: f64) -> Run {
         run_of(Code::Own(Integrator::Leapfrog), cost, error)
     }
 
     /// A run of a peer with one error [-] in all respects.
-    pub fn peer(name: &str, cost: f64, error: f64) -> Run {
+    pub(crate) fn peer(name: &str, cost: f64, error: f64) -> Run {
         run_of(Code::Peer(name.to_string()), cost, error)
     }
 

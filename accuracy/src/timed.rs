@@ -56,7 +56,7 @@ pub(crate) struct Timed {
 
 impl Timed {
     /// Returns whether any tension changes.
-    pub fn moves(&self) -> bool {
+    pub(crate) fn moves(&self) -> bool {
         let changes = |tension: &Vec<f64>| {
             let (first, last) = (tension.first(), tension.len() / 2);
             let scale = first.map_or(0.0, |t| t.abs());
@@ -70,7 +70,7 @@ impl Timed {
 
 impl Trial {
     /// A run driven as a host drives it; the error is a message.
-    pub fn new(scene: &Scene, setting: &Setting) -> Result<Trial, String> {
+    pub(crate) fn new(scene: &Scene, setting: &Setting) -> Result<Trial, String> {
         let interval = scene.output.interval;
         let step = setting.communication as f64 * interval;
         let samples = samples(scene);
@@ -96,7 +96,7 @@ impl Trial {
     }
 
     /// A run that follows the scene's motion exactly.
-    pub fn exact(scene: &Scene, setting: &Setting) -> Result<Trial, String> {
+    pub(crate) fn exact(scene: &Scene, setting: &Setting) -> Result<Trial, String> {
         let mut start = Simulation::new(&setting.apply(scene)).map_err(|error| error.to_string())?;
         start.follow_scene().map_err(|error| error.to_string())?;
         let samples = samples(scene);
@@ -112,7 +112,7 @@ impl Trial {
     }
 
     /// Integrator and planned steps in a communication step, by network: two runs with one mesh and the same plan are the same.
-    pub fn plan(&self) -> Vec<(Integrator, usize)> {
+    pub(crate) fn plan(&self) -> Vec<(Integrator, usize)> {
         let steps = |step_max: f64| (self.step / step_max - 1e-9).ceil() as usize;
         let choices = self.start.choices();
         choices
@@ -122,7 +122,7 @@ impl Trial {
 
     /// Runs once with reading. The time of a long pass counts, since reading takes a negligible part of it; short
     /// ones are timed again without reading.
-    pub fn recorded(&self) -> Result<(Timed, Option<f64>), String> {
+    pub(crate) fn recorded(&self) -> Result<(Timed, Option<f64>), String> {
         let mut record = Record::new(&self.start, self.count);
         let mut steps = 0;
         let elapsed = self.step_through(|simulation| {
@@ -144,7 +144,7 @@ impl Trial {
     }
 
     /// Processor time over simulated time [-], the median of a few passes that read nothing.
-    pub fn cost(&self) -> Result<f64, String> {
+    pub(crate) fn cost(&self) -> Result<f64, String> {
         let mut times = Vec::with_capacity(PASSES_MAX);
         while times.len() < PASSES_MAX && times.iter().sum::<f64>() < PASSES_TIME {
             times.push(self.step_through(|simulation| {

@@ -36,7 +36,7 @@ const ENOUGH: f64 = 0.02;
 
 /// Studies scenes, with their own motion or with a given one, prints the cost of each level of error and writes tables and figures into
 /// a folder.
-pub fn accuracy(
+pub(crate) fn accuracy(
     paths: &[PathBuf],
     supplement: &Supplement,
     drive: &Drive,

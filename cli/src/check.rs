@@ -14,7 +14,7 @@ use crate::failure::Failure;
 use crate::terminal::{noted, print};
 
 /// Reads a scene, discretises it, and prints a description of its model, notes on it, and the variables of its FMU.
-pub fn check(input: &Input) -> Result<(), Failure> {
+pub(crate) fn check(input: &Input) -> Result<(), Failure> {
     let loaded = load_with(&input.scene, &input.host.supplement())?;
     let located = |mistake| Failure::of_scene(mistake, &loaded);
     let settled = discretisation::select(&loaded.scene);

@@ -13,7 +13,7 @@ use crate::folder::Folder;
 use crate::terminal::print;
 
 /// Reads a deck with the data that it leaves to its host, and writes the same system as a scene with comments.
-pub fn convert(path: &Path, target: &Path, supplement: &Supplement) -> Result<(), Failure> {
+pub(crate) fn convert(path: &Path, target: &Path, supplement: &Supplement) -> Result<(), Failure> {
     check_file(target)?;
     let _open = Folder::of_file(target);
     let loaded = load_with(path, supplement)?;

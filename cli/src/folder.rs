@@ -28,12 +28,12 @@ struct Place {
 
 /// A folder that is open for results as long as this lives.
 #[derive(Debug)]
-pub struct Folder(Place);
+pub(crate) struct Folder(Place);
 
 impl Folder {
     /// Makes a folder where it is missing, and checks that files can be written there. An interrupted command names
     /// the results kept in it.
-    pub fn open(path: &Path) -> Result<Folder, Failure> {
+    pub(crate) fn open(path: &Path) -> Result<Folder, Failure> {
         let above = path.ancestors();
         let missing = above.take_while(|path| !path.as_os_str().is_empty() && !path.exists());
         let made = missing.map(Path::to_path_buf).collect();
@@ -42,7 +42,7 @@ impl Folder {
     }
 
     /// The folder of one file, whose beginning an interrupted command removes.
-    pub fn of_file(target: &Path) -> Folder {
+    pub(crate) fn of_file(target: &Path) -> Folder {
         let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty());
         Folder::of(folder.unwrap_or(Path::new(".")), Vec::new(), false)
     }
@@ -88,7 +88,7 @@ impl Place {
 }
 
 /// Lets Ctrl-C and requests to end, such as SIGTERM, end the program with a message on the results kept.
-pub fn end_on_interrupt() {
+pub(crate) fn end_on_interrupt() {
     // Without a handler, they end the program as they end any other.
     let _ = ctrlc::set_handler(|| {
         let kept = match set_open(None).filter(Place::clear) {

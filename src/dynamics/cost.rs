@@ -24,9 +24,9 @@ const CATENARY: f64 = 100.0;
 /// Cost of an axial-implicit step over that of an explicit one [-].
 pub const AXIAL_IMPLICIT_COST: f64 = AXIAL_IMPLICIT / EXPLICIT;
 /// Cost of a step of generalised-α over that of an explicit one [-].
-pub const IMPLICIT_COST: f64 = IMPLICIT / EXPLICIT;
+pub(super) const IMPLICIT_COST: f64 = IMPLICIT / EXPLICIT;
 /// Time to sum a wave component at a node [ns].
-pub const COMPONENT: f64 = 5.0;
+pub(super) const COMPONENT: f64 = 5.0;
 
 /// Time of a step at a node of a network [ns].
 pub fn node_time(model: &Model, network: &Network, integrator: Integrator) -> f64 {

@@ -19,7 +19,7 @@ const ROUNDING: f64 = 1e-9;
 
 /// Scratch of the spans.
 #[derive(Debug)]
-pub struct SeaWork {
+pub(super) struct SeaWork {
     /// The widest vectors of this machine; results do not depend on it.
     unit: Arch,
     /// Per thread.
@@ -112,7 +112,7 @@ impl Clone for SeaWork {
 
 impl SeaWork {
     /// Scratch.
-    pub fn new() -> SeaWork {
+    pub(super) fn new() -> SeaWork {
         SeaWork {
             unit: Arch::new(),
             instants: vec![Instant::default()],
@@ -122,7 +122,7 @@ impl SeaWork {
     }
 
     /// Gives a state the waves of its time, or none.
-    pub fn start(&mut self, model: &Model, state: &mut State) {
+    pub(super) fn start(&mut self, model: &Model, state: &mut State) {
         state.waves = model.waves.as_ref().map(|waves| {
             let mut spans = WaveSpans::default();
             spans.lines.resize_with(model.lines.len(), WaveSpan::default);
@@ -152,7 +152,7 @@ impl SeaWork {
 
     /// Length of the next step [s] within `length` [s]: not beyond the end of a span. A span that ends with an equal
     /// part but for rounding does not change that part.
-    pub fn reach(&self, model: &Model, waves: &Waves, state: &State, length: f64) -> f64 {
+    pub(super) fn reach(&self, model: &Model, waves: &Waves, state: &State, length: f64) -> f64 {
         let parts = length / waves.interval_below(f64::INFINITY) - ROUNDING;
         let part = length / parts.ceil().max(1.0);
         let left = Place::of(model).map(|place| left(place, state, length));
@@ -162,7 +162,7 @@ impl SeaWork {
 
     /// Begins new spans where old ones are over, for steps of `step` [s], on a number of threads of a pool; returns
     /// whether there were any.
-    pub fn renew(
+    pub(super) fn renew(
         &mut self,
         (model, waves): (&Model, &Waves),
         state: &mut State,
@@ -207,7 +207,7 @@ impl SeaWork {
     }
 
     /// Puts back the spans before those that began last.
-    pub fn undo(&mut self, model: &Model, state: &mut State) {
+    pub(super) fn undo(&mut self, model: &Model, state: &mut State) {
         let Some(spans) = &mut state.waves else {
             return;
         };

@@ -28,7 +28,7 @@ pub(super) struct Stretching {
 
 impl Stretching {
     /// From positions [m] and velocities [m/s] of the ends of segment `i`.
-    pub fn of(
+    pub(super) fn of(
         line: &Line,
         i: usize,
         [low, high]: [Vector3<f64>; 2],
@@ -45,14 +45,14 @@ impl Stretching {
 
 impl ViscoelasticSegment {
     /// Segment `i` of a line; `None` where the line is not viscoelastic, or at rest.
-    pub fn of(line: &Line, state: &LineState, i: usize) -> Option<ViscoelasticSegment> {
+    pub(super) fn of(line: &Line, state: &LineState, i: usize) -> Option<ViscoelasticSegment> {
         let law = line.segments.viscoelastic.as_ref()?[i];
         let slow = *state.viscoelastic.get(i)?;
         Some(ViscoelasticSegment { law, slow })
     }
 
     /// The same at the time of the velocities: half a step before where a leapfrog serves.
-    pub fn at_velocities(line: &Line, state: &LineState, i: usize) -> Option<ViscoelasticSegment> {
+    pub(super) fn at_velocities(line: &Line, state: &LineState, i: usize) -> Option<ViscoelasticSegment> {
         let now = ViscoelasticSegment::of(line, state, i)?;
         let before = state.half_step.viscoelastic.get(i);
         let slow = before.copied().unwrap_or(now.slow);
@@ -60,18 +60,18 @@ impl ViscoelasticSegment {
     }
 
     /// Energy per unstretched length [N] at a strain [-].
-    pub fn energy(&self, strain: f64) -> f64 {
+    pub(super) fn energy(&self, strain: f64) -> f64 {
         self.law.energy(strain, self.slow)
     }
 
     /// Elastic and damping force [N].
-    pub fn forces(&self, now: Stretching) -> (f64, f64) {
+    pub(super) fn forces(&self, now: Stretching) -> (f64, f64) {
         let elastic = self.law.elastic(now.strain, self.slow);
         (elastic, self.law.damping * now.rate)
     }
 
     /// Tension [N] of a segment that pushes with `push` [N] at most.
-    pub fn tension(&self, now: Stretching, push: f64, negative_tension: bool) -> f64 {
+    pub(super) fn tension(&self, now: Stretching, push: f64, negative_tension: bool) -> f64 {
         let (elastic, damping) = self.forces(now);
         total_tension(elastic, damping, 0.0 - push, negative_tension)
     }

@@ -36,7 +36,7 @@ const ERROR_TIMES_ELEMENTS: f64 = 0.8;
 const LINE_ELEMENTS_MIN: f64 = 10.0;
 const LINE_ELEMENTS_MAX: f64 = 400.0;
 /// Length of an element over that of a shorter neighbour, from which it is graded [-].
-pub const RATIO_MAX: f64 = 1.5;
+pub(crate) const RATIO_MAX: f64 = 1.5;
 /// Growth of the length of elements along the line [-]: e^0.25 from one to the next.
 const GROWTH: f64 = 0.25;
 /// Elements of a section that is too short to be graded well [-].
@@ -48,7 +48,7 @@ const COARSENING: f64 = 1.25;
 
 /// A section as the mesher sees it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Piece {
+pub(crate) struct Piece {
     /// Unstretched length [m].
     pub length: f64,
     /// Number of elements, where the scene gives one.
@@ -57,7 +57,7 @@ pub struct Piece {
 
 /// Place with short elements.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Refinement {
+pub(crate) struct Refinement {
     /// From this arc length on [m].
     pub from: f64,
     /// Up to this one [m].
@@ -70,7 +70,7 @@ pub struct Refinement {
 
 /// Places that need short elements.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Place {
+pub(crate) enum Place {
     /// The clamp at end A.
     ClampA,
     /// The clamp at end B.
@@ -80,13 +80,13 @@ pub enum Place {
 }
 
 /// Elements of a line for a target error of fairlead tension [-], if it were alone.
-pub fn line_elements(tolerance: f64) -> f64 {
+pub(crate) fn line_elements(tolerance: f64) -> f64 {
     (ERROR_TIMES_ELEMENTS / tolerance).clamp(LINE_ELEMENTS_MIN, LINE_ELEMENTS_MAX)
 }
 
 /// Unstretched lengths of the elements of every section of a line with about `elements` elements [-], more where it
 /// is refined.
-pub fn lengths(pieces: &[Piece], elements: f64, refinements: &[Refinement]) -> Vec<Vec<f64>> {
+pub(crate) fn lengths(pieces: &[Piece], elements: f64, refinements: &[Refinement]) -> Vec<Vec<f64>> {
     let total: f64 = pieces.iter().map(|piece| piece.length).sum();
     let share = |piece: &Piece| (elements * piece.length / total).round().max(1.0) as usize;
     let counts = || pieces.iter().map(|piece| piece.elements.unwrap_or(share(piece)));

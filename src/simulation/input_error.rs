@@ -64,7 +64,7 @@ type Squares = [f64; 3];
 impl InputRecord {
     /// Records the inputs at a time [s], before they continue the paths.
     #[inline(never)]
-    pub fn take(&mut self, model: &Model, scale: &Scale, paths: &Paths, inputs: &Inputs, t: f64) {
+    pub(super) fn take(&mut self, model: &Model, scale: &Scale, paths: &Paths, inputs: &Inputs, t: f64) {
         let Some(gaps) = paths.gaps(t) else {
             return;
         };

@@ -21,7 +21,7 @@ pub(super) struct Inputs {
 
 impl Inputs {
     /// Inputs before any is set.
-    pub fn new(model: &Model) -> Inputs {
+    pub(super) fn new(model: &Model) -> Inputs {
         Inputs {
             points: vec![PointInput::default(); model.points.len()],
             vessels: vec![VesselInput::default(); model.vessels.len()],
@@ -52,7 +52,7 @@ pub(super) struct VesselInput {
 
 impl VesselInput {
     /// Rates of the pose [m/s, rad/s]. Those of the angles need the whole angular velocity.
-    pub fn rates(&self, attitude: Vector3<f64>) -> [Option<f64>; 6] {
+    pub(super) fn rates(&self, attitude: Vector3<f64>) -> [Option<f64>; 6] {
         let [vx, vy, vz, wx, wy, wz] = self.velocity;
         let [_, _, _, roll, pitch, yaw] = self.pose;
         let turning = match (wx, wy, wz) {

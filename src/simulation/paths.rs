@@ -51,7 +51,7 @@ pub(super) fn is_coupled(point: &Point) -> bool {
 
 impl Paths {
     /// Paths at rest at a time [s] at the places of the inputs.
-    pub fn at_rest(model: &Model, time: f64, inputs: &Inputs, follows_scene: bool) -> Paths {
+    pub(super) fn at_rest(model: &Model, time: f64, inputs: &Inputs, follows_scene: bool) -> Paths {
         let points = model.points.iter().zip(&inputs.points);
         let coupled = points.filter(|(point, _)| is_coupled(point));
         let place = |(point, input): (&Point, &PointInput)| {
@@ -67,7 +67,7 @@ impl Paths {
     }
 
     /// Times from the newest sample to now, `time` [s], and from the one before to the newest [s], where both are known and in order.
-    pub fn gaps(&self, time: f64) -> Option<[f64; 2]> {
+    pub(super) fn gaps(&self, time: f64) -> Option<[f64; 2]> {
         self.clock.gaps(time)
     }
 

@@ -38,7 +38,7 @@ pub(super) struct MotionSource<'a> {
 
 impl<'a> MotionSource<'a> {
     /// Along the scene's own motion or the paths of a host.
-    pub fn new(model: &'a Model, paths: &'a Paths, follows_scene: bool) -> MotionSource<'a> {
+    pub(super) fn new(model: &'a Model, paths: &'a Paths, follows_scene: bool) -> MotionSource<'a> {
         MotionSource {
             model,
             paths,
@@ -47,7 +47,7 @@ impl<'a> MotionSource<'a> {
     }
 
     /// A point at time `t` [s].
-    pub fn point(&self, point: usize, t: f64) -> Kinematics {
+    pub(super) fn point(&self, point: usize, t: f64) -> Kinematics {
         let reference = self.model.points[point].reference;
         let moved = |k: Kinematics| Kinematics {
             position: reference + k.position,
@@ -83,7 +83,7 @@ impl<'a> MotionSource<'a> {
     }
 
     /// A vessel at time `t` [s].
-    pub fn frame(&self, vessel: usize, t: f64) -> Frame {
+    pub(super) fn frame(&self, vessel: usize, t: f64) -> Frame {
         self.frame_at(vessel, &self.pose(vessel, t))
     }
 
@@ -220,7 +220,7 @@ pub(super) struct PrescribedMotion {
 
 impl PrescribedMotion {
     /// Motion of a model whose points follow the scene, or a host; `choices` are those of its networks.
-    pub fn new<'a>(
+    pub(super) fn new<'a>(
         model: &Model,
         follows_scene: bool,
         choices: impl Iterator<Item = &'a Choice>,
@@ -270,12 +270,12 @@ impl PrescribedMotion {
     }
 
     /// Ends of the points that a host moves at both ends of the next span, to be filled in from their paths.
-    pub fn hosted(&mut self) -> &mut [HostEnds] {
+    pub(super) fn hosted(&mut self) -> &mut [HostEnds] {
         &mut self.hosted
     }
 
     /// Makes ready for a span of time [s].
-    pub fn prepare(&mut self, at: &MotionSource, span: [f64; 2]) {
+    pub(super) fn prepare(&mut self, at: &MotionSource, span: [f64; 2]) {
         let goes_on = self.span[1] == span[0];
         self.span = span;
         if at.follows_scene {
@@ -351,7 +351,7 @@ impl PrescribedMotion {
     /// Kinematics of a point at time `t` [s] of the span; its rotation is given at the ends, and everywhere where
     /// lines are clamped.
     #[inline(always)]
-    pub fn point(&self, at: &MotionSource, point: usize, t: f64) -> Kinematics {
+    pub(super) fn point(&self, at: &MotionSource, point: usize, t: f64) -> Kinematics {
         let [start, end] = self.span;
         match &self.evaluations[point] {
             Evaluation::Host(path) if t == start || t == end => {

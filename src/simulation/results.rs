@@ -69,7 +69,7 @@ struct LineReactions {
 
 impl Reactions {
     /// Allocates for a model; nothing is evaluated.
-    pub fn new(model: &Model) -> Reactions {
+    pub(super) fn new(model: &Model) -> Reactions {
         Reactions {
             energy: OnceCell::new(),
             vessels: vec![OnceCell::new(); model.vessels.len()],
@@ -78,7 +78,7 @@ impl Reactions {
     }
 
     /// Drops all values, for another state.
-    pub fn clear(&mut self) {
+    pub(super) fn clear(&mut self) {
         self.energy.take();
         for force in &mut self.vessels {
             force.take();

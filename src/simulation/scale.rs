@@ -28,7 +28,7 @@ pub(super) struct Scale {
 
 impl Scale {
     /// Of a model.
-    pub fn new(model: &Model) -> Scale {
+    pub(super) fn new(model: &Model) -> Scale {
         let lengths = model.lines.iter().map(|line| {
             let sections = line.sections.iter();
             sections.map(|section| section.length).sum::<f64>()
@@ -75,13 +75,13 @@ impl Scale {
     }
 
     /// Refuses the inputs of a start.
-    pub fn check_start(&self, model: &Model, inputs: &Inputs) -> Result<(), SceneError> {
+    pub(super) fn check_start(&self, model: &Model, inputs: &Inputs) -> Result<(), SceneError> {
         self.check(model, inputs, 0.0)
             .map_err(|(_, problem)| SceneError::new("", problem))
     }
 
     /// Refuses the inputs of a step of `length` [s] from a time [s].
-    pub fn check_step(
+    pub(super) fn check_step(
         &self,
         model: &Model,
         inputs: &Inputs,

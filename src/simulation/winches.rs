@@ -20,7 +20,7 @@ pub(super) struct WinchPath {
 impl WinchPath {
     /// Continues by a communication step from a host's length change [m] at a time [s]; a winch with a greatest speed
     /// [m/s] lags behind faster inputs.
-    pub fn extend(
+    pub(super) fn extend(
         &mut self,
         speed_max: Option<f64>,
         [time, wanted]: [f64; 2],
@@ -34,7 +34,7 @@ impl WinchPath {
     }
 
     /// Continues along the scene's own path from a time [s] by a communication step [s]: through its value there, at its mean rate around it.
-    pub fn follow(&mut self, path: &TimeFunction, time: f64, step: f64) {
+    pub(super) fn follow(&mut self, path: &TimeFunction, time: f64, step: f64) {
         let end = time + step;
         let velocity = (path.at(end + step) - path.at(time)) / (2.0 * step);
         self.path.follow([time, end], [path.at(end), velocity]);

@@ -6,7 +6,7 @@
 
 /// A rectangle: its least and its greatest x and y [px].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Patch {
+pub(super) struct Patch {
     /// Upper left corner.
     pub low: [i32; 2],
     /// Lower right corner.
@@ -15,7 +15,7 @@ pub struct Patch {
 
 impl Patch {
     /// Around a point, so far to either side.
-    pub fn around(point: [i32; 2], half: [i32; 2]) -> Patch {
+    pub(super) fn around(point: [i32; 2], half: [i32; 2]) -> Patch {
         Patch {
             low: [point[0] - half[0], point[1] - half[1]],
             high: [point[0] + half[0], point[1] + half[1]],
@@ -41,7 +41,7 @@ impl Patch {
 
 /// Words and the point that they belong to.
 #[derive(Debug, Clone, Copy)]
-pub struct Label {
+pub(super) struct Label {
     /// The point [px].
     pub point: [i32; 2],
     /// Width and height of the words [px].
@@ -49,7 +49,7 @@ pub struct Label {
 }
 
 /// Patches that cover a curve through points [px], to this distance on either side of it.
-pub fn along(points: &[[i32; 2]], half: i32) -> impl Iterator<Item = Patch> {
+pub(super) fn along(points: &[[i32; 2]], half: i32) -> impl Iterator<Item = Patch> {
     points.windows(2).flat_map(move |ends| {
         let [from, to] = [ends[0], ends[1]];
         let longest = (to[0] - from[0]).abs().max((to[1] - from[1]).abs());
@@ -65,7 +65,7 @@ pub fn along(points: &[[i32; 2]], half: i32) -> impl Iterator<Item = Patch> {
 const ROWS: i32 = 6;
 
 /// Placement of labels in a frame, `gap` [px] off their points and clear of `marks`.
-pub fn placed(frame: &Patch, marks: &[Patch], labels: &[Label], gap: i32) -> Vec<Patch> {
+pub(super) fn placed(frame: &Patch, marks: &[Patch], labels: &[Label], gap: i32) -> Vec<Patch> {
     let mut taken = marks.to_vec();
     for label in labels {
         let cover = |place: &Patch| {

@@ -35,7 +35,7 @@ impl Sum for CatenaryEnergy {
 
 impl Piece {
     /// Energy of this piece.
-    pub fn energy(&self) -> CatenaryEnergy {
+    pub(super) fn energy(&self) -> CatenaryEnergy {
         match self.kind {
             Kind::Flight(flight) => flight.energy(self.z),
             Kind::Laid {

@@ -40,7 +40,7 @@ pub(super) struct Rise {
 
 impl Flight {
     /// Flight of `length` metres of `section`.
-    pub fn of(section: &Section, length: f64, horizontal: f64, vertical: f64) -> Self {
+    pub(super) fn of(section: &Section, length: f64, horizontal: f64, vertical: f64) -> Self {
         Flight {
             horizontal,
             vertical,
@@ -51,7 +51,7 @@ impl Flight {
     }
 
     /// Vertical tension at the end [N].
-    pub fn vertical_end(&self) -> f64 {
+    pub(super) fn vertical_end(&self) -> f64 {
         self.vertical + self.weight * self.length
     }
 
@@ -85,7 +85,7 @@ impl Flight {
     }
 
     /// Position of the end relative to the start, x and z [m].
-    pub fn advance(&self) -> (f64, f64) {
+    pub(super) fn advance(&self) -> (f64, f64) {
         let (ta, tb) = self.tensions();
         let sigma = 0.5 * (ta + tb);
         if sigma == 0.0 {
@@ -103,7 +103,7 @@ impl Flight {
     }
 
     /// Rise of the end above the start, with its slopes in V and H.
-    pub fn rise(&self) -> Rise {
+    pub(super) fn rise(&self) -> Rise {
         let (ta, tb) = self.tensions();
         let sigma = 0.5 * (ta + tb);
         let flexibility = 1.0 / self.axial_stiffness;
@@ -126,7 +126,7 @@ impl Flight {
     }
 
     /// Elongation ∫T/EA ds [m].
-    pub fn elongation(&self) -> f64 {
+    pub(super) fn elongation(&self) -> f64 {
         let (ta, tb) = self.tensions();
         let sigma = 0.5 * (ta + tb);
         if sigma == 0.0 {
@@ -142,13 +142,13 @@ impl Flight {
     }
 
     /// Distance along the unstretched line at which the vertical tension is `vertical` [m]; None if it is not on this stretch.
-    pub fn where_vertical_is(&self, vertical: f64) -> Option<f64> {
+    pub(super) fn where_vertical_is(&self, vertical: f64) -> Option<f64> {
         let at = (vertical - self.vertical) / self.weight;
         (at.is_finite() && at > 0.0 && at < self.length).then_some(at)
     }
 
     /// The first `length` metres of this flight.
-    pub fn first(&self, length: f64) -> Self {
+    pub(super) fn first(&self, length: f64) -> Self {
         Flight { length, ..*self }
     }
 }

@@ -120,7 +120,7 @@ struct Hold {
 type Memory = Vec<Option<(f64, usize)>>;
 
 impl Sections {
-    pub fn new(sections: &[Section], span: f64, rise: f64, bed: Option<Bed>) -> Self {
+    pub(super) fn new(sections: &[Section], span: f64, rise: f64, bed: Option<Bed>) -> Self {
         let weights: f64 = sections.iter().map(|s| s.weight.abs() * s.length).sum();
         let felt = |s: &Section| s.weight.abs() * s.length > UNFELT_SHARE * weights;
         let unweighted = |s: &Section| Section { weight: 0.0, ..*s };
@@ -150,7 +150,7 @@ impl Sections {
     ///
     /// With sections that float, strong friction can leave a span without a state that uses friction in full. Coulomb's
     /// law is an inequality: the line then uses the greatest tried share of it, halved until the ends meet.
-    pub fn solve(&mut self, guess: (f64, f64), shape: &mut Shape) -> EndForces {
+    pub(super) fn solve(&mut self, guess: (f64, f64), shape: &mut Shape) -> EndForces {
         let mut steps = 0;
         for _ in 0..FRICTION_HALVINGS_MAX {
             steps += self.search(guess, shape);

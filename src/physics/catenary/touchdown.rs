@@ -89,7 +89,7 @@ impl Uniform {
     }
 
     /// End forces of the line, which must touch the bed.
-    pub fn touch_down(&self, at: &Touchdown) -> EndForces {
+    pub(super) fn touch_down(&self, at: &Touchdown) -> EndForces {
         let (l, w, ea) = (self.length, self.weight, self.axial_stiffness);
         let hanging = (
             self.lift(0.0, at.height_a).vertical,

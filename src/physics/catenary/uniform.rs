@@ -49,7 +49,7 @@ pub(super) struct EndForces {
 
 impl EndForces {
     /// End forces of the same line with its ends exchanged.
-    pub fn reversed(self) -> Self {
+    pub(super) fn reversed(self) -> Self {
         EndForces {
             horizontal_a: self.horizontal_b,
             horizontal_b: self.horizontal_a,
@@ -106,7 +106,7 @@ pub(super) fn weightless_tension(x: f64, z: f64, l: f64, flexibility: f64) -> f6
 
 impl Uniform {
     /// End forces of the line between ends `span` and `rise` apart [m], touching nothing.
-    pub fn suspend(&self, span: f64, rise: f64) -> EndForces {
+    pub(super) fn suspend(&self, span: f64, rise: f64) -> EndForces {
         let (l, w, ea) = (self.length, self.weight, self.axial_stiffness);
         let weight_half = 0.5 * w * l;
         if w == 0.0 {
